@@ -6,6 +6,9 @@ from dataclasses import dataclass
 
 from gnc.estimation.wind_filter import WindFilter
 
+NOISE_DEVIATIONS = 3.0
+"""Standard deviations of noise that are allowed for [-]."""
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class NavigationParameters:
@@ -15,6 +18,8 @@ class NavigationParameters:
     ----------
     crab_banks, crab_offsets : course through the air minus heading, over bank, ascending [rad]
     airspeed_sigma, course_sigma, wind_drift, wind_prior : of ``gnc.estimation.wind_filter.WindFilter`` [m/s, rad, m/s, m/s]
+    wind_noise, wind_error : largest errors by the noise of the sensors of a single measurement of the wind, and of its estimate in
+        the end, with which the guard reckons at all times [m/s]
     wind_interval : guidance steps between measurements of the wind
     time_step : of the guidance [s]
     """
@@ -25,6 +30,8 @@ class NavigationParameters:
     course_sigma: float
     wind_drift: float
     wind_prior: float
+    wind_noise: float = 0.0
+    wind_error: float = 0.0
     wind_interval: int
     time_step: float
 
@@ -41,6 +48,7 @@ class Navigation:
     velocity_north, velocity_east : over the ground [m/s]
     drift_north, drift_east : how far the frame of the air mass has drifted [m]
     wind : the estimate
+    wind_error : by how much more it may be wrong than in the end, since it was measured seldom so far [m/s]
     lost : for how long there has been no satellite navigation [s]
     """
 
@@ -58,6 +66,7 @@ class Navigation:
         "velocity_east",
         "velocity_north",
         "wind",
+        "wind_error",
     )
 
     def __init__(self, parameters: NavigationParameters) -> None:
@@ -69,7 +78,7 @@ class Navigation:
             prior_sigma=parameters.wind_prior,
         )
         self.north = self.east = self.velocity_north = self.velocity_east = 0.0
-        self.drift_north = self.drift_east = self.lost = 0.0
+        self.drift_north = self.drift_east = self.lost = self.wind_error = 0.0
         self._step_north = self._step_east = self._unmeasured = 0.0
         self._until_measured = 0
 
@@ -99,6 +108,8 @@ class Navigation:
         since = p.wind_interval * p.time_step + self._unmeasured
         wind.update(airspeed, air_course, self.velocity_north, self.velocity_east, since)
         self._unmeasured = 0.0
+        if p.wind_noise > p.wind_error:
+            self.wind_error = max(0.0, min(p.wind_noise, NOISE_DEVIATIONS * wind.sigma) - p.wind_error)
         self._step_north, self._step_east = p.time_step * wind.north, p.time_step * wind.east
 
     def _reckon(self, airspeed: float, air_course: float) -> None:

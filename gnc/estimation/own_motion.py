@@ -29,6 +29,7 @@ class AirMotion(Protocol):
     course : of the motion through the mean air, from -pi to pi [rad]
     heading_rate : of that course [rad/s]
     wind_north, wind_east : velocity of the air mass [m/s]
+    wind_error : by how much more than at all times that may be wrong, as long as it was measured seldom [m/s]
     lost : for how long there has been no satellite navigation [s]
     """
 
@@ -38,6 +39,7 @@ class AirMotion(Protocol):
     heading_rate: float
     wind_north: float
     wind_east: float
+    wind_error: float
     lost: float
 
 
@@ -77,6 +79,7 @@ class KnownMotion:
     heading_rate: float = 0.0
     wind_north: float = 0.0
     wind_east: float = 0.0
+    wind_error: float = 0.0
     lost: float = 0.0
 
 
@@ -85,11 +88,11 @@ class TrueNavigation:
 
     __slots__ = (
         "air_ratio", "airspeed", "course", "drift_east", "drift_north", "east", "ground_east", "ground_north", "heading_rate",
-        "lost", "north", "speed", "wind_east", "wind_north",
+        "lost", "north", "speed", "wind_east", "wind_error", "wind_north",
     )  # fmt: skip
 
     def __init__(self) -> None:
-        self.drift_north = self.drift_east = self.wind_north = self.wind_east = self.lost = 0.0
+        self.drift_north = self.drift_east = self.wind_north = self.wind_east = self.wind_error = self.lost = 0.0
         self.north = self.east = self.ground_north = self.ground_east = 0.0
         self.course = self.speed = self.heading_rate = 0.0
         self.air_ratio, self.airspeed = 1.0, math.nan
@@ -115,12 +118,12 @@ class EstimatedNavigation:
 
     __slots__ = (
         "_navigation", "air_ratio", "airspeed", "course", "drift_east", "drift_north", "east", "ground_east", "ground_north",
-        "heading_rate", "lost", "north", "speed", "wind_east", "wind_north",
+        "heading_rate", "lost", "north", "speed", "wind_east", "wind_error", "wind_north",
     )  # fmt: skip
 
     def __init__(self, parameters: NavigationParameters) -> None:
         self._navigation = Navigation(parameters)
-        self.drift_north = self.drift_east = self.wind_north = self.wind_east = self.lost = 0.0
+        self.drift_north = self.drift_east = self.wind_north = self.wind_east = self.wind_error = self.lost = 0.0
         self.north = self.east = self.ground_north = self.ground_east = 0.0
         self.course = self.speed = self.heading_rate = self.airspeed = 0.0
         self.air_ratio = 1.0
@@ -134,7 +137,7 @@ class EstimatedNavigation:
         self.wind_north, self.wind_east = wind_north, wind_east = wind.north, wind.east
         v_north, v_east = navigation.velocity_north - wind_north, navigation.velocity_east - wind_east
         self.course, self.speed = math.atan2(v_east, v_north), math.hypot(v_north, v_east)
-        self.airspeed, self.lost = airspeed, navigation.lost
+        self.airspeed, self.lost, self.wind_error = airspeed, navigation.lost, navigation.wind_error
         self.ground_north, self.ground_east = north, east = navigation.north, navigation.east
         self.drift_north, self.drift_east = navigation.drift_north, navigation.drift_east
         self.north, self.east = north - self.drift_north, east - self.drift_east

@@ -192,7 +192,8 @@ class PlumeFollowing:
             + sin_a * (tube.east - target.east + p.reach_time * (tube.velocity_east - target.velocity_east))
             for tube in target.tubes
         )
-        last, self._orbit_range = self._orbit_range, max(0.0, reach - p.reach) + p.drift_rate * self._own.lost
+        drifted = (p.drift_rate + self._own.wind_error) * self._own.lost
+        last, self._orbit_range = self._orbit_range, max(0.0, reach - p.reach) + drifted
         self._orbit_rate = (self._orbit_range - last) / self._plan_time if self._plan_time else 0.0
 
     def _move_centre(self) -> None:

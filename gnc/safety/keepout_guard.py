@@ -188,7 +188,8 @@ class KeepoutGuard:
 
     def _relative(self, tube: Tube, time: float, own: AirMotion, speed: float, to_come: float) -> Motion:
         """Return the vehicle's motion relative to a disc, with all that is uncertain in the disc's radius and growth."""
-        since = time - tube.time
+        since, wrong = time - tube.time, own.wind_error
+        drifted = (self._drift_rate + wrong) * own.lost
         return (
             own.ground_north - (tube.north + tube.velocity_north * since),
             own.ground_east - (tube.east + tube.velocity_east * since),
@@ -197,8 +198,8 @@ class KeepoutGuard:
             own.course,
             speed,
             own.heading_rate,
-            self._radius + self._drift_rate * own.lost + tube.radius + (tube.growth + 0.5 * tube.acceleration * since) * since,
-            self._speed_error + tube.growth + tube.acceleration * since,
+            self._radius + drifted + tube.radius + (tube.growth + 0.5 * tube.acceleration * since) * since,
+            self._speed_error + wrong + tube.growth + tube.acceleration * since,
             tube.acceleration,
             to_come,
             self._given.change,

@@ -8,7 +8,6 @@ from gnc.airspeed.pace_hold import PaceHold
 from gnc.errors import InfeasibleError
 from gnc.estimation.health_monitor import HealthParameters
 from gnc.estimation.reachable_set import ReachableSet, VesselLimits, tube
-from gnc.estimation.vessel_filter import VesselReport
 from gnc.mission.plume_following import FollowingParameters
 from gnc.mission.standoff import StandoffParameters
 from gnc.parameters import GuidanceParameters, ReportedVessel
@@ -18,7 +17,7 @@ from scenarios.margin.keepout_margin import KeepoutMargin, filter_parameters, tr
 from scenarios.margin.orbit_room import circle_distance, orbit_distance
 from scenarios.margin.tracking_spread import SpreadTable
 from scenarios.planning.air.dead_reckoning import drift_rate
-from scenarios.planning.air.estimated_wind import navigation_parameters, wind_change
+from scenarios.planning.air.estimated_wind import first_wind_error, navigation_parameters, wind_change
 from scenarios.planning.bounded_steering import given_steering
 from scenarios.planning.flight_plan import FlightPlan, Sensing
 from scenarios.planning.guidance import (
@@ -35,7 +34,7 @@ from scenarios.planning.plume.axis import axis_height, plume_axis
 from scenarios.planning.plume.distance import additional_distance
 from scenarios.planning.reference import orbits, oscillation_at, swing_of
 from scenarios.planning.standoff import standoff_parameters, vessel_circle
-from scenarios.planning.start import check_start, sampled_start
+from scenarios.planning.start import check_start, first_reports, sampled_start
 from scenarios.schema.scenario import Scenario
 from scenarios.vehicles.sensors import SensorErrors
 from scenarios.vehicles.vehicle_setup import VehicleSetup
@@ -126,10 +125,17 @@ def following_flight(
     guard = guarded if g.keepout_guard else None
     # What the guard knows at the start: a report of a file may be minutes old by then, and any may be wrong.
     known = ReachableSet(limits)
-    for report in _first_reports(vessel, received):
+    for report in first_reports(vessel, received):
         known.report(report)
-    blowing = air.now(0.0, scenario.altitude)
-    check_start(start, guard, known.tubes(0.0), wind=blowing, airspeed=g.airspeed_mps, keepout_radius=radius)
+    check_start(
+        start,
+        guard,
+        known.tubes(0.0),
+        wind=air.now(0.0, scenario.altitude),
+        wind_error=first_wind_error(scenario, setup),
+        airspeed=g.airspeed_mps,
+        keepout_radius=radius,
+    )
     steps = round(flight.duration_max_s * g.rate_hz) + 2
     return FlightPlan.of(
         scenario,
@@ -160,13 +166,6 @@ def following_flight(
         margin=margin,
         apparent_wind=wind,
     )
-
-
-def _first_reports(vessel: VesselTruth, received: list[tuple[float, VesselReport]] | None) -> list[VesselReport]:
-    """Return the reports that the flight begins with; of a vessel that is known exactly, her motion."""
-    if received is None:
-        return [VesselReport(0.0, *vessel.motion(0.0))]
-    return [report for at, report in received if at <= 0.0]
 
 
 def _following(

@@ -8,10 +8,12 @@ import numpy as np
 from gnc.errors import InfeasibleError
 from gnc.estimation.own_motion import KnownMotion
 from gnc.estimation.reachable_set import Tube
+from gnc.estimation.vessel_filter import VesselReport
 from gnc.safety.guard_parameters import GuardParameters
 from gnc.safety.keepout_guard import KeepoutGuard
 from scenarios.planning.flight_plan import Start
 from scenarios.schema.sections.flight import StartConfig
+from scenarios.world.vessel import VesselTruth
 
 
 def sampled_start(start: StartConfig, generator: np.random.Generator, *, course: float, axis: float) -> Start:
@@ -47,12 +49,20 @@ def placed(ahead: float, right: float, course: float) -> tuple[float, float]:
     return ahead * cos_c - right * sin_c, ahead * sin_c + right * cos_c
 
 
+def first_reports(vessel: VesselTruth, received: list[tuple[float, VesselReport]] | None) -> list[VesselReport]:
+    """Return the reports that the flight begins with; of a vessel that is known exactly, her motion."""
+    if received is None:
+        return [VesselReport(0.0, *vessel.motion(0.0))]
+    return [report for at, report in received if at <= 0.0]
+
+
 def check_start(
     start: Start,
     guard: GuardParameters | None,
     vessel: Sequence[Tube],
     *,
     wind: tuple[float, float],
+    wind_error: float = 0.0,
     airspeed: float,
     keepout_radius: float,
 ) -> None:
@@ -62,7 +72,7 @@ def check_start(
     ----------
     start, guard : the start, and the guard that would have to keep out; any start is accepted without
     vessel : discs in each of which it is for certain, at time 0
-    wind : north and east [m/s]
+    wind, wind_error : north and east, and by how much more than in the end its first measurement may be wrong [m/s]
     airspeed : of the UAV [m/s]
     keepout_radius : r_min [m]
 
@@ -82,7 +92,14 @@ def check_start(
         )
     keeping = KeepoutGuard(guard)
     keeping.tubes = vessel
-    own = KnownMotion(ground_north=start.north, ground_east=start.east, course=start.course, wind_north=wind[0], wind_east=wind[1])
+    own = KnownMotion(
+        ground_north=start.north,
+        ground_east=start.east,
+        course=start.course,
+        wind_north=wind[0],
+        wind_east=wind[1],
+        wind_error=wind_error,
+    )
     clearance = keeping.clearance(0.0, own, airspeed)
     if clearance < 0.0:
         raise InfeasibleError(

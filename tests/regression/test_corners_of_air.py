@@ -88,3 +88,17 @@ def test_noise_of_the_own_velocity_does_not_make_commands_look_safe(tmp_path, no
     )  # fmt: skip
     assert (rows["min_distance_m"] >= rows["keepout_radius_m"]).all()
     assert rows["guard_interventions"].sum() > 0
+
+
+@pytest.mark.parametrize(
+    ("flight_seed", "wind", "from_deg", "vessel"), [(1309792723, 4.757, 236.178, 1.547), (1339808699, 9.146, 196.918, 6.008)]
+)
+def test_satellites_are_lost_when_a_noisy_compass_has_measured_the_wind_once(tmp_path, flight_seed, wind, from_deg, vessel):
+    # 5 of 60 had come in, by up to 126 m: the first measurement, 3.5 m/s wrong, was taken for the wind for 60 s.
+    rows = flown(
+        tmp_path, "fidelity=six_dof", "flights=1", f"flight_seed={flight_seed}", f"wind.speed_mps={wind}",
+        f"wind.from_deg={from_deg}", f"vessel.speed_mps={vessel}", "fault.kind=satellite_navigation", "fault.at_s=0",
+        "fault.satellite_navigation_s=60", "sensors.heading_sigma_deg=5", "flight.duration_max_s=100",
+    )  # fmt: skip
+    assert (rows["min_distance_m"] >= rows["keepout_radius_m"]).all()
+    assert rows["guard_interventions"].sum() > 0

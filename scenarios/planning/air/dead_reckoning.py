@@ -1,7 +1,7 @@
 """How far dead reckoning goes wrong in air that changes: while satellites are lost, the wind is taken to be as it was before.
 
-By how much it may go wrong in steady air, by errors of sensors and of the estimated wind, is declared. Here is what the scenario's
-own air adds: of its mean wind, of its gusts, and of its turbulence. Noise, which is another at each step, counts beside.
+By how much it may go wrong in steady air, by errors of sensors and of the estimated wind, is declared, or follows from the noise
+of the sensors if that is more. Here is what the scenario's own air adds: of its mean wind, of its gusts, and of its turbulence.
 """
 
 import math
@@ -11,17 +11,12 @@ import numpy.typing as npt
 
 from aircraft.atmosphere.turbulence import TURBULENCE, intensities, scale_lengths
 from aircraft.atmosphere.wind import WindField
-from scenarios.planning.air.estimated_wind import WIND_FOLLOWED, largest_wind_change, wind_followed
+from gnc.estimation.navigation import NOISE_DEVIATIONS
+from scenarios.planning.air.estimated_wind import WIND_FOLLOWED, largest_wind_change, wind_followed, wind_noise, wind_noise_left
 from scenarios.schema.scenario import Scenario
 from scenarios.world.faults import SATELLITES
 
 Array = npt.NDArray[np.float64]
-
-_NOISE_DEVIATIONS = 3.0
-"""Standard deviations of the noise of velocities that are allowed for [-]."""
-
-_NOISE_OF_WIND = 0.12
-"""What the wind's filter leaves of the noise of a single measurement [-]: sqrt(k/2) of its gain k = 0.028 in still air."""
 
 _DEVIATIONS = 3.0
 """Standard deviations of what turbulence displaces that are allowed for [-]."""
@@ -45,7 +40,21 @@ def drift_rate(scenario: Scenario, wind: WindField, turn: float) -> float:
     changed = largest_wind_change(scenario, wind, outage + wind_followed(scenario))
     age = np.linspace(0.0, min(outage, duration), _AGES)
     covered = float(np.max((_by_gusts(scenario, age) + _by_turbulence(scenario, age)) / (age + turn)))
-    return scenario.following.drift_rate_mps + changed + _gust_taken_for_wind(scenario) + covered
+    steady = max(scenario.following.drift_rate_mps, _by_noise(scenario, age, turn))
+    return steady + changed + _gust_taken_for_wind(scenario) + covered
+
+
+def _by_noise(scenario: Scenario, age: Array, turn: float) -> float:
+    """Return how fast dead reckoning goes wrong by the noise of the sensors, once the wind is known as well as it gets [m/s].
+
+    The wind is wrong by what its filter leaves. Readings that are wrong by another amount at each step add up to a random walk. And
+    a compass that is noisy makes the mean velocity over the mean air too low by V (1 - exp(-sigma^2/2)): once in the wind, and
+    once, after half a turn, in what is reckoned with it.
+    """
+    noise, g = wind_noise(scenario), scenario.guidance
+    walked = NOISE_DEVIATIONS * noise * np.sqrt(age / g.rate_hz)
+    lowered = -g.airspeed_mps * math.expm1(-0.5 * math.radians(scenario.sensors.heading_sigma_deg) ** 2)
+    return NOISE_DEVIATIONS * wind_noise_left(scenario) + 2.0 * lowered + float(np.max(walked / (age + turn)))
 
 
 def velocity_noise(scenario: Scenario, drift: float) -> float:
@@ -58,10 +67,8 @@ def velocity_noise(scenario: Scenario, drift: float) -> float:
     ----------
     drift : how fast dead reckoning may go wrong, by ``drift_rate`` [m/s]
     """
-    sensors = scenario.sensors
-    by_wind = math.hypot(sensors.airspeed_sigma_mps, scenario.guidance.airspeed_mps * math.radians(sensors.heading_sigma_deg))
-    noise = _NOISE_DEVIATIONS * math.hypot(sensors.velocity_sigma_mps, _NOISE_OF_WIND * by_wind)
-    return max(noise, _NOISE_DEVIATIONS * by_wind - drift) if drift else noise
+    noise = NOISE_DEVIATIONS * math.hypot(scenario.sensors.velocity_sigma_mps, wind_noise_left(scenario))
+    return max(noise, NOISE_DEVIATIONS * wind_noise(scenario) - drift) if drift else noise
 
 
 def _gust_taken_for_wind(scenario: Scenario) -> float:

@@ -4,13 +4,13 @@ import math
 
 from aircraft.atmosphere.turbulence import TURBULENCE, intensities, scale_lengths
 from aircraft.atmosphere.wind import WindField
-from gnc.estimation.navigation import NavigationParameters
+from gnc.estimation.navigation import NOISE_DEVIATIONS, Navigation, NavigationParameters
 from scenarios.planning.limits import plan_interval
 from scenarios.schema.scenario import Scenario
 from scenarios.vehicles.vehicle_setup import VehicleSetup
 
 _AIRSPEED_SIGMA, _COURSE_SIGMA = 0.5, 0.03
-"""Deviations of airspeed and course that the wind's filter takes for noise in still air [m/s, rad]."""
+"""Least deviations of airspeed and course that the wind's filter takes for noise in still air [m/s, rad]."""
 
 _WIND_DRIFT, _WIND_PRIOR = 0.02, 10.0
 """By how much the wind may change in the root of a second, and how large it may be before any measurement [m/s]."""
@@ -25,16 +25,38 @@ _PLUME_RADII = 3.0
 def navigation_parameters(scenario: Scenario, setup: VehicleSetup) -> NavigationParameters:
     """Return what the navigation knows beforehand: how much gusts scatter what it measures the wind by."""
     g, time_step, gust = scenario.guidance, 1.0 / scenario.guidance.rate_hz, _gust_sigma(scenario)
+    airspeed_sigma, course_sigma = _sensor_sigmas(scenario)
     return NavigationParameters(
         crab_banks=setup.crab_banks,
         crab_offsets=setup.crab_offsets,
-        airspeed_sigma=math.hypot(_AIRSPEED_SIGMA, gust),
-        course_sigma=math.hypot(_COURSE_SIGMA, gust / g.airspeed_mps),
+        airspeed_sigma=math.hypot(airspeed_sigma, gust),
+        course_sigma=math.hypot(course_sigma, gust / g.airspeed_mps),
         wind_drift=_WIND_DRIFT,
         wind_prior=_WIND_PRIOR,
+        wind_noise=NOISE_DEVIATIONS * math.hypot(wind_noise(scenario), scenario.sensors.velocity_sigma_mps),
+        wind_error=NOISE_DEVIATIONS * wind_noise_left(scenario),
         wind_interval=plan_interval(scenario.guidance),
         time_step=time_step,
     )
+
+
+def wind_noise(scenario: Scenario) -> float:
+    """Return the deviation of the wind by the noise of airspeed and heading, as they are read at a step [m/s]."""
+    sensors = scenario.sensors
+    return math.hypot(sensors.airspeed_sigma_mps, scenario.guidance.airspeed_mps * math.radians(sensors.heading_sigma_deg))
+
+
+def wind_noise_left(scenario: Scenario) -> float:
+    """Return the deviation of the estimated wind by that noise in the end [m/s]: sqrt(k/2) of it, by the filter's gain k."""
+    gain = _WIND_DRIFT * math.sqrt(_period(scenario)) / _sensor_sigma(scenario)
+    return math.sqrt(0.5 * gain) * wind_noise(scenario)
+
+
+def first_wind_error(scenario: Scenario, setup: VehicleSetup) -> float:
+    """Return by how much more than in the end the wind may be wrong that is measured at the start [m/s]."""
+    navigation = Navigation(navigation_parameters(scenario, setup))
+    navigation.update((0.0, 0.0, scenario.guidance.airspeed_mps, 0.0), scenario.guidance.airspeed_mps, 0.0, 0.0)
+    return navigation.wind_error
 
 
 def wind_change(scenario: Scenario, wind: WindField) -> float:
@@ -54,9 +76,26 @@ def largest_wind_change(scenario: Scenario, wind: WindField, interval: float) ->
 
 
 def wind_followed(scenario: Scenario) -> float:
-    """Return the time within which the estimated wind follows a change [s]: where gusts hide it, the filter is slower."""
-    period = plan_interval(scenario.guidance) / scenario.guidance.rate_hz
-    return max(WIND_FOLLOWED, math.hypot(_AIRSPEED_SIGMA, _gust_sigma(scenario)) * math.sqrt(period) / _WIND_DRIFT)
+    """Return the time within which the estimated wind follows a change [s]: where gusts or noise hide it, the filter is slower."""
+    hidden_by = math.hypot(_sensor_sigma(scenario), _gust_sigma(scenario))
+    return max(WIND_FOLLOWED, hidden_by * math.sqrt(_period(scenario)) / _WIND_DRIFT)
+
+
+def _period(scenario: Scenario) -> float:
+    """Return the time between two measurements of the wind [s]."""
+    return plan_interval(scenario.guidance) / scenario.guidance.rate_hz
+
+
+def _sensor_sigmas(scenario: Scenario) -> tuple[float, float]:
+    """Return the deviations of airspeed [m/s] and course [rad] that the wind's filter takes for noise of the sensors."""
+    sensors, velocity = scenario.sensors, scenario.sensors.velocity_sigma_mps
+    course = math.hypot(math.radians(sensors.heading_sigma_deg), velocity / scenario.guidance.airspeed_mps)
+    return max(_AIRSPEED_SIGMA, math.hypot(sensors.airspeed_sigma_mps, velocity)), max(_COURSE_SIGMA, course)
+
+
+def _sensor_sigma(scenario: Scenario) -> float:
+    """Return the deviation of single measurements of the wind by these [m/s]: the filter's own, or of the sensors if larger."""
+    return max(_AIRSPEED_SIGMA, math.hypot(wind_noise(scenario), scenario.sensors.velocity_sigma_mps))
 
 
 def _flown_heights(scenario: Scenario) -> list[float]:

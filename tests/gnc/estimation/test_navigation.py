@@ -1,5 +1,6 @@
 import math
 
+import numpy as np
 import pytest
 
 from gnc.estimation.navigation import Navigation, NavigationParameters
@@ -134,3 +135,37 @@ def test_after_a_loss_of_satellites_the_wind_is_known_as_little_as_it_has_wander
         navigation.update((*where, *velocity_at(0.0)), SPEED, course_at(0.0), 0.0)
     # 60 s at 0.02 m/s a root of a second, and at most one interval of 0.25 s more.
     assert navigation.wind.sigma == pytest.approx(math.hypot(before, 0.02 * math.sqrt(60.0)), rel=5e-3)
+
+
+def test_a_wind_that_was_measured_seldom_may_be_wrong_by_as_much_as_its_filter_says():
+    navigation = make(course_sigma=0.1, wind_noise=6.0, wind_error=0.4)
+    fly(navigation, steps=1)
+    first = navigation.wind_error
+    assert first == 3.0 * navigation.wind.sigma - 0.4
+    assert first == pytest.approx(3.0 * 0.1 * SPEED - 0.4, rel=0.02)
+    fly(navigation, steps=40, first=1)
+    assert 0.0 < navigation.wind_error < 0.6 * first
+    assert navigation.wind_error == 3.0 * navigation.wind.sigma - 0.4
+
+
+def test_no_more_is_wrong_than_a_measurement_by_its_noise():
+    navigation = make(wind_noise=0.9, wind_error=0.1)
+    fly(navigation, steps=1)
+    assert navigation.wind_error == pytest.approx(0.8)
+    quiet = make()
+    fly(quiet, steps=1)
+    assert quiet.wind_error == 0.0
+
+
+@pytest.mark.parametrize("measured", [1, 3, 20])
+def test_a_noisy_compass_makes_the_wind_wrong_by_no_more_than_that(measured):
+    # Of a normal error in a plane one in 90 exceeds three deviations of its worst direction; 1,000 winds were estimated.
+    noise, generator, exceeded = 0.09, np.random.default_rng(measured), 0
+    for _ in range(1000):
+        navigation = make(course_sigma=noise, airspeed_sigma=0.5, wind_interval=1, wind_noise=3.0 * noise * SPEED)
+        for step in range(measured):
+            time = 0.5 * step
+            navigation.update((0.0, 0.0, *velocity_at(time)), SPEED, course_at(time) + generator.normal(0.0, noise), 0.0)
+        wrong = math.hypot(navigation.wind.north - WIND[0], navigation.wind.east - WIND[1])
+        exceeded += wrong > navigation.wind_error
+    assert exceeded <= 20

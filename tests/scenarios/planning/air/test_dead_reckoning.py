@@ -8,7 +8,10 @@ from flight_cases import plan, scenario
 
 from aircraft.atmosphere.turbulence import TURBULENCE, intensities, scale_lengths
 from aircraft.atmosphere.wind import CALM, WindField
+from gnc.estimation.navigation import Navigation
 from scenarios.planning.air.dead_reckoning import drift_rate
+from scenarios.planning.air.estimated_wind import navigation_parameters
+from scenarios.vehicles.vehicle_setup import kinematic_setup
 
 TURN, OUTAGE = 7.0, 60.0
 FAULT = {"kind": "satellite_navigation", "at_s": (80.0, 80.0), "satellite_navigation_s": OUTAGE}
@@ -64,3 +67,32 @@ def test_turbulence_displaces_by_more_than_is_reckoned_with_about_as_often_as_th
         exceeded.append(np.mean(np.abs(moved) > added * (n * step + TURN)))
     # Of a normal distribution 0.27 % lie beyond three deviations: so many at the worst age, and fewer at any other.
     assert 0.001 < max(exceeded) < 0.004
+
+
+@pytest.mark.parametrize("sigma_deg", [5.0, 15.0])
+def test_a_compass_with_noise_makes_it_go_wrong_by_no_more_than_planned(sigma_deg):
+    # Twenty flights that weave in a wind for 300 s, and then for 60 s without satellites.
+    flown = scenario(fault=FAULT, sensors={"heading_sigma_deg": sigma_deg}, following={"drift_rate_mps": 0.0})
+    planned, generator = drift_rate(flown, CALM, TURN), np.random.default_rng(int(sigma_deg))
+    speed, time_step, (w_north, w_east) = flown.guidance.airspeed_mps, 1.0 / flown.guidance.rate_hz, (3.0, -4.0)
+    for _ in range(20):
+        navigation = Navigation(navigation_parameters(flown, kinematic_setup(flown)))
+        phase, north, east = float(generator.uniform(0.0, 2.0 * math.pi)), 0.0, 0.0
+        heading = np.radians(sigma_deg) * generator.standard_normal(7200)
+        for step, error in enumerate(heading.tolist()):
+            time = step * time_step
+            course = phase + 1.5 * math.sin(0.33 * time)
+            v_north, v_east = speed * math.cos(course) + w_north, speed * math.sin(course) + w_east
+            lost = time >= 300.0
+            navigation.update(None if lost else (north, east, v_north, v_east), speed, course + error, 0.0)
+            north, east = north + time_step * v_north, east + time_step * v_east
+            if lost:
+                age = navigation.lost
+                wrong = math.hypot(navigation.north - north, navigation.east - east)
+                assert wrong <= (planned + navigation.wind_error) * (age + TURN)
+
+
+def test_noise_counts_where_it_exceeds_what_is_declared():
+    noisy = {"heading_sigma_deg": 15.0}
+    assert rate(sensors=noisy, following={"drift_rate_mps": 0.0}) == rate(sensors=noisy) > 1.0
+    assert rate(sensors={"heading_sigma_deg": 1.0, "airspeed_sigma_mps": 0.3}) == rate() == 1.0
