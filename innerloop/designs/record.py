@@ -102,6 +102,7 @@ def reversal_record(spec: AircraftSpec, root: Path, start: Trim, bank: float, sl
         "deviation_max_m": found.deviation,
         "worst_command_before": found.command_before,
         "worst_airspeed_before_mps": found.airspeed_before,
+        "altitude_error_max_m": found.altitude_error,
         "deviation_of_m": deviations_by_case([found]),
     }
 

@@ -73,6 +73,7 @@ class ReversalSearch:
     usual : 99 % quantile of the first half of the reversals, which do not climb [m]
     command_before : heading-rate command just before the worst, over omega_max to the side of the turn [-]
     airspeed_before : airspeed at its beginning [m/s]
+    altitude_error : largest difference of the altitude from the one that is held, in all of the flight [m]
     """
 
     reversals: int
@@ -81,6 +82,7 @@ class ReversalSearch:
     usual: float
     command_before: float
     airspeed_before: float
+    altitude_error: float
 
 
 def reversals_of_a_design(bank: float, airspeed: float) -> int:
@@ -148,6 +150,7 @@ def search_reversals(
         usual=max(0.0, float(np.quantile([entry.deviation for entry in found[:first]], 0.99))),
         command_before=worst_of_all.before.side * worst_of_all.before.commands[-1][0],
         airspeed_before=worst_of_all.airspeed,
+        altitude_error=max(flight.altitude_error for flight in flights),
     )
 
 
@@ -193,7 +196,10 @@ def _changed(before: _Before, generator: np.random.Generator) -> _Before:
 
 
 class _Flight:
-    """An aircraft under way, the heading-rate commands that it was given at each time step, and what is to come of them."""
+    """An aircraft under way, the heading-rate commands that it was given at each time step, and what is to come of them.
+
+    With it, the largest difference of its altitude from that of its release [m].
+    """
 
     def __init__(self, aircraft: AutopilotedAircraft, start: Trim, response: TurnReversalResponse, slow_lag: float) -> None:
         aircraft.release(start.state(), airspeed=start.airspeed, altitude=start.altitude)
@@ -202,6 +208,8 @@ class _Flight:
         self._north = fdm.node("velocities/v-north-fps").get_double_value
         self._east = fdm.node("velocities/v-east-fps").get_double_value
         self._rate = fdm.node(HEADING_RATE).get_double_value
+        self._height = fdm.node("position/h-sl-ft").get_double_value
+        self._held, self.altitude_error = self._height(), 0.0
         self._late = max(1, round(response.delay / TIME_STEP))
         self._kept = math.exp(-TIME_STEP / (FORGOTTEN * response.lag))
         self._fading = math.exp(-TIME_STEP / (CHANGED * response.lag))
@@ -216,12 +224,13 @@ class _Flight:
         """Return the path from here [m], shape (steps, 2), under a command that is held for ``duration`` [s]."""
         self._aircraft.command_heading_rate(heading_rate)
         steps = max(1, round(duration / TIME_STEP))
-        run, north, east, rate = self._aircraft.run, self._north, self._east, self._rate
-        values = [north(), east(), rate()]
+        run, north, east, rate, height = self._aircraft.run, self._north, self._east, self._rate, self._height
+        values = [north(), east(), rate(), height()]
         for _ in range(steps):
             run()
-            values += north(), east(), rate()
-        flown = np.array(values).reshape(-1, 3)
+            values += north(), east(), rate(), height()
+        flown = np.array(values).reshape(-1, 4)
+        self.altitude_error = max(self.altitude_error, METRES_PER_FOOT * float(np.abs(flown[:, 3] - self._held).max()))
         self._take_in(heading_rate, flown)
         return np.asarray(np.cumsum(flown[1:, :2], axis=0) * (TIME_STEP * METRES_PER_FOOT))
 

@@ -90,8 +90,8 @@ def following_flight(
         setup,
         radius,
         turbulence=level,
-        wind_change=wind_change(scenario, air),
-        drift_rate=drift_rate(scenario, air, turn_time(scenario, setup.reversal)),
+        wind_change=wind_change(scenario, air, setup.altitude_error),
+        drift_rate=drift_rate(scenario, air, turn_time(scenario, setup.reversal), setup.altitude_error),
     )
     widest = widest_tube(limits, scenario.reports, plan_period=plan_interval(g) / g.rate_hz)
     oscillation = oscillation_at(g, scenario.reference, nu)

@@ -62,8 +62,9 @@ def tracking_flight(scenario: Scenario, flight_id: str, noise: Noise, setup: Veh
     steering = plan_steering(scenario, omega_max(g), oscillation.amplitude)
     start = sampled_start(scenario.start, start_generator(noise), course=course, axis=plume.axis(0.0))
     guard = None
-    # The disc that the keep-out area cuts out at the height of the flight.
-    disc = radius if scenario.keepout.shape == "cylinder" else math.sqrt(max(0.0, radius**2 - above**2))
+    # The disc that the keep-out area cuts out at the height of the flight, or lower if the aircraft sinks in a turn.
+    lowest = max(0.0, abs(above) - setup.altitude_error)
+    disc = radius if scenario.keepout.shape == "cylinder" else math.sqrt(max(0.0, radius**2 - lowest**2))
     if g.keepout_guard and disc > 0.0:
         guard = guard_parameters(scenario, setup, disc)
         known = Tube(0.0, 0.0, 0.0, v_north, v_east)

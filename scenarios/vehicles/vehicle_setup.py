@@ -62,6 +62,7 @@ class VehicleSetup:
     lag : of the heading rate behind its command [s]
     reversal : how the heading rate follows a reversal of the turn
     response_error : how much nearer a full reversal may come than with that response [m]
+    altitude_error : by which the altitude may differ from its command in a turn away [m]
     airspeed_bandwidth, airspeed_min, airspeed_max : of the airspeed behind its command, and its range [rad/s, m/s]
     airspeed_overshoot : of the airspeed over a step of its command [-]
     altitude_reach : difference of the altitude from its command within which the autopilot removes it for certain [m]
@@ -76,6 +77,7 @@ class VehicleSetup:
     airspeed_bandwidth: float
     airspeed_min: float
     airspeed_max: float
+    altitude_error: float = 0.0
     airspeed_overshoot: float = 0.0
     altitude_reach: float = math.inf
     turn_airspeeds: tuple[float, ...] = ()
@@ -157,6 +159,7 @@ def aircraft_setup(found: Designed, scenario: Scenario, run: RunDirectory, *, ba
         lag=slow_lag,
         reversal=TurnReversalResponse(delay=reversal["delay_s"], lag=reversal["lag_s"]),
         response_error=reversal["deviation_max_m"],
+        altitude_error=reversal["altitude_error_max_m"],
         airspeed_bandwidth=found.design.bandwidths.airspeed,
         airspeed_min=schedule.envelope.airspeed_min,
         airspeed_max=schedule.envelope.airspeed_max,

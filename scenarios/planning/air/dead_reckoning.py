@@ -25,19 +25,20 @@ _AGES = 200
 """Ages of an outage at which that is looked at [-]."""
 
 
-def drift_rate(scenario: Scenario, wind: WindField, turn: float) -> float:
+def drift_rate(scenario: Scenario, wind: WindField, turn: float, altitude_error: float = 0.0) -> float:
     """Return how fast dead reckoning may go wrong [m/s]; 0 where satellite navigation is not lost.
 
     Parameters
     ----------
     wind : mean wind of the flight
     turn : time of a turn away, over which the guard reckons with an error of the velocity as large [s]
+    altitude_error : by which the altitude may differ from its command [m]
     """
     if not scenario.follows or SATELLITES not in scenario.declared_faults:
         return 0.0
     outage, duration = scenario.fault.satellite_navigation_s, scenario.flight.duration_max_s
     # The wind may have changed before the loss, too, and its estimate not have followed.
-    changed = largest_wind_change(scenario, wind, outage + wind_followed(scenario))
+    changed = largest_wind_change(scenario, wind, outage + wind_followed(scenario), altitude_error)
     age = np.linspace(0.0, min(outage, duration), _AGES)
     covered = float(np.max((_by_gusts(scenario, age) + _by_turbulence(scenario, age)) / (age + turn)))
     steady = max(scenario.following.drift_rate_mps, _by_noise(scenario, age, turn))

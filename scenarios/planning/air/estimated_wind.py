@@ -59,19 +59,25 @@ def first_wind_error(scenario: Scenario, setup: VehicleSetup) -> float:
     return navigation.wind_error
 
 
-def wind_change(scenario: Scenario, wind: WindField) -> float:
+def wind_change(scenario: Scenario, wind: WindField, altitude_error: float) -> float:
     """Return by how much the wind that is flown in changes at most until its estimate has followed [m/s].
 
-    It changes with time, and with the height of a vehicle that climbs to that of the plume.
+    It changes with time, and with the height of a vehicle that climbs to that of the plume, or differs from its command [m].
     """
-    return largest_wind_change(scenario, wind, wind_followed(scenario))
+    return largest_wind_change(scenario, wind, wind_followed(scenario), altitude_error)
 
 
-def largest_wind_change(scenario: Scenario, wind: WindField, interval: float) -> float:
-    """Return by how much the wind that is flown in changes at most within an interval [s], by time and by height [m/s]."""
+def largest_wind_change(scenario: Scenario, wind: WindField, interval: float, altitude_error: float) -> float:
+    """Return by how much the wind that is flown in changes at most within an interval [s], by time and by height [m/s].
+
+    Parameters
+    ----------
+    altitude_error : by which the altitude may differ from its command [m]
+    """
     heights, duration = _flown_heights(scenario), scenario.flight.duration_max_s
     climbed = scenario.following.climb_gradient * scenario.guidance.airspeed_mps * interval
-    shear = wind.largest_shear(climbed, min(heights), max(heights), duration)
+    lowest, highest = min(heights) - altitude_error, max(heights) + altitude_error
+    shear = wind.largest_shear(climbed + 2.0 * altitude_error, lowest, highest, duration)
     return wind.largest_change(interval, duration, heights) + shear
 
 

@@ -43,6 +43,8 @@ def test_it_finds_a_deviation_and_the_same_for_the_same_seed(flown):
     _, search = flown
     found = search()
     assert 0.0 < found.usual <= found.deviation
+    # Rolling to a turn costs the X8 decimetres of altitude.
+    assert 0.05 < found.altitude_error < 1.0
     # Of a turn radius of 38 m; measured 0.5 to 1.7 m, where 4 to 8 m were before what is to come was predicted.
     assert found.deviation < 2.5
     assert found.reversals == REVERSALS
@@ -76,6 +78,7 @@ class Exact:
         read = {"velocities/v-north-fps": lambda: 20.0 / METRES_PER_FOOT * math.cos(self._course)}
         read["velocities/v-east-fps"] = lambda: 20.0 / METRES_PER_FOOT * math.sin(self._course)
         read[HEADING_RATE] = lambda: self._rate
+        read["position/h-sl-ft"] = lambda: 100.0 / METRES_PER_FOOT
         return SimpleNamespace(get_double_value=read[name])
 
     def command_heading_rate(self, rate):

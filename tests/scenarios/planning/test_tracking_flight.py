@@ -1,6 +1,7 @@
 """Flights that track the paper's reference."""
 
 import math
+from dataclasses import replace
 
 import pytest
 
@@ -24,9 +25,9 @@ SETUP = VehicleSetup(
 )
 
 
-def plan(*overrides, nu=0.5, seed=1):
+def plan(*overrides, nu=0.5, seed=1, setup=SETUP):
     scenario = with_values(load_study("sweep_nu", overrides), {"vessel.speed_ratio": nu})
-    return plan_flight(scenario, flight_id="x", seed=seed, setup=SETUP)
+    return plan_flight(scenario, flight_id="x", seed=seed, setup=setup)
 
 
 def test_what_such_a_flight_has_no_use_for_is_absent():
@@ -106,6 +107,15 @@ def test_the_guard_keeps_the_disc_that_the_keep_out_sphere_cuts_out_at_the_heigh
     flight = plan("plume.elevation_deg=20")
     above = flight.altitude - 60.0
     assert flight.guidance.guard.radius == pytest.approx(math.sqrt(200.0**2 - above**2), rel=1e-12)
+    # An aircraft that sinks by a metre in a turn is where the sphere is wider; with the sphere's top just below it, too.
+    sinking = replace(SETUP, altitude_error=1.0)
+    assert plan("plume.elevation_deg=20", setup=sinking).guidance.guard.radius == pytest.approx(
+        math.hypot(flight.guidance.guard.radius, math.sqrt(above**2 - (above - 1.0) ** 2))
+    )
+    over_the_top = ("plume.elevation_deg=60", "guidance.tracking_allowance_m=24.5")
+    assert 200.0 < plan(*over_the_top).altitude - 60.0 < 201.0
+    assert plan(*over_the_top).guidance.guard is None
+    assert plan(*over_the_top, setup=sinking).guidance.guard.radius > 0.0
     # Above the whole sphere there is nothing to keep out of.
     assert plan("plume.elevation_deg=60", "guidance.tracking_allowance_m=400").guidance.guard is None
 

@@ -10,7 +10,7 @@ from aircraft.atmosphere.turbulence import TURBULENCE, intensities, scale_length
 from aircraft.atmosphere.wind import CALM, WindField
 from gnc.estimation.navigation import Navigation
 from scenarios.planning.air.dead_reckoning import drift_rate
-from scenarios.planning.air.estimated_wind import navigation_parameters
+from scenarios.planning.air.estimated_wind import navigation_parameters, wind_change
 from scenarios.vehicles.vehicle_setup import kinematic_setup
 
 TURN, OUTAGE = 7.0, 60.0
@@ -96,3 +96,12 @@ def test_noise_counts_where_it_exceeds_what_is_declared():
     noisy = {"heading_sigma_deg": 15.0}
     assert rate(sensors=noisy, following={"drift_rate_mps": 0.0}) == rate(sensors=noisy) > 1.0
     assert rate(sensors={"heading_sigma_deg": 1.0, "airspeed_sigma_mps": 0.3}) == rate() == 1.0
+
+
+def test_a_wind_that_turns_round_at_the_height_of_the_flight_counts_for_who_does_not_keep_it_exactly():
+    # 8 m/s from north below 59.5 m, from south above 60.5 m.
+    turning = WindField([[[-8.0, 0.0], [8.0, 0.0]]], heights=(59.5, 60.5))
+    flown = scenario(plume={"source_height_m": 60.0})
+    assert wind_change(flown, turning, 0.0) == 0.0
+    assert wind_change(flown, turning, 0.25) == pytest.approx(8.0, rel=0.02)
+    assert wind_change(flown, turning, 2.0) == pytest.approx(16.0)
