@@ -5,6 +5,7 @@ from collections.abc import Iterable, Iterator
 
 from scenarios.errors import InputError
 from scenarios.schema.effect_rules import OPERATIONAL, RULES, Rule
+from scenarios.schema.experiment_checks import unsteady
 from scenarios.schema.keys import known_keys
 from scenarios.schema.scenario import Scenario
 
@@ -16,25 +17,27 @@ _DISPLACED_BY = {
 """Keys that other keys put aside, where flights have these."""
 
 
-def refuse_unused(scenario: Scenario, given: Iterable[str], *, overriding: bool = False) -> None:
+def refuse_unused(scenario: Scenario, given: Iterable[str], *, overridden: Scenario | None = None) -> None:
     """Refuse keys that no part of a scenario's flights uses, those among them that are swept or sampled.
 
     Parameters
     ----------
     scenario : as checked
     given : dotted keys that its file or the command line sets
-    overriding : whether they are of the command line: then another key that is swept or sampled in every flight must not put them
-        aside; what a file says may be of other flights, such as those of a base that it was made from
+    overridden : where the command line sets them, what it changes. Then another key that is swept or sampled in every flight must
+        not put them aside, and they may turn off what made air or vessel unsteady; what a file says may be of other flights, such
+        as those of a base that it was made from
 
     Raises
     ------
     InputError : a key has no effect; the message names the part that would use it
     """
     given = sorted(given)
+    turned_off = {*unsteady(overridden)} - {*unsteady(scenario)} if overridden else set()
     for key in given:
-        if user := unused(scenario, key):
+        if key not in turned_off and (user := unused(scenario, key)):
             raise InputError(f"key '{key}' has no effect here: it is used by {user}")
-        if overriding and (other := _put_aside_by(scenario, key)):
+        if overridden and (other := _put_aside_by(scenario, key)):
             raise InputError(
                 f"key '{key}' has no effect here: '{other}' is swept or sampled in every flight, and takes its place; set '{other}'"
                 " instead, or leave it out of sweep and draws"

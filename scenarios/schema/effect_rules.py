@@ -3,6 +3,7 @@
 from collections.abc import Callable
 from dataclasses import dataclass
 
+from scenarios.schema.experiment_checks import FOLLOWING, UNSTEADY
 from scenarios.schema.scenario import Scenario
 
 Test = Callable[[Scenario], bool]
@@ -31,10 +32,7 @@ class Rule:
 _TRACKS = "the mission that tracks the paper's reference; here the reference is steered: set guidance.mission to 'track'"
 _FOLLOWS = "the mission that follows the vessel with a steered reference: set guidance.mission to 'follow'"
 _VESSEL = "an oscillation beside a vessel; here reference.path is 'circle'"
-OPERATIONAL = (
-    "wind.speed_mps", "wind.table", "turbulence.", "vessel.manoeuvres", "vessel.track", "reports.", "sensors.", "fault.kind",
-    "plume.direction", "emission.ship",
-)  # fmt: skip
+OPERATIONAL = (*UNSTEADY, "plume.direction")
 """Keys from which the mission follows where guidance.mission is not given."""
 
 
@@ -230,8 +228,7 @@ RULES = (
     Rule(
         keys=("turbulence.", "wind.", "emission.", "reports.", "sensors.", "fault.", "vessel.manoeuvres", "vessel.track"),
         acts=lambda s: s.follows,
-        user="the mission that follows the vessel with estimates of vessel and wind; 'track' is in still air, beside a steady"
-        " vessel: leave guidance.mission out, or set it to 'follow'",
+        user=FOLLOWING,
         by_mission=True,
     ),
     Rule(keys=("vessel.speed_mps",),

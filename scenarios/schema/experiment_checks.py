@@ -1,4 +1,4 @@
-"""Whether the parts of an experiment go together: what is sampled, and what a search and subset simulation need."""
+"""Whether the parts of a scenario go together: mission and world, what is sampled, what a search and subset simulation need."""
 
 from collections.abc import Collection, Iterator
 from typing import TYPE_CHECKING
@@ -45,6 +45,57 @@ _SET_IN = {
     "condition": (*_SET_ANYWHERE, "draws.", "speed_ratio."),
 }
 """The same for each kind of table that sets keys."""
+
+
+def check_together(scenario: "Scenario") -> None:
+    """Refuse a scenario whose parts do not go together."""
+    check_mission(scenario)
+    check_one_point(scenario)
+    check_tables(scenario)
+    if scenario.study == "falsify":
+        check_search(scenario)
+    if scenario.study == "monte_carlo" and scenario.method == "subset":
+        check_subset(scenario)
+    check_draws(scenario)
+
+
+UNSTEADY = (
+    "wind.speed_mps", "wind.table", "turbulence.", "emission.ship", "vessel.manoeuvres", "vessel.track", "reports.", "sensors.",
+    "fault.kind",
+)  # fmt: skip
+"""Keys, or beginnings of keys, by which air and vessel are not steady and known."""
+
+
+FOLLOWING = (
+    "the mission that follows the vessel with estimates of vessel and wind; guidance.mission 'track' is in still air, beside a"
+    " steady vessel: leave it out, or set it to 'follow'"
+)
+"""What uses these keys, and how to have it."""
+
+
+def unsteady(scenario: "Scenario") -> tuple[str, ...]:
+    """Return the keys by which air or vessel of a scenario, of each flight or as they vary, are not steady and known."""
+    air, sensors = scenario.turbulence, scenario.sensors.model_dump()
+    given = {
+        "wind.table": scenario.wind.table is not None,
+        "wind.speed_mps": scenario.wind.speed_mps > 0.0,
+        "turbulence.level": air.level != "none",
+        "turbulence.gusts": air.gusts > 0,
+        "emission.ship": scenario.emission.ship is not None,
+        "vessel.manoeuvres": bool(scenario.vessel.manoeuvres),
+        "vessel.track": scenario.vessel.track != "manoeuvres",
+        "reports.interval_s": not scenario.reports.exact,
+        **{f"sensors.{name}": error > 0.0 for name, error in sensors.items()},
+        "fault.kind": scenario.fault.kind != "none",
+    }
+    varied = (*scenario.sweep.root, *(draw.key for draw in scenario.draws))
+    return (*(key for key, has in given.items() if has), *(key for key in varied if key.startswith(UNSTEADY)))
+
+
+def check_mission(scenario: "Scenario") -> None:
+    """Refuse what a mission in still air, beside a steady vessel, would leave out, wherever the scenario has either from."""
+    if scenario.guidance.mission == "track" and (keys := unsteady(scenario)):
+        raise ValueError(f"key '{keys[0]}' has no effect here: it is used by {FOLLOWING}")
 
 
 def check_one_point(scenario: "Scenario") -> None:

@@ -89,8 +89,8 @@ def load_study(name: str | Document, overrides: Sequence[str] = (), *, refusing:
     if refusing and isinstance(scenario, Scenario):
         # Keys of the file have to act in what the file alone says: an override may well put one of them aside.
         own, whole = _given(name)
-        refuse_unused(checked(whole, Scenario), given_keys(own))
-        refuse_unused(scenario, {parse_override(override)[0] for override in overrides}, overriding=True)
+        refuse_unused(alone := checked(whole, Scenario), given_keys(own))
+        refuse_unused(scenario, {parse_override(override)[0] for override in overrides}, overridden=alone)
     read_logo(scenario.report)
     return scenario
 

@@ -6,7 +6,7 @@ from typing import Annotated, Literal
 from pydantic import Field, model_validator
 
 from gnc.laws.steering_law import ON_CIRCLE, ON_OSCILLATION
-from scenarios.schema.experiment_checks import check_draws, check_one_point, check_search, check_subset, check_tables
+from scenarios.schema.experiment_checks import check_together
 from scenarios.schema.random_sample import is_random_sample
 from scenarios.schema.sections.equipment import (
     REPORTS_MAX,
@@ -119,18 +119,17 @@ class Scenario(Section):
         """Return whether the mission follows what it estimates: where that says so, or air or vessel are not steady and known."""
         if self.guidance.mission is not None:
             return self.guidance.mission != "track"
-        return not (
+        steady = (
             not self.wind.blows
             and self.turbulence.calm
             and not self.vessel.manoeuvres
             and self.vessel.track == "manoeuvres"
-            and self.plume.model == "straight"
             and self.emission.ship is None
             and self.reports.exact
             and self.sensors == SensorsConfig()
             and self.fault.kind == "none"
-            and self.plume.direction != "apparent_wind"
         )
+        return not (steady and self.plume.model == "straight" and self.plume.direction != "apparent_wind")
 
     @property
     def vessel_known(self) -> bool:
@@ -289,12 +288,6 @@ class Scenario(Section):
         return self
 
     @model_validator(mode="after")
-    def _varied(self) -> "Scenario":
-        check_one_point(self)
-        check_tables(self)
-        if self.study == "falsify":
-            check_search(self)
-        if self.study == "monte_carlo" and self.method == "subset":
-            check_subset(self)
-        check_draws(self)
+    def _together(self) -> "Scenario":
+        check_together(self)
         return self

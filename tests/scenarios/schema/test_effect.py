@@ -3,6 +3,8 @@
 import pytest
 
 from scenarios.errors import InputError
+from scenarios.experiment.points import points_of
+from scenarios.schema.experiment_checks import unsteady
 from scenarios.schema.load import load_study
 
 LAG = 'sweep."kinematic.heading_rate_lag_s" = [0.1, 0.2]\n'
@@ -65,3 +67,40 @@ def test_a_key_of_the_file_may_lose_its_effect_by_an_override_but_one_of_the_ove
     ):
         with pytest.raises(InputError, match=r"key 'wind\.from_deg' in (sweep|draws) has no effect here"):
             loaded(tmp_path, follows, override)
+
+
+TRACKS = "guidance.mission=track"
+
+
+@pytest.mark.parametrize(
+    ("name", "key"),
+    [
+        ("sea_wind", "wind.speed_mps"),
+        ("sea_turbulence_light", "turbulence.level"),
+        ("sea_manoeuvres", "reports.interval_s"),
+        ("ship_from_ais", "vessel.track"),
+        ("arena", "emission.ship"),
+        ("sulphur", "emission.ship"),
+    ],
+)
+def test_an_override_by_which_air_vessel_or_equipment_would_go_is_refused_with_the_mission(name, key):
+    # Each of them has the key from its file, from a base or from its random variables.
+    assert key in unsteady(load_study(name))
+    with pytest.raises(InputError, match=r"^key '[a-z_.]+' has no effect here: .* guidance\.mission 'track' is in still air"):
+        load_study(name, [TRACKS])
+
+
+def test_a_mission_without_wind_is_refused_beside_a_base_with_wind_and_in_one_of_the_points(tmp_path):
+    words = r"key 'wind\.speed_mps' has no effect here: .* guidance\.mission 'track' is in still air"
+    with pytest.raises(InputError, match=words):
+        loaded(tmp_path, 'extends = "sea_wind"\nguidance.mission = "track"\n')
+    points = '[[comparison.variants]]\nname = "paper"\nset = { guidance.mission = "track" }\n'
+    with pytest.raises(InputError, match=rf"^comparison 'paper': {words}"):
+        points_of(loaded(tmp_path, f"wind.speed_mps = 5.0\n{points}"))
+
+
+def test_an_override_may_turn_the_wind_off_for_a_mission_without_it():
+    calm = load_study("sea_wind", ["wind.speed_mps=0", TRACKS])
+    assert not calm.follows
+    assert not calm.wind.blows
+    assert load_study("sweep_nu", [TRACKS]).guidance.mission == "track"
