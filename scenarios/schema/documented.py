@@ -16,7 +16,7 @@ from pydantic_core import to_jsonable_python
 
 from common.spelling import nearest
 from scenarios.schema.documented_parts import FLIGHT_STUDIES, DocumentedKey, documented_part_keys
-from scenarios.schema.effect import named_by, unused
+from scenarios.schema.effect import named_by
 from scenarios.schema.effect_rules import RULES
 from scenarios.schema.experiment_checks import ONE_POINT
 from scenarios.schema.keys import line, models_in, split_unit
@@ -130,9 +130,14 @@ def _studies(key: str, studies: tuple[str, ...]) -> tuple[str, ...]:
         return studies
     if refusing := _REFUSING.get(key.partition(".")[0]):
         return tuple(study for study in studies if study not in refusing)
-    acting = tuple(study for study in studies if any(not unused(scenario, key) for scenario in _plain_scenarios(study)))
-    # One that acts in none of these needs something else, which every study may have.
-    return acting or studies
+    plain = {study: _plain_scenarios(study) for study in studies}
+    # A rule by which it acts in none of these is of something else that it needs, which every study may have.
+    rules = [
+        rule
+        for rule in RULES
+        if named_by(key, rule.keys) and any(rule.acts(scenario) for scenarios in plain.values() for scenario in scenarios)
+    ]
+    return tuple(study for study in studies if any(all(rule.acts(scenario) for rule in rules) for scenario in plain[study]))
 
 
 @functools.cache

@@ -81,6 +81,11 @@ def test_studies_are_those_in_which_a_key_can_act():
     assert BY_KEY["search.population"].studies == ("falsify",)
     assert BY_KEY["subset.repeats"].studies == ("monte_carlo",)
     assert BY_KEY["wind.speed_mps"].studies == FLIGHT_STUDIES
+    # With exhaust and a sniffer, which every study may have.
+    for key in ("plume", "distance", "source_height_m", "load", "search"):
+        assert BY_KEY[f"following.{key}"].studies == FLIGHT_STUDIES
+    assert BY_KEY["flight.until"].studies == FLIGHT_STUDIES
+    assert "patrol" not in BY_KEY["criteria.time_to_find_s"].studies
     assert "falsify" not in BY_KEY["flights"].studies
     assert BY_KEY["ensemble.samples"].studies == ("convergence",)
     # Those of one point refuse several; and beside the cases that a paper study needs there is no sweep.
