@@ -146,10 +146,10 @@ def _change(key: str, value: object) -> str:
 
 
 def _dotted(keys: Mapping[str, object]) -> list[tuple[str, object]]:
-    """Return keys with dots in place of sections, and of the words that stand for keys."""
+    """Return keys with dots in place of sections, and of the words that stand for keys; an empty section stays, and is set so."""
     found: list[tuple[str, object]] = []
     for key, value in keys.items():
-        if isinstance(value, Mapping) and "." not in key:
+        if isinstance(value, Mapping) and value and "." not in key:
             found += [(f"{key}.{name}", item) for name, item in value.items()]
         else:
             found.append((_SHORT.get(key, key), value))

@@ -9,6 +9,7 @@ import pytest
 
 from scenarios import InputError, fly, load, run
 from scenarios.engine.fingerprint import fingerprint
+from scenarios.schema.load import load_study
 from tests.in_process import run_command
 
 SHORT = """
@@ -114,3 +115,11 @@ def test_a_scenario_is_changed_as_by_the_command_line(file):
         with pytest.raises(InputError, match="unknown key"):
             scenario[unknown]
     assert load(file).changes == ()
+
+
+def test_an_empty_section_takes_the_place_of_one_as_by_the_command_line(file):
+    assert load(file).config.comparison.variants
+    scenario = load(file).set(comparison={}, flight={"crossings": 4})
+    assert scenario.changes == ("comparison={}", "flight.crossings=4")
+    assert scenario.config == load_study(str(file), ["comparison={}", "flight.crossings=4"])
+    assert not scenario.config.comparison.variants
