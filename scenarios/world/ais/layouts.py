@@ -1,6 +1,7 @@
 """Layouts of files of AIS reports, each recognised by its header, and the rows of one vessel in them."""
 
 import csv
+import math
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
@@ -10,7 +11,7 @@ from pathlib import Path
 from typing import TextIO
 
 from common.spelling import other_units
-from measurement.tables import other_separator
+from measurement.tables import decimal_commas, other_separator
 from scenarios.errors import InputError
 from scenarios.world.ais.nmea import nmea_rows
 from scenarios.world.ais.rows import AisRow, number_of, seconds_of
@@ -115,13 +116,14 @@ def _table_rows(path: Path, head: str, file: TextIO, mmsi: int | None) -> Iterat
     lines = ((number, line) for number, line in enumerate(file, start=2) if identifier in line)
     for number, line in lines:
         cells = next(csv.reader([line]), [])
-        if len(cells) <= max(places):
-            continue
-        time, identity, *others = (cells[place] for place in places)
+        if words := decimal_commas(cells, heads, places[2:]):
+            raise InputError(f"{path}, line {number} {words}")
+        # What a row that is cut off does not have it does not say.
+        time, identity, *others = (cells[place] if place < len(cells) else "" for place in places)
         if not identity.strip().isdigit():
             continue
         try:
-            seconds = layout.seconds(time)
+            seconds = layout.seconds(time) if places[0] < len(cells) else math.nan
         except ValueError:
             raise InputError(
                 f"{path}, line {number}: {time[:40]!r} is no time of the layout {layout.name}, as in {layout.time}; correct it, or"

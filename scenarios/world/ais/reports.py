@@ -1,6 +1,7 @@
 """Reports of one vessel from a file, without those that are of no use, which are counted."""
 
 import bisect
+import math
 from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -29,8 +30,9 @@ _AT_REST_KN = 0.5
 _REACH_SPEED, _REACH = 50.0, 500.0
 """How far from its neighbours a report may lie: as far as the fastest vessel goes, and errors of satellite navigation [m/s, m]."""
 
-NO_PLACE, NO_SPEED, DUPLICATE, OUT_OF_ORDER, OUT_OF_REACH = (
-    "without a possible position", "without speed or course", "with the time of another", "out of order", "out of reach of others",
+NO_TIME, NO_PLACE, NO_SPEED, DUPLICATE, OUT_OF_ORDER, OUT_OF_REACH = (
+    "without a time", "without a possible position", "without speed or course", "with the time of another", "out of order",
+    "out of reach of others",
 )  # fmt: skip
 """Why rows are of no use."""
 
@@ -127,7 +129,8 @@ def _by_what_they_say(rows: Sequence[AisRow]) -> list[str]:
     for row in rows:
         place = abs(row.latitude) <= 90.0 and abs(row.longitude) <= 180.0
         speed = 0.0 <= row.speed <= _SPEED_MAX_KN and (0.0 <= row.course < 360.0 or row.speed < _AT_REST_KN)
-        reasons.append("" if place and speed else NO_SPEED if place else NO_PLACE)
+        timed = not math.isnan(row.time)
+        reasons.append(NO_TIME if not timed else NO_PLACE if not place else NO_SPEED if not speed else "")
     return reasons
 
 

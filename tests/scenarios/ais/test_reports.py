@@ -77,6 +77,9 @@ def test_a_byte_order_mark_and_windows_lines_are_read_over(read):
         ("2026-06-01T10:00:05Z,219999001,91.0,181.0,12.0,20.5", "without a possible position"),
         ("2026-06-01T10:00:05Z,219999001,57.0,190.0,12.0,20.5", "without a possible position"),
         ("2026-06-01T10:00:05Z,219999001,,11.3,12.0,20.5", "without a possible position"),
+        # Rows that are cut off.
+        ("2026-06-01T10:00:05Z,219999001", "without a possible position"),
+        ("2026-06-01T10:00:05Z,219999001,57.0,11.3", "without speed or course"),
         ("2026-06-01T10:00:05Z,219999001,57.0,11.3,102.3,20.5", "without speed or course"),
         ("2026-06-01T10:00:05Z,219999001,57.0,11.3,12.0,360.0", "without speed or course"),
         ("2026-06-01T10:00:05Z,219999001,57.0,11.3,,", "without speed or course"),
@@ -94,6 +97,20 @@ def test_a_row_of_no_use_is_dropped_and_counted(read, row, reason):
     found = read(table(first, row, second, third))
     assert (len(found.time), found.rows, found.dropped) == (3, 4, {reason: 1})
     assert found.described() == f"ais.csv: 3 of 4 rows of MMSI 219999001 used; dropped: 1 {reason}"
+
+
+def test_a_row_that_is_cut_off_before_its_time_is_dropped_and_counted(read):
+    head, row = LAYOUTS["up to 2024"]
+    lines = [row.format(second, 57.0 + 1e-5 * second) for second in (0, 10, 20)]
+    found = read(table(*lines, "219999001", head=head))
+    assert (len(found.time), found.rows, found.dropped) == (3, 4, {"without a time": 1})
+
+
+def test_rows_that_end_in_commas_or_have_one_in_a_word_are_read(read):
+    assert read(table(*(f"{row},," for row in rows()))).dropped == {}
+    head, row = LAYOUTS["danish"]
+    lines = [row.format(second, 57.0 + 1e-5 * second).replace("AIS", "OSLO, NO,AIS") for second in (0, 10, 20)]
+    assert len(read(table(*lines, head=head)).time) == 3
 
 
 @pytest.mark.parametrize("at", [0, 3])
@@ -134,6 +151,10 @@ def test_a_vessel_at_rest_needs_no_course(read):
         (
             table(*(f"2026-06-01T10:00:{s:02d}Z,1,91.0,11.3,12.0,20.5" for s in range(4))), None,
             ["0 of 4 rows of MMSI 1 used", "4 without a possible position (first in line 2)", "correct the rows"],
+        ),
+        (
+            table(*(f"2026-06-01T10:00:{s:02d}Z,1,57,{s:06d},11,3,12,0,20,5" for s in range(4))), None,
+            ["line 2 has 10 values for 6 columns; write decimals with a point, as in 108.2"],
         ),
         ("PK\x03\x04\x00", None, ["the header is"]),
     ],
