@@ -14,7 +14,7 @@ from aircraft.atmosphere.wind import WindField, over_the_sea
 from common.physics.wind import wind_velocity
 from common.spelling import other_units
 from common.times import utc_text
-from measurement.tables import other_separator
+from measurement.tables import decimal_commas, other_separator
 from scenarios.errors import InputError
 from scenarios.schema.sections.world import WindConfig
 from scenarios.world.ais.rows import number_of, seconds_of
@@ -135,6 +135,8 @@ def _rows(path: Path, cells: Iterator[list[str]]) -> Iterator[tuple[int, float, 
     for line, row in enumerate(cells, start=2):
         if not any(cell.strip() for cell in row):
             continue
+        if words := _incomplete(heads, row):
+            raise InputError(f"wind.table: {path}, line {line} {words}")
         named = dict(zip(heads, row, strict=False))
         try:
             time = seconds_of(named.get("time_utc", "")) if "time_utc" in heads else math.nan
@@ -151,6 +153,20 @@ def _rows(path: Path, cells: Iterator[list[str]]) -> Iterator[tuple[int, float, 
                 " from 0 to 360 deg, heights are above 0: correct the line, or delete it"
             )
         yield line, time, height, *wind_velocity(speed, direction)
+
+
+def _incomplete(heads: list[str], row: list[str]) -> str:
+    """Return what a row lacks, and the remedy; nothing of one with a number in each column of numbers."""
+    shown = repr(",".join(row)[:80])
+    numbers = [heads.index(column) for column in COLUMNS[1:] if column in heads]
+    if words := decimal_commas(row, heads, numbers):
+        return words
+    if len(row) < len(heads):
+        return f"has {len(row)} of {len(heads)} columns: {shown}; correct the line, or delete it"
+    for place in numbers:
+        if math.isnan(number_of(row[place])):
+            return f"has {row[place][:40]!r} for {heads[place]}, which is not a number: correct the line, or delete it"
+    return ""
 
 
 def _on_grid(path: Path, rows: list[tuple[int, float, float, float, float]]) -> TabledWind:
