@@ -11,8 +11,12 @@ UNCONTROLLED = 0.8
 Severe turbulence makes it up to 0.58, over 28 flights of 500 s that stayed in control.
 """
 
-CHECK_INTERVAL = 4
-"""Guidance steps between checks of the vehicle's health."""
+CHECK_INTERVAL = 0.2
+"""Time between checks of the vehicle's health, a step of the guidance at least [s].
+
+One heading rate is compared with the mean of the commands in between, from which a vehicle without lag differs the more the
+longer that is.
+"""
 
 PATIENCE = 2.0
 """Time constant of the means by which a fault is found [s]."""
@@ -45,27 +49,28 @@ class HealthParameters:
 
 
 class HealthMonitor:
-    """Checks the vehicle's health every few guidance steps.
+    """Checks the vehicle's health every ``CHECK_INTERVAL``.
 
     Attributes
     ----------
     fault : what is wrong with the vehicle; once found, it stays
     """
 
-    __slots__ = ("_commanded", "_health", "_speed", "_steps", "fault")
+    __slots__ = ("_commanded", "_health", "_interval", "_speed", "_steps", "fault")
 
     def __init__(self, parameters: HealthParameters) -> None:
         p = parameters
+        self._interval = max(1, round(CHECK_INTERVAL / p.time_step))
         self._health = Health(
             airspeed_error=p.airspeed_error,
             heading_rate_error=UNCONTROLLED * p.heading_rate_max,
             servo_error=STUCK,
             lag=p.lag,
-            time_step=CHECK_INTERVAL * p.time_step,
+            time_step=self._interval * p.time_step,
             patience=PATIENCE,
             servo_patience=SERVO_PATIENCE,
         )
-        self._speed, self._steps, self._commanded = p.speed, CHECK_INTERVAL - 1, 0.0
+        self._speed, self._steps, self._commanded = p.speed, self._interval - 1, 0.0
         self.fault = Fault.NONE
 
     def check(self, readings: Readings, airspeed_command: float, heading_rate_command: float) -> bool:
@@ -74,9 +79,9 @@ class HealthMonitor:
         # the same sign, and the vehicle would seem not to follow.
         self._commanded += heading_rate_command
         self._steps += 1
-        if self._steps < CHECK_INTERVAL:
+        if self._steps < self._interval:
             return False
-        commanded = self._commanded / CHECK_INTERVAL
+        commanded = self._commanded / self._interval
         self._steps, self._commanded = 0, 0.0
         _, airspeed, _, _, heading_rate, servo_error = readings
         lack = min(airspeed_command, self._speed) - airspeed

@@ -1,4 +1,4 @@
-"""The vehicle's health as the guidance asks for it: every fourth step."""
+"""The vehicle's health as the guidance asks for it: every fifth of a second."""
 
 import pytest
 
@@ -8,9 +8,9 @@ from gnc.estimation.health_monitor import CHECK_INTERVAL, HealthMonitor, HealthP
 SPEED, HEADING_RATE_MAX, TIME_STEP = 19.42, 0.5, 0.05
 
 
-def monitor(lag=0.4):
+def monitor(lag=0.4, time_step=TIME_STEP):
     return HealthMonitor(
-        HealthParameters(airspeed_error=2.0, speed=SPEED, heading_rate_max=HEADING_RATE_MAX, lag=lag, time_step=TIME_STEP)
+        HealthParameters(airspeed_error=2.0, speed=SPEED, heading_rate_max=HEADING_RATE_MAX, lag=lag, time_step=time_step)
     )
 
 
@@ -58,11 +58,20 @@ def test_a_vehicle_that_is_asked_for_more_than_its_speed_lacks_nothing_on_the_wa
     assert found_after(monitor(), 60.0, airspeed_command=SPEED + 5.0) is None
 
 
-def test_it_looks_every_few_steps_alone():
-    made = monitor()
-    answers = [made.check(readings(servo_error=0.9), SPEED, 0.0) for _ in range(3 * CHECK_INTERVAL)]
+@pytest.mark.parametrize("rate_hz", [5, 20, 40])
+def test_it_looks_every_fifth_of_a_second_alone(rate_hz):
+    made, interval = monitor(time_step=1.0 / rate_hz), round(CHECK_INTERVAL * rate_hz)
+    answers = [made.check(readings(servo_error=0.9), SPEED, 0.0) for _ in range(3 * interval)]
     assert any(answers)
-    assert all(step % CHECK_INTERVAL == 0 for step, answer in enumerate(answers) if answer)
+    assert all(step % interval == 0 for step, answer in enumerate(answers) if answer)
+
+
+def test_a_vehicle_that_turns_at_once_follows_commands_that_change_from_step_to_step_at_few_steps():
+    # At 5 Hz: the mean over four of its steps is none of the heading rates that the vehicle has.
+    made, heading_rate = monitor(lag=0.0, time_step=0.2), 0.0
+    for step in range(300):
+        assert not made.check(readings(airspeed=SPEED - 0.001 * step, heading_rate=heading_rate), SPEED, heading_rate)
+        heading_rate = HEADING_RATE_MAX if step % 2 else -HEADING_RATE_MAX
 
 
 def test_a_command_that_changes_its_sign_at_every_step_asks_for_no_turn():
