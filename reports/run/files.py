@@ -74,7 +74,11 @@ def written(path: Path, write: Callable[[Path], object]) -> Path:
     ReportError : it cannot be written
     """
     try:
+        if not path.parent.is_dir():
+            raise ReportError(f"'{path}' cannot be written: there is no directory '{path.parent}'; make it, or give another path")
         write_whole(path, write)
     except OSError as error:
-        raise ReportError(f"'{path}' cannot be written: {error.strerror}; check permissions and space") from None
+        # An error of a library may have no number, and so no text of its own.
+        reason = error.strerror or next(iter(str(error).splitlines()), "")
+        raise ReportError(f"'{path}' cannot be written: {reason}; check permissions and space") from None
     return path
