@@ -122,7 +122,8 @@ def within_limit(demand: Any, limit: float, law: str, given: Sequence[float]) ->
     """
     if _is_number(demand) and (-limit <= demand <= limit or not math.isnan(demand) or not all(map(math.isfinite, given))):
         return limited(demand, limit)
-    raise LawError(f"steering law '{law}' returned {' '.join(str(demand).split())}: {_MUST}")
+    shown = repr(demand) if isinstance(demand, str) else " ".join(str(demand).split())
+    raise LawError(f"steering law '{law}' returned {shown}: {_MUST}")
 
 
 def _is_number(demand: Any) -> bool:

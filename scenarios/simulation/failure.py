@@ -24,7 +24,9 @@ def failure(error: Exception) -> Row:
         return {"outcome": Outcome.INFEASIBLE.value, "message": str(error), "criteria_met": False}
     message = str(error)
     if not isinstance(error, AircraftError | InputError | LawError):
-        where = traceback.extract_tb(error.__traceback__)[-1]
+        frames = traceback.extract_tb(error.__traceback__)
+        # Methods of dataclasses are made from text, and have no file: what called them has.
+        where = next((frame for frame in reversed(frames) if not frame.filename.startswith("<")), frames[-1])
         message = f"{type(error).__name__}: {error} ({Path(where.filename).name}:{where.lineno})"
     return {"outcome": Outcome.FAILED.value, "message": message, "criteria_met": False}
 

@@ -39,7 +39,7 @@ class Nothing(Answers):
 
 @dataclass(frozen=True)
 class Word(Answers):
-    answer: object = "left"
+    answer: object = "0.3"
 
 
 @dataclass(frozen=True)
@@ -72,6 +72,15 @@ class Wrong:
         return 1.0 + "one"
 
 
+@dataclass(frozen=True)
+class Frozen:
+    last: float = 0.0
+
+    def heading_rate(self, *_):
+        self.last = 1.0
+        return 0.0
+
+
 MUST = "its method heading_rate(reference, to_north, to_east, course, speed) has to return a finite number [rad/s]"
 
 
@@ -81,13 +90,14 @@ MUST = "its method heading_rate(reference, to_north, to_east, course, speed) has
     [
         (NotANumber, ("steering law 'NotANumber' returned nan: ", MUST)),
         (Nothing, ("steering law 'Nothing' returned None: ", MUST)),
-        (Word, ("steering law 'Word' returned left: ", MUST)),
+        (Word, ("steering law 'Word' returned '0.3': ", MUST)),
         (ArrayOfOne, ("steering law 'ArrayOfOne' returned [0.1]: ", MUST)),
         (ArrayOfTwo, ("steering law 'ArrayOfTwo' returned [[0.1] [0.2]]: ", MUST)),
         (ComplexNumber, ("steering law 'ComplexNumber' returned (0.1+0j): ", MUST)),
         (TooFew, ("steering law 'TooFew' cannot be called (", "takes 2 positional arguments but 6 were given", MUST)),
         # An error inside the law is told where it is.
         (Wrong, ("TypeError: ", "(test_laws_without_an_answer.py:")),
+        (Frozen, ("FrozenInstanceError: ", "(test_laws_without_an_answer.py:")),
     ],
 )
 def test_a_law_without_an_answer_ends_its_flight_with_a_reason_that_names_it(mission, law, words):
