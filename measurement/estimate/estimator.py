@@ -106,7 +106,7 @@ def check_parameters(method: str, carbon: float, limits_percent: Sequence[float]
     if not CARBON_LEAST <= carbon <= CARBON_MOST:
         raise MeasurementError(f"carbon is {carbon:g}; a fuel's mass share of carbon must be {CARBON_LEAST:g} to {CARBON_MOST:g}")
     if not limits_percent or not all(0.0 < limit <= 10.0 for limit in limits_percent):
-        raise MeasurementError(f"limits are {tuple(limits_percent)} %; give one or more of 0 to 10")
+        raise MeasurementError(f"limits_percent is {list(limits_percent)}; give one or more numbers above 0, up to 10 % m/m")
 
 
 def _too_little(record: Record, instrument: SnifferSpec, passes: Sequence[Pass], noise: float) -> list[str]:

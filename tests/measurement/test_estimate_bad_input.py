@@ -201,8 +201,8 @@ def test_a_gap_longer_than_the_pieces_of_the_background_leaves_no_verdict():
         ({"method": "magic"}, "method is 'magic'; it must be 'regression' or 'areas'"),
         ({"carbon": 87.0}, r"carbon is 87; a fuel's mass share of carbon must be 0.5 to 0.95"),
         ({"carbon": math.nan}, "carbon is nan"),
-        ({"limits_percent": ()}, r"limits are \(\) %"),
-        ({"limits_percent": (-0.1,)}, "give one or more of 0 to 10"),
+        ({"limits_percent": ()}, r"limits_percent is \[\]; give one or more"),
+        ({"limits_percent": (-0.1,)}, "give one or more numbers above 0"),
     ],
 )
 def test_parameters_out_of_range_are_refused(keywords, message):

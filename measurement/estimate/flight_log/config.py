@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from measurement.errors import MeasurementError, guess
+from measurement.estimate.estimator import check_parameters
 from measurement.estimate.result import Method
 from measurement.estimate.verdict import LIMITS_PERCENT
 from measurement.gases import CARBON_FRACTION, GASES, UNITS
@@ -60,7 +61,7 @@ def read_config(path: Path) -> LogConfig:
 
     Raises
     ------
-    MeasurementError : it cannot be read, has a key that is not known, or a value that is not of its kind
+    MeasurementError : it cannot be read, has a key that is not known, or a value that is not of its kind or out of range
     """
     try:
         table = tomllib.loads(path.read_text(encoding="utf-8"))
@@ -77,8 +78,6 @@ def read_config(path: Path) -> LogConfig:
         if not 0.0 < factor < math.inf:
             raise MeasurementError(f"'{path}': scale of {gas} is {factor!r}; it must be positive, 1000 for ppm of SO2")
     method = table.get("method", "regression")
-    if method not in ("regression", "areas"):
-        raise MeasurementError(f"'{path}': method is {method!r}; it must be 'regression' or 'areas'")
     limits = table.get("limits_percent", list(LIMITS_PERCENT))
     if not isinstance(limits, list) or not limits or not all(_is_number(limit) for limit in limits):
         raise MeasurementError(f"'{path}': limits_percent is {limits!r}; give a list of numbers, as in [0.10, 0.50]")
@@ -88,6 +87,10 @@ def read_config(path: Path) -> LogConfig:
     carbon = table.get("carbon", CARBON_FRACTION)
     if not _is_number(carbon):
         raise MeasurementError(f"'{path}': carbon is {carbon!r}; give the mass share of the fuel, 0.85 to 0.875 for most")
+    try:
+        check_parameters(method, carbon, limits)
+    except MeasurementError as error:
+        raise MeasurementError(f"'{path}': {error}") from None
     return LogConfig(
         instrument=_instrument(table.get("instrument", DEFAULT_INSTRUMENT), path),
         carbon=float(carbon),
