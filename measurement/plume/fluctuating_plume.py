@@ -11,7 +11,7 @@ from measurement.plume.air import MarineAir
 from measurement.plume.arrays import Array
 from measurement.plume.meander import Meander
 from measurement.plume.parcels import Nearest, Parcels
-from measurement.plume.settings import PlumeSettings
+from measurement.plume.settings import SOURCE_HEIGHT_MAX, SOURCE_HEIGHT_MIN, PlumeSettings
 from measurement.plume.spread_table import SpreadTable
 from measurement.plume.structure import Structure
 
@@ -108,8 +108,10 @@ class FluctuatingPlume:
         seed: int = 0,
     ) -> None:
         settings = settings or PlumeSettings()
-        if not 1.0 <= source_height <= 200.0:
-            raise MeasurementError(f"height of the source is {source_height:g} m above the sea; give 1 to 200")
+        if not SOURCE_HEIGHT_MIN <= source_height <= SOURCE_HEIGHT_MAX:
+            raise MeasurementError(
+                f"height of the source is {source_height:g} m above the sea; give {SOURCE_HEIGHT_MIN:g} to {SOURCE_HEIGHT_MAX:g}"
+            )
         if seed < 0:
             raise MeasurementError(f"seed of the plume is {seed}; give 0 or more")
         self._parcels = Parcels(time, north, east, settings.parcel_interval)

@@ -4,6 +4,9 @@ from dataclasses import dataclass, fields
 
 from measurement.errors import MeasurementError
 
+SOURCE_HEIGHT_MIN, SOURCE_HEIGHT_MAX = 1.0, 200.0
+"""Heights above the sea at which exhaust may leave a funnel [m]."""
+
 _RANGES = {
     "richardson": (0.01, 2.0),
     "structure_intensity": (0.0, 1.0),

@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING
 
 from pydantic import BaseModel
 
+from measurement.plume.settings import SOURCE_HEIGHT_MAX
 from scenarios.schema.sections.experiment import FLIGHTS_MAX, STUDY
 
 if TYPE_CHECKING:
@@ -50,6 +51,7 @@ _SET_IN = {
 def check_together(scenario: "Scenario") -> None:
     """Refuse a scenario whose parts do not go together."""
     check_mission(scenario)
+    check_source(scenario)
     check_one_point(scenario)
     check_tables(scenario)
     if scenario.study == "falsify":
@@ -96,6 +98,16 @@ def check_mission(scenario: "Scenario") -> None:
     """Refuse what a mission in still air, beside a steady vessel, would leave out, wherever the scenario has either from."""
     if scenario.guidance.mission == "track" and (keys := unsteady(scenario)):
         raise ValueError(f"key '{keys[0]}' has no effect here: it is used by {FOLLOWING}")
+
+
+def check_source(scenario: "Scenario") -> None:
+    """Refuse a funnel that is higher than the exhaust of the project's own plume may leave one."""
+    height = scenario.plume.source_height_m
+    if scenario.emission.ship is not None and scenario.plume.model == "fluctuating" and height > SOURCE_HEIGHT_MAX:
+        raise ValueError(
+            f"plume.source_height_m is {height:g} m beside emission.ship; exhaust of plume.model 'fluctuating' leaves a funnel at"
+            f" {SOURCE_HEIGHT_MAX:g} m at most: lower it, or leave emission.ship out"
+        )
 
 
 def check_one_point(scenario: "Scenario") -> None:

@@ -101,7 +101,7 @@ class PlumeConfig(PartSection):
     elevation_deg: Annotated[float, Field(ge=0.0, le=60.0)] = 0.0
     """Elevation alpha_P above the horizon [deg]."""
     source_height_m: Annotated[float, Field(ge=10.0, le=500.0)] = 60.0
-    """Height of the funnel's mouth above the sea, where the axis starts [m]."""
+    """Height of the funnel's mouth above the sea, where the axis starts; at most 200 for exhaust of the model fluctuating [m]."""
 
     def parts(self) -> dict[str, Any]:
         """Return the plume model by its name."""

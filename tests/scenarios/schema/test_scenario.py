@@ -129,3 +129,11 @@ def test_a_comparison_at_a_speed_ratio_that_is_not_swept_is_refused():
             load_study("sweep_nu", ["sweep.nu=[0.3, 0.6]", f"comparison.nu={nu}"])
     # That of the file is left aside by an override.
     assert load_study("sweep_nu", ["sweep.nu=[0.3]"]).comparison.nu == (0.15, 0.5)
+
+
+def test_a_funnel_that_is_too_high_for_exhaust_is_refused_by_its_key_at_any_point():
+    # measurement.plume takes heights of 1 to 200 m; an axis without smoke may begin higher.
+    assert load_study("sulphur", ["plume.source_height_m=200"]).plume.source_height_m == 200.0
+    assert load_study("sweep_nu", ["plume.source_height_m=500"]).plume.source_height_m == 500.0
+    with pytest.raises(InputError, match=r"^plume\.source_height_m is 500 m beside emission\.ship; .* 200 m at most: lower it"):
+        load_study("sulphur", ["plume.source_height_m=500"])
