@@ -133,6 +133,8 @@ def read_run(path: Path) -> RunData:
     ------
     ReportError : it is not one, is of another version or damaged, holds nothing finished, lacks rows, or is being written
     """
+    if is_file(path):
+        raise ReportError(f"'{path}' is a file; name the directory of its run, '{path.parent}'")
     refuse_running(path)
     try:
         manifest = json.loads((path / MANIFEST).read_text(encoding="utf-8"))

@@ -206,3 +206,12 @@ def test_a_new_list_of_trials_has_the_keys_of_one():
     lines = template("sea_trial", "mine.toml").splitlines()
     written = {line.removeprefix("# ").partition(" =")[0] for line in lines if " =" in line}
     assert written == {key.key.rpartition(".")[2] for section in documented_sections(TrialList) for key in section.keys}
+
+
+@pytest.mark.parametrize("command", [("report",), ("export", "--to", "kmz")])
+def test_a_file_of_a_run_is_refused_with_the_name_of_its_directory(command, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "run").mkdir()
+    (tmp_path / "run" / "report.html").touch()
+    refused = console(command[0], "run/report.html", *command[1:])
+    assert_refused(refused, "'run/report.html' is a file; name the directory of its run, 'run'")
