@@ -143,7 +143,7 @@ def _studies(key: str, studies: tuple[str, ...]) -> tuple[str, ...]:
 @functools.cache
 def _plain_scenarios(study: str) -> tuple[Scenario, ...]:
     """Return scenarios of a study without anything else, by both methods: a key may be of one of them alone."""
-    plain = Scenario(title="", draws=(DrawConfig(key="wind.speed_mps", uniform=(0.0, 1.0)),))
+    plain = Scenario(title=study, draws=(DrawConfig(key="wind.speed_mps", uniform=(0.0, 1.0)),))
     return tuple(plain.model_copy(update={"study": study, "method": method}) for method in ("plain", "subset"))
 
 

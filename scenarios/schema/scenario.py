@@ -32,7 +32,7 @@ from scenarios.schema.sections.flight import CriteriaConfig, FlightConfig, Start
 from scenarios.schema.sections.guidance import FollowingConfig, GuidanceConfig, ReferenceConfig, law_refusal
 from scenarios.schema.sections.patrol import PatrolConfig
 from scenarios.schema.sections.report import ReportConfig
-from scenarios.schema.sections.section import Range, Section, Seed, check_divides, check_ordered
+from scenarios.schema.sections.section import Range, Section, Seed, Title, check_divides, check_ordered
 from scenarios.schema.sections.world import (
     EmissionConfig,
     KeepoutConfig,
@@ -55,7 +55,7 @@ class Scenario(Section):
     study: str = "flights"
     """flights; paper, with its bounds on commands; monte_carlo, with statistics; falsify, a search; arena, laws side by side;
     patrol, several ships one after the other; or FILE.py:NAME."""
-    title: str
+    title: Title
     """What reports and lists call it."""
     description: str = ""
     """One or two sentences at the top of the report."""

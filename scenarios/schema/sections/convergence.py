@@ -5,7 +5,7 @@ from typing import Annotated, Literal
 from pydantic import Field, model_validator
 
 from scenarios.schema.sections.report import ReportConfig
-from scenarios.schema.sections.section import Positive, Section
+from scenarios.schema.sections.section import Positive, Section, Title
 
 LawName = Literal["lyapunov", "cascade", "cascade_cut"]
 
@@ -57,7 +57,7 @@ class ConvergenceScenario(Section):
 
     study: Literal["convergence"]
     """Many kinematic pursuits from random initial states."""
-    title: str
+    title: Title
     """Title of the study in reports and lists."""
     description: str = ""
     """One or two sentences at the top of the report."""

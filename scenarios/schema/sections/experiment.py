@@ -8,7 +8,7 @@ from pydantic import Field, RootModel, field_validator, model_validator
 
 from common.registry import PluginError
 from scenarios.schema.sections.report import ReportConfig
-from scenarios.schema.sections.section import Fraction, NonNegative, Positive, Range, Section, Seed, check_ordered
+from scenarios.schema.sections.section import Fraction, NonNegative, Positive, Range, Section, Seed, Title, check_ordered
 from scenarios.search.method import SEARCH_METHODS
 
 Sampling = Literal["sobol", "latin_hypercube", "random"]
@@ -234,7 +234,7 @@ class ConditionConfig(Section):
 
     name: Annotated[str, Field(pattern=r"^[a-z0-9_]+$")]
     """Part of the names of its flights."""
-    title: str
+    title: Title
     """Title of the condition in the report."""
     set: dict[str, object] = Field(default_factory=dict)
     """Keys with dots, and their values."""
@@ -276,7 +276,7 @@ class TrialList(Section):
 
     study: Literal["trials"]
     """Scenarios that are flown and reported together."""
-    title: str
+    title: Title
     """Title of the study in reports and lists."""
     description: str = ""
     """One or two sentences at the top of the report."""

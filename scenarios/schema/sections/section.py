@@ -5,7 +5,7 @@ import typing
 from collections.abc import Iterator, Mapping
 from typing import Annotated, Any, Literal
 
-from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, model_validator
+from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Field, model_validator
 
 
 class Section(BaseModel):
@@ -68,6 +68,14 @@ def _no_zero(given: Any) -> Any:
     return given
 
 
+def _with_a_word(title: str) -> str:
+    if not title.strip():
+        raise ValueError(f"value is {title!r}; give one word at least")
+    return title
+
+
+Title = Annotated[str, AfterValidator(_with_a_word)]
+"""What reports and lists call something."""
 Positive = Annotated[float, Field(gt=0.0)]
 NonNegative = Annotated[float, Field(ge=0.0)]
 Fraction = Annotated[float, Field(gt=0.0, lt=1.0)]

@@ -96,6 +96,7 @@ def test_a_log_is_estimated_as_by_the_program_that_stands_alone(tmp_path, capsys
         (("export", "."), ("--to", "--stream udp://HOST:PORT")),
         (("export", ".", "--to", "kmz"), ("holds no run",)),
         (("report", "."), ("holds no run",)),
+        (("run", "sweep_nu", "--set", "title="), ("title: value is ''; give one word at least",)),
         (("design", "x9"), ("unknown aircraft 'x9'",)),
         (("describe", "wind.sped_mps"), ("unknown key 'wind.sped_mps'; did you mean 'wind.speed_mps'?",)),
         (
