@@ -98,8 +98,10 @@ class Guidance:
             command, pace, held = keep_out.limit(command, pace, time, own, leaving=leaving)
             self.guarding = keep_out.guard.intervening
         tracker.heading_rate_command = command
+        # A turn away is flown in full in gusts, too: it was predicted without them.
+        full = self.guarding and abs(command) >= self._limit
         command /= own.air_ratio
-        bounded = limited(command, self._limit)
+        bounded = math.copysign(self._limit, command) if full else limited(command, self._limit)
         if bounded != command:
             command = bounded
             tracker.heading_rate_command = turning = command * own.air_ratio

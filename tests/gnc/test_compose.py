@@ -197,3 +197,16 @@ def test_a_vehicle_with_a_fault_leaves_and_sinks():
         guidance.step(step * TIME_STEP, readings(-400.0, 0.0, course=math.pi, servo_error=0.5))
     assert guidance.mission.mode is Mode.TERMINATING
     assert (guidance.airspeed_command, guidance.altitude_command) == (17.0, GLIDE_ALTITUDE)
+
+
+def test_a_turn_away_is_flown_in_full_in_gusts_from_ahead():
+    # The vehicle is slower over the mean air: the guidance turns it the slower through the air, but not away from the vessel.
+    guidance = reported(following())
+    turns = []
+    for step in range(200):
+        airspeed = SPEED if step % PLAN_INTERVAL == 0 else 1.2 * SPEED
+        guidance.step(step * TIME_STEP, readings(-300.0 + SPEED * step * TIME_STEP, 0.0, airspeed=airspeed))
+        if guidance.guarding and guidance.own.air_ratio > 1.1:
+            turns.append(abs(guidance.heading_rate_command))
+            assert guidance.mission.tracker.heading_rate_command == guidance.heading_rate_command * guidance.own.air_ratio
+    assert max(turns) == HEADING_RATE_MAX

@@ -48,8 +48,11 @@ def closest(gust: Gust, *, vessel: float, bearing: float, distance: float, cours
         own = KnownMotion(ground_north=x, ground_east=y, course=flown, heading_rate=rate * SPEED / speed)
         aim = math.atan2(-y, vessel * time - x) + weave * math.sin(0.3 * time + 6.05)
         command = limited(2.0 * HEADING_RATE_MAX * wrap(aim - flown), HEADING_RATE_MAX)
-        turned = guard.limit(command, time, own, max(speed, SPEED), min(speed, SPEED)) * speed / SPEED
-        command = limited(turned, HEADING_RATE_MAX)
+        turned = guard.limit(command, time, own, max(speed, SPEED), min(speed, SPEED))
+        full = guard.intervening and abs(turned) >= HEADING_RATE_MAX
+        turned *= speed / SPEED
+        # As the guidance does: what the gust slows is turned in full all the same.
+        command = math.copysign(HEADING_RATE_MAX, turned) if full else limited(turned, HEADING_RATE_MAX)
         if command != turned:
             guard.overruled(command * SPEED / speed)
         to_north, to_east, heading, rate = lagged_move(x, y, heading, rate, SPEED, command, LAG, TIME_STEP)
@@ -64,11 +67,14 @@ def closest(gust: Gust, *, vessel: float, bearing: float, distance: float, cours
     [
         (Gust(4.0, -2.0506, 6.18, 35.2), {"vessel": 13.0, "bearing": 0.0236, "distance": 383.3, "course": 0.404, "weave": 0.9}),
         (Gust(5.0, -0.6857, 4.264, 17.5), {"vessel": 12.0, "bearing": 1.1370, "distance": 358.7, "course": -2.534, "weave": 0.0}),
+        (Gust(7.0, -2.2802, 5.355, 19.42), {"vessel": 10.65, "bearing": 0.1498, "distance": 375.4, "course": -2.387, "weave": 0.0}),
+        (Gust(7.0, 2.5628, 2.865, 17.21), {"vessel": 10.83, "bearing": -0.098, "distance": 369.14, "course": -2.882, "weave": 0.0}),
     ],
-    ids=["beside a fast vessel", "beside a slower one"],
+    ids=["beside a fast vessel", "beside a slower one", "a gust that slows the turn", "one from the other side"],
 )
 def test_a_gust_as_strong_as_declared_lets_nobody_in(gust, start):
     # With the better turn in place of the one that was safe 3 to 7 m inside: the gust makes the other side seem the better one.
+    # With a turn away that was as slow through the air as the gust made the vehicle over the mean air up to 0.7 m inside.
     nearest, interventions = closest(gust, **start)
     assert nearest >= RADIUS
     assert interventions > 0
