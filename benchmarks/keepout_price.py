@@ -18,12 +18,15 @@ RATIOS = (0.2, 0.5, 0.8)
 """Speed ratios of the table [-]."""
 
 AIS = ("reports.interval_s=[2,10]", "reports.latency_max_s=2")
-SHIP = ("following.vessel_acceleration_mps2=0.25", "following.vessel_speed_max_mps=15")
+SHIP = ("following.vessel_acceleration_mps2=0.25", "following.vessel_speed_max_mps=16")
+
+BIASES = ("sensors.airspeed_bias_mps=0.5", "sensors.heading_bias_deg=2")
 
 TOGETHER = (
     *AIS,
     *SHIP,
     "sensors.position_sigma_m=1.5",
+    *BIASES,
     "following.speed_error_mps=0.5",
     "turbulence.level=light",
     "turbulence.gusts=3",
@@ -35,6 +38,7 @@ DECLARATIONS: dict[str, tuple[str, ...]] = {
     "satellite navigation, 1.5 m": ("sensors.position_sigma_m=1.5",),
     "outages of satellite navigation, 1 m/s": ("fault.kind=satellite_navigation",),
     "velocity and wind known to 0.5 m/s": ("following.speed_error_mps=0.5",),
+    "biases of the airspeed, 0.5 m/s, and the heading, 2 degrees": BIASES,
     "gusts of 4 m/s": ("turbulence.gusts=3", "turbulence.gust_speed_mps=4"),
     "gusts of 8 m/s": ("turbulence.gusts=3", "turbulence.gust_speed_mps=8"),
     "light turbulence": ("turbulence.level=light",),

@@ -13,7 +13,7 @@ from gnc.safety.guard_parameters import GuardParameters
 from gnc.tracker import TrackingParameters
 from innerloop.flight.turn_reversal import TurnReversalResponse
 from scenarios.margin.keepout_margin import KeepoutMargin
-from scenarios.planning.air.dead_reckoning import velocity_noise
+from scenarios.planning.air.dead_reckoning import velocity_error
 from scenarios.planning.bounded_steering import Steering, given_steering, steering_law
 from scenarios.planning.limits import omega_max, plan_interval
 from scenarios.planning.reference import shape_of
@@ -71,7 +71,7 @@ def guard_parameters(
     drift_rate : how fast dead reckoning may go wrong [m/s]
     """
     f, air = scenario.following, scenario.turbulence
-    speed_error = max(f.speed_error_mps, velocity_noise(scenario, drift_rate)) + air.gust_speed_mps + wind_change
+    speed_error = max(f.speed_error_mps, velocity_error(scenario, drift_rate)) + air.gust_speed_mps + wind_change
     return GuardParameters(
         radius=radius + turbulence,
         deviation=max(setup.response_error, f.turn_deviation_m if scenario.follows else 0.0),

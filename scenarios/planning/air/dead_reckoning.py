@@ -12,7 +12,14 @@ import numpy.typing as npt
 from aircraft.atmosphere.turbulence import TURBULENCE, intensities, scale_lengths
 from aircraft.atmosphere.wind import WindField
 from gnc.estimation.navigation import NOISE_DEVIATIONS
-from scenarios.planning.air.estimated_wind import WIND_FOLLOWED, largest_wind_change, wind_followed, wind_noise, wind_noise_left
+from scenarios.planning.air.estimated_wind import (
+    WIND_FOLLOWED,
+    largest_wind_change,
+    wind_bias,
+    wind_followed,
+    wind_noise,
+    wind_noise_left,
+)
 from scenarios.schema.scenario import Scenario
 from scenarios.world.faults import SATELLITES
 
@@ -41,7 +48,8 @@ def drift_rate(scenario: Scenario, wind: WindField, turn: float, altitude_error:
     changed = largest_wind_change(scenario, wind, outage + wind_followed(scenario), altitude_error)
     age = np.linspace(0.0, min(outage, duration), _AGES)
     covered = float(np.max((_by_gusts(scenario, age) + _by_turbulence(scenario, age)) / (age + turn)))
-    steady = max(scenario.following.drift_rate_mps, _by_noise(scenario, age, turn))
+    # An airspeed and a heading with biases are wrong in the estimated wind, and the other way round once the vehicle has turned.
+    steady = max(scenario.following.drift_rate_mps, _by_noise(scenario, age, turn) + 2.0 * wind_bias(scenario))
     return steady + changed + _gust_taken_for_wind(scenario) + covered
 
 
@@ -58,8 +66,8 @@ def _by_noise(scenario: Scenario, age: Array, turn: float) -> float:
     return NOISE_DEVIATIONS * wind_noise_left(scenario) + 2.0 * lowered + float(np.max(walked / (age + turn)))
 
 
-def velocity_noise(scenario: Scenario, drift: float) -> float:
-    """Return by how much the noise of its sensors may make the vehicle's own velocity wrong at a step [m/s].
+def velocity_error(scenario: Scenario, drift: float) -> float:
+    """Return by how much noise or bias of its sensors may make the vehicle's own velocity wrong at a step [m/s].
 
     The guard is asked at each step, and goes by the one at which the noise makes a command look safe. Dead reckoning goes by
     airspeed and heading as they are read; the guard reckons with its drift beside.
@@ -69,7 +77,8 @@ def velocity_noise(scenario: Scenario, drift: float) -> float:
     drift : how fast dead reckoning may go wrong, by ``drift_rate`` [m/s]
     """
     noise = NOISE_DEVIATIONS * math.hypot(scenario.sensors.velocity_sigma_mps, wind_noise_left(scenario))
-    return max(noise, NOISE_DEVIATIONS * wind_noise(scenario) - drift) if drift else noise
+    read = NOISE_DEVIATIONS * wind_noise(scenario) - drift if drift else 0.0
+    return max(noise, read, wind_bias(scenario))
 
 
 def _gust_taken_for_wind(scenario: Scenario) -> float:

@@ -46,6 +46,15 @@ def wind_noise(scenario: Scenario) -> float:
     return math.hypot(sensors.airspeed_sigma_mps, scenario.guidance.airspeed_mps * math.radians(sensors.heading_sigma_deg))
 
 
+def wind_bias(scenario: Scenario) -> float:
+    """Return by how much biases of airspeed and heading make the measured wind wrong at most [m/s].
+
+    The error turns with the vehicle: an estimate keeps that of the courses flown so far.
+    """
+    sensors = scenario.sensors
+    return math.hypot(sensors.airspeed_bias_mps, scenario.guidance.airspeed_mps * math.radians(sensors.heading_bias_deg))
+
+
 def wind_noise_left(scenario: Scenario) -> float:
     """Return the deviation of the estimated wind by that noise in the end [m/s]: sqrt(k/2) of it, by the filter's gain k."""
     gain = _WIND_DRIFT * math.sqrt(_period(scenario)) / _sensor_sigma(scenario)
