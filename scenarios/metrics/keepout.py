@@ -36,7 +36,8 @@ def keepout_figures(time: Array, position: Array, velocity: Array, radius: float
     """Measure a path against a sphere about the origin, or a cylinder of any height about the vertical through it.
 
     Between samples the path is the cubic through their positions and velocities, and so is its closest approach: at 10 Hz and 45
-    degrees of bank true to a micrometre, where a chord would be optimistic by up to 1.2 cm.
+    degrees of bank true to a micrometre, where a chord would be optimistic by up to 1.2 cm, and to 6 mm where the turn is reversed
+    at once in between. ``check_recorded`` in ``scenarios.planning.limits`` refuses flights for which this is more than 5 cm.
 
     Parameters
     ----------

@@ -1,14 +1,19 @@
-"""What the guidance may ask of an aircraft, whether that can be flown, and how often it plans."""
+"""What the guidance may ask of an aircraft, whether that can be flown and recorded, and how often it plans."""
 
 import math
 
 from aircraft.spec import Envelope
 from common.physics.coordinated_turn import bank_for_heading_rate, heading_rate_for_bank
+from gnc.errors import InfeasibleError
 from scenarios.errors import InputError
+from scenarios.schema.scenario import Scenario
 from scenarios.schema.sections.guidance import GuidanceConfig
 
 PLAN_PERIOD = 0.5
 """Time between plans, and between measurements of the wind [s]."""
+
+_PATH_ERROR_MAX = 0.05
+"""Error of the recorded path between two samples above which a flight is refused [m]."""
 
 
 def omega_max(guidance: GuidanceConfig) -> float:
@@ -35,3 +40,45 @@ def check_flyable(guidance: GuidanceConfig, title: str, envelope: Envelope) -> N
             f"guidance asks for {math.degrees(bank):.1f} deg of bank; the autopilot of {title} stops at"
             f" {math.degrees(envelope.bank_max):.0f}: lower guidance.bank_deg or guidance.heading_rate_max_rad_s"
         )
+
+
+def path_error_max(scenario: Scenario, log_rate: float) -> float:
+    """Return by how much the cubic between two samples may miss the path of a kinematic vehicle [m].
+
+    A cubic through positions and velocities is off by no more than dt^2/16 times what the acceleration differs from a constant
+    (the integral of the kernel of its error), and reproduces a constant one. Here that is the centripetal one, V omega_max, which
+    turns by omega_max dt, and is reversed by a command: at once where there is no lag, but not within a step of the guidance.
+
+    Parameters
+    ----------
+    scenario : of the vehicle, with V, omega_max, its lag and the rate of its guidance
+    log_rate : of the samples [Hz]
+    """
+    g, lag, interval = scenario.guidance, scenario.kinematic.heading_rate_lag_s, 1.0 / log_rate
+    fastest = omega_max(g)
+    at_once = float(round(g.rate_hz / log_rate) > 1)
+    reversal = interval / lag if lag > 0.0 else at_once
+    change = min(1.0, 0.5 * fastest * interval + reversal)
+    return g.airspeed_mps * fastest * change * interval**2 / 16.0
+
+
+def check_recorded(scenario: Scenario) -> None:
+    """Raise an InfeasibleError for kinematic flights that turn too fast for keep-out figures at the rate of their record.
+
+    An aircraft has to roll first: at 5 Hz and 60 degrees of bank even a reversal at once would be seen to 4.2 cm.
+    """
+    g, rate = scenario.guidance, scenario.flight.log_rate_hz
+    if scenario.fidelity != "kinematic" or scenario.circles or (error := path_error_max(scenario, rate)) <= _PATH_ERROR_MAX:
+        return
+    steps = range(round(g.rate_hz / rate) - 1, 0, -1)
+    enough = next((g.rate_hz / n for n in steps if path_error_max(scenario, g.rate_hz / n) <= _PATH_ERROR_MAX), None)
+    remedy = "record and guide more often (guidance.rate_hz)" if enough is None else f"set it to {enough:g}"
+    raise InfeasibleError(
+        f"flight.log_rate_hz is {rate:g} Hz; at {omega_max(g):.3g} rad/s and {g.airspeed_mps:.4g} m/s the path between two samples,"
+        f" and with it keep-out figures, may be wrong by {error:.2g} m, and the limit is {_PATH_ERROR_MAX:g} m: {remedy}, or lower"
+        " guidance.heading_rate_max_rad_s"
+    )
+
+
+PLAN_PERIOD = 0.5
+"""Time between plans, and between measurements of the wind [s]."""

@@ -2,6 +2,7 @@
 
 from scenarios.planning.flight_plan import FlightPlan
 from scenarios.planning.following_flight import Spreads, following_flight
+from scenarios.planning.limits import check_recorded
 from scenarios.planning.tracking_flight import circling_flight, tracking_flight
 from scenarios.schema.scenario import Scenario
 from scenarios.vehicles.vehicle_setup import VehicleSetup
@@ -24,8 +25,9 @@ def plan_flight(
     Raises
     ------
     InfeasibleError : the flight has no solution, or starts where no command keeps it out of the keep-out area, or manoeuvres of
-        its vessel overlap
+        its vessel overlap, or it turns too fast for the rate at which it is recorded
     """
+    check_recorded(scenario)
     check_manoeuvres(scenario.vessel, scenario.vessel_speed)
     noise = seed if isinstance(seed, Noise) else Noise(seed)
     if scenario.circles:

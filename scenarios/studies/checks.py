@@ -19,7 +19,7 @@ from scenarios.errors import InputError
 from scenarios.experiment.draws import check_draws
 from scenarios.experiment.requests import Experiment
 from scenarios.planning.following_flight import check_declared
-from scenarios.planning.limits import check_flyable
+from scenarios.planning.limits import check_flyable, check_recorded
 from scenarios.planning.plume.axis import flown_altitudes
 from scenarios.schema.extension_points import PAYLOADS, PLUME_MODELS, VESSEL_TRACKS
 from scenarios.schema.parts import names_file, part_names
@@ -80,9 +80,11 @@ def check_without_design(scenario: Scenario) -> None:
     Raises
     ------
     InputError : a part that does not exist, exhaust without smoke, a fault that it cannot have, turbulence at an altitude for which
-        it is not known, limits of the altitude that leave no room, files of a track or of wind that are of no use
+        it is not known, limits of the altitude that leave no room, a record that is too seldom, files of a track or of wind that
+        are of no use
     """
     _check_parts(scenario)
+    _check_record(scenario)
     _check_fault(scenario)
     _check_turbulence(scenario)
     _check_altitudes(scenario)
@@ -133,6 +135,16 @@ def _check_altitudes(scenario: Scenario) -> None:
         return
     try:
         flown_altitudes(scenario)
+    except InfeasibleError as error:
+        raise InputError(str(error)) from None
+
+
+def _check_record(scenario: Scenario) -> None:
+    """Refuse a rate of the record that is too low in every flight; where flights differ, each has its own result."""
+    if any(draw.key.startswith(("guidance.", "flight.", "kinematic.")) for draw in scenario.draws):
+        return
+    try:
+        check_recorded(scenario)
     except InfeasibleError as error:
         raise InputError(str(error)) from None
 

@@ -60,7 +60,8 @@ class FlightConfig(Section):
     settling_band_m: Positive = 5.0
     """Distance to the reference below which a flight counts as settled [m]."""
     log_rate_hz: Annotated[float, Field(ge=5.0, le=120.0)] = 10.0
-    """Recording rate [Hz], at least 5 so that keep-out figures are true to centimetres; must divide the guidance rate."""
+    """Recording rate [Hz], at least 5; must divide the guidance rate. Keep-out figures are true to 5 cm: a kinematic vehicle that
+    turns too fast for it is refused."""
 
     @model_validator(mode="after")
     def _altitudes(self) -> "FlightConfig":
