@@ -11,6 +11,7 @@ from reports.document.tables import vehicle_flown
 from reports.flights.names import flight_name
 from reports.flights.tracks import track_picture
 from reports.run.columns import Array, Mask, beside_vessel, clearance, column, recorded_at, total
+from reports.run.flight_config import flight_configs, wind_changes
 from reports.run.run_data import RunData
 from reports.run.trials import Trial
 
@@ -35,7 +36,10 @@ def flights_in_words(run: RunData, flown: pd.DataFrame) -> str:
     wind = column(flown, "wind_speed_mps")
     levels = flown["turbulence"].dropna() if "turbulence" in flown else pd.Series(dtype=str)
     levels = levels[levels != "none"]
-    air = f"wind of {_range(wind)} m/s" if np.nanmax(wind, initial=0.0) > _CALM else "still air"
+    changes = any(map(wind_changes, flight_configs(run, flown)))
+    air = (
+        f"wind of {_range(wind)} m/s{' at the start' * changes}" if changes or np.nanmax(wind, initial=0.0) > _CALM else "still air"
+    )
     some = f", in {len(levels):,} of them," * (len(levels) < len(flown))
     gusty = f" and{some} {' or '.join(map(str, levels.unique()))} turbulence" if len(levels) else ""
     manoeuvres = np.any(column(flown, "nu_max") - column(flown, "nu_min") > _STEADY)

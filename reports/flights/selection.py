@@ -14,6 +14,7 @@ from reports.flights.names import flight_name, flown_elsewhere
 from reports.flights.single_flight import flight_charts
 from reports.replay.flight_scene import flight_scene
 from reports.run.columns import beside_vessel, clearance, column, met, recorded_at, violated
+from reports.run.flight_config import wind_changes
 from reports.run.trials import Trial
 
 PICKED_MAX = 12
@@ -71,7 +72,8 @@ def _of_sweep(trial: Trial, row: "pd.Series[Any]", why: str) -> FlightContent:
 def _content(trial: Trial, row: "pd.Series[Any]", state: str) -> FlightContent:
     several = len(trial.run.manifest["trials"]) > 1
     name = f"{trial.title}, {flight_name(trial, row)}" if several else flight_name(trial, row)
-    known = [("", "min_distance_m", "{:.1f} m"), ("ν = ", "nu", "{:.2f}"), ("wind ", "wind_speed_mps", "{:.1f} m/s")]
+    speed = "{:.1f} m/s" + " at the start" * wind_changes(trial.flight_config(row))
+    known = [("", "min_distance_m", "{:.1f} m"), ("ν = ", "nu", "{:.2f}"), ("wind ", "wind_speed_mps", speed)]
     given = {key.replace("wind.speed_mps", "wind_speed_mps") for key in trial.swept}
     if flown_elsewhere(trial):
         known[1], given = ("flown at ν = ", "nu", "{:.2f}"), given - {"nu"}

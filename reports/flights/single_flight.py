@@ -5,7 +5,6 @@ from dataclasses import replace
 
 import numpy as np
 
-from common.physics.wind import wind_velocity
 from reports.document.axes import in_kilometres
 from reports.document.chart import Chart, Line, Panel, Style
 from reports.document.palette import Meaning
@@ -14,7 +13,7 @@ from reports.flights.names import flight_name
 from reports.flights.tracks import track_chart
 from reports.run.columns import NOTICEABLE, Array, column
 from reports.run.flight_config import keepout_shape, source_height
-from reports.run.time_history import ERROR_MIN, floor_words, tracking_error
+from reports.run.time_history import ERROR_MIN, floor_words, tracking_error, true_wind
 from reports.run.trials import measured_from
 
 _NEAR, _FAR, _USUAL = 0.95, 1.6, 1.2
@@ -111,8 +110,7 @@ class _Histories:
         north, east = self._column("wind_north_mps"), self._column("wind_east_mps")
         if not np.nanmax(np.abs([north, east]), initial=0.0) > NOTICEABLE:
             return None
-        speed, origin = (float(self._view.row[name]) for name in ("wind_speed_mps", "wind_from_deg"))
-        lines = [self._level(part, "true wind", "black") for part in wind_velocity(speed, origin)]
+        lines = [self._line(part, "true wind", "black", "dash") for part in true_wind(self._view.samples, self._view.row)]
         lines += [self._line(north, "estimate, north", Meaning.WIND), self._line(east, "estimate, east", Meaning.WIND, "dot")]
         return Panel(x_label=_TIME, y_label="Wind [m/s]", lines=lines)
 

@@ -6,13 +6,12 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from common.physics.wind import wind_velocity
 from reports.document.scene import Scene
 from reports.run.columns import Array, column
 from reports.run.flight_config import Config, keepout_shape, source_height
 from reports.run.plume_shape import PlumeShape, plume_shape
 from reports.run.ship import hull_of
-from reports.run.time_history import guard_stretches, vessel_heading
+from reports.run.time_history import guard_stretches, true_wind, vessel_heading
 from reports.run.trials import Trial
 
 INTERVAL = 0.2
@@ -86,8 +85,7 @@ def flight_scene(trial: Trial, row: "pd.Series[Any]", history: pd.DataFrame | No
 def _plume(config: Config, row: "pd.Series[Any]", history: pd.DataFrame) -> PlumeShape:
     """Return the plume's shape, in the wind and at the vessel's speed that the flight began with."""
     north, east = (float(column(history, f"vessel_velocity_{axis}_mps")[0]) for axis in ("north", "east"))
-    wind, origin = (float(np.nan_to_num(row.get(name, 0.0))) for name in ("wind_speed_mps", "wind_from_deg"))
-    wind_north, wind_east = wind_velocity(wind, origin)
-    apparent = math.hypot(wind_north - north, wind_east - east)
+    wind_north, wind_east = (float(part[0]) for part in true_wind(history, row))
+    wind, apparent = math.hypot(wind_north, wind_east), math.hypot(wind_north - north, wind_east - east)
     length = _PLUME_LENGTH * float(row["keepout_radius_m"])
     return plume_shape(config, speed=math.hypot(north, east), wind=wind, apparent_wind=apparent, length=length)

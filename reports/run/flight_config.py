@@ -50,6 +50,11 @@ def keepout_shape(config: Config) -> str:
     return str(config.get("keepout", {}).get("shape", "sphere"))
 
 
+def wind_changes(config: Config) -> bool:
+    """Return whether the wind is from a table, so that what the summary says of it is of the start alone."""
+    return bool((config.get("wind") or {}).get("table"))
+
+
 def _by_flight(draws: pd.DataFrame) -> dict[str, Row]:
     return {str(row["flight_id"]): row for row in draws.to_dict("records")}
 

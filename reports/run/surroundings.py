@@ -7,15 +7,17 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from common.physics.wind import wind_towards
 from reports.run.columns import column
 from reports.run.flight_config import Config, keepout_shape
 from reports.run.plume_shape import PlumeShape, plume_shape
 from reports.run.ship import Hull, hull_of
-from reports.run.time_history import about_the_plume, vessel_heading
+from reports.run.time_history import about_the_plume, true_wind, vessel_heading
 
 _TURNED = math.radians(2.0)
 """Turn of the plume from which its course is said to change."""
+
+_VEERED = 0.1
+"""Change of the wind's velocity from which it is said to change [m/s]: it is shown in tenths."""
 
 _SHORTEST, _LONGEST = 1.6, 4.0
 """Length of the plume that is drawn, over r_min [-]."""
@@ -36,7 +38,7 @@ class Surroundings:
     plume : its shape
     radius, shape : r_min [m], and the shape of the keep-out area
     wind : its speed [m/s], and the course that it blows along [rad]
-    changing : whether the plume's course changed in flight
+    changing : whether the plume's course or the wind changed in flight
     """
 
     hull: Hull
@@ -58,12 +60,14 @@ def surroundings(config: Config, row: "pd.Series[Any]", history: pd.DataFrame, a
     row : of the flight in the summary
     history : its time history
     """
-    wind = _wind(row)
+    wind_north, wind_east = true_wind(history, row)
+    wind = math.hypot(wind_north[at], wind_east[at]), math.atan2(wind_east[at], wind_north[at])
+    veered = float(np.hypot(wind_north - wind_north[at], wind_east - wind_east[at]).max())
     heading = vessel_heading(history, float(config.get("vessel", {}).get("course_deg", 0.0)))
     axis = column(history, "plume_axis_rad")
     radius = float(row["keepout_radius_m"])
     north, east = (float(column(history, f"vessel_velocity_{name}_mps")[at]) for name in ("north", "east"))
-    apparent = math.hypot(wind[0] * math.cos(wind[1]) - north, wind[0] * math.sin(wind[1]) - east)
+    apparent = math.hypot(wind_north[at] - north, wind_east[at] - east)
     reach = _BEYOND * float(np.nanmax(np.hypot(*about_the_plume(history))))
     length = min(max(reach, _SHORTEST * radius), _LONGEST * radius)
     return Surroundings(
@@ -74,11 +78,5 @@ def surroundings(config: Config, row: "pd.Series[Any]", history: pd.DataFrame, a
         radius=radius,
         shape=keepout_shape(config),
         wind=wind,
-        changing=bool(np.ptp(np.unwrap(axis)) > _TURNED),
+        changing=bool(np.ptp(np.unwrap(axis)) > _TURNED or veered > _VEERED),
     )
-
-
-def _wind(row: "pd.Series[Any]") -> tuple[float, float]:
-    """Return the wind's speed and the course that it blows along: it is given by where it comes from."""
-    speed, origin = (float(row.get(name, math.nan)) for name in ("wind_speed_mps", "wind_from_deg"))
-    return (speed, wind_towards(origin)) if speed > 0.0 and math.isfinite(origin) else (0.0, 0.0)

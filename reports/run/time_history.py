@@ -6,8 +6,9 @@ from collections.abc import Iterable
 import numpy as np
 import pandas as pd
 
+from common.physics.wind import wind_velocity
 from reports.run.columns import Array, column
-from reports.run.flight_config import Config, keepout_shape, source_height
+from reports.run.flight_config import Config, Row, keepout_shape, source_height
 
 _AT_REST = 0.01
 """Speed below which a vessel's heading is not that of its motion [m/s]."""
@@ -80,6 +81,20 @@ def vessel_heading(history: pd.DataFrame, course_deg: float) -> Array:
     last = np.maximum.accumulate(np.where(moving, np.arange(len(history)), np.argmax(moving)))
     heading: Array = np.unwrap(np.arctan2(east, north)[last])
     return heading
+
+
+def true_wind(history: pd.DataFrame, row: Row) -> tuple[Array, Array]:
+    """Return north and east velocity of the true mean wind at every sample [m/s]; where it is not recorded, that of the start.
+
+    Parameters
+    ----------
+    history : of the flight
+    row : of the flight in the summary
+    """
+    speed, origin = (float(np.nan_to_num(row.get(name, 0.0))) for name in ("wind_speed_mps", "wind_from_deg"))
+    recorded = (column(history, f"true_wind_{axis}_mps") for axis in ("north", "east"))
+    north, east = (np.where(np.isfinite(of), of, begun) for of, begun in zip(recorded, wind_velocity(speed, origin), strict=True))
+    return north, east
 
 
 def guard_stretches(history: pd.DataFrame) -> list[tuple[int, int, bool]]:

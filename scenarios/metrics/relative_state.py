@@ -6,17 +6,18 @@ import numpy as np
 import numpy.typing as npt
 import pandas as pd
 
+from aircraft.atmosphere.wind import CALM
 from common.physics.geodesy import LocalFrame
 from gnc.laws.delta import LookAhead
 from gnc.numeric import wrapped
 from scenarios.planning.flight_plan import FlightPlan
-from scenarios.simulation.record import PLACE_COLUMNS, RELATIVE_COLUMNS, FlightRecord
+from scenarios.simulation.record import PLACE_COLUMNS, RELATIVE_COLUMNS, WIND_COLUMNS, FlightRecord
 
 Array = npt.NDArray[np.float64]
 
 
 def flight_history(plan: FlightPlan, record: FlightRecord) -> pd.DataFrame:
-    """Return a row per sample; columns are those of the record, ``RELATIVE_COLUMNS``, and what is known of ``PLACE_COLUMNS``."""
+    """Return a row per sample; columns are those of the record, ``RELATIVE_COLUMNS``, and what there is of the others."""
     numbers = {name: i for i, name in enumerate(record.columns)}
 
     def column(name: str) -> Array:
@@ -25,9 +26,13 @@ def flight_history(plan: FlightPlan, record: FlightRecord) -> pd.DataFrame:
     to_north, to_east = (column(f"reference_{axis}_m") - column(f"{axis}_m") for axis in ("north", "east"))
     through_air = [column(f"velocity_{axis}_mps") - column(f"wind_{axis}_mps") for axis in ("north", "east")]
     course = np.arctan2(through_air[1], through_air[0])
-    states = relative_states(plan.steering.look_ahead, to_north, to_east, column("reference_course_rad"), course)
+    states: tuple[Array, ...] = relative_states(plan.steering.look_ahead, to_north, to_east, column("reference_course_rad"), course)
+    names = (*record.columns, *RELATIVE_COLUMNS)
+    wind = plan.world.weather.wind if plan.world else CALM
+    if wind != CALM:
+        names, states = (*names, *WIND_COLUMNS), (*states, *wind.at(column("time_s"), column("altitude_m")))
     # One table at once: to add columns to one takes five times as long.
-    history = pd.DataFrame(np.column_stack([record.every_step, *states]), columns=[*record.columns, *RELATIVE_COLUMNS])
+    history = pd.DataFrame(np.column_stack([record.every_step, *states]), columns=list(names))
     place = plan.world.place if plan.world else None
     if place is not None and math.isfinite(place.latitude):
         # Metres are counted at the altitude that the flight is flown at.

@@ -58,6 +58,8 @@ MEANINGS = {
     "rho_m": "length of z, equation (16)",
     "phi_r_rad": "course of the reference against that of z, equation (19)",
     "phi_rad": "course through the air against that of z, equation (19)",
+    "true_wind_north_mps": "velocity of the mean wind at the place and height of the UAV, true",
+    "true_wind_east_mps": "velocity of the mean wind at the place and height of the UAV, true",
     "latitude_deg": "latitude of the UAV, true",
     "longitude_deg": "longitude of the UAV, true",
     "time_utc": "time in UTC",
@@ -67,10 +69,13 @@ MEANINGS = {
 RELATIVE_COLUMNS = ("delta_m", "rho_m", "phi_r_rad", "phi_rad")
 """The states of equation (19), in its order: they follow from the others."""
 
+WIND_COLUMNS = ("true_wind_north_mps", "true_wind_east_mps")
+"""The mean wind, of flights in wind: it follows from the scenario, too."""
+
 PLACE_COLUMNS = ("latitude_deg", "longitude_deg", "time_utc")
 """Where and when on earth, of flights of which that is known: they follow from the others, too."""
 
-COLUMNS = tuple(column for column in MEANINGS if column not in (*RELATIVE_COLUMNS, *PLACE_COLUMNS))
+COLUMNS = tuple(column for column in MEANINGS if column not in (*RELATIVE_COLUMNS, *WIND_COLUMNS, *PLACE_COLUMNS))
 """Columns of a flight's record."""
 
 

@@ -1,0 +1,70 @@
+"""Reports of a flight in a wind that changes: what is shown is the wind of the time that it is shown of."""
+
+import math
+
+import numpy as np
+import pyarrow.parquet as pq
+import pytest
+
+from common.physics.wind import wind_velocity
+from reports.flights.first_page import flights_in_words
+from reports.flights.flight_view import flight_view
+from reports.flights.selection import flight_section
+from reports.flights.single_flight import flight_charts
+from reports.run.run_data import read_run
+from reports.run.surroundings import surroundings
+from reports.run.trials import read_trials
+from scenarios.engine.in_process_executor import InProcessExecutor
+from scenarios.schema.load import load_study
+from scenarios.studies.registry import run_study
+
+RISING = [(0.0, 2.0), (100.0, 6.0)]
+"""Time [s] and speed [m/s] of a wind from the west."""
+
+
+@pytest.fixture(scope="module")
+def flown(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("wind")
+    rows = "\n".join(f"2026-06-01T12:{time // 60:02.0f}:{time % 60:02.0f}Z,{speed},270" for time, speed in RISING)
+    (folder / "wind.csv").write_text(f"time_utc,speed_mps,from_deg\n{rows}\n", encoding="utf-8")
+    keys = ["fidelity=kinematic", f"wind.table={folder / 'wind.csv'}", "sweep.nu=[0.4]", "comparison.variants=[]"]
+    keys += ["flight.duration_max_s=100", "flight.crossings=0"]
+    run_study(load_study("sweep_nu", keys), "sweep_nu", folder / "run", overrides=keys, executor_factory=InProcessExecutor)
+    trial = read_trials(read_run(folder / "run"))[0]
+    return trial, trial.rows.iloc[0]
+
+
+def test_the_time_history_has_the_true_wind_of_each_time(flown):
+    trial, row = flown
+    history = trial.run.history(str(row["flight_id"]))
+    assert history["true_wind_north_mps"].to_numpy() == pytest.approx(0.0, abs=1e-9)
+    expected = np.interp(history["time_s"], *zip(*RISING, strict=True))
+    assert history["true_wind_east_mps"].to_numpy() == pytest.approx(expected, abs=1e-9)
+    schema = pq.read_schema(trial.run.path / "flights" / f"{row['flight_id']}.parquet")
+    assert schema.field("true_wind_east_mps").metadata[b"unit"] == b"m/s"
+
+
+def test_the_figure_over_time_shows_the_wind_as_it_changes(flown):
+    view = flight_view(*flown)
+    (panel,) = [panel for panel in flight_charts(view)[1].panels if panel.y_label == "Wind [m/s]"]
+    _, east = [line for line in panel.lines if line.label == "true wind"]
+    assert (east.style, east.y[0], east.y[-1]) == ("dash", pytest.approx(2.0), pytest.approx(6.0, abs=0.05))
+
+
+def test_a_map_has_the_wind_of_its_moment(flown):
+    trial, row = flown
+    history = trial.run.history(str(row["flight_id"]))
+    config = trial.flight_config(row)
+    for at in (0, len(history) // 2, len(history) - 1):
+        about = surroundings(config, row, history, at)
+        assert about.wind == pytest.approx((history["true_wind_east_mps"][at], 0.5 * math.pi))
+        assert about.changing
+    # Of a run in which it is not recorded it is that of the start.
+    older = history.drop(columns=["true_wind_north_mps", "true_wind_east_mps"])
+    assert surroundings(config, row, older).wind == pytest.approx((2.0, math.atan2(*wind_velocity(2.0, 270.0)[::-1])))
+
+
+def test_words_say_that_the_wind_is_that_of_the_start(flown):
+    trial, _ = flown
+    assert flights_in_words(trial.run, trial.flown).endswith("in wind of 2 m/s at the start")
+    assert "wind 2.0 m/s at the start".replace(" ", r"\xa0") in repr(flight_section([trial]))
