@@ -68,8 +68,10 @@ def _differing(runs: Sequence[Run]) -> dict[tuple[str, Values], list[str]]:
     for name in trials[0]:
         if all(name in of for of in trials):
             configured = [_settings(of[name]) for of in trials]
+            # A key of a part that is not set is no key of the configuration.
+            defaults = [{parameter["key"]: parameter["value"] for parameter in of[name].parameters()} for of in trials]
             for key in dict.fromkeys(key for settings in configured for key in settings):
-                given = [settings.get(key, NOT_A_KEY) for settings in configured]
+                given = [of.get(key, default.get(key, NOT_A_KEY)) for of, default in zip(configured, defaults, strict=True)]
                 if any(value != given[0] for value in given[1:]):
                     found.setdefault((key, _in_words(key, given)), []).append(name)
     return found

@@ -23,6 +23,8 @@ from scenarios.schema.keys import line, split_unit
 from scenarios.schema.load import AnyStudy
 from scenarios.schema.parts import names_file, names_folder, part_names
 from scenarios.schema.scenario import Scenario
+from scenarios.schema.sections.guidance import GuidanceConfig
+from scenarios.schema.sections.part_section import PartSection
 from scenarios.schema.sections.report import ReportConfig, read_logo, report_entry
 from scenarios.world.ais.reports import AisReports
 from scenarios.world.ais.track import AisVessel
@@ -145,10 +147,7 @@ def parameters(scenario: BaseModel) -> list[dict[str, Any]]:
                 parameter["default"] = to_jsonable_python(field.get_default(call_default_factory=True))
             if not (isinstance(scenario, Scenario) and unused(scenario, parameter["key"])):
                 listed.append(parameter)
-        listed += [
-            {"key": f"{section_name}.{key}", "value": value, **_of_part(f"{section_name}.{key}")}
-            for key, value in (section.model_extra or {}).items()
-        ]
+        listed += _of_parts(section_name, section)
     return [*listed, *_varied_of_parts(scenario, {of["key"] for of in listed})]
 
 
@@ -157,16 +156,34 @@ def _varied_of_parts(scenario: BaseModel, listed: Collection[str]) -> list[dict[
     if not isinstance(scenario, Scenario):
         return []
     varied = dict.fromkeys([*scenario.sweep.root, *(draw.key for draw in scenario.draws)])
-    found = ((key, _documented(key)) for key in varied if key != "nu" and key not in listed)
-    return [{"key": key, "value": of.default, "default": of.default, **_of_part(key)} for key, of in found if of]
+    found = (known[0] for key in varied if key != "nu" and key not in listed and (known := _documented(key)))
+    return [{"key": of.key, "value": of.default, "default": of.default, **_about(of)} for of in found]
 
 
-def _of_part(key: str) -> dict[str, str]:
-    """Return unit and meaning of a key that a part brings; of one of a user's own, which documents it elsewhere, neither."""
-    if known := _documented(key):
-        return {"unit": known.unit.replace(DIMENSIONLESS, ""), "meaning": known.meaning}
-    return {"unit": "", "meaning": "Of a part that the section names"}
+def _of_parts(name: str, section: BaseModel) -> list[dict[str, Any]]:
+    """Return the keys of the parts that a section names, set or not: they say which instrument, law or plume was flown."""
+    brought: dict[str, Any] = {}
+    if isinstance(section, PartSection):
+        brought = section.part_keys
+    elif isinstance(section, GuidanceConfig):
+        brought = {key: default for key, default in section.law_keys.items() if key not in type(section).model_fields}
+    given, found = section.model_extra or {}, []
+    for key, default in brought.items():
+        known = _documented(f"{name}.{key}")
+        # Parts may have keys of the same name.
+        about = _about(next((of for of in known if of.default == default), known[0])) if known else _OF_ONE_OF_A_USERS_OWN
+        value, plain = (to_jsonable_python(of, fallback=repr) for of in (given.get(key, default), default))
+        found.append({"key": f"{name}.{key}", "value": value, "default": plain, **about})
+    return found
 
 
-def _documented(key: str) -> DocumentedKey | None:
-    return next((of for of in documented_part_keys() if of.key == key), None)
+_OF_ONE_OF_A_USERS_OWN = {"unit": "", "meaning": "Of a part that the section names"}
+"""Unit and meaning of a key that is documented elsewhere."""
+
+
+def _about(known: DocumentedKey) -> dict[str, str]:
+    return {"unit": known.unit.replace(DIMENSIONLESS, ""), "meaning": known.meaning}
+
+
+def _documented(key: str) -> list[DocumentedKey]:
+    return [of for of in documented_part_keys() if of.key == key]

@@ -76,9 +76,25 @@ def test_random_variables_cases_and_variants_are_told_by_their_names(two):
     }
 
 
+def parameters_of(run):
+    (listed,) = run.manifest["trial_parameters"].values()
+    return listed
+
+
 def test_a_key_that_one_version_does_not_have_is_said_to_be_none(two):
     del config_of(two[0])["guidance"]["preview"]
+    parameters_of(two[0])[:] = [of for of in parameters_of(two[0]) if of["key"] != "guidance.preview"]
     assert cells(two) == {"guidance.preview": ("not a key", "yes")}
+
+
+def test_a_key_of_a_part_that_one_run_leaves_out_has_its_default(two):
+    # A configuration has what is set alone of such keys.
+    for run, value in zip(two, ("electrochemical", "fast"), strict=True):
+        known = {"key": "payload.sensor", "value": value, "default": "electrochemical", "unit": "", "meaning": "Sniffer."}
+        parameters_of(run).append(known)
+    config_of(two[1])["payload"]["sensor"] = "fast"
+    (row,) = configuration_table(two).rows
+    assert row == ["payload.sensor", "electrochemical", "fast", "", "Sniffer."]
 
 
 def test_keys_of_lists_of_trials_name_the_trials(two):

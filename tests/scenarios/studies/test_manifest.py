@@ -5,7 +5,7 @@ import pytest
 from common.registry import file_hash
 from scenarios.errors import InputError
 from scenarios.schema.load import load_study
-from scenarios.studies.manifest import plugins
+from scenarios.studies.manifest import parameters, plugins
 from scenarios.studies.registry import run_study
 from tests.scenarios.plugin_files import INSTRUMENT, LAW
 
@@ -52,3 +52,31 @@ def test_every_file_that_a_part_comes_from_is_hashed(tmp_path, text, part, code)
     (tmp_path / "own.py").write_text(code, encoding="utf-8")
     name = str(tmp_path / part)
     assert plugins([written(tmp_path, text)]) == {name: file_hash(name)}
+
+
+def listed(scenario):
+    return {parameter["key"]: parameter for parameter in parameters(scenario)}
+
+
+def test_keys_of_parts_are_listed_with_their_defaults_whether_they_are_set_or_not():
+    # Which sniffer gave the verdict was in no table of a report.
+    left_out = listed(load_study("sulphur"))["payload.sensor"]
+    assert (left_out["value"], left_out["default"]) == ("electrochemical", "electrochemical")
+    given = listed(load_study("sulphur", ["payload.sensor=fast"]))["payload.sensor"]
+    assert (given["value"], given["default"]) == ("fast", "electrochemical")
+    assert given["meaning"] == left_out["meaning"] != ""
+    assert "payload.limit_percent" in listed(load_study("sulphur"))
+
+
+def test_fields_of_laws_are_listed_too_and_are_those_of_the_law_that_is_flown():
+    # Those of the cascade are keys of the schema.
+    assert not {key for key in listed(load_study("sweep_nu")) if key.startswith("guidance.npfg")}
+    given = listed(load_study("sweep_nu", ["guidance.law=npfg"]))["guidance.npfg_damping"]
+    assert given["value"] == given["default"]
+    assert given["meaning"]
+
+
+def test_fields_of_a_law_of_ones_own_are_listed_without_a_meaning(tmp_path):
+    (tmp_path / "mine.py").write_text(LAW, encoding="utf-8")
+    own = listed(written(tmp_path, 'guidance.law = "mine.py:Pursuit"\n'))
+    assert own["guidance.lead_s"]["value"] == own["guidance.lead_s"]["default"] == 1.0
