@@ -80,6 +80,9 @@ def draw(*charts: Chart) -> Figure:
         parts = [figure] if len(charts) == 1 else figure.subfigures(len(charts), squeeze=False, height_ratios=heights).flat
         for part, chart in zip(parts, charts, strict=True):
             _draw_on(part, chart)
+        if any(panel.equal for chart in charts for panel in chart.panels) and (layout := figure.get_layout_engine()):
+            # Room for labels is found where the last layout has put the panels: a map that becomes higher by it has them cut off.
+            layout.execute(figure)
         return figure
 
 
