@@ -17,7 +17,7 @@ from reports.document.palette import BAND_OPACITY, COLOURS, INK
 WIDTH, NARROW_WIDTH = 980, 460
 """Widths that the two layouts are made for [px]; figures shrink with the window."""
 
-_BAR, _LEGEND_ROW, _BOTTOM = 32, 28, 55
+_BAR, _LEGEND_ROW, _BOTTOM = 32, 30, 55
 """Room for the mode bar, for each row of the legend above the panels, and for labels below them [px]."""
 
 _MARGINS = 90

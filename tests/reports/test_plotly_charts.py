@@ -150,6 +150,15 @@ def test_the_legend_has_room_above_the_panels_and_more_of_it_on_a_narrow_screen(
     assert few["layout"]["margin"]["t"] < figure["layout"]["margin"]["t"] < figure["narrow"]["margin"]["t"]
 
 
+def test_a_legend_of_several_rows_stays_clear_of_the_bar_of_buttons():
+    labels = ["common errors: do not fall", "noise: falls with further passes", "all together, of every part"]
+    lines = [Line(x=np.array([0.0, 1.0]), y=np.array([0.0, 1.0]), label=label, colour="blue") for label in labels]
+    figure = draw(Chart(name="c", caption="", panels=[Panel(x_label="a [m]", y_label="b [m]", lines=lines)]))
+    # As measured in Chromium: the bar ends 28 px below the top of a figure, and a row of the legend, one for each entry here, is 30
+    # px high; the last is 6 px above the panel.
+    assert figure["narrow"]["margin"]["t"] - 6 - 30 * len(labels) >= 28
+
+
 def test_names_of_an_ordinate_have_room_beside_the_panel_to_their_left():
     names = [(0.0, "holding off"), (1.0, "tracking")]
     plain = draw(a_chart(2, columns=2))["layout"]
