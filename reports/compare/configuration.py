@@ -112,12 +112,12 @@ def _brief(value: Any, key: str) -> str:
 
 
 def _meanings(runs: Sequence[Run]) -> dict[str, tuple[str, str]]:
-    """Return meaning and unit of each key that acts in some run."""
+    """Return meaning and unit of each key that acts in some run, or has there another value than its default."""
     return {
         str(parameter["key"]): (str(parameter["meaning"]), str(parameter["unit"]))
         for run in runs
         for trial in run.trials
-        for parameter in trial.parameters()
+        for parameter in (*trial.parameters(), *run.manifest.get("unused_parameters", {}).get(trial.key, []))
     }
 
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 from reports.compare.charts import pair_charts
 from reports.compare.configuration import configuration_table, software_table, trials_apart
 from reports.compare.figures import PAIRS_MIN, Difference, differences
-from reports.compare.pairs import Pairs, paired
+from reports.compare.pairs import SPEED_RATIO, Pairs, paired
 from reports.compare.runs import Run
 from reports.compare.tables import LISTED_MAX, changed, changed_table, difference_table, side_by_side, signed
 from reports.compare.tracks import most_changed
@@ -132,7 +132,10 @@ def pairing_sentences(pairs: Pairs) -> list[str]:
         alone = " and ".join(f"{of:,} of {run.letter}" for of, run in zip(pairs.alone, (first, other), strict=True) if of)
         same = f"; {pairs.same_name:,} of them have the same name in both runs, but another seed" if pairs.same_name else ""
         sentences.append(f"Without a partner are {alone}{same}.")
-    if differing := pairs.differing_inputs():
+    differing = pairs.differing_inputs()
+    if ratios := differing.pop(SPEED_RATIO, 0):
+        sentences.append(f"The speed ratio ν, which follows from the speeds of vessel, UAV and air, differs in {ratios:,}.")
+    if differing:
         keys = ", ".join(f"{key} in {number:,}" for key, number in list(differing.items())[:_NAMED_MAX])
         more = f" and {len(differing) - _NAMED_MAX} more keys" if len(differing) > _NAMED_MAX else ""
         sentences.append(f"The flights of a pair differ in what was swept or sampled: {keys}{more}.")

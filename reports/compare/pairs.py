@@ -11,6 +11,9 @@ from reports.compare.runs import Run
 from reports.errors import ReportError
 from reports.run.columns import Mask, completed, kept_out, met
 
+SPEED_RATIO = "nu"
+"""Input that follows from speeds of vessel, UAV and air."""
+
 _NAMING = ("flight_id", "trial", "variant")
 """Columns of ``draws.csv`` that name a flight."""
 
@@ -80,7 +83,10 @@ class Pairs:
         return worse
 
     def differing_inputs(self) -> dict[str, int]:
-        """Return the keys that were sampled or swept in both runs with another value in some pairs, and in how many."""
+        """Return the keys that were sampled or swept in both runs with another value in some pairs, and in how many.
+
+        ``SPEED_RATIO`` is among them where it differs, though it is that of the flight: paired flights have the same swept one.
+        """
         tables = [run.data.draws.set_index("flight_id") for run in (self.first, self.other)]
         shared = [name for name in tables[0] if name in tables[1] and name not in _NAMING]
         before, after = (table.reindex(rows["flight_id"]) for table, rows in zip(tables, (self.before, self.after), strict=True))

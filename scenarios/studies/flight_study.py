@@ -48,7 +48,16 @@ from scenarios.simulation.time_history import UNFINISHED
 from scenarios.statistics.sulphur import COLUMNS as SULPHUR_COLUMNS
 from scenarios.statistics.sulphur import sulphur_statistics
 from scenarios.studies.checks import check_flights, check_without_design, plugins_explained
-from scenarios.studies.manifest import config_hash, flown_config, initial_manifest, parameters, plugins, vessel_files, write_logo
+from scenarios.studies.manifest import (
+    config_hash,
+    flown_config,
+    initial_manifest,
+    parameters,
+    plugins,
+    unused_parameters,
+    vessel_files,
+    write_logo,
+)
 from scenarios.studies.rows import frame
 from scenarios.studies.study import study
 from scenarios.studies.summary import FlightCounts
@@ -119,6 +128,7 @@ class FlightStudy:
             "config_hash": self.config_hash,
             "modes": [mode.value for mode in Mode],
             "trial_parameters": {trial: parameters(of) for trial, of in self.trials.items()},
+            "unused_parameters": {trial: unused_parameters(of) for trial, of in self.trials.items()},
             "sampled_at_random": self._sampled_at_random(),
             "theory": {trial: theory_over_speed_ratio(of) for trial, of in self.trials.items()},
             "plugins": self.plugins,

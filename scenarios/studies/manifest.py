@@ -129,6 +129,21 @@ def config_hash(*scenarios: BaseModel, files: Mapping[str, str] | None = None, n
 
 def parameters(scenario: BaseModel) -> list[dict[str, Any]]:
     """Return every key of the scenario's sections that acts, with value, default if any, meaning and unit."""
+    listed = [of for of in _of_sections(scenario) if not _is_unused(scenario, of)]
+    return [*listed, *_varied_of_parts(scenario, {of["key"] for of in listed})]
+
+
+def unused_parameters(scenario: BaseModel) -> list[dict[str, Any]]:
+    """Return the same of the keys that do not act though they have not their defaults: an aircraft's, to which they are scaled."""
+    return [of for of in _of_sections(scenario) if _is_unused(scenario, of) and of["value"] != of.get("default")]
+
+
+def _is_unused(scenario: BaseModel, parameter: Mapping[str, Any]) -> bool:
+    return isinstance(scenario, Scenario) and bool(unused(scenario, parameter["key"]))
+
+
+def _of_sections(scenario: BaseModel) -> list[dict[str, Any]]:
+    """Return every key of the scenario's sections and of the parts that they name."""
     listed: list[dict[str, Any]] = []
     for section_name in type(scenario).model_fields:
         section = getattr(scenario, section_name)
@@ -145,10 +160,9 @@ def parameters(scenario: BaseModel) -> list[dict[str, Any]]:
             }
             if not field.is_required():
                 parameter["default"] = to_jsonable_python(field.get_default(call_default_factory=True))
-            if not (isinstance(scenario, Scenario) and unused(scenario, parameter["key"])):
-                listed.append(parameter)
+            listed.append(parameter)
         listed += _of_parts(section_name, section)
-    return [*listed, *_varied_of_parts(scenario, {of["key"] for of in listed})]
+    return listed
 
 
 def _varied_of_parts(scenario: BaseModel, listed: Collection[str]) -> list[dict[str, Any]]:

@@ -33,6 +33,11 @@ def config_of(run):
     return config
 
 
+def parameters_of(run):
+    (listed,) = run.manifest["trial_parameters"].values()
+    return listed
+
+
 def test_runs_alike_differ_in_no_key(two):
     assert configuration_table(two) is None
 
@@ -42,6 +47,17 @@ def test_a_key_that_differs_has_its_unit_and_meaning(two):
     (row,) = configuration_table(two).rows
     assert row[:4] == ["guidance.airspeed_mps", "19.42", "20.5", "m/s"]
     assert row[4]
+
+
+def test_a_key_without_effect_that_an_aircraft_scales_has_its_unit_and_meaning(two):
+    key = {"key": "guidance.bound_speed_margin_mps", "unit": "m/s", "meaning": "A margin."}
+    (trial,) = two[1].manifest["trials"]
+    two[1].manifest["unused_parameters"] = {trial: [key]}
+    parameters_of(two[0])[:] = [of for of in parameters_of(two[0]) if of["key"] != key["key"]]
+    parameters_of(two[1])[:] = [of for of in parameters_of(two[1]) if of["key"] != key["key"]]
+    config_of(two[1])["guidance"]["bound_speed_margin_mps"] = 2.0
+    (row,) = configuration_table(two).rows
+    assert row == ["guidance.bound_speed_margin_mps", "0.5", "2", "m/s", "A margin."]
 
 
 def test_titles_are_no_difference_of_what_is_flown(two):
@@ -74,11 +90,6 @@ def test_random_variables_cases_and_variants_are_told_by_their_names(two):
         "draws.wind.speed_mps": ("uniform from 2 to 4", "uniform from 2 to 5"),
         "cases.near.set.keepout.radius_m": ("400", "500"),
     }
-
-
-def parameters_of(run):
-    (listed,) = run.manifest["trial_parameters"].values()
-    return listed
 
 
 def test_a_key_that_one_version_does_not_have_is_said_to_be_none(two):

@@ -4,6 +4,7 @@ import math
 
 import pytest
 
+from reports.compare.content import pairing_sentences
 from reports.compare.pairs import paired
 from reports.errors import ReportError
 from tests.reports.compare.compared_runs import made_run, rows_of
@@ -74,6 +75,14 @@ def test_flights_of_one_seed_may_differ_in_what_was_sampled_and_that_is_counted_
     ]
     pairs = paired(made_run("A", rows_of([0, 1]), draws[0]), made_run("B", rows_of([0, 1]), draws[1]))
     assert pairs.differing_inputs() == {"wind.speed_mps": 1}
+
+
+def test_a_speed_ratio_of_the_flight_is_said_to_follow_from_the_speeds_and_is_not_called_swept():
+    # Another aircraft has another airspeed, and with it another ratio to the same vessel.
+    draws = [{"flight_id": ["00000", "00001"], "trial": "sea", "nu": ratios} for ratios in ([0.3, 0.5], [0.1, 0.5])]
+    pairs = paired(made_run("A", rows_of([0, 1]), draws[0]), made_run("B", rows_of([0, 1]), draws[1]))
+    _, said = pairing_sentences(pairs)
+    assert said == "The speed ratio ν, which follows from the speeds of vessel, UAV and air, differs in 1."
 
 
 def test_a_figure_differs_from_one_that_is_missing_and_two_that_are_missing_agree():

@@ -4,8 +4,8 @@ import pytest
 
 from common.registry import file_hash
 from scenarios.errors import InputError
-from scenarios.schema.load import load_study
-from scenarios.studies.manifest import parameters, plugins
+from scenarios.schema.load import load_study, with_values
+from scenarios.studies.manifest import parameters, plugins, unused_parameters
 from scenarios.studies.registry import run_study
 from tests.scenarios.plugin_files import INSTRUMENT, LAW
 
@@ -80,3 +80,13 @@ def test_fields_of_a_law_of_ones_own_are_listed_without_a_meaning(tmp_path):
     (tmp_path / "mine.py").write_text(LAW, encoding="utf-8")
     own = listed(written(tmp_path, 'guidance.law = "mine.py:Pursuit"\n'))
     assert own["guidance.lead_s"]["value"] == own["guidance.lead_s"]["default"] == 1.0
+
+
+def test_keys_without_effect_that_are_scaled_to_an_aircraft_have_their_meanings_too():
+    # In a comparison with another aircraft they differ.
+    plain = load_study("sweep_nu")
+    assert unused_parameters(plain) == []
+    (found,) = unused_parameters(with_values(plain, {"following.standoff_m": 250.0}))
+    assert (found["key"], found["value"], found["unit"]) == ("following.standoff_m", 250.0, "m")
+    assert found["meaning"]
+    assert found["key"] not in listed(plain)
