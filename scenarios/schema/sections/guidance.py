@@ -219,12 +219,13 @@ class FollowingConfig(Section):
     vessel_speed_max_mps: Positive | None = None
     """Largest speed of the vessel over the ground; without limit if not given [m/s]."""
     speed_error_mps: NonNegative = 0.0
-    """Largest error of the UAV's own velocity through the air and of the wind, together [m/s]."""
+    """Largest error of the UAV's own velocity through the air and of the wind, together; errors of sensors count if larger [m/s]."""
     margin_law: str | None = None
     """Steering law, with its default parameters, whose tracking in turbulence the margin is planned for; if not given, the flight's
     own."""
     drift_rate_mps: NonNegative = 1.0
-    """Largest growth of the position error per time in dead reckoning, without satellite navigation [m/s]."""
+    """Largest growth of the position error per time in dead reckoning, without satellite navigation; errors of sensors count if
+    larger [m/s]."""
     turn_deviation_m: NonNegative = 0.0
     """Largest distance by which a reversal of the turn may come nearer than predicted; the autopilot's record may raise it [m]."""
     plume: Literal["predicted", "estimated", "told"] = "predicted"
