@@ -219,7 +219,7 @@ class FollowingConfig(Section):
     vessel_speed_max_mps: Positive | None = None
     """Largest speed of the vessel over the ground; without limit if not given [m/s]."""
     speed_error_mps: NonNegative = 0.0
-    """Largest error of the UAV's own velocity through the air and of the wind, together; errors of sensors count if larger [m/s]."""
+    """Largest error of the UAV's own velocity through the air and of the wind, together; those of sensors count if larger [m/s]."""
     margin_law: str | None = None
     """Steering law, with its default parameters, whose tracking in turbulence the margin is planned for; if not given, the flight's
     own."""
