@@ -29,7 +29,7 @@ from scenarios.planning.guidance import (
     tracking_parameters,
     turn_time,
 )
-from scenarios.planning.limits import omega_max, plan_interval
+from scenarios.planning.limits import omega_max, plan_period
 from scenarios.planning.plume.axis import axis_height, plume_axis
 from scenarios.planning.plume.distance import additional_distance
 from scenarios.planning.reference import orbits, oscillation_at, swing_of
@@ -93,7 +93,7 @@ def following_flight(
         wind_change=wind_change(scenario, air, setup.altitude_error),
         drift_rate=drift_rate(scenario, air, turn_time(scenario, setup.reversal), setup.altitude_error),
     )
-    widest = widest_tube(limits, scenario.reports, plan_period=plan_interval(g) / g.rate_hz)
+    widest = widest_tube(limits, scenario.reports, plan_period=plan_period(g))
     oscillation = oscillation_at(g, scenario.reference, nu)
     if scenario.stands_off:
         nearest = circle_distance(guarded, widest, g.airspeed_mps, nu * g.airspeed_mps)

@@ -10,7 +10,7 @@ from scenarios.schema.scenario import Scenario
 from scenarios.schema.sections.guidance import GuidanceConfig
 
 PLAN_PERIOD = 0.5
-"""Time between plans, and between measurements of the wind [s]."""
+"""Time between plans, and between measurements of the wind, to the nearest step of the guidance [s]."""
 
 _PATH_ERROR_MAX = 0.05
 """Error of the recorded path between two samples above which a flight is refused [m]."""
@@ -24,6 +24,11 @@ def omega_max(guidance: GuidanceConfig) -> float:
 def plan_interval(guidance: GuidanceConfig) -> int:
     """Return the guidance steps between plans."""
     return max(1, round(PLAN_PERIOD * guidance.rate_hz))
+
+
+def plan_period(guidance: GuidanceConfig) -> float:
+    """Return the time between plans, and between measurements of the wind, in whole steps of the guidance [s]."""
+    return plan_interval(guidance) / guidance.rate_hz
 
 
 def check_flyable(guidance: GuidanceConfig, title: str, envelope: Envelope) -> None:
@@ -78,7 +83,3 @@ def check_recorded(scenario: Scenario) -> None:
         f" and with it keep-out figures, may be wrong by {error:.2g} m, and the limit is {_PATH_ERROR_MAX:g} m: {remedy}, or lower"
         " guidance.heading_rate_max_rad_s"
     )
-
-
-PLAN_PERIOD = 0.5
-"""Time between plans, and between measurements of the wind [s]."""

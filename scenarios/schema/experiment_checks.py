@@ -77,6 +77,12 @@ FOLLOWING = (
 
 def unsteady(scenario: "Scenario") -> tuple[str, ...]:
     """Return the keys by which air or vessel of a scenario, of each flight or as they vary, are not steady and known."""
+    varied = (*scenario.sweep.root, *(draw.key for draw in scenario.draws))
+    return (*unsteady_itself(scenario), *(key for key in varied if key.startswith(UNSTEADY)))
+
+
+def unsteady_itself(scenario: "Scenario") -> tuple[str, ...]:
+    """Return the keys by which air or vessel of a scenario are not steady and known, whatever is swept or sampled beside."""
     air, sensors = scenario.turbulence, scenario.sensors.model_dump()
     given = {
         "wind.table": scenario.wind.table is not None,
@@ -90,8 +96,7 @@ def unsteady(scenario: "Scenario") -> tuple[str, ...]:
         **{f"sensors.{name}": error > 0.0 for name, error in sensors.items()},
         "fault.kind": scenario.fault.kind != "none",
     }
-    varied = (*scenario.sweep.root, *(draw.key for draw in scenario.draws))
-    return (*(key for key, has in given.items() if has), *(key for key in varied if key.startswith(UNSTEADY)))
+    return tuple(key for key, has in given.items() if has)
 
 
 def check_mission(scenario: "Scenario") -> None:

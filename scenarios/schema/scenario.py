@@ -6,7 +6,7 @@ from typing import Annotated, Literal
 from pydantic import Field, model_validator
 
 from gnc.laws.steering_law import ON_CIRCLE, ON_OSCILLATION
-from scenarios.schema.experiment_checks import check_together
+from scenarios.schema.experiment_checks import check_together, unsteady_itself
 from scenarios.schema.random_sample import is_random_sample
 from scenarios.schema.sections.equipment import (
     REPORTS_MAX,
@@ -119,17 +119,7 @@ class Scenario(Section):
         """Return whether the mission follows what it estimates: where that says so, or air or vessel are not steady and known."""
         if self.guidance.mission is not None:
             return self.guidance.mission != "track"
-        steady = (
-            not self.wind.blows
-            and self.turbulence.calm
-            and not self.vessel.manoeuvres
-            and self.vessel.track == "manoeuvres"
-            and self.emission.ship is None
-            and self.reports.exact
-            and self.sensors == SensorsConfig()
-            and self.fault.kind == "none"
-        )
-        return not (steady and self.plume.model == "straight" and self.plume.direction != "apparent_wind")
+        return bool(unsteady_itself(self)) or self.plume.model != "straight" or self.plume.direction == "apparent_wind"
 
     @property
     def vessel_known(self) -> bool:

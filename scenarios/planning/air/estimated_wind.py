@@ -5,7 +5,7 @@ import math
 from aircraft.atmosphere.turbulence import TURBULENCE, intensities, scale_lengths
 from aircraft.atmosphere.wind import WindField
 from gnc.estimation.navigation import NOISE_DEVIATIONS, Navigation, NavigationParameters
-from scenarios.planning.limits import plan_interval
+from scenarios.planning.limits import plan_interval, plan_period
 from scenarios.schema.scenario import Scenario
 from scenarios.vehicles.vehicle_setup import VehicleSetup
 
@@ -33,7 +33,7 @@ def navigation_parameters(scenario: Scenario, setup: VehicleSetup) -> Navigation
         course_sigma=math.hypot(course_sigma, gust / g.airspeed_mps),
         wind_drift=_WIND_DRIFT,
         wind_prior=_WIND_PRIOR,
-        wind_noise=NOISE_DEVIATIONS * math.hypot(wind_noise(scenario), scenario.sensors.velocity_sigma_mps),
+        wind_noise=NOISE_DEVIATIONS * _measured_noise(scenario),
         wind_error=NOISE_DEVIATIONS * wind_noise_left(scenario),
         wind_interval=plan_interval(scenario.guidance),
         time_step=time_step,
@@ -42,8 +42,7 @@ def navigation_parameters(scenario: Scenario, setup: VehicleSetup) -> Navigation
 
 def wind_noise(scenario: Scenario) -> float:
     """Return the deviation of the wind by the noise of airspeed and heading, as they are read at a step [m/s]."""
-    sensors = scenario.sensors
-    return math.hypot(sensors.airspeed_sigma_mps, scenario.guidance.airspeed_mps * math.radians(sensors.heading_sigma_deg))
+    return _wrong_by(scenario, scenario.sensors.airspeed_sigma_mps, scenario.sensors.heading_sigma_deg)
 
 
 def wind_bias(scenario: Scenario) -> float:
@@ -51,13 +50,12 @@ def wind_bias(scenario: Scenario) -> float:
 
     The error turns with the vehicle: an estimate keeps that of the courses flown so far.
     """
-    sensors = scenario.sensors
-    return math.hypot(sensors.airspeed_bias_mps, scenario.guidance.airspeed_mps * math.radians(sensors.heading_bias_deg))
+    return _wrong_by(scenario, scenario.sensors.airspeed_bias_mps, scenario.sensors.heading_bias_deg)
 
 
 def wind_noise_left(scenario: Scenario) -> float:
     """Return the deviation of the estimated wind by that noise in the end [m/s]: sqrt(k/2) of it, by the filter's gain k."""
-    gain = _WIND_DRIFT * math.sqrt(_period(scenario)) / _sensor_sigma(scenario)
+    gain = _WIND_DRIFT * math.sqrt(plan_period(scenario.guidance)) / _sensor_sigma(scenario)
     return math.sqrt(0.5 * gain) * wind_noise(scenario)
 
 
@@ -93,12 +91,17 @@ def largest_wind_change(scenario: Scenario, wind: WindField, interval: float, al
 def wind_followed(scenario: Scenario) -> float:
     """Return the time within which the estimated wind follows a change [s]: where gusts or noise hide it, the filter is slower."""
     hidden_by = math.hypot(_sensor_sigma(scenario), _gust_sigma(scenario))
-    return max(WIND_FOLLOWED, hidden_by * math.sqrt(_period(scenario)) / _WIND_DRIFT)
+    return max(WIND_FOLLOWED, hidden_by * math.sqrt(plan_period(scenario.guidance)) / _WIND_DRIFT)
 
 
-def _period(scenario: Scenario) -> float:
-    """Return the time between two measurements of the wind [s]."""
-    return plan_interval(scenario.guidance) / scenario.guidance.rate_hz
+def _wrong_by(scenario: Scenario, airspeed: float, heading_deg: float) -> float:
+    """Return by how much errors of airspeed [m/s] and heading [deg] make a single measurement of the wind wrong [m/s]."""
+    return math.hypot(airspeed, scenario.guidance.airspeed_mps * math.radians(heading_deg))
+
+
+def _measured_noise(scenario: Scenario) -> float:
+    """Return the deviation of a single measurement of the wind by the noise of all sensors [m/s]."""
+    return math.hypot(wind_noise(scenario), scenario.sensors.velocity_sigma_mps)
 
 
 def _sensor_sigmas(scenario: Scenario) -> tuple[float, float]:
@@ -110,7 +113,7 @@ def _sensor_sigmas(scenario: Scenario) -> tuple[float, float]:
 
 def _sensor_sigma(scenario: Scenario) -> float:
     """Return the deviation of single measurements of the wind by these [m/s]: the filter's own, or of the sensors if larger."""
-    return max(_AIRSPEED_SIGMA, math.hypot(wind_noise(scenario), scenario.sensors.velocity_sigma_mps))
+    return max(_AIRSPEED_SIGMA, _measured_noise(scenario))
 
 
 def _flown_heights(scenario: Scenario) -> list[float]:
