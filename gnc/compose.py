@@ -1,7 +1,5 @@
 """The one place where the parts of the guidance are chosen, from frozen parameters."""
 
-from dataclasses import asdict
-
 from gnc.estimation.health_monitor import HealthMonitor
 from gnc.estimation.own_motion import EstimatedNavigation, OwnMotion, TrueNavigation
 from gnc.estimation.reachable_set import ReachableSet
@@ -12,15 +10,10 @@ from gnc.mission.direct_tracking import DirectTracking
 from gnc.mission.mission import Mission
 from gnc.mission.plume_following import FollowingParameters, PlumeFollowing
 from gnc.mission.standoff import StandoffOrbit, StandoffParameters
-from gnc.parameters import FilterParameters, GuidanceParameters, ReportedVessel
+from gnc.parameters import GuidanceParameters, ReportedVessel
 from gnc.safety.guarded_commands import GuardedCommands
 from gnc.safety.keepout_guard import KeepoutGuard
 from gnc.safety.speed_reckoning import SpeedReckoning
-
-
-def vessel_filter(parameters: FilterParameters) -> VesselFilter:
-    """Return a fresh filter for a vessel's reports."""
-    return VesselFilter(**asdict(parameters))
 
 
 def compose(parameters: GuidanceParameters) -> Guidance:
@@ -29,7 +22,7 @@ def compose(parameters: GuidanceParameters) -> Guidance:
     own: OwnMotion = EstimatedNavigation(p.navigation) if p.navigation else TrueNavigation()
     target: TargetMotion
     if isinstance(p.vessel, ReportedVessel):
-        target = ReportedTarget(vessel_filter(p.vessel.filter), ReachableSet(p.vessel.limits), p.tracking.time_step)
+        target = ReportedTarget(VesselFilter(p.vessel.filter), ReachableSet(p.vessel.limits), p.tracking.time_step)
     else:
         target = SteadyTarget(*p.vessel)
     guard = KeepoutGuard(p.guard) if p.guard else None

@@ -6,21 +6,12 @@ from gnc.airspeed.airspeed_law import AirspeedLaw
 from gnc.estimation.health_monitor import HealthParameters
 from gnc.estimation.navigation import NavigationParameters
 from gnc.estimation.reachable_set import VesselLimits
+from gnc.estimation.vessel_filter import FilterParameters
 from gnc.mission.direct_tracking import DirectParameters
 from gnc.mission.plume_following import FollowingParameters
 from gnc.mission.standoff import StandoffParameters
 from gnc.safety.guard_parameters import GuardParameters
 from gnc.tracker import TrackingParameters
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class FilterParameters:
-    """Parameters of ``gnc.estimation.vessel_filter.VesselFilter``, which says what each is."""
-
-    position_sigma: float
-    velocity_sigma: float
-    acceleration: float
-    memory: float
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

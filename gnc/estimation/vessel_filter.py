@@ -1,6 +1,7 @@
 """The vessel's motion, estimated from reports that arrive every few seconds, noisy, late, or not at all."""
 
 import math
+from dataclasses import dataclass
 from typing import NamedTuple
 
 State = tuple[float, float, float]
@@ -44,6 +45,23 @@ class VesselMotion(NamedTuple):
     sigma: float
 
 
+@dataclass(frozen=True, slots=True, kw_only=True)
+class FilterParameters:
+    """Parameters of the filter of a vessel's reports.
+
+    Attributes
+    ----------
+    position_sigma, velocity_sigma : of a report's components [m, m/s]; 0 for one that is exact
+    acceleration : one sigma [m/s^2]
+    memory : of the acceleration [s]
+    """
+
+    position_sigma: float
+    velocity_sigma: float
+    acceleration: float
+    memory: float
+
+
 class VesselFilter:
     """Singer's model of a manoeuvring target, one Kalman filter for north and one for east, which share their covariance.
 
@@ -54,9 +72,7 @@ class VesselFilter:
 
     Parameters
     ----------
-    position_sigma, velocity_sigma : of a report's components [m, m/s]; 0 for one that is exact
-    acceleration : one sigma [m/s^2]
-    memory : of the acceleration [s]
+    parameters : of the reports' errors and of the vessel's acceleration
 
     Attributes
     ----------
@@ -65,10 +81,10 @@ class VesselFilter:
 
     __slots__ = ("_acceleration_variance", "_covariance", "_east", "_memory", "_north", "_position", "_velocity", "time")
 
-    def __init__(self, *, position_sigma: float, velocity_sigma: float, acceleration: float, memory: float) -> None:
-        self._position, self._velocity = position_sigma**2, velocity_sigma**2
-        self._acceleration_variance = acceleration**2
-        self._memory = memory
+    def __init__(self, parameters: FilterParameters) -> None:
+        self._position, self._velocity = parameters.position_sigma**2, parameters.velocity_sigma**2
+        self._acceleration_variance = parameters.acceleration**2
+        self._memory = parameters.memory
         self._north: State = (0.0, 0.0, 0.0)
         self._east: State = (0.0, 0.0, 0.0)
         self._covariance: Covariance = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)

@@ -5,8 +5,7 @@ from dataclasses import dataclass
 
 from common.physics.units import SECONDS_PER_HOUR
 from gnc.estimation.reachable_set import Tube, VesselLimits, tube
-from gnc.estimation.vessel_filter import VesselReport
-from gnc.parameters import FilterParameters
+from gnc.estimation.vessel_filter import FilterParameters, VesselReport
 from scenarios.margin.report_scatter import mean_interval, scatter_allowance
 from scenarios.margin.tracking_spread import CALM_AIR_SPREAD, SpreadTable, planned_margin
 from scenarios.schema.scenario import Scenario

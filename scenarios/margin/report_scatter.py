@@ -9,10 +9,8 @@ import functools
 import numpy as np
 
 from common.physics.units import SECONDS_PER_HOUR
-from gnc.compose import vessel_filter
 from gnc.estimation.reachable_set import KEPT, VesselLimits, radius_after
-from gnc.estimation.vessel_filter import VesselReport
-from gnc.parameters import FilterParameters
+from gnc.estimation.vessel_filter import FilterParameters, VesselFilter, VesselReport
 
 GUARDED_PER_HOUR = 1.0
 """How often the discs of a vessel at constant velocity may reach farther than is allowed for here [1/h]."""
@@ -67,7 +65,7 @@ def mean_interval(intervals: tuple[float, float]) -> float:
 
 def _filter_sigma(known: FilterParameters, interval: float) -> float:
     """Return the standard deviation of the vessel's place as the filter knows it, at the mean interval of her reports [m]."""
-    vessel = vessel_filter(known)
+    vessel = VesselFilter(known)
     for number in range(_SETTLED):
         vessel.report(VesselReport(number * interval, 0.0, 0.0, 0.0, 0.0))
     return vessel.at(_SETTLED * interval).sigma

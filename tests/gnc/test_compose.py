@@ -24,14 +24,14 @@ from gnc.estimation.navigation import NavigationParameters
 from gnc.estimation.own_motion import EstimatedNavigation, TrueNavigation
 from gnc.estimation.reachable_set import VesselLimits
 from gnc.estimation.target_motion import ReportedTarget, SteadyTarget
-from gnc.estimation.vessel_filter import VesselReport
+from gnc.estimation.vessel_filter import FilterParameters, VesselReport
 from gnc.mission.approach import ApproachParameters
 from gnc.mission.axis_height import AxisHeight
 from gnc.mission.direct_tracking import DirectTracking
 from gnc.mission.mode import Mode
 from gnc.mission.plume_axis import PredictedPlume
 from gnc.mission.plume_following import GLIDE_ALTITUDE, FollowingParameters, PlumeFollowing
-from gnc.parameters import FilterParameters, GuidanceParameters, ReportedVessel
+from gnc.parameters import GuidanceParameters, ReportedVessel
 from gnc.reference.moving_centre import CentreParameters
 from gnc.reference.orbit import half_widths
 from gnc.reference.shapes.sinusoid import Sinusoid

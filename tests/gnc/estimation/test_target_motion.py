@@ -6,7 +6,7 @@ import pytest
 
 from gnc.estimation.reachable_set import ReachableSet, Tube, VesselLimits
 from gnc.estimation.target_motion import REPORTED_SCATTER, ReportedTarget, SteadyTarget
-from gnc.estimation.vessel_filter import VesselFilter, VesselReport
+from gnc.estimation.vessel_filter import FilterParameters, VesselFilter, VesselReport
 
 TIME_STEP = 0.05
 LIMITS = VesselLimits(acceleration=0.25, speed_max=15.0, position_sigma=5.0, velocity_sigma=0.15, deviations=5.0, horizon=9.0)
@@ -25,7 +25,7 @@ def test_a_steady_target_goes_straight_on_from_the_origin_and_is_never_old(plann
 
 
 def reported(*reports):
-    known = VesselFilter(position_sigma=5.0, velocity_sigma=0.15, acceleration=0.02, memory=40.0)
+    known = VesselFilter(FilterParameters(position_sigma=5.0, velocity_sigma=0.15, acceleration=0.02, memory=40.0))
     target = ReportedTarget(known, ReachableSet(LIMITS), TIME_STEP)
     for report in reports:
         target.report(VesselReport(*report))
@@ -57,7 +57,7 @@ def test_of_the_acceleration_of_a_reported_vessel_the_scatter_of_her_reports_is_
 
 
 def test_the_acceleration_of_a_vessel_without_errors_is_taken_as_it_is():
-    known = VesselFilter(position_sigma=0.0, velocity_sigma=0.0, acceleration=0.02, memory=40.0)
+    known = VesselFilter(FilterParameters(position_sigma=0.0, velocity_sigma=0.0, acceleration=0.02, memory=40.0))
     target = ReportedTarget(known, ReachableSet(LIMITS), TIME_STEP)
     for report in ((0.0, 0.0, 0.0, 6.0, 2.0), (5.0, 30.125, 10.0, 6.05, 2.0)):
         target.report(VesselReport(*report))

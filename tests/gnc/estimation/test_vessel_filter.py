@@ -5,7 +5,7 @@ import pytest
 from scipy.linalg import expm
 from scipy.stats import chi2
 
-from gnc.estimation.vessel_filter import VesselFilter, VesselReport
+from gnc.estimation.vessel_filter import FilterParameters, VesselFilter, VesselReport
 
 SIGMA, MEMORY = 0.02, 40.0
 POSITION, VELOCITY = 5.0, 0.15
@@ -14,7 +14,7 @@ FIRST = VesselReport(0.0, 100.0, -40.0, 5.0, 2.0)
 
 def make(**changes):
     sigmas = {"position_sigma": POSITION, "velocity_sigma": VELOCITY, "acceleration": SIGMA, "memory": MEMORY}
-    return VesselFilter(**(sigmas | changes))
+    return VesselFilter(FilterParameters(**(sigmas | changes)))
 
 
 def singer(time, *, sigma=SIGMA, memory=MEMORY):

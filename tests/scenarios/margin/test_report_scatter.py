@@ -7,9 +7,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from gnc.compose import vessel_filter
 from gnc.estimation.reachable_set import ReachableSet, tube
-from gnc.estimation.vessel_filter import VesselReport
+from gnc.estimation.vessel_filter import VesselFilter, VesselReport
 from scenarios.margin.keepout_margin import filter_parameters, vessel_limits, widest_tube
 from scenarios.margin.report_scatter import GUARDED_PER_HOUR, scatter_allowance
 from scenarios.planning.limits import PLAN_PERIOD
@@ -42,7 +41,7 @@ def reaches(scenario, limits, hours):
         outage=(math.inf, math.inf),
         generator=np.random.default_rng(3),
     )
-    known, reach, found = vessel_filter(filter_parameters(scenario.reports)), ReachableSet(limits), []
+    known, reach, found = VesselFilter(filter_parameters(scenario.reports)), ReachableSet(limits), []
     for (_, report), (until, _) in itertools.pairwise(received):
         known.report(report)
         reach.report(report)
