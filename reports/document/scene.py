@@ -29,7 +29,8 @@ class Scene:
     keepout_radius : r_min [m]
     keepout_shape : "sphere" or "cylinder"
     source_height : of the funnel's mouth above the sea [m]
-    hull, plume : their shapes
+    hull : its shape
+    plumes : shapes of the plume, each with the time from which it has it [s]
     """
 
     start: float
@@ -41,4 +42,4 @@ class Scene:
     keepout_shape: str
     source_height: float
     hull: Hull
-    plume: PlumeShape
+    plumes: Sequence[tuple[float, PlumeShape]]

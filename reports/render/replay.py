@@ -12,6 +12,7 @@ from reports.document.palette import COLOURS, Meaning
 from reports.document.scene import Scene
 from reports.render.script_data import for_script
 from reports.run.columns import Array
+from reports.run.plume_shape import PlumeShape
 
 THREE = Path(__file__).parent / "bundle" / "three.min.js"
 """Library that draws in three dimensions; ``bundle/README.md`` says where it comes from."""
@@ -83,8 +84,6 @@ def draw_scene(scene: Scene) -> Data:
 
     A column that is straight over time is sent by its ends, any other in whole steps.
     """
-    plume = scene.plume
-    sections = (plume.distance, plume.height, plume.half_width, plume.half_height)
     return {
         "start": scene.start,
         "interval": scene.interval,
@@ -94,8 +93,16 @@ def draw_scene(scene: Scene) -> Data:
         "crossings": np.round(scene.crossings, 2).tolist(),
         "keepout": {"radius": scene.keepout_radius, "shape": scene.keepout_shape, "height": scene.source_height},
         "hull": {"length": scene.hull.length, "beam": scene.hull.beam, "funnel": scene.hull.funnel},
-        "plume": np.round(np.column_stack(sections), 1).tolist(),
+        "plumes": [[time, _sections(plume)] for time, plume in scene.plumes],
     }
+
+
+def _sections(plume: PlumeShape) -> list[list[float]]:
+    """Return the cross-sections of a plume: distance from the funnel, height of the axis, half-width, half-height [m]."""
+    rows: list[list[float]] = np.round(
+        np.column_stack([plume.distance, plume.height, plume.half_width, plume.half_height]), 1
+    ).tolist()
+    return rows
 
 
 def packed_column(values: Array, step: float) -> Data:

@@ -1,6 +1,5 @@
 """The scene of one flight, from its time history."""
 
-import math
 from typing import Any
 
 import numpy as np
@@ -19,6 +18,12 @@ INTERVAL = 0.2
 
 _PLUME_LENGTH = 3.0
 """Length of the plume that is drawn, over r_min [-]."""
+
+_CHANGED, _SHAPES_MAX = 0.1, 25
+"""Change of the ship's speed or of the wind from which the plume is drawn anew [-], and how often at most in a flight."""
+
+_SLOW = 1.0
+"""Speed below which changes count as those of this speed [m/s]."""
 
 
 def flight_scene(trial: Trial, row: "pd.Series[Any]", history: pd.DataFrame | None) -> Scene | None:
@@ -78,14 +83,37 @@ def flight_scene(trial: Trial, row: "pd.Series[Any]", history: pd.DataFrame | No
         keepout_shape=keepout_shape(config),
         source_height=source_height(config),
         hull=hull_of(config),
-        plume=_plume(config, row, history),
+        plumes=_plumes(config, row, history),
     )
 
 
-def _plume(config: Config, row: "pd.Series[Any]", history: pd.DataFrame) -> PlumeShape:
-    """Return the plume's shape, in the wind and at the vessel's speed that the flight began with."""
-    north, east = (float(column(history, f"vessel_velocity_{axis}_mps")[0]) for axis in ("north", "east"))
-    wind_north, wind_east = (float(part[0]) for part in true_wind(history, row))
-    wind, apparent = math.hypot(wind_north, wind_east), math.hypot(wind_north - north, wind_east - east)
+def _plumes(config: Config, row: "pd.Series[Any]", history: pd.DataFrame) -> list[tuple[float, PlumeShape]]:
+    """Return the plume's shapes in the course of a flight, each with the time from which it has it [s]."""
+    time = column(history, "time_s")
+    north, east = (column(history, f"vessel_velocity_{axis}_mps") for axis in ("north", "east"))
+    wind_north, wind_east = true_wind(history, row)
+    air = np.column_stack([
+        np.hypot(north, east), np.hypot(wind_north, wind_east), np.hypot(wind_north - north, wind_east - east)
+    ])  # fmt: skip
     length = _PLUME_LENGTH * float(row["keepout_radius_m"])
-    return plume_shape(config, speed=math.hypot(north, east), wind=wind, apparent_wind=apparent, length=length)
+    shapes: list[tuple[float, PlumeShape]] = []
+    for sample in _changes(air):
+        speed, wind, apparent = air[sample].tolist()
+        shape = plume_shape(config, speed=speed, wind=wind, apparent_wind=apparent, length=length)
+        if shape.smoke or not shapes or shapes[-1][1].smoke:
+            shapes.append((float(time[sample]), shape))
+    return shapes
+
+
+def _changes(air: Array) -> list[int]:
+    """Return the first sample, and each at which a speed differs by ``_CHANGED`` or, if they were too many, by more."""
+    speeds = np.log(np.maximum(air, _SLOW))
+    changed = _CHANGED
+    while True:
+        chosen = [0]
+        for sample in np.flatnonzero(np.isfinite(speeds).all(axis=1)).tolist():
+            if np.abs(speeds[sample] - speeds[chosen[-1]]).max() > changed:
+                chosen.append(sample)
+        if len(chosen) <= _SHAPES_MAX:
+            return chosen
+        changed *= 1.5

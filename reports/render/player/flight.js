@@ -34,7 +34,7 @@ class Flight {
     this.crossings = data.crossings;
     this.keepout = data.keepout;
     this.hull = data.hull;
-    this.plume = data.plume;
+    this.plumes = data.plumes;
     this.columns = Object.fromEntries(Object.entries(data.columns).map(([name, c]) => [name, decodedColumn(c, data.samples)]));
   }
 
@@ -60,6 +60,12 @@ class Flight {
         now[what + axis] += now[`vessel_${axis}`];
       }
     return now;
+  }
+
+  // Number of the shape that the plume has at a time.
+  plumeAt(time) {
+    const later = this.plumes.findIndex(([from]) => from > time);
+    return Math.max(0, (later < 0 ? this.plumes.length : later) - 1);
   }
 
   // What the keep-out guard does at a time: null, "guard", or "guardLost" where it cannot hold its radius.

@@ -19,8 +19,8 @@ class World {
     this.grid = seaGrid(3000);
     this.vessel = new THREE.Group();
     this.ship = shipShape(flight.hull, flight.keepout.height, colours.ship);
-    this.plume = plumeShape(flight.plume, colours.plume);
-    this.vessel.add(this.ship, this.plume, keepoutShape(flight.keepout, colours.limit));
+    this.plumes = flight.plumes.map(([, rows]) => plumeShape(rows, colours.plume));
+    this.vessel.add(this.ship, ...this.plumes, keepoutShape(flight.keepout, colours.limit));
     this.aircraft = aircraftShape(colours.flown);
     this.aircraft.rotation.order = "YXZ";
     const ball = new THREE.SphereGeometry(1, 16, 12);
@@ -67,7 +67,11 @@ class World {
     this.plumb.scale.y = now.altitude;
     this.vessel.position.set(now.vessel_east, 0, -now.vessel_north);
     this.ship.rotation.y = -now.vessel_heading;
-    this.plume.rotation.y = -now.plume_axis;
+    const shown = this.flight.plumeAt(time);
+    this.plumes.forEach((plume, number) => {
+      plume.visible = number === shown;
+      plume.rotation.y = -now.plume_axis;
+    });
     this.trails.vessel.visible = aboutVessel;
     this.trails.ground.visible = !aboutVessel;
     const segments = Math.floor((time - this.flight.start) / TRAIL + 1e-6);

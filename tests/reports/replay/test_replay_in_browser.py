@@ -106,6 +106,7 @@ def test_the_time_slider_takes_the_aircraft_to_where_it_was(kind, browser, runs,
         heading = sample["heading_rad"] if np.isfinite(sample["heading_rad"]) else sample["course_rad"]
         assert turned(place["heading"], heading) < 0.02
         assert turned(place["roll"], np.nan_to_num(sample["roll_rad"])) < 0.06
+        assert browser.run("window.replay.world.plumes.filter((plume) => plume.visible).length") == 1
     assert browser.errors == []
 
 

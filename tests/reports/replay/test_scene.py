@@ -112,6 +112,26 @@ def test_courses_have_no_jumps_and_what_is_not_known_stays(trial, row):
     assert scene.columns["altitude"][-1] == pytest.approx(57.0)
 
 
+def test_smoke_is_drawn_anew_when_the_ship_has_slowed_down(run_of):
+    measured = read_trials(read_run(run_of("sulphur")))[0]
+    flight = measured.rows.iloc[0]
+    history = history_of(measured, flight)
+    slower = np.where(history["time_s"] < 30.0, 1.0, 0.5)
+    slowed = {f"vessel_velocity_{axis}_mps": slower * history[f"vessel_velocity_{axis}_mps"] for axis in ("north", "east")}
+    (begun, before), *others, (last, after) = with_history(measured, flight, **slowed).plumes
+    assert (begun, last) == (history["time_s"].iloc[0], pytest.approx(30.0, abs=0.11))
+    assert not others
+    # In a slower flow past the funnel exhaust is older, and so wider, at the same distance.
+    assert after.half_width[-1] > 1.2 * before.half_width[-1]
+    swaying = {name: (1.0 + 0.5 * np.sin(0.15 * history["time_s"])) * column for name, column in slowed.items()}
+    assert 5 < len(with_history(measured, flight, **swaying).plumes) <= 25
+
+
+def test_an_axis_without_smoke_has_one_shape(trial, row):
+    velocity = np.linspace(0.0, 12.0, len(history_of(trial, row)))
+    assert len(with_history(trial, row, vessel_velocity_north_mps=velocity).plumes) == 1
+
+
 def test_a_vessel_at_rest_points_along_its_course(trial, row):
     still = dict.fromkeys(("vessel_velocity_north_mps", "vessel_velocity_east_mps"), 0.0)
     turned = replace(trial, config={**trial.config, "vessel": {**trial.config["vessel"], "course_deg": 90.0}})
