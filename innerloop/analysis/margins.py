@@ -163,7 +163,8 @@ class Loops:
                 scaled = balanced * (units[:, None] / units)
                 bounds = np.minimum(bounds, np.linalg.norm(scaled, 2, axis=(1, 2)))
         beside = range(max(0, peak - _MU_STRIDE + 1), min(len(bounds), peak + _MU_STRIDE))
-        values = [float(ab13md(balanced[k], one, complex_block)[0]) for k in beside if k != peak]
+        higher = [k for k in beside if k != peak and bounds[k] * _MU_ACCURACY > mu]
+        values = [float(ab13md(balanced[k], one, complex_block)[0]) for k in higher]
         return _disk(1.0 / max([mu, *values]))
 
 

@@ -86,12 +86,14 @@ def _between(first: LinearModel, second: LinearModel) -> list[LinearModel]:
 class ClosedPoint:
     """An operating point and the loops that are closed there: as modelled, and with every changed aircraft that was asked for.
 
-    What an aircraft is changed to and how it responds are independent of the autopilot's period: each is computed once.
+    What an aircraft is changed to and how it responds are independent of the autopilot's period: each is computed once, and so is
+    each check.
     """
 
     def __init__(self, point: OperatingPoint, as_modelled: Loops) -> None:
         self.point = point
         self._of = {NOMINAL: as_modelled}
+        self._checks: dict[tuple[str, int], Check] = {}
 
     def loops(self, case: str, period: int) -> Loops:
         """Return the loops of one of ``CASES`` with the delay of a period, as in ``Schedule``."""
@@ -101,6 +103,20 @@ class ClosedPoint:
             changed = change(self.point.model, self.point.trim)
             self._of[case] = as_modelled if changed is self.point.model else as_modelled.with_aircraft(changed)
         return self._of[case].with_delay(loop_delay(period, late))
+
+    def check(self, case: str, period: int) -> Check:
+        """Return the margins of one of ``CASES`` with a period, as in ``Schedule``."""
+        if (case, period) not in self._checks:
+            loops, point = self.loops(case, period), self.point
+            self._checks[case, period] = Check(
+                case=case,
+                airspeed=point.trim.airspeed,
+                bank=point.bank,
+                between=point.between,
+                stable=loops.stable,
+                margins=tuple(loops.margins()),
+            )
+        return self._checks[case, period]
 
 
 ClosedLoops = Sequence[ClosedPoint]
@@ -126,19 +142,7 @@ def check_design(period: int, closed: ClosedLoops, *, changed: bool = True) -> l
     changed : whether the aircraft is perturbed, too
     """
     cases = tuple(CASES) if changed else (NOMINAL,)
-    return [_check(at, case, period) for at in closed for case in cases]
-
-
-def _check(at: ClosedPoint, case: str, period: int) -> Check:
-    loops, point = at.loops(case, period), at.point
-    return Check(
-        case=case,
-        airspeed=point.trim.airspeed,
-        bank=point.bank,
-        between=point.between,
-        stable=loops.stable,
-        margins=tuple(loops.margins()),
-    )
+    return [at.check(case, period) for at in closed for case in cases]
 
 
 def with_all_controls(period: int, closed: ClosedLoops, checks: Sequence[Check]) -> list[Check]:
