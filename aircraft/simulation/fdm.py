@@ -39,6 +39,10 @@ TIME_STEP = 1.0 / 120.0
 
 _SETTLE_STRIDE = 4
 
+_PATIENCE, _HASTE = 120, 8
+"""Time steps after which what has not come to rest counts as slow, and by how much longer steps it is sped up [-]: they are still
+short against the second that a piston engine takes to change its speed."""
+
 _FLIGHTGEAR = '<output name="{host}" type="FLIGHTGEAR" port="{port}" protocol="UDP" rate="30"/>'
 """JSBSim's output of FlightGear's own packets."""
 
@@ -235,10 +239,24 @@ class Fdm(PropertyTree):
     def settle(self, tolerance: float = 1e-9, steps_max: int = 4800) -> bool:
         """Step, inside ``frozen``, until no acceleration [m/s^2, rad/s^2] moves by more than ``tolerance`` a step.
 
+        What takes longer than a second, such as the speed of a piston engine, is sped up by longer steps.
+
         Returns
         -------
         bool : whether that was reached within ``steps_max`` steps
         """
+        if self._comes_to_rest(tolerance, min(_PATIENCE, steps_max)):
+            return True
+        # Where a slow engine comes to rest does not depend on the length of its steps. Whether it has, those of flight decide.
+        hasty = max(0, steps_max - _PATIENCE) // _HASTE
+        self._exec.set_dt(_HASTE * self.time_step)
+        try:
+            self._comes_to_rest(tolerance, hasty)
+        finally:
+            self._exec.set_dt(self.time_step)
+        return self._comes_to_rest(tolerance, steps_max - _PATIENCE - hasty)
+
+    def _comes_to_rest(self, tolerance: float, steps_max: int) -> bool:
         run, reads, limit = self.run, [node.get_double_value for node in self._accelerations], _SETTLE_STRIDE * tolerance
         before = [math.nan] * len(reads)
         for _ in range(0, steps_max, _SETTLE_STRIDE):

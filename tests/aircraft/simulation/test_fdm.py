@@ -9,8 +9,10 @@ from dataclasses import replace
 import pytest
 
 from aircraft.errors import AircraftError, ReadOnlyPropertyError, UnknownPropertyError
+from aircraft.fleet.find import find_spec
 from aircraft.fleet.x8 import X8
 from aircraft.simulation.fdm import TIME_STEP, Fdm
+from aircraft.simulation.properties import CLOCK
 from aircraft.simulation.state import RigidBodyState, body_velocity
 from aircraft.spec import MODELS
 from common.physics.geodesy import LocalFrame
@@ -197,3 +199,30 @@ def test_two_aircraft_do_not_share_state(x8_fdm):
     other.place(replace(SOMEWHERE, roll=-0.3))
     other.step(5)
     assert x8_fdm.read("attitude/phi-rad") == pytest.approx(0.3, abs=1e-12)  # as placed, see above
+
+
+@pytest.mark.parametrize("throttle", [0.5, 0.9])
+def test_a_slow_engine_settles_where_it_would_at_its_own_pace(throttle):
+    # The Cessna's piston engine changes its speed in a second: from 0.7 of its throttle it takes a thousand steps and more.
+    fdm = Fdm(find_spec("c172x"))
+    fdm.command({"throttle": 0.7})
+    fdm.place(RigidBodyState(altitude=500.0, roll=0.0, pitch=0.05, velocity_body=body_velocity(50.0, 0.05, 0.0)))
+    with fdm.frozen():
+        assert fdm.settle(2e-9)
+        fdm.command({"throttle": throttle})
+        before, began = fdm.acceleration_body()[0], fdm.read(CLOCK)
+        steps, run = [], fdm.run
+        fdm.run = lambda: steps.append(run())
+        assert fdm.settle(2e-9)
+        # After 120 steps it is sped up eightfold: in less than half of the steps that the time takes.
+        assert len(steps) < 0.5 * (fdm.read(CLOCK) - began) / TIME_STEP
+        settled = fdm.acceleration_body()[0], fdm.read("propulsion/engine/engine-rpm")
+        fdm.step(2400)
+        # Twenty seconds more change nothing: 2e-9 m/s^2 a step is 2e-7 from the end, of an acceleration that changed by 1e-1.
+        assert abs(settled[0] - before) > 0.1
+        assert fdm.acceleration_body()[0] == pytest.approx(settled[0], abs=2e-7)
+        assert fdm.read("propulsion/engine/engine-rpm") == pytest.approx(settled[1], rel=1e-7)
+    # Flight goes on with its own time step.
+    clock = fdm.read(CLOCK)
+    fdm.step(120)
+    assert fdm.read(CLOCK) - clock == pytest.approx(1.0)
