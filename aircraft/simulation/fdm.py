@@ -181,9 +181,9 @@ class Fdm(PropertyTree):
             if self.cranked:
                 for name, value in CRANK:
                     self.write(name, value)
-            self.step(RUN_UP_STEPS)
-            for name, value in STOP_CRANKING:
-                self.write(name, value)
+                self.step(RUN_UP_STEPS)
+                for name, value in STOP_CRANKING:
+                    self.write(name, value)
             self.step(RUN_UP_STEPS)
         for name, value in throttles.items():
             self.write(name, value)

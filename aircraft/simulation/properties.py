@@ -44,7 +44,7 @@ STOP_CRANKING = (("propulsion/starter_cmd", 0.0),)
 """Properties that start an engine as a pilot does: both magnetos, and the starter."""
 
 RUN_UP_STEPS = 1200
-"""Time steps for cranking, and again for running up before an aircraft is placed."""
+"""Time steps for cranking, where that is needed, and as many for running up before an aircraft is placed."""
 
 
 def initial_conditions(state: RigidBodyState) -> list[tuple[str, float]]:

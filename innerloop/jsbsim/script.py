@@ -155,7 +155,7 @@ def write_script(schedule: Schedule, root: Path) -> Path:
 def _preparations(fdm: Fdm, period: int) -> tuple[int, list[str]]:
     """Return for how many steps the body is held before release, and the events in that time."""
     settle = hold_steps(fdm.spec, period)
-    run_up = 2 * RUN_UP_STEPS if fdm.spec.engine_flags else 0
+    run_up = (2 if fdm.cranked else 1) * RUN_UP_STEPS if fdm.spec.engine_flags else 0
     held = settle + run_up
     still = [(integrator, 0.0) for integrator in INTEGRATORS]
     cranking = CRANK if fdm.cranked else ()

@@ -138,7 +138,7 @@ def test_a_stock_aircraft_is_flown_by_jsbsim_alone_as_from_python_but_for_its_en
     assert len(alone) == len(same)
     start = schedule.level(MIDDLE)
     # Python places the aircraft twice, to run its engines up in between, and the script holds it all the time: engines are released
-    # in states that differ by what is left of spooling after 20 s. Measured 2e-9 m/s, 2e-8 m, 1e-11 and 1e-10 rad; a hundred times
+    # in states that differ by what is left of spooling after 10 s. Measured 2e-9 m/s, 2e-8 m, 1e-11 and 1e-10 rad; a hundred times
     # that is let go, for another platform's rounding decides when an engine settles.
     tolerances = {
         "autopilot/airspeed-mps": 2e-7,
@@ -161,8 +161,8 @@ def test_a_stock_aircrafts_script_runs_its_engines_up_while_the_body_is_held_and
     events = [{e.get("name"): float(e.get("value")) for e in event.findall("set")} for event in run.findall("event")]
     start, again, release = events[:3]
     assert dict(START_ENGINES).items() <= start.items()
-    # Twenty seconds of cranking and running up (RUN_UP_STEPS each), then the settling time of 20 s.
-    assert float(run.get("start")) == pytest.approx(-40.0)
+    # Ten seconds of running up (RUN_UP_STEPS), for turbines are not cranked, then the settling time of 20 s.
+    assert float(run.get("start")) == pytest.approx(-30.0)
     assert set(schedule.spec.configuration) <= set(start.items())
     assert again == dict(schedule.spec.configuration)
     assert [release[name] for name in INTEGRATORS] != [0.0] * 4
