@@ -35,6 +35,10 @@ _SIZE = 0.01
 _FINE = 8
 """Substeps of a time step [-]: the linear model does not have JSBSim's first-order integration errors."""
 
+_SETTLED = 1e-9
+"""Change of acceleration a substep below which servos and engines count as at rest: behind an engine as slow as a second, 1e-6
+from the end, where a doublet accelerates the aircraft by 1e-2 and more."""
+
 Array = npt.NDArray[np.float64]
 
 
@@ -67,7 +71,10 @@ def _flown(fdm: Fdm, level: Trim, name: str) -> tuple[Array, dict[str, Array]]:
     count = round(_DURATION / fdm.time_step)
     run, reads = fdm.run, [fdm.node(prop).get_double_value for prop, _ in OUTPUTS.values()]
     fdm.command(dict(level.inputs))
-    fdm.hold(level.state(), round(fdm.spec.settle_time / fdm.time_step))
+    fdm.revive()
+    fdm.place(level.state())
+    with fdm.frozen():
+        fdm.settle(_SETTLED, round(fdm.spec.settle_time / fdm.time_step))
     moved = fdm.spec.input(name)
     commands = [fdm.writable_node(commanded).set_double_value for commanded in moved.commands]
     read = []
