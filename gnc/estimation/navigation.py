@@ -17,7 +17,7 @@ class NavigationParameters:
     Attributes
     ----------
     crab_banks, crab_offsets : course through the air minus heading, over bank, ascending [rad]
-    airspeed_sigma, course_sigma, wind_drift, wind_prior : of ``gnc.estimation.wind_filter.WindFilter`` [m/s, rad, m/s, m/s]
+    airspeed_sigma, course_sigma, wind_drift : of ``gnc.estimation.wind_filter.WindFilter`` [m/s, rad, m/s]
     wind_noise, wind_error : largest errors by the noise of the sensors of a single measurement of the wind, and of its estimate in
         the end, with which the guard reckons at all times [m/s]
     wind_interval : guidance steps between measurements of the wind
@@ -29,7 +29,6 @@ class NavigationParameters:
     airspeed_sigma: float
     course_sigma: float
     wind_drift: float
-    wind_prior: float
     wind_noise: float = 0.0
     wind_error: float = 0.0
     wind_interval: int
@@ -75,7 +74,6 @@ class Navigation:
             airspeed_sigma=parameters.airspeed_sigma,
             course_sigma=parameters.course_sigma,
             drift=parameters.wind_drift,
-            prior_sigma=parameters.wind_prior,
         )
         self.north = self.east = self.velocity_north = self.velocity_east = 0.0
         self.drift_north = self.drift_east = self.lost = self.wind_error = 0.0

@@ -7,33 +7,33 @@ class WindFilter:
     """A Kalman filter for a wind that wanders slowly.
 
     What is measured is the wind triangle, w = v_ground - V_a (cos chi_a, sin chi_a). Its error along chi_a is that of the airspeed,
-    across it V_a times that of the course; gusts are in both. They are taken one after the other, each as a scalar.
+    across it V_a times that of the course; gusts are in both. They are taken one after the other, each as a scalar. The first
+    measurement is the first estimate: any wind that were taken to be likely before it would be in the estimate until more came.
 
     Parameters
     ----------
     airspeed_sigma : error of the measured airspeed, gusts included [m/s]
     course_sigma : error of the course through the air, gusts included [rad]
     drift : how far the wind wanders in a second, one sigma [m/s]
-    prior_sigma : of the wind before anything is measured [m/s]
 
     Attributes
     ----------
-    north, east : estimated velocity of the air mass, where it blows to [m/s]
+    north, east : estimated velocity of the air mass, where it blows to; 0 before anything is measured [m/s]
     """
 
-    __slots__ = ("_course_variance", "_drift_variance", "_p_ee", "_p_ne", "_p_nn", "_speed_variance", "east", "north")
+    __slots__ = ("_course_variance", "_drift_variance", "_measured", "_p_ee", "_p_ne", "_p_nn", "_speed_variance", "east", "north")
 
-    def __init__(self, *, airspeed_sigma: float, course_sigma: float, drift: float, prior_sigma: float) -> None:
+    def __init__(self, *, airspeed_sigma: float, course_sigma: float, drift: float) -> None:
         self._speed_variance = airspeed_sigma**2
         self._course_variance = course_sigma**2
         self._drift_variance = drift**2
-        self._p_nn = self._p_ee = prior_sigma**2
-        self._p_ne = 0.0
+        self._measured = False
+        self._p_nn = self._p_ne = self._p_ee = 0.0
         self.north = self.east = 0.0
 
     @property
     def sigma(self) -> float:
-        """Return the standard deviation of the estimate in its worst direction [m/s]."""
+        """Return the standard deviation of the estimate in its worst direction, once anything is measured [m/s]."""
         half = 0.5 * (self._p_nn - self._p_ee)
         return math.sqrt(0.5 * (self._p_nn + self._p_ee) + math.hypot(half, self._p_ne))
 
@@ -47,13 +47,21 @@ class WindFilter:
         velocity_north, velocity_east : over the ground [m/s]
         time_step : since the last one [s]
         """
+        cos_c, sin_c = math.cos(air_course), math.sin(air_course)
+        north, east = velocity_north - airspeed * cos_c, velocity_east - airspeed * sin_c
+        along, across = self._speed_variance, airspeed * airspeed * self._course_variance
+        if not self._measured:
+            self._measured = True
+            self.north, self.east = north, east
+            self._p_nn = along * cos_c * cos_c + across * sin_c * sin_c
+            self._p_ee = along * sin_c * sin_c + across * cos_c * cos_c
+            self._p_ne = (along - across) * sin_c * cos_c
+            return
         drift = self._drift_variance * time_step
         self._p_nn += drift
         self._p_ee += drift
-        cos_c, sin_c = math.cos(air_course), math.sin(air_course)
-        north, east = velocity_north - airspeed * cos_c, velocity_east - airspeed * sin_c
-        self._scalar(cos_c, sin_c, north * cos_c + east * sin_c, self._speed_variance)
-        self._scalar(-sin_c, cos_c, east * cos_c - north * sin_c, airspeed * airspeed * self._course_variance)
+        self._scalar(cos_c, sin_c, north * cos_c + east * sin_c, along)
+        self._scalar(-sin_c, cos_c, east * cos_c - north * sin_c, across)
 
     def _scalar(self, h_north: float, h_east: float, measured: float, variance: float) -> None:
         """Correct by one component of the wind, in the direction ``h_north``, ``h_east``."""

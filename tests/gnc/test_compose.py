@@ -87,7 +87,7 @@ def following(*, guard=GUARD, climb=0.0):
         airspeed_overshoot=0.1,
         navigation=NavigationParameters(
             crab_banks=(-1.0, 1.0), crab_offsets=(0.0, 0.0), airspeed_sigma=0.5, course_sigma=0.03, wind_drift=0.02,
-            wind_prior=10.0, wind_interval=PLAN_INTERVAL, time_step=TIME_STEP,
+            wind_interval=PLAN_INTERVAL, time_step=TIME_STEP,
         ),
         vessel=ReportedVessel(filter=FILTER, limits=LIMITS),
         guard=guard,

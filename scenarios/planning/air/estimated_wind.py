@@ -12,8 +12,8 @@ from scenarios.vehicles.vehicle_setup import VehicleSetup
 _AIRSPEED_SIGMA, _COURSE_SIGMA = 0.5, 0.03
 """Least deviations of airspeed and course that the wind's filter takes for noise in still air [m/s, rad]."""
 
-_WIND_DRIFT, _WIND_PRIOR = 0.02, 10.0
-"""By how much the wind may change in the root of a second, and how large it may be before any measurement [m/s]."""
+_WIND_DRIFT = 0.02
+"""By how much the wind may change in the root of a second [m/s]."""
 
 WIND_FOLLOWED = 20.0
 """Time within which the estimated wind follows a change [s]: of a wind that turns steadily it is behind by less."""
@@ -32,7 +32,6 @@ def navigation_parameters(scenario: Scenario, setup: VehicleSetup) -> Navigation
         airspeed_sigma=math.hypot(airspeed_sigma, gust),
         course_sigma=math.hypot(course_sigma, gust / g.airspeed_mps),
         wind_drift=_WIND_DRIFT,
-        wind_prior=_WIND_PRIOR,
         wind_noise=NOISE_DEVIATIONS * _measured_noise(scenario),
         wind_error=NOISE_DEVIATIONS * wind_noise_left(scenario),
         wind_interval=plan_interval(scenario.guidance),

@@ -16,7 +16,6 @@ def make(**changes):
         "airspeed_sigma": 0.5,
         "course_sigma": 0.03,
         "wind_drift": 0.02,
-        "wind_prior": 10.0,
         "wind_interval": 5,
         "time_step": TIME_STEP,
     }
@@ -107,8 +106,8 @@ def test_the_course_through_the_air_is_the_heading_and_the_crab_of_the_bank(roll
 def test_the_wind_is_measured_every_so_many_steps():
     navigation = make()
     seen = []
-    for _ in range(12):
-        navigation.update((0.0, 0.0, SPEED - 2.0, 1.0), SPEED, 0.0, 0.0)
+    for step in range(12):
+        navigation.update((0.0, 0.0, SPEED - 2.0 - 0.1 * step, 1.0), SPEED, 0.0, 0.0)
         seen.append(navigation.wind.north)
     # Steps 0, 5 and 10.
     assert [i for i in range(1, 12) if seen[i] != seen[i - 1]] == [5, 10]

@@ -16,7 +16,6 @@ NAVIGATION = NavigationParameters(
     airspeed_sigma=0.5,
     course_sigma=0.03,
     wind_drift=0.02,
-    wind_prior=10.0,
     wind_interval=10,
     time_step=TIME_STEP,
 )

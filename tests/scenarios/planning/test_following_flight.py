@@ -132,7 +132,7 @@ def test_the_estimated_wind_follows_as_fast_as_the_guard_reckons_with(level):
     # A wind that rises by 0.1 m/s each second, which gusts hide: the filter lags behind by no more than its time.
     flown = scenario(fidelity="six_dof", turbulence={"level": level}, guidance={"airspeed_mps": SPEED})
     p = navigation_parameters(flown, kinematic_setup(scenario()))
-    wind = WindFilter(airspeed_sigma=p.airspeed_sigma, course_sigma=p.course_sigma, drift=p.wind_drift, prior_sigma=p.wind_prior)
+    wind = WindFilter(airspeed_sigma=p.airspeed_sigma, course_sigma=p.course_sigma, drift=p.wind_drift)
     behind, period = 0.0, p.wind_interval * p.time_step
     for n in range(2000):
         blown, course = 0.1 * n * period, 0.02 * n
