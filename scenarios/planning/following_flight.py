@@ -3,11 +3,10 @@
 import math
 from collections.abc import Callable
 
-from common.times import utc_text
 from gnc.airspeed.pace_hold import PaceHold
 from gnc.errors import InfeasibleError
 from gnc.estimation.health_monitor import HealthParameters
-from gnc.estimation.reachable_set import ReachableSet, VesselLimits, tube
+from gnc.estimation.reachable_set import ReachableSet, VesselLimits
 from gnc.mission.plume_following import FollowingParameters
 from gnc.mission.standoff import StandoffParameters
 from gnc.parameters import GuidanceParameters, ReportedVessel
@@ -19,6 +18,7 @@ from scenarios.margin.tracking_spread import SpreadTable
 from scenarios.planning.air.dead_reckoning import drift_rate
 from scenarios.planning.air.estimated_wind import first_wind_error, navigation_parameters, wind_change
 from scenarios.planning.bounded_steering import given_steering
+from scenarios.planning.declared_vessel import check_vessel
 from scenarios.planning.flight_plan import FlightPlan, Sensing
 from scenarios.planning.guidance import (
     THRUST_LOST_FRACTION,
@@ -43,7 +43,7 @@ from scenarios.world.ais_reports import no_outage, received_reports
 from scenarios.world.exhaust import exhaust_of
 from scenarios.world.faults import VESSEL_DATA, sampled_fault
 from scenarios.world.noise import EXHAUST, Noise, own_generator, streams
-from scenarios.world.vessel import SteadyVessel, VesselTruth, largest_acceleration, largest_inconsistency, largest_speed
+from scenarios.world.vessel import VesselTruth
 from scenarios.world.weather import sampled_weather
 from scenarios.world.world import (
     TRACK_MARGIN,
@@ -55,9 +55,6 @@ from scenarios.world.world import (
     plume_of,
     vessel_of,
 )
-
-_INCONSISTENCY_MAX = 0.02
-"""By how much the velocity of a track of one's own may differ from the rate of its places [m/s]: by rounding, and no more."""
 
 Spreads = Callable[[Scenario], SpreadTable | None]
 """Returns the predicted spread of the tracking error of a scenario in turbulence; none in calm air."""
@@ -81,7 +78,7 @@ def following_flight(
     _check_plume(scenario, wind)
     nu = wind.at_start / g.airspeed_mps
     limits = vessel_limits(scenario, turn_time(scenario, setup.reversal))
-    _check_vessel(scenario, vessel, limits)
+    check_vessel(scenario, vessel, limits)
     sigma, level = tracking_level(scenario, spreads, nu)
     radius = scenario.keepout.radius_m
     air = mean_wind(scenario, vessel)
@@ -224,61 +221,6 @@ def _with_intervals(scenario: Scenario, vessel: VesselTruth) -> Scenario:
         return scenario
     reports = scenario.reports.model_copy(update={"interval_s": usual_intervals(vessel)})
     return scenario.model_copy(update={"reports": reports})
-
-
-def _check_vessel(scenario: Scenario, vessel: VesselTruth, limits: VesselLimits) -> None:
-    """Raise an InfeasibleError for a vessel, or reports of a file, that are beyond what is declared to the keep-out guard."""
-    check_declared(scenario, vessel)
-    if isinstance(vessel, AisVessel) and scenario.guidance.keepout_guard:
-        _check_reports(vessel, limits)
-
-
-def check_declared(scenario: Scenario, vessel: VesselTruth) -> None:
-    """Raise an InfeasibleError for a vessel that does more than is declared to the keep-out guard.
-
-    Also where she is known exactly: what she does during a turn away is not known when the turn begins.
-    """
-    if not scenario.guidance.keepout_guard:
-        return
-    # A steady vessel does at any time what she does at first.
-    f, duration = scenario.following, 0.0 if isinstance(vessel, SteadyVessel) else scenario.flight.duration_max_s
-    acceleration, speed = largest_acceleration(vessel, duration), largest_speed(vessel, duration)
-    other = "fly another time of its file (place.utc)" if isinstance(vessel, AisVessel) else ""
-    if acceleration > f.vessel_acceleration_mps2:
-        raise InfeasibleError(
-            f"the vessel accelerates by {acceleration:.3g} m/s2, changes of speed and course together; declared are at most"
-            f" following.vessel_acceleration_mps2 = {f.vessel_acceleration_mps2:g}, on which the keep-out guard relies: declare"
-            f" more, or {other or 'manoeuvre more gently (vessel.manoeuvres)'}"
-        )
-    if f.vessel_speed_max_mps is not None and speed > f.vessel_speed_max_mps:
-        raise InfeasibleError(
-            f"the vessel moves at up to {speed:.3g} m/s over the ground; it is declared to stay within"
-            f" following.vessel_speed_max_mps = {f.vessel_speed_max_mps:g}, on which the keep-out guard relies: declare more, or"
-            f" {other or 'sail more slowly'}"
-        )
-    if (off := largest_inconsistency(vessel, duration)) > _INCONSISTENCY_MAX:
-        raise InfeasibleError(
-            f"vessel.track '{scenario.vessel.track}': its places move at another velocity than motion() returns, by up to {off:.3g}"
-            " m/s; let the velocity be the derivative of the place: the keep-out guard relies on it"
-        )
-
-
-def _check_reports(vessel: AisVessel, limits: VesselLimits) -> None:
-    """Raise an InfeasibleError for reports of a file from which the guard would take the vessel to be elsewhere.
-
-    From each report on to the next the smooth track has to stay within the disc of that report: errors are declared, too.
-    """
-    times = [report.time for report in vessel.reports]
-    for report, until in zip(vessel.reports, [*times[1:], times[-1]], strict=True):
-        for time in (max(0.0, report.time), max(0.0, 0.5 * (report.time + until)), max(0.0, until)):
-            disc, (north, east, _, _) = tube(report, limits, time), vessel.motion(time)
-            if (off := math.hypot(north - disc.north, east - disc.east)) > disc.radius:
-                raise InfeasibleError(
-                    f"the report of {utc_text(vessel.place.utc + report.time)} and the smooth track through all reports lie"
-                    f" {off:.1f} m apart after {time - report.time:.1f} s; {disc.radius:.1f} m are allowed for by"
-                    " reports.position_sigma_m, reports.velocity_sigma_mps and following.vessel_acceleration_mps2: declare more, or"
-                    " delete the report"
-                )
 
 
 def _check_plume(scenario: Scenario, wind: ApparentWind) -> None:

@@ -18,7 +18,7 @@ from gnc.reference.reference import REFERENCE_SHAPES
 from scenarios.errors import InputError
 from scenarios.experiment.draws import check_draws
 from scenarios.experiment.requests import Experiment
-from scenarios.planning.following_flight import check_declared
+from scenarios.planning.declared_vessel import check_declared
 from scenarios.planning.limits import check_flyable, check_recorded
 from scenarios.planning.plume.axis import flown_altitudes
 from scenarios.schema.extension_points import PAYLOADS, PLUME_MODELS, VESSEL_TRACKS

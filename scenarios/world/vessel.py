@@ -87,6 +87,11 @@ class TabledVessel:
         """Return velocity over the ground [m/s], shape (n, 2), and course [rad], shape (n,), at ``track_times``."""
         return self._table[:, 2:4], self._table[:, 4]
 
+    @property
+    def places(self) -> Array:
+        """Return north and east at ``track_times``, shape (n, 2) [m]."""
+        return self._table[:, :2]
+
     @cached_property
     def _flat(self) -> list[float]:
         """The table as plain floats, row after row, for one look at a time."""

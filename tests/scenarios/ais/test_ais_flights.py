@@ -101,6 +101,21 @@ def test_reports_that_are_farther_off_than_declared_are_a_row_with_that_reason()
     assert "reports.position_sigma_m" in row["message"]
 
 
+def test_a_report_whose_velocity_is_wrong_is_refused_for_what_it_makes_of_a_silence_after_it(tmp_path):
+    # Until the next one, 2 s later, it is within its disc; 21 s later, with all data of the vessel lost, the ship is 41 m outside.
+    # Of 16 flights of a law that flies at her 6 had come in, by up to 31 m.
+    path, lines = tmp_path / "wrong.csv", ["time_utc,mmsi,lat_deg,lon_deg,sog_kn,cog_deg"]
+    for time in range(0, 400, 2):
+        wrong = time == 150
+        north, east, speed, course = (1788.6, -18.3, 13.47, 336.0) if wrong else (12.0 * time, 0.0, 12.0, 0.0)
+        place = f"{55.0 + north / 111320.0:.7f},{10.0 + east / 63851.0:.7f}"
+        lines.append(f"2026-06-01T12:{time // 60:02d}:{time % 60:02d}Z,219999001,{place},{speed / 0.5144:.2f},{course:.1f}")
+    path.write_text("\n".join(lines))
+    declared = {"vessel_acceleration_mps2": 0.25, "vessel_speed_max_mps": 20.0}
+    with pytest.raises(InfeasibleError, match=r"report of 2026-06-01T12:02:30.*apart after 2\d"):
+        plan(scenario(vessel={"track": str(path)}, following=declared, flight={"crossings": 0, "duration_max_s": 300.0}))
+
+
 def test_a_track_file_is_relative_to_the_scenario_file_and_its_hash_is_in_the_manifest(tmp_path):
     (tmp_path / "ship.csv").write_bytes((CATALOG / "ais" / "made_danish.csv").read_bytes())
     (tmp_path / "mine.toml").write_text(

@@ -1,0 +1,113 @@
+"""Whether a vessel, and the reports of a file, keep to what is declared of them: the keep-out guard relies on it."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+
+from common.times import utc_text
+from gnc.errors import InfeasibleError
+from gnc.estimation.reachable_set import VesselLimits, radius_after
+from gnc.estimation.vessel_filter import VesselReport
+from scenarios.schema.scenario import Scenario
+from scenarios.world.ais.track import AisVessel
+from scenarios.world.vessel import (
+    SteadyVessel,
+    VesselTruth,
+    largest_acceleration,
+    largest_inconsistency,
+    largest_speed,
+    track_times,
+)
+
+_INCONSISTENCY_MAX = 0.02
+"""By how much the velocity of a track of one's own may differ from the rate of its places [m/s]: by rounding, and no more."""
+
+_LOOKS = 10
+"""Points of a track from one look at it to the next [-], 0.5 s: in between its distance from a disc bends by millimetres."""
+
+
+def check_vessel(scenario: Scenario, vessel: VesselTruth, limits: VesselLimits) -> None:
+    """Raise an InfeasibleError for a vessel, or reports of a file, that are beyond what is declared to the keep-out guard."""
+    check_declared(scenario, vessel)
+    if isinstance(vessel, AisVessel) and scenario.guidance.keepout_guard:
+        # The error of the vehicle's own place is not part of the reports'.
+        of_reports = replace(limits, position_sigma=scenario.reports.position_sigma_m)
+        _check_reports(vessel, of_reports, scenario.flight.duration_max_s)
+
+
+def check_declared(scenario: Scenario, vessel: VesselTruth) -> None:
+    """Raise an InfeasibleError for a vessel that does more than is declared to the keep-out guard.
+
+    Also where she is known exactly: what she does during a turn away is not known when the turn begins.
+    """
+    if not scenario.guidance.keepout_guard:
+        return
+    # A steady vessel does at any time what she does at first.
+    f, duration = scenario.following, 0.0 if isinstance(vessel, SteadyVessel) else scenario.flight.duration_max_s
+    acceleration, speed = largest_acceleration(vessel, duration), largest_speed(vessel, duration)
+    other = "fly another time of its file (place.utc)" if isinstance(vessel, AisVessel) else ""
+    if acceleration > f.vessel_acceleration_mps2:
+        raise InfeasibleError(
+            f"the vessel accelerates by {acceleration:.3g} m/s2, changes of speed and course together; declared are at most"
+            f" following.vessel_acceleration_mps2 = {f.vessel_acceleration_mps2:g}, on which the keep-out guard relies: declare"
+            f" more, or {other or 'manoeuvre more gently (vessel.manoeuvres)'}"
+        )
+    if f.vessel_speed_max_mps is not None and speed > f.vessel_speed_max_mps:
+        raise InfeasibleError(
+            f"the vessel moves at up to {speed:.3g} m/s over the ground; it is declared to stay within"
+            f" following.vessel_speed_max_mps = {f.vessel_speed_max_mps:g}, on which the keep-out guard relies: declare more, or"
+            f" {other or 'sail more slowly'}"
+        )
+    if (off := largest_inconsistency(vessel, duration)) > _INCONSISTENCY_MAX:
+        raise InfeasibleError(
+            f"vessel.track '{scenario.vessel.track}': its places move at another velocity than motion() returns, by up to {off:.3g}"
+            " m/s; let the velocity be the derivative of the place: the keep-out guard relies on it"
+        )
+
+
+def _check_reports(vessel: AisVessel, limits: VesselLimits, duration: float) -> None:
+    """Raise an InfeasibleError for reports of a file from which the guard would take the vessel to be elsewhere.
+
+    The smooth track has to stay within the disc of each report to the end of the flight: all reports after it may be lost.
+
+    Parameters
+    ----------
+    vessel : its reports, and the track
+    limits : what both are declared to keep within; errors are declared, too
+    duration : of the longest flight [s]
+    """
+    times = track_times(duration)[::_LOOKS]
+    places = vessel.places[: _LOOKS * len(times) : _LOOKS]
+    for report in vessel.reports:
+        if report.time >= 0.0 and _within_for_good(report, vessel, limits):
+            continue
+        begins = int(np.searchsorted(times, report.time))
+        age = np.concatenate([[max(0.0, -report.time)], times[begins:] - report.time])
+        place = np.vstack([vessel.motion(max(0.0, report.time))[:2], places[begins:]])
+        north = place[:, 0] - report.north - report.velocity_north * age
+        east = place[:, 1] - report.east - report.velocity_east * age
+        off, allowed = np.hypot(north, east), radius_after(limits, age)
+        worst = int(np.argmax(off - allowed))
+        if off[worst] > allowed[worst]:
+            raise InfeasibleError(
+                f"the report of {utc_text(vessel.place.utc + report.time)} and the smooth track through all reports lie"
+                f" {off[worst]:.1f} m apart after {age[worst]:.1f} s; {allowed[worst]:.1f} m are allowed for by"
+                " reports.position_sigma_m, reports.velocity_sigma_mps and following.vessel_acceleration_mps2: declare more, or"
+                " delete the report"
+            )
+
+
+def _within_for_good(report: VesselReport, vessel: AisVessel, limits: VesselLimits) -> bool:
+    """Return whether errors of a report are so small that a vessel that keeps to her acceleration never leaves its disc.
+
+    With errors e_p and e_v of place and velocity, (e_p/sigma_p)^2 + (e_v/sigma_v)^2 <= k^2, Cauchy and Schwarz have
+    e_p + e_v s <= k hypot(sigma_p, sigma_v s).
+    """
+    north, east, velocity_north, velocity_east = vessel.motion(report.time)
+    place, velocity = limits.deviations * limits.position_sigma, limits.deviations * limits.velocity_sigma
+    if not (place > 0.0 and velocity > 0.0):
+        return False
+    wrong_place = math.hypot(report.north - north, report.east - east)
+    wrong_velocity = math.hypot(report.velocity_north - velocity_north, report.velocity_east - velocity_east)
+    return math.hypot(wrong_place / place, wrong_velocity / velocity) <= 1.0
