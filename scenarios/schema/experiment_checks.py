@@ -103,6 +103,15 @@ def check_mission(scenario: "Scenario") -> None:
     """Refuse what a mission in still air, beside a steady vessel, would leave out, wherever the scenario has either from."""
     if scenario.guidance.mission == "track" and (keys := unsteady(scenario)):
         raise ValueError(f"key '{keys[0]}' has no effect here: it is used by {FOLLOWING}")
+    if scenario.stands_off and scenario.finds:
+        needs = {"following.plume": (scenario.following.plume, "predicted"), "flight.until": (scenario.flight.until, "flown")}
+        needs = {key: values for key, values in needs.items() if values[0] != values[1]}
+        given = " and ".join(f"{key} '{value}'" for key, (value, _) in needs.items())
+        remedy = " and ".join(f"{key} to '{other}'" for key, (_, other) in needs.items())
+        raise ValueError(
+            f"guidance.mission is 'standoff' beside {given}; a circle about the vessel neither searches for exhaust nor ends with"
+            f" a verdict: set {remedy}, or guidance.mission to 'follow'"
+        )
 
 
 def check_source(scenario: "Scenario") -> None:

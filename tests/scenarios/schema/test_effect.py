@@ -56,6 +56,37 @@ def test_a_swept_or_sampled_key_that_some_flights_use_is_accepted(tmp_path, text
     assert loaded(tmp_path, text).title == "own"
 
 
+@pytest.mark.parametrize(
+    ("scenario", "overrides", "words"),
+    [
+        ("plume_search", [], "following.plume 'estimated'"),
+        ("sulphur", ["flight.until=verdict"], "flight.until 'verdict'"),
+        ("patrol", [], "following.plume 'estimated' and flight.until 'verdict'"),
+        ("plume_search", ["following.plume=told", "comparison.variants=[]"], "following.plume 'told'"),
+    ],
+)
+def test_a_circle_about_the_vessel_is_refused_where_exhaust_is_searched_for(scenario, overrides, words):
+    with pytest.raises(InputError, match=words) as refused:
+        load_study(scenario, ["guidance.mission=standoff", *overrides])
+    assert "\n" not in str(refused.value)
+
+
+def test_what_the_refusal_of_a_circle_tells_to_set_is_accepted():
+    remedies = ["following.plume=predicted", "flight.until=flown", "comparison.variants=[]"]
+    assert load_study("plume_search", ["guidance.mission=standoff", *remedies]).stands_off
+
+
+def test_what_places_an_oscillation_in_exhaust_names_the_mission_beside_a_circle():
+    with pytest.raises(InputError, match=r"'following\.distance' has no effect here.*set guidance\.mission to 'follow'"):
+        load_study("sulphur", ["guidance.mission=standoff", "following.distance=best_measurement"])
+
+
+def test_the_height_of_the_wind_needs_a_profile_also_where_its_speed_is_sampled():
+    with pytest.raises(InputError, match=r"'wind\.height_m' has no effect here.*set wind\.roughness_m"):
+        load_study("plume_search", ["wind.height_m=20"])
+    assert load_study("plume_search", ["wind.height_m=20", "wind.roughness_m=0.0002"]).wind.height_m == 20.0
+
+
 def test_a_key_of_the_file_may_lose_its_effect_by_an_override_but_one_of_the_override_must_have_one(tmp_path):
     speed = '[[draws]]\nkey = "wind.speed_mps"\nuniform = [0.0, 5.0]\n'
     follows = 'guidance.mission = "follow"\n'
