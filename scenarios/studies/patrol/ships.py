@@ -130,7 +130,7 @@ def _placed(velocities: Sequence[complex], scenario: Scenario, generator: np.ran
                 break
         else:
             raise InputError(
-                f"patrol.separation_m is {p.separation_m:g} m, which {p.ships} ships in a square of {p.area_m:g} m do not keep for"
-                f" {p.endurance_s:g} s: let it be less, or patrol.area_m more"
+                f"patrol.separation_m is {p.separation_m:g} m, which patrol.ships = {p.ships} in a square of {p.area_m:g} m cannot"
+                f" keep for {p.endurance_s:g} s: let it be less, or patrol.area_m more"
             )
     return placed

@@ -35,7 +35,8 @@ class PatrolStudy(FlightStudy):
     Raises
     ------
     InputError : as of ``FlightStudy``; flights that give no verdict, ships that are not steady, a place to begin at, ships that are
-        kept clear of by more than the way to them, an endurance too short for any ship, or ships that find no room
+        kept clear of by more than the way to them, or are so near to one another that a flight beside one enters the area of the
+        other, an endurance too short for any ship, or ships that find no room
     """
 
     what = "patrols"
@@ -172,6 +173,12 @@ def _check(scenario: Scenario) -> None:
         raise InputError(
             f"keepout.radius_m and patrol.clearance_m are {scenario.keepout.radius_m + config.clearance_m:g} m together, more than"
             f" start.distance_m, whose end is {reach:g} m and where the way to a ship ends: no ship can be served; give less"
+        )
+    if config.separation_m < (apart := reach + scenario.keepout.radius_m):
+        raise InputError(
+            f"patrol.separation_m is {config.separation_m:g} m; a flight beside a ship is up to {reach:g} m from her, the end of"
+            f" start.distance_m, and may not come within keepout.radius_m, {scenario.keepout.radius_m:g} m, of another: give"
+            f" {apart:g} m or more"
         )
     if config.endurance_s < config.service_s:
         raise InputError(

@@ -192,6 +192,7 @@ def test_a_study_that_never_took_off_is_not_met(tmp_path):
         ("patrol.ships=0", ("patrol.ships is 0; it must be at least 1",)),
         ("patrol.endurance_s=60", ("patrol.endurance_s is 60 s", "patrol.service_s = 165 s")),
         ("patrol.separation_m=9000", ("patrol.separation_m is 9000 m", "patrol.area_m")),
+        ("patrol.separation_m=0", ("patrol.separation_m is 0 m", "800 m", "start.distance_m", "give 1000 m or more")),
         ("flight.until=flown", ("flight.until is 'flown'", "'verdict'")),
         ("sweep.keepout.radius_m=[200,210]", ("beside a sweep",)),
         ("vessel.manoeuvres=[{at_s=20.0,turn_deg=30.0}]", ("vessel.manoeuvres",)),
