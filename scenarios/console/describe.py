@@ -3,11 +3,13 @@
 import re
 import textwrap
 from collections.abc import Iterator
+from itertools import groupby
 
 from scenarios.errors import InputError
 from scenarios.schema.documented import DocumentedSection, documented_keys, documented_sections, similar_key
-from scenarios.schema.documented_parts import PART_SECTIONS, DocumentedKey
+from scenarios.schema.documented_parts import PART_SECTIONS, DocumentedKey, documented_part_keys
 from scenarios.schema.overrides import as_toml
+from scenarios.schema.sections.convergence import ConvergenceScenario
 
 _WIDTH = 100
 _INDENT = 10
@@ -30,14 +32,15 @@ def described(name: str | None = None) -> list[str]:
     # What is swept is a key of its own, and nu is one of sweep alone.
     plain = plain.removeprefix("sweep.")
     keys = [key for key in documented_keys() if key.key.replace(".0", "") == plain or (plain == "nu" and key.key == "sweep")]
-    sections = [section for section in documented_sections() if section.name and section.name.replace(".0", "") == plain]
+    kinds = (documented_sections(), documented_sections(ConvergenceScenario))
+    sections = next(filter(None, ([of for of in each if of.name and of.name.replace(".0", "") == plain] for each in kinds)), [])
     if not keys and not sections:
         guess = similar_key(plain)
         remedy = f"did you mean '{guess}'?" if guess else "plume-flight describe lists the sections"
         if plain.partition(".")[0] in PART_SECTIONS and "." in plain:
             remedy += " A key of a part of your own (FILE.py:NAME) is described in its file."
         raise InputError(f"unknown key '{name}'; {remedy}")
-    lines = [line for section in sections for line in _section(section)]
+    lines = [line for section in sections for line in (*_section(section), *_of_parts(section))]
     return [*lines, *(line for key in keys for line in _key(key))]
 
 
@@ -56,10 +59,22 @@ def _all_sections() -> Iterator[str]:
 def _section(section: DocumentedSection) -> Iterator[str]:
     entries = "A list, each entry with these keys. " if section.listed else ""
     yield from _wrapped("", f"[{section.name.replace('.0', '')}] {entries}{section.meaning}")
-    for key in section.keys:
-        default = "required" if key.required else value_text(key.default)
-        unit = f" {key.unit}" if key.unit not in ("", "-") and key.default is not None else ""
-        yield from _wrapped(f"  {key.key.rpartition('.')[2]:<28} {default}{unit}  ", key.meaning)
+    yield from (line for key in section.keys for line in _entry(key))
+
+
+def _entry(key: DocumentedKey) -> list[str]:
+    default = "required" if key.required else value_text(key.default)
+    unit = f" {key.unit}" if key.unit not in ("", "-") and key.default is not None else ""
+    return _wrapped(f"  {key.key.rpartition('.')[2]:<28} {default}{unit}  ", key.meaning)
+
+
+def _of_parts(section: DocumentedSection) -> Iterator[str]:
+    """Yield the keys that the parts bring which a section names."""
+    for part, keys in groupby(documented_part_keys(), key=lambda key: key.conditions):
+        listed = [key for key in keys if key.key.partition(".")[0] == section.name]
+        if listed:
+            yield from _wrapped("", f"With {' or '.join(part)} also:")
+            yield from (line for key in listed for line in _entry(key))
 
 
 def _key(key: DocumentedKey) -> Iterator[str]:

@@ -51,13 +51,13 @@ class SnifferSettings:
     exact : whether the instrument is as its data sheet says; otherwise gains, zeros, responses and cross-sensitivities are sampled
         within what is stated
     limit_percent : sulphur content that the verdict is on [% m/m]: 0.1 in an emission control area, 0.5 elsewhere
-    dynamic_pressure_fraction : of the dynamic pressure that the inlet passes on to the sensors [-]
+    dynamic_pressure_fraction : fraction of the dynamic pressure that the inlet passes on to the sensors [-]
     """
 
     sensor: str = field(default="electrochemical", metadata={"choices": flown_presets})
     exact: bool = False
     limit_percent: float = 0.1
-    dynamic_pressure_fraction: float = 0.2
+    dynamic_pressure_fraction: float = field(default=0.2, metadata={"limits": (0.0, 1.0)})
 
     def __post_init__(self) -> None:
         if self.sensor not in (known := flown_presets()):

@@ -5,7 +5,7 @@ import functools
 import re
 import typing
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from datetime import datetime
 from types import NoneType
 from typing import Any, Literal
@@ -63,7 +63,9 @@ def documented_sections(kind: type[BaseModel] = Scenario) -> tuple[DocumentedSec
 def documented_keys() -> list[DocumentedKey]:
     """Return every key of every kind of scenario file, in the order of the files, and then those that parts bring."""
     of_schemas = [key for kind, _ in _KINDS for section in documented_sections(kind) for key in section.keys]
-    return [*of_schemas, *documented_part_keys()]
+    # What a part brings needs the part, and perhaps more.
+    of_parts = [replace(key, conditions=(*key.conditions, *_conditions(key.key, FLIGHT_STUDIES))) for key in documented_part_keys()]
+    return [*of_schemas, *of_parts]
 
 
 def similar_key(name: str) -> str | None:

@@ -92,11 +92,12 @@ def _part_key(key: str, of: "Field[Any]", described: str) -> DocumentedKey:
     number = type(of.default) in (int, float)
     ranges: dict[type[Any], str] = {bool: "true or false", str: "text"}
     choices = of.metadata["choices"]() if "choices" in of.metadata else ()
+    limits = "a number from {:g} to {:g}".format(*of.metadata["limits"]) if "limits" in of.metadata else "a number"
     return DocumentedKey(
         key=key,
         meaning=meaning,
         unit=unit if number else "",
-        range=" or ".join(choices) or ranges.get(type(of.default), "a number"),
+        range=" or ".join(choices) or ranges.get(type(of.default), limits),
         default=of.default,
         required=False,
         studies=FLIGHT_STUDIES,

@@ -1,8 +1,9 @@
 """When keys of a scenario act: a rule for those that not every flight uses, with the part that would use them."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 
+from measurement.plume.settings import PlumeSettings
 from scenarios.schema.experiment_checks import FOLLOWING, UNSTEADY
 from scenarios.schema.scenario import Scenario
 
@@ -52,6 +53,11 @@ def _trims(scenario: Scenario) -> bool:
     return not scenario.follows and scenario.guidance.airspeed_trim
 
 
+def _smoke(key: str) -> Test:
+    """Return whether the project's smoke has a setting, or another plume model has whatever a key of that name means there."""
+    return lambda s: bool(s.plume.model != "fluctuating" or (s.plume.model_extra or {}).get(key, getattr(PlumeSettings, key)))
+
+
 def _law(*laws: str) -> Test:
     return lambda s: s.guidance.law in laws
 
@@ -87,18 +93,10 @@ def _also_of_own_laws(key: str, used: Test) -> Test:
 
 
 RULES = (
-    Rule(
-        keys=("guidance.phase_deg", "guidance.placement", "guidance.tracking_allowance_m"),
-        acts=lambda s: not s.follows and not s.circles,
-        user=_TRACKS,
-        by_mission=True,
-    ),
-    Rule(
-        keys=("guidance.tuning", "guidance.airspeed_trim", "guidance.command_limit"),
-        acts=lambda s: not s.follows,
-        user=_TRACKS,
-        by_mission=True,
-    ),
+    Rule(keys=("guidance.phase_deg", "guidance.placement", "guidance.tracking_allowance_m"),
+         acts=lambda s: not s.follows and not s.circles, user=_TRACKS, by_mission=True),
+    Rule(keys=("guidance.tuning", "guidance.airspeed_trim", "guidance.command_limit"), acts=lambda s: not s.follows,
+         user=_TRACKS, by_mission=True),
     Rule(
         keys=("guidance.phase_deg",),
         acts=lambda s: not s.guidance.approach or s.circles,
@@ -127,12 +125,8 @@ RULES = (
         by_mission=True,
     ),
     Rule(
-        keys=("guidance.keepout_guard", "guidance.reserve", "guidance.roll_rate_max_deg_s", "keepout.", "vessel.", "place."),
-        acts=lambda s: not s.circles,
-        user=_VESSEL,
-    ),
-    Rule(
         keys=(
+            "guidance.keepout_guard", "guidance.reserve", "guidance.roll_rate_max_deg_s", "keepout.", "vessel.", "place.",
             "plume.model", "plume.direction", "plume.heading_deg", "plume.elevation_deg", "flight.crossings",
             "flight.after_settling_s", "reference.shape",
         ),
@@ -188,6 +182,17 @@ RULES = (
          depends=("wind.speed_mps", "wind.table")),
     Rule(keys=("wind.height_m",), acts=lambda s: s.wind.roughness_m is not None,
          user="a wind with a profile over height: set wind.roughness_m", depends=("wind.roughness_m",)),
+    Rule(keys=tuple(f"plume.{of.name}" for of in fields(PlumeSettings)),
+         acts=lambda s: s.plume.model != "fluctuating" or s.emission.ship is not None, user="smoke: set emission.ship",
+         depends=("emission.ship",)),
+    Rule(keys=("plume.meander", "plume.meander_length_across", "plume.meander_length_up", "plume.structure_intensity",
+               "plume.structure_length"),
+         acts=lambda s: s.plume.model != "fluctuating" or not _smoke("mean")(s),
+         user="a realisation of smoke: leave plume.mean out", depends=("plume.mean",)),
+    Rule(keys=("plume.meander_length_across", "plume.meander_length_up"), acts=_smoke("meander"),
+         user="smoke that meanders: leave plume.meander out", depends=("plume.meander",)),
+    Rule(keys=("plume.structure_length",), acts=_smoke("structure_intensity"),
+         user="fluctuations within smoke: set plume.structure_intensity", depends=("plume.structure_intensity",)),
     Rule(keys=("plume.heading_deg",), acts=lambda s: not s.plume_by_wind,
          user="a plume at an angle from the bow: set plume.direction to 'given'", by_mission=True, depends=("plume.direction",)),
     Rule(keys=("following.apparent_wind_min_mps",), acts=lambda s: s.follows and s.plume_by_wind,
@@ -248,8 +253,8 @@ RULES = (
     Rule(keys=("criteria.crossing_interval_error", "criteria.crossing_interval_s", "criteria.crossing_distance_m",
                "criteria.modes_at_end"),
          acts=lambda s: not s.circles, user=_VESSEL),
-    Rule(keys=("statistics.",), acts=lambda s: s.study == "monte_carlo", user="a Monte Carlo study: set study to 'monte_carlo'"),
-    Rule(keys=("method",), acts=lambda s: s.study == "monte_carlo", user="a Monte Carlo study: set study to 'monte_carlo'"),
+    Rule(keys=("statistics.", "method"), acts=lambda s: s.study == "monte_carlo",
+         user="a Monte Carlo study: set study to 'monte_carlo'"),
     Rule(keys=("sampling",), acts=lambda s: s.study == "monte_carlo" and s.method == "plain" and bool(s.draws),
          user="a Monte Carlo study with random variables and plain sampling: set study to 'monte_carlo' and method to 'plain', and"
          " give draws"),

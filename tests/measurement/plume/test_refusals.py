@@ -79,7 +79,7 @@ def test_an_axis_without_a_track_there_is_refused():
     ],
 )
 def test_settings_out_of_range_are_refused(name, value):
-    with pytest.raises(MeasurementError, match=f"plume setting {name} is"):
+    with pytest.raises(MeasurementError, match=f"^{name} is"):
         PlumeSettings(**{name: value})
 
 

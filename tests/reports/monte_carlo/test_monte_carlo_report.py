@@ -234,7 +234,8 @@ def test_keys_that_name_their_unit_have_the_one_that_is_documented():
 
 
 def test_units_are_those_of_the_parameters_of_a_run_parts_of_its_scenario_among_them():
-    study = load_study("sea_wind", ["plume.model=fluctuating", 'draws=[{key="plume.age_max", uniform=[100.0, 300.0]}]'])
+    smoke = ["plume.model=fluctuating", "emission.ship=container", "plume.source_height_m=35"]
+    study = load_study("sea_wind", [*smoke, 'draws=[{key="plume.age_max", uniform=[100.0, 300.0]}]'])
     units = documented_units({"trial_parameters": {"study": json.loads(json.dumps(parameters(study)))}})
     assert input_label("plume.age_max", units) == "Plume age max [s]"
     assert input_label("vessel.manoeuvres.0.turn_deg", units) == "Vessel manoeuvre 1 turn [deg]"

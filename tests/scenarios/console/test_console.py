@@ -146,6 +146,16 @@ def test_sections_are_listed_and_described():
     for section in documented_sections():
         assert any(line.startswith(section.name.replace(".0", "") or "(top)") for line in listed)
     assert any(line.strip().startswith("speed_mps") for line in described("wind"))
+    # And a section of the study of convergence alone.
+    assert any(line.strip().startswith("trajectories") for line in described("ensemble"))
+
+
+def test_a_section_is_described_with_the_keys_of_its_parts():
+    plume = described("plume")
+    assert any(line.startswith("With plume.model 'fluctuating' also:") for line in plume)
+    assert any(line.strip().startswith("meander_length_up") for line in plume)
+    assert not any("sniffer" in line for line in plume)
+    assert any(line.strip().startswith("sensor") for line in described("payload"))
 
 
 def test_a_new_file_holds_every_key_with_its_meaning():

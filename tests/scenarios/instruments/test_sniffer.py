@@ -130,7 +130,7 @@ def test_a_flight_without_payload_is_flown_alike(slow):
         ("emission.ship=canoe", "emission.ship: ship 'canoe' is not known; there are container"),
         ("emission.fuel=coal", "fuel 'coal' is not known; there are mgo"),
         ("emission.sulphur_percent=7", "emission.sulphur_percent is 7; it must be at most 5 %"),
-        ("plume.richardson=5", "plume setting richardson is 5"),
+        ("plume.richardson=5", "plume.richardson is 5; give 0.01 to 2"),
         ("flight.altitude_min_m=200", "altitude_min_m is 200 m and altitude_max_m 120 m"),
     ],
 )

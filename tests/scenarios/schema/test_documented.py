@@ -7,7 +7,7 @@ import pytest
 from pydantic import RootModel
 
 from scenarios.schema.documented import documented_keys, documented_sections, similar_key
-from scenarios.schema.documented_parts import FLIGHT_STUDIES, documented_part_keys
+from scenarios.schema.documented_parts import FLIGHT_STUDIES
 from scenarios.schema.keys import known_keys
 from scenarios.schema.load import KINDS
 from scenarios.schema.scenario import Scenario
@@ -112,11 +112,18 @@ def test_conditions_say_what_uses_a_key():
 
 
 def test_keys_of_parts_say_which_part_has_them():
-    found = {key.key: key for key in documented_part_keys()}
+    found = {key.key: key for key in documented_keys()}
     assert found["guidance.npfg_period_s"].conditions == ("guidance.law 'npfg'",)
     assert (found["guidance.npfg_period_s"].default, found["guidance.npfg_period_s"].unit) == (10.0, "s")
     assert found["payload.limit_percent"].conditions == ("payload.instruments 'sniffer'",)
     assert found["plume.meander"].range == "true or false"
+    assert found["plume.structure_length"].range == "a number from 0.1 to 3"
+    assert found["plume.structure_length"].conditions == (
+        "plume.model 'fluctuating'",
+        "smoke: set emission.ship",
+        "a realisation of smoke: leave plume.mean out",
+        "fluctuations within smoke: set plume.structure_intensity",
+    )
     assert all(math.isfinite(key.default) for key in found.values() if isinstance(key.default, float))
 
 

@@ -81,6 +81,26 @@ def test_what_places_an_oscillation_in_exhaust_names_the_mission_beside_a_circle
         load_study("sulphur", ["guidance.mission=standoff", "following.distance=best_measurement"])
 
 
+@pytest.mark.parametrize(
+    ("scenario", "overrides", "words"),
+    [
+        ("sulphur", ["plume.structure_length=0.5"], "set plume.structure_intensity"),
+        ("sulphur", ["plume.meander=false", "plume.meander_length_up=1"], "leave plume.meander out"),
+        ("sulphur", ["plume.mean=true", "plume.structure_intensity=0.3"], "leave plume.mean out"),
+        ("sea_wind", ["plume.model=fluctuating", "plume.richardson=0.5"], "set emission.ship"),
+    ],
+)
+def test_a_setting_of_smoke_that_other_settings_leave_idle_is_refused(scenario, overrides, words):
+    with pytest.raises(InputError, match=f"'{overrides[-1].partition('=')[0]}' has no effect here.*{words}"):
+        load_study(scenario, overrides)
+
+
+def test_a_setting_of_smoke_is_accepted_beside_what_it_needs():
+    overrides = ["plume.structure_length=0.5", "plume.structure_intensity=0.3", "plume.meander_length_up=1"]
+    assert load_study("sulphur", overrides).plume.model == "fluctuating"
+    assert load_study("sulphur", ["plume.structure_length=0.5", "sweep.plume.structure_intensity=[0.0,0.3]"])
+
+
 def test_the_height_of_the_wind_needs_a_profile_also_where_its_speed_is_sampled():
     with pytest.raises(InputError, match=r"'wind\.height_m' has no effect here.*set wind\.roughness_m"):
         load_study("plume_search", ["wind.height_m=20"])
