@@ -19,6 +19,7 @@ _FAMILIES: tuple[tuple[str, str, Style], ...] = (
     ("with the reference's turn fed forward", "blue", "points"),
     ("without it, on its tangent or circle (M1, M2)", "green", "diamonds"),
     ("without it, at its place (M3)", "orange", "square"),
+    ("it does not say what it makes use of", "grey", "cross"),
 )
 """What a law makes use of, and the colour and style of its mark."""
 
@@ -130,10 +131,12 @@ def _title(condition: str) -> str:
 
 
 def _family(entrant: Entrant) -> str:
-    forward, tangent, place = (label for label, _, _ in _FAMILIES)
+    forward, tangent, place, unknown = (label for label, _, _ in _FAMILIES)
     if "turn rate" in entrant.given or "curvature" in entrant.given:
         return forward
-    return place if "M3" in entrant.given else tangent
+    if "M1" in entrant.given or "M2" in entrant.given:
+        return tangent
+    return place if "M3" in entrant.given else unknown
 
 
 def crossing_chart(arena: Arena) -> Chart:

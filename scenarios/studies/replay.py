@@ -26,6 +26,8 @@ from scenarios.studies.single_flight import SingleFlight
 _TABLES = (SUMMARY, COMPARISON)
 """Tables that may have the row of a flight."""
 
+_ONLY_FLIGHTS = "only single flights can be replayed"
+
 NOT_COMPARED = ("wall_time_s",)
 """Columns that differ between repetitions of the same flight."""
 
@@ -52,6 +54,8 @@ class Replay(SingleFlight):
         if "replayed" in manifest:
             raise InputError(f"'{self._from}' is the run of a replay; give the flight as RUN_DIR/flights/ID of its original run")
         self._task, self._table, self._row = self._found()
+        if "trial" not in self._row:
+            raise InputError(f"'{self._from}' is a study of {manifest.get('study')}; {_ONLY_FLIGHTS}")
         if viewer and self._row.get("fidelity") != "six_dof":
             raise InputError(f"--flightgear shows aircraft in six degrees of freedom; '{self._flight_id}' is a kinematic flight")
         try:
@@ -106,7 +110,7 @@ class Replay(SingleFlight):
         The trial comes from the manifest, scaled to its aircraft, and not from the catalog, which may have changed.
         """
         if "trials" not in manifest:
-            raise InputError(f"'{self._from}' is a study of {manifest.get('study')}; only single flights can be replayed")
+            raise InputError(f"'{self._from}' is a study of {manifest.get('study')}; {_ONLY_FLIGHTS}")
         trial, task, trials = self._row["trial"], self._task, manifest["trials"]
         for name in (trial, *trials):
             # It becomes part of the names of files.

@@ -75,6 +75,15 @@ def test_there_is_one_mark_a_law_numbered_as_in_the_tables(arena):
     assert any(math.isclose(float(y), math.log10(error)) for line in panel.lines for y in line.y)
 
 
+def test_a_law_that_does_not_say_what_it_makes_use_of_is_not_said_to_leave_the_turn_out(arena):
+    first, *others = arena.entrants
+    unsaid = replace(arena, entrants=[replace(first, given="its class does not say (given)"), *others])
+    (panel,) = effort_charts(unsaid)[0].panels
+    labels = {line.label: len(line.x) for line in panel.lines}
+    assert labels["it does not say what it makes use of"] == 1
+    assert sum(labels.values()) == 2
+
+
 def test_the_limit_of_any_path_is_drawn_and_listed_where_it_is_known(arena):
     chart = crossing_chart(arena)
     limits = [line for panel in chart.panels for line in panel.lines if line.label == "limit of any path"]

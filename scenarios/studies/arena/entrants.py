@@ -82,11 +82,13 @@ def entrants_of(scenario: Scenario) -> tuple[list[Entrant], list[Refused]]:
             raise InputError(f"laws: {error}") from None
         for task, laws in listed.items():
             if laws.count(law) > 1:
-                raise InputError(f"laws: '{law}' is named {laws.count(law)} times for {task}; name each law once")
+                raise InputError(
+                    f"laws: '{law}' is named {laws.count(law)} times for {task}; laws adds to arena.{task}: name each law once"
+                )
             if reasons[task]:
                 refused.append(Refused(law=law, task=task, reason=reasons[task]))
             elif law in laws:
-                given = str(getattr(STEERING_LAWS.get(law), "given", "as its file says"))
+                given = str(getattr(STEERING_LAWS.get(law), "given", "its class does not say (given)"))
                 entrants.append(Entrant(name=_name(law, task), law=law, task=task, given=given, defaults=defaults))
     names = [entrant.name for entrant in entrants]
     for name in names:

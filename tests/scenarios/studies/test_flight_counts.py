@@ -109,6 +109,7 @@ def test_a_handful_of_flights_bounds_no_probability():
     ("quality", "verdict", "words"),
     [
         ("A", "above", "above the limit of 0.10 %; probability above it: 99.0 %"),
+        ("A", "below", "below the limit of 0.10 %; probability above it: 99.0 %"),
         ("B", "open", "not shown to be above or below the limit of 0.10 %; probability above it: 94.0 %"),
         ("C", "open", "no verdict on the limit of 0.10 %: quality C gives none"),
     ],
@@ -122,7 +123,8 @@ def test_the_sulphur_of_one_flight_is_stated_with_its_interval_and_of_several_by
     (line,) = FlightCounts.of([row], planned=1).sulphur_lines()
     assert line == f"fuel sulphur 0.200 %, 95 % interval 0.120 to 0.280 %: {words}"
     (line,) = FlightCounts.of([row] * 3, planned=3).sulphur_lines()
-    called = {"above": "3 above the limit", "open": "3 undecided"}[verdict] if quality != "C" else "3 without a verdict (quality C)"
+    sides = {"above": "3 above the limit", "below": "3 below the limit", "open": "3 undecided"}
+    called = sides[verdict] if quality != "C" else "3 without a verdict (quality C)"
     assert line.startswith("fuel sulphur of 3 flights: ")
     assert called in line
     assert FlightCounts.of([{**row, "fsc_percent": float("nan")}], planned=1).sulphur_lines() == []

@@ -16,6 +16,7 @@ from scenarios.studies.patrol.ships import sampled_patrol
 from scenarios.studies.patrol.tables import patrol_figures, ship_row, wind_row
 from scenarios.studies.patrol.work import PatrolWork
 from scenarios.studies.registry import run_study
+from scenarios.studies.replay import Replay
 from scenarios.world.world import mean_wind, vessel_of
 from tests.in_process import assert_refused, run_command
 from tests.run_tables import rows_of
@@ -56,6 +57,13 @@ def test_both_ships_are_served_with_the_right_verdict_and_the_run_is_met(run):
         assert ship["verdict"] == ship["truth"] == ("above" if ship["fsc_fuel_percent"] > 0.15 else "below")
         # r_min of the keep-out sphere, by default.
         assert min(ship["min_distance_m"], ship["others_distance_min_m"]) > 200.0
+
+
+def test_a_patrol_of_the_summary_is_no_flight_to_replay(run):
+    _, out = run
+    (row,) = rows_of(out)
+    with pytest.raises(InputError, match="is a study of patrol; only single flights can be replayed"):
+        Replay(str(out / "flights" / row["flight_id"]))
 
 
 def test_stretches_follow_each_other_in_time_and_place_and_fit_into_the_endurance(run):
