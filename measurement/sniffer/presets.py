@@ -70,7 +70,9 @@ def read_spec(table: Mapping[str, Any], name: str) -> SnifferSpec:
     """
     known = {"title", "rate_hz", "source", "channels"}
     if unknown := sorted(set(table) - known):
-        raise MeasurementError(f"instrument '{name}' has the key '{unknown[0]}'; it may have {', '.join(sorted(known))}")
+        raise MeasurementError(
+            f"instrument '{name}' has the key '{unknown[0]}'{guess(unknown[0], known)} it may have {', '.join(sorted(known))}"
+        )
     channels = table.get("channels")
     if not isinstance(channels, dict) or not channels:
         raise MeasurementError(f"instrument '{name}' has no channels; give a table [channels.so2], one [channels.co2], and so on")
@@ -84,12 +86,12 @@ def read_spec(table: Mapping[str, Any], name: str) -> SnifferSpec:
 
 
 def _channel(gas: str, table: Any, name: str) -> Channel:
-    where = f"channel '{gas}' of '{name}'"
+    where = f"channel '{gas}' of instrument '{name}'"
     if gas not in GASES or not isinstance(table, dict):
         raise MeasurementError(f"{where} is not known; channels are tables called {', '.join(GASES)}")
     keys = {field.name for field in fields(Channel)} - {"gas"}
     if unknown := sorted(set(table) - keys):
-        raise MeasurementError(f"{where} has the key '{unknown[0]}'; it may have {', '.join(sorted(keys))}")
+        raise MeasurementError(f"{where} has the key '{unknown[0]}'{guess(unknown[0], keys)} it may have {', '.join(sorted(keys))}")
     given: dict[str, Any] = dict(_UNKNOWN[gas])
     # A time that is given without its deviation is taken to be known to 10 %, a delay to 0.5 s (assumptions).
     given |= {"t90_sd": 0.1} if "t90_s" in table else {}
@@ -103,7 +105,10 @@ def _channel(gas: str, table: Any, name: str) -> Channel:
             given[key] = _number(value, key, where)
     if "cross" in table and "cross_sd" not in table:
         given |= {"cross_sd": {other: _CROSS_KNOWN * abs(share) for other, share in given["cross"].items()}}
-    return Channel(gas=gas, **given)
+    try:
+        return Channel(gas=gas, **given)
+    except MeasurementError as error:
+        raise MeasurementError(f"{where}: {error}") from None
 
 
 def _number(value: Any, key: str, where: str) -> float:

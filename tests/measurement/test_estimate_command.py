@@ -127,6 +127,18 @@ def test_seconds_since_1970_are_written_in_full(logged):
     np.testing.assert_array_equal(written["time_s"], table["time_s"])
 
 
+def test_a_latitude_that_is_none_is_refused_with_its_row(logged, capsys):
+    table = pd.read_csv(logged).drop(columns=["north_m", "east_m"])
+    table["latitude_deg"], table["longitude_deg"] = 55.0, 11.0
+    table.loc[3, "latitude_deg"] = 95.0
+    table.to_csv(logged, index=False)
+    assert run(logged) == 2
+    told = capsys.readouterr().err
+    # The head line is row 1.
+    assert "flight.csv': latitude is 95 deg in row 5; it must be -90 to 90" in told
+    assert told.count("\n") == 1
+
+
 @pytest.mark.parametrize(
     ("config", "message"),
     [
@@ -139,6 +151,13 @@ def test_seconds_since_1970_are_written_in_full(logged):
         ("carbon = 87", "instrument.toml': carbon is 87; a fuel's mass share of carbon must be 0.5 to 0.95"),
         ("limits_percent = [-1]", "instrument.toml': limits_percent is [-1]; give one or more numbers above 0, up to 10 % m/m"),
         ("limits_percent = []", "limits_percent is []"),
+        ("limits_percent = [0.5, 0.1, 0.1]", "limits_percent is [0.5, 0.1, 0.1]; give each limit once"),
+        (
+            "[instrument.channels.so2]\ngain = 0.03",
+            "instrument.toml': channel 'so2' of instrument 'instrument': gain of so2 is 0.03",
+        ),
+        ("[instrument.channels.so2]\nt90_s = -3", "instrument.toml': channel 'so2' of instrument 'instrument': t90 is -3 s"),
+        ("[instrument.channels.so2]\nt90 = 3", "has the key 't90'; did you mean 't90_s'? it may have"),
         ("method = 'magic'", "method is 'magic'"),
         ("limits_percent = 0.1", "limits_percent is 0.1; give a list"),
         ("[columns]\nso3 = 'x'", "[columns] has the key 'so3'"),

@@ -81,6 +81,8 @@ def read_config(path: Path) -> LogConfig:
     limits = table.get("limits_percent", list(LIMITS_PERCENT))
     if not isinstance(limits, list) or not limits or not all(_is_number(limit) for limit in limits):
         raise MeasurementError(f"'{path}': limits_percent is {limits!r}; give a list of numbers, as in [0.10, 0.50]")
+    if len(set(limits)) < len(limits):
+        raise MeasurementError(f"'{path}': limits_percent is {limits!r}; give each limit once")
     missing = table.get("missing", [])
     if not isinstance(missing, list) or not all(_is_number(code) for code in missing):
         raise MeasurementError(f"'{path}': missing is {missing!r}; give a list of numbers, as in [-9999]")
@@ -103,13 +105,13 @@ def read_config(path: Path) -> LogConfig:
 
 
 def _instrument(value: Any, path: Path) -> SnifferSpec:
-    if isinstance(value, str):
-        try:
+    try:
+        if isinstance(value, str):
             return sensor_preset(value)
-        except MeasurementError as error:
-            raise MeasurementError(f"'{path}': {error}") from None
-    if isinstance(value, dict):
-        return read_spec(value, path.stem)
+        if isinstance(value, dict):
+            return read_spec(value, path.stem)
+    except MeasurementError as error:
+        raise MeasurementError(f"'{path}': {error}") from None
     raise MeasurementError(
         f"'{path}': instrument is {value!r}; give the name of a preset, or a table [instrument] with its channels"
     )

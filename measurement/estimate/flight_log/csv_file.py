@@ -164,6 +164,13 @@ def _place(table: pd.DataFrame, config: LogConfig, path: Path) -> dict[str, Arra
     """Return where the flight was, on a plane about its first known place."""
     names = ("latitude", "longitude", "north", "east", "height")
     found = {name: _numbers(table, config.columns[name], path) for name in names if config.columns[name] in table}
+    for name, most in (("latitude", 90.0), ("longitude", 360.0)):
+        if name in found and (beyond := np.abs(found[name]) > most).any():
+            row = int(np.argmax(beyond))
+            raise MeasurementError(
+                f"'{path}': {name} is {found[name][row]:g} deg in row {row + 2}; it must be {-most:g} to {most:g}: correct it,"
+                " leave it empty, or name what stands for a missing one in the configuration, as in missing = [-9999]"
+            )
     place = {}
     if {"north", "east"} <= set(found):
         place = {"north_m": found["north"], "east_m": found["east"]}

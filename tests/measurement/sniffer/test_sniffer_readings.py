@@ -126,9 +126,9 @@ def test_sniffers_that_cannot_be_are_refused():
     [
         ({}, "has no channels"),
         ({"channels": {"so2": {}}, "colour": 1}, "has the key 'colour'"),
-        ({"channels": {"ozone": {}}}, "channel 'ozone' of 'x' is not known"),
+        ({"channels": {"ozone": {}}}, "channel 'ozone' of instrument 'x' is not known"),
         ({"channels": {"so2": {"t80_s": 1}}}, "has the key 't80_s'"),
-        ({"channels": {"so2": {"t90_s": "fast"}}}, "t90_s of channel 'so2' of 'x' is 'fast'; it must be a number"),
+        ({"channels": {"so2": {"t90_s": "fast"}}}, "t90_s of channel 'so2' of instrument 'x' is 'fast'; it must be a number"),
         ({"channels": {"so2": {"cross": 0.1}}}, "give a table"),
         ({"rate_hz": True, "channels": {"so2": {}}}, "rate_hz of x is True"),
     ],
