@@ -32,6 +32,15 @@ def driver_charts(statistics: dict[str, Any]) -> list[Chart]:
     return [_bars(key, found) for key, found in statistics["sensitivity"].items() if found["inputs"]]
 
 
+def not_shown(more: int, measure: str) -> str:
+    """Return how many inputs a figure leaves out, whose measure is smaller than that of the others; empty if none."""
+    return (
+        f" {more} {'input' if more == 1 else 'inputs'} with a smaller {measure} {'is' if more == 1 else 'are'} not shown."
+        if more
+        else ""
+    )
+
+
 def _bars(key: str, found: dict[str, Any]) -> Chart:
     inputs = found["inputs"][:INPUTS_MAX]
     more = len(found["inputs"]) - len(inputs)
@@ -39,8 +48,7 @@ def _bars(key: str, found: dict[str, Any]) -> Chart:
     names = [input_name(index["key"]) for index in inputs]
     return Chart(
         name=f"drivers-{key.replace('_', '')}",
-        caption=f"{FIGURES[key].name}: {found['flights']:,} flights{of}."
-        + (f" {more} inputs with smaller δ are not shown." if more else ""),
+        caption=f"{FIGURES[key].name}: {found['flights']:,} flights{of}." + not_shown(more, "δ"),
         panels=[
             _index_panel(inputs, "delta", found["delta_floor"], "Borgonovo's δ [-]", names, FIGURES[key].name),
             _index_panel(inputs, "first_order", found["first_order_floor"], "First-order index S₁ [-]", [""] * len(names), ""),

@@ -85,9 +85,11 @@ def _in_words(config: dict[str, Any], search: dict[str, Any], flights: pd.DataFr
     )
     # Of points within what is declared some may have no flight: they cannot be planned, or their process was lost.
     within = sum(of["flights"] for name, of in search["methods"].items() if name != _CONFIRMATION)
-    left_out = f"; {within - len(searched):,} more were not flown or not measured" if within > len(searched) else ""
+    unmeasured = within - len(searched)
+    left_out = f"; {unmeasured:,} more {'was' if unmeasured == 1 else 'were'} not flown or not measured" if unmeasured > 0 else ""
     if (beyond := search["proposed"] - within) > 0:
-        left_out += f"; {beyond:,} more points were not flown, as they lie beyond what the scenario declares"
+        points = "point was not flown, as it lies" if beyond == 1 else "points were not flown, as they lie"
+        left_out += f"; {beyond:,} more {points} beyond what the scenario declares"
     return (
         f"A search over {len(config['draws'])} inputs within their declared ranges by {methods}: {budget}, {len(searched):,}"
         f" flights{left_out}. {found} A search finds the worst flight within its budget and proves no bound."

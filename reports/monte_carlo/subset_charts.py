@@ -6,7 +6,7 @@ import numpy as np
 
 from reports.document.chart import Chart, Line, Panel
 from reports.document.palette import Meaning
-from reports.monte_carlo.driver_charts import INPUTS_MAX, bar_line
+from reports.monte_carlo.driver_charts import INPUTS_MAX, bar_line, not_shown
 from reports.monte_carlo.names import FIGURES, Units, input_label, input_name
 from reports.run.columns import Array
 
@@ -69,7 +69,7 @@ def distance_chart(statistics: dict[str, Any]) -> list[Chart]:
         y_names=list(zip(place.tolist(), [input_name(entry["key"]) for entry in inputs], strict=True)),
     )
     more = len(statistics["inputs"]) - len(inputs)
-    caption = "What sets the nearest flights apart." + (f" {more} inputs with smaller distances are not shown." if more else "")
+    caption = "What sets the nearest flights apart." + not_shown(more, "distance")
     return [Chart(name="rare-inputs", caption=caption, panels=[panel], panel_height=0.12 + 0.025 * len(inputs))]
 
 

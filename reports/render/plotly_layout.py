@@ -116,9 +116,10 @@ class _Place:
         self._gap = _BELOW_LABELS + _TITLE * self._titled if below_labels or not chart.share_x else _BELOW
         rows = chart.rows + bool(chart.last_height)
         self._inner = round(width * chart.height) + (rows - 1) * (self._gap if below_labels else 0)
-        self.top = _BAR + _LEGEND_ROW * _legend_rows(chart.labels, width - _MARGINS) + _TITLE * self._titled + 6
         first = [name for panel in chart.panels[:: chart.columns] for _, name in panel.y_names]
         self._width = width - _MARGINS - _CHARACTER * max(map(len, first), default=0)
+        # Plotly has the legend as wide as the panels, which names of an ordinate leave less room.
+        self.top = _BAR + _LEGEND_ROW * _legend_rows(chart.labels, self._width) + _TITLE * self._titled + 6
         lines = max(len(wrapped(panel.x_label, self.room(i)[0])) for i, panel in enumerate(chart.panels))
         self.bottom = _BOTTOM + _LABEL_LINE * (lines - 1)
         self.height = self._inner + self.top + self.bottom

@@ -159,6 +159,20 @@ def test_a_legend_of_several_rows_stays_clear_of_the_bar_of_buttons():
     assert figure["narrow"]["margin"]["t"] - 6 - 30 * len(labels) >= 28
 
 
+def test_names_of_an_ordinate_leave_the_legend_fewer_entries_in_a_row():
+    lines = [
+        Line(x=np.array([0.0, 1.0]), y=np.array([0.0, 1.0]), label=label, colour="blue")
+        for label in ("above the noise floor", "not above it", "noise floor")
+    ]
+    names = [(0.0, "Vessel manoeuvre 1 acceleration")]
+    plain, named = (
+        draw(Chart(name="c", caption="", panels=[Panel(x_label="a [m]", y_label="b", lines=lines, y_names=of)]))["narrow"]
+        for of in ((), names)
+    )
+    # As measured in Chromium at 520 px: two rows beside numbers, and one for each entry beside these names.
+    assert named["margin"]["t"] - plain["margin"]["t"] == 30
+
+
 def test_names_of_an_ordinate_have_room_beside_the_panel_to_their_left():
     names = [(0.0, "holding off"), (1.0, "tracking")]
     plain = draw(a_chart(2, columns=2))["layout"]

@@ -98,6 +98,7 @@ def search_manifest(flights: Sequence[SearchedFlight], worst: Sequence[SearchedF
 def _of_method(flights: Sequence[SearchedFlight]) -> dict[str, Any]:
     return {
         "flights": len(flights),
+        "measured": sum(flight.measured for flight in flights),
         "violations": sum(flight.violates for flight in flights),
         "worst_clearance_m": _least(flights),
     }
@@ -123,6 +124,7 @@ def search_lines(found: dict[str, Any]) -> Iterator[str]:
     """Yield what a search has found in lines of text, from its entry in the manifest."""
     for name, of in found["methods"].items():
         flights = f"{of['flights']} flight{'s' * (of['flights'] != 1)}"
+        flights += f" ({of['measured']} could be flown and measured)" if 0 < of["measured"] < of["flights"] else ""
         yield f"  {name or 'no method'}: {flights}, {of['violations']} violated, {_outside(of['worst_clearance_m'])}"
     for rank, flight in enumerate(found["worst"][:1], start=1):
         repeats = (

@@ -1,7 +1,9 @@
 """What a report says of the methods of a search."""
 
 import pandas as pd
+import pytest
 
+from reports.monte_carlo.driver_charts import not_shown
 from reports.monte_carlo.falsification import _in_words, _methods
 
 
@@ -32,6 +34,17 @@ def test_repeats_are_no_violations_of_the_search_and_flights_without_a_measureme
     assert "the deepest by 10.0 m" in words
     assert "beyond what the scenario declares" not in words
     assert "; 2 more points were not flown, as they lie beyond what the scenario declares. 2 of" in in_words(50)
+    assert "; 1 more point was not flown, as it lies beyond what the scenario declares. 2 of" in in_words(49)
+    one = in_words(48, [*VIOLATED, *[(250.0, 0, "")] * 7])
+    assert "47 flights; 1 more was not flown or not measured." in one
+
+
+@pytest.mark.parametrize(
+    ("more", "words"),
+    [(0, ""), (1, " 1 input with a smaller distance is not shown."), (3, " 3 inputs with a smaller distance are not shown.")],
+)
+def test_inputs_that_a_figure_leaves_out_are_counted_in_words(more, words):
+    assert not_shown(more, "distance") == words
 
 
 def test_a_repeat_that_came_closer_than_the_search_is_told_beside_it():
