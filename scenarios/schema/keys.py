@@ -1,5 +1,6 @@
 """The dotted keys that a schema knows, and what is wrong with the value of one."""
 
+import json
 import re
 import typing
 from collections.abc import Iterable, Iterator, Mapping, Sequence
@@ -103,7 +104,7 @@ def _explained(key: str, entry: ErrorDetails, kind: type[BaseModel]) -> str:
         return f"{key} is {value!r}; {demanded}"
     remedy = f"; {text[0].lower()}{text[1:]}"
     if error_type == "tuple_type":
-        remedy = "; give a list in brackets, as in [0.5] or [400, 800]"
+        remedy = f"; give a list in brackets, as in {_list_example(kind, key, value)}"
     elif error_type == "too_short":
         remedy = "; give at least one value"
     elif error_type == "model_type":
@@ -125,13 +126,45 @@ def _own_words(key: str, text: str, section: object) -> str:
 
 def _of_field(kind: type[BaseModel], key: str) -> dict[str, Any]:
     """Return unit and default of a dotted key, as far as the schema has it."""
+    field = _field(kind, key)
+    return {"unit": split_unit(line(field.description or ""))[1], "default": field.default} if field else {}
+
+
+def _field(kind: type[BaseModel], key: str) -> FieldInfo | None:
+    """Return the field of a dotted key, if the schema has it."""
     model: type[BaseModel] | None = kind
     field: FieldInfo | None = None
     for part in key.split("."):
         if not part.isdecimal():
             field = model.model_fields.get(part) if model else None
             model = next(models_in(field.annotation), (None, False))[0] if field else None
-    return {"unit": split_unit(line(field.description or ""))[1], "default": field.default} if field else {}
+    return field
+
+
+def _list_example(kind: type[BaseModel], key: str, value: object) -> str:
+    """Return how a list is written: one of sections by what they need, one of two values, of words, or of numbers.
+
+    Parameters
+    ----------
+    value : what was given in its place, of which the example consists if it can
+    """
+    if entry := entry_model(kind, key.split(".")):
+        needed = {name: example_value(field) for name, field in entry.model_fields.items() if field.is_required()}
+        return f"[{{ {', '.join(f'{name} = {json.dumps(of)}' for name, of in needed.items())} }}]"
+    field = _field(kind, key)
+    lists = [of for of in _with_members(field.annotation) if typing.get_origin(of) is tuple] if field else []
+    members = typing.get_args(lists[0]) if lists else ()
+    if any(of is str or typing.get_origin(of) is typing.Literal for member in members for of in _with_members(member)):
+        return json.dumps([value if isinstance(value, str) and value else "name"])
+    number = isinstance(value, int | float) and not isinstance(value, bool)
+    if members and Ellipsis not in members:
+        return str([value] * len(members)) if number else "[400, 800]"
+    return f"[{value}]" if number else "[0.5] or [400, 800]"
+
+
+def _with_members(annotation: Any) -> list[Any]:
+    """Return a type, and those that it is a union of."""
+    return [annotation, *typing.get_args(annotation)]
 
 
 def split_unit(description: str) -> tuple[str, str]:
@@ -163,7 +196,9 @@ def entry_model(kind: type[BaseModel], parts: Sequence[str]) -> type[BaseModel] 
 
 def example_value(field: FieldInfo) -> object:
     """Return a value that a required key of an entry may have: only to show how it is written."""
-    return field.examples[0] if field.examples else "name" if field.annotation is str else 100
+    if field.examples:
+        return field.examples[0]
+    return {} if typing.get_origin(field.annotation) is dict else "name" if field.annotation is str else 100
 
 
 def models_in(annotation: Any) -> Iterator[tuple[type[BaseModel], bool]]:

@@ -14,7 +14,11 @@ _LIMITS = {
 
 _NO_NUMBER = re.compile(r"float_(parsing|type)|finite_number")
 _NOT_WHOLE = re.compile(r"int_(parsing|type|from_float)")
-_OTHERS = {"bool": "it must be true or false", "datetime": "it must be a time, as 2026-06-01T12:00:00Z"}
+_OTHERS = {
+    "bool": "it must be true or false",
+    "string": "it must be text, in quotes",
+    "datetime": "it must be a time, as 2026-06-01T12:00:00Z",
+}
 """What pydantic's names of errors begin with, up to the first underscore, and what to say."""
 
 _LEADING_NUMBER = re.compile(r"\s*([-+]?\d+(\.\d+)?)")

@@ -209,3 +209,27 @@ def test_a_track_of_ones_own_may_have_manoeuvres_that_end(tmp_path):
 def test_keeping_out_is_not_required_of_a_circle_which_has_no_vessel():
     with pytest.raises(InputError, match=r"case 'sim1': criteria\.required is 'keep_out', and a circle has no area to keep out of"):
         Experiment("paper", load_study("paper", ["criteria.required=keep_out"]))
+
+
+@pytest.mark.parametrize(
+    ("name", "override", "words"),
+    [
+        ("sea_wind", "reports.interval_s=5", "reports.interval_s: value is 5; give a list in brackets, as in [5, 5]"),
+        ("sea_wind", "speed_ratio=low", "as in [400, 800]"),
+        ("sweep_nu", "sweep.nu=0.5", "as in [0.5]"),
+        ("sea_wind", "vessel.manoeuvres=3", "as in [{ at_s = 100 }]"),
+        ("sea_wind", "comparison.variants=3", 'as in [{ name = "name", set = {} }]'),
+        ("sea_wind", "payload.instruments=sniffer", 'as in ["sniffer"]'),
+        ("convergence", "guidance.laws=cascade", 'as in ["cascade"]'),
+    ],
+)
+def test_a_value_in_the_place_of_a_list_is_refused_with_a_list_of_that_kind(name, override, words):
+    with pytest.raises(InputError) as refusal:
+        load_study(name, [override])
+    assert str(refusal.value).endswith(words)
+
+
+@pytest.mark.parametrize("override", ["guidance.law=3", "title=3"])
+def test_a_number_in_the_place_of_text_is_refused_in_words(override):
+    with pytest.raises(InputError, match="is 3; it must be text, in quotes"):
+        load_study("sea_wind", [override])
