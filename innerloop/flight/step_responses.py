@@ -32,10 +32,6 @@ CHANNELS: dict[str, tuple[str, float]] = {
 """Recorded quantities, by their name in the closed loop: JSBSim property and SI value of its unit."""
 
 
-_LONG_PERIOD = 25.0
-"""Period after one of which the autopilot follows a sinusoid as it will go on doing [s]: its lag is then the same to 1e-6 of it."""
-
-
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Response:
     """Response to a step of one command.
@@ -110,7 +106,7 @@ def flown_step(aircraft: AutopilotedAircraft, start: Trim, command: str, size: f
 
 def measure_lag(aircraft: AutopilotedAircraft, start: Trim, bank: float) -> float:
     """Return how long the flown heading rate lags its command [s]: the phase of a sinusoid, fitted over two periods
-    after two; over one after one where a period is long.
+    after two.
 
     Half the heading rate of a turn at ``bank`` [rad] is the sinusoid's amplitude, and its frequency is that heading
     rate itself, near which those of the guidance lie.
@@ -120,14 +116,13 @@ def measure_lag(aircraft: AutopilotedAircraft, start: Trim, bank: float) -> floa
     aircraft.release(start.state(), airspeed=start.airspeed, altitude=start.altitude)
     node = aircraft.fdm.node(HEADING_RATE)
     period = round(2.0 * math.pi / frequency / TIME_STEP)
-    fitted = period if period * TIME_STEP > _LONG_PERIOD else 2 * period
-    time = TIME_STEP * np.arange(2 * fitted)
-    flown = np.empty(2 * fitted)
+    time = TIME_STEP * np.arange(4 * period)
+    flown = np.empty(4 * period)
     for i, t in enumerate(time):
         aircraft.command_heading_rate(amplitude * math.sin(frequency * float(t)))
         aircraft.fdm.run()
         flown[i] = node.get_double_value()
-    last = slice(fitted, None)
+    last = slice(2 * period, None)
     phasor = np.sum(flown[last] * np.exp(-1j * frequency * time[last]))
     commanded = np.sum(np.sin(frequency * time[last]) * np.exp(-1j * frequency * time[last]))
     return float(-np.angle(phasor / commanded) / frequency)
