@@ -112,10 +112,12 @@ class Navigation:
 
     def _reckon(self, airspeed: float, air_course: float) -> None:
         time_step, wind = self._parameters.time_step, self.wind
+        before_north, before_east = self.velocity_north, self.velocity_east
         self.velocity_north = wind.north + airspeed * math.cos(air_course)
         self.velocity_east = wind.east + airspeed * math.sin(air_course)
-        self.north += time_step * self.velocity_north
-        self.east += time_step * self.velocity_east
+        # By the mean of the velocities at both ends: by one of them half a turn would be wrong by the way of a step.
+        self.north += 0.5 * time_step * (before_north + self.velocity_north)
+        self.east += 0.5 * time_step * (before_east + self.velocity_east)
         self.lost += time_step
         # The wind wanders on meanwhile.
         self._unmeasured += time_step
