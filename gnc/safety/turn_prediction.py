@@ -2,6 +2,7 @@
 
 import math
 from collections import deque
+from collections.abc import Sequence
 
 from gnc.safety.given_commands import commands_under_way
 
@@ -20,6 +21,12 @@ full reversal [-].
 """
 Start = tuple[float, float, float, float]
 """x, y, course and heading rate."""
+
+Place = tuple[float, float, float, float]
+"""x, y, course, and the distance that is allowed for there [m]."""
+
+_REFINED = 3
+"""Steps in which the closest approach between two points is found [-]: each squares the error of the one before."""
 
 
 class TurnPrediction:
@@ -123,8 +130,8 @@ class TurnPrediction:
         half, lag = 0.5 * acceleration, self._lag
         # The farther the vehicle has to roll into the turn, or rolled of late, the more it deviates; where it is now not yet.
         fixed += (deviation := self._deviation * max(change, 0.5 - 0.5 * side * heading_rate / self._rate))
-        slack = (away := sqrt(x * x + y * y)) - fixed - (error + half * time) * time
-        least = slack + deviation
+        slack = (away := sqrt(x * x + y * y)) - (allowed := fixed + (error + half * time) * time)
+        least, places = slack + deviation, [(x, y, course, allowed)]
         outward = side * (y * cos(course) - x * sin(course))
         if -self._passed * away < outward < 0.0 and x * cos(course) + y * sin(course) > 0.0:
             # As far beyond straight away as a turn leads that ends there: it is over.
@@ -144,7 +151,8 @@ class TurnPrediction:
             fade *= decay
             last, before, before_outward = slack, rise, outward
             outward = side * (y * cos_m - x * sin_m)
-            slack = sqrt(x * x + y * y) - fixed - (error + half * time) * time
+            slack = sqrt(x * x + y * y) - (allowed := fixed + (error + half * time) * time)
+            places.append((x, y, course, allowed))
             rise = slack - last
             slack_rate = slack / (acting - lag * (1.0 - fade))
             least_rate = slack_rate if slack_rate < least_rate else least_rate
@@ -156,12 +164,9 @@ class TurnPrediction:
                     # It heads straight away, and still the disc gains on it: nothing does better, and so it flies straight on.
                     heading_rate = ahead = gained = won = outward = 0.0
                 continue
-            if point == 0:
-                # There is no point before; the rate at the start stands in for it.
-                before = 2.0 * duration * (_range_rate(start, motion) - error) - rise
-            if before < 0.0:
-                # The vertex of the parabola through three points.
-                least = min(least, last - (before + rise) ** 2 / (8.0 * (rise - before)))
+            if before < 0.0 or point == 0:
+                least = min(least, nearest := _least_of_late(places, motion, duration))
+                least_rate = min(least_rate, nearest / (acting - lag * (1.0 - fade)))
             # Also if it came past straight away between two points: it would have stopped there.
             if side * heading_rate >= 0.0 and (outward >= 0.0 or before_outward >= 0.0):
                 # It is over. One point more may allow more time until the next prediction.
@@ -176,11 +181,54 @@ def nearer_side(x: float, y: float, course: float) -> float:
     return 1.0 if y * math.cos(course) >= x * math.sin(course) else -1.0
 
 
-def _range_rate(start: Start, motion: Motion) -> float:
-    """Return the rate at which the distance from the disc's centre grows [m/s]."""
-    x, y, course, _ = start
+def _least_of_late(places: Sequence[Place], motion: Motion, duration: float) -> float:
+    """Return the least slack of late [m] at a point of a turn from which on it rises: before the last point, or since.
+
+    Parameters
+    ----------
+    places : all so far
+    motion, duration : of the turn, and between points [s]
+    """
     _, _, velocity_north, velocity_east, _, speed, *_ = motion
-    return ((speed * math.cos(course) - velocity_north) * x + (speed * math.sin(course) - velocity_east) * y) / math.hypot(x, y)
+    (x, y, course, allowed), now = places[-2:]
+    outwards = (speed * math.cos(course) - velocity_north) * x + (speed * math.sin(course) - velocity_east) * y
+    if outwards / math.hypot(x, y) <= (now[3] - allowed) / duration:
+        return _least_between(places[-2], now, motion, duration)
+    if len(places) > 2:
+        return _least_between(places[-3], places[-2], motion, duration)
+    return math.hypot(x, y) - allowed
+
+
+def _least_between(begin: Place, end: Place, motion: Motion, duration: float) -> float:
+    """Return the least slack between two points of a turn [m], which are so long apart [s].
+
+    The path is the cubic through both places with the velocities there, which is true to 1e-6 turn radii. A disc may be smaller
+    than the way between the points: so distances there tell little of the closest approach.
+    """
+    _, _, velocity_north, velocity_east, _, speed, *_ = motion
+    (x, y, course, allowed), (x_end, y_end, course_end, allowed_end) = begin, end
+    north, east = duration * velocity_north, duration * velocity_east
+    way = speed * duration
+    x_1, y_1 = way * math.cos(course) - north, way * math.sin(course) - east
+    x_then, y_then = way * math.cos(course_end) - north, way * math.sin(course_end) - east
+    x_far, y_far, slope = x_end - x, y_end - y, allowed_end - allowed
+    x_2, y_2 = 3.0 * x_far - 2.0 * x_1 - x_then, 3.0 * y_far - 2.0 * y_1 - y_then
+    x_3, y_3 = x_1 + x_then - 2.0 * x_far, y_1 + y_then - 2.0 * y_far
+    u = 0.5
+    for _ in range(_REFINED):
+        x_u, y_u = x + u * (x_1 + u * (x_2 + u * x_3)), y + u * (y_1 + u * (y_2 + u * y_3))
+        x_rate, y_rate = x_1 + u * (2.0 * x_2 + 3.0 * u * x_3), y_1 + u * (2.0 * y_2 + 3.0 * u * y_3)
+        # The square of the distance about there is square + 2 tilt du + bend du^2.
+        square, tilt = x_u * x_u + y_u * y_u, x_u * x_rate + y_u * y_rate
+        bend = x_rate * x_rate + y_rate * y_rate + 2.0 * (x_u * (x_2 + 3.0 * u * x_3) + y_u * (y_2 + 3.0 * u * y_3))
+        room = bend - slope * slope
+        if room <= 0.0:
+            # What is allowed for grows faster than the distance ever will.
+            return min(math.hypot(x, y) - allowed, math.hypot(x_end, y_end) - allowed_end)
+        u += slope * math.sqrt(max(0.0, square - tilt * tilt / bend) / (room * bend)) - tilt / bend
+        u = min(max(u, 0.0), 1.0)
+    x_u, y_u = x + u * (x_1 + u * (x_2 + u * x_3)), y + u * (y_1 + u * (y_2 + u * y_3))
+    return math.hypot(x_u, y_u) - allowed - slope * u
 
 
 def _held(duration: float, lag: float) -> tuple[float, float, float, float]:

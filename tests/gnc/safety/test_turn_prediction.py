@@ -36,6 +36,23 @@ def test_the_clearance_is_that_of_the_better_turn_away_flown_in_small_steps(lag,
         assert found == pytest.approx(flown, abs=1e-3 * TURN_RADIUS)
 
 
+def test_a_disc_in_the_way_of_a_turn_is_seen_however_small_it_is():
+    # The way between points is 5 m. A parabola through the distances missed centres that the turn leads over by up to 1.6 m.
+    generator = np.random.default_rng(6)
+    prediction = TurnPrediction(heading_rate_max=HEADING_RATE_MAX, lag=0.25, delay=0.0, time_step=TIME_STEP)
+    for _ in range(50):
+        velocity, turned = random_velocity(generator, 0.3 * SPEED), generator.uniform(0.5, 2.0)
+        duration = turned / HEADING_RATE_MAX
+        ahead = moved((0.0, 0.0, 0.0, HEADING_RATE_MAX), HEADING_RATE_MAX, 0.25, duration)[:2]
+        x, y = (v * duration - place + off for v, place, off in zip(velocity, ahead, generator.uniform(-3.0, 3.0, 2), strict=True))
+        motion = (x, y, *velocity, 0.0, SPEED, HEADING_RATE_MAX, 0.0, 0.0, 0.0, 0.0, 0.0)
+        found, _ = prediction.turn_away(1.0, (x, y, 0.0, HEADING_RATE_MAX), motion, 0.0, -math.inf)
+        times = np.linspace(0.0, 1.2 * duration, 4000)
+        arc = SPEED / HEADING_RATE_MAX * np.array([np.sin(HEADING_RATE_MAX * times), 1.0 - np.cos(HEADING_RATE_MAX * times)])
+        apart = np.hypot(x + arc[0] - velocity[0] * times, y + arc[1] - velocity[1] * times)
+        assert found == pytest.approx(apart.min(), abs=1e-4 * TURN_RADIUS)
+
+
 def test_a_vehicle_faster_than_it_can_turn_at_omega_max_is_predicted_to_turn_as_it_can():
     generator = np.random.default_rng(8)
     for _ in range(6):

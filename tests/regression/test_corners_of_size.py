@@ -1,0 +1,42 @@
+"""A keep-out area that is small beside the turn radius, and a law that flies at the ship: flights had come within r_min."""
+
+import pandas as pd
+import pytest
+
+from scenarios.schema.load import load_study
+from scenarios.studies.registry import run_study
+
+AT_HER = """
+import math
+from dataclasses import dataclass
+
+@dataclass(frozen=True)
+class AtHer:
+    gain: float = 20.0
+
+    def heading_rate(self, reference, to_north, to_east, course, speed):
+        # The nearest point of a circle about her lies on the other side, while it is wider than the vehicle's distance.
+        return self.gain * math.remainder(math.atan2(-to_east, -to_north) - course, math.tau)
+"""
+
+
+def flown(tmp_path, *overrides):
+    """Return the rows of flights of ``sea_wind`` whose law flies at the ship."""
+    (tmp_path / "law.py").write_text(AT_HER)
+    keys = ["draws=[]", "flight.crossings=0", "guidance.mission=standoff", f"guidance.law={tmp_path / 'law.py'}:AtHer", *overrides]
+    run_study(load_study("sea_wind", keys), "sea_wind", tmp_path / "run")
+    return pd.read_csv(tmp_path / "run" / "summary.csv")
+
+
+@pytest.mark.parametrize(("airspeed", "radius"), [(200, 200), (50, 10)])
+def test_a_turn_radius_of_twenty_times_r_min(tmp_path, airspeed, radius):
+    # 4 of 4 had come in, by up to 12 and 1.7 m: predicted turns led through the area between two of their points.
+    turn = airspeed**2 / 9.81
+    rows = flown(
+        tmp_path, "fidelity=kinematic", "kinematic.heading_rate_lag_s=0.2", f"guidance.airspeed_mps={airspeed}", "flights=4",
+        f"keepout.radius_m={radius}", f"reference.standoff_radius_m={6.0 * turn}", f"start.distance_m=[{turn},{5.0 * turn}]",
+        "vessel.speed_mps=7.1", f"flight.duration_max_s={12.0 * turn / airspeed}",
+    )  # fmt: skip
+    assert (rows["min_distance_m"] >= rows["keepout_radius_m"]).all()
+    assert rows["guard_lost_s"].sum() == 0.0
+    assert rows["guard_interventions"].sum() > 0
