@@ -133,7 +133,9 @@ def recorded_flights(run: RunData) -> Iterator[GeographicFlight]:
     found = False
     for rows in (run.summary, run.comparison):
         for row in rows.to_dict("records"):
-            history = run.history(str(row["flight_id"])) if run.has_history(str(row["flight_id"])) else None
+            # A trajectory of a study of convergence has no name.
+            flight_id = str(row.get("flight_id", ""))
+            history = run.history(flight_id) if flight_id and run.has_history(flight_id) else None
             if history is not None and len(history):
                 found = True
                 yield _flight(run, {str(key): value for key, value in row.items()}, history)

@@ -85,7 +85,9 @@ class RunData:
 
     def recorded(self) -> list[str]:
         """Return the names of the flights that have a time history, those of the study before those of its comparisons."""
-        names = [str(flight_id) for rows in (self.summary, self.comparison) for flight_id in rows["flight_id"]]
+        # The rows of trajectories of a study of convergence name no flights.
+        tables = [rows for rows in (self.summary, self.comparison) if "flight_id" in rows]
+        names = [str(flight_id) for rows in tables for flight_id in rows["flight_id"]]
         return [name for name in names if self.has_history(name)]
 
     def of_flight(self, flight_id: str) -> "RunData":

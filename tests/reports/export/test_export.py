@@ -16,6 +16,7 @@ from reports.export.tracks_csv import COLUMNS
 from reports.output import write_flight
 from reports.run.run_data import read_run
 from tests.in_process import assert_refused, run_command
+from tests.reports.convergence_runs import write_convergence_run
 
 OWN = """
 from pathlib import Path
@@ -46,6 +47,13 @@ def run_path(tmp_path):
     flown |= {"vessel_north_m": 0.0 * time, "vessel_east_m": 10.0 * time}
     pd.DataFrame(flown).to_parquet(path / "flights" / "nu_0.50.parquet")
     return path
+
+
+@pytest.mark.parametrize("exporter", ["tracks_csv", "kmz", "czml", "geojson"])
+def test_trajectories_of_a_study_of_convergence_are_no_flights_to_export(tmp_path, exporter):
+    write_convergence_run(tmp_path / "run", 4)
+    with pytest.raises(ReportError, match="has no time histories of flights"):
+        export_run(tmp_path / "run", exporter)
 
 
 def test_tracks_are_exported_with_the_vessel_that_was_flown_about(run_path):
