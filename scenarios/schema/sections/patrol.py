@@ -23,7 +23,10 @@ class PatrolConfig(Section):
     area_m: Positive = 40_000.0
     """Side of the square in which the ships are at the start; the UAV starts in its centre [m]."""
     separation_m: NonNegative = 3000.0
-    """Least distance of any two ships over the whole endurance, and of each from the UAV's place at the start [m]."""
+    """Least distance of any two ships over the whole endurance, and of each from the UAV's place at the start [m].
+
+    At least the end of start.distance_m and keepout.radius_m together.
+    """
     clearance_m: NonNegative = 300.0
     """Distance beyond r_min that the UAV keeps from every ship on its way between ships [m]."""
     patience_s: Positive = 600.0

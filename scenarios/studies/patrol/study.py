@@ -69,6 +69,12 @@ class PatrolStudy(FlightStudy):
         right = counts.wrong <= config.wrong_share_max * counts.verdicts
         met = counts.met == self.planned and enough and right and counts.served > 0
         share = f"{100.0 * counts.correct / counts.oracle:.0f} %" if counts.oracle else "–"
+        judged = (
+            f"correct verdicts {'meet' if enough else 'fail'} patrol.oracle_share_min, wrong ones {'meet' if right else 'fail'}"
+            " patrol.wrong_share_max"
+            if counts.served
+            else "no ship was served"
+        )
         lines = [
             f"patrols: {self.planned} planned, {counts.done} flown; {counts.served} of {counts.ships} ships served in"
             f" {counts.hours:.3g} h, {counts.per_hour:.2f} an hour",
@@ -77,9 +83,7 @@ class PatrolStudy(FlightStudy):
             f"keep-out violations: {counts.violations}; patrols that kept out: {counts.kept_out} of {counts.done}",
             *(f"    {row['flight_id']}: {row['message']}" for row in counts.failed),
             f"{f'exit status {int(not met)}: ' if counts.done == self.planned else 'so far '}{counts.met} of {self.planned} patrols"
-            f" kept out and brought their aircraft through, and verdicts are {'' if enough else 'not '}as many as"
-            f" patrol.oracle_share_min and {'' if right else 'not '}as right as patrol.wrong_share_max requires"
-            + ("" if counts.served else "; no ship was served"),
+            f" kept out and brought their aircraft through; {judged}",
         ]
         manifest: dict[str, Any] = {
             "patrols_met": counts.met, "ships_served": counts.served, "verdicts": counts.verdicts, "verdicts_wrong": counts.wrong,

@@ -50,6 +50,10 @@ def test_both_ships_are_served_with_the_right_verdict_and_the_run_is_met(run):
     assert row["kept_out"]
     assert row["keepout_violations"] == 0
     assert result.all_met
+    assert result.summary.lines[-1] == (
+        "exit status 0: 1 of 1 patrols kept out and brought their aircraft through; correct verdicts meet"
+        " patrol.oracle_share_min, wrong ones meet patrol.wrong_share_max"
+    )
     ships = rows_of(out, "ships.csv")
     assert sorted(ship["position"] for ship in ships) == [0, 1]
     for ship in ships:
@@ -191,7 +195,7 @@ def test_a_study_that_never_took_off_is_not_met(tmp_path):
     assert not result.all_met
     told = "\n".join(result.summary.lines)
     assert "(–, required 80 %)" in told
-    assert told.endswith("; no ship was served")
+    assert told.endswith("exit status 1: 1 of 1 patrols kept out and brought their aircraft through; no ship was served")
 
 
 @pytest.mark.parametrize(
