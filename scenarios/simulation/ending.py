@@ -115,6 +115,12 @@ class Ending:
                 flown = f"tracked its reference for {settling.tracked:.0f} s, but {self._orbit()}, so it did not settle"
         elif self._missing:
             flown = f"flew {plan.after_settling - self._missing:.0f} of {plan.after_settling:g} s after settling"
+        elif plan.after_settling < math.inf and not plan.crossings:
+            # It ended as it was to end, before the end of the longest flight.
+            return (
+                f"flew no crossing in {self._end - settling.at:.0f} s after settling: fly longer (flight.after_settling_s), or ask"
+                " for crossings (flight.crossings)"
+            )
         elif plan.crossings or not settling.crossings:
             flown = f"flew {settling.crossings}{f' of {plan.crossings}' if plan.crossings else ''} crossings after settling"
         else:

@@ -56,6 +56,12 @@ def ended(
         ({"asked": 12, "mode": Mode.OUTRUN}, Outcome.COMPLETED, ""),
         ({"vessel": False, "settled": math.nan, "flown": 0}, Outcome.COMPLETED, ""),
         ({"settled": math.nan, "flown": 0}, Outcome.NOT_SETTLED, "did not settle within 300 s"),
+        # Over after its time, as a circle about the vessel may be before it crosses the plume: a longer duration is no remedy.
+        (
+            {"flown": 0, "after": 200.0},
+            Outcome.INCOMPLETE,
+            "flew no crossing in 220 s after settling: fly longer (flight.after_settling_s), or ask for crossings",
+        ),
         (
             {"settled": math.nan, "tracked": 242.0},
             Outcome.NOT_SETTLED,
