@@ -12,6 +12,7 @@ from gnc.estimation.vessel_filter import VesselReport
 from scenarios.schema.scenario import Scenario
 from scenarios.world.ais.track import AisVessel
 from scenarios.world.vessel import (
+    ManoeuvringVessel,
     SteadyVessel,
     VesselTruth,
     largest_acceleration,
@@ -47,11 +48,12 @@ def check_declared(scenario: Scenario, vessel: VesselTruth) -> None:
     f, duration = scenario.following, 0.0 if isinstance(vessel, SteadyVessel) else scenario.flight.duration_max_s
     acceleration, speed = largest_acceleration(vessel, duration), largest_speed(vessel, duration)
     other = "fly another time of its file (place.utc)" if isinstance(vessel, AisVessel) else ""
+    scripted = "vessel.manoeuvres" if isinstance(vessel, ManoeuvringVessel) else f"vessel.track '{scenario.vessel.track}'"
     if acceleration > f.vessel_acceleration_mps2:
         raise InfeasibleError(
             f"the vessel accelerates by {acceleration:.3g} m/s2, changes of speed and course together; declared are at most"
             f" following.vessel_acceleration_mps2 = {f.vessel_acceleration_mps2:g}, on which the keep-out guard relies: declare"
-            f" more, or {other or 'manoeuvre more gently (vessel.manoeuvres)'}"
+            f" more, or {other or f'manoeuvre more gently ({scripted})'}"
         )
     if f.vessel_speed_max_mps is not None and speed > f.vessel_speed_max_mps:
         raise InfeasibleError(

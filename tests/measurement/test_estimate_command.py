@@ -214,21 +214,6 @@ def test_files_with_mistakes_are_refused_in_one_line(logged, capsys, content, me
 
 
 @BRIEFLY
-@pytest.mark.parametrize("console", [True, False])
-def test_command_and_revision_are_recorded_as_those_of_flights(logged, monkeypatch, tmp_path, console):
-    shared = pytest.importorskip("common.provenance", reason="measurement stands alone here")
-    arguments = [str(logged), "--out", "m", "--no-report"]
-    monkeypatch.chdir(tmp_path)
-    if console:
-        monkeypatch.setattr("sys.argv", ["/anywhere/bin/plume-flight", "estimate", *arguments])
-    assert main(arguments) == 0
-    manifest = json.loads((tmp_path / "m" / "manifest.json").read_text(encoding="utf-8"))
-    program = "plume-flight estimate" if console else "python -m measurement.estimate"
-    # As of a flight's run: without the folders of this machine.
-    assert manifest["command"] == f"{program} flight.csv --out m --no-report"
-    assert manifest["git_revision"] == shared.provenance()["git_revision"]
-
-
 def test_a_file_in_utf_16_is_to_be_saved_in_utf_8(logged, capsys):
     logged.write_text("time_s,so2_ppb,co2_ppm\n1,2,420\n", encoding="utf-16")
     assert run(logged) == 2

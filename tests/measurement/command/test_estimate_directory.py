@@ -1,5 +1,6 @@
 """The directory of an estimate: what it takes the place of, and what it does not."""
 
+import json
 from pathlib import Path
 
 import pandas as pd
@@ -56,3 +57,18 @@ def test_an_estimate_made_anew_leaves_no_report_of_the_older_one(logged):
     (out / "export" / "flight.kml").write_text("of the older estimate", encoding="utf-8")
     assert run(logged) == 0
     assert sorted(path.name for path in out.iterdir()) == ["estimate.json", "manifest.json", "samples.csv"]
+
+
+@pytest.mark.parametrize("console", [True, False])
+def test_command_and_revision_are_recorded_as_those_of_flights(logged, monkeypatch, tmp_path, console):
+    shared = pytest.importorskip("common.provenance", reason="measurement stands alone here")
+    arguments = [str(logged), "--out", "m", "--no-report"]
+    monkeypatch.chdir(tmp_path)
+    if console:
+        monkeypatch.setattr("sys.argv", ["/anywhere/bin/plume-flight", "estimate", *arguments])
+    assert main(arguments) == 0
+    manifest = json.loads((tmp_path / "m" / "manifest.json").read_text(encoding="utf-8"))
+    program = "plume-flight estimate" if console else "python -m measurement.estimate"
+    # As of a flight's run: without the folders of this machine.
+    assert manifest["command"] == f"{program} flight.csv --out m --no-report"
+    assert manifest["git_revision"] == shared.provenance()["git_revision"]

@@ -9,6 +9,7 @@ from gnc.errors import InfeasibleError
 from gnc.estimation.wind_filter import WindFilter
 from gnc.mission.plume_following import FollowingParameters
 from scenarios.planning.air.estimated_wind import navigation_parameters, wind_followed
+from scenarios.planning.declared_vessel import check_declared
 from scenarios.vehicles.vehicle_setup import kinematic_setup
 
 
@@ -54,9 +55,30 @@ def test_a_steady_vessel_that_is_faster_than_declared_is_refused():
     plan(scenario(following={"vessel_speed_max_mps": 8.0}, **changes))
 
 
+class Swerving:
+    """A track of one's own, which accelerates by 0.4 m/s2."""
+
+    manoeuvres_end = math.nan
+
+    def course(self, time):
+        return 0.5 * math.sin(0.1 * time)
+
+    def motion(self, time):
+        return 8.0 * time, 40.0 * (1.0 - math.cos(0.1 * time)), 8.0, 4.0 * math.sin(0.1 * time)
+
+
+def test_a_track_of_ones_own_that_accelerates_more_than_is_declared_is_told_to_be_gentler_itself():
+    with pytest.raises(
+        InfeasibleError, match=r"accelerates by 0\.4 m/s2.*: declare more, or manoeuvre more gently \(vessel\.track "
+    ):
+        check_declared(scenario(), Swerving())
+
+
 def test_a_vessel_that_is_known_exactly_does_no_more_than_is_declared_either():
     braking = {"speed_mps": 8.0, "manoeuvres": [{"at_s": 40.0, "speed_mps": 0.0, "acceleration_mps2": 0.25}]}
-    with pytest.raises(InfeasibleError, match=r"accelerates by 0\.25 m/s2.*vessel_acceleration_mps2 = 0, on which"):
+    with pytest.raises(
+        InfeasibleError, match=r"accelerates by 0\.25 m/s2.*vessel_acceleration_mps2 = 0, on which.* gently \(vessel\.manoeuvres\)"
+    ):
         plan(scenario(vessel=braking))
     plan(scenario(vessel=braking, following={"vessel_acceleration_mps2": 0.25}))
     # Without a guard nothing relies on it.
