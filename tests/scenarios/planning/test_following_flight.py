@@ -76,9 +76,7 @@ def test_a_track_of_ones_own_that_accelerates_more_than_is_declared_is_told_to_b
 
 def test_a_vessel_that_is_known_exactly_does_no_more_than_is_declared_either():
     braking = {"speed_mps": 8.0, "manoeuvres": [{"at_s": 40.0, "speed_mps": 0.0, "acceleration_mps2": 0.25}]}
-    with pytest.raises(
-        InfeasibleError, match=r"accelerates by 0\.25 m/s2.*vessel_acceleration_mps2 = 0, on which.* gently \(vessel\.manoeuvres\)"
-    ):
+    with pytest.raises(InfeasibleError, match=r"by 0\.25 m/s2.*acceleration_mps2 = 0, on.* gently \(vessel\.manoeuvres\)"):
         plan(scenario(vessel=braking))
     plan(scenario(vessel=braking, following={"vessel_acceleration_mps2": 0.25}))
     # Without a guard nothing relies on it.
