@@ -88,8 +88,12 @@ def largest_wind_change(scenario: Scenario, wind: WindField, interval: float, al
 
 
 def wind_followed(scenario: Scenario) -> float:
-    """Return the time within which the estimated wind follows a change [s]: where gusts or noise hide it, the filter is slower."""
-    hidden_by = math.hypot(_sensor_sigma(scenario), _gust_sigma(scenario))
+    """Return the time within which the estimated wind follows a change [s].
+
+    The filter is slower where gusts or noise hide the wind, and for a fast vehicle, of which an error of the course hides more.
+    """
+    across = scenario.guidance.airspeed_mps * _sensor_sigmas(scenario)[1]
+    hidden_by = math.hypot(max(_sensor_sigma(scenario), across), _gust_sigma(scenario))
     return max(WIND_FOLLOWED, hidden_by * math.sqrt(plan_period(scenario.guidance)) / _WIND_DRIFT)
 
 
