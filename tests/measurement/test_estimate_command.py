@@ -127,7 +127,7 @@ def test_seconds_since_1970_are_written_in_full(logged):
     np.testing.assert_array_equal(written["time_s"], table["time_s"])
 
 
-def test_a_latitude_that_is_none_is_refused_with_its_row(logged, capsys):
+def test_a_latitude_beyond_the_pole_is_refused_with_its_row(logged, capsys):
     table = pd.read_csv(logged).drop(columns=["north_m", "east_m"])
     table["latitude_deg"], table["longitude_deg"] = 55.0, 11.0
     table.loc[3, "latitude_deg"] = 95.0
