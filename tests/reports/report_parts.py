@@ -2,8 +2,11 @@
 
 import re
 
+from matplotlib.figure import Figure
+
 from reports.build import build_reports
 from reports.document.chart import Chart
+from reports.render import matplotlib_charts
 from scenarios.engine.in_process_executor import InProcessExecutor
 from scenarios.schema.load import load_study
 from scenarios.studies.registry import run_study
@@ -25,6 +28,15 @@ def built(path):
     for anchor in re.findall(r'href="#(\w+)"', text):
         assert f'id="{anchor}"' in text
     return text
+
+
+def draw_all_but(monkeypatch, *names):
+    """Have the charts of these names printed as empty pictures: those of which another one of the report has all that is drawn."""
+
+    def drawn(chart):
+        return Figure(figsize=(1.0, 1.0)) if chart.name in names else matplotlib_charts.draw(chart)
+
+    monkeypatch.setattr("reports.render.figure_files.draw", drawn)
 
 
 def blocks_of(report, kind, anchor=None):

@@ -9,12 +9,15 @@ from reports.render import figure_files
 from reports.render.figure_files import write_figures
 from tests.reports.test_blocks import a_chart
 
-COUNT = 12
+COUNT = 4
+"""Charts that are drawn."""
 
 
 def drawn_by(folder, processes, monkeypatch):
     """Draw charts by so many processes; return each file's content."""
     monkeypatch.setattr(figure_files.os, "cpu_count", lambda: processes)
+    # Enough for two processes, where a report would need twelve.
+    monkeypatch.setattr(figure_files, "_FIGURES_PER_PROCESS", COUNT // 2)
     folder.mkdir()
     write_figures({f"{i}.svg": a_chart(f"chart{i}") for i in range(COUNT)}, folder)
     return {path.name: path.read_bytes() for path in folder.iterdir()}

@@ -10,8 +10,8 @@ from scenarios.studies.registry import run_study
 
 OVERRIDES = {
     "sweep_nu": ("sweep.nu=[0.5]", "flight.crossings=3", "comparison={}"),
-    "monte_carlo": ("flights=2", "draws=[]", "turbulence={}"),
-    "sulphur": ("reports.interval_s=[0,0]", "sensors={}", "start.place_m=[-250,-120]", "flight.after_settling_s=60"),
+    "monte_carlo": ("flights=1", "flight.duration_max_s=60", "draws=[]", "turbulence={}"),
+    "sulphur": ("reports.interval_s=[0,0]", "sensors={}", "start.place_m=[-250,-120]", "flight.after_settling_s=30"),
     "paper": ("flight.crossings=5",),
 }
 

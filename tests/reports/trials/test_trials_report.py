@@ -10,7 +10,7 @@ from dataclasses import replace
 import numpy as np
 import pandas as pd
 import pytest
-from report_parts import assert_axes_read_quantity_and_unit, blocks_of
+from report_parts import assert_axes_read_quantity_and_unit, blocks_of, draw_all_but
 from trial_runs import charts_of, rows_of, with_criterion, with_values
 
 from reports.build import build_reports
@@ -31,7 +31,8 @@ BRIEF = pytest.mark.usefixtures("without_single_flights")
 
 
 def test_trials_are_reported_on_screen_and_in_print(run_path, report, tmp_path, monkeypatch):
-    # Drawing takes nearly all of this test's time: one flight tells whether they are.
+    # Drawing takes nearly all of this test's time: one flight tells whether they are. Page 1's figure is drawn in its own tests.
+    draw_all_but(monkeypatch, "first")
     monkeypatch.setattr("reports.flights.selection.PICKED_MAX", 1)
     html, pdf = build_reports(shutil.copytree(run_path, tmp_path / "copy"))
     text = html.read_text(encoding="utf-8")
