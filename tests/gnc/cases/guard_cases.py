@@ -105,12 +105,12 @@ class Hunter:
             self.velocity = tuple(faster)
 
 
-def fly_guarded(guard, start, want, disc, *, lag, delay=0.0, duration=60.0, speed=SPEED):
+def fly_guarded(guard, start, want, disc, *, lag, delay=0.0, duration=45.0, speed=SPEED):
     """Return the closest approach to the disc's centre [m], and of each step whether the guard changed it and was lost."""
     x, y, course, heading_rate = start
     under_way = deque([heading_rate] * round(delay / TIME_STEP))
     closest, changed, lost = math.hypot(x, y), [], []
-    pieces = 5
+    pieces = 2
     for step in range(round(duration / TIME_STEP)):
         command = guard.limit(want(step, x, y, course), x, y, *disc.told, course, speed, heading_rate)
         changed.append(guard.intervening)

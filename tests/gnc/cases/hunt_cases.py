@@ -88,7 +88,7 @@ def forgetful(guard):
     return guard
 
 
-def hunted(seed, hunter, *, lag=0.4, delay=0.0, time_step=0.05, silence=0.0, speed_max=12.0, known=None, made=None):
+def hunted(seed, hunter, *, lag=0.4, delay=0.0, time_step=0.1, silence=0.0, speed_max=12.0, known=None, made=None):
     """Return the hunt that a seed stands for: vessel, start and reports, which cease for a time after 40 s."""
     generator, duration = np.random.default_rng(seed), 100.0 + silence
     limits = replace(LIMITS, speed_max=speed_max)

