@@ -14,6 +14,7 @@ SECOND_POLE_MAX = 0.95
 """Largest second time constant over the first: the parallel form of two equal poles has no weights."""
 
 
+@functools.lru_cache(maxsize=256)
 def time_constants(t90: float, second_pole: float) -> tuple[float, ...]:
     """Return the time constants [s] of a response that reaches 90 % of a step after ``t90``.
 

@@ -41,7 +41,10 @@ class SnifferSpec:
 
     def channel(self, gas: str) -> Channel | None:
         """Return the channel of a gas, or none."""
-        return next((channel for channel in self.channels if channel.gas == gas), None)
+        for channel in self.channels:
+            if channel.gas == gas:
+                return channel
+        return None
 
     def known(self, gas: str) -> Channel:
         """Return the channel of a gas.

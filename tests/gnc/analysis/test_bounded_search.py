@@ -45,7 +45,7 @@ def test_the_fastest_keeps_its_limit_and_with_a_shorter_look_ahead_would_not_or_
     )
 
 
-@pytest.mark.parametrize("reserve", [0.1, 0.3, 0.6])
+@pytest.mark.parametrize("reserve", [0.1, 0.6])
 def test_no_neighbour_of_the_fastest_is_faster_within_the_limit(reserve):
     found = fastest(reserve)
     steps = (0.97, 0.99, 1.0, 1.01, 1.03)
@@ -85,8 +85,8 @@ def test_the_look_ahead_is_not_made_shorter_than_a_slow_reference_damps():
 def convergence(parameters, steering_max, turn, phi, *, distance=500.0, longest=1.5):
     """Return when distance falls below 5 m to stay, from 16 directions, and the largest |omega|; ``longest`` is in estimates.
 
-    The reference starts north, turning at ``turn(time)``; the vehicle starts with ``phi``. Runge-Kutta steps of a 1000th of the
-    estimate, 0.1 s to 0.45 s, are some hundredths of a reference's turn.
+    The reference starts north, turning at ``turn(time)``; the vehicle starts with ``phi``. Runge-Kutta steps of a 500th of the
+    estimate, 0.2 s to 0.9 s, are some hundredths of a reference's turn.
     """
     direction = np.linspace(0.0, 2.0 * math.pi, 16, endpoint=False)
     north, east = distance * np.cos(direction), distance * np.sin(direction)
@@ -114,9 +114,9 @@ def convergence(parameters, steering_max, turn, phi, *, distance=500.0, longest=
             ]
         )
 
-    step = time_of(parameters, steering_max, distance_from=distance) / 1000.0
+    step = time_of(parameters, steering_max, distance_from=distance) / 500.0
     since, largest = np.zeros(16), 0.0
-    for index in range(round(1000 * longest)):
+    for index in range(round(500 * longest)):
         time = index * step
         k_1 = rates(time, state)
         k_2 = rates(time + 0.5 * step, state + 0.5 * step * k_1)
