@@ -233,6 +233,9 @@ def test_the_autopilot_computes_as_seldom_as_leaves_every_loop_its_phase_margin_
 @pytest.mark.usefixtures("x8_grid")
 def test_a_loop_with_too_little_margin_is_slowed_and_the_others_are_left(monkeypatch, x8_design):
     points, asked, check = [], [], robustness.ClosedPoint.check
+    # Two changes of the aircraft for all of them: they are checked one after the other.
+    cases = {case: CASES[case] for case in (NOMINAL, "mass +20 %", "one more step of delay")}
+    monkeypatch.setattr(robustness, "CASES", cases)
 
     def short_at_the_first_point(point, case, period):
         points.append(point)
@@ -246,7 +249,7 @@ def test_a_loop_with_too_little_margin_is_slowed_and_the_others_are_left(monkeyp
     monkeypatch.setattr(robustness.ClosedPoint, "check", short_at_the_first_point)
     found = design_autopilot(X8, x8_design.schedule.altitude)
     # Designed twice, then checked with the longest period, first as modelled; with the shortest no change of a good design is.
-    assert asked[-650:] == [(NOMINAL, 1)] * 65 + [(NOMINAL, 3)] * 65 + [(case, 3) for case in CASES] * 65
+    assert asked[-325:] == [(NOMINAL, 1)] * 65 + [(NOMINAL, 3)] * 65 + [(case, 3) for case in cases] * 65
     assert found.bandwidths.lateral == pytest.approx(0.8 * x8_design.bandwidths.lateral)
     assert found.bandwidths.longitudinal == x8_design.bandwidths.longitudinal
     assert found.bandwidths.airspeed == x8_design.bandwidths.airspeed
