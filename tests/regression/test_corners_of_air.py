@@ -1,6 +1,6 @@
 """Corners of air and sensors in which flights came within r_min, as a sceptic found them: each was declared, and not reckoned with.
 
-The commands are those of the search, with fewer flights.
+The commands are those of the search, each with one or two of the flights that had come in, until a little after they did.
 """
 
 import pandas as pd
@@ -35,8 +35,8 @@ def flown(tmp_path, *overrides, table=None):
 def test_satellites_are_lost_while_the_wind_turns_round(tmp_path, outage):
     # 12 of 12 flights had come in, as near as 57 and 4 m: dead reckoning went wrong by 4.7 m/s, and 1 m/s was allowed for.
     rows = flown(
-        tmp_path, "flights=2", "vessel.speed_mps=4", "place.utc=2026-06-01T12:00:00Z", "fault.kind=satellite_navigation",
-        f"fault.satellite_navigation_s={outage}", "fault.at_s=120", "flight.duration_max_s=400", table=REVERSED,
+        tmp_path, "flights=1", "vessel.speed_mps=4", "place.utc=2026-06-01T12:00:00Z", "fault.kind=satellite_navigation",
+        f"fault.satellite_navigation_s={outage}", "fault.at_s=120", "flight.duration_max_s=200", table=REVERSED,
     )  # fmt: skip
     assert (rows["min_distance_m"] >= rows["keepout_radius_m"]).all()
 
@@ -44,7 +44,7 @@ def test_satellites_are_lost_while_the_wind_turns_round(tmp_path, outage):
 def test_the_wind_turns_round_between_two_heights_that_exhaust_is_followed_to(tmp_path):
     # 2 of 8 had come in, as near as 190.7 m.
     rows = flown(
-        tmp_path, "flights=8", "flight.duration_max_s=120", "vessel.speed_mps=3", "plume.model=fluctuating",
+        tmp_path, "flights=2", "flight.duration_max_s=60", "vessel.speed_mps=3", "plume.model=fluctuating",
         "emission.ship=container", "plume.source_height_m=35", table=SHEARED,
     )  # fmt: skip
     assert (rows["min_distance_m"] >= rows["keepout_radius_m"]).all()
@@ -53,7 +53,7 @@ def test_the_wind_turns_round_between_two_heights_that_exhaust_is_followed_to(tm
 def test_satellites_are_lost_on_the_way_to_another_height_in_shear(tmp_path):
     # 8 of 8 had come in, by up to 185 m.
     rows = flown(
-        tmp_path, "flights=3", "flight.duration_max_s=300", "vessel.speed_mps=3", "plume.model=fluctuating",
+        tmp_path, "flights=1", "flight.duration_max_s=150", "vessel.speed_mps=3", "plume.model=fluctuating",
         "emission.ship=container", "plume.source_height_m=35", "fault.kind=satellite_navigation", "fault.at_s=[5,60]",
         "fault.satellite_navigation_s=150", table="height_m,speed_mps,from_deg\n1,8,0\n36,8,0\n45,2,180\n90,2,180\n",
     )  # fmt: skip
@@ -63,8 +63,8 @@ def test_satellites_are_lost_on_the_way_to_another_height_in_shear(tmp_path):
 def test_a_flight_begins_lower_than_the_plume_and_shear_is_between(tmp_path):
     # 6 of 12 had come in, by up to 11 m.
     rows = flown(
-        tmp_path, "flights=12", "flight.duration_max_s=120", "vessel.speed_mps=3", "plume.source_height_m=55",
-        "flight.altitude_m=30", table=SHEARED,
+        tmp_path, "flights=1", "flight_seed=2731240877", "flight.duration_max_s=60", "vessel.speed_mps=3",
+        "plume.source_height_m=55", "flight.altitude_m=30", table=SHEARED,
     )  # fmt: skip
     assert (rows["min_distance_m"] >= rows["keepout_radius_m"]).all()
 
@@ -72,9 +72,9 @@ def test_a_flight_begins_lower_than_the_plume_and_shear_is_between(tmp_path):
 def test_dead_reckoning_goes_by_a_compass_with_noise(tmp_path):
     # 4 of 8 had come in, by up to 5.5 m.
     rows = flown(
-        tmp_path, "flights=4", "flight.duration_max_s=300", "wind.speed_mps=4", "vessel.speed_mps=4", "guidance.mission=standoff",
-        "reference.standoff_radius_m=120", "guidance.law=park_l1", "sensors.heading_sigma_deg=10", "fault.at_s=[0,100]",
-        "fault.kind=satellite_navigation", "fault.satellite_navigation_s=150",
+        tmp_path, "flights=1", "flight_seed=98897466", "flight.duration_max_s=101", "wind.speed_mps=4", "vessel.speed_mps=4",
+        "guidance.mission=standoff", "reference.standoff_radius_m=120", "guidance.law=park_l1", "sensors.heading_sigma_deg=10",
+        "fault.at_s=[0,100]", "fault.kind=satellite_navigation", "fault.satellite_navigation_s=150",
     )  # fmt: skip
     assert (rows["min_distance_m"] >= rows["keepout_radius_m"]).all()
 
@@ -83,7 +83,7 @@ def test_dead_reckoning_goes_by_a_compass_with_noise(tmp_path):
 def test_noise_of_the_own_velocity_does_not_make_commands_look_safe(tmp_path, noise):
     # A law that circles within r_min: the guard decides at each step, and went by the lucky ones (185.8 and 198.8 m).
     rows = flown(
-        tmp_path, "flights=1", "flight.duration_max_s=250", "vessel.speed_mps=4", "wind.speed_mps=4", "guidance.mission=standoff",
+        tmp_path, "flights=1", "flight.duration_max_s=80", "vessel.speed_mps=4", "wind.speed_mps=4", "guidance.mission=standoff",
         "reference.standoff_radius_m=120", "guidance.law=park_l1", f"sensors.{noise}",
     )  # fmt: skip
     assert (rows["min_distance_m"] >= rows["keepout_radius_m"]).all()
@@ -108,15 +108,15 @@ def test_satellites_are_lost_when_a_noisy_compass_has_measured_the_wind_once(tmp
     "keys",
     [
         ["fidelity=six_dof", "turbulence.level=moderate", "wind.speed_mps=25", "wind.from_deg=180", "vessel.speed_mps=14",
-         "fault.satellite_navigation_s=60", "start.distance_m=[450,900]", "flight.duration_max_s=80"],
+         "fault.satellite_navigation_s=60", "start.distance_m=[450,900]", "flight.duration_max_s=45", "flight_seed=4168118249"],
         ["guidance.airspeed_mps=100", "kinematic.heading_rate_lag_s=0.4", "keepout.radius_m=1000", "wind.speed_mps=40",
          "wind.from_deg=60", "vessel.speed_mps=4", "fault.satellite_navigation_s=140", "start.distance_m=[3500,5000]",
-         "flight.duration_max_s=150"],
+         "flight.duration_max_s=120"],
     ],
     ids=["turbulence", "a fast vehicle"],
 )  # fmt: skip
 def test_satellites_are_lost_at_the_start_in_a_strong_wind(tmp_path, keys):
     # 2 of 4 and 1 of 4 had come in, by up to 77 and 223 m: the filter of the wind began with 10 m/s either way for likely, so
     # that what gusts or a high speed hide was estimated too weak, and stayed so.
-    rows = flown(tmp_path, "flights=4", "fault.kind=satellite_navigation", "fault.at_s=0", *keys)
+    rows = flown(tmp_path, "flights=1", "fault.kind=satellite_navigation", "fault.at_s=0", *keys)
     assert (rows["min_distance_m"] >= rows["keepout_radius_m"]).all()
