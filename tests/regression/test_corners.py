@@ -23,7 +23,10 @@ GUSTS = [
     "flight.crossings=0",
 ]  # fmt: skip
 WITHOUT_SATELLITES = ["sea_wind", "flights=2", "fault.kind=satellite_navigation", "flight.duration_max_s=251", "flight.crossings=0"]
-STEEP = ["sweep_nu", "sweep.nu=[0.1,0.6]", "start.spread_deg=180", "guidance.bank_deg=49.9", "flight.crossings=4"]
+STEEP = [
+    "sweep_nu", "sweep.nu=[0.1,0.6]", "start.spread_deg=180", "guidance.bank_deg=49.9", "flight.crossings=4",
+    "flight.duration_max_s=130",
+]  # fmt: skip
 
 FAST = [
     "sea_wind", "guidance.law=constant_bearing", "flights=3", "speed_ratio=[0.3,0.7]", "flight.duration_max_s=130",
