@@ -91,7 +91,7 @@ def reversal_record(spec: AircraftSpec, root: Path, start: Trim, bank: float, sl
     aircraft = perturbed_aircraft(spec, root)
     response = measure_turn_reversal(aircraft[0], start, bank)
     count = reversals_of_a_design(bank, start.airspeed)
-    found = search_reversals(aircraft, start, bank, response, slow_lag, reversals=count)
+    found = search_reversals(aircraft, start, bank, response, slow_lag, reversals=count, settled=True)
     return {
         "bank_deg": math.degrees(bank),
         "airspeed_mps": start.airspeed,

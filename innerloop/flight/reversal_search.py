@@ -100,6 +100,7 @@ def search_reversals(
     *,
     reversals: int,
     seed: int = 0,
+    settled: bool = False,
 ) -> ReversalSearch:
     """Return the largest deviation of ``aircraft`` from their response in so many reversals, one after the other.
 
@@ -115,11 +116,22 @@ def search_reversals(
     response : of the heading rate to a reversal
     slow_lag : by which it is behind slow commands [s]
     reversals, seed : how many are flown, and of their random numbers
+    settled : whether each aircraft reverses a settled full turn as well, from either side
     """
     rate = heading_rate_for_bank(bank, start.airspeed)
     generator = np.random.default_rng(seed)
-    flights = [_Flight(each, start, response, slow_lag) for each in aircraft]
     duration = (0.5 * math.pi + float(_LEANING[-1])) / rate + response.delay + response.lag
+
+    def reverse(which: int, before: _Before) -> None:
+        flight = flights[which]
+        for share, held in before.commands:
+            flight.fly(share * rate, held / rate)
+        turn, speed = before.side * rate, flight.speed
+        predicted, change = flight.predicted(turn, duration, max(speed, start.airspeed), rate)
+        deviation = _deviation(flight.fly(turn, duration), predicted, before.side) / change
+        found.append(_Found(deviation, which, before, speed))
+
+    flights = [_Flight(each, start, response, slow_lag) for each in aircraft]
     found: list[_Found] = []
     rolls = _rolls((response.delay + response.lag) * rate)
     first = math.ceil(_NOT_CLIMBING * reversals)
@@ -133,16 +145,13 @@ def search_reversals(
             before = _changed(rolls[number % len(rolls)], generator)
         else:
             before = _random(generator, full=number % 2 == 0)
-        flight = flights[which]
-        for share, held in before.commands:
-            flight.fly(share * rate, held / rate)
-        turn, speed = before.side * rate, flight.speed
-        predicted, change = flight.predicted(turn, duration, max(speed, start.airspeed), rate)
-        deviation = _deviation(flight.fly(turn, duration), predicted, before.side) / change
-        found.append(_Found(deviation, which, before, speed))
+        reverse(which, before)
+    for which in range(len(flights) if settled else 0):
+        for before in _SETTLED_TURNS:
+            reverse(which, before)
     worst_of_all = max(found, key=lambda entry: entry.deviation)
     return ReversalSearch(
-        reversals=reversals,
+        reversals=len(found),
         deviation=max(0.0, worst_of_all.deviation),
         deviations=tuple(
             max((entry.deviation for entry in found if entry.which == which), default=-math.inf) for which in range(len(flights))
@@ -160,6 +169,10 @@ class _Before:
 
     commands: tuple[tuple[float, float], ...]
     side: float
+
+
+_SETTLED_TURNS = tuple(_Before(((-side, _SETTLED),), side) for side in (1.0, -1.0))
+"""Full turns to one side, out of which the aircraft turns to the other."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -32,9 +32,9 @@ def flown(x8_schedule, x8_root):
     measured, slow_lag = measure_turn_reversal(measuring, level, bank), measure_lag(measuring, level, bank)
 
     @functools.cache
-    def flown(response=measured, seed=0, slow_lag_times=1.0):
+    def flown(response=measured, seed=0, slow_lag_times=1.0, settled=False):
         aircraft, behind = [AutopilotedAircraft(X8, x8_root)], slow_lag_times * slow_lag
-        return search_reversals(aircraft, level, bank, response, behind, reversals=REVERSALS, seed=seed)
+        return search_reversals(aircraft, level, bank, response, behind, reversals=REVERSALS, seed=seed, settled=settled)
 
     return measured, flown
 
@@ -52,6 +52,14 @@ def test_it_finds_a_deviation_and_the_same_for_the_same_seed(flown):
     assert abs(found.command_before) <= 1.0
     assert search(seed=0) == found
     assert search(seed=1) != found
+
+
+def test_a_settled_turn_is_reversed_from_either_side_as_well(flown):
+    _, search = flown
+    found, more = search(), search(settled=True)
+    assert more.reversals == REVERSALS + 2
+    assert more.deviation >= found.deviation
+    assert more.usual == found.usual
 
 
 def test_it_strays_several_times_as_far_from_a_response_or_a_slow_lag_that_is_not_its_own(flown):
