@@ -49,12 +49,13 @@ class GuardedCommands:
         if time < self._steady_until and not leaving:
             pace, held = self._speed, True
         speed, fastest = own.speed, reckoning.fastest(pace)
-        # Against a disc that closes in a slower vehicle may come nearer; so it must be safe as slow as it is or may become, too.
-        slowest = min(speed, pace, self._speed)
+        slowest = reckoning.slowest(pace)
+        slowest = speed if speed < slowest else slowest
         faster = pace > reckoning.highest + _UNASKED and not leaving
         if faster and not guard.allows(command, time, own, speed if speed > fastest else fastest, slowest):
             pace, held = reckoning.highest, True
             fastest = reckoning.fastest(pace)
+            slowest = min(speed, reckoning.slowest(pace))
         command = guard.limit(command, time, own, speed if speed > fastest else fastest, slowest)
         if guard.intervening and not leaving:
             pace, held = self._speed, True

@@ -24,12 +24,14 @@ from gnc.safety.turn_prediction import Motion, Start, TurnPrediction, nearer_sid
 _RESOLUTION = 1e-3
 """Turn radii kept beyond the radius: the closest approach is predicted as well as that, 4 cm at a turn radius of 40 m [-]."""
 _SAME_SPEED = 0.05
-"""Speeds that differ by no more are predicted as one: a turn away keeps off by the same to 2 cm [m/s]."""
+"""Speeds that differ by no more are taken for one, the faster: a turn away keeps off by the same to 2 cm [m/s]."""
+_UNSTEADY = 0.05
+"""Of the difference between its turn radii when fast and slow, by which a vehicle may come nearer than predicted [-]."""
 _BISECTIONS = 5
 """Halvings of the fraction of the turn away, which is found to 1/32."""
 
-Situation = tuple[tuple[Motion, ...], Tube]
-"""The vehicle's motion relative to a disc, as fast as it may become, and as slow as it is if that is much less."""
+Situation = tuple[Motion, Tube]
+"""The vehicle's motion relative to a disc."""
 
 
 class KeepoutGuard:
@@ -98,7 +100,7 @@ class KeepoutGuard:
         time : now [s]
         own : the vehicle's motion
         speed : of the vehicle in the air mass, to reckon with: as fast as it may become [m/s]
-        slowest : as slow as it may be meanwhile [m/s]; a turn away has to keep off at both
+        slowest : as slow as it may become [m/s]; a turn away has to keep off at all speeds between
         """
         bounded = -self._rate <= command <= self._rate
         if self._free_steps > 0 and bounded:
@@ -142,7 +144,7 @@ class KeepoutGuard:
         """
         best, to_come = -math.inf, self._given.still_to_come(own.heading_rate)
         for tube in self.tubes:
-            then = self._prediction.when_acting(self._relative(tube, time, own, speed, to_come), self._given.under_way)
+            then = self._prediction.when_acting(self._relative(tube, time, own, speed, speed, to_come), self._given.under_way)
             start = (then[0], then[1], then[4], then[6])
             for side in (nearer := nearer_side(*start[:3]), -nearer):
                 best = max(best, self._prediction.turn_away(side, start, then, self._until_acting, best)[0])
@@ -153,23 +155,19 @@ class KeepoutGuard:
     def _look(self, command: float, time: float, own: AirMotion, speed: float, slowest: float) -> tuple[float, list[Situation]]:
         """Return for how long [s] no command can spoil the turn away that follows this one, negative if no turn away keeps off.
 
-        Then it is told of the situations, too: the motions relative to each disc when the command begins to act.
+        Then it is told of the situations, too: the motion relative to each disc when the command begins to act.
         """
         free, situations, to_come = -1.0, [], self._given.still_to_come(own.heading_rate)
         for tube in self._candidates(time, own):
-            motion = self._relative(tube, time, own, speed, to_come)
+            motion = self._relative(tube, time, own, speed, slowest, to_come)
             free = self._free_when_far(motion)
-            motions: tuple[Motion, ...] = ()
             if free <= 0.0:
-                acting, under_way = self._prediction.when_acting, self._given.under_way
-                motions = (acting(motion, under_way),)
-                if slowest < speed - _SAME_SPEED:
-                    motions = (*motions, acting(self._relative(tube, time, own, slowest, to_come), under_way))
-                free = self._free_by_turning_away(command, motions)
+                motion = self._prediction.when_acting(motion, self._given.under_way)
+                free = self._free_by_turning_away(command, motion)
             if free >= 0.0:
                 self._kept_off = tube
                 break
-            situations.append((motions, tube))
+            situations.append((motion, tube))
         return free, situations
 
     def _candidates(self, time: float, own: AirMotion) -> Sequence[Tube]:
@@ -186,7 +184,7 @@ class KeepoutGuard:
         east = own.ground_east - tube.east - tube.velocity_east * since
         return math.hypot(north, east) - tube.radius - (tube.growth + 0.5 * tube.acceleration * since) * since
 
-    def _relative(self, tube: Tube, time: float, own: AirMotion, speed: float, to_come: float) -> Motion:
+    def _relative(self, tube: Tube, time: float, own: AirMotion, speed: float, slowest: float, to_come: float) -> Motion:
         """Return the vehicle's motion relative to a disc, with all that is uncertain in the disc's radius and growth."""
         since, wrong = time - tube.time, own.wind_error
         drifted = (self._drift_rate + wrong) * own.lost
@@ -203,6 +201,7 @@ class KeepoutGuard:
             tube.acceleration,
             to_come,
             self._given.change,
+            slowest if slowest < speed - _SAME_SPEED else speed,
         )
 
     def _free_when_far(self, motion: Motion) -> float:
@@ -213,37 +212,38 @@ class KeepoutGuard:
         gap = math.hypot(x, y) - radius - (closing + 0.5 * acceleration * duration) * duration
         return min(gap / (closing + 1.5 * acceleration * duration), duration)
 
-    def _free_by_turning_away(self, command: float, motions: tuple[Motion, ...]) -> float:
+    def _free_by_turning_away(self, command: float, motion: Motion) -> float:
         """Return for how long [s] no command can spoil the turn away that follows this one; negative if there is none."""
-        starts = self._after(command, motions)
-        floor = self._resolution * motions[0][5] / self._rate
-        for side in (nearer := nearer_side(*starts[0][:3]), -nearer):
-            slack, free = self._slack(side, starts, motions, floor)
+        start = self._prediction.after(command, motion)
+        floor = self._resolution * motion[5] / self._rate
+        for side in (nearer := nearer_side(*start[:3]), -nearer):
+            slack, free = self._slack(side, start, motion, floor)
             if slack >= floor:
                 self._side = side
                 return free
         return -1.0
 
-    def _after(self, command: float, motions: tuple[Motion, ...]) -> list[Start]:
-        """Return where a command held for one time step leads, at each speed."""
-        return [self._prediction.after(command, motion) for motion in motions]
-
-    def _slack(self, side: float, starts: Sequence[Start], motions: tuple[Motion, ...], floor: float) -> tuple[float, float]:
-        """Return slack [m] of a turn away, and for how long no command can spoil it [s], at the worse speed."""
+    def _slack(self, side: float, start: Start, motion: Motion, floor: float) -> tuple[float, float]:
+        """Return slack [m] of a turn away, and for how long no command can spoil it [s]."""
         begun = self._until_acting + self._time_step
-        slack, free = self._prediction.turn_away(side, starts[0], motions[0], begun, floor)
-        if len(motions) > 1 and slack >= floor:
-            slower, free_slower = self._prediction.turn_away(side, starts[1], motions[1], begun, floor)
-            slack, free = min(slack, slower), min(free, free_slower)
+        slack, free = self._prediction.turn_away(side, start, motion, begun, floor)
+        if motion[12] < motion[5]:
+            # Round a disc, or past a small one, a turn may come nearer that is slow, or fast, from beginning to end.
+            for speed in (motion[12], motion[5]):
+                if slack < floor:
+                    break
+                steady = (*motion[:5], speed, *motion[6:12], speed)
+                kept, free_steady = self._prediction.turn_away(side, start, steady, begun, floor)
+                slack, free = min(slack, kept), min(free, free_steady)
         return slack, free
 
     def _mix(self, command: float, situations: Sequence[Situation]) -> float:
         """Return the command with the least of a turn away that keeps off, or the turn that was safe before [rad/s]."""
-        slack, side, motions, tube = self._best_turn(situations)
+        slack, side, motion, tube = self._best_turn(situations)
         self._side = side
-        turn = self._turn(side, motions[0])
-        floor = self._resolution * motions[0][5] / self._rate
-        self.lost = slack < -self._explained - floor
+        turn = self._turn(side, motion)
+        floor = self._resolution * motion[5] / self._rate
+        self.lost = slack < -self._explains(motion) - floor
         if slack < 0.0:
             return turn
         self._kept_off = tube
@@ -251,12 +251,16 @@ class KeepoutGuard:
         for _ in range(_BISECTIONS):
             fraction = 0.5 * (low + high)
             trial = command + fraction * (turn - command)
-            slack, _ = self._slack(side, self._after(trial, motions), motions, floor)
+            slack, _ = self._slack(side, self._prediction.after(trial, motion), motion, floor)
             if slack >= floor:
                 high, mixed = fraction, trial
             else:
                 low = fraction
         return mixed
+
+    def _explains(self, motion: Motion) -> float:
+        """Return what of the slack of a turn that was safe may be gone since [m]."""
+        return self._explained + _UNSTEADY * (motion[5] - motion[12]) / self._rate
 
     def _turn(self, side: float, motion: Motion) -> float:
         """Return the command of a turn away [rad/s]: straight away from the disc and no farther."""
@@ -267,20 +271,20 @@ class KeepoutGuard:
             return side * self._rate
         return limited(left / self._time_step, self._rate)
 
-    def _best_turn(self, situations: Sequence[Situation]) -> tuple[float, float, tuple[Motion, ...], Tube]:
-        """Return slack [m], side, motions and disc of the turn away to fly: one that keeps off, or that to the side that was safe.
+    def _best_turn(self, situations: Sequence[Situation]) -> tuple[float, float, Motion, Tube]:
+        """Return slack [m], side, motion and disc of the turn away to fly: one that keeps off, or that to the side that was safe.
 
         That one is flown as long as declared errors explain what it lacks, and the better one if they do not.
         """
-        found: list[tuple[float, float, tuple[Motion, ...], Tube]] = []
-        for motions, tube in situations:
+        found: list[tuple[float, float, Motion, Tube]] = []
+        for motion, tube in situations:
             for side in (self._side, -self._side) if self._side else (1.0, -1.0):
-                starts = self._after(self._turn(side, motions[0]), motions)
-                slack, _ = self._slack(side, starts, motions, -math.inf)
-                found.append((slack, side, motions, tube))
+                start = self._prediction.after(self._turn(side, motion), motion)
+                slack, _ = self._slack(side, start, motion, -math.inf)
+                found.append((slack, side, motion, tube))
                 if self._side and slack >= 0.0:
                     return found[-1]
         was_safe = max((entry for entry in found if entry[1] == self._side), key=lambda entry: entry[0], default=None)
-        if was_safe is not None and was_safe[0] >= -self._explained:
+        if was_safe is not None and was_safe[0] >= -self._explains(was_safe[2]):
             return was_safe
         return max(found, key=lambda entry: entry[:2])

@@ -2,8 +2,8 @@
 
 import math
 from collections import deque
-from collections.abc import Sequence
 
+from gnc.safety.closest_approach import leads_away, least_of_late, nearer_by_switch
 from gnc.safety.given_commands import commands_under_way
 
 _TURN = 0.125
@@ -11,26 +11,23 @@ _TURN = 0.125
 _TURN_MAX = 2.5 * math.pi
 """Course after which a turn away is over [rad]: once round, and what a turn the other way before it and the disc's motion add."""
 
-Motion = tuple[float, float, float, float, float, float, float, float, float, float, float, float]
+Motion = tuple[float, float, float, float, float, float, float, float, float, float, float, float, float]
 """A vehicle's motion relative to a disc, and how the disc grows.
 
 North and east of the disc's centre [m]; the disc's velocity north and east in the air mass [m/s]; the vehicle's course and speed
-there, and its heading rate [rad, m/s, rad/s]; radius of the disc now [m], rate of its growth [m/s] and of that [m/s^2]; and what
-the heading rate lacks for the course that is still to come of earlier commands [rad/s]; their largest change of late, over a
-full reversal [-].
+there, as fast as it may become, and its heading rate [rad, m/s, rad/s]; radius of the disc now [m], rate of its growth [m/s] and
+of that [m/s^2]; what the heading rate lacks for the course that is still to come of earlier commands [rad/s]; their largest change
+of late, over a full reversal [-]; and the vehicle's speed as slow as it may become [m/s].
 """
 Start = tuple[float, float, float, float]
 """x, y, course and heading rate."""
 
-Place = tuple[float, float, float, float]
-"""x, y, course, and the distance that is allowed for there [m]."""
-
-_REFINED = 3
-"""Steps in which the closest approach between two points is found [-]: each squares the error of the one before."""
-
 
 class TurnPrediction:
     """Turns of a vehicle whose heading rate follows its command with a lag, relative to a moving disc.
+
+    Its speed is somewhere between a fastest and a slowest. It is predicted at the fastest while it flies towards the disc, and at
+    the slowest while it flies away from one that closes in all the same: so it comes nearest.
 
     Parameters
     ----------
@@ -71,7 +68,8 @@ class TurnPrediction:
         """
         if not under_way:
             return motion
-        x, y, velocity_north, velocity_east, course, speed, heading_rate, radius, growth, acceleration, to_come, change = motion
+        x, y, velocity_north, velocity_east, course, speed, heading_rate, *others = motion
+        radius, growth, acceleration, to_come, change, slowest = others
         held = self._first
         begun, middles = course, 0.0
         for command in under_way:
@@ -82,21 +80,26 @@ class TurnPrediction:
             held = self._hold
         middle, half = middles / self._delay, 0.5 * (course - begun)
         # One chord will do, with the sine over arc of half the course turned.
-        chord = speed * (1.0 - half * half / 6.0)
-        x += (chord * math.cos(middle) - velocity_north) * self._delay
-        y += (chord * math.sin(middle) - velocity_east) * self._delay
+        cos, sin = math.cos(middle), math.sin(middle)
+        chord = (slowest if x * cos + y * sin > 0.0 else speed) * (1.0 - half * half / 6.0)
+        x += (chord * cos - velocity_north) * self._delay
+        y += (chord * sin - velocity_east) * self._delay
         return (
-            x, y, velocity_north, velocity_east, course, speed, heading_rate, radius, growth, acceleration, to_come, change,
+            x, y, velocity_north, velocity_east, course, speed, heading_rate,
+            radius, growth, acceleration, to_come, change, slowest,
         )  # fmt: skip
 
     def after(self, command: float, motion: Motion) -> Start:
         """Return where a command held for one time step leads."""
-        x, y, velocity_north, velocity_east, course, speed, heading_rate, *_ = motion
+        x, y, velocity_north, velocity_east, course, speed, heading_rate, *_, slowest = motion
         duration, turned, mean, decay = self._hold
         middle = course + mean * heading_rate + (0.5 * duration - mean) * command
+        cos, sin = math.cos(middle), math.sin(middle)
+        if x * cos + y * sin > 0.0:
+            speed = slowest
         return (
-            x + (speed * math.cos(middle) - velocity_north) * duration,
-            y + (speed * math.sin(middle) - velocity_east) * duration,
+            x + (speed * cos - velocity_north) * duration,
+            y + (speed * sin - velocity_east) * duration,
             course + turned * heading_rate + (duration - turned) * command,
             decay * heading_rate + (1.0 - decay) * command,
         )
@@ -118,41 +121,37 @@ class TurnPrediction:
         """
         cos, sin, sqrt = math.cos, math.sin, math.sqrt
         x, y, course, heading_rate = start
-        _, _, velocity_north, velocity_east, _, speed, _, fixed, error, acceleration, to_come, change = motion
+        _, _, velocity_north, velocity_east, _, speed, _, fixed, error, acceleration, to_come, change, slowest = motion
         # What is to come counts where it is against the turn.
         heading_rate += side * min(0.0, side * to_come)
         duration, turned, mean, decay = self._interval
-        # At the largest bank a turn is the slower the faster the vehicle flies.
-        stretch = max(1.0, speed / self._turn_speed)
-        turn = side * self._rate / stretch
-        ahead, gained, won = (0.5 * duration - mean) * turn, (duration - turned) * turn, (1.0 - decay) * turn
-        chord, north, east = speed * duration * self._chord, velocity_north * duration, velocity_east * duration
-        half, lag = 0.5 * acceleration, self._lag
+        flown = fast = self._flown(side, speed)
+        slow = fast if slowest == speed else self._flown(side, slowest)
+        chord, ahead, gained, won, stretch, _ = flown
+        north, east, half, lag = velocity_north * duration, velocity_east * duration, 0.5 * acceleration, self._lag
         # The farther the vehicle has to roll into the turn, or rolled of late, the more it deviates; where it is now not yet.
         fixed += (deviation := self._deviation * max(change, 0.5 - 0.5 * side * heading_rate / self._rate))
-        slack = (away := sqrt(x * x + y * y)) - (allowed := fixed + (error + half * time) * time)
-        least, places = slack + deviation, [(x, y, course, allowed)]
-        outward = side * (y * cos(course) - x * sin(course))
-        if -self._passed * away < outward < 0.0 and x * cos(course) + y * sin(course) > 0.0:
-            # As far beyond straight away as a turn leads that ends there: it is over.
-            outward = 0.0
+        slack = sqrt(x * x + y * y) - (allowed := fixed + (error + half * time) * time)
+        least, places = slack + deviation, [(x, y, course, allowed, speed)]
+        outward, then = self._outward(side, start), None
         acting, gain, least_rate, rise, fade = time - self._delay, -1.0, math.inf, 0.0, self._hold[3] if time > self._delay else 1.0
         for point in range(math.ceil(self._points_max * stretch)):
             if least < floor:
                 break
             middle = course + mean * heading_rate + ahead
             cos_m, sin_m = cos(middle), sin(middle)
+            if slow is not fast and flown is not (flown := slow if leads_away(x, y, cos_m, sin_m, chord, north, east) else fast):
+                chord, ahead, gained, won, *_ = flown
+                then = (x, y, course, side * (course - start[2])) if flown is slow else None
             x += chord * cos_m - north
             y += chord * sin_m - east
             course += turned * heading_rate + gained
             heading_rate = decay * heading_rate + won
-            time += duration
-            acting += duration
-            fade *= decay
-            last, before, before_outward = slack, rise, outward
-            outward = side * (y * cos_m - x * sin_m)
-            slack = sqrt(x * x + y * y) - (allowed := fixed + (error + half * time) * time)
-            places.append((x, y, course, allowed))
+            time, acting, fade = time + duration, acting + duration, fade * decay
+            last, before, before_outward, outward = slack, rise, outward, side * (y * cos_m - x * sin_m)
+            nearer = nearer_by_switch(side, (speed - slowest) * stretch / self._rate, then, x, y, course) if then else 0.0
+            slack = sqrt(x * x + y * y) - (allowed := fixed + (error + half * time) * time + nearer)
+            places.append((x, y, course, allowed, flown[5]))
             rise = slack - last
             slack_rate = slack / (acting - lag * (1.0 - fade))
             least_rate = slack_rate if slack_rate < least_rate else least_rate
@@ -163,9 +162,10 @@ class TurnPrediction:
                 if before_outward >= 0.0 > outward and x * cos_m + y * sin_m > 0.0 and side * heading_rate > 0.0:
                     # It heads straight away, and still the disc gains on it: nothing does better, and so it flies straight on.
                     heading_rate = ahead = gained = won = outward = 0.0
+                    slow = fast
                 continue
             if before < 0.0 or point == 0:
-                least = min(least, nearest := _least_of_late(places, motion, duration))
+                least = min(least, nearest := least_of_late(places, (velocity_north, velocity_east), duration))
                 least_rate = min(least_rate, nearest / (acting - lag * (1.0 - fade)))
             # Also if it came past straight away between two points: it would have stopped there.
             if side * heading_rate >= 0.0 and (outward >= 0.0 or before_outward >= 0.0):
@@ -175,60 +175,31 @@ class TurnPrediction:
                     break
         return least, max(gain, 0.0) * stretch / (2.0 * speed * self._rate)
 
+    def _flown(self, side: float, speed: float) -> tuple[float, float, float, float, float, float]:
+        """Return what is flown between two points of a full turn.
+
+        Way [m]; course to the middle, course turned [rad] and heading rate gained [rad/s] by the command, beside what the heading
+        rate brings; by how much longer than at omega_max it takes, at the largest bank [-]; and the speed [m/s].
+        """
+        duration, turned, mean, decay = self._interval
+        # At the largest bank a turn is the slower the faster the vehicle flies.
+        stretch = max(1.0, speed / self._turn_speed)
+        turn = side * self._rate / stretch
+        way = speed * duration * self._chord
+        return way, (0.5 * duration - mean) * turn, (duration - turned) * turn, (1.0 - decay) * turn, stretch, speed
+
+    def _outward(self, side: float, start: Start) -> float:
+        """Return how far outwards a turn leads [m]; 0 where it begins beyond straight away by no more than one that ends there."""
+        x, y, course, _ = start
+        cos, sin = math.cos(course), math.sin(course)
+        outward = side * (y * cos - x * sin)
+        over = -self._passed * math.sqrt(x * x + y * y) < outward < 0.0 and x * cos + y * sin > 0.0
+        return 0.0 if over else outward
+
 
 def nearer_side(x: float, y: float, course: float) -> float:
     """Return the side to which it is less far to head straight away from a disc: 1 to the right, -1 to the left."""
     return 1.0 if y * math.cos(course) >= x * math.sin(course) else -1.0
-
-
-def _least_of_late(places: Sequence[Place], motion: Motion, duration: float) -> float:
-    """Return the least slack of late [m] at a point of a turn from which on it rises: before the last point, or since.
-
-    Parameters
-    ----------
-    places : all so far
-    motion, duration : of the turn, and between points [s]
-    """
-    _, _, velocity_north, velocity_east, _, speed, *_ = motion
-    (x, y, course, allowed), now = places[-2:]
-    outwards = (speed * math.cos(course) - velocity_north) * x + (speed * math.sin(course) - velocity_east) * y
-    if outwards / math.hypot(x, y) <= (now[3] - allowed) / duration:
-        return _least_between(places[-2], now, motion, duration)
-    if len(places) > 2:
-        return _least_between(places[-3], places[-2], motion, duration)
-    return math.hypot(x, y) - allowed
-
-
-def _least_between(begin: Place, end: Place, motion: Motion, duration: float) -> float:
-    """Return the least slack between two points of a turn [m], which are so long apart [s].
-
-    The path is the cubic through both places with the velocities there, which is true to 1e-6 turn radii. A disc may be smaller
-    than the way between the points: so distances there tell little of the closest approach.
-    """
-    _, _, velocity_north, velocity_east, _, speed, *_ = motion
-    (x, y, course, allowed), (x_end, y_end, course_end, allowed_end) = begin, end
-    north, east = duration * velocity_north, duration * velocity_east
-    way = speed * duration
-    x_1, y_1 = way * math.cos(course) - north, way * math.sin(course) - east
-    x_then, y_then = way * math.cos(course_end) - north, way * math.sin(course_end) - east
-    x_far, y_far, slope = x_end - x, y_end - y, allowed_end - allowed
-    x_2, y_2 = 3.0 * x_far - 2.0 * x_1 - x_then, 3.0 * y_far - 2.0 * y_1 - y_then
-    x_3, y_3 = x_1 + x_then - 2.0 * x_far, y_1 + y_then - 2.0 * y_far
-    u = 0.5
-    for _ in range(_REFINED):
-        x_u, y_u = x + u * (x_1 + u * (x_2 + u * x_3)), y + u * (y_1 + u * (y_2 + u * y_3))
-        x_rate, y_rate = x_1 + u * (2.0 * x_2 + 3.0 * u * x_3), y_1 + u * (2.0 * y_2 + 3.0 * u * y_3)
-        # The square of the distance about there is square + 2 tilt du + bend du^2.
-        square, tilt = x_u * x_u + y_u * y_u, x_u * x_rate + y_u * y_rate
-        bend = x_rate * x_rate + y_rate * y_rate + 2.0 * (x_u * (x_2 + 3.0 * u * x_3) + y_u * (y_2 + 3.0 * u * y_3))
-        room = bend - slope * slope
-        if room <= 0.0:
-            # What is allowed for grows faster than the distance ever will.
-            return min(math.hypot(x, y) - allowed, math.hypot(x_end, y_end) - allowed_end)
-        u += slope * math.sqrt(max(0.0, square - tilt * tilt / bend) / (room * bend)) - tilt / bend
-        u = min(max(u, 0.0), 1.0)
-    x_u, y_u = x + u * (x_1 + u * (x_2 + u * x_3)), y + u * (y_1 + u * (y_2 + u * y_3))
-    return math.hypot(x_u, y_u) - allowed - slope * u
 
 
 def _held(duration: float, lag: float) -> tuple[float, float, float, float]:

@@ -98,7 +98,7 @@ def lacking(flights, record, *, remembers):
                 towards = np.array([math.cos(now.course - off), math.sin(now.course - off)])
                 place = np.array([now.ground_north, now.ground_east]) + (RADIUS + 20.0 + 4.0 * closing) * towards
                 disc = Tube(time, *place, *(-closing * towards))
-                motion = guard._relative(disc, time, now, speed, to_come if remembers else 0.0)
+                motion = guard._relative(disc, time, now, speed, speed, to_come if remembers else 0.0)
                 then = guard._prediction.when_acting(motion, guard._given.under_way)
                 start = (then[0], then[1], then[4], then[6])
                 kept, _ = guard._prediction.turn_away(1.0, start, then, record["delay_s"], -math.inf)

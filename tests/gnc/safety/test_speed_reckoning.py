@@ -1,4 +1,4 @@
-"""A vehicle's speed never exceeds what is reckoned with, whatever pace it was commanded."""
+"""A vehicle's speed stays within what is reckoned with, whatever pace it was commanded."""
 
 import math
 
@@ -17,8 +17,9 @@ def made(**changes):
 @pytest.mark.parametrize("pace", [SPEED, 21.0, 15.0])
 def test_a_vehicle_that_flew_v_r_is_reckoned_with_at_the_faster_of_that_and_its_pace(pace):
     assert made(overshoot=0.0).fastest(pace) == max(SPEED, pace)
-    # And it overshoots the rise, or the return from a slower pace.
+    # And it overshoots the rise, or the return from a slower pace; as it undershoots a fall, or the return from a faster one.
     assert made().fastest(pace) == pytest.approx(max(SPEED, pace) + 0.13 * abs(pace - SPEED))
+    assert made().slowest(pace) == pytest.approx(min(SPEED, pace) - 0.13 * abs(pace - SPEED))
 
 
 def test_a_slow_pace_adds_the_overshoot_of_the_return_and_is_forgotten():
@@ -34,18 +35,44 @@ def test_a_slow_pace_adds_the_overshoot_of_the_return_and_is_forgotten():
     assert surpluses[-1] == pytest.approx(0.13 * (SPEED - 15.0) * math.exp(-0.5 * 6.0 * BANDWIDTH))
 
 
-def test_a_fast_pace_is_reckoned_with_for_as_long_as_the_vehicle_may_be_as_fast():
-    # A first-order airspeed that was commanded up and down at random never becomes faster than was reckoned at any time before.
-    generator = np.random.default_rng(3)
-    reckoning, airspeed, pace = made(overshoot=0.0), SPEED, SPEED
-    for step in range(4000):
-        if step % 17 == 0:
-            pace = generator.uniform(15.0, 25.0)
-        fastest = reckoning.fastest(pace)
+def test_a_fall_from_a_fast_pace_is_none_that_a_vehicle_could_rise_beyond():
+    reckoning = made()
+    for pace in [25.0] * 400:
         reckoning.note(pace)
-        airspeed = pace + (airspeed - pace) * math.exp(-BANDWIDTH * TIME_STEP)
-        assert airspeed <= fastest + 1e-9
-        assert reckoning.highest >= SPEED
+    assert reckoning.fastest(25.0) == pytest.approx(25.0, abs=1e-3)
+    assert reckoning.fastest(SPEED) == reckoning.fastest(25.0)
+    reckoning.note(SPEED)
+    assert reckoning.fastest(SPEED) < 25.0
+    assert reckoning.slowest(SPEED) == pytest.approx(SPEED - 0.13 * (25.0 - SPEED), rel=1e-2)
+
+
+@pytest.mark.parametrize("damping", [1.0, 0.55])
+def test_a_pace_is_reckoned_with_for_as_long_as_the_vehicle_may_be_as_fast_or_slow(damping):
+    # A second-order airspeed, commanded up and down at random and to V_r in the end, stays within what was reckoned with then.
+    generator = np.random.default_rng(3)
+    overshoot = 0.0 if damping == 1.0 else math.exp(-math.pi * damping / math.sqrt(1.0 - damping**2))
+    pieces, frequency = 10, BANDWIDTH * (2.0 if damping == 1.0 else 1.0)
+    for _ in range(40):
+        reckoning, airspeed, rate, pace = made(overshoot=overshoot), SPEED, 0.0, SPEED
+        for step in range(int(generator.integers(40, 300))):
+            if step % 17 == 0:
+                pace = generator.uniform(15.0, 25.0)
+            fastest, slowest = reckoning.fastest(pace), reckoning.slowest(pace)
+            reckoning.note(pace)
+            airspeed, rate = second_order(airspeed, rate, pace, damping, frequency, pieces)
+            assert reckoning.highest >= SPEED
+        fastest, slowest = max(fastest, airspeed), min(slowest, airspeed)
+        for _ in range(200):
+            airspeed, rate = second_order(airspeed, rate, SPEED, damping, frequency, pieces)
+            assert slowest - 0.02 * 10.0 <= airspeed <= fastest + 0.02 * 10.0
+
+
+def second_order(value, rate, command, damping, frequency, pieces):
+    """Return value and rate after one time step, flown in pieces."""
+    for _ in range(pieces):
+        rate += TIME_STEP / pieces * (frequency**2 * (command - value) - 2.0 * damping * frequency * rate)
+        value += TIME_STEP / pieces * rate
+    return value, rate
 
 
 def test_a_vehicle_that_answers_at_once_has_nothing_to_be_reckoned_with_but_its_pace():

@@ -6,7 +6,7 @@ from gnc_cases import HEADING_RATE_MAX, SPEED
 from guard_cases import LAGS, RADIUS, TIME_STEP, TURN_RADIUS, make_guard, moved, random_start, random_velocity
 
 from gnc.numeric import wrap
-from gnc.safety.turn_prediction import TurnPrediction
+from gnc.safety.turn_prediction import TurnPrediction, nearer_side
 
 
 def turn_by_hand(side, state, velocity, lag, delay, speed=SPEED, rate=HEADING_RATE_MAX):
@@ -45,7 +45,7 @@ def test_a_disc_in_the_way_of_a_turn_is_seen_however_small_it_is():
         duration = turned / HEADING_RATE_MAX
         ahead = moved((0.0, 0.0, 0.0, HEADING_RATE_MAX), HEADING_RATE_MAX, 0.25, duration)[:2]
         x, y = (v * duration - place + off for v, place, off in zip(velocity, ahead, generator.uniform(-3.0, 3.0, 2), strict=True))
-        motion = (x, y, *velocity, 0.0, SPEED, HEADING_RATE_MAX, 0.0, 0.0, 0.0, 0.0, 0.0)
+        motion = (x, y, *velocity, 0.0, SPEED, HEADING_RATE_MAX, 0.0, 0.0, 0.0, 0.0, 0.0, SPEED)
         found, _ = prediction.turn_away(1.0, (x, y, 0.0, HEADING_RATE_MAX), motion, 0.0, -math.inf)
         times = np.linspace(0.0, 1.2 * duration, 4000)
         arc = SPEED / HEADING_RATE_MAX * np.array([np.sin(HEADING_RATE_MAX * times), 1.0 - np.cos(HEADING_RATE_MAX * times)])
@@ -63,11 +63,80 @@ def test_a_vehicle_faster_than_it_can_turn_at_omega_max_is_predicted_to_turn_as_
         assert found == pytest.approx(flown, abs=1e-3 * 1.5**2 * TURN_RADIUS)
 
 
+def test_no_speed_between_the_fastest_and_the_slowest_comes_nearer_than_predicted():
+    generator = np.random.default_rng(1)
+    prediction = TurnPrediction(heading_rate_max=HEADING_RATE_MAX, lag=0.25, delay=0.0, time_step=TIME_STEP)
+    slow, fast = 0.95 * SPEED, 1.2 * SPEED
+    beyond, beyond_two = [], []
+    for _ in range(40):
+        radius = TURN_RADIUS * generator.choice([0.35, 0.5, 1.0, 2.0, 5.0, 10.0])
+        bearing, distance = generator.uniform(-math.pi, math.pi), radius + generator.uniform(0.2, 3.0) * TURN_RADIUS
+        velocity, course = random_velocity(generator, generator.uniform(0.0, 0.92) * slow), generator.uniform(-math.pi, math.pi)
+        start = (
+            distance * math.cos(bearing),
+            distance * math.sin(bearing),
+            course,
+            generator.uniform(-1.0, 1.0) * HEADING_RATE_MAX,
+        )
+
+        def kept(side, fastest, slowest, start=start, velocity=velocity, radius=radius):
+            motion = (*start[:2], *velocity, start[2], fastest, start[3], radius, 0.0, 0.0, 0.0, 0.0, slowest)
+            return prediction.turn_away(side, start, motion, 0.0, -math.inf)[0]
+
+        side = nearer_side(*start[:3])
+        flown = min(turns_at_many_speeds(side, start, velocity, slow, fast)) - radius
+        # Where it comes to lie upon the vessel, the cubic between two points is none.
+        if flown > -0.9 * radius:
+            beyond.append(kept(side, fast, slow) - flown)
+            beyond_two.append(min(kept(side, fast, fast), kept(side, slow, slow)) - flown)
+    assert len(beyond) > 30
+    # Turn radii of 46 and 37 m. Two predictions at constant speeds miss what comes by more than a metre.
+    assert max(beyond) < 0.05 * (fast - slow) / HEADING_RATE_MAX
+    assert max(beyond_two) > 1.0
+    assert np.median(beyond) > -0.3
+
+
+def turns_at_many_speeds(side, start, velocity, slow, fast, piece=0.02):
+    """Return the closest approaches to a disc's centre [m] of full turns, fast until one of many times and slow from then on."""
+    x, y, course, turn = start
+    duration = 2.0 * math.pi / HEADING_RATE_MAX
+    courses = []
+    for _ in range(round(duration / piece)):
+        before = course
+        _, _, course, turn = moved((0.0, 0.0, course, turn), side * HEADING_RATE_MAX, 0.25, piece)
+        courses.append(0.5 * (before + course))
+    times, courses = piece * np.arange(1, len(courses) + 1), np.array(courses)
+    for until in np.linspace(0.0, duration, 40):
+        speed = np.where(times <= until, fast, slow)
+        north = x + piece * np.cumsum(speed * np.cos(courses)) - velocity[0] * times
+        east = y + piece * np.cumsum(speed * np.sin(courses)) - velocity[1] * times
+        left = side * (np.arctan2(east, north) - courses)
+        left = np.remainder(left + math.pi, 2.0 * math.pi) - math.pi
+        # It has turned far enough once it heads straight away.
+        ended = np.flatnonzero((left[:-1] >= 0.0) & (left[:-1] < 0.3) & (left[1:] < 0.0))
+        end = ended[0] + 2 if len(ended) else len(times)
+        yield float(np.hypot(north, east)[:end].min())
+
+
+def test_a_turn_that_leads_round_a_disc_comes_the_nearer_the_slower_it_is_flown():
+    # The circle at the fastest is about the disc's centre, 0.2 turn radii outside; at the slowest it leads through the disc.
+    guard = make_guard(lag=0.0, radius=TURN_RADIUS).guard
+    start = (0.0, -1.2 * TURN_RADIUS, 0.0, HEADING_RATE_MAX)
+
+    def kept(slowest):
+        motion = (*start[:2], 0.0, 0.0, 0.0, 1.2 * SPEED, HEADING_RATE_MAX, TURN_RADIUS, 0.0, 0.0, 0.0, 0.0, slowest)
+        return guard._slack(1.0, start, motion, -math.inf)[0]
+
+    assert kept(1.2 * SPEED) == pytest.approx(0.2 * TURN_RADIUS, abs=0.1)
+    # From 1.2 to the right its own circle of 0.95: its far side is 0.7 from the disc's centre.
+    assert kept(0.95 * SPEED) == pytest.approx((0.7 - 1.0) * TURN_RADIUS, abs=0.1)
+
+
 def away(side=1.0, *, turn=0.0, course=0.0, closing=0.0, to_come=0.0, change=0.0, deviation=0.0, **start):
     """Return by how much a turn away keeps off [m], which is begun 250 m from the centre of a disc of 200 m, due south of it."""
     prediction = TurnPrediction(heading_rate_max=HEADING_RATE_MAX, lag=0.25, delay=0.0, time_step=TIME_STEP, deviation=deviation)
     place = {"x": -250.0, "y": 0.0} | start
-    motion = (*place.values(), closing, 0.0, course, SPEED, turn, RADIUS, 0.0, 0.0, to_come, change)
+    motion = (*place.values(), closing, 0.0, course, SPEED, turn, RADIUS, 0.0, 0.0, to_come, change, SPEED)
     return prediction.turn_away(side, (*place.values(), course, turn), motion, 0.0, -math.inf)[0]
 
 
