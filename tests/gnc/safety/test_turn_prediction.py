@@ -5,6 +5,8 @@ import pytest
 from gnc_cases import HEADING_RATE_MAX, SPEED
 from guard_cases import LAGS, RADIUS, TIME_STEP, TURN_RADIUS, make_guard, moved, random_start, random_velocity
 
+from gnc.estimation.own_motion import KnownMotion
+from gnc.estimation.reachable_set import Tube
 from gnc.numeric import wrap
 from gnc.safety.turn_prediction import TurnPrediction, nearer_side
 
@@ -34,6 +36,24 @@ def test_the_clearance_is_that_of_the_better_turn_away_flown_in_small_steps(lag,
         flown = max(turn_by_hand(side, state, velocity, lag, delay) for side in (1.0, -1.0))
         # The points are 0.125 rad apart; the closest approach between them is predicted to 0.04 m (gnc/safety/turn_prediction.py).
         assert found == pytest.approx(flown, abs=1e-3 * TURN_RADIUS)
+
+
+@pytest.mark.parametrize("delay", [0.25, 1.0])
+def test_a_disc_that_grows_has_grown_by_the_dead_time_when_a_turn_begins(delay):
+    # Heading past it, at its edge: what comes nearest is right at the beginning, or soon after.
+    growth, lag, piece = 3.0, 0.25, 0.005
+    guard = make_guard(lag=lag, delay=delay).guard
+    guard.tubes = (Tube(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, growth),)
+    state = (-150.0, 230.0, 0.1, 0.0)
+    own = KnownMotion(ground_north=state[0], ground_east=state[1], course=state[2], heading_rate=state[3])
+    found = guard.clearance(0.0, own, SPEED)
+    kept = []
+    for step in range(round(8.0 / piece)):
+        time = step * piece
+        if time >= delay:
+            kept.append(math.hypot(*state[:2]) - RADIUS - growth * time)
+        state = moved(state, HEADING_RATE_MAX if time >= delay else 0.0, lag, piece)
+    assert found == pytest.approx(min(kept), abs=0.05)
 
 
 def test_a_disc_in_the_way_of_a_turn_is_seen_however_small_it_is():
