@@ -101,7 +101,7 @@ def _explained(key: str, entry: ErrorDetails, kind: type[BaseModel]) -> str:
     if error_type == "value_error":
         return _own_words(key, text, value)
     if demanded := must_be(entry, key=key, **_of_field(kind, key)):
-        return f"{key} is {value!r}; {demanded}"
+        return f"{key} is {_shown(value)}; {demanded}"
     remedy = f"; {text[0].lower()}{text[1:]}"
     if error_type == "tuple_type":
         remedy = f"; give a list in brackets, as in {_list_example(kind, key, value)}"
@@ -112,7 +112,12 @@ def _explained(key: str, entry: ErrorDetails, kind: type[BaseModel]) -> str:
     elif error_type == "literal_error":
         guess = did_you_mean(str(value), re.findall(r"'([^']+)'", text))
         remedy = f"{guess or ';'} it must be {text.removeprefix('Input should be ')}"
-    return f"{where}value is {value!r}{remedy}"
+    return f"{where}value is {_shown(value)}{remedy}"
+
+
+def _shown(value: object) -> str:
+    """Return a value as a scenario writes it, where that is not as Python does."""
+    return str(value).lower() if isinstance(value, bool) else repr(value)
 
 
 def _own_words(key: str, text: str, section: object) -> str:

@@ -229,7 +229,8 @@ def test_a_value_in_the_place_of_a_list_is_refused_with_a_list_of_that_kind(name
     assert str(refusal.value).endswith(words)
 
 
-@pytest.mark.parametrize("override", ["guidance.law=3", "title=3"])
-def test_a_number_in_the_place_of_text_is_refused_in_words(override):
-    with pytest.raises(InputError, match="is 3; it must be text, in quotes"):
-        load_study("sea_wind", [override])
+@pytest.mark.parametrize("value", ["3", "true"])
+@pytest.mark.parametrize("key", ["guidance.law", "title"])
+def test_a_number_or_truth_value_in_the_place_of_text_is_refused_in_words(key, value):
+    with pytest.raises(InputError, match=f"is {value}; it must be text, in quotes"):
+        load_study("sea_wind", [f"{key}={value}"])
