@@ -131,14 +131,11 @@ def recorded_flights(run: RunData) -> Iterator[GeographicFlight]:
     ReportError : none has
     """
     found = False
-    for rows in (run.summary, run.comparison):
-        for row in rows.to_dict("records"):
-            # A trajectory of a study of convergence has no name.
-            flight_id = str(row.get("flight_id", ""))
-            history = run.history(flight_id) if flight_id and run.has_history(flight_id) else None
-            if history is not None and len(history):
-                found = True
-                yield _flight(run, {str(key): value for key, value in row.items()}, history)
+    for row in run.recorded_rows():
+        history = run.history(str(row["flight_id"]))
+        if history is not None and len(history):
+            found = True
+            yield _flight(run, row, history)
     if not found:
         raise ReportError(f"'{run.path}' has no time histories of flights, which tracks are made of")
 

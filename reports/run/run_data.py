@@ -85,10 +85,14 @@ class RunData:
 
     def recorded(self) -> list[str]:
         """Return the names of the flights that have a time history, those of the study before those of its comparisons."""
+        return [str(row["flight_id"]) for row in self.recorded_rows()]
+
+    def recorded_rows(self) -> list[dict[str, object]]:
+        """Return the rows of the flights that have a time history, those of the study before those of its comparisons."""
         # The rows of trajectories of a study of convergence name no flights.
         tables = [rows for rows in (self.summary, self.comparison) if "flight_id" in rows]
-        names = [str(flight_id) for rows in tables for flight_id in rows["flight_id"]]
-        return [name for name in names if self.has_history(name)]
+        rows = [{str(key): value for key, value in row.items()} for table in tables for row in table.to_dict("records")]
+        return [row for row in rows if self.has_history(str(row["flight_id"]))]
 
     def of_flight(self, flight_id: str) -> "RunData":
         """Return the same run with one flight alone."""
