@@ -30,8 +30,8 @@ _UNSTEADY = 0.05
 _BISECTIONS = 5
 """Halvings of the fraction of the turn away, which is found to 1/32."""
 
-Situation = tuple[Motion, Tube]
-"""The vehicle's motion relative to a disc."""
+Situation = tuple[tuple[Motion, ...], Tube]
+"""A disc, and the motion relative to it when a command begins to act: fast first and slow then, slow, fast; or at one speed."""
 
 
 class KeepoutGuard:
@@ -155,19 +155,20 @@ class KeepoutGuard:
     def _look(self, command: float, time: float, own: AirMotion, speed: float, slowest: float) -> tuple[float, list[Situation]]:
         """Return for how long [s] no command can spoil the turn away that follows this one, negative if no turn away keeps off.
 
-        Then it is told of the situations, too: the motion relative to each disc when the command begins to act.
+        Then it is told of the situations, too: the motions relative to each disc when the command begins to act.
         """
         free, situations, to_come = -1.0, [], self._given.still_to_come(own.heading_rate)
         for tube in self._candidates(time, own):
             motion = self._relative(tube, time, own, speed, slowest, to_come)
             free = self._free_when_far(motion)
+            motions: tuple[Motion, ...] = ()
             if free <= 0.0:
-                motion = self._prediction.when_acting(motion, self._given.under_way)
-                free = self._free_by_turning_away(command, motion)
+                motions = self._when_acting(motion)
+                free = self._free_by_turning_away(command, motions)
             if free >= 0.0:
                 self._kept_off = tube
                 break
-            situations.append((motion, tube))
+            situations.append((motions, tube))
         return free, situations
 
     def _candidates(self, time: float, own: AirMotion) -> Sequence[Tube]:
@@ -212,38 +213,47 @@ class KeepoutGuard:
         gap = math.hypot(x, y) - radius - (closing + 0.5 * acceleration * duration) * duration
         return min(gap / (closing + 1.5 * acceleration * duration), duration)
 
-    def _free_by_turning_away(self, command: float, motion: Motion) -> float:
+    def _when_acting(self, motion: Motion) -> tuple[Motion, ...]:
+        """Return the motions of a situation."""
+        acting, under_way = self._prediction.when_acting, self._given.under_way
+        if motion[12] == motion[5]:
+            return (acting(motion, under_way),)
+        # Round a disc, or past a small one, a turn may come nearer that is slow, or fast, from beginning to end.
+        steady = [(*motion[:5], speed, *motion[6:12], speed) for speed in (motion[12], motion[5])]
+        return tuple(acting(each, under_way) for each in (motion, *steady))
+
+    def _free_by_turning_away(self, command: float, motions: tuple[Motion, ...]) -> float:
         """Return for how long [s] no command can spoil the turn away that follows this one; negative if there is none."""
-        start = self._prediction.after(command, motion)
-        floor = self._resolution * motion[5] / self._rate
-        for side in (nearer := nearer_side(*start[:3]), -nearer):
-            slack, free = self._slack(side, start, motion, floor)
+        starts = self._after(command, motions)
+        floor = self._resolution * motions[0][5] / self._rate
+        for side in (nearer := nearer_side(*starts[0][:3]), -nearer):
+            slack, free = self._slack(side, starts, motions, floor)
             if slack >= floor:
                 self._side = side
                 return free
         return -1.0
 
-    def _slack(self, side: float, start: Start, motion: Motion, floor: float) -> tuple[float, float]:
-        """Return slack [m] of a turn away, and for how long no command can spoil it [s]."""
-        begun = self._until_acting + self._time_step
-        slack, free = self._prediction.turn_away(side, start, motion, begun, floor)
-        if motion[12] < motion[5]:
-            # Round a disc, or past a small one, a turn may come nearer that is slow, or fast, from beginning to end.
-            for speed in (motion[12], motion[5]):
-                if slack < floor:
-                    break
-                steady = (*motion[:5], speed, *motion[6:12], speed)
-                kept, free_steady = self._prediction.turn_away(side, start, steady, begun, floor)
-                slack, free = min(slack, kept), min(free, free_steady)
+    def _after(self, command: float, motions: tuple[Motion, ...]) -> list[Start]:
+        """Return where a command held for one time step leads, in each motion."""
+        return [self._prediction.after(command, motion) for motion in motions]
+
+    def _slack(self, side: float, starts: Sequence[Start], motions: tuple[Motion, ...], floor: float) -> tuple[float, float]:
+        """Return slack [m] of a turn away, and for how long no command can spoil it [s]: the least of the motions."""
+        begun, slack, free = self._until_acting + self._time_step, math.inf, math.inf
+        for start, motion in zip(starts, motions, strict=True):
+            kept, kept_free = self._prediction.turn_away(side, start, motion, begun, floor)
+            slack, free = min(slack, kept), min(free, kept_free)
+            if slack < floor:
+                break
         return slack, free
 
     def _mix(self, command: float, situations: Sequence[Situation]) -> float:
         """Return the command with the least of a turn away that keeps off, or the turn that was safe before [rad/s]."""
-        slack, side, motion, tube = self._best_turn(situations)
+        slack, side, motions, tube = self._best_turn(situations)
         self._side = side
-        turn = self._turn(side, motion)
-        floor = self._resolution * motion[5] / self._rate
-        self.lost = slack < -self._explains(motion) - floor
+        turn = self._turn(side, motions[0])
+        floor = self._resolution * motions[0][5] / self._rate
+        self.lost = slack < -self._explains(motions[0]) - floor
         if slack < 0.0:
             return turn
         self._kept_off = tube
@@ -251,7 +261,7 @@ class KeepoutGuard:
         for _ in range(_BISECTIONS):
             fraction = 0.5 * (low + high)
             trial = command + fraction * (turn - command)
-            slack, _ = self._slack(side, self._prediction.after(trial, motion), motion, floor)
+            slack, _ = self._slack(side, self._after(trial, motions), motions, floor)
             if slack >= floor:
                 high, mixed = fraction, trial
             else:
@@ -271,20 +281,20 @@ class KeepoutGuard:
             return side * self._rate
         return limited(left / self._time_step, self._rate)
 
-    def _best_turn(self, situations: Sequence[Situation]) -> tuple[float, float, Motion, Tube]:
-        """Return slack [m], side, motion and disc of the turn away to fly: one that keeps off, or that to the side that was safe.
+    def _best_turn(self, situations: Sequence[Situation]) -> tuple[float, float, tuple[Motion, ...], Tube]:
+        """Return slack [m], side, motions and disc of the turn away to fly: one that keeps off, or that to the side that was safe.
 
         That one is flown as long as declared errors explain what it lacks, and the better one if they do not.
         """
-        found: list[tuple[float, float, Motion, Tube]] = []
-        for motion, tube in situations:
+        found: list[tuple[float, float, tuple[Motion, ...], Tube]] = []
+        for motions, tube in situations:
             for side in (self._side, -self._side) if self._side else (1.0, -1.0):
-                start = self._prediction.after(self._turn(side, motion), motion)
-                slack, _ = self._slack(side, start, motion, -math.inf)
-                found.append((slack, side, motion, tube))
+                starts = self._after(self._turn(side, motions[0]), motions)
+                slack, _ = self._slack(side, starts, motions, -math.inf)
+                found.append((slack, side, motions, tube))
                 if self._side and slack >= 0.0:
                     return found[-1]
         was_safe = max((entry for entry in found if entry[1] == self._side), key=lambda entry: entry[0], default=None)
-        if was_safe is not None and was_safe[0] >= -self._explains(was_safe[2]):
+        if was_safe is not None and was_safe[0] >= -self._explains(was_safe[2][0]):
             return was_safe
         return max(found, key=lambda entry: entry[:2])

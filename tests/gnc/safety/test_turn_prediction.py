@@ -145,7 +145,8 @@ def test_a_turn_that_leads_round_a_disc_comes_the_nearer_the_slower_it_is_flown(
 
     def kept(slowest):
         motion = (*start[:2], 0.0, 0.0, 0.0, 1.2 * SPEED, HEADING_RATE_MAX, TURN_RADIUS, 0.0, 0.0, 0.0, 0.0, slowest)
-        return guard._slack(1.0, start, motion, -math.inf)[0]
+        motions = guard._when_acting(motion)
+        return guard._slack(1.0, [start] * len(motions), motions, -math.inf)[0]
 
     assert kept(1.2 * SPEED) == pytest.approx(0.2 * TURN_RADIUS, abs=0.1)
     # From 1.2 to the right its own circle of 0.95: its far side is 0.7 from the disc's centre.
