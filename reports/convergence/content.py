@@ -32,7 +32,7 @@ def convergence_content(run: RunData) -> Findings:
 
 
 def _flown(data: ConvergenceData) -> str:
-    laws = ", ".join(law.name for law in data.laws) or "none"
+    laws = ", ".join(law.name.lower() for law in data.laws) or "none"
     states = data.rows["trajectory"].nunique()
     return (
         f"{len(data.rows):,} trajectories of the paper's kinematic vehicle, from {states:,} initial states at random, under these"

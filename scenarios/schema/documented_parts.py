@@ -95,13 +95,18 @@ def _part_key(key: str, of: "Field[Any]", described: str) -> DocumentedKey:
     limits = "a number from {:g} to {:g}".format(*of.metadata["limits"]) if "limits" in of.metadata else "a number"
     return DocumentedKey(
         key=key,
-        meaning=meaning,
+        meaning=_sentence(meaning),
         unit=unit if number else "",
         range=" or ".join(choices) or ranges.get(type(of.default), limits),
         default=of.default,
         required=False,
         studies=FLIGHT_STUDIES,
     )
+
+
+def _sentence(text: str) -> str:
+    """Return what a docstring says of a field as a sentence, as the schema says it of its keys."""
+    return f"{text[0].upper()}{text[1:]}." if text else ""
 
 
 def _described(made: type[Any]) -> dict[str, str]:

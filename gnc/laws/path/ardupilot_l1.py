@@ -156,9 +156,9 @@ class ArduPilotL1Law(PathLaw):
 
     Attributes
     ----------
-    l1_period_s : NAVL1_PERIOD [s]
-    l1_damping : NAVL1_DAMPING [-]
-    l1_integrator_per_s : NAVL1_XTRACK_I [1/s]
+    l1_period_s : period of the loop, ArduPilot's NAVL1_PERIOD [s]
+    l1_damping : damping of the loop, ArduPilot's NAVL1_DAMPING [-]
+    l1_integrator_per_s : gain of the cross-track integrator, ArduPilot's NAVL1_XTRACK_I [1/s]
     """
 
     l1_period_s: float = 17.0

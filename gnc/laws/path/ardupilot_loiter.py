@@ -101,8 +101,8 @@ class ArduPilotLoiterLaw(PathLaw):
 
     Attributes
     ----------
-    loiter_period_s : NAVL1_PERIOD [s]
-    loiter_damping : NAVL1_DAMPING [-]
+    loiter_period_s : period of the loop, ArduPilot's NAVL1_PERIOD [s]
+    loiter_damping : damping of the loop, ArduPilot's NAVL1_DAMPING [-]
     """
 
     given: ClassVar[str] = "the circle, with the velocity over the ground, as ArduPilot has it"

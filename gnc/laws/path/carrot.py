@@ -51,8 +51,8 @@ class CarrotLaw(PathLaw):
 
     Attributes
     ----------
-    carrot_ahead_m : of the nearest point of the tangent [m]
-    carrot_gain_per_s : heading rate per angle between course and bearing [1/s]
+    carrot_ahead_m : distance of the carrot ahead of the nearest point of the tangent [m]
+    carrot_gain_per_s : heading rate per angle between the course and the bearing of the carrot [1/s]
     """
 
     given: ClassVar[str] = "tangent of the path over the ground (M1)"
@@ -72,8 +72,8 @@ class CarrotOrbitLaw(PathLaw):
 
     Attributes
     ----------
-    carrot_angle_rad : of the carrot ahead of the vehicle's bearing from the centre [rad]
-    carrot_gain_per_s : heading rate per angle between course and bearing [1/s]
+    carrot_angle_rad : angle of the carrot ahead of the vehicle's bearing from the centre [rad]
+    carrot_gain_per_s : heading rate per angle between the course and the bearing of the carrot [1/s]
     """
 
     given: ClassVar[str] = "the circle in the frame of its centre (M2)"
@@ -94,9 +94,9 @@ class PlosLaw(PathLaw):
 
     Attributes
     ----------
-    plos_ahead_m : of the pursued point ahead of the reference [m]
-    plos_pursuit_per_s : k_1 [1/s]
-    plos_sight_per_m_s : k_2 [1/(m s)]
+    plos_ahead_m : distance of the pursued point ahead of the reference [m]
+    plos_pursuit_per_s : gain k_1 of the pursuit, heading rate per angle to the pursued point [1/s]
+    plos_sight_per_m_s : gain k_2 of the line of sight, heading rate per cross-track distance [1/(m s)]
     """
 
     given: ClassVar[str] = "tangent of the path over the ground (M1)"

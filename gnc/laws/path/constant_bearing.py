@@ -30,7 +30,7 @@ class ConstantBearingLaw:
 
     Attributes
     ----------
-    bearing_gain_per_s : heading rate per angle from the course to that of the meeting [1/s]
+    bearing_gain_per_s : heading rate per angle from the course to the course that meets the reference [1/s]
     """
 
     given: ClassVar[str] = "the reference's place and velocity (M3)"

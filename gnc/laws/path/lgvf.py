@@ -112,7 +112,7 @@ class LgvfLaw(PathLaw):
 
     Attributes
     ----------
-    lgvf_gain_per_s : k, feedback on the heading [1/s]
+    lgvf_gain_per_s : feedback gain k, heading rate per course error [1/s]
     """
 
     given: ClassVar[str] = "the circle in the frame of its centre (M2); wind"

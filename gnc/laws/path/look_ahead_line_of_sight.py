@@ -38,8 +38,8 @@ class LookAheadLineOfSightLaw:
 
     Attributes
     ----------
-    sight_distance_m : Delta [m]
-    sight_gain_per_s : k, heading rate per course error [1/s]
+    sight_distance_m : look-ahead distance Delta along the tangent [m]
+    sight_gain_per_s : gain k, heading rate per course error [1/s]
     """
 
     given: ClassVar[str] = "tangent of the path through the air (M1), and its turn rate"

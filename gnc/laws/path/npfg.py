@@ -197,9 +197,9 @@ class NpfgLaw(PathLaw):
 
     Attributes
     ----------
-    npfg_period_s : T_0 [s]
-    npfg_damping : zeta [-]
-    npfg_roll_time_constant_s : T_phi [s]
+    npfg_period_s : period T_0 of the loop [s]
+    npfg_damping : damping zeta of the loop [-]
+    npfg_roll_time_constant_s : time constant T_phi of the roll angle; 0 for no bounds on the period [s]
     """
 
     given: ClassVar[str] = "tangent and curvature over the ground (M1), a circle in its centre's frame (M2); wind"

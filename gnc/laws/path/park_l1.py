@@ -70,7 +70,7 @@ class ParkL1Law(PathLaw):
 
     Attributes
     ----------
-    l1_distance_m : L1 [m]
+    l1_distance_m : look-ahead distance L1 [m]
     """
 
     l1_distance_m: float = 60.0

@@ -27,7 +27,7 @@ class ProportionalNavigationLaw:
 
     Attributes
     ----------
-    navigation_constant : N, heading rate over the rate of the line of sight [-]
+    navigation_constant : navigation constant N, heading rate over the rate of the line of sight [-]
     """
 
     given: ClassVar[str] = "the reference's place and velocity (M3)"

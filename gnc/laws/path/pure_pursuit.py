@@ -30,7 +30,7 @@ class PurePursuitLaw:
 
     Attributes
     ----------
-    range_min_m : floor of the distance: the law is singular on the reference [m]
+    range_min_m : least distance that the law reckons with: it is singular on the reference [m]
     """
 
     given: ClassVar[str] = "the reference's place (M3)"

@@ -60,9 +60,9 @@ class RosplaneFieldLaw(PathLaw):
 
     Attributes
     ----------
-    path_gain_per_m : k_path [1/m]
-    path_approach_rad : chi_inf [rad]
-    course_gain_per_s : k_chi [1/s]
+    path_gain_per_m : k_path, how steeply the field turns with the distance from the line [1/m]
+    path_approach_rad : chi_inf, course towards the line from far away [rad]
+    course_gain_per_s : k_chi, heading rate per course error [1/s]
     """
 
     given: ClassVar[str] = "tangent of the path over the ground (M1)"
@@ -91,8 +91,8 @@ class RosplaneOrbitLaw(PathLaw):
 
     Attributes
     ----------
-    orbit_gain : k_orbit [-]
-    course_gain_per_s : k_chi [1/s]
+    orbit_gain : k_orbit, how steeply the field turns with the distance from the circle, in radii [-]
+    course_gain_per_s : k_chi, heading rate per course error [1/s]
     """
 
     given: ClassVar[str] = "the circle in the frame of its centre (M2)"

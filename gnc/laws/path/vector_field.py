@@ -103,7 +103,7 @@ class VectorFieldLaw:
 
     Attributes
     ----------
-    field_gain_per_m : k, how steeply the field turns with the distance from the path [1/m]
+    field_gain_per_m : gain k, how steeply the field turns with the distance from the path [1/m]
     field_approach_rad : chi_inf, course towards the tangent from far away [rad]
     field_rate_rad_s : kappa, largest heading rate that the course error adds [rad/s]
     field_width_rad : eps, course error from which on it adds that [rad]
@@ -139,7 +139,7 @@ class OrbitFieldLaw(PathLaw):
 
     Attributes
     ----------
-    field_gain_per_m : k, how steeply the field turns with the distance from the path [1/m]
+    field_gain_per_m : gain k, how steeply the field turns with the distance from the path [1/m]
     field_rate_rad_s, field_width_rad : kappa and eps, as of ``VectorFieldLaw``
     """
 
