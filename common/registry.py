@@ -85,6 +85,12 @@ class Registry(Generic[Part]):
         """Return every known name, in alphabetical order."""
         return sorted({*self._known(), *self._entry_points()})
 
+    def own_names(self) -> list[str]:
+        """Return the names of the project's own parts, in alphabetical order: those that modules of ``folder`` register."""
+        return sorted(
+            name for name, part in self._known().items() if getattr(part, "__module__", "").startswith(f"{self._folder}.")
+        )
+
     def __contains__(self, name: str) -> bool:
         """Return whether a part is known by ``name``; installed packages are asked last, which takes longest."""
         return name in self._known() or name in self._entry_points()

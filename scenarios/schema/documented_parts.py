@@ -6,7 +6,7 @@ import re
 from dataclasses import Field, dataclass, fields, replace
 from typing import Any
 
-from common.registry import Registry, announced
+from common.registry import Registry
 from gnc.laws.steering_law import STEERING_LAWS
 from scenarios.schema.extension_points import PAYLOADS, PLUME_MODELS
 from scenarios.schema.keys import line, split_unit
@@ -62,19 +62,13 @@ def documented_part_keys() -> tuple[DocumentedKey, ...]:
     found: dict[tuple[str, str], tuple[DocumentedKey, list[str]]] = {}
     for key_of_part, registry in _REGISTRIES.items():
         section = key_of_part.partition(".")[0]
-        for name in _own_names(registry):
+        for name in registry.own_names():
             part = registry.get(name)
             made = part if section == "guidance" else getattr(part, "SETTINGS", None)
             for key in _part_keys(section, made) if made else ():
                 _, users = found.setdefault((key.key, repr(key.default)), (key, []))
                 users.append(f"{key_of_part} '{name}'")
     return tuple(replace(key, conditions=(" or ".join(users),)) for key, users in found.values())
-
-
-def _own_names(registry: Registry[Any]) -> list[str]:
-    """Return the names of the project's own parts: what others announce is documented by them."""
-    others = announced(registry.kind)
-    return [name for name in registry.names() if name not in others]
 
 
 def _part_keys(section: str, made: type[Any]) -> list[DocumentedKey]:

@@ -1,4 +1,4 @@
-"""A registry whose folder does not load."""
+"""A registry: a folder that does not load, and parts that are not its own."""
 
 import sys
 
@@ -22,6 +22,28 @@ def test_a_module_that_does_not_load_hides_no_part_at_the_next_call(tmp_path, mo
         (package / "begins.py").unlink()
         assert registry.names() == []
         assert f"{package.name}.ends" in sys.modules
+    finally:
+        for name in [name for name in sys.modules if name.partition(".")[0] == package.name]:
+            del sys.modules[name]
+
+
+def test_a_part_that_is_lent_or_registered_by_others_is_none_of_its_own(tmp_path, monkeypatch):
+    package = tmp_path / "parts_of_its_own"
+    package.mkdir()
+    (package / "__init__.py").write_text("", encoding="utf-8")
+    monkeypatch.syspath_prepend(tmp_path)
+    registry = Registry("part", folder=package.name)
+
+    class Own: ...
+
+    class Lent: ...
+
+    Own.__module__ = f"{package.name}.own"
+    registry.register("own")(Own)
+    try:
+        with registry.lent("lent", Lent):
+            assert registry.names() == ["lent", "own"]
+            assert registry.own_names() == ["own"]
     finally:
         for name in [name for name in sys.modules if name.partition(".")[0] == package.name]:
             del sys.modules[name]
