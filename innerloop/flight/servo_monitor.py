@@ -25,7 +25,7 @@ class ServoMonitor:
     Parameters
     ----------
     fdm : of an aircraft with its autopilot
-    time_step : between calls of ``error`` [s]
+    time_step : between looks at the commands, by ``watch`` or ``error`` [s]
     """
 
     __slots__ = ("_surfaces",)
@@ -45,8 +45,13 @@ class ServoMonitor:
             recent: deque[float] = deque(maxlen=1 + round(_TRAVEL_TIME / time_step))
             self._surfaces.append((command, position, feedback.travel, recent))
 
+    def watch(self) -> None:
+        """Take note of the commands."""
+        for command, _, _, recent in self._surfaces:
+            recent.append(command())
+
     def error(self) -> float:
-        """Return the largest distance of a surface from its recent commands, over its travel [-]; call once a step."""
+        """Take note of the commands, and return the largest distance of a surface from the recent ones, over its travel [-]."""
         worst = 0.0
         for command, position, travel, recent in self._surfaces:
             now, at = command(), position() / travel

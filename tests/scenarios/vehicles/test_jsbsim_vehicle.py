@@ -2,11 +2,13 @@
 
 import math
 
+import numpy as np
 import pytest
 
 from aircraft.atmosphere.weather import Weather
 from aircraft.atmosphere.wind import constant_wind
 from aircraft.fleet.x8 import X8
+from gnc.estimation.health_monitor import CHECK_INTERVAL, STUCK
 from innerloop.flight.autopiloted_aircraft import AutopilotedAircraft
 from scenarios.vehicles.jsbsim import JsbsimVehicle
 
@@ -18,7 +20,7 @@ WIND = (4.0, -9.0)
 def place(x8_schedule, x8_root):
     """A function from a weather to the X8 at (10, -20) m with an air-relative course of 0.7 rad."""
 
-    def make(weather, **how):
+    def make(weather, *, time_step=0.05, **how):
         return JsbsimVehicle(
             AutopilotedAircraft(X8, x8_root, **how),
             x8_schedule.level(MIDDLE),
@@ -27,7 +29,7 @@ def place(x8_schedule, x8_root):
             east=-20.0,
             altitude=60.0,
             course=0.7,
-            time_step=0.05,
+            time_step=time_step,
             weather=weather,
         )
 
@@ -65,3 +67,23 @@ def test_its_parts_fail_by_name(place):
         vehicle.advance(0.0, 20.0)
     # Without thrust, on to keep its altitude, it pays with airspeed: drag of some 4 N on 3.4 kg for 5 s takes 5 m/s at first.
     assert vehicle.air_data()[0] < 17.0
+
+
+@pytest.mark.parametrize("rate_hz", [5.0, 6.0, 8.0, 10.0, 20.0, 40.0])
+def test_sound_elevons_are_where_they_were_commanded_to_be_however_slow_the_guidance_is(place, rate_hz):
+    flown = place(None, time_step=1.0 / rate_hz, failable=True)
+    generator = np.random.default_rng(1)
+
+    def errors(seconds, turns=(-0.5, 0.5)):
+        # Hard over at random, and up and down: commands of the elevons come and go between two steps of the guidance.
+        for second in range(seconds):
+            flown.command_altitude(68.0 if second % 2 else 52.0)
+            for _ in range(round(rate_hz)):
+                yield flown.servo_error()
+                flown.advance(float(generator.choice(turns)), 18.0 if second % 3 else 22.0)
+
+    # Those that the monitor of the vehicle's health looks at.
+    looks = slice(None, None, max(1, round(CHECK_INTERVAL * rate_hz)))
+    assert max(list(errors(30))[looks]) < STUCK
+    flown.fail("left_elevon")
+    assert max(list(errors(2, turns=(0.5,)))[looks]) > STUCK
