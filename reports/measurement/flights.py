@@ -70,10 +70,12 @@ def sulphur_above(run: RunData) -> bool:
 def sulphur_below(run: RunData) -> bool:
     """Return whether nothing is left to be said of the fuel: the only flight that measured it called it below its limit.
 
-    Flights of a study are judged as a method, not by what their ships burn.
+    Flights of a study are judged as a method, not by what their ships burn. Where all of them measured nothing, all is left.
     """
+    if "fsc_percent" not in run.summary:
+        return True
     measured = _measured(run)
-    return len(measured) != 1 or measured.iloc[0]["sulphur_verdict"] == "below"
+    return len(measured) > 1 or (len(measured) == 1 and measured.iloc[0]["sulphur_verdict"] == "below")
 
 
 def sulphur_headline(run: RunData) -> str:
@@ -82,7 +84,9 @@ def sulphur_headline(run: RunData) -> str:
     if "fsc_percent" not in run.summary:
         return ""
     if not len(measured):
-        return f"No fuel sulphur content from {_flights(len(sniffed))} with a sniffer"
+        why = set(sniffed["sulphur_reason"].dropna()) if "sulphur_reason" in sniffed else set()
+        told = f": {why.pop()}" if len(why) == 1 else ""
+        return f"No fuel sulphur content from {_flights(len(sniffed))} with a sniffer{told}"
     if len(measured) == 1:
         row = measured.iloc[0]
         return f"Fuel sulphur {_content(row)}: {_verdict_words(row)}"

@@ -133,6 +133,8 @@ RULES = (
         acts=lambda s: not s.circles,
         user=_VESSEL,
     ),
+    Rule(keys=("plume.elevation_deg",), acts=lambda s: s.plume.model != "fluctuating" or s.emission.ship is None,
+         user="an axis without smoke; smoke rises by its own heat: leave it out", depends=("plume.model", "emission.ship")),
     Rule(keys=("reference.standoff_radius_m",), acts=lambda s: s.stands_off, user="a circle about the vessel: set guidance.mission"
          " to 'standoff'", by_mission=True),
     Rule(

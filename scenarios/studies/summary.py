@@ -43,6 +43,7 @@ class FlightCounts:
     not_met : rows of the first flights that did not meet every criterion
     sulphur : row of the first flight with a sulphur content of the fuel
     verdicts : number of such flights by verdict and quality
+    unmeasured : number of flights whose sniffer gave no sulphur content, by the reason
     """
 
     planned: int
@@ -63,6 +64,7 @@ class FlightCounts:
     not_met: list[Row] = field(default_factory=list)
     sulphur: Row | None = None
     verdicts: Counter[tuple[str, str]] = field(default_factory=Counter)
+    unmeasured: Counter[str] = field(default_factory=Counter)
 
     @classmethod
     def of(cls, rows: Iterable[Row], planned: int) -> Self:
@@ -92,6 +94,8 @@ class FlightCounts:
         if math.isfinite(row.get("fsc_percent", math.nan)):
             self.sulphur = self.sulphur or row
             self.verdicts[row["sulphur_verdict"], row["sulphur_quality"]] += 1
+        elif "sulphur_reason" in row:
+            self.unmeasured[row["sulphur_reason"]] += 1
         if row["criteria_met"]:
             self.met += 1
         elif len(self.not_met) < NOT_MET_SHOWN:
@@ -122,7 +126,9 @@ class FlightCounts:
         """Return what was measured of the fuel: of one flight content and verdict, of several how many were called what."""
         row = self.sulphur
         if row is None:
-            return []
+            return [
+                f"no fuel sulphur content in {count} flight{'s' * (count > 1)}: {why}" for why, count in self.unmeasured.items()
+            ]
         if (flights := self.verdicts.total()) > 1:
             return [f"fuel sulphur of {flights} flights: {counted_verdicts(self.verdicts.elements())}"]
         words = verdict_words(

@@ -164,6 +164,8 @@ def test_a_latitude_beyond_the_pole_is_refused_with_its_row(logged, capsys):
         ("[columns]\nso2 = 3", "columns.so2 is 3; give a name"),
         ("[columns]\nso2 = 'SO2'", "has no SO2 column 'SO2', but 'time_s', 'so2_ppb'"),
         ("[columns]\ntime = 'when'", "has no time column 'when'"),
+        ("[columns]\nno = 'NOx'", "has no NO column 'NOx'"),
+        ("[columns]\nlongitude = 'lon'", "has no longitude column 'lon'"),
         ("[columns]\ntime = 'when'", 'correct time = "when" in [columns] of the configuration'),
         ("[scale]\nso2 = 0", "scale of so2 is 0; it must be positive"),
         ("[scale]\nco2 = 0.01", "flight.csv': CO2 has a median of 4"),

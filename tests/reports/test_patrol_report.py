@@ -63,6 +63,8 @@ def test_patrols_that_served_no_ship_are_red_and_claim_no_share(run, oracle, wor
 def test_a_share_of_an_oracle_without_verdicts_is_not_told(run):
     found = of_row(run, correct=0, wrong=1, verdicts=1, oracle_verdicts=0)
     assert found.headline == "0 correct verdicts, an oracle has none, 1 wrong"
+    # Without a wrong one, too, nothing was shown.
+    assert of_row(run, correct=0, wrong=0, verdicts=0, open=1, oracle_verdicts=0).tone != "good"
 
 
 def test_the_closest_approach_to_other_ships_is_judged_by_the_keep_out_radius(run):

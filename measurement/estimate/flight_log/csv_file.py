@@ -70,6 +70,9 @@ def read_flight(path: Path, config: LogConfig) -> LoggedFlight:
         raise MeasurementError(f"'{path}' has the column '{twice[0]}' twice; rename or remove one of them")
     if table.empty:
         raise MeasurementError(f"'{path}' has a head line and 0 readings; it needs a row per reading")
+    for key, name in config.columns.items():
+        if name != COLUMNS[key] and name not in table:
+            raise MeasurementError(_missing(path, key.upper() if key in GASES else key, key, name, table))
     time = _time(table, config.columns["time"], path)
     check_increasing(time, path)
     values = np.full((len(table), len(GASES)), np.nan)

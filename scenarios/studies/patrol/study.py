@@ -67,11 +67,13 @@ class PatrolStudy(FlightStudy):
         config = self._patrols.patrol
         enough = counts.correct >= config.oracle_share_min * counts.oracle
         right = counts.wrong <= config.wrong_share_max * counts.verdicts
-        met = counts.met == self.planned and enough and right and counts.served > 0
+        met = counts.met == self.planned and enough and right and counts.oracle > 0
         share = f"{100.0 * counts.correct / counts.oracle:.0f} %" if counts.oracle else "–"
         judged = (
             f"correct verdicts {'meet' if enough else 'fail'} patrol.oracle_share_min, wrong ones {'meet' if right else 'fail'}"
             " patrol.wrong_share_max"
+            if counts.oracle
+            else "no verdict, and none of an oracle: give ships more time (patrol.patience_s, flight.after_settling_s)"
             if counts.served
             else "no ship was served"
         )

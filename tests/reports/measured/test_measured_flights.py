@@ -143,6 +143,11 @@ def test_the_tile_of_a_verdict_has_a_colour_of_its_own_and_only_below_is_green(c
 def test_a_sniffer_without_a_result_is_said_on_page_1():
     run = SimpleNamespace(summary=pd.DataFrame([{"fsc_percent": float("nan"), "duration_s": 600.0}]))
     assert flights.sulphur_headline(run) == "No fuel sulphur content from 1 flight with a sniffer"
+    run.summary["sulphur_reason"] = "no pass through a plume"
+    assert flights.sulphur_headline(run) == "No fuel sulphur content from 1 flight with a sniffer: no pass through a plume"
+    # All is left to be said of the fuel: not green.
+    assert not flights.sulphur_below(run)
+    assert flights.sulphur_below(SimpleNamespace(summary=pd.DataFrame([{"duration_s": 600.0}])))
 
 
 def test_a_probability_is_never_told_as_certain():

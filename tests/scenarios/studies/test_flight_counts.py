@@ -128,3 +128,9 @@ def test_the_sulphur_of_one_flight_is_stated_with_its_interval_and_of_several_by
     assert line.startswith("fuel sulphur of 3 flights: ")
     assert called in line
     assert FlightCounts.of([{**row, "fsc_percent": float("nan")}], planned=1).sulphur_lines() == []
+
+
+def test_a_flight_whose_sniffer_gave_nothing_says_why():
+    row = {"outcome": "completed", "kept_out": True, "criteria_met": True, "sulphur_reason": "no pass through a plume"}
+    (line,) = FlightCounts.of([row] * 2, planned=2).sulphur_lines()
+    assert line == "no fuel sulphur content in 2 flights: no pass through a plume"

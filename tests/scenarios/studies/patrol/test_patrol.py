@@ -198,6 +198,15 @@ def test_a_study_that_never_took_off_is_not_met(tmp_path):
     assert told.endswith("exit status 1: 1 of 1 patrols kept out and brought their aircraft through; no ship was served")
 
 
+def test_a_study_without_any_verdict_of_an_oracle_either_is_not_met(tmp_path):
+    short = ("patrol.ships=1", "patrol.patience_s=10")
+    result = run_study(patrol(*short), "patrol", tmp_path / "run", executor_factory=InProcessExecutor)
+    (row,) = rows_of(tmp_path / "run")
+    assert (row["served"], row["oracle_verdicts"], row["criteria_met"]) == (1, 0, True)
+    assert not result.all_met
+    assert "no verdict, and none of an oracle: give ships more time" in result.summary.lines[-1]
+
+
 @pytest.mark.parametrize(
     ("override", "words"),
     [
