@@ -40,7 +40,7 @@ def plan_row(plan: FlightPlan) -> Row:
         "nu": plan.nu,
         "nu_min": wind.least / speed if wind else plan.nu,
         "nu_max": wind.greatest / speed if wind else plan.nu,
-        "plume_heading_deg": math.degrees(axis - world.vessel.course(0.0)),
+        "plume_heading_deg": math.degrees(axis - world.vessel.course(0.0)) % 360.0,
         "plume_elevation_deg": math.degrees(world.elevation),
         "start_distance_m": math.hypot(start.north, start.east),
         "start_aspect_deg": math.degrees(math.remainder(math.atan2(start.east, start.north) - axis, 2.0 * math.pi)),

@@ -32,7 +32,7 @@ _PLANNED = {
     "start_utc": "UTC of time 0, where it is known",
     "fault": "kind of the fault",
     "fault_time_s": "time at which the fault begins",
-    "plume_heading_deg": "direction of the plume's axis, from the vessel's course, at the start",
+    "plume_heading_deg": "direction of the plume's axis, clockwise from the vessel's course, at the start",
     "plume_elevation_deg": "elevation of the plume's axis above the horizon",
     "start_distance_m": "horizontal distance of the start from the vessel",
     "start_aspect_deg": "bearing of the start, seen from the vessel, from the plume's axis",

@@ -4,6 +4,8 @@ import re
 from collections.abc import Mapping
 from typing import Any
 
+from common.physics.units import METRES_PER_FOOT, METRES_PER_SECOND_PER_KNOT, SECONDS_PER_HOUR
+
 _LIMITS = {
     "less_than_equal": ("le", "at most"),
     "less_than": ("lt", "below"),
@@ -21,7 +23,14 @@ _OTHERS = {
 }
 """What pydantic's names of errors begin with, up to the first underscore, and what to say."""
 
-_LEADING_NUMBER = re.compile(r"\s*([-+]?\d+(\.\d+)?)")
+_NUMBER_AND_UNIT = re.compile(r"\s*([-+]?\d+(?:\.\d+)?)\s*(.*?)\s*")
+_IN_UNITS = {
+    "m/s": {**dict.fromkeys(("kn", "kt", "knots"), METRES_PER_SECOND_PER_KNOT), "km/h": 1000.0 / SECONDS_PER_HOUR},
+    "m": {"km": 1000.0, "ft": METRES_PER_FOOT, "nmi": 1852.0},
+    "s": {"min": 60.0, "h": SECONDS_PER_HOUR},
+    "%": {"ppm": 1e-4},
+}
+"""Units of keys, and what other units are in them, of which an example is converted."""
 
 _PERCENT, _SURELY_PERCENT = 100.0, 2.0
 """Percent in a whole, and the least value in the place of a fraction that is taken for percent."""
@@ -40,8 +49,9 @@ def must_be(error: Mapping[str, Any], *, key: str, unit: str = "", default: obje
     unit = "" if unit == "-" else unit
     kind, value = error["type"], error["input"]
     if _NO_NUMBER.fullmatch(kind):
-        leading = _LEADING_NUMBER.match(value) if isinstance(value, str) else None
-        given = leading[1] if leading else f"{default:g}" if isinstance(default, float) else ""
+        given = _example(value, unit) if isinstance(value, str) else None
+        if given is None:
+            given = f"{default:g}" if isinstance(default, float) else ""
         finite = "finite " if kind == "finite_number" else ""
         return f"it must be a {finite}number{f' in {unit}' if unit else ''}{f', e.g. {key}={given}' if given else ''}"
     if _NOT_WHOLE.fullmatch(kind):
@@ -56,3 +66,16 @@ def must_be(error: Mapping[str, Any], *, key: str, unit: str = "", default: obje
     return (
         f"it must be {words} {number}{f' {unit}' if unit else ''}{f': a fraction, e.g. {value / _PERCENT:g}' if fraction else ''}"
     )
+
+
+def _example(value: str, unit: str) -> str | None:
+    """Return the number of a text with a unit in that of the key, empty if the unit is another one; None without a number."""
+    found = _NUMBER_AND_UNIT.fullmatch(value)
+    if found is None:
+        return None
+    number, given = found[1], found[2]
+    of_key = unit.partition(" ")[0]
+    if not given or not unit or given in (unit, of_key):
+        return number
+    factor = _IN_UNITS.get(of_key, {}).get(given)
+    return "" if factor is None else f"{float(number) * factor:.4g}"
