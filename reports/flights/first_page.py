@@ -15,7 +15,7 @@ from reports.run.flight_config import flight_configs, wind_changes
 from reports.run.run_data import RunData
 from reports.run.trials import Trial
 
-_NAME_MAX = 36
+_NAME_MAX = 30
 """Letters of a flight's name that there is room for above its picture."""
 
 _STEADY = 0.005
