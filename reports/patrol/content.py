@@ -91,8 +91,8 @@ def _figures(patrols: Patrols, *, enough: bool, right: bool) -> list[Card]:
         Card("Wrong verdicts", f"{patrols.total('wrong')} of {verdicts}", *((most, right) if verdicts else ())),
         Card("Keep-out violations", f"{violations}", "0", served > 0 and not violations),
         Card("Ships served", f"{served} of {patrols.total('ships')}", "≥ 1", served > 0),
-        Card("Closest approach to a ship that was served", _least(column(rows, "min_distance_m"))),
-        _others(patrols),
+        _closest(patrols, "a ship that was served", "min_distance_m"),
+        _closest(patrols, "any other ship", "others_distance_min_m"),
         Card("Ships served an hour", _per_hour(patrols)),
         Card("Flights beside ships without a verdict", f"{patrols.total('open')}"),
         Card(
@@ -116,9 +116,9 @@ def _headline(patrols: Patrols) -> str:
     return f"{correct} correct verdicts, {share}, {wrong} wrong"
 
 
-def _others(patrols: Patrols) -> Card:
-    """Return how near any ship came that was not served just then, with the keep-out radius that holds for her, too."""
-    name, distances = "Closest approach to any other ship", column(patrols.run.summary, "others_distance_min_m")
+def _closest(patrols: Patrols, ship: str, figure: str) -> Card:
+    """Return how near any ship came, with the keep-out radius, which holds for one that was not served just then, too."""
+    name, distances = f"Closest approach to {ship}", column(patrols.run.summary, figure)
     if not np.isfinite(distances).any():
         return Card(name, "–")
     radius = float(patrols.run.manifest["config"]["keepout"]["radius_m"])

@@ -278,6 +278,8 @@ RULES = (
     Rule(keys=("patrol.",), acts=lambda s: s.study == "patrol", user="several ships one after the other: set study to 'patrol'"),
     Rule(keys=("flight.duration_max_s",), acts=lambda s: s.study != "patrol",
          user="other studies; flights of a patrol are as long as patrol.patience_s allows: set that"),
+    Rule(keys=("flight.crossings",), acts=lambda s: s.study != "patrol",
+         user="other studies; a flight of a patrol ends with a verdict or its patience: leave it out"),
     Rule(keys=("criteria.",), acts=lambda s: s.study != "patrol",
          user="other studies; a patrol is judged by patrol.oracle_share_min and patrol.wrong_share_max: set these"),
     Rule(keys=("histories",), acts=lambda s: s.study != "patrol",

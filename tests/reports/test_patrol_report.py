@@ -67,10 +67,16 @@ def test_a_share_of_an_oracle_without_verdicts_is_not_told(run):
     assert of_row(run, correct=0, wrong=0, verdicts=0, open=1, oracle_verdicts=0).tone != "good"
 
 
-def test_the_closest_approach_to_other_ships_is_judged_by_the_keep_out_radius(run):
-    name = "Closest approach to any other ship"
+@pytest.mark.parametrize(
+    ("name", "figure"),
+    [
+        ("Closest approach to a ship that was served", "min_distance_m"),
+        ("Closest approach to any other ship", "others_distance_min_m"),
+    ],
+)
+def test_the_closest_approach_to_each_ship_is_judged_by_the_keep_out_radius(run, name, figure):
     for distance, value, met in ((199.99, "199.9 m", False), (200.0, "200.0 m", True)):
-        (card,) = [card for card in of_row(run, others_distance_min_m=distance).figures if card.name == name]
+        (card,) = [card for card in of_row(run, **{figure: distance}).figures if card.name == name]
         assert (card.value, card.limit, card.met) == (value, "≥ 200 m", met)
 
 
