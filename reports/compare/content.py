@@ -159,7 +159,7 @@ def _difference_sentences(compared: Compared) -> str:
 
 def _verdict(runs: Sequence[Run], compared: Sequence[Compared]) -> Verdict:
     unsafe = [of for of in compared if _new(of.pairs)]
-    worse = sum(count(of.pairs.no_longer) for of in compared)
+    worse = sum(count(of.pairs.no_longer | of.pairs.other_verdict) for of in compared)
     return Verdict(
         holds=not unsafe,
         complete=worse == 0 and all(run.state == "complete" for run in runs),
@@ -182,6 +182,8 @@ def headline(compared: Sequence[Compared]) -> str:
     worse, better, rest = (sum(count(mask) for mask in masks) for masks in turns)
     s = "s" * (rest == 1)
     others = f"; {rest:,} that met in neither run no longer keep{s} out or complete{s} the mission" if rest else ""
+    if called := sum(count(of.pairs.other_verdict) for of in compared):
+        others += f"; the verdict on the fuel is another in {called:,}"
     if not worse and not better:
         return f"No flight changed between met and not met in {what}{others or '; figures differ'}"
     turned = [f"{n:,} {words}{'s' * (n == 1)}" for n, words in ((worse, "no longer meet"), (better, "newly meet")) if n]

@@ -52,6 +52,15 @@ class Pairs:
         return len(self.first.data.summary) - len(self), len(self.other.data.summary) - len(self)
 
     @property
+    def other_verdict(self) -> Mask:
+        """Flights whose fuel is called otherwise."""
+        if not all("sulphur_verdict" in rows for rows in (self.before, self.after)):
+            return np.zeros(len(self), dtype=np.bool_)
+        before, after = (rows["sulphur_verdict"].fillna("").to_numpy(dtype=str) for rows in (self.before, self.after))
+        differs: Mask = before != after
+        return differs
+
+    @property
     def names(self) -> list[str]:
         """What the first run calls each flight."""
         return [str(flight_id) for flight_id in self.before["flight_id"]]

@@ -217,3 +217,12 @@ def test_flights_without_a_time_history_have_no_tracks(first, larger):
 
 def test_the_report_has_no_path_of_the_machine(report, first):
     assert str(first.parent) not in json.dumps([block.rows for block in blocks_of(report, Table)]) + texts_of(report)
+
+
+def test_a_verdict_on_the_fuel_that_is_another_is_told_and_not_green(first, same):
+    runs = read_runs([first, same])
+    for run, verdicts in zip(runs, (["above", "open", "below"], ["above", "above", "below"]), strict=True):
+        run.data.summary["sulphur_verdict"] = verdicts
+    report = comparison_content(runs, compare(runs))
+    assert report.verdict.headline.endswith("; the verdict on the fuel is another in 1")
+    assert not report.verdict.complete
