@@ -67,7 +67,7 @@ def _verdict(patrols: Patrols) -> Verdict:
     kept = served > 0 and not violations and count(kept_out(rows)) == len(rows) and not count(lost(rows))
     return Verdict(
         holds=kept,
-        complete=kept and enough and right and oracle > 0 and len(rows) == planned,
+        complete=kept and enough and right and patrols.total("verdicts") + oracle > 0 and len(rows) == planned,
         headline=_headline(patrols),
         detail=f"{served} of {patrols.total('ships')} ships were served in {patrols.hours:.1f} h,"
         f" {_per_hour(patrols)} an hour; {violations} keep-out violation{'s' * (violations != 1)}.",

@@ -67,15 +67,15 @@ class PatrolStudy(FlightStudy):
         config = self._patrols.patrol
         enough = counts.correct >= config.oracle_share_min * counts.oracle
         right = counts.wrong <= config.wrong_share_max * counts.verdicts
-        met = counts.met == self.planned and enough and right and counts.oracle > 0
+        met = counts.met == self.planned and enough and right and counts.judged
         share = f"{100.0 * counts.correct / counts.oracle:.0f} %" if counts.oracle else "–"
         judged = (
             f"correct verdicts {'meet' if enough else 'fail'} patrol.oracle_share_min, wrong ones {'meet' if right else 'fail'}"
             " patrol.wrong_share_max"
-            if counts.oracle
-            else "no verdict, and none of an oracle: give ships more time (patrol.patience_s, flight.after_settling_s)"
-            if counts.served
+            if counts.judged
             else "no ship was served"
+            if not counts.served
+            else "no verdict, and none of an oracle: give ships more time (patrol.patience_s, flight.after_settling_s)"
         )
         lines = [
             f"patrols: {self.planned} planned, {counts.done} flown; {counts.served} of {counts.ships} ships served in"
@@ -144,6 +144,11 @@ class PatrolCounts:
             hours=sum(row.get("duration_s", 0.0) for row in rows) / SECONDS_PER_HOUR,
             failed=[row for row in rows if row["message"]],
         )
+
+    @property
+    def judged(self) -> bool:
+        """Whether there is a ship that was served, and a verdict to judge: its own or an oracle's."""
+        return self.served > 0 and self.verdicts + self.oracle > 0
 
     @property
     def per_hour(self) -> float:
