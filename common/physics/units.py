@@ -8,8 +8,11 @@ METRES_PER_FOOT = 0.3048
 SECONDS_PER_HOUR = 3600.0
 """Hour [s]."""
 
-METRES_PER_SECOND_PER_KNOT = 1852.0 / SECONDS_PER_HOUR
-"""Knot: one nautical mile of 1,852 m an hour, exact by definition [m/s per kt]."""
+METRES_PER_NAUTICAL_MILE = 1852.0
+"""International nautical mile, exact by definition [m/nmi]."""
+
+METRES_PER_SECOND_PER_KNOT = METRES_PER_NAUTICAL_MILE / SECONDS_PER_HOUR
+"""Knot: one nautical mile an hour, exact by definition [m/s per kt]."""
 
 NEWTONS_PER_POUND = 4.4482216152605
 """Pound-force, exact by definition [N/lbf]."""

@@ -14,7 +14,7 @@ from scenarios.engine.task import Row
 from scenarios.simulation.outcome import Outcome
 
 NOT_MET_SHOWN = 20
-"""Flights that did not meet every criterion and are named on the console, at most."""
+"""Flights that did not meet every criterion, or reasons why they measured nothing, that are named on the console, at most."""
 
 _MEASURED_FROM = {"sphere": "from the centre of the keep-out sphere", "cylinder": "horizontally, from the axis of the cylinder"}
 """What distances are measured from, by the shape of the keep-out area."""
@@ -127,7 +127,8 @@ class FlightCounts:
         row = self.sulphur
         if row is None:
             return [
-                f"no fuel sulphur content in {count} flight{'s' * (count > 1)}: {why}" for why, count in self.unmeasured.items()
+                f"no fuel sulphur content in {count} flight{'s' * (count > 1)}: {why}"
+                for why, count in self.unmeasured.most_common(NOT_MET_SHOWN)
             ]
         if (flights := self.verdicts.total()) > 1:
             return [f"fuel sulphur of {flights} flights: {counted_verdicts(self.verdicts.elements())}"]

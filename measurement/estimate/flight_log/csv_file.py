@@ -19,6 +19,9 @@ from measurement.tables import other_separator
 EARTH_RADIUS_M = 6_371_000.0
 """Mean radius [m]: a track of a few kilometres is laid on a plane."""
 
+_REQUIRED = ("time", "so2", "co2")
+"""Columns without which there is no estimate; any other may be left out, unless the configuration names it."""
+
 TRUE_COLUMNS = {f"{gas}_true_{UNITS[gas]}": gas for gas in GASES}
 """Columns of the true concentrations, which a simulated flight may have; they are shown, and take no part in the estimate."""
 
@@ -71,7 +74,7 @@ def read_flight(path: Path, config: LogConfig) -> LoggedFlight:
     if table.empty:
         raise MeasurementError(f"'{path}' has a head line and 0 readings; it needs a row per reading")
     for key, name in config.columns.items():
-        if name != COLUMNS[key] and name not in table:
+        if name not in table and (key in _REQUIRED or name != COLUMNS[key]):
             raise MeasurementError(_missing(path, key.upper() if key in GASES else key, key, name, table))
     time = _time(table, config.columns["time"], path)
     check_increasing(time, path)
@@ -80,8 +83,6 @@ def read_flight(path: Path, config: LogConfig) -> LoggedFlight:
         name = config.columns[gas]
         if name in table:
             values[:, i] = config.scale.get(gas, 1.0) * _readings(table, name, path, config)
-        elif gas in ("so2", "co2"):
-            raise MeasurementError(_missing(path, gas.upper(), gas, name, table))
     _check_negative(values, config, path)
     place = {"time_s": time, **_place(table, config, path)}
     place |= {name: _numbers(table, name, path) for name in TRUE_COLUMNS if name in table}
@@ -149,8 +150,6 @@ def _check_negative(values: Array, config: LogConfig, path: Path) -> None:
 
 
 def _time(table: pd.DataFrame, name: str, path: Path) -> Array:
-    if name not in table:
-        raise MeasurementError(_missing(path, "time", "time", name, table))
     column = table[name]
     if pd.api.types.is_numeric_dtype(column):
         return column.to_numpy(dtype=np.float64)

@@ -4,7 +4,7 @@ import re
 from collections.abc import Mapping
 from typing import Any
 
-from common.physics.units import METRES_PER_FOOT, METRES_PER_SECOND_PER_KNOT, SECONDS_PER_HOUR
+from common.physics.units import METRES_PER_FOOT, METRES_PER_NAUTICAL_MILE, METRES_PER_SECOND_PER_KNOT, SECONDS_PER_HOUR
 
 _LIMITS = {
     "less_than_equal": ("le", "at most"),
@@ -26,7 +26,7 @@ _OTHERS = {
 _NUMBER_AND_UNIT = re.compile(r"\s*([-+]?\d+(?:\.\d+)?)\s*(.*?)\s*")
 _IN_UNITS = {
     "m/s": {**dict.fromkeys(("kn", "kt", "knots"), METRES_PER_SECOND_PER_KNOT), "km/h": 1000.0 / SECONDS_PER_HOUR},
-    "m": {"km": 1000.0, "ft": METRES_PER_FOOT, "nmi": 1852.0},
+    "m": {"km": 1000.0, "ft": METRES_PER_FOOT, "nmi": METRES_PER_NAUTICAL_MILE},
     "s": {"min": 60.0, "h": SECONDS_PER_HOUR},
     "%": {"ppm": 1e-4},
 }
