@@ -69,20 +69,23 @@ def vessel_limits(scenario: Scenario, horizon: float) -> VesselLimits:
     )
 
 
-def widest_tube(limits: VesselLimits, reports: VesselReportsConfig, *, plan_period: float) -> Tube:
+def widest_tube(limits: VesselLimits, reports: VesselReportsConfig, *, plan_period: float, noise: float = 0.0) -> Tube:
     """Return the disc about a vessel whose newest report is as old as it becomes where none is missing, centre in the origin.
 
-    It is as much larger as discs reach farther because reports scatter (``scenarios.margin.report_scatter``).
+    It is as much larger as discs reach farther because reports scatter (``scenarios.margin.report_scatter``), or, about a vessel
+    that is known exactly, because the vehicle's own position and velocity do.
 
     Parameters
     ----------
     limits, reports : what vessel and reports keep within, and how often reports come
     plan_period : time between looks at them [s]
+    noise : how much nearer noise of satellite navigation takes the vehicle (``scenarios.margin.satellite_noise``) [m]
     """
     age = plan_period + (0.0 if reports.exact else reports.interval_s[1] + reports.latency_max_s)
     oldest = tube(VesselReport(-age, 0.0, 0.0, 0.0, 0.0), limits, 0.0)
     if reports.exact:
-        return oldest
+        return oldest._replace(radius=oldest.radius + noise)
+    # Beside the scatter of reports that of the own position adds centimetres.
     allowance = scatter_allowance(
         limits,
         filter_parameters(reports),

@@ -1,36 +1,25 @@
 """How gusts move the aircraft off its reference: the guidance, linear about a turn, closed around the linear aircraft.
 
 In axes along and across the reference's course, which turn at omega_r, the error e from aircraft to reference obeys
-e_along' = -dV + omega_r e_right and e_right' = -V dchi - omega_r e_along. The steering law is linearised as it is flown, by
-differences on ``Tracker`` itself, preview included; the loop is closed frequency by frequency, with the hold of the commands and
-the step by which the last one is late.
+e_along' = -dV + omega_r e_right and e_right' = -V dchi - omega_r e_along. The loop is closed frequency by frequency, with the
+hold of the commands and the step by which the last one is late.
 """
-
-from dataclasses import replace
 
 import numpy as np
 import numpy.typing as npt
 
-from gnc.airspeed.pace_hold import SpeedHold, air_turn
-from gnc.reference.circling import CirclingReference
-from gnc.reference.reference import ReferenceStart
-from gnc.tracker import Tracker, TrackingParameters
+from gnc.airspeed.pace_hold import SpeedHold
+from gnc.tracker import TrackingParameters
 from innerloop.analysis.gust_response import GUSTS, gust_loop
 from innerloop.law.control_law import COMMANDS
 from innerloop.synthesis.schedule import Schedule
-
-STEERED_BY = ("along", "right", "course", "speed", "airspeed", "heading_rate", "last")
-"""What the steering law depends on, as deviations from the reference's motion [m, m, rad, m/s, m/s, rad/s, rad/s]: the error, the
-motion over the mean air, airspeed and heading rate as measured against the gusty air, and the last command."""
+from scenarios.margin.steering_gains import STEERED_BY, steering_gains
 
 RESPONSES = ("along", "right", "pace")
 """Rows of ``tracking_response``: the error [m], and what the aircraft's own speed gives to keep pace, which is the commanded
 airspeed as far as it is followed [m/s]."""
 
 _READ = ("course_rate", "speed", "airspeed", "heading_rate")
-_STEP = 1e-5
-_STRAIGHT = 1e-6
-"""Heading rate of a circle that is straight [rad/s]."""
 
 Array = npt.NDArray[np.float64]
 Complex = npt.NDArray[np.complex128]
@@ -76,28 +65,3 @@ def tracking_response(
     right[:, 3] = held * np.einsum("fi,fij->fj", read, gusts)
     found = np.linalg.solve(left, right)
     return np.concatenate([found[:, :2], commands[:, 1, :1, None] * found[:, 2:3]], axis=1)
-
-
-def steering_gains(guidance: TrackingParameters, turn: float, speed: float) -> Array:
-    """Return the commanded turn [rad/s] per unit of each of ``STEERED_BY``, on a reference that turns at ``turn`` [rad/s].
-
-    Parameters
-    ----------
-    guidance : its parameters; its limit does not count
-    turn : omega_r, and heading rate of an aircraft that follows [rad/s]
-    speed : V_r [m/s]
-    """
-    turn = turn if abs(turn) > _STRAIGHT else _STRAIGHT
-    parameters = replace(guidance, heading_rate_max=np.inf)
-    start = ReferenceStart(north=0.0, east=0.0, course=0.0)
-
-    def command(along: float, right: float, course: float, over: float, air: float, rate: float, last: float) -> float:
-        reference = CirclingReference(start, speed=speed, heading_rate=turn, time_step=guidance.time_step)
-        steered = Tracker(parameters, reference)
-        steered.heading_rate_command = turn + last
-        faster, airspeed = speed + over, speed + air
-        turned = steered.step(-along, -right, course, faster, air_turn(turn + rate, speed=airspeed, airspeed=faster))
-        return air_turn(turned, speed=faster, airspeed=airspeed)
-
-    steps = _STEP * np.eye(len(STEERED_BY))
-    return np.array([(command(*step) - command(*(-step))) / (2.0 * _STEP) for step in steps])

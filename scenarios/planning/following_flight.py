@@ -25,6 +25,7 @@ from scenarios.planning.guidance import (
     following_parameters,
     guard_parameters,
     guidance_lag,
+    satellite_noise,
     speed_hold,
     tracking_parameters,
     turn_time,
@@ -90,8 +91,9 @@ def following_flight(
         wind_change=wind_change(scenario, air, setup.altitude_error),
         drift_rate=drift_rate(scenario, air, turn_time(scenario, setup.reversal), setup.altitude_error),
     )
-    widest = widest_tube(limits, scenario.reports, plan_period=plan_period(g))
     oscillation = oscillation_at(g, scenario.reference, nu)
+    nearer = satellite_noise(scenario, setup, oscillation.amplitude)
+    widest = widest_tube(limits, scenario.reports, plan_period=plan_period(g), noise=nearer)
     if scenario.stands_off:
         nearest = circle_distance(guarded, widest, g.airspeed_mps, nu * g.airspeed_mps)
     else:

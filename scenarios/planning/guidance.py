@@ -13,11 +13,13 @@ from gnc.safety.guard_parameters import GuardParameters
 from gnc.tracker import TrackingParameters
 from innerloop.flight.turn_reversal import TurnReversalResponse
 from scenarios.margin.keepout_margin import KeepoutMargin
+from scenarios.margin.satellite_noise import noise_allowance, position_scatter
 from scenarios.planning.air.dead_reckoning import velocity_error
 from scenarios.planning.bounded_steering import Steering, given_steering, steering_law
 from scenarios.planning.limits import omega_max, plan_interval
 from scenarios.planning.reference import shape_of
 from scenarios.schema.scenario import Scenario
+from scenarios.vehicles.sensors import NAVIGATION_TIME
 from scenarios.vehicles.vehicle_setup import VehicleSetup
 
 STALE_MIN = 2.0
@@ -91,6 +93,24 @@ def guard_parameters(
 def turn_time(scenario: Scenario, reversal: TurnReversalResponse) -> float:
     """Return how long half a turn takes, with what it takes to begin [s]: that of a turn away."""
     return math.pi / omega_max(scenario.guidance) + reversal.delay + reversal.lag
+
+
+def satellite_noise(scenario: Scenario, setup: VehicleSetup, fastest: float) -> float:
+    """Return how much nearer noise of satellite navigation takes a vehicle [m] whose reference turns at up to a rate [rad/s]."""
+    noise, share = scenario.sensors, 0.0
+    tracking = tracking_parameters(scenario, setup)
+    if noise.position_sigma_m > 0.0:
+        share = position_scatter(
+            tracking,
+            speed_hold(scenario, setup),
+            (-fastest, 0.0, fastest),
+            speed=scenario.guidance.airspeed_mps,
+            lag=guidance_lag(scenario, setup),
+            airspeed_bandwidth=setup.airspeed_bandwidth,
+            noise_time=NAVIGATION_TIME,
+        )
+    quarter = 0.5 * math.pi / omega_max(scenario.guidance) + setup.reversal.delay + setup.reversal.lag
+    return noise_allowance(share * noise.position_sigma_m, quarter * noise.velocity_sigma_mps, time_step=tracking.time_step)
 
 
 def speed_hold(scenario: Scenario, setup: VehicleSetup) -> SpeedHold:

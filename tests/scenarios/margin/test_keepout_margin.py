@@ -17,7 +17,8 @@ from innerloop.analysis.gust_statistics import low_altitude_turbulence
 from innerloop.flight.autopiloted_aircraft import AutopilotedAircraft
 from innerloop.synthesis.schedule import LEVEL_GAINS
 from scenarios.margin.gusts_on_orbit import gusts_on_orbit
-from scenarios.margin.tracking_response import RESPONSES, STEERED_BY, steering_gains, tracking_response
+from scenarios.margin.steering_gains import STEERED_BY, steering_gains
+from scenarios.margin.tracking_response import RESPONSES, tracking_response
 from scenarios.margin.tracking_spread import (
     Spread,
     beyond_limits,
