@@ -9,6 +9,7 @@ from typing import Any
 
 from measurement.errors import MeasurementError, guess
 from measurement.estimate.estimator import check_parameters
+from measurement.estimate.flight_log.details import FlightDetails, read_details
 from measurement.estimate.result import Method
 from measurement.estimate.verdict import LIMITS_PERCENT
 from measurement.gases import CARBON_FRACTION, GASES, UNITS
@@ -29,7 +30,7 @@ COLUMNS = {
 DEFAULT_INSTRUMENT = "unspecified"
 """The instrument of a flight without a configuration."""
 
-_KEYS = {"instrument", "carbon", "limits_percent", "method", "missing", "columns", "scale"}
+_KEYS = {"instrument", "carbon", "limits_percent", "method", "missing", "columns", "scale", "flight"}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -45,6 +46,7 @@ class LogConfig:
     missing : numbers that the file has for readings that there are not, as -9999
     columns : name in the file of each of ``COLUMNS``
     scale : by which a gas's column is multiplied to be in ppb, or CO2 in ppm
+    flight : what the log cannot tell of the flight
     """
 
     instrument: SnifferSpec = field(default_factory=lambda: sensor_preset(DEFAULT_INSTRUMENT))
@@ -54,6 +56,7 @@ class LogConfig:
     missing: tuple[float, ...] = ()
     columns: Mapping[str, str] = field(default_factory=lambda: dict(COLUMNS))
     scale: Mapping[str, float] = field(default_factory=dict)
+    flight: FlightDetails = field(default_factory=FlightDetails)
 
 
 def read_config(path: Path) -> LogConfig:
@@ -101,6 +104,7 @@ def read_config(path: Path) -> LogConfig:
         missing=tuple(float(code) for code in missing),
         columns={**COLUMNS, **columns},
         scale={gas: float(factor) for gas, factor in scale.items()},
+        flight=read_details(table.get("flight", {}), path),
     )
 
 
