@@ -7,15 +7,13 @@ import pandas as pd
 from common.intervals import percent
 from reports.document.blocks import Table
 from reports.document.tables import number
-from reports.measurement.data import Record, measured_minutes, share_read
+from reports.measurement.data import METHODS, Record, measured_minutes, share_read
 from reports.run.run_data import RunData
 
 _FSC = "% m/m"
 
 _BEST = 3
 """Trajectories that are listed for each sensor."""
-
-_METHODS = {"regression": "equalise and regress", "areas": "areas of passes"}
 
 
 def interval_words(row: "pd.Series[Any]") -> str:
@@ -59,7 +57,7 @@ def accuracy_table(statistics: Record) -> Table:
         rows=[
             [
                 entry["sensor"],
-                _METHODS[entry["method"]],
+                METHODS[entry["method"]],
                 f"{entry['flights']:,}",
                 number(entry["bias_percent"], "{:+.4f}"),
                 *("–" if share is None else percent(share) for share in (entry["share_read"], entry["share_predicted"])),
