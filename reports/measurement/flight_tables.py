@@ -100,7 +100,9 @@ def calls_table(statistics: Record) -> Table:
 def hit_table(rows: pd.DataFrame) -> Table:
     """Return figures of the passes: over all flights, median and the tenth that is worst on either side."""
     named = {
-        "hit_rate": ("Passes that hit the plume, peak above 0.6 of its axis [-]", "{:.2f}"),
+        "plume_axis_crossings": ("Crossings of the plume's mean axis, with smoke or without", "{:.0f}"),
+        "smoke_passes": ("Of these with smoke", "{:.0f}"),
+        "hit_rate": ("Share of these that hit the plume, peak above 0.6 of its axis [-]", "{:.2f}"),
         "axis_height_error_rms_m": ("Height off the plume's axis, rms [m]", "{:.1f}"),
         "seconds_in_plume_s": ("Time in the plume [s]", "{:.0f}"),
         "dose_per_pass_ppm_s": ("CO2 dose of a pass [ppm s]", "{:.0f}"),

@@ -97,7 +97,7 @@ def test_several_flights_are_judged_as_a_method(several):
     # 0.05 % is never above 0.1 %, and 0.5 % always is, with the noise of these sensors.
     assert ("laser", "0.05", "0\N{NO-BREAK SPACE}%") in fuels
     assert ("laser", "0.5", "100\N{NO-BREAK SPACE}%") in fuels
-    assert any(row[0].startswith("Passes that hit the plume") for row in hits.rows)
+    assert any(row[0].startswith("Crossings of the plume's mean axis, with smoke or without") for row in hits.rows)
     assert any("Bias of the sulphur content" in name for name, *_ in several.verdict.figures)
 
 
