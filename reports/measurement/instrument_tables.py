@@ -1,6 +1,6 @@
 """The instrument of a logged flight, how its log was read, and what the analysis assumed."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Any
 
 from common.intervals import percent
@@ -21,27 +21,27 @@ _FOUND = "from the record"
 
 def instrument_table(record: Record) -> Table:
     """Return every property of the instrument, a column per channel."""
-    instrument, columns = record["instrument"], record["flight"]["columns"]
+    instrument, columns, given = record["instrument"], record["flight"]["columns"], record["flight"]["stated"]
     stated, used = instrument["stated"], instrument["used"]
     gases = [gas for gas in GASES if gas in stated]
 
-    def row(name: str, cell: Callable[[_Channel, _Channel], str]) -> list[str]:
-        return [name, *(cell(stated[gas], used[gas]) for gas in gases)]
+    def row(name: str, cell: Callable[[_Channel, _Channel], str], *keys: str) -> list[str]:
+        return [name, *(_marked(cell(stated[gas], used[gas]), keys, given and given[gas]) for gas in gases)]
 
     others = [other for other in GASES if any(other in stated[gas]["cross"] | stated[gas]["cross_sd"] for gas in gases)]
     rows = [
         ["Column of the log", *(columns.get(gas, "none: not measured") for gas in gases)],
-        row("Response time t90 ± 1σ [s]", _t90(record["estimate"])),
-        row("Second time constant over the first [-]", lambda of, _: _plain(of["second_pole"])),
-        row("Delay ± 1σ [s]", _delay(record["estimate"])),
-        row("Noise of a reading, 1σ", _noise),
-        row("Drift of the zero after 1 s, 1σ", lambda of, _: _plain(of["random_walk"])),
-        row("Resolution", lambda of, _: _plain(of["resolution"])),
-        row("Range", _range),
-        row("Calibration: gain ± 1σ [-]", lambda of, _: _with_deviation(of["gain"], of["gain_sd"])),
-        row("Calibration: zero ± 1σ", lambda of, _: _with_deviation(of["zero"], of["zero_sd"])),
-        *(row(f"Response to {gas.upper()} ± 1σ [per {UNITS[gas]}]", _response(gas)) for gas in others),
-        row("Effect of pressure, not corrected [1/hPa]", lambda of, _: _plain(of["pressure_effect"])),
+        row("Response time t90 ± 1σ [s]", _t90(record["estimate"]), "t90_s", "t90_sd"),
+        row("Second time constant over the first [-]", lambda of, _: _plain(of["second_pole"]), "second_pole"),
+        row("Delay ± 1σ [s]", _delay(record["estimate"]), "delay_s", "delay_sd_s"),
+        row("Noise of a reading, 1σ", _noise, "noise"),
+        row("Drift of the zero after 1 s, 1σ", lambda of, _: _plain(of["random_walk"]), "random_walk"),
+        row("Resolution", lambda of, _: _plain(of["resolution"]), "resolution"),
+        row("Range", _range, "range_high", "range_low"),
+        row("Calibration: gain ± 1σ [-]", lambda of, _: _with_deviation(of["gain"], of["gain_sd"]), "gain", "gain_sd"),
+        row("Calibration: zero ± 1σ", lambda of, _: _with_deviation(of["zero"], of["zero_sd"]), "zero", "zero_sd"),
+        *(row(f"Response to {gas.upper()} ± 1σ [per {UNITS[gas]}]", _response(gas), "cross", "cross_sd") for gas in others),
+        row("Effect of pressure, not corrected [1/hPa]", lambda of, _: _plain(of["pressure_effect"]), "pressure_effect"),
     ]
     found = f" “{_FOUND.capitalize()}”: not stated, and estimated." if any(_FOUND in cell for row in rows for cell in row) else ""
     return Table(
@@ -51,6 +51,20 @@ def instrument_table(record: Record) -> Table:
         rows=rows,
         widths=[2.2, *(1.0 for _ in gases)],
     )
+
+
+def _marked(cell: str, keys: Sequence[str], given: Sequence[str] | None) -> str:
+    """Return a cell with a word on what the configuration does not state of it; of a preset its source says that.
+
+    Parameters
+    ----------
+    cell : what is shown
+    keys : of the value and, where it has one, its deviation
+    given : those that the configuration has, or None of a preset
+    """
+    if given is None or cell in ("none", "not stated") or _FOUND in cell or keys[-1] in given:
+        return cell
+    return f"{cell}, 1σ assumed" if keys[0] in given else f"{cell}, assumed"
 
 
 def _plain(value: float | None) -> str:
@@ -111,12 +125,13 @@ def assumption_table(run: RunData, record: Record) -> Table:
     factors = ", ".join(f"{gas.upper()} times {factor:g}" for gas, factor in flight["scale"].items()) or "none: units as above"
     missing = ", ".join(number(code, "{:g}") for code in flight["missing"]) or "none but empty cells"
     limits = ", ".join(limit_words(float(verdict["limit_percent"])) for verdict in found["verdicts"])
+    source = record["instrument"]["source"] or "as the configuration states them, but for those that are marked as assumed"
     rows = [
         ["Configuration", f"{settings}, SHA-256 {run.manifest['settings_hash']}" if settings else "none was given"],
         ["Columns of time and place", _columns(flight["columns"])],
         ["Columns multiplied", factors],
         ["Codes of missing readings", missing],
-        ["Figures of the instrument", record["instrument"]["source"].replace("\n", " ") or "as the configuration states them"],
+        ["Figures of the instrument", source.replace("\n", " ")],
         ["Method", METHODS[found["method"]]],
         ["Carbon in the fuel", f"{percent(carbon)} by mass ± {percent(CARBON_SD)} of it (1σ): {fsc_factor(carbon):.4f} % of sulphur"
          " per ppb of SO2 and ppm of CO2"],

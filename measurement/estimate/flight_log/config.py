@@ -40,6 +40,7 @@ class LogConfig:
     Attributes
     ----------
     instrument : as the analyst knows it
+    stated : keys that the configuration has of each channel, by gas; None of a preset, whose file says what is assumed
     carbon : mass share of the fuel [-]
     limits_percent : on which there are to be verdicts [% m/m]
     method : "regression" or "areas"
@@ -50,6 +51,7 @@ class LogConfig:
     """
 
     instrument: SnifferSpec = field(default_factory=lambda: sensor_preset(DEFAULT_INSTRUMENT))
+    stated: Mapping[str, tuple[str, ...]] | None = None
     carbon: float = CARBON_FRACTION
     limits_percent: tuple[float, ...] = LIMITS_PERCENT
     method: Method = "regression"
@@ -96,8 +98,11 @@ def read_config(path: Path) -> LogConfig:
         check_parameters(method, carbon, limits)
     except MeasurementError as error:
         raise MeasurementError(f"'{path}': {error}") from None
+    given = table.get("instrument", DEFAULT_INSTRUMENT)
+    instrument = _instrument(given, path)
     return LogConfig(
-        instrument=_instrument(table.get("instrument", DEFAULT_INSTRUMENT), path),
+        instrument=instrument,
+        stated={gas: tuple(given["channels"][gas]) for gas in instrument.gases} if isinstance(given, dict) else None,
         carbon=float(carbon),
         limits_percent=tuple(sorted(float(limit) for limit in limits)),
         method=method,

@@ -108,6 +108,7 @@ def read_flight(path: Path, config: LogConfig) -> LoggedFlight:
         columns={key: name for key, name in config.columns.items() if name in table},
         scale=config.scale,
         missing=config.missing,
+        stated=config.stated,
     )
     return LoggedFlight(Readings(time, values), pd.DataFrame(place), about)
 

@@ -60,6 +60,7 @@ class FlightRecord:
     offset : whether the log's times have an offset from UTC; those without are taken as UTC
     first_position, last_position : first and last known place of the log, or None where it has none
     columns, scale, missing : as the log was read
+    stated : keys of the instrument's channels that the configuration has, as in ``LogConfig``
     """
 
     readings: int
@@ -73,6 +74,7 @@ class FlightRecord:
     columns: Mapping[str, str]
     scale: Mapping[str, float]
     missing: tuple[float, ...]
+    stated: Mapping[str, tuple[str, ...]] | None
 
     def record(self) -> dict[str, Any]:
         """Return it for JSON, with times in ISO 8601."""

@@ -162,3 +162,22 @@ def test_places_and_times_are_told_the_same_everywhere():
     assert span_words(at, at) == "2026-06-01 10:00:00 UTC"
     assert moment("soon") is None
     assert moment(float("nan")) is None
+
+
+def test_what_the_configuration_leaves_out_of_its_instrument_is_marked_as_assumed(tmp_path):
+    channels = "so2]\nt90_s = 18.0\ngain_sd = 0.04\ncross = { no = 0.015 }\n[instrument.channels.co2]\nt90_s = 3.0\nt90_sd = 0.1\n"
+    (tmp_path / "own.toml").write_text(f"[instrument.channels.{channels}noise = 1.0\n", encoding="utf-8")
+    given = [str(EXAMPLES / "example_flight.csv"), "--config", str(tmp_path / "own.toml"), "--out", str(tmp_path / "out")]
+    assert main([*given, "--no-report"]) == 0
+    rows = rows_of(tmp_path / "out", 0)
+    # What is assumed is that of measurement/sniffer/presets.py: 10 % of a t90, a gain of CO2 known to 3 %, a fifth of a response.
+    assert rows["Response time t90 ± 1σ [s]"] == ["18 ± 1.8, 1σ assumed", "3 ± 0.3"]
+    assert rows["Calibration: gain ± 1σ [-]"] == ["1 ± 0.04", "1 ± 0.03, assumed"]
+    assert rows["Response to NO ± 1σ [per ppb]"] == ["0.015 ± 0.003, 1σ assumed", "none"]
+    assert rows["Noise of a reading, 1σ"][1] == "1"
+    assert "marked as assumed" in rows_of(tmp_path / "out", 1)["Figures of the instrument"][0]
+
+
+def test_a_preset_has_no_marks_as_its_source_says_what_is_assumed(directory):
+    assert not any("assumed" in cell for cells in rows_of(directory, 0).values() for cell in cells)
+    assert "Assumptions: " in rows_of(directory, 1)["Figures of the instrument"][0]
