@@ -122,8 +122,14 @@ def times_of(
     MeasurementError : log and configuration have different dates, or times that are a second or more apart
     """
     if logged is None:
-        start = details.start
-        return (start, start + timedelta(seconds=duration_s), FROM_CONFIGURATION) if start else (None, None, "")
+        if (start := details.start) is None:
+            return None, None, ""
+        try:
+            return start, start + timedelta(seconds=duration_s), FROM_CONFIGURATION
+        except OverflowError:
+            raise MeasurementError(
+                f"'{path}' lasts {duration_s:g} s from flight.date on, beyond the year 9999; give its times in seconds"
+            ) from None
     first = logged[0]
     apart = details.start is not None and abs((first - details.start).total_seconds()) >= 1.0
     if apart or (details.day is not None and first.date() != details.day):

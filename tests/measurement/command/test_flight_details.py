@@ -100,6 +100,11 @@ def test_details_with_mistakes_are_refused_in_one_line(logged, capsys, config, m
     assert message in told(logged, capsys, f"{config}\n")
 
 
+def test_times_that_lead_beyond_all_years_are_refused_in_one_line(logged, capsys):
+    rewritten(logged, time_s=[1e12 * i for i in range(301)])
+    assert "lasts 3e+14 s from flight.date on, beyond the year 9999" in told(logged, capsys, "flight.date = 2026-06-01T10:00:00Z\n")
+
+
 def test_a_code_for_a_missing_reading_stands_for_a_missing_place_as_well(logged):
     rewritten(logged, latitude_deg=[-9999.0] * 3 + [56.0] * 298, longitude_deg=11.5)
     assert recorded(logged, "missing = [-9999]\n")["first_position"] == [56.0, 11.5]
