@@ -9,7 +9,7 @@ import numpy as np
 import pandas as pd
 
 from common.physics.geodesy import LocalFrame
-from common.times import utc_text
+from common.times import moment, utc_text
 from measurement.gases import GASES, UNITS
 from reports.errors import ReportError
 from reports.run.columns import Array, column
@@ -212,10 +212,8 @@ def _body(frame: LocalFrame, north: Array, east: Array, altitude: Array, v_north
 
 
 def _start(text: object) -> float:
-    try:
-        return datetime.fromisoformat(str(text)).timestamp()
-    except ValueError:
-        return NO_TIME
+    begun = moment(text)
+    return NO_TIME if begun is None else begun.timestamp()
 
 
 def _source_height(run: RunData, row: dict[str, object], default: float) -> float:

@@ -5,10 +5,10 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
+from common.times import moment, span_words
 from measurement.estimate.flight_log.details import FROM_LOG
 from measurement.sniffer.presets import sensor_preset, sensor_presets
 from reports.document.blocks import Fact
-from reports.document.whereabouts import moment, position_words, span_words
 from reports.measurement.data import Record
 from reports.run.columns import column, flights_flown
 from reports.run.run_data import RunData
@@ -16,6 +16,12 @@ from reports.run.run_data import RunData
 _TIMES = "Time (UTC)"
 
 _CONFIGURED = " (by the configuration)"
+
+
+def position_words(latitude: float, longitude: float) -> str:
+    """Return a place [deg] to a metre: 57.20000° N, 11.30000° E."""
+    longitude = (longitude + 180.0) % 360.0 - 180.0
+    return f"{abs(latitude):.5f}° {'N' if latitude >= 0.0 else 'S'}, {abs(longitude):.5f}° {'E' if longitude >= 0.0 else 'W'}"
 
 
 def logged_facts(run: RunData, record: Record) -> list[Fact]:

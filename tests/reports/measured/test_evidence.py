@@ -10,9 +10,10 @@ import pypdfium2
 import pytest
 from report_parts import blocks_of, built
 
+from common.times import moment, span_words
 from measurement.estimate.__main__ import main
 from reports.document.blocks import Table
-from reports.document.whereabouts import moment, position_words, span_words
+from reports.measurement.facts import position_words
 from reports.registry import content
 from reports.run.run_data import read_run
 
