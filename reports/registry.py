@@ -73,6 +73,7 @@ def content(run: RunData, settings: Mapping[str, str] | None = None) -> Content:
         verdict=found.verdict,
         picture=picture,
         sections=sections,
+        facts=found.facts,
     )
 
 

@@ -257,6 +257,7 @@ def _told(
         so2_t90_sd_s=ratio.alignment.t90_sd_s,
         delay_s=_delay(instrument),
         delay_sd_s=ratio.alignment.delay_sd_s,
+        instrument=instrument,
         signals=samples,
     )
 

@@ -8,6 +8,7 @@ import pandas as pd
 
 from measurement.estimate.passes import Pass
 from measurement.estimate.verdict import Verdict
+from measurement.sniffer.spec import SnifferSpec
 
 Method = Literal["regression", "areas"]
 Quality = Literal["A", "B", "C"]
@@ -59,6 +60,7 @@ class FscEstimate:
     pass_percent, pass_deviation_percent : sulphur content of groups of neighbouring passes and its noise
     agreement : probability that groups of the same fuel differ as much as these
     so2_t90_s, so2_t90_sd_s, delay_s, delay_sd_s : response of SO2 and its delay after CO2, as given or as they fit best [s]
+    instrument : as it was used: noise, and response and delay of SO2, as the record shows them where they were not given
     signals : readings, equalised signals beside their background, fit and residual; a row per sample
     """
 
@@ -84,11 +86,12 @@ class FscEstimate:
     so2_t90_sd_s: float
     delay_s: float
     delay_sd_s: float
+    instrument: SnifferSpec = field(repr=False)
     signals: pd.DataFrame = field(compare=False, repr=False)
 
     def record(self) -> dict[str, Any]:
-        """Return everything but the signals, for JSON: what is not a number is None."""
-        values = {name: value for name, value in vars(self).items() if name != "signals"}
+        """Return everything but instrument and signals, for JSON: what is not a number is None."""
+        values = {name: value for name, value in vars(self).items() if name not in ("instrument", "signals")}
         values["figures"] = asdict(self.figures)
         values["verdicts"] = [asdict(verdict) for verdict in self.verdicts]
         values["passes"] = [asdict(found) for found in self.passes]

@@ -227,6 +227,13 @@ class Verdict:
         return self.failures if more <= 0 else [*self.failures[:FAILURES_MAX], f"and {more:,} more, under “Key figures”"]
 
 
+class Fact(NamedTuple):
+    """What a reader has to know of a flight before its figures: what it is, and what is known of it."""
+
+    name: str
+    value: str
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Findings:
     """What a study has to say.
@@ -237,12 +244,14 @@ class Findings:
     verdict : the answer
     picture : what page 1 shows large, or None where nothing can be drawn
     sections : what shows the answer
+    facts : when, where and with what was measured, for page 1
     """
 
     flown: str
     verdict: Verdict
     picture: Chart | None
     sections: list[Section]
+    facts: Sequence[Fact] = ()
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -255,7 +264,7 @@ class Content:
     letterhead : who wrote it, when the run was, and what the run is called
     description : what the study is about, in its scenario's words
     changes : what was changed of the scenario
-    flown, verdict, picture : as in ``Findings``; with the lines above, they are page 1
+    flown, verdict, picture, facts : as in ``Findings``; with the lines above, they are page 1
     sections : what shows the answer, with figures and tables numbered
     """
 
@@ -267,3 +276,4 @@ class Content:
     verdict: Verdict
     picture: Chart | None
     sections: list[Section]
+    facts: Sequence[Fact] = ()

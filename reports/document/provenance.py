@@ -32,7 +32,7 @@ def _made(run: RunData, head: Letterhead) -> list[list[str]]:
         [of, f"{manifest['name']}: {manifest['title']}"],
         ["Command", manifest.get("command") or "not recorded: a program made the run"],
         ["Changed for this run", ", ".join(map(without_folders, manifest["overrides"])) or "nothing"],
-        ["Began", head.when],
+        ["Analysed" if study == "measurement" else "Began", head.when],
         ["State", manifest["state"]],
     ]
     if "wall_time_s" in manifest:

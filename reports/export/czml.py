@@ -4,6 +4,8 @@ import json
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from reports.export.exporter import EXPORTERS
 from reports.export.geographic import Body, GeographicFlight, recorded_flights
 from reports.run.run_data import RunData
@@ -11,6 +13,8 @@ from reports.run.run_data import RunData
 _UAV_COLOUR, _VESSEL_COLOUR, _PLUME_COLOUR, _KEEPOUT_COLOUR = (
     [255, 165, 0, 255], [0, 120, 255, 255], [128, 128, 128, 180], [255, 0, 0, 60],
 )  # fmt: skip
+
+_LINEAR = {"interpolationAlgorithm": "LAGRANGE", "interpolationDegree": 1}
 
 
 @EXPORTERS.register("czml")
@@ -28,7 +32,8 @@ class Czml:
         packets: list[dict[str, Any]] = [
             {"id": "document", "name": flight.flight_id, "version": "1.0", "clock": clock},
             _moving(flight, "uav", "UAV", flight.uav, flight.uav.altitude.tolist(), while_flown)
-            | {"point": _point(_UAV_COLOUR), "path": _path(_UAV_COLOUR)},
+            | {"point": _point(_UAV_COLOUR), "path": _path(_UAV_COLOUR)}
+            | _readings(flight),
         ]
         if flight.vessel is not None:
             height = [flight.source_height] * len(flight.time)
@@ -59,10 +64,19 @@ def _moving(
     position = {
         "epoch": flight.epoch,
         "cartographicDegrees": samples,
-        "interpolationAlgorithm": "LAGRANGE",
-        "interpolationDegree": 1,
+        **_LINEAR,
     }
     return {"id": identity, "name": name, "availability": while_flown, "position": position}
+
+
+def _readings(flight: GeographicFlight) -> dict[str, Any]:
+    """Return what the sniffer read, as properties of the UAV over time; nothing of a flight without one."""
+    properties = {}
+    for name, values in flight.readings.items():
+        known = np.isfinite(values)
+        samples = np.column_stack([flight.time[known], values[known]]).round(3).ravel().tolist()
+        properties[name] = {"epoch": flight.epoch, "number": samples, **_LINEAR}
+    return {"properties": properties} if properties else {}
 
 
 def _point(colour: list[int]) -> dict[str, Any]:

@@ -1,7 +1,7 @@
 """What exporters for maps and globes take from a flight: where UAV, vessel and plume were on earth, and when."""
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from datetime import UTC, datetime
 
@@ -9,7 +9,8 @@ import numpy as np
 import pandas as pd
 
 from common.physics.geodesy import LocalFrame
-from common.times import utc_text
+from common.times import moment, utc_text
+from measurement.gases import GASES, UNITS
 from reports.errors import ReportError
 from reports.run.columns import Array, column
 from reports.run.flight_config import flight_config, source_height
@@ -20,6 +21,9 @@ PLUME_LENGTH = 1000.0
 
 _RING_POINTS = 48
 """Sides of the polygon that stands for a keep-out circle."""
+
+READINGS = {f"{gas}_reading_{UNITS[gas]}": f"{gas.upper()} reading [{UNITS[gas]}]" for gas in GASES}
+"""What a sniffer read: columns of time histories, and how they are labelled. A reading is held until the next."""
 
 NO_PLACE = (0.0, 0.0)
 """Latitude and longitude of flights that no place is given for [deg]: on the equator, where JSBSim flies them."""
@@ -72,6 +76,7 @@ class GeographicFlight:
     heading, pitch, roll : of the aircraft, heading from true north [deg]
     airspeed, climb_rate : [m/s]
     throttle : [-]
+    readings : of the sniffer at each sample, by the name of their column of ``READINGS``; none without a sniffer
     vessel : the ship, or none
     plume_end : a point of the plume's axis, ``PLUME_LENGTH`` from the funnel, or none
     source_height : of the funnel above the sea [m]
@@ -90,6 +95,7 @@ class GeographicFlight:
     airspeed: Array
     climb_rate: Array
     throttle: Array
+    readings: Mapping[str, Array]
     vessel: Body | None
     plume_end: Body | None
     source_height: float
@@ -183,6 +189,7 @@ def _flight(run: RunData, row: dict[str, object], history: pd.DataFrame) -> Geog
         airspeed=of("airspeed_mps"),
         climb_rate=of("climb_rate_mps"),
         throttle=of("throttle"),
+        readings={name: column(history, name) for name in READINGS if name in history and history[name].notna().any()},
         vessel=vessel,
         plume_end=plume_end,
         source_height=funnel,
@@ -205,10 +212,8 @@ def _body(frame: LocalFrame, north: Array, east: Array, altitude: Array, v_north
 
 
 def _start(text: object) -> float:
-    try:
-        return datetime.fromisoformat(str(text)).timestamp()
-    except ValueError:
-        return NO_TIME
+    begun = moment(text)
+    return NO_TIME if begun is None else begun.timestamp()
 
 
 def _source_height(run: RunData, row: dict[str, object], default: float) -> float:

@@ -28,7 +28,7 @@ class GeoJson:
 def _features(flight: GeographicFlight) -> list[dict[str, Any]]:
     about = {"flight_id": flight.flight_id, "start_utc": flight.utc(0), "end_utc": flight.utc(len(flight.time) - 1)}
     times = {"times_s": np.round(flight.time, 3).tolist()}
-    features = [_feature(_track(flight.uav), about | {"what": "uav"} | times)]
+    features = [_feature(_track(flight.uav), about | {"what": "uav"} | times | _readings(flight))]
     if flight.vessel is not None:
         features.append(_feature(_track(flight.vessel), about | {"what": "vessel"} | times))
         ring = [[longitude, latitude] for longitude, latitude in flight.keepout_ring(len(flight.time) - 1)]
@@ -41,6 +41,11 @@ def _features(flight: GeographicFlight) -> list[dict[str, Any]]:
             distance = {"distance_m": round(float(crossing["distance_m"]), 2), "time_s": round(at, 3)}
             features.append(_feature(point, about | {"what": "crossing"} | distance))
     return features
+
+
+def _readings(flight: GeographicFlight) -> dict[str, list[float | None]]:
+    """Return what the sniffer read at each of the times, by the name of the gas and its unit."""
+    return {name: [round(x, 3) if np.isfinite(x) else None for x in of.tolist()] for name, of in flight.readings.items()}
 
 
 def _feature(geometry: dict[str, Any], properties: dict[str, Any]) -> dict[str, Any]:

@@ -1,5 +1,6 @@
 """Google Earth: KML 2.2 with gx:Track, zipped, written with the standard library."""
 
+import math
 import zipfile
 from collections.abc import Iterator
 from itertools import pairwise
@@ -7,10 +8,13 @@ from pathlib import Path
 from xml.etree import ElementTree as ET
 
 from reports.export.exporter import EXPORTERS
-from reports.export.geographic import Body, GeographicFlight, recorded_flights
+from reports.export.geographic import READINGS, Body, GeographicFlight, recorded_flights
 from reports.run.run_data import RunData
 
 _KML, _GX = "http://www.opengis.net/kml/2.2", "http://www.google.com/kml/ext/2.2"
+
+_READINGS = "readings"
+"""Name of the schema of what sniffers read."""
 
 _SHOWN = 200
 """How many times plume and keep-out area are drawn in a flight at most, each for its own while."""
@@ -39,8 +43,12 @@ class Kmz:
         _style(document, "vessel", line="ffff7800", width="3")
         _style(document, "plume", line="b4808080", width="4")
         _style(document, "keepout", line="ff0000ff", width="2", fill="400000ff")
+        begin, read = len(document), set[str]()
         for number, flight in enumerate(recorded_flights(run)):
             document.append(_folder(flight, shown=number == 0))
+            read.update(flight.readings)
+        if read:
+            document.insert(begin, _schema(read))
         with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as archive:
             entry = zipfile.ZipInfo("doc.kml", _EPOCH)
             entry.compress_type = zipfile.ZIP_DEFLATED
@@ -54,7 +62,10 @@ def _folder(flight: GeographicFlight, *, shown: bool) -> ET.Element:
     if not flight.placed:
         _text(folder, "description", "No place is given for this flight: it is shown at latitude and longitude 0.")
     angles = [f"{h:.2f} {p:.2f} {r:.2f}" for h, p, r in zip(flight.heading, flight.pitch, flight.roll, strict=True)]
-    folder.append(_track(flight, "UAV", "uav", flight.uav, angles))
+    uav = _track(flight, "UAV", "uav", flight.uav, angles)
+    if flight.readings:
+        _append_readings(uav, flight)
+    folder.append(uav)
     if flight.vessel is not None:
         # A ship is flat on the sea: without angles of its own it points where it goes.
         folder.append(_track(flight, "Vessel", "vessel", flight.vessel, [f"{course:.2f} 0 0" for course in flight.vessel.course]))
@@ -75,6 +86,27 @@ def _track(flight: GeographicFlight, name: str, style: str, body: Body, angles: 
     for angle in angles:
         ET.SubElement(track, _gx("angles")).text = angle
     return placemark
+
+
+def _schema(read: set[str]) -> ET.Element:
+    """Return the declaration of what sniffers read, with names and units for Google Earth's elevation profile."""
+    schema = ET.Element(_kml("Schema"), id=_READINGS, name=_READINGS)
+    for name, label in READINGS.items():
+        if name in read:
+            _text(ET.SubElement(schema, _gx("SimpleArrayField"), name=name, type="float"), "displayName", label)
+    return schema
+
+
+def _append_readings(placemark: ET.Element, flight: GeographicFlight) -> None:
+    """Append what the sniffer read to the track of a placemark, a value for each of its times; an empty one where there is none."""
+    track = placemark.find(_gx("Track"))
+    if track is None:
+        return
+    data = ET.SubElement(ET.SubElement(track, _kml("ExtendedData")), _kml("SchemaData"), schemaUrl=f"#{_READINGS}")
+    for name, values in flight.readings.items():
+        array = ET.SubElement(data, _gx("SimpleArrayData"), name=name)
+        for value in values.tolist():
+            ET.SubElement(array, _gx("value")).text = f"{value:.6g}" if math.isfinite(value) else ""
 
 
 def _plume(flight: GeographicFlight, i: int, until: int) -> ET.Element:

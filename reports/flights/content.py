@@ -14,6 +14,7 @@ from reports.flights.selection import flight_section
 from reports.flights.trials.charts import trial_charts
 from reports.flights.trials.tables import criteria_table, failed_blocks, fault_table, flight_table, trial_table
 from reports.flights.verdict import flight_verdict
+from reports.measurement.facts import flown_facts
 from reports.measurement.flights import sulphur_sections
 from reports.monte_carlo.content import monte_carlo_sections
 from reports.monte_carlo.falsification import falsification_sections
@@ -48,6 +49,7 @@ def flights_content(run: RunData) -> Findings:
         # Without a flight the first figure would be that of an aircraft that did not fly.
         picture=(closest_and_typical(trials) or _picture(sections)) if len(flown) else None,
         sections=sections,
+        facts=flown_facts(run),
     )
 
 

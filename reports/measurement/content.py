@@ -5,7 +5,9 @@ from collections.abc import Sequence
 from reports.document.blocks import Block, Findings, Section
 from reports.document.chart import Chart
 from reports.measurement.charts import budget_chart, channels_chart, logged_track_chart, over_time_chart, regression_chart
-from reports.measurement.data import Record, read_estimate, read_samples
+from reports.measurement.data import read_estimate, read_samples
+from reports.measurement.facts import logged_facts
+from reports.measurement.instrument_tables import assumption_table, instrument_table
 from reports.measurement.tables import over_time_table, record_table, result_table
 from reports.measurement.verdict import measurement_verdict
 from reports.run.run_data import RunData
@@ -21,17 +23,21 @@ def measurement_content(run: RunData) -> Findings:
     sections = [
         Section(anchor="result", title="Result", blocks=result),
         Section(anchor="signals", title="Signals", blocks=shown),
-        Section(anchor="record", title="Record and instrument", nav_title="Record", blocks=[record_table(record)]),
+        Section(anchor="record", title="Record", blocks=[record_table(record)]),
+        Section(
+            anchor="instrument",
+            title="Instrument and assumptions",
+            nav_title="Instrument",
+            blocks=[instrument_table(record), assumption_table(run, record)],
+        ),
     ]
     figures = record["estimate"]["figures"]
-    flown = f"A flight of {figures['duration_s']:.0f} s with {figures['passes']} passes through the plume: {_instrument(record)}."
+    flown = f"A flight of {figures['duration_s']:.0f} s with {figures['passes']} passes through the plume."
     pictures = _there(over_time_chart(record), *([] if samples is None else _there(regression_chart(samples, record))))
     picture = next((chart for chart in pictures if isinstance(chart, Chart)), None)
-    return Findings(flown=flown, verdict=measurement_verdict(record), picture=picture, sections=sections)
-
-
-def _instrument(record: Record) -> str:
-    return str(record["instrument"]["title"])
+    return Findings(
+        flown=flown, verdict=measurement_verdict(record), picture=picture, sections=sections, facts=logged_facts(run, record)
+    )
 
 
 def _there(*blocks: Block | None) -> Sequence[Block]:

@@ -14,7 +14,11 @@ from reports.run.flight_config import flight_configs
 from reports.run.run_data import RunData
 
 Record = dict[str, Any]
-"""What ``estimate.json`` holds: ``estimate``, ``other``, ``over_time``, ``time_to_verdict_s``, ``instrument``, ``true_percent``."""
+"""What ``estimate.json`` holds: ``estimate``, ``other``, ``over_time``, ``time_to_verdict_s``, ``instrument``, ``true_percent``,
+and of a logged flight ``flight``."""
+
+METHODS = {"regression": "equalise and regress", "areas": "areas of passes"}
+"""Methods of an estimate, in words."""
 
 
 SINCE = "the record began"

@@ -7,15 +7,13 @@ import pandas as pd
 from common.intervals import percent
 from reports.document.blocks import Table
 from reports.document.tables import number
-from reports.measurement.data import Record, measured_minutes, share_read
+from reports.measurement.data import METHODS, Record, measured_minutes, share_read
 from reports.run.run_data import RunData
 
 _FSC = "% m/m"
 
 _BEST = 3
 """Trajectories that are listed for each sensor."""
-
-_METHODS = {"regression": "equalise and regress", "areas": "areas of passes"}
 
 
 def interval_words(row: "pd.Series[Any]") -> str:
@@ -59,7 +57,7 @@ def accuracy_table(statistics: Record) -> Table:
         rows=[
             [
                 entry["sensor"],
-                _METHODS[entry["method"]],
+                METHODS[entry["method"]],
                 f"{entry['flights']:,}",
                 number(entry["bias_percent"], "{:+.4f}"),
                 *("–" if share is None else percent(share) for share in (entry["share_read"], entry["share_predicted"])),
@@ -102,7 +100,9 @@ def calls_table(statistics: Record) -> Table:
 def hit_table(rows: pd.DataFrame) -> Table:
     """Return figures of the passes: over all flights, median and the tenth that is worst on either side."""
     named = {
-        "hit_rate": ("Passes that hit the plume, peak above 0.6 of its axis [-]", "{:.2f}"),
+        "plume_axis_crossings": ("Crossings of the plume's mean axis, with smoke or without", "{:.0f}"),
+        "smoke_passes": ("Of these with smoke", "{:.0f}"),
+        "hit_rate": ("Share of these that hit the plume, peak above 0.6 of its axis [-]", "{:.2f}"),
         "axis_height_error_rms_m": ("Height off the plume's axis, rms [m]", "{:.1f}"),
         "seconds_in_plume_s": ("Time in the plume [s]", "{:.0f}"),
         "dose_per_pass_ppm_s": ("CO2 dose of a pass [ppm s]", "{:.0f}"),

@@ -6,7 +6,7 @@ from measurement.estimate.passes import SNR_LEAST
 from measurement.gases import limit_words
 from reports.document.blocks import Table
 from reports.document.tables import number
-from reports.measurement.data import SINCE, Record
+from reports.measurement.data import METHODS, SINCE, Record
 
 _PERCENT = "{:.3f} %"
 
@@ -21,7 +21,7 @@ def result_table(record: Record) -> Table:
         if found is None:
             continue
         rows.append([
-            {"regression": "equalise and regress", "areas": "areas of passes"}[found["method"]],
+            METHODS[found["method"]],
             number(found["fsc_percent"], _PERCENT),
             number(found["noise_percent"], _PERCENT),
             number(found["total_percent"], _PERCENT),
@@ -67,13 +67,12 @@ def over_time_table(record: Record, since: str = SINCE) -> Table | None:
 
 
 def record_table(record: Record) -> Table:
-    """Return what the record holds and what was taken of the instrument."""
-    found, figures, instrument = record["estimate"], record["estimate"]["figures"], record["instrument"]
+    """Return what the record holds, and the response of SO2 as it was taken."""
+    found, figures = record["estimate"], record["estimate"]["figures"]
     t90 = f"{number(found['so2_t90_s'], '{:.1f}')} ± {number(found['so2_t90_sd_s'], '{:.1f} s')} (1σ)"
     delay = f"{number(found['delay_s'], '{:.2f}')} ± {number(found['delay_sd_s'], '{:.2f} s')} (1σ)"
     dose, agreement = number(figures["dose_ppm_s"], "{:.0f} ppm s"), number(found["agreement"], "{:.2f}")
     rows = [
-        ["Instrument", str(instrument["title"])],
         ["Passes", f"{figures['passes']}, every {number(figures['interval_s'], '{:.1f} s')}; agreement p = {agreement}"],
         ["In the plume", f"{figures['seconds_in_plume']:.0f} s of {figures['duration_s']:.0f} s; CO2 dose of a pass {dose}"],
         ["Signal to noise", f"CO2 peaks {number(figures['co2_snr'], '{:.0f}')}, SO2 {number(figures['so2_snr'], '{:.1f}')}"],
@@ -82,7 +81,7 @@ def record_table(record: Record) -> Table:
         ["Sulphate, not corrected", f"{number(found['sulphate_percent'], '{:.4f} %')}: sulphur that does not leave as SO2"],
     ]
     return Table(
-        caption="The record, and what was taken of the instrument.",
+        caption="What the record holds, and the response of SO2 as it was taken.",
         head=["", ""],
         rows=rows,
         widths=[1.0, 3.0],

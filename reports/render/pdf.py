@@ -52,7 +52,7 @@ def _data(report: Content, directory: Path, figures: Figures, *, all_flights: bo
     return {
         "title": report.title,
         "run": head.run,
-        "when": head.when,
+        "when": head.dated,
         "author": head.author,
         "signature": head.signature,
         "logo": f"logo{head.logo.suffix}" if head.logo else "",
@@ -66,6 +66,7 @@ def _data(report: Content, directory: Path, figures: Figures, *, all_flights: bo
             "detail": unbroken(verdict.detail),
         },
         "failures": verdict.first_failures,
+        "facts": [{"name": name, "value": unbroken(value)} for name, value in report.facts],
         "cards": [_card(card, judges=verdict.judges) for card in verdict.cards],
         "picture": _image(report.picture, figures) if report.picture else None,
         "sections": [section for section in sections if section["blocks"]],

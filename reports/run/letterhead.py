@@ -24,15 +24,22 @@ class Letterhead:
     ----------
     run : name of the run
     when : date and time at which it began, in UTC, or that they were not recorded
+    done : what was done then, where the date of the run is not to be taken for that of the flight; else empty
     author, organisation : as given, or empty
     logo : as given, or None
     """
 
     run: str
     when: str
+    done: str = ""
     author: str = ""
     organisation: str = ""
     logo: Picture | None = None
+
+    @property
+    def dated(self) -> str:
+        """Return the date, with what was done then."""
+        return f"{self.done} {self.when}".strip()
 
     @property
     def signature(self) -> str:
@@ -77,6 +84,7 @@ def letterhead(run: RunData, settings: Mapping[str, str]) -> Letterhead:
     return Letterhead(
         run=str(run.manifest["name"]),
         when=_moment(run.manifest.get("begun_utc")),
+        done="analysed" if run.manifest.get("study") == "measurement" else "",
         author=texts["author"],
         organisation=texts["organisation"],
         logo=logo,

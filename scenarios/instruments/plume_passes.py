@@ -15,7 +15,8 @@ INSIDE = math.exp(-2.0)
 
 
 PASS_FIGURES = (
-    "plume_passes", "hit_rate", "seconds_in_plume_s", "dose_per_pass_ppm_s", "axis_height_error_mean_m", "axis_height_error_rms_m",
+    "plume_axis_crossings", "smoke_passes", "hit_rate", "seconds_in_plume_s", "dose_per_pass_ppm_s", "axis_height_error_mean_m",
+    "axis_height_error_rms_m",
 )  # fmt: skip
 """Columns of the summary."""
 
@@ -29,6 +30,10 @@ def fraction_of_axis(plume: PlumeSample) -> Array:
 def pass_figures(across: Array, above: Array, fraction: Array, excess_co2: Array, *, time_step: float) -> dict[str, float]:
     """Return figures of the passes of a flight.
 
+    A change of sides of the plume's mean axis, seen from above, is a crossing, with smoke there or without: the UAV may be above or
+    below the plume, and the plume may have meandered away. Of these passes those count as passes through smoke in which the UAV was
+    inside the plume, as ``INSIDE`` says, at one sample at least.
+
     Parameters
     ----------
     across, above : from the plume's axis, not a number where there is no plume, shape (n,) [m]
@@ -39,11 +44,12 @@ def pass_figures(across: Array, above: Array, fraction: Array, excess_co2: Array
     found = list(passes(across))
     inside = float(time_step * np.count_nonzero(fraction > INSIDE))
     if not found:
-        return {"plume_passes": 0, "seconds_in_plume_s": inside}
+        return {"plume_axis_crossings": 0, "smoke_passes": 0, "seconds_in_plume_s": inside}
     peaks = np.array([np.max(fraction[at]) for at in found])
     error = above[[at.start + int(np.nanargmin(np.abs(across[at]))) for at in found]]
     return {
-        "plume_passes": len(found),
+        "plume_axis_crossings": len(found),
+        "smoke_passes": int(np.count_nonzero(peaks > INSIDE)),
         "hit_rate": float(np.mean(peaks > HIT)),
         "seconds_in_plume_s": inside,
         "dose_per_pass_ppm_s": float(time_step * np.sum(excess_co2) / len(found)),

@@ -13,7 +13,7 @@ PRINTED = {
     "first_flight": ("nu_0.50 met", "min_distance_m", "steepest bank", "did you mean 'wind.from_deg'?"),
     "own_law": ("met\n", "less lead"),
     "ship_from_ais": ("411 of 417 rows", "keep-out violations: 0", "flight.kmz"),
-    "measure_a_plume": ("passes", "fuel sulphur content", "limit 0.1 %: "),
+    "measure_a_plume": ("of them with smoke", "fuel sulphur content", "limit 0.1 %: "),
 }
 
 

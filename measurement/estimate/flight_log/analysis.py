@@ -1,7 +1,7 @@
 """Everything that a flight's readings are asked for: both methods, over time, as one record for files and reports."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from typing import Any
 
 import numpy as np
@@ -47,10 +47,16 @@ class Analysis:
             "other": None if self.other is None else self.other.record(),
             "over_time": [{str(key): plain(value) for key, value in row.items()} for row in self.table.to_dict("records")],
             "time_to_verdict_s": {f"{v.limit_percent:g}": plain(time_to_verdict(self.table, v.limit_percent)) for v in verdicts},
-            "instrument": {"name": self.instrument.name, "title": self.instrument.title, "source": self.instrument.source},
+            "instrument": self._instrument(),
             "carbon": self.carbon,
             "true_percent": true_percent,
         }
+
+    def _instrument(self) -> dict[str, Any]:
+        """Return the instrument as it was stated, and its channels as they were used, by gas; None is not stated, or no limit."""
+        stated, used = ({c.gas: plain(asdict(c)) for c in spec.channels} for spec in (self.instrument, self.estimate.instrument))
+        about = {name: getattr(self.instrument, name) for name in ("name", "title", "source", "rate_hz")}
+        return about | {"stated": stated, "used": used}
 
 
 def analyse(

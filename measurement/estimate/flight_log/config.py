@@ -9,6 +9,7 @@ from typing import Any
 
 from measurement.errors import MeasurementError, guess
 from measurement.estimate.estimator import check_parameters
+from measurement.estimate.flight_log.details import FlightDetails, read_details
 from measurement.estimate.result import Method
 from measurement.estimate.verdict import LIMITS_PERCENT
 from measurement.gases import CARBON_FRACTION, GASES, UNITS
@@ -29,7 +30,7 @@ COLUMNS = {
 DEFAULT_INSTRUMENT = "unspecified"
 """The instrument of a flight without a configuration."""
 
-_KEYS = {"instrument", "carbon", "limits_percent", "method", "missing", "columns", "scale"}
+_KEYS = {"instrument", "carbon", "limits_percent", "method", "missing", "columns", "scale", "flight"}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -39,21 +40,25 @@ class LogConfig:
     Attributes
     ----------
     instrument : as the analyst knows it
+    stated : keys that the configuration has of each channel, by gas; None of a preset, whose file says what is assumed
     carbon : mass share of the fuel [-]
     limits_percent : on which there are to be verdicts [% m/m]
     method : "regression" or "areas"
     missing : numbers that the file has for readings that there are not, as -9999
     columns : name in the file of each of ``COLUMNS``
     scale : by which a gas's column is multiplied to be in ppb, or CO2 in ppm
+    flight : what the log cannot tell of the flight
     """
 
     instrument: SnifferSpec = field(default_factory=lambda: sensor_preset(DEFAULT_INSTRUMENT))
+    stated: Mapping[str, tuple[str, ...]] | None = None
     carbon: float = CARBON_FRACTION
     limits_percent: tuple[float, ...] = LIMITS_PERCENT
     method: Method = "regression"
     missing: tuple[float, ...] = ()
     columns: Mapping[str, str] = field(default_factory=lambda: dict(COLUMNS))
     scale: Mapping[str, float] = field(default_factory=dict)
+    flight: FlightDetails = field(default_factory=FlightDetails)
 
 
 def read_config(path: Path) -> LogConfig:
@@ -93,14 +98,18 @@ def read_config(path: Path) -> LogConfig:
         check_parameters(method, carbon, limits)
     except MeasurementError as error:
         raise MeasurementError(f"'{path}': {error}") from None
+    given = table.get("instrument", DEFAULT_INSTRUMENT)
+    instrument = _instrument(given, path)
     return LogConfig(
-        instrument=_instrument(table.get("instrument", DEFAULT_INSTRUMENT), path),
+        instrument=instrument,
+        stated={gas: tuple(given["channels"][gas]) for gas in instrument.gases} if isinstance(given, dict) else None,
         carbon=float(carbon),
         limits_percent=tuple(sorted(float(limit) for limit in limits)),
         method=method,
         missing=tuple(float(code) for code in missing),
         columns={**COLUMNS, **columns},
         scale={gas: float(factor) for gas, factor in scale.items()},
+        flight=read_details(table.get("flight", {}), path),
     )
 
 

@@ -3,13 +3,16 @@
 import math
 import warnings
 from dataclasses import dataclass
+from datetime import datetime
 from pathlib import Path
 
 import numpy as np
+import numpy.typing as npt
 import pandas as pd
 
 from measurement.errors import MeasurementError
 from measurement.estimate.flight_log.config import COLUMNS, LogConfig
+from measurement.estimate.flight_log.details import FlightRecord, Position, times_of
 from measurement.estimate.record import check_increasing, check_units, lowest_reading
 from measurement.gases import GASES, UNITS
 from measurement.sniffer.lag import Array
@@ -18,6 +21,8 @@ from measurement.tables import other_separator
 
 EARTH_RADIUS_M = 6_371_000.0
 """Mean radius [m]: a track of a few kilometres is laid on a plane."""
+
+_NONE = np.empty(0, dtype=np.intp)
 
 _REQUIRED = ("time", "so2", "co2")
 """Columns without which there is no estimate; any other may be left out, unless the configuration names it."""
@@ -34,10 +39,12 @@ class LoggedFlight:
     ----------
     readings : of the sniffer
     place : ``time_s``, and of ``north_m``, ``east_m``, ``height_m`` and the true concentrations those that the file has
+    about : which flight it is
     """
 
     readings: Readings
     place: pd.DataFrame
+    about: FlightRecord
 
 
 def read_flight(path: Path, config: LogConfig) -> LoggedFlight:
@@ -76,7 +83,7 @@ def read_flight(path: Path, config: LogConfig) -> LoggedFlight:
     for key, name in config.columns.items():
         if name not in table and (key in _REQUIRED or name != COLUMNS[key]):
             raise MeasurementError(_missing(path, key.upper() if key in GASES else key, key, name, table))
-    time = _time(table, config.columns["time"], path)
+    time, logged = _time(table, config.columns["time"], path)
     check_increasing(time, path)
     values = np.full((len(table), len(GASES)), np.nan)
     for i, gas in enumerate(GASES):
@@ -84,9 +91,26 @@ def read_flight(path: Path, config: LogConfig) -> LoggedFlight:
         if name in table:
             values[:, i] = config.scale.get(gas, 1.0) * _readings(table, name, path, config)
     _check_negative(values, config, path)
-    place = {"time_s": time, **_place(table, config, path)}
+    found = _found(table, config, path)
+    place = {"time_s": time, **_place(found)}
     place |= {name: _numbers(table, name, path) for name in TRUE_COLUMNS if name in table}
-    return LoggedFlight(Readings(time, values), pd.DataFrame(place))
+    first_utc, last_utc, utc_from = times_of(config.flight, logged, float(time[-1] - time[0]), path)
+    positions = _ends(found)
+    about = FlightRecord(
+        readings=len(table),
+        details=config.flight,
+        first_utc=first_utc,
+        last_utc=last_utc,
+        utc_from=utc_from,
+        offset=logged is not None and _has_offset(table[config.columns["time"]]),
+        first_position=positions[0],
+        last_position=positions[1],
+        columns={key: name for key, name in config.columns.items() if name in table},
+        scale=config.scale,
+        missing=config.missing,
+        stated=config.stated,
+    )
+    return LoggedFlight(Readings(time, values), pd.DataFrame(place), about)
 
 
 def _check_separator(path: Path) -> None:
@@ -149,23 +173,30 @@ def _check_negative(values: Array, config: LogConfig, path: Path) -> None:
             )
 
 
-def _time(table: pd.DataFrame, name: str, path: Path) -> Array:
+def _time(table: pd.DataFrame, name: str, path: Path) -> tuple[Array, tuple[datetime, datetime] | None]:
+    """Return the times [s], and of a log with dates and times those of its first and last row in UTC."""
     column = table[name]
     if pd.api.types.is_numeric_dtype(column):
-        return column.to_numpy(dtype=np.float64)
+        return column.to_numpy(dtype=np.float64), None
     try:
         moments = pd.to_datetime(column, utc=True, format="ISO8601")
     except (ValueError, TypeError):
         raise MeasurementError(
             f"'{path}': time '{column.iloc[0]}' in column '{name}' cannot be read; give seconds, or 2024-05-01T12:00:00.0"
         ) from None
-    return np.asarray((moments - moments.iloc[0]).dt.total_seconds(), dtype=np.float64)
+    time = np.asarray((moments - moments.iloc[0]).dt.total_seconds(), dtype=np.float64)
+    return time, None if moments.isna().any() else (moments.iloc[0].to_pydatetime(), moments.iloc[-1].to_pydatetime())
 
 
-def _place(table: pd.DataFrame, config: LogConfig, path: Path) -> dict[str, Array]:
-    """Return where the flight was, on a plane about its first known place."""
+def _has_offset(column: pd.Series) -> bool:
+    """Return whether times in words say how far they are from UTC."""
+    return pd.Timestamp(str(column.iloc[0]).strip()).tzinfo is not None
+
+
+def _found(table: pd.DataFrame, config: LogConfig, path: Path) -> dict[str, Array]:
+    """Return the columns that say where the flight was, by their keys."""
     names = ("latitude", "longitude", "north", "east", "height")
-    found = {name: _numbers(table, config.columns[name], path) for name in names if config.columns[name] in table}
+    found = {name: _readings(table, config.columns[name], path, config) for name in names if config.columns[name] in table}
     for name, most in (("latitude", 90.0), ("longitude", 360.0)):
         if name in found and (beyond := np.abs(found[name]) > most).any():
             row = int(np.argmax(beyond))
@@ -173,12 +204,22 @@ def _place(table: pd.DataFrame, config: LogConfig, path: Path) -> dict[str, Arra
                 f"'{path}': {name} is {found[name][row]:g} deg in row {row + 2}; it must be {-most:g} to {most:g}: correct it,"
                 " leave it empty, or name what stands for a missing one in the configuration, as in missing = [-9999]"
             )
+    return found
+
+
+def _known(found: dict[str, Array]) -> npt.NDArray[np.intp]:
+    """Return the rows that have a latitude and a longitude."""
+    return np.flatnonzero(np.isfinite(found["latitude"] + found["longitude"])) if {"latitude", "longitude"} <= set(found) else _NONE
+
+
+def _place(found: dict[str, Array]) -> dict[str, Array]:
+    """Return where the flight was, on a plane about its first known place."""
     place = {}
     if {"north", "east"} <= set(found):
         place = {"north_m": found["north"], "east_m": found["east"]}
-    elif {"latitude", "longitude"} <= set(found) and np.isfinite(found["latitude"] + found["longitude"]).any():
+    elif len(known := _known(found)):
         latitude, longitude = np.radians(found["latitude"]), np.radians(found["longitude"])
-        first = int(np.argmax(np.isfinite(latitude + longitude)))
+        first = known[0]
         east = (longitude - longitude[first] + math.pi) % math.tau - math.pi
         place = {
             "north_m": EARTH_RADIUS_M * (latitude - latitude[first]),
@@ -187,3 +228,11 @@ def _place(table: pd.DataFrame, config: LogConfig, path: Path) -> dict[str, Arra
     if "height" in found:
         place["height_m"] = found["height"]
     return place
+
+
+def _ends(found: dict[str, Array]) -> tuple[Position | None, Position | None]:
+    """Return the first and the last known latitude and longitude, or twice None."""
+    if not len(known := _known(found)):
+        return None, None
+    first, last = ((float(found["latitude"][i]), float(found["longitude"][i])) for i in known[[0, -1]])
+    return first, last

@@ -55,15 +55,18 @@ SAMPLE_MEANINGS = {
 """Columns of ``SAMPLES`` and their meanings."""
 
 SOURCE_HASH = "source_hash"
-"""Entry of the manifest with the hash of the log's content."""
+"""Entry of the manifest with the SHA-256 of the log's content; earlier versions kept its first letters."""
 
 _HASH_LETTERS = 16
-"""Letters of a hash that are kept."""
+"""Letters that are kept of the hash of all input."""
 
 _TIME_DIGITS = 15
 """Digits of a time, all that a floating-point number has; the other columns have six."""
 
 _PACKAGES = ("numpy", "scipy", "pandas")
+
+_PROGRAM = "plume-flight-study"
+"""The package that this one comes in."""
 
 _MODULE = "measurement.estimate"
 """What is run as a module."""
@@ -103,7 +106,7 @@ def refuse_another_log(directory: Path, source: Path) -> None:
     except (FileNotFoundError, NotADirectoryError):
         return
     # Estimates of earlier versions do not say of what they are.
-    if known is not None and known != _digest(source.read_bytes()):
+    if known is not None and not _digest(source.read_bytes()).startswith(str(known)):
         raise MeasurementError(f"'{directory}' holds the estimate of another log than '{source}'; give another --out")
 
 
@@ -127,7 +130,7 @@ def write_run(
     try:
         directory.mkdir(parents=True, exist_ok=True)
         _remove_older(directory)
-        _write_json(directory / ESTIMATE, analysis.record())
+        _write_json(directory / ESTIMATE, analysis.record() | {"flight": flight.about.record()})
         table = samples(analysis.estimate.signals, flight.place)
         # A log's time may be seconds since 1970 or 1980, of which six digits are weeks.
         table["time_s"] = [f"{time:.{_TIME_DIGITS}g}" for time in table["time_s"]]
@@ -169,7 +172,7 @@ def build_report(directory: Path) -> str:
 
 def _manifest(analysis: Analysis, source: Path, config: Path | None, given: Sequence[str]) -> dict[str, Any]:
     command, revision = _told(given)
-    log = source.read_bytes()
+    log, settings = source.read_bytes(), config.read_bytes() if config else b""
     return {
         "format": FORMAT,
         "study": STUDY,
@@ -180,8 +183,12 @@ def _manifest(analysis: Analysis, source: Path, config: Path | None, given: Sequ
         "state": "complete",
         "overrides": [],
         "config": {"description": f"Logged flight {source.name}, measured with: {analysis.instrument.title}."},
-        "config_hash": _digest(log + (config.read_bytes() if config else b"")),
+        "config_hash": _digest(log + settings)[:_HASH_LETTERS],
+        "source": source.name,
         SOURCE_HASH: _digest(log),
+        "settings": config.name if config else None,
+        "settings_hash": _digest(settings) if config else None,
+        "version": _version(),
         "git_revision": revision,
         "python": platform.python_version(),
         "platform": f"{platform.system()} {platform.machine()}",
@@ -192,7 +199,15 @@ def _manifest(analysis: Analysis, source: Path, config: Path | None, given: Sequ
 
 
 def _digest(content: bytes) -> str:
-    return hashlib.sha256(content).hexdigest()[:_HASH_LETTERS]
+    return hashlib.sha256(content).hexdigest()
+
+
+def _version() -> str:
+    """Return the version of the program, where it is installed."""
+    try:
+        return importlib.metadata.version(_PROGRAM)
+    except importlib.metadata.PackageNotFoundError:
+        return "not recorded"
 
 
 def _told(given: Sequence[str]) -> tuple[str, str]:

@@ -61,11 +61,11 @@ def test_the_report_shows_what_was_asked(run_directory):
     assert not report.verdict.holds
 
 
-def test_both_reports_are_built_and_print_takes_three_pages(run_directory, tmp_path):
+def test_both_reports_are_built_and_print_takes_four_pages(run_directory, tmp_path):
     text = built(changed_run(run_directory, tmp_path))
     assert "Fuel sulphur content of example_flight" in text
     pages = re.findall(rb"/Type\s*/Page\b", (tmp_path / "report.pdf").read_bytes())
-    assert len(pages) == 3
+    assert len(pages) == 4
 
 
 def test_parts_of_the_uncertainty_add_to_the_whole(record):

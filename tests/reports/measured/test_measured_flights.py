@@ -11,6 +11,7 @@ from report_parts import assert_axes_read_quantity_and_unit, blocks_of, named_ch
 
 from reports.document.blocks import Table, Text
 from reports.measurement import flight_charts, flight_tables, flights
+from reports.measurement.facts import flown_facts
 from reports.registry import content
 from reports.render import matplotlib_charts, plotly_charts
 from reports.run.run_data import read_run
@@ -96,7 +97,7 @@ def test_several_flights_are_judged_as_a_method(several):
     # 0.05 % is never above 0.1 %, and 0.5 % always is, with the noise of these sensors.
     assert ("laser", "0.05", "0\N{NO-BREAK SPACE}%") in fuels
     assert ("laser", "0.5", "100\N{NO-BREAK SPACE}%") in fuels
-    assert any(row[0].startswith("Passes that hit the plume") for row in hits.rows)
+    assert any(row[0].startswith("Crossings of the plume's mean axis, with smoke or without") for row in hits.rows)
     assert any("Bias of the sulphur content" in name for name, *_ in several.verdict.figures)
 
 
@@ -263,3 +264,25 @@ def test_flights_without_a_sniffer_have_none_of_it(tmp_path):
     assert not {"sulphur", "measurement"} & {section.anchor for section in bare.sections}
     assert not any("ulphur" in name for name, *_ in bare.verdict.figures)
     assert blocks_of(bare, Table)
+
+
+def test_page_1_says_which_instrument_measured_and_nothing_of_a_place_that_no_scenario_gave(one, several):
+    # Titles of measurement/sniffer/presets/*.toml.
+    assert dict(one.facts) == {"Instrument": "Electrochemical SO2, NO and NO2 cells with NDIR CO2 (electrochemical)"}
+    (fact,) = several.facts
+    assert fact.name == "Instruments"
+    assert re.fullmatch(r".+ \(fast\); .+ \(laser\)", fact.value)
+
+
+def test_page_1_has_place_and_time_where_the_scenario_has_them():
+    rows = pd.DataFrame({
+        "sensor": ["fast", "fast", None], "duration_s": [600.0, 700.0, 9000.0], "start_utc": ["2026-06-01T10:00:00Z"] * 3,
+        "place_latitude_deg": [56.9, 56.9, 1.0], "place_longitude_deg": [11.5, 11.5, 1.0],
+    })  # fmt: skip
+    told = dict(flown_facts(SimpleNamespace(summary=rows)))
+    assert told["Place"] == "56.90000° N, 11.50000° E (the ship at time 0, by the scenario)"
+    # The longer one of the flights that measured takes 11 min 40 s.
+    assert told["Time (UTC)"] == "2026-06-01 10:00:00 to 10:11:40 UTC (by the scenario)"
+    told = dict(flown_facts(SimpleNamespace(summary=rows.assign(place_latitude_deg=[56.9, 57.0, 1.0]))))
+    assert told["Place"] == "56.90000° N, 11.50000° E, and 1 more (the ship at time 0, by the scenario)"
+    assert not flown_facts(SimpleNamespace(summary=rows.drop(columns=["sensor"])))

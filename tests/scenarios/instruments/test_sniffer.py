@@ -89,7 +89,7 @@ def test_a_good_instrument_reads_what_a_perfect_one_does():
 
 def test_the_passes_hit_a_plume_of_which_the_height_is_expected(slow):
     row, _, _ = slow
-    assert row["plume_passes"] >= 5
+    assert row["plume_axis_crossings"] >= row["smoke_passes"] >= 5
     assert row["hit_rate"] > 0.6
     # The guidance expects the rise without what the stack's tip draws it down by: a metre or so.
     assert row["axis_height_error_rms_m"] < 3.0

@@ -1,0 +1,90 @@
+"""What a sniffer read in the exports for globes and maps, read back."""
+
+import json
+import math
+import zipfile
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from tests.reports.export.placed_flight import exported, track
+
+READ = {"so2_reading_ppb": 12.3, "co2_reading_ppm": 431.25, "no_reading_ppb": 80.0}
+"""Columns of a sniffer that has no NO2, and by how much each rises over the flight; before 1 s there is no reading."""
+
+
+def read():
+    """Return what was read at each sample, as a time history has it."""
+    time = track()["time_s"].to_numpy()
+    return {name: np.where(time < 1.0, math.nan, rise * np.floor(time) / 60.0) for name, rise in READ.items()}
+
+
+@pytest.fixture
+def sniffed(run_path):
+    more = {"no2_reading_ppb": math.nan, "so2_ppb": 1.0}
+    track().assign(**read(), **more).to_parquet(run_path / "flights" / "a, <b>.parquet")
+    return run_path
+
+
+def assert_read(found, name):
+    """Readings are exported to six digits, or to a thousandth."""
+    np.testing.assert_allclose(np.array(found, dtype=float), read()[name], rtol=1e-5, atol=1e-3, err_msg=name)
+
+
+def test_kmz_has_an_array_of_readings_beside_the_track_and_is_valid(sniffed):
+    from lxml import etree
+
+    schemas = Path(pytest.importorskip("fastkml", reason="it brings the schema").__file__).parent / "schema"
+    with zipfile.ZipFile(exported(sniffed, "kmz")) as archive:
+        root = etree.fromstring(archive.read("doc.kml"))
+    names = {"k": "http://www.opengis.net/kml/2.2", "gx": "http://www.google.com/kml/ext/2.2"}
+    whole = etree.XMLSchema(etree.parse(schemas / "kml22gx.xsd"))
+    assert whole.validate(root), whole.error_log
+    fields = {
+        field.get("name"): field.find("k:displayName", names).text for field in root.iter(f"{{{names['gx']}}}SimpleArrayField")
+    }
+    assert fields == {
+        "so2_reading_ppb": "SO2 reading [ppb]", "co2_reading_ppm": "CO2 reading [ppm]", "no_reading_ppb": "NO reading [ppb]",
+    }  # fmt: skip
+    uav, vessel = root.findall(".//gx:Track", names)
+    (data,) = uav.findall(".//k:SchemaData", names)
+    (schema,) = root.findall(".//k:Schema", names)
+    assert data.get("schemaUrl") == f"#{schema.get('id')}"
+    arrays = {array.get("name"): [value.text or "nan" for value in array] for array in data}
+    assert set(arrays) == set(READ)
+    for name, values in arrays.items():
+        assert len(values) == len(uav.findall("k:when", names))
+        assert_read(values, name)
+    assert vessel.find("k:ExtendedData", names) is None
+
+
+def test_geojson_has_an_array_of_readings_for_the_times_of_the_track(sniffed):
+    collection = json.loads(exported(sniffed, "geojson").read_text(encoding="utf-8"))
+    by_what = {feature["properties"]["what"]: feature["properties"] for feature in collection["features"]}
+    for name in READ:
+        assert len(by_what["uav"][name]) == len(by_what["uav"]["times_s"])
+        # Null where there is no reading: JSON has no number for it.
+        assert by_what["uav"][name][0] is None
+        assert_read([math.nan if value is None else value for value in by_what["uav"][name]], name)
+    assert not {key for key in (*by_what["uav"], *by_what["vessel"]) if "reading" in key} - set(READ)
+
+
+def test_czml_has_readings_as_properties_of_the_uav_over_time(sniffed):
+    packets = {packet["id"]: packet for packet in json.loads(exported(sniffed, "czml").read_text(encoding="utf-8"))}
+    properties = packets["uav"]["properties"]
+    assert set(properties) == set(READ)
+    for name, sampled in properties.items():
+        assert sampled["epoch"] == packets["uav"]["position"]["epoch"] == "2026-06-01T10:00:00.000Z"
+        samples = np.array(sampled["number"]).reshape(-1, 2)
+        known = np.isfinite(read()[name])
+        np.testing.assert_allclose(samples[:, 0], track()["time_s"][known], atol=1e-9)
+        np.testing.assert_allclose(samples[:, 1], read()[name][known], atol=1e-3)
+    assert "properties" not in packets["vessel"]
+
+
+def test_flights_without_a_sniffer_have_no_word_of_readings(run_path):
+    for name in ("geojson", "czml"):
+        assert "reading" not in exported(run_path, name).read_text(encoding="utf-8")
+    with zipfile.ZipFile(exported(run_path, "kmz")) as archive:
+        assert b"reading" not in archive.read("doc.kml")
