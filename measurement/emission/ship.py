@@ -7,6 +7,9 @@ from measurement.errors import MeasurementError
 
 _FILE = "ships.toml"
 
+WITHOUT_SHIP = 60.0
+"""Height of a plume's origin above the sea where neither it nor a ship is given [m]."""
+
 _POSITIVE = (
     "power_max",
     "speed_max",
@@ -69,3 +72,15 @@ def ship_preset(name: str) -> Ship:
     MeasurementError : the name is not known
     """
     return Ship(**preset(_FILE, "ship", name))
+
+
+def funnel_height(given: float | None, ship: str | None) -> float:
+    """Return the height of a funnel's mouth above the sea: as it is given, else the ship's own, else ``WITHOUT_SHIP`` [m].
+
+    Raises
+    ------
+    MeasurementError : the ship is not known
+    """
+    if given is not None:
+        return given
+    return WITHOUT_SHIP if ship is None else ship_preset(ship).stack_height

@@ -13,7 +13,7 @@ from measurement.plume.air import MarineAir
 from measurement.plume.settings import PlumeSettings
 from measurement.plume.spread import STEP, spreads
 from reports.run.columns import Array
-from reports.run.flight_config import Config
+from reports.run.flight_config import Config, source_height
 
 LINE_HALF_WIDTH = 4.0
 """Half-width of a plume that is an axis alone, which has none: enough to be seen [m]."""
@@ -71,7 +71,7 @@ def plume_shape(config: Config, *, speed: float, wind: float, apparent_wind: flo
             # A range that this version has narrowed; what is left is the axis.
             pass
     climb = math.tan(math.radians(float(config["plume"].get("elevation_deg", 0.0))))
-    height, width = float(config["plume"]["source_height_m"]) + climb * distance, np.full(_SECTIONS, LINE_HALF_WIDTH)
+    height, width = source_height(config) + climb * distance, np.full(_SECTIONS, LINE_HALF_WIDTH)
     own = width / SPREADS
     return PlumeShape(
         distance=distance, height=height, half_width=width, half_height=width, spread_across=own, spread_up=own, smoke=False
@@ -88,7 +88,7 @@ def _smoke(config: Config, distance: Array, *, speed: float, wind: float, appare
     emission = emission_of(ship, fuel, **moving, air_temperature=temperature)
     marine = MarineAir(wind_speed=wind, temperature=temperature, brunt_vaisala=air["stability_per_s"])
     age = distance / apparent_wind
-    table = spreads(emission, marine, float(plume["source_height_m"]), np.array([apparent_wind]), float(age[-1]), settings)
+    table = spreads(emission, marine, source_height(config), np.array([apparent_wind]), float(age[-1]), settings)
     ages = STEP * np.arange(table.height.shape[1])
     across, up = np.hypot(table.relative_y[0], table.meander_y[0]), np.hypot(table.relative_z[0], table.meander_z[0])
     return PlumeShape(

@@ -124,7 +124,7 @@ def exhaust_of(
         return None
     if not isinstance(plume, Smoke):
         raise InfeasibleError(without_smoke(scenario))
-    air, height = scenario.wind, scenario.plume.source_height_m
+    air, height = scenario.wind, scenario.source_height
     _, _, v_north, v_east = vessel.motion(0.0)
     emitted = emission(scenario, speed=math.hypot(v_north, v_east), load=scenario.emission.load)
     dispersion = plume.dispersion(

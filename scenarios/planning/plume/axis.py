@@ -15,14 +15,12 @@ from measurement.sniffer.presets import sensor_preset
 from measurement.sniffer.spec import SnifferSpec
 from scenarios.instruments.sniffer import SnifferOnBoard
 from scenarios.schema.scenario import Scenario
+from scenarios.schema.sections.flight import ALTITUDE_MARGIN
 from scenarios.world.exhaust import emission
 from scenarios.world.vessel import VesselTruth
 
 PREDICTED_TIME, KNOWN_TIME = 20.0, 4.0
 """Time in which the altitude follows a height that is predicted from wind under estimation, and one that is known [s]."""
-
-ALTITUDE_MARGIN = {"none": 3.0, "light": 6.0, "moderate": 10.0, "severe": 15.0}
-"""How far within the limits of the altitude is flown, by the turbulence [m]."""
 
 _ROOM = 10.0
 """Least room between the altitudes that are flown, to search in [m]."""
@@ -80,7 +78,7 @@ def flown_altitudes(scenario: Scenario) -> tuple[float, float]:
     InfeasibleError : they leave no room, or the flight starts outside of them
     """
     flight, margin = scenario.flight, ALTITUDE_MARGIN[scenario.turbulence.level]
-    lowest, highest = flight.altitude_min_m + margin, flight.altitude_max_m - margin
+    lowest, highest = flight.altitudes_kept(scenario.turbulence.level)
     if highest - lowest < _ROOM:
         raise InfeasibleError(
             f"flight.altitude_min_m and altitude_max_m are {flight.altitude_min_m:g} and {flight.altitude_max_m:g} m; the aircraft"
@@ -109,7 +107,7 @@ def axis_height(scenario: Scenario, vessel: VesselTruth, limits: tuple[float, fl
     """
     f, flight = scenario.following, scenario.flight
     lowest, highest = limits or (flight.altitude_min_m, flight.altitude_max_m)
-    source = sum(f.source_height_m) / 2.0 if f.source_height_m else scenario.plume.source_height_m
+    source = sum(f.source_height_m) / 2.0 if f.source_height_m else scenario.source_height
     climb = math.tan(math.radians(scenario.plume.elevation_deg))
     if scenario.emission.ship is None:
         return AxisHeight(source=source, climb=climb)

@@ -7,10 +7,13 @@ from pydantic import Field, field_validator, model_validator
 
 from common.files import is_data_file
 from measurement.emission.fuel import SULPHUR_MAX_PERCENT, fuel_preset
-from measurement.emission.ship import ship_preset
+from measurement.emission.ship import funnel_height, ship_preset
 from scenarios.schema.extension_points import PLUME_MODELS
 from scenarios.schema.sections.part_section import PartSection
 from scenarios.schema.sections.section import Angle, NonNegative, Positive, Section
+
+SOURCE_HEIGHT_MIN = 10.0
+"""Least height of a funnel's mouth above the sea [m]."""
 
 Shape = Literal["sphere", "cylinder"]
 """Shapes of the keep-out area."""
@@ -100,8 +103,14 @@ class PlumeConfig(PartSection):
     """Direction chi_P, clockwise from the vessel's bow [deg]; 180 is straight astern."""
     elevation_deg: Annotated[float, Field(ge=0.0, le=60.0)] = 0.0
     """Elevation alpha_P above the horizon [deg]."""
-    source_height_m: Annotated[float, Field(ge=10.0, le=500.0)] = 60.0
-    """Height of the funnel's mouth above the sea, where the axis starts; at most 200 for exhaust of the model fluctuating [m]."""
+    source_height_m: Annotated[float, Field(ge=SOURCE_HEIGHT_MIN, le=500.0)] | None = None
+    """Height of the funnel's mouth above the sea, where the axis starts; at most 200 for exhaust of the model fluctuating. If not
+    given, that of the funnel of emission.ship, or 60 without a ship [m]."""
+
+    @property
+    def source_height(self) -> float:
+        """Return the height where the axis starts, as the section has it; a plume model is given its flight's own [m]."""
+        return funnel_height(self.source_height_m, None)
 
     def parts(self) -> dict[str, Any]:
         """Return the plume model by its name."""

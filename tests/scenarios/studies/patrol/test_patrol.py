@@ -136,7 +136,7 @@ def test_ways_are_flown_in_the_wind_at_their_height_and_ships_have_the_speed_rat
     assert wind_row(found) == {"wind_speed_mps": given.speed_mps, "wind_from_deg": given.from_deg}
     for i, ship in enumerate(found.ships):
         # By the wind at the funnel's mouth, as of any flight.
-        flown = mean_wind(ship.scenario, vessel_of(ship.scenario)).now(0.0, ship.scenario.plume.source_height_m)
+        flown = mean_wind(ship.scenario, vessel_of(ship.scenario)).now(0.0, ship.scenario.source_height)
         nu = abs(ship.mover.velocity - complex(*flown)) / found.air.speed
         assert ship_row(found, i, 0.15)["nu"] == pytest.approx(nu, rel=1e-12)
 
