@@ -7,7 +7,7 @@ import numpy as np
 
 from measurement.emission.emission import emission_of
 from measurement.emission.fuel import fuel_preset
-from measurement.emission.ship import ship_preset
+from measurement.emission.ship import ship_of
 from measurement.errors import MeasurementError
 from measurement.plume.air import MarineAir
 from measurement.plume.settings import PlumeSettings
@@ -82,7 +82,7 @@ def _smoke(config: Config, distance: Array, *, speed: float, wind: float, appare
     """Return axis and spreads of the exhaust about the axis, with the meander of its centre."""
     plume, emitted, air = config["plume"], config["emission"], config["wind"]
     settings = PlumeSettings(**{f.name: plume[f.name] for f in fields(PlumeSettings) if f.name in plume})
-    ship, fuel = ship_preset(emitted["ship"]), fuel_preset(emitted["fuel"], emitted["sulphur_percent"])
+    ship, fuel = ship_of(emitted["ship"]), fuel_preset(emitted["fuel"], emitted["sulphur_percent"])
     load, temperature = emitted["load"], air["temperature_c"] + _ZERO_CELSIUS
     moving = {"speed": speed} if load is None else {"power": load * ship.power_max}
     emission = emission_of(ship, fuel, **moving, air_temperature=temperature)

@@ -11,7 +11,6 @@ from gnc.mission.plume_axis import AxisParameters, Climb, PredictedPlume
 from gnc.mission.searched_axis import Expectation, SearchedPlume
 from measurement.emission.emission import Emission
 from measurement.gases import GASES
-from measurement.sniffer.presets import sensor_preset
 from measurement.sniffer.spec import SnifferSpec
 from scenarios.instruments.sniffer import SnifferOnBoard
 from scenarios.schema.scenario import Scenario
@@ -147,17 +146,23 @@ def _expectation(scenario: Scenario, vessel: VesselTruth, limits: tuple[float, f
         co2_rate=middle.rates[CO2],
         load_deviation=float(np.std(np.log([of.rates[CO2] for of in loads]))) if f.load else _LOAD_ERROR,
         wind_deviation=_WIND_ERROR,
-        sensor=co2_sensor(_sniffer(scenario)),
+        sensor=co2_sensor(sniffer_on_board(scenario)),
         lowest=limits[0],
         highest=limits[1],
     )
 
 
-def _sniffer(scenario: Scenario) -> SnifferSpec:
-    """Return the data sheet of the sniffer on board."""
+def sniffer_on_board(scenario: Scenario) -> SnifferSpec:
+    """Return the data sheet of the sniffer on board.
+
+    Raises
+    ------
+    InfeasibleError : there is none
+    """
     if "sniffer" not in scenario.payload.instruments:
         raise InfeasibleError("following.plume is 'estimated', and nothing measures it: put 'sniffer' into payload.instruments")
-    return sensor_preset(scenario.payload.settings(SnifferOnBoard).sensor)
+    spec: SnifferSpec = scenario.payload.settings(SnifferOnBoard).spec
+    return spec
 
 
 def co2_sensor(spec: SnifferSpec) -> GasSensor:
