@@ -135,7 +135,7 @@ class EmissionConfig(Section):
     fuel: str = "mgo"
     """Fuel of the ship, one of measurement/emission/fuels.toml."""
     sulphur_percent: Annotated[float, Field(ge=0.0, le=SULPHUR_MAX_PERCENT)] | None = None
-    """Sulphur content of the fuel by mass; the usual one of that fuel if not given [%]."""
+    """Sulphur content of the fuel by mass; the usual one of that fuel if not given [% m/m]."""
     load: Annotated[float, Field(gt=0.0, le=1.0)] | None = None
     """Load of the engine, a fraction as 0.85; if not given, that at the vessel's speed, which the guidance expects [-]."""
 
