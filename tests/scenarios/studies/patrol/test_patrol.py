@@ -242,6 +242,20 @@ def test_what_is_no_patrol_is_refused_in_one_line(override, words, tmp_path):
     assert_refused(run_command("scenarios.run", "patrol", *overrides, "--out", tmp_path / "run", "--no-report"), *words)
 
 
+def test_flights_of_a_patrol_know_the_plume_as_the_scenario_says_and_those_of_the_oracle_are_told(monkeypatch, tmp_path):
+    known = []
+
+    def recorded(scenario, values):
+        flown = with_values(scenario, values)
+        known.append(flown.following.plume)
+        return flown
+
+    monkeypatch.setattr("scenarios.studies.patrol.work.with_values", recorded)
+    one = patrol("patrol.ships=1", "following.plume=predicted")
+    run_study(one, "patrol", tmp_path / "run", executor_factory=InProcessExecutor)
+    assert known == ["predicted", "told"]
+
+
 def test_keys_of_a_patrol_are_refused_elsewhere():
     with pytest.raises(InputError, match="several ships"):
         load_study("sweep_nu", ["patrol.ships=3"])
