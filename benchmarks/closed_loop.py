@@ -70,7 +70,7 @@ def _loops(scenario: Scenario, setup: VehicleSetup, folder: Path) -> tuple[dict[
     """Return the loops, and the other parts of a flight."""
     if setup.aircraft is None:
         raise TypeError("the benchmark flies an aircraft; give it one")
-    airspeed, altitude = scenario.guidance.airspeed_mps, scenario.plume.source_height_m
+    airspeed, altitude = scenario.guidance.airspeed_mps, scenario.source_height
     level = setup.aircraft.start
     bare, autopiloted = Fdm(X8), AutopilotedAircraft(X8, setup.aircraft.model)
     planned = partial(plan_flight, scenario, flight_id="bench", seed=1, setup=setup)

@@ -44,6 +44,10 @@ FUEL_SULPHUR_MOST = 5.0
 """More sulphur than marine fuels have [% m/m]: their limit was 4.5 % until 2012 (MARPOL Annex VI, regulation 14)."""
 
 
+MASS_PERCENT = "% m/m"
+"""Unit of a sulphur content where it stands first; what follows it, as its interval and its limits, is in plain %."""
+
+
 def limit_words(limit_percent: float) -> str:
     """Return a limit on the sulphur content [% m/m] as it is printed: with two decimals, or with as many as it has."""
     return f"{limit_percent:.2f} %" if round(limit_percent, 2) == limit_percent else f"{limit_percent:g} %"

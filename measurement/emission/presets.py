@@ -18,7 +18,7 @@ def preset(file: str, kind: str, name: str) -> dict[str, Any]:
     tables = _tables(file)
     if name not in tables:
         raise MeasurementError(f"{kind} {name!r} is not known; there are {', '.join(tables)}")
-    return {"name": name, **tables[name]}
+    return dict(tables[name])
 
 
 @functools.cache

@@ -5,7 +5,7 @@ from collections.abc import Iterable
 
 from measurement.estimate.result import Quality
 from measurement.estimate.verdict import ABOVE, BELOW, CONFIDENCE, OPEN
-from measurement.gases import limit_words
+from measurement.gases import MASS_PERCENT, limit_words
 
 _WITHOUT = "C"
 """Quality of records that are given no verdict."""
@@ -21,18 +21,17 @@ def probability(share: float) -> str:
     return "more than 99.9 %" if share > 0.999 else "less than 0.1 %" if share < 0.001 else f"{100.0 * share:.1f} %"
 
 
-def content_words(fsc_percent: float, low_percent: float, high_percent: float, unit: str = "%") -> str:
+def content_words(fsc_percent: float, low_percent: float, high_percent: float) -> str:
     """Return a sulphur content with its 95 % interval; of one below 0 that the interval begins at 0, and why.
 
     Parameters
     ----------
     fsc_percent, low_percent, high_percent : the estimate, and the interval that its verdict rests on [% m/m]
-    unit : of the content
     """
     content, interval = f"{fsc_percent:z.3f}", f"95 % interval {low_percent:z.3f} to {high_percent:z.3f} %"
     if float(content) < 0.0:
-        return f"{content} {unit}, which is below 0; {interval}, cut at 0 because no fuel has less"
-    return f"{content} {unit}, {interval}"
+        return f"{content} {MASS_PERCENT}, which is below 0; {interval}, cut at 0 because no fuel has less"
+    return f"{content} {MASS_PERCENT}, {interval}"
 
 
 def verdict_words(verdict: str, limit_percent: float, probability_above: float, quality: Quality | str = "A") -> str:

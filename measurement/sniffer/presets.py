@@ -7,7 +7,7 @@ from dataclasses import fields
 from importlib.resources import files
 from typing import Any
 
-from measurement.errors import MeasurementError, guess
+from measurement.errors import MeasurementError, guess, number
 from measurement.gases import GASES
 from measurement.sniffer.channel import Channel
 from measurement.sniffer.spec import SnifferSpec
@@ -35,6 +35,9 @@ _UNKNOWN: dict[str, dict[str, Any]] = {
 Of the presets' SO2 channels the response to NO is 0 to 3 %, and that to NO2 0, -16 % with a filter, and -160 % without one.
 """
 
+OWN = "own sniffer"
+"""What a sniffer from a table is called that has no title."""
+
 _CROSS_KNOWN = 0.2
 """Relative standard deviation of a response to another gas that is given without one, as of the electrochemical preset's to NO2."""
 
@@ -58,6 +61,11 @@ def sensor_preset(name: str) -> SnifferSpec:
     return read_spec(tomllib.loads(text), name)
 
 
+def sensor_of(given: str | Mapping[str, Any], name: str = "") -> SnifferSpec:
+    """Return a sniffer by its name, or from a table, called ``name`` or else by its title. Errors as of the two."""
+    return sensor_preset(given) if isinstance(given, str) else read_spec(given, name or str(given.get("title", OWN)))
+
+
 def read_spec(table: Mapping[str, Any], name: str) -> SnifferSpec:
     """Return a sniffer from a table with ``title``, ``rate_hz``, ``source`` and a table per gas in ``channels``.
 
@@ -79,7 +87,7 @@ def read_spec(table: Mapping[str, Any], name: str) -> SnifferSpec:
     return SnifferSpec(
         name=name,
         title=str(table.get("title", name)),
-        rate_hz=_number(table.get("rate_hz", 1.0), "rate_hz", name),
+        rate_hz=number(table.get("rate_hz", 1.0), "rate_hz", name),
         channels=tuple(_channel(gas, channels[gas], name) for gas in channels),
         source=str(table.get("source", "")),
     )
@@ -100,18 +108,12 @@ def _channel(gas: str, table: Any, name: str) -> Channel:
         if key in ("cross", "cross_sd"):
             if not isinstance(value, dict):
                 raise MeasurementError(f"{key} of {where} is {value!r}; give a table, as in {{ no = 0.015 }}")
-            given[key] = {other: _number(share, key, where) for other, share in value.items()}
+            given[key] = {other: number(share, key, where) for other, share in value.items()}
         else:
-            given[key] = _number(value, key, where)
+            given[key] = number(value, key, where)
     if "cross" in table and "cross_sd" not in table:
         given |= {"cross_sd": {other: _CROSS_KNOWN * abs(share) for other, share in given["cross"].items()}}
     try:
         return Channel(gas=gas, **given)
     except MeasurementError as error:
         raise MeasurementError(f"{where}: {error}") from None
-
-
-def _number(value: Any, key: str, where: str) -> float:
-    if isinstance(value, bool) or not isinstance(value, (int, float)):
-        raise MeasurementError(f"{key} of {where} is {value!r}; it must be a number")
-    return float(value)

@@ -67,6 +67,17 @@ class SnifferSpec:
         """Return the sniffer with the channel of the same gas replaced."""
         return replace(self, channels=tuple(channel if channel.gas == old.gas else old for old in self.channels))
 
+    def check_known(self) -> None:
+        """Refuse a sniffer that cannot be flown.
+
+        Raises
+        ------
+        MeasurementError : response, delay or noise of a channel is not known
+        """
+        for of in self.channels:
+            if not math.isfinite(of.t90_sd + of.delay_sd_s + of.noise):
+                raise MeasurementError(f"t90, delay or noise of {of.gas} is not known; give its t90_s, delay_s and noise to fly it")
+
     def drawn(self, generator: np.random.Generator) -> "SnifferSpec":
         """Return the instrument of one flight: each property sampled within its standard deviation, and then known exactly.
 
@@ -74,12 +85,11 @@ class SnifferSpec:
         ------
         MeasurementError : a property has an infinite standard deviation, from which nothing can be sampled
         """
+        self.check_known()
         return replace(self, channels=tuple(_drawn(channel, generator) for channel in self.channels))
 
 
 def _drawn(channel: Channel, generator: np.random.Generator) -> Channel:
-    if not math.isfinite(channel.t90_sd + channel.delay_sd_s + channel.noise):
-        raise MeasurementError(f"t90, delay or noise of {channel.gas} is not known; give it before sampling an instrument")
     t90, delay, gain, zero = generator.standard_normal(4)
     cross = {gas: channel.cross.get(gas, 0.0) + sd * float(generator.standard_normal()) for gas, sd in _deviations(channel).items()}
     return replace(

@@ -4,6 +4,8 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass
 
+from measurement.gases import MASS_PERCENT
+
 
 def _as_it_is(value: float) -> float:
     return value
@@ -64,7 +66,7 @@ CROSSINGS = Figure(name="crossings_per_minute", title="Crossings [1/min]", patte
 PLUME_TIME = Figure(name="plume_s_per_minute", title="In the plume [s/min]", pattern="{:.2f}", greater_first=True)
 SULPHUR = Figure(
     name="sulphur_information_per_minute",
-    title="Sulphur error of a minute [% m/m]",
+    title=f"Sulphur error of a minute [{MASS_PERCENT}]",
     pattern="{:.4f}",
     shown=_error_of_a_minute,
 )

@@ -8,6 +8,7 @@ import numpy as np
 import pandas as pd
 
 from common.intervals import CONFIDENCE, quantile_interval
+from measurement.gases import MASS_PERCENT
 from reports.compare.pairs import Pairs
 from reports.monte_carlo.names import FIGURES, Figure
 from reports.run.columns import Array, clearance, column, interval_error
@@ -60,9 +61,9 @@ MEASURES: Mapping[str, Measure] = {
     "guard_interventions": _of("guard_interventions", "Interventions of the guard", "-", 0),
     "guard_time_s": _of("guard_time_s", "Time guarded", "s", 1),
     "duration_s": _of("duration_s", "Flight time", "s", 1),
-    "fsc_percent": _of("fsc_percent", "Sulphur content found", "%", 4),
-    "fsc_error_percent": Measure(figure=Figure(name="Error of the sulphur content", unit="%", digits=4), values=_off_fuel),
-    "fsc_uncertainty_percent": _of("fsc_uncertainty_percent", "Uncertainty of the sulphur content, 1σ", "%", 4),
+    "fsc_percent": _of("fsc_percent", "Sulphur content found", MASS_PERCENT, 4),
+    "fsc_error_percent": Measure(figure=Figure(name="Error of the sulphur content", unit=MASS_PERCENT, digits=4), values=_off_fuel),
+    "fsc_uncertainty_percent": _of("fsc_uncertainty_percent", "Uncertainty of the sulphur content, 1σ", MASS_PERCENT, 4),
 }
 """By the names of the columns of ``differences.csv``, in the order they are shown."""
 

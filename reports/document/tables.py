@@ -131,8 +131,14 @@ def parameter_value(value: Any, key: str = "") -> str:
         between = " to " if key == "start.distance_m" else ", "
         return between.join(_entry_in_words(entry) for entry in value) or "none"
     if isinstance(value, Mapping):
-        return ", ".join(f"{name} = {parameter_value(of, name)}" for name, of in value.items()) or "none"
+        return ", ".join(f"{name} = {_in_braces(of, name)}" for name, of in value.items()) or "none"
     return "not set" if value is None else f"{value:g}" if isinstance(value, float) else without_folders(str(value)) or "none"
+
+
+def _in_braces(value: Any, key: str) -> str:
+    """Return a value in a table in words, of a table in braces: they show where it ends."""
+    words = parameter_value(value, key)
+    return f"{{ {words} }}" if isinstance(value, Mapping) and value else words
 
 
 def _entry_in_words(entry: Any) -> str:

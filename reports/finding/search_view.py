@@ -8,7 +8,7 @@ import pandas as pd
 
 from measurement.errors import MeasurementError
 from measurement.plume.passes import passes
-from measurement.sniffer.presets import sensor_preset
+from measurement.sniffer.presets import sensor_of
 from reports.document.chart import Band
 from reports.run.columns import Array, column
 from reports.run.flight_config import flight_config
@@ -108,7 +108,7 @@ class SearchView:
     def _delay(self) -> float:
         """Return how much later the sensor reads than its air was taken in [s]; 0 of one that is not known."""
         try:
-            channel = sensor_preset(str(self._row.get("sensor"))).channel("co2")
+            channel = sensor_of(self._config.get("payload", {}).get("sensor") or str(self._row.get("sensor"))).channel("co2")
         except MeasurementError:
             return 0.0
         return channel.delay_s + channel.t90_s / math.log(10.0) if channel is not None else 0.0

@@ -6,6 +6,7 @@ import numpy as np
 
 from common.intervals import percent, upper_bound
 from measurement.estimate.verdict import COVERAGE
+from measurement.gases import MASS_PERCENT
 from measurement.plume.passes import FOUND_WITHIN
 from reports.document.blocks import Table
 from reports.document.tables import number
@@ -24,8 +25,8 @@ def search_table(variants: list[Variant]) -> Table:
         " same cases told where the axis is, median of the pairs.",
         head=[
             "Variant", "Flights", f"Found within {FOUND_WITHIN / 60.0:g} min", "Time to find, median [s]", "95 % quantile [s]",
-            "Hits after found", "Sulphur error, rms [% m/m]", "Sulphur 1σ stated, median [% m/m]", "1σ over told",
-            "Its noise over told",
+            "Hits after found", f"Sulphur error, rms [{MASS_PERCENT}]", f"Sulphur 1σ stated, median [{MASS_PERCENT}]",
+            "1σ over told", "Its noise over told",
         ],
         rows=[
             [

@@ -3,7 +3,7 @@
 import numpy as np
 import pandas as pd
 
-from measurement.gases import CARBON_FRACTION, fsc_factor, limit_words
+from measurement.gases import CARBON_FRACTION, MASS_PERCENT, fsc_factor, limit_words
 from reports.document.axes import in_kilometres
 from reports.document.chart import Chart, Line, Note, Panel
 from reports.document.map_marks import on_map
@@ -15,7 +15,7 @@ from reports.run.columns import Array, column
 POINTS_MAX = 2500
 """Samples of a figure at most."""
 
-_TIME, _FSC = "Time [s]", "Fuel sulphur content [% m/m]"
+_TIME, _FSC = "Time [s]", f"Fuel sulphur content [{MASS_PERCENT}]"
 
 
 _BAR = 0.72
@@ -78,7 +78,7 @@ def budget_chart(record: Record) -> Chart | None:
         notes.append(Note(x=size, y=row, text=f"  {size:.4f}", align="left"))
     widest = max(size for _, size in parts)
     panel = Panel(
-        x_label="Standard uncertainty [% m/m]",
+        x_label=f"Standard uncertainty [{MASS_PERCENT}]",
         y_label="Part",
         lines=lines,
         notes=notes,

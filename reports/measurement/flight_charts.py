@@ -3,6 +3,7 @@
 import numpy as np
 import pandas as pd
 
+from measurement.gases import MASS_PERCENT
 from reports.document.chart import Chart, Line, Panel, Style
 from reports.document.palette import Meaning, series_colour
 from reports.document.panels import level
@@ -48,7 +49,7 @@ def error_chart(rows: pd.DataFrame) -> Chart:
         wide = bool(ends[1] > _WIDE * ends[0] > 0.0)
         panels.append(
             Panel(
-                x_label="A perfect instrument [% m/m]", y_label="Measured [% m/m]", title=title, lines=lines,
+                x_label=f"A perfect instrument [{MASS_PERCENT}]", y_label=f"Measured [{MASS_PERCENT}]", title=title, lines=lines,
                 log_x=wide, log_y=wide, y_range=_positive(rows, prefix) if wide else None,
             )
         )  # fmt: skip
@@ -82,7 +83,7 @@ def operating_curve(statistics: Record) -> Chart | None:
         lines.append(Line(x=np.array([limit, limit]), y=np.array([0.0, 1.0]), label="limit", colour=Meaning.LIMIT, style="dash"))
     lines.append(level(np.array([fuels.min(), fuels.max()]), 0.05, "5 %", "grey"))
     panel = Panel(
-        x_label="Sulphur in the fuel [% m/m]",
+        x_label=f"Sulphur in the fuel [{MASS_PERCENT}]",
         y_label="Called above the limit [-]",
         lines=lines,
         log_x=bool(fuels.min() > 0.0),
@@ -100,7 +101,7 @@ def trajectory_chart(run: RunData, rows: pd.DataFrame) -> Chart | None:
     kept = ["sensor", interval, distance, "fsc_expected_percent", *(f"{of}_percent" for of in _METHODS)]
     noise = {of: column(rows, f"{of}_noise_percent") * np.sqrt(measured_minutes(run, rows)) for of in _METHODS}
     rows = pd.concat([rows[kept], pd.DataFrame(noise, index=rows.index)], axis=1)
-    minute = "1σ in a minute [% m/m]"
+    minute = f"1σ in a minute [{MASS_PERCENT}]"
     panels = [
         *(_scattered(rows, interval, of, minute, f"Noise, {method}") for of, method in _METHODS.items()),
         _scattered(rows, distance, "fsc", minute, "Noise over distance, regression"),

@@ -5,12 +5,11 @@ from typing import Any
 import pandas as pd
 
 from common.intervals import percent
+from measurement.gases import MASS_PERCENT
 from reports.document.blocks import Table
 from reports.document.tables import number
 from reports.measurement.data import METHODS, Record, measured_minutes, share_read
 from reports.run.run_data import RunData
-
-_FSC = "% m/m"
 
 _BEST = 3
 """Trajectories that are listed for each sensor."""
@@ -25,7 +24,17 @@ def flight_table(rows: pd.DataFrame) -> Table:
     """Return a row per flight: result, uncertainty, verdict."""
     return Table(
         caption="The flights, a row each: result, uncertainty and verdict.",
-        head=["Flight", "Sensor", "Fuel [%]", "Perfect [%]", "Measured [%]", "95 % interval [%]", "Quality", "P(above)", "Verdict"],
+        head=[
+            "Flight",
+            "Sensor",
+            f"Fuel [{MASS_PERCENT}]",
+            f"Perfect [{MASS_PERCENT}]",
+            f"Measured [{MASS_PERCENT}]",
+            f"95 % interval [{MASS_PERCENT}]",
+            "Quality",
+            "P(above)",
+            "Verdict",
+        ],
         rows=[
             [
                 str(row["flight_id"]),
@@ -51,8 +60,9 @@ def accuracy_table(statistics: Record) -> Table:
     rows = [entry for entry in statistics["accuracy"] if entry["fsc_fuel_percent"] is None]
     return Table(caption="Bias, spread and coverage, by sensor and method.",
         head=[
-            "Sensor", "Method", "Flights", f"Bias [{_FSC}]", "Share read", "Predicted", f"Spread, 1σ [{_FSC}]",
-            f"Stated, 1σ [{_FSC}]", f"Of it noise [{_FSC}]", "Covered", f"Interval at {percent(statistics['confidence'])}",
+            "Sensor", "Method", "Flights", f"Bias [{MASS_PERCENT}]", "Share read", "Predicted", f"Spread, 1σ [{MASS_PERCENT}]",
+            f"Stated, 1σ [{MASS_PERCENT}]", f"Of it noise [{MASS_PERCENT}]", "Covered",
+            f"Interval at {percent(statistics['confidence'])}",
         ],
         rows=[
             [
@@ -78,7 +88,16 @@ def calls_table(statistics: Record) -> Table:
     """Return how often ships of each fuel were called above the limit."""
     return Table(
         caption="How often ships of each fuel were called above the limit.",
-        head=["Sensor", "Fuel [%]", "Limit [%]", "Flights", "Called above", "Interval", "Above after 2 min", "Open at the end"],
+        head=[
+            "Sensor",
+            f"Fuel [{MASS_PERCENT}]",
+            f"Limit [{MASS_PERCENT}]",
+            "Flights",
+            "Called above",
+            "Interval",
+            "Above after 2 min",
+            "Open at the end",
+        ],
         rows=[
             [
                 entry["sensor"],
@@ -127,7 +146,7 @@ def best_table(run: RunData, rows: pd.DataFrame) -> Table:
     best = pd.concat([group.head(_BEST) for _, group in ranked.groupby("sensor")])
     return Table(
         caption="Trajectories that leave the least noise after a minute, by sensor, and what each method reads on them.",
-        head=["Sensor", "ν", "Interval [s]", "Distance [m]", f"1σ in a minute [{_FSC}]", "Regression reads", "Areas read"],
+        head=["Sensor", "ν", "Interval [s]", "Distance [m]", f"1σ in a minute [{MASS_PERCENT}]", "Regression reads", "Areas read"],
         rows=[
             [
                 str(row["sensor"]),

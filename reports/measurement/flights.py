@@ -7,6 +7,7 @@ import pandas as pd
 
 from common.intervals import percent
 from measurement.estimate.words import content_words, counted_verdicts, verdict_words
+from measurement.gases import MASS_PERCENT
 from reports.document.blocks import Block, Card, Heading, Section, Text
 from reports.document.chart import Chart
 from reports.document.tables import number
@@ -45,8 +46,8 @@ def sulphur_cards(run: RunData) -> list[Card]:
     if len(measured) == 1:
         row = measured.iloc[0]
         return [
-            Card(CONTENT_NAME, number(row["fsc_percent"], "{:z.3f} %")),
-            Card(INTERVAL_NAME, f"{interval_words(row)} %"),
+            Card(CONTENT_NAME, number(row["fsc_percent"], f"{{:z.3f}} {MASS_PERCENT}")),
+            Card(INTERVAL_NAME, f"{interval_words(row)} {MASS_PERCENT}"),
             fuel_card(
                 float(row["sulphur_limit_percent"]),
                 str(row["sulphur_verdict"]),
@@ -56,7 +57,7 @@ def sulphur_cards(run: RunData) -> list[Card]:
         ]
     bias, inside = _bias_and_coverage(measured)
     return [
-        Card("Bias of the sulphur content, mean of flights", number(bias, "{:+.4f} %")),
+        Card("Bias of the sulphur content, mean of flights", number(bias, f"{{:+.4f}} {MASS_PERCENT}")),
         Card("Flights whose 95 % interval holds what a perfect instrument reads", percent(inside)),
     ]
 
@@ -95,7 +96,8 @@ def sulphur_headline(run: RunData) -> str:
     of = "" if len(measured) == len(sniffed) else f" of {len(sniffed):,}"
     return (
         f"Fuel sulphur from {len(measured):,}{of} flights: mean difference from a perfect instrument"
-        f" {number(bias, '{:+.4f} %')}, whose reading lies within the 95 % interval in {percent(inside)} of them; {called_so}"
+        f" {number(bias, '{:+.4f}')} {MASS_PERCENT}, whose reading lies within the 95 % interval in"
+        f" {percent(inside)} of them; {called_so}"
     )
 
 

@@ -3,12 +3,12 @@
 import pandas as pd
 
 from measurement.estimate.passes import SNR_LEAST
-from measurement.gases import limit_words
+from measurement.gases import MASS_PERCENT, limit_words
 from reports.document.blocks import Table
 from reports.document.tables import number
 from reports.measurement.data import METHODS, SINCE, Record
 
-_PERCENT = "{:.3f} %"
+_PERCENT = "{:.3f}"
 
 REPORTED_S = (60.0, 120.0, 300.0, 600.0)
 """Elapsed times that the table over time has, with the end of the flight [s]."""
@@ -28,7 +28,10 @@ def result_table(record: Record) -> Table:
             f"{number(found['low_percent'], '{:.3f}')} to {number(found['high_percent'], _PERCENT)}",
             found["quality"],
         ])  # fmt: skip
-    head = ["Method", "Sulphur content", "Noise, 1σ", "Standard uncertainty, 1σ", "95 % interval", "Quality"]
+    head = [
+        "Method", f"Sulphur content [{MASS_PERCENT}]", f"Noise, 1σ [{MASS_PERCENT}]", f"Standard uncertainty, 1σ [{MASS_PERCENT}]",
+        f"95 % interval [{MASS_PERCENT}]", "Quality",
+    ]  # fmt: skip
     return Table(caption="The result by each method.", head=head, rows=rows, widths=[1.8, 1.2, 0.8, 1.9, 1.5, 0.7])
 
 
@@ -54,8 +57,8 @@ def over_time_table(record: Record, since: str = SINCE) -> Table | None:
     head = [
         "After",
         "Passes",
-        "Sulphur content",
-        "Standard uncertainty, 1σ",
+        f"Sulphur content [{MASS_PERCENT}]",
+        f"Standard uncertainty, 1σ [{MASS_PERCENT}]",
         "Quality",
         *(f"Limit {limit_words(float(v))}" for v in limits),
     ]

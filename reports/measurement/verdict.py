@@ -4,7 +4,7 @@ from typing import Any
 
 from measurement.estimate.verdict import BELOW, OPEN
 from measurement.estimate.words import content_words, probability, verdict_words
-from measurement.gases import FUEL_SULPHUR_MOST, limit_words
+from measurement.gases import FUEL_SULPHUR_MOST, MASS_PERCENT, limit_words
 from reports.document.blocks import Card, FuelCard, UndecidedCard, Verdict
 from reports.document.tables import number
 from reports.measurement.data import Record, value
@@ -45,7 +45,7 @@ def _result(record: Record) -> str:
     if not _known(found):
         return "No fuel sulphur content can be given."
     passes = "1 pass" if figures["passes"] == 1 else f"{figures['passes']} passes"
-    content = content_words(value(found, "fsc_percent"), value(found, "low_percent"), value(found, "high_percent"), "% m/m")
+    content = content_words(value(found, "fsc_percent"), value(found, "low_percent"), value(found, "high_percent"))
     return f"Fuel sulphur content {content}, from {passes} in {figures['duration_s']:.0f} s. Quality {found['quality']}."
 
 
@@ -55,7 +55,7 @@ def _known(found: Record) -> bool:
 
 
 def _interval(found: Record) -> str:
-    return f"{value(found, 'low_percent'):.3f} to {value(found, 'high_percent'):.3f} %"
+    return f"{value(found, 'low_percent'):.3f} to {value(found, 'high_percent'):.3f} {MASS_PERCENT}"
 
 
 def _short(share: float) -> str:
@@ -85,11 +85,11 @@ def _figures(record: Record) -> list[Card]:
     ]
     true = record.get("true_percent")
     return [
-        Card(CONTENT_NAME, number(found["fsc_percent"] if _known(found) else None, "{:.3f} %")),
+        Card(CONTENT_NAME, number(found["fsc_percent"] if _known(found) else None, f"{{:.3f}} {MASS_PERCENT}")),
         Card(INTERVAL_NAME, _interval(found) if _known(found) else "–"),
         *chances,
         Card("Quality", str(found["quality"])),
         *times,
-        *([] if true is None else [Card("A perfect instrument reads", number(true, "{:.3f} %"))]),
+        *([] if true is None else [Card("A perfect instrument reads", number(true, f"{{:.3f}} {MASS_PERCENT}"))]),
         Card("CO2 signal to noise", number(found["figures"]["co2_snr"], "{:.0f}")),
     ]

@@ -4,6 +4,7 @@ from typing import Any
 
 import pandas as pd
 
+from measurement.gases import MASS_PERCENT
 from reports.document.blocks import Table
 from reports.document.tables import number
 from reports.patrol.data import Patrol, Patrols
@@ -49,8 +50,8 @@ def ship_table(patrol: Patrol, index: int) -> Table:
     return Table(
         caption=f"Ships of patrol {index}: verdicts, and when they came. Turns are places in the order.",
         head=[
-            "Ship", "Speed [m/s]", "ν", "Stack [m]", "Sulphur, true [%]", "measured [%]", "Verdict", "Reached [min]",
-            "Time to find [s]", "Beside her [s]", "told [s]", "Turn", "Oracle's turn",
+            "Ship", "Speed [m/s]", "ν", "Stack [m]", f"Sulphur, true [{MASS_PERCENT}]", f"measured [{MASS_PERCENT}]",
+            "Verdict", "Reached [min]", "Time to find [s]", "Beside her [s]", "told [s]", "Turn", "Oracle's turn",
         ],
         rows=rows,
         widths=[0.5, 0.7, 0.6, 0.6, 0.8, 0.8, 1.5, 0.8, 0.8, 0.8, 0.7, 0.5, 0.7],

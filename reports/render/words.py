@@ -2,8 +2,8 @@
 
 import re
 
-_UNIT = re.compile(r"(?<=\d) (?=(?:%|°|m|km|s|min|h|deg|dB|m/s|rad/s)(?![\w/]))")
-"""The space between a number and its unit."""
+_UNIT = re.compile(r"(?<=\d) (?=(?:%|°|m|km|s|min|h|deg|dB|m/s|rad/s)(?![\w/]))|(?<=%) (?=m/m)")
+"""The space between a number and its unit, and within one."""
 
 
 def unbroken(sentence: str) -> str:

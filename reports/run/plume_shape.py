@@ -7,13 +7,13 @@ import numpy as np
 
 from measurement.emission.emission import emission_of
 from measurement.emission.fuel import fuel_preset
-from measurement.emission.ship import ship_preset
+from measurement.emission.ship import ship_of
 from measurement.errors import MeasurementError
 from measurement.plume.air import MarineAir
 from measurement.plume.settings import PlumeSettings
 from measurement.plume.spread import STEP, spreads
 from reports.run.columns import Array
-from reports.run.flight_config import Config
+from reports.run.flight_config import Config, source_height
 
 LINE_HALF_WIDTH = 4.0
 """Half-width of a plume that is an axis alone, which has none: enough to be seen [m]."""
@@ -71,7 +71,7 @@ def plume_shape(config: Config, *, speed: float, wind: float, apparent_wind: flo
             # A range that this version has narrowed; what is left is the axis.
             pass
     climb = math.tan(math.radians(float(config["plume"].get("elevation_deg", 0.0))))
-    height, width = float(config["plume"]["source_height_m"]) + climb * distance, np.full(_SECTIONS, LINE_HALF_WIDTH)
+    height, width = source_height(config) + climb * distance, np.full(_SECTIONS, LINE_HALF_WIDTH)
     own = width / SPREADS
     return PlumeShape(
         distance=distance, height=height, half_width=width, half_height=width, spread_across=own, spread_up=own, smoke=False
@@ -82,13 +82,13 @@ def _smoke(config: Config, distance: Array, *, speed: float, wind: float, appare
     """Return axis and spreads of the exhaust about the axis, with the meander of its centre."""
     plume, emitted, air = config["plume"], config["emission"], config["wind"]
     settings = PlumeSettings(**{f.name: plume[f.name] for f in fields(PlumeSettings) if f.name in plume})
-    ship, fuel = ship_preset(emitted["ship"]), fuel_preset(emitted["fuel"], emitted["sulphur_percent"])
+    ship, fuel = ship_of(emitted["ship"]), fuel_preset(emitted["fuel"], emitted["sulphur_percent"])
     load, temperature = emitted["load"], air["temperature_c"] + _ZERO_CELSIUS
     moving = {"speed": speed} if load is None else {"power": load * ship.power_max}
     emission = emission_of(ship, fuel, **moving, air_temperature=temperature)
     marine = MarineAir(wind_speed=wind, temperature=temperature, brunt_vaisala=air["stability_per_s"])
     age = distance / apparent_wind
-    table = spreads(emission, marine, float(plume["source_height_m"]), np.array([apparent_wind]), float(age[-1]), settings)
+    table = spreads(emission, marine, source_height(config), np.array([apparent_wind]), float(age[-1]), settings)
     ages = STEP * np.arange(table.height.shape[1])
     across, up = np.hypot(table.relative_y[0], table.meander_y[0]), np.hypot(table.relative_z[0], table.meander_z[0])
     return PlumeShape(

@@ -1,7 +1,7 @@
 """The points of an experiment: which flights there are, by sweep, cases, comparisons and random variables."""
 
 import itertools
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 from common.registry import is_file_part
@@ -141,5 +141,7 @@ def _label(key: str, value: object) -> str:
         return f"nu_{value:.6f}".rstrip("0").ljust(len("nu_0.00"), "0")
     if isinstance(value, str) and is_file_part(value):
         value = value.rpartition(":")[2]
+    if isinstance(value, Mapping):
+        value = value.get("title", value)
     text = f"{value:g}" if isinstance(value, int | float) and not isinstance(value, bool) else str(value)
     return f"{key.rpartition('.')[2]}_{''.join(c if c.isalnum() or c in '.-' else '_' for c in text)}"[:60]

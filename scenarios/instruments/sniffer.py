@@ -1,10 +1,12 @@
 """A sniffer on board: what it reads of the exhaust, in flight or after it, and what that says of the fuel."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
+from typing import Annotated, Any
 
 import numpy as np
 import numpy.typing as npt
+from pydantic import BeforeValidator
 
 from common.run_layout import SULPHUR_TABLE
 from common.spelling import did_you_mean
@@ -13,8 +15,9 @@ from gnc.estimation.own_motion import Motion
 from measurement.emission.fuel import expected_fsc
 from measurement.errors import MeasurementError
 from measurement.gases import GASES, UNITS
-from measurement.sniffer.presets import sensor_preset, sensor_presets
+from measurement.sniffer.presets import sensor_of, sensor_presets
 from measurement.sniffer.sniffer import Readings, Sniffer
+from measurement.sniffer.spec import SnifferSpec
 from scenarios.instruments.air_samples import PLACE_COLUMNS, RATE_COLUMNS, TIME_STEP, AirSampler, AirSamples
 from scenarios.instruments.fuel_estimate import FIGURES, TABLES, fuel_estimate
 from scenarios.instruments.instrument import Evaluation, payload
@@ -41,34 +44,58 @@ def flown_presets() -> tuple[str, ...]:
     return tuple(name for name in sensor_presets() if name != _NOT_FLOWN)
 
 
+def _choices() -> tuple[str, ...]:
+    """Return what a sensor may be, in words."""
+    return (*flown_presets(), "a table")
+
+
+def _name_or_table(given: Any) -> Any:
+    if not isinstance(given, str | Mapping):
+        raise MeasurementError("give the name of a preset, or a table with a table per gas in channels")
+    return given
+
+
 @dataclass(frozen=True, kw_only=True)
 class SnifferSettings:
     """Keys of the sniffer.
 
     Attributes
     ----------
-    sensor : a preset of measurement/sniffer/presets
+    sensor : a preset of measurement/sniffer/presets, or a table of one's own with the keys of these
     exact : whether the instrument is as its data sheet says; otherwise gains, zeros, responses and cross-sensitivities are sampled
         within what is stated
     limit_percent : sulphur content that the verdict is on [% m/m]: 0.1 in an emission control area, 0.5 elsewhere
     dynamic_pressure_fraction : fraction of the dynamic pressure that the inlet passes on to the sensors [-]
     """
 
-    sensor: str = field(default="electrochemical", metadata={"choices": flown_presets})
+    sensor: Annotated[str | dict[str, Any], BeforeValidator(_name_or_table)] = field(
+        default="electrochemical", metadata={"choices": _choices}
+    )
     exact: bool = False
     limit_percent: float = 0.1
     dynamic_pressure_fraction: float = field(default=0.2, metadata={"limits": (0.0, 1.0)})
 
     def __post_init__(self) -> None:
-        if self.sensor not in (known := flown_presets()):
-            guess = did_you_mean(self.sensor, known) or ";"
-            raise MeasurementError(f"sensor is {self.sensor!r}{guess} there are {', '.join(known)}")
+        if isinstance(self.sensor, str):
+            if self.sensor not in (known := flown_presets()):
+                guess = did_you_mean(self.sensor, known) or ";"
+                raise MeasurementError(f"sensor is {self.sensor!r}{guess} there are {', '.join(known)}")
+        else:
+            try:
+                self.spec.check_known()
+            except MeasurementError as error:
+                raise MeasurementError(f"sensor is a table of no use: {error}") from None
         if not 0.0 < self.limit_percent <= 5.0:
             raise MeasurementError(
                 f"limit_percent is {self.limit_percent:g}; give above 0 to 5 % m/m, as 0.1 in an emission control area"
             )
         if not 0.0 <= self.dynamic_pressure_fraction <= 1.0:
             raise MeasurementError(f"dynamic_pressure_fraction is {self.dynamic_pressure_fraction:g}; give 0 to 1")
+
+    @property
+    def spec(self) -> SnifferSpec:
+        """Return the sniffer by its data sheet."""
+        return sensor_of(self.sensor)
 
 
 @payload("sniffer")
@@ -90,7 +117,7 @@ class SnifferOnBoard:
         if world.exhaust is None:
             raise InfeasibleError("payload.instruments has a sniffer, and there is no exhaust: set emission.ship")
         self._exhaust, self._settings, self._fault = world.exhaust, scenario.payload.settings(type(self)), world.fault
-        self.spec = sensor_preset(self._settings.sensor)
+        self.spec: SnifferSpec = self._settings.spec
         actual = self.spec if self._settings.exact else self.spec.drawn(generator)
         self._sniffer = Sniffer(actual, generator=generator, time_step=TIME_STEP)
         self._sampler = AirSampler(self._exhaust, dynamic_pressure_fraction=self._settings.dynamic_pressure_fraction)
@@ -169,7 +196,7 @@ class SnifferOnBoard:
         limit, fuel, expected = self._settings.limit_percent, self._exhaust.fuel, expected_fsc(self._exhaust.fuel)
         known = fuel_estimate(self.readings(since), self.spec, limit=limit, expected=expected)
         figures = {
-            "sensor": self._settings.sensor,
+            "sensor": self.spec.name,
             "fsc_fuel_percent": fuel.sulphur_percent,
             "fsc_expected_percent": expected,
             "sulphur_limit_percent": limit,

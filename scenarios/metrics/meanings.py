@@ -111,7 +111,7 @@ _MEASURED = {
 """Measured, of ``summary.csv`` and ``comparison.csv``."""
 
 _OF_SNIFFER = {
-    "sensor": "preset of the sniffer",
+    "sensor": "preset of the sniffer, or the title of one's own",
     "fsc_fuel_percent": "sulphur in the fuel, by mass",
     "fsc_expected_percent": "fuel sulphur content that a perfect instrument measures",
     "sulphur_limit_percent": "limit of the sulphur content on which the verdict is given",

@@ -148,7 +148,7 @@ def following_flight(
             vessel=vessel,
             plume=plume,
             elevation=math.radians(scenario.plume.elevation_deg),
-            source_height=scenario.plume.source_height_m,
+            source_height=scenario.source_height,
             weather=weather,
             fault=fault,
             exhaust=exhaust,

@@ -32,7 +32,7 @@ def circling_flight(scenario: Scenario, flight_id: str, noise: Noise, setup: Veh
     """
     reference = circle(scenario)
     steering = plan_steering(scenario, omega_max(scenario.guidance), reference.heading_rate)
-    altitude = scenario.plume.source_height_m
+    altitude = scenario.source_height
     return FlightPlan.of(
         scenario,
         flight_id,
@@ -93,7 +93,7 @@ def tracking_flight(scenario: Scenario, flight_id: str, noise: Noise, setup: Veh
             setup,
             steering,
             mission,
-            altitude=scenario.plume.source_height_m + above,
+            altitude=scenario.source_height + above,
             vessel=(v_north, v_east),
             guard=guard,
         ),
@@ -104,7 +104,7 @@ def tracking_flight(scenario: Scenario, flight_id: str, noise: Noise, setup: Veh
             vessel=vessel,
             plume=plume,
             elevation=axis.elevation,
-            source_height=scenario.plume.source_height_m,
+            source_height=scenario.source_height,
             weather=STILL_AIR,
             fault=NO_FAULT,
             place=place_of(scenario, vessel),

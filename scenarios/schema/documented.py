@@ -172,7 +172,8 @@ def _range(annotation: Any, metadata: tuple[Any, ...] = ()) -> str:
         several = "a list" if parts[-1] is Ellipsis else f"{len(parts)} values"
         return f"{several}, {'each ' if len(each) == 1 else ''}{'; '.join(each)}"
     if parts and origin is not dict:
-        return " or ".join(dict.fromkeys(_range(part, metadata) for part in parts if part is not NoneType))
+        named = ("a table" if typing.get_origin(part) is dict else _range(part, metadata) for part in parts if part is not NoneType)
+        return " or ".join(dict.fromkeys(named))
     names = {
         dict: "keys with dots and their values",
         bool: "true or false",

@@ -7,15 +7,16 @@ from pydantic import BaseModel
 
 from measurement.plume.settings import SOURCE_HEIGHT_MAX
 from scenarios.schema.sections.experiment import FLIGHTS_MAX, STUDY
+from scenarios.schema.sections.world import SOURCE_HEIGHT_MIN
 
 if TYPE_CHECKING:
     from scenarios.schema.scenario import Scenario
 
-DESIGNED_FOR = ("aircraft", "guidance.airspeed_mps", "flight.altitude_m", "plume.source_height_m")
-"""Keys for which the autopilot is worked out once for a run: they cannot be sampled or swept.
+DESIGNED_FOR = ("aircraft", "guidance.airspeed_mps", "flight.altitude_m")
+"""Keys for which the autopilot is worked out once for a run: they cannot be sampled or swept."""
 
-The last one can be where ``flight.altitude_m`` is given.
-"""
+_DESIGN_HEIGHT = ("plume.source_height_m", "emission.ship")
+"""The same where the altitude at the start follows from them: without ``flight.altitude_m``, and the second without the first."""
 
 
 ONE_POINT = {
@@ -115,11 +116,16 @@ def check_mission(scenario: "Scenario") -> None:
 
 
 def check_source(scenario: "Scenario") -> None:
-    """Refuse a funnel that is higher than the exhaust of the project's own plume may leave one."""
-    height = scenario.plume.source_height_m
-    if scenario.emission.ship is not None and scenario.plume.model == "fluctuating" and height > SOURCE_HEIGHT_MAX:
+    """Refuse a funnel that is lower than any, or higher than the exhaust of the project's own plume may leave one."""
+    if scenario.emission.ship is None:
+        return
+    height = scenario.source_height
+    given = "stack_height of emission.ship" if scenario.plume.source_height_m is None else "plume.source_height_m"
+    if height < SOURCE_HEIGHT_MIN:
+        raise ValueError(f"{given} is {height:g} m; a plume begins at {SOURCE_HEIGHT_MIN:g} m at least: set plume.source_height_m")
+    if scenario.plume.model == "fluctuating" and height > SOURCE_HEIGHT_MAX:
         raise ValueError(
-            f"plume.source_height_m is {height:g} m beside emission.ship; exhaust of plume.model 'fluctuating' leaves a funnel at"
+            f"{given} is {height:g} m beside emission.ship; exhaust of plume.model 'fluctuating' leaves a funnel at"
             f" {SOURCE_HEIGHT_MAX:g} m at most: lower it, or leave emission.ship out"
         )
 
@@ -200,13 +206,23 @@ def check_draws(scenario: "Scenario") -> None:
     if {"nu", swept_key("nu")} <= scenario.sweep.root.keys():
         raise ValueError("sweep has 'nu' and 'vessel.speed_ratio', which are the same; give one of them")
     for key in [*keys, *scenario.sweep.root]:
-        if key.startswith(DESIGNED_FOR if scenario.flight.altitude_m is None else DESIGNED_FOR[:-1]):
+        if key.startswith(DESIGNED_FOR):
+            raise ValueError(f"'{key}' {_DESIGNED_ONCE} it: give each value a run of its own")
+        if key.startswith(_DESIGN_HEIGHT) and scenario.flight.altitude_m is None and not _height_given(scenario, key):
             raise ValueError(
-                f"'{key}' varies from flight to flight; autopilot and margins are worked out once for it: give each value a run"
-                " of its own"
+                f"'{key}' {_DESIGNED_ONCE} the altitude at the start, which is the height of the funnel here: give"
+                " flight.altitude_m, or each value a run of its own"
             )
     for key in scenario.sweep.root:
         _check_varied("sweep", key, known=type(scenario).model_fields)
+
+
+_DESIGNED_ONCE = "varies from flight to flight; autopilot and margins are worked out once for"
+
+
+def _height_given(scenario: "Scenario", key: str) -> bool:
+    """Return whether the funnel's height is given beside a key of the ship."""
+    return key.startswith("emission.ship") and scenario.plume.source_height_m is not None
 
 
 def swept_key(name: str) -> str:

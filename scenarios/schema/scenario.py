@@ -6,6 +6,7 @@ from typing import Annotated, Literal
 from pydantic import Field, model_validator
 
 from gnc.laws.steering_law import ON_CIRCLE, ON_OSCILLATION
+from measurement.emission.ship import funnel_height
 from scenarios.schema.experiment_checks import check_together, unsteady_itself
 from scenarios.schema.random_sample import is_random_sample
 from scenarios.schema.sections.equipment import (
@@ -137,9 +138,17 @@ class Scenario(Section):
         return self.following.plume != "predicted" or self.flight.until == "verdict"
 
     @property
+    def source_height(self) -> float:
+        """Return the height of the funnel's mouth above the sea: as it is given, else that of the ship [m]."""
+        return funnel_height(self.plume.source_height_m, self.emission.ship)
+
+    @property
     def altitude(self) -> float:
         """Return the altitude at the start, for which the autopilot is designed [m]."""
-        return self.plume.source_height_m if self.flight.altitude_m is None else self.flight.altitude_m
+        flight, height = self.flight, self.source_height
+        if flight.altitude_m is not None:
+            return flight.altitude_m
+        return height if self.emission.ship is None else flight.altitude_beside(height, self.turbulence.level)
 
     @property
     def declared_faults(self) -> frozenset[str]:

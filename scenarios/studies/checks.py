@@ -60,7 +60,7 @@ def check_flights(experiments: Iterable[Experiment], envelope: Envelope | None) 
     if len({(s.aircraft, s.guidance.airspeed_mps, s.altitude) for s in points}) > 1:
         raise InputError(
             "flights differ in aircraft, guidance.airspeed_mps or the altitude at the start (flight.altitude_m, else"
-            " plume.source_height_m); give each a run of its own"
+            " plume.source_height_m, else the funnel of emission.ship); give each a run of its own"
         )
     for scenario in points:
         check_without_design(scenario)
@@ -122,7 +122,8 @@ def _check_turbulence(scenario: Scenario) -> None:
             scale_lengths(scenario.altitude)
         except AircraftError as error:
             raise InputError(
-                f"turbulence.level is '{level}': {error}; fly lower (flight.altitude_m, else plume.source_height_m) or without"
+                f"turbulence.level is '{level}': {error}; fly lower (flight.altitude_m, else plume.source_height_m, else the funnel"
+                " of emission.ship) or without"
             ) from None
 
 

@@ -12,7 +12,7 @@ from aircraft.atmosphere.wind import WindField
 from gnc.errors import InfeasibleError
 from measurement.emission.emission import Emission, emission_of
 from measurement.emission.fuel import Fuel, fuel_preset
-from measurement.emission.ship import ship_preset
+from measurement.emission.ship import ship_of
 from measurement.gases import GASES, PARTS
 from measurement.plume.air import MarineAir
 from measurement.plume.fluctuating_plume import PlumeSample
@@ -95,17 +95,22 @@ def emission(scenario: Scenario, *, speed: float, load: float | None = None) -> 
     ------
     MeasurementError : the ship has no such speed
     """
-    ship = ship_preset(scenario.emission.ship or "")
+    ship = ship_of(scenario.emission.ship or "")
     air_temperature = scenario.wind.temperature_c + _ZERO_CELSIUS
     if load is None:
         return emission_of(ship, fuel_of(scenario), speed=speed, air_temperature=air_temperature)
     return emission_of(ship, fuel_of(scenario), power=load * ship.power_max, air_temperature=air_temperature)
 
 
+def _called(scenario: Scenario) -> str:
+    ship = scenario.emission.ship
+    return f"'{ship}'" if isinstance(ship, str) else "given"
+
+
 def without_smoke(scenario: Scenario) -> str:
     """Return why a vessel with exhaust cannot have such a plume."""
     return (
-        f"emission.ship is '{scenario.emission.ship}', and plume.model '{scenario.plume.model}' has no smoke: set plume.model to"
+        f"emission.ship is {_called(scenario)}, and plume.model '{scenario.plume.model}' has no smoke: set plume.model to"
         " 'fluctuating', or leave emission.ship out"
     )
 
@@ -124,7 +129,7 @@ def exhaust_of(
         return None
     if not isinstance(plume, Smoke):
         raise InfeasibleError(without_smoke(scenario))
-    air, height = scenario.wind, scenario.plume.source_height_m
+    air, height = scenario.wind, scenario.source_height
     _, _, v_north, v_east = vessel.motion(0.0)
     emitted = emission(scenario, speed=math.hypot(v_north, v_east), load=scenario.emission.load)
     dispersion = plume.dispersion(

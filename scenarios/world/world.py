@@ -56,7 +56,7 @@ def vessel_of(scenario: Scenario) -> VesselTruth:
     """
     config, duration = scenario.vessel, scenario.flight.duration_max_s
     if config.from_file:
-        altitude = scenario.plume.source_height_m
+        altitude = scenario.source_height
         return ais_vessel(config, altitude=altitude, utc=scenario.place.utc, duration=duration, margin=TRACK_MARGIN)
     if config.track == "manoeuvres" and not config.manoeuvres:
         return SteadyVessel(scenario.vessel_speed, math.radians(config.course_deg))
@@ -68,7 +68,7 @@ def place_of(scenario: Scenario, vessel: VesselTruth) -> Place:
     """Return where and when a flight begins, as far as that is known; without a time of its own when its wind does."""
     if isinstance(vessel, AisVessel):
         return vessel.place
-    place, table = given_place(scenario.place, scenario.plume.source_height_m), scenario.wind.table
+    place, table = given_place(scenario.place, scenario.source_height), scenario.wind.table
     if table is None or math.isfinite(place.utc):
         return place
     return replace(place, utc=first_time(table, place))
@@ -88,7 +88,8 @@ def plume_of(scenario: Scenario, vessel: VesselTruth) -> Plume:
     """
     model = PLUME_MODELS.get(scenario.plume.model)
     duration = scenario.flight.duration_max_s + TRACK_MARGIN
-    plume: Plume = model(scenario.plume, vessel, mean_wind(scenario, vessel), duration, by_wind=scenario.plume_by_wind)
+    section = scenario.plume.model_copy(update={"source_height_m": scenario.source_height})
+    plume: Plume = model(section, vessel, mean_wind(scenario, vessel), duration, by_wind=scenario.plume_by_wind)
     return plume
 
 
@@ -108,7 +109,7 @@ class ApparentWind:
 
 def apparent_wind(scenario: Scenario, vessel: VesselTruth) -> ApparentWind:
     """Return how fast a vessel moves through the air, over the longest flight."""
-    wind, height = mean_wind(scenario, vessel), scenario.plume.source_height_m
+    wind, height = mean_wind(scenario, vessel), scenario.source_height
     duration = scenario.flight.duration_max_s + TRACK_MARGIN
     if isinstance(vessel, SteadyVessel) and wind.constant:
         _, _, v_north, v_east = vessel.motion(0.0)

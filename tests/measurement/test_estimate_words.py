@@ -20,7 +20,7 @@ def test_a_limit_is_printed_with_as_many_decimals_as_it_has(limit, words):
 
 
 def test_a_content_that_rounds_to_0_has_no_sign():
-    assert content_words(-0.0004, 0.0, 0.0196) == "0.000 %, 95 % interval 0.000 to 0.020 %"
+    assert content_words(-0.0004, 0.0, 0.0196) == "0.000 % m/m, 95 % interval 0.000 to 0.020 %"
 
 
 @pytest.mark.usefixtures("briefly")

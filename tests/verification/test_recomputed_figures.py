@@ -81,7 +81,7 @@ def run(request, tmp_path_factory):
     out = tmp_path_factory.mktemp(request.param) / "run"
     scenario = load_study(name, overrides)
     run_study(scenario, name, out, executor_factory=ExecutorFactory(jobs=2), overrides=overrides)
-    return out, float(scenario.plume.source_height_m)
+    return out, float(scenario.source_height)
 
 
 def test_tables_agree_with_what_the_time_histories_say(run):

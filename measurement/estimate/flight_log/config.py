@@ -13,7 +13,7 @@ from measurement.estimate.flight_log.details import FlightDetails, read_details
 from measurement.estimate.result import Method
 from measurement.estimate.verdict import LIMITS_PERCENT
 from measurement.gases import CARBON_FRACTION, GASES, UNITS
-from measurement.sniffer.presets import read_spec, sensor_preset
+from measurement.sniffer.presets import sensor_of, sensor_preset
 from measurement.sniffer.spec import SnifferSpec
 
 COLUMNS = {
@@ -115,10 +115,8 @@ def read_config(path: Path) -> LogConfig:
 
 def _instrument(value: Any, path: Path) -> SnifferSpec:
     try:
-        if isinstance(value, str):
-            return sensor_preset(value)
-        if isinstance(value, dict):
-            return read_spec(value, path.stem)
+        if isinstance(value, str | dict):
+            return sensor_of(value, path.stem)
     except MeasurementError as error:
         raise MeasurementError(f"'{path}': {error}") from None
     raise MeasurementError(

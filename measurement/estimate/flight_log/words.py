@@ -57,7 +57,7 @@ def result(found: FscEstimate) -> str:
     """Return the result in words, with its 95 % interval."""
     if not found.total_percent <= FUEL_SULPHUR_MOST:
         return "fuel sulphur content: none can be given"
-    return f"fuel sulphur content {content_words(found.fsc_percent, found.low_percent, found.high_percent, '% m/m')}"
+    return f"fuel sulphur content {content_words(found.fsc_percent, found.low_percent, found.high_percent)}"
 
 
 def by_size(found: FscEstimate) -> list[tuple[str, float]]:

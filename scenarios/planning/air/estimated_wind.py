@@ -125,13 +125,13 @@ def _flown_heights(scenario: Scenario) -> list[float]:
     if scenario.emission.ship is not None:
         return [scenario.altitude, flight.altitude_min_m, flight.altitude_max_m]
     risen = _PLUME_RADII * scenario.keepout.radius_m * math.tan(math.radians(plume.elevation_deg))
-    return [scenario.altitude, plume.source_height_m, plume.source_height_m + risen]
+    return [scenario.altitude, scenario.source_height, scenario.source_height + risen]
 
 
 def _gust_sigma(scenario: Scenario) -> float:
     """Return the deviation of single measurements of the wind by turbulence [m/s], more for being correlated in time."""
     if scenario.turbulence.level == "none":
         return 0.0
-    g, height = scenario.guidance, scenario.plume.source_height_m
+    g, height = scenario.guidance, scenario.source_height
     sigma = intensities(height, TURBULENCE[scenario.turbulence.level].wind_at_20ft)[0]
     return sigma * math.sqrt(2.0 * scale_lengths(height)[0] / g.airspeed_mps * g.rate_hz / plan_interval(scenario.guidance))

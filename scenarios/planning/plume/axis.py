@@ -11,18 +11,15 @@ from gnc.mission.plume_axis import AxisParameters, Climb, PredictedPlume
 from gnc.mission.searched_axis import Expectation, SearchedPlume
 from measurement.emission.emission import Emission
 from measurement.gases import GASES
-from measurement.sniffer.presets import sensor_preset
 from measurement.sniffer.spec import SnifferSpec
 from scenarios.instruments.sniffer import SnifferOnBoard
 from scenarios.schema.scenario import Scenario
+from scenarios.schema.sections.flight import ALTITUDE_MARGIN
 from scenarios.world.exhaust import emission
 from scenarios.world.vessel import VesselTruth
 
 PREDICTED_TIME, KNOWN_TIME = 20.0, 4.0
 """Time in which the altitude follows a height that is predicted from wind under estimation, and one that is known [s]."""
-
-ALTITUDE_MARGIN = {"none": 3.0, "light": 6.0, "moderate": 10.0, "severe": 15.0}
-"""How far within the limits of the altitude is flown, by the turbulence [m]."""
 
 _ROOM = 10.0
 """Least room between the altitudes that are flown, to search in [m]."""
@@ -80,7 +77,7 @@ def flown_altitudes(scenario: Scenario) -> tuple[float, float]:
     InfeasibleError : they leave no room, or the flight starts outside of them
     """
     flight, margin = scenario.flight, ALTITUDE_MARGIN[scenario.turbulence.level]
-    lowest, highest = flight.altitude_min_m + margin, flight.altitude_max_m - margin
+    lowest, highest = flight.altitudes_kept(scenario.turbulence.level)
     if highest - lowest < _ROOM:
         raise InfeasibleError(
             f"flight.altitude_min_m and altitude_max_m are {flight.altitude_min_m:g} and {flight.altitude_max_m:g} m; the aircraft"
@@ -109,7 +106,7 @@ def axis_height(scenario: Scenario, vessel: VesselTruth, limits: tuple[float, fl
     """
     f, flight = scenario.following, scenario.flight
     lowest, highest = limits or (flight.altitude_min_m, flight.altitude_max_m)
-    source = sum(f.source_height_m) / 2.0 if f.source_height_m else scenario.plume.source_height_m
+    source = sum(f.source_height_m) / 2.0 if f.source_height_m else scenario.source_height
     climb = math.tan(math.radians(scenario.plume.elevation_deg))
     if scenario.emission.ship is None:
         return AxisHeight(source=source, climb=climb)
@@ -149,17 +146,23 @@ def _expectation(scenario: Scenario, vessel: VesselTruth, limits: tuple[float, f
         co2_rate=middle.rates[CO2],
         load_deviation=float(np.std(np.log([of.rates[CO2] for of in loads]))) if f.load else _LOAD_ERROR,
         wind_deviation=_WIND_ERROR,
-        sensor=co2_sensor(_sniffer(scenario)),
+        sensor=co2_sensor(sniffer_on_board(scenario)),
         lowest=limits[0],
         highest=limits[1],
     )
 
 
-def _sniffer(scenario: Scenario) -> SnifferSpec:
-    """Return the data sheet of the sniffer on board."""
+def sniffer_on_board(scenario: Scenario) -> SnifferSpec:
+    """Return the data sheet of the sniffer on board.
+
+    Raises
+    ------
+    InfeasibleError : there is none
+    """
     if "sniffer" not in scenario.payload.instruments:
         raise InfeasibleError("following.plume is 'estimated', and nothing measures it: put 'sniffer' into payload.instruments")
-    return sensor_preset(scenario.payload.settings(SnifferOnBoard).sensor)
+    spec: SnifferSpec = scenario.payload.settings(SnifferOnBoard).spec
+    return spec
 
 
 def co2_sensor(spec: SnifferSpec) -> GasSensor:

@@ -12,6 +12,10 @@ DITCHED = "ditched"
 """Mode of a flight whose guidance, because of a fault, descended to the water: its aircraft is lost."""
 
 
+ALTITUDE_MARGIN = {"none": 3.0, "light": 6.0, "moderate": 10.0, "severe": 15.0}
+"""How far within the limits of the altitude is flown, by the turbulence [m]."""
+
+
 class StartConfig(Section):
     """Where flights begin: at a given place and on a given course, or at random places about the plume's axis on any course."""
 
@@ -52,7 +56,8 @@ class FlightConfig(Section):
     """When the flight ends: flown, with its crossings and its duration; verdict, also once the sniffer's readings allow a verdict
     on the fuel, or cannot any more."""
     altitude_m: Positive | None = None
-    """Altitude at the start, for which the autopilot is designed; the height of the funnel's mouth if not given [m]."""
+    """Altitude at the start, for which the autopilot is designed; if not given, the height of the funnel's mouth, beside a ship
+    with exhaust 3 m or more within altitude_min_m and altitude_max_m [m]."""
     altitude_min_m: NonNegative = 20.0
     """Lowest altitude at which rising exhaust is crossed [m]."""
     altitude_max_m: Positive = 120.0
@@ -80,6 +85,16 @@ class FlightConfig(Section):
                 f" fly {least:g} s or longer"
             )
         return self
+
+    def altitudes_kept(self, turbulence: str) -> tuple[float, float]:
+        """Return the lowest and the highest altitude that leave turbulence of a level its room within the limits [m]."""
+        margin = ALTITUDE_MARGIN[turbulence]
+        return self.altitude_min_m + margin, self.altitude_max_m - margin
+
+    def altitude_beside(self, height: float, turbulence: str) -> float:
+        """Return the altitude that is kept, in turbulence of a level, nearest to the height of a funnel with exhaust [m]."""
+        lowest, highest = self.altitudes_kept(turbulence)
+        return min(max(height, lowest), highest) if lowest < highest else 0.5 * (lowest + highest)
 
 
 class CriteriaConfig(Section):

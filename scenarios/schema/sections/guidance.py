@@ -43,7 +43,8 @@ class GuidanceConfig(Section):
     model_config = ConfigDict(extra="allow")
 
     mission: Literal["track", "follow", "standoff"] | None = None
-    """Mission: track the paper's reference, known in advance; follow the vessel with a steered reference; standoff, circle her.
+    """Mission: track the paper's reference, known in advance; follow the vessel with a steered reference, an oscillation in her
+    plume; standoff, circle her at reference.standoff_radius_m, and cross her plume once a turn, without following.standoff_m.
 
     If not given: track in still air where the vessel is steady and known exactly, else follow.
     """
@@ -209,7 +210,8 @@ class FollowingConfig(Section):
     apparent_wind_min_mps: Positive = 1.0
     """Apparent wind below which the direction of a plume is not known [m/s]."""
     standoff_m: Positive = 100.0
-    """Distance by which the centre of oscillation stays beyond r_CO until the UAV tracks its reference [m]."""
+    """Distance by which the oscillation in the plume waits farther out than r_CO until the UAV tracks it; then it closes in. No
+    radius about the vessel: to circle her, set guidance.mission to standoff, which does not use this key [m]."""
     join_distance_m: Positive = 150.0
     """Distance from the centre of oscillation at which the approach ends and tracking begins [m]."""
     tracked_m: Positive = 12.0
@@ -230,7 +232,7 @@ class FollowingConfig(Section):
     """Largest distance by which a reversal of the turn may come nearer than predicted; the autopilot's record may raise it [m]."""
     plume: Literal["predicted", "estimated", "told"] = "predicted"
     """How the axis of exhaust is known: predicted from load, wind and vessel, estimated from a sniffer's readings, or told: the
-    true one."""
+    true one. In a patrol, of its own flights; those of the oracle are told."""
     search: Literal["information", "ladder"] = "information"
     """How exhaust is searched for: at the most informative height, or up and down a ladder of heights."""
     distance: Literal["closest", "best_measurement"] = "closest"

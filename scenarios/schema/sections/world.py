@@ -3,14 +3,17 @@
 from datetime import datetime
 from typing import Annotated, Any, Literal
 
-from pydantic import Field, field_validator, model_validator
+from pydantic import BeforeValidator, Field, field_validator, model_validator
 
 from common.files import is_data_file
 from measurement.emission.fuel import SULPHUR_MAX_PERCENT, fuel_preset
-from measurement.emission.ship import ship_preset
+from measurement.emission.ship import funnel_height, ship_of
 from scenarios.schema.extension_points import PLUME_MODELS
 from scenarios.schema.sections.part_section import PartSection
 from scenarios.schema.sections.section import Angle, NonNegative, Positive, Section
+
+SOURCE_HEIGHT_MIN = 10.0
+"""Least height of a funnel's mouth above the sea [m]."""
 
 Shape = Literal["sphere", "cylinder"]
 """Shapes of the keep-out area."""
@@ -100,32 +103,41 @@ class PlumeConfig(PartSection):
     """Direction chi_P, clockwise from the vessel's bow [deg]; 180 is straight astern."""
     elevation_deg: Annotated[float, Field(ge=0.0, le=60.0)] = 0.0
     """Elevation alpha_P above the horizon [deg]."""
-    source_height_m: Annotated[float, Field(ge=10.0, le=500.0)] = 60.0
-    """Height of the funnel's mouth above the sea, where the axis starts; at most 200 for exhaust of the model fluctuating [m]."""
+    source_height_m: Annotated[float, Field(ge=SOURCE_HEIGHT_MIN, le=500.0)] | None = None
+    """Height of the funnel's mouth above the sea, where the axis starts; at most 200 for exhaust of the model fluctuating. If not
+    given, that of the funnel of emission.ship, or 60 without a ship [m]."""
+
+    @property
+    def source_height(self) -> float:
+        """Return the height where the axis starts, as the section has it; a plume model is given its flight's own [m]."""
+        return funnel_height(self.source_height_m, None)
 
     def parts(self) -> dict[str, Any]:
         """Return the plume model by its name."""
         return {self.model: PLUME_MODELS.get(self.model)}
 
 
+def _known_ship(given: Any) -> Any:
+    """Refuse a name of no ship, and a table that is of no use."""
+    if not isinstance(given, str | dict | None):
+        raise ValueError(f"value is {given!r}; give the name of a ship, or a table with her engine and funnel")
+    if given is not None:
+        ship_of(given)
+    return given
+
+
 class EmissionConfig(Section):
     """What comes out of the funnel."""
 
-    ship: str | None = None
-    """The ship that emits the exhaust, one of measurement/emission/ships.toml; no exhaust if not given."""
+    ship: Annotated[str | dict[str, Any] | None, BeforeValidator(_known_ship)] = None
+    """The ship that emits the exhaust, one of measurement/emission/ships.toml, or a table of one's own with the keys of these; no
+    exhaust if not given."""
     fuel: str = "mgo"
     """Fuel of the ship, one of measurement/emission/fuels.toml."""
     sulphur_percent: Annotated[float, Field(ge=0.0, le=SULPHUR_MAX_PERCENT)] | None = None
-    """Sulphur content of the fuel by mass; the usual one of that fuel if not given [%]."""
+    """Sulphur content of the fuel by mass; the usual one of that fuel if not given [% m/m]."""
     load: Annotated[float, Field(gt=0.0, le=1.0)] | None = None
     """Load of the engine, a fraction as 0.85; if not given, that at the vessel's speed, which the guidance expects [-]."""
-
-    @field_validator("ship")
-    @classmethod
-    def _known_ship(cls, ship: str | None) -> str | None:
-        if ship is not None:
-            ship_preset(ship)
-        return ship
 
     @field_validator("fuel")
     @classmethod

@@ -53,7 +53,7 @@ def ship_row(patrol: Patrol, number: int, limit: float) -> Row:
         "east_m": place.imag,
         "vessel_speed_mps": scenario.vessel_speed,
         "vessel_course_deg": scenario.vessel.course_deg,
-        "plume_source_height_m": scenario.plume.source_height_m,
+        "plume_source_height_m": scenario.source_height,
         "emission_load": scenario.emission.load,
         "nu": speed_ratios(scenario)[0],
         "truth": "above" if ship.sulphur_percent > limit else "below",

@@ -115,7 +115,7 @@ def test_sniffers_that_cannot_be_are_refused():
         sniffer_of(so2, rate_hz=0.0)
     with pytest.raises(MeasurementError, match="instrument is 'nose'; there are alphasense_a4"):
         sensor_preset("nose")
-    with pytest.raises(MeasurementError, match="give it before sampling"):
+    with pytest.raises(MeasurementError, match="give its t90_s, delay_s and noise to fly it"):
         sensor_preset("unspecified").drawn(np.random.default_rng(0))
     with pytest.raises(MeasurementError, match="'test' has no NO channel; it has so2, co2"):
         plain_sniffer().known("no")

@@ -5,6 +5,7 @@ import math
 import numpy as np
 import pytest
 
+from reports.run.flight_config import source_height
 from reports.run.plume_shape import LINE_HALF_WIDTH, SPREADS, plume_shape
 
 LINE = {"plume": {"model": "straight", "elevation_deg": 10.0, "source_height_m": 35.0}, "emission": {"ship": None}}
@@ -32,6 +33,17 @@ def test_smoke_widens_with_distance_and_in_weaker_wind_past_the_funnel():
     assert np.all(np.diff(wide.half_width) > 0.0)
     # The same distance is reached at a greater age.
     assert np.all(wide.half_width[1:] > narrow.half_width[1:])
+
+
+def test_smoke_begins_at_the_funnel_of_its_ship_unless_a_height_is_given():
+    # measurement/emission/ships.toml: 16 m.
+    coaster = SMOKE["emission"] | {"ship": "coaster", "load": 0.5}
+    for given, height in ((None, 16.0), (35.0, 35.0)):
+        config = SMOKE | {"emission": coaster, "plume": SMOKE["plume"] | {"source_height_m": given}}
+        assert source_height(config) == height
+        # Downwash in the funnel's wake is a metre at most.
+        assert shape_of(config).height[0] == pytest.approx(height, abs=1.0)
+    assert source_height(LINE | {"plume": LINE["plume"] | {"source_height_m": None}}) == 60.0
 
 
 def test_smoke_is_lower_in_warmer_air():

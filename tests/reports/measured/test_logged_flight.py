@@ -99,11 +99,11 @@ def test_a_result_is_told_with_its_interval_at_95_percent_and_every_spread_says_
     found = record["estimate"]
     interval = f"{found['low_percent']:.3f} to {found['high_percent']:.3f} %"
     assert f"{found['fsc_percent']:.3f} % m/m, 95 % interval {interval}, from" in told.detail
-    assert ("Fuel sulphur content, 95 % interval", interval, "", None) in told.figures
+    assert ("Fuel sulphur content, 95 % interval", f"{interval} m/m", "", None) in told.figures
     assert "±" not in told.detail
     report = content(read_run(run_directory))
     for table in blocks_of(report, Table, "result"):
-        assert all(name.endswith(", 1σ") for name in table.head if "uncertainty" in name or "Noise" in name)
+        assert all(name.endswith(", 1σ [% m/m]") for name in table.head if "uncertainty" in name or "Noise" in name)
     spreads = [cell for table in blocks_of(report, Table, "record") for row in table.rows for cell in row if "±" in cell]
     assert [cell.count("±") == cell.count("(1σ)") for cell in spreads] == [True]
 
@@ -165,7 +165,7 @@ def test_a_perfect_instrument_is_shown_where_it_is_known(run_directory, tmp_path
     report = content(read_run(changed_run(run_directory, tmp_path, record | {"true_percent": 0.25})))
     labels = [line.label for line in report.picture.panels[0].lines]
     assert "a perfect instrument" in labels
-    assert ("A perfect instrument reads", "0.250 %", "", None) in report.verdict.figures
+    assert ("A perfect instrument reads", "0.250 % m/m", "", None) in report.verdict.figures
 
 
 def test_without_samples_the_report_says_so(run_directory, tmp_path):

@@ -32,7 +32,7 @@ def flown(directory, *overrides):
     return content(read_run(directory))
 
 
-CONTENT = r"0\.\d{3} %, 95 % interval 0\.\d{3} to 0\.\d{3} %"
+CONTENT = r"0\.\d{3} % m/m, 95 % interval 0\.\d{3} to 0\.\d{3} %"
 """A sulphur content with its interval, as page 1 and the section on it tell it."""
 
 
@@ -60,9 +60,9 @@ def test_one_flight_is_told_with_result_probability_and_limit(one):
     assert "The fuel's own content is 0.100 %, of which a perfect instrument reads 0.097 %." in told
     name, value, *_ = one.verdict.figures[0]
     assert name.startswith("Fuel sulphur content")
-    assert re.fullmatch(r"0\.\d{3} %", value)
+    assert re.fullmatch(r"0\.\d{3} % m/m", value)
     assert one.verdict.figures[1][0] == "Fuel sulphur content, 95 % interval"
-    assert re.fullmatch(r"0\.\d{3} to 0\.\d{3} %", one.verdict.figures[1][1])
+    assert re.fullmatch(r"0\.\d{3} to 0\.\d{3} % m/m", one.verdict.figures[1][1])
     assert "sulphur" not in {section.anchor for section in one.sections}
 
 
@@ -108,7 +108,7 @@ def test_page_1_tells_the_fuel_with_interval_and_verdict_before_the_keep_out_are
         plain,
     )
     assert re.match(
-        r"Fuel sulphur from 12 flights: mean difference from a perfect instrument [+−]0\.\d{4} %, whose reading lies within the"
+        r"Fuel sulphur from 12 flights: mean difference from a perfect instrument [+−]0\.\d{4} % m/m, whose reading lies within the"
         r" 95 % interval in \d.* of them; \d+ above",
         several.verdict.headline.replace("\N{NO-BREAK SPACE}", " "),
     )
@@ -153,7 +153,7 @@ def test_a_sniffer_without_a_result_is_said_on_page_1():
 
 def test_a_probability_is_never_told_as_certain():
     told = flights._told(pd.Series(ROW))
-    assert told.startswith("The fuel's sulphur content is 0.500 %, 95 % interval 0.461 to 0.539 %: above the limit of 0.10 %; ")
+    assert told.startswith("The fuel's sulphur content is 0.500 % m/m, 95 % interval 0.461 to 0.539 %: above the limit of 0.10 %; ")
     assert "probability above it: more than 99.9 %. Quality A." in told
     card = flights.sulphur_cards(SimpleNamespace(summary=pd.DataFrame([ROW])))[2]
     assert card[:2] == ("Probability above the limit of 0.10 %", "> 99.9 %")
@@ -163,12 +163,12 @@ def test_a_content_below_0_is_told_with_the_interval_that_its_verdict_rests_on()
     # The estimate is -0.025 ± 0.020 (1.96 σ: 0.039): the interval is cut at 0, and its upper end is that of 0.
     row = {**ROW, "fsc_percent": -0.025, "fsc_low_percent": 0.0, "fsc_high_percent": 0.039, "sulphur_verdict": "below"}
     run = SimpleNamespace(summary=pd.DataFrame([row]))
-    words = "-0.025 %, which is below 0; 95 % interval 0.000 to 0.039 %, cut at 0 because no fuel has less: below the limit"
+    words = "-0.025 % m/m, which is below 0; 95 % interval 0.000 to 0.039 %, cut at 0 because no fuel has less: below the limit"
     assert words in flights.sulphur_headline(run)
     assert words in flights._told(pd.Series(row))
-    assert flights.sulphur_cards(run)[1].value == "0.000 to 0.039 %"
+    assert flights.sulphur_cards(run)[1].value == "0.000 to 0.039 % m/m"
     table = flight_tables.flight_table(pd.DataFrame([{**row, "flight_id": "flight_1", "sensor": "fast"}]))
-    assert table.rows[0][table.head.index("95 % interval [%]")] == "0.000 to 0.039"
+    assert table.rows[0][table.head.index("95 % interval [% m/m]")] == "0.000 to 0.039"
 
 
 def test_error_bars_are_the_intervals_and_not_symmetric_where_these_are_cut():

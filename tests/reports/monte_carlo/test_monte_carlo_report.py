@@ -225,11 +225,11 @@ def test_inputs_are_called_by_their_keys_without_the_unit_which_the_axis_has():
 
 
 def test_keys_that_name_their_unit_have_the_one_that_is_documented():
-    # Those of a search or an arena are no inputs of flights; "%" is written for "% m/m"; two keys of a plume name none.
+    # Those of a search or an arena are no inputs of flights; two keys of a plume name none.
     keys = [of for of in documented_keys() if of.unit and not of.key.startswith(("draws.", "arena."))]
     other = {of.key for of in keys if input_unit(of.key) != of.unit}
     assert len(keys) > 150
-    assert other == {"plume.age_max", "plume.parcel_interval", "payload.limit_percent"}
+    assert other == {"plume.age_max", "plume.parcel_interval"}
     assert input_label("wind.temperature_c") == "Wind temperature [degC]"
 
 

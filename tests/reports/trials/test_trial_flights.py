@@ -19,6 +19,7 @@ from reports.flights.trials.charts import trial_charts
 from reports.flights.trials.panels_over import PanelsOver, by_violation
 from reports.registry import content
 from reports.render import matplotlib_charts, plotly_charts
+from reports.run.flight_config import source_height
 from reports.run.run_data import read_run
 from reports.run.trials import Kind, Trial, read_trials
 
@@ -154,7 +155,7 @@ def test_the_level_of_the_funnel_is_drawn_where_the_flight_does_not_hide_it(run,
     trial = read_trials(run)[0]
     row = trial.rows.iloc[0]
     history = run.history(str(row["flight_id"]))
-    history = history.assign(altitude_m=trial.config["plume"]["source_height_m"] + above)
+    history = history.assign(altitude_m=source_height(trial.config) + above)
     histories = flight_charts(FlightView(trial, row, history))[1]
     (height,) = [panel for panel in histories.panels if panel.y_label == "Height [m]"]
     assert ("funnel" in {line.label for line in height.lines}) == drawn

@@ -241,6 +241,7 @@ def test_a_scenario_with_manoeuvres_of_its_own_has_a_manifest(run):
         ([{"name": "calm_air", "set": {}}, {"name": "wind"}], "calm air, wind"),
         ({"wind.speed_mps": 4.0, "draws": [{"key": "wind.from_deg", "uniform": [0.0, 360.0]}]},
          "wind.speed_mps = 4, draws = wind.from_deg uniform 0, 360"),
+        ({"title": "own", "channels": {"so2": {"t90_s": 15.0}}}, "title = own, channels = { so2 = { t90_s = 15 } }"),
     ],
 )  # fmt: skip
 def test_a_parameter_is_written_in_words(value, words):

@@ -180,7 +180,7 @@ def test_an_index_beyond_the_list_is_refused_before_anything_is_flown():
     [
         ("aircraft", "draws has 'aircraft', the same for all flights"),
         ("guidance.airspeed_mps", "are worked out once for it: give each value a run of its own"),
-        ("plume.source_height_m", "autopilot and margins are worked out once for it"),
+        ("plume.source_height_m", "worked out once for the altitude at the start.*: give flight.altitude_m, or each value"),
     ],
 )
 def test_a_key_for_which_the_autopilot_is_designed_cannot_be_drawn(key, words):

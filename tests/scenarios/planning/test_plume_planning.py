@@ -10,9 +10,10 @@ from gnc.mission.plume_axis import PredictedPlume
 from gnc.mission.searched_axis import SearchedPlume
 from scenarios.errors import InputError
 from scenarios.planning.planner import plan_flight
-from scenarios.planning.plume.axis import ALTITUDE_MARGIN, plume_axis
+from scenarios.planning.plume.axis import plume_axis
 from scenarios.planning.plume.distance import additional_distance, information
 from scenarios.schema.load import load_study
+from scenarios.schema.sections.flight import ALTITUDE_MARGIN
 from scenarios.vehicles.vehicle_setup import kinematic_setup
 from scenarios.world.exhaust import emission
 from scenarios.world.vessel import SteadyVessel

@@ -133,3 +133,10 @@ def test_keys_of_parts_say_which_part_has_them():
 )
 def test_a_name_that_is_no_key_finds_the_one_that_is_meant(name, meant):
     assert similar_key(name) == meant
+
+
+def test_the_two_standoffs_refer_to_each_other():
+    meanings = {of.key: of.meaning for of in documented_keys()}
+    assert "guidance.mission to standoff" in meanings["following.standoff_m"]
+    assert "reference.standoff_radius_m" in meanings["guidance.mission"]
+    assert "following.standoff_m" in meanings["guidance.mission"]

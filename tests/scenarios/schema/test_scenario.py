@@ -137,3 +137,34 @@ def test_a_funnel_that_is_too_high_for_exhaust_is_refused_by_its_key_at_any_poin
     assert load_study("sweep_nu", ["plume.source_height_m=500"]).plume.source_height_m == 500.0
     with pytest.raises(InputError, match=r"^plume\.source_height_m is 500 m beside emission\.ship; .* 200 m at most: lower it"):
         load_study("sulphur", ["plume.source_height_m=500"])
+
+
+@pytest.mark.parametrize(
+    ("name", "overrides", "funnel", "start"),
+    [
+        # measurement/emission/ships.toml: 35 m of the container, 16 of the coaster, 55 of the cruise ship.
+        ("sulphur", (), 35.0, 35.0),
+        ("sulphur", ("emission.ship=cruise",), 55.0, 55.0),
+        # The UAV keeps 3 m, in light turbulence 6, within flight.altitude_min_m and altitude_max_m: 20 and 120 m above the sea.
+        ("sulphur", ("emission.ship=coaster", "vessel.speed_mps=6"), 16.0, 23.0),
+        ("sulphur", ("emission.ship=coaster", "vessel.speed_mps=6", "following.plume=estimated"), 16.0, 23.0),
+        ("sulphur", ("plume.source_height_m=150", "turbulence.level=light"), 150.0, 114.0),
+        ("sulphur", ("flight.altitude_min_m=36", "flight.altitude_max_m=40"), 35.0, 38.0),
+        ("sulphur", ("emission.ship=coaster", "vessel.speed_mps=6", "plume.source_height_m=25"), 25.0, 25.0),
+        ("sulphur", ("emission.ship=coaster", "vessel.speed_mps=6", "flight.altitude_m=40"), 16.0, 40.0),
+        ("sweep_nu", (), 60.0, 60.0),
+    ],
+)
+def test_a_plume_begins_at_the_funnel_of_its_ship_unless_its_height_is_given(name, overrides, funnel, start):
+    scenario = load_study(name, overrides)
+    assert (scenario.source_height, scenario.altitude) == (funnel, start)
+
+
+@pytest.mark.parametrize("varied", ["sweep.emission.ship=%s", 'draws=[{key="emission.ship",choice=%s}]'])
+def test_ships_are_compared_from_one_altitude_or_funnel_height(varied):
+    ships = varied % '["container","cruise"]'
+    with pytest.raises(InputError, match=r"'emission\.ship' varies .* height of the funnel here: give flight\.altitude_m, or each"):
+        load_study("sulphur", [ships])
+    # Either gives all of them the one altitude for which the autopilot is designed.
+    for given in ("flight.altitude_m=40", "plume.source_height_m=40"):
+        assert load_study("sulphur", [ships, given]).altitude == 40.0

@@ -112,7 +112,7 @@ def test_every_flight_is_measured_over_its_end_and_what_a_minute_is_worth_is_com
 def test_the_exhaust_and_the_sniffer_are_those_of_the_flights_that_measure():
     of_arena, of_sulphur = load_study("arena"), load_study("sulphur")
     assert (of_arena.emission, of_arena.payload) == (of_sulphur.emission, of_sulphur.payload)
-    assert (of_arena.plume.model, of_arena.plume.source_height_m) == (of_sulphur.plume.model, of_sulphur.plume.source_height_m)
+    assert (of_arena.plume.model, of_arena.source_height) == (of_sulphur.plume.model, of_sulphur.source_height)
 
 
 def test_without_a_sniffer_laws_are_compared_by_crossings_alone(tmp_path):

@@ -121,7 +121,7 @@ def test_the_sulphur_of_one_flight_is_stated_with_its_interval_and_of_several_by
         "sulphur_quality": quality, "sulphur_verdict": verdict,
     }  # fmt: skip
     (line,) = FlightCounts.of([row], planned=1).sulphur_lines()
-    assert line == f"fuel sulphur 0.200 %, 95 % interval 0.120 to 0.280 %: {words}"
+    assert line == f"fuel sulphur 0.200 % m/m, 95 % interval 0.120 to 0.280 %: {words}"
     (line,) = FlightCounts.of([row] * 3, planned=3).sulphur_lines()
     sides = {"above": "3 above the limit", "below": "3 below the limit", "open": "3 undecided"}
     called = sides[verdict] if quality != "C" else "3 without a verdict (quality C)"

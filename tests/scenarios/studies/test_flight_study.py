@@ -202,7 +202,7 @@ def test_what_the_aircraft_cannot_do_is_reported_in_one_line(listed, tmp_path, m
 def test_trials_that_need_different_autopilots_are_refused(tmp_path):
     listed = written(tmp_path)
     (tmp_path / "two.toml").write_text(TRIAL + "[plume]\nsource_height_m = 80.0\n", encoding="utf-8")
-    with pytest.raises(InputError, match=r"flights differ in .*plume.source_height_m\); give each a run of its own"):
+    with pytest.raises(InputError, match=r"flights differ in .*the funnel of emission.ship\); give each a run of its own"):
         run(listed, tmp_path / "run")
 
 

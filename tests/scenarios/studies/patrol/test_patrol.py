@@ -136,7 +136,7 @@ def test_ways_are_flown_in_the_wind_at_their_height_and_ships_have_the_speed_rat
     assert wind_row(found) == {"wind_speed_mps": given.speed_mps, "wind_from_deg": given.from_deg}
     for i, ship in enumerate(found.ships):
         # By the wind at the funnel's mouth, as of any flight.
-        flown = mean_wind(ship.scenario, vessel_of(ship.scenario)).now(0.0, ship.scenario.plume.source_height_m)
+        flown = mean_wind(ship.scenario, vessel_of(ship.scenario)).now(0.0, ship.scenario.source_height)
         nu = abs(ship.mover.velocity - complex(*flown)) / found.air.speed
         assert ship_row(found, i, 0.15)["nu"] == pytest.approx(nu, rel=1e-12)
 
@@ -240,6 +240,20 @@ def test_patrols_are_judged_by_a_ship_that_was_served_and_a_verdict_of_the_patro
 def test_what_is_no_patrol_is_refused_in_one_line(override, words, tmp_path):
     overrides = [part for given in (*QUICK, override) for part in ("--set", given)]
     assert_refused(run_command("scenarios.run", "patrol", *overrides, "--out", tmp_path / "run", "--no-report"), *words)
+
+
+def test_flights_of_a_patrol_know_the_plume_as_the_scenario_says_and_those_of_the_oracle_are_told(monkeypatch, tmp_path):
+    known = []
+
+    def recorded(scenario, values):
+        flown = with_values(scenario, values)
+        known.append(flown.following.plume)
+        return flown
+
+    monkeypatch.setattr("scenarios.studies.patrol.work.with_values", recorded)
+    one = patrol("patrol.ships=1", "following.plume=predicted")
+    run_study(one, "patrol", tmp_path / "run", executor_factory=InProcessExecutor)
+    assert known == ["predicted", "told"]
 
 
 def test_keys_of_a_patrol_are_refused_elsewhere():

@@ -1,0 +1,129 @@
+"""A ship and a sniffer of one's own, as tables in a scenario file."""
+
+import json
+from pathlib import Path
+
+import pandas as pd
+import pytest
+
+from measurement.emission.ship import Ship, ship_of, ship_preset
+from measurement.sniffer import sensor_of
+from scenarios.errors import InputError
+from scenarios.experiment.points import points_of
+from scenarios.schema.load import load_study
+from scenarios.world.exhaust import emission
+from tests.in_process import run_command
+
+EXAMPLE = str(Path(__file__).parents[3] / "docs" / "examples" / "own_ship.toml")
+QUICK = (
+    "fidelity=kinematic", "reports.interval_s=[0,0]", "sensors={}", "start.place_m=[-250,-120]", "start.course_deg=-90",
+    "wind.speed_mps=2", "wind.from_deg=0", "flight.after_settling_s=60",
+)  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def run(tmp_path_factory):
+    out = tmp_path_factory.mktemp("own") / "run"
+    keys = [word for key in QUICK for word in ("--set", key)]
+    assert run_command("scenarios.run", EXAMPLE, *keys, "--out", out).status == 0
+    return out
+
+
+def test_the_example_measures_with_its_own_sniffer_beside_its_own_ship(run):
+    (row,) = pd.read_csv(run / "summary.csv").to_dict("records")
+    assert row["sensor"] == "own cells"
+    # Two readings a second: each stands for five of the ten rows.
+    history = pd.read_parquet(run / "flights" / "own_ship_00000.parquet")
+    changed = (history["co2_reading_ppm"].diff() != 0.0).mean()
+    assert 0.17 < changed <= 0.21
+    assert load_study(EXAMPLE).source_height == 22.0
+    config = json.loads((run / "manifest.json").read_text(encoding="utf-8"))["trials"]["own_ship"]
+    assert config["emission"]["ship"]["stack_height"] == 22.0
+    assert config["payload"]["sensor"]["channels"]["so2"]["t90_s"] == 15.0
+
+
+def test_the_page_shows_the_example_as_it_is():
+    text = (Path(EXAMPLE).parents[1] / "howto" / "measuring.md").read_text(encoding="utf-8")
+    (block,) = (part for part in text.split("```") if part.startswith("toml\n[emission.ship]"))
+    shown, given = (
+        {line.split("#")[0].strip() for line in of.splitlines()}
+        for of in (block.removeprefix("toml"), Path(EXAMPLE).read_text(encoding="utf-8"))
+    )
+    assert shown <= given
+
+
+def test_its_flight_is_replayed_and_its_run_resumed(run):
+    replayed = run_command("scenarios.run", run / "flights" / "own_ship_00000", "--out", run.parent / "again", "--no-report")
+    assert "every value of its row agrees to the last bit" in replayed.out
+    keys = [word for key in QUICK for word in ("--set", key)]
+    resumed = run_command("scenarios.run", EXAMPLE, *keys, "--out", run, "--resume", "--no-report")
+    assert resumed.status == 0, resumed
+    other = run_command(
+        "scenarios.run", EXAMPLE, *keys, "--set", "emission.ship.speed_max=10", "--out", run, "--resume", "--no-report"
+    )
+    assert other.status == 2
+    assert "emission.ship" in other.errors
+
+
+def test_a_table_with_the_figures_of_a_preset_is_that_preset():
+    container = ship_preset("container")
+    table = {name: getattr(container, name) for name in Ship.__dataclass_fields__ if name != "name"}
+    given, named = (load_study("sulphur", [f"emission.ship={ship}"]) for ship in (toml(table), "container"))
+    assert emission(given, speed=12.0) == emission(named, speed=12.0)
+    assert ship_of(table).title == container.title
+
+
+def toml(table):
+    words = (f"{key}={value!r}" for key, value in table.items())
+    return "{" + ", ".join(words) + "}"
+
+
+def test_keys_of_a_table_are_set_and_swept_like_others():
+    assert load_study(EXAMPLE, ["emission.ship.stack_height=30"]).source_height == 30.0
+    assert load_study(EXAMPLE, ["payload.sensor=fast"]).payload.model_extra == {"sensor": "fast"}
+    assert load_study(EXAMPLE, ["emission.ship=tanker"]).source_height == 30.0
+    swept = load_study(EXAMPLE, ["flight.altitude_m=30", "sweep.emission.ship.stack_height=[15,25]"])
+    assert [point.scenario.source_height for point in points_of(swept)] == [15.0, 25.0]
+    named = load_study(EXAMPLE, ['sweep.payload.sensor=["fast",{title="CO2 alone",channels={co2={t90_s=3,delay_s=0,noise=1}}}]'])
+    assert [point.label for point in points_of(named)] == ["sensor_fast", "sensor_CO2_alone"]
+
+
+@pytest.mark.parametrize(
+    ("override", "words"),
+    [
+        (
+            "emission.ship.stak_height=3",
+            "ship 'ferry of 5 MW' has the key 'stak_height'; did you mean 'stack_height'? it may have title, stroke",
+        ),
+        ("emission.ship.stroke=3", "emission.ship: stroke of ferry of 5 MW is 3; an engine has 2 or 4"),
+        ("emission.ship.stroke=2.5", "emission.ship: stroke of ferry of 5 MW is 2.5; an engine has 2 or 4"),
+        ("emission.ship.power_max=inf", "emission.ship: power_max of ferry of 5 MW is inf; give a finite value above 0"),
+        ("emission.ship.stack_height=high", "stack_height of ship 'ferry of 5 MW' is 'high'; it must be a number"),
+        ('emission.ship={title="X"}', "emission.ship: ship 'X' has no stroke; give all of stroke, nox_tier, power_max"),
+        ("emission.ship=5", "emission.ship: value is 5; give the name of a ship, or a table"),
+        # Heights of the scenario's own plume: 10 to 200 m.
+        ("emission.ship.stack_height=5", "stack_height of emission.ship is 5 m; a plume begins at 10 m at least"),
+        ("emission.ship.stack_height=300", "stack_height of emission.ship is 300 m beside emission.ship"),
+        ("payload.sensor=5", "payload.sensor is 5; give the name of a preset, or a table"),
+        (
+            "payload.sensor.channels.so2.t90=3",
+            "payload.sensor is a table of no use: channel 'so2' of instrument 'own cells' has",
+        ),
+        (
+            "payload.sensor={channels={so2={t90_s=3}}}",
+            "t90, delay or noise of so2 is not known; give its t90_s, delay_s and noise",
+        ),
+        ("payload.sensor={}", "payload.sensor is a table of no use: instrument 'own sniffer' has no channels"),
+    ],
+)
+def test_a_table_of_no_use_is_refused_in_one_line(override, words):
+    with pytest.raises(InputError) as refused:
+        load_study(EXAMPLE, [override])
+    assert words in str(refused.value)
+    assert "\n" not in str(refused.value)
+
+
+def test_a_sniffer_from_a_table_has_a_name_or_its_title():
+    table = {"title": "My cells", "channels": {"co2": {"t90_s": 3.0}}}
+    assert [sensor_of(table).name, sensor_of(table, "log").name, sensor_of(table, "log").title] == ["My cells", "log", "My cells"]
+    assert sensor_of("fast").name == "fast"
