@@ -52,7 +52,7 @@ def test_what_is_wrong_in_a_file_names_the_file_and_what_is_wrong_in_an_override
         ("criteria.crossing_interval_error=no", ["criteria.crossing_interval_error is 'no'", "number", ", or false"]),
         ("wind.speed_mps=5kn", ["wind.speed_mps is '5kn'; it must be a number in m/s, e.g. wind.speed_mps=2.572"]),
         ("wind.speed_mps=5 m/s", ["wind.speed_mps is '5 m/s'; it must be a number in m/s, e.g. wind.speed_mps=5"]),
-        ("emission.sulphur_percent=1000ppm", ["it must be a number in %, e.g. emission.sulphur_percent=0.1"]),
+        ("emission.sulphur_percent=1000ppm", ["it must be a number in % m/m, e.g. emission.sulphur_percent=0.1"]),
         ("keepout.radius_m=200yd", ["keepout.radius_m is '200yd'; it must be a number in m"]),
         ("wind.speed_mps=50", ["wind.speed_mps is 50; it must be at most 40 m/s"]),
         ("emission.load=85", ["emission.load is 85; it must be at most 1: a fraction, e.g. 0.85"]),
