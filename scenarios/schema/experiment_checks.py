@@ -52,6 +52,7 @@ def check_together(scenario: "Scenario") -> None:
     """Refuse a scenario whose parts do not go together."""
     check_mission(scenario)
     check_source(scenario)
+    check_start_altitude(scenario)
     check_one_point(scenario)
     check_tables(scenario)
     if scenario.study == "falsify":
@@ -122,6 +123,21 @@ def check_source(scenario: "Scenario") -> None:
             f"plume.source_height_m is {height:g} m beside emission.ship; exhaust of plume.model 'fluctuating' leaves a funnel at"
             f" {SOURCE_HEIGHT_MAX:g} m at most: lower it, or leave emission.ship out"
         )
+
+
+def check_start_altitude(scenario: "Scenario") -> None:
+    """Refuse a start below or above the altitudes at which exhaust is crossed: it was flown outside of them until it got there."""
+    flight, altitude = scenario.flight, scenario.altitude
+    if scenario.emission.ship is None or flight.altitude_min_m <= altitude <= flight.altitude_max_m:
+        return
+    below = altitude < flight.altitude_min_m
+    given = "flight.altitude_m" if flight.altitude_m is not None else "plume.source_height_m"
+    limit = "lower flight.altitude_min_m" if below else "raise flight.altitude_max_m"
+    start = "change plume.source_height_m" if scenario.stands_off else "set flight.altitude_m in between"
+    raise ValueError(
+        f"the flight starts at {given}, {altitude:g} m, {'below' if below else 'above'} the altitudes at which exhaust is crossed,"
+        f" flight.altitude_min_m to altitude_max_m, {flight.altitude_min_m:g} to {flight.altitude_max_m:g} m: {start}, or {limit}"
+    )
 
 
 def check_one_point(scenario: "Scenario") -> None:

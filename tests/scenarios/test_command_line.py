@@ -115,7 +115,7 @@ def test_help_and_list_answer():
             ["emission.ship is 'container', and plume.model 'straight' has no smoke: set plume.model to 'fluctuating'"],
         ),
         (
-            ["plume_search", "--set", "flight.altitude_min_m=100", "--set", "flight.altitude_max_m=105"],
+            ["plume_search", *(f"--set=flight.altitude_{key}" for key in ("m=102", "min_m=100", "max_m=105"))],
             ["flight.altitude_min_m and altitude_max_m are 100 and 105 m", "give them 16 m or more between them"],
         ),
         (

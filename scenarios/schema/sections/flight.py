@@ -52,11 +52,12 @@ class FlightConfig(Section):
     """When the flight ends: flown, with its crossings and its duration; verdict, also once the sniffer's readings allow a verdict
     on the fuel, or cannot any more."""
     altitude_m: Positive | None = None
-    """Altitude at the start, for which the autopilot is designed; the height of the funnel's mouth if not given [m]."""
+    """Altitude at the start, for which the autopilot is designed; the height of the funnel's mouth if not given [m]. Beside a ship
+    with exhaust it is within altitude_min_m and altitude_max_m."""
     altitude_min_m: NonNegative = 20.0
-    """Lowest altitude at which rising exhaust is crossed [m]."""
+    """Lowest altitude at which rising exhaust is crossed, and a flight beside it starts [m]."""
     altitude_max_m: Positive = 120.0
-    """Highest altitude at which rising exhaust is crossed [m]."""
+    """Highest altitude at which rising exhaust is crossed, and a flight beside it starts [m]."""
     settling_band_m: Positive = 5.0
     """Distance to the reference below which a flight counts as settled [m]."""
     log_rate_hz: Annotated[float, Field(ge=5.0, le=120.0)] = 10.0
