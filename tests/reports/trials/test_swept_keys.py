@@ -9,6 +9,7 @@ import pytest
 from report_parts import blocks_of
 
 from reports.document.blocks import FlightPicker, Table
+from reports.errors import ReportError
 from reports.flights.names import _swept, flight_name, flown_elsewhere, swept_column, words_together
 from reports.flights.trials.charts import trial_charts
 from reports.flights.trials.panels_over import LIMIT_LABEL
@@ -187,3 +188,9 @@ def test_words_that_two_swept_keys_have_in_common_have_the_names_of_their_keys_i
     names = ["Guidance law cascade, Following margin law line of sight", "Guidance law line of sight, lyapunov"]
     assert words_together(own) == names
     assert flight_name(own, own.rows.iloc[0]) == "Guidance law cascade, following margin law line_of_sight"
+
+
+def test_a_sweep_whose_values_are_gone_names_the_table_that_had_them(trial):
+    gone = replace(trial, run=replace(trial.run, draws=pd.DataFrame({"flight_id": []})))
+    with pytest.raises(ReportError, match=r"draws\.csv' is gone or has no column 'keepout\.radius_m', .*; repeat the run's"):
+        trial_charts(gone)
