@@ -1,9 +1,10 @@
 """Command lines of the project: typer for the options, one line for an error."""
 
 import io
+import itertools
 import os
 import sys
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from typing import Annotated, NoReturn, TextIO
 
 import typer
@@ -37,7 +38,7 @@ def run_command(command: Callable[..., None] | Mapping[str, Callable[..., None]]
     try:
         status = app(prog_name=name, standalone_mode=False)
     except _USAGE_ERROR as error:
-        message = str(getattr(error, "format_message", error.__str__)()).rstrip(".")
+        message = _with_value(error, str(getattr(error, "format_message", error.__str__)()).rstrip("."), sys.argv[1:])
         called = getattr(getattr(error, "ctx", None), "command_path", name)
         status = refuse(f"{message}; see {called} --help")
     except typer.Abort:
@@ -47,6 +48,17 @@ def run_command(command: Callable[..., None] | Mapping[str, Callable[..., None]]
     for stream in (sys.stdout, sys.stderr):
         stream.flush()
     sys.exit(status or 0)
+
+
+def _with_value(error: Exception, message: str, given: Sequence[str]) -> str:
+    """Return what is wrong with an option, with its value: "--jobs is 0; it must be ..."; any other message as it is."""
+    names = getattr(getattr(error, "param", None), "opts", [])
+    _, said, demanded = message.partition("Input should be ")
+    values = [word.partition("=")[2] for word in given if word.partition("=")[0] in names and "=" in word]
+    values += [value for word, value in itertools.pairwise(given) if word in names]
+    if not said or not values:
+        return message
+    return f"{names[0]} is {values[-1]}; it must be {demanded.partition(',')[0]}"
 
 
 class _Output(io.TextIOWrapper):

@@ -159,18 +159,20 @@ def _run(
         print(line)
     print(f"results: {result.directory}")
     if result.interrupted:
-        again = [word for item in overrides for word in ("--set", item)]
-        if replayed:
-            # That of other runs is among the overrides.
-            again += ["--aircraft-dir", str(aircraft_dir)] if aircraft_dir is not None else []
-            again += ["--flightgear", flightgear] if flightgear is not None else []
-        again += ["--no-report"] if no_report else []
-        again = ["plume-flight", "run", name, *again, "--out", str(directory), "--resume"]
         kept = f"{result.summary.done} of {result.planned} {result.what} are done and kept"
-        print(f"interrupted; {kept}. Continue with: {shlex.join(again)}", file=sys.stderr)
+        print(f"interrupted; {kept}. Continue with: {_again(directory, out=out, resume=resume)}", file=sys.stderr)
         return INTERRUPTED
     status = _report(directory, changed=result.changed, wanted=not no_report)
     return status or (MET if result.all_met else NOT_MET)
+
+
+def _again(directory: Path, *, out: Path | None, resume: bool) -> str:
+    """Return the command that continues an interrupted run: what was typed, with the run's directory and --resume."""
+    from common.command_line import PROGRAM
+
+    typed = sys.argv[2:] if Path(sys.argv[0]).stem == PROGRAM and sys.argv[1:2] == ["run"] else sys.argv[1:]
+    there = [] if out is not None else ["--out", str(directory)]
+    return shlex.join([PROGRAM, "run", *typed, *there, *([] if resume else ["--resume"])])
 
 
 def _viewer(address: str | None, *, replayed: bool) -> tuple[str, int] | None:

@@ -49,7 +49,7 @@ class FscEstimate:
     noise_percent : standard uncertainty by noise, which falls with the number of passes
     common_percent : standard uncertainties by errors that do not average out, by name
     total_percent : standard uncertainty by both
-    low_percent, high_percent : 95 % interval
+    low_percent, high_percent : 95 % interval, of the distribution that the verdicts' probabilities are of
     sulphate_percent : mean error by sulphur that leaves as sulphate, stated and not corrected
     slope_ppb_per_ppm : SO2 over CO2
     misfit : mean square of the residuals over that of the stated noise [-]

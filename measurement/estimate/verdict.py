@@ -1,10 +1,14 @@
-"""Above a limit, below it, or open: by the probability that the fuel is above, with guard bands (JCGM 106)."""
+"""Above a limit, below it, or open: by the probability that the fuel is above, with guard bands (JCGM 106).
+
+Probabilities and the interval are of one distribution: the normal one of content and standard uncertainty, cut at 0, as no fuel has
+less. It is what a reading tells of a content of which nothing else is known than that it is not negative (ISO 11929-1).
+"""
 
 import math
 from dataclasses import dataclass
 from typing import Literal
 
-from scipy.special import log_ndtr, ndtri
+from scipy.special import log_ndtr, ndtr, ndtri, ndtri_exp
 
 Side = Literal["above", "below", "open"]
 
@@ -62,6 +66,17 @@ def judged(limit: float, fsc: float, deviation: float, *, admitted: bool) -> Ver
 
 
 def interval(fsc: float, deviation: float) -> tuple[float, float]:
-    """Return the 95 % interval of a sulphur content [% m/m]; a reading below 0 is taken as 0 for its upper end."""
-    half = COVERAGE * deviation
-    return max(0.0, fsc - half), max(0.0, fsc) + half
+    """Return the shortest interval that holds the sulphur content with 95 % [% m/m], of the distribution of ``probability_above``.
+
+    Far from 0 it is the estimate with 1.960 standard uncertainties to either side. Where it begins at 0, the content is above its
+    end with 5 % (ISO 11929-1, shortest coverage interval).
+    """
+    if not (math.isfinite(fsc) and deviation > 0.0):
+        return (math.nan, math.nan) if math.isnan(fsc + deviation) else (max(0.0, fsc), max(0.0, fsc))
+    kept = float(ndtr(fsc / deviation))
+    half = deviation * float(ndtri(0.5 + 0.5 * CONFIDENCE * kept))
+    if fsc > half:
+        return fsc - half, fsc + half
+    # In logarithms: of a reading far below 0 next to nothing of the normal distribution is left.
+    beyond = math.log(1.0 - CONFIDENCE) + float(log_ndtr(fsc / deviation))
+    return 0.0, fsc - deviation * float(ndtri_exp(beyond))

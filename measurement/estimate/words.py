@@ -22,7 +22,7 @@ def probability(share: float) -> str:
 
 
 def content_words(fsc_percent: float, low_percent: float, high_percent: float) -> str:
-    """Return a sulphur content with its 95 % interval; of one below 0 that the interval begins at 0, and why.
+    """Return a sulphur content with its 95 % interval; of one below 0 that no fuel has less.
 
     Parameters
     ----------
@@ -30,7 +30,7 @@ def content_words(fsc_percent: float, low_percent: float, high_percent: float) -
     """
     content, interval = f"{fsc_percent:z.3f}", f"95 % interval {low_percent:z.3f} to {high_percent:z.3f} %"
     if float(content) < 0.0:
-        return f"{content} {MASS_PERCENT}, which is below 0; {interval}, cut at 0 because no fuel has less"
+        return f"{content} {MASS_PERCENT}, which is below 0; {interval}, given that no fuel has less than 0"
     return f"{content} {MASS_PERCENT}, {interval}"
 
 

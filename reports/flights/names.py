@@ -30,7 +30,7 @@ def flight_name(trial: Trial, row: "pd.Series[Any]") -> str:
     flight_id = str(row["flight_id"])
     counted = re.search(r"_(\d+)$", flight_id)
     if trial.swept:
-        first, *others = (_swept(key, value, _numbers(trial, key)) for key, value in _values(trial, row).items())
+        first, *others = (_swept(trial, key, value) for key, value in _values(trial, row).items())
         words = [first, *(words[0].lower() + words[1:] for words in others)]
         # Of several flights at the same values each has its number.
         return ", ".join([*words, *([f"flight {int(counted[1])}"] if counted and _repeated(trial) else [])])
@@ -55,12 +55,13 @@ def swept_column(trial: Trial) -> tuple[str, Callable[["pd.Series[Any]"], str]]:
 
 def swept_words(trial: Trial) -> dict[str, list[str]]:
     """Return the values in each flown flight of every key that was swept over words, without the folders of files."""
-    values = {key: trial.input(key).reindex(trial.flown["flight_id"]) for key in trial.swept}
-    return {
-        key: [_value(key, value).replace("_", " ") for value in of]
-        for key, of in values.items()
-        if not pd.api.types.is_numeric_dtype(of) or pd.api.types.is_bool_dtype(of)
-    }
+    return {key: [_value(key, value).replace("_", " ") for value in of] for key, of in _words(trial).items()}
+
+
+def words_together(trial: Trial) -> list[str]:
+    """Return what each flown flight is called by all words that were swept, with the names of their keys where these say which."""
+    called = [[_swept(trial, key, value).replace("_", " ") for value in of] for key, of in _words(trial).items()]
+    return [", ".join(each) for each in zip(*called, strict=True)]
 
 
 def flown_elsewhere(trial: Trial) -> bool:
@@ -81,6 +82,12 @@ def _values(trial: Trial, row: "pd.Series[Any]") -> dict[str, Any]:
     return {key: _ratio(trial, row) if key == "nu" else trial.input(key)[flight_id] for key in trial.swept}
 
 
+def _words(trial: Trial) -> "dict[str, pd.Series[Any]]":
+    """Return the values in each flown flight of every key that was swept over words."""
+    values = {key: trial.input(key).reindex(trial.flown["flight_id"]) for key in trial.swept}
+    return {key: of for key, of in values.items() if not pd.api.types.is_numeric_dtype(of) or pd.api.types.is_bool_dtype(of)}
+
+
 def _ratio(trial: Trial, row: "pd.Series[Any]") -> float:
     """Return the speed ratio that was swept: that of the speeds in still air, of which the run records another one in wind."""
     key = "guidance.airspeed_mps"
@@ -90,13 +97,18 @@ def _ratio(trial: Trial, row: "pd.Series[Any]") -> float:
     return nearest if abs(nearest - over_ground) < _SAME_RATIO else float(row["nu"])
 
 
-def _swept(key: str, value: Any, among: tuple[float, ...] = ()) -> str:
+def _swept(trial: Trial, key: str, value: Any) -> str:
     """Return what the value of a key is called, told apart from others of the sweep."""
-    words = _value(key, value, among)
+    words = _value(key, value, _numbers(trial, key))
     if key == "nu":
         return f"ν = {words}"
-    # Of words some say nothing by themselves.
-    return f"{input_name(key)} {words}" if _is_number(value) or words in _BARE else words
+    # Of words some say nothing by themselves, nor does one that another key of the sweep has too.
+    return f"{input_name(key)} {words}" if _is_number(value) or words in _BARE or _shared(trial, key, words) else words
+
+
+def _shared(trial: Trial, key: str, words: str) -> bool:
+    """Return whether another key is swept over these words, too."""
+    return any(words == _value(of, value) for of, values in trial.swept.items() if of not in (key, "nu") for value in values)
 
 
 def _value(key: str, value: Any, among: tuple[float, ...] = ()) -> str:

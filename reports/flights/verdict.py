@@ -12,7 +12,7 @@ from reports.flights.bounds import counted_as_violations, sampled, violation_bou
 from reports.flights.criteria import MEASURED, Criterion, counted, criteria_of
 from reports.flights.first_page import simulated
 from reports.flights.names import told_name
-from reports.flights.trials.failures import failure_lines
+from reports.flights.trials.failures import failure_lines, tracking_lines
 from reports.measurement.flights import sulphur_above, sulphur_below, sulphur_cards, sulphur_headline
 from reports.monte_carlo.subset import plain_bound_in_words, subset_headline
 from reports.run.columns import (
@@ -64,7 +64,11 @@ def flight_verdict(run: RunData, trials: list[Trial]) -> Verdict:
         # What must never happen stands before what was measured.
         headline=". ".join(headlines if kept else headlines[::-1]),
         detail=_detail(run, trials, flown, planned),
-        failures=[*(line for trial in trials for line in failure_lines(trial)), *_noteworthy(flown)],
+        failures=[
+            *(line for trial in trials for line in failure_lines(trial)),
+            *(line for trial in trials for line in tracking_lines(trial, only=len(trials) == 1)),
+            *_noteworthy(flown),
+        ],
         figures=[*sulphur_cards(run), *_bound_figure(run, trials), *_figures(trials, flown, planned)],
     )
 

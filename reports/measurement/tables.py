@@ -32,7 +32,11 @@ def result_table(record: Record) -> Table:
         "Method", f"Sulphur content [{MASS_PERCENT}]", f"Noise, 1σ [{MASS_PERCENT}]", f"Standard uncertainty, 1σ [{MASS_PERCENT}]",
         f"95 % interval [{MASS_PERCENT}]", "Quality",
     ]  # fmt: skip
-    return Table(caption="The result by each method.", head=head, rows=rows, widths=[1.8, 1.2, 0.8, 1.9, 1.5, 0.7])
+    caption = (
+        "The result by each method. Interval and probabilities above limits are of one distribution: the normal one of content and"
+        " standard uncertainty, without what is below 0. Where the interval begins at 0, the content is above its end with 5 %."
+    )
+    return Table(caption=caption, head=head, rows=rows, widths=[1.8, 1.2, 0.8, 1.9, 1.5, 0.7])
 
 
 def over_time_table(record: Record, since: str = SINCE) -> Table | None:

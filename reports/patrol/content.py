@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 
+from common.verdicts.patrols import PatrolCounts
 from reports.design.section import innerloop_section
 from reports.document.blocks import Card, Findings, Heading, Section, Text, Verdict
 from reports.document.tables import parameter_table, vehicle_flown
@@ -11,7 +12,7 @@ from reports.flights.parameter_tables import distribution
 from reports.patrol.charts import patrol_chart, time_lines
 from reports.patrol.data import Patrols, read_patrols
 from reports.patrol.tables import oracle_table, ship_table
-from reports.run.columns import Array, column, count, kept_out, lost, met
+from reports.run.columns import Array, column
 from reports.run.run_data import RunData
 
 _SHOWN = 12
@@ -45,10 +46,9 @@ def patrol_content(run: RunData) -> Findings:
         Section(anchor="parameters", title="Parameters", blocks=[parameter_table(run, _sampled(run))]),
     ]
     patrols_flown = f"{len(patrols.patrols)} patrol{'s' * (len(patrols.patrols) != 1)}"
-    words = (
-        f"{patrols_flown} of {vehicle_flown(run)}, {patrols.hours:.1f} h in all: {patrols.total('served')} of"
-        f" {patrols.total('ships')} ships were served."
-    )
+    counts = patrols.counts
+    served = f"{counts.served} of {counts.ships} ships were served."
+    words = f"{patrols_flown} of {vehicle_flown(run)}, {counts.hours:.1f} h in all: {served}"
     return Findings(flown=words, verdict=_verdict(patrols), picture=charts[0][1] if charts else None, sections=sections)
 
 
@@ -58,62 +58,51 @@ def _sampled(run: RunData) -> dict[str, str]:
 
 
 def _verdict(patrols: Patrols) -> Verdict:
-    rows, config = patrols.run.summary, patrols.run.manifest["config"]["patrol"]
-    planned = int(patrols.run.manifest["flights_planned"])
-    served, violations, correct, oracle = (
-        patrols.total(name) for name in ("served", "keepout_violations", "correct", "oracle_verdicts")
-    )
-    enough, right = correct >= config["oracle_share_min"] * oracle, patrols.wrong_share <= config["wrong_share_max"]
-    kept = served > 0 and not violations and count(kept_out(rows)) == len(rows) and not count(lost(rows))
+    rows, counts = patrols.run.summary, patrols.counts
+    violations = counts.violations
     return Verdict(
-        holds=kept,
-        complete=kept and enough and right and patrols.total("verdicts") + oracle > 0 and len(rows) == planned,
-        headline=_headline(patrols),
-        detail=f"{served} of {patrols.total('ships')} ships were served in {patrols.hours:.1f} h,"
-        f" {_per_hour(patrols)} an hour; {violations} keep-out violation{'s' * (violations != 1)}.",
+        holds=counts.holds,
+        complete=counts.met,
+        headline=_headline(counts),
+        detail=f"{counts.served} of {counts.ships} ships were served in {counts.hours:.1f} h, {counts.per_hour:.1f} an hour;"
+        f" {violations} keep-out violation{'s' * (violations != 1)}.",
         failures=[f"{row['flight_id']}: {row['message']}" for _, row in rows.iterrows() if row["message"]],
-        figures=_figures(patrols, enough=enough, right=right),
+        figures=_figures(patrols, counts),
     )
 
 
-def _figures(patrols: Patrols, *, enough: bool, right: bool) -> list[Card]:
+def _figures(patrols: Patrols, counts: PatrolCounts) -> list[Card]:
     """Return what the verdict rests on. What nothing was flown or judged for has no criterion: nothing would meet it."""
-    rows, config = patrols.run.summary, patrols.run.manifest["config"]["patrol"]
-    served, verdicts, oracle = (patrols.total(name) for name in ("served", "verdicts", "oracle_verdicts"))
-    violations, kept = patrols.total("keepout_violations"), count(met(rows))
-    least, most = (f"{sign} {100.0 * config[key]:g} %" for sign, key in (("≥", "oracle_share_min"), ("≤", "wrong_share_max")))
+    served, verdicts, oracle = counts.served, counts.verdicts, counts.oracle
+    least, most = f"≥ {100.0 * counts.oracle_share_min:g} %", f"≤ {100.0 * counts.wrong_share_max:g} %"
     return [
         Card(
             "Correct verdicts, over the oracle's",
-            f"{patrols.total('correct')} of {oracle}",
-            *((least, enough) if oracle else ()),
+            f"{counts.correct} of {oracle}",
+            *((least, counts.enough) if oracle else ()),
         ),
-        Card("Wrong verdicts", f"{patrols.total('wrong')} of {verdicts}", *((most, right) if verdicts else ())),
-        Card("Keep-out violations", f"{violations}", "0", served > 0 and not violations),
-        Card("Ships served", f"{served} of {patrols.total('ships')}", "≥ 1", served > 0),
+        Card("Wrong verdicts", f"{counts.wrong} of {verdicts}", *((most, counts.right) if verdicts else ())),
+        Card("Keep-out violations", f"{counts.violations}", "0", served > 0 and not counts.violations),
+        Card("Ships served", f"{served} of {counts.ships}", "≥ 1", served > 0),
         _closest(patrols, "a ship that was served", "min_distance_m"),
         _closest(patrols, "any other ship", "others_distance_min_m"),
-        Card("Ships served an hour", _per_hour(patrols)),
-        Card("Flights beside ships without a verdict", f"{patrols.total('open')}"),
+        Card("Ships served an hour", f"{counts.per_hour:.1f}"),
+        Card("Flights beside ships without a verdict", f"{counts.open}"),
         Card(
             "Patrols that kept out, with their aircraft",
-            f"{kept} of {len(rows)}",
-            *(("all", kept == len(rows)) if served else ()),
+            f"{counts.through} of {counts.done}",
+            *(("all", counts.through == counts.done) if served else ()),
         ),
     ]
 
 
-def _per_hour(patrols: Patrols) -> str:
-    return f"{patrols.total('served') / patrols.hours if patrols.hours else 0.0:.1f}"
-
-
-def _headline(patrols: Patrols) -> str:
+def _headline(counts: PatrolCounts) -> str:
     """Return how many verdicts there are, beside the oracle's."""
-    served, correct, wrong, oracle = (patrols.total(name) for name in ("served", "correct", "wrong", "oracle_verdicts"))
-    if not served:
+    correct, oracle = counts.correct, counts.oracle
+    if not counts.served:
         return f"No ship was served, and an oracle has {oracle or 'no'} correct verdict{'s' * (oracle > 1)}"
     share = f"{100.0 * correct / oracle:.0f} % of an oracle's" if oracle else "an oracle has none"
-    return f"{correct} correct verdicts, {share}, {wrong} wrong"
+    return f"{correct} correct verdict{'s' * (correct != 1)}, {share}, {counts.wrong} wrong"
 
 
 def _closest(patrols: Patrols, ship: str, figure: str) -> Card:

@@ -7,10 +7,10 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from common.physics.units import SECONDS_PER_HOUR
 from common.physics.wind import wind_towards
 from common.run_layout import PHASES, SHIPS
-from reports.run.columns import Array, column
+from common.verdicts.patrols import PatrolCounts
+from reports.run.columns import Array
 from reports.run.run_data import RunData
 from reports.run.table_file import read_table
 
@@ -64,20 +64,16 @@ class Patrols:
     patrols: list[Patrol]
     ships: pd.DataFrame
 
-    def total(self, name: str) -> int:
-        """Return the sum of a column of counts over all patrols."""
-        return int(np.nansum(column(self.run.summary, name)))
-
     @property
-    def hours(self) -> float:
-        """Return the duration of all patrols [h]."""
-        return float(np.nansum(column(self.run.summary, "duration_s"))) / SECONDS_PER_HOUR
-
-    @property
-    def wrong_share(self) -> float:
-        """Return wrong ones among all verdicts; 0 where there are none."""
-        verdicts = self.total("verdicts")
-        return self.total("wrong") / verdicts if verdicts else 0.0
+    def counts(self) -> PatrolCounts:
+        """Return the sums over them, and how they are judged."""
+        config = self.run.manifest["config"]["patrol"]
+        return PatrolCounts.of(
+            self.run.summary.to_dict("records"),
+            planned=int(self.run.manifest["flights_planned"]),
+            oracle_share_min=float(config["oracle_share_min"]),
+            wrong_share_max=float(config["wrong_share_max"]),
+        )
 
 
 def read_patrols(run: RunData) -> Patrols:

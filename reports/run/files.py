@@ -43,7 +43,8 @@ def damage_named(*directories: Path) -> Iterator[None]:
         yield
     except ReportError:
         raise
-    except (LookupError, TypeError, ValueError, AttributeError, OSError) as error:
+    # An empty table of the manifest has no first entry.
+    except (LookupError, StopIteration, TypeError, ValueError, AttributeError, OSError) as error:
         what = f"{type(error).__name__}: {error}".splitlines()[0]
         names = " or ".join(f"'{directory}'" for directory in directories)
         raise ReportError(f"{names} is damaged ({what}); run it again in another --out") from None

@@ -150,6 +150,8 @@ def read_run(path: Path) -> RunData:
         raise ReportError(f"'{path}': {MANIFEST} cannot be read: {error}; run the scenario again") from None
     if not (isinstance(manifest, dict) and isinstance(manifest.get("config"), dict)):
         raise ReportError(f"'{path}': {MANIFEST} is not that of a run; run the scenario again in another --out")
+    if "trials" in manifest and not (isinstance(manifest["trials"], dict) and manifest["trials"]):
+        raise ReportError(f"'{path}': {MANIFEST} names no trials, whose flights these are; run the scenario again in another --out")
     if (version := manifest.get("format", FORMAT)) != FORMAT:
         raise ReportError(f"'{path}' is a run of format {version!r}, and this version reads {FORMAT}; use the version that made it")
     if manifest.get("study") not in WITHOUT_SUMMARY and not (path / SUMMARY).is_file():

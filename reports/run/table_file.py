@@ -16,6 +16,9 @@ REMEDY = "repeat the run's command with --resume, which writes the tables anew"
 _NAMES = ("flight_id", "trial", "variant", "beside", "confirms")
 """Columns of names, which stay text where they are all digits."""
 
+_TRUTH = ("True", "False", "", "nan", "None")
+"""What a column of truth values may hold; of a flight without one it is empty."""
+
 _LINE_MOST = 1_000_000
 """Bytes of a row at most."""
 
@@ -45,7 +48,10 @@ def read_table(path: Path, columns: list[str] | None = None) -> pd.DataFrame:
         frame[name] = frame[name].map(from_cell)
     for name in ("criteria_met", "kept_out"):
         if name in frame:
-            frame[name] = frame[name].astype(str) == "True"
+            cells = pd.Series([str(value) for value in frame[name]], frame.index, dtype=str)
+            if len(others := cells[~cells.isin(_TRUTH)]):
+                raise ReportError(f"'{path}' has {others.iloc[0]!r} in {name}; it must be True or False: {REMEDY}")
+            frame[name] = cells == "True"
     for name in ("message", "outcome"):
         if name in frame:
             frame[name] = ["" if pd.isna(value) else str(value) for value in frame[name]]

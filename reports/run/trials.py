@@ -9,9 +9,12 @@ import numpy as np
 import pandas as pd
 
 from common.dotted_keys import at_or_below
+from common.run_layout import DRAWS
+from reports.errors import ReportError
 from reports.run.columns import Array, column, flights_flown
 from reports.run.flight_config import Config, flight_config, keepout_shape
 from reports.run.run_data import RunData
+from reports.run.table_file import REMEDY
 
 Parameters = dict[str, Any]
 
@@ -136,6 +139,8 @@ class Trial:
         draws = self.run.draws
         if key in draws:
             return draws.set_index("flight_id")[key].reindex(self.rows["flight_id"])
+        if key not in self.rows:
+            raise ReportError(f"'{self.run.path / DRAWS}' is gone or has no column '{key}', which flights differ in; {REMEDY}")
         return self.rows[key].set_axis(self.rows["flight_id"])
 
     def varies(self, key: str) -> bool:

@@ -62,11 +62,12 @@ def points_of(scenario: Scenario) -> list[Point]:
 
 def _grid(scenario: Scenario) -> Iterator[Point]:
     sweep = scenario.sweep.root
+    names = _names_of(sweep)
     for vehicle in _vehicles(scenario):
         for values in itertools.product(*map(_different, sweep.values())):
             at = dict(zip(sweep, values, strict=True))
             nu = scenario.sweep.nu[list(sweep["nu"]).index(at["nu"])] if "nu" in at else None
-            labels = [_label(key, value) for key, value in at.items()] + ([vehicle] if scenario.fidelity == "both" else [])
+            labels = [_label(names[key], value) for key, value in at.items()] + ([vehicle] if scenario.fidelity == "both" else [])
             changed = with_values(scenario, {swept_key(key): value for key, value in at.items()} | {"fidelity": vehicle})
             inputs = {key: value for key, value in at.items() if key != "nu"}
             yield Point(label="_".join(labels), variant=STUDY, scenario=changed, nu=nu, inputs=inputs, flights=scenario.flights)
@@ -136,12 +137,24 @@ def _varied(point: Point, name: str, values: Values, flights: int | None, *, bes
     )
 
 
-def _label(key: str, value: object) -> str:
-    if key == "nu":
+def _names_of(keys: Iterable[str]) -> dict[str, str]:
+    """Return what swept keys are called in the names of flights: by their last part, or by as many as tell them apart."""
+    parts = {key: key.split(".") for key in keys}
+    return {key: "_".join(own[-_parts_apart(own, [of for of in parts.values() if of is not own]) :]) for key, own in parts.items()}
+
+
+def _parts_apart(own: list[str], others: list[list[str]]) -> int:
+    """Return how many of the last parts of a key tell it apart from others; the first of them is not the number of an entry."""
+    apart = (n for n in range(1, len(own)) if own[-n:] not in [of[-n:] for of in others] and not own[-n].isdecimal())
+    return next(apart, len(own))
+
+
+def _label(name: str, value: object) -> str:
+    if name == "nu":
         return f"nu_{value:.6f}".rstrip("0").ljust(len("nu_0.00"), "0")
     if isinstance(value, str) and is_file_part(value):
         value = value.rpartition(":")[2]
     if isinstance(value, Mapping):
         value = value.get("title", value)
     text = f"{value:g}" if isinstance(value, int | float) and not isinstance(value, bool) else str(value)
-    return f"{key.rpartition('.')[2]}_{''.join(c if c.isalnum() or c in '.-' else '_' for c in text)}"[:60]
+    return f"{name}_{''.join(c if c.isalnum() or c in '.-' else '_' for c in text)}"[:60]

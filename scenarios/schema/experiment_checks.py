@@ -53,6 +53,7 @@ def check_together(scenario: "Scenario") -> None:
     """Refuse a scenario whose parts do not go together."""
     check_mission(scenario)
     check_source(scenario)
+    check_start_altitude(scenario)
     check_one_point(scenario)
     check_tables(scenario)
     if scenario.study == "falsify":
@@ -128,6 +129,20 @@ def check_source(scenario: "Scenario") -> None:
             f"{given} is {height:g} m beside emission.ship; exhaust of plume.model 'fluctuating' leaves a funnel at"
             f" {SOURCE_HEIGHT_MAX:g} m at most: lower it, or leave emission.ship out"
         )
+
+
+def check_start_altitude(scenario: "Scenario") -> None:
+    """Refuse a start below or above the altitudes at which exhaust is crossed: it was flown outside of them until it got there."""
+    flight, altitude = scenario.flight, scenario.flight.altitude_m
+    if scenario.emission.ship is None or altitude is None or flight.altitude_min_m <= altitude <= flight.altitude_max_m:
+        return
+    side, limit = "above", "raise flight.altitude_max_m"
+    if altitude < flight.altitude_min_m:
+        side, limit = "below", "lower flight.altitude_min_m"
+    raise ValueError(
+        f"flight.altitude_m is {altitude:g} m, {side} the altitudes at which exhaust is crossed, flight.altitude_min_m to"
+        f" altitude_max_m, {flight.altitude_min_m:g} to {flight.altitude_max_m:g} m: set it in between, or {limit}"
+    )
 
 
 def check_one_point(scenario: "Scenario") -> None:

@@ -109,8 +109,10 @@ class Replay(SingleFlight):
 
         The trial comes from the manifest, scaled to its aircraft, and not from the catalog, which may have changed.
         """
+        if "study" not in manifest:
+            raise InputError(f"'{self._from}': manifest.json is not that of a run; give the directory of a complete run")
         if "trials" not in manifest:
-            raise InputError(f"'{self._from}' is a study of {manifest.get('study')}; {_ONLY_FLIGHTS}")
+            raise InputError(f"'{self._from}' is a study of {manifest['study']}; {_ONLY_FLIGHTS}")
         trial, task, trials = self._row["trial"], self._task, manifest["trials"]
         for name in (trial, *trials):
             # It becomes part of the names of files.

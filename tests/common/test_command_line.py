@@ -2,8 +2,12 @@
 
 import subprocess
 import sys
+from typing import Annotated
 
 import pytest
+import typer
+
+from common.command_line import run_command
 
 PROGRAM = """
 import sys
@@ -30,3 +34,21 @@ def test_a_command_whose_reader_is_gone_ends_without_a_word(stream, other, long)
     assert said == b""
     # As a shell says of a program that SIGPIPE ended: 128 + 13.
     assert running.returncode == 141
+
+
+@pytest.mark.parametrize(
+    ("given", "told"),
+    [
+        (["--jobs", "0"], "error: --jobs is 0; it must be greater than or equal to 1; see program --help\n"),
+        (["--jobs=two"], "error: --jobs is two; it must be a valid integer; see program --help\n"),
+        (["--job", "2"], "error: No such option: --job (Possible options: --jobs); see program --help\n"),
+    ],
+)
+def test_an_option_that_is_out_of_range_is_told_with_its_value(given, told, monkeypatch, capsys):
+    def command(jobs: Annotated[int, typer.Option(min=1)] = 1) -> None:
+        raise AssertionError(jobs)
+
+    monkeypatch.setattr(sys, "argv", ["program", *given])
+    with pytest.raises(SystemExit) as ended:
+        run_command(command, "program")
+    assert (ended.value.code, capsys.readouterr().err) == (2, told)

@@ -162,6 +162,7 @@ def test_a_latitude_beyond_the_pole_is_refused_with_its_row(logged, capsys):
         ("limits_percent = 0.1", "limits_percent is 0.1; give a list"),
         ("[columns]\nso3 = 'x'", "[columns] has the key 'so3'"),
         ("[columns]\nso2 = 3", "columns.so2 is 3; give a name"),
+        ("[columns]\nso2 = 'co2_ppm'", "[columns] has the column 'co2_ppm' for so2 and for co2; name another one for either"),
         ("[columns]\nso2 = 'SO2'", "has no SO2 column 'SO2', but 'time_s', 'so2_ppb'"),
         ("[columns]\ntime = 'when'", "has no time column 'when'"),
         ("[columns]\nno = 'NOx'", "has no NO column 'NOx'"),

@@ -136,6 +136,7 @@ def test_an_export_into_a_link_is_refused(copy, tmp_path):
         ("summary.csv", lambda text: text[: text.rindex(",")], "' is cut off; "),
         ("draws.csv", lambda text: text[: text.rindex(",")], "' is cut off; "),
         ("summary.csv", lambda text: text.replace(",", ";"), "' is separated by semicolons; separate its columns by commas"),
+        ("summary.csv", lambda text: text.replace("False", "maybe"), "' has 'maybe' in criteria_met; it must be True or False: "),
         ("summary.csv", lambda text: text[:0], "' cannot be read: No columns to parse from file; "),
     ],
 )

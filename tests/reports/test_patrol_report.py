@@ -120,3 +120,11 @@ def test_a_patrol_that_failed_is_a_row_of_dashes_with_its_reason(run):
     found = patrol_content(both)
     assert found.verdict.failures == ["patrol_00001: no room"]
     assert not found.verdict.complete
+
+
+def test_one_verdict_is_told_as_one_and_the_report_is_judged_as_the_study_is(run):
+    found = of_row(run, correct=1, wrong=0, verdicts=1, oracle_verdicts=1)
+    assert (found.headline, found.complete) == ("1 correct verdict, 100 % of an oracle's, 0 wrong", True)
+    # The study's exit status is of the same sums: a patrol that did not come through fails both.
+    fallen = replace(run, summary=run.summary.assign(criteria_met=False))
+    assert (patrol_content(fallen).verdict.holds, read_patrols(fallen).counts.met) == (False, False)

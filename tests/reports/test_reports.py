@@ -225,6 +225,11 @@ def without(path, entry):
     (path / "manifest.json").write_text(json.dumps(manifest), encoding="utf-8")
 
 
+def with_manifest(path, **entries):
+    manifest = json.loads((path / "manifest.json").read_text(encoding="utf-8"))
+    (path / "manifest.json").write_text(json.dumps(manifest | entries), encoding="utf-8")
+
+
 def test_a_run_that_names_no_study_is_a_sweep_and_so_is_one_of_flights(copy, report):
     manifest = json.loads((copy / "manifest.json").read_text(encoding="utf-8"))
     titles = []
@@ -246,6 +251,8 @@ def test_a_run_that_names_no_study_is_a_sweep_and_so_is_one_of_flights(copy, rep
         (lambda path: with_study(path, ["flights"]), "study is \\['flights'\\], which has no report"),
         (lambda path: with_study(path, "sea_trial"), "study is 'sea_trial', which has no report"),
         (lambda path: without(path, "trials"), "another version: its manifest.json has no 'trials'"),
+        (lambda path: with_manifest(path, trials={}), "manifest.json names no trials, whose flights these are"),
+        (lambda path: with_manifest(path, trials=None), "manifest.json names no trials"),
         (lambda path: (path / "summary.csv").unlink(), "no summary.csv"),
         (lambda path: (path / "summary.csv").write_text("x,y\n" + 9 * "1,2\n", encoding="utf-8"), "is damaged"),
         (lambda path: (path / "crossings.csv").write_text("x,y\n1,2\n", encoding="utf-8"), "is damaged"),

@@ -115,7 +115,7 @@ def test_help_and_list_answer():
             ["emission.ship is 'container', and plume.model 'straight' has no smoke: set plume.model to 'fluctuating'"],
         ),
         (
-            ["plume_search", "--set", "flight.altitude_min_m=100", "--set", "flight.altitude_max_m=105"],
+            ["plume_search", *(f"--set=flight.altitude_{key}" for key in ("m=102", "min_m=100", "max_m=105"))],
             ["flight.altitude_min_m and altitude_max_m are 100 and 105 m", "give them 16 m or more between them"],
         ),
         (
@@ -245,14 +245,29 @@ def test_an_interrupted_replay_is_resumed_by_the_command_that_is_printed(tmp_pat
 
     monkeypatch.setattr("scenarios.engine.runner.fly_study", interrupted)
     monkeypatch.setattr("scenarios.studies.replay.Replay", lambda name, viewer, **given: (name, viewer, given))
-    ended = run_here(flight, "--aircraft-dir", "my fleet", "--flightgear", "localhost:5550", "--out", out, "--no-report")
+    typed = [flight, "--aircraft-dir", "my fleet", "--flightgear", "localhost:5550", "--out", out, "--no-report", "--jobs", "1"]
+    ended = run_here(*typed)
     assert ended.returncode == 130
     program, command, *arguments = shlex.split(ended.stderr.rpartition("Continue with: ")[2])
-    assert (program, command, "--no-report" in arguments) == ("plume-flight", "run", True)
-    run_here(*arguments)
+    assert (program, command, arguments) == ("plume-flight", "run", [*map(str, typed), "--resume"])
+    assert shlex.split(run_here(*arguments).stderr.rpartition("Continue with: ")[2])[2:] == arguments
+    assert len(calls) == 2
     (study, directory, _), (again, there, resume) = calls
     assert study == again == (str(flight), ("localhost", 5550), {"aircraft_dir": Path("my fleet")})
     assert (there, resume) == (directory, True)
+
+
+def test_an_interrupted_run_is_resumed_by_what_was_typed_with_its_directory(run_here, monkeypatch):
+    def interrupted(_study, _stem, directory, **_):
+        summary = StudySummary(done=2, met=False, lines=[], manifest={})
+        return RunResult(directory=directory, what="flights", planned=9, summary=summary, interrupted=True)
+
+    monkeypatch.setattr("scenarios.studies.registry.run_study", interrupted)
+    typed = ["sweep_nu", "--jobs", "3", "--seed", "7", "--set", "flight.crossings=3", "--time-limit", "90", "--memory-limit=2.5"]
+    *words, out, directory, resume = shlex.split(run_here(*typed).stderr.rpartition("Continue with: ")[2])
+    assert words == ["plume-flight", "run", *typed]
+    assert (out, resume) == ("--out", "--resume")
+    assert directory.startswith("runs/sweep_nu-")
 
 
 def test_a_list_of_trials_takes_its_own_keys_and_hands_on_those_of_the_trials(tmp_path, run_here):

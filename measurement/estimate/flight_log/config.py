@@ -82,6 +82,7 @@ def read_config(path: Path) -> LogConfig:
     for gas, factor in scale.items():
         if not 0.0 < factor < math.inf:
             raise MeasurementError(f"'{path}': scale of {gas} is {factor!r}; it must be positive, 1000 for ppm of SO2")
+    _check_once({**COLUMNS, **columns}, columns, path)
     method = table.get("method", "regression")
     limits = table.get("limits_percent", list(LIMITS_PERCENT))
     if not isinstance(limits, list) or not limits or not all(_is_number(limit) for limit in limits):
@@ -134,6 +135,15 @@ def _table(table: Mapping[str, Any], key: str, kind: Any, names: Any, path: Path
         if not isinstance(value, kind) or isinstance(value, bool):
             raise MeasurementError(f"'{path}': {key}.{name} is {value!r}; give a {'name' if kind is str else 'number'}")
     return dict(found)
+
+
+def _check_once(names: Mapping[str, str], given: Mapping[str, str], path: Path) -> None:
+    """Refuse a column that is given for two quantities: readings of one would be taken for those of the other."""
+    for key, name in given.items():
+        if twice := [other for other, of in names.items() if of == name and other != key]:
+            raise MeasurementError(
+                f"'{path}': [columns] has the column '{name}' for {key} and for {twice[0]}; name another one for either of them"
+            )
 
 
 def _is_number(value: Any) -> bool:

@@ -1,7 +1,10 @@
 """A logged flight in a CSV file."""
 
+import lzma
 import math
 import warnings
+import zipfile
+import zlib
 from dataclasses import dataclass
 from datetime import datetime
 from pathlib import Path
@@ -67,8 +70,11 @@ def read_flight(path: Path, config: LogConfig) -> LoggedFlight:
         raise
     except pd.errors.ParserWarning:
         raise MeasurementError(f"'{path}' has rows with more values than its head line has names; name every column") from None
+    except (EOFError, lzma.LZMAError, zipfile.BadZipFile, zlib.error) as error:
+        raise MeasurementError(f"'{path}' cannot be unpacked: {error}; give a whole file, or the CSV file itself") from None
     except OSError as error:
-        raise MeasurementError(f"'{path}' cannot be read: {error.strerror}; give a CSV file") from None
+        # A file that is no archive, as its name says, has no number of an error.
+        raise MeasurementError(f"'{path}' cannot be read: {error.strerror or error}; give a CSV file") from None
     except UnicodeDecodeError:
         raise MeasurementError(f"'{path}' is not text in UTF-8; save it as CSV in UTF-8") from None
     except (pd.errors.ParserError, pd.errors.EmptyDataError, ValueError) as error:

@@ -1,14 +1,15 @@
-"""Which flights of a trial failed a criterion, and which were not flown, in lines for page 1."""
+"""Which flights of a trial failed a criterion, were not flown, or tracked badly without failing, in lines for page 1."""
 
 from collections.abc import Iterator
 from typing import Any
 
+import numpy as np
 import pandas as pd
 
 from reports.document.tables import ending, in_symbols, number
 from reports.flights.criteria import criteria_of
 from reports.flights.names import told_name
-from reports.run.columns import column, count, largest, met, violated, was_flown
+from reports.run.columns import Mask, column, count, largest, met, violated, was_flown
 from reports.run.trials import Trial
 
 _NAMED_MAX = 3
@@ -16,6 +17,14 @@ _NAMED_MAX = 3
 
 _SEVERAL = {False: ", ", True: "; "}
 """Between the names of flights, whether or not these have commas of their own."""
+
+
+_USUAL_MODES = ("approach", "tracking", "found", "departing", "gliding", "terminating")
+"""Modes in which a flight tracks its reference, or in which the tracking error is not measured."""
+
+
+_WORDS = {"modes": "", "turbulence": "none"}
+"""Columns of words, and what stands in them for nothing."""
 
 
 def failure_lines(trial: Trial) -> list[str]:
@@ -63,3 +72,46 @@ def _reason(row: "pd.Series[Any]") -> str:
     """Return why a flight failed a criterion; that it did not settle its message says already."""
     ended = "" if row["outcome"] == "not_settled" else str(row["outcome"]).replace("_", " ")
     return "; ".join(words for words in (ended, in_symbols(str(row["message"]))) if words)
+
+
+def tracking_lines(trial: Trial, *, only: bool = True) -> list[str]:
+    """Return in a line which flights left the band again in which they had settled, and what happened after that.
+
+    It is about flights whose tracking error no criterion limits: of the others the criterion tells.
+
+    Parameters
+    ----------
+    trial : whose flights
+    only : whether it is the run's only one, else the line begins with its title
+    """
+    criteria, flown, band = trial.criteria, trial.flown, float(trial.setting("flight.settling_band_m"))
+    if criteria.get("tracking_error_rms_m") and criteria.get("settles", True):
+        return []
+    errors = column(flown, "tracking_error_rms_m")
+    far = flown[errors > band]
+    if not len(far):
+        return []
+    alone = len(flown) == 1
+    which = "The" if alone else f"In {len(far):,} of {len(flown):,} flights the"
+    happened = {words: count(mask) for words, mask in _after_settling(far).items() if mask.any()}
+    told = ", ".join(words + (f" ({number_of:,})" if not alone else "") for words, number_of in happened.items())
+    why = f"after settling {told}" if told else "nothing that the summary records explains it"
+    line = (
+        f"{which} tracking error, rms after settling, is {'' if alone else 'up to '}{np.nanmax(errors):.3g} m, above the"
+        f" {band:g} m within which a flight counts as settled, and no criterion limits it: {why}."
+    )
+    return [line if only else f"{trial.title}: {line[0].lower()}{line[1:]}"]
+
+
+def _after_settling(rows: pd.DataFrame) -> dict[str, Mask]:
+    """Return what took flights off their reference after they had settled, and which flights."""
+    settled = column(rows, "settling_time_s")
+    modes, air = (rows[name].fillna(no) if name in rows else pd.Series(no, rows.index) for name, no in _WORDS.items())
+    others = {mode: None for flown in modes for mode in str(flown).split(", ") if mode and mode not in _USUAL_MODES}
+    return {
+        "the vessel manoeuvred": column(rows, "manoeuvre_end_s") > settled,
+        "the keep-out guard changed commands": column(rows, "guard_after_settling_s") > 0.0,
+        "a fault began": column(rows, "fault_time_s") > settled,
+        "the air was turbulent": ~air.isin(["none"]).to_numpy(),
+        **{f"the mode was '{mode}' for a time": modes.str.contains(mode, regex=False).to_numpy() for mode in others},
+    }

@@ -7,7 +7,7 @@ import numpy as np
 from reports.document.chart import Line, Panel, Style
 from reports.document.palette import SERIES, Meaning, series_colour
 from reports.document.panels import Group, around, capped, level, points
-from reports.flights.names import flown_elsewhere, swept_words
+from reports.flights.names import flown_elsewhere, words_together
 from reports.monte_carlo.names import input_label
 from reports.run.columns import clearance, column, interval_error, violated
 from reports.run.trials import Trial
@@ -46,7 +46,7 @@ def by_words(trial: Trial) -> list[Group]:
 
     Of more words than there are colours none has one of its own.
     """
-    words, inside = [", ".join(each) for each in zip(*swept_words(trial).values(), strict=True)], violated(trial.flown)
+    words, inside = words_together(trial), violated(trial.flown)
     names = list(dict.fromkeys(words))
     if not 1 < len(names) <= len(SERIES):
         return by_violation(trial)

@@ -32,6 +32,12 @@ _IN_UNITS = {
 }
 """Units of keys, and what other units are in them, of which an example is converted."""
 
+_PATTERN = re.compile(r"\^\[(.*)\]\+\$")
+"""Of texts that consist of some letters alone."""
+
+_OF_KEY = "unit of the key"
+"""Unit of what is sampled of any key."""
+
 _PERCENT, _SURELY_PERCENT = 100.0, 2.0
 """Percent in a whole, and the least value in the place of a fraction that is taken for percent."""
 
@@ -46,7 +52,7 @@ def must_be(error: Mapping[str, Any], *, key: str, unit: str = "", default: obje
     unit : of the key, empty or ``-`` without one
     default : of the key, an example where the value has no number in it
     """
-    unit = "" if unit == "-" else unit
+    unit = "" if unit in ("-", _OF_KEY) else unit
     kind, value = error["type"], error["input"]
     if _NO_NUMBER.fullmatch(kind):
         given = _example(value, unit) if isinstance(value, str) else None
@@ -56,6 +62,15 @@ def must_be(error: Mapping[str, Any], *, key: str, unit: str = "", default: obje
         return f"it must be a {finite}number{f' in {unit}' if unit else ''}{f', e.g. {key}={given}' if given else ''}"
     if _NOT_WHOLE.fullmatch(kind):
         return "it must be a whole number"
+    if kind == "string_pattern_mismatch":
+        letters = _PATTERN.fullmatch(error["ctx"]["pattern"])
+        return (
+            f"it must be made of the letters {letters[1]} alone, of one at least"
+            if letters
+            else f"it must match {error['ctx']['pattern']}"
+        )
+    if kind == "too_long":
+        return f"it must have {error['ctx']['max_length']} values at most, and has {error['ctx']['actual_length'] or 'more'}"
     if kind not in _LIMITS:
         return _OTHERS.get(kind.partition("_")[0])
     name, words = _LIMITS[kind]

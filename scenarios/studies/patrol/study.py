@@ -1,15 +1,15 @@
 """Patrols as a study: several ships, one UAV with an endurance, and an oracle to compare with."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, fields
-from typing import Any, Self
+from dataclasses import fields
+from typing import Any
 
-from common.physics.units import SECONDS_PER_HOUR
 from common.run_layout import PHASES, SHIPS, SUMMARY
+from common.verdicts.patrols import PatrolCounts
 from scenarios.engine.journal import Journal
 from scenarios.engine.run_directory import RunDirectory
 from scenarios.engine.runner import Fly, Progress, StudySummary
-from scenarios.engine.task import Row, Task
+from scenarios.engine.task import Task
 from scenarios.errors import InputError
 from scenarios.schema.scenario import Scenario
 from scenarios.studies.flight_study import FlightStudy
@@ -63,97 +63,34 @@ class PatrolStudy(FlightStudy):
 
     def summary(self, journal: Journal) -> StudySummary:
         """Return the result so far."""
-        counts = PatrolCounts.of(list(journal.rows(SUMMARY)))
-        config = self._patrols.patrol
-        enough = counts.correct >= config.oracle_share_min * counts.oracle
-        right = counts.wrong <= config.wrong_share_max * counts.verdicts
-        met = counts.met == self.planned and enough and right and counts.judged
+        rows, config = list(journal.rows(SUMMARY)), self._patrols.patrol
+        counts = PatrolCounts.of(
+            rows, planned=self.planned, oracle_share_min=config.oracle_share_min, wrong_share_max=config.wrong_share_max
+        )
         share = f"{100.0 * counts.correct / counts.oracle:.0f} %" if counts.oracle else "–"
+        enough, right = ("meet" if of else "fail" for of in (counts.enough, counts.right))
         judged = (
-            f"correct verdicts {'meet' if enough else 'fail'} patrol.oracle_share_min, wrong ones {'meet' if right else 'fail'}"
-            " patrol.wrong_share_max"
+            f"correct verdicts {enough} patrol.oracle_share_min, wrong ones {right} patrol.wrong_share_max"
             if counts.judged
             else "no ship was served"
             if not counts.served
             else "no verdict, and none of an oracle: give ships more time (patrol.patience_s, flight.after_settling_s)"
         )
+        ended = f"exit status {int(not counts.met)}: " if counts.done == self.planned else "so far "
         lines = [
             f"patrols: {self.planned} planned, {counts.done} flown; {counts.served} of {counts.ships} ships served in"
             f" {counts.hours:.3g} h, {counts.per_hour:.2f} an hour",
             f"verdicts: {counts.correct} correct, {counts.wrong} wrong, {counts.open} open; the oracle's: {counts.oracle}"
             f" ({share}, required {100.0 * config.oracle_share_min:g} %)",
             f"keep-out violations: {counts.violations}; patrols that kept out: {counts.kept_out} of {counts.done}",
-            *(f"    {row['flight_id']}: {row['message']}" for row in counts.failed),
-            f"{f'exit status {int(not met)}: ' if counts.done == self.planned else 'so far '}{counts.met} of {self.planned} patrols"
-            f" kept out and brought their aircraft through; {judged}",
+            *(f"    {row['flight_id']}: {row['message']}" for row in rows if row["message"]),
+            f"{ended}{counts.through} of {self.planned} patrols kept out and brought their aircraft through; {judged}",
         ]
         manifest: dict[str, Any] = {
-            "patrols_met": counts.met, "ships_served": counts.served, "verdicts": counts.verdicts, "verdicts_wrong": counts.wrong,
-            "oracle_verdicts": counts.oracle,
+            "patrols_met": counts.through, "ships_served": counts.served, "verdicts": counts.verdicts,
+            "verdicts_wrong": counts.wrong, "oracle_verdicts": counts.oracle,
         }  # fmt: skip
-        return StudySummary(done=counts.done, met=met, lines=lines, manifest=manifest | self._sizes())
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class PatrolCounts:
-    """Sums over patrols.
-
-    Attributes
-    ----------
-    done, met, kept_out : patrols that are done, those that kept out with their aircraft, those that kept out
-    ships, served, verdicts, correct, wrong, open : ships, those flown beside, and how these flights ended
-    oracle : verdicts of an oracle that knows everything
-    violations : of keep-out areas
-    hours : of all patrols [h]
-    failed : rows of patrols that served no ship, did not keep out, or did not come through
-    """
-
-    done: int
-    met: int
-    kept_out: int
-    ships: int
-    served: int
-    verdicts: int
-    correct: int
-    wrong: int
-    open: int
-    oracle: int
-    violations: int
-    hours: float
-    failed: Sequence[Row]
-
-    @classmethod
-    def of(cls, rows: Sequence[Row]) -> Self:
-        """Return the sums over the rows of a summary."""
-
-        def total(name: str) -> int:
-            return int(sum(row.get(name, 0) for row in rows))
-
-        return cls(
-            done=len(rows),
-            met=total("criteria_met"),
-            kept_out=total("kept_out"),
-            ships=total("ships"),
-            served=total("served"),
-            verdicts=total("verdicts"),
-            correct=total("correct"),
-            wrong=total("wrong"),
-            open=total("open"),
-            oracle=total("oracle_verdicts"),
-            violations=total("keepout_violations"),
-            hours=sum(row.get("duration_s", 0.0) for row in rows) / SECONDS_PER_HOUR,
-            failed=[row for row in rows if row["message"]],
-        )
-
-    @property
-    def judged(self) -> bool:
-        """Whether there is a ship that was served, and a verdict to judge: its own or an oracle's."""
-        return self.served > 0 and self.verdicts + self.oracle > 0
-
-    @property
-    def per_hour(self) -> float:
-        """Return ships served an hour [1/h]."""
-        return self.served / self.hours if self.hours else 0.0
+        return StudySummary(done=counts.done, met=counts.met, lines=lines, manifest=manifest | self._sizes())
 
 
 def _given(scenario: Scenario, key: str) -> bool:

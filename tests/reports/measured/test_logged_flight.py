@@ -76,7 +76,7 @@ def test_parts_of_the_uncertainty_add_to_the_whole(record):
 def test_an_estimate_below_0_is_not_told_outside_of_its_own_interval_without_a_word(record):
     record["estimate"] |= {"fsc_percent": -0.058, "low_percent": 0.0, "high_percent": 0.072}
     detail = measurement_verdict(record).detail
-    words = "-0.058 % m/m, which is below 0; 95 % interval 0.000 to 0.072 %, cut at 0 because no fuel has less, from"
+    words = "-0.058 % m/m, which is below 0; 95 % interval 0.000 to 0.072 %, given that no fuel has less than 0, from"
     assert detail.startswith(f"Fuel sulphur content {words}")
 
 

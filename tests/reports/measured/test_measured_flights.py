@@ -160,10 +160,10 @@ def test_a_probability_is_never_told_as_certain():
 
 
 def test_a_content_below_0_is_told_with_the_interval_that_its_verdict_rests_on():
-    # The estimate is -0.025 ± 0.020 (1.96 σ: 0.039): the interval is cut at 0, and its upper end is that of 0.
+    # Of an estimate below 0 the words are those of the interval that the row has.
     row = {**ROW, "fsc_percent": -0.025, "fsc_low_percent": 0.0, "fsc_high_percent": 0.039, "sulphur_verdict": "below"}
     run = SimpleNamespace(summary=pd.DataFrame([row]))
-    words = "-0.025 % m/m, which is below 0; 95 % interval 0.000 to 0.039 %, cut at 0 because no fuel has less: below the limit"
+    words = "-0.025 % m/m, which is below 0; 95 % interval 0.000 to 0.039 %, given that no fuel has less than 0: below the limit"
     assert words in flights.sulphur_headline(run)
     assert words in flights._told(pd.Series(row))
     assert flights.sulphur_cards(run)[1].value == "0.000 to 0.039 % m/m"

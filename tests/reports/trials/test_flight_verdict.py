@@ -6,8 +6,10 @@ from dataclasses import replace
 
 import pandas as pd
 import pytest
+from report_parts import blocks_of
 from trial_runs import rows_of, with_criterion, with_values
 
+from reports.document.blocks import Table
 from reports.registry import content
 
 pytestmark = pytest.mark.usefixtures("without_single_flights")
@@ -192,10 +194,41 @@ def test_what_no_criterion_asks_for_is_on_the_first_page_too(run):
     report = content(with_values(run, 2, tracking_error_rms_m=107.0, guard_lost_s=3.2, guard_interventions=1, manoeuvres_unflown=1))
     (tracking,) = (value for name, value, *_ in report.verdict.figures if "99" in name)
     assert tracking.endswith(" m, largest 107 m")
-    assert report.verdict.failures == [
+    assert report.verdict.failures[0].startswith("Turns: in 1 of 2 flights the tracking error, rms after settling, is up to 107 m")
+    assert report.verdict.failures[1:] == [
         "In 1 of 4 flights the guard could not hold its own radius, for up to 3.2 s.",
         "In 1 flight a manoeuvre of the vessel begins after the end of the flight, and was never flown.",
     ]
+
+
+def test_a_large_tracking_error_that_no_criterion_limits_is_told_with_what_happened_after_settling(run):
+    limited = with_criterion(run, "steady", "tracking_error_rms_m", 1.5)
+    far = {
+        "tracking_error_rms_m": 39.04,
+        "settling_time_s": 60.0,
+        "guard_after_settling_s": 3.2,
+        "modes": "approach, tracking, outrun",
+    }
+    (line,) = content(with_values(limited, 3, **far)).verdict.failures
+    # The vessel of the second trial turns at 150 s; its settling band is the schema's, 5 m.
+    assert line == (
+        "Turns: in 1 of 2 flights the tracking error, rms after settling, is up to 39 m, above the 5 m within which a flight counts"
+        " as settled, and no criterion limits it: after settling the vessel manoeuvred (1), the keep-out guard changed commands"
+        " (1), the mode was 'outrun' for a time (1)."
+    )
+    # Of a trial with a criterion that tells; it is not judged by it where it does not have to settle.
+    assert content(with_values(limited, 0, tracking_error_rms_m=39.04)).verdict.failures == []
+    assert len(content(with_values(with_criterion(run, "turns", "tracking_error_rms_m", 1.5), 3, **far)).verdict.failures) == 1
+
+
+def test_of_a_flight_alone_the_table_of_flights_says_why_its_tracking_error_is_large(run):
+    only = run.summary.iloc[:1].assign(tracking_error_rms_m=39.04, guard_after_settling_s=0.0)
+    manifest = run.manifest | {"trials": {"steady": run.manifest["trials"]["steady"] | {"flights": 1}}, "flights_planned": 1}
+    manifest["trial_flights"] = {"steady": 1}
+    report = content(replace(run, summary=only, manifest=manifest))
+    words = "and no criterion limits it: nothing that the summary records explains it."
+    assert report.verdict.failures[0].startswith("The tracking error, rms after settling, is 39 m, above the 5 m")
+    assert [words in table.caption for table in blocks_of(report, Table, "trial1")] == [True]
 
 
 def test_of_one_flight_there_is_no_quantile_of_the_tracking_error(run):

@@ -9,7 +9,8 @@ import pytest
 from report_parts import blocks_of
 
 from reports.document.blocks import FlightPicker, Table
-from reports.flights.names import _swept, flight_name, flown_elsewhere, swept_column
+from reports.errors import ReportError
+from reports.flights.names import _swept, flight_name, flown_elsewhere, swept_column, words_together
 from reports.flights.trials.charts import trial_charts
 from reports.flights.trials.panels_over import LIMIT_LABEL
 from reports.registry import content
@@ -165,8 +166,31 @@ def test_names_have_as_many_digits_as_tell_swept_values_apart(trial, key, values
     assert [cell(row) for _, row in own.rows.iterrows()] == [name.split("= ")[-1].split("radius ")[-1] for name in names]
 
 
-def test_a_value_that_says_nothing_by_itself_has_the_name_of_its_key():
-    assert _swept("turbulence.level", "none") == "Turbulence level none"
-    assert _swept("guidance.preview", np.bool_(False)) == "Guidance preview no"
-    assert _swept("turbulence.level", "severe") == "severe"
-    assert _swept("guidance.law", "/home/me/laws/mylaw.py:MyLaw") == "mylaw.py:MyLaw"
+def test_a_value_that_says_nothing_by_itself_has_the_name_of_its_key(trial):
+    mine = "/home/me/laws/mylaw.py:MyLaw"
+    sweep = {"turbulence.level": ["none", "severe"], "guidance.preview": [True, False], "guidance.law": ["cascade", mine]}
+    own = replace(trial, config=trial.config | {"sweep": sweep})
+    assert _swept(own, "turbulence.level", "none") == "Turbulence level none"
+    assert _swept(own, "guidance.preview", np.bool_(False)) == "Guidance preview no"
+    assert _swept(own, "turbulence.level", "severe") == "severe"
+    assert _swept(own, "guidance.law", mine) == "mylaw.py:MyLaw"
+
+
+def test_words_that_two_swept_keys_have_in_common_have_the_names_of_their_keys_in_titles_and_legends(trial):
+    sweep = {"guidance.law": ["cascade", "line_of_sight"], "following.margin_law": ["cascade", "line_of_sight", "lyapunov"]}
+    draws = pd.DataFrame({
+        "flight_id": trial.rows["flight_id"][:2],
+        "guidance.law": ["cascade", "line_of_sight"],
+        "following.margin_law": ["line_of_sight", "lyapunov"],
+    })  # fmt: skip
+    run = replace(trial.run, draws=draws, manifest=trial.run.manifest | {"trial_flights": {trial.key: 6}})
+    own = replace(trial, run=run, config=trial.config | {"sweep": sweep, "flights": 1}, rows=trial.rows.iloc[:2])
+    names = ["Guidance law cascade, Following margin law line of sight", "Guidance law line of sight, lyapunov"]
+    assert words_together(own) == names
+    assert flight_name(own, own.rows.iloc[0]) == "Guidance law cascade, following margin law line_of_sight"
+
+
+def test_a_sweep_whose_values_are_gone_names_the_table_that_had_them(trial):
+    gone = replace(trial, run=replace(trial.run, draws=pd.DataFrame({"flight_id": []})))
+    with pytest.raises(ReportError, match=r"draws\.csv' is gone or has no column 'keepout\.radius_m', .*; repeat the run's"):
+        trial_charts(gone)

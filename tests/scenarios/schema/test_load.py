@@ -237,3 +237,17 @@ def test_a_value_in_the_place_of_a_list_is_refused_with_a_list_of_that_kind(name
 def test_a_number_or_truth_value_in_the_place_of_text_is_refused_in_words(key, value):
     with pytest.raises(InputError, match=f"is {value}; it must be text, in quotes"):
         load_study("sea_wind", [f"{key}={value}"])
+
+
+@pytest.mark.parametrize(
+    ("override", "words"),
+    [
+        ("start.distance_m=[1,2,3]", "start.distance_m is [1, 2, 3]; it must have 2 values at most, and has 3"),
+        ('draws=[{key="wind.speed_mps",normal=[1,-5]}]', "draws.0.normal.1 is -5; it must be above 0"),
+        ('cases=[{name="My case"}]', "cases.0.name is 'My case'; it must be made of the letters a-z0-9_ alone, of one at least"),
+    ],
+)
+def test_what_a_value_must_be_is_said_in_words_and_in_no_unit_that_is_none(override, words):
+    with pytest.raises(InputError) as refusal:
+        load_study("sweep_nu", [override])
+    assert str(refusal.value) == words

@@ -133,7 +133,8 @@ def test_a_comparison_at_a_speed_ratio_that_is_not_swept_is_refused():
 
 def test_a_funnel_that_is_too_high_for_exhaust_is_refused_by_its_key_at_any_point():
     # measurement.plume takes heights of 1 to 200 m; an axis without smoke may begin higher.
-    assert load_study("sulphur", ["plume.source_height_m=200"]).plume.source_height_m == 200.0
+    within = ["plume.source_height_m=200", "flight.altitude_m=100"]
+    assert load_study("sulphur", within).plume.source_height_m == 200.0
     assert load_study("sweep_nu", ["plume.source_height_m=500"]).plume.source_height_m == 500.0
     with pytest.raises(InputError, match=r"^plume\.source_height_m is 500 m beside emission\.ship; .* 200 m at most: lower it"):
         load_study("sulphur", ["plume.source_height_m=500"])
@@ -168,3 +169,17 @@ def test_ships_are_compared_from_one_altitude_or_funnel_height(varied):
     # Either gives all of them the one altitude for which the autopilot is designed.
     for given in ("flight.altitude_m=40", "plume.source_height_m=40"):
         assert load_study("sulphur", [ships, given]).altitude == 40.0
+
+
+@pytest.mark.parametrize(
+    ("keys", "words"),
+    [
+        (["flight.altitude_m=5"], "flight.altitude_m is 5 m, below .* 20 to 120 m: set it in between, or lower "),
+        (["flight.altitude_m=130"], "flight.altitude_m is 130 m, above .* in between, or raise flight.altitude_max_m"),
+    ],
+)
+def test_a_start_outside_of_the_altitudes_at_which_exhaust_is_crossed_is_refused(keys, words):
+    with pytest.raises(InputError, match=words):
+        load_study("sulphur", keys)
+    # Without exhaust there are no such altitudes.
+    assert load_study("sweep_nu", ["plume.source_height_m=15"]).altitude == 15.0

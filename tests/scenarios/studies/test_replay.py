@@ -116,6 +116,10 @@ def test_what_cannot_be_flown_again_is_refused_in_one_line(runs, tmp_path):
     (copy / "journal.sqlite").unlink()
     with pytest.raises(InputError, match=r"has no journal\.sqlite"):
         Replay(str(copy / "flights" / "one_00000"))
+    shutil.copy(runs / "trials" / "journal.sqlite", copy)
+    (copy / "manifest.json").write_text("{}", encoding="utf-8")
+    with pytest.raises(InputError, match=r"manifest\.json is not that of a run; give the directory of a complete run"):
+        Replay(str(copy / "flights" / "one_00000"))
     (copy / "manifest.json").write_text("{", encoding="utf-8")
     with pytest.raises(InputError, match=r"manifest\.json cannot be read"):
         Replay(str(copy / "flights" / "one_00000"))

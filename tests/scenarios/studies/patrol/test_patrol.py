@@ -13,7 +13,6 @@ from scenarios.experiment.requests import Experiment
 from scenarios.planning.spreads import PredictedSpreads
 from scenarios.schema.load import load_study, with_values
 from scenarios.studies.patrol.ships import sampled_patrol
-from scenarios.studies.patrol.study import PatrolCounts
 from scenarios.studies.patrol.tables import patrol_figures, ship_row, wind_row
 from scenarios.studies.patrol.work import PatrolWork
 from scenarios.studies.registry import run_study
@@ -206,15 +205,6 @@ def test_a_study_without_any_verdict_of_an_oracle_either_is_not_met(tmp_path):
     assert (row["served"], row["oracle_verdicts"], row["criteria_met"]) == (1, 0, True)
     assert not result.all_met
     assert "no verdict, and none of an oracle: give ships more time" in result.summary.lines[-1]
-
-
-@pytest.mark.parametrize(
-    ("served", "verdicts", "oracle", "judged"),
-    [(0, 0, 2, False), (2, 0, 0, False), (2, 0, 1, True), (2, 1, 0, True)],
-)
-def test_patrols_are_judged_by_a_ship_that_was_served_and_a_verdict_of_the_patrol_or_an_oracle(served, verdicts, oracle, judged):
-    row = {"message": "", "served": served, "verdicts": verdicts, "oracle_verdicts": oracle}
-    assert PatrolCounts.of([row]).judged is judged
 
 
 @pytest.mark.parametrize(
