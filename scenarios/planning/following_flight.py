@@ -6,17 +6,18 @@ from collections.abc import Callable
 from gnc.airspeed.pace_hold import PaceHold
 from gnc.errors import InfeasibleError
 from gnc.estimation.health_monitor import HealthParameters
-from gnc.estimation.reachable_set import ReachableSet, VesselLimits
+from gnc.estimation.reachable_set import ReachableSet, Tube, VesselLimits
 from gnc.mission.plume_following import FollowingParameters
 from gnc.mission.standoff import StandoffParameters
 from gnc.parameters import GuidanceParameters, ReportedVessel
-from gnc.reference.reference import PeriodicPath
+from gnc.reference.reference import Orbit, PeriodicPath
 from gnc.safety.guard_parameters import GuardParameters
 from scenarios.margin.keepout_margin import KeepoutMargin, filter_parameters, tracking_level, vessel_limits, widest_tube
 from scenarios.margin.orbit_room import circle_distance, orbit_distance
 from scenarios.margin.tracking_spread import SpreadTable
 from scenarios.planning.air.dead_reckoning import drift_rate
 from scenarios.planning.air.estimated_wind import first_wind_error, navigation_parameters, wind_change
+from scenarios.planning.air.flown_heights import check_not_outrun
 from scenarios.planning.bounded_steering import given_steering
 from scenarios.planning.declared_vessel import check_vessel
 from scenarios.planning.flight_plan import FlightPlan, Sensing
@@ -94,10 +95,7 @@ def following_flight(
     oscillation = oscillation_at(g, scenario.reference, nu)
     nearer = satellite_noise(scenario, setup, oscillation.amplitude)
     widest = widest_tube(limits, scenario.reports, plan_period=plan_period(g), noise=nearer)
-    if scenario.stands_off:
-        nearest = circle_distance(guarded, widest, g.airspeed_mps, nu * g.airspeed_mps)
-    else:
-        nearest = orbit_distance(guarded, widest, oscillation)
+    nearest = _nearest(scenario, guarded, widest, oscillation)
     farthest = max(radius + f.margin_min_m, nearest) + level
     reach = widest.reach(turn_time(scenario, setup.reversal))
     margin = KeepoutMargin(tracking_sigma=sigma, total=farthest - radius, guard=level, reach=reach)
@@ -107,10 +105,13 @@ def following_flight(
         orbit = circle = vessel_circle(scenario, nu, farthest)
         periods = circle.periods(f.speed_ratio_max)
         mission = standoff_parameters(scenario, setup, circle.radius, axis_height(scenario, vessel))
+        farthest = circle.radius
     else:
         nearest, orbit = radius + margin.total + oscillation.half_widths()[0], oscillation
         further = additional_distance(scenario, vessel, nearest, wind.at_start)
         periods, mission = _following(scenario, setup, margin, vessel, further, guarded.drift_rate)
+        farthest = nearest + further
+    check_not_outrun(scenario, vessel, farthest)
     start = sampled_start(scenario.start, generators.world, course=vessel.course(0.0), axis=plume.axis(0.0))
     fault = sampled_fault(scenario.fault, generators.world)
     weather = sampled_weather(scenario, air, generators.world)
@@ -165,6 +166,13 @@ def following_flight(
         margin=margin,
         apparent_wind=wind,
     )
+
+
+def _nearest(scenario: Scenario, guard: GuardParameters, widest: Tube, oscillation: Orbit) -> float:
+    """Return the smallest distance of the orbit, or of the circle about the vessel, at which the guard does not act [m]."""
+    if scenario.stands_off:
+        return circle_distance(guard, widest, oscillation.speed, oscillation.nu * oscillation.speed)
+    return orbit_distance(guard, widest, oscillation)
 
 
 def _following(

@@ -108,8 +108,13 @@ class ApparentWind:
 
 
 def apparent_wind(scenario: Scenario, vessel: VesselTruth) -> ApparentWind:
-    """Return how fast a vessel moves through the air, over the longest flight."""
-    wind, height = mean_wind(scenario, vessel), scenario.source_height
+    """Return how fast a vessel moves through the air at the height of her funnel, over the longest flight."""
+    return wind_past(scenario, vessel, scenario.source_height)
+
+
+def wind_past(scenario: Scenario, vessel: VesselTruth, height: float) -> ApparentWind:
+    """Return how fast a vessel moves through the air at a height [m], over the longest flight."""
+    wind = mean_wind(scenario, vessel)
     duration = scenario.flight.duration_max_s + TRACK_MARGIN
     if isinstance(vessel, SteadyVessel) and wind.constant:
         _, _, v_north, v_east = vessel.motion(0.0)

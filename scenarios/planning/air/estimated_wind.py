@@ -5,6 +5,7 @@ import math
 from aircraft.atmosphere.turbulence import TURBULENCE, intensities, scale_lengths
 from aircraft.atmosphere.wind import WindField
 from gnc.estimation.navigation import NOISE_DEVIATIONS, Navigation, NavigationParameters
+from scenarios.planning.air.flown_heights import flown_heights, glides
 from scenarios.planning.limits import plan_interval, plan_period
 from scenarios.schema.scenario import Scenario
 from scenarios.vehicles.vehicle_setup import VehicleSetup
@@ -17,9 +18,6 @@ _WIND_DRIFT = 0.02
 
 WIND_FOLLOWED = 20.0
 """Time within which the estimated wind follows a change [s]: of a wind that turns steadily it is behind by less."""
-
-_PLUME_RADII = 3.0
-"""Distance from the vessel up to which an inclined plume is climbed to, over the keep-out radius [-]: beyond any orbit's centre."""
 
 
 def navigation_parameters(scenario: Scenario, setup: VehicleSetup) -> NavigationParameters:
@@ -80,8 +78,11 @@ def largest_wind_change(scenario: Scenario, wind: WindField, interval: float, al
     ----------
     altitude_error : by which the altitude may differ from its command [m]
     """
-    heights, duration = _flown_heights(scenario), scenario.flight.duration_max_s
+    heights, duration = flown_heights(scenario), scenario.flight.duration_max_s
     climbed = scenario.following.climb_gradient * scenario.guidance.airspeed_mps * interval
+    if glides(scenario):
+        # How steeply depends on what has failed; all the way down does not take long.
+        climbed = max(climbed, scenario.altitude)
     lowest, highest = min(heights) - altitude_error, max(heights) + altitude_error
     shear = wind.largest_shear(climbed + 2.0 * altitude_error, lowest, highest, duration)
     return wind.largest_change(interval, duration, heights) + shear
@@ -117,15 +118,6 @@ def _sensor_sigmas(scenario: Scenario) -> tuple[float, float]:
 def _sensor_sigma(scenario: Scenario) -> float:
     """Return the deviation of single measurements of the wind by these [m/s]: the filter's own, or of the sensors if larger."""
     return max(_AIRSPEED_SIGMA, _measured_noise(scenario))
-
-
-def _flown_heights(scenario: Scenario) -> list[float]:
-    """Return the height at the start and those of the plume that are climbed to, the lowest and the highest [m]."""
-    flight, plume = scenario.flight, scenario.plume
-    if scenario.emission.ship is not None:
-        return [scenario.altitude, flight.altitude_min_m, flight.altitude_max_m]
-    risen = _PLUME_RADII * scenario.keepout.radius_m * math.tan(math.radians(plume.elevation_deg))
-    return [scenario.altitude, scenario.source_height, scenario.source_height + risen]
 
 
 def _gust_sigma(scenario: Scenario) -> float:

@@ -13,6 +13,7 @@ from measurement.emission.emission import Emission
 from measurement.gases import GASES
 from measurement.sniffer.spec import SnifferSpec
 from scenarios.instruments.sniffer import SnifferOnBoard
+from scenarios.planning.air.flown_heights import climbed_along
 from scenarios.schema.scenario import Scenario
 from scenarios.schema.sections.flight import ALTITUDE_MARGIN
 from scenarios.world.exhaust import emission
@@ -109,7 +110,7 @@ def axis_height(scenario: Scenario, vessel: VesselTruth, limits: tuple[float, fl
     source = sum(f.source_height_m) / 2.0 if f.source_height_m else scenario.source_height
     climb = math.tan(math.radians(scenario.plume.elevation_deg))
     if scenario.emission.ship is None:
-        return AxisHeight(source=source, climb=climb)
+        return AxisHeight(source=source, climb=climb, highest=source + max(0.0, climb) * climbed_along(scenario))
     expected = expected_emission(scenario, vessel, 0.5)
     return AxisHeight(
         source=source,

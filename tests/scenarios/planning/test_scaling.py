@@ -137,7 +137,7 @@ def test_keys_without_a_unit_in_their_names_have_no_length_and_no_time():
     for name in keys(scenario):
         section, key = name.split(".")
         unit = re.search(r"\[([^\]]+)\]", type(getattr(scenario, section)).model_fields[key].description or "")
-        assert (dimension(name) is not None) == (unit is not None and unit[1] not in ("-", "deg", "%", "degC")), name
+        assert (dimension(name) is not None) == (unit is not None and unit[1] not in ("-", "deg", "%", "% m/m", "degC")), name
 
 
 def scaled_keys():
