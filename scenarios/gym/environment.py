@@ -135,7 +135,7 @@ class PlumeCrossing(gymnasium.Env[Array, Array]):
         InputError : it is still under way, or was ended by a violation
         """
         if self._episode.record is None:
-            raise InputError("the episode has no record: it is still under way, or a keep-out violation ended it; fly one to its end")
+            raise InputError("the episode has no record: it is under way, or a keep-out violation ended it; fly one to its end")
         return self._episode.record
 
     def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[Array, dict[str, Any]]:

@@ -115,10 +115,13 @@ def test_studies_whose_rows_are_no_flights_are_refused(copies, study):
     assert_refused(compared(*copies), f"of the study '{study}'")
 
 
-@pytest.mark.parametrize("trials", [[], {"sweep_nu": 3}, {"sweep_nu": {"draws": 7}}])
-def test_a_damaged_manifest_is_one_line(copies, trials):
+@pytest.mark.parametrize(
+    ("trials", "words"),
+    [([], "names no trials"), ({"sweep_nu": 3}, "is damaged"), ({"sweep_nu": {"draws": 7}}, "is damaged")],
+)
+def test_a_damaged_manifest_is_one_line(copies, trials, words):
     change_manifest(copies[1], trials=trials)
-    assert_refused(compared(*copies), "is damaged")
+    assert_refused(compared(*copies), words)
 
 
 def test_the_directory_of_a_run_is_no_place_for_a_comparison(copies):

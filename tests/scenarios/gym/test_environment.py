@@ -147,7 +147,7 @@ def test_flying_at_the_vessel_ends_in_the_keepout_area_with_its_reward(kinematic
     assert dict(zip(names, observed, strict=True))["clearance_m"] < 0.0
     with pytest.raises(InputError, match="the episode is over; reset"):
         kinematic.step(kinematic.action_space.low)
-    with pytest.raises(InputError, match="no record: .* a keep-out violation ended it"):
+    with pytest.raises(InputError, match=r"no record: .* a keep-out violation ended it"):
         _ = kinematic.unwrapped.record
 
 
