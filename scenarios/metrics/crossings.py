@@ -27,7 +27,7 @@ class Crossing:
     axis_distance : along the axis from the plume's origin [m]
     distance : three-dimensional, to the plume's origin [m]
     angle : between the path in the vessel's frame and the axis, 90 degrees for a square cut [rad]
-    height : of the aircraft above the axis [m]
+    height : above the straight axis from the plume's origin, which is level for smoke: that rises above it [m]
     """
 
     time: float

@@ -44,7 +44,7 @@ _PLANNED = {
     "keepout_radius_m": "radius r_min of the keep-out area",
     "keepout_margin_m": "planned margin between r_min and the orbit, for errors of estimates, reports and tracking",
     "crossing_interval_predicted_s": "pi/omega_0; beside a vessel that manoeuvres, its mean from the first to the last crossing",
-    "spread_predicted_m": "standard deviation of the tracking error towards the vessel that the margin is planned for",
+    "spread_predicted_m": "standard deviation of the tracking error towards the vessel, as predicted from turbulence alone",
     "manoeuvre_end_s": "time at which the vessel's last manoeuvre ends",
     "manoeuvres_unflown": "manoeuvres of the vessel that begin after the end of the flight",
     "heading_rate_limit_rad_s": "omega_max, to which commands are limited",
@@ -173,7 +173,7 @@ MEANINGS: Mapping[str, Mapping[str, str]] = {
         "axis_distance_m": "distance from the funnel along the plume's axis",
         "distance_m": "distance from the funnel",
         "angle_deg": "angle between path and axis, as seen from the vessel",
-        "height_m": "height above the axis",
+        "height_m": "height above a line from the funnel's mouth at plume.elevation_deg, level for smoke, which rises above it",
     },
     INTERVENTIONS: {
         **_OF_FLIGHT,

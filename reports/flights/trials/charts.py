@@ -154,9 +154,9 @@ def _spread(trial: Trial) -> Panel | None:
         return None
     lines, top = capped(predicted, measured, by_violation(trial), most, unit="m", what="deviation")
     ends = np.array([0.0, min(top, 1.05 * most)])
-    same = Line(x=ends, y=ends, label="as predicted", colour="black", style="dot")
+    same = Line(x=ends, y=ends, label="turbulence alone", colour="black", style="dot")
     return Panel(
-        x_label="Predicted deviation [m]", y_label="Deviation towards the vessel [m]", lines=[*lines, same], y_range=(0.0, top)
+        x_label="From turbulence alone [m]", y_label="Deviation towards the vessel [m]", lines=[*lines, same], y_range=(0.0, top)
     )
 
 
@@ -188,7 +188,7 @@ def _errors(trial: Trial) -> list[Chart]:
     panels = {
         "mean crossing interval": over.interval_error() if trial.criteria.get("crossing_interval_error") else None,
         "tracking error": over.figure(*_TRACKING),
-        "its part towards the vessel, over the one that the margin was planned for": _spread(trial),
+        "its part towards the vessel, from all causes, over the one predicted from turbulence alone": _spread(trial),
         "error of the wind estimate": over.figure("wind_error_rms_mps", "Error of the wind estimate, rms [m/s]"),
         "error of the vessel's position, counted": vessel,
         "how long the keep-out guard changed commands": (
