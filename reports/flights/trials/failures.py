@@ -93,14 +93,29 @@ def tracking_lines(trial: Trial, *, only: bool = True) -> list[str]:
         return []
     alone = len(flown) == 1
     which = "The" if alone else f"In {len(far):,} of {len(flown):,} flights the"
-    happened = {words: count(mask) for words, mask in _after_settling(far).items() if mask.any()}
-    told = ", ".join(words + (f" ({number_of:,})" if not alone else "") for words, number_of in happened.items())
-    why = f"after settling {told}" if told else "nothing that the summary records explains it"
+    told = ", ".join(_told_apart(far, flown[errors <= band]))
+    nothing = f"nothing that the summary records {'explains it' if alone else 'sets them apart'}"
+    why = f"after settling {told}" if told else nothing
     line = (
         f"{which} tracking error, rms after settling, is {'' if alone else 'up to '}{np.nanmax(errors):.3g} m, above the"
         f" {band:g} m within which a flight counts as settled, and no criterion limits it: {why}."
     )
     return [line if only else f"{trial.title}: {line[0].lower()}{line[1:]}"]
+
+
+def _told_apart(far: pd.DataFrame, others: pd.DataFrame) -> list[str]:
+    """Return what happened to flights that left the band, and to how many of them and of the others; not what happened to all."""
+    found, elsewhere = _after_settling(far), _after_settling(others)
+    if len(far) + len(others) == 1:
+        return [words for words, mask in found.items() if mask.any()]
+    told = []
+    for words, mask in found.items():
+        here, there = count(mask), count(elsewhere[words]) if words in elsewhere else 0
+        if here and here + there < len(far) + len(others):
+            told.append(
+                f"{words} (in {here:,} of these{f', of the others in {there:,} of {len(others):,}' if len(others) else ''})"
+            )
+    return told
 
 
 def _after_settling(rows: pd.DataFrame) -> dict[str, Mask]:
