@@ -226,3 +226,11 @@ def test_a_file_of_a_run_is_refused_with_the_name_of_its_directory(command, tmp_
     (tmp_path / "run" / "report.html").touch()
     refused = console(command[0], "run/report.html", *command[1:])
     assert_refused(refused, "'run/report.html' is a file; name the directory of its run, 'run'")
+
+
+@pytest.mark.parametrize("key", ["emission.ship.stack_height", "payload.sensor.channels.so2.t90_s"])
+def test_a_key_of_a_table_of_ones_own_is_described_by_the_key_that_may_be_one(key):
+    # --set takes them: docs/howto/measuring.md.
+    first, *others = described(key)
+    assert first.startswith(f"{key} is a key of the table that")
+    assert ".".join(key.split(".")[:2]) in others
