@@ -18,7 +18,7 @@ def span_words(first: datetime, last: datetime) -> str:
 
 
 def moment(recorded: object) -> datetime | None:
-    """Return a time that was recorded in ISO 8601, or None of what is none."""
+    """Return a time that was recorded in ISO 8601, or None if it is not one."""
     try:
         return datetime.fromisoformat(str(recorded))
     except ValueError:

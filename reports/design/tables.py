@@ -21,7 +21,7 @@ from reports.design.data import (
     worst,
 )
 from reports.document.blocks import Table
-from reports.document.tables import minus, number
+from reports.document.tables import minus, number, pairs_table
 
 
 def worst_margin_table(design: Record) -> Table:
@@ -234,12 +234,5 @@ def envelope_table(envelope: Record) -> Table:
         ["Largest bank commanded", f"{envelope['bank_max_deg']:g}°"],
         ["Bank of the study", f"{envelope['bank_deg']:g}°"],
     ]
-    return Table(
-        caption="Where the aircraft may be flown, and where the study flies it.",
-        head=["", ""],
-        rows=rows,
-        widths=[1.6, 3.0],
-        left_columns=2,
-        prose=True,
-        print_size_pt=8.0,
-    )
+    caption = "Where the aircraft may be flown, and where the study flies it."
+    return pairs_table(rows, widths=(1.6, 3.0), caption=caption, print_size_pt=8.0)

@@ -2,8 +2,8 @@
 
 from common.provenance import without_folders
 from common.run_layout import FORMAT
-from reports.document.blocks import Section, Table
-from reports.document.tables import run_config
+from reports.document.blocks import Section
+from reports.document.tables import pairs_table, run_config
 from reports.run.letterhead import Letterhead
 from reports.run.run_data import RunData
 
@@ -11,16 +11,8 @@ from reports.run.run_data import RunData
 def provenance_section(run: RunData, head: Letterhead) -> Section:
     """Return the last section of a report."""
     rows = [row for rows in (_made(run, head), _vehicle(run), _hashes(run), _host(run)) for row in rows]
-    table = Table(
-        head=["", ""],
-        rows=rows,
-        widths=[1.0, 4.0],
-        left_columns=2,
-        prose=True,
-        breakable=True,
-        print_size_pt=8.0,
-        caption="How the run was made; with the same source, input and seed it can be made again.",
-    )
+    caption = "How the run was made; with the same source, input and seed it can be made again."
+    table = pairs_table(rows, caption=caption, breakable=True, print_size_pt=8.0)
     return Section(anchor="provenance", title="Provenance", blocks=[table])
 
 

@@ -13,6 +13,11 @@ from reports.run.columns import Array
 from reports.run.run_data import RunData
 
 
+def pairs_table(rows: list[list[str]], *, widths: tuple[float, float] = (1.0, 4.0), **others: Any) -> Table:
+    """Return a table without a head, of what things are called and what they are; parameters as of ``Table``."""
+    return Table(head=["", ""], rows=rows, widths=list(widths), left_columns=2, prose=True, **others)
+
+
 def parameter_table(run: RunData, sampled: Mapping[str, str] | None = None) -> Table:
     """Return every parameter of the run with its unit and meaning, and of those that are ``sampled`` how, by their keys."""
     known = sampled or {}

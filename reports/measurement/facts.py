@@ -70,7 +70,7 @@ def _ship_words(details: dict[str, Any]) -> str:
 def flown_facts(run: RunData) -> list[Fact]:
     """Return which instruments simulated flights measured with, and place and time where their scenario has them.
 
-    Of flights without a sniffer there are none.
+    Flights without a sniffer have no facts.
     """
     rows = flights_flown(run.summary)
     if "sensor" not in rows or not len(rows := rows[rows["sensor"].notna()]):

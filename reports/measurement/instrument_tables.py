@@ -10,7 +10,7 @@ from measurement.estimate.quality import AGREEMENT_LEAST, PASSES_GOOD, SNR_GOOD,
 from measurement.estimate.verdict import CONFIDENCE, COVERAGE, GUARD
 from measurement.gases import EXPECTED_PPB_PER_PPM, GASES, UNITS, fsc_factor, limit_words
 from reports.document.blocks import Table
-from reports.document.tables import number
+from reports.document.tables import number, pairs_table
 from reports.measurement.data import METHODS, Record
 from reports.run.run_data import RunData
 
@@ -144,15 +144,8 @@ def assumption_table(run: RunData, record: Record) -> Table:
         ["Quality A", f"CO2 signal to noise of {SNR_GOOD:g}, a standard uncertainty of {UNCERTAINTY_GOOD:g} times the lowest"
          f" limit, {PASSES_GOOD} passes that agree with p ≥ {AGREEMENT_LEAST:g}"],
     ]  # fmt: skip
-    return Table(
-        caption="How the log was read, and the thresholds and assumptions of the analysis.",
-        head=["", ""],
-        rows=rows,
-        widths=[1.0, 3.0],
-        left_columns=2,
-        prose=True,
-        breakable=True,
-    )
+    caption = "How the log was read, and the thresholds and assumptions of the analysis."
+    return pairs_table(rows, widths=(1.0, 3.0), caption=caption, breakable=True)
 
 
 def _columns(columns: dict[str, str]) -> str:

@@ -5,7 +5,7 @@ import pandas as pd
 from measurement.estimate.passes import SNR_LEAST
 from measurement.gases import MASS_PERCENT, limit_words
 from reports.document.blocks import Table
-from reports.document.tables import number
+from reports.document.tables import number, pairs_table
 from reports.measurement.data import METHODS, SINCE, Record
 
 _PERCENT = "{:.3f}"
@@ -87,11 +87,4 @@ def record_table(record: Record) -> Table:
         ["SO2 channel", f"t90 {t90}; {delay} after CO2"],
         ["Sulphate, not corrected", f"{number(found['sulphate_percent'], '{:.4f} %')}: sulphur that does not leave as SO2"],
     ]
-    return Table(
-        caption="What the record holds, and the response of SO2 as it was taken.",
-        head=["", ""],
-        rows=rows,
-        widths=[1.0, 3.0],
-        left_columns=2,
-        prose=True,
-    )
+    return pairs_table(rows, widths=(1.0, 3.0), caption="What the record holds, and the response of SO2 as it was taken.")

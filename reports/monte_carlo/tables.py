@@ -5,6 +5,7 @@ from typing import Any
 from common.intervals import percent
 from common.run_layout import SUMMARY
 from reports.document.blocks import Table
+from reports.document.tables import pairs_table
 from reports.monte_carlo.names import FIGURES, Figure, input_name
 
 Record = dict[str, Any]
@@ -49,7 +50,7 @@ def ending_table(statistics: Record) -> Table:
         ["Modes at the end", _counted(statistics["modes_at_end"])],
         *([f"Of unknown end: {outcome.replace('_', ' ')}", _flights(found)] for outcome, found in unknown.items()),
     ]
-    return Table(head=["", ""], rows=rows, widths=[1.0, 4.0], left_columns=2, prose=True)
+    return pairs_table(rows)
 
 
 def _counted(counts: dict[str, int]) -> str:

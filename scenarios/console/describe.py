@@ -11,9 +11,6 @@ from scenarios.schema.documented_parts import PART_SECTIONS, DocumentedKey, docu
 from scenarios.schema.overrides import as_toml
 from scenarios.schema.sections.convergence import ConvergenceScenario
 
-_TABLES = ("emission.ship", "payload.sensor")
-"""Keys that may be tables, whose own keys docs/howto/measuring.md describes."""
-
 _WIDTH = 100
 _INDENT = 10
 
@@ -34,7 +31,8 @@ def described(name: str | None = None) -> list[str]:
     plain = re.sub(r"\.\d+(?=\.|$)", "", name)
     # What is swept is a key of its own, and nu is one of sweep alone.
     plain = plain.removeprefix("sweep.")
-    if table := next((table for table in _TABLES if plain.startswith(f"{table}.")), None):
+    tables = (key.key for key in documented_keys() if key.range.endswith(" a table"))
+    if table := next((table for table in tables if plain.startswith(f"{table}.")), None):
         note = f"{name} is a key of the table that {table} may be; docs/howto/measuring.md lists its keys, with their units."
         return [*_wrapped("", note), *described(table)]
     keys = [key for key in documented_keys() if key.key.replace(".0", "") == plain or (plain == "nu" and key.key == "sweep")]

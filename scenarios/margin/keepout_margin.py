@@ -85,7 +85,6 @@ def widest_tube(limits: VesselLimits, reports: VesselReportsConfig, *, plan_peri
     oldest = tube(VesselReport(-age, 0.0, 0.0, 0.0, 0.0), limits, 0.0)
     if reports.exact:
         return oldest._replace(radius=oldest.radius + noise)
-    # Beside the scatter of reports that of the own position adds centimetres.
     allowance = scatter_allowance(
         limits,
         filter_parameters(reports),

@@ -105,13 +105,13 @@ def following_flight(
         orbit = circle = vessel_circle(scenario, nu, farthest)
         periods = circle.periods(f.speed_ratio_max)
         mission = standoff_parameters(scenario, setup, circle.radius, axis_height(scenario, vessel))
-        farthest = circle.radius
+        climbed_to = circle.radius
     else:
         nearest, orbit = radius + margin.total + oscillation.half_widths()[0], oscillation
         further = additional_distance(scenario, vessel, nearest, wind.at_start)
         periods, mission = _following(scenario, setup, margin, vessel, further, guarded.drift_rate)
-        farthest = nearest + further
-    check_not_outrun(scenario, vessel, farthest)
+        climbed_to = nearest + further
+    check_not_outrun(scenario, vessel, air, climbed_to)
     start = sampled_start(scenario.start, generators.world, course=vessel.course(0.0), axis=plume.axis(0.0))
     fault = sampled_fault(scenario.fault, generators.world)
     weather = sampled_weather(scenario, air, generators.world)

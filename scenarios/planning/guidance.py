@@ -97,6 +97,9 @@ def turn_time(scenario: Scenario, reversal: TurnReversalResponse) -> float:
 
 def satellite_noise(scenario: Scenario, setup: VehicleSetup, fastest: float) -> float:
     """Return how much nearer noise of satellite navigation takes a vehicle [m] whose reference turns at up to a rate [rad/s]."""
+    if not scenario.reports.exact:
+        # Beside the scatter of reports it adds centimetres.
+        return 0.0
     noise, share = scenario.sensors, 0.0
     tracking = tracking_parameters(scenario, setup)
     if noise.position_sigma_m > 0.0:

@@ -1,9 +1,11 @@
 """The world of one flight: vessel, plume and air as they are, and what fails."""
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
+import numpy.typing as npt
 
 from aircraft.atmosphere.weather import Weather
 from aircraft.atmosphere.wind import WindField
@@ -109,19 +111,23 @@ class ApparentWind:
 
 def apparent_wind(scenario: Scenario, vessel: VesselTruth) -> ApparentWind:
     """Return how fast a vessel moves through the air at the height of her funnel, over the longest flight."""
-    return wind_past(scenario, vessel, scenario.source_height)
-
-
-def wind_past(scenario: Scenario, vessel: VesselTruth, height: float) -> ApparentWind:
-    """Return how fast a vessel moves through the air at a height [m], over the longest flight."""
-    wind = mean_wind(scenario, vessel)
     duration = scenario.flight.duration_max_s + TRACK_MARGIN
+    (past,) = winds_past(vessel, mean_wind(scenario, vessel), [scenario.source_height], duration)
+    return past
+
+
+def winds_past(vessel: VesselTruth, wind: WindField, heights: Sequence[float], duration: float) -> list[ApparentWind]:
+    """Return how fast a vessel moves through the air at each of some heights [m], over a duration [s]."""
     if isinstance(vessel, SteadyVessel) and wind.constant:
         _, _, v_north, v_east = vessel.motion(0.0)
-        wind_north, wind_east = wind.now(0.0, height)
+        wind_north, wind_east = wind.now(0.0, heights[0])
         steady = math.hypot(v_north - wind_north, v_east - wind_east)
-        return ApparentWind(at_start=steady, least=steady, greatest=steady)
+        return [ApparentWind(at_start=steady, least=steady, greatest=steady)] * len(heights)
     velocity, _ = sampled(vessel, duration)
-    through_air = velocity - np.column_stack(wind.at(track_times(duration)[: len(velocity)], height))
+    times = track_times(duration)[: len(velocity)]
+    return [_over_the_track(velocity - np.column_stack(wind.at(times, height))) for height in heights]
+
+
+def _over_the_track(through_air: npt.NDArray[np.float64]) -> ApparentWind:
     speeds = np.hypot(through_air[:, 0], through_air[:, 1])
     return ApparentWind(at_start=float(speeds[0]), least=float(speeds.min()), greatest=float(speeds.max()))

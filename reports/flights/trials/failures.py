@@ -105,16 +105,15 @@ def tracking_lines(trial: Trial, *, only: bool = True) -> list[str]:
 
 def _told_apart(far: pd.DataFrame, others: pd.DataFrame) -> list[str]:
     """Return what happened to flights that left the band, and to how many of them and of the others; not what happened to all."""
-    found, elsewhere = _after_settling(far), _after_settling(others)
+    happened = _after_settling(pd.concat([far, others]))
     if len(far) + len(others) == 1:
-        return [words for words, mask in found.items() if mask.any()]
+        return [words for words, mask in happened.items() if mask.any()]
     told = []
-    for words, mask in found.items():
-        here, there = count(mask), count(elsewhere[words]) if words in elsewhere else 0
-        if here and here + there < len(far) + len(others):
-            told.append(
-                f"{words} (in {here:,} of these{f', of the others in {there:,} of {len(others):,}' if len(others) else ''})"
-            )
+    for words, mask in happened.items():
+        here, there = count(mask[: len(far)]), count(mask[len(far) :])
+        if here and here + there < len(mask):
+            elsewhere = f", of the others in {there:,} of {len(others):,}" if len(others) else ""
+            told.append(f"{words} (in {here:,} of these{elsewhere})")
     return told
 
 

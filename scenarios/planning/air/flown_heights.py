@@ -10,7 +10,7 @@ from scenarios.planning.limits import omega_max
 from scenarios.schema.scenario import Scenario
 from scenarios.world.faults import NOT_OF_AIRCRAFT
 from scenarios.world.vessel import VesselTruth
-from scenarios.world.world import mean_wind, wind_past
+from scenarios.world.world import TRACK_MARGIN, winds_past
 
 _RADII, _BEYOND, _TURN_RADII = 3.0, 1000.0, 4.0
 """How far from the vessel an inclined plume is climbed along at most: keep-out radii [-], or beyond one so far [m] and as many turn
@@ -29,22 +29,10 @@ def climbed_along(scenario: Scenario) -> float:
     return max(_RADII * radius, radius + _BEYOND + _TURN_RADII * turn, scenario.reference.standoff_radius_m or 0.0)
 
 
-def flown_heights(scenario: Scenario, distance: float | None = None) -> list[float]:
-    """Return the heights that are flown: at the start, the lowest and the highest, and the sea's if it may glide there [m].
-
-    Parameters
-    ----------
-    scenario : the flight
-    distance : from the vessel, up to which its plume is climbed along; the largest if not given [m]
-    """
-    flight = scenario.flight
-    if scenario.emission.ship is not None:
-        heights = [scenario.altitude, flight.altitude_min_m, flight.altitude_max_m]
-    else:
-        climb = math.tan(math.radians(scenario.plume.elevation_deg))
-        risen = climb * (climbed_along(scenario) if distance is None else distance)
-        heights = [scenario.altitude, scenario.source_height, scenario.source_height + risen]
-    return [*heights, _SEA] if glides(scenario) else heights
+def flown_heights(scenario: Scenario) -> list[float]:
+    """Return the heights that are flown: at the start, the lowest and the highest, and the sea's if it may glide there [m]."""
+    crossed = _crossed_heights(scenario, climbed_along(scenario))
+    return [*crossed, _SEA] if glides(scenario) else crossed
 
 
 def glides(scenario: Scenario) -> bool:
@@ -52,28 +40,37 @@ def glides(scenario: Scenario) -> bool:
     return not scenario.declared_faults <= NOT_OF_AIRCRAFT
 
 
-def check_not_outrun(scenario: Scenario, vessel: VesselTruth, distance: float) -> None:
+def _crossed_heights(scenario: Scenario, distance: float) -> list[float]:
+    """Return the height at the start, the lowest and the highest of a plume that is climbed along up to a distance [m]."""
+    flight, source = scenario.flight, scenario.source_height
+    if scenario.emission.ship is not None:
+        return [scenario.altitude, flight.altitude_min_m, flight.altitude_max_m]
+    return [scenario.altitude, source, source + math.tan(math.radians(scenario.plume.elevation_deg)) * distance]
+
+
+def check_not_outrun(scenario: Scenario, vessel: VesselTruth, wind: WindField, distance: float) -> None:
     """Refuse a vessel that outruns the UAV through the air at a height that is flown.
 
     Parameters
     ----------
-    scenario, vessel : the flight
+    scenario, vessel, wind : the flight, and its mean wind
     distance : from the vessel, up to which its plume is climbed along [m]
 
     Raises
     ------
     InfeasibleError : it does
     """
-    wind: WindField = mean_wind(scenario, vessel)
     if wind.constant:
         # That is checked at the height of the funnel.
         return
-    heights = flown_heights(scenario, distance)
+    crossed = _crossed_heights(scenario, distance)
+    heights = [*crossed, _SEA] if glides(scenario) else crossed
     speed, ratio = scenario.guidance.airspeed_mps, scenario.following.speed_ratio_max
     looked_at = np.unique([*heights, *np.linspace(min(heights), max(heights), _LOOKED_AT)]).tolist()
-    fastest, height = max((wind_past(scenario, vessel, height).greatest, height) for height in looked_at)
+    past = winds_past(vessel, wind, looked_at, scenario.flight.duration_max_s + TRACK_MARGIN)
+    fastest, height = max((of.greatest, height) for of, height in zip(past, looked_at, strict=True))
     if fastest >= ratio * speed:
-        why = "to which it glides if a part of it fails" if height < min(flown_heights(scenario)[:3]) else "which is flown"
+        why = "to which it glides if a part of it fails" if height < min(crossed) else "which is flown"
         raise InfeasibleError(
             f"at a height of {height:.0f} m, {why}, the vessel moves at up to {fastest:.1f} m/s through the air,"
             f" nu = {fastest / speed:.2f}; the UAV at {speed:g} m/s follows up to nu = {ratio:g}: fly faster, in less wind, or at"

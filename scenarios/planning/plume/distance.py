@@ -15,9 +15,7 @@ from gnc.errors import InfeasibleError
 from measurement.plume.air import MarineAir
 from measurement.plume.settings import PlumeSettings
 from measurement.plume.spread import STEP, spreads
-from measurement.sniffer.spec import SnifferSpec
-from scenarios.instruments.sniffer import SnifferOnBoard
-from scenarios.planning.plume.axis import axis_height, expected_emission, flown_altitudes
+from scenarios.planning.plume.axis import axis_height, expected_emission, flown_altitudes, sniffer_on_board
 from scenarios.schema.scenario import Scenario
 from scenarios.world.vessel import VesselTruth
 
@@ -75,7 +73,7 @@ def information(scenario: Scenario, vessel: VesselTruth, distance: Array, appare
     lowest, highest = flown_altitudes(scenario)
     off = axis - np.clip(axis, lowest, highest)
     wide = sigma_z**2 + 2.0 * (meander_z**2 + _HEIGHT_ERROR**2)
-    spec: SnifferSpec = scenario.payload.settings(SnifferOnBoard).spec
+    spec = sniffer_on_board(scenario)
     constant = max(spec.known(gas).constants[0] for gas in ("so2", "co2"))
     # A pass goes across the plume at about the vehicle's speed.
     pulse = erfcx(sigma_y / scenario.guidance.airspeed_mps / constant) / (2.0 * constant)
