@@ -54,7 +54,7 @@ def _tracking_checks(row: Row, criteria: CriteriaConfig) -> list[Check]:
             # One that settled with its last sample has none of these figures, and shows nothing.
             if limit and math.isfinite(row["settling_time_s"]):
                 checks.append(_at_most(name, row.get(key, math.nan), limit, unit))
-    if criteria.tracking_error_end_m is not None:
+    if criteria.tracking_error_end_m:
         checks.append(_at_most("tracking error at the end", row["tracking_error_end_m"], criteria.tracking_error_end_m, "m"))
     return checks
 
@@ -97,11 +97,11 @@ def _crossing_checks(row: Row, criteria: CriteriaConfig) -> list[Check]:
 def _mission_checks(row: Row, criteria: CriteriaConfig) -> list[Check]:
     checks = []
     # A track from a file may have no manoeuvre in the time of the flight.
-    if criteria.resumes_within_periods is not None and not math.isnan(row.get("manoeuvre_end_s", 0.0)):
+    if criteria.resumes_within_periods and not math.isnan(row.get("manoeuvre_end_s", 0.0)):
         periods = row.get("resume_periods", math.nan)
         message = f"crossings resumed {periods:.2f} periods after the last manoeuvre"
         checks.append((periods <= criteria.resumes_within_periods, message))
-    if criteria.time_to_find_s is not None:
+    if criteria.time_to_find_s:
         checks.append(_at_most("time to find the plume", row.get("time_to_find_s", math.nan), criteria.time_to_find_s, "s"))
     if criteria.within_altitudes:
         outside = row.get("altitude_outside_s", math.nan)

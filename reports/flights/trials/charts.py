@@ -247,7 +247,7 @@ def _manoeuvres(trial: Trial) -> list[Chart]:
     if kinds is None:
         return []
     limit = trial.criteria.get("resumes_within_periods")
-    criterion = [] if limit is None else [(float(limit), "criterion")]
+    criterion = [(float(limit), "criterion")] if limit else []
     resumed = (column(trial.flown, "resume_periods"), "Next crossing after the manoeuvre [periods]", criterion)
     kept = (clearance(trial.flown), CLEARANCE, [_R_MIN])
     caption = (

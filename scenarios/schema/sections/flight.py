@@ -1,6 +1,6 @@
 """What a scenario file may say of a flight: where it starts, when it ends, and what it must show."""
 
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
 from pydantic import Field, field_validator, model_validator
 
@@ -97,6 +97,10 @@ class FlightConfig(Section):
         return min(max(height, lowest), highest) if lowest < highest else 0.5 * (lowest + highest)
 
 
+_PAIRS = ("crossing_interval_s", "crossing_distance_m")
+"""Criteria of a least and a largest value."""
+
+
 class CriteriaConfig(Section):
     """Criteria of a flight, in addition to keeping out and completing its mission; ``false`` for what is not judged."""
 
@@ -112,28 +116,36 @@ class CriteriaConfig(Section):
     """Largest difference of altitude from its command [m]."""
     crossing_interval_error: Limit = 0.01
     """Largest relative difference of the mean crossing interval from pi/omega_0 [-]."""
-    tracking_error_end_m: Positive | None = None
+    tracking_error_end_m: Limit = False
     """Largest distance to the reference at the end [m]."""
     crossing_interval_s: tuple[Positive, Positive] | None = None
-    """Least and largest mean crossing interval [s]."""
+    """Least and largest mean crossing interval, or ``false`` [s]."""
     crossing_distance_m: tuple[Positive, Positive] | None = None
-    """Least and largest mean crossing distance from the vessel [m]."""
+    """Least and largest mean crossing distance from the vessel, or ``false`` [m]."""
     law_beyond_heading_rate_max: bool = False
     """Whether the law must command more than omega_max, to show that it does; how commands are limited is then not judged."""
     law_within_heading_rate_max: bool = False
     """Whether the law itself, before commands are limited, must not command more than omega_max."""
-    resumes_within_periods: Positive | None = None
+    resumes_within_periods: Limit = False
     """Largest time from the end of the last manoeuvre to the next crossing, in periods of the oscillation [-]."""
-    time_to_find_s: Positive | None = None
+    time_to_find_s: Limit = False
     """Largest time from reaching the orbit to the first reading of the plume [s]."""
     within_altitudes: bool = False
     """Whether altitude must stay within flight.altitude_min_m and altitude_max_m, except that of an aircraft with a fault."""
     modes_at_end: tuple[str, ...] = ()
     """Modes in which the flight may end; any if empty."""
 
+    @model_validator(mode="before")
+    @classmethod
+    def _not_judged(cls, given: Any) -> Any:
+        """Take ``false`` for nothing where a list of two is expected."""
+        if not isinstance(given, dict):
+            return given
+        return {key: None if key in _PAIRS and value is False else value for key, value in given.items()}
+
     @model_validator(mode="after")
     def _ordered(self) -> "CriteriaConfig":
-        for name in ("crossing_interval_s", "crossing_distance_m"):
+        for name in _PAIRS:
             check_ordered(name, getattr(self, name))
         return self
 

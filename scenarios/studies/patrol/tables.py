@@ -115,7 +115,8 @@ def patrol_figures(ships: Sequence[Row], stretches: Sequence[Row], *, endurance:
         "duration_s": duration,
         "transit_s": transit,
         "beside_s": duration - transit,
-        "unused_s": endurance - duration,
+        # The last step may end a little after the endurance.
+        "unused_s": max(0.0, endurance - duration),
         "keepout_violations": violations,
         "kept_out": kept_out,
         "aircraft_lost": lost,

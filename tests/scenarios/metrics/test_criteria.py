@@ -78,6 +78,8 @@ def test_every_criterion_can_fail_and_says_so_in_a_short_sentence(changed, crite
         ({}, {"modes_at_end": ("tracking", "holding off")}),
         ({"tracking_error_rms_m": 99.0}, {"tracking_error_rms_m": False}),
         ({"crossing_interval_mean_s": 99.0}, {"crossing_interval_error": False}),
+        ({"resume_periods": 9.0}, {"resumes_within_periods": False}),
+        ({"crossing_distance_mean_m": 9.0}, {"crossing_distance_m": False}),
     ],
 )
 def test_criteria_can_be_met_and_left_out(changed, criteria):
