@@ -1,16 +1,13 @@
 """Whether the parts of a scenario go together: mission and world, what is sampled, what a search and subset simulation need."""
 
 from collections.abc import Collection, Iterator
-from typing import TYPE_CHECKING
 
 from pydantic import BaseModel
 
 from measurement.plume.settings import SOURCE_HEIGHT_MAX
+from scenarios.schema.scenario_keys import ScenarioKeys
 from scenarios.schema.sections.experiment import FLIGHTS_MAX, STUDY
 from scenarios.schema.sections.world import SOURCE_HEIGHT_MIN
-
-if TYPE_CHECKING:
-    from scenarios.schema.scenario import Scenario
 
 DESIGNED_FOR = ("aircraft", "guidance.airspeed_mps", "flight.altitude_m")
 """Keys for which the autopilot is worked out once for a run: they cannot be sampled or swept."""
@@ -49,7 +46,7 @@ _SET_IN = {
 """The same for each kind of table that sets keys."""
 
 
-def check_together(scenario: "Scenario") -> None:
+def check_together(scenario: ScenarioKeys) -> None:
     """Refuse a scenario whose parts do not go together."""
     check_mission(scenario)
     check_source(scenario)
@@ -77,31 +74,13 @@ FOLLOWING = (
 """What uses these keys, and how to have it."""
 
 
-def unsteady(scenario: "Scenario") -> tuple[str, ...]:
+def unsteady(scenario: ScenarioKeys) -> tuple[str, ...]:
     """Return the keys by which air or vessel of a scenario, of each flight or as they vary, are not steady and known."""
     varied = (*scenario.sweep.root, *(draw.key for draw in scenario.draws))
-    return (*unsteady_itself(scenario), *(key for key in varied if key.startswith(UNSTEADY)))
+    return (*scenario.unsteady_keys, *(key for key in varied if key.startswith(UNSTEADY)))
 
 
-def unsteady_itself(scenario: "Scenario") -> tuple[str, ...]:
-    """Return the keys by which air or vessel of a scenario are not steady and known, whatever is swept or sampled beside."""
-    air, sensors = scenario.turbulence, scenario.sensors.model_dump()
-    given = {
-        "wind.table": scenario.wind.table is not None,
-        "wind.speed_mps": scenario.wind.speed_mps > 0.0,
-        "turbulence.level": air.level != "none",
-        "turbulence.gusts": air.gusts > 0,
-        "emission.ship": scenario.emission.ship is not None,
-        "vessel.manoeuvres": bool(scenario.vessel.manoeuvres),
-        "vessel.track": scenario.vessel.track != "manoeuvres",
-        "reports.interval_s": not scenario.reports.exact,
-        **{f"sensors.{name}": error > 0.0 for name, error in sensors.items()},
-        "fault.kind": scenario.fault.kind != "none",
-    }
-    return tuple(key for key, has in given.items() if has)
-
-
-def check_mission(scenario: "Scenario") -> None:
+def check_mission(scenario: ScenarioKeys) -> None:
     """Refuse what a mission in still air, beside a steady vessel, would leave out, wherever the scenario has either from."""
     if scenario.guidance.mission == "track" and (keys := unsteady(scenario)):
         raise ValueError(f"key '{keys[0]}' has no effect here: it is used by {FOLLOWING}")
@@ -116,7 +95,7 @@ def check_mission(scenario: "Scenario") -> None:
         )
 
 
-def check_source(scenario: "Scenario") -> None:
+def check_source(scenario: ScenarioKeys) -> None:
     """Refuse a funnel that is lower than any, or higher than the exhaust of the project's own plume may leave one."""
     if scenario.emission.ship is None:
         return
@@ -131,7 +110,7 @@ def check_source(scenario: "Scenario") -> None:
         )
 
 
-def check_start_altitude(scenario: "Scenario") -> None:
+def check_start_altitude(scenario: ScenarioKeys) -> None:
     """Refuse a start below or above the altitudes at which exhaust is crossed: it was flown outside of them until it got there."""
     flight, altitude = scenario.flight, scenario.flight.altitude_m
     if scenario.emission.ship is None or altitude is None or flight.altitude_min_m <= altitude <= flight.altitude_max_m:
@@ -145,13 +124,13 @@ def check_start_altitude(scenario: "Scenario") -> None:
     )
 
 
-def check_one_point(scenario: "Scenario") -> None:
+def check_one_point(scenario: ScenarioKeys) -> None:
     """Refuse several points in a study of one."""
     if scenario.several_points and (why := ONE_POINT.get(scenario.study)):
         raise ValueError(f"study is '{scenario.study}' beside a sweep, cases, a comparison or two vehicles; {why}: remove them")
 
 
-def check_tables(scenario: "Scenario") -> None:
+def check_tables(scenario: ScenarioKeys) -> None:
     """Refuse comparisons that have the name of flights that count, and tables that set what no flight depends on."""
     apart = [of.name for of in scenario.comparison.variants] + [case.name for case in scenario.cases if case.comparison]
     if STUDY in apart:
@@ -167,20 +146,20 @@ def check_tables(scenario: "Scenario") -> None:
                 )
 
 
-def _is_of_run(scenario: "Scenario", key: str) -> bool:
+def _is_of_run(scenario: ScenarioKeys, key: str) -> bool:
     """Return whether a key is outside of sections, or of a section on which no flight depends."""
     outside = key in type(scenario).model_fields and not isinstance(getattr(scenario, key), BaseModel)
     return outside or f"{key}.".startswith(_WITHOUT_EFFECT)
 
 
-def _tables_of(scenario: "Scenario") -> Iterator[tuple[str, str, Collection[str]]]:
+def _tables_of(scenario: ScenarioKeys) -> Iterator[tuple[str, str, Collection[str]]]:
     """Yield the tables that set keys for some flights: the kind, the name, and the keys."""
     yield from (("case", case.name, {**case.set, **case.set_kinematic}) for case in scenario.cases)
     yield from (("comparison", of.name, of.set) for of in scenario.comparison.variants)
     yield from (("condition", of.name, of.set) for of in scenario.arena.conditions)
 
 
-def check_subset(scenario: "Scenario") -> None:
+def check_subset(scenario: ScenarioKeys) -> None:
     """Refuse subset simulation of what is not one probability."""
     if not scenario.draws:
         raise ValueError("method is 'subset' and draws is empty; give the random variables, or set method to 'plain'")
@@ -196,7 +175,7 @@ def check_subset(scenario: "Scenario") -> None:
         )
 
 
-def check_search(scenario: "Scenario") -> None:
+def check_search(scenario: ScenarioKeys) -> None:
     """Refuse a search that has nothing to search over, or more flights than can be numbered."""
     if not scenario.draws:
         raise ValueError("draws is empty; give the keys to search over, each with its range")
@@ -207,7 +186,7 @@ def check_search(scenario: "Scenario") -> None:
         )
 
 
-def check_draws(scenario: "Scenario") -> None:
+def check_draws(scenario: ScenarioKeys) -> None:
     """Refuse random variables that are given twice, or cannot vary from flight to flight."""
     keys = [draw.key for draw in scenario.draws]
     for key in keys:
@@ -235,7 +214,7 @@ def check_draws(scenario: "Scenario") -> None:
 _DESIGNED_ONCE = "varies from flight to flight; autopilot and margins are worked out once for"
 
 
-def _height_given(scenario: "Scenario", key: str) -> bool:
+def _height_given(scenario: ScenarioKeys, key: str) -> bool:
     """Return whether the funnel's height is given beside a key of the ship."""
     return key.startswith("emission.ship") and scenario.plume.source_height_m is not None
 

@@ -2,18 +2,15 @@
 
 import math
 from collections.abc import Collection
-from typing import TYPE_CHECKING
 
+from scenarios.schema.scenario_keys import ScenarioKeys
 from scenarios.schema.sections.equipment import SensorsConfig
-
-if TYPE_CHECKING:
-    from scenarios.schema.scenario import Scenario
 
 _READ = ("payload.", "emission.")
 """Sections that change what is read in a flight, and its path only where that follows the readings."""
 
 
-def is_random_sample(scenario: "Scenario") -> bool:
+def is_random_sample(scenario: ScenarioKeys) -> bool:
     """Return whether flights are a random sample: of the random variables, or of what follows from seeds of their own.
 
     Those of a search and of subset simulation are not: each depends on what was flown before. Nor are copies of a flight,
@@ -36,7 +33,7 @@ def is_random_sample(scenario: "Scenario") -> bool:
     return scenario.flight_seed is None and _depends_on_seed(scenario, listed)
 
 
-def _depends_on_seed(scenario: "Scenario", listed: Collection[str]) -> bool:
+def _depends_on_seed(scenario: ScenarioKeys, listed: Collection[str]) -> bool:
     """Return whether every flight depends on its seed, by its start or by noise, beside the keys whose values are listed."""
 
     def given(key: str) -> bool:

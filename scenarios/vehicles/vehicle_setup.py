@@ -21,7 +21,8 @@ from innerloop.jsbsim.root import write_root
 from innerloop.synthesis.schedule import Schedule
 from scenarios.engine.run_directory import RunDirectory
 from scenarios.errors import InputError
-from scenarios.schema.scenario import DEFAULT_AIRCRAFT, Scenario
+from scenarios.schema.scenario import Scenario
+from scenarios.schema.scenario_keys import DEFAULT_AIRCRAFT
 
 KINEMATIC_BANDWIDTH = 1.0
 """Bandwidth of a kinematic vehicle's airspeed that its guidance reckons with; it follows at once [rad/s]."""
