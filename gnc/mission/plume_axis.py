@@ -21,7 +21,7 @@ class Climb:
     time : constant of the lag [s]
     gradient : steepest climb or descent over the vehicle's way [-]
     reach : how far from the altitude that is flown the command may be [m]: an autopilot that has fallen behind by more may
-        integrate no longer, and never come back
+        integrate no longer, and come back slowly
     """
 
     time: float

@@ -159,9 +159,13 @@ def _longitudinal(schedule: Schedule) -> list[str]:
             strict=True,
         )
     )
+    # A larger error demands a steady climb or acceleration; integrated on the way there, it would overshoot by as much again. An
+    # altitude that still moves away is integrated beyond the limit, too: its integral may be what takes it there, for ever.
+    near = within(read(altitude_error), weights.altitude_error_max)
+    leaving = operation("lt", times(read(altitude_error), read(_CLIMB_RATE)), number(0.0))
     integrated = (
-        _integrated(airspeed_error, weights.airspeed_error_max),
-        _integrated(altitude_error, weights.altitude_error_max),
+        times(read(airspeed_error), within(read(airspeed_error), weights.airspeed_error_max)),
+        times(errors["altitude"], operation("max", near, leaving)),
     )
     for row, name in ((0, "elevator"), (1, "throttle")):
         unlimited, integral, growth = (f"autopilot/{name}-{part}" for part in ("unlimited", "integral", "integral-rate"))
@@ -187,15 +191,6 @@ def _longitudinal(schedule: Schedule) -> list[str]:
             integrator(integral, growth, RESET),
         ]
     return parts
-
-
-def _integrated(error: str, limit: float) -> str:
-    """Return the part of an error that is integrated: all of it, or 0 where the error is beyond its limit.
-
-    A larger error demands a steady climb or acceleration; integrated on the way there, it would overshoot by as much
-    again.
-    """
-    return times(read(error), within(read(error), limit))
 
 
 def _lateral(schedule: Schedule) -> list[str]:

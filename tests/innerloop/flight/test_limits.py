@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from innerloop_flights import after, fly
+from innerloop_flights import METRES_PER_FOOT, after, fly
 
 from aircraft.fleet.x8 import X8
 from innerloop.flight.autopiloted_aircraft import AutopilotedAircraft
@@ -103,6 +103,28 @@ def test_an_altitude_that_could_not_be_reached_in_time_winds_nothing_up(x8_sched
     # Nothing lasting: airspeed and throttle as before, to a hundredth.
     assert after(flight, 58.0, "airspeed") == pytest.approx(20.0, abs=0.01)
     assert after(flight, 58.0, "throttle") == pytest.approx(flight["throttle"][0], abs=0.01)
+
+
+def test_a_descent_that_is_to_end_is_not_flown_on_by_its_own_integral(x8_schedule, x8_aircraft):
+    level = x8_schedule.level(MIDDLE)
+    x8_aircraft.release(level.state(), airspeed=level.airspeed, altitude=level.altitude)
+    altitude = x8_aircraft.fdm.node("position/h-sl-ft").get_double_value
+
+    def altitudes(seconds, ahead):
+        """Return the altitude at each half second [m], flown with a command that stays so far from it."""
+        flown = []
+        for _ in range(2 * seconds):
+            x8_aircraft.command_altitude(altitude() * METRES_PER_FOOT + ahead)
+            x8_aircraft.fdm.step(60)
+            flown.append(altitude() * METRES_PER_FOOT)
+        return flown
+
+    descent = altitudes(10, -1.4)
+    assert descent[-2] - descent[-1] > 1.0  # at 2 m/s and more, or nothing was tried
+    # The error that is integrated is beyond its limit from now on, and what was integrated goes on descending.
+    climb = altitudes(30, 3.0)
+    assert min(climb) > descent[-1] - 4.0
+    assert climb[-1] > climb[-20] > climb[-40]
 
 
 def test_an_altitude_step_is_not_overshot_by_more_for_being_larger(x8_schedule, x8_root):
