@@ -1,5 +1,7 @@
 """One flight of a study, alone."""
 
+import sys
+from dataclasses import replace
 from typing import Any
 
 from common.run_layout import SUMMARY
@@ -8,6 +10,7 @@ from scenarios.engine.run_directory import RunDirectory
 from scenarios.engine.runner import Fly, Progress, Study, StudySummary
 from scenarios.engine.task import Task, Work
 from scenarios.experiment.requests import table_of
+from scenarios.flight import FlightWork
 from scenarios.studies.flight_study import FlightStudy
 from scenarios.studies.summary import FlightCounts
 
@@ -50,8 +53,9 @@ class SingleFlight:
         return self._study.initial_manifest() | one | {"config_hash": self.config_hash}
 
     def work(self, run: RunDirectory) -> Work:
-        """Return the work of the study."""
-        return self._study.work(run)
+        """Return the work of the study, which keeps every time history."""
+        work = self._study.work(run)
+        return replace(work, histories=sys.maxsize) if isinstance(work, FlightWork) else work
 
     def run(self, fly: Fly, _run: RunDirectory, _journal: Journal) -> None:
         """Fly the flight; its time history is written."""
