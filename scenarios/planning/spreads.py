@@ -1,12 +1,14 @@
 """The spread of the tracking error that turbulence will cause in a study's flights."""
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 
 from aircraft.atmosphere.turbulence import TURBULENCE
 from aircraft.simulation.fdm import Fdm
 from aircraft.spec import AircraftSpec
 from common.physics.units import METRES_PER_FOOT
+from gnc.errors import InfeasibleError
+from gnc.reference.reference import Orbit
 from innerloop.analysis.gust_statistics import low_altitude_turbulence
 from innerloop.designs.designed import Designed
 from scenarios.errors import InputError
@@ -87,8 +89,20 @@ def _spread_table(scenario: Scenario, found: Designed, setup: VehicleSetup) -> S
     schedule = found.design.schedule
     air = low_altitude_turbulence(scenario.altitude, TURBULENCE[scenario.turbulence.level].wind_at_20ft)
     tracking, hold, span = tracking_parameters(scenario, setup), speed_hold(scenario, setup), _wing_span(schedule.spec)
-    orbits = [oscillation_at(scenario.guidance, scenario.reference, nu) for nu in SPREAD_RATIOS]
-    return SpreadTable(speed_ratios=SPREAD_RATIOS, spreads=tracking_spreads(schedule, air, orbits, tracking, hold, span=span))
+    orbits = dict(_orbits(scenario))
+    return SpreadTable(
+        speed_ratios=tuple(orbits), spreads=tracking_spreads(schedule, air, [*orbits.values()], tracking, hold, span=span)
+    )
+
+
+def _orbits(scenario: Scenario) -> Iterator[tuple[float, Orbit]]:
+    """Yield the orbit at each speed ratio at which the reference's shape has one; at the lowest all have, or are refused."""
+    for nu in SPREAD_RATIOS:
+        try:
+            yield nu, oscillation_at(scenario.guidance, scenario.reference, nu)
+        except InfeasibleError as error:
+            if nu == SPREAD_RATIOS[0]:
+                raise InputError(str(error)) from None
 
 
 def _wing_span(spec: AircraftSpec) -> float:

@@ -77,6 +77,17 @@ def test_an_experiment_that_samples_its_turbulence_plans_each_levels_own_margin(
     assert margins["none"].guard < margins["light"].guard < margins["moderate"].guard
 
 
+def test_a_shape_without_an_orbit_at_some_speed_ratios_is_planned_at_the_others(x8, monkeypatch):
+    monkeypatch.setattr("scenarios.planning.spreads.SPREAD_RATIOS", SPREAD_RATIOS[2:4])
+    loiter = scenario(fidelity="six_dof", turbulence={"level": "light"}, reference={"shape": "loiter"})
+    (table,) = predicted_spreads([loiter], *x8).tables.values()
+    assert table.speed_ratios == (0.5,)
+    # One that has none at all is refused as a mistake in the scenario.
+    monkeypatch.setattr("scenarios.planning.spreads.SPREAD_RATIOS", SPREAD_RATIOS[3:])
+    with pytest.raises(InputError, match="'loiter'"):
+        predicted_spreads([loiter], *x8)
+
+
 def test_a_flight_whose_spread_was_not_predicted_is_refused():
     # Neither that of another level nor none: it would fly with too small a margin.
     predicted = gusty(level="moderate")
