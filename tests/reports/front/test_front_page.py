@@ -171,6 +171,7 @@ def test_the_provenance_is_last_and_names_command_hashes_and_kind_of_host(built,
     assert rows["Began"] == report.letterhead.when
     assert re.fullmatch(r"\w+ \w+, \d+ cores", rows["Host"])
     assert {"Source revision", "Hash of the source", "Hash of the scenario", "Seed", "Duration"} <= rows.keys()
+    assert rows["Hash of the scenario"].endswith(", of its keys and files: the first 16 digits of the SHA-256")
     assert "Provenance" in built[1][-1]
 
 
