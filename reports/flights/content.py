@@ -12,6 +12,7 @@ from reports.flights.names import flight_name, flown_elsewhere, swept_column
 from reports.flights.parameter_tables import parameter_blocks
 from reports.flights.selection import flight_section
 from reports.flights.trials.charts import trial_charts
+from reports.flights.trials.crossing_gaps import gap_lines
 from reports.flights.trials.failures import tracking_lines
 from reports.flights.trials.tables import criteria_table, failed_blocks, fault_table, flight_table, trial_table
 from reports.flights.verdict import flight_verdict
@@ -78,7 +79,7 @@ def _trial(trial: Trial, *, only: bool) -> Section:
         table.append(fault_table(trial))
     if trial.swept or (only and len(trial.rows) <= _LISTED_MAX):
         head, name = swept_column(trial) if trial.swept else ("Flight", partial(flight_name, trial))
-        caption = " ".join(["The flights, a row each, with their outcome.", *tracking_lines(trial)])
+        caption = " ".join(["The flights, a row each, with their outcome.", *tracking_lines(trial), *gap_lines(trial)])
         table.append(flight_table(trial.rows, head, name, caption=caption, flown_ratio=flown_elsewhere(trial)))
     # The head of the report says what an only trial is.
     text: list[Block] = [] if only else [Text(str(trial.config["description"]))]

@@ -13,6 +13,7 @@ from reports.flights.bounds import counted_as_violations, sampled, violation_bou
 from reports.flights.criteria import MEASURED, Criterion, counted, criteria_of
 from reports.flights.first_page import simulated
 from reports.flights.names import told_name
+from reports.flights.trials.crossing_gaps import gap_lines
 from reports.flights.trials.failures import failure_lines, tracking_lines
 from reports.measurement.flights import sulphur_above, sulphur_below, sulphur_cards, sulphur_headline
 from reports.monte_carlo.subset import plain_bound_in_words, subset_headline
@@ -69,6 +70,7 @@ def flight_verdict(run: RunData, trials: list[Trial]) -> Verdict:
         failures=[
             *(line for trial in trials for line in failure_lines(trial)),
             *(line for trial in trials for line in tracking_lines(trial, only=len(trials) == 1)),
+            *(line for trial in trials for line in gap_lines(trial, only=len(trials) == 1)),
             *_noteworthy(flown),
         ],
         figures=[*sulphur_cards(run), *_bound_figure(run, trials), *_figures(trials, flown, planned)],
