@@ -10,7 +10,12 @@ from measurement.gases import MASS_PERCENT, limit_words
 _WITHOUT = "C"
 """Quality of records that are given no verdict."""
 
-_COUNTED = {ABOVE: "above the limit", BELOW: "below the limit", OPEN: "undecided", _WITHOUT: "without a verdict (quality C)"}
+_COUNTED = {
+    ABOVE: "above the limit",
+    BELOW: "below the limit",
+    OPEN: "with an open verdict",
+    _WITHOUT: "without a verdict (quality C)",
+}
 """What is said of several records, by their verdict, or by the quality that gives none."""
 
 

@@ -1,6 +1,9 @@
 """The report of flights: its sections are by what the run has."""
 
 from functools import partial
+from typing import Any
+
+import pandas as pd
 
 from reports.design.section import innerloop_section
 from reports.document.blocks import Block, Findings, Section, Text
@@ -8,7 +11,7 @@ from reports.document.chart import Chart
 from reports.finding.flights import finding_sections
 from reports.flights.comparison import comparison_section
 from reports.flights.first_page import closest_and_typical, flights_in_words
-from reports.flights.names import flight_name, flown_elsewhere, swept_column
+from reports.flights.names import flight_name, flown_elsewhere, swept_column, told_name
 from reports.flights.parameter_tables import parameter_blocks
 from reports.flights.selection import flight_section
 from reports.flights.trials.charts import trial_charts
@@ -31,11 +34,16 @@ _LISTED_MAX = 12
 def flights_content(run: RunData) -> Findings:
     """Return the findings of flights."""
     trials = read_trials(run)
+    by_key = {trial.key: trial for trial in trials}
+
+    def name(row: "pd.Series[Any]") -> str:
+        return told_name(by_key[row["trial"]], row)
+
     sections = [
         *monte_carlo_sections(run),
         *falsification_sections(run),
-        *finding_sections(run, trials),
-        *sulphur_sections(run),
+        *finding_sections(run, trials, name),
+        *sulphur_sections(run, name),
         _overview(trials),
         *(_trial(trial, only=len(trials) == 1) for trial in trials if len(trial.rows)),
         comparison_section(run, trials),

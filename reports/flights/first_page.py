@@ -8,7 +8,7 @@ import pandas as pd
 from common.physics.units import SECONDS_PER_HOUR
 from reports.document.chart import Chart
 from reports.document.tables import vehicle_flown
-from reports.flights.names import flight_name
+from reports.flights.names import told_name
 from reports.flights.tracks import track_picture
 from reports.run.columns import Array, Mask, beside_vessel, clearance, column, radii_differ, recorded_at, total
 from reports.run.flight_config import flight_configs, wind_changes
@@ -79,7 +79,7 @@ def closest_and_typical(trials: Sequence[Trial]) -> Chart | None:
     for what, place in {"Closest": closest, **({"Typical": typical} if typical != closest else {})}.items():
         trial, rows, i = flights[place]
         row = rows.iloc[i]
-        names[what] = f"{f'{trial.title}, ' * (len(trials) > 1)}{flight_name(trial, row)}"
+        names[what] = told_name(trial, row)
         shown.append((trial, row, f"{distances[place]:.1f} m beyond r_min" if beyond else f"{float(row['min_distance_m']):.1f} m"))
     # Longer names would touch above the panels; a flight that is alone has none there.
     long = len(shown) == 1 or any(len(name) > _NAME_MAX for name in names.values())
@@ -98,7 +98,7 @@ def _first_recorded(trials: Sequence[Trial]) -> Chart | None:
     if trial is None or row is None:
         return None
     several = sum(len(of.flown) for of in trials) > 1
-    return track_picture([(trial, row, "")], told=f" {flight_name(trial, row)}, the first with a time history." * several)
+    return track_picture([(trial, row, "")], told=f" {told_name(trial, row)}, the first with a time history." * several)
 
 
 def _told(recorded: Mask, names: Mapping[str, str], *, median: bool, beyond: bool) -> str:

@@ -30,22 +30,20 @@ _BARE = ("none", "yes", "no", "not set")
 
 
 def flight_name(trial: Trial, row: "pd.Series[Any]") -> str:
-    """Return what a flight is called: by what was swept, or by its number, or by its name."""
+    """Return what a flight is called in its trial: by what was swept, or as in the files of the run."""
     flight_id = str(row["flight_id"])
+    if not trial.swept:
+        return flight_id
     counted = re.search(r"_(\d+)$", flight_id)
-    if trial.swept:
-        first, *others = (_swept(trial, key, value) for key, value in _values(trial, row).items())
-        words = [first, *(words[0].lower() + words[1:] for words in others)]
-        # Of several flights at the same values each has its number.
-        return ", ".join([*words, *([f"flight {int(counted[1])}"] if counted and _repeated(trial) else [])])
-    return f"Flight {int(counted[1])}" if counted else flight_id
+    first, *others = (_swept(trial, key, value) for key, value in _values(trial, row).items())
+    words = [first, *(words[0].lower() + words[1:] for words in others)]
+    # Of several flights at the same values each has its number.
+    return ", ".join([*words, *([f"flight {int(counted[1])}"] if counted and _repeated(trial) else [])])
 
 
 def told_name(trial: Trial, row: "pd.Series[Any]") -> str:
-    """Return what sentences and lists call a flight: a swept one as figures do, any other by its name in the run."""
-    several = len(trial.run.manifest["trials"]) > 1
-    if not trial.swept:
-        return str(row["flight_id"])
+    """Return what a flight is called among those of all trials: names of files tell these apart, swept values do not."""
+    several = trial.swept and len(trial.run.manifest["trials"]) > 1
     return f"{trial.title}, {flight_name(trial, row)}" if several else flight_name(trial, row)
 
 

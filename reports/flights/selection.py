@@ -10,7 +10,7 @@ import pandas as pd
 from reports.document.blocks import Block, FlightContent, FlightPicker, Section, Text
 from reports.document.tables import ending, number, outcome
 from reports.flights.flight_view import flight_view
-from reports.flights.names import flight_name, flown_elsewhere
+from reports.flights.names import flown_elsewhere, told_name
 from reports.flights.single_flight import flight_charts
 from reports.replay.flight_scene import flight_scene
 from reports.run.columns import beside_vessel, clearance, column, met, radii_differ, recorded_at, violated
@@ -74,8 +74,7 @@ def _of_sweep(trial: Trial, row: "pd.Series[Any]", why: str) -> FlightContent:
 
 
 def _content(trial: Trial, row: "pd.Series[Any]", state: str) -> FlightContent:
-    several = len(trial.run.manifest["trials"]) > 1
-    name = f"{trial.title}, {flight_name(trial, row)}" if several else flight_name(trial, row)
+    name = told_name(trial, row)
     speed = "{:.1f} m/s" + " at the start" * wind_changes(trial.flight_config(row))
     known = [("", "min_distance_m", "{:.1f} m"), ("ν = ", "nu", "{:.2f}"), ("wind ", "wind_speed_mps", speed)]
     given = {key.replace("wind.speed_mps", "wind_speed_mps") for key in trial.swept}

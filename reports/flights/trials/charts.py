@@ -218,7 +218,7 @@ def _starts(trial: Trial) -> list[Chart]:
     ]
     acted = bool(np.any(guard > 0.0))
     caption = (
-        "Where flights began, seen from the ship with her plume up the page; she is to scale, and heads as in calm air. Coloured by"
+        "Where flights began, seen from the ship, who heads as in calm air, with her plume up the page. Coloured by"
         f" how long flights took to settle{' (left), and by whether the keep-out guard changed commands (right)' if acted else ''}."
     )
     settled = classes(settling, quartiles(settling, 10.0), "settled", "s")

@@ -20,7 +20,8 @@ _LEFT = ("departing", "gliding", "terminating")
 def gap_lines(trial: Trial, *, only: bool = True) -> list[str]:
     """Return in a line how many flights had such a gap, and the longest; ``only`` is whether it is the run's only trial."""
     flown = trial.flown
-    times = {str(name): of.to_numpy() for name, of in trial.run.crossings.groupby("flight_id")["time_s"]}
+    crossings = trial.run.crossings
+    times = {str(name): of.to_numpy() for name, of in crossings.groupby("flight_id")["time_s"]} if len(crossings) else {}
     gaps = [(gap, row) for _, row in flown.iterrows() if (gap := _gap(row, times.get(str(row["flight_id"]), np.empty(0))))]
     if not gaps:
         return []

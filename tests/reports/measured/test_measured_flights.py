@@ -167,7 +167,9 @@ def test_a_content_below_0_is_told_with_the_interval_that_its_verdict_rests_on()
     assert words in flights.sulphur_headline(run)
     assert words in flights._told(pd.Series(row))
     assert flights.sulphur_cards(run)[1].value == "0.000 to 0.039 % m/m"
-    table = flight_tables.flight_table(pd.DataFrame([{**row, "flight_id": "flight_1", "sensor": "fast"}]))
+    table = flight_tables.flight_table(
+        pd.DataFrame([{**row, "flight_id": "flight_1", "sensor": "fast"}]), lambda of: str(of["flight_id"])
+    )
     assert table.rows[0][table.head.index("95 % interval [% m/m]")] == "0.000 to 0.039"
 
 
