@@ -111,7 +111,7 @@ def channels_chart(samples: pd.DataFrame, x_label: str = _TIME) -> Chart:
         Line(x=time, y=column(rows, "fit_ppb"), label="what CO2 explains", colour="black"),
     ]
     panels.append(Panel(x_label=x_label, y_label="ΔSO2 [ppb]", lines=equal))
-    caption = "Readings. Bottom right: SO2 without background, corrected, at the slowest response, and CO2 at it times the slope."
+    caption = "Readings. ΔSO2: SO2 without background, corrected, at the slowest response, and CO2 at it times the slope."
     if not np.isfinite(column(rows, "co2_ppm")).all():
         caption += " Lines end where the log has no readings."
     return Chart(name="channels", caption=caption, panels=panels, columns=2, share_x=True, panel_height=0.125)
@@ -146,8 +146,7 @@ def regression_chart(samples: pd.DataFrame, record: Record) -> Chart | None:
     factor = fsc_factor(float(record.get("carbon") or CARBON_FRACTION))
     caption = (
         "SO2 over CO2 without background, at the response of the slowest channel; the sulphur content is"
-        f" {factor:.4f} times the slope. Right: of groups of neighbouring passes, with their"
-        " noise, 1σ."
+        f" {factor:.4f} times the slope. Groups of passes: neighbouring ones together, with their noise, 1σ."
     )
     return Chart(name="regression", caption=caption, panels=panels, columns=len(panels), panel_height=0.21)
 
