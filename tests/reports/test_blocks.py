@@ -153,6 +153,15 @@ def test_a_narrow_window_leaves_a_long_text_its_width_and_a_hash_may_go_on_over_
     assert ">Sulphur [%\N{NO-BREAK SPACE}m/m]</th>" in text
 
 
+def test_a_unit_in_the_head_of_a_printed_table_is_not_divided(tmp_path):
+    write_pdf(a_report([Table(head=["Sulphur content [% m/m]", "b"], rows=[["1", "2"]], widths=[1.0, 7.0])]), tmp_path / "unit.pdf")
+    document = pypdfium2.PdfDocument(tmp_path / "unit.pdf")
+    text = "".join(page.get_textpage().get_text_range() for page in document)
+    document.close()
+    assert re.search(r"\[%\sm/m\]", text)
+    assert not re.search(r"\[%\s*[\r\n]+m/m", text)
+
+
 @pytest.mark.parametrize(("rows", "classes"), [(14, 'class="scroll whole"'), (15, 'class="scroll"')])
 def test_a_short_table_stays_on_one_printed_page_and_a_long_one_may_go_on_over_the_next(rows, classes, tmp_path):
     assert classes in html_of([Table(head=["a"], rows=[["1"]] * rows, widths=[1.0])], tmp_path)
