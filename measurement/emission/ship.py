@@ -34,12 +34,16 @@ class Ship:
 
     Attributes
     ----------
-    name, title : what it is called, short and in words
-    stroke : 2 or 4
-    nox_tier : 0 to 3, IMO's tiers of NOx
-    power_max, speed_max : power of the main engine at its maximum continuous rating [W], and the speed that it gives [m/s]
-    stack_height, stack_diameter : of the funnel's mouth above the sea, and its inner diameter [m]
-    exhaust_per_energy_kg_kwh, exhaust_temperature_c : at maximum continuous rating; corrected for part load
+    name : what she is called in files
+    title : what she is called in reports
+    stroke : strokes of the main engine, 2 or 4
+    nox_tier : IMO's tier of NOx, 0 to 3
+    power_max : power of the main engine at its maximum continuous rating [W]
+    speed_max : speed that this power gives [m/s]
+    stack_height : height of the funnel's mouth above the sea [m]
+    stack_diameter : inner diameter of the funnel's mouth [m]
+    exhaust_per_energy_kg_kwh : exhaust per energy at maximum continuous rating; corrected for part load [kg/kWh]
+    exhaust_temperature_c : temperature of the exhaust at maximum continuous rating; corrected for part load [°C]
     wake_spread : initial spread of the plume in the superstructure's wake [m], 0 to 20
 
     Raises

@@ -11,7 +11,7 @@ from measurement.estimate.flight_log.analysis import analyse
 from measurement.estimate.flight_log.config import LogConfig, read_config
 from measurement.estimate.flight_log.csv_file import read_flight
 from measurement.estimate.flight_log.run_files import build_report, refuse_another_log, refuse_another_run, write_run
-from measurement.estimate.flight_log.words import summary, unused
+from measurement.estimate.flight_log.words import lacking, summary, unused
 
 BAD_INPUT = 2
 """Exit status of input that cannot be used."""
@@ -59,7 +59,8 @@ def main(arguments: list[str] | None = None) -> int:
         line = "".join(letter if letter.isprintable() else letter.encode("unicode_escape").decode() for letter in str(error))
         print(f"error: {line}", file=sys.stderr)
         return BAD_INPUT
-    print(*summary(analysis, given.flight.name), *unused(flight.readings, config.instrument), sep="\n")
+    more = (*lacking(flight.readings, analysis), *unused(flight.readings, config.instrument))
+    print(*summary(analysis, given.flight.name), *more, sep="\n")
     print(f"files: {directory}" if given.no_report else build_report(directory))
     return 0
 

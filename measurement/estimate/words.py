@@ -1,7 +1,7 @@
 """The verdict on a limit in words, the same on consoles and in reports."""
 
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 
 from measurement.estimate.result import Quality
 from measurement.estimate.verdict import ABOVE, BELOW, CONFIDENCE, OPEN
@@ -10,7 +10,12 @@ from measurement.gases import MASS_PERCENT, limit_words
 _WITHOUT = "C"
 """Quality of records that are given no verdict."""
 
-_COUNTED = {ABOVE: "above the limit", BELOW: "below the limit", OPEN: "undecided", _WITHOUT: "without a verdict (quality C)"}
+_COUNTED = {
+    ABOVE: "above the limit",
+    BELOW: "below the limit",
+    OPEN: "with an open verdict",
+    _WITHOUT: "without a verdict (quality C)",
+}
 """What is said of several records, by their verdict, or by the quality that gives none."""
 
 
@@ -54,6 +59,32 @@ def verdict_words(verdict: str, limit_percent: float, probability_above: float, 
 def needed(probability_above: float) -> str:
     """Return what an open verdict needs to be none."""
     return "the result is within the guard band" if probability_above > CONFIDENCE else "95 % or 5 % are needed"
+
+
+def next_step(quality: Quality | str, *, passes: int, undecided: bool, noise: float, errors: Mapping[str, float]) -> str:
+    """Return what to do where a record has no verdict, or one that is open; no word of another.
+
+    Parameters
+    ----------
+    quality, passes : of the record
+    undecided : whether a verdict is open
+    noise, errors : standard uncertainty by noise, and by each error that further passes leave as it is, by its words [% m/m]
+    """
+    if quality == _WITHOUT and not passes:
+        return "Next: check the CO2 sensor, and measure again in the plume."
+    if quality == _WITHOUT:
+        return (
+            "Next: correct what the reason for quality C names; or analyse apart, as logs of their own, those parts of the log that"
+            " are free of it, each with a whole crossing of the plume; or measure again."
+        )
+    if not undecided:
+        return ""
+    largest = max(errors, key=lambda name: errors[name], default="")
+    if not largest or noise > errors[largest]:
+        return "Next: measure more passes: most of the uncertainty is noise, which falls with them."
+    return (
+        f"Next: state this part of the uncertainty more narrowly, as by a calibration: {largest}. Further passes do not lower it."
+    )
 
 
 def counted_verdicts(records: Iterable[tuple[str, str]]) -> str:

@@ -20,16 +20,21 @@ class Channel:
     Attributes
     ----------
     gas : one of ``GASES``
-    t90_s, t90_sd : time to 90 % of a step [s], and its relative standard deviation [-]
-    second_pole : second time constant over the first, 0 for a response with one pole
-    delay_s, delay_sd_s : of tube and pump [s]
-    noise : standard deviation of a reading; not a number where it is to be estimated from the record
+    t90_s : time to 90 % of a step [s]
+    t90_sd : relative standard deviation of that time [-]
+    second_pole : second time constant over the first, 0 for a response with one pole [-]
+    delay_s : delay of tube and pump [s]
+    delay_sd_s : standard deviation of the delay [s]
+    noise : standard deviation of a reading; not a number where it is to be estimated from the record [unit]
     random_walk : standard deviation of the zero's drift after one second, growing with the root of time [unit/s^0.5]
-    resolution : step of the readings, 0 for none
-    range_low, range_high : what it can read
-    gain, gain_sd : [-]
-    zero, zero_sd : reading of clean air
-    cross, cross_sd : response to other gases, in this gas's unit per unit of theirs
+    resolution : step of the readings, 0 for none [unit]
+    range_low, range_high : end of what it can read [unit]
+    gain : reading over concentration [-]
+    gain_sd : standard deviation of the gain [-]
+    zero : reading of clean air [unit]
+    zero_sd : standard deviation of the zero [unit]
+    cross : response to other gases, in this gas's unit per unit of theirs
+    cross_sd : standard deviation of that response, likewise
     pressure_effect : of the reading, relative to it [1/hPa]
     """
 

@@ -20,8 +20,9 @@ class SnifferSpec:
 
     Attributes
     ----------
-    name, title : for files and for readers
-    rate_hz : of its readings [1/s]
+    name : what it is called in files
+    title : what it is called in reports
+    rate_hz : readings in a second [1/s]
     channels : one per gas at most; SO2 and CO2 are needed for an estimate, not for reading
     source : where the figures come from
     """

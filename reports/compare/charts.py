@@ -35,8 +35,8 @@ def pair_charts(pairs: Pairs, found: dict[str, Difference]) -> list[Chart]:
         for difference in shown
     ]
     caption = (
-        f"Each marker is a pair of flights. Left: {pairs.first.title} to the right, {pairs.other.title} upwards; on the dashed line"
-        f" both are equal. Right: the differences {pairs.other.letter} − {pairs.first.letter}, "
+        f"Each marker is a pair of flights: {pairs.first.title} to the right, {pairs.other.title} upwards; on the dashed line"
+        f" both are equal. Then the differences {pairs.other.letter} − {pairs.first.letter}, "
         + ("over what was swept." if over else "in rising order: where the markers pass 50 % is their median.")
     )
     return [

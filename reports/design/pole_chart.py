@@ -19,9 +19,9 @@ def pole_chart(design: Record) -> Chart:
     """Return the upper half of the s-plane, whole and about the origin, with rays of equal damping."""
     return Chart(
         name="gridpoles",
-        caption="Poles at every point of the grid, by airspeed; the lower half is its mirror image. Left the bare aircraft with"
-        f" servos and engine, right under the autopilot; below, magnified about the origin. Poles beyond {FAST:g} rad/s (servos,"
-        " delays) are left out. Rays: damping ratio ζ.",
+        caption="Poles at every point of the grid, by airspeed; the lower half is its mirror image. Of the bare aircraft"
+        f" with servos and engine, and under the autopilot; then both magnified about the origin. Poles beyond {FAST:g} rad/s"
+        " (servos, delays) are left out. Rays: damping ratio ζ.",
         panels=[
             *(_panel(design, kind, title, _reach(design)) for kind, title in _KINDS),
             *(_panel(design, kind, "", _SLOW) for kind, _ in _KINDS),

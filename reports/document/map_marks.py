@@ -12,6 +12,7 @@ import numpy as np
 from reports.document.chart import Line, Note, Panel
 from reports.document.palette import Meaning
 from reports.run.columns import Array
+from reports.run.ship import Hull
 
 _HULL = ((0.0, 1.0), (0.36, 0.9), (0.5, 0.76), (0.5, 0.03), (0.42, 0.0), (-0.42, 0.0), (-0.5, 0.03), (-0.5, 0.76), (-0.36, 0.9))
 """Outline of a hull seen from above, the bow first: to starboard over the beam, and ahead of the stern over the length."""
@@ -26,18 +27,18 @@ _BAR = 0.18
 """Longest scale bar, over the width of the map."""
 
 
-def hull_line(length: float, beam: float, funnel: float, angle: float, x: float = 0.0, y: float = 0.0) -> Line:
-    """Return a ship to scale, her funnel at a place, ``funnel`` of her length from the stern, and her bow at an angle."""
+def hull_line(hull: Hull, angle: float, x: float = 0.0, y: float = 0.0) -> Line:
+    """Return a ship, her funnel at a place and her bow at an angle: to scale, or pale and dotted where her size is not known."""
     right, ahead = (np.array(side) for side in zip(*(*_HULL, _HULL[0]), strict=True))
-    across, along = beam * right, length * (ahead - funnel)
+    across, along = hull.beam * right, hull.length * (ahead - hull.funnel)
     return Line(
         x=x + math.cos(angle) * across + math.sin(angle) * along,
         y=y - math.sin(angle) * across + math.cos(angle) * along,
-        label="ship, to scale",
+        label="ship, to scale" if hull.known else "ship, size not known",
         colour=Meaning.SHIP,
-        style="thin",
+        style="thin" if hull.known else "dot",
         fill=True,
-        opacity=0.55,
+        opacity=0.55 if hull.known else 0.2,
     )
 
 

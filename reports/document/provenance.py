@@ -7,6 +7,9 @@ from reports.document.tables import pairs_table, run_config
 from reports.run.letterhead import Letterhead
 from reports.run.run_data import RunData
 
+_SHORTENED = ": the first 16 digits of the SHA-256"
+"""Which hash a hash is."""
+
 
 def provenance_section(run: RunData, head: Letterhead) -> Section:
     """Return the last section of a report."""
@@ -40,13 +43,17 @@ def _hashes(run: RunData) -> list[list[str]]:
     seed = manifest["config"].get("seed")
     rows = [["Source revision", manifest["git_revision"]]]
     if source := manifest.get("fingerprint", {}).get("source"):
-        rows.append(["Hash of the source", source])
+        rows.append(["Hash of the source", f"{source}, of the program's files and presets{_SHORTENED}"])
+    if measured:
+        files = {"log": (manifest["source"], manifest["source_hash"])}
+        files |= {"configuration": (manifest["settings"], manifest["settings_hash"])} if manifest["settings"] else {}
+        rows += [[f"SHA-256 of the {what}", f"{digest}, of the file {name}"] for what, (name, digest) in files.items()]
     # A design is made without chance, and of no more than its title says.
-    if manifest.get("study") != "design":
-        rows.append(["Hash of the input" if measured else "Hash of the scenario", manifest["config_hash"]])
-        rows += [] if measured else [["Seed", "each trial's own" if seed is None else str(seed)]]
+    elif manifest.get("study") != "design":
+        rows.append(["Hash of the scenario", f"{manifest['config_hash']}, of its keys and files{_SHORTENED}"])
+        rows.append(["Seed", "each trial's own" if seed is None else str(seed)])
     if logo := manifest.get("report", {}).get("logo_sha256"):
-        rows.append(["Hash of the logo", logo[:16]])
+        rows.append(["Hash of the logo", f"{logo[:16]}, of the file{_SHORTENED}"])
     return rows
 
 

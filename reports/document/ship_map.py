@@ -5,17 +5,18 @@ from collections.abc import Sequence
 from reports.document.chart import Line, Note, Panel, circle
 from reports.document.map_marks import hull_line, on_map, plume_lines
 from reports.document.palette import Meaning
+from reports.run.ship import Hull
 from reports.run.surroundings import Surroundings
 
 
 def ship_lines(about: Surroundings, up: float, x: float = 0.0, y: float = 0.0) -> list[Line]:
     """Return keep-out area, plume and ship, on a page on which the course ``up`` [rad] is up, with her funnel at a place."""
     right, along = circle(about.radius)
-    hull, plume = about.hull, about.plume
+    plume = about.plume
     return [
         Line(x=x + right, y=y + along, label="keep-out area, r_min", colour=Meaning.LIMIT, fill=True),
         *plume_lines(plume.distance, plume.half_width if plume.smoke else None, about.axis - up, x, y),
-        hull_line(hull.length, hull.beam, hull.funnel, about.heading - up, x, y),
+        hull_line(about.hull, about.heading - up, x, y),
     ]
 
 
@@ -46,11 +47,18 @@ def ship_panel(
 def ship_words(*about: Surroundings) -> str:
     """Return what maps about the ship show, one or several side by side, for a caption."""
     shapes = " or ".join(dict.fromkeys(of.shape for of in about))
-    hulls = " or ".join(f"{hull.title}, {hull.length:g} m by {hull.beam:g} m" for hull in dict.fromkeys(of.hull for of in about))
+    hulls = "; or ".join(_hull_words(hull) for hull in dict.fromkeys(of.hull for of in about))
     smoke, changing = any(of.plume.smoke for of in about), any(of.changing for of in about)
     width = " Its width is two standard deviations of the mean smoke to either side." if smoke else ""
     moved = " Ship, north and wind are as they were at the closest approach." if changing else ""
     return (
-        f"Seen from the ship, with the axis of her plume up the page.{width} The keep-out {shapes} is about her funnel; her"
-        f" hull is that of {hulls}, as the scenario gives none.{moved}"
+        f"Seen from the ship, with the axis of her plume up the page.{width} The keep-out {shapes} is about her funnel;"
+        f" {hulls}.{moved}"
     )
+
+
+def _hull_words(hull: Hull) -> str:
+    size = f"{hull.length:g} m by {hull.beam:g} m"
+    if hull.known:
+        return f"her hull is that of {hull.title}, {size}, as the scenario gives none"
+    return f"her size is not known, and drawn is {hull.title} of {size}"

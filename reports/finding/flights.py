@@ -16,7 +16,7 @@ from reports.finding.trial_charts import finding_charts
 from reports.finding.variants import variants_of
 from reports.run.columns import column, recorded_at
 from reports.run.run_data import RunData
-from reports.run.trials import Trial
+from reports.run.trials import Name, Trial
 
 _LATE = "axis_height_error_3min_m"
 """Error of the axis' height by which flights are chosen."""
@@ -25,11 +25,11 @@ _NAMED_MAX = 12
 """Flights without their plume that are named."""
 
 
-def finding_sections(run: RunData, trials: list[Trial]) -> list[Section]:
-    """Return the sections of a run whose flights searched for a plume, and none of any other."""
+def finding_sections(run: RunData, trials: list[Trial], name: Name) -> list[Section]:
+    """Return the sections of a run whose flights searched for a plume, and none of any other; ``name`` is that of a flight."""
     found = [trial for trial in trials if len(searched(trial.rows))]
-    whole = [block for trial in found for block in _whole(trial, only=len(found) == 1)]
-    single = [block for trial in found for block in _single(run, trial)]
+    whole = [block for trial in found for block in _whole(trial, name, only=len(found) == 1)]
+    single = [block for trial in found for block in _single(run, trial, name)]
     sections = [
         Section(anchor="finding", title="Search for the plume", nav_title="Search", blocks=whole),
         Section(anchor="searches", title="Searches one by one", nav_title="Searches", blocks=single),
@@ -42,14 +42,14 @@ def searched(rows: pd.DataFrame) -> pd.DataFrame:
     return rows[rows["axis_height_end_m"].notna()] if "axis_height_end_m" in rows else rows.iloc[:0]
 
 
-def _whole(trial: Trial, *, only: bool) -> list[Block]:
+def _whole(trial: Trial, name: Name, *, only: bool) -> list[Block]:
     """Return figures and tables of all flights of a trial, beside its comparisons."""
     variants = variants_of(trial)
     if not variants:
         return []
     heights = height_table(variants)
     missed = variants[0].rows[variants[0].times > FOUND_WITHIN]
-    unfound = f"Not found within {FOUND_WITHIN:g} s: {', '.join(map(str, missed['flight_id'][:_NAMED_MAX]))}"
+    unfound = f"Not found within {FOUND_WITHIN:g} s: {'; '.join(name(row) for _, row in missed[:_NAMED_MAX].iterrows())}"
     more = f" and {len(missed) - _NAMED_MAX} more" if len(missed) > _NAMED_MAX else ""
     return [
         *([] if only else [Heading(trial.title)]),
@@ -60,14 +60,14 @@ def _whole(trial: Trial, *, only: bool) -> list[Block]:
     ]
 
 
-def _single(run: RunData, trial: Trial) -> list[Block]:
+def _single(run: RunData, trial: Trial, name: Name) -> list[Block]:
     """Return the figures of a typical search and of the one with the largest error."""
     blocks: list[Block] = []
     for row, why in _picked(run, searched(trial.rows)):
         view = search_view(run, row)
         if view is not None:
-            name = str(row["flight_id"])
-            blocks += [Heading(f"{name}: {why}"), Text(_told(row)), *_charts(view, name.replace("_", "-"))]
+            file = str(row["flight_id"]).replace("_", "-")
+            blocks += [Heading(f"{name(row)}: {why}"), Text(_told(row)), *_charts(view, file)]
     return blocks
 
 

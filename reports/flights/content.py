@@ -1,6 +1,9 @@
 """The report of flights: its sections are by what the run has."""
 
 from functools import partial
+from typing import Any
+
+import pandas as pd
 
 from reports.design.section import innerloop_section
 from reports.document.blocks import Block, Findings, Section, Text
@@ -8,10 +11,11 @@ from reports.document.chart import Chart
 from reports.finding.flights import finding_sections
 from reports.flights.comparison import comparison_section
 from reports.flights.first_page import closest_and_typical, flights_in_words
-from reports.flights.names import flight_name, flown_elsewhere, swept_column
+from reports.flights.names import flight_name, flown_elsewhere, swept_column, told_name
 from reports.flights.parameter_tables import parameter_blocks
 from reports.flights.selection import flight_section
 from reports.flights.trials.charts import trial_charts
+from reports.flights.trials.crossing_gaps import gap_lines
 from reports.flights.trials.failures import tracking_lines
 from reports.flights.trials.tables import criteria_table, failed_blocks, fault_table, flight_table, trial_table
 from reports.flights.verdict import flight_verdict
@@ -30,11 +34,16 @@ _LISTED_MAX = 12
 def flights_content(run: RunData) -> Findings:
     """Return the findings of flights."""
     trials = read_trials(run)
+    by_key = {trial.key: trial for trial in trials}
+
+    def name(row: "pd.Series[Any]") -> str:
+        return told_name(by_key[row["trial"]], row)
+
     sections = [
         *monte_carlo_sections(run),
         *falsification_sections(run),
-        *finding_sections(run, trials),
-        *sulphur_sections(run),
+        *finding_sections(run, trials, name),
+        *sulphur_sections(run, name),
         _overview(trials),
         *(_trial(trial, only=len(trials) == 1) for trial in trials if len(trial.rows)),
         comparison_section(run, trials),
@@ -78,7 +87,7 @@ def _trial(trial: Trial, *, only: bool) -> Section:
         table.append(fault_table(trial))
     if trial.swept or (only and len(trial.rows) <= _LISTED_MAX):
         head, name = swept_column(trial) if trial.swept else ("Flight", partial(flight_name, trial))
-        caption = " ".join(["The flights, a row each, with their outcome.", *tracking_lines(trial)])
+        caption = " ".join(["The flights, a row each, with their outcome.", *tracking_lines(trial), *gap_lines(trial)])
         table.append(flight_table(trial.rows, head, name, caption=caption, flown_ratio=flown_elsewhere(trial)))
     # The head of the report says what an only trial is.
     text: list[Block] = [] if only else [Text(str(trial.config["description"]))]

@@ -8,9 +8,9 @@ import pandas as pd
 from common.physics.units import SECONDS_PER_HOUR
 from reports.document.chart import Chart
 from reports.document.tables import vehicle_flown
-from reports.flights.names import flight_name
+from reports.flights.names import told_name
 from reports.flights.tracks import track_picture
-from reports.run.columns import Array, Mask, beside_vessel, clearance, column, recorded_at, total
+from reports.run.columns import Array, Mask, beside_vessel, clearance, column, radii_differ, recorded_at, total
 from reports.run.flight_config import flight_configs, wind_changes
 from reports.run.run_data import RunData
 from reports.run.trials import Trial
@@ -71,6 +71,7 @@ def closest_and_typical(trials: Sequence[Trial]) -> Chart | None:
     if not recorded.any():
         return _first_recorded(trials)
     distances = np.concatenate([clearance(rows) for _, rows in flown])
+    beyond = radii_differ(pd.concat([rows for _, rows in flown]))
     closest = int(np.argmin(np.where(recorded, distances, np.inf)))
     typical, median = recorded_at(distances, recorded, len(distances) // 2)
     flights = [(trial, rows, i) for trial, rows in flown for i in range(len(rows))]
@@ -78,15 +79,15 @@ def closest_and_typical(trials: Sequence[Trial]) -> Chart | None:
     for what, place in {"Closest": closest, **({"Typical": typical} if typical != closest else {})}.items():
         trial, rows, i = flights[place]
         row = rows.iloc[i]
-        names[what] = f"{f'{trial.title}, ' * (len(trials) > 1)}{flight_name(trial, row)}"
-        shown.append((trial, row, f"{float(row['min_distance_m']):.1f} m"))
+        names[what] = told_name(trial, row)
+        shown.append((trial, row, f"{distances[place]:.1f} m beyond r_min" if beyond else f"{float(row['min_distance_m']):.1f} m"))
     # Longer names would touch above the panels; a flight that is alone has none there.
     long = len(shown) == 1 or any(len(name) > _NAME_MAX for name in names.values())
     shown = [
         (trial, row, f"{what}: {distance}" if long else f"{what}: {name}, {distance}")
         for (trial, row, distance), (what, name) in zip(shown, names.items(), strict=True)
     ]
-    told = _told(recorded, names if long else dict.fromkeys(names, ""), median=median)
+    told = _told(recorded, names if long else dict.fromkeys(names, ""), median=median, beyond=beyond)
     return track_picture(shown, told=told * (len(flights) > 1))
 
 
@@ -97,12 +98,13 @@ def _first_recorded(trials: Sequence[Trial]) -> Chart | None:
     if trial is None or row is None:
         return None
     several = sum(len(of.flown) for of in trials) > 1
-    return track_picture([(trial, row, "")], told=f" {flight_name(trial, row)}, the first with a time history." * several)
+    return track_picture([(trial, row, "")], told=f" {told_name(trial, row)}, the first with a time history." * several)
 
 
-def _told(recorded: Mask, names: Mapping[str, str], *, median: bool) -> str:
-    """Return which flights are shown, with those names that are not empty, and whether the typical one is at the median."""
+def _told(recorded: Mask, names: Mapping[str, str], *, median: bool, beyond: bool) -> str:
+    """Return which flights are shown, with those names that are not empty, whether the typical one is the median, and of what."""
     of = "" if recorded.all() else " of those with a time history"
-    near = "the one whose closest approach is the median" if median else "of these the one nearest to the median of all flights"
-    meanings = {"Closest": f"the flight with the closest approach{of}", "Typical": near}
+    what = "least distance beyond its own r_min" if beyond else "closest approach"
+    near = f"the one whose {what} is the median" if median else "of these the one nearest to the median of all flights"
+    meanings = {"Closest": f"the flight with the {what}{of}", "Typical": near}
     return "".join(f" {what}: {f'{name}, ' if name else ''}{meanings[what]}." for what, name in names.items())

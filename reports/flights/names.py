@@ -13,7 +13,11 @@ import pandas as pd
 
 from reports.document.tables import parameter_value
 from reports.monte_carlo.names import input_name, input_unit
+from reports.run.columns import column
 from reports.run.trials import Trial
+
+_SPEED_RATIO = "vessel.speed_ratio"
+"""Key that ``nu`` stands for where it is swept; in wind the column ``nu`` is another ratio, that through the air."""
 
 _SAME_RATIO = 0.005
 """Within which two speed ratios are written the same [-]."""
@@ -26,22 +30,20 @@ _BARE = ("none", "yes", "no", "not set")
 
 
 def flight_name(trial: Trial, row: "pd.Series[Any]") -> str:
-    """Return what a flight is called: by what was swept, or by its number, or by its name."""
+    """Return what a flight is called in its trial: by what was swept, or as in the files of the run."""
     flight_id = str(row["flight_id"])
+    if not trial.swept:
+        return flight_id
     counted = re.search(r"_(\d+)$", flight_id)
-    if trial.swept:
-        first, *others = (_swept(trial, key, value) for key, value in _values(trial, row).items())
-        words = [first, *(words[0].lower() + words[1:] for words in others)]
-        # Of several flights at the same values each has its number.
-        return ", ".join([*words, *([f"flight {int(counted[1])}"] if counted and _repeated(trial) else [])])
-    return f"Flight {int(counted[1])}" if counted else flight_id
+    first, *others = (_swept(trial, key, value) for key, value in _values(trial, row).items())
+    words = [first, *(words[0].lower() + words[1:] for words in others)]
+    # Of several flights at the same values each has its number.
+    return ", ".join([*words, *([f"flight {int(counted[1])}"] if counted and _repeated(trial) else [])])
 
 
 def told_name(trial: Trial, row: "pd.Series[Any]") -> str:
-    """Return what sentences and lists call a flight: a swept one as figures do, any other by its name in the run."""
-    several = len(trial.run.manifest["trials"]) > 1
-    if not trial.swept:
-        return str(row["flight_id"])
+    """Return what a flight is called among those of all trials: names of files tell these apart, swept values do not."""
+    several = trial.swept and len(trial.run.manifest["trials"]) > 1
     return f"{trial.title}, {flight_name(trial, row)}" if several else flight_name(trial, row)
 
 
@@ -68,7 +70,8 @@ def flown_elsewhere(trial: Trial) -> bool:
     """Return whether flights have another speed ratio than the one that was swept: in wind it is that through the air."""
     if "nu" not in trial.swept:
         return False
-    return any(abs(float(row["nu"]) - _ratio(trial, row)) > _SAME_RATIO for _, row in trial.flown.iterrows())
+    swept = trial.input(_SPEED_RATIO).reindex(trial.flown["flight_id"])
+    return bool(np.any(np.abs(column(trial.flown, "nu") - swept.to_numpy(dtype=np.float64)) > _SAME_RATIO))
 
 
 def _repeated(trial: Trial) -> bool:
@@ -79,22 +82,13 @@ def _repeated(trial: Trial) -> bool:
 def _values(trial: Trial, row: "pd.Series[Any]") -> dict[str, Any]:
     """Return the values of a flight of what was swept."""
     flight_id = str(row["flight_id"])
-    return {key: _ratio(trial, row) if key == "nu" else trial.input(key)[flight_id] for key in trial.swept}
+    return {key: trial.input(_SPEED_RATIO if key == "nu" else key)[flight_id] for key in trial.swept}
 
 
 def _words(trial: Trial) -> "dict[str, pd.Series[Any]]":
     """Return the values in each flown flight of every key that was swept over words."""
     values = {key: trial.input(key).reindex(trial.flown["flight_id"]) for key in trial.swept}
     return {key: of for key, of in values.items() if not pd.api.types.is_numeric_dtype(of) or pd.api.types.is_bool_dtype(of)}
-
-
-def _ratio(trial: Trial, row: "pd.Series[Any]") -> float:
-    """Return the speed ratio that was swept: that of the speeds in still air, of which the run records another one in wind."""
-    key = "guidance.airspeed_mps"
-    airspeed = float(trial.input(key)[str(row["flight_id"])] if key in trial.swept else trial.setting(key))
-    over_ground = float(row.get("vessel_speed_mps", math.nan)) / airspeed
-    nearest = min((float(nu) for nu in trial.swept["nu"]), key=lambda nu: abs(nu - over_ground))
-    return nearest if abs(nearest - over_ground) < _SAME_RATIO else float(row["nu"])
 
 
 def _swept(trial: Trial, key: str, value: Any) -> str:

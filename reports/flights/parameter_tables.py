@@ -16,6 +16,9 @@ _HEAD = ["Parameter", "Value", "Default", "Unit", "Meaning and equation"]
 _WIDTHS = [2.5, 1.5, 0.9, 0.5, 4.1]
 
 
+_OWN = "a table of one's own"
+"""Value of a key whose table has its keys in rows of their own."""
+
 _ANY_RATIO = 1e9
 """Upper end of the speed ratios of a scenario that limits none [-]."""
 
@@ -65,8 +68,10 @@ def _rows(trial: Trial, *, every: bool) -> list[list[str]]:
     for key, words in inputs.items():
         about = listed.get(key, {"meaning": _meaning(key), "unit": input_unit(key).replace("-", "")})
         rows.append([key, words, _default(about), about.get("unit", ""), about["meaning"]])
+    # A table of the user's own has its keys in the rows below.
+    tables = {key for key in listed if any(of.startswith(f"{key}.") for of in listed)}
     return rows + [
-        [key, value_in_words(p["value"], key), _default(p), p["unit"], p["meaning"]]
+        [key, _OWN if key in tables else value_in_words(p["value"], key), _default(p), p["unit"], p["meaning"]]
         for key, p in listed.items()
         if key not in inputs and (every or "default" not in p or p["value"] != p["default"])
     ]

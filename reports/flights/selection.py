@@ -10,10 +10,10 @@ import pandas as pd
 from reports.document.blocks import Block, FlightContent, FlightPicker, Section, Text
 from reports.document.tables import ending, number, outcome
 from reports.flights.flight_view import flight_view
-from reports.flights.names import flight_name, flown_elsewhere
+from reports.flights.names import flown_elsewhere, told_name
 from reports.flights.single_flight import flight_charts
 from reports.replay.flight_scene import flight_scene
-from reports.run.columns import beside_vessel, clearance, column, met, recorded_at, violated
+from reports.run.columns import beside_vessel, clearance, column, met, radii_differ, recorded_at, violated
 from reports.run.flight_config import wind_changes
 from reports.run.trials import Trial
 
@@ -25,7 +25,10 @@ SWEPT_MAX = 24
 
 _VIOLATION, _FAILED = "deepest keep-out violation", "did not meet every criterion"
 
-_MEDIAN = "median of closest approaches"
+_CLOSEST, _MEDIAN = "closest approach", "median of closest approaches"
+
+_LEAST_BEYOND, _MEDIAN_BEYOND = "least distance beyond its own r_min", "median of least distances beyond r_min"
+"""The same of flights with different r_min."""
 
 _ALONE = "without a vessel"
 
@@ -46,7 +49,8 @@ def flight_section(trials: list[Trial]) -> Section:
         flights = [_content(trial, row, _state(row, why)) for trial, row, why in picked]
         text = (
             "Of each trial the flights with the deepest keep-out violation and with a criterion that is not met, if there are such;"
-            " of those with a time history the closest approach, and the one nearest to the median of all closest approaches."
+            " of those with a time history the closest approach, and the one nearest to the median of all closest approaches; where"
+            " r_min differs, by the distance beyond each flight's own."
             if len(flights) > 1
             else _only(trials)
         )
@@ -70,8 +74,7 @@ def _of_sweep(trial: Trial, row: "pd.Series[Any]", why: str) -> FlightContent:
 
 
 def _content(trial: Trial, row: "pd.Series[Any]", state: str) -> FlightContent:
-    several = len(trial.run.manifest["trials"]) > 1
-    name = f"{trial.title}, {flight_name(trial, row)}" if several else flight_name(trial, row)
+    name = told_name(trial, row)
     speed = "{:.1f} m/s" + " at the start" * wind_changes(trial.flight_config(row))
     known = [("", "min_distance_m", "{:.1f} m"), ("ν = ", "nu", "{:.2f}"), ("wind ", "wind_speed_mps", speed)]
     given = {key.replace("wind.speed_mps", "wind_speed_mps") for key in trial.swept}
@@ -116,6 +119,7 @@ def _candidates(trial: Trial) -> Iterator[tuple["pd.Series[Any]", str]]:
     inside, failed = rows[violated(rows)], rows[~met(rows) & ~violated(rows)]
     # Of the others, those that have a time history: they are chosen for their figures.
     recorded, distances = trial.run.with_history(near), clearance(near)
+    least, middle = (_LEAST_BEYOND, _MEDIAN_BEYOND) if radii_differ(near) else (_CLOSEST, _MEDIAN)
     chosen = []
     if len(inside):
         chosen.append((inside.iloc[int(np.argmax(column(inside, "keepout_depth_m")))], _VIOLATION))
@@ -124,9 +128,9 @@ def _candidates(trial: Trial) -> Iterator[tuple["pd.Series[Any]", str]]:
         shown = failed[trial.run.with_history(failed)]
         chosen.append(((shown if len(shown) else failed).iloc[0], _FAILED))
     if recorded.any():
-        chosen.append((near.iloc[int(np.argmin(np.where(recorded, distances, np.inf)))], "closest approach"))
+        chosen.append((near.iloc[int(np.argmin(np.where(recorded, distances, np.inf)))], least))
         typical, median = recorded_at(distances, recorded, len(distances) // 2)
-        chosen.append((near.iloc[typical], _MEDIAN if median else f"nearest to the {_MEDIAN}"))
+        chosen.append((near.iloc[typical], middle if median else f"nearest to the {middle}"))
     elif len(alone := trial.flown[trial.run.with_history(trial.flown)]):
         chosen.append((alone.iloc[0], _ALONE))
     seen = set()

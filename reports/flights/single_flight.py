@@ -11,6 +11,7 @@ from reports.document.palette import Meaning
 from reports.flights.flight_view import FlightView
 from reports.flights.names import flight_name
 from reports.flights.tracks import track_chart
+from reports.flights.trials.crossing_gaps import crossing_gap, gap_words
 from reports.run.columns import NOTICEABLE, Array, column
 from reports.run.flight_config import keepout_shape, source_height
 from reports.run.time_history import ERROR_MIN, floor_words, tracking_error, true_wind
@@ -51,7 +52,7 @@ class _Histories:
         small = floor_words([self._view.samples])
         return Chart(
             name="histories",
-            caption=f"{flight_name(trial, self._view.row)}: time histories.{self._distance_words()}{small}"
+            caption=f"{flight_name(trial, self._view.row)}: time histories.{self._distance_words()}{small}{self._gap_words()}"
             " Dashed in the panel of the heading rate: ω_max." + (" Tinted: the keep-out guard changed commands." if bands else ""),
             panels=panels,
             columns=columns,
@@ -92,6 +93,11 @@ class _Histories:
         far = self._distance_range()[1]
         where = measured_from(keepout_shape(self._view.config))
         return f" Distance is {where}, dashed r_min; of more than {far:.0f} m it is off the panel."
+
+    def _gap_words(self) -> str:
+        """Return how long the flight did not cross the plume though it had settled; nothing where that was not long."""
+        gap = crossing_gap(self._view.trial, self._view.row)
+        return f" No crossing for {gap_words(gap)}, before the vessel's last manoeuvre had ended." if gap else ""
 
     def _distance_range(self) -> tuple[float, float]:
         """Return the least and the largest distance that are shown [m]: about r_min, and what the flight has on its orbit."""

@@ -8,10 +8,12 @@ import pandas as pd
 
 from common.intervals import percent
 from reports.document.blocks import Card, Verdict
+from reports.document.tables import minus, span
 from reports.flights.bounds import counted_as_violations, sampled, violation_bound
 from reports.flights.criteria import MEASURED, Criterion, counted, criteria_of
 from reports.flights.first_page import simulated
 from reports.flights.names import told_name
+from reports.flights.trials.crossing_gaps import gap_lines
 from reports.flights.trials.failures import failure_lines, tracking_lines
 from reports.measurement.flights import sulphur_above, sulphur_below, sulphur_cards, sulphur_headline
 from reports.monte_carlo.subset import plain_bound_in_words, subset_headline
@@ -27,6 +29,7 @@ from reports.run.columns import (
     lost,
     met,
     passed,
+    radii_differ,
     total,
     violated,
 )
@@ -67,6 +70,7 @@ def flight_verdict(run: RunData, trials: list[Trial]) -> Verdict:
         failures=[
             *(line for trial in trials for line in failure_lines(trial)),
             *(line for trial in trials for line in tracking_lines(trial, only=len(trials) == 1)),
+            *(line for trial in trials for line in gap_lines(trial, only=len(trials) == 1)),
             *_noteworthy(flown),
         ],
         figures=[*sulphur_cards(run), *_bound_figure(run, trials), *_figures(trials, flown, planned)],
@@ -160,11 +164,14 @@ def _closest(trials: list[Trial], beside: pd.DataFrame) -> str:
     (trial,) = [trial for trial in trials if trial.key == closest["trial"]]
     name, shape = told_name(trial, closest), keepout_shape(trial.flight_config(closest))
     where = f" ({name})" if trial.swept else f", in {name}"
-    words = (
-        "Closest approach of any flight, from its first second:"
-        f" {_distance(float(closest['min_distance_m']), float(closest['keepout_radius_m']))}"
-        f" {measured_from(shape)}{where}"
-    )
+    distance, radius = float(closest["min_distance_m"]), float(closest["keepout_radius_m"])
+    approach = f"{_distance(distance, radius)} {measured_from(shape)}"
+    words = f"Closest approach of any flight, from its first second: {approach}{where}"
+    if radii_differ(beside):
+        words = (
+            f"Each flight is judged by its own r_min, {span(column(beside, 'keepout_radius_m'), '{:g}')} m. Least distance beyond"
+            f" it, from the first second: {_distance(distance - radius, 0.0)}{where}: {approach}, where r_min is {radius:g} m"
+        )
     horizontal = closest.get("horizontal_distance_min_m", math.nan)
     if shape == "sphere" and horizontal < float(closest["min_distance_m"]) - 1.0:
         words += f"; {float(horizontal):.1f} m horizontally from the funnel"
@@ -216,7 +223,7 @@ def _figures(trials: list[Trial], flown: pd.DataFrame, planned: int) -> list[Car
     worst = [_worst([criterion for trial in trials for criterion in criteria_of(trial)], key) for key in MEASURED]
     figures = [
         *([Card("Keep-out violations", f"{violations:,}", "0", violations == 0)] if len(beside) else []),
-        *([_closest_figure(trials, _nearest(beside))] if len(beside) else []),
+        *([_closest_figure(trials, beside)] if len(beside) else []),
         Card("Missions completed", f"{done:,} of {planned:,}", *(allowed or ("all", done == planned))),
         *(figure for figure in worst if figure),
         Card(f"Flights flown, {simulated(flown)}", f"{len(flown):,} of {planned:,}", "all", len(flown) == planned),
@@ -239,10 +246,14 @@ def _figures(trials: list[Trial], flown: pd.DataFrame, planned: int) -> list[Car
     return figures
 
 
-def _closest_figure(trials: list[Trial], nearest: "pd.Series[Any]") -> Card:
-    shapes = {trial.shape for trial in trials}
+def _closest_figure(trials: list[Trial], beside: pd.DataFrame) -> Card:
+    nearest, shapes = _nearest(beside), {trial.shape for trial in trials}
     name = f"Closest approach, {trials[0].measured_from}" if len(shapes) == 1 and shapes <= set(SHAPES) else "Closest approach"
     distance, radius = float(nearest["min_distance_m"]), float(nearest["keepout_radius_m"])
+    if radii_differ(beside):
+        return Card(
+            "Closest approach, beyond the flight's own r_min", _distance(distance - radius, 0.0), "≥ 0 m", distance >= radius
+        )
     return Card(name, _distance(distance, radius), f"≥ {radius:g} m", distance >= radius)
 
 
@@ -250,7 +261,7 @@ def _distance(distance: float, radius: float) -> str:
     """Return a closest approach to 0.1 m; where that contradicts its judgement, rounded down, with as many digits as it takes."""
     down = (f"{math.floor(distance * 10.0**places) / 10.0**places:.{places}f}" for places in (1, 2, 3))
     shown = (text for text in (f"{distance:.1f}", *down) if (float(text) >= float(f"{radius:g}")) == (distance >= radius))
-    return f"{next(shown, f'{distance:.6f}')} m"
+    return minus(f"{next(shown, f'{distance:.6f}')} m")
 
 
 def _tracking(flown: pd.DataFrame) -> list[Card]:

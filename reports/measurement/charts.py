@@ -9,7 +9,7 @@ from reports.document.chart import Chart, Line, Note, Panel
 from reports.document.map_marks import on_map
 from reports.document.palette import Meaning
 from reports.document.panels import around, level
-from reports.measurement.data import SINCE, Record, errors, finite, over_time, thinned, value
+from reports.measurement.data import SINCE, Record, after_gap, errors, finite, in_parts, over_time, thinned, value
 from reports.run.columns import Array, column
 
 POINTS_MAX = 2500
@@ -93,7 +93,7 @@ def budget_chart(record: Record) -> Chart | None:
 
 def channels_chart(samples: pd.DataFrame, x_label: str = _TIME) -> Chart:
     """Return readings over time, with the truth where it is known, and SO2 at the common response with what CO2 explains of it."""
-    rows = thinned(samples, POINTS_MAX)
+    rows = in_parts(thinned(samples, POINTS_MAX))
     time = column(rows, "time_s")
     panels = [
         Panel(x_label=x_label, y_label=f"{name} [{unit}]", lines=_readings(rows, time, gas, unit))
@@ -111,7 +111,9 @@ def channels_chart(samples: pd.DataFrame, x_label: str = _TIME) -> Chart:
         Line(x=time, y=column(rows, "fit_ppb"), label="what CO2 explains", colour="black"),
     ]
     panels.append(Panel(x_label=x_label, y_label="ΔSO2 [ppb]", lines=equal))
-    caption = "Readings. Bottom right: SO2 without background, corrected, at the slowest response, and CO2 at it times the slope."
+    caption = "Readings. ΔSO2: SO2 without background, corrected, at the slowest response, and CO2 at it times the slope."
+    if not np.isfinite(column(rows, "co2_ppm")).all():
+        caption += " Lines end where the log has no readings."
     return Chart(name="channels", caption=caption, panels=panels, columns=2, share_x=True, panel_height=0.125)
 
 
@@ -124,7 +126,8 @@ def _readings(rows: pd.DataFrame, time: Array, gas: str, unit: str) -> list[Line
 def regression_chart(samples: pd.DataFrame, record: Record) -> Chart | None:
     """Return SO2 over CO2 at one response, with the slope, and the sulphur content of groups of passes."""
     found = record["estimate"]
-    rows = thinned(samples, POINTS_MAX)
+    # A sample that is interpolated has no reading, and is no evidence.
+    rows = thinned(samples[np.isfinite(column(samples, "co2_ppm"))], POINTS_MAX)
     co2, so2 = column(rows, "co2_excess_ppm"), column(rows, "so2_excess_ppb")
     slope = value(found, "slope_ppb_per_ppm")
     if not finite(co2, so2) or not np.isfinite(slope):
@@ -143,8 +146,7 @@ def regression_chart(samples: pd.DataFrame, record: Record) -> Chart | None:
     factor = fsc_factor(float(record.get("carbon") or CARBON_FRACTION))
     caption = (
         "SO2 over CO2 without background, at the response of the slowest channel; the sulphur content is"
-        f" {factor:.4f} times the slope. Right: of groups of neighbouring passes, with their"
-        " noise, 1σ."
+        f" {factor:.4f} times the slope. Groups of passes: neighbouring ones together, with their noise, 1σ."
     )
     return Chart(name="regression", caption=caption, panels=panels, columns=len(panels), panel_height=0.21)
 
@@ -182,14 +184,21 @@ def logged_track_chart(samples: pd.DataFrame) -> Chart | None:
     if not panels:
         return None
     caption = "CO2 reading by the colour of the track. The reading is late by the delay and the response of its channel."
+    if len(rows) < POINTS_MAX:
+        caption += " Where the log has no readings, no track is drawn."
     return Chart(name="track", caption=caption, panels=panels, columns=len(panels), panel_height=0.22, scale_label="CO2 [ppm]")
 
 
 def _dense(samples: pd.DataFrame) -> pd.DataFrame:
-    """Return ``POINTS_MAX`` rows between the samples, by which a track is a line, and not the dots of a stroboscope."""
+    """Return ``POINTS_MAX`` rows between the samples, by which a track is a line, and not the dots of a stroboscope.
+
+    In gaps of the log there are none.
+    """
     time = column(samples, "time_s")
     places = np.linspace(float(time[0]), float(time[-1]), POINTS_MAX)
-    return pd.DataFrame({str(name): np.interp(places, time, column(samples, str(name))) for name in samples})
+    read = ~after_gap(samples)[np.searchsorted(time, places)]
+    rows = {str(name): np.interp(places, time, column(samples, str(name))) for name in samples}
+    return pd.DataFrame(rows).loc[read & np.isfinite(rows["co2_ppm"])]
 
 
 def _coloured(x: Array, y: Array, co2: Array) -> list[Line]:

@@ -8,8 +8,9 @@ import pandas as pd
 
 from common.files import is_file
 from common.run_layout import ESTIMATE, SAMPLES
+from measurement.estimate.flight_log.gaps import APART
 from reports.errors import ReportError
-from reports.run.columns import Array, column
+from reports.run.columns import Array, Mask, column
 from reports.run.flight_config import flight_configs
 from reports.run.run_data import RunData
 
@@ -98,6 +99,18 @@ def measured_minutes(run: RunData, rows: pd.DataFrame) -> Array:
     measured = np.where(np.isnan(window), duration - column(rows, "settling_time_s"), np.fmin(window, duration))
     minutes: Array = measured / 60.0
     return minutes
+
+
+def after_gap(samples: pd.DataFrame) -> Mask:
+    """Return which samples follow a gap of the log: they are farther than others from the one before."""
+    steps = np.diff(column(samples, "time_s"))
+    return np.concatenate([[False], steps > APART * np.median(steps)]) if len(steps) else np.zeros(len(samples), dtype=np.bool_)
+
+
+def in_parts(samples: pd.DataFrame) -> pd.DataFrame:
+    """Return samples with an empty row in each gap of the log, where a line through them ends."""
+    order = np.arange(len(samples), dtype=np.float64)
+    return samples.set_axis(order).reindex(np.sort(np.concatenate([order, order[after_gap(samples)] - 0.5])))
 
 
 def thinned(samples: pd.DataFrame, most: int) -> pd.DataFrame:

@@ -7,6 +7,7 @@ import pandas as pd
 
 from common.times import moment, span_words
 from measurement.estimate.flight_log.details import FROM_LOG
+from measurement.estimate.flight_log.gaps import Gaps
 from measurement.sniffer.presets import sensor_preset, sensor_presets
 from reports.document.blocks import Fact
 from reports.measurement.data import Record
@@ -36,9 +37,16 @@ def logged_facts(run: RunData, record: Record) -> list[Fact]:
         Fact("Ship", _ship_words(details)),
         *operator,
         Fact("Instrument", f"{record['instrument']['title']}; its figures are in “Instrument and assumptions”"),
-        Fact("Log", f"{manifest['source']}, {flight['readings']:,} readings, SHA-256 {manifest['source_hash']}"),
+        Fact("Log", f"{manifest['source']}, {flight['readings']:,} rows, SHA-256 {manifest['source_hash']}"),
+        *_lacking(Gaps(**record["gaps"])),
         Fact("Program", f"{version}, source revision {manifest['git_revision']}"),
     ]
+
+
+def _lacking(gaps: Gaps) -> list[Fact]:
+    """Return what the log lacks, if anything."""
+    missing = [Fact("Missing readings", gaps.missing_words)] if any(gaps.missing.values()) else []
+    return [*missing, *([Fact("Gaps", gaps.gap_words)] if gaps.gaps or gaps.interpolated else [])]
 
 
 def _time_words(flight: dict[str, Any]) -> str:

@@ -10,6 +10,7 @@ from reports.document.blocks import Table
 from reports.document.tables import number
 from reports.measurement.data import METHODS, Record, measured_minutes, share_read
 from reports.run.run_data import RunData
+from reports.run.trials import Name
 
 _BEST = 3
 """Trajectories that are listed for each sensor."""
@@ -20,7 +21,7 @@ def interval_words(row: "pd.Series[Any]") -> str:
     return f"{number(row['fsc_low_percent'], '{:.3f}')} to {number(row['fsc_high_percent'], '{:.3f}')}"
 
 
-def flight_table(rows: pd.DataFrame) -> Table:
+def flight_table(rows: pd.DataFrame, name: Name) -> Table:
     """Return a row per flight: result, uncertainty, verdict."""
     return Table(
         caption="The flights, a row each: result, uncertainty and verdict.",
@@ -37,7 +38,7 @@ def flight_table(rows: pd.DataFrame) -> Table:
         ],
         rows=[
             [
-                str(row["flight_id"]),
+                name(row),
                 str(row["sensor"]),
                 number(row["fsc_fuel_percent"], "{:.3f}"),
                 number(row["fsc_expected_percent"], "{:.3f}"),

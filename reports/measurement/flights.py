@@ -21,20 +21,21 @@ from reports.run.columns import column, flights_flown
 from reports.run.flight_config import flight_config
 from reports.run.run_data import RunData
 from reports.run.surroundings import surroundings
+from reports.run.trials import Name
 
 _FEW = 8
 """Flights of which figures are not spread: of so few there are no statistics."""
 
 
-def sulphur_sections(run: RunData) -> list[Section]:
-    """Return the sections of a run whose flights measured the fuel, and none of any other."""
+def sulphur_sections(run: RunData, name: Name) -> list[Section]:
+    """Return the sections of a run whose flights measured the fuel, and none of any other; ``name`` is that of a flight."""
     measured = _measured(run)
     if not len(measured):
         return []
-    shown = _flight(run, measured)
+    shown = _flight(run, measured, name)
     if shown is not None and len(measured) == 1:
         return [shown]
-    whole = Section(anchor="sulphur", title="Fuel sulphur content", blocks=_blocks(run, measured))
+    whole = Section(anchor="sulphur", title="Fuel sulphur content", blocks=_blocks(run, measured, name))
     return [whole, shown] if shown is not None else [whole]
 
 
@@ -122,10 +123,10 @@ def _measured(run: RunData) -> pd.DataFrame:
     return rows[rows["fsc_percent"].notna()] if "fsc_percent" in rows else rows.iloc[:0]
 
 
-def _blocks(run: RunData, measured: pd.DataFrame) -> list[Block]:
+def _blocks(run: RunData, measured: pd.DataFrame, name: Name) -> list[Block]:
     statistics = run.sulphur
     if len(measured) < _FEW or statistics is None:
-        return [flight_table(measured)]
+        return [flight_table(measured, name)]
     trajectories = trajectory_chart(run, measured)
     designed: list[Block] = [] if trajectories is None else [Heading("Trajectories"), trajectories, best_table(run, measured)]
     curve = operating_curve(statistics)
@@ -146,7 +147,7 @@ def _blocks(run: RunData, measured: pd.DataFrame) -> list[Block]:
     ]
 
 
-def _flight(run: RunData, measured: pd.DataFrame) -> Section | None:
+def _flight(run: RunData, measured: pd.DataFrame, name: Name) -> Section | None:
     """Return the section on the first flight whose signals were kept."""
     for _, row in measured.iterrows():
         flight_id = str(row["flight_id"])
@@ -154,7 +155,7 @@ def _flight(run: RunData, measured: pd.DataFrame) -> Section | None:
         if record is not None and history is not None:
             samples, since = _samples(record, history), _since(run, row)
             blocks: list[Block | None] = [
-                Text(_told(row) if len(measured) == 1 else f"{flight_id}. {_told(row)}"),
+                Text(_told(row) if len(measured) == 1 else f"{name(row)}. {_told(row)}"),
                 result_table(record),
                 _track(run, row, history),
                 over_time_chart(record, since),

@@ -2,6 +2,7 @@
 
 import pandas as pd
 
+from measurement.estimate.flight_log.gaps import Gaps
 from measurement.estimate.passes import SNR_LEAST
 from measurement.gases import MASS_PERCENT, limit_words
 from reports.document.blocks import Table
@@ -54,7 +55,7 @@ def over_time_table(record: Record, since: str = SINCE) -> Table | None:
             number(row["fsc_percent"], _PERCENT),
             number(row["total_percent"], _PERCENT),
             str(row["quality"]),
-            *(f"{row[f'verdict_{limit}']}" for limit in limits),
+            *("none" if row["quality"] == "C" else f"{row[f'verdict_{limit}']}" for limit in limits),
         ]
         for row in table.to_dict("records")
     ]
@@ -68,7 +69,7 @@ def over_time_table(record: Record, since: str = SINCE) -> Table | None:
     ]
     caption = (
         f"What was known so long after {since}. A pass is a peak of CO2 of {SNR_LEAST:g} times its noise: where smoke"
-        " meanders, not every crossing of the plume's axis meets it."
+        " meanders, not every crossing of the plume's axis meets it. With quality C there is no verdict."
     )
     return Table(caption=caption, head=head, rows=rows, widths=[0.8, 0.8, 1.3, 1.6, 0.8, *(1.0 for _ in limits)])
 
@@ -79,7 +80,10 @@ def record_table(record: Record) -> Table:
     t90 = f"{number(found['so2_t90_s'], '{:.1f}')} ± {number(found['so2_t90_sd_s'], '{:.1f} s')} (1σ)"
     delay = f"{number(found['delay_s'], '{:.2f}')} ± {number(found['delay_sd_s'], '{:.2f} s')} (1σ)"
     dose, agreement = number(figures["dose_ppm_s"], "{:.0f} ppm s"), number(found["agreement"], "{:.2f}")
+    gaps = Gaps(**record["gaps"])
     rows = [
+        ["Missing readings", gaps.missing_words],
+        ["Gaps", gaps.gap_words],
         ["Passes", f"{figures['passes']}, every {number(figures['interval_s'], '{:.1f} s')}; agreement p = {agreement}"],
         ["In the plume", f"{figures['seconds_in_plume']:.0f} s of {figures['duration_s']:.0f} s; CO2 dose of a pass {dose}"],
         ["Signal to noise", f"CO2 peaks {number(figures['co2_snr'], '{:.0f}')}, SO2 {number(figures['so2_snr'], '{:.1f}')}"],

@@ -3,11 +3,11 @@
 from typing import Any
 
 from measurement.estimate.verdict import BELOW, OPEN
-from measurement.estimate.words import content_words, probability, verdict_words
+from measurement.estimate.words import content_words, next_step, probability, verdict_words
 from measurement.gases import FUEL_SULPHUR_MOST, MASS_PERCENT, limit_words
 from reports.document.blocks import Card, FuelCard, UndecidedCard, Verdict
 from reports.document.tables import number
-from reports.measurement.data import Record, value
+from reports.measurement.data import WORDS, Record, errors, value
 
 CONTENT_NAME, INTERVAL_NAME = "Fuel sulphur content", "Fuel sulphur content, 95 % interval"
 """Names of the tiles of a result."""
@@ -25,7 +25,7 @@ def measurement_verdict(record: Record) -> Verdict:
         holds=first["verdict"] != "above",
         complete=first["verdict"] == "below",
         headline=sentence(first, found["quality"], known=known),
-        detail=" ".join([_result(record), *others]),
+        detail=" ".join(filter(None, [_result(record), *others, _next_step(found)])),
         failures=[f"quality {found['quality']}: {reason}" for reason in reasons],
         figures=_figures(record),
     )
@@ -38,6 +38,17 @@ def sentence(verdict: dict[str, Any], quality: str, *, known: bool) -> str:
         return f"Nothing can be said of the limit of {limit_words(limit)}: there is no result"
     words = verdict_words(verdict["verdict"], limit, value(verdict, "probability_above"), quality)
     return f"{words[0].upper()}{words[1:]}"
+
+
+def _next_step(found: Record) -> str:
+    parts = {name: size for name, size in errors({"estimate": found}) if name != WORDS["noise"]}
+    return next_step(
+        found["quality"],
+        passes=int(found["figures"]["passes"]),
+        undecided=any(verdict["verdict"] == OPEN for verdict in found["verdicts"]),
+        noise=value(found, "noise_percent"),
+        errors=parts,
+    )
 
 
 def _result(record: Record) -> str:
@@ -79,8 +90,9 @@ def _chance(verdict: Record, quality: str) -> Card:
 def _figures(record: Record) -> list[Card]:
     found = record["estimate"]
     chances = [_chance(verdict, found["quality"]) for verdict in found["verdicts"]]
+    without = "none: quality C" if found["quality"] == "C" else "not reached"
     times = [
-        Card(f"Time to a verdict on {limit_words(float(limit))}", "open" if seconds is None else f"{float(seconds):.0f} s")
+        Card(f"Time to a verdict on {limit_words(float(limit))}", without if seconds is None else f"{float(seconds):.0f} s")
         for limit, seconds in record["time_to_verdict_s"].items()
     ]
     true = record.get("true_percent")

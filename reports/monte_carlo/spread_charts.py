@@ -32,10 +32,10 @@ def spread_charts(run: RunData, statistics: dict[str, Any]) -> list[Chart]:
         return []
     kept = Chart(
         name="clearance",
-        caption="Closest approach of each flight beyond r_min. Left: flights counted, the farthest half per cent in the last bar."
-        " Right: fraction of flights that came as near or nearer, with the intervals of its quantiles. Its ordinate is logarithmic"
-        f" to show the few nearest, and its abscissa ends at the nearest {percent(_NEARER)} of the flights: the farthest came to"
-        f" {number(np.nanmax(near), '{:.0f} m')}.",
+        caption="Closest approach of each flight beyond r_min: flights counted, the farthest half per cent in the last bar;"
+        " and the fraction of flights that came as near or nearer, with the intervals of its quantiles. The latter's ordinate is"
+        f" logarithmic to show the few nearest, and its abscissa ends at the nearest {percent(_NEARER)} of the flights:"
+        f" the farthest came to {number(np.nanmax(near), '{:.0f} m')}.",
         panels=[counted_near, _tail(near, statistics)],
         columns=2,
         panel_height=0.4,

@@ -27,8 +27,8 @@ def patrol_chart(patrol: Patrol) -> Chart:
     """Return the map of a patrol, and what was done beside which ship when."""
     return Chart(
         name=patrol.name,
-        caption="Left: where ships went, numbered where they began and until they were measured, and the UAV, which began at the"
-        " ring. Right: what it did beside or on the way to which ship. A diamond is when an oracle would be done with her.",
+        caption="Map: where ships went, numbered where they began and until they were measured, and the UAV, which began at the"
+        " ring. Time line: what it did beside or on the way to which ship. A diamond is when an oracle would be done with her.",
         panels=[in_kilometres(_map(patrol)), _ship_times(patrol)],
         columns=2,
         panel_height=0.5,

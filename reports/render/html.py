@@ -54,9 +54,9 @@ def write_html(report: Content, path: Path) -> None:
 
 
 def _breakable(words: str) -> Markup:
-    """Return words of which long keys may go on over the next line after a point or a stroke."""
+    """Return words of which long keys may go on over the next line after a point or a stroke, and hashes after any 16 digits."""
     keys = re.compile(rf"\S{{{_LONG},}}")
-    text = keys.sub(lambda key: re.sub(r"([_.])(?=[a-z])", r"\1<wbr>", key[0]), str(escape(words)))
+    text = keys.sub(lambda key: re.sub(r"([_.])(?=[a-z])|([0-9a-f]{16})(?=[0-9a-f])", r"\1\2<wbr>", key[0]), str(escape(words)))
     return Markup(text)
 
 

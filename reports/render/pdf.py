@@ -10,7 +10,7 @@ from typing import Any
 
 import typst
 
-from reports.document.blocks import Block, Card, Content, FlightContent, FlightPicker, Section
+from reports.document.blocks import Block, Card, Content, FlightContent, FlightPicker, Section, Table
 from reports.document.chart import Chart
 from reports.document.numbering import figures_in
 from reports.render.figure_files import write_figures
@@ -92,7 +92,10 @@ def _section(section: Section, figures: Figures) -> Data:
 
 
 def _block(block: Block, figures: Figures) -> Data:
-    return {"kind": type(block).__name__, **(_image(block, figures) if isinstance(block, Chart) else asdict(block))}
+    shown = _image(block, figures) if isinstance(block, Chart) else asdict(block)
+    if isinstance(block, Table):
+        shown["head"] = [unbroken(title) for title in block.head]
+    return {"kind": type(block).__name__, **shown}
 
 
 def _flight(flight: FlightContent, figures: Figures, numbers: Iterator[int]) -> Data:

@@ -63,6 +63,11 @@ def clearance(rows: pd.DataFrame) -> Array:
     return column(rows, "min_distance_m") - column(rows, "keepout_radius_m")
 
 
+def radii_differ(rows: pd.DataFrame) -> bool:
+    """Return whether flights have different r_min: what counts is then how far each stayed beyond its own."""
+    return rows["keepout_radius_m"].nunique() > 1
+
+
 def violated(rows: pd.DataFrame) -> Mask:
     """Return which flights violated the keep-out area."""
     inside: Mask = column(rows, "keepout_violations") > 0.0

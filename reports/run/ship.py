@@ -14,12 +14,14 @@ class Hull:
     title : what she is taken to be, in words
     length, beam : [m]
     funnel : from the stern, over the length [-]
+    known : whether it is of her class; of a ship without one it stands for a size that is not known
     """
 
     title: str
     length: float
     beam: float
     funnel: float = 0.2
+    known: bool = True
 
 
 HULLS = {
@@ -30,8 +32,8 @@ HULLS = {
 }
 """By the names of ``measurement/emission/ships.toml``: usual sizes of such ships, assumptions."""
 
-ANY = Hull(title="a merchant ship", length=150.0, beam=23.0)
-"""Of a ship of which nothing is known."""
+ANY = Hull(title="a merchant ship", length=150.0, beam=23.0, known=False)
+"""Of a ship whose class is not known, as one of a user's own."""
 
 
 def hull_of(config: Mapping[str, Any]) -> Hull:

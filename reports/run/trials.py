@@ -1,6 +1,6 @@
 """The trials of a run, and what each of them is about."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from enum import Enum
 from typing import Any
@@ -34,6 +34,9 @@ SHAPES = {
     "cylinder": "horizontal, from the keep-out cylinder's axis",
 }
 """Shapes of keep-out areas, and what a distance is measured from."""
+
+Name = Callable[["pd.Series[Any]"], str]
+"""What a flight is called in the report, by its row."""
 
 AS_IN_THE_STUDY = "as in the study"
 """What the study's own flights are called beside their comparisons."""

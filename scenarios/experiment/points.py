@@ -68,8 +68,8 @@ def _grid(scenario: Scenario) -> Iterator[Point]:
             at = dict(zip(sweep, values, strict=True))
             nu = scenario.sweep.nu[list(sweep["nu"]).index(at["nu"])] if "nu" in at else None
             labels = [_label(names[key], value) for key, value in at.items()] + ([vehicle] if scenario.fidelity == "both" else [])
-            changed = with_values(scenario, {swept_key(key): value for key, value in at.items()} | {"fidelity": vehicle})
-            inputs = {key: value for key, value in at.items() if key != "nu"}
+            inputs = {swept_key(key): value for key, value in at.items()}
+            changed = with_values(scenario, inputs | {"fidelity": vehicle})
             yield Point(label="_".join(labels), variant=STUDY, scenario=changed, nu=nu, inputs=inputs, flights=scenario.flights)
 
 

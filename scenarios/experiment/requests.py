@@ -13,6 +13,7 @@ import numpy as np
 from common.run_layout import COMPARISON, SUMMARY
 from scenarios.experiment.draws import SampledFlight, Values, not_displaced, sampled_flight
 from scenarios.experiment.points import Point, points_of
+from scenarios.schema.experiment_checks import swept_key
 from scenarios.schema.keys import displaced
 from scenarios.schema.load import with_values
 from scenarios.schema.scenario import Scenario
@@ -94,7 +95,7 @@ class Experiment:
     @property
     def keys(self) -> list[str]:
         """Return the swept and sampled keys."""
-        swept = [key for key in self.scenario.sweep.root if key != "nu"]
+        swept = map(swept_key, self.scenario.sweep.root)
         return list(dict.fromkeys([*swept, *(draw.key for draw in self.scenario.draws)]))
 
     def named(self, number: int) -> tuple[str, str]:

@@ -98,6 +98,12 @@ def _part_key(key: str, of: "Field[Any]", described: str) -> DocumentedKey:
     )
 
 
+def described_fields(made: type[Any]) -> dict[str, tuple[str, str]]:
+    """Return meaning and unit of each field of a dataclass, by its docstring; the unit of a number without one is empty."""
+    told = {name: split_unit(described) for name, described in _described(made).items()}
+    return {name: (_sentence(meaning), "" if unit == DIMENSIONLESS else unit) for name, (meaning, unit) in told.items()}
+
+
 def _sentence(text: str) -> str:
     """Return what a docstring says of a field as a sentence, as the schema says it of its keys."""
     return f"{text[0].upper()}{text[1:]}." if text else ""

@@ -2,7 +2,7 @@
 
 import hashlib
 import json
-from collections.abc import Collection, Iterable, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from typing import Any
 
 from pydantic import BaseModel
@@ -14,10 +14,14 @@ from aircraft.simulation.model_copy import model_hash
 from common.provenance import provenance
 from common.registry import PluginError, file_hash, file_of
 from common.run_layout import FORMAT, LOGO
+from measurement.emission.ship import Ship
+from measurement.gases import UNITS
+from measurement.sniffer.channel import Channel
+from measurement.sniffer.spec import SnifferSpec
 from scenarios.engine.fingerprint import fingerprint
 from scenarios.engine.run_directory import RunDirectory
 from scenarios.errors import InputError
-from scenarios.schema.documented_parts import DIMENSIONLESS, DocumentedKey, documented_part_keys
+from scenarios.schema.documented_parts import DIMENSIONLESS, DocumentedKey, described_fields, documented_part_keys
 from scenarios.schema.effect import unused
 from scenarios.schema.keys import line, split_unit
 from scenarios.schema.load import AnyStudy
@@ -130,6 +134,7 @@ def config_hash(*scenarios: BaseModel, files: Mapping[str, str] | None = None, n
 def parameters(scenario: BaseModel) -> list[dict[str, Any]]:
     """Return every key of the scenario's sections that acts, with value, default if any, meaning and unit."""
     listed = [of for of in _of_sections(scenario) if not _is_unused(scenario, of)]
+    listed = [each for of in listed for each in (of, *_of_own_table(of))]
     return [*listed, *_varied_of_parts(scenario, {of["key"] for of in listed})]
 
 
@@ -190,6 +195,27 @@ def _of_parts(name: str, section: BaseModel) -> list[dict[str, Any]]:
         found.append({"key": f"{name}.{key}", "value": value, "default": plain, **about})
     return found
 
+
+def _of_own_table(parameter: Mapping[str, Any]) -> Iterator[dict[str, Any]]:
+    """Yield the keys of a ship or a sniffer of a user's own, if a parameter is one, with their units."""
+    key, table = str(parameter["key"]), parameter["value"]
+    if key not in _OWN_TABLES or not isinstance(table, Mapping):
+        return
+    yield from _fields(key, {name: value for name, value in table.items() if name != "channels"}, _OWN_TABLES[key])
+    for gas, channel in table.get("channels", {}).items():
+        yield from _fields(f"{key}.channels.{gas}", channel, Channel, UNITS[gas])
+
+
+def _fields(key: str, table: Mapping[str, Any], made: type[Any], gas_unit: str = "") -> Iterator[dict[str, Any]]:
+    """Yield the keys of a table, which are fields of a class; ``gas_unit`` is what its docstring calls "unit"."""
+    known = described_fields(made)
+    for name, value in table.items():
+        meaning, unit = known[name]
+        yield {"key": f"{key}.{name}", "value": value, "unit": unit.replace("unit", gas_unit), "meaning": meaning}
+
+
+_OWN_TABLES: dict[str, type[Any]] = {"emission.ship": Ship, "payload.sensor": SnifferSpec}
+"""Keys that may be a table of a user's own, and the classes whose fields it has."""
 
 _OF_ONE_OF_A_USERS_OWN = {"unit": "", "meaning": "Of a part that the section names"}
 """Unit and meaning of a key that is documented elsewhere."""

@@ -54,7 +54,7 @@ def test_no_meaning_is_of_a_column_that_nothing_writes():
 def test_the_samples_of_a_logged_flight_have_the_columns_that_are_said():
     log = Path(__file__).parents[2] / "docs" / "examples" / "example_flight.csv"
     flight = read_flight(log, LogConfig())
-    table = samples(estimate(flight.readings, LogConfig().instrument).signals, flight.place)
+    table = samples(estimate(flight.readings, LogConfig().instrument).signals, flight)
     assert list(table) == list(SAMPLE_MEANINGS)
 
 

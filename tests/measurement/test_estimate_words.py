@@ -7,7 +7,7 @@ import pytest
 from logged_flights import run
 
 from measurement.estimate.verdict import judged
-from measurement.estimate.words import content_words, needed, verdict_words
+from measurement.estimate.words import content_words, needed, next_step, verdict_words
 from measurement.gases import limit_words
 
 
@@ -51,3 +51,11 @@ def test_an_open_verdict_beyond_the_probability_names_the_guard_band():
     assert verdict_words("open", 0.01, verdict.probability_above).endswith(": 98.8 %")
     assert needed(verdict.probability_above) == "the result is within the guard band"
     assert needed(judged(0.1, 0.12, 0.1, admitted=True).probability_above) == "95 % or 5 % are needed"
+
+
+def test_an_open_verdict_says_which_part_of_the_uncertainty_to_lower():
+    known = {"passes": 9, "undecided": True, "errors": {"correction for NO2": 0.02, "carbon content": 0.01}}
+    assert "measure more passes" in next_step("B", noise=0.03, **known)
+    assert "as by a calibration: correction for NO2." in next_step("B", noise=0.01, **known)
+    assert next_step("B", noise=0.01, **{**known, "undecided": False}) == ""
+    assert "measure again in the plume" in next_step("C", noise=float("nan"), **{**known, "passes": 0})

@@ -143,6 +143,25 @@ def test_long_keys_may_go_on_over_the_next_line_on_the_screen_and_short_ones_may
     assert "ω_max &amp; &lt;b&gt;, r_min" in text
 
 
+def test_a_narrow_window_leaves_a_long_text_its_width_and_a_hash_may_go_on_over_the_next_line(tmp_path):
+    digest = "0123456789abcdef" * 4
+    table = Table(head=["Sulphur [% m/m]", "Words"], rows=[["short words here", f"{digest}, of the file"]], widths=[1.0, 1.0])
+    text = html_of([table], tmp_path)
+    assert f">{'<wbr>'.join([digest[:16]] * 4)}, of the file</td>" in text
+    # A long text has a column of 14rem at least, and the table scrolls; a unit is not divided.
+    assert text.count('words long">') == 1
+    assert ">Sulphur [%\N{NO-BREAK SPACE}m/m]</th>" in text
+
+
+def test_a_unit_in_the_head_of_a_printed_table_is_not_divided(tmp_path):
+    write_pdf(a_report([Table(head=["Sulphur content [% m/m]", "b"], rows=[["1", "2"]], widths=[1.0, 7.0])]), tmp_path / "unit.pdf")
+    document = pypdfium2.PdfDocument(tmp_path / "unit.pdf")
+    text = "".join(page.get_textpage().get_text_range() for page in document)
+    document.close()
+    assert re.search(r"\[%\sm/m\]", text)
+    assert not re.search(r"\[%\s*[\r\n]+m/m", text)
+
+
 @pytest.mark.parametrize(("rows", "classes"), [(14, 'class="scroll whole"'), (15, 'class="scroll"')])
 def test_a_short_table_stays_on_one_printed_page_and_a_long_one_may_go_on_over_the_next(rows, classes, tmp_path):
     assert classes in html_of([Table(head=["a"], rows=[["1"]] * rows, widths=[1.0])], tmp_path)

@@ -22,7 +22,9 @@ import pandas as pd
 from measurement.errors import MeasurementError
 from measurement.estimate.flight_log.analysis import Analysis
 from measurement.estimate.flight_log.csv_file import LoggedFlight
+from measurement.estimate.flight_log.gaps import found_gaps, interpolated
 from measurement.estimate.result import plain
+from measurement.gases import GASES, UNITS
 
 MANIFEST, ESTIMATE, SAMPLES = "manifest.json", "estimate.json", "samples.csv"
 """What the directory holds."""
@@ -37,11 +39,11 @@ STUDY = "measurement"
 """What the manifest calls the kind of run."""
 
 SAMPLE_MEANINGS = {
-    "time_s": "time of the reading",
-    "so2_ppb": "reading",
-    "co2_ppm": "reading, with its background",
-    "no_ppb": "reading, where there is one",
-    "no2_ppb": "reading, where there is one",
+    "time_s": "time of the sample; between samples that are farther apart than others is a gap of the log",
+    "so2_ppb": "reading; empty where the log has none for all gases, and the sample is interpolated",
+    "co2_ppm": "reading, likewise, with its background",
+    "no_ppb": "reading, likewise, where the log has this gas",
+    "no2_ppb": "reading, likewise, where the log has this gas",
     "co2_excess_ppm": "CO2 above its background, corrected, with the response of the slowest channel",
     "so2_excess_ppb": "SO2 above its background, likewise",
     "fit_ppb": "SO2 that the slope gives for this CO2",
@@ -130,8 +132,8 @@ def write_run(
     try:
         directory.mkdir(parents=True, exist_ok=True)
         _remove_older(directory)
-        _write_json(directory / ESTIMATE, analysis.record() | {"flight": flight.about.record()})
-        table = samples(analysis.estimate.signals, flight.place)
+        _write_json(directory / ESTIMATE, _record(flight, analysis))
+        table = samples(analysis.estimate.signals, flight)
         # A log's time may be seconds since 1970 or 1980, of which six digits are weeks.
         table["time_s"] = [f"{time:.{_TIME_DIGITS}g}" for time in table["time_s"]]
         _whole(directory / SAMPLES, lambda part: table.to_csv(part, index=False, float_format="%.6g"))
@@ -149,9 +151,16 @@ def _remove_older(directory: Path) -> None:
         (directory / MANIFEST).unlink()
 
 
-def samples(signals: pd.DataFrame, place: pd.DataFrame) -> pd.DataFrame:
-    """Return the signals of an estimate with place and truth at their times."""
-    table = signals.copy()
+def _record(flight: LoggedFlight, analysis: Analysis) -> dict[str, Any]:
+    gaps = found_gaps(flight.readings, analysis.estimate.signals)
+    return analysis.record() | {"flight": flight.about.record(), "gaps": gaps.record()}
+
+
+def samples(signals: pd.DataFrame, flight: LoggedFlight) -> pd.DataFrame:
+    """Return the signals of an estimate with place and truth at their times; what is interpolated is no reading, and left out."""
+    table, place = signals.copy(), flight.place
+    readings = [name for name in (f"{gas}_{UNITS[gas]}" for gas in GASES) if name in table]
+    table.loc[interpolated(flight.readings, signals), readings] = np.nan
     for name in place.columns:
         known = np.isfinite(place[name].to_numpy())
         if name != "time_s" and known.any():

@@ -6,9 +6,10 @@ from collections.abc import Iterator
 import numpy as np
 
 from measurement.estimate.flight_log.analysis import Analysis
+from measurement.estimate.flight_log.gaps import found_gaps
 from measurement.estimate.result import FscEstimate
 from measurement.estimate.verdict import OPEN
-from measurement.estimate.words import content_words, needed, verdict_words
+from measurement.estimate.words import content_words, needed, next_step, verdict_words
 from measurement.gases import FUEL_SULPHUR_MOST, GASES
 from measurement.sniffer.sniffer import Readings
 from measurement.sniffer.spec import SnifferSpec
@@ -42,6 +43,19 @@ def summary(analysis: Analysis, name: str) -> Iterator[str]:
         chance = verdict.probability_above
         words = verdict_words(verdict.verdict, verdict.limit_percent, chance, found.quality)
         yield f"{words}; {needed(chance)}" if verdict.verdict == OPEN and found.quality != "C" else words
+    told = {ERRORS.get(key, key): size for key, size in found.common_percent.items()}
+    undecided = any(verdict.verdict == OPEN for verdict in found.verdicts)
+    if step := next_step(found.quality, passes=figures.passes, undecided=undecided, noise=found.noise_percent, errors=told):
+        yield step
+
+
+def lacking(readings: Readings, analysis: Analysis) -> Iterator[str]:
+    """Yield a line on missing readings, and one on gaps, of a log that has any."""
+    gaps = found_gaps(readings, analysis.estimate.signals)
+    if any(gaps.missing.values()):
+        yield f"missing readings: {gaps.missing_words}"
+    if gaps.gaps or gaps.interpolated:
+        yield f"gaps: {gaps.gap_words}"
 
 
 def unused(readings: Readings, instrument: SnifferSpec) -> Iterator[str]:

@@ -218,7 +218,7 @@ def _starts(trial: Trial) -> list[Chart]:
     ]
     acted = bool(np.any(guard > 0.0))
     caption = (
-        "Where flights began, seen from the ship with her plume up the page; she is to scale, and heads as in calm air. Coloured by"
+        "Where flights began, seen from the ship, who heads as in calm air, with her plume up the page. Coloured by"
         f" how long flights took to settle{' (left), and by whether the keep-out guard changed commands (right)' if acted else ''}."
     )
     settled = classes(settling, quartiles(settling, 10.0), "settled", "s")
@@ -230,12 +230,11 @@ def _starts(trial: Trial) -> list[Chart]:
 def _places(trial: Trial, right: Array, along: Array, groups: list[Any]) -> Panel:
     x, y = circle(trial.radius)
     reach = 1.08 * float(np.nanmax(np.hypot(right, along)))
-    hull = hull_of(trial.config)
     # Flights differ in where their ship heads, so that she is drawn as in calm air: the plume trails behind her.
     lines = [
         Line(x=x, y=y, label="keep-out area, r_min", colour=Meaning.LIMIT, fill=True),
         *plume_lines(np.array([0.0, reach]), None),
-        hull_line(hull.length, hull.beam, hull.funnel, math.pi),
+        hull_line(hull_of(trial.config), math.pi),
         *points(right, along, groups),
     ]
     panel = Panel(x_label="Right of the plume's axis [m]", y_label="Along it [m]", lines=lines)

@@ -11,7 +11,7 @@ from measurement.emission.ship import ship_preset
 from reports.document.chart import Line, Panel
 from reports.document.map_marks import arrow, hull_line, on_map, plume_lines
 from reports.document.palette import Meaning
-from reports.run.ship import ANY, HULLS, hull_of
+from reports.run.ship import ANY, HULLS, Hull, hull_of
 from reports.run.time_history import turned
 
 
@@ -23,7 +23,7 @@ def a_map(**kinds):
 
 @pytest.mark.parametrize("angle", [0.0, 0.7, math.pi, -2.0])
 def test_a_hull_is_to_scale_with_its_bow_at_the_angle(angle):
-    line = hull_line(150.0, 23.0, 0.2, angle, x=10.0, y=-5.0)
+    line = hull_line(Hull(title="a ship", length=150.0, beam=23.0), angle, x=10.0, y=-5.0)
     ahead = np.array([math.sin(angle), math.cos(angle)])
     beside = np.array([math.cos(angle), -math.sin(angle)])
     along, across = (np.column_stack([line.x - 10.0, line.y + 5.0]) @ side for side in (ahead, beside))
@@ -93,3 +93,11 @@ def test_every_ship_that_is_known_has_a_hull_that_is_a_ships():
     assert max(HULLS, key=lambda name: HULLS[name].length) == max(ships, key=lambda name: ship_preset(name).power_max)
     assert hull_of({"emission": {"ship": "coaster"}}).length == HULLS["coaster"].length
     assert hull_of({"emission": {"ship": None}}) == hull_of({}) == ANY
+
+
+def test_a_ship_whose_size_is_not_known_is_not_drawn_as_one_to_scale():
+    own = hull_line(hull_of({"emission": {"ship": {"title": "ferry of 5 MW", "stroke": 4}}}), 0.0)
+    known = hull_line(hull_of({"emission": {"ship": "coaster"}}), 0.0)
+    assert (own.label, known.label) == ("ship, size not known", "ship, to scale")
+    assert own.style != known.style
+    assert own.opacity < known.opacity

@@ -171,6 +171,7 @@ def test_the_provenance_is_last_and_names_command_hashes_and_kind_of_host(built,
     assert rows["Began"] == report.letterhead.when
     assert re.fullmatch(r"\w+ \w+, \d+ cores", rows["Host"])
     assert {"Source revision", "Hash of the source", "Hash of the scenario", "Seed", "Duration"} <= rows.keys()
+    assert rows["Hash of the scenario"].endswith(", of its keys and files: the first 16 digits of the SHA-256")
     assert "Provenance" in built[1][-1]
 
 
@@ -226,7 +227,7 @@ def test_the_typical_flight_is_at_the_median_of_all_flights_or_nearest_to_it(run
     assert told in picture.caption
     if closest == typical:
         # One flight is both: all its tracks are shown, and below them its name.
-        assert re.search(r" Closest: Flight \d, the flight with the closest approach[^.]*\.$", picture.caption)
+        assert re.search(r" Closest: short_0000\d, the flight with the closest approach[^.]*\.$", picture.caption)
         assert "Typical" not in picture.caption
     else:
         shown = [float(re.search(r"([\d.]+) m$", panel.title)[1]) for panel in picture.panels]
@@ -251,7 +252,7 @@ def test_long_names_of_flights_stand_below_the_picture(run_path, monkeypatch):
     monkeypatch.setattr("reports.flights.first_page._NAME_MAX", 3)
     bare = closest_and_typical(trials)
     for with_name, without in zip(named.panels, bare.panels, strict=True):
-        what, name, distance = re.fullmatch(r"(\w+): (Flight \d), (.+ m)", with_name.title).groups()
+        what, name, distance = re.fullmatch(r"(\w+): (short_0000\d), (.+ m)", with_name.title).groups()
         assert without.title == f"{what}: {distance}"
         assert f" {what}: {name}, the " in bare.caption
         assert bare.caption.count(f"{what}:") == 1

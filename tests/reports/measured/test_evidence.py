@@ -13,8 +13,10 @@ from report_parts import blocks_of, built
 from common.times import moment, span_words
 from measurement.estimate.__main__ import main
 from reports.document.blocks import Table
+from reports.document.provenance import provenance_section
 from reports.measurement.facts import position_words
 from reports.registry import content
+from reports.run.letterhead import letterhead
 from reports.run.run_data import read_run
 
 EXAMPLES = Path(__file__).parents[3] / "docs" / "examples"
@@ -65,7 +67,7 @@ def test_page_1_says_when_where_which_ship_by_whom_and_from_which_log(directory)
     assert told["Ship"] == "Nordlys, IMO 9074729, MMSI 219000000 (by the configuration)"
     assert told["Operator"] == "Agency (by the configuration)"
     digest = hashlib.sha256((EXAMPLES / "example_flight.csv").read_bytes()).hexdigest()
-    assert told["Log"] == f"example_flight.csv, 301 readings, SHA-256 {digest}"
+    assert told["Log"] == f"example_flight.csv, 301 rows, SHA-256 {digest}"
     assert told["Program"].startswith("plume-flight-study 0.")
     assert told["Instrument"].startswith("Electrochemical SO2, NO and NO2 cells with NDIR CO2")
 
@@ -182,3 +184,12 @@ def test_what_the_configuration_leaves_out_of_its_instrument_is_marked_as_assume
 def test_a_preset_has_no_marks_as_its_source_says_what_is_assumed(directory):
     assert not any("assumed" in cell for cells in rows_of(directory, 0).values() for cell in cells)
     assert "Assumptions: " in rows_of(directory, 1)["Figures of the instrument"][0]
+
+
+def test_the_provenance_says_of_which_file_each_hash_is_and_which_hash(directory):
+    run = read_run(directory)
+    rows = dict(provenance_section(run, letterhead(run, {})).blocks[0].rows)
+    for what, path in (("log", EXAMPLES / "example_flight.csv"), ("configuration", directory.parent / "flight.toml")):
+        written = CONFIG.encode() if what == "configuration" else path.read_bytes()
+        assert rows[f"SHA-256 of the {what}"] == f"{hashlib.sha256(written).hexdigest()}, of the file {path.name}"
+    assert "Hash of the input" not in rows

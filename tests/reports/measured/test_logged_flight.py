@@ -54,6 +54,8 @@ def test_the_report_shows_what_was_asked(run_directory):
     # Page 1 has the sulphur content over time, and only page 1.
     assert set(charts) == {"budget", "regression", "track", "channels"}
     assert_axes_read_quantity_and_unit(charts.values())
+    # In a narrow window panels stand below each other: captions name them, and not their places.
+    assert not any(re.search(r"\b(left|right|bottom)\b", chart.caption, re.IGNORECASE) for chart in charts.values())
     assert [panel.title for panel in charts["track"].panels] == ["In plan", "In height"]
     assert {line.label for panel in charts["channels"].panels for line in panel.lines} >= {"truth", "reading", "what CO2 explains"}
     assert "Above the limit of 0.10 %; probability above it: more than 99.9 %" in report.verdict.headline

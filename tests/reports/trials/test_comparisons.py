@@ -26,7 +26,7 @@ def test_many_comparisons_have_a_row_for_each_variant(run):
 def test_a_comparison_is_named_as_the_flight_of_the_study_also_where_that_is_not_in_the_summary(run):
     compared = run.summary.iloc[[0]].assign(variant="no_preview", beside="steady_00007")
     charts = blocks_of(content(replace(run, comparison=compared)), Chart, "comparison")
-    assert [panel.title for chart in charts for panel in chart.panels] == ["Flight 7"]
+    assert [panel.title for chart in charts for panel in chart.panels] == ["steady_00007"]
 
 
 def test_a_comparison_without_a_curve_is_named_below_the_figure_with_its_reason(run):
@@ -37,4 +37,4 @@ def test_a_comparison_without_a_curve_is_named_below_the_figure_with_its_reason(
     assert " Without a curve: no keep-out guard (never settled)." in chart.caption
     flown = run.summary.iloc[[1]].assign(variant="no_keepout_guard", beside="steady_00001")
     (chart,) = blocks_of(content(replace(run, comparison=pd.concat([compared.iloc[:1], flown]))), Chart, "comparison")
-    assert " Without a curve: no keep-out guard at Flight 0 (never settled)." in chart.caption
+    assert " Without a curve: no keep-out guard at steady_00000 (never settled)." in chart.caption

@@ -79,7 +79,7 @@ def test_the_track_begins_and_ends_where_the_flight_does_and_the_reference_lies_
     assert lines["reference"].style == "thin"
     assert "150 m by 23 m" in chart.caption
     # Nothing is cut off: ship, keep-out area and track lie within the panel.
-    for name in ("ship, to scale", "keep-out area, r_min", "flown", "reference"):
+    for name in ("ship, size not known", "keep-out area, r_min", "flown", "reference"):
         line = lines[name]
         assert whole.x_range[0] < line.x.min() < line.x.max() < whole.x_range[1], name
         assert whole.y_range[0] < line.y.min() < line.y.max() < whole.y_range[1], name

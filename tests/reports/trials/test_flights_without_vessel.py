@@ -40,6 +40,6 @@ def test_their_tables_are_filled_and_judge_what_needs_no_vessel(report):
 
 
 def test_page_1_shows_the_track_of_the_first_and_the_section_of_flights_its_histories(report):
-    assert report.picture.caption.endswith("Flight 0, the first with a time history.")
+    assert report.picture.caption.endswith("paper_00000, the first with a time history.")
     (picker,) = blocks_of(report, FlightPicker)
-    assert [flight.title for flight in picker.flights] == ["Flight 0: without a vessel"]
+    assert [flight.title for flight in picker.flights] == ["paper_00000: without a vessel"]

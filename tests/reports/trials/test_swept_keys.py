@@ -8,12 +8,13 @@ import pandas as pd
 import pytest
 from report_parts import blocks_of
 
-from reports.document.blocks import FlightPicker, Table
+from reports.document.blocks import Card, FlightPicker, Table
 from reports.errors import ReportError
 from reports.flights.names import _swept, flight_name, flown_elsewhere, swept_column, words_together
 from reports.flights.trials.charts import trial_charts
 from reports.flights.trials.panels_over import LIMIT_LABEL
 from reports.registry import content
+from reports.run.columns import column
 from reports.run.run_data import read_run
 from reports.run.trials import read_trials
 from scenarios.engine.in_process_executor import InProcessExecutor
@@ -61,6 +62,29 @@ def test_a_flight_is_called_by_all_that_was_swept(trial):
     assert flight_name(trial, trial.rows.iloc[0]) == "ν = 0.20, keep-out radius 150 m, cascade"
 
 
+def test_page_1_tells_of_flights_with_different_radii_how_far_each_stayed_beyond_its_own(trial):
+    found = content(trial.run)
+    kept = column(trial.rows, "min_distance_m") - column(trial.rows, "keepout_radius_m")
+    least = f"{kept.min():.1f} m"
+    words = f"judged by its own r_min, 150 to 200 m. Least distance beyond it, from the first second: {least} ("
+    assert words in found.verdict.detail
+    assert Card("Closest approach, beyond the flight's own r_min", least, "≥ 0 m", met=True) in found.verdict.figures
+    assert any(f"Closest: {least} beyond r_min" in panel.title for panel in found.picture.panels)
+    assert "whose least distance beyond its own r_min is the median" in found.picture.caption
+
+
+def test_page_1_tells_of_flights_with_one_radius_how_close_they_came(windy):
+    assert "Closest approach, from the keep-out sphere's centre" in [card.name for card in windy.verdict.figures]
+    assert "r_min" not in windy.verdict.detail + windy.picture.caption.partition("Closest:")[2]
+
+
+def test_the_speed_ratio_that_was_swept_is_in_a_table_of_the_run_beside_the_one_that_was_flown(windy_run):
+    drawn = windy_run.draws
+    assert list(drawn["vessel.speed_ratio"]) == [0.3, 0.3, 0.6, 0.6]
+    # As in the column of flown ratios below; of what was not flown it is that over the ground.
+    assert list(drawn["nu"].round(2)[:3]) == [0.3, 0.81, 0.6]
+
+
 def test_words_that_were_swept_are_told_apart_by_colour_and_a_file_is_named_without_its_folders(trial):
     laws = trial.run.draws["guidance.law"].replace("line_of_sight", "/home/me/laws/mylaw.py:MyLaw")
     own = replace(trial, run=replace(trial.run, draws=trial.run.draws.assign(**{"guidance.law": laws})))
@@ -103,11 +127,16 @@ nu = [0.3, 0.6]
 
 
 @pytest.fixture(scope="module")
-def windy(tmp_path_factory):
+def windy_run(tmp_path_factory):
     folder = tmp_path_factory.mktemp("windy")
     (folder / "windy.toml").write_text(WINDY, encoding="utf-8")
     run_study(load_study(str(folder / "windy.toml")), "windy", folder / "run", executor_factory=InProcessExecutor)
-    return content(read_run(folder / "run"))
+    return read_run(folder / "run")
+
+
+@pytest.fixture(scope="module")
+def windy(windy_run):
+    return content(windy_run)
 
 
 NAMES = [f"ν = {nu}, wind speed {wind} m/s" for nu in ("0.30", "0.60") for wind in (0, 10)]
@@ -153,10 +182,7 @@ def test_where_the_flown_speed_ratio_is_not_the_swept_one_a_column_says_it(windy
 )
 def test_names_have_as_many_digits_as_tell_swept_values_apart(trial, key, values, names):
     rows = trial.rows.iloc[: len(values)].reset_index(drop=True)
-    airspeed = float(trial.setting("guidance.airspeed_mps"))
-    if key == "nu":
-        rows = rows.assign(vessel_speed_mps=np.array(values) * airspeed)
-    draws = pd.DataFrame({"flight_id": rows["flight_id"], key: values})
+    draws = pd.DataFrame({"flight_id": rows["flight_id"], "vessel.speed_ratio" if key == "nu" else key: values})
     config = trial.config | {"sweep": {key: values}, "flights": 1}
     planned = {"trial_flights": {trial.key: len(values)}}
     run = replace(trial.run, draws=draws, manifest=trial.run.manifest | planned)

@@ -14,7 +14,7 @@ from report_parts import assert_axes_read_quantity_and_unit, blocks_of, draw_all
 from trial_runs import charts_of, rows_of, with_criterion, with_values
 
 from reports.build import build_reports
-from reports.document.blocks import Table, Text
+from reports.document.blocks import FlightPicker, Table, Text
 from reports.document.tables import ending, parameter_value
 from reports.errors import ReportError
 from reports.flights.trials.panels_over import PanelsOver, by_violation
@@ -284,3 +284,13 @@ def test_altitudes_that_have_to_be_kept_are_a_criterion_on_the_time_outside(run)
 )
 def test_an_ending_is_without_its_advice(outcome, message, words):
     assert ending(pd.Series({"criteria_met": False, "outcome": outcome, "message": message})) == words
+
+
+def test_a_flight_has_one_name_in_a_report_which_is_that_of_its_files(report, run):
+    text = json.dumps(
+        [report.verdict.detail, report.verdict.failures, report.picture.caption, *(p.title for p in report.picture.panels)]
+    )
+    assert "in steady_0000" in text or "in turns_0000" in text
+    (picker,) = blocks_of(report, FlightPicker)
+    assert {flight.label.partition(" · ")[0] for flight in picker.flights} <= set(run.summary["flight_id"])
+    assert "Flight 0" not in text + str(picker)

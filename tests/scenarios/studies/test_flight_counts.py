@@ -123,7 +123,7 @@ def test_the_sulphur_of_one_flight_is_stated_with_its_interval_and_of_several_by
     (line,) = FlightCounts.of([row], planned=1).sulphur_lines()
     assert line == f"fuel sulphur 0.200 % m/m, 95 % interval 0.120 to 0.280 %: {words}"
     (line,) = FlightCounts.of([row] * 3, planned=3).sulphur_lines()
-    sides = {"above": "3 above the limit", "below": "3 below the limit", "open": "3 undecided"}
+    sides = {"above": "3 above the limit", "below": "3 below the limit", "open": "3 with an open verdict"}
     called = sides[verdict] if quality != "C" else "3 without a verdict (quality C)"
     assert line.startswith("fuel sulphur of 3 flights: ")
     assert called in line

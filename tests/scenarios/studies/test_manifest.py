@@ -1,9 +1,16 @@
 """The files that a run takes parts from: all are found and hashed, and one that is gone is refused in one line."""
 
+from dataclasses import fields
+from pathlib import Path
+
 import pytest
 
 from common.registry import file_hash
+from measurement.emission.ship import Ship
+from measurement.sniffer.channel import Channel
+from measurement.sniffer.spec import SnifferSpec
 from scenarios.errors import InputError
+from scenarios.schema.documented_parts import described_fields
 from scenarios.schema.load import load_study, with_values
 from scenarios.studies.manifest import parameters, plugins, unused_parameters
 from scenarios.studies.registry import run_study
@@ -90,3 +97,30 @@ def test_keys_without_effect_that_are_scaled_to_an_aircraft_have_their_meanings_
     assert (found["key"], found["value"], found["unit"]) == ("following.standoff_m", 250.0, "m")
     assert found["meaning"]
     assert found["key"] not in listed(plain)
+
+
+def test_every_key_of_a_ship_and_a_sniffer_of_ones_own_has_its_unit_and_meaning():
+    study = load_study(str(Path(__file__).parents[3] / "docs" / "examples" / "own_ship.toml"))
+    listed = {of["key"]: of for of in parameters(study)}
+    # By the docstrings of ship, sniffer and channel; noise is in the unit of its gas.
+    units = {
+        "emission.ship.power_max": "W",
+        "emission.ship.stroke": "",
+        "emission.ship.exhaust_temperature_c": "°C",
+        "payload.sensor.rate_hz": "1/s",
+        "payload.sensor.channels.so2.t90_s": "s",
+        "payload.sensor.channels.so2.noise": "ppb",
+        "payload.sensor.channels.co2.noise": "ppm",
+        "payload.sensor.channels.so2.gain_sd": "",
+    }
+    assert {key: listed[key]["unit"] for key in units} == units
+    assert listed["emission.ship.stack_height"]["meaning"] == "Height of the funnel's mouth above the sea."
+    own = [of for key, of in listed.items() if key.startswith(("emission.ship.", "payload.sensor."))]
+    # 10 of the ship, 2 of the sniffer, and 6, 4, 3 and 3 of its channels.
+    assert len(own) == 28
+    assert all(of["meaning"] for of in own)
+
+
+@pytest.mark.parametrize("made", [Ship, SnifferSpec, Channel])
+def test_every_field_that_a_table_of_ones_own_may_have_is_described(made):
+    assert set(described_fields(made)) == {field.name for field in fields(made)}
