@@ -8,6 +8,9 @@ from common.spelling import did_you_mean
 from gnc.mission.mode import Mode
 from scenarios.schema.sections.section import Angle, Limit, NonNegative, Positive, Section, check_ordered
 
+ALTITUDE_MIN = 5.0
+"""Least altitude at the start [m]: a few metres lower a wing that is banked in a turn reaches the sea."""
+
 DITCHED = "ditched"
 """Mode of a flight whose guidance, because of a fault, descended to the water: its aircraft is lost."""
 
@@ -55,7 +58,7 @@ class FlightConfig(Section):
     until: Literal["flown", "verdict"] = "flown"
     """When the flight ends: flown, with its crossings and its duration; verdict, also once the sniffer's readings allow a verdict
     on the fuel, or cannot any more."""
-    altitude_m: Positive | None = None
+    altitude_m: Annotated[float, Field(ge=ALTITUDE_MIN)] | None = None
     """Altitude at the start, for which the autopilot is designed; if not given, the height of the funnel's mouth, beside a ship
     with exhaust 3 m or more within altitude_min_m and altitude_max_m [m]."""
     altitude_min_m: NonNegative = 20.0

@@ -72,6 +72,7 @@ def test_what_is_wrong_in_a_file_names_the_file_and_what_is_wrong_in_an_override
         ("sweep.nu=[half]", ["sweep.nu=[half]", "not valid TOML", "quoted"]),
         ("reference.path=circle", ["reference.path is 'circle'", "a case of its own"]),
         ("flight.duration_max_s=0.05", ["duration_max_s is 0.05 s; at log_rate_hz, 10 Hz", "fly 0.1 s or longer"]),
+        ("flight.altitude_m=1", ["flight.altitude_m is 1; it must be at least 5 m"]),
         ("guidance.command_limit=false", ["command_limit is false", "set fidelity to 'kinematic'"]),
         ("start.place_m=[-100, 0]", ["start.place_m lies at 100 m", "must exceed keepout.radius_m, 200 m"]),
         ("guidance={tuning='bounded', law='lyapunov'}", ["tuning is 'bounded' with law 'lyapunov'", "set law to 'cascade'"]),
