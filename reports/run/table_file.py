@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pandas as pd
 
-from common.cells import from_cell
+from common.cells import MARK, from_cell
 from measurement.tables import other_separator
 from reports.errors import ReportError
 
@@ -44,8 +44,11 @@ def read_table(path: Path, columns: list[str] | None = None) -> pd.DataFrame:
         raise ReportError(f"'{path}' cannot be read: {str(error).splitlines()[0]}; {REMEDY}") from None
     if _last_row(path) < len(frame.columns):
         raise ReportError(f"the last line of '{path}' is cut off; {REMEDY}")
+    # Few tables hold a mark, and to look for one in each cell takes a quarter of the time. Columns of nothing are of numbers.
+    marked = MARK in path.read_text(encoding="utf-8")
     for name in frame.select_dtypes(exclude=["number", "bool"]).columns:
-        frame[name] = frame[name].map(from_cell)
+        if marked or frame[name].isna().all():
+            frame[name] = frame[name].map(from_cell)
     for name in ("criteria_met", "kept_out"):
         if name in frame:
             cells = pd.Series([str(value) for value in frame[name]], frame.index, dtype=str)
