@@ -50,7 +50,8 @@ LONGEST = (
     "test_subset_estimates.py", "test_falsify_study.py", "test_keepout_guard.py", "test_command_line.py", "test_results.py",
     "test_arena_report.py", "test_estimate_uncertainty.py", "test_compare_command.py", "test_missing.py", "test_robustness.py",
     "test_local_executor.py", "test_falsify_resumed.py", "test_environment.py", "test_scaling.py", "test_survival.py",
-    "test_fuzz.py", "test_dask_executor.py",
+    "test_fuzz.py", "test_design_report.py", "test_fastest_flights.py", "test_aerosonde.py", "test_recomputed_figures.py",
+    "test_dask_executor.py",
 )  # fmt: skip
 """Files of tests that take longest, in this order: each is run by one process, and none may begin one when the others are done."""
 
