@@ -22,10 +22,10 @@ from scenarios.planning.bounded_steering import given_steering
 from scenarios.planning.declared_vessel import check_vessel
 from scenarios.planning.flight_plan import FlightPlan, Sensing
 from scenarios.planning.guidance import (
-    THRUST_LOST_FRACTION,
     following_parameters,
     guard_parameters,
     guidance_lag,
+    lost_thrust,
     satellite_noise,
     speed_hold,
     tracking_parameters,
@@ -216,7 +216,7 @@ def _guidance(
         guard=guard,
         mission=mission,
         health=HealthParameters(
-            airspeed_error=THRUST_LOST_FRACTION * (g.airspeed_mps - hold.airspeed_min),
+            airspeed_error=lost_thrust(g.airspeed_mps, hold.airspeed_min),
             speed=g.airspeed_mps,
             heading_rate_max=omega_max(g),
             lag=guidance_lag(scenario, setup),

@@ -25,6 +25,13 @@ def test_such_a_flight_has_sensing_margin_and_health():
     assert flight.guidance.mission.centre.distance_min == pytest.approx(203.0)
 
 
+@pytest.mark.parametrize(("airspeed", "lack"), [(15.5, 0.06 * 15.5), (16.5, 0.06 * 16.5), (18.0, 0.55 * 3.0)])
+def test_near_the_slowest_airspeed_a_gust_does_not_pass_for_lost_thrust(airspeed, lack):
+    # The X8's is 15 m/s. Light turbulence takes up to 0.4 m/s from a sound aircraft, moderate up to 0.6.
+    flight = plan(scenario(guidance={"airspeed_mps": airspeed}))
+    assert flight.guidance.health.airspeed_error == pytest.approx(lack)
+
+
 def test_reports_are_received_beforehand_and_the_filter_knows_their_errors():
     reports = {"interval_s": (2.0, 10.0), "position_sigma_m": 7.0}
     flight = plan(scenario(reports=reports, following={"touches_per_hour": 1e-3}))
