@@ -34,10 +34,12 @@ class PredictedSpreads:
     Attributes
     ----------
     tables : by level of turbulence, guidance and reference
+    refused : why there is none, where guidance or reference cannot be flown
     defaults : of the keys of the project's own steering laws, scaled to the aircraft, by their dotted names
     """
 
     tables: Mapping[Key, SpreadTable] = field(default_factory=dict)
+    refused: Mapping[Key, str] = field(default_factory=dict)
     defaults: Mapping[str, float] = field(default_factory=dict)
 
     def __call__(self, scenario: Scenario) -> SpreadTable | None:
@@ -46,10 +48,13 @@ class PredictedSpreads:
         Raises
         ------
         InputError : it was not predicted
+        InfeasibleError : it cannot be flown
         """
         if scenario.turbulence.level == "none" or scenario.fidelity == "kinematic":
             return None
-        if (key := _key(scenario, self.defaults)) not in self.tables:
+        if (key := _key(scenario, self.defaults)) in self.refused:
+            raise InfeasibleError(self.refused[key])
+        if key not in self.tables:
             raise InputError(
                 "guidance is sampled from a continuous distribution in turbulence, where each value takes a margin of its own;"
                 " give it a choice of values instead"
@@ -67,8 +72,13 @@ def predicted_spreads(scenarios: Iterable[Scenario], found: Designed | None, set
         for scenario in scenarios
         if scenario.turbulence.level != "none" and scenario.fidelity != "kinematic"
     }
-    tables = {key: _spread_table(planned, found, setup) for key, planned in kinds.items()}
-    return PredictedSpreads(tables=tables, defaults=defaults)
+    tables, refused = dict[Key, SpreadTable](), dict[Key, str]()
+    for key, planned in kinds.items():
+        try:
+            tables[key] = _spread_table(planned, found, setup)
+        except InfeasibleError as error:
+            refused[key] = str(error)
+    return PredictedSpreads(tables=tables, refused=refused, defaults=defaults)
 
 
 def _key(scenario: Scenario, defaults: Mapping[str, float]) -> Key:
@@ -96,13 +106,13 @@ def _spread_table(scenario: Scenario, found: Designed, setup: VehicleSetup) -> S
 
 
 def _orbits(scenario: Scenario) -> Iterator[tuple[float, Orbit]]:
-    """Yield the orbit at each speed ratio at which the reference's shape has one; at the lowest all have, or are refused."""
+    """Yield the orbit at each speed ratio at which the reference's shape has one, at the lowest if at any."""
     for nu in SPREAD_RATIOS:
         try:
             yield nu, oscillation_at(scenario.guidance, scenario.reference, nu)
-        except InfeasibleError as error:
+        except InfeasibleError:
             if nu == SPREAD_RATIOS[0]:
-                raise InputError(str(error)) from None
+                raise
 
 
 def _wing_span(spec: AircraftSpec) -> float:

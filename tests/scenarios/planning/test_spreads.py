@@ -8,6 +8,7 @@ import pytest
 from flight_cases import plan, scenario
 
 from aircraft.fleet.x8 import X8
+from gnc.errors import InfeasibleError
 from scenarios.engine.run_directory import RunDirectory
 from scenarios.errors import InputError
 from scenarios.experiment.requests import Experiment
@@ -82,10 +83,11 @@ def test_a_shape_without_an_orbit_at_some_speed_ratios_is_planned_at_the_others(
     loiter = scenario(fidelity="six_dof", turbulence={"level": "light"}, reference={"shape": "loiter"})
     (table,) = predicted_spreads([loiter], *x8).tables.values()
     assert table.speed_ratios == (0.5,)
-    # One that has none at all is refused as a mistake in the scenario.
+    # A flight of one that has none at all is refused for that reason, and the others are flown.
     monkeypatch.setattr("scenarios.planning.spreads.SPREAD_RATIOS", SPREAD_RATIOS[3:])
-    with pytest.raises(InputError, match="'loiter'"):
-        predicted_spreads([loiter], *x8)
+    spreads = predicted_spreads([loiter], *x8)
+    with pytest.raises(InfeasibleError, match="'loiter'"):
+        spreads(loiter)
 
 
 def test_a_flight_whose_spread_was_not_predicted_is_refused():
