@@ -16,7 +16,7 @@ def violation_bound(run: RunData, trials: list[Trial]) -> tuple[float, float] | 
     """
     if run.statistics is not None:
         return _telling(run.statistics["violation"]["pessimistic"]["upper"], run.statistics["confidence"])
-    return _bound(run.summary) if sampled(trials) else None
+    return _bound(trials) if sampled(trials) else None
 
 
 def counted_as_violations(rows: pd.DataFrame) -> str:
@@ -32,7 +32,7 @@ def counted_as_violations(rows: pd.DataFrame) -> str:
 
 def trial_bound(trial: Trial) -> float | None:
     """Return that of one trial, with the confidence of all bounds."""
-    found = _bound(trial.rows) if trial.sampled_at_random else None
+    found = _bound([trial]) if trial.sampled_at_random else None
     return found[0] if found else None
 
 
@@ -41,9 +41,13 @@ def sampled(trials: list[Trial]) -> bool:
     return all(trial.sampled_at_random for trial in trials)
 
 
-def _bound(rows: pd.DataFrame) -> tuple[float, float] | None:
-    beside = _beside(rows)
-    return _telling(upper_bound(count(~kept_out(beside)), len(beside)), CONFIDENCE) if len(beside_vessel(rows)) else None
+def _bound(trials: list[Trial]) -> tuple[float, float] | None:
+    beside = [_beside(trial.rows) for trial in trials]
+    # Flights that share what is random count as one, and each violation as one of another sample.
+    samples = sum(len(rows) // trial.flights_per_sample for trial, rows in zip(trials, beside, strict=True))
+    violating = min(samples, sum(count(~kept_out(rows)) for rows in beside))
+    flown = any(len(beside_vessel(trial.rows)) for trial in trials)
+    return _telling(upper_bound(violating, samples), CONFIDENCE) if flown else None
 
 
 def _beside(rows: pd.DataFrame) -> pd.DataFrame:

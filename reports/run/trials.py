@@ -106,6 +106,11 @@ class Trial:
         """Whether its flights are a random sample, from which a bound on a probability follows."""
         return bool(self.run.manifest.get("sampled_at_random", {}).get(self.key, False))
 
+    @property
+    def flights_per_sample(self) -> int:
+        """How many of its flights have the same seed and random variables."""
+        return int(self.run.manifest.get("flights_per_sample", {}).get(self.key, 1))
+
     def theory(self, key: str, over: str = "nu") -> tuple[Array, Array] | None:
         """Return speed ratios, by their name, and what theory says of a figure; None where flights differ in more than nu."""
         curves = self.run.manifest.get("theory", {}).get(self.key, {})

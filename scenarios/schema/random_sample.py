@@ -33,6 +33,17 @@ def is_random_sample(scenario: ScenarioKeys) -> bool:
     return scenario.flight_seed is None and _depends_on_seed(scenario, listed)
 
 
+def flights_per_sample(scenario: ScenarioKeys) -> int:
+    """Return how many flights have the same seed and random variables: a bound on a probability counts them as one.
+
+    Those of all points of a sweep have, and those of two vehicles; but for speed ratios of one flight each, and swept seeds.
+    """
+    sweep = scenario.sweep.root
+    apart = "flight_seed" if "flight_seed" in sweep else "nu" if "nu" in sweep and scenario.flights == 1 else None
+    points = math.prod(len(values) for key, values in sweep.items() if key != apart)
+    return points * (2 if scenario.fidelity == "both" else 1)
+
+
 def _depends_on_seed(scenario: ScenarioKeys, listed: Collection[str]) -> bool:
     """Return whether every flight depends on its seed, by its start or by noise, beside the keys whose values are listed."""
 

@@ -19,7 +19,7 @@ import numpy as np
 import numpy.typing as npt
 import pandas as pd
 
-from common.intervals import clopper_pearson, quantile_interval, upper_bound
+from common.intervals import Interval, clopper_pearson, quantile_interval, upper_bound
 from scenarios.statistics.sensitivity import sensitivity_indices
 from scenarios.statistics.stopping import confidence_at
 from scenarios.statistics.violations import Violations, count_violations
@@ -47,7 +47,7 @@ Json = dict[str, Any]
 
 
 def study_statistics(
-    rows: pd.DataFrame, inputs: pd.DataFrame, *, confidence: float, seed: int, look_number: int | None = None
+    rows: pd.DataFrame, inputs: pd.DataFrame, *, confidence: float, seed: int, look_number: int | None = None, per_sample: int = 1
 ) -> Json:
     """Return the content of ``statistics.json``; values that are not a number become None.
 
@@ -59,6 +59,7 @@ def study_statistics(
     seed : seed of the random numbers for the sensitivity indices
     look_number : number of the look at which the study stopped, from 1; intervals are widened for the looks before it
         (``scenarios.statistics.stopping``). None for a study that is evaluated only at its end
+    per_sample : flights that share what is random, as those of the points of a sweep do [-]
     """
     level = interval_confidence(confidence, look_number)
     found = count_violations(rows)
@@ -71,8 +72,11 @@ def study_statistics(
         "flights": {"done": found.flights, "measured": found.measured, "unknown": named(found)},
         "outcomes": counted(rows["outcome"]),
         "modes_at_end": counted(rows["mode_at_end"]),
-        "violation": {"measured": share(found.events, found.measured, level), "pessimistic": pessimistic_share(found, level)},
-        "figures": {name: _figure(values, level) for name, values in figures.items()},
+        "violation": {
+            "measured": share(found.events, found.measured, level, per_sample=per_sample),
+            "pessimistic": pessimistic_share(found, level, per_sample=per_sample),
+        },
+        "figures": {name: _figure(values, level, apart=per_sample == 1) for name, values in figures.items()},
         "sensitivity": {
             name: asdict(sensitivity_indices(drawn, figures[name], confidence=confidence, seed=seed)) for name in DRIVEN
         },
@@ -86,9 +90,9 @@ def interval_confidence(confidence: float, look_number: int | None) -> float:
     return confidence if look_number is None else confidence_at(look_number, confidence)
 
 
-def pessimistic_share(found: Violations, level: float) -> Json:
+def pessimistic_share(found: Violations, level: float, *, per_sample: int = 1) -> Json:
     """Return the share of flights with a keep-out violation as ``share`` does, if every unknown flight had one."""
-    return share(found.events_at_most, found.flights, level)
+    return share(found.events_at_most, found.flights, level, per_sample=per_sample)
 
 
 def study_figures(rows: pd.DataFrame) -> dict[str, Array]:
@@ -123,24 +127,29 @@ def counted(words: "pd.Series[str]") -> dict[str, int]:
     return dict(Counter(str(word) for word in words.dropna()).most_common())
 
 
-def share(events: int, flights: int, level: float) -> Json:
-    """Return the share of flights with an event, and the intervals of its probability."""
-    interval = clopper_pearson(events, flights, level)
+def share(events: int, flights: int, level: float, *, per_sample: int = 1) -> Json:
+    """Return the share of flights with an event, and the intervals of its probability.
+
+    Of flights that share what is random, so many ``per_sample``, each event may be of another sample, or of as few as can be.
+    """
+    samples = flights // per_sample
+    most, least = min(events, samples), -(-events // per_sample)
     return {
         "events": events,
         "flights": flights,
         "share": events / flights if flights else math.nan,
-        "low": interval.low,
-        "high": interval.high,
-        "upper": upper_bound(events, flights, level),
+        "low": clopper_pearson(min(least, samples), samples, level).low,
+        "high": clopper_pearson(most, samples, level).high,
+        "upper": upper_bound(most, samples, level),
     }
 
 
-def _figure(values: Array, level: float) -> Json:
+def _figure(values: Array, level: float, *, apart: bool) -> Json:
+    """Return the quantiles of a figure, with their intervals if every flight is a sample of its own."""
     known = values[np.isfinite(values)]
     quantiles = []
     for probability in sorted((*PROBABILITIES, *EXTREMES)):
-        interval = quantile_interval(known, probability, level)
+        interval = quantile_interval(known, probability, level) if apart else Interval(math.nan, math.nan)
         if probability in PROBABILITIES or math.isfinite(interval.width):
             value = float(np.quantile(known, probability)) if len(known) else math.nan
             quantiles.append({"probability": probability, "value": value, "low": interval.low, "high": interval.high})

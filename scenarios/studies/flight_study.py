@@ -130,6 +130,7 @@ class FlightStudy:
             "trial_parameters": {trial: parameters(of) for trial, of in self.trials.items()},
             "unused_parameters": {trial: unused_parameters(of) for trial, of in self.trials.items()},
             "sampled_at_random": self._sampled_at_random(),
+            "flights_per_sample": {trial: of.flights_per_sample for trial, of in self.trials.items()},
             "theory": {trial: theory_over_speed_ratio(of) for trial, of in self.trials.items()},
             "plugins": self.plugins,
             "vessel_files": {
@@ -260,9 +261,9 @@ class FlightStudy:
         """Write its tables."""
         write_tables(run, journal, self.tables)
 
-    def bound_line(self, counts: FlightCounts, _journal: Journal) -> str:
+    def bound_line(self, counts: FlightCounts, samples: int, _journal: Journal) -> str:
         """Return the line on keep-out violations and the bound on their probability, of flights that are a random sample."""
-        return counts.bound_line()
+        return counts.bound_line(samples)
 
     def summary(self, journal: Journal) -> StudySummary:
         """Return the result so far."""
@@ -271,14 +272,14 @@ class FlightStudy:
         for row in journal.rows(SUMMARY):
             whole.add(row)
             trial_counts[row["trial"]].add(row)
-        lines = [reports.described() for reports in self.vessel_files.values()]
-        lines.append(f"flights: {whole.line()}")
+        lines = [*(reports.described() for reports in self.vessel_files.values()), f"flights: {whole.line()}"]
         if len(trial_counts) > 1:
             lines += [f"  {trial}: {counts.line()}" for trial, counts in trial_counts.items()]
         lines += self._comparison_lines(journal)
         lines += whole.sulphur_lines()
         if whole.flown > whole.without_area and all(self._sampled_at_random().values()):
-            lines.append(self.bound_line(whole, journal))
+            samples = sum(of.beside // self.trials[trial].flights_per_sample for trial, of in trial_counts.items())
+            lines.append(self.bound_line(whole, samples, journal))
         lines += [whole.exit_line(), *whole.not_met_lines("    "), *whole.warnings()]
         return StudySummary(
             done=whole.done,

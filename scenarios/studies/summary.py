@@ -107,6 +107,11 @@ class FlightCounts:
         return self.outcomes[Outcome.COMPLETED.value]
 
     @property
+    def beside(self) -> int:
+        """Number of flights beside a vessel, those that could not be flown among them: others have nothing to keep out of."""
+        return self.done - self.without_area
+
+    @property
     def lost(self) -> int:
         """Number of flights whose aircraft was lost."""
         return self.outcomes[Outcome.AIRCRAFT_LOST.value] + self.outcomes[Outcome.DIVERGED.value]
@@ -138,16 +143,20 @@ class FlightCounts:
         low, high = row["fsc_low_percent"], row["fsc_high_percent"]
         return [f"fuel sulphur {content_words(row['fsc_percent'], low, high)}: {words}"]
 
-    def bound_line(self) -> str:
+    def bound_line(self, samples: int) -> str:
         """Return in how many flights the keep-out area was violated, with the bound on the probability of that.
 
         It is one if flights are a random sample, and not those of a search. One that could not be flown counts as violated, too.
-        """
-        flights = self.done - self.without_area
-        upper = upper_bound(flights - self.kept_out, flights)
-        return self.violation_line(self.violating, flights - self.kept_out - self.violating, flights, upper, CONFIDENCE)
 
-    def violation_line(self, violating: int, unknown: int, flights: int, upper: float, confidence: float) -> str:
+        Parameters
+        ----------
+        samples : number of those that differ in what is random: of others each counts as one, and each violation as of another
+        """
+        not_kept = self.beside - self.kept_out
+        upper = upper_bound(min(not_kept, samples), samples)
+        return self.violation_line(self.violating, not_kept - self.violating, self.beside, upper, CONFIDENCE, samples=samples)
+
+    def violation_line(self, violating: int, unknown: int, flights: int, upper: float, confidence: float, *, samples: int) -> str:
         """Return what is known of keep-out violations, and the bound on their probability if that says anything.
 
         Parameters
@@ -155,13 +164,15 @@ class FlightCounts:
         violating, unknown : number of flights with a violation, and of those of which nobody knows
         flights : number of all these flights
         upper, confidence : bound on the probability, in which unknown flights count as violations [-]
+        samples : number of flights that differ in what is random
         """
         hours = self.duration / SECONDS_PER_HOUR
         known = f"in {violating} of {flights} flights" if violating else f"none known in {flights} flight{'s' * (flights != 1)}"
         more = f", unknown in {unknown}, which count{'s' * (unknown == 1)} as violated" if unknown else ""
         line = f"keep-out violations: {known} ({hours:.3g} h simulated){more}"
+        line += f"; they share {samples} random sample{'s' * (samples != 1)}" if samples < flights else ""
         if upper > TELLING:
-            return f"{line}; too few flights to bound their probability"
+            return f"{line}; too few{'' if samples < flights else ' flights'} to bound their probability"
         bound, sure = (percent(p).replace("\N{NO-BREAK SPACE}", " ") for p in (upper, confidence))
         return f"{line}; at most {bound} of flights sampled as these were, at {sure} confidence"
 

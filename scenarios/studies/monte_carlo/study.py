@@ -96,6 +96,7 @@ class MonteCarloStudy(FlightStudy):
             confidence=self._scenario.statistics.confidence,
             seed=self._scenario.seed,
             look_number=self._look_number,
+            per_sample=self._scenario.flights_per_sample,
         )
         run.write_json(run.statistics, statistics)
 
@@ -104,12 +105,14 @@ class MonteCarloStudy(FlightStudy):
         """Number of the look that intervals are of, the first where none was taken yet; None of a study without any."""
         return max(1, self._looks) if self._scenario.statistics.stops else None
 
-    def bound_line(self, counts: FlightCounts, journal: Journal) -> str:
+    def bound_line(self, counts: FlightCounts, _samples: int, journal: Journal) -> str:
         """Return the line on keep-out violations with the bound of ``statistics.json``."""
         confidence = self._scenario.statistics.confidence
         found = count_violations(frame(journal.rows(SUMMARY), COLUMNS))
-        upper = pessimistic_share(found, interval_confidence(confidence, self._look_number))["upper"]
-        return counts.violation_line(found.events, found.events_at_most - found.events, found.flights, upper, confidence)
+        level, per_sample = interval_confidence(confidence, self._look_number), self._scenario.flights_per_sample
+        upper = pessimistic_share(found, level, per_sample=per_sample)["upper"]
+        unknown, samples = found.events_at_most - found.events, found.flights // per_sample
+        return counts.violation_line(found.events, unknown, found.flights, upper, confidence, samples=samples)
 
     def summary(self, journal: Journal) -> StudySummary:
         """Return what the flights have come to, and whether the study stopped by itself."""

@@ -5,6 +5,7 @@ import pytest
 
 from scenarios.errors import InputError
 from scenarios.experiment.points import points_of
+from scenarios.experiment.requests import Experiment
 from scenarios.schema.load import checked, load_study, with_values
 from scenarios.schema.scenario import Scenario
 
@@ -56,6 +57,25 @@ START = {"place_m": [-400.0, 0.0], "course_deg": 0.0}
 )
 def test_flights_are_a_random_sample_where_they_differ_by_chance_alone(keys, at_random):
     assert Scenario(title="own", **keys).sampled_at_random is at_random
+
+
+@pytest.mark.parametrize(
+    ("keys", "shared"),
+    [
+        ({"flights": 8}, 1),
+        ({"sweep": {"nu": [0.3, 0.5]}}, 1),
+        ({"sweep": {"nu": [0.3, 0.5]}, "flights": 8}, 2),
+        ({"sweep": {"nu": [0.3, 0.5], "keepout.radius_m": [200.0, 250.0, 300.0]}}, 3),
+        ({"sweep": {"keepout.radius_m": [200.0, 250.0, 300.0]}, "flights": 8}, 3),
+        ({"sweep": {"flight_seed": [1, 2, 3]}}, 1),
+        ({"fidelity": "both", "flights": 8}, 2),
+    ],
+)
+def test_flights_of_several_points_share_what_is_random(keys, shared):
+    scenario = Scenario(title="own", **keys)
+    assert scenario.flights_per_sample == shared
+    experiment = Experiment("own", scenario)
+    assert len({experiment.request(i).seed for i in range(experiment.flights)}) == experiment.flights / shared
 
 
 @pytest.mark.parametrize(

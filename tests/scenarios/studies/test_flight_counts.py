@@ -62,7 +62,7 @@ def test_the_exit_status_is_about_every_criterion_unless_keeping_out_alone_is_re
 def test_a_bound_follows_from_the_flights_that_were_flown():
     counts = FlightCounts.of([row(i, min_distance_m=201.0) for i in range(64)], planned=200)
     # The rule of three: 1 - 0.05^(1/64) = 4.57 %.
-    assert counts.bound_line() == (
+    assert counts.bound_line(counts.beside) == (
         "keep-out violations: none known in 64 flights (32 h simulated); at most 4.57 % of flights sampled as these were,"
         " at 95 % confidence"
     )
@@ -74,13 +74,20 @@ def test_the_bound_counts_flights_that_are_not_known_to_their_end_as_violations_
     # Flights about a point have nothing to keep out of.
     rows += [{"flight_id": "f99", "outcome": "completed", "message": "", "criteria_met": True, "duration_s": 100.0}]
     # 2 of 99: 1, 99 and 4,851 ways to none, one and two make 0.05 at p = 6.22 %.
-    assert FlightCounts.of(rows, planned=100).bound_line() == (
+    assert FlightCounts.of(rows, planned=100).bound_line(99) == (
         "keep-out violations: in 1 of 99 flights (49.5 h simulated), unknown in 1, which counts as violated; at most 6.22 % of"
         " flights sampled as these were, at 95 % confidence"
     )
     # One that could not be flown is as little known: 3 of 100 are at most 7.57 %.
-    line = FlightCounts.of([*rows, row(100, "infeasible", met=False)], planned=101).bound_line()
+    line = FlightCounts.of([*rows, row(100, "infeasible", met=False)], planned=101).bound_line(100)
     assert "in 1 of 100 flights (49.5 h simulated), unknown in 2, which count as violated; at most 7.57 % of" in line
+
+
+def test_flights_that_share_what_is_random_bound_a_probability_as_one():
+    counts = FlightCounts.of([row(i, min_distance_m=201.0) for i in range(64)], planned=64)
+    # 32 radii, flown with two seeds: of two flights 1 - 0.05^(1/2) = 78 % could violate the area.
+    assert counts.bound_line(2).endswith("(32 h simulated); they share 2 random samples; too few to bound their probability")
+    assert "; they share 16 random samples; at most 17.1 % of flights" in counts.bound_line(16)
 
 
 @pytest.mark.parametrize(("unflown", "lines"), [({}, 0), ({"manoeuvres_unflown": 0}, 0), ({"manoeuvres_unflown": 2}, 1)])
@@ -99,10 +106,10 @@ def test_of_many_flights_that_are_not_met_the_first_are_named_and_the_rest_count
 
 def test_a_handful_of_flights_bounds_no_probability():
     row = {"outcome": "completed", "kept_out": True, "keepout_violations": 0, "criteria_met": True, "duration_s": 1800.0}
-    line = FlightCounts.of([row] * 4, planned=4).bound_line()
+    line = FlightCounts.of([row] * 4, planned=4).bound_line(4)
     # With none of four, 1 - 0.05^(1/4) = 0.53 is above a half; with none of five 0.45 is not.
     assert line == "keep-out violations: none known in 4 flights (2 h simulated); too few flights to bound their probability"
-    assert "at most 45.1 %" in FlightCounts.of([row] * 5, planned=5).bound_line()
+    assert "at most 45.1 %" in FlightCounts.of([row] * 5, planned=5).bound_line(5)
 
 
 @pytest.mark.parametrize(
