@@ -56,7 +56,7 @@ def points_of(scenario: Scenario) -> list[Point]:
                 _varied(point, variant.name, variant.set, comparison.flights, beside=i) for i, point in _compared(scenario, points)
             ]
         except InputError as error:
-            raise InputError(f"comparison '{variant.name}': {error}") from None
+            raise InputError(f"comparison '{variant.name}': {error}; or fly no comparisons (comparison.variants=[])") from None
     return points
 
 

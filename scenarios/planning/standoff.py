@@ -83,7 +83,7 @@ class VesselCircle:
 
 
 def vessel_circle(scenario: Scenario, nu: float, least: float) -> VesselCircle:
-    """Return the circle of a scenario: of the radius that it gives, or of the ``least`` [m].
+    """Return the circle of a scenario: of the radius that it gives, or of the ``least`` that keeps out [m].
 
     Raises
     ------
@@ -92,7 +92,7 @@ def vessel_circle(scenario: Scenario, nu: float, least: float) -> VesselCircle:
     circle = VesselCircle(nu=nu, speed=scenario.guidance.airspeed_mps, radius=scenario.reference.standoff_radius_m or least)
     fastest = omega_max(scenario.guidance)
     if circle.amplitude > fastest:
-        smallest = circle.radius * circle.amplitude / fastest
+        smallest = max(least, circle.radius * circle.amplitude / fastest)
         raise InfeasibleError(
             f"a circle of {circle.radius:.0f} m about a vessel at nu = {nu:.2f} takes {circle.amplitude:.3f} rad/s, above"
             f" omega_max = {fastest:.3f} rad/s: widen it to {smallest:.0f} m (reference.standoff_radius_m), or raise omega_max"

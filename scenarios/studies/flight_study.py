@@ -60,7 +60,7 @@ from scenarios.studies.manifest import (
 )
 from scenarios.studies.rows import frame
 from scenarios.studies.study import study
-from scenarios.studies.summary import FlightCounts
+from scenarios.studies.summary import FlightCounts, comparison_lines
 from scenarios.vehicles.vehicle_setup import aircraft_setup, design_of, kinematic_setup, spec_of
 
 
@@ -294,7 +294,5 @@ class FlightStudy:
         planned = Counter[str]()
         for point in variants:
             planned[point.variant] += point.flights
-        counts = {variant: FlightCounts(planned=flights) for variant, flights in planned.items()}
-        for row in journal.rows(COMPARISON) if counts else ():
-            counts[row["variant"]].add(row)
-        return [f"  comparison {variant}, not counted above: {of.line()}" for variant, of in counts.items()]
+        left_out = [nu for of in self.trials.values() if of.comparison.variants for nu in of.comparison.nu] if not planned else []
+        return comparison_lines(planned, journal.rows(COMPARISON) if planned else (), left_out)

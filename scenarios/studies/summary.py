@@ -2,7 +2,7 @@
 
 import math
 from collections import Counter
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any, Self
 
@@ -209,3 +209,20 @@ class FlightCounts:
             "flights_met_criteria": self.met,
             "flights_passed": self.passed,
         }
+
+
+def comparison_lines(planned: Mapping[str, int], rows: Iterable[Row], left_out: Sequence[float]) -> list[str]:
+    """Return a line for each comparison: its flights, which do not count.
+
+    Parameters
+    ----------
+    planned : number of flights of each
+    rows : of all of them
+    left_out : speed ratios of comparisons at none of which the study has a flight, or none
+    """
+    if left_out:
+        return [f"  comparisons: none flown, as no flight is at a speed ratio of comparison.nu, {list(left_out)}"]
+    counts = {variant: FlightCounts(planned=flights) for variant, flights in planned.items()}
+    for row in rows:
+        counts[row["variant"]].add(row)
+    return [f"  comparison {variant}, not counted above: {of.line()}" for variant, of in counts.items()]

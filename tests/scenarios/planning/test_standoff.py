@@ -34,5 +34,8 @@ def test_a_circle_that_is_too_tight_is_refused_with_the_radius_that_is_not():
     scenario = load_study("arena", ["reference.standoff_radius_m=50"], refusing=False)
     # omega_max = g tan 45 deg/V = 0.505 rad/s; (1 + 0.5)^2 V/omega_max = 86.5 m.
     with pytest.raises(InfeasibleError, match=r"circle of 50 m .* widen it to 87 m \(reference\.standoff_radius_m\)"):
+        vessel_circle(scenario, 0.5, 60.0)
+    # Nor is one recommended that lies within the keep-out area and its margin.
+    with pytest.raises(InfeasibleError, match="widen it to 203 m"):
         vessel_circle(scenario, 0.5, 203.0)
     assert vessel_circle(load_study("arena"), 0.5, 203.0).radius == 203.0

@@ -3,7 +3,7 @@
 import pytest
 
 from scenarios.simulation.outcome import Outcome
-from scenarios.studies.summary import FlightCounts
+from scenarios.studies.summary import FlightCounts, comparison_lines
 
 
 def row(number, outcome="completed", *, met=True, **figures):
@@ -88,6 +88,14 @@ def test_flights_that_share_what_is_random_bound_a_probability_as_one():
     # 32 radii, flown with two seeds: of two flights 1 - 0.05^(1/2) = 78 % could violate the area.
     assert counts.bound_line(2).endswith("(32 h simulated); they share 2 random samples; too few to bound their probability")
     assert "; they share 16 random samples; at most 17.1 % of flights" in counts.bound_line(16)
+
+
+def test_comparisons_are_told_with_their_flights_or_why_none_was_flown():
+    (line,) = comparison_lines({"no_guard": 2}, [row(0) | {"variant": "no_guard"}], [])
+    assert line.startswith("  comparison no_guard, not counted above: 2 planned, 1 flown")
+    assert comparison_lines({}, (), [0.15, 0.5]) == [
+        "  comparisons: none flown, as no flight is at a speed ratio of comparison.nu, [0.15, 0.5]"
+    ]
 
 
 @pytest.mark.parametrize(("unflown", "lines"), [({}, 0), ({"manoeuvres_unflown": 0}, 0), ({"manoeuvres_unflown": 2}, 1)])
