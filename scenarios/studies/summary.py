@@ -40,6 +40,7 @@ class FlightCounts:
     nearest : closest approach to the vessel, infinite if no flight is done [m]
     duration : of all flights [s]
     unflown_manoeuvres : number of flights that ended before a manoeuvre of their vessel began
+    beside_smoke : height above the plume's axis of each flight that crossed the plume, but never its smoke [m]
     not_met : rows of the first flights that did not meet every criterion
     sulphur : row of the first flight with a sulphur content of the fuel
     verdicts : number of such flights by verdict and quality
@@ -61,6 +62,7 @@ class FlightCounts:
     nearest: float = math.inf
     duration: float = 0.0
     unflown_manoeuvres: int = 0
+    beside_smoke: list[float] = field(default_factory=list)
     not_met: list[Row] = field(default_factory=list)
     sulphur: Row | None = None
     verdicts: Counter[tuple[str, str]] = field(default_factory=Counter)
@@ -91,6 +93,8 @@ class FlightCounts:
         self.nearest = min(self.nearest, row.get("min_distance_m", math.inf))
         self.duration += row.get("duration_s", 0.0)
         self.unflown_manoeuvres += row.get("manoeuvres_unflown", 0) > 0
+        if row.get("plume_axis_crossings", 0) and not row["smoke_passes"]:
+            self.beside_smoke.append(row["axis_height_error_mean_m"])
         if math.isfinite(row.get("fsc_percent", math.nan)):
             self.sulphur = self.sulphur or row
             self.verdicts[row["sulphur_verdict"], row["sulphur_quality"]] += 1
@@ -186,14 +190,22 @@ class FlightCounts:
         return f"exit status {int(self.passed != self.planned)}: {did}"
 
     def warnings(self) -> list[str]:
-        """Return what of the scenario had no effect on flights."""
-        if not self.unflown_manoeuvres:
-            return []
-        flights = f"{self.unflown_manoeuvres} flight{'s' * (self.unflown_manoeuvres > 1)}"
-        return [
-            f"warning: in {flights} a manoeuvre of the vessel begins after the end of the flight, and was never flown; let it"
-            " begin earlier (vessel.manoeuvres), or fly longer (flight.duration_max_s, flight.crossings)"
-        ]
+        """Return what of the scenario had no effect on flights, and where these missed what they were to measure."""
+        lines = []
+        if count := self.unflown_manoeuvres:
+            lines.append(
+                f"warning: in {count} flight{'s' * (count > 1)} a manoeuvre of the vessel begins after the end of the flight, and"
+                " was never flown; let it begin earlier (vessel.manoeuvres), or fly longer (flight.duration_max_s or crossings)"
+            )
+        if heights := self.beside_smoke:
+            farthest = max(heights, key=abs)
+            lines.append(
+                f"warning: in {len(heights)} flight{'s' * (len(heights) > 1)} the UAV never passed through the smoke, and crossed"
+                f" its axis up to {abs(farthest):.0f} m {'above' if farthest > 0.0 else 'below'} it: flight.altitude_min_m and"
+                " altitude_max_m may not let it reach the smoke, or the ship is not as the guidance takes her to be"
+                " (following.source_height_m, following.load)"
+            )
+        return lines
 
     def not_met_lines(self, indent: str) -> list[str]:
         """Return a line for each of the first flights that did not meet every criterion, and one for the rest."""

@@ -105,6 +105,14 @@ def test_manoeuvres_that_were_never_flown_are_warned_of(unflown, lines):
     assert all(line.startswith("warning: in 1 flight a manoeuvre of the vessel begins after the end") for line in found)
 
 
+def test_flights_that_never_reached_the_smoke_are_warned_of():
+    passes = [{"smoke_passes": 0, "axis_height_error_mean_m": height} for height in (-36.3, 12.0)]
+    passes += [{"smoke_passes": 9, "axis_height_error_mean_m": -50.0}]
+    (line,) = FlightCounts.of([row(i, plume_axis_crossings=20, **of) for i, of in enumerate(passes)], planned=3).warnings()
+    assert line.startswith("warning: in 2 flights the UAV never passed through the smoke, and crossed its axis up to 36 m below it")
+    assert FlightCounts.of([row(0, plume_axis_crossings=0, smoke_passes=0)], planned=1).warnings() == []
+
+
 def test_of_many_flights_that_are_not_met_the_first_are_named_and_the_rest_counted():
     lines = FlightCounts.of((row(i, met=False) for i in range(10_000)), planned=10_000).not_met_lines("")
     assert len(lines) == 21
