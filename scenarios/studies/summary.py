@@ -195,7 +195,8 @@ class FlightCounts:
         if count := self.unflown_manoeuvres:
             lines.append(
                 f"warning: in {count} flight{'s' * (count > 1)} a manoeuvre of the vessel begins after the end of the flight, and"
-                " was never flown; let it begin earlier (vessel.manoeuvres), or fly longer (flight.duration_max_s or crossings)"
+                " was never flown; let it begin earlier (vessel.manoeuvres), or fly longer (flight.duration_max_s,"
+                " flight.crossings)"
             )
         if heights := self.beside_smoke:
             farthest = max(heights, key=abs)

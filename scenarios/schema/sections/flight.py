@@ -62,9 +62,10 @@ class FlightConfig(Section):
     """Altitude at the start, for which the autopilot is designed; if not given, the height of the funnel's mouth, beside a ship
     with exhaust 3 m or more within altitude_min_m and altitude_max_m [m]."""
     altitude_min_m: NonNegative = 20.0
-    """Lowest altitude at which rising exhaust is crossed, and a flight beside it starts [m]."""
+    """Lowest altitude at which rising exhaust is crossed, and a flight beside it starts: of what is commanded; a search stays 3 to
+    10 m away from it, by the turbulence [m]."""
     altitude_max_m: Positive = 120.0
-    """Highest altitude at which rising exhaust is crossed, and a flight beside it starts [m]."""
+    """Highest altitude at which rising exhaust is crossed, and a flight beside it starts, likewise [m]."""
     settling_band_m: Positive = 5.0
     """Distance to the reference below which a flight counts as settled [m]."""
     log_rate_hz: Annotated[float, Field(ge=5.0, le=120.0)] = 10.0
