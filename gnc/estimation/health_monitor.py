@@ -36,7 +36,7 @@ class HealthParameters:
     ----------
     airspeed_error : mean lack of airspeed at which thrust counts as lost [m/s]
     speed : V_r; a vehicle that is still speeding up beyond it lacks nothing [m/s]
-    heading_rate_max : omega_max [rad/s]
+    heading_rate_max : omega_max, or what a vehicle in turbulence may turn at without a command, if that is more [rad/s]
     lag : of the heading rate behind its command [s]
     time_step : of the guidance [s]
     """

@@ -22,6 +22,7 @@ from scenarios.planning.bounded_steering import given_steering
 from scenarios.planning.declared_vessel import check_vessel
 from scenarios.planning.flight_plan import FlightPlan, Sensing
 from scenarios.planning.guidance import (
+    controlled_heading_rate,
     following_parameters,
     guard_parameters,
     guidance_lag,
@@ -218,7 +219,7 @@ def _guidance(
         health=HealthParameters(
             airspeed_error=lost_thrust(g.airspeed_mps, hold.airspeed_min),
             speed=g.airspeed_mps,
-            heading_rate_max=omega_max(g),
+            heading_rate_max=controlled_heading_rate(g),
             lag=guidance_lag(scenario, setup),
             time_step=tracking.time_step,
         ),

@@ -3,6 +3,7 @@
 import math
 from collections.abc import Sequence
 
+from common.physics.coordinated_turn import heading_rate_for_bank
 from gnc.airspeed.pace_hold import SpeedHold, design_speed_hold
 from gnc.mission.approach import ApproachParameters
 from gnc.mission.plume_axis import AxisParameters
@@ -19,6 +20,7 @@ from scenarios.planning.bounded_steering import Steering, given_steering, steeri
 from scenarios.planning.limits import omega_max, plan_interval
 from scenarios.planning.reference import shape_of
 from scenarios.schema.scenario import Scenario
+from scenarios.schema.sections.guidance import GuidanceConfig
 from scenarios.vehicles.sensors import NAVIGATION_TIME
 from scenarios.vehicles.vehicle_setup import VehicleSetup
 
@@ -37,6 +39,12 @@ LEAST_LACK = 0.06
 Moderate turbulence, and gusts of 8 m/s, make it up to 0.035 in flights at 15.5 to 19.4 m/s of an aircraft that stayed sound.
 """
 
+CONTROLLED_BANK = math.radians(17.0)
+"""The heading rate at this bank counts for omega_max, if that is less, where control counts as lost by a share of it [rad].
+
+Moderate turbulence turns a sound aircraft at 0.07 rad/s, at 19 m/s, which is more than that share at 5 degrees of bank.
+"""
+
 ROUND_BY = 0.8
 """By how many turn radii a way round the keep-out area stays farther off than what counts as blocked [-]."""
 
@@ -44,6 +52,11 @@ ROUND_BY = 0.8
 def lost_thrust(airspeed: float, slowest: float) -> float:
     """Return the mean lack of airspeed at which thrust counts as lost, by V_r and the slowest airspeed [m/s]."""
     return max(THRUST_LOST_FRACTION * (airspeed - slowest), LEAST_LACK * airspeed)
+
+
+def controlled_heading_rate(guidance: GuidanceConfig) -> float:
+    """Return the heading rate by a share of which control counts as lost [rad/s]."""
+    return max(omega_max(guidance), heading_rate_for_bank(CONTROLLED_BANK, guidance.airspeed_mps))
 
 
 def tracking_parameters(scenario: Scenario, setup: VehicleSetup, steering: Steering | None = None) -> TrackingParameters:

@@ -63,7 +63,7 @@ class FlightConfig(Section):
     with exhaust 3 m or more within altitude_min_m and altitude_max_m [m]."""
     altitude_min_m: NonNegative = 20.0
     """Lowest altitude at which rising exhaust is crossed, and a flight beside it starts: of what is commanded; a search stays 3 to
-    10 m away from it, by the turbulence [m]."""
+    15 m away from it, by the turbulence [m]."""
     altitude_max_m: Positive = 120.0
     """Highest altitude at which rising exhaust is crossed, and a flight beside it starts, likewise [m]."""
     settling_band_m: Positive = 5.0

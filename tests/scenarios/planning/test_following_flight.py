@@ -32,6 +32,13 @@ def test_near_the_slowest_airspeed_a_gust_does_not_pass_for_lost_thrust(airspeed
     assert lost_thrust(airspeed, 15.0) == pytest.approx(lack)
 
 
+@pytest.mark.parametrize(("bank", "rate"), [(45.0, 9.80665 / SPEED), (17.0, 0.1544), (5.0, 0.1544)])
+def test_a_vehicle_that_may_only_turn_slowly_is_not_lost_in_turbulence(bank, rate):
+    flight = plan(scenario(guidance={"bank_deg": bank, "airspeed_mps": SPEED}))
+    assert flight.guidance.health.heading_rate_max == pytest.approx(rate, rel=1e-3)
+    assert flight.guidance.tracking.heading_rate_max == pytest.approx(9.80665 * math.tan(math.radians(bank)) / SPEED)
+
+
 def test_reports_are_received_beforehand_and_the_filter_knows_their_errors():
     reports = {"interval_s": (2.0, 10.0), "position_sigma_m": 7.0}
     flight = plan(scenario(reports=reports, following={"touches_per_hour": 1e-3}))
