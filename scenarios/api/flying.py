@@ -9,6 +9,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from common.spelling import did_you_mean
 from scenarios.api.objects import LentWork, check_picklable, lent
 from scenarios.api.results import Flight, Run
 from scenarios.api.scenario import Given, Scenario, load, sweeps_nu
@@ -19,6 +20,9 @@ if TYPE_CHECKING:
     from scenarios.engine.runner import Progress, RunResult
     from scenarios.engine.task import Work
     from scenarios.studies.flight_study import FlightStudy
+
+_LOOKED_THROUGH = 1000
+"""Most flights of a study among which the name that was meant is looked for."""
 
 
 def fly(
@@ -57,7 +61,7 @@ def fly(
         name = flight_id or _only_flight(study, loaded)
         single = SingleFlight.of(study, name)
         if single is None:
-            raise InputError(f"'{loaded.name}' has no flight '{name}'; its flights are {_names(study)}")
+            raise InputError(f"'{loaded.name}' has no flight '{name}'; its flights are {_names(study)}{_meant(name, study)}")
         result = fly_study(single, directory, executor_factory=InProcessExecutor, resume=False, progress=show)
         return _finished(result, keeping).flights[name]
 
@@ -138,6 +142,12 @@ def _names(study: "FlightStudy") -> str:
     """Return the names of the first and the last flight, comparisons apart."""
     first, *_, last = [(experiment, number) for experiment in study.experiments.values() for number in (0, experiment.counted - 1)]
     return " to ".join(dict.fromkeys(experiment.named(number)[0] for experiment, number in (first, last)))
+
+
+def _meant(name: str, study: "FlightStudy") -> str:
+    """Return the name of the flight that was meant, of so few that they are looked through at once."""
+    experiments = [experiment for experiment in study.experiments.values() if experiment.flights <= _LOOKED_THROUGH]
+    return did_you_mean(name, (experiment.named(number)[0] for experiment in experiments for number in range(experiment.flights)))
 
 
 Keeping = Callable[[object], None]

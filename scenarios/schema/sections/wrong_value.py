@@ -35,6 +35,8 @@ _IN_UNITS = {
 _PATTERN = re.compile(r"\^\[(.*)\]\+\$")
 """Of texts that consist of some letters alone."""
 
+_LETTERS = {"A-Z": "capitals", "a-z": "small letters", "0-9": "digits"}
+
 _OF_KEY = "unit of the key"
 """Unit of what is sampled of any key."""
 
@@ -64,11 +66,7 @@ def must_be(error: Mapping[str, Any], *, key: str, unit: str = "", default: obje
         return "it must be a whole number"
     if kind == "string_pattern_mismatch":
         letters = _PATTERN.fullmatch(error["ctx"]["pattern"])
-        return (
-            f"it must be made of the letters {letters[1]} alone, of one at least"
-            if letters
-            else f"it must match {error['ctx']['pattern']}"
-        )
+        return f"it must be made of {_letters(letters[1])} alone" if letters else f"it must match {error['ctx']['pattern']}"
     if kind == "too_long":
         return f"it must have {error['ctx']['max_length']} values at most, and has {error['ctx']['actual_length'] or 'more'}"
     if kind not in _LIMITS:
@@ -81,6 +79,14 @@ def must_be(error: Mapping[str, Any], *, key: str, unit: str = "", default: obje
     return (
         f"it must be {words} {number}{f' {unit}' if unit else ''}{f': a fraction, e.g. {value / _PERCENT:g}' if fraction else ''}"
     )
+
+
+def _letters(pattern: str) -> str:
+    """Return the letters of a pattern in words, as "small letters, digits and _"."""
+    words = [word for letters, word in _LETTERS.items() if letters in pattern]
+    signs = re.sub("|".join(_LETTERS), "", pattern).replace("\\", "")
+    *others, last = [*words, *signs]
+    return f"{', '.join(others)} and {last}"
 
 
 def _example(value: str, unit: str) -> str | None:

@@ -140,8 +140,8 @@ def test_nothing_is_left_on_disk_nor_printed(capfd, monkeypatch, tmp_path):
     directory = flown.run.directory
     assert directory.parent == tmp_path
     assert flown.history is not None
-    with pytest.raises(InputError):
-        fly(SHORT, flight_id="nu_0.77")
+    with pytest.raises(InputError, match=r"did you mean 'nu_0\.50'"):
+        fly(SHORT, flight_id="nu_0.5")
     assert list(tmp_path.iterdir()) == [directory]
     del flown
     gc.collect()

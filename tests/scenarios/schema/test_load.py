@@ -245,7 +245,7 @@ def test_a_number_or_truth_value_in_the_place_of_text_is_refused_in_words(key, v
     [
         ("start.distance_m=[1,2,3]", "start.distance_m is [1, 2, 3]; it must have 2 values at most, and has 3"),
         ('draws=[{key="wind.speed_mps",normal=[1,-5]}]', "draws.0.normal.1 is -5; it must be above 0"),
-        ('cases=[{name="My case"}]', "cases.0.name is 'My case'; it must be made of the letters a-z0-9_ alone, of one at least"),
+        ('cases=[{name="My case"}]', "cases.0.name is 'My case'; it must be made of small letters, digits and _ alone"),
     ],
 )
 def test_what_a_value_must_be_is_said_in_words_and_in_no_unit_that_is_none(override, words):
