@@ -14,7 +14,7 @@ from reports.flights.criteria import MEASURED, Criterion, counted, criteria_of
 from reports.flights.first_page import simulated
 from reports.flights.names import told_name
 from reports.flights.trials.crossing_gaps import gap_lines
-from reports.flights.trials.failures import failure_lines, tracking_lines
+from reports.flights.trials.failures import failure_lines, noteworthy, tracking_lines
 from reports.measurement.flights import sulphur_above, sulphur_below, sulphur_cards, sulphur_headline
 from reports.monte_carlo.subset import plain_bound_in_words, subset_headline
 from reports.run.columns import (
@@ -71,7 +71,7 @@ def flight_verdict(run: RunData, trials: list[Trial]) -> Verdict:
             *(line for trial in trials for line in failure_lines(trial)),
             *(line for trial in trials for line in tracking_lines(trial, only=len(trials) == 1)),
             *(line for trial in trials for line in gap_lines(trial, only=len(trials) == 1)),
-            *_noteworthy(flown),
+            *noteworthy(flown),
         ],
         figures=[*sulphur_cards(run), *_bound_figure(run, trials), *_figures(trials, flown, planned)],
     )
@@ -181,21 +181,6 @@ def _closest(trials: list[Trial], beside: pd.DataFrame) -> str:
 def _nearest(beside: pd.DataFrame) -> "pd.Series[Any]":
     """Return the row of the flight that stayed the least off its keep-out area."""
     return beside.iloc[int(np.argmin(clearance(beside)))]
-
-
-def _noteworthy(flown: pd.DataFrame) -> list[str]:
-    """Return what a reader has to know of the flights, whether or not a criterion asks for it."""
-    lines = []
-    unable = column(flown, "guard_lost_s")
-    if without := count(unable > 0.0):
-        lines.append(
-            f"In {without:,} of {len(flown):,} flights the guard could not hold its own radius, for up to"
-            f" {np.nanmax(unable):.1f} s."
-        )
-    if unflown := count(column(flown, "manoeuvres_unflown") > 0.0):
-        flights = f"{unflown:,} flight{'s' * (unflown > 1)}"
-        lines.append(f"In {flights} a manoeuvre of the vessel begins after the end of the flight, and was never flown.")
-    return lines
 
 
 def _bound_figure(run: RunData, trials: list[Trial]) -> list[Card]:

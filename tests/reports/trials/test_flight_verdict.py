@@ -80,6 +80,12 @@ def test_a_mission_that_was_not_completed_is_not_met_and_said(run):
     assert report.verdict.failures == ["steady_00000: incomplete; flew 1 of 3 crossings"]
 
 
+def test_faults_that_began_are_named_on_page_1(run):
+    report = content(with_values(with_values(run, 0, fault="sniffer_dead", fault_time_s=20.0), 1, fault="engine", fault_time_s=1e9))
+    # The other one begins after the end of its flight.
+    assert report.verdict.failures == ["In 1 of 4 flights a fault began, as the scenario has it: sniffer dead, at 20 s."]
+
+
 NOT_FLOWN = {
     "outcome": "infeasible", "message": "too fast a vessel", "criteria_met": False, "kept_out": False,
     "duration_s": float("nan"), "min_distance_m": float("nan"), "tracking_error_rms_m": float("nan"),
