@@ -10,7 +10,7 @@ from common.intervals import percent
 from reports.document.blocks import Card, Verdict
 from reports.document.tables import minus, span
 from reports.flights.bounds import counted_as_violations, sampled, violation_bound
-from reports.flights.criteria import MEASURED, Criterion, counted, criteria_of
+from reports.flights.criteria import MEASURED, Criterion, counted, criteria_of, switched_off
 from reports.flights.first_page import simulated
 from reports.flights.names import told_name
 from reports.flights.trials.crossing_gaps import gap_lines
@@ -215,6 +215,7 @@ def _figures(trials: list[Trial], flown: pd.DataFrame, planned: int) -> list[Car
         *([Card("Flights that kept out", f"{kept:,} of {len(beside):,}", "all", kept == len(beside))] if len(beside) else []),
         Card("Aircraft lost", f"{gone:,}", *(allowed or ("0", gone == 0))),
         *([Card("Plume crossings after settling", f"{crossings:,}")] if crossings else []),
+        *(Card(name, worst) for name, worst in switched_off(trials)),
         *_tracking(flown),
         Card(_COMMAND, "none") if command is None else Card(_COMMAND, f"{command:.3f}", "≤ 1", command <= 1.0 + ROUNDING),
     ]

@@ -4,6 +4,7 @@ import json
 import re
 from dataclasses import replace
 
+import numpy as np
 import pandas as pd
 import pytest
 from report_parts import blocks_of
@@ -11,6 +12,7 @@ from trial_runs import rows_of, with_criterion, with_values
 
 from reports.document.blocks import Table
 from reports.registry import content
+from reports.run.columns import interval_error
 
 pytestmark = pytest.mark.usefixtures("without_single_flights")
 
@@ -84,6 +86,13 @@ def test_faults_that_began_are_named_on_page_1(run):
     report = content(with_values(with_values(run, 0, fault="sniffer_dead", fault_time_s=20.0), 1, fault="engine", fault_time_s=1e9))
     # The other one begins after the end of its flight.
     assert report.verdict.failures == ["In 1 of 4 flights a fault began, as the scenario has it: sniffer dead, at 20 s."]
+
+
+def test_a_figure_whose_criterion_is_switched_off_keeps_its_row_with_a_dash_for_the_limit(run):
+    off = with_criterion(with_criterion(run, "steady", "crossing_interval_error", False), "turns", "crossing_interval_error", False)
+    (figure,) = [card for card in content(off).verdict.figures if card.name.startswith("Mean crossing interval off")]
+    worst = np.nanmax(np.abs(interval_error(run.summary)))
+    assert (figure.value, figure.required, figure.result) == (f"{100.0 * worst:.3g} %", "–", "–")
 
 
 NOT_FLOWN = {
