@@ -93,8 +93,13 @@ def _headline(run: RunData, trials: list[Trial], flown: pd.DataFrame, planned: i
     }
     others = [f"{number_of:,} {what}" for what, number_of in counts.items() if number_of]
     if np.any(lost(rows) & ~passed(rows)):
-        return f"{others[0].capitalize()}, of {planned:,} flights{''.join(f', {other}' for other in others[1:])}. {kept}"
-    return f"{kept}; of {planned:,}, {', '.join(others)}" if others else f"{kept}; every flight met its criteria"
+        of = f"{planned:,} flight{'s' * (planned != 1)}"
+        return f"{others[0].capitalize()}, of {of}{''.join(f', {other}' for other in others[1:])}. {kept}"
+    return (
+        f"{kept}; of {planned:,}, {', '.join(others)}"
+        if others
+        else f"{kept}; {'it' if planned == 1 else 'every flight'} met its criteria"
+    )
 
 
 def _keeping_out(run: RunData, trials: list[Trial], flown: pd.DataFrame) -> str:

@@ -80,8 +80,7 @@ def noteworthy(flown: pd.DataFrame) -> list[str]:
     unable = column(flown, "guard_lost_s")
     if without := count(unable > 0.0):
         lines.append(
-            f"In {without:,} of {len(flown):,} flights the guard could not hold its own radius, for up to"
-            f" {np.nanmax(unable):.1f} s."
+            f"{_in_flights(without, len(flown))} the guard could not hold its own radius, for up to {np.nanmax(unable):.1f} s."
         )
     if unflown := count(column(flown, "manoeuvres_unflown") > 0.0):
         flights = f"{unflown:,} flight{'s' * (unflown > 1)}"
@@ -89,10 +88,13 @@ def noteworthy(flown: pd.DataFrame) -> list[str]:
     begun = flown[column(flown, "fault_time_s") <= column(flown, "duration_s")]
     if len(begun):
         kinds, times = begun["fault"].map(fault_name), span(column(begun, "fault_time_s"), "{:.0f}")
-        which = "A" if len(flown) == 1 else f"In {len(begun):,} of {len(flown):,} flights a"
         kind = kinds.iloc[0] if kinds.nunique() == 1 else counted(kinds)
-        lines.append(f"{which} fault began, as the scenario has it: {kind}, at {times} s.")
+        lines.append(f"{_in_flights(len(begun), len(flown))} a fault began, as the scenario has it: {kind}, at {times} s.")
     return lines
+
+
+def _in_flights(some: int, flown: int) -> str:
+    return "In the flight" if flown == 1 else f"In {some:,} of {flown:,} flights"
 
 
 def tracking_lines(trial: Trial, *, only: bool = True) -> list[str]:

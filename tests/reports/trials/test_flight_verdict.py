@@ -95,6 +95,15 @@ def test_a_figure_whose_criterion_is_switched_off_keeps_its_row_with_a_dash_for_
     assert (figure.value, figure.required, figure.result) == (f"{100.0 * worst:.3g} %", "–", "–")
 
 
+def test_of_a_single_flight_the_words_are_of_one(run):
+    manifest = run.manifest | {"flights_planned": 1, "trials": {"steady": run.manifest["trials"]["steady"]}}
+    alone = replace(run, manifest=manifest, summary=run.summary.iloc[:1].copy())
+    assert content(alone).verdict.headline.endswith("; it met its criteria")
+    lost = content(with_values(alone, 0, fault="engine", fault_time_s=20.0, **LOST)).verdict
+    assert lost.headline.startswith("1 lost the aircraft, of 1 flight. ")
+    assert lost.failures[-1] == "In the flight a fault began, as the scenario has it: engine, at 20 s."
+
+
 NOT_FLOWN = {
     "outcome": "infeasible", "message": "too fast a vessel", "criteria_met": False, "kept_out": False,
     "duration_s": float("nan"), "min_distance_m": float("nan"), "tracking_error_rms_m": float("nan"),
