@@ -64,17 +64,25 @@ def content(run: RunData, settings: Mapping[str, str] | None = None) -> Content:
     shown = [_without(found.picture, section) for section in found.sections]
     sections = [*missing_sections(run), figures, *shown, provenance_section(run, head)]
     picture, sections = numbered(found.picture, [section for section in sections if section.blocks])
+    changes = [change for change in run.manifest["overrides"] if not change.startswith("report.")]
     return Content(
         title=title(run, settings or {}),
         letterhead=head,
-        description=run.manifest["config"]["description"],
-        changes=", ".join(without_folders(change) for change in run.manifest["overrides"] if not change.startswith("report.")),
+        description=_description(run.manifest["config"]["description"], changes),
+        changes=", ".join(map(without_folders, changes)),
         flown=found.flown,
         verdict=found.verdict,
         picture=picture,
         sections=sections,
         facts=found.facts,
     )
+
+
+def _description(words: str, changes: Sequence[str]) -> str:
+    """Return the description of a run's scenario; of one that was changed, that it is of what was there before."""
+    if not words or not changes or any(change.startswith("description=") for change in changes):
+        return words
+    return f"As the scenario describes it, before the changes below: {words}"
 
 
 def _without(picture: Chart | None, section: Section) -> Section:

@@ -90,7 +90,7 @@ def _chart(pairs: Pairs, place: int, why: str) -> Chart | None:
     return Chart(
         name=f"changed{pairs.other.letter}",
         caption=f"The flight that differs most, {pairs.names[place]}: {why}.{floor_words(flight.history for flight in flown)}"
-        + (f" {ship_words(about)} Ship, plume, wind and north are as in {pairs.first.letter}." if about else ""),
+        + (f" {ship_words(about)} Ship, filled area, plume, wind and north are as in {pairs.first.letter}." if about else ""),
         panels=[in_kilometres(panel) for panel in (*panels, _errors(flown))],
         columns=2,
         panel_height=0.42,
@@ -117,6 +117,11 @@ class _Flight:
         """Return the configuration of the flight itself."""
         return flight_config(self.run.data, self.row)
 
+    @property
+    def radius(self) -> float:
+        """Return r_min [m]."""
+        return float(self.row["keepout_radius_m"])
+
     def curve(self, x: Array, y: Array) -> Line:
         return Line(x=x, y=y, label=self.run.title, colour=self.colour)
 
@@ -127,9 +132,9 @@ class _Flight:
 def _whole(flown: list[_Flight], about: Surroundings) -> Panel:
     """Return both tracks about the ship of the first flight; where the other has another keep-out area, that as well."""
     lines = [flight.curve(*about_the_plume(flight.history)) for flight in flown]
-    if (other := float(flown[1].row["keepout_radius_m"])) != about.radius:
-        x, y = circle(other)
-        lines.insert(0, Line(x=x, y=y, label=f"keep-out area of {flown[1].run.letter}", colour=Meaning.LIMIT, style="thin"))
+    if (other := flown[1]).radius != about.radius:
+        x, y = circle(other.radius)
+        lines.insert(0, Line(x=x, y=y, label=f"r_min of {other.run.letter}", colour=other.colour, style="dash"))
     return ship_panel(about, lines, title="Whole flight", aspect=_ASPECT)
 
 
@@ -150,21 +155,24 @@ def _over_the_ground(flown: list[_Flight]) -> Panel:
 
 
 def _distances(flown: list[_Flight]) -> Panel:
-    radius = max(float(flight.row["keepout_radius_m"]) for flight in flown)
+    radii = [flight.radius for flight in flown]
     distances = [keepout_distance(flight.history, flight.config) for flight in flown]
     nearest = min(float(np.nanmin(distance)) for distance in distances)
     late = max(float(np.nanmax(distance[len(distance) // 2 :])) for distance in distances)
     end = max(float(flight.history["time_s"].iloc[-1]) for flight in flown)
+    limits: dict[float, tuple[str, str]] = {radii[0]: ("keep-out area, r_min", Meaning.LIMIT)}
+    if radii[0] != radii[1]:
+        limits = {flight.radius: (f"r_min of {flight.run.letter}", flight.colour) for flight in flown}
     levels = [
-        Line(x=np.array([0.0, end]), y=np.array([level, level]), label="keep-out area, r_min", colour=Meaning.LIMIT, style="dash")
-        for level in dict.fromkeys(float(flight.row["keepout_radius_m"]) for flight in flown)
+        Line(x=np.array([0.0, end]), y=np.array([level, level]), label=label, colour=colour, style="dash")
+        for level, (label, colour) in limits.items()
     ]
     return Panel(
         x_label="Time [s]",
         y_label="Distance [m]",
         title="Distance from the keep-out area’s centre",
         lines=[*levels, *(flight.over_time(distance) for flight, distance in zip(flown, distances, strict=True))],
-        y_range=(min(0.95 * radius, nearest - 2.0), max(_FAR * radius, 1.1 * late)),
+        y_range=(min(0.95 * min(radii), nearest - 2.0), max(_FAR * max(radii), 1.1 * late)),
     )
 
 

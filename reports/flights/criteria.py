@@ -9,7 +9,7 @@ import numpy as np
 import pandas as pd
 
 from reports.document.tables import limit, parameter_value, span
-from reports.run.columns import Array, Mask, column, completed, count, interval_error, was_flown
+from reports.run.columns import Array, Mask, column, completed, count, interval_error, largest, was_flown
 from reports.run.trials import Trial
 
 
@@ -115,6 +115,21 @@ def criteria_of(trial: Trial) -> list[Criterion]:
     others = {"required", "settles", *(() if trial.criteria.get("settles", True) else _AFTER_SETTLING)}
     others |= set(_BESIDE_VESSEL if _circles(trial) else ())
     return [_mission(trial), *(_criterion(trial, key, value) for key, value in listed.items() if key not in others)]
+
+
+def switched_off(trials: Sequence[Trial]) -> list[tuple[str, str]]:
+    """Return name and worst value of figures that criteria limit by default, and no criterion of these trials.
+
+    Without the tracking error, which is a figure of its own whether or not it is limited.
+    """
+    judged = {"tracking_error_rms_m", *(criterion.key for trial in trials for criterion in criteria_of(trial))}
+    by_default = {str(of["key"]) for trial in trials for of in trial.parameters() if of.get("default")}
+    figures = []
+    for key, measure in _MEASURES.items():
+        worst = largest(np.concatenate([measure.values(trial.rows) for trial in trials]))
+        if key not in judged and f"criteria.{key}" in by_default and worst is not None:
+            figures.append((f"{measure.what}, worst", f"{measure.scale * worst:.3g} {measure.unit}"))
+    return figures
 
 
 def _criterion(trial: Trial, key: str, value: Any) -> Criterion:

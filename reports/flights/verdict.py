@@ -10,11 +10,11 @@ from common.intervals import percent
 from reports.document.blocks import Card, Verdict
 from reports.document.tables import minus, span
 from reports.flights.bounds import counted_as_violations, sampled, violation_bound
-from reports.flights.criteria import MEASURED, Criterion, counted, criteria_of
+from reports.flights.criteria import MEASURED, Criterion, counted, criteria_of, switched_off
 from reports.flights.first_page import simulated
 from reports.flights.names import told_name
 from reports.flights.trials.crossing_gaps import gap_lines
-from reports.flights.trials.failures import failure_lines, tracking_lines
+from reports.flights.trials.failures import failure_lines, noteworthy, tracking_lines
 from reports.measurement.flights import sulphur_above, sulphur_below, sulphur_cards, sulphur_headline
 from reports.monte_carlo.subset import plain_bound_in_words, subset_headline
 from reports.run.columns import (
@@ -71,7 +71,7 @@ def flight_verdict(run: RunData, trials: list[Trial]) -> Verdict:
             *(line for trial in trials for line in failure_lines(trial)),
             *(line for trial in trials for line in tracking_lines(trial, only=len(trials) == 1)),
             *(line for trial in trials for line in gap_lines(trial, only=len(trials) == 1)),
-            *_noteworthy(flown),
+            *noteworthy(flown),
         ],
         figures=[*sulphur_cards(run), *_bound_figure(run, trials), *_figures(trials, flown, planned)],
     )
@@ -93,8 +93,13 @@ def _headline(run: RunData, trials: list[Trial], flown: pd.DataFrame, planned: i
     }
     others = [f"{number_of:,} {what}" for what, number_of in counts.items() if number_of]
     if np.any(lost(rows) & ~passed(rows)):
-        return f"{others[0].capitalize()}, of {planned:,} flights{''.join(f', {other}' for other in others[1:])}. {kept}"
-    return f"{kept}; of {planned:,}, {', '.join(others)}" if others else f"{kept}; every flight met its criteria"
+        of = f"{planned:,} flight{'s' * (planned != 1)}"
+        return f"{others[0].capitalize()}, of {of}{''.join(f', {other}' for other in others[1:])}. {kept}"
+    return (
+        f"{kept}; of {planned:,}, {', '.join(others)}"
+        if others
+        else f"{kept}; {'it' if planned == 1 else 'every flight'} met its criteria"
+    )
 
 
 def _keeping_out(run: RunData, trials: list[Trial], flown: pd.DataFrame) -> str:
@@ -183,21 +188,6 @@ def _nearest(beside: pd.DataFrame) -> "pd.Series[Any]":
     return beside.iloc[int(np.argmin(clearance(beside)))]
 
 
-def _noteworthy(flown: pd.DataFrame) -> list[str]:
-    """Return what a reader has to know of the flights, whether or not a criterion asks for it."""
-    lines = []
-    unable = column(flown, "guard_lost_s")
-    if without := count(unable > 0.0):
-        lines.append(
-            f"In {without:,} of {len(flown):,} flights the guard could not hold its own radius, for up to"
-            f" {np.nanmax(unable):.1f} s."
-        )
-    if unflown := count(column(flown, "manoeuvres_unflown") > 0.0):
-        flights = f"{unflown:,} flight{'s' * (unflown > 1)}"
-        lines.append(f"In {flights} a manoeuvre of the vessel begins after the end of the flight, and was never flown.")
-    return lines
-
-
 def _bound_figure(run: RunData, trials: list[Trial]) -> list[Card]:
     bound = violation_bound(run, trials)
     if bound is None:
@@ -230,6 +220,7 @@ def _figures(trials: list[Trial], flown: pd.DataFrame, planned: int) -> list[Car
         *([Card("Flights that kept out", f"{kept:,} of {len(beside):,}", "all", kept == len(beside))] if len(beside) else []),
         Card("Aircraft lost", f"{gone:,}", *(allowed or ("0", gone == 0))),
         *([Card("Plume crossings after settling", f"{crossings:,}")] if crossings else []),
+        *(Card(name, worst) for name, worst in switched_off(trials)),
         *_tracking(flown),
         Card(_COMMAND, "none") if command is None else Card(_COMMAND, f"{command:.3f}", "≤ 1", command <= 1.0 + ROUNDING),
     ]

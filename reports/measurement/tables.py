@@ -79,7 +79,7 @@ def record_table(record: Record) -> Table:
     found, figures = record["estimate"], record["estimate"]["figures"]
     t90 = f"{number(found['so2_t90_s'], '{:.1f}')} ± {number(found['so2_t90_sd_s'], '{:.1f} s')} (1σ)"
     delay = f"{number(found['delay_s'], '{:.2f}')} ± {number(found['delay_sd_s'], '{:.2f} s')} (1σ)"
-    dose, agreement = number(figures["dose_ppm_s"], "{:.0f} ppm s"), number(found["agreement"], "{:.2f}")
+    dose, agreement = number(figures["dose_ppm_s"], "{:.0f} ppm s"), number(found["agreement"], "{:.2g}")
     gaps = Gaps(**record["gaps"])
     rows = [
         ["Missing readings", gaps.missing_words],

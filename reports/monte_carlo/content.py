@@ -9,6 +9,7 @@ from reports.monte_carlo.names import documented_units
 from reports.monte_carlo.spread_charts import spread_charts
 from reports.monte_carlo.subset import subset_sections
 from reports.monte_carlo.tables import ending_table, left_out_rows, quantile_table, violation_table
+from reports.run.columns import radii_differ
 from reports.run.run_data import RunData
 from reports.run.trials import measured_from, shape_words
 
@@ -65,14 +66,15 @@ def bound_in_words(statistics: dict[str, Any]) -> str:
 
 
 def _spread(run: RunData, statistics: dict[str, Any]) -> list[Block]:
-    where = measured_from(shape_words(run.summary) or "sphere")
+    several = radii_differ(run.summary)
+    where = "beyond each flight's own r_min" if several else measured_from(shape_words(run.summary) or "sphere")
     text = (
         f"Quantiles of the flights' figures, each with an interval in brackets that holds that of all such flights with"
         f" {percent(statistics['interval_confidence'])} confidence, whatever the distribution (from order statistics); a dash where"
         " there are too few flights for that side. Keep-out figures count from a flight's first second, the others from settling."
         f" Distances are {where}."
     )
-    return [Text(text), quantile_table(statistics), *spread_charts(run, statistics)]
+    return [Text(text), quantile_table(statistics, several_radii=several), *spread_charts(run, statistics)]
 
 
 def _drivers(run: RunData, statistics: dict[str, Any]) -> list[Block]:

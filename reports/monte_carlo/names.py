@@ -53,10 +53,14 @@ FIGURES = {
     "min_distance_m": Figure(name="Closest approach", unit="m", digits=1),
     "crossing_interval_error": Figure(name="Mean crossing interval off π/ω₀", unit="%", digits=2, scale=100.0),
     "crossing_distance_min_m": Figure(name="Nearest crossing", unit="m", digits=1),
+    "crossing_clearance_m": Figure(name="Nearest crossing, beyond r_min", unit="m", digits=1),
     "tracking_error_rms_m": Figure(name="Tracking error, rms after settling", unit="m", digits=2),
     "settling_time_s": Figure(name="Settling time", unit="s", digits=1, missing="not settled"),
 }
 """By the keys of ``statistics.json``, in the order they are shown."""
+
+FROM_THE_CENTRE = ("min_distance_m", "crossing_distance_min_m")
+"""Figures that say little of flights with different r_min: those beyond it are shown in their place."""
 
 CLEARANCE = FIGURES["clearance_m"].label
 """Label of an axis of clearances."""

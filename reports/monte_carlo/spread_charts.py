@@ -3,6 +3,7 @@
 from typing import Any
 
 import numpy as np
+import pandas as pd
 
 from common.intervals import percent
 from reports.document.chart import Chart, Line, Panel
@@ -10,7 +11,7 @@ from reports.document.palette import Meaning
 from reports.document.panels import histogram
 from reports.document.tables import number
 from reports.monte_carlo.names import CLEARANCE, FIGURES
-from reports.run.columns import Array, clearance, column, interval_error
+from reports.run.columns import Array, clearance, column, interval_error, radii_differ
 from reports.run.run_data import RunData
 
 CURVE_POINTS = 400
@@ -43,7 +44,7 @@ def spread_charts(run: RunData, statistics: dict[str, Any]) -> list[Chart]:
     values = {
         "crossing_interval_error": interval_error(rows),
         "tracking_error_rms_m": column(rows, "tracking_error_rms_m"),
-        "crossing_distance_min_m": column(rows, "crossing_distance_min_m"),
+        **_crossing(rows),
         "settling_time_s": column(rows, "settling_time_s"),
     }
     counted = [_counted(key, figure, statistics["figures"][key]["quantiles"]) for key, figure in values.items()]
@@ -57,6 +58,14 @@ def spread_charts(run: RunData, statistics: dict[str, Any]) -> list[Chart]:
         panel_height=0.34,
     )
     return [kept, *([others] if panels else [])]
+
+
+def _crossing(rows: pd.DataFrame) -> dict[str, Array]:
+    """Return each flight's nearest crossing, beyond its own r_min where these differ."""
+    near = column(rows, "crossing_distance_min_m")
+    if radii_differ(rows):
+        return {"crossing_clearance_m": near - column(rows, "keepout_radius_m")}
+    return {"crossing_distance_min_m": near}
 
 
 def _within(values: Array, lowest: float = _SHOWN) -> Array:

@@ -6,7 +6,7 @@ from common.intervals import percent
 from common.run_layout import SUMMARY
 from reports.document.blocks import Table
 from reports.document.tables import pairs_table
-from reports.monte_carlo.names import FIGURES, Figure, input_name
+from reports.monte_carlo.names import FIGURES, FROM_THE_CENTRE, Figure, input_name
 
 Record = dict[str, Any]
 
@@ -62,9 +62,10 @@ def _flights(found: Record) -> str:
     return f"{found['flights']:,}: {', '.join(found['flight_ids'])}" + (f" and {more:,} more, in {SUMMARY}" if more else "")
 
 
-def quantile_table(statistics: Record) -> Table:
-    """Return quantiles of each figure, each with its interval."""
-    figures = {figure: statistics["figures"][key] for key, figure in FIGURES.items()}
+def quantile_table(statistics: Record, *, several_radii: bool) -> Table:
+    """Return quantiles of each figure, each with its interval; distances are beyond r_min where the flights have several."""
+    without = FROM_THE_CENTRE if several_radii else ("crossing_clearance_m",)
+    figures = {figure: statistics["figures"][key] for key, figure in FIGURES.items() if key not in without}
     every = sorted({quantile["probability"] for figure in figures.values() for quantile in figure["quantiles"]})
     rows = []
     for figure, found in figures.items():

@@ -70,7 +70,7 @@ _MEASURED = {
     "horizontal_distance_min_m": "closest approach measured horizontally",
     "end_distance_m": "distance at the end of the flight",
     "settling_time_s": "time from which it stayed within the settling band for one period",
-    "crossing_count": "crossings of the plume's axis seen from above, after settling, with smoke or without",
+    "crossing_count": "crossings of the straight axis along the apparent wind, seen from above, settled, with smoke or without",
     "crossing_interval_mean_s": "mean time between crossings",
     "crossing_interval_std_s": "standard deviation of the time between crossings",
     "crossing_distance_mean_m": "mean distance of the crossings from the funnel",

@@ -93,7 +93,7 @@ class Ending:
                 return f"{self._fault} at {self._end:.1f} s"
             case Outcome.AIRCRAFT_LOST:
                 what = "came down on the sea" if self._ditched else f"was still {self.mode} towards the sea"
-                return f"it {what} at {self._end:.1f} s, {self._crossings()}"
+                return f"it {what} at {self._end:.1f} s, {self._crossings()}{self._after_fault()}"
             case Outcome.NOT_SETTLED | Outcome.INCOMPLETE:
                 return self._shortfall()
         return ""
@@ -103,6 +103,11 @@ class Ending:
         if math.isnan(settling.at):
             return "before it had settled"
         return f"after {settling.crossings}{f' of {demanded}' if demanded else ''} crossings"
+
+    def _after_fault(self) -> str:
+        """Return which fault of the scenario had begun, or nothing."""
+        fault = self._plan.world.fault if self._plan.world else None
+        return f", after the fault '{fault.kind}' at {fault.begins:.1f} s" if fault and fault.begins <= self._end else ""
 
     def _shortfall(self) -> str:
         settling, plan, mode = self._settling, self._plan, self._guidance.mission.mode

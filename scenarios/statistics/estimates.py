@@ -98,7 +98,7 @@ def pessimistic_share(found: Violations, level: float, *, per_sample: int = 1) -
 def study_figures(rows: pd.DataFrame) -> dict[str, Array]:
     """Return the figures of each flight, shape (n,); not a number where a flight has no such figure.
 
-    Distances are in metres, and the clearance is measured from r_min; the error of the mean crossing interval is
+    Distances are in metres, and clearances are measured from r_min; the error of the mean crossing interval is
     relative to the predicted interval [-]; the settling time is in seconds, and a flight that never settled has none.
     """
 
@@ -110,6 +110,7 @@ def study_figures(rows: pd.DataFrame) -> dict[str, Array]:
         "clearance_m": column("min_distance_m") - column("keepout_radius_m"),
         "crossing_interval_error": column("crossing_interval_mean_s") / column("crossing_interval_predicted_s") - 1.0,
         "crossing_distance_min_m": column("crossing_distance_min_m"),
+        "crossing_clearance_m": column("crossing_distance_min_m") - column("keepout_radius_m"),
         "tracking_error_rms_m": column("tracking_error_rms_m"),
         "settling_time_s": column("settling_time_s"),
     }

@@ -184,7 +184,8 @@ class FlightCounts:
         """Return the exit status of a run that is done, and how many flights did what status 0 requires of each."""
         about = {"criteria": "met every criterion", "keep_out": "kept out"}
         kinds = [about[kind] for kind in about if self.required[kind]] or ["met every criterion"]
-        did = f"{self.passed} of {self.planned} flights {' or '.join(kinds)}, as required of each"
+        flights, each = ("flight", "it") if self.planned == 1 else ("flights", "each")
+        did = f"{self.passed} of {self.planned} {flights} {' or '.join(kinds)}, as required of {each}"
         if self.done < self.planned:
             return f"so far {did} for exit status 0"
         return f"exit status {int(self.passed != self.planned)}: {did}"

@@ -61,7 +61,8 @@ def test_the_samples_of_a_logged_flight_have_the_columns_that_are_said():
 def test_columns_stand_with_their_units():
     rows = set(columns_page().splitlines())
     assert "| `heading_rate_limit_rad_s` | rad/s | omega\\_max, to which commands are limited |" in rows
-    assert "| `crossing_count` |  | crossings of the plume's axis seen from above, after settling, with smoke or without |" in rows
+    counted = "crossings of the straight axis along the apparent wind, seen from above, settled, with smoke or without"
+    assert f"| `crossing_count` |  | {counted} |" in rows
 
 
 def test_every_command_and_every_option_is_on_its_page():

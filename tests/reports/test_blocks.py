@@ -136,6 +136,21 @@ def test_a_long_key_goes_on_over_the_next_line_and_is_copied_whole(tmp_path):
     assert key not in text
 
 
+def test_a_second_line_of_negative_figures_stands_below_the_first_in_print(tmp_path):
+    cell = "\N{MINUS SIGN}0.03\n(\N{MINUS SIGN}0.04 to \N{MINUS SIGN}0.02)"
+    write_pdf(a_report([Table(head=["Key", "Value"], rows=[["key", cell]], widths=[1.0, 1.0])]), tmp_path / "figures.pdf")
+    document = pypdfium2.PdfDocument(tmp_path / "figures.pdf")
+    heights = {}
+    for text in (page.get_textpage() for page in document):
+        for figure in ("0.03", "0.04", "0.02"):
+            if found := text.search(figure).get_next():
+                heights[figure] = text.get_charbox(found[0])[1]
+    document.close()
+    # Points up the page: the interval is on one line, below its quantile.
+    assert heights["0.04"] == pytest.approx(heights["0.02"], abs=0.5)
+    assert heights["0.03"] > heights["0.04"] + 3.0
+
+
 def test_long_keys_may_go_on_over_the_next_line_on_the_screen_and_short_ones_may_not(tmp_path):
     rows = [["guidance.heading_rate_max_rad_s", "ω_max & <b>, r_min"]]
     text = html_of([Table(head=["Key", "Value"], rows=rows, widths=[1.0, 1.0])], tmp_path)

@@ -1,4 +1,8 @@
-"""Flights that settled and then did not cross the plume for long, beside a vessel that still manoeuvred."""
+"""Flights that settled and then did not cross the plume for long, beside a vessel that still manoeuvred.
+
+What is counted is crossings of the straight axis along the apparent wind at the vessel. Smoke trails behind where she was, so of
+flights with smoke nothing is told.
+"""
 
 import math
 from typing import Any
@@ -48,7 +52,7 @@ def gap_words(gap: tuple[float, float]) -> str:
 
 def _gap(row: "pd.Series[Any]", crossings: Array) -> tuple[float, float] | None:
     settled, manoeuvred = (float(row.get(key, math.nan)) for key in ("settling_time_s", "manoeuvre_end_s"))
-    if not settled < manoeuvred:
+    if not settled < manoeuvred or math.isfinite(float(row.get("plume_axis_crossings", math.nan))):
         return None
     ends = np.array([settled, *crossings, *([] if row["mode_at_end"] in _LEFT else [float(row["duration_s"])])])
     lengths = np.where(ends[:-1] < manoeuvred, np.diff(ends), 0.0)

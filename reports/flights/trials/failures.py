@@ -1,4 +1,4 @@
-"""Which flights of a trial failed a criterion, were not flown, or tracked badly without failing, in lines for page 1."""
+"""Which flights failed a criterion, were not flown, or are to be noted without failing, in lines for page 1."""
 
 from collections.abc import Iterator
 from typing import Any
@@ -6,9 +6,9 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from reports.document.tables import ending, in_symbols, number
-from reports.flights.criteria import criteria_of
-from reports.flights.names import told_name
+from reports.document.tables import ending, in_symbols, number, span
+from reports.flights.criteria import counted, criteria_of
+from reports.flights.names import fault_name, told_name
 from reports.run.columns import Mask, column, count, largest, met, violated, was_flown
 from reports.run.trials import Trial
 
@@ -72,6 +72,29 @@ def _reason(row: "pd.Series[Any]") -> str:
     """Return why a flight failed a criterion; that it did not settle its message says already."""
     ended = "" if row["outcome"] == "not_settled" else str(row["outcome"]).replace("_", " ")
     return "; ".join(words for words in (ended, in_symbols(str(row["message"]))) if words)
+
+
+def noteworthy(flown: pd.DataFrame) -> list[str]:
+    """Return what a reader has to know of the flights, whether or not a criterion asks for it."""
+    lines = []
+    unable = column(flown, "guard_lost_s")
+    if without := count(unable > 0.0):
+        lines.append(
+            f"{_in_flights(without, len(flown))} the guard could not hold its own radius, for up to {np.nanmax(unable):.1f} s."
+        )
+    if unflown := count(column(flown, "manoeuvres_unflown") > 0.0):
+        flights = f"{unflown:,} flight{'s' * (unflown > 1)}"
+        lines.append(f"In {flights} a manoeuvre of the vessel begins after the end of the flight, and was never flown.")
+    begun = flown[column(flown, "fault_time_s") <= column(flown, "duration_s")]
+    if len(begun):
+        kinds, times = begun["fault"].map(fault_name), span(column(begun, "fault_time_s"), "{:.0f}")
+        kind = kinds.iloc[0] if kinds.nunique() == 1 else counted(kinds)
+        lines.append(f"{_in_flights(len(begun), len(flown))} a fault began, as the scenario has it: {kind}, at {times} s.")
+    return lines
+
+
+def _in_flights(some: int, flown: int) -> str:
+    return "In the flight" if flown == 1 else f"In {some:,} of {flown:,} flights"
 
 
 def tracking_lines(trial: Trial, *, only: bool = True) -> list[str]:

@@ -13,7 +13,20 @@ from reports.document.tables import ending, number, outcome, span
 from reports.flights.bounds import trial_bound
 from reports.flights.criteria import counted, criteria_of
 from reports.flights.names import fault_name, told_name
-from reports.run.columns import clearance, column, completed, count, kept_out, least, lost, met, total, violated, was_flown
+from reports.run.columns import (
+    clearance,
+    column,
+    completed,
+    count,
+    kept_out,
+    least,
+    lost,
+    met,
+    radii_differ,
+    total,
+    violated,
+    was_flown,
+)
 from reports.run.time_history import keepout_distance
 from reports.run.trials import Trial
 
@@ -67,6 +80,9 @@ def flight_table(
     caption : what the table shows
     flown_ratio : whether a column says the speed ratio that was flown, where that is not the one that was swept
     """
+    if columns is _FLIGHT_COLUMNS and radii_differ(rows):
+        rows = rows.assign(clearance_m=clearance(rows))
+        columns = (*columns[:2], ("beyond r_min [m]", "clearance_m", "{:+.1f}"), *columns[2:])
     if flown_ratio:
         rows = rows.assign(flown_ratio=rows["nu"].where(was_flown(rows)))
         columns = (("ν flown [-]", "flown_ratio", "{:.2f}"), *columns)

@@ -207,6 +207,17 @@ def test_several_runs_are_each_compared_with_the_first(first, larger, same):
     assert len({chart.name for chart in blocks_of(report, Chart)}) == len(blocks_of(report, Chart))
 
 
+def test_each_flight_has_its_own_limit_in_its_colour_and_within_the_panel_of_the_distance(report, runs):
+    panel = next(panel for panel in report.picture.panels if panel.title.startswith("Distance"))
+    flown = {line.label: line.colour for line in panel.lines}
+    # The keep-out areas of the two runs are 200 and 230 m.
+    for run, radius in zip(runs, (200.0, 230.0), strict=True):
+        (limit,) = [line for line in panel.lines if line.label == f"r_min of {run.letter}"]
+        assert set(limit.y) == {radius}
+        assert limit.colour == flown[run.title]
+        assert panel.y_range[0] < radius < panel.y_range[1]
+
+
 def test_flights_without_a_time_history_have_no_tracks(first, larger):
     runs = read_runs([first, larger])
     # Page 1 has the tracks of two runs.

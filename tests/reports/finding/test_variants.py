@@ -73,6 +73,12 @@ def test_a_plume_that_was_not_found_counts_against_the_share(trial):
     assert row[3:5] == ["50", "not found"]
 
 
+@pytest.mark.parametrize(("times", "median"), [([15.1, 34.8], "25"), ([9.0, math.nan], "not found"), ([math.nan] * 2, "not found")])
+def test_the_median_time_of_an_even_number_of_flights_is_the_mean_of_the_two_in_the_middle(trial, times, median):
+    variant = replace(variants_of(trial)[0], rows=ROWS.iloc[:2].assign(time_to_find_s=times))
+    assert search_table([variant]).rows[0][3] == median
+
+
 def test_flights_are_compared_with_those_of_the_same_case(trial):
     study, told = variants_of(trial)
     # Case 0: 0.02/0.02, case 1: 0.03/0.01; the third has no pair.

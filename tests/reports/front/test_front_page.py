@@ -256,3 +256,18 @@ def test_long_names_of_flights_stand_below_the_picture(run_path, monkeypatch):
         assert without.title == f"{what}: {distance}"
         assert f" {what}: {name}, the " in bare.caption
         assert bare.caption.count(f"{what}:") == 1
+
+
+@pytest.mark.parametrize(
+    ("overrides", "words"),
+    [
+        ([], "Flights for a test."),
+        (["report.author=N. N."], "Flights for a test."),
+        (["wind.speed_mps=3"], "As the scenario describes it, before the changes below: Flights for a test."),
+        (["description=Flights for a test.", "wind.speed_mps=3"], "Flights for a test."),
+    ],
+)
+def test_the_description_of_a_scenario_is_said_to_be_of_what_was_there_before_its_changes(run_path, overrides, words):
+    run = read_run(run_path)
+    report = content(replace(run, manifest=run.manifest | {"overrides": overrides}))
+    assert report.description == words

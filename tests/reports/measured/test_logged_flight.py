@@ -16,7 +16,7 @@ from reports.document.chart import Chart, Line, Panel
 from reports.errors import ReportError
 from reports.measurement.charts import over_time_chart, regression_chart
 from reports.measurement.data import errors
-from reports.measurement.tables import over_time_table
+from reports.measurement.tables import over_time_table, record_table
 from reports.measurement.verdict import measurement_verdict, probability
 from reports.registry import content
 from reports.render import matplotlib_charts, plotly_charts
@@ -145,6 +145,13 @@ def test_the_caption_has_the_factor_of_the_fuels_carbon(run_directory, record):
     assert "the sulphur content is 0.2322 times the slope" in regression_chart(samples, record).caption
     # In proportion to carbon: 0.2322 x 0.85/0.87.
     assert "the sulphur content is 0.2269 times the slope" in regression_chart(samples, record | {"carbon": 0.85}).caption
+
+
+@pytest.mark.parametrize(("agreement", "shown"), [(3.1e-8, "3.1e-08"), (0.374, "0.37")])
+def test_how_little_passes_agree_is_told_however_little_that_is(record, agreement, shown):
+    record["estimate"]["agreement"] = agreement
+    (passes,) = [value for name, value in record_table(record).rows if name == "Passes"]
+    assert passes.endswith(f"agreement p = {shown}")
 
 
 @pytest.mark.usefixtures("sketched")

@@ -119,6 +119,22 @@ def test_of_a_study_without_any_measurement_nothing_is_claimed():
     assert content(run).verdict.headline == "Nothing was flown: of 5, 5 failed"
 
 
+def test_distances_of_flights_with_several_keep_out_radii_are_beyond_their_own():
+    rows, inputs = study_rows(FLIGHTS)
+    rows["keepout_radius_m"] = np.where(np.arange(FLIGHTS) % 2, RADIUS, RADIUS - 50.0)
+    run = run_of(rows, inputs)
+    spread = next(section for section in monte_carlo_sections(run) if section.anchor == "spread")
+    assert "Distances are beyond each flight's own r_min." in spread.blocks[0].text
+    (table,) = (block for block in spread.blocks if isinstance(block, Table))
+    named = {row[0]: dict(zip(table.head, row, strict=True)) for row in table.rows}
+    assert {name for name in named if "Closest" in name or ("crossing" in name.split(",")[0] and "[m]" in name)} == {
+        "Nearest crossing, beyond r_min [m]"
+    }
+    median = np.median(rows["crossing_distance_min_m"] - rows["keepout_radius_m"])
+    assert named["Nearest crossing, beyond r_min [m]"][percent(0.5)].startswith(f"{median:.1f}\n")
+    assert any(panel.x_label == "Nearest crossing, beyond r_min [m]" for panel in charts_of(spread)["spread"].panels)
+
+
 def test_every_figure_has_its_quantiles_with_intervals_and_counts_who_has_none(run, sections):
     (table,) = (block for block in sections["spread"].blocks if isinstance(block, Table))
     rows = {row[0]: dict(zip(table.head, row, strict=True)) for row in table.rows}

@@ -48,11 +48,12 @@ def test_the_gap_of_a_flight_that_settled_before_the_last_manoeuvre_had_ended_is
         {"manoeuvre_end_s": 105.0},
         {"manoeuvre_end_s": math.nan},
         {"settling_time_s": math.nan},
+        {"plume_axis_crossings": 0.0},
         {"crossings": (100.0, 140.0, 180.0, 210.0)},
         {"crossings": (100.0, 110.0), "mode_at_end": "gliding"},
     ],
 )
-def test_there_is_none_without_a_manoeuvre_after_it_or_where_it_is_short_or_the_flight_has_left(run, change):
+def test_there_is_none_without_a_manoeuvre_after_it_with_smoke_or_where_it_is_short_or_the_flight_has_left(run, change):
     trial = turning(run, **change)
     assert crossing_gap(trial, trial.rows.iloc[0]) is None
     assert gap_lines(trial) == []

@@ -4,6 +4,7 @@ import json
 import re
 from dataclasses import replace
 
+import numpy as np
 import pandas as pd
 import pytest
 from report_parts import blocks_of
@@ -11,6 +12,7 @@ from trial_runs import rows_of, with_criterion, with_values
 
 from reports.document.blocks import Table
 from reports.registry import content
+from reports.run.columns import interval_error
 
 pytestmark = pytest.mark.usefixtures("without_single_flights")
 
@@ -78,6 +80,28 @@ def test_a_mission_that_was_not_completed_is_not_met_and_said(run):
     assert (report.verdict.holds, report.verdict.complete) == (True, False)
     assert report.verdict.headline.endswith("; of 4, 1 did not complete the mission")
     assert report.verdict.failures == ["steady_00000: incomplete; flew 1 of 3 crossings"]
+
+
+def test_faults_that_began_are_named_on_page_1(run):
+    report = content(with_values(with_values(run, 0, fault="sniffer_dead", fault_time_s=20.0), 1, fault="engine", fault_time_s=1e9))
+    # The other one begins after the end of its flight.
+    assert report.verdict.failures == ["In 1 of 4 flights a fault began, as the scenario has it: sniffer dead, at 20 s."]
+
+
+def test_a_figure_whose_criterion_is_switched_off_keeps_its_row_with_a_dash_for_the_limit(run):
+    off = with_criterion(with_criterion(run, "steady", "crossing_interval_error", False), "turns", "crossing_interval_error", False)
+    (figure,) = [card for card in content(off).verdict.figures if card.name.startswith("Mean crossing interval off")]
+    worst = np.nanmax(np.abs(interval_error(run.summary)))
+    assert (figure.value, figure.required, figure.result) == (f"{100.0 * worst:.3g} %", "–", "–")
+
+
+def test_of_a_single_flight_the_words_are_of_one(run):
+    manifest = run.manifest | {"flights_planned": 1, "trials": {"steady": run.manifest["trials"]["steady"]}}
+    alone = replace(run, manifest=manifest, summary=run.summary.iloc[:1].copy())
+    assert content(alone).verdict.headline.endswith("; it met its criteria")
+    lost = content(with_values(alone, 0, fault="engine", fault_time_s=20.0, **LOST)).verdict
+    assert lost.headline.startswith("1 lost the aircraft, of 1 flight. ")
+    assert lost.failures[-1] == "In the flight a fault began, as the scenario has it: engine, at 20 s."
 
 
 NOT_FLOWN = {

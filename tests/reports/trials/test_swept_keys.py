@@ -71,6 +71,10 @@ def test_page_1_tells_of_flights_with_different_radii_how_far_each_stayed_beyond
     assert Card("Closest approach, beyond the flight's own r_min", least, "≥ 0 m", met=True) in found.verdict.figures
     assert any(f"Closest: {least} beyond r_min" in panel.title for panel in found.picture.panels)
     assert "whose least distance beyond its own r_min is the median" in found.picture.caption
+    table = next(
+        table for section in found.sections for table in section.blocks if isinstance(table, Table) and "Outcome" in table.head
+    )
+    assert [row[table.head.index("beyond r_min [m]")] for row in table.rows] == [f"{value:+.1f}" for value in kept]
 
 
 def test_page_1_tells_of_flights_with_one_radius_how_close_they_came(windy):

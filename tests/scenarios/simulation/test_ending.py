@@ -10,6 +10,7 @@ from gnc.mission.mode import Mode
 from scenarios.simulation.ending import Ending
 from scenarios.simulation.judge import Enough
 from scenarios.simulation.outcome import Outcome
+from scenarios.world.faults import TimedFault
 
 AT_THE_MAST, ON_THE_WATER = (60.0,), (1.0,)
 
@@ -29,11 +30,11 @@ def ended(
     tracked=0.0,
     centre_error=math.inf,
     guarded=False,
+    fault_at=math.inf,
 ):
     """Return how a flight ended at 300 s."""
-    plan = SimpleNamespace(
-        crossings=asked, after_settling=after, duration_max=300.0, world=object() if vessel else None, settling_period=19.0
-    )
+    world = SimpleNamespace(fault=TimedFault(kind="engine", begins=fault_at, ends=math.inf)) if vessel else None
+    plan = SimpleNamespace(crossings=asked, after_settling=after, duration_max=300.0, world=world, settling_period=19.0)
     vehicle = SimpleNamespace(fault=lambda _: trouble)
     guidance = SimpleNamespace(monitor=SimpleNamespace(fault=fault), mission=SimpleNamespace(mode=mode))
     guidance.target = SimpleNamespace(north=0.0, east=0.0)
@@ -99,6 +100,11 @@ def ended(
         ),
         ({"mode": Mode.GLIDING, "flown": 0}, Outcome.AIRCRAFT_LOST, "it was still gliding towards the sea at 300.0 s"),
         ({"mode": Mode.TERMINATING, "settled": math.nan}, Outcome.AIRCRAFT_LOST, "before it had settled"),
+        (
+            {"mode": Mode.GLIDING, "settled": math.nan, "fault_at": 281.5},
+            Outcome.AIRCRAFT_LOST,
+            "it was still gliding towards the sea at 300.0 s, before it had settled, after the fault 'engine' at 281.5 s",
+        ),
         # A verdict is what such a flight is for, also where it has not settled for as long as is asked for.
         ({"enough": Enough.BELOW, "after": 400.0, "mode": Mode.DEPARTING}, Outcome.COMPLETED, ""),
         ({"enough": Enough.OUT_OF_REACH, "mode": Mode.DEPARTING}, Outcome.INCOMPLETE, "plume out of reach"),

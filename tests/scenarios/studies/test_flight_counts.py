@@ -54,7 +54,7 @@ def test_the_exit_status_is_about_every_criterion_unless_keeping_out_alone_is_re
     assert alone.exit_line() == "exit status 1: 2 of 4 flights kept out, as required of each"
     # The status is 0 where every flight did it, and none while flights are missing.
     met = [row for row in ROWS if row["criteria_met"]]
-    assert FlightCounts.of(met, planned=1).exit_line() == "exit status 0: 1 of 1 flights met every criterion, as required of each"
+    assert FlightCounts.of(met, planned=1).exit_line() == "exit status 0: 1 of 1 flight met every criterion, as required of it"
     missing = FlightCounts.of(met, planned=2).exit_line()
     assert missing == "so far 1 of 2 flights met every criterion, as required of each for exit status 0"
 
