@@ -18,6 +18,7 @@ from measurement.estimate.passes import SNR_LEAST, Pass, co2_excesses, find_pass
 from measurement.estimate.quality import judged_quality, late, noise_alone, quiet, stranger
 from measurement.estimate.record import Record, checked_record
 from measurement.estimate.result import Figures, FscEstimate, Method
+from measurement.estimate.sticking import sticking
 from measurement.estimate.verdict import LIMITS_PERCENT, interval, judged
 from measurement.gases import CARBON_FRACTION, UNITS, fsc_factor
 from measurement.sniffer.lag import Array
@@ -74,7 +75,7 @@ def estimate(
     """
     check_parameters(method, carbon, limits_percent)
     record = checked_record(readings, instrument)
-    unlikely = [problem for gas in _telling(record, instrument) for problem in quiet(record.scatter(gas), instrument.known(gas))]
+    unlikely = _unlikely(record, readings, instrument)
     noise = readings_noise(record, instrument)
     instrument = replace(
         instrument, channels=tuple(replace(channel, noise=noise.get(channel.gas, channel.noise)) for channel in instrument.channels)
@@ -88,10 +89,14 @@ def estimate(
     return _told(record, passes, ratio, method, carbon, tuple(limits_percent), [*problems, *ratio.problems])
 
 
-def _telling(record: Record, instrument: SnifferSpec) -> list[str]:
-    """Return SO2, and the gases of the record that its channel responds to."""
+def _unlikely(record: Record, readings: Readings, instrument: SnifferSpec) -> list[str]:
+    """Return what no living sensor reads, of CO2, SO2, and the gases of the record that the SO2 channel responds to."""
     so2 = instrument.known("so2")
-    return ["so2", *(gas for gas in used_gases(record) if so2.cross.get(gas, 0.0) or so2.cross_sd.get(gas, 0.0))]
+    telling = ["so2", *(gas for gas in used_gases(record) if so2.cross.get(gas, 0.0) or so2.cross_sd.get(gas, 0.0))]
+    problems = list(sticking(readings, instrument.known("co2")))
+    for channel in map(instrument.known, telling):
+        problems += sticking(readings, channel) or quiet(record.scatter(channel.gas), channel)
+    return problems
 
 
 def check_parameters(method: str, carbon: float, limits_percent: Sequence[float]) -> None:

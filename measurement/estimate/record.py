@@ -99,7 +99,7 @@ class Record:
 
     def scatter(self, gas: str) -> float:
         """Return the standard deviation of a gas's readings that they show themselves."""
-        return _scatter([segment[gas] for segment in self.values], self.resolution[gas])
+        return shown_scatter([segment[gas] for segment in self.values], self.resolution[gas])
 
     @property
     def duration(self) -> float:
@@ -150,7 +150,7 @@ def checked_record(readings: Readings, instrument: SnifferSpec) -> Record:
         parts.append({gas: np.interp(grid, time[segment], values[segment, GASES.index(gas)]) for gas in gases})
     if not times:
         raise MeasurementError(f"no {_SHORTEST} samples in a row have both SO2 and CO2; give a record with fewer gaps")
-    resolution = {gas: _resolution(values[:, GASES.index(gas)]) for gas in gases}
+    resolution = {gas: shown_step(values[:, GASES.index(gas)]) for gas in gases}
     return Record(step=step, times=tuple(times), values=tuple(parts), resolution=resolution, problems=problems)
 
 
@@ -203,7 +203,7 @@ def check_units(gas: str, values: Array) -> None:
         )
 
 
-def _resolution(values: Array) -> float:
+def shown_step(values: Array) -> float:
     """Return the smallest change from one known reading to the next; what is rounding of floating-point numbers is no change."""
     known = values[np.isfinite(values)]
     changes = np.abs(np.diff(known))
@@ -213,7 +213,7 @@ def _resolution(values: Array) -> float:
 
 def _cut(values: Array) -> int:
     """Return how many readings are cut off at the largest: noise and plumes end in fewer and fewer, and not in a heap."""
-    known, step = values[np.isfinite(values)], _resolution(values)
+    known, step = values[np.isfinite(values)], shown_step(values)
     if not step:
         return 0
     below = np.round((known.max() - known) / step)
@@ -221,7 +221,7 @@ def _cut(values: Array) -> int:
     return heap if heap >= _CUT_LEAST and heap > _CUT_OVER * max(near) else 0
 
 
-def _scatter(segments: Sequence[Array], step: float) -> float:
+def shown_scatter(segments: Sequence[Array], step: float) -> float:
     """Return the standard deviation of readings in these steps that their second differences show.
 
     It is half the step at least: so much has a reading that moves between two neighbouring marks.
@@ -250,7 +250,7 @@ def lowest_reading(gas: str, values: Array, instrument: SnifferSpec) -> float:
     channel, column = instrument.known(gas), values[:, GASES.index(gas)]
     noise = channel.noise
     if math.isnan(noise):
-        noise = _scatter([column[np.isfinite(column)]], _resolution(column))
+        noise = shown_scatter([column[np.isfinite(column)]], shown_step(column))
     explained = _NEGATIVE_SIGMA * math.hypot(noise, channel.zero_sd, 1.0) - min(channel.zero, 0.0)
     return -explained - _cross_floor(channel.cross, values)
 
