@@ -15,10 +15,10 @@ from measurement.estimate.fit.groups import grouped
 from measurement.estimate.fit.regression import fitted, regress
 from measurement.estimate.fit.signals import Signals, make_signals, used_gases
 from measurement.estimate.passes import SNR_LEAST, Pass, co2_excesses, find_passes, readings_noise
-from measurement.estimate.quality import judged_quality, late, noise_alone, quiet, stranger
+from measurement.estimate.plausible import unlikely
+from measurement.estimate.quality import judged_quality, late, noise_alone, stranger
 from measurement.estimate.record import Record, checked_record
 from measurement.estimate.result import Figures, FscEstimate, Method
-from measurement.estimate.sticking import sticking
 from measurement.estimate.verdict import LIMITS_PERCENT, interval, judged
 from measurement.gases import CARBON_FRACTION, UNITS, fsc_factor
 from measurement.sniffer.lag import Array
@@ -75,28 +75,18 @@ def estimate(
     """
     check_parameters(method, carbon, limits_percent)
     record = checked_record(readings, instrument)
-    unlikely = _unlikely(record, readings, instrument)
+    strange = unlikely(record, readings, instrument)
     noise = readings_noise(record, instrument)
     instrument = replace(
         instrument, channels=tuple(replace(channel, noise=noise.get(channel.gas, channel.noise)) for channel in instrument.channels)
     )
     passes = find_passes(record, instrument.known("co2"))
-    problems = [*record.problems, *unlikely, *_too_little(record, instrument, passes, noise["co2"])]
+    problems = [*record.problems, *strange, *_too_little(record, instrument, passes, noise["co2"])]
     if not passes:
         ratio = _nothing(instrument)
     else:
         ratio = _regressed(record, instrument) if method == "regression" else _areas(record, instrument, passes)
     return _told(record, passes, ratio, method, carbon, tuple(limits_percent), [*problems, *ratio.problems])
-
-
-def _unlikely(record: Record, readings: Readings, instrument: SnifferSpec) -> list[str]:
-    """Return what no living sensor reads, of CO2, SO2, and the gases of the record that the SO2 channel responds to."""
-    so2 = instrument.known("so2")
-    telling = ["so2", *(gas for gas in used_gases(record) if so2.cross.get(gas, 0.0) or so2.cross_sd.get(gas, 0.0))]
-    problems = list(sticking(readings, instrument.known("co2")))
-    for channel in map(instrument.known, telling):
-        problems += sticking(readings, channel) or quiet(record.scatter(channel.gas), channel)
-    return problems
 
 
 def check_parameters(method: str, carbon: float, limits_percent: Sequence[float]) -> None:
