@@ -46,7 +46,7 @@ def logged_facts(run: RunData, record: Record) -> list[Fact]:
 def _lacking(gaps: Gaps) -> list[Fact]:
     """Return what the log lacks, if anything."""
     missing = [Fact("Missing readings", gaps.missing_words)] if any(gaps.missing.values()) else []
-    return [*missing, *([Fact("Gaps", gaps.gap_words)] if gaps.gaps or gaps.interpolated else [])]
+    return [*missing, *([Fact("Gaps", gaps.gap_words)] if gaps.gaps or gaps.interpolated or gaps.unused else [])]
 
 
 def _time_words(flight: dict[str, Any]) -> str:

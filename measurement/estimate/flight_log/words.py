@@ -54,7 +54,7 @@ def lacking(readings: Readings, analysis: Analysis) -> Iterator[str]:
     gaps = found_gaps(readings, analysis.estimate.signals)
     if any(gaps.missing.values()):
         yield f"missing readings: {gaps.missing_words}"
-    if gaps.gaps or gaps.interpolated:
+    if gaps.gaps or gaps.interpolated or gaps.unused:
         yield f"gaps: {gaps.gap_words}"
 
 
