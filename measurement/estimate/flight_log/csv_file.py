@@ -58,7 +58,7 @@ def read_flight(path: Path, config: LogConfig) -> LoggedFlight:
     Raises
     ------
     MeasurementError : the file cannot be read, has no readings, lacks a column or has it twice, has words in it or readings lower
-        than those of no gas, has times that do not increase, is separated by something else than
+        than those of no gas or beyond the sensor's range, has times that do not increase, is separated by something else than
         commas, or has rows with more values than its head line has names
     """
     try:
@@ -96,6 +96,7 @@ def read_flight(path: Path, config: LogConfig) -> LoggedFlight:
         name = config.columns[gas]
         if name in table:
             values[:, i] = config.scale.get(gas, 1.0) * _readings(table, name, path, config)
+    _check_range(values, config, path)
     _check_negative(values, config, path)
     found = _found(table, config, path)
     place = {"time_s": time, **_place(found)}
@@ -159,15 +160,29 @@ def _readings(table: pd.DataFrame, name: str, path: Path, config: LogConfig) -> 
     return np.where(np.isin(numbers, config.missing), np.nan, numbers)
 
 
+def _check_range(values: Array, config: LogConfig, path: Path) -> None:
+    """Refuse readings beyond the end of the channel's range, where the sensor itself would have stopped."""
+    for gas in config.instrument.gases:
+        channel, column = config.instrument.known(gas), values[:, GASES.index(gas)]
+        if gas == "co2" and np.isfinite(column).any():
+            # In another unit, or without its background, none of it is right, and not a reading here or there.
+            check_units(gas, column)
+        beyond = np.flatnonzero(column > channel.range_high + channel.resolution)
+        if beyond.size:
+            unit, more = UNITS[gas], f", and {beyond.size - 1} more" if beyond.size > 1 else ""
+            raise MeasurementError(
+                f"'{path}': {gas.upper()} is {column[beyond[0]]:g} {unit} in row {beyond[0] + 2}{more}; its sensor reads"
+                f" {channel.range_high:g} {unit} at most (range_high): leave such a cell empty, or correct the column's unit"
+                f" ([scale]) or the range"
+            )
+
+
 def _check_negative(values: Array, config: LogConfig, path: Path) -> None:
     """Refuse readings that are lower than those of no gas: they are marks for missing ones, or have the wrong sign."""
     for gas in config.instrument.gases:
         column, unit = values[:, GASES.index(gas)], UNITS[gas]
         if not np.isfinite(column).any():
             continue
-        if gas == "co2":
-            # Without its background it has negative readings, too, which are no marks.
-            check_units(gas, column)
         lowest = lowest_reading(gas, values, config.instrument)
         low = np.flatnonzero(column < lowest)
         if low.size:
