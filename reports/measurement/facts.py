@@ -63,10 +63,11 @@ def _time_words(flight: dict[str, Any]) -> str:
 def _place_words(flight: dict[str, Any]) -> str:
     told = flight["details"]["place"]
     place = f"{told}{_CONFIGURED}; " if told else ""
+    remark = f"; {flight['place_remark']}" if flight["place_remark"] else ""
     if flight["first_position"] is None:
-        return f"{place}latitude and longitude are not in the log"
+        return f"{place}latitude and longitude are not in the log{remark}"
     first, last = (position_words(*flight[f"{end}_position"]) for end in ("first", "last"))
-    return f"{place}from {first} to {last} (first and last of the log)"
+    return f"{place}from {first} to {last} (first and last of the log){remark}"
 
 
 def _ship_words(details: dict[str, Any]) -> str:

@@ -11,7 +11,8 @@ from logged_flights import run
 
 from measurement.estimate.__main__ import main
 from measurement.estimate.flight_log.config import LogConfig
-from measurement.estimate.flight_log.csv_file import EARTH_RADIUS_M, read_flight
+from measurement.estimate.flight_log.csv_file import read_flight
+from measurement.estimate.flight_log.places import EARTH_RADIUS_M
 
 BRIEFLY = pytest.mark.usefixtures("briefly")
 

@@ -1,7 +1,6 @@
 """A logged flight in a CSV file."""
 
 import lzma
-import math
 import warnings
 import zipfile
 import zlib
@@ -10,22 +9,17 @@ from datetime import datetime
 from pathlib import Path
 
 import numpy as np
-import numpy.typing as npt
 import pandas as pd
 
 from measurement.errors import MeasurementError
 from measurement.estimate.flight_log.config import COLUMNS, LogConfig
-from measurement.estimate.flight_log.details import FlightRecord, Position, times_of
+from measurement.estimate.flight_log.details import FlightRecord, times_of
+from measurement.estimate.flight_log.places import PLACES, ends, on_a_plane, places_of
 from measurement.estimate.record import check_increasing, check_units, lowest_reading
 from measurement.gases import GASES, UNITS
 from measurement.sniffer.lag import Array
 from measurement.sniffer.sniffer import Readings
 from measurement.tables import other_separator
-
-EARTH_RADIUS_M = 6_371_000.0
-"""Mean radius [m]: a track of a few kilometres is laid on a plane."""
-
-_NONE = np.empty(0, dtype=np.intp)
 
 _REQUIRED = ("time", "so2", "co2")
 """Columns without which there is no estimate; any other may be left out, unless the configuration names it."""
@@ -59,7 +53,7 @@ def read_flight(path: Path, config: LogConfig) -> LoggedFlight:
     ------
     MeasurementError : the file cannot be read, has no readings, lacks a column or has it twice, has words in it or readings lower
         than those of no gas or beyond the sensor's range, has times that do not increase, is separated by something else than
-        commas, or has rows with more values than its head line has names
+        commas, has rows with more values than its head line has names, or places that no aircraft has
     """
     try:
         _check_separator(path)
@@ -98,11 +92,13 @@ def read_flight(path: Path, config: LogConfig) -> LoggedFlight:
             values[:, i] = config.scale.get(gas, 1.0) * _readings(table, name, path, config)
     _check_range(values, config, path)
     _check_negative(values, config, path)
-    found = _found(table, config, path)
-    place = {"time_s": time, **_place(found)}
+    found, remark = places_of(
+        {key: _readings(table, name, path, config) for key in PLACES if (name := config.columns[key]) in table}, time, path
+    )
+    place = {"time_s": time, **on_a_plane(found)}
     place |= {name: _numbers(table, name, path) for name in TRUE_COLUMNS if name in table}
     first_utc, last_utc, utc_from = times_of(config.flight, logged, float(time[-1] - time[0]), path)
-    positions = _ends(found)
+    positions = ends(found)
     about = FlightRecord(
         readings=len(table),
         details=config.flight,
@@ -112,6 +108,7 @@ def read_flight(path: Path, config: LogConfig) -> LoggedFlight:
         offset=logged is not None and _has_offset(table[config.columns["time"]]),
         first_position=positions[0],
         last_position=positions[1],
+        place_remark=remark,
         columns={key: name for key, name in config.columns.items() if name in table},
         scale=config.scale,
         missing=config.missing,
@@ -212,48 +209,3 @@ def _time(table: pd.DataFrame, name: str, path: Path) -> tuple[Array, tuple[date
 def _has_offset(column: pd.Series) -> bool:
     """Return whether times in words say how far they are from UTC."""
     return pd.Timestamp(str(column.iloc[0]).strip()).tzinfo is not None
-
-
-def _found(table: pd.DataFrame, config: LogConfig, path: Path) -> dict[str, Array]:
-    """Return the columns that say where the flight was, by their keys."""
-    names = ("latitude", "longitude", "north", "east", "height")
-    found = {name: _readings(table, config.columns[name], path, config) for name in names if config.columns[name] in table}
-    for name, most in (("latitude", 90.0), ("longitude", 360.0)):
-        if name in found and (beyond := np.abs(found[name]) > most).any():
-            row = int(np.argmax(beyond))
-            raise MeasurementError(
-                f"'{path}': {name} is {found[name][row]:g} deg in row {row + 2}; it must be {-most:g} to {most:g}: correct it,"
-                " leave it empty, or name what stands for a missing one in the configuration, as in missing = [-9999]"
-            )
-    return found
-
-
-def _known(found: dict[str, Array]) -> npt.NDArray[np.intp]:
-    """Return the rows that have a latitude and a longitude."""
-    return np.flatnonzero(np.isfinite(found["latitude"] + found["longitude"])) if {"latitude", "longitude"} <= set(found) else _NONE
-
-
-def _place(found: dict[str, Array]) -> dict[str, Array]:
-    """Return where the flight was, on a plane about its first known place."""
-    place = {}
-    if {"north", "east"} <= set(found):
-        place = {"north_m": found["north"], "east_m": found["east"]}
-    elif len(known := _known(found)):
-        latitude, longitude = np.radians(found["latitude"]), np.radians(found["longitude"])
-        first = known[0]
-        east = (longitude - longitude[first] + math.pi) % math.tau - math.pi
-        place = {
-            "north_m": EARTH_RADIUS_M * (latitude - latitude[first]),
-            "east_m": EARTH_RADIUS_M * math.cos(latitude[first]) * east,
-        }
-    if "height" in found:
-        place["height_m"] = found["height"]
-    return place
-
-
-def _ends(found: dict[str, Array]) -> tuple[Position | None, Position | None]:
-    """Return the first and the last known latitude and longitude, or twice None."""
-    if not len(known := _known(found)):
-        return None, None
-    first, last = ((float(found["latitude"][i]), float(found["longitude"][i])) for i in known[[0, -1]])
-    return first, last
