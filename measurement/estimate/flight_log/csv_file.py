@@ -1,6 +1,7 @@
 """A logged flight in a CSV file."""
 
 import lzma
+import re
 import warnings
 import zipfile
 import zlib
@@ -23,6 +24,18 @@ from measurement.tables import other_separator
 
 _REQUIRED = ("time", "so2", "co2")
 """Columns without which there is no estimate; any other may be left out, unless the configuration names it."""
+
+_HEAD_TOLD = 60
+"""Letters of a head line that are told."""
+
+_LONG_ROW = re.compile(r"Expected \d+ fields in line (\d+), saw \d+")
+"""What pandas says of a row that is longer than the first ones."""
+
+_OPEN_QUOTE = re.compile(r"EOF inside string starting at row (\d+)")
+"""What pandas says of a quotation mark that is not closed, by a row of which the head line is row 0."""
+
+_NUMBER, _DECIMAL_COMMA = re.compile(r"[-+]?[\d.]+(e[-+]?\d+)?(\.\d+)?", re.IGNORECASE), re.compile(r"[-+]?\d+,\d+")
+"""A number, with what pandas adds to one that is there twice; and one with a decimal comma."""
 
 TRUE_COLUMNS = {f"{gas}_true_{UNITS[gas]}": gas for gas in GASES}
 """Columns of the true concentrations, which a simulated flight may have; they are shown, and take no part in the estimate."""
@@ -56,14 +69,14 @@ def read_flight(path: Path, config: LogConfig) -> LoggedFlight:
         commas, has rows with more values than its head line has names, or places that no aircraft has
     """
     try:
-        _check_separator(path)
+        head = _checked_head(path)
         # Without ``index_col`` rows that end in a comma would move every column by one; what would be lost by it is refused.
         with warnings.catch_warnings(action="error", category=pd.errors.ParserWarning):
             table = pd.read_csv(path, skipinitialspace=True, low_memory=False, index_col=False)
     except MeasurementError:
         raise
-    except pd.errors.ParserWarning:
-        raise MeasurementError(f"'{path}' has rows with more values than its head line has names; name every column") from None
+    except (pd.errors.ParserWarning, pd.errors.ParserError, pd.errors.EmptyDataError) as error:
+        raise MeasurementError(f"'{path}' {_fault(error, head)}") from None
     except (EOFError, lzma.LZMAError, zipfile.BadZipFile, zlib.error) as error:
         raise MeasurementError(f"'{path}' cannot be unpacked: {error}; give a whole file, or the CSV file itself") from None
     except OSError as error:
@@ -71,7 +84,7 @@ def read_flight(path: Path, config: LogConfig) -> LoggedFlight:
         raise MeasurementError(f"'{path}' cannot be read: {error.strerror or error}; give a CSV file") from None
     except UnicodeDecodeError:
         raise MeasurementError(f"'{path}' is not text in UTF-8; save it as CSV in UTF-8") from None
-    except (pd.errors.ParserError, pd.errors.EmptyDataError, ValueError) as error:
+    except ValueError as error:
         raise MeasurementError(
             f"'{path}' is not CSV: {str(error).splitlines()[0].strip()}; give a CSV file with a head line"
         ) from None
@@ -117,17 +130,38 @@ def read_flight(path: Path, config: LogConfig) -> LoggedFlight:
     return LoggedFlight(Readings(time, values), pd.DataFrame(place), about)
 
 
-def _check_separator(path: Path) -> None:
+def _fault(error: Exception, head: str) -> str:
+    """Return what pandas refuses in a table that is CSV or nearly so, and the remedy, given its head line as it is told."""
+    if isinstance(error, pd.errors.EmptyDataError):
+        return "is empty; it needs a head line and a row per reading"
+    if opened := _OPEN_QUOTE.search(str(error)):
+        return f"has a quotation mark in line {int(opened[1]) + 1} that is not closed; remove it"
+    line = _LONG_ROW.search(str(error))
+    if not line and not isinstance(error, pd.errors.ParserWarning):
+        return f"is not CSV: {str(error).splitlines()[0].strip()}; give a CSV file with a head line"
+    where = f"has in line {line[1]}" if line else "has rows with"
+    return (
+        f"{where} more values than its head line has names{head}: the first line has to name every column; remove lines above it,"
+        " and write decimals with a point"
+    )
+
+
+def _checked_head(path: Path) -> str:
+    """Return the head line as it is told in a refusal, empty for a packed log; refuse a log that is not separated by commas."""
     with path.open(encoding="utf-8-sig", errors="replace") as file:
         head = file.readline().strip()
     if not head.replace("\t", "").isprintable():
         # It may be compressed, which pandas reads.
-        return
+        return ""
     if words := other_separator(head):
         raise MeasurementError(f"'{path}' {words}")
+    return f" ('{head[:_HEAD_TOLD]}{'...' * (len(head) > _HEAD_TOLD)}')"
 
 
 def _missing(path: Path, what: str, key: str, name: str, table: pd.DataFrame) -> str:
+    if 2 * sum(bool(_NUMBER.fullmatch(column)) for column in table.columns) > len(table.columns):
+        columns = ", ".join(COLUMNS[needed] for needed in _REQUIRED)
+        return f"'{path}' has no head line, but numbers in its first line; add one that names every column, as in {columns}"
     there = ", ".join(f"'{column}'" for column in list(table.columns)[:12])
     remedy = f'name it in [columns] of the configuration: {key} = "..."'
     if name != COLUMNS[key]:
@@ -140,8 +174,9 @@ def _numbers(table: pd.DataFrame, name: str, path: Path) -> Array:
     words = numbers.isna() & table[name].notna() & (table[name].astype(str).str.strip() != "")
     if words.any():
         row = int(np.argmax(words.to_numpy()))
+        value = str(table[name].iloc[row])
         raise MeasurementError(
-            f"'{path}': column '{name}' has {str(table[name].iloc[row])!r} in row {row + 2}; it must hold numbers, or be empty"
+            f"'{path}': column '{name}' has {value!r} in row {row + 2}; it must hold numbers, or be empty{_with_a_point(value)}"
         )
     if np.isinf(numbers).any():
         row = int(np.argmax(np.isinf(numbers)))
@@ -150,6 +185,13 @@ def _numbers(table: pd.DataFrame, name: str, path: Path) -> Array:
             " out from there, or leave the cell empty"
         )
     return numbers.to_numpy(dtype=np.float64)
+
+
+def _with_a_point(value: str) -> str:
+    """Return the remedy for a number with a decimal comma, and nothing for other words."""
+    return (
+        f"; write decimals with a point, as in {value.strip().replace(',', '.')}" if _DECIMAL_COMMA.fullmatch(value.strip()) else ""
+    )
 
 
 def _readings(table: pd.DataFrame, name: str, path: Path, config: LogConfig) -> Array:
@@ -201,6 +243,7 @@ def _time(table: pd.DataFrame, name: str, path: Path) -> tuple[Array, tuple[date
     except (ValueError, TypeError):
         raise MeasurementError(
             f"'{path}': time '{column.iloc[0]}' in column '{name}' cannot be read; give seconds, or 2024-05-01T12:00:00.0"
+            f"{_with_a_point(str(column.iloc[0]))}"
         ) from None
     time = np.asarray((moments - moments.iloc[0]).dt.total_seconds(), dtype=np.float64)
     return time, None if moments.isna().any() else (moments.iloc[0].to_pydatetime(), moments.iloc[-1].to_pydatetime())

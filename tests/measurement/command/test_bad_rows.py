@@ -83,3 +83,34 @@ def test_a_receiver_that_is_slower_than_the_log_does_not_jump(logged):
     table["east_m"] = 0.0
     table.to_csv(logged, index=False)
     assert run(logged) == 0
+
+
+ROWS = "".join(f"{t}.0,2.5,420.1\n" for t in range(9))
+HEAD = "time_s,so2_ppb,co2_ppm\n"
+
+
+@pytest.mark.parametrize(
+    ("content", "told"),
+    [
+        ("", "is empty; it needs a head line and a row per reading"),
+        (
+            "# UAV 3\n# flight 7\n" + HEAD + ROWS,
+            "has in line 3 more values than its head line has names ('# UAV 3'): the first line has to name every column",
+        ),
+        ("# UAV 3\n" + HEAD + ROWS, "has rows with more values than its head line has names ('# UAV 3'): the first line has to"),
+        (HEAD + ROWS.replace(".", ","), "and write decimals with a point"),
+        (ROWS, "has no head line, but numbers in its first line; add one that names every column, as in time_s, so2_ppb, co2_ppm"),
+        (ROWS.replace(".0", ".5").replace("2.5", "0.5"), "has no head line, but numbers in its first line"),
+        (HEAD + '"0,0","2,5","420,1"\n', "or 2024-05-01T12:00:00.0; write decimals with a point, as in 0.0"),
+        (HEAD + '0,"2,5",420\n', "it must hold numbers, or be empty; write decimals with a point, as in 2.5"),
+        (HEAD + '"' + ROWS, "has a quotation mark in line 2 that is not closed; remove it"),
+    ],
+)
+def test_a_table_that_is_no_log_is_refused_in_plain_words(logged, capsys, content, told):
+    logged.write_text(content, encoding="utf-8")
+    assert run(logged) == 2
+    error = capsys.readouterr().err
+    assert told in error
+    assert "0.0.1" not in error
+    assert "C error: Expected" not in error
+    assert error.count("\n") == 1
