@@ -17,7 +17,7 @@ SHARE_MOST = 0.1
 """Share of a record in which a sensor may stick, for no longer than its t90 at a time: as much may be missing."""
 
 _FEWEST = 10
-"""Readings in a row that are compared: fewer may be a reading that the logger repeats."""
+"""Readings in a row that are compared: fewer are no sign of a sensor that sticks."""
 
 _RISE_SIGMA = 10.0
 """Another gas that rises by so many standard deviations of its noise has met the plume: white noise reaches 7 of them."""
@@ -95,7 +95,14 @@ def _too_many(run: range, values: Array, step: float, noise: float) -> bool:
         return False
     # Of normal noise most is within a step if that is centred on its mean.
     within = math.erf(step / noise / math.sqrt(2.0))
-    return len(values) * within ** (len(run) - 1) < CHANCE_MOST
+    own = len(run) / _repeats(values)
+    return own >= _FEWEST and len(values) * within ** (own - 1.0) < CHANCE_MOST
+
+
+def _repeats(values: Array) -> float:
+    """Return how often the log has a reading before the next one: more than once, where the logger is faster than the sensor."""
+    changes = np.flatnonzero(np.diff(values))
+    return float(np.median(np.diff(changes))) if len(changes) > 1 else 1.0
 
 
 def _explained(run: range, time: Array, values: Array, step: float, readings: Readings, channel: Channel) -> bool:

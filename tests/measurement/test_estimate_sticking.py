@@ -66,6 +66,20 @@ def test_a_logger_that_repeats_a_few_readings_is_no_stuck_sensor():
     assert STUCK not in told(frozen(readings, ["so2"], 100, 115), spec)
 
 
+@pytest.mark.parametrize("analyst", ["electrochemical", "unspecified"])
+def test_a_logger_that_is_faster_than_the_sensors_is_no_stuck_sensor(analyst):
+    # Rows fifty times a second hold each reading of a second for as long.
+    readings, _ = flight("electrochemical", 0.25, 1, duration=100.0)
+    time = np.arange(0.0, 100.0, 0.02)
+    held = readings.values[np.floor(time + 1e-9).astype(int)]
+    assert STUCK not in told(Readings(time, held), sensor_preset(analyst))
+    held[2000:, 0] = held[2000, 0]
+    # Where no noise is stated, readings that are held show none either.
+    assert ("SO2 reads the same for 60 s from 40 s on" in told(Readings(time, held), sensor_preset(analyst))) == (
+        analyst == "electrochemical"
+    )
+
+
 def late_plume(fsc):
     """Return the readings of a fast sniffer, with 200 s of clean air before passes through the plume of a ship."""
     spec = sensor_preset("fast")
