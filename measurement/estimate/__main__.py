@@ -59,7 +59,7 @@ def main(arguments: list[str] | None = None) -> int:
         line = "".join(letter if letter.isprintable() else letter.encode("unicode_escape").decode() for letter in str(error))
         print(f"error: {line}", file=sys.stderr)
         return BAD_INPUT
-    more = (*lacking(flight.readings, analysis), *unused(flight.readings, config.instrument))
+    more = (*lacking(flight, analysis), *unused(flight.readings, config.instrument))
     print(*summary(analysis, given.flight.name), *more, sep="\n")
     print(f"files: {directory}" if given.no_report else build_report(directory))
     return 0

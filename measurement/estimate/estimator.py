@@ -15,7 +15,8 @@ from measurement.estimate.fit.groups import grouped
 from measurement.estimate.fit.regression import fitted, regress
 from measurement.estimate.fit.signals import Signals, make_signals, used_gases
 from measurement.estimate.passes import SNR_LEAST, Pass, co2_excesses, find_passes, readings_noise
-from measurement.estimate.quality import judged_quality, late, noise_alone, quiet, stranger
+from measurement.estimate.plausible import unlikely
+from measurement.estimate.quality import judged_quality, late, noise_alone, stranger
 from measurement.estimate.record import Record, checked_record
 from measurement.estimate.result import Figures, FscEstimate, Method
 from measurement.estimate.verdict import LIMITS_PERCENT, interval, judged
@@ -74,24 +75,18 @@ def estimate(
     """
     check_parameters(method, carbon, limits_percent)
     record = checked_record(readings, instrument)
-    unlikely = [problem for gas in _telling(record, instrument) for problem in quiet(record.scatter(gas), instrument.known(gas))]
+    strange = unlikely(record, readings, instrument)
     noise = readings_noise(record, instrument)
     instrument = replace(
         instrument, channels=tuple(replace(channel, noise=noise.get(channel.gas, channel.noise)) for channel in instrument.channels)
     )
     passes = find_passes(record, instrument.known("co2"))
-    problems = [*record.problems, *unlikely, *_too_little(record, instrument, passes, noise["co2"])]
+    problems = [*record.problems, *strange, *_too_little(record, instrument, passes, noise["co2"])]
     if not passes:
         ratio = _nothing(instrument)
     else:
         ratio = _regressed(record, instrument) if method == "regression" else _areas(record, instrument, passes)
     return _told(record, passes, ratio, method, carbon, tuple(limits_percent), [*problems, *ratio.problems])
-
-
-def _telling(record: Record, instrument: SnifferSpec) -> list[str]:
-    """Return SO2, and the gases of the record that its channel responds to."""
-    so2 = instrument.known("so2")
-    return ["so2", *(gas for gas in used_gases(record) if so2.cross.get(gas, 0.0) or so2.cross_sd.get(gas, 0.0))]
 
 
 def check_parameters(method: str, carbon: float, limits_percent: Sequence[float]) -> None:

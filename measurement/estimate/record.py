@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 import numpy as np
+import numpy.typing as npt
 
 from measurement.errors import MeasurementError
 from measurement.gases import EXPECTED_PPB_PER_PPM, GASES, UNITS
@@ -25,11 +26,11 @@ _STEP_LEAST, _STEP_MOST = 1e-3, 30.0
 """Median interval between samples [s]: no sniffer reads faster, and the slowest cell of the presets has answered by the longest, in
 which an aircraft has crossed a plume and left it."""
 
-_BRIDGED = 2.5
+BRIDGED = 2.5
 """Gaps of up to so many sample periods are bridged by a straight line; longer ones part the record."""
 
-_SHORTEST = 8
-"""Fewest samples of a segment."""
+SHORTEST = 8
+"""Fewest samples of a segment: pieces between gaps that have fewer are left out."""
 
 _SATURATED_MAX, _MISSING_MAX = 0.0, 0.1
 """Shares of saturated and of missing samples from which on there is no verdict."""
@@ -52,7 +53,6 @@ _NEGATIVE_SIGMA = 8.0
 
 _NOX_SIGMA = 3.0
 """A ship that is not measured for NO or NO2 may emit the expected by so many standard deviations more."""
-
 
 _KEPT = 32
 """What is worked out of a record and kept, at most: to move one property of the instrument changes little of it."""
@@ -99,7 +99,7 @@ class Record:
 
     def scatter(self, gas: str) -> float:
         """Return the standard deviation of a gas's readings that they show themselves."""
-        return _scatter([segment[gas] for segment in self.values], self.resolution[gas])
+        return shown_scatter([segment[gas] for segment in self.values], self.resolution[gas])
 
     @property
     def duration(self) -> float:
@@ -117,9 +117,9 @@ def checked_record(readings: Readings, instrument: SnifferSpec) -> Record:
     time, values = np.asarray(readings.time, dtype=np.float64), np.asarray(readings.values, dtype=np.float64)
     if time.ndim != 1 or values.shape != (len(time), len(GASES)):
         raise MeasurementError(f"readings have shapes {time.shape} and {values.shape}; they must be (m,) and (m, {len(GASES)})")
-    if len(time) < _SHORTEST:
+    if len(time) < SHORTEST:
         raise MeasurementError(
-            f"the record has {len(time)} samples; it needs at least {_SHORTEST}, and one whole crossing of the plume"
+            f"the record has {len(time)} samples; it needs at least {SHORTEST}, and one whole crossing of the plume"
         )
     if not np.isfinite(time).all():
         raise MeasurementError(
@@ -139,9 +139,8 @@ def checked_record(readings: Readings, instrument: SnifferSpec) -> Record:
     problems = _problems(time, values, gases, instrument)
     known = np.isfinite(values[:, columns]).all(axis=1)
     times, parts = [], []
-    rows = np.flatnonzero(known)
-    for segment in np.split(rows, np.flatnonzero(np.diff(time[rows]) > _BRIDGED * step) + 1):
-        if len(segment) < _SHORTEST:
+    for segment in pieces(time, np.flatnonzero(known), step):
+        if len(segment) < SHORTEST:
             continue
         grid = time[segment[0]] + step * np.arange(math.floor((time[segment[-1]] - time[segment[0]]) / step + 1e-6) + 1)
         # A grid of the record's own times is left as it is.
@@ -149,9 +148,14 @@ def checked_record(readings: Readings, instrument: SnifferSpec) -> Record:
         times.append(grid)
         parts.append({gas: np.interp(grid, time[segment], values[segment, GASES.index(gas)]) for gas in gases})
     if not times:
-        raise MeasurementError(f"no {_SHORTEST} samples in a row have both SO2 and CO2; give a record with fewer gaps")
-    resolution = {gas: _resolution(values[:, GASES.index(gas)]) for gas in gases}
+        raise MeasurementError(f"no {SHORTEST} samples in a row have both SO2 and CO2; give a record with fewer gaps")
+    resolution = {gas: shown_step(values[:, GASES.index(gas)]) for gas in gases}
     return Record(step=step, times=tuple(times), values=tuple(parts), resolution=resolution, problems=problems)
+
+
+def pieces(time: Array, rows: npt.NDArray[np.intp], step: float) -> list[npt.NDArray[np.intp]]:
+    """Return the rows that have all readings, shape (n,), in pieces between gaps; ``step`` is the period of the log [s]."""
+    return np.split(rows, np.flatnonzero(np.diff(time[rows]) > BRIDGED * step) + 1)
 
 
 def _used(values: Array, instrument: SnifferSpec) -> list[str]:
@@ -203,7 +207,7 @@ def check_units(gas: str, values: Array) -> None:
         )
 
 
-def _resolution(values: Array) -> float:
+def shown_step(values: Array) -> float:
     """Return the smallest change from one known reading to the next; what is rounding of floating-point numbers is no change."""
     known = values[np.isfinite(values)]
     changes = np.abs(np.diff(known))
@@ -213,7 +217,7 @@ def _resolution(values: Array) -> float:
 
 def _cut(values: Array) -> int:
     """Return how many readings are cut off at the largest: noise and plumes end in fewer and fewer, and not in a heap."""
-    known, step = values[np.isfinite(values)], _resolution(values)
+    known, step = values[np.isfinite(values)], shown_step(values)
     if not step:
         return 0
     below = np.round((known.max() - known) / step)
@@ -221,7 +225,7 @@ def _cut(values: Array) -> int:
     return heap if heap >= _CUT_LEAST and heap > _CUT_OVER * max(near) else 0
 
 
-def _scatter(segments: Sequence[Array], step: float) -> float:
+def shown_scatter(segments: Sequence[Array], step: float) -> float:
     """Return the standard deviation of readings in these steps that their second differences show.
 
     It is half the step at least: so much has a reading that moves between two neighbouring marks.
@@ -250,7 +254,7 @@ def lowest_reading(gas: str, values: Array, instrument: SnifferSpec) -> float:
     channel, column = instrument.known(gas), values[:, GASES.index(gas)]
     noise = channel.noise
     if math.isnan(noise):
-        noise = _scatter([column[np.isfinite(column)]], _resolution(column))
+        noise = shown_scatter([column[np.isfinite(column)]], shown_step(column))
     explained = _NEGATIVE_SIGMA * math.hypot(noise, channel.zero_sd, 1.0) - min(channel.zero, 0.0)
     return -explained - _cross_floor(channel.cross, values)
 
@@ -276,7 +280,7 @@ def _problems(time: Array, values: Array, gases: list[str], instrument: SnifferS
         if (least := float(np.nanmin(column))) < floor:
             problems.append(f"{name} reads {least:g} {unit}, which its noise and zero do not explain (from {floor:.0f} {unit})")
     gaps = np.diff(time)
-    lost = float(np.sum(gaps[gaps > _BRIDGED * np.median(gaps)])) / float(time[-1] - time[0])
+    lost = float(np.sum(gaps[gaps > BRIDGED * np.median(gaps)])) / float(time[-1] - time[0])
     if lost > _MISSING_MAX:
         problems.append(f"gaps make up {100.0 * lost:.0f} % of the record; at most {100.0 * _MISSING_MAX:.0f} % may be")
     return tuple(problems)

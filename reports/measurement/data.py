@@ -8,7 +8,6 @@ import pandas as pd
 
 from common.files import is_file
 from common.run_layout import ESTIMATE, SAMPLES
-from measurement.estimate.flight_log.gaps import APART
 from reports.errors import ReportError
 from reports.run.columns import Array, Mask, column
 from reports.run.flight_config import flight_configs
@@ -21,6 +20,8 @@ and of a logged flight ``flight``."""
 METHODS = {"regression": "equalise and regress", "areas": "areas of passes"}
 """Methods of an estimate, in words."""
 
+_APART = 1.5
+"""Samples that are farther apart, over their period, have a gap between them: shorter ones are bridged."""
 
 SINCE = "the record began"
 """What the time of an estimate is counted from, where nothing else is said."""
@@ -104,7 +105,7 @@ def measured_minutes(run: RunData, rows: pd.DataFrame) -> Array:
 def after_gap(samples: pd.DataFrame) -> Mask:
     """Return which samples follow a gap of the log: they are farther than others from the one before."""
     steps = np.diff(column(samples, "time_s"))
-    return np.concatenate([[False], steps > APART * np.median(steps)]) if len(steps) else np.zeros(len(samples), dtype=np.bool_)
+    return np.concatenate([[False], steps > _APART * np.median(steps)]) if len(steps) else np.zeros(len(samples), dtype=np.bool_)
 
 
 def in_parts(samples: pd.DataFrame) -> pd.DataFrame:

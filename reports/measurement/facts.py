@@ -46,7 +46,7 @@ def logged_facts(run: RunData, record: Record) -> list[Fact]:
 def _lacking(gaps: Gaps) -> list[Fact]:
     """Return what the log lacks, if anything."""
     missing = [Fact("Missing readings", gaps.missing_words)] if any(gaps.missing.values()) else []
-    return [*missing, *([Fact("Gaps", gaps.gap_words)] if gaps.gaps or gaps.interpolated else [])]
+    return [*missing, *([Fact("Gaps", gaps.gap_words)] if gaps.gaps or gaps.interpolated or gaps.unused else [])]
 
 
 def _time_words(flight: dict[str, Any]) -> str:
@@ -63,10 +63,11 @@ def _time_words(flight: dict[str, Any]) -> str:
 def _place_words(flight: dict[str, Any]) -> str:
     told = flight["details"]["place"]
     place = f"{told}{_CONFIGURED}; " if told else ""
+    remark = f"; {flight['place_remark']}" if flight["place_remark"] else ""
     if flight["first_position"] is None:
-        return f"{place}latitude and longitude are not in the log"
+        return f"{place}latitude and longitude are not in the log{remark}"
     first, last = (position_words(*flight[f"{end}_position"]) for end in ("first", "last"))
-    return f"{place}from {first} to {last} (first and last of the log)"
+    return f"{place}from {first} to {last} (first and last of the log){remark}"
 
 
 def _ship_words(details: dict[str, Any]) -> str:

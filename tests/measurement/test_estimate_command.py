@@ -11,7 +11,8 @@ from logged_flights import run
 
 from measurement.estimate.__main__ import main
 from measurement.estimate.flight_log.config import LogConfig
-from measurement.estimate.flight_log.csv_file import EARTH_RADIUS_M, read_flight
+from measurement.estimate.flight_log.csv_file import read_flight
+from measurement.estimate.flight_log.places import EARTH_RADIUS_M
 
 BRIEFLY = pytest.mark.usefixtures("briefly")
 
@@ -186,7 +187,7 @@ def test_configurations_with_mistakes_are_refused_in_one_line(logged, capsys, co
 @pytest.mark.parametrize(
     ("content", "message"),
     [
-        ("", "is not CSV"),
+        ("", "is empty; it needs a head line and a row per reading"),
         ("time_s,so2_ppb\n1,2\n", "has no CO2 column 'co2_ppm', but 'time_s', 'so2_ppb'"),
         ("time_s,so2_ppb,co2_ppm\n", "has a head line and 0 readings; it needs a row per reading"),
         ("time_s,so2_ppb,so2_ppb ,co2_ppm\n1,2,2,420\n", "has the column 'so2_ppb' twice; rename or remove one of them"),

@@ -80,6 +80,28 @@ def test_no_and_no2_in_ppm_have_no_verdict(column, gas):
     assert "scatters" not in reasons(Readings(readings.time, values), deaf)
 
 
+@pytest.mark.parametrize(("one", "other", "fsc"), [(2, 3, 0.25), (2, 3, 0.0), (0, 2, 0.0)])
+@pytest.mark.parametrize("preset", ["electrochemical", "fast"])
+def test_no2_that_exceeds_no_has_no_verdict_where_so2_responds_to_both(preset, one, other, fsc):
+    # Columns exchanged: NO and NO2, or SO2 and NO of a fuel without sulphur. The ship has nine times as much NO as NO2.
+    readings, _ = flight(preset, fsc, 1)
+    spec = sensor_preset("electrochemical")
+    assert "exhaust has more NO than NO2" not in reasons(readings, spec)
+    values = readings.values.copy()
+    values[:, [one, other]] = values[:, [other, one]]
+    assert "exhaust has more NO than NO2" in reasons(Readings(readings.time, values), spec)
+
+
+def test_no2_that_ozone_makes_of_no_is_no_exchange_of_columns():
+    # All of 50 ppb of ozone, while the gas is there: the NO2 of a plume of 30 ppb of NOx, which has no NO left.
+    readings, spec = flight("electrochemical", 0.25, 1)
+    values = readings.values.copy()
+    noise = np.random.default_rng(1).normal(size=(2, len(values)))
+    values[:, 2] = 7.0 * noise[0]
+    values[:, 3] = 7.0 * noise[1] + 25.0 + 25.0 * np.sign(np.sin(readings.time / 10.0))
+    assert "exhaust has more NO" not in reasons(Readings(readings.time, values), spec)
+
+
 def test_a_cell_of_which_nothing_is_said_gives_no_wrong_verdict():
     # An unfiltered cell reads NO2 as -160 % of SO2: fuel of 0.8 % seemed to be below 0.5 % in 18 of 40 flights.
     for seed in range(8):

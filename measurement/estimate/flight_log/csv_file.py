@@ -1,7 +1,7 @@
 """A logged flight in a CSV file."""
 
 import lzma
-import math
+import re
 import warnings
 import zipfile
 import zlib
@@ -10,25 +10,32 @@ from datetime import datetime
 from pathlib import Path
 
 import numpy as np
-import numpy.typing as npt
 import pandas as pd
 
 from measurement.errors import MeasurementError
 from measurement.estimate.flight_log.config import COLUMNS, LogConfig
-from measurement.estimate.flight_log.details import FlightRecord, Position, times_of
+from measurement.estimate.flight_log.details import FlightRecord, times_of
+from measurement.estimate.flight_log.places import PLACES, ends, on_a_plane, places_of
 from measurement.estimate.record import check_increasing, check_units, lowest_reading
 from measurement.gases import GASES, UNITS
 from measurement.sniffer.lag import Array
 from measurement.sniffer.sniffer import Readings
 from measurement.tables import other_separator
 
-EARTH_RADIUS_M = 6_371_000.0
-"""Mean radius [m]: a track of a few kilometres is laid on a plane."""
-
-_NONE = np.empty(0, dtype=np.intp)
-
 _REQUIRED = ("time", "so2", "co2")
 """Columns without which there is no estimate; any other may be left out, unless the configuration names it."""
+
+_HEAD_TOLD = 60
+"""Letters of a head line that are told."""
+
+_LONG_ROW = re.compile(r"Expected \d+ fields in line (\d+), saw \d+")
+"""What pandas says of a row that is longer than the first ones."""
+
+_OPEN_QUOTE = re.compile(r"EOF inside string starting at row (\d+)")
+"""What pandas says of a quotation mark that is not closed, by a row of which the head line is row 0."""
+
+_NUMBER, _DECIMAL_COMMA = re.compile(r"[-+]?[\d.]+(e[-+]?\d+)?(\.\d+)?", re.IGNORECASE), re.compile(r"[-+]?\d+,\d+")
+"""A number, with what pandas adds to one that is there twice; and one with a decimal comma."""
 
 TRUE_COLUMNS = {f"{gas}_true_{UNITS[gas]}": gas for gas in GASES}
 """Columns of the true concentrations, which a simulated flight may have; they are shown, and take no part in the estimate."""
@@ -58,18 +65,18 @@ def read_flight(path: Path, config: LogConfig) -> LoggedFlight:
     Raises
     ------
     MeasurementError : the file cannot be read, has no readings, lacks a column or has it twice, has words in it or readings lower
-        than those of no gas, has times that do not increase, is separated by something else than
-        commas, or has rows with more values than its head line has names
+        than those of no gas or beyond the sensor's range, has times that do not increase, is separated by something else than
+        commas, has rows with more values than its head line has names, or places that no aircraft has
     """
     try:
-        _check_separator(path)
+        head = _checked_head(path)
         # Without ``index_col`` rows that end in a comma would move every column by one; what would be lost by it is refused.
         with warnings.catch_warnings(action="error", category=pd.errors.ParserWarning):
             table = pd.read_csv(path, skipinitialspace=True, low_memory=False, index_col=False)
     except MeasurementError:
         raise
-    except pd.errors.ParserWarning:
-        raise MeasurementError(f"'{path}' has rows with more values than its head line has names; name every column") from None
+    except (pd.errors.ParserWarning, pd.errors.ParserError, pd.errors.EmptyDataError) as error:
+        raise MeasurementError(f"'{path}' {_fault(error, head)}") from None
     except (EOFError, lzma.LZMAError, zipfile.BadZipFile, zlib.error) as error:
         raise MeasurementError(f"'{path}' cannot be unpacked: {error}; give a whole file, or the CSV file itself") from None
     except OSError as error:
@@ -77,7 +84,7 @@ def read_flight(path: Path, config: LogConfig) -> LoggedFlight:
         raise MeasurementError(f"'{path}' cannot be read: {error.strerror or error}; give a CSV file") from None
     except UnicodeDecodeError:
         raise MeasurementError(f"'{path}' is not text in UTF-8; save it as CSV in UTF-8") from None
-    except (pd.errors.ParserError, pd.errors.EmptyDataError, ValueError) as error:
+    except ValueError as error:
         raise MeasurementError(
             f"'{path}' is not CSV: {str(error).splitlines()[0].strip()}; give a CSV file with a head line"
         ) from None
@@ -96,12 +103,15 @@ def read_flight(path: Path, config: LogConfig) -> LoggedFlight:
         name = config.columns[gas]
         if name in table:
             values[:, i] = config.scale.get(gas, 1.0) * _readings(table, name, path, config)
+    _check_range(values, config, path)
     _check_negative(values, config, path)
-    found = _found(table, config, path)
-    place = {"time_s": time, **_place(found)}
+    found, remark = places_of(
+        {key: _readings(table, name, path, config) for key in PLACES if (name := config.columns[key]) in table}, time, path
+    )
+    place = {"time_s": time, **on_a_plane(found)}
     place |= {name: _numbers(table, name, path) for name in TRUE_COLUMNS if name in table}
     first_utc, last_utc, utc_from = times_of(config.flight, logged, float(time[-1] - time[0]), path)
-    positions = _ends(found)
+    positions = ends(found)
     about = FlightRecord(
         readings=len(table),
         details=config.flight,
@@ -111,6 +121,7 @@ def read_flight(path: Path, config: LogConfig) -> LoggedFlight:
         offset=logged is not None and _has_offset(table[config.columns["time"]]),
         first_position=positions[0],
         last_position=positions[1],
+        place_remark=remark,
         columns={key: name for key, name in config.columns.items() if name in table},
         scale=config.scale,
         missing=config.missing,
@@ -119,17 +130,38 @@ def read_flight(path: Path, config: LogConfig) -> LoggedFlight:
     return LoggedFlight(Readings(time, values), pd.DataFrame(place), about)
 
 
-def _check_separator(path: Path) -> None:
+def _fault(error: Exception, head: str) -> str:
+    """Return what pandas refuses in a table that is CSV or nearly so, and the remedy, given its head line as it is told."""
+    if isinstance(error, pd.errors.EmptyDataError):
+        return "is empty; it needs a head line and a row per reading"
+    if opened := _OPEN_QUOTE.search(str(error)):
+        return f"has a quotation mark in line {int(opened[1]) + 1} that is not closed; remove it"
+    line = _LONG_ROW.search(str(error))
+    if not line and not isinstance(error, pd.errors.ParserWarning):
+        return f"is not CSV: {str(error).splitlines()[0].strip()}; give a CSV file with a head line"
+    where = f"has in line {line[1]}" if line else "has rows with"
+    return (
+        f"{where} more values than its head line has names{head}: the first line has to name every column; remove lines above it,"
+        " and write decimals with a point"
+    )
+
+
+def _checked_head(path: Path) -> str:
+    """Return the head line as it is told in a refusal, empty for a packed log; refuse a log that is not separated by commas."""
     with path.open(encoding="utf-8-sig", errors="replace") as file:
         head = file.readline().strip()
     if not head.replace("\t", "").isprintable():
         # It may be compressed, which pandas reads.
-        return
+        return ""
     if words := other_separator(head):
         raise MeasurementError(f"'{path}' {words}")
+    return f" ('{head[:_HEAD_TOLD]}{'...' * (len(head) > _HEAD_TOLD)}')"
 
 
 def _missing(path: Path, what: str, key: str, name: str, table: pd.DataFrame) -> str:
+    if 2 * sum(bool(_NUMBER.fullmatch(column)) for column in table.columns) > len(table.columns):
+        columns = ", ".join(COLUMNS[needed] for needed in _REQUIRED)
+        return f"'{path}' has no head line, but numbers in its first line; add one that names every column, as in {columns}"
     there = ", ".join(f"'{column}'" for column in list(table.columns)[:12])
     remedy = f'name it in [columns] of the configuration: {key} = "..."'
     if name != COLUMNS[key]:
@@ -142,8 +174,9 @@ def _numbers(table: pd.DataFrame, name: str, path: Path) -> Array:
     words = numbers.isna() & table[name].notna() & (table[name].astype(str).str.strip() != "")
     if words.any():
         row = int(np.argmax(words.to_numpy()))
+        value = str(table[name].iloc[row])
         raise MeasurementError(
-            f"'{path}': column '{name}' has {str(table[name].iloc[row])!r} in row {row + 2}; it must hold numbers, or be empty"
+            f"'{path}': column '{name}' has {value!r} in row {row + 2}; it must hold numbers, or be empty{_with_a_point(value)}"
         )
     if np.isinf(numbers).any():
         row = int(np.argmax(np.isinf(numbers)))
@@ -154,9 +187,33 @@ def _numbers(table: pd.DataFrame, name: str, path: Path) -> Array:
     return numbers.to_numpy(dtype=np.float64)
 
 
+def _with_a_point(value: str) -> str:
+    """Return the remedy for a number with a decimal comma, and nothing for other words."""
+    return (
+        f"; write decimals with a point, as in {value.strip().replace(',', '.')}" if _DECIMAL_COMMA.fullmatch(value.strip()) else ""
+    )
+
+
 def _readings(table: pd.DataFrame, name: str, path: Path, config: LogConfig) -> Array:
     numbers = _numbers(table, name, path)
     return np.where(np.isin(numbers, config.missing), np.nan, numbers)
+
+
+def _check_range(values: Array, config: LogConfig, path: Path) -> None:
+    """Refuse readings beyond the end of the channel's range, where the sensor itself would have stopped."""
+    for gas in config.instrument.gases:
+        channel, column = config.instrument.known(gas), values[:, GASES.index(gas)]
+        if gas == "co2" and np.isfinite(column).any():
+            # In another unit, or without its background, none of it is right, and not a reading here or there.
+            check_units(gas, column)
+        beyond = np.flatnonzero(column > channel.range_high + channel.resolution)
+        if beyond.size:
+            unit, more = UNITS[gas], f", and {beyond.size - 1} more" if beyond.size > 1 else ""
+            raise MeasurementError(
+                f"'{path}': {gas.upper()} is {column[beyond[0]]:g} {unit} in row {beyond[0] + 2}{more}; its sensor reads"
+                f" {channel.range_high:g} {unit} at most (range_high): leave such a cell empty, or correct the column's unit"
+                f" ([scale]) or the range"
+            )
 
 
 def _check_negative(values: Array, config: LogConfig, path: Path) -> None:
@@ -165,9 +222,6 @@ def _check_negative(values: Array, config: LogConfig, path: Path) -> None:
         column, unit = values[:, GASES.index(gas)], UNITS[gas]
         if not np.isfinite(column).any():
             continue
-        if gas == "co2":
-            # Without its background it has negative readings, too, which are no marks.
-            check_units(gas, column)
         lowest = lowest_reading(gas, values, config.instrument)
         low = np.flatnonzero(column < lowest)
         if low.size:
@@ -189,6 +243,7 @@ def _time(table: pd.DataFrame, name: str, path: Path) -> tuple[Array, tuple[date
     except (ValueError, TypeError):
         raise MeasurementError(
             f"'{path}': time '{column.iloc[0]}' in column '{name}' cannot be read; give seconds, or 2024-05-01T12:00:00.0"
+            f"{_with_a_point(str(column.iloc[0]))}"
         ) from None
     time = np.asarray((moments - moments.iloc[0]).dt.total_seconds(), dtype=np.float64)
     return time, None if moments.isna().any() else (moments.iloc[0].to_pydatetime(), moments.iloc[-1].to_pydatetime())
@@ -197,48 +252,3 @@ def _time(table: pd.DataFrame, name: str, path: Path) -> tuple[Array, tuple[date
 def _has_offset(column: pd.Series) -> bool:
     """Return whether times in words say how far they are from UTC."""
     return pd.Timestamp(str(column.iloc[0]).strip()).tzinfo is not None
-
-
-def _found(table: pd.DataFrame, config: LogConfig, path: Path) -> dict[str, Array]:
-    """Return the columns that say where the flight was, by their keys."""
-    names = ("latitude", "longitude", "north", "east", "height")
-    found = {name: _readings(table, config.columns[name], path, config) for name in names if config.columns[name] in table}
-    for name, most in (("latitude", 90.0), ("longitude", 360.0)):
-        if name in found and (beyond := np.abs(found[name]) > most).any():
-            row = int(np.argmax(beyond))
-            raise MeasurementError(
-                f"'{path}': {name} is {found[name][row]:g} deg in row {row + 2}; it must be {-most:g} to {most:g}: correct it,"
-                " leave it empty, or name what stands for a missing one in the configuration, as in missing = [-9999]"
-            )
-    return found
-
-
-def _known(found: dict[str, Array]) -> npt.NDArray[np.intp]:
-    """Return the rows that have a latitude and a longitude."""
-    return np.flatnonzero(np.isfinite(found["latitude"] + found["longitude"])) if {"latitude", "longitude"} <= set(found) else _NONE
-
-
-def _place(found: dict[str, Array]) -> dict[str, Array]:
-    """Return where the flight was, on a plane about its first known place."""
-    place = {}
-    if {"north", "east"} <= set(found):
-        place = {"north_m": found["north"], "east_m": found["east"]}
-    elif len(known := _known(found)):
-        latitude, longitude = np.radians(found["latitude"]), np.radians(found["longitude"])
-        first = known[0]
-        east = (longitude - longitude[first] + math.pi) % math.tau - math.pi
-        place = {
-            "north_m": EARTH_RADIUS_M * (latitude - latitude[first]),
-            "east_m": EARTH_RADIUS_M * math.cos(latitude[first]) * east,
-        }
-    if "height" in found:
-        place["height_m"] = found["height"]
-    return place
-
-
-def _ends(found: dict[str, Array]) -> tuple[Position | None, Position | None]:
-    """Return the first and the last known latitude and longitude, or twice None."""
-    if not len(known := _known(found)):
-        return None, None
-    first, last = ((float(found["latitude"][i]), float(found["longitude"][i])) for i in known[[0, -1]])
-    return first, last

@@ -7,12 +7,10 @@ import numpy as np
 import numpy.typing as npt
 import pandas as pd
 
+from measurement.estimate.record import BRIDGED, SHORTEST, pieces
 from measurement.gases import GASES, UNITS
 from measurement.sniffer.lag import Array
 from measurement.sniffer.sniffer import Readings
-
-APART = 1.5
-"""Samples that are farther apart, over their period, have a gap between them: the analysis bridges shorter ones."""
 
 _WITHIN = 0.5
 """A sample that no reading is as near as this to, over the period, is interpolated."""
@@ -28,12 +26,14 @@ class Gaps:
     missing : readings that are missing in them, by gas, of the gases that the analysis uses
     interpolated : samples in short gaps, which are bridged by a straight line
     gaps : beginning and end of each longer one, which is left out [s] since the first row
+    unused : rows with all readings that are left out, too, as there are too few of them in a row
     """
 
     rows: int
     missing: dict[str, int]
     interpolated: int
     gaps: list[tuple[float, float]]
+    unused: int
 
     def record(self) -> dict[str, Any]:
         """Return it for JSON."""
@@ -47,7 +47,7 @@ class Gaps:
 
     @property
     def gap_words(self) -> str:
-        """How many gaps there are, how long, and which part of them is interpolated."""
+        """How many gaps there are, how long, which part of them is interpolated, and what is left out beside them."""
         told = []
         if self.gaps:
             start, end = max(self.gaps, key=lambda gap: gap[1] - gap[0])
@@ -57,21 +57,25 @@ class Gaps:
         if self.interpolated:
             samples = f"{self.interpolated:,} sample{'s' * (self.interpolated > 1)}"
             told.append(f"{samples} in short ones interpolated, not shown as readings")
+        if self.unused:
+            rows = f"{self.unused:,} row{'s' * (self.unused > 1)}"
+            told.append(f"{rows} beside gaps left out, as fewer than {SHORTEST} in a row are too few to use")
         return "; ".join(told) or "none"
 
 
 def found_gaps(readings: Readings, signals: pd.DataFrame) -> Gaps:
     """Return what the readings of a log lack, given the signals that an estimate made of them."""
-    used = [gas for gas in GASES if f"{gas}_{UNITS[gas]}" in signals]
-    values = readings.values[:, [GASES.index(gas) for gas in used]]
-    first, time = float(readings.time[0]), signals["time_s"].to_numpy()
-    ends = np.concatenate([[first], time, [float(readings.time[-1])]])
-    apart = np.flatnonzero(np.diff(ends) > APART * _period(readings))
+    used = [i for i, gas in enumerate(GASES) if f"{gas}_{UNITS[gas]}" in signals]
+    known, period = np.isfinite(readings.values), _period(readings)
+    complete = np.flatnonzero(known[:, used].all(axis=1))
+    times = np.concatenate([readings.time[:1], readings.time[complete], readings.time[-1:]]) - readings.time[0]
+    parts = [len(piece) for piece in pieces(readings.time, complete, period)]
     return Gaps(
         rows=len(readings.time),
-        missing={gas: int(np.sum(~np.isfinite(column))) for gas, column in zip(used, values.T, strict=True)},
+        missing={GASES[i]: int(np.sum(~known[:, i])) for i in used},
         interpolated=int(np.sum(interpolated(readings, signals))),
-        gaps=[(float(ends[i]) - first, float(ends[i + 1]) - first) for i in apart],
+        gaps=[(float(times[i]), float(times[i + 1])) for i in np.flatnonzero(np.diff(times) > BRIDGED * period)],
+        unused=sum(rows for rows in parts if rows < SHORTEST),
     )
 
 

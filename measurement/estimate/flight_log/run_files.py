@@ -39,7 +39,7 @@ STUDY = "measurement"
 """What the manifest calls the kind of run."""
 
 SAMPLE_MEANINGS = {
-    "time_s": "time of the sample; between samples that are farther apart than others is a gap of the log",
+    "time_s": "time of the sample; between samples that are farther apart than others is a gap, or too few readings to use",
     "so2_ppb": "reading; empty where the log has none for all gases, and the sample is interpolated",
     "co2_ppm": "reading, likewise, with its background",
     "no_ppb": "reading, likewise, where the log has this gas",

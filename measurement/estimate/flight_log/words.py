@@ -6,6 +6,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from measurement.estimate.flight_log.analysis import Analysis
+from measurement.estimate.flight_log.csv_file import LoggedFlight
 from measurement.estimate.flight_log.gaps import found_gaps
 from measurement.estimate.result import FscEstimate
 from measurement.estimate.verdict import OPEN
@@ -49,13 +50,15 @@ def summary(analysis: Analysis, name: str) -> Iterator[str]:
         yield step
 
 
-def lacking(readings: Readings, analysis: Analysis) -> Iterator[str]:
-    """Yield a line on missing readings, and one on gaps, of a log that has any."""
-    gaps = found_gaps(readings, analysis.estimate.signals)
+def lacking(flight: LoggedFlight, analysis: Analysis) -> Iterator[str]:
+    """Yield a line on missing readings, one on gaps, and one on places that are none, of a log that has any."""
+    gaps = found_gaps(flight.readings, analysis.estimate.signals)
     if any(gaps.missing.values()):
         yield f"missing readings: {gaps.missing_words}"
-    if gaps.gaps or gaps.interpolated:
+    if gaps.gaps or gaps.interpolated or gaps.unused:
         yield f"gaps: {gaps.gap_words}"
+    if flight.about.place_remark:
+        yield f"places: {flight.about.place_remark}"
 
 
 def unused(readings: Readings, instrument: SnifferSpec) -> Iterator[str]:

@@ -47,6 +47,17 @@ def test_missing_readings_and_gaps_are_counted_on_page_1_and_in_the_record(repor
     assert told.items() <= dict(record.rows).items()
 
 
+def test_holes_of_the_log_are_told_apart_from_readings_that_are_too_few_to_use(tmp_path):
+    # Without CO2 for 3 s after 219 s and 4 s after 227 s: of 6 readings between them, from 222 s on, none is used.
+    report = content(estimated(tmp_path, ("co2_ppm", [*range(220, 222), *range(228, 231)])))
+    told = {fact.name: fact.value for fact in report.facts}
+    assert told["Missing readings"] == "6 of CO2 in 280 rows"
+    assert told["Gaps"] == (
+        "3 of 28 s in all, the longest 21 s from 149 s on; 2 samples in short ones interpolated, not shown as readings;"
+        " 6 rows beside gaps left out, as fewer than 8 in a row are too few to use"
+    )
+
+
 def test_a_sample_that_is_interpolated_has_no_reading(run):
     samples = pd.read_csv(run.path / "samples.csv").set_index("time_s")
     readings = samples[["so2_ppb", "co2_ppm", "no_ppb", "no2_ppb"]]

@@ -1,0 +1,116 @@
+"""Logs with rows that no sensor and no receiver has written are refused, or read, with a line that names the rows."""
+
+import json
+
+import numpy as np
+import pandas as pd
+import pytest
+from logged_flights import run
+
+
+def with_values(logged, column, rows, value):
+    table = pd.read_csv(logged)
+    table.loc[rows, column] = value
+    table.to_csv(logged, index=False)
+
+
+@pytest.mark.parametrize(
+    ("column", "rows", "value", "told"),
+    [
+        ("so2_ppb", [20], 50000.0, "SO2 is 50000 ppb in row 22; its sensor reads 20000 ppb at most (range_high)"),
+        ("so2_ppb", [20, 30], 50000.0, "SO2 is 50000 ppb in row 22, and 1 more; its sensor reads 20000 ppb at most"),
+        ("co2_ppm", [40], 6000.0, "CO2 is 6000 ppm in row 42; its sensor reads 5000 ppm at most"),
+    ],
+)
+def test_a_reading_beyond_the_range_of_its_sensor_is_refused_with_its_row(logged, capsys, column, rows, value, told):
+    with_values(logged, column, rows, value)
+    assert run(logged) == 2
+    error = capsys.readouterr().err
+    assert told in error
+    assert "leave such a cell empty" in error
+    assert error.count("\n") == 1
+
+
+@pytest.mark.usefixtures("briefly")
+def test_a_reading_at_the_end_of_the_range_is_saturated(logged, capsys):
+    with_values(logged, "so2_ppb", [20], 20000.0)
+    assert run(logged) == 0
+    assert "SO2 is saturated at 20000 ppb" in capsys.readouterr().out
+
+
+def in_degrees(logged):
+    table = pd.read_csv(logged)
+    table["latitude_deg"] = 57.0 + table.pop("north_m") / 111_195.0
+    table["longitude_deg"] = 11.0 + table.pop("east_m") / 60_560.0
+    table.to_csv(logged, index=False)
+
+
+@pytest.mark.usefixtures("briefly")
+def test_places_of_a_receiver_without_a_fix_are_missing_and_told(logged, capsys):
+    in_degrees(logged)
+    for column in ("latitude_deg", "longitude_deg"):
+        with_values(logged, column, [0, *range(50, 60)], 0.0)
+    assert run(logged) == 0
+    told = "11 rows, from row 2 to row 61, are at latitude 0 and longitude 0, as of a receiver without a fix: taken as missing"
+    assert f"places: {told}" in capsys.readouterr().out
+    out = logged.parent / "out"
+    flight = json.loads((out / "estimate.json").read_text(encoding="utf-8"))["flight"]
+    assert flight["place_remark"] == told
+    assert flight["first_position"][0] == pytest.approx(57.0, abs=0.1)
+    # The fixture flies north at 6 m/s and 50 m to either side.
+    samples = pd.read_csv(out / "samples.csv")
+    assert np.hypot(samples["north_m"], samples["east_m"]).max() < 2000.0
+
+
+@pytest.mark.parametrize("column", ["north_m", "east_m", "latitude_deg"])
+def test_a_place_that_no_aircraft_reaches_is_refused_with_its_row(logged, capsys, column):
+    if column == "latitude_deg":
+        in_degrees(logged)
+    table = pd.read_csv(logged)
+    with_values(logged, column, [70], table[column][70] + (1.0 if column == "latitude_deg" else 111_195.0))
+    assert run(logged) == 2
+    error = capsys.readouterr().err
+    assert "the place in row 72 is 111.2 km from that in row 71, 1 s earlier, which is faster than 340 m/s" in error
+    assert "(1 of 2 such jumps)" in error
+    assert error.count("\n") == 1
+
+
+@pytest.mark.usefixtures("briefly")
+def test_a_receiver_that_is_slower_than_the_log_does_not_jump(logged):
+    # A new place every 20 s, in which a fast aircraft flies 6 km: between two rows it is 6 km a second.
+    table = pd.read_csv(logged)
+    table["north_m"] = 300.0 * 20.0 * (table["time_s"] // 20.0)
+    table["east_m"] = 0.0
+    table.to_csv(logged, index=False)
+    assert run(logged) == 0
+
+
+ROWS = "".join(f"{t}.0,2.5,420.1\n" for t in range(9))
+HEAD = "time_s,so2_ppb,co2_ppm\n"
+
+
+@pytest.mark.parametrize(
+    ("content", "told"),
+    [
+        ("", "is empty; it needs a head line and a row per reading"),
+        (
+            "# UAV 3\n# flight 7\n" + HEAD + ROWS,
+            "has in line 3 more values than its head line has names ('# UAV 3'): the first line has to name every column",
+        ),
+        ("# UAV 3\n" + HEAD + ROWS, "has rows with more values than its head line has names ('# UAV 3'): the first line has to"),
+        (HEAD + ROWS.replace(".", ","), "and write decimals with a point"),
+        (ROWS, "has no head line, but numbers in its first line; add one that names every column, as in time_s, so2_ppb, co2_ppm"),
+        (ROWS.replace(".0", ".5").replace("2.5", "0.5"), "has no head line, but numbers in its first line"),
+        (HEAD + '"0,0","2,5","420,1"\n', "or 2024-05-01T12:00:00.0; write decimals with a point, as in 0.0"),
+        (HEAD + '0,"2,5",420\n', "it must hold numbers, or be empty; write decimals with a point, as in 2.5"),
+        (HEAD + '"' + ROWS, "has a quotation mark in line 2 that is not closed; remove it"),
+    ],
+)
+def test_a_table_that_is_no_log_is_refused_in_plain_words(logged, capsys, content, told):
+    logged.write_text(content, encoding="utf-8")
+    assert run(logged) == 2
+    error = capsys.readouterr().err
+    assert told in error
+    assert "0.0.1" not in error
+    assert "C error: Expected" not in error
+    assert error.count("\n") == 1
