@@ -20,7 +20,7 @@ AGREEMENT_LEAST = 0.01
 """Least probability that passes of one fuel differ as much, for class A.
 
 None is so small that it makes class C: it allows for noise and response, and not for corrections and drift that change from pass to
-pass, so that 1 of 32 flights of ``sulphur_monte_carlo`` has 1e-4 with a sound result.
+pass: of 200 flights of ``sulphur_monte_carlo``, all of one fuel, one has 1e-4.
 """
 
 NOISE_USUAL = 1.0
