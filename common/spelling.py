@@ -10,11 +10,11 @@ _SHORT = 3
 def nearest(name: str, known: Iterable[str]) -> str | None:
     """Return the known name that is spelt most like ``name``, whatever its case, or None if none is similar.
 
-    Of names that are as similar, one that only has a letter more at its end.
+    One that only has a letter more at its end comes before others that are as similar.
     """
     by_lower_case = {each.lower(): each for each in known}
     begun = [each for each in by_lower_case if each.startswith(name.lower()) and len(each) == len(name) + 1]
-    if begun:
+    if begun and name.lower() not in by_lower_case:
         return by_lower_case[min(begun)]
     # Of a short name one letter is much.
     cutoff = 0.5 if len(name) <= _SHORT else 0.6
