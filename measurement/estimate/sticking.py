@@ -10,10 +10,10 @@ from measurement.sniffer.channel import Channel
 from measurement.sniffer.lag import Array
 from measurement.sniffer.sniffer import Readings
 
-CHANCE_MOST = 1e-6
+_CHANCE_MOST = 1e-6
 """Probability of as many equal readings in a row, by noise alone and anywhere in the record, below which a sensor sticks."""
 
-SHARE_MOST = 0.1
+_SHARE_MOST = 0.1
 """Share of a record in which a sensor may stick, for no longer than its t90 at a time: as much may be missing."""
 
 _FEWEST = 10
@@ -33,8 +33,8 @@ def sticking(readings: Readings, channel: Channel) -> tuple[str, ...]:
     """Return the problem of a gas whose sensor sticks, if it does.
 
     A living sensor shows its noise in clean air, too, unless that is below its resolution. Unless another gas rises in the
-    meantime, a tenth of the noise that is stated has to be too much, and readings of 0 are none of a stuck sensor: it may cut off
-    there what is lower. A gas that reads the same throughout is left to ``quiet``.
+    meantime, a tenth of the noise that is stated has to be too much, and readings of 0 do not tell: a sensor may cut off there
+    what is lower. A gas that reads the same throughout is left to ``quiet``.
 
     Parameters
     ----------
@@ -49,7 +49,7 @@ def sticking(readings: Readings, channel: Channel) -> tuple[str, ...]:
     runs = [run for run in _equal(values, step) if _stuck(run, values, step, channel)] if step else []
     runs = [run for run in runs if not _explained(run, time, values, step, readings, channel)]
     lengths = [float(time[run[-1]] - time[run[0]]) for run in runs]
-    if not runs or (max(lengths) <= channel.t90_s and sum(lengths) <= SHARE_MOST * float(time[-1] - time[0])):
+    if not runs or (max(lengths) <= channel.t90_s and sum(lengths) <= _SHARE_MOST * float(time[-1] - time[0])):
         return ()
     longest, unit = runs[int(np.argmax(lengths))], UNITS[channel.gas]
     within = f" within {step:.3g} {unit}" if np.ptp(values[longest]) > 0.0 else ""
@@ -96,7 +96,7 @@ def _too_many(run: range, values: Array, step: float, noise: float) -> bool:
     # Of normal noise most is within a step if that is centred on its mean.
     within = math.erf(step / noise / math.sqrt(2.0))
     own = len(run) / _repeats(values)
-    return own >= _FEWEST and len(values) * within ** (own - 1.0) < CHANCE_MOST
+    return own >= _FEWEST and len(values) * within ** (own - 1.0) < _CHANCE_MOST
 
 
 def _repeats(values: Array) -> float:

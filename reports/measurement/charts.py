@@ -192,7 +192,7 @@ def logged_track_chart(samples: pd.DataFrame) -> Chart | None:
 def _dense(samples: pd.DataFrame) -> pd.DataFrame:
     """Return ``POINTS_MAX`` rows between the samples, by which a track is a line, and not the dots of a stroboscope.
 
-    In gaps of the log there are none.
+    There is no row in a gap of the log.
     """
     time = column(samples, "time_s")
     places = np.linspace(float(time[0]), float(time[-1]), POINTS_MAX)

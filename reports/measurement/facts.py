@@ -38,15 +38,9 @@ def logged_facts(run: RunData, record: Record) -> list[Fact]:
         *operator,
         Fact("Instrument", f"{record['instrument']['title']}; its figures are in “Instrument and assumptions”"),
         Fact("Log", f"{manifest['source']}, {flight['readings']:,} rows, SHA-256 {manifest['source_hash']}"),
-        *_lacking(Gaps(**record["gaps"])),
+        *(Fact(*told) for told in Gaps(**record["gaps"]).told.items()),
         Fact("Program", f"{version}, source revision {manifest['git_revision']}"),
     ]
-
-
-def _lacking(gaps: Gaps) -> list[Fact]:
-    """Return what the log lacks, if anything."""
-    missing = [Fact("Missing readings", gaps.missing_words)] if any(gaps.missing.values()) else []
-    return [*missing, *([Fact("Gaps", gaps.gap_words)] if gaps.gaps or gaps.interpolated or gaps.unused else [])]
 
 
 def _time_words(flight: dict[str, Any]) -> str:

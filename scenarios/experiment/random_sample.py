@@ -3,14 +3,14 @@
 import math
 from collections.abc import Collection
 
-from scenarios.schema.scenario_keys import ScenarioKeys
+from scenarios.schema.scenario import Scenario
 from scenarios.schema.sections.equipment import SensorsConfig
 
 _READ = ("payload.", "emission.")
 """Sections that change what is read in a flight, and its path only where that follows the readings."""
 
 
-def is_random_sample(scenario: ScenarioKeys) -> bool:
+def is_random_sample(scenario: Scenario) -> bool:
     """Return whether flights are a random sample: of the random variables, or of what follows from seeds of their own.
 
     Those of a search and of subset simulation are not: each depends on what was flown before. Nor are copies of a flight,
@@ -33,7 +33,7 @@ def is_random_sample(scenario: ScenarioKeys) -> bool:
     return scenario.flight_seed is None and _depends_on_seed(scenario, listed)
 
 
-def flights_per_sample(scenario: ScenarioKeys) -> int:
+def flights_per_sample(scenario: Scenario) -> int:
     """Return how many flights have the same seed and random variables: a bound on a probability counts them as one.
 
     Those of all points of a sweep have, and those of two vehicles; but for speed ratios of one flight each, and swept seeds.
@@ -44,7 +44,7 @@ def flights_per_sample(scenario: ScenarioKeys) -> int:
     return points * (2 if scenario.fidelity == "both" else 1)
 
 
-def _depends_on_seed(scenario: ScenarioKeys, listed: Collection[str]) -> bool:
+def _depends_on_seed(scenario: Scenario, listed: Collection[str]) -> bool:
     """Return whether every flight depends on its seed, by its start or by noise, beside the keys whose values are listed."""
 
     def given(key: str) -> bool:

@@ -6,7 +6,6 @@ from pydantic import model_validator
 
 from gnc.laws.steering_law import ON_CIRCLE, ON_OSCILLATION
 from scenarios.schema.experiment_checks import check_together
-from scenarios.schema.random_sample import flights_per_sample, is_random_sample
 from scenarios.schema.scenario_keys import DEFAULT_AIRCRAFT, ScenarioKeys
 from scenarios.schema.sections.equipment import REPORTS_MAX
 from scenarios.schema.sections.guidance import law_refusal
@@ -18,16 +17,6 @@ POINTS_MAX = 10_000
 
 class Scenario(ScenarioKeys):
     """A whole scenario file of flights."""
-
-    @property
-    def sampled_at_random(self) -> bool:
-        """Return whether its flights are a random sample, from which a bound on a probability follows."""
-        return is_random_sample(self)
-
-    @property
-    def flights_per_sample(self) -> int:
-        """Return how many of its flights have the same seed and random variables [-]."""
-        return flights_per_sample(self)
 
     @model_validator(mode="after")
     def _consistent(self) -> "Scenario":

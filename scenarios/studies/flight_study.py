@@ -27,6 +27,7 @@ from scenarios.engine.run_directory import RunDirectory
 from scenarios.engine.runner import Fly, Progress, StudySummary, write_tables
 from scenarios.engine.task import Task
 from scenarios.errors import InputError
+from scenarios.experiment.random_sample import flights_per_sample, is_random_sample
 from scenarios.experiment.requests import Experiment
 from scenarios.flight import FlightWork
 from scenarios.instruments.instrument import evaluated_instruments
@@ -130,7 +131,7 @@ class FlightStudy:
             "trial_parameters": {trial: parameters(of) for trial, of in self.trials.items()},
             "unused_parameters": {trial: unused_parameters(of) for trial, of in self.trials.items()},
             "sampled_at_random": self._sampled_at_random(),
-            "flights_per_sample": {trial: of.flights_per_sample for trial, of in self.trials.items()},
+            "flights_per_sample": {trial: flights_per_sample(of) for trial, of in self.trials.items()},
             "theory": {trial: theory_over_speed_ratio(of) for trial, of in self.trials.items()},
             "plugins": self.plugins,
             "vessel_files": {
@@ -154,7 +155,7 @@ class FlightStudy:
 
     def _sampled_at_random(self) -> dict[str, bool]:
         """Return of which trials flights are a random sample, from which a bound on a probability follows."""
-        return {trial: scenario.sampled_at_random for trial, scenario in self.trials.items()}
+        return {trial: is_random_sample(scenario) for trial, scenario in self.trials.items()}
 
     @property
     def planned(self) -> int:
@@ -278,7 +279,7 @@ class FlightStudy:
         lines += self._comparison_lines(journal)
         lines += whole.sulphur_lines()
         if whole.flown > whole.without_area and all(self._sampled_at_random().values()):
-            samples = sum(of.beside // self.trials[trial].flights_per_sample for trial, of in trial_counts.items())
+            samples = sum(of.beside // flights_per_sample(self.trials[trial]) for trial, of in trial_counts.items())
             lines.append(self.bound_line(whole, samples, journal))
         lines += [whole.exit_line(), *whole.not_met_lines("    "), *whole.warnings()]
         return StudySummary(

@@ -59,7 +59,7 @@ class FlightRecord:
     utc_from : ``FROM_LOG``, ``FROM_CONFIGURATION`` or empty
     offset : whether the log's times have an offset from UTC; those without are taken as UTC
     first_position, last_position : first and last known place of the log, or None where it has none
-    place_remark : which of its places are none, or empty
+    place_remark : which of its places are taken as missing, or empty
     columns, scale, missing : as the log was read
     stated : keys of the instrument's channels that the configuration has, as in ``LogConfig``
     """

@@ -40,6 +40,12 @@ class Gaps:
         return asdict(self)
 
     @property
+    def told(self) -> dict[str, str]:
+        """What the log lacks, in words by what it is; nothing of a log that is whole."""
+        found = {"Missing readings": self.missing_words} if any(self.missing.values()) else {}
+        return found | ({"Gaps": self.gap_words} if self.gaps or self.interpolated or self.unused else {})
+
+    @property
     def missing_words(self) -> str:
         """How many readings are missing."""
         told = [f"{count:,} of {gas.upper()}" for gas, count in self.missing.items() if count]
@@ -65,7 +71,7 @@ class Gaps:
 
 def found_gaps(readings: Readings, signals: pd.DataFrame) -> Gaps:
     """Return what the readings of a log lack, given the signals that an estimate made of them."""
-    used = [i for i, gas in enumerate(GASES) if f"{gas}_{UNITS[gas]}" in signals]
+    used = _used(signals)
     known, period = np.isfinite(readings.values), _period(readings)
     complete = np.flatnonzero(known[:, used].all(axis=1))
     times = np.concatenate([readings.time[:1], readings.time[complete], readings.time[-1:]]) - readings.time[0]
@@ -81,13 +87,17 @@ def found_gaps(readings: Readings, signals: pd.DataFrame) -> Gaps:
 
 def interpolated(readings: Readings, signals: pd.DataFrame) -> npt.NDArray[np.bool_]:
     """Return which samples of an estimate no row with readings of all gases is near to, shape (n,)."""
-    used = [i for i, gas in enumerate(GASES) if f"{gas}_{UNITS[gas]}" in signals]
-    complete: Array = readings.time[np.isfinite(readings.values[:, used]).all(axis=1)]
+    complete: Array = readings.time[np.isfinite(readings.values[:, _used(signals)]).all(axis=1)]
     time = signals["time_s"].to_numpy()
     after = np.searchsorted(complete, time).clip(1, len(complete) - 1)
     nearest = np.minimum(np.abs(time - complete[after - 1]), np.abs(time - complete[after]))
     far: npt.NDArray[np.bool_] = nearest > _WITHIN * _period(readings)
     return far
+
+
+def _used(signals: pd.DataFrame) -> list[int]:
+    """Return the places in ``GASES`` of those that an estimate made signals of."""
+    return [i for i, gas in enumerate(GASES) if f"{gas}_{UNITS[gas]}" in signals]
 
 
 def _period(readings: Readings) -> float:

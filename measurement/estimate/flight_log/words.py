@@ -51,12 +51,9 @@ def summary(analysis: Analysis, name: str) -> Iterator[str]:
 
 
 def lacking(flight: LoggedFlight, analysis: Analysis) -> Iterator[str]:
-    """Yield a line on missing readings, one on gaps, and one on places that are none, of a log that has any."""
+    """Yield a line on missing readings, one on gaps, and one on places that count as missing, of a log with any."""
     gaps = found_gaps(flight.readings, analysis.estimate.signals)
-    if any(gaps.missing.values()):
-        yield f"missing readings: {gaps.missing_words}"
-    if gaps.gaps or gaps.interpolated or gaps.unused:
-        yield f"gaps: {gaps.gap_words}"
+    yield from (f"{what.lower()}: {words}" for what, words in gaps.told.items())
     if flight.about.place_remark:
         yield f"places: {flight.about.place_remark}"
 

@@ -9,6 +9,7 @@ from scenarios.engine.run_directory import RunDirectory
 from scenarios.engine.runner import Fly, Progress, StudySummary
 from scenarios.engine.task import Task
 from scenarios.errors import InputError
+from scenarios.experiment.random_sample import flights_per_sample, is_random_sample
 from scenarios.experiment.sampling import Points
 from scenarios.schema.scenario import Scenario
 from scenarios.statistics.estimates import COLUMNS, interval_confidence, pessimistic_share, study_statistics
@@ -43,7 +44,7 @@ class MonteCarloStudy(FlightStudy):
                 "statistics stops the study, which has several points (sweep, cases, fidelity); leave out"
                 " statistics.violation_upper and statistics.distance_quantile_width_m, or give each point a run of its own"
             )
-        if scenario.flights > 1 and not (scenario.several_points or scenario.sampled_at_random):
+        if scenario.flights > 1 and not (scenario.several_points or is_random_sample(scenario)):
             raise InputError(
                 f"flights is {scenario.flights}, and nothing random differs between them: seeds, start and choices are given, so"
                 " some are copies, from which no probability follows; leave out flight_seed, or set study to 'flights'"
@@ -96,7 +97,7 @@ class MonteCarloStudy(FlightStudy):
             confidence=self._scenario.statistics.confidence,
             seed=self._scenario.seed,
             look_number=self._look_number,
-            per_sample=self._scenario.flights_per_sample,
+            per_sample=flights_per_sample(self._scenario),
         )
         run.write_json(run.statistics, statistics)
 
@@ -109,7 +110,7 @@ class MonteCarloStudy(FlightStudy):
         """Return the line on keep-out violations with the bound of ``statistics.json``."""
         confidence = self._scenario.statistics.confidence
         found = count_violations(frame(journal.rows(SUMMARY), COLUMNS))
-        level, per_sample = interval_confidence(confidence, self._look_number), self._scenario.flights_per_sample
+        level, per_sample = interval_confidence(confidence, self._look_number), flights_per_sample(self._scenario)
         upper = pessimistic_share(found, level, per_sample=per_sample)["upper"]
         unknown, samples = found.events_at_most - found.events, found.flights // per_sample
         return counts.violation_line(found.events, unknown, found.flights, upper, confidence, samples=samples)

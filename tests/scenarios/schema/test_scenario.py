@@ -5,6 +5,7 @@ import pytest
 
 from scenarios.errors import InputError
 from scenarios.experiment.points import points_of
+from scenarios.experiment.random_sample import flights_per_sample, is_random_sample
 from scenarios.experiment.requests import Experiment
 from scenarios.schema.load import checked, load_study, with_values
 from scenarios.schema.scenario import Scenario
@@ -56,7 +57,7 @@ START = {"place_m": [-400.0, 0.0], "course_deg": 0.0}
     ],
 )
 def test_flights_are_a_random_sample_where_they_differ_by_chance_alone(keys, at_random):
-    assert Scenario(title="own", **keys).sampled_at_random is at_random
+    assert is_random_sample(Scenario(title="own", **keys)) is at_random
 
 
 @pytest.mark.parametrize(
@@ -73,7 +74,7 @@ def test_flights_are_a_random_sample_where_they_differ_by_chance_alone(keys, at_
 )
 def test_flights_of_several_points_share_what_is_random(keys, shared):
     scenario = Scenario(title="own", **keys)
-    assert scenario.flights_per_sample == shared
+    assert flights_per_sample(scenario) == shared
     experiment = Experiment("own", scenario)
     assert len({experiment.request(i).seed for i in range(experiment.flights)}) == experiment.flights / shared
 
