@@ -46,6 +46,7 @@ def _tracking_checks(row: Row, criteria: CriteriaConfig) -> list[Check]:
     checks = []
     if criteria.settles:
         checks.append((math.isfinite(row["settling_time_s"]), "did not settle"))
+        since = row["duration_s"] - row["settling_time_s"]
         for name, key, limit, unit in (
             ("rms tracking error", "tracking_error_rms_m", criteria.tracking_error_rms_m, "m"),
             ("rms airspeed error", "airspeed_error_rms_mps", criteria.airspeed_error_rms_mps, "m/s"),
@@ -53,7 +54,9 @@ def _tracking_checks(row: Row, criteria: CriteriaConfig) -> list[Check]:
         ):
             # One that settled with its last sample has none of these figures, and shows nothing.
             if limit and math.isfinite(row["settling_time_s"]):
-                checks.append(_at_most(name, row.get(key, math.nan), limit, unit))
+                met, message = _at_most(name, row.get(key, math.nan), limit, unit)
+                # A flight is settled while errors still die out: in a short one they count for more.
+                checks.append((met, f"{message}, in the {since:.0f} s since it settled"))
     if criteria.tracking_error_end_m:
         checks.append(_at_most("tracking error at the end", row["tracking_error_end_m"], criteria.tracking_error_end_m, "m"))
     return checks

@@ -40,7 +40,7 @@ def test_a_flight_at_every_limit_has_met_them():
         ({"outcome": "diverged", "fault": "left_elevon", "fault_time_s": 50.0}, {"settles": False}, "did not complete"),
         ({"settling_time_s": math.nan}, {}, "did not settle"),
         ({"crossing_distance_min_m": 199.99}, {}, "crossed at 199.99 m"),
-        ({"tracking_error_rms_m": 1.51}, {}, "rms tracking error 1.51 m, above the limit of 1.5 m"),
+        ({"tracking_error_rms_m": 1.51}, {}, "rms tracking error 1.51 m, above the limit of 1.5 m, in the 220 s since it settled"),
         ({"tracking_error_rms_m": math.nan}, {}, "tracking error"),
         ({"airspeed_error_rms_mps": 0.31}, {}, "airspeed error"),
         ({"altitude_error_max_m": 1.6}, {}, "altitude error"),
