@@ -116,8 +116,13 @@ class _Histories:
         north, east = self._column("wind_north_mps"), self._column("wind_east_mps")
         if not np.nanmax(np.abs([north, east]), initial=0.0) > NOTICEABLE:
             return None
-        lines = [self._line(part, "true wind", "black", "dash") for part in true_wind(self._view.samples, self._view.row)]
-        lines += [self._line(north, "estimate, north", Meaning.WIND), self._line(east, "estimate, east", Meaning.WIND, "dot")]
+        true_north, true_east = true_wind(self._view.samples, self._view.row)
+        lines = [
+            self._line(true_north, "true wind, north", "black", "dash"),
+            self._line(true_east, "true wind, east", "black", "dot"),
+            self._line(north, "estimate, north", Meaning.WIND),
+            self._line(east, "estimate, east", Meaning.WIND, "dot"),
+        ]
         return Panel(x_label=_TIME, y_label="Wind [m/s]", lines=lines)
 
     def _vessel_panel(self) -> Panel | None:
