@@ -1,7 +1,7 @@
 // Distance to the vessel and bank over time, and the time shown as a line through both. The largest distances are left out:
 // of a flight that begins far away how near it comes would not be seen beside them.
 
-const MARGIN = {left: 58, right: 14, top: 8, bottom: 30}, GAP = 16, POINTS = 1200, MOST = 0.9;
+const MARGIN = {left: 58, right: 14, top: 18, bottom: 30}, GAP = 16, POINTS = 1200, MOST = 0.9;
 
 function ticks(low, high, count) {
   const raw = (high - low) / count, power = 10 ** Math.floor(Math.log10(raw));
@@ -123,11 +123,8 @@ class Plot {
     pen.restore();
     if (beyond) {
       pen.textAlign = "right";
-      pen.lineWidth = 3;
-      pen.strokeStyle = "#ffffffd0";
-      pen.strokeText(beyond, MARGIN.left + this.width - 6, top + 13);
       pen.fillStyle = "#5b6775";
-      pen.fillText(beyond, MARGIN.left + this.width - 6, top + 13);
+      pen.fillText(beyond, MARGIN.left + this.width, top - 5);
     }
   }
 
