@@ -5,7 +5,7 @@ import itertools
 import os
 import sys
 from collections.abc import Callable, Mapping, Sequence
-from typing import Annotated, NoReturn, TextIO
+from typing import Annotated, Any, NoReturn, TextIO
 
 import typer
 
@@ -36,7 +36,7 @@ def run_command(command: Callable[..., None] | Mapping[str, Callable[..., None]]
     if version:
         app.callback()(_with_version(f"{name} {version}"))
     try:
-        status = app(prog_name=name, standalone_mode=False)
+        status = _without_types(typer.main.get_command(app))(prog_name=name, standalone_mode=False)
     except _USAGE_ERROR as error:
         message = _with_value(error, str(getattr(error, "format_message", error.__str__)()).rstrip("."), sys.argv[1:])
         called = getattr(getattr(error, "ctx", None), "command_path", name)
@@ -48,6 +48,23 @@ def run_command(command: Callable[..., None] | Mapping[str, Callable[..., None]]
     for stream in (sys.stdout, sys.stderr):
         stream.flush()
     sys.exit(status or 0)
+
+
+def _without_types(command: Any) -> Any:
+    """Return a command, or all that it has, whose help names no types beside arguments and flags.
+
+    Typer writes <list[Path]> beside RUN_DIR, which says what it is, and <bool> beside flags, which take no value.
+    """
+    for one in (command, *getattr(command, "commands", {}).values()):
+        # With --help, which a command makes once it is asked for.
+        for parameter in one.get_params(typer.Context(one)):
+            if parameter.metavar if parameter.param_type_name == "argument" else parameter.is_flag:
+                parameter.display_type_rich = _no_type
+    return command
+
+
+def _no_type(**_: object) -> None:
+    """Return no name of a type, as typer asks for."""
 
 
 def _with_value(error: Exception, message: str, given: Sequence[str]) -> str:

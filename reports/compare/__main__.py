@@ -108,7 +108,7 @@ def _print(runs: "Sequence[Run]", compared: "Sequence[Compared]") -> None:
 
 
 def command(
-    runs: Annotated[list[Path], typer.Argument(metavar="RUN_A RUN_B...", help="Directories that plume-flight run wrote.")],
+    runs: Annotated[list[Path], typer.Argument(metavar="RUN_DIR", help="Directories that plume-flight run wrote, two or more.")],
     out: Annotated[
         Path | None, typer.Option(metavar="DIR", help="Where to write; compare-RUN_A-RUN_B... beside the first run if not given.")
     ] = None,

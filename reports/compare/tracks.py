@@ -10,7 +10,7 @@ import pandas as pd
 from reports.compare.figures import Difference
 from reports.compare.pairs import Pairs
 from reports.compare.runs import Run
-from reports.document.axes import in_kilometres
+from reports.document.axes import cut_words, in_kilometres
 from reports.document.chart import Chart, Line, Panel, circle
 from reports.document.palette import Meaning
 from reports.document.ship_map import ship_panel, ship_words
@@ -86,10 +86,12 @@ def _chart(pairs: Pairs, place: int, why: str) -> Chart | None:
         flown.append(_Flight(run=run, row=row, history=thinned(history, _POINTS_MAX), colour=colour))
     vessel = all(np.isfinite(column(flight.history, "vessel_north_m")).any() for flight in flown)
     about = _about(flown[0]) if vessel else None
-    panels = [_whole(flown, about), _settled(flown, about), _distances(flown)] if about else [_over_the_ground(flown)]
+    distances = [_distances(flown)] if about else []
+    panels = [_whole(flown, about), _settled(flown, about), *distances] if about else [_over_the_ground(flown)]
     return Chart(
         name=f"changed{pairs.other.letter}",
         caption=f"The flight that differs most, {pairs.names[place]}: {why}.{floor_words(flight.history for flight in flown)}"
+        + cut_words(distances)
         + (f" {ship_words(about)} Ship, filled area, plume, wind and north are as in {pairs.first.letter}." if about else ""),
         panels=[in_kilometres(panel) for panel in (*panels, _errors(flown))],
         columns=2,

@@ -17,6 +17,9 @@ from reports.run.ship import Hull
 _HULL = ((0.0, 1.0), (0.36, 0.9), (0.5, 0.76), (0.5, 0.03), (0.42, 0.0), (-0.42, 0.0), (-0.5, 0.03), (-0.5, 0.76), (-0.36, 0.9))
 """Outline of a hull seen from above, the bow first: to starboard over the beam, and ahead of the stern over the length."""
 
+SIZE_NOT_KNOWN = "size not known"
+"""What a legend says of a ship that is drawn pale."""
+
 _STRIP, _STRIP_MAX = 0.13, 0.28
 """Height of the strip above a map where bar and arrows are, over the whole height: of a map as high as wide, and of a flat one."""
 
@@ -34,7 +37,7 @@ def hull_line(hull: Hull, angle: float, x: float = 0.0, y: float = 0.0) -> Line:
     return Line(
         x=x + math.cos(angle) * across + math.sin(angle) * along,
         y=y - math.sin(angle) * across + math.cos(angle) * along,
-        label="ship, to scale" if hull.known else "ship, size not known",
+        label=f"ship, {'to scale' if hull.known else SIZE_NOT_KNOWN}",
         colour=Meaning.SHIP,
         style="thin" if hull.known else "dot",
         fill=True,

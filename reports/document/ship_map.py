@@ -47,7 +47,7 @@ def ship_panel(
 def ship_words(*about: Surroundings) -> str:
     """Return what maps about the ship show, one or several side by side, for a caption."""
     shapes = " or ".join(dict.fromkeys(of.shape for of in about))
-    hulls = "; or ".join(_hull_words(hull) for hull in dict.fromkeys(of.hull for of in about))
+    hulls = "; or ".join(hull_words(hull) for hull in dict.fromkeys(of.hull for of in about))
     smoke, changing = any(of.plume.smoke for of in about), any(of.changing for of in about)
     width = " Its width is two standard deviations of the mean smoke to either side." if smoke else ""
     moved = " Ship, north and wind are as they were at the closest approach." if changing else ""
@@ -57,7 +57,8 @@ def ship_words(*about: Surroundings) -> str:
     )
 
 
-def _hull_words(hull: Hull) -> str:
+def hull_words(hull: Hull) -> str:
+    """Return how large a ship is drawn, and why."""
     size = f"{hull.length:g} m by {hull.beam:g} m"
     if hull.known:
         return f"her hull is that of {hull.title}, {size}, as the scenario gives none"

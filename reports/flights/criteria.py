@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, TypedDict
 
 import numpy as np
@@ -105,6 +105,9 @@ _BESIDE_VESSEL = (
 )  # fmt: skip
 """Criteria that a flight about a circle is not judged by: it has no vessel."""
 
+_SCALED = ", scaled to the aircraft"
+"""What is said of a limit that is not the default, and that the scenario does not set."""
+
 _OUTSIDE = _Measure(what="Time outside the altitudes of the scenario", values=_column("altitude_outside_s"), unit="s")
 """Of the criterion that altitudes are kept: it has no limit of its own."""
 
@@ -134,7 +137,8 @@ def switched_off(trials: Sequence[Trial]) -> list[tuple[str, str]]:
 
 def _criterion(trial: Trial, key: str, value: Any) -> Criterion:
     if key in _MEASURES:
-        return _figure(_judged(trial.rows, key), key, float(value), _MEASURES[key])
+        found = _figure(_judged(trial.rows, key), key, float(value), _MEASURES[key])
+        return replace(found, limit=f"{found.limit}{_SCALED}") if trial.is_scaled(f"criteria.{key}") else found
     if key in _BETWEEN:
         return _between(trial, key, value, _BETWEEN[key])
     if key in _DEMAND:

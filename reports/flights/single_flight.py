@@ -18,7 +18,7 @@ from reports.run.time_history import ERROR_MIN, floor_words, tracking_error, tru
 from reports.run.trials import measured_from
 
 _NEAR, _FAR, _USUAL = 0.95, 1.6, 1.2
-"""Distances that the time history shows: nearest and farthest over r_min, and farthest over the median after settling [-]."""
+"""Distances that the time history shows: nearest and farthest over r_min, and farthest over the usual one [-]."""
 
 _HIDDEN = 0.2
 """Height within which a flight that stays there hides a level [m]."""
@@ -100,11 +100,14 @@ class _Histories:
         return f" No crossing for {gap_words(gap)}, before the vessel's last manoeuvre had ended." if gap else ""
 
     def _distance_range(self) -> tuple[float, float]:
-        """Return the least and the largest distance that are shown [m]: about r_min, and what the flight has on its orbit."""
+        """Return the least and the largest distance that are shown [m]: about r_min, and what the flight has on its orbit.
+
+        Of one that never settled it is what it has at most times.
+        """
         radius, distance = self._view.radius, self._view.distance
         nearest = float(np.nanmin(distance))
         settled = distance[self._view.time >= float(self._view.row.get("settling_time_s", math.nan))]
-        usual = float(np.nanmedian(settled)) if np.isfinite(settled).any() else nearest
+        usual = float(np.nanmedian(settled if np.isfinite(settled).any() else distance))
         return min(_NEAR * radius, nearest - 2.0), max(_FAR * radius, 1.1 * nearest, _USUAL * usual)
 
     def _tracking_panel(self) -> Panel:
@@ -116,8 +119,13 @@ class _Histories:
         north, east = self._column("wind_north_mps"), self._column("wind_east_mps")
         if not np.nanmax(np.abs([north, east]), initial=0.0) > NOTICEABLE:
             return None
-        lines = [self._line(part, "true wind", "black", "dash") for part in true_wind(self._view.samples, self._view.row)]
-        lines += [self._line(north, "estimate, north", Meaning.WIND), self._line(east, "estimate, east", Meaning.WIND, "dot")]
+        true_north, true_east = true_wind(self._view.samples, self._view.row)
+        lines = [
+            self._line(true_north, "true wind, north", "black", "dash"),
+            self._line(true_east, "true wind, east", "black", "dot"),
+            self._line(north, "estimate, north", Meaning.WIND),
+            self._line(east, "estimate, east", Meaning.WIND, "dot"),
+        ]
         return Panel(x_label=_TIME, y_label="Wind [m/s]", lines=lines)
 
     def _vessel_panel(self) -> Panel | None:

@@ -24,6 +24,12 @@ _POINTS = 200
 _APART = 0.12
 """Distance of words in a row at least, over its length."""
 
+_UNDER = 0.012
+"""Distance of a word in a row from the end of the line that leads to it from its mark, over the length of the row."""
+
+TIMES = "time since the start"
+"""What the legend calls the marks."""
+
 
 class _Word(NamedTuple):
     """Where a word may stand: its middle, half its size, and the end of it that stands at ``at``."""
@@ -59,16 +65,23 @@ def marks_beside(x: Array, y: Array, words: Sequence[str], drawn: Sequence[Line]
 
 
 def marks_in_a_row(x: Array, y: Array, words: Sequence[str], height: float, length: float) -> tuple[list[Line], list[Note]]:
-    """Return marks along a track that goes across the page, and their words at a height above it, as many as there is room for."""
+    """Return marks along a track that goes across the page, and their words at a height above it, as many as there is room for.
+
+    A line leads from a mark to its word.
+    """
     notes: list[Note] = []
-    for right, text in zip(x.tolist(), words, strict=True):
+    lines = _dots(x, y)
+    for right, above, text in zip(x.tolist(), y.tolist(), words, strict=True):
         if all(abs(right - of.x) > _APART * length for of in notes):
             notes.append(Note(x=right, y=height, text=text))
-    return _dots(x, y), notes
+            # From far above its mark a word could be that of any.
+            leads = np.array([above, height - _UNDER * length])
+            lines.append(Line(x=np.full(2, right), y=leads, label="", colour=Meaning.SHIP, style="thin"))
+    return lines, notes
 
 
 def _dots(x: Array, y: Array) -> list[Line]:
-    return [Line(x=x, y=y, label="", colour=Meaning.SHIP, style="dots")] if len(x) else []
+    return [Line(x=x, y=y, label=TIMES, colour=Meaning.SHIP, style="dots")] if len(x) else []
 
 
 def _places(x: float, y: float, text: str, size: float) -> Iterable[_Word]:

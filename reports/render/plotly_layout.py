@@ -33,7 +33,13 @@ _TITLE_SIZE, _SMALL_TITLE_SIZE = 16, 12
 """Letters of the titles above panels, and above many side by side [px]."""
 
 _SYMBOL, _CHARACTER = 46.0, 6.6
-"""Width of an entry of the legend: its symbol and the room about it, and each letter [px]."""
+"""Width of an entry of the legend without its letters, its symbol and the room about it; and of a name's letter [px]."""
+
+_NARROW, _BROAD, _OTHER = 4.5, 12.0, 8.0
+"""Widths of the letters of an entry [px]: of narrow ones, of broad ones, and of all others."""
+
+_WIDTHS = dict.fromkeys(" ,.'fijlrt", _NARROW) | dict.fromkeys("mwMW%", _BROAD)
+"""Widths of letters by the letter: by their mean alone, "guard changed commands" is 26 px wider than thought."""
 
 _LETTER, _LABEL_LINE = 8.0, 17
 """Width of a letter of an axis' label, and height of each of its lines [px]."""
@@ -155,7 +161,7 @@ def _legend_rows(labels: Sequence[str], width: float) -> int:
         return 0
     rows, used = 1, 0.0
     for label in labels:
-        entry = _SYMBOL + _CHARACTER * len(label)
+        entry = _SYMBOL + sum(_WIDTHS.get(letter, _OTHER) for letter in label)
         if used and used + entry > width:
             rows, used = rows + 1, 0.0
         used += entry

@@ -8,11 +8,14 @@ import numpy as np
 import numpy.typing as npt
 
 from reports.document.blocks import FlightPicker, Section
+from reports.document.map_marks import SIZE_NOT_KNOWN
 from reports.document.palette import COLOURS, Meaning
 from reports.document.scene import Scene
+from reports.document.ship_map import hull_words
 from reports.render.script_data import for_script
 from reports.run.columns import Array
 from reports.run.plume_shape import PlumeShape
+from reports.run.ship import Hull
 
 THREE = Path(__file__).parent / "bundle" / "three.min.js"
 """Library that draws in three dimensions; ``bundle/README.md`` says where it comes from."""
@@ -92,9 +95,16 @@ def draw_scene(scene: Scene) -> Data:
         "guard": [list(stretch) for stretch in scene.guard],
         "crossings": np.round(scene.crossings, 2).tolist(),
         "keepout": {"radius": scene.keepout_radius, "shape": scene.keepout_shape, "height": scene.source_height},
-        "hull": {"length": scene.hull.length, "beam": scene.hull.beam, "funnel": scene.hull.funnel},
+        "hull": _hull(scene.hull),
         "plumes": [[time, _sections(plume)] for time, plume in scene.plumes],
     }
+
+
+def _hull(hull: Hull) -> Data:
+    """Return a hull's size, what the legend calls her, and what is said of her size."""
+    name = "ship" if hull.known else f"ship, {SIZE_NOT_KNOWN}"
+    size = {"length": hull.length, "beam": hull.beam, "funnel": hull.funnel, "known": hull.known}
+    return size | {"name": name, "words": f"Of the ship: {hull_words(hull)}."}
 
 
 def _sections(plume: PlumeShape) -> list[list[float]]:

@@ -131,6 +131,11 @@ class Trial:
         """Return every parameter with value, unit, meaning and, if the run knows it, default."""
         return list(self.run.manifest["trial_parameters"][self.key])
 
+    def is_scaled(self, key: str) -> bool:
+        """Return whether the value of a key is its default scaled to the aircraft, and not the default itself."""
+        keys = self.run.manifest.get("scaled_parameters", {}).get(self.key, [])
+        return key in keys and any(of["value"] != of["default"] for of in self.parameters() if of["key"] == key)
+
     @property
     def swept(self) -> dict[str, list[Any]]:
         """Return the values of every key that the trial sweeps, in their order."""

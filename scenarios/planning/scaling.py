@@ -8,6 +8,7 @@ every aircraft flies the same study. The vessel and its keep-out area keep their
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any
 
 from aircraft.spec import Envelope
 from common.physics.coordinated_turn import heading_rate_for_bank
@@ -68,17 +69,20 @@ def scaled(scenario: Scenario, envelope: Envelope) -> Scenario:
     InputError : a scaled value is out of range
     """
     unit = units(envelope)
-    values: dict[str, object] = {
+    flown: dict[str, object] = {
         "guidance.airspeed_mps": envelope.airspeed,
         "guidance.bank_deg": math.degrees(envelope.bank),
     }
-    for key, factor in _SCALED.items():
-        section, name = key.split(".")
-        default = getattr(getattr(scenario, section, None), name, None)
-        if default is None:
-            continue
-        values[key] = tuple(x * factor(unit) for x in default) if isinstance(default, tuple) else default * factor(unit)
-    return with_values(scenario, {key: value for key, value in values.items() if not _is_set(scenario, key)})
+    values = {key: value for key, value in flown.items() if not _is_set(scenario, key)}
+    for key in scaled_keys(scenario):
+        default, factor = _default(scenario, key), _SCALED[key](unit)
+        values[key] = tuple(x * factor for x in default) if isinstance(default, tuple) else default * factor
+    return with_values(scenario, values)
+
+
+def scaled_keys(scenario: Scenario) -> list[str]:
+    """Return the keys that ``scaled`` scales: those that the scenario does not set itself, of those with a length or a time."""
+    return [key for key in _SCALED if _default(scenario, key) is not None and not _is_set(scenario, key)]
 
 
 def scaled_law_defaults(envelope: Envelope) -> dict[str, float]:
@@ -94,6 +98,11 @@ def units(envelope: Envelope) -> ScaleFactors:
     rate = heading_rate_for_bank(envelope.bank, envelope.airspeed)
     time = default_rate / rate
     return ScaleFactors(time=time, length=envelope.airspeed / default.airspeed_mps * time)
+
+
+def _default(scenario: Scenario, key: str) -> Any:
+    section, name = key.split(".")
+    return getattr(getattr(scenario, section, None), name, None)
 
 
 def _is_set(scenario: Scenario, key: str) -> bool:

@@ -40,7 +40,7 @@ from scenarios.metrics.columns import (
 )
 from scenarios.metrics.finding import FINDING_FIGURES
 from scenarios.planning.limits import omega_max
-from scenarios.planning.scaling import scaled
+from scenarios.planning.scaling import scaled, scaled_keys
 from scenarios.planning.spreads import predicted_spreads
 from scenarios.planning.theory.speed_ratio import theory_over_speed_ratio
 from scenarios.schema.scenario import Scenario
@@ -94,6 +94,7 @@ class FlightStudy:
             check_without_design(point.scenario)
         self._design, self._refusal = design_of(spec, first.altitude) if spec else (None, "")
         envelope = self._design.design.schedule.envelope if self._design else spec.envelope if spec else None
+        as_read = trials if envelope is not None else {}
         if envelope is not None:
             trials = {trial: scaled(of, envelope) for trial, of in trials.items()}
         if isinstance(scenario, Scenario):
@@ -102,8 +103,7 @@ class FlightStudy:
         self.trials = self.expanded(trials)
         self.experiments = {trial: Experiment(trial, of, alone=len(self.trials) == 1) for trial, of in self.trials.items()}
         check_flights(self.experiments.values(), self._design.design.schedule.envelope if self._design else None)
-        self.histories = scenario.histories
-        self._report = scenario.report
+        self.histories, self._report = scenario.histories, scenario.report
         self.flights = {trial: experiment.counted for trial, experiment in self.experiments.items()}
         keys = dict.fromkeys(key for experiment in self.experiments.values() for key in experiment.keys)
         points = [point.scenario for experiment in self.experiments.values() for point in experiment.points]
@@ -130,6 +130,7 @@ class FlightStudy:
             "modes": [mode.value for mode in Mode],
             "trial_parameters": {trial: parameters(of) for trial, of in self.trials.items()},
             "unused_parameters": {trial: unused_parameters(of) for trial, of in self.trials.items()},
+            "scaled_parameters": {trial: scaled_keys(of) for trial, of in as_read.items()},
             "sampled_at_random": self._sampled_at_random(),
             "flights_per_sample": {trial: flights_per_sample(of) for trial, of in self.trials.items()},
             "theory": {trial: theory_over_speed_ratio(of) for trial, of in self.trials.items()},

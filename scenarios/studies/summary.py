@@ -12,6 +12,7 @@ from common.run_layout import SUMMARY
 from measurement.estimate.words import content_words, counted_verdicts, verdict_words
 from scenarios.engine.task import Row
 from scenarios.simulation.outcome import Outcome
+from scenarios.world.faults import OF_SNIFFER
 
 NOT_MET_SHOWN = 20
 """Flights that did not meet every criterion, or reasons why they measured nothing, that are named on the console, at most."""
@@ -45,6 +46,7 @@ class FlightCounts:
     sulphur : row of the first flight with a sulphur content of the fuel
     verdicts : number of such flights by verdict and quality
     unmeasured : number of flights whose sniffer gave no sulphur content, by the reason
+    sniffer_faults : number of flights in which a fault of the sniffer began, by its kind
     """
 
     planned: int
@@ -67,6 +69,7 @@ class FlightCounts:
     sulphur: Row | None = None
     verdicts: Counter[tuple[str, str]] = field(default_factory=Counter)
     unmeasured: Counter[str] = field(default_factory=Counter)
+    sniffer_faults: Counter[str] = field(default_factory=Counter)
 
     @classmethod
     def of(cls, rows: Iterable[Row], planned: int) -> Self:
@@ -95,6 +98,8 @@ class FlightCounts:
         self.unflown_manoeuvres += row.get("manoeuvres_unflown", 0) > 0
         if row.get("plume_axis_crossings", 0) and not row["smoke_passes"]:
             self.beside_smoke.append(row["axis_height_error_mean_m"])
+        if row.get("fault") in OF_SNIFFER and row["fault_time_s"] <= row.get("duration_s", 0.0):
+            self.sniffer_faults[row["fault"]] += 1
         if math.isfinite(row.get("fsc_percent", math.nan)):
             self.sulphur = self.sulphur or row
             self.verdicts[row["sulphur_verdict"], row["sulphur_quality"]] += 1
@@ -132,7 +137,17 @@ class FlightCounts:
         return f"{counts}; {kept}, closest approach {self.nearest:.1f} m{about}"
 
     def sulphur_lines(self) -> list[str]:
-        """Return what was measured of the fuel: of one flight content and verdict, of several how many were called what."""
+        """Return what was measured of the fuel: of one flight content and verdict, of several how many were called what.
+
+        And in how many flights the sniffer failed: nothing else on the console says so.
+        """
+        faults = [
+            f"a fault of the sniffer began in {count} of {self.flown} flight{'s' * (self.flown > 1)}: {kind}"
+            for kind, count in self.sniffer_faults.items()
+        ]
+        return [*self._content_lines(), *faults]
+
+    def _content_lines(self) -> list[str]:
         row = self.sulphur
         if row is None:
             return [

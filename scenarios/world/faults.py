@@ -13,7 +13,10 @@ VESSEL_DATA, SATELLITES = "vessel_data", "satellite_navigation"
 SNIFFER_DEAD, SNIFFER_SATURATED = "sniffer_dead", "sniffer_saturated"
 """Faults of a sniffer on board: it repeats its last reading, or reads the end of its range."""
 
-NOT_OF_AIRCRAFT = frozenset({"none", VESSEL_DATA, SATELLITES, SNIFFER_DEAD, SNIFFER_SATURATED})
+OF_SNIFFER = frozenset({SNIFFER_DEAD, SNIFFER_SATURATED})
+"""Kinds that are the sniffer's."""
+
+NOT_OF_AIRCRAFT = frozenset({"none", VESSEL_DATA, SATELLITES, *OF_SNIFFER})
 """Kinds that are not the aircraft's."""
 
 

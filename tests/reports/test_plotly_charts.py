@@ -173,6 +173,17 @@ def test_names_of_an_ordinate_leave_the_legend_fewer_entries_in_a_row():
     assert named["margin"]["t"] - plain["margin"]["t"] == 30
 
 
+def test_an_entry_of_the_legend_with_broad_letters_takes_more_of_its_row():
+    # As measured in Chromium: 178, 124, 175 and 217 px; the last two share no row of 390 px, nor do they with the first two.
+    labels = ["keep-out area, r_min", "plume's axis", "ship, size not known", "guard changed commands"]
+    lines = [Line(x=np.array([0.0, 1.0]), y=np.array([0.0, 1.0]), label=label, colour="blue") for label in labels]
+    three, four = (
+        draw(Chart(name="c", caption="", panels=[Panel(x_label="a [m]", y_label="b", lines=of)]))["narrow"]
+        for of in (lines[:3], lines)
+    )
+    assert four["margin"]["t"] - three["margin"]["t"] == 30
+
+
 def test_names_of_an_ordinate_have_room_beside_the_panel_to_their_left():
     names = [(0.0, "holding off"), (1.0, "tracking")]
     plain = draw(a_chart(2, columns=2))["layout"]

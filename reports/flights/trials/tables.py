@@ -1,5 +1,6 @@
 """Tables of trials and of their flights."""
 
+import re
 from collections.abc import Callable, Sequence
 from typing import Any
 
@@ -35,6 +36,9 @@ FAILED_MAX = 40
 
 _NOTHING = "–"
 
+_BEYOND = "beyond r_min [m]"
+"""Head of the column beside that of the closest approach where flights have different r_min."""
+
 Columns = tuple[tuple[str, str, str], ...]
 
 _FLIGHT_COLUMNS = (
@@ -57,8 +61,8 @@ OSCILLATION_COLUMNS = (
 )
 
 
-_WORDS_MAX, _NUMBER, _LETTER = 3.2, 0.9, 0.15
-"""Relative widths of a table's columns: of words at most, of numbers at least, and of a letter of a heading [-]."""
+_WORDS_MAX, _NUMBER, _LETTER, _NAME_LETTER = 3.2, 0.9, 0.15, 0.13
+"""Relative widths of a table's columns: of words at most, of numbers at least, and of a letter of a heading and of a name [-]."""
 
 
 def flight_table(
@@ -82,7 +86,7 @@ def flight_table(
     """
     if columns is _FLIGHT_COLUMNS and radii_differ(rows):
         rows = rows.assign(clearance_m=clearance(rows))
-        columns = (*columns[:2], ("beyond r_min [m]", "clearance_m", "{:+.1f}"), *columns[2:])
+        columns = (*columns[:2], (_BEYOND, "clearance_m", "{:+.1f}"), *columns[2:])
     if flown_ratio:
         rows = rows.assign(flown_ratio=rows["nu"].where(was_flown(rows)))
         columns = (("ν flown [-]", "flown_ratio", "{:.2f}"), *columns)
@@ -90,7 +94,10 @@ def flight_table(
     cells = [
         [name(row), outcome(row), *(number(row.get(key), pattern) for _, key, pattern in columns)] for _, row in rows.iterrows()
     ]
-    words = (min(_WORDS_MAX, max(1.0, 0.1 * max((len(row[i]) for row in cells), default=0))) for i in (0, 1))
+    words = [min(_WORDS_MAX, max(1.0, 0.1 * max((len(row[i]) for row in cells), default=0))) for i in (0, 1)]
+    # A name goes on over the next line where a word of it ends.
+    parts = (part for row in cells for part in re.split(r" |(?<=_)(?=[a-z])", row[0]))
+    words[0] = max(words[0], _NAME_LETTER * max(map(len, parts), default=0))
     # The longest word of a heading has to fit.
     widths = [*words, *(max(_NUMBER, _LETTER * max(map(len, title.split()))) for title, _, _ in columns)]
     return Table(
@@ -125,7 +132,7 @@ def trial_table(trials: list[Trial]) -> Table:
         ])  # fmt: skip
     head = [
         "Trial", "Planned", "Flown", "Completed", "Met", "Aircraft lost", "Kept out", f"Violate, at most ({percent(CONFIDENCE)})",
-        "Keep-out violations", "Closest [m]", "beyond r_min [m]", "With guard", "Mode at the end",
+        "Keep-out violations", "Closest [m]", _BEYOND, "With guard", "Mode at the end",
     ]  # fmt: skip
     return Table(
         caption="The trials: flights as planned, flown, completed and met, and how they ended.",
@@ -168,7 +175,8 @@ def criteria_table(trials: list[Trial]) -> Table:
 def fault_table(trial: Trial) -> Table:
     """Return a row per kind of fault: how the flights ended, and how close they came from the fault on."""
     flown = trial.flown
-    after = {str(row["flight_id"]): _closest_after(trial, row) for _, row in flown.iterrows()}
+    differ = radii_differ(flown)
+    after = {str(row["flight_id"]): _closest_after(trial, row, beyond=differ) for _, row in flown.iterrows()}
     rows = []
     for kind, members in flown.groupby("fault", sort=False):
         closest = [after[str(flight_id)] for flight_id in members["flight_id"]]
@@ -181,29 +189,34 @@ def fault_table(trial: Trial) -> Table:
             f"{count(lost(members))}",
             f"{total(members, 'keepout_violations')}",
             number(least(column(members, "min_distance_m")), "{:.1f}"),
-            number(min(known, default=None), "{:.1f}") + (f" (of {len(known)})" if known and len(known) < len(closest) else ""),
+            *([number(least(clearance(members)), "{:+.1f}")] if differ else []),
+            number(min(known, default=None), "{:+.1f}" if differ else "{:.1f}")
+            + (f" (of {len(known)})" if known and len(known) < len(closest) else ""),
             span(column(members, "end_distance_m"), "{:.0f}"),
             counted(members["mode_at_end"]),
         ])  # fmt: skip
     head = [
         "Fault", "Flights", "Kept out", "Completed", "Aircraft lost", "Keep-out violations", "Closest [m]",
-        "Closest after the fault [m]", "At the end [m]", "Mode at the end",
+        *([_BEYOND, f"after the fault, {_BEYOND}"] if differ else ["Closest after the fault [m]"]),
+        "At the end [m]", "Mode at the end",
     ]  # fmt: skip
     return Table(
         caption="The faults: how the flights ended, and how close they came from the fault on.",
         head=head,
         rows=rows,
-        widths=[1.5, 0.7, 0.7, 1.0, 0.8, 1.0, 0.8, 1.2, 1.1, 1.8],
+        widths=[1.5, 0.7, 0.7, 1.1, 0.8, 1.0, 0.8, *([0.8] if differ else []), 1.2, 1.1, 1.8],
     )
 
 
-def _closest_after(trial: Trial, row: "pd.Series[Any]") -> float | None:
-    """Return how close a flight came from its fault on [m], or None without a fault or a time history."""
+def _closest_after(trial: Trial, row: "pd.Series[Any]", *, beyond: bool) -> float | None:
+    """Return how close a flight came from its fault on [m], ``beyond`` its own r_min or not; None without fault or time history."""
     history = None if pd.isna(row["fault_time_s"]) else trial.run.history(str(row["flight_id"]))
     if history is None:
         return None
     after = history[history["time_s"] >= row["fault_time_s"]]
-    return float(keepout_distance(after, trial.flight_config(row)).min()) if len(after) else None
+    if not len(after):
+        return None
+    return float(keepout_distance(after, trial.flight_config(row)).min()) - beyond * float(row["keepout_radius_m"])
 
 
 def failed_blocks(trials: Sequence[Trial]) -> list[Block]:
@@ -212,6 +225,7 @@ def failed_blocks(trials: Sequence[Trial]) -> list[Block]:
     failed = summary[~met(summary)]
     if not len(failed):
         return []
+    differ = radii_differ(summary)
     order = np.lexsort((np.arange(len(failed)), -np.nan_to_num(column(failed, "keepout_depth_m")), ~violated(failed)))
     rows = [
         [
@@ -219,19 +233,22 @@ def failed_blocks(trials: Sequence[Trial]) -> list[Block]:
             number(row["nu"] if pd.notna(row.get("duration_s")) else None, "{:.2f}"),
             number(row["keepout_violations"], "{:.0f}"),
             number(row["min_distance_m"], "{:.1f}"),
+            *([number(row["min_distance_m"] - row["keepout_radius_m"], "{:+.1f}")] if differ else []),
             ending(row),
         ]
         for _, row in failed.iloc[order[:FAILED_MAX]].iterrows()
     ]
-    head = ["Flight", "ν flown [-]", "Keep-out violations", "Closest [m]", "How it ended, and the criteria that it failed"]
+    margin = [_BEYOND] if differ else []
+    ended = "How it ended, and the criteria that it failed"
+    head = ["Flight", "ν flown [-]", "Keep-out violations", "Closest [m]", *margin, ended]
     first = count(violated(failed)) > 0
     table = Table(
         caption=f"Flights that failed a criterion, {'keep-out violations first, ' * first}each with its reason.",
         head=head,
         rows=rows,
-        widths=[min(2.4, 0.12 * max(len(row[0]) for row in rows)), 0.5, 0.9, 0.8, 4.4],
+        widths=[min(2.4, 0.12 * max(len(row[0]) for row in rows)), 0.5, 0.9, 0.8, *([0.8] if differ else []), 4.4],
         prose=True,
-        left_columns=5,
+        left_columns=len(head),
         breakable=True,
     )
     more = len(failed) - len(rows)

@@ -1,6 +1,7 @@
-// Distance to the vessel and bank over time, and the time shown as a line through both.
+// Distance to the vessel and bank over time, and the time shown as a line through both. The largest distances are left out:
+// of a flight that begins far away how near it comes would not be seen beside them.
 
-const MARGIN = {left: 58, right: 14, top: 8, bottom: 30}, GAP = 16, POINTS = 1200;
+const MARGIN = {left: 58, right: 14, top: 18, bottom: 30}, GAP = 16, POINTS = 1200, MOST = 0.9;
 
 function ticks(low, high, count) {
   const raw = (high - low) / count, power = 10 ** Math.floor(Math.log10(raw));
@@ -27,8 +28,10 @@ class Plot {
       bank.push((now.roll * 180) / Math.PI);
     }
     const nearest = Math.min(...distance), most = Math.max(10, ...bank.map(Math.abs));
+    const usual = [...distance].sort((a, b) => a - b)[MOST * POINTS], high = Math.max(1.8 * radius, 1.1 * nearest, 1.05 * usual);
+    const beyond = Math.max(...distance) > high ? `above ${Math.round(high)} m: not shown` : "";
     this.panels = [
-      {label: "Distance [m]", values: distance, low: Math.min(0.95 * radius, nearest - 2), high: Math.max(1.8 * radius, 1.1 * nearest), limit: radius},
+      {label: "Distance [m]", values: distance, low: Math.min(0.95 * radius, nearest - 2), high, limit: radius, beyond},
       {label: "Bank [deg]", values: bank, low: -1.1 * most, high: 1.1 * most},
     ];
     this.resize();
@@ -70,7 +73,7 @@ class Plot {
     pen.fillText("Time [s]", MARGIN.left + this.width, bottom + 27);
   }
 
-  drawPanel(pen, {label, values, low, high, limit}, top) {
+  drawPanel(pen, {label, values, low, high, limit, beyond}, top) {
     const y = (value) => top + (this.height * (high - value)) / (high - low);
     pen.save();
     pen.globalAlpha = 0.35;
@@ -118,6 +121,11 @@ class Plot {
     pen.fillStyle = "#1d2733";
     pen.fillText(label, 0, 0);
     pen.restore();
+    if (beyond) {
+      pen.textAlign = "right";
+      pen.fillStyle = "#5b6775";
+      pen.fillText(beyond, MARGIN.left + this.width, top - 5);
+    }
   }
 
   stroke(pen, points) {

@@ -60,6 +60,8 @@ class Replay {
     [this.slider.min, this.slider.max, this.slider.step] = [this.flight.start, this.flight.end, 0.1];
     for (const kind of ["guard", "guardLost"])
       this.part(kind).hidden = !this.flight.guard.some(([, , held]) => held === (kind === "guard"));
+    this.part("ship").textContent = this.flight.hull.name;
+    this.part("hull").textContent = this.flight.hull.words;
     this.plot.take(this.flight);
     this.gone?.dispose();
     this.gone = this.world;

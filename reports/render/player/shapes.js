@@ -1,5 +1,7 @@
 // What is drawn in three dimensions. East is x, up is y, south is z; everything points north before it is turned.
 
+const PALE = 0.3;
+
 function polyhedron(corners, faces, colours) {
   const places = [], shades = [];
   faces.forEach((face, number) => {
@@ -50,7 +52,8 @@ function block(width, height, length, x, y, z, colour) {
 }
 
 // A ship about her funnel, of whose mouth the height above the sea is given, and the share of her length that is aft of it.
-function shipShape({length, beam, funnel: share}, height, colour) {
+// One whose size is not known is pale.
+function shipShape({length, beam, funnel: share, known}, height, colour) {
   const group = new THREE.Group(), aft = share * length, fore = aft - length, half = beam / 2, deck = 0.22 * height;
   const outline = [[0, fore], [0.3, fore + 0.06 * length], [0.5, fore + 0.2 * length], [0.5, aft - 0.04 * length], [0.4, aft]];
   const round = [...outline, ...outline.slice(1).reverse().map(([x, z]) => [-x, z])];
@@ -66,6 +69,7 @@ function shipShape({length, beam, funnel: share}, height, colour) {
   );
   funnel.position.y = (height + deck) / 2;
   group.add(funnel);
+  if (!known) group.traverse((part) => part.material && Object.assign(part.material, {transparent: true, opacity: PALE}));
   return group;
 }
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from reports.document.chart import Line
-from reports.flights.time_marks import marks_beside, marks_in_a_row
+from reports.flights.time_marks import TIMES, marks_beside, marks_in_a_row
 
 SIZE = 100.0
 
@@ -69,4 +69,8 @@ def test_words_in_a_row_are_apart_and_every_mark_is_kept():
     assert lines[0].x.tolist() == x.tolist()
     assert np.min(np.diff([note.x for note in notes])) > 0.12 * SIZE
     assert {note.y for note in notes} == {10.0}
+    # The legend names the marks, and a line leads from the mark of each word to just below it.
+    assert [line.label for line in lines] == [TIMES] + [""] * len(notes)
+    assert [(line.x.tolist(), line.y[0]) for line in lines[1:]] == [([note.x] * 2, 0.0) for note in notes]
+    assert all(8.0 < line.y[1] < 10.0 for line in lines[1:])
     assert marks_in_a_row(x[:0], x[:0], [], 10.0, SIZE) == ([], [])

@@ -70,6 +70,9 @@ def test_both_tracks_of_the_flight_that_differs_most_are_those_of_its_time_histo
     chart = report.picture
     assert chart is not None
     assert chart.caption.startswith("The flight that differs most")
+    # Both begin 400 m away or more, which is above what the panel of the distance shows.
+    (distance,) = [panel for panel in chart.panels if panel.y_label == "Distance [m]"]
+    assert f"Beyond the scale: distance above {distance.y_range[1]:g} m." in chart.caption
     flight = next(name for name in ("nu_0.30", "nu_0.50", "nu_0.70") if name in chart.caption)
     for run in runs:
         right, along = about_the_plume(run.data.history(flight))

@@ -16,6 +16,7 @@ from reports.flights.first_page import closest_and_typical, flights_in_words
 from reports.flights.selection import picked_flights
 from reports.registry import content
 from reports.render import matplotlib_charts
+from reports.render.html import write_html
 from reports.render.pdf import write_pdf
 from reports.run.run_data import read_run
 from reports.run.trials import read_trials
@@ -271,3 +272,12 @@ def test_the_description_of_a_scenario_is_said_to_be_of_what_was_there_before_it
     run = read_run(run_path)
     report = content(replace(run, manifest=run.manifest | {"overrides": overrides}))
     assert report.description == words
+
+
+@pytest.mark.parametrize(("columns", "wide"), [(1, ["wide", "wide"]), (2, ["", "", "wide"])])
+def test_a_map_above_one_over_the_ground_is_as_wide_as_that_where_it_is_alone(report, tmp_path, columns, wide):
+    panels = [report.picture.panels[0]] * len(wide)
+    write_html(replace(report, picture=replace(report.picture, panels=panels, columns=columns, last_height=0.2)), tmp_path / "page")
+    page = (tmp_path / "page").read_text(encoding="utf-8")
+    (beside,) = re.findall(r'<div class="beside">(.*?)</div></div>', page)
+    assert [of.strip() for of in re.findall(r'class="plot([^"]*)"', beside)] == wide

@@ -188,6 +188,30 @@ def test_another_flight_is_picked_and_those_without_a_history_have_no_replay(bro
     assert browser.run("document.getElementById('replay').hidden") is True
 
 
+def test_a_ship_of_unknown_size_is_pale_and_the_key_and_the_caption_say_so(browser, page):
+    show(browser, page)
+    opaque = (
+        "(() => { let least = 1; window.replay.world.ship.traverse((part) =>"
+        " { least = Math.min(least, part.material?.opacity ?? 1); }); return least; })()"
+    )
+    told = "['ship', 'hull'].map((name) => document.querySelector(`.replay [data-part=${name}]`).textContent)"
+    for kind, known in (("sulphur", True), ("trials", False)):
+        picked(browser, f"{kind}/")
+        name, words = browser.run(told)
+        assert (name, browser.run(opaque) == 1) == ("ship" if known else "ship, size not known", known)
+        assert ("her size is not known" in words) == (not known)
+
+
+def test_the_distance_of_nine_tenths_of_a_flight_is_shown_and_words_say_where_it_is_not(browser, page):
+    show(browser, page)
+    for kind in OTHERS:
+        picked(browser, f"{kind}/")
+        panel = browser.run("window.replay.plot.panels[0]")
+        values = np.array(panel["values"])
+        assert np.mean((values > panel["low"]) & (values < panel["high"])) > 0.89
+        assert panel["beyond"] == (f"above {panel['high']:.0f} m: not shown" if values.max() > panel["high"] else "")
+
+
 def test_without_webgl_a_sentence_stands_in_its_place_and_the_curves_stay(browser, page):
     # As of a browser that does not have it, which says so at once.
     without = """{

@@ -18,6 +18,7 @@ from reports.registry import content
 from reports.render import html, replay
 from reports.replay.flight_scene import INTERVAL, flight_scene
 from reports.run.run_data import read_run
+from reports.run.ship import HULLS
 from reports.run.trials import read_trials
 
 
@@ -125,6 +126,13 @@ def test_smoke_is_drawn_anew_when_the_ship_has_slowed_down(run_of):
     assert after.half_width[-1] > 1.2 * before.half_width[-1]
     swaying = {name: (1.0 + 0.5 * np.sin(0.15 * history["time_s"])) * column for name, column in slowed.items()}
     assert 5 < len(with_history(measured, flight, **swaying).plumes) <= 25
+
+
+def test_a_ship_whose_size_is_not_known_is_told_from_one_of_a_known_class(scene):
+    sent = [replay.draw_scene(replace(scene, hull=hull))["hull"] for hull in (scene.hull, HULLS["coaster"])]
+    assert [(hull["known"], hull["name"]) for hull in sent] == [(False, "ship, size not known"), (True, "ship")]
+    assert sent[0]["words"] == "Of the ship: her size is not known, and drawn is a merchant ship of 150 m by 23 m."
+    assert "a coaster, 90 m by 14 m" in sent[1]["words"]
 
 
 def test_an_axis_without_smoke_has_one_shape(trial, row):

@@ -47,8 +47,11 @@ def test_the_time_history_has_the_true_wind_of_each_time(flown):
 def test_the_figure_over_time_shows_the_wind_as_it_changes(flown):
     view = flight_view(*flown)
     (panel,) = [panel for panel in flight_charts(view)[1].panels if panel.y_label == "Wind [m/s]"]
-    _, east = [line for line in panel.lines if line.label == "true wind"]
-    assert (east.style, east.y[0], east.y[-1]) == ("dash", pytest.approx(2.0), pytest.approx(6.0, abs=0.05))
+    (east,) = [line for line in panel.lines if line.label == "true wind, east"]
+    assert (east.y[0], east.y[-1]) == (pytest.approx(2.0), pytest.approx(6.0, abs=0.05))
+    # Both components look different, and each has its name.
+    looks = {line.label: (line.colour, line.style) for line in panel.lines}
+    assert len(looks) == len(set(looks.values())) == len(panel.lines) == 4
 
 
 def test_a_map_has_the_wind_of_its_moment(flown):

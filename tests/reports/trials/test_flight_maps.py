@@ -59,6 +59,11 @@ def test_the_panel_of_the_distance_shows_the_orbit_also_where_that_is_far_off_th
     (panel,) = [panel for panel in flight_charts(view)[1].panels if panel.y_label == "Distance [m]"]
     assert np.quantile(settled, 0.6) < panel.y_range[1]
     assert panel.y_range[1] == pytest.approx(1.2 * np.median(settled))
+    # One that never settled has no orbit, and is still seen.
+    view.row = view.row.copy()
+    view.row["settling_time_s"] = math.nan
+    (panel,) = [panel for panel in flight_charts(view)[1].panels if panel.y_label == "Distance [m]"]
+    assert panel.y_range[1] == pytest.approx(1.2 * np.median(view.distance))
 
 
 def test_many_stretches_become_few_that_hold_them_all(flight):

@@ -49,6 +49,20 @@ def test_the_closest_approach_as_shown_agrees_with_its_judgement(run, distance, 
     assert f"from its first second: {shown} from" in report.verdict.detail
 
 
+def test_a_limit_that_is_scaled_to_the_aircraft_says_so_on_page_1_and_in_the_table(run):
+    key = "criteria.tracking_error_rms_m"
+    limited = with_criterion(run, "steady", "tracking_error_rms_m", 2.5)
+    (parameter,) = [of for of in limited.manifest["trial_parameters"]["steady"] if of["key"] == key]
+    for scaled, value, words in (([key], 2.5, "≤ 2.5 m, scaled to the aircraft"), ([], 2.5, "≤ 2.5 m"), ([key], 1.5, "≤ 2.5 m")):
+        parameter["value"] = value
+        limited.manifest["scaled_parameters"] = {"steady": scaled}
+        report = content(limited)
+        (tile,) = [card for card in report.verdict.figures if card.name.startswith("Tracking error, rms after settling, worst")]
+        assert tile.limit == words
+        (table,) = [table for table in blocks_of(report, Table, "trials") if "Limit" in table.head]
+        assert words in [row[2] for row in table.rows]
+
+
 LOST = {"outcome": "aircraft_lost", "mode_at_end": "ditched", "criteria_met": False, "message": "it came down on the sea"}
 
 

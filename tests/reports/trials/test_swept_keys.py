@@ -13,6 +13,7 @@ from reports.errors import ReportError
 from reports.flights.names import _swept, flight_name, flown_elsewhere, swept_column, words_together
 from reports.flights.trials.charts import trial_charts
 from reports.flights.trials.panels_over import LIMIT_LABEL
+from reports.flights.trials.tables import failed_blocks, fault_table, flight_table
 from reports.registry import content
 from reports.run.columns import column
 from reports.run.run_data import read_run
@@ -75,6 +76,23 @@ def test_page_1_tells_of_flights_with_different_radii_how_far_each_stayed_beyond
         table for section in found.sections for table in section.blocks if isinstance(table, Table) and "Outcome" in table.head
     )
     assert [row[table.head.index("beyond r_min [m]")] for row in table.rows] == [f"{value:+.1f}" for value in kept]
+
+
+def test_tables_of_failed_flights_and_of_faults_have_the_distance_beyond_each_flights_own_radius(trial):
+    kept = column(trial.rows, "min_distance_m") - column(trial.rows, "keepout_radius_m")
+    faulty = trial.rows.assign(fault="rudder", fault_time_s=0.0, end_distance_m=300.0, criteria_met=False)
+    _, failed = failed_blocks([replace(trial, rows=faulty)])
+    assert [row[failed.head.index("beyond r_min [m]")] for row in failed.rows] == [f"{value:+.1f}" for value in kept]
+    faults = fault_table(replace(trial, rows=faulty))
+    (row,) = faults.rows
+    assert row[faults.head.index("beyond r_min [m]")] == f"{kept.min():+.1f}"
+    assert float(row[faults.head.index("after the fault, beyond r_min [m]")]) == pytest.approx(kept.min(), abs=0.1)
+    for table in (failed, faults):
+        assert len(table.head) == len(table.widths) == len(table.rows[0])
+    # With one radius for all, the closest approach says it.
+    one = faulty[faulty["keepout_radius_m"] == 150.0]
+    for table in (failed_blocks([replace(trial, rows=one)])[1], fault_table(replace(trial, rows=one))):
+        assert "beyond" not in " ".join(table.head)
 
 
 def test_page_1_tells_of_flights_with_one_radius_how_close_they_came(windy):
@@ -224,3 +242,12 @@ def test_a_sweep_whose_values_are_gone_names_the_table_that_had_them(trial):
     gone = replace(trial, run=replace(trial.run, draws=pd.DataFrame({"flight_id": []})))
     with pytest.raises(ReportError, match=r"draws\.csv' is gone or has no column 'keepout\.radius_m', .*; repeat the run's"):
         trial_charts(gone)
+
+
+@pytest.mark.parametrize("name", ["rmin_00000", "sea_faults_00000"])
+def test_the_name_of_a_flight_does_not_reach_into_its_outcome_in_print(trial, name):
+    rows = trial.rows.assign(message="it came down on the sea, after the fault 'engine'", outcome="aircraft_lost")
+    table = flight_table(rows, "Flight", lambda _: name)
+    # A4 leaves some 500 pt for a table, in which a letter of a name takes 3.9 pt; names may go on after a stroke.
+    room = 500.0 * table.widths[0] / sum(table.widths)
+    assert room >= 3.9 * max(map(len, re.split(r"(?<=_)(?=[a-z])", name)))

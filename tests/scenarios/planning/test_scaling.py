@@ -13,6 +13,7 @@ from aircraft.fleet.x8 import X8
 from aircraft.spec import Envelope
 from scenarios.errors import InputError
 from scenarios.experiment.requests import Experiment
+from scenarios.planning import scaling
 from scenarios.planning.planner import plan_flight
 from scenarios.planning.scaling import scaled, units
 from scenarios.schema.load import load_study, with_values
@@ -129,6 +130,16 @@ def test_every_key_with_a_length_or_a_time_is_scaled_by_its_unit_or_said_not_to_
             assert after[key] == pytest.approx(np.multiply(before[key], factor), rel=1e-12), key
         elif key not in ("guidance.airspeed_mps", "guidance.bank_deg"):
             assert after[key] == before[key], key
+
+
+def test_what_is_said_to_be_scaled_is_what_the_scenario_does_not_set():
+    given = load_study("sweep_nu", ["criteria.airspeed_error_rms_mps=0.5", "guidance.look_ahead_m=60"])
+    named = set(scaling.scaled_keys(given))
+    before, after = keys(given), keys(scaled(given, aircraft(time=2.0, length=3.0)))
+    own = {"guidance.airspeed_mps", "guidance.bank_deg"}
+    assert {key for key in before if before[key] != after[key]} - own == named
+    assert "criteria.tracking_error_rms_m" in named
+    assert not named & {"criteria.airspeed_error_rms_mps", "guidance.look_ahead_m"}
 
 
 def test_keys_without_a_unit_in_their_names_have_no_length_and_no_time():

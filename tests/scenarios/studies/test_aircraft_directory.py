@@ -51,6 +51,7 @@ def test_a_sweep_with_it_meets_every_criterion_and_names_it_in_report_and_manife
     manifest = read_manifest(out)
     assert manifest["config"]["aircraft"] == str(heavy)
     assert len(manifest["plugins"][str(heavy)]) == 16
+    assert "criteria.tracking_error_rms_m" in manifest["scaled_parameters"]["sweep_nu"]
     write_report(read_run(out), page := tmp_path / "report.html")
     assert "Heavy Cessna" in page.read_text(encoding="utf-8")
     # The run has the model that it flew, with its weight.

@@ -153,6 +153,17 @@ def test_the_sulphur_of_one_flight_is_stated_with_its_interval_and_of_several_by
     assert FlightCounts.of([{**row, "fsc_percent": float("nan")}], planned=1).sulphur_lines() == []
 
 
+def test_flights_whose_sniffer_failed_are_told_by_the_fault():
+    # 1800 s long; one fault was to begin after that, and an engine's is told by how the flight ended.
+    begun = [("sniffer_dead", 60.0), ("sniffer_dead", 90.0), ("sniffer_saturated", 60.0), ("sniffer_dead", 2e3), ("engine", 60.0)]
+    counts = FlightCounts.of([row(i, fault=kind, fault_time_s=time) for i, (kind, time) in enumerate(begun)], planned=5)
+    assert counts.sulphur_lines() == [
+        "a fault of the sniffer began in 2 of 5 flights: sniffer_dead",
+        "a fault of the sniffer began in 1 of 5 flights: sniffer_saturated",
+    ]
+    assert FlightCounts.of([row(0, fault="none", fault_time_s=float("nan"))], planned=1).sulphur_lines() == []
+
+
 def test_a_flight_whose_sniffer_gave_nothing_says_why():
     row = {"outcome": "completed", "kept_out": True, "criteria_met": True, "sulphur_reason": "no pass through a plume"}
     (line,) = FlightCounts.of([row] * 2, planned=2).sulphur_lines()
