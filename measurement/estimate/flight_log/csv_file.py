@@ -16,6 +16,7 @@ from measurement.errors import MeasurementError
 from measurement.estimate.flight_log.config import COLUMNS, LogConfig
 from measurement.estimate.flight_log.details import FlightRecord, times_of
 from measurement.estimate.flight_log.places import PLACES, ends, on_a_plane, places_of
+from measurement.estimate.flight_log.repeats import new_readings
 from measurement.estimate.record import check_increasing, check_units, lowest_reading
 from measurement.gases import GASES, UNITS
 from measurement.sniffer.lag import Array
@@ -47,7 +48,7 @@ class LoggedFlight:
 
     Attributes
     ----------
-    readings : of the sniffer
+    readings : of the sniffer, each once where the log's rows are faster
     place : ``time_s``, and of ``north_m``, ``east_m``, ``height_m`` and the true concentrations those that the file has
     about : which flight it is
     """
@@ -58,7 +59,7 @@ class LoggedFlight:
 
 
 def read_flight(path: Path, config: LogConfig) -> LoggedFlight:
-    """Return the flight in a CSV file with a row per reading.
+    """Return the flight in a CSV file with a row per reading, or with rows that are faster than the sensors.
 
     Times are seconds, or dates and times that pandas reads. Rows may end in a comma.
 
@@ -104,7 +105,8 @@ def read_flight(path: Path, config: LogConfig) -> LoggedFlight:
         if name in table:
             values[:, i] = config.scale.get(gas, 1.0) * _readings(table, name, path, config)
     _check_range(values, config, path)
-    _check_negative(values, config, path)
+    readings = new_readings(Readings(time, values), config.instrument.gases)
+    _check_negative(values, readings, config, path)
     found, remark = places_of(
         {key: _readings(table, name, path, config) for key in PLACES if (name := config.columns[key]) in table}, time, path
     )
@@ -127,7 +129,7 @@ def read_flight(path: Path, config: LogConfig) -> LoggedFlight:
         missing=config.missing,
         stated=config.stated,
     )
-    return LoggedFlight(Readings(time, values), pd.DataFrame(place), about)
+    return LoggedFlight(readings, pd.DataFrame(place), about)
 
 
 def _fault(error: Exception, head: str) -> str:
@@ -216,13 +218,13 @@ def _check_range(values: Array, config: LogConfig, path: Path) -> None:
             )
 
 
-def _check_negative(values: Array, config: LogConfig, path: Path) -> None:
-    """Refuse readings that are lower than those of no gas: they are marks for missing ones, or have the wrong sign."""
+def _check_negative(values: Array, readings: Readings, config: LogConfig, path: Path) -> None:
+    """Refuse values of rows that are lower than readings of no gas: they are marks for missing ones, or have the wrong sign."""
     for gas in config.instrument.gases:
         column, unit = values[:, GASES.index(gas)], UNITS[gas]
         if not np.isfinite(column).any():
             continue
-        lowest = lowest_reading(gas, values, config.instrument)
+        lowest = lowest_reading(gas, readings.values, config.instrument)
         low = np.flatnonzero(column < lowest)
         if low.size:
             least, more = float(column[low[0]]), f", and {low.size - 1} more are as low" if low.size > 1 else ""
