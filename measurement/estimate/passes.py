@@ -51,7 +51,7 @@ def readings_noise(record: Record, instrument: SnifferSpec) -> dict[str, float]:
     for gas in (gas for gas in GASES if gas in record.values[0]):
         stated = instrument.known(gas).noise
         if math.isnan(stated):
-            stated = record.scatter(gas)
+            stated = record.scatter[gas]
         noise[gas] = stated
     return noise
 

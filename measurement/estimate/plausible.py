@@ -22,7 +22,7 @@ def unlikely(record: Record, readings: Readings, instrument: SnifferSpec) -> lis
     telling = ["so2", *(gas for gas in used_gases(record) if so2.cross.get(gas, 0.0) or so2.cross_sd.get(gas, 0.0))]
     problems = list(sticking(readings, instrument.known("co2")))
     for channel in map(instrument.known, telling):
-        problems += sticking(readings, channel) or quiet(record.scatter(channel.gas), channel)
+        problems += sticking(readings, channel) or quiet(record.scatter[channel.gas], channel)
     return problems or _exchanged(record)
 
 
@@ -35,7 +35,7 @@ def _exchanged(record: Record) -> list[str]:
         return []
     no, no2 = (float(np.ptp(np.quantile(record.of(gas), (_LOW, _HIGH)))) for gas in ("no", "no2"))
     # The squares of what noise and plume do add up.
-    if no2**2 - (_SIGMAS * record.scatter("no2")) ** 2 <= (no + OZONE_MOST) ** 2:
+    if no2**2 - (_SIGMAS * record.scatter["no2"]) ** 2 <= (no + OZONE_MOST) ** 2:
         return []
     return [
         f"NO2 varies by {no2:.0f} ppb in the plume and NO by {no:.0f} ppb: exhaust has more NO than NO2, and ozone makes at most"

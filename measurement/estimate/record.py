@@ -29,6 +29,9 @@ which an aircraft has crossed a plume and left it."""
 BRIDGED = 2.5
 """Gaps of up to so many sample periods are bridged by a straight line; longer ones part the record."""
 
+_WHOLE = 1.75
+"""Between readings that are fewer sample periods apart none is missing, even if their times are uneven by three quarters."""
+
 SHORTEST = 8
 """Fewest samples of a segment: pieces between gaps that have fewer are left out."""
 
@@ -69,14 +72,14 @@ class Record:
     step : between samples [s]
     times : of each segment, shape (n,) [s]
     values : of each segment, by gas, shape (n,) each
-    resolution : of the readings as they were logged, by gas: the smallest change from one to the next, 0 where none changes
+    scatter : standard deviation of each gas's readings that they show themselves, as they were logged
     problems : why there can be no verdict, a sentence each
     """
 
     step: float
     times: tuple[Array, ...]
     values: tuple[dict[str, Array], ...]
-    resolution: dict[str, float]
+    scatter: dict[str, float]
     problems: tuple[str, ...]
     _kept: dict[Hashable, Any] = field(default_factory=dict, init=False, repr=False, compare=False)
 
@@ -96,10 +99,6 @@ class Record:
     def of(self, gas: str) -> Array:
         """Return all samples of a gas."""
         return np.concatenate([segment[gas] for segment in self.values])
-
-    def scatter(self, gas: str) -> float:
-        """Return the standard deviation of a gas's readings that they show themselves."""
-        return shown_scatter([segment[gas] for segment in self.values], self.resolution[gas])
 
     @property
     def duration(self) -> float:
@@ -138,10 +137,9 @@ def checked_record(readings: Readings, instrument: SnifferSpec) -> Record:
     columns = [GASES.index(gas) for gas in gases]
     problems = _problems(time, values, gases, instrument)
     known = np.isfinite(values[:, columns]).all(axis=1)
+    segments = [segment for segment in pieces(time, np.flatnonzero(known), step) if len(segment) >= SHORTEST]
     times, parts = [], []
-    for segment in pieces(time, np.flatnonzero(known), step):
-        if len(segment) < SHORTEST:
-            continue
+    for segment in segments:
         grid = time[segment[0]] + step * np.arange(math.floor((time[segment[-1]] - time[segment[0]]) / step + 1e-6) + 1)
         # A grid of the record's own times is left as it is.
         grid = time[segment] if len(grid) == len(segment) and np.allclose(grid, time[segment], atol=1e-3 * step) else grid
@@ -149,13 +147,16 @@ def checked_record(readings: Readings, instrument: SnifferSpec) -> Record:
         parts.append({gas: np.interp(grid, time[segment], values[segment, GASES.index(gas)]) for gas in gases})
     if not times:
         raise MeasurementError(f"no {SHORTEST} samples in a row have both SO2 and CO2; give a record with fewer gaps")
-    resolution = {gas: shown_step(values[:, GASES.index(gas)]) for gas in gases}
-    return Record(step=step, times=tuple(times), values=tuple(parts), resolution=resolution, problems=problems)
+    # Samples that are interpolated lie on straight lines, and show no noise.
+    whole = [run for run in pieces(time, np.flatnonzero(known), step, _WHOLE) if len(run) > 2] or segments
+    logged = {gas: values[:, GASES.index(gas)] for gas in gases}
+    scatter = {gas: shown_scatter([column[run] for run in whole], shown_step(column)) for gas, column in logged.items()}
+    return Record(step=step, times=tuple(times), values=tuple(parts), scatter=scatter, problems=problems)
 
 
-def pieces(time: Array, rows: npt.NDArray[np.intp], step: float) -> list[npt.NDArray[np.intp]]:
-    """Return the rows that have all readings, shape (n,), in pieces between gaps; ``step`` is the period of the log [s]."""
-    return np.split(rows, np.flatnonzero(np.diff(time[rows]) > BRIDGED * step) + 1)
+def pieces(time: Array, rows: npt.NDArray[np.intp], step: float, periods: float = BRIDGED) -> list[npt.NDArray[np.intp]]:
+    """Return the rows that have all readings, shape (n,), in pieces between gaps of so many periods of the log, ``step`` [s]."""
+    return np.split(rows, np.flatnonzero(np.diff(time[rows]) > periods * step) + 1)
 
 
 def _used(values: Array, instrument: SnifferSpec) -> list[str]:
