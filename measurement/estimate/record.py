@@ -242,7 +242,7 @@ def shown_scatter(segments: Sequence[Array], step: float) -> float:
 
 
 def lowest_reading(gas: str, values: Array, instrument: SnifferSpec) -> float:
-    """Return how low a gas may read for its noise, its zero and what the cell makes of other gases: 0 for CO2.
+    """Return how low a gas may read for its noise, its zero and what the cell makes of other gases; CO2 is in all air.
 
     Parameters
     ----------
@@ -250,14 +250,13 @@ def lowest_reading(gas: str, values: Array, instrument: SnifferSpec) -> float:
     values : readings of all gases, shape (m, 4)
     instrument : as the analyst knows it; noise that it does not state is what the readings show
     """
-    if gas == "co2":
-        return 0.0
     channel, column = instrument.known(gas), values[:, GASES.index(gas)]
     noise = channel.noise
     if math.isnan(noise):
         noise = shown_scatter([column[np.isfinite(column)]], shown_step(column))
     explained = _NEGATIVE_SIGMA * math.hypot(noise, channel.zero_sd, 1.0) - min(channel.zero, 0.0)
-    return -explained - _cross_floor(channel.cross, values)
+    floor = -explained - _cross_floor(channel.cross, values)
+    return max(0.0, CO2_LEAST + floor) if gas == "co2" else floor
 
 
 def _problems(time: Array, values: Array, gases: list[str], instrument: SnifferSpec) -> tuple[str, ...]:

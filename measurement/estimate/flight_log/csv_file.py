@@ -219,7 +219,7 @@ def _check_range(values: Array, config: LogConfig, path: Path) -> None:
 
 
 def _check_negative(values: Array, readings: Readings, config: LogConfig, path: Path) -> None:
-    """Refuse values of rows that are lower than readings of no gas: they are marks for missing ones, or have the wrong sign."""
+    """Refuse values of rows that are lower than readings of clean air: marks for missing ones, calibrations, or a wrong sign."""
     for gas in config.instrument.gases:
         column, unit = values[:, GASES.index(gas)], UNITS[gas]
         if not np.isfinite(column).any():
@@ -228,10 +228,12 @@ def _check_negative(values: Array, readings: Readings, config: LogConfig, path: 
         low = np.flatnonzero(column < lowest)
         if low.size:
             least, more = float(column[low[0]]), f", and {low.size - 1} more are as low" if low.size > 1 else ""
+            air = "air, " if gas == "co2" else ""
             raise MeasurementError(
-                f"'{path}': {gas.upper()} is {least:g} {unit} in row {low[0] + 2}{more}; noise, zero and other gases explain"
-                f" {lowest:.0f} {unit} at least: where it stands for a missing reading, leave it empty or name it in the"
-                f" configuration, as in missing = [-9999]; otherwise check the sign, and state the channel's noise, zero and cross"
+                f"'{path}': {gas.upper()} is {least:g} {unit} in row {low[0] + 2}{more}; {air}noise, zero and other gases explain"
+                f" {lowest:.0f} {unit} at least: where it stands for a missing reading, or is of a calibration from which the"
+                f" sensor has not recovered, leave it empty or name it in the configuration, as in missing = [-9999]; otherwise"
+                f" check the sign, and state the channel's noise, zero and cross"
             )
 
 

@@ -31,6 +31,17 @@ def test_a_reading_beyond_the_range_of_its_sensor_is_refused_with_its_row(logged
     assert error.count("\n") == 1
 
 
+def test_a_calibration_with_air_without_co2_is_refused_with_its_row(logged, capsys):
+    # Zero air is 420 ppm below the background, more than a plume is above it: it drew the slope to 0.
+    with_values(logged, "co2_ppm", range(40, 60), 2.0)
+    assert run(logged) == 2
+    error = capsys.readouterr().err
+    # Air has 250 ppm at least; noise of 1 ppm, a zero of 5 ppm (1 sigma) and 1 ppm for what is not stated, 8 times: 42 ppm.
+    assert "CO2 is 2 ppm in row 42, and 19 more are as low; air, noise, zero and other gases explain 208 ppm at least" in error
+    assert "or is of a calibration from which the sensor has not recovered, leave it empty" in error
+    assert error.count("\n") == 1
+
+
 @pytest.mark.usefixtures("briefly")
 def test_a_reading_at_the_end_of_the_range_is_saturated(logged, capsys):
     with_values(logged, "so2_ppb", [20], 20000.0)
