@@ -183,7 +183,7 @@ def check_increasing(time: Array, path: Path | None = None) -> None:
     where, row, what = ("", "", "record") if path is None else (f"'{path}': ", f" in row {at + 2}", "rows by time")
     raise MeasurementError(
         f"{where}times do not increase: {time[at]:.15g} s{row} is followed by {time[at + 1]:.15g} s; sort the {what} and drop"
-        " repeats"
+        " repeats, or, where the clock was set back, correct the times after it"
     )
 
 

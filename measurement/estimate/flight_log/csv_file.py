@@ -98,7 +98,7 @@ def read_flight(path: Path, config: LogConfig) -> LoggedFlight:
         if name not in table and (key in _REQUIRED or name != COLUMNS[key]):
             raise MeasurementError(_missing(path, key.upper() if key in GASES else key, key, name, table))
     time, logged = _time(table, config.columns["time"], path)
-    check_increasing(time, path)
+    _check_time(time, path)
     values = np.full((len(table), len(GASES)), np.nan)
     for i, gas in enumerate(GASES):
         name = config.columns[gas]
@@ -251,6 +251,13 @@ def _time(table: pd.DataFrame, name: str, path: Path) -> tuple[Array, tuple[date
         ) from None
     time = np.asarray((moments - moments.iloc[0]).dt.total_seconds(), dtype=np.float64)
     return time, None if moments.isna().any() else (moments.iloc[0].to_pydatetime(), moments.iloc[-1].to_pydatetime())
+
+
+def _check_time(time: Array, path: Path) -> None:
+    """Refuse times that are missing, or do not increase."""
+    if (missing := np.flatnonzero(~np.isfinite(time))).size:
+        raise MeasurementError(f"'{path}' has no time in row {missing[0] + 2}; give a time in every row, or remove the row")
+    check_increasing(time, path)
 
 
 def _has_offset(column: pd.Series) -> bool:

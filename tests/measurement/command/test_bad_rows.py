@@ -125,3 +125,25 @@ def test_a_table_that_is_no_log_is_refused_in_plain_words(logged, capsys, conten
     assert "0.0.1" not in error
     assert "C error: Expected" not in error
     assert error.count("\n") == 1
+
+
+def test_a_clock_that_is_set_back_is_told_apart_from_rows_that_are_not_sorted(logged, capsys):
+    # Seconds of the day begin anew at midnight; rows sorted by them would be of two times at once.
+    table = pd.read_csv(logged)
+    table.assign(time_s=(86_300.0 + table["time_s"]) % 86_400.0).to_csv(logged, index=False)
+    assert run(logged) == 2
+    error = capsys.readouterr().err
+    assert "86399 s in row 101 is followed by 0 s" in error
+    assert "or, where the clock was set back, correct the times after it" in error
+
+
+@pytest.mark.parametrize("dates", [True, False])
+def test_a_row_without_a_time_is_named(logged, capsys, dates):
+    table = pd.read_csv(logged)
+    if dates:
+        table["time_s"] = (pd.Timestamp("2026-06-01T10:00:00") + pd.to_timedelta(table["time_s"], unit="s")).astype(str)
+    table.loc[20, "time_s"] = np.nan
+    table.to_csv(logged, index=False)
+    assert run(logged) == 2
+    error = capsys.readouterr().err
+    assert error == f"error: '{logged}' has no time in row 22; give a time in every row, or remove the row\n"
