@@ -5,6 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 import numpy.typing as npt
 
+from measurement.estimate.record import shown_step
 from measurement.gases import GASES
 from measurement.sniffer.lag import Array
 from measurement.sniffer.sniffer import Readings
@@ -18,6 +19,10 @@ _LOW = 0.1
 _OFF, _REGULAR = 0.25, 0.8
 """How far an interval may be from a whole multiple of the sensor's own, over that, and the share of the intervals that are so near:
 half of those are that noise and rounding make."""
+
+
+_LARGER = 0.25
+"""Least share of the changes that are larger than a step of the readings."""
 
 
 def new_readings(logged: Readings, gases: Sequence[str]) -> Readings:
@@ -46,12 +51,15 @@ def new_readings(logged: Readings, gases: Sequence[str]) -> Readings:
 def rows_per_reading(column: Array) -> float:
     """Return how many rows of a log a reading of a gas has, mean; 1 where they do not come at intervals of more than a row.
 
+    Readings in coarse steps may change as seldom and as evenly as passes come, and mostly by one step: they do not tell.
+
     Parameters
     ----------
     column : readings by row, not a number where there is none, shape (n,)
     """
-    between = np.diff(_changes(column))
-    if len(between) < _FEWEST:
+    changes = _changes(column)
+    between = np.diff(changes)
+    if len(between) < _FEWEST or np.mean(np.abs(np.diff(column[changes])) > 1.5 * shown_step(column)) < _LARGER:
         return 1.0
     rows = float(np.mean(between[between <= 1.5 * np.quantile(between, _LOW)]))
     off = np.abs(between / rows - np.round(between / rows))

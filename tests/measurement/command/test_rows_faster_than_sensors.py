@@ -68,21 +68,21 @@ def test_the_slowest_gas_sets_the_readings_and_a_faster_one_has_those_of_their_t
 
 
 def test_gases_that_are_read_between_each_other_are_interpolated_at_the_times_of_one():
-    # CO2 that rises by 1 ppm/s is read half a second after SO2; its rows hold it until the next reading.
-    rows = np.arange(400)
+    # CO2 is read half a second after SO2, and its rows hold it until the next reading.
+    rows, generator = np.arange(400), np.random.default_rng(0)
+    so2, co2 = generator.normal(size=(2, 41))
     values = np.full((400, 4), np.nan)
-    values[:, 0] = np.random.default_rng(0).normal(size=40)[rows // 10]
-    values[:, 1] = 420.0 + np.maximum(0.0, (rows - 5) // 10 + 0.5)
+    values[:, 0], values[:, 1] = so2[rows // 10], co2[(rows + 5) // 10]
     found = new_readings(Readings(rows / 10.0, values), ("so2", "co2"))
     assert found.time == pytest.approx(np.arange(40.0))
-    # Before its first change nothing is known of when it was read.
-    assert found.values[2:, 1] == pytest.approx(420.0 + found.time[2:])
+    assert found.values[1:, 0] == pytest.approx(so2[1:40])
+    assert found.values[1:, 1] == pytest.approx(0.5 * (co2[1:40] + co2[2:41]))
 
 
 @pytest.mark.parametrize("rows", [2, 3.5, 10, 12.4, 50])
 @pytest.mark.parametrize("step", [0.1, 10.0])
 def test_rows_of_a_reading_are_counted_also_where_some_readings_are_equal(rows, step):
-    values = np.round(4.0 * np.random.default_rng(0).normal(size=300) / step) * step
+    values = np.round(10.0 * np.random.default_rng(0).normal(size=300) / step) * step
     column = values[np.floor(np.arange(int(rows * 300)) / rows).astype(int)]
     # Rows are whole: a reading of 3.5 has 3 or 4.
     assert rows_per_reading(column) == pytest.approx(rows, abs=0.1)
@@ -94,3 +94,12 @@ def test_noise_that_rounding_hides_is_no_log_that_repeats_readings(sigma):
         generator = np.random.default_rng(seed)
         column = np.round(generator.uniform() + sigma * generator.normal(size=1000))
         assert rows_per_reading(column) == 1.0
+
+
+@pytest.mark.parametrize("step", [20.0, 50.0, 100.0])
+@pytest.mark.parametrize("gas", [0, 1])
+def test_passes_at_even_times_in_coarse_steps_are_no_log_that_repeats_readings(gas, step):
+    # Each pass takes the reading up a step and down again.
+    air = crossings(0.25, meander=0.0, interval=10.0)
+    readings = read(plain_sniffer(so2_noise=2.5, co2_noise=1.0), air).values[:, gas]
+    assert rows_per_reading(np.round(readings / step) * step) == 1.0
