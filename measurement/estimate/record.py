@@ -72,13 +72,15 @@ class Record:
     step : between samples [s]
     times : of each segment, shape (n,) [s]
     values : of each segment, by gas, shape (n,) each
-    scatter : standard deviation of each gas's readings that they show themselves, as they were logged
+    resolution : of the readings as they were logged, by gas: the smallest change from one to the next, 0 where none changes
+    scatter : standard deviation of the readings that they show themselves, likewise
     problems : why there can be no verdict, a sentence each
     """
 
     step: float
     times: tuple[Array, ...]
     values: tuple[dict[str, Array], ...]
+    resolution: dict[str, float]
     scatter: dict[str, float]
     problems: tuple[str, ...]
     _kept: dict[Hashable, Any] = field(default_factory=dict, init=False, repr=False, compare=False)
@@ -132,11 +134,11 @@ def checked_record(readings: Readings, instrument: SnifferSpec) -> Record:
             " seconds, not milliseconds or hours"
         )
     gases = _used(values, instrument)
-    for gas in gases:
-        check_units(gas, values[:, GASES.index(gas)])
-    columns = [GASES.index(gas) for gas in gases]
+    logged = {gas: values[:, GASES.index(gas)] for gas in gases}
+    for gas, column in logged.items():
+        check_units(gas, column)
     problems = _problems(time, values, gases, instrument)
-    known = np.isfinite(values[:, columns]).all(axis=1)
+    known = np.isfinite(list(logged.values())).all(axis=0)
     segments = [segment for segment in pieces(time, np.flatnonzero(known), step) if len(segment) >= SHORTEST]
     times, parts = [], []
     for segment in segments:
@@ -144,14 +146,14 @@ def checked_record(readings: Readings, instrument: SnifferSpec) -> Record:
         # A grid of the record's own times is left as it is.
         grid = time[segment] if len(grid) == len(segment) and np.allclose(grid, time[segment], atol=1e-3 * step) else grid
         times.append(grid)
-        parts.append({gas: np.interp(grid, time[segment], values[segment, GASES.index(gas)]) for gas in gases})
+        parts.append({gas: np.interp(grid, time[segment], column[segment]) for gas, column in logged.items()})
     if not times:
         raise MeasurementError(f"no {SHORTEST} samples in a row have both SO2 and CO2; give a record with fewer gaps")
     # Samples that are interpolated lie on straight lines, and show no noise.
     whole = [run for run in pieces(time, np.flatnonzero(known), step, _WHOLE) if len(run) > 2] or segments
-    logged = {gas: values[:, GASES.index(gas)] for gas in gases}
-    scatter = {gas: shown_scatter([column[run] for run in whole], shown_step(column)) for gas, column in logged.items()}
-    return Record(step=step, times=tuple(times), values=tuple(parts), scatter=scatter, problems=problems)
+    resolution = {gas: shown_step(column) for gas, column in logged.items()}
+    scatter = {gas: shown_scatter([column[run] for run in whole], resolution[gas]) for gas, column in logged.items()}
+    return Record(step, tuple(times), tuple(parts), resolution, scatter, problems)
 
 
 def pieces(time: Array, rows: npt.NDArray[np.intp], step: float, periods: float = BRIDGED) -> list[npt.NDArray[np.intp]]:
@@ -231,9 +233,9 @@ def shown_scatter(segments: Sequence[Array], step: float) -> float:
 
     It is half the step at least: so much has a reading that moves between two neighbouring marks.
     """
-    second = np.concatenate([np.diff(segment, 2) for segment in segments])
-    if not len(second):
+    if not sum(len(segment) > 2 for segment in segments):
         return 0.5 * step
+    second = np.concatenate([np.diff(segment, 2) for segment in segments])
     # Whole numbers hide their noise: most of these differences are 0. Spread evenly over a step, they show it again.
     spread = step * ((_EVEN * np.arange(len(second))) % 1.0 - 0.5)
     # The variance of a second difference is 6 times that of a sample.
@@ -262,9 +264,7 @@ def lowest_reading(gas: str, values: Array, instrument: SnifferSpec) -> float:
 def _problems(time: Array, values: Array, gases: list[str], instrument: SnifferSpec) -> tuple[str, ...]:
     problems = []
     for gas in gases:
-        channel, column = instrument.channel(gas), values[:, GASES.index(gas)]
-        if channel is None:
-            continue
+        channel, column = instrument.known(gas), values[:, GASES.index(gas)]
         name, unit = gas.upper(), UNITS[gas]
         missing = float(np.mean(~np.isfinite(column)))
         if missing > _MISSING_MAX:
