@@ -245,12 +245,21 @@ def _time(table: pd.DataFrame, name: str, path: Path) -> tuple[Array, tuple[date
     try:
         moments = pd.to_datetime(column, utc=True, format="ISO8601")
     except (ValueError, TypeError):
+        row = _unreadable(column)
+        told = str(column.iloc[row])
         raise MeasurementError(
-            f"'{path}': time '{column.iloc[0]}' in column '{name}' cannot be read; give seconds, or 2024-05-01T12:00:00.0"
-            f"{_with_a_point(str(column.iloc[0]))}"
+            f"'{path}': time '{told}' in column '{name}' cannot be read (row {row + 2}); give seconds, or 2024-05-01T12:00:00.0"
+            f"{_with_a_point(told)}"
         ) from None
     time = np.asarray((moments - moments.iloc[0]).dt.total_seconds(), dtype=np.float64)
     return time, None if moments.isna().any() else (moments.iloc[0].to_pydatetime(), moments.iloc[-1].to_pydatetime())
+
+
+def _unreadable(column: pd.Series) -> int:
+    """Return the first row whose time is not of the kind that most rows have: seconds, or dates and times."""
+    seconds = pd.to_numeric(column, errors="coerce").notna()
+    dates = pd.to_datetime(column, utc=True, format="ISO8601", errors="coerce").notna()
+    return int(np.argmin(seconds if seconds.sum() > dates.sum() else dates))
 
 
 def _check_time(time: Array, path: Path) -> None:

@@ -147,3 +147,13 @@ def test_a_row_without_a_time_is_named(logged, capsys, dates):
     assert run(logged) == 2
     error = capsys.readouterr().err
     assert error == f"error: '{logged}' has no time in row 22; give a time in every row, or remove the row\n"
+
+
+@pytest.mark.parametrize(("row", "word"), [(301, "Mean"), (100, "time_s"), (0, "s")])
+def test_a_row_of_words_among_readings_is_named(logged, capsys, row, word):
+    # A summary below the readings, head lines of two logs in one file, and units below the head line.
+    lines = logged.read_text(encoding="utf-8").splitlines()
+    lines.insert(1 + row, word + "," * lines[0].count(","))
+    logged.write_text("\n".join(lines), encoding="utf-8")
+    assert run(logged) == 2
+    assert f"time '{word}' in column 'time_s' cannot be read (row {row + 2})" in capsys.readouterr().err
