@@ -157,3 +157,12 @@ def test_a_row_of_words_among_readings_is_named(logged, capsys, row, word):
     logged.write_text("\n".join(lines), encoding="utf-8")
     assert run(logged) == 2
     assert f"time '{word}' in column 'time_s' cannot be read (row {row + 2})" in capsys.readouterr().err
+
+
+def test_dates_and_times_of_digits_alone_are_no_seconds(logged, capsys):
+    # As seconds they have a gap at every minute, and 100 % of the record were gaps.
+    table = pd.read_csv(logged)
+    moments = pd.Timestamp("2026-06-01T10:00:00") + pd.to_timedelta(table["time_s"], unit="s")
+    table.assign(time_s=moments.dt.strftime("%Y%m%d%H%M%S")).to_csv(logged, index=False)
+    assert run(logged) == 2
+    assert "time 20260601100000 in column 'time_s' is a date and time without marks" in capsys.readouterr().err
