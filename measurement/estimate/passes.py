@@ -16,6 +16,13 @@ from measurement.sniffer.spec import SnifferSpec
 SNR_LEAST = 5.0
 """Signal to noise from which on a peak is a pass (Kattner et al., ACP 15:10087)."""
 
+STEPS_LEAST = 3.5
+"""Steps of the CO2 readings that passes must be high, in the median: of lower ones too much is lost in rounding."""
+
+_DITHERED = 4.0
+"""Standard deviations of the noise within a step of other gases up to which rounding is noise: it leaves a mean within a tenth of a
+step."""
+
 _WINDOW = 60.0
 """Length of the pieces of which the background is the low quantile [s]."""
 
@@ -46,12 +53,17 @@ class Pass:
 
 
 def readings_noise(record: Record, instrument: SnifferSpec) -> dict[str, float]:
-    """Return the standard deviation of each gas's readings: what is stated, or what they show."""
+    """Return the standard deviation of each gas's readings: what is stated, with rounding to larger steps, or what they show.
+
+    Rounding is noise, of a step over the root of 12, where noise or passes carry the readings through several steps.
+    """
     noise = {}
     for gas in (gas for gas in GASES if gas in record.values[0]):
-        stated = instrument.known(gas).noise
+        stated, step = instrument.known(gas).noise, record.resolution[gas]
         if math.isnan(stated):
-            stated = record.scatter(gas)
+            stated = record.scatter[gas]
+        elif 0.0 < stated < step and (gas == "co2" or step <= _DITHERED * stated):
+            stated = math.hypot(stated, step / math.sqrt(12.0))
         noise[gas] = stated
     return noise
 

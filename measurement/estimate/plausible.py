@@ -3,9 +3,11 @@
 import numpy as np
 
 from measurement.estimate.fit.signals import used_gases
-from measurement.estimate.quality import quiet
+from measurement.estimate.quality import STRANGE_SIGMA, quiet
 from measurement.estimate.record import Record
 from measurement.estimate.sticking import sticking
+from measurement.gases import GASES
+from measurement.sniffer.channel import Channel
 from measurement.sniffer.sniffer import Readings
 from measurement.sniffer.spec import SnifferSpec
 
@@ -16,14 +18,44 @@ _LOW, _HIGH, _SIGMAS = 0.05, 0.95, 3.29
 """Shares of the readings below the level outside the plume, and below that in it; of noise alone they lie so many sigma apart."""
 
 
+_FASTER, _FASTEST = 0.5, 0.1
+"""Share of the stated t90 within which a sensor may fall, for uneven times and wrong figures; and where t90 is not well known."""
+
+_FALL_SIGMAS = 10.0
+"""Standard deviations of the noise by which a reading is lower than the one before it allows, until noise is no explanation."""
+
+
 def unlikely(record: Record, readings: Readings, instrument: SnifferSpec) -> list[str]:
     """Return what is wrong with readings of CO2, SO2, and the gases of the record that the SO2 channel responds to."""
     so2 = instrument.known("so2")
     telling = ["so2", *(gas for gas in used_gases(record) if so2.cross.get(gas, 0.0) or so2.cross_sd.get(gas, 0.0))]
-    problems = list(sticking(readings, instrument.known("co2")))
+    problems = [*sticking(readings, instrument.known("co2")), *_spikes(record, readings, instrument.known("co2"))]
     for channel in map(instrument.known, telling):
-        problems += sticking(readings, channel) or quiet(record.scatter(channel.gas), channel)
+        problems += sticking(readings, channel) or quiet(record.scatter[channel.gas], channel)
     return problems or _exchanged(record)
+
+
+def _spikes(record: Record, readings: Readings, channel: Channel) -> list[str]:
+    """Return the problem of CO2 that falls faster than its sensor can, as it does after a spike, if it does.
+
+    A reading falls towards that of the air, and no lower: a time constant later an e-th of its excess is left. One spike is
+    enough to draw the slope to 0, and where SO2 is noisy nothing else shows it.
+    """
+    column = readings.values[:, GASES.index("co2")]
+    known = np.flatnonzero(np.isfinite(column))
+    time, values, lowest = readings.time[known], column[known], float(np.min(column[known]))
+    noise = np.fmax(channel.noise, record.scatter["co2"])
+    fastest = channel.constants[0] * max(_FASTEST, min(_FASTER, 1.0 - STRANGE_SIGMA * channel.t90_sd))
+    least = lowest + (values[:-1] - lowest) * np.exp(-np.diff(time) / fastest) - _FALL_SIGMAS * noise
+    falls = np.flatnonzero(values[1:] < least)
+    if not falls.size:
+        return []
+    i, more = int(falls[0]), f", and {falls.size - 1} more such falls" if falls.size > 1 else ""
+    when = f"in {time[i + 1] - time[i]:.2g} s at {time[i] - readings.time[0]:.0f} s{more}"
+    return [
+        f"CO2 falls from {values[i]:.1f} to {values[i + 1]:.1f} ppm {when}, faster than a t90 of {channel.t90_s:g} s allows: leave"
+        " spikes empty, or correct t90_s"
+    ]
 
 
 def _exchanged(record: Record) -> list[str]:
@@ -35,7 +67,7 @@ def _exchanged(record: Record) -> list[str]:
         return []
     no, no2 = (float(np.ptp(np.quantile(record.of(gas), (_LOW, _HIGH)))) for gas in ("no", "no2"))
     # The squares of what noise and plume do add up.
-    if no2**2 - (_SIGMAS * record.scatter("no2")) ** 2 <= (no + OZONE_MOST) ** 2:
+    if no2**2 - (_SIGMAS * record.scatter["no2"]) ** 2 <= (no + OZONE_MOST) ** 2:
         return []
     return [
         f"NO2 varies by {no2:.0f} ppb in the plume and NO by {no:.0f} ppb: exhaust has more NO than NO2, and ozone makes at most"

@@ -29,6 +29,9 @@ which an aircraft has crossed a plume and left it."""
 BRIDGED = 2.5
 """Gaps of up to so many sample periods are bridged by a straight line; longer ones part the record."""
 
+_WHOLE = 1.75
+"""Between readings that are fewer sample periods apart none is missing, even if their times are uneven by three quarters."""
+
 SHORTEST = 8
 """Fewest samples of a segment: pieces between gaps that have fewer are left out."""
 
@@ -70,6 +73,7 @@ class Record:
     times : of each segment, shape (n,) [s]
     values : of each segment, by gas, shape (n,) each
     resolution : of the readings as they were logged, by gas: the smallest change from one to the next, 0 where none changes
+    scatter : standard deviation of the readings that they show themselves, likewise
     problems : why there can be no verdict, a sentence each
     """
 
@@ -77,6 +81,7 @@ class Record:
     times: tuple[Array, ...]
     values: tuple[dict[str, Array], ...]
     resolution: dict[str, float]
+    scatter: dict[str, float]
     problems: tuple[str, ...]
     _kept: dict[Hashable, Any] = field(default_factory=dict, init=False, repr=False, compare=False)
 
@@ -96,10 +101,6 @@ class Record:
     def of(self, gas: str) -> Array:
         """Return all samples of a gas."""
         return np.concatenate([segment[gas] for segment in self.values])
-
-    def scatter(self, gas: str) -> float:
-        """Return the standard deviation of a gas's readings that they show themselves."""
-        return shown_scatter([segment[gas] for segment in self.values], self.resolution[gas])
 
     @property
     def duration(self) -> float:
@@ -133,29 +134,31 @@ def checked_record(readings: Readings, instrument: SnifferSpec) -> Record:
             " seconds, not milliseconds or hours"
         )
     gases = _used(values, instrument)
-    for gas in gases:
-        check_units(gas, values[:, GASES.index(gas)])
-    columns = [GASES.index(gas) for gas in gases]
+    logged = {gas: values[:, GASES.index(gas)] for gas in gases}
+    for gas, column in logged.items():
+        check_units(gas, column)
     problems = _problems(time, values, gases, instrument)
-    known = np.isfinite(values[:, columns]).all(axis=1)
+    known = np.isfinite(list(logged.values())).all(axis=0)
+    segments = [segment for segment in pieces(time, np.flatnonzero(known), step) if len(segment) >= SHORTEST]
     times, parts = [], []
-    for segment in pieces(time, np.flatnonzero(known), step):
-        if len(segment) < SHORTEST:
-            continue
+    for segment in segments:
         grid = time[segment[0]] + step * np.arange(math.floor((time[segment[-1]] - time[segment[0]]) / step + 1e-6) + 1)
         # A grid of the record's own times is left as it is.
         grid = time[segment] if len(grid) == len(segment) and np.allclose(grid, time[segment], atol=1e-3 * step) else grid
         times.append(grid)
-        parts.append({gas: np.interp(grid, time[segment], values[segment, GASES.index(gas)]) for gas in gases})
+        parts.append({gas: np.interp(grid, time[segment], column[segment]) for gas, column in logged.items()})
     if not times:
         raise MeasurementError(f"no {SHORTEST} samples in a row have both SO2 and CO2; give a record with fewer gaps")
-    resolution = {gas: shown_step(values[:, GASES.index(gas)]) for gas in gases}
-    return Record(step=step, times=tuple(times), values=tuple(parts), resolution=resolution, problems=problems)
+    # Samples that are interpolated lie on straight lines, and show no noise.
+    whole = [run for run in pieces(time, np.flatnonzero(known), step, _WHOLE) if len(run) > 2] or segments
+    resolution = {gas: shown_step(column) for gas, column in logged.items()}
+    scatter = {gas: shown_scatter([column[run] for run in whole], resolution[gas]) for gas, column in logged.items()}
+    return Record(step, tuple(times), tuple(parts), resolution, scatter, problems)
 
 
-def pieces(time: Array, rows: npt.NDArray[np.intp], step: float) -> list[npt.NDArray[np.intp]]:
-    """Return the rows that have all readings, shape (n,), in pieces between gaps; ``step`` is the period of the log [s]."""
-    return np.split(rows, np.flatnonzero(np.diff(time[rows]) > BRIDGED * step) + 1)
+def pieces(time: Array, rows: npt.NDArray[np.intp], step: float, periods: float = BRIDGED) -> list[npt.NDArray[np.intp]]:
+    """Return the rows that have all readings, shape (n,), in pieces between gaps of so many periods of the log, ``step`` [s]."""
+    return np.split(rows, np.flatnonzero(np.diff(time[rows]) > periods * step) + 1)
 
 
 def _used(values: Array, instrument: SnifferSpec) -> list[str]:
@@ -182,7 +185,7 @@ def check_increasing(time: Array, path: Path | None = None) -> None:
     where, row, what = ("", "", "record") if path is None else (f"'{path}': ", f" in row {at + 2}", "rows by time")
     raise MeasurementError(
         f"{where}times do not increase: {time[at]:.15g} s{row} is followed by {time[at + 1]:.15g} s; sort the {what} and drop"
-        " repeats"
+        " repeats, or, where the clock was set back, correct the times after it"
     )
 
 
@@ -230,9 +233,9 @@ def shown_scatter(segments: Sequence[Array], step: float) -> float:
 
     It is half the step at least: so much has a reading that moves between two neighbouring marks.
     """
-    second = np.concatenate([np.diff(segment, 2) for segment in segments])
-    if not len(second):
+    if not sum(len(segment) > 2 for segment in segments):
         return 0.5 * step
+    second = np.concatenate([np.diff(segment, 2) for segment in segments])
     # Whole numbers hide their noise: most of these differences are 0. Spread evenly over a step, they show it again.
     spread = step * ((_EVEN * np.arange(len(second))) % 1.0 - 0.5)
     # The variance of a second difference is 6 times that of a sample.
@@ -241,7 +244,7 @@ def shown_scatter(segments: Sequence[Array], step: float) -> float:
 
 
 def lowest_reading(gas: str, values: Array, instrument: SnifferSpec) -> float:
-    """Return how low a gas may read for its noise, its zero and what the cell makes of other gases: 0 for CO2.
+    """Return how low a gas may read for its noise, its zero and what the cell makes of other gases; CO2 is in all air.
 
     Parameters
     ----------
@@ -249,22 +252,19 @@ def lowest_reading(gas: str, values: Array, instrument: SnifferSpec) -> float:
     values : readings of all gases, shape (m, 4)
     instrument : as the analyst knows it; noise that it does not state is what the readings show
     """
-    if gas == "co2":
-        return 0.0
     channel, column = instrument.known(gas), values[:, GASES.index(gas)]
     noise = channel.noise
     if math.isnan(noise):
         noise = shown_scatter([column[np.isfinite(column)]], shown_step(column))
     explained = _NEGATIVE_SIGMA * math.hypot(noise, channel.zero_sd, 1.0) - min(channel.zero, 0.0)
-    return -explained - _cross_floor(channel.cross, values)
+    floor = -explained - _cross_floor(channel.cross, values)
+    return max(0.0, CO2_LEAST + floor) if gas == "co2" else floor
 
 
 def _problems(time: Array, values: Array, gases: list[str], instrument: SnifferSpec) -> tuple[str, ...]:
     problems = []
     for gas in gases:
-        channel, column = instrument.channel(gas), values[:, GASES.index(gas)]
-        if channel is None:
-            continue
+        channel, column = instrument.known(gas), values[:, GASES.index(gas)]
         name, unit = gas.upper(), UNITS[gas]
         missing = float(np.mean(~np.isfinite(column)))
         if missing > _MISSING_MAX:

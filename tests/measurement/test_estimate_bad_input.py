@@ -135,6 +135,10 @@ def test_a_record_shorter_than_a_crossing_and_its_response_has_no_verdict():
         (lambda r: put(r.values, (slice(40, 60), 0), 20000.0), "SO2 is saturated at 20000 ppb in 6.6 % of the readings"),
         (lambda r: put(r.values, 50, [-400.0, 420.0, 0.0, 0.0]), "SO2 reads -400 ppb, which its noise and zero do not explain"),
         (lambda r: put(r.values, (50, 1), -3.0), "CO2 reads -3 ppm"),
+        (
+            lambda r: put(r.values, (slice(50, 70), 1), 2.0 + 0.1 * np.arange(20)),
+            "CO2 reads 2 ppm, which its noise and zero do not explain (from 208 ppm)",
+        ),
         (lambda r: put(r.values, (slice(50, 90), 2), np.nan), "13 % of NO is missing; at most 10 % may be"),
     ],
 )

@@ -91,7 +91,7 @@ def slopes_of_one_pass(actual, *believed):
     puff[500] = 3000.0
     readings = read(actual, puff[:, np.newaxis] * np.array([0.25 / fsc_factor(), 1.0, 0.0, 0.0]))
     values = {"so2": readings.values[:, 0], "co2": readings.values[:, 1]}
-    record = Record(step=0.1, times=(readings.time,), values=(values,), resolution={}, problems=())
+    record = Record(step=0.1, times=(readings.time,), values=(values,), resolution={}, scatter={}, problems=())
     nothing = np.zeros((len(readings), 1))
     return [fitted(replace(make_signals(record, spec), basis=nothing))[0] for spec in believed]
 

@@ -243,7 +243,7 @@ MISSING = pytest.mark.parametrize(
     ("column", "value", "told"),
     [
         ("so2_ppb", -9999.0, "SO2 is -9999 ppb in row 102; noise, zero and other gases explain -"),
-        ("co2_ppm", -999.0, "CO2 is -999 ppm in row 102; noise, zero and other gases explain 0 ppm at least"),
+        ("co2_ppm", -999.0, "CO2 is -999 ppm in row 102; air, noise, zero and other gases explain 2"),
         ("no_ppb", -9999.0, "NO is -9999 ppb in row 102"),
     ],
 )

@@ -15,6 +15,7 @@ from measurement.estimate.passes import find_passes
 from measurement.estimate.record import checked_record
 from measurement.gases import fsc_factor
 from measurement.sniffer import Readings, sensor_preset
+from measurement.sniffer.presets import read_spec
 
 REPEATS = 200
 """They give a standard deviation to 5 %; a tenth, which is asked for, is twice that, and the seeds are always the same."""
@@ -170,3 +171,16 @@ def test_without_a_stated_response_nox_shows_only_how_much_of_it_there_is(emitte
     assert seen.common_percent["no"] == pytest.approx(fsc_factor() * 0.02 * 20.7 * emitted, rel=0.2)
     assert unseen.common_percent["no"] == pytest.approx(fsc_factor() * 0.02 * math.hypot(18.0, 7.5), rel=0.01)
     assert (seen.total_percent > unseen.total_percent) == wider
+
+
+@pytest.mark.parametrize("seed", [0, 4, 5, 7])
+def test_a_response_that_is_not_given_is_not_taken_for_a_fast_one_where_so2_is_noisy(seed):
+    # Noise of 25 ppb, as much as passes raise SO2; a t90 of 0 would smooth it most, and read a quarter of the content.
+    readings = read(plain_sniffer(so2_noise=25.0, co2_noise=1.0), crossings(0.25, seed=seed), seed=seed)
+    readings.values[:, 2:] = np.nan
+    spec = read_spec({"channels": {"so2": {"cross": {}}, "co2": {}}}, "own")
+    found = estimate(readings, spec)
+    assert found.so2_t90_s > 8.0
+    # The truth is 0.25 %; the stated uncertainty is a quarter of it.
+    assert abs(found.fsc_percent - 0.25) < 2.0 * found.total_percent
+    assert [verdict.verdict for verdict in found.verdicts] == ["above", "below"]

@@ -110,7 +110,7 @@ def _round(record: Record, instrument: SnifferSpec, place: Array, free: npt.NDAr
     slope, residual = fitted(signals)
     if not math.isfinite(slope):
         return np.zeros(2), np.zeros((2, 2)), math.nan
-    derivatives = np.stack([-signals.excess()[0], *(_derivative(record, instrument, place, i, slope) for i in free)], axis=1)
+    derivatives = np.stack([-signals.excess()[0], *(_derivative(signals, instrument, place, i, slope) for i in free)], axis=1)
     inverse = np.linalg.pinv(derivatives.T @ derivatives, hermitian=True)
     step = np.zeros(2)
     step[free] = np.clip(-(inverse @ (derivatives.T @ residual))[1:], -_JUMPS[free], _JUMPS[free])
@@ -125,32 +125,39 @@ def _round(record: Record, instrument: SnifferSpec, place: Array, free: npt.NDAr
     return step, covariance, math.sqrt(max(0.0, float(spread[0, 0]) - alone))
 
 
-def _residual(signals: Signals, slope: float) -> Array:
-    co2, so2 = signals.excess()
-    return so2 - slope * co2
-
-
-def _derivative(record: Record, instrument: SnifferSpec, place: Array, i: int, slope: float) -> Array:
-    sides = []
+def _derivative(signals: Signals, instrument: SnifferSpec, place: Array, i: int, slope: float) -> Array:
+    """Return what the residuals change by with log(t90) or delay, relative to the noise that SO2 has left."""
+    sides, noise = [], _noise(signals)
     for sign in (1.0, -1.0):
         moved = place.copy()
         moved[i] += sign * _STEPS[i]
-        sides.append(_residual(make_signals(record, _applied(instrument, moved)), slope))
+        other = make_signals(signals.record, _applied(instrument, moved))
+        co2, so2 = other.excess()
+        sides.append((so2 - slope * co2) * math.sqrt(noise / _noise(other)))
     return np.asarray((sides[0] - sides[1]) / (2.0 * _STEPS[i]))
 
 
+def _noise(signals: Signals) -> float:
+    """Return the mean square of the noise that SO2 has left, 1 where it has none.
+
+    SO2 is smoothed where CO2 or a gas that corrects it is slower, the more the faster SO2 is taken for: where its noise is large,
+    the residuals would be least for a t90 of 0.
+    """
+    return residual_variance(signals, 0.0) or 1.0
+
+
 def _searched(record: Record, instrument: SnifferSpec, free: npt.NDArray[np.int64]) -> Array:
-    """Return the place on the grid at which CO2 leaves the smallest share of SO2 unexplained."""
-    best, most = _place(instrument), 0.0
+    """Return the place on the grid at which CO2 leaves least of SO2 unexplained, relative to the noise that SO2 has left."""
+    best, least = _place(instrument), math.inf
     given = float(best[1])
     for log_t90 in np.log(_T90_SEARCH) if 0 in free else best[:1]:
         signals = make_signals(record, _applied(instrument, np.array([log_t90, given])))
         _, so2 = signals.excess()
-        size = float(np.linalg.norm(so2))
+        energy, noise = float(so2 @ so2), _noise(signals)
         for delay in _DELAY_SEARCH if 1 in free else (given,):
             co2 = without(signals.basis, shifted(signals.co2, record.step, delay - given))
             # SO2 does not fall where CO2 rises: a negative share is none.
-            explained = float(co2 @ so2) / max(float(np.linalg.norm(co2)), 1e-30)
-            if explained > most * size:
-                best, most = np.array([log_t90, delay]), explained / size
+            explained = max(0.0, float(co2 @ so2)) / max(float(np.linalg.norm(co2)), 1e-30)
+            if (energy - explained**2) / noise < least:
+                best, least = np.array([log_t90, delay]), (energy - explained**2) / noise
     return best

@@ -16,6 +16,7 @@ from measurement.errors import MeasurementError
 from measurement.estimate.flight_log.config import COLUMNS, LogConfig
 from measurement.estimate.flight_log.details import FlightRecord, times_of
 from measurement.estimate.flight_log.places import PLACES, ends, on_a_plane, places_of
+from measurement.estimate.flight_log.repeats import new_readings
 from measurement.estimate.record import check_increasing, check_units, lowest_reading
 from measurement.gases import GASES, UNITS
 from measurement.sniffer.lag import Array
@@ -37,6 +38,9 @@ _OPEN_QUOTE = re.compile(r"EOF inside string starting at row (\d+)")
 _NUMBER, _DECIMAL_COMMA = re.compile(r"[-+]?[\d.]+(e[-+]?\d+)?(\.\d+)?", re.IGNORECASE), re.compile(r"[-+]?\d+,\d+")
 """A number, with what pandas adds to one that is there twice; and one with a decimal comma."""
 
+_COMPACT = 1e13, 1e14
+"""Times of 14 digits, as 20240501120000, which are no seconds: they jump by 41 at every minute."""
+
 TRUE_COLUMNS = {f"{gas}_true_{UNITS[gas]}": gas for gas in GASES}
 """Columns of the true concentrations, which a simulated flight may have; they are shown, and take no part in the estimate."""
 
@@ -47,7 +51,7 @@ class LoggedFlight:
 
     Attributes
     ----------
-    readings : of the sniffer
+    readings : of the sniffer, each once where the log's rows are faster
     place : ``time_s``, and of ``north_m``, ``east_m``, ``height_m`` and the true concentrations those that the file has
     about : which flight it is
     """
@@ -58,7 +62,7 @@ class LoggedFlight:
 
 
 def read_flight(path: Path, config: LogConfig) -> LoggedFlight:
-    """Return the flight in a CSV file with a row per reading.
+    """Return the flight in a CSV file with a row per reading, or with rows that are faster than the sensors.
 
     Times are seconds, or dates and times that pandas reads. Rows may end in a comma.
 
@@ -97,14 +101,15 @@ def read_flight(path: Path, config: LogConfig) -> LoggedFlight:
         if name not in table and (key in _REQUIRED or name != COLUMNS[key]):
             raise MeasurementError(_missing(path, key.upper() if key in GASES else key, key, name, table))
     time, logged = _time(table, config.columns["time"], path)
-    check_increasing(time, path)
+    _check_time(time, path)
     values = np.full((len(table), len(GASES)), np.nan)
     for i, gas in enumerate(GASES):
         name = config.columns[gas]
         if name in table:
             values[:, i] = config.scale.get(gas, 1.0) * _readings(table, name, path, config)
     _check_range(values, config, path)
-    _check_negative(values, config, path)
+    readings = new_readings(Readings(time, values), config.instrument.gases)
+    _check_negative(values, readings, config, path)
     found, remark = places_of(
         {key: _readings(table, name, path, config) for key in PLACES if (name := config.columns[key]) in table}, time, path
     )
@@ -127,7 +132,7 @@ def read_flight(path: Path, config: LogConfig) -> LoggedFlight:
         missing=config.missing,
         stated=config.stated,
     )
-    return LoggedFlight(Readings(time, values), pd.DataFrame(place), about)
+    return LoggedFlight(readings, pd.DataFrame(place), about)
 
 
 def _fault(error: Exception, head: str) -> str:
@@ -216,20 +221,22 @@ def _check_range(values: Array, config: LogConfig, path: Path) -> None:
             )
 
 
-def _check_negative(values: Array, config: LogConfig, path: Path) -> None:
-    """Refuse readings that are lower than those of no gas: they are marks for missing ones, or have the wrong sign."""
+def _check_negative(values: Array, readings: Readings, config: LogConfig, path: Path) -> None:
+    """Refuse values of rows that are lower than readings of clean air: marks for missing ones, calibrations, or a wrong sign."""
     for gas in config.instrument.gases:
         column, unit = values[:, GASES.index(gas)], UNITS[gas]
         if not np.isfinite(column).any():
             continue
-        lowest = lowest_reading(gas, values, config.instrument)
+        lowest = lowest_reading(gas, readings.values, config.instrument)
         low = np.flatnonzero(column < lowest)
         if low.size:
             least, more = float(column[low[0]]), f", and {low.size - 1} more are as low" if low.size > 1 else ""
+            air = "air, " if gas == "co2" else ""
             raise MeasurementError(
-                f"'{path}': {gas.upper()} is {least:g} {unit} in row {low[0] + 2}{more}; noise, zero and other gases explain"
-                f" {lowest:.0f} {unit} at least: where it stands for a missing reading, leave it empty or name it in the"
-                f" configuration, as in missing = [-9999]; otherwise check the sign, and state the channel's noise, zero and cross"
+                f"'{path}': {gas.upper()} is {least:g} {unit} in row {low[0] + 2}{more}; {air}noise, zero and other gases explain"
+                f" {lowest:.0f} {unit} at least: where it stands for a missing reading, or is of a calibration from which the"
+                f" sensor has not recovered, leave it empty or name it in the configuration, as in missing = [-9999]; otherwise"
+                f" check the sign, and state the channel's noise, zero and cross"
             )
 
 
@@ -237,16 +244,38 @@ def _time(table: pd.DataFrame, name: str, path: Path) -> tuple[Array, tuple[date
     """Return the times [s], and of a log with dates and times those of its first and last row in UTC."""
     column = table[name]
     if pd.api.types.is_numeric_dtype(column):
-        return column.to_numpy(dtype=np.float64), None
+        seconds = column.to_numpy(dtype=np.float64)
+        if _COMPACT[0] <= seconds[0] < _COMPACT[1]:
+            raise MeasurementError(
+                f"'{path}': time {seconds[0]:.0f} in column '{name}' is a date and time without marks; give seconds, or"
+                " 2024-05-01T12:00:00.0"
+            )
+        return seconds, None
     try:
         moments = pd.to_datetime(column, utc=True, format="ISO8601")
     except (ValueError, TypeError):
+        row = _unreadable(column)
+        told = str(column.iloc[row])
         raise MeasurementError(
-            f"'{path}': time '{column.iloc[0]}' in column '{name}' cannot be read; give seconds, or 2024-05-01T12:00:00.0"
-            f"{_with_a_point(str(column.iloc[0]))}"
+            f"'{path}': time '{told}' in column '{name}' cannot be read (row {row + 2}); give seconds, or 2024-05-01T12:00:00.0"
+            f"{_with_a_point(told)}"
         ) from None
     time = np.asarray((moments - moments.iloc[0]).dt.total_seconds(), dtype=np.float64)
     return time, None if moments.isna().any() else (moments.iloc[0].to_pydatetime(), moments.iloc[-1].to_pydatetime())
+
+
+def _unreadable(column: pd.Series) -> int:
+    """Return the first row whose time is not of the kind that most rows have: seconds, or dates and times."""
+    seconds = pd.to_numeric(column, errors="coerce").notna()
+    dates = pd.to_datetime(column, utc=True, format="ISO8601", errors="coerce").notna()
+    return int(np.argmin(seconds if seconds.sum() > dates.sum() else dates))
+
+
+def _check_time(time: Array, path: Path) -> None:
+    """Refuse times that are missing, or do not increase."""
+    if (missing := np.flatnonzero(~np.isfinite(time))).size:
+        raise MeasurementError(f"'{path}' has no time in row {missing[0] + 2}; give a time in every row, or remove the row")
+    check_increasing(time, path)
 
 
 def _has_offset(column: pd.Series) -> bool:

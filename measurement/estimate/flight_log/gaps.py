@@ -22,13 +22,15 @@ class Gaps:
 
     Attributes
     ----------
-    rows : of the log
+    log_rows : of the log
+    rows : of them that have a new reading, where the log is faster than the sensors; otherwise all
     missing : readings that are missing in them, by gas, of the gases that the analysis uses
     interpolated : samples in short gaps, which are bridged by a straight line
     gaps : beginning and end of each longer one, which is left out [s] since the first row
     unused : rows with all readings that are left out, too, as there are too few of them in a row
     """
 
+    log_rows: int
     rows: int
     missing: dict[str, int]
     interpolated: int
@@ -42,8 +44,16 @@ class Gaps:
     @property
     def told(self) -> dict[str, str]:
         """What the log lacks, in words by what it is; nothing of a log that is whole."""
-        found = {"Missing readings": self.missing_words} if any(self.missing.values()) else {}
+        found = {"Rows": self.row_words} if self.log_rows > self.rows else {}
+        found |= {"Missing readings": self.missing_words} if any(self.missing.values()) else {}
         return found | ({"Gaps": self.gap_words} if self.gaps or self.interpolated or self.unused else {})
+
+    @property
+    def row_words(self) -> str:
+        """How many rows of a log that is faster than its sensors have a new reading."""
+        return (
+            f"{self.log_rows:,}, of which {self.rows:,} have a new reading; the others repeat one, or have none, and do not count"
+        )
 
     @property
     def missing_words(self) -> str:
@@ -69,14 +79,15 @@ class Gaps:
         return "; ".join(told) or "none"
 
 
-def found_gaps(readings: Readings, signals: pd.DataFrame) -> Gaps:
-    """Return what the readings of a log lack, given the signals that an estimate made of them."""
+def found_gaps(readings: Readings, signals: pd.DataFrame, log_rows: int) -> Gaps:
+    """Return what the readings of a log of so many rows lack, given the signals that an estimate made of them."""
     used = _used(signals)
     known, period = np.isfinite(readings.values), _period(readings)
     complete = np.flatnonzero(known[:, used].all(axis=1))
     times = np.concatenate([readings.time[:1], readings.time[complete], readings.time[-1:]]) - readings.time[0]
     parts = [len(piece) for piece in pieces(readings.time, complete, period)]
     return Gaps(
+        log_rows=log_rows,
         rows=len(readings.time),
         missing={GASES[i]: int(np.sum(~known[:, i])) for i in used},
         interpolated=int(np.sum(interpolated(readings, signals))),

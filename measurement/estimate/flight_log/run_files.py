@@ -152,7 +152,7 @@ def _remove_older(directory: Path) -> None:
 
 
 def _record(flight: LoggedFlight, analysis: Analysis) -> dict[str, Any]:
-    gaps = found_gaps(flight.readings, analysis.estimate.signals)
+    gaps = found_gaps(flight.readings, analysis.estimate.signals, flight.about.readings)
     return analysis.record() | {"flight": flight.about.record(), "gaps": gaps.record()}
 
 

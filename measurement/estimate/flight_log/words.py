@@ -51,8 +51,8 @@ def summary(analysis: Analysis, name: str) -> Iterator[str]:
 
 
 def lacking(flight: LoggedFlight, analysis: Analysis) -> Iterator[str]:
-    """Yield a line on missing readings, one on gaps, and one on places that count as missing, of a log with any."""
-    gaps = found_gaps(flight.readings, analysis.estimate.signals)
+    """Yield a line each on rows without a new reading, missing readings, gaps, and places that count as missing, if any."""
+    gaps = found_gaps(flight.readings, analysis.estimate.signals, flight.about.readings)
     yield from (f"{what.lower()}: {words}" for what, words in gaps.told.items())
     if flight.about.place_remark:
         yield f"places: {flight.about.place_remark}"

@@ -31,6 +31,17 @@ def test_a_reading_beyond_the_range_of_its_sensor_is_refused_with_its_row(logged
     assert error.count("\n") == 1
 
 
+def test_a_calibration_with_air_without_co2_is_refused_with_its_row(logged, capsys):
+    # Zero air is 420 ppm below the background, more than a plume is above it: it drew the slope to 0.
+    with_values(logged, "co2_ppm", range(40, 60), 2.0)
+    assert run(logged) == 2
+    error = capsys.readouterr().err
+    # Air has 250 ppm at least; noise of 1 ppm, a zero of 5 ppm (1 sigma) and 1 ppm for what is not stated, 8 times: 42 ppm.
+    assert "CO2 is 2 ppm in row 42, and 19 more are as low; air, noise, zero and other gases explain 208 ppm at least" in error
+    assert "or is of a calibration from which the sensor has not recovered, leave it empty" in error
+    assert error.count("\n") == 1
+
+
 @pytest.mark.usefixtures("briefly")
 def test_a_reading_at_the_end_of_the_range_is_saturated(logged, capsys):
     with_values(logged, "so2_ppb", [20], 20000.0)
@@ -114,3 +125,44 @@ def test_a_table_that_is_no_log_is_refused_in_plain_words(logged, capsys, conten
     assert "0.0.1" not in error
     assert "C error: Expected" not in error
     assert error.count("\n") == 1
+
+
+def test_a_clock_that_is_set_back_is_told_apart_from_rows_that_are_not_sorted(logged, capsys):
+    # Seconds of the day begin anew at midnight; rows sorted by them would be of two times at once.
+    table = pd.read_csv(logged)
+    table.assign(time_s=(86_300.0 + table["time_s"]) % 86_400.0).to_csv(logged, index=False)
+    assert run(logged) == 2
+    error = capsys.readouterr().err
+    assert "86399 s in row 101 is followed by 0 s" in error
+    assert "or, where the clock was set back, correct the times after it" in error
+
+
+@pytest.mark.parametrize("dates", [True, False])
+def test_a_row_without_a_time_is_named(logged, capsys, dates):
+    table = pd.read_csv(logged)
+    if dates:
+        table["time_s"] = (pd.Timestamp("2026-06-01T10:00:00") + pd.to_timedelta(table["time_s"], unit="s")).astype(str)
+    table.loc[20, "time_s"] = np.nan
+    table.to_csv(logged, index=False)
+    assert run(logged) == 2
+    error = capsys.readouterr().err
+    assert error == f"error: '{logged}' has no time in row 22; give a time in every row, or remove the row\n"
+
+
+@pytest.mark.parametrize(("row", "word"), [(301, "Mean"), (100, "time_s"), (0, "s")])
+def test_a_row_of_words_among_readings_is_named(logged, capsys, row, word):
+    # A summary below the readings, head lines of two logs in one file, and units below the head line.
+    lines = logged.read_text(encoding="utf-8").splitlines()
+    lines.insert(1 + row, word + "," * lines[0].count(","))
+    logged.write_text("\n".join(lines), encoding="utf-8")
+    assert run(logged) == 2
+    assert f"time '{word}' in column 'time_s' cannot be read (row {row + 2})" in capsys.readouterr().err
+
+
+def test_dates_and_times_of_digits_alone_are_no_seconds(logged, capsys):
+    # As seconds they have a gap at every minute, and 100 % of the record were gaps.
+    table = pd.read_csv(logged)
+    moments = pd.Timestamp("2026-06-01T10:00:00") + pd.to_timedelta(table["time_s"], unit="s")
+    table.assign(time_s=moments.dt.strftime("%Y%m%d%H%M%S")).to_csv(logged, index=False)
+    assert run(logged) == 2
+    assert "time 20260601100000 in column 'time_s' is a date and time without marks" in capsys.readouterr().err
