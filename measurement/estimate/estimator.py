@@ -14,7 +14,7 @@ from measurement.estimate.fit.alignment import Alignment, align, stated
 from measurement.estimate.fit.groups import grouped
 from measurement.estimate.fit.regression import fitted, regress
 from measurement.estimate.fit.signals import Signals, make_signals, used_gases
-from measurement.estimate.passes import SNR_LEAST, STEPS_LEAST, Pass, co2_excesses, find_passes, readings_noise
+from measurement.estimate.passes import SNR_LEAST, Pass, co2_excesses, find_passes, read_coarsely, readings_noise
 from measurement.estimate.plausible import unlikely
 from measurement.estimate.quality import judged_quality, late, noise_alone, stranger
 from measurement.estimate.record import Record, checked_record
@@ -111,12 +111,8 @@ def _too_little(record: Record, instrument: SnifferSpec, passes: Sequence[Pass],
             return ["no pass through a plume: CO2 reads the same throughout; check its sensor"]
         least = f"{SNR_LEAST * noise:.1f} ppm, {SNR_LEAST:g} times its noise"
         return [f"no pass through a plume: CO2 is nowhere {least}, over its background"]
-    height, step = float(np.median([found.height_ppm for found in passes])), record.resolution["co2"]
-    if height < STEPS_LEAST * step:
-        return [
-            f"CO2 reads in steps of {step:g} ppm, and a pass is {height:.0f} ppm high (median); it must be {STEPS_LEAST:g} steps:"
-            " log more decimals"
-        ]
+    if coarse := read_coarsely(passes, record):
+        return coarse
     width = max(found.end_s - found.start_s for found in passes)
     response = instrument.known("so2").t90_s if math.isfinite(instrument.known("so2").t90_sd) else 0.0
     if record.duration < width + response:

@@ -2,6 +2,7 @@
 
 import itertools
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -16,8 +17,18 @@ from measurement.sniffer.spec import SnifferSpec
 SNR_LEAST = 5.0
 """Signal to noise from which on a peak is a pass (Kattner et al., ACP 15:10087)."""
 
-STEPS_LEAST = 3.5
+_STEPS_LEAST = 3.5
 """Steps of the CO2 readings that passes must be high, in the median: of lower ones too much is lost in rounding."""
+
+_SAMPLES_LEAST = 4
+"""Sample periods that passes must last, in the median.
+
+Simulated logs of 0.25 % in which they last longer read 0.25 to 0.28 % in the mean. Those in which they do not read 0.12 to 0.33 %,
+and the interval does not say so.
+"""
+
+_WHOLE = 0.01
+"""Of a sample period, by which a pass may be shorter than whole ones: times are rounded."""
 
 _DITHERED = 4.0
 """Standard deviations of the noise within a step of other gases up to which rounding is noise: it leaves a mean within a tenth of a
@@ -66,6 +77,23 @@ def readings_noise(record: Record, instrument: SnifferSpec) -> dict[str, float]:
             stated = math.hypot(stated, step / math.sqrt(12.0))
         noise[gas] = stated
     return noise
+
+
+def read_coarsely(passes: Sequence[Pass], record: Record) -> list[str]:
+    """Return why passes are read in too large steps of CO2, or too seldom, if they are."""
+    height, step = float(np.median([found.height_ppm for found in passes])), record.resolution["co2"]
+    if height < _STEPS_LEAST * step:
+        return [
+            f"CO2 reads in steps of {step:g} ppm, and a pass is {height:.0f} ppm high (median); it must be {_STEPS_LEAST:g} steps:"
+            " log more decimals"
+        ]
+    length = float(np.median([found.end_s - found.start_s for found in passes]))
+    if length < (_SAMPLES_LEAST - _WHOLE) * record.step:
+        return [
+            f"a pass lasts {length:.3g} s (median) in the readings of CO2, and there is one every {record.step:.3g} s; it must last"
+            f" {_SAMPLES_LEAST} times as long: log readings more often"
+        ]
+    return []
 
 
 def co2_background(time: Array, values: Array, noise: float) -> Array:

@@ -212,3 +212,14 @@ def test_sensors_that_follow_a_plume_have_no_spikes(preset, analyst):
     for time in (readings.time, readings.time + uneven):
         found = reasons(Readings(time, readings.values), spec if analyst == "itself" else sensor_preset(analyst))
         assert "falls" not in found
+
+
+def test_passes_that_are_read_too_seldom_have_no_verdict():
+    # Readings every 4 s of passes 9.5 s apart: 0.196 ± 0.029 for 0.25 %, in ten flights.
+    readings, spec = flight("electrochemical", 0.25, 1)
+    often, seldom = (Readings(readings.time[::rows], readings.values[::rows]) for rows in (2, 4))
+    assert estimate(often, spec).quality in "AB"
+    found = estimate(seldom, spec)
+    assert found.quality == "C"
+    told = "; ".join(found.quality_reasons)
+    assert "a pass lasts 8 s (median) in the readings of CO2, and there is one every 4 s; it must last 4 times as long" in told
