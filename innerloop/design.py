@@ -97,7 +97,7 @@ def _list(altitude: float, directory: Path | None, *, check: bool) -> None:
         raise typer.Exit(INTERRUPTED) from None
     before = f"{waiting} {'was' if waiting == 1 else 'were'} not designed for it before"
     more = f"; {before}: --list --check does so, which takes minutes, and says which can be flown" if waiting else ""
-    print(f"{flying} can be flown at {altitude:g} m, the one altitude of this list (--altitude for another){more}", file=sys.stderr)
+    print(f"{flying} can be flown at {altitude:g} m (--altitude for another altitude){more}", file=sys.stderr)
 
 
 def _design(

@@ -33,7 +33,7 @@ def command(
     ] = None,
     out: Annotated[Path | None, typer.Option(help="Run directory; default runs/NAME-DATE-TIME.")] = None,
     jobs: Annotated[int | None, typer.Option(min=1, max=256, help="Number of processes; default one per core.")] = None,
-    seed: Annotated[int | None, typer.Option(min=0, help="Seed of the random starts.")] = None,
+    seed: Annotated[int | None, typer.Option(min=0, help="Seed of the study, as --set seed=SEED.")] = None,
     overrides: Annotated[
         list[str] | None,
         typer.Option("--set", metavar="KEY=VALUE", help="Override a key, e.g. guidance.preview=false; may be repeated."),

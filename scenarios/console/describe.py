@@ -13,6 +13,12 @@ from scenarios.schema.sections.convergence import ConvergenceScenario
 
 _WIDTH = 100
 _INDENT = 10
+_TOP = "(top)"
+"""What the section of the keys outside of any section is called."""
+_EXTENDS = """\
+extends
+  The scenario that this one is based on: a name of the catalog, the path of a file, or false for
+  none. It stands at the top of a scenario file alone, and cannot be set, swept or sampled."""
 
 
 def described(name: str | None = None) -> list[str]:
@@ -20,7 +26,7 @@ def described(name: str | None = None) -> list[str]:
 
     Parameters
     ----------
-    name : a dotted key, as wind.speed_mps, or a section, as wind; the index of an entry of a list may be left out
+    name : a dotted key, as wind.speed_mps, or a section, as wind, or (top); the index of an entry of a list may be left out
 
     Raises
     ------
@@ -28,6 +34,10 @@ def described(name: str | None = None) -> list[str]:
     """
     if name is None:
         return list(_all_sections())
+    if name == "extends":
+        return _EXTENDS.splitlines()
+    if name in (_TOP, _TOP.strip("()")):
+        return list(_section(documented_sections()[0]))
     plain = re.sub(r"\.\d+(?=\.|$)", "", name)
     # What is swept is a key of its own, and nu is one of sweep alone.
     plain = plain.removeprefix("sweep.")
@@ -56,19 +66,24 @@ def value_text(value: object) -> str:
 def _all_sections() -> Iterator[str]:
     yield "Sections of a scenario file, and how many keys each has; plume-flight describe SECTION lists them:"
     for section in documented_sections():
-        name = section.name.replace(".0", "") or "(top)"
-        yield from _wrapped(f"{name:<21} {len(section.keys):>3}  ", section.meaning if section.name else "What is in no section.")
+        yield from _wrapped(f"{section.name.replace('.0', '') or _TOP:<21} {len(section.keys):>3}  ", _meaning(section))
+
+
+def _meaning(section: DocumentedSection) -> str:
+    return section.meaning if section.name else "Keys outside of any section, at the top of the file."
 
 
 def _section(section: DocumentedSection) -> Iterator[str]:
     entries = "A list, each entry with these keys. " if section.listed else ""
-    yield from _wrapped("", f"[{section.name.replace('.0', '')}] {entries}{section.meaning}")
+    name = f"[{section.name.replace('.0', '')}]" if section.name else _TOP
+    yield from _wrapped("", f"{name} {entries}{_meaning(section)}")
     yield from (line for key in section.keys for line in _entry(key))
 
 
 def _entry(key: DocumentedKey) -> list[str]:
     default = "required" if key.required else value_text(key.default)
-    unit = f" {key.unit}" if key.unit not in ("", "-") and key.default is not None else ""
+    # A criterion that is off has no number that a unit could follow.
+    unit = f" {key.unit}" if key.unit not in ("", "-") and not (key.default is None or key.default is False) else ""
     return _wrapped(f"  {key.key.rpartition('.')[2]:<28} {default}{unit}  ", key.meaning)
 
 

@@ -63,7 +63,7 @@ _MEASURED = {
     "required": "what exit status 0 requires of it: criteria or keep_out",
     "modes": "modes of the guidance, in the order in which they first occurred",
     "mode_at_end": "mode of the guidance at the end",
-    "keepout_violations": "number of entries into the keep-out area",
+    "keepout_violations": "number of times that it entered the keep-out area",
     "keepout_time_s": "time in the keep-out area",
     "keepout_depth_m": "largest depth inside the keep-out area, measured from its edge",
     "min_distance_m": "closest approach to the centre of the sphere, or to the axis of the cylinder",

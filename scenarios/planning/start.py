@@ -87,8 +87,8 @@ def check_start(
     if away <= fastest < airspeed:
         raise InfeasibleError(
             f"a UAV that turns at {guard.heading_rate_max:.3g} rad/s and lags by {guard.lag:.3g} s overshoots, and then leaves at"
-            f" only {away:.1f} of its {airspeed:.1f} m/s, beside a vessel with {fastest:.1f} m/s through the air: give it a shorter"
-            " lag (kinematic.heading_rate_lag_s) or slower turns (guidance.bank_deg)"
+            f" only {away:.1f} of its {airspeed:.1f} m/s, beside a vessel with {fastest:.1f} m/s through the air: slow the vessel,"
+            " turn more slowly (guidance.bank_deg), or give a kinematic vehicle a shorter lag (kinematic.heading_rate_lag_s)"
         )
     keeping = KeepoutGuard(guard)
     keeping.tubes = vessel

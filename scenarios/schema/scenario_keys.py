@@ -70,7 +70,8 @@ class ScenarioKeys(Section):
     method: Literal["plain", "subset"] = "plain"
     """How a Monte Carlo study samples: plain, or by subset simulation, towards rare keep-out violations."""
     sampling: Sampling = "sobol"
-    """How samples are spread: evenly over all random variables together (sobol), over each of them, or not at all."""
+    """How samples are spread: evenly over all random variables together (sobol), over each of them (latin_hypercube), or not at
+    all (random)."""
     sweep: SweepConfig = SweepConfig()
     cases: tuple[CaseConfig, ...] = ()
     draws: tuple[DrawConfig, ...] = ()

@@ -133,7 +133,7 @@ class Ending:
         ended = f", and ended {mode.value}" if mode in _GIVEN_UP else ""
         guard = ", start closer, or see whether the guard holds it off (guidance.keepout_guard)"
         return (
-            f"{flown} within {plan.duration_max:g} s{ended}: allow more time (flight.duration_max_s){caveat}"
+            f"{flown} within {plan.duration_max:g} s{ended}: allow more time (flight.duration_max_s{caveat})"
             f"{guard if self.guarded else ', or start closer'}"
         )
 

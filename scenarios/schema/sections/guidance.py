@@ -94,7 +94,8 @@ class GuidanceConfig(Section):
     keepout_guard: bool = True
     """Guard the keep-out area: turn away from it, which the paper's law does not."""
     approach: bool = True
-    """Fly round the vessel to the orbit and join it at its nearest point; the paper tracks its reference from the first step on."""
+    """Fly round the vessel to the orbit and join it at the phase that takes the least effort; the paper tracks its reference from
+    the first step on."""
     rate_hz: Annotated[float, Field(ge=5.0, le=120.0)] = 20.0
     """Guidance rate [Hz]; must divide the 120 Hz of the simulation."""
 
@@ -202,7 +203,7 @@ class FollowingConfig(Section):
         return law and known_law(law)
 
     touches_per_hour: Annotated[float, Field(gt=0.0, lt=1.0)] = 1e-4
-    """Chance of touching r_min per flight hour that the keep-out margin is planned for [1/h]."""
+    """Probability of touching r_min per flight hour for which the keep-out margin is planned [1/h]."""
     margin_min_m: NonNegative = 3.0
     """Smallest keep-out margin, in calm air and with exact knowledge [m]."""
     speed_ratio_max: Annotated[float, Field(gt=0.0, lt=1.0)] = 0.97

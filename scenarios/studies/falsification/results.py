@@ -135,5 +135,5 @@ def search_lines(found: dict[str, Any]) -> Iterator[str]:
         )
         yield (
             f"number {rank}: {flight['flight_id']} by {flight['method']}, {flight['clearance_m']:.2f} m from the keep-out"
-            f" area{repeats}; the worst are in {WORST}/, as scenarios to fly again"
+            f" area{repeats}; the worst are in {WORST}/, as scenario files"
         )

@@ -9,7 +9,7 @@ _OF_PATROL = {
     "patrol": "name of the patrol",
     "ship": "number of the ship, from 0",
     "kept_out": "whether the UAV kept out of the keep-out areas and was observed to the end",
-    "keepout_violations": "number of entries into the keep-out area of the ship that it served",
+    "keepout_violations": "number of times that it entered the keep-out area of the ship that it served",
     "min_distance_m": "closest approach to the ship that is served",
     "others_distance_min_m": "closest approach to any other ship, including on the way",
     "message": "the reason of an outcome other than completed",
@@ -30,8 +30,8 @@ MEANINGS: Mapping[str, Mapping[str, str]] = {
         "oracle_verdicts": "correct verdicts of an oracle, which knows how long each ship takes",
         "told_verdicts": "ships with a correct verdict if each is served alone and the UAV is given the plume's true axis",
         "served_per_hour": "ships served in an hour",
-        "keepout_violations": "number of entries into the keep-out area of the ship served, and number of ships beside which, or on"
-        " the way to which, it came nearer than r_min to another ship",
+        "keepout_violations": "number of times that it entered the keep-out area of the ship served, and number of ships beside"
+        " which, or on the way to which, it came nearer than r_min to another ship",
         "message": "why no ship was served, or which keep-out area was entered, or how the aircraft was lost",
         "duration_s": "duration of the patrol",
         "transit_s": "time on the way between ships",

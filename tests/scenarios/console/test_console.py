@@ -146,8 +146,23 @@ def test_sections_are_listed_and_described():
     for section in documented_sections():
         assert any(line.startswith(section.name.replace(".0", "") or "(top)") for line in listed)
     assert any(line.strip().startswith("speed_mps") for line in described("wind"))
+    # The list names the keys outside of sections so; in a shell brackets need quotes.
+    assert described("(top)") == described("top")
+    assert any(line.strip().startswith("flight_seed") for line in described("top"))
     # And a section of the study of convergence alone.
     assert any(line.strip().startswith("trajectories") for line in described("ensemble"))
+
+
+def test_a_base_is_described_though_it_is_no_key():
+    assert "a name of the catalog" in " ".join(described("extends"))
+
+
+def test_a_unit_follows_a_number_alone():
+    """Of a criterion that is off the default is false, and 0 is a number that Python takes for false."""
+    defaults = {line.split()[0]: " ".join(line.split()[1:3]) for line in described("criteria") if line.startswith("  ")}
+    assert defaults["tracking_error_rms_m"] == "1.5 m"
+    assert defaults["tracking_error_end_m"] == "false Largest"
+    assert any(line.split()[:3] == ["speed_mps", "0.0", "m/s"] for line in described("wind"))
 
 
 def test_a_section_is_described_with_the_keys_of_its_parts():

@@ -114,7 +114,7 @@ def test_starts_depend_on_the_seed_and_nu_alone():
 def test_a_vehicle_that_lags_so_much_that_a_turn_away_does_not_lead_away_is_not_flown():
     # At 0.5 rad/s and 4 s late it overshoots by two radians: it came within 28 m of a ship to be kept 50 m from.
     with pytest.raises(
-        InfeasibleError, match=r"lags by 4 s overshoots, and then leaves at only -.* of its .*: give it a shorter lag"
+        InfeasibleError, match=r"lags by 4 s overshoots, and then leaves at only -.* of its .*: slow the vessel, .* shorter lag"
     ):
         plan(tracking(kinematic={"heading_rate_lag_s": 4.0}))
     plan(tracking(kinematic={"heading_rate_lag_s": 0.4}))

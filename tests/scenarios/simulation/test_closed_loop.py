@@ -79,6 +79,9 @@ def test_every_column_has_a_meaning_and_a_unit():
     assert [unit_of(name) for name in ("time_s", "north_m", "heading_rate_rad_s", "airspeed_mps", "guard")] == [
         "s", "m", "rad/s", "m/s", "1",
     ]  # fmt: skip
+    # A unit of two words is not its last one.
+    names = ("dose_per_pass_ppm_s", "plume_s_per_minute", "crossings_per_minute", "served_per_hour", "l1_integrator_per_s")
+    assert [unit_of(name) for name in names] == ["ppm s", "s/min", "1/min", "1/h", "1/s"]
 
 
 def test_a_kinematic_vehicle_is_released_at_the_start_of_its_plan_in_its_wind():

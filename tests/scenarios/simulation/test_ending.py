@@ -81,7 +81,7 @@ def ended(
         (
             {"settled": math.nan},
             Outcome.NOT_SETTLED,
-            "(flight.duration_max_s), though a longer flight may not settle either, or start closer",
+            "(flight.duration_max_s, though a longer flight may not settle either), or start closer",
         ),
         ({"settled": math.nan, "guarded": True}, Outcome.NOT_SETTLED, "start closer, or see whether the guard holds it off"),
         ({"settled": math.nan, "mode": Mode.OUTRUN}, Outcome.NOT_SETTLED, "did not settle within 300 s, and ended outrun"),

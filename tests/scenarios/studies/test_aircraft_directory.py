@@ -89,12 +89,12 @@ def test_the_directory_is_designed_for_and_listed(flown, heavy, tmp_path):
     (line,) = listed.out.splitlines()
     assert line.startswith(f"flies {heavy} ")
     altitude = f"{float(place[-1]):g} m"
-    assert f"1 can be flown at {altitude}, the one altitude of this list (--altitude for another)\n" in listed.errors
+    assert f"1 can be flown at {altitude} (--altitude for another altitude)\n" in listed.errors
     assert run_command("innerloop.design", "--list", "--check", *place).out == listed.out
     # At another height nothing is designed for a list.
     elsewhere = run_command("innerloop.design", "--list", *place[:2], "--altitude", 777)
     assert elsewhere.out.split(maxsplit=2) == ["?", str(heavy), "not designed before for 777 m\n"]
-    assert "0 can be flown at 777 m, the one altitude of this list" in elsewhere.errors
+    assert "0 can be flown at 777 m (--altitude for another altitude)" in elsewhere.errors
     assert "; 1 was not designed for it before: --list --check does so" in elsewhere.errors
     assert_refused(run_command("innerloop.design", "--check", *place), "--check is for --list")
 
