@@ -51,9 +51,21 @@ class Approach:
     parameters : of the way
     own, target : motion of the vehicle and of the vessel
     speed, heading_rate_max, lag : V_r, omega_max, and lag of the vehicle's heading rate behind its command [m/s, rad/s, s]
+    time_step : of the guidance [s]
     """
 
-    __slots__ = ("_lag", "_limit", "_own", "_parameters", "_target", "_transit")
+    __slots__ = (
+        "_held",
+        "_join_distance",
+        "_lag",
+        "_limit",
+        "_own",
+        "_parameters",
+        "_quarter_turn",
+        "_target",
+        "_time_step",
+        "_transit",
+    )
 
     def __init__(
         self,
@@ -64,29 +76,37 @@ class Approach:
         speed: float,
         heading_rate_max: float,
         lag: float,
+        time_step: float,
     ) -> None:
         self._parameters, self._own, self._target = parameters, own, target
         self._limit, self._lag = heading_rate_max, lag
-        self._transit = Transit(speed / heading_rate_max)
+        self._transit, self._quarter_turn = Transit(speed / heading_rate_max), 0.5 * math.pi / heading_rate_max
+        self._held, self._time_step, self._join_distance = 0.0, time_step, parameters.join_distance
 
     def course_ahead(self, last_command: float) -> float:
         """Return the course that the vehicle will have when a command acts [rad], after its last command [rad/s]."""
         own = self._own
         return own.course + 0.5 * self._lag * (own.heading_rate + last_command)
 
-    def command(self, centre_x: float, centre_y: float, last_command: float, *, additional_range: float) -> float:
+    def command(self, centre_x: float, centre_y: float, last_command: float, *, additional_range: float, guarding: bool) -> float:
         """Return the heading rate that leads to the centre, round the vessel [rad/s].
+
+        It turns to the nearer side. Where that leads through the course straight to the vessel, the keep-out guard may not let it
+        through, and hold the vehicle on a course beside a fast vessel until it has fallen behind. After a quarter of a turn of that
+        it flies abeam until it is as far off as it goes round the vessel, and turns then.
 
         Parameters
         ----------
         centre_x, centre_y : of oscillation, north and east of the vessel [m]
         last_command : of the heading rate [rad/s]
         additional_range : added to the radii of the keep-out area for now [m]
+        guarding : whether the keep-out guard turns the vehicle away
         """
         p, own, target = self._parameters, self._own, self._target
+        x, y = own.ground_north - target.north, own.ground_east - target.east
         to = self._transit.course(
-            own.ground_north - target.north,
-            own.ground_east - target.east,
+            x,
+            y,
             centre_x,
             centre_y,
             blocked_radius=min(p.blocked_radius + additional_range, _BLOCKED_WITHIN * math.hypot(centre_x, centre_y)),
@@ -96,7 +116,14 @@ class Approach:
             course=own.course,
             speed=own.speed,
         )
-        return limited(COURSE_GAIN * self._limit * wrap(to - self.course_ahead(last_command)), self._limit)
+        course, near = self.course_ahead(last_command), math.hypot(x, y) < p.round_radius + additional_range
+        turn = wrap(to - course)
+        side = math.copysign(1.0, turn)
+        to_vessel = side * wrap(math.atan2(-y, -x) - course)
+        self._held = self._held + guarding * self._time_step if near and 0.0 < to_vessel < abs(turn) else 0.0
+        if self._held >= self._quarter_turn:
+            turn = side * (to_vessel - 0.5 * math.pi)
+        return limited(COURSE_GAIN * self._limit * turn, self._limit)
 
     def joins(self, centre_x: float, centre_y: float, axis: float, *, error: float, tracking: bool, guarding: bool) -> bool:
         """Return whether to track the reference.
@@ -114,6 +141,12 @@ class Approach:
         off = math.hypot(centre_x - x, centre_y - y)
         aspect = abs(wrap(math.atan2(y, x) - axis))
         if not tracking:
-            return off < p.join_distance and aspect < _JOIN_ASPECT and not guarding
+            held = guarding or self._held >= self._quarter_turn
+            return off < self._join_distance and aspect < _JOIN_ASPECT and not held
         held_off = guarding and error > LOST_TRACK * p.tracked
         return off < _LEFT_AT * p.join_distance and aspect < _LEAVE_ASPECT and not held_off
+
+    def join_nearer(self) -> None:
+        """Let tracking begin from half as far as before: the keep-out guard has just ended it, and would do so again."""
+        p = self._parameters
+        self._join_distance = max(0.5 * self._join_distance, min(LOST_TRACK * p.tracked, p.join_distance))

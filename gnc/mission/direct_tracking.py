@@ -117,9 +117,16 @@ class DirectTracking:
         self._approach: Approach | None = None
         self._standoff, self.airspeed, self.altitude = 0.0, parameters.reference.speed, altitude
         if self._joining is not None:
-            speed, limit = parameters.reference.speed, tracking.heading_rate_max
             approach = self._joining.approach
-            self._approach = Approach(approach, own=own, target=target, speed=speed, heading_rate_max=limit, lag=tracking.lag)
+            self._approach = Approach(
+                approach,
+                own=own,
+                target=target,
+                speed=parameters.reference.speed,
+                heading_rate_max=tracking.heading_rate_max,
+                lag=tracking.lag,
+                time_step=tracking.time_step,
+            )
             self._standoff, self.airspeed = STANDOFF * approach.tracked, approach.airspeed
         self.overriding, self.leaving = self._approach is not None, False
         self.started, self.centre_error, self.in_place = True, self._standoff, not self.overriding
@@ -140,6 +147,8 @@ class DirectTracking:
                 self._join(self._joining.orbit)
         elif (guarding or (self._losable and not self._closing)) and error > LOST_TRACK * tracked:
             self.overriding, self._closing = True, False
+            if guarding:
+                self._approach.join_nearer()
         elif self._closing:
             ahead = self.tracker.ahead
             near = error < (LOST_TRACK if ahead.closing else 1.0) * tracked
@@ -158,7 +167,8 @@ class DirectTracking:
         """Return the heading rate that leads to where the orbit is joined, round the vessel [rad/s]; the law's without a way."""
         if self._approach is None:
             return self.tracker.heading_rate_command
-        return self._approach.command(*self._joined_at(), last_command, additional_range=0.0)
+        guarding = self._guard is not None and self._guard.intervening
+        return self._approach.command(*self._joined_at(), last_command, additional_range=0.0, guarding=guarding)
 
     def leave(self, fault: Fault) -> None:
         """Refuse to leave: this mission has no departure, and is not given a monitor that could demand it.

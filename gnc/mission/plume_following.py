@@ -103,6 +103,7 @@ class PlumeFollowing:
             speed=self._speed,
             heading_rate_max=tracking.heading_rate_max,
             lag=tracking.lag,
+            time_step=tracking.time_step,
         )
         self._egress = Egress(tracking.heading_rate_max)
         self._plan_time = 0.0
@@ -148,7 +149,8 @@ class PlumeFollowing:
         if self.leaving or self.departing:
             x, y = own.ground_north - target.north, own.ground_east - target.east
             return self._egress.command(x, y, self._approach.course_ahead(last_command), own.heading_rate)
-        return self._approach.command(centre.x, centre.y, last_command, additional_range=self._orbit_range)
+        guarding = self._guard is not None and self._guard.intervening
+        return self._approach.command(centre.x, centre.y, last_command, additional_range=self._orbit_range, guarding=guarding)
 
     def plan(self, time: float) -> None:
         """Move the centre, steer the reference, and decide what to do."""

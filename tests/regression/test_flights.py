@@ -93,6 +93,14 @@ def test_from_anywhere_about_the_ship_nothing_enters(fly, seed, nu, approach, du
     assert (row["guard_interventions"] > 0) == (approach == "false")
 
 
+def test_law_and_guard_do_not_hold_each_other_beside_a_fast_ship(fly):
+    # The law turned parallel to her 3 m outside, and the way to the orbit led through the course to her: for 58.5 s.
+    row, _ = fly("start.spread_deg=180", "seed=5", "flight.crossings=2", nu=0.9)
+    assert row["keepout_violations"] == 0
+    assert 0.0 < row["guard_time_s"] < 5.0
+    assert row["settling_time_s"] < 90.0
+
+
 @pytest.mark.parametrize("course", [-150, 30])
 def test_starting_ahead_of_the_vessel_without_an_approach_the_guard_keeps_out_and_it_gets_round(fly, course):
     # With an approach it goes round by itself, and the guard has nothing to do.
