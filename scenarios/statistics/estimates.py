@@ -131,15 +131,16 @@ def counted(words: "pd.Series[str]") -> dict[str, int]:
 def share(events: int, flights: int, level: float, *, per_sample: int = 1) -> Json:
     """Return the share of flights with an event, and the intervals of its probability.
 
-    Of flights that share what is random, so many ``per_sample``, each event may be of another sample, or of as few as can be.
+    Of flights that share what is random, so many ``per_sample``, each event may be of another sample, or all events of samples that
+    have nothing else: what does not make up a whole one says nothing of the lower limit.
     """
     samples = flights // per_sample
-    most, least = min(events, samples), -(-events // per_sample)
+    most, least = min(events, samples), events // per_sample
     return {
         "events": events,
         "flights": flights,
         "share": events / flights if flights else math.nan,
-        "low": clopper_pearson(min(least, samples), samples, level).low,
+        "low": clopper_pearson(least, samples, level).low,
         "high": clopper_pearson(most, samples, level).high,
         "upper": upper_bound(most, samples, level),
     }

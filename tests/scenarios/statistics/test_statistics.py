@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from common.intervals import clopper_pearson, quantile_interval, upper_bound
-from scenarios.statistics.estimates import NAMED_MAX, study_statistics
+from scenarios.statistics.estimates import NAMED_MAX, share, study_statistics
 from scenarios.statistics.stopping import confidence_at
 from tests.scenarios.study_rows import PREDICTED, RADIUS, few_indices, study_rows
 
@@ -143,3 +143,11 @@ def test_a_study_of_nothing_but_failures_and_one_of_nothing_have_statistics_that
         assert found["violation"]["measured"]["share"] is None
         assert found["figures"]["clearance_m"]["quantiles"][0] == {"probability": 0.01, "value": None, "low": None, "high": None}
         assert found["sensitivity"]["clearance_m"]["message"].startswith("0 flights have this figure")
+
+
+@pytest.mark.parametrize(("events", "whole"), [(1, 0), (99, 0), (100, 1), (150, 1), (200, 2)])
+def test_the_lower_limit_of_flights_that_share_samples_takes_their_events_for_those_of_as_few_samples_as_can_be(events, whole):
+    found = share(events, 200, 0.95, per_sample=100)
+    # 2 samples: events of one of them are up to 100, so that fewer need not be half of all.
+    assert found["low"] == clopper_pearson(whole, 2, 0.95).low <= found["share"]
+    assert found["high"] == clopper_pearson(min(events, 2), 2, 0.95).high
