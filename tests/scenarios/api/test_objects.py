@@ -135,6 +135,10 @@ def test_a_part_is_known_to_its_flights_alone():
         load(SHORT, law="Pursuit")
 
 
+def test_a_law_as_an_object_may_have_parameters_of_numpy():
+    assert load(SHORT, law=Pursuit(gain=np.float64(1.5), lead_s=np.int64(2))) == load(SHORT, law=Pursuit(gain=1.5, lead_s=2))
+
+
 def test_numbers_of_numpy_are_numbers():
     scenario = load(SHORT, nu=np.linspace(0.3, 0.5, 3), seed=np.int64(3))
     assert scenario.changes == ("sweep.nu=[0.3, 0.4, 0.5]", "seed=3")
