@@ -171,6 +171,7 @@ def local_law():
         ({"nu": "fast"}, "nu is 'fast'; give a number, as in nu=0.5, or a list of numbers"),
         ({"nu": 20.0}, "speed ratios lie between 0 and 10"),
         ({"jobs": 0}, "jobs is 0"),
+        ({"jobs": 2.5}, "jobs is 2.5"),
     ],
 )
 def test_what_is_wrong_is_one_line(keys, words, capfd):
