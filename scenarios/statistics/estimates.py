@@ -53,7 +53,7 @@ def study_statistics(
 
     Parameters
     ----------
-    rows : columns ``COLUMNS`` of the summary, a row per flight that is done, failed flights included
+    rows : columns ``COLUMNS`` of the summary, a row per flight that is done, failed flights included, one point after the other
     inputs : ``draws.csv``: ``flight_id``, ``trial`` and a column per random variable
     confidence : confidence of each interval, between 0 and 1; not of all of them together
     seed : seed of the random numbers for the sensitivity indices
@@ -65,6 +65,8 @@ def study_statistics(
     found = count_violations(rows)
     figures = study_figures(rows)
     drawn = inputs.set_index("flight_id").reindex(rows["flight_id"]).drop(columns="trial", errors="ignore")
+    # In a single sample nothing random differs, and what is swept is all that there is to judge.
+    samples = np.arange(len(rows)) % count if (count := len(rows) // per_sample) > 1 else None
     statistics = {
         "confidence": confidence,
         "look_number": look_number,
@@ -78,7 +80,8 @@ def study_statistics(
         },
         "figures": {name: _figure(values, level, apart=per_sample == 1) for name, values in figures.items()},
         "sensitivity": {
-            name: asdict(sensitivity_indices(drawn, figures[name], confidence=confidence, seed=seed)) for name in DRIVEN
+            name: asdict(sensitivity_indices(drawn, figures[name], confidence=confidence, seed=seed, samples=samples))
+            for name in DRIVEN
         },
     }
     plain: Json = without_nan(statistics)

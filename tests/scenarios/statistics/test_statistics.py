@@ -8,6 +8,7 @@ import pytest
 
 from common.intervals import clopper_pearson, quantile_interval, upper_bound
 from scenarios.statistics.estimates import NAMED_MAX, share, study_statistics
+from scenarios.statistics.sensitivity import sensitivity_indices
 from scenarios.statistics.stopping import confidence_at
 from tests.scenarios.study_rows import PREDICTED, RADIUS, few_indices, study_rows
 
@@ -151,3 +152,17 @@ def test_the_lower_limit_of_flights_that_share_samples_takes_their_events_for_th
     # 2 samples: events of one of them are up to 100, so that fewer need not be half of all.
     assert found["low"] == clopper_pearson(whole, 2, 0.95).low <= found["share"]
     assert found["high"] == clopper_pearson(min(events, 2), 2, 0.95).high
+
+
+@pytest.mark.parametrize(("per_sample", "expected"), [(1, [0, 1, 2, 3, 4, 5]), (3, [0, 1, 0, 1, 0, 1]), (6, None)])
+def test_what_drives_a_figure_is_judged_by_samples_of_which_each_point_has_one_flight(per_sample, expected, monkeypatch):
+    judged = []
+
+    def indices(*given, samples, **named):
+        judged.append(samples)
+        return sensitivity_indices(*given, samples=samples, **named)
+
+    monkeypatch.setattr("scenarios.statistics.estimates.sensitivity_indices", indices)
+    statistics_of(*study_rows(6), per_sample=per_sample)
+    assert all((samples is None and expected is None) or samples.tolist() == expected for samples in judged)
+    assert judged
