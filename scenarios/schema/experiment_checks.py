@@ -138,6 +138,9 @@ def check_tables(scenario: ScenarioKeys) -> None:
         raise ValueError(
             f"a comparison is called '{STUDY}', as flights that count are, and would count as they do; give it another name"
         )
+    if twice := next((name for name in apart if apart.count(name) > 1), None):
+        count = apart.count(twice)
+        raise ValueError(f"{count} comparisons are called '{twice}', and would count as one; give each a name of its own")
     for kind, name, keys in _tables_of(scenario):
         for key in keys:
             if _is_of_run(scenario, key) and not f"{key}.".startswith(_SET_IN[kind]):

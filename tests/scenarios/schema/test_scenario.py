@@ -148,6 +148,16 @@ def test_what_no_flight_depends_on_is_neither_sampled_nor_set_for_some_flights(k
     assert "\n" not in str(refusal.value)
 
 
+def test_two_comparisons_of_one_name_are_refused():
+    twice = [{"name": "own", "set": {"guidance.preview": of}} for of in (True, False)]
+    words = "2 comparisons are called 'own', and would count as one; give each a name of its own"
+    with pytest.raises(InputError, match=words):
+        checked({"title": "own", "comparison": {"variants": twice}}, Scenario)
+    cases = [{"name": "own", "comparison": True}, {"name": "other"}]
+    with pytest.raises(InputError, match=words):
+        checked({"title": "own", "cases": cases, "comparison": {"variants": twice[:1]}}, Scenario)
+
+
 def test_what_some_flights_may_depend_on_is_set_for_them():
     of_flights = {"flight_seed": 3, "criteria.settles": False, "wind": {"speed_mps": 3.0}}
     conditions = [{"name": "own", "title": "Own", "set": of_flights | {"draws": [WIND], "speed_ratio": [0.2, 0.5]}}]
