@@ -54,7 +54,7 @@ def study_statistics(
     Parameters
     ----------
     rows : columns ``COLUMNS`` of the summary, a row per flight that is done, failed flights included, one point after the other
-    inputs : ``draws.csv``: ``flight_id``, ``trial`` and a column per random variable
+    inputs : of ``draws.csv`` ``flight_id`` and a column per random variable or swept key
     confidence : confidence of each interval, between 0 and 1; not of all of them together
     seed : seed of the random numbers for the sensitivity indices
     look_number : number of the look at which the study stopped, from 1; intervals are widened for the looks before it
@@ -64,7 +64,7 @@ def study_statistics(
     level = interval_confidence(confidence, look_number)
     found = count_violations(rows)
     figures = study_figures(rows)
-    drawn = inputs.set_index("flight_id").reindex(rows["flight_id"]).drop(columns="trial", errors="ignore")
+    drawn = inputs.set_index("flight_id").reindex(rows["flight_id"])
     # In a single sample nothing random differs, and what is swept is all that there is to judge.
     samples = np.arange(len(rows)) % count if (count := len(rows) // per_sample) > 1 else None
     statistics = {
