@@ -89,7 +89,7 @@ def _table(
 
 def _interval(estimate: Estimate, figure: Figure) -> str:
     mean, low, high = (figure.written(value) for value in (estimate.mean, estimate.low, estimate.high))
-    return mean if math.isnan(estimate.mean) else f"{mean} ({low}\N{EN DASH}{high})"
+    return mean if math.isnan(estimate.low) else f"{mean} ({low}\N{EN DASH}{high})"
 
 
 def few(arena: Arena, estimate: Estimate, condition: str) -> str:

@@ -6,6 +6,7 @@ import tempfile
 import weakref
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from numbers import Integral
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -94,8 +95,8 @@ def run(
     from scenarios.engine.executors import ExecutorFactory
     from scenarios.studies.registry import run_study
 
-    if jobs is not None and jobs < 1:
-        raise InputError(f"jobs is {jobs}; at least one process has to fly: give 1 or more")
+    if jobs is not None and not (isinstance(jobs, Integral) and jobs >= 1):
+        raise InputError(f"jobs is {jobs!r}; it is a number of processes: give a whole number, 1 or more")
     loaded = load(scenario).set(**keys)
     check_picklable(loaded.parts)
     processes = ExecutorFactory(jobs=jobs or os.cpu_count() or 1)

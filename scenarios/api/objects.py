@@ -153,8 +153,8 @@ class _Namer:
             if below in _LAWS and is_dataclass(value) and not isinstance(value, type):
                 made[name] = self.part(below, type(value))
                 section = name.rpartition(".")[0]
-                keys = {of.name: getattr(value, of.name) for of in fields(value) if of.init}
-                made |= {f"{section}.{of}" if section else of: item for of, item in keys.items()}
+                keys = {of.name: f"{section}.{of.name}" if section else of.name for of in fields(value) if of.init}
+                made |= {of_law: self.value(of_law, getattr(value, of)) for of, of_law in keys.items()}
             elif below == "vessel.track" and isinstance(value, AisReports):
                 made[name] = str(value.path)
                 made[f"{name.removesuffix('track')}mmsi"] = value.mmsi

@@ -32,6 +32,7 @@ class Run:
     """The results of a study. Made by ``run``.
 
     Tables are data frames with the units of their columns in ``attrs["units"]``, as ``summary.attrs["units"]["min_distance_m"]``.
+    What is changed in them changes no flight and no report.
 
     Parameters
     ----------
@@ -59,29 +60,30 @@ class Run:
     @functools.cached_property
     def summary(self) -> "pd.DataFrame":
         """Return a row per flight of the study, or per trajectory and law of a study of convergence."""
-        return _with_units(self._data.summary)
+        return _with_units(self._data.summary.copy())
 
     @functools.cached_property
     def comparison(self) -> "pd.DataFrame":
         """Return a row per flight of the comparisons, possibly none."""
-        return _with_units(self._data.comparison)
+        return _with_units(self._data.comparison.copy())
 
     @functools.cached_property
     def crossings(self) -> "pd.DataFrame":
         """Return a row per crossing of the plume."""
-        return _with_units(self._data.crossings)
+        return _with_units(self._data.crossings.copy())
 
     @functools.cached_property
     def draws(self) -> "pd.DataFrame":
         """Return a row per flight: the keys that were swept or sampled at random."""
-        return _with_units(self._data.draws)
+        return _with_units(self._data.draws.copy())
 
     @property
     def flights(self) -> Mapping[str, "Flight"]:
         """Return the flights by their names, those of the study before those of its comparisons."""
-        if "trial" not in self.summary:
+        tables = (self._data.summary, self._data.comparison)
+        if "trial" not in self._data.summary:
             return {}
-        return {str(name): Flight(self, str(name)) for rows in (self.summary, self.comparison) for name in rows["flight_id"]}
+        return {str(name): Flight(self, str(name)) for rows in tables for name in rows["flight_id"]}
 
     @property
     def statistics(self) -> Statistics | None:
@@ -145,11 +147,11 @@ class Flight:
     @functools.cached_property
     def row(self) -> "pd.Series[Any]":
         """Return its row of the summary; units are in ``attrs["units"]``."""
-        for rows in (self.run.summary, self.run.comparison):
+        for rows in (self.run._data.summary, self.run._data.comparison):
             found = rows[rows["flight_id"] == self.flight_id]
             if len(found):
                 row = found.iloc[0].rename(self.flight_id)
-                row.attrs = dict(rows.attrs)
+                row.attrs = dict(_with_units(found).attrs)
                 return row
         raise InputError(f"the run in '{self.run.directory}' has no flight '{self.flight_id}'; its summary lists them")
 
@@ -174,8 +176,7 @@ class Flight:
     @functools.cached_property
     def crossings(self) -> "pd.DataFrame":
         """Return a row per crossing of the plume after settling."""
-        crossings = self.run.crossings
-        return crossings[crossings["flight_id"] == self.flight_id].reset_index(drop=True)
+        return _with_units(self.run._data.crossings_of(self.flight_id).reset_index(drop=True))
 
     @property
     def met(self) -> bool:

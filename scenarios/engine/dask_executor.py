@@ -91,8 +91,11 @@ class DaskExecutor:
         return self
 
     def _check_code(self) -> None:
-        """Refuse workers whose results could differ."""
-        for worker, theirs in self._client.run(fingerprint).items():
+        """Refuse workers whose results could differ, or that have none of the code."""
+        for worker, theirs in self._client.run(fingerprint, on_error="return").items():
+            if isinstance(theirs, BaseException):
+                self.__exit__(InputError, None, None)
+                raise InputError(f"Dask worker {worker} cannot run this program ({theirs}); install it there, in the same version")
             if differing := differences(theirs):
                 self.__exit__(InputError, None, None)
                 name = differing[0]

@@ -181,8 +181,9 @@ def _exit_reason(code: int | None) -> str:
     if code is None:
         return "closed its connection"
     if code < 0:
-        name = signal.Signals(-code).name
-        return f"was ended by {name}" + (", possibly for lack of memory" if -code == signal.SIGKILL else "")
+        # Of real-time signals only the first and the last have a name.
+        name = signal.Signals(-code).name if -code in list(signal.Signals) else f"signal {-code}"
+        return f"was ended by {name}" + (", possibly for lack of memory" if name == "SIGKILL" else "")
     return f"ended with status {code}"
 
 

@@ -64,7 +64,7 @@ def _grid(scenario: Scenario) -> Iterator[Point]:
     sweep = scenario.sweep.root
     names = _names_of(sweep)
     for vehicle in _vehicles(scenario):
-        for values in itertools.product(*map(_different, sweep.values())):
+        for values in itertools.product(*map(without_repetitions, sweep.values())):
             at = dict(zip(sweep, values, strict=True))
             nu = scenario.sweep.nu[list(sweep["nu"]).index(at["nu"])] if "nu" in at else None
             labels = [_label(names[key], value) for key, value in at.items()] + ([vehicle] if scenario.fidelity == "both" else [])
@@ -73,7 +73,7 @@ def _grid(scenario: Scenario) -> Iterator[Point]:
             yield Point(label="_".join(labels), variant=STUDY, scenario=changed, nu=nu, inputs=inputs, flights=scenario.flights)
 
 
-def _different(values: Sequence[object]) -> Iterable[object]:
+def without_repetitions(values: Sequence[object]) -> list[object]:
     """Return the values without repetitions, by comparison: lists and tables may be swept, too, and 5 equals 5.0."""
     return [value for i, value in enumerate(values) if value not in values[:i]]
 

@@ -3,8 +3,10 @@
 import math
 from collections.abc import Collection
 
+from scenarios.experiment.points import without_repetitions
 from scenarios.schema.scenario import Scenario
 from scenarios.schema.sections.equipment import SensorsConfig
+from scenarios.schema.sections.experiment import DrawConfig
 
 _READ = ("payload.", "emission.")
 """Sections that change what is read in a flight, and its path only where that follows the readings."""
@@ -23,12 +25,14 @@ def is_random_sample(scenario: Scenario) -> bool:
         return False
     # What is drawn of these tells no two flights apart either.
     draws = [draw for draw in scenario.draws if scenario.finds or not draw.key.startswith(_READ)]
-    in_turn = {draw.key: draw.choice for draw in draws if draw.choice is not None and draw.weights is None}
-    if len(in_turn) < len(draws):
+    in_turn = {draw.key: without_repetitions(draw.choice) for draw in draws if draw.choice is not None and draw.weights is None}
+    if any(draw.key not in in_turn and _varies(draw) for draw in draws):
         return True
     listed = {*scenario.sweep.root, *in_turn}
     if "flight_seed" in listed:
-        different = math.prod(map(len, in_turn.values()))
+        # Of what is chosen in turn the first is another one in each flight; a seed behind it comes again, beside other values.
+        first = next(iter(in_turn), "")
+        different = len(in_turn[first]) if first == "flight_seed" else 1
         return scenario.flights <= different and _depends_on_seed(scenario, listed)
     return scenario.flight_seed is None and _depends_on_seed(scenario, listed)
 
@@ -36,12 +40,22 @@ def is_random_sample(scenario: Scenario) -> bool:
 def flights_per_sample(scenario: Scenario) -> int:
     """Return how many flights have the same seed and random variables: a bound on a probability counts them as one.
 
-    Those of all points of a sweep have, and those of two vehicles; but for speed ratios of one flight each, and swept seeds.
+    Those of all points of a sweep have, and those of two vehicles; but for speed ratios of one flight each, and swept seeds, where
+    there are no random variables, of which all points have the same sample.
     """
     sweep = scenario.sweep.root
     apart = "flight_seed" if "flight_seed" in sweep else "nu" if "nu" in sweep and scenario.flights == 1 else None
-    points = math.prod(len(values) for key, values in sweep.items() if key != apart)
+    if scenario.draws:
+        apart = None
+    points = math.prod(len(without_repetitions(values)) for key, values in sweep.items() if key != apart)
     return points * (2 if scenario.fidelity == "both" else 1)
+
+
+def _varies(draw: DrawConfig) -> bool:
+    """Return whether a random variable has several values: a range of no width, or one choice of some weight, has one."""
+    if draw.uniform is not None:
+        return draw.uniform[0] < draw.uniform[1]
+    return draw.weights is None or sum(weight > 0.0 for weight in draw.weights) > 1
 
 
 def _depends_on_seed(scenario: Scenario, listed: Collection[str]) -> bool:

@@ -66,7 +66,8 @@ def window_figures(plan: FlightPlan, record: FlightRecord, *, window: float) -> 
 
 
 def measured_figures(row: Row, *, window: float) -> Row:
-    """Return what a minute in the air was worth to the measurement, of what a sniffer has made of ``window`` [s].
+    """Return what a minute in the air was worth to the measurement, of what a sniffer has made of ``window`` [s], or of all of a
+    shorter flight.
 
     The plume's is the time in which the concentration is above exp(-2) of that on its axis. Of the fuel's sulphur content it is the
     information, 1/sigma^2 by noise, the part of the standard uncertainty that more time takes away; the gains and zeros of the
@@ -76,7 +77,7 @@ def measured_figures(row: Row, *, window: float) -> Row:
     """
     if "seconds_in_plume_s" not in row:
         return {}
-    minutes, noise = window / _SECONDS_PER_MINUTE, float(row.get("fsc_noise_percent", math.nan))
+    minutes, noise = min(window, row["duration_s"]) / _SECONDS_PER_MINUTE, float(row.get("fsc_noise_percent", math.nan))
     admitted = row["sulphur_quality"] != "C" and noise > 0.0 and row["outcome"] != Outcome.AIRCRAFT_LOST.value
     information = 1.0 / (noise**2 * minutes) if admitted else 0.0
     return {"plume_s_per_minute": row["seconds_in_plume_s"] / minutes, "sulphur_information_per_minute": information}

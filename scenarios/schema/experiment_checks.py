@@ -4,6 +4,7 @@ from collections.abc import Collection, Iterator
 
 from pydantic import BaseModel
 
+from common.dotted_keys import at_or_below
 from measurement.plume.settings import SOURCE_HEIGHT_MAX
 from scenarios.schema.scenario_keys import ScenarioKeys
 from scenarios.schema.sections.experiment import FLIGHTS_MAX, STUDY
@@ -12,7 +13,7 @@ from scenarios.schema.sections.world import SOURCE_HEIGHT_MIN
 DESIGNED_FOR = ("aircraft", "guidance.airspeed_mps", "flight.altitude_m")
 """Keys for which the autopilot is worked out once for a run: they cannot be sampled or swept."""
 
-_DESIGN_HEIGHT = ("plume.source_height_m", "emission.ship")
+_DESIGN_HEIGHT = ("plume.source_height_m", "emission.ship", "flight.altitude_min_m", "flight.altitude_max_m")
 """The same where the altitude at the start follows from them: without ``flight.altitude_m``, and the second without the first."""
 
 
@@ -137,6 +138,9 @@ def check_tables(scenario: ScenarioKeys) -> None:
         raise ValueError(
             f"a comparison is called '{STUDY}', as flights that count are, and would count as they do; give it another name"
         )
+    if twice := next((name for name in apart if apart.count(name) > 1), None):
+        count = apart.count(twice)
+        raise ValueError(f"{count} comparisons are called '{twice}', and would count as one; give each a name of its own")
     for kind, name, keys in _tables_of(scenario):
         for key in keys:
             if _is_of_run(scenario, key) and not f"{key}.".startswith(_SET_IN[kind]):
@@ -200,7 +204,7 @@ def check_draws(scenario: ScenarioKeys) -> None:
     if {"nu", swept_key("nu")} <= scenario.sweep.root.keys():
         raise ValueError("sweep has 'nu' and 'vessel.speed_ratio', which are the same; give one of them")
     for key in [*keys, *scenario.sweep.root]:
-        if key.startswith(DESIGNED_FOR):
+        if any(at_or_below(key, of) for of in DESIGNED_FOR):
             raise ValueError(f"'{key}' {_DESIGNED_ONCE} it: give each value a run of its own")
         if key.startswith(_DESIGN_HEIGHT) and scenario.flight.altitude_m is None and not _height_given(scenario, key):
             raise ValueError(

@@ -25,6 +25,9 @@ _PICTURE = "logo"
 _TRIALS = "trials"
 """Key whose values may be scenario files."""
 
+_OVERRIDES = "set"
+"""Key of a list of trials, whose values are overrides, key=value."""
+
 
 def part_names(scenario: Scenario) -> Iterator[tuple[str, str]]:
     """Yield the key and the name of each part of a scenario, those that its random variables may choose among them."""
@@ -59,7 +62,7 @@ def with_absolute_files(value: Any, folder: Path, key: str = "") -> Any:
     key : whose value it is; files of data are those of ``_DATA`` alone, and of pictures that of ``_PICTURE``
     """
     last = key.rpartition(".")[2]
-    if last in _WORDS:
+    if last in _WORDS or (key == _OVERRIDES and isinstance(value, list)):
         return value
     if isinstance(value, dict):
         # A random variable has its key beside its choices.
@@ -69,10 +72,7 @@ def with_absolute_files(value: Any, folder: Path, key: str = "") -> Any:
         return [with_absolute_files(below, folder, key) for below in value]
     if isinstance(value, str) and ((value and last == _PICTURE) or (key == _TRIALS and value.endswith(".toml"))):
         return os.path.normpath(folder.absolute() / value)
-    named_by_file = isinstance(value, str) and (
-        is_file_part(value) or (last in _DATA and is_data_file(value)) or names_folder(last, value)
-    )
-    if named_by_file and "=" not in value:
+    if isinstance(value, str) and (is_file_part(value) or (last in _DATA and is_data_file(value)) or names_folder(last, value)):
         return os.path.normpath(folder.absolute() / value)
     return value
 

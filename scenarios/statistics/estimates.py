@@ -53,8 +53,8 @@ def study_statistics(
 
     Parameters
     ----------
-    rows : columns ``COLUMNS`` of the summary, a row per flight that is done, failed flights included
-    inputs : ``draws.csv``: ``flight_id``, ``trial`` and a column per random variable
+    rows : columns ``COLUMNS`` of the summary, a row per flight that is done, failed flights included, one point after the other
+    inputs : of ``draws.csv`` ``flight_id`` and a column per random variable or swept key
     confidence : confidence of each interval, between 0 and 1; not of all of them together
     seed : seed of the random numbers for the sensitivity indices
     look_number : number of the look at which the study stopped, from 1; intervals are widened for the looks before it
@@ -64,7 +64,9 @@ def study_statistics(
     level = interval_confidence(confidence, look_number)
     found = count_violations(rows)
     figures = study_figures(rows)
-    drawn = inputs.set_index("flight_id").reindex(rows["flight_id"]).drop(columns="trial", errors="ignore")
+    drawn = inputs.set_index("flight_id").reindex(rows["flight_id"])
+    # In a single sample nothing random differs, and what is swept is all that there is to judge.
+    samples = np.arange(len(rows)) % count if (count := len(rows) // per_sample) > 1 else None
     statistics = {
         "confidence": confidence,
         "look_number": look_number,
@@ -78,7 +80,8 @@ def study_statistics(
         },
         "figures": {name: _figure(values, level, apart=per_sample == 1) for name, values in figures.items()},
         "sensitivity": {
-            name: asdict(sensitivity_indices(drawn, figures[name], confidence=confidence, seed=seed)) for name in DRIVEN
+            name: asdict(sensitivity_indices(drawn, figures[name], confidence=confidence, seed=seed, samples=samples))
+            for name in DRIVEN
         },
     }
     plain: Json = without_nan(statistics)
@@ -131,15 +134,16 @@ def counted(words: "pd.Series[str]") -> dict[str, int]:
 def share(events: int, flights: int, level: float, *, per_sample: int = 1) -> Json:
     """Return the share of flights with an event, and the intervals of its probability.
 
-    Of flights that share what is random, so many ``per_sample``, each event may be of another sample, or of as few as can be.
+    Of flights that share what is random, so many ``per_sample``, each event may be of another sample, or all events of samples that
+    have nothing else: what does not make up a whole one says nothing of the lower limit.
     """
     samples = flights // per_sample
-    most, least = min(events, samples), -(-events // per_sample)
+    most, least = min(events, samples), events // per_sample
     return {
         "events": events,
         "flights": flights,
         "share": events / flights if flights else math.nan,
-        "low": clopper_pearson(min(least, samples), samples, level).low,
+        "low": clopper_pearson(least, samples, level).low,
         "high": clopper_pearson(most, samples, level).high,
         "upper": upper_bound(most, samples, level),
     }

@@ -3,11 +3,13 @@
 Every entrant flies the same starts and the same air. Resampled are these, for all entrants together, so that what is common to all
 of them, such as a wind that is hard on everyone, does not count as a difference (B. Efron, R. J. Tibshirani, "An Introduction to
 the Bootstrap", 1993, chapters 8 and 13). Percentile intervals are used: of a handful of flights they are too narrow rather than too
-wide, and that is to be said beside them. An entrant that lacks the figure of a flight of which another has it has a mean over other
-flights, perhaps easier ones: it is not compared.
+wide, and that is to be said beside them. Where no stratum has two flights, every resample is the same: there is no interval, and no
+difference is shown. An entrant that lacks the figure of a flight of which another has it has a mean over other flights, perhaps
+easier ones: it is not compared.
 """
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -24,7 +26,8 @@ class Estimate:
     mean, low, high : mean over the flights, and its interval; not a number where there is none
     whole : whether it has the figure of every flight of which any entrant has it; otherwise it is not compared
     best : whether it is compared, and the mean of no other that is compared is better
-    behind_low, behind_high : interval of the difference from the best entrant's mean; 0 for the best, not a number if not compared
+    behind_low, behind_high : interval of the difference from the best entrant's mean; 0 for the best, not a number if not compared,
+        or if there is no interval
     flights : number of flights that have the figure
     """
 
@@ -40,7 +43,7 @@ class Estimate:
     @property
     def as_good(self) -> bool:
         """Return whether the flights do not show a difference from the best."""
-        return self.behind_low <= 0.0 <= self.behind_high
+        return self.whole and not (self.behind_low > 0.0 or self.behind_high < 0.0)
 
 
 def paired_estimates(
@@ -67,13 +70,14 @@ def paired_estimates(
     whole = np.logical_and(known[:, known.any(axis=0)].all(axis=1), known.any())
     means = np.array([_mean(row) for row in values])
     sampled = np.array([_means(row, columns) for row in values])
+    sampled[[not _has_several(strata[row]) for row in known]] = np.nan
     worth = np.where(whole, means if greater_is_better else -means, np.nan)
     best = int(np.nanargmax(worth)) if np.isfinite(worth).any() else -1
     tail = 50.0 * (1.0 - confidence)
     found = []
     for i, mean in enumerate(means):
         low, high = _interval(sampled[i], tail)
-        behind = _interval(sampled[i] - sampled[best], tail) if whole[i] else (np.nan, np.nan)
+        behind = (0.0, 0.0) if i == best else _interval(sampled[i] - sampled[best], tail) if whole[i] else (np.nan, np.nan)
         found.append(
             Estimate(
                 mean=float(mean),
@@ -87,6 +91,11 @@ def paired_estimates(
             )
         )
     return found
+
+
+def _has_several(strata: npt.NDArray[Any]) -> bool:
+    """Return whether two flights are of one stratum."""
+    return bool(len(np.unique(strata)) < len(strata))
 
 
 def _mean(row: Array) -> float:

@@ -7,7 +7,9 @@ that the input explains by itself. Both are estimated by SALib from given data: 
 Smith, "Global sensitivity measures from given data", European Journal of Operational Research 226 (2013).
 
 In a finite sample the indices of an input without any effect are not 0. So the indices of some random inputs without
-effect are estimated as well, and the largest of them is the noise floor.
+effect are estimated as well, and the largest of them is the noise floor. Flights of one sample, as those at the points of
+a sweep are, have the same inputs and much the same figure: they share the values of these random inputs, too, and are
+resampled together.
 """
 
 import math
@@ -82,7 +84,9 @@ class Sensitivity:
     message: str
 
 
-def sensitivity_indices(inputs: pd.DataFrame, figure: Array, *, confidence: float, seed: int) -> Sensitivity:
+def sensitivity_indices(
+    inputs: pd.DataFrame, figure: Array, *, confidence: float, seed: int, samples: Indices | None = None
+) -> Sensitivity:
     """Estimate the sensitivity of a figure to the inputs.
 
     Parameters
@@ -91,6 +95,7 @@ def sensitivity_indices(inputs: pd.DataFrame, figure: Array, *, confidence: floa
     figure : figure of each flight, shape (n,); flights where it is not a number are left out
     confidence : confidence of the intervals, between 0 and 1, of a normal distribution with the bootstrap's deviation
     seed : seed of the choice of flights, the noise floor and the bootstrap
+    samples : number of the sample that each flight is of, shape (n,); each is one of its own if not given
     """
     generator = np.random.default_rng(seed)
     known = np.flatnonzero(np.isfinite(figure))
@@ -102,8 +107,9 @@ def sensitivity_indices(inputs: pd.DataFrame, figure: Array, *, confidence: floa
     dummies: list[InputIndices] = []
     message = _reason_for_no_indices(figure[chosen], codes)
     if not message:
-        resamples = [generator.integers(len(chosen), size=len(chosen)) for _ in range(RESAMPLES)]
-        without_effect = [generator.random(len(chosen)) for _ in range(DUMMIES)]
+        of, distinct = pd.factorize(chosen if samples is None else samples[chosen])
+        resamples = [_resampled(of, generator.integers(len(distinct), size=len(distinct))) for _ in range(RESAMPLES)]
+        without_effect = [generator.random(len(distinct))[of] for _ in range(DUMMIES)]
         try:
             found = [_indices(key, values, figure[chosen], resamples, confidence) for key, values in codes.items()]
             dummies = [_indices("", values, figure[chosen], resamples, confidence) for values in without_effect]
@@ -118,6 +124,12 @@ def sensitivity_indices(inputs: pd.DataFrame, figure: Array, *, confidence: floa
         left_out=left_out,
         message=message,
     )
+
+
+def _resampled(of: Indices, picked: Indices) -> Indices:
+    """Return the flights of the samples that were picked, by the sample that each flight is of."""
+    members = np.split(np.argsort(of, kind="stable"), np.cumsum(np.bincount(of))[:-1])
+    return np.concatenate([members[sample] for sample in picked])
 
 
 def _unusable(values: "pd.Series[float]") -> str:

@@ -92,10 +92,10 @@ def rare_probability(simulations: Sequence[Simulation], confidence: float, *, va
         centre, deviation = _log_mean(estimates, found[:, 1])
         t = _t_quantile(two_sided, len(estimates)) * deviation
         return RareProbability(
-            estimate=math.exp(centre),
-            low=math.exp(centre - t),
-            high=min(1.0, math.exp(centre + t)),
-            upper=min(1.0, math.exp(centre + _t_quantile(one_sided, len(estimates)) * deviation)),
+            estimate=_at_most_one(centre),
+            low=_at_most_one(centre - t),
+            high=_at_most_one(centre + t),
+            upper=_at_most_one(centre + _t_quantile(one_sided, len(estimates)) * deviation),
             reached=len(estimates),
         )
     high, upper = (_left_open(simulations, estimates, found[:, 1], level) for level in (two_sided, one_sided))
@@ -125,7 +125,12 @@ def _left_open(simulations: Sequence[Simulation], estimates: Array, variations: 
         within = np.where(estimates > 0.0, variations, [simulation.reached_variation for simulation in simulations])
         factor = 1.0
     centre, deviation = _log_mean(levels, within)
-    return min(1.0, factor * math.exp(centre + _t_quantile(half, len(levels)) * deviation))
+    return _at_most_one(math.log(factor) + centre + _t_quantile(half, len(levels)) * deviation)
+
+
+def _at_most_one(logarithm: float) -> float:
+    """Return the probability with this logarithm; estimates that scatter by decades have means and bounds beyond any number."""
+    return math.exp(min(0.0, logarithm))
 
 
 def _log_mean(estimates: Array, variations: Array) -> tuple[float, float]:

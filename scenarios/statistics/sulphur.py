@@ -1,5 +1,10 @@
-"""What flights with a sniffer show of the method: bias, spread, coverage of what is stated, and how ships are called."""
+"""What flights with a sniffer show of the method: bias, spread, coverage of what is stated, and how ships are called.
 
+Flights of one seed, such as those at the points of a sweep, have the same sniffer in the same air: intervals and standard errors
+are those of as many samples as there are seeds, each with the mean over its flights.
+"""
+
+import math
 from collections.abc import Iterator
 from typing import Any
 
@@ -16,8 +21,8 @@ _FIGURES = ("", "low_", "high_", "uncertainty_", "noise_", "separate_")
 """Of a result: what it is, its bounds, its parts, and what areas would read of passes that do not overlap."""
 
 COLUMNS = (
-    "flight_id", "sensor", "fsc_fuel_percent", "fsc_expected_percent", "sulphur_limit_percent", "sulphur_verdict", "verdict_2min",
-    "areas_fsc_separate_percent",
+    "flight_id", "seed", "sensor", "fsc_fuel_percent", "fsc_expected_percent", "sulphur_limit_percent", "sulphur_verdict",
+    "verdict_2min", "areas_fsc_separate_percent",
     *(f"{method}_{figure}percent" for method in METHODS.values() for figure in _FIGURES if figure != "separate_"),
 )  # fmt: skip
 """Columns of the summary that these statistics use."""
@@ -37,6 +42,7 @@ def sulphur_statistics(rows: pd.DataFrame, *, confidence: float) -> Json:
     rows : columns ``COLUMNS`` of the summary, a row per flight
     confidence : of each interval, between 0 and 1
     """
+    rows = rows.reset_index(drop=True)
     return {
         "confidence": confidence,
         "accuracy": [_accuracy(group, confidence) | named for named, group in _accuracy_groups(rows)],
@@ -54,7 +60,7 @@ def _accuracy_groups(rows: pd.DataFrame) -> Iterator[tuple[Json, pd.DataFrame]]:
             figures = {f"{prefix}_{of}percent": f"{of}percent" for of in _FIGURES}
             known = [name for name in ("fsc_fuel_percent", "fsc_expected_percent", *figures) if name in of_sensor]
             # A flight without a result, or without its uncertainty, says nothing of either.
-            named = of_sensor[known].rename(columns=figures).astype(np.float64).dropna()
+            named = of_sensor[known].rename(columns=figures).astype(np.float64).dropna().join(of_sensor["seed"])
             if len(named):
                 yield {"sensor": str(sensor), "method": method, "fsc_fuel_percent": None}, named
             for _, group in named.groupby("fsc_fuel_percent"):
@@ -67,21 +73,35 @@ def _accuracy(flights: pd.DataFrame, confidence: float) -> Json:
     found = flights["percent"].to_numpy(dtype=np.float64)
     error = found - expected
     inside = (flights["low_percent"] <= expected) & (expected <= flights["high_percent"])
-    covered, n = int(inside.sum()), len(flights)
-    interval = clopper_pearson(covered, n, confidence)
+    n, errors = len(flights), _by_seed(pd.Series(error, flights.index), flights)
     return {
         "flights": n,
         "bias_percent": float(np.mean(error)),
         "bias_relative": _share(error, expected),
-        "bias_standard_error_percent": float(np.std(error, ddof=1) / np.sqrt(n)) if n > 1 else None,
+        "bias_standard_error_percent": float(np.std(errors, ddof=1) / np.sqrt(len(errors))) if len(errors) > 1 else None,
         "spread_percent": float(np.std(error, ddof=1)) if n > 1 else None,
         "stated_percent": float(np.sqrt(np.mean(flights["uncertainty_percent"].to_numpy(dtype=np.float64) ** 2))),
         "stated_noise_percent": float(np.sqrt(np.mean(flights["noise_percent"].to_numpy(dtype=np.float64) ** 2))),
-        "coverage": covered / n,
-        "coverage_interval": [interval.low, interval.high],
+        "coverage": float(inside.mean()),
+        "coverage_interval": _interval(inside, flights, confidence),
         "share_read": _share(found, expected),
         "share_predicted": _share(found, flights["separate_percent"].to_numpy()) if "separate_percent" in flights else 1.0,
     }
+
+
+def _by_seed(values: "pd.Series[Any]", flights: pd.DataFrame) -> Array:
+    """Return the mean of a figure over the flights of each seed."""
+    means: Array = values.groupby(flights["seed"]).mean().to_numpy(dtype=np.float64)
+    return means
+
+
+def _interval(events: "pd.Series[bool]", flights: pd.DataFrame, confidence: float) -> list[float]:
+    """Return the interval of the probability of an event, of which flights of one seed have a share together."""
+    shares = _by_seed(events, flights)
+    # Rounded first: shares of a third add up to whole numbers but for rounding.
+    total = round(float(shares.sum()), 6)
+    low, high = (clopper_pearson(whole(total), len(shares), confidence) for whole in (math.floor, math.ceil))
+    return [low.low, high.high]
 
 
 def _share(part: Array, whole: Array) -> float | None:
@@ -93,10 +113,9 @@ def _calls(flights: pd.DataFrame, confidence: float) -> Json:
     """Return how often ships of one fuel were called above one limit: at the end, and after two minutes."""
     called: Json = {}
     for name, column in (("above", "sulphur_verdict"), ("above_2min", "verdict_2min")):
-        above = int((flights[column] == "above").sum())
-        called[name] = above / len(flights)
-        interval = clopper_pearson(above, len(flights), confidence)
-        called[f"{name}_interval"] = [interval.low, interval.high]
+        above = flights[column] == "above"
+        called[name] = float(above.mean())
+        called[f"{name}_interval"] = _interval(above, flights, confidence)
     open_share = float((flights["sulphur_verdict"] == "open").mean())
     limit = float(flights["sulphur_limit_percent"].iloc[0])
     return {"flights": len(flights), "fsc_fuel_percent": _fuel(flights), "limit_percent": limit, "open": open_share} | called

@@ -12,6 +12,9 @@ from scenarios.schema.scenario import Scenario
 from scenarios.schema.sections.experiment import TrialList
 from scenarios.studies.flight_study import FlightStudy
 
+_ROUNDING = 1e-12
+"""Relative error of a product [-]."""
+
 
 class TrialStudy(FlightStudy):
     """The trials of a list, one after the other.
@@ -39,7 +42,8 @@ def _trials(study: TrialList) -> dict[str, Scenario]:
             raise InputError(f"trials: '{listed}' is a study of {trial.study}; list scenarios of flights")
         if Path(listed).stem in trials:
             raise InputError(f"trials: two are called '{Path(listed).stem}'; list each once, and give files names of their own")
-        flights = math.ceil(study.share * trial.flights)
+        # Of 100 flights 0.07 are 7, and not the eighth that rounding would add.
+        flights = math.ceil(study.share * trial.flights * (1.0 - _ROUNDING))
         trials[Path(listed).stem] = trial.model_copy(update={"flights": flights})
     for override in study.set:
         key, _ = parse_override(override)

@@ -10,9 +10,9 @@ import pytest
 
 from reports.arena.charts import clusters, crossing_chart, effort_charts, track_charts, worth_chart
 from reports.arena.content import arena_content
-from reports.arena.data import read_arena
+from reports.arena.data import Estimate, read_arena
 from reports.arena.figures import CROSSINGS, ERROR, PLUME_TIME, SULPHUR
-from reports.arena.tables import by_condition_table, condition_table, plume_table, tracking_table
+from reports.arena.tables import _interval, by_condition_table, condition_table, plume_table, tracking_table
 from reports.document.blocks import Table
 from reports.document.chart import Chart
 from reports.registry import content
@@ -150,6 +150,11 @@ def test_of_one_flight_in_each_condition_no_law_is_called_best(run, monkeypatch)
     assert ", each flown once in each of " in found.flown
     assert re.match(r"Tracking: npfg has the least error, \d+\.\d\d m rms; circling: ", found.verdict.headline)
     assert "which law is best is not shown" in found.verdict.detail
+
+
+def test_a_mean_of_single_flights_stands_without_an_interval():
+    assert _interval(Estimate(mean=0.12, flights=2), ERROR) == "0.12"
+    assert _interval(Estimate(mean=0.12, low=0.1, high=0.15, flights=4), ERROR) == "0.12 (0.10\N{EN DASH}0.15)"
 
 
 def of_a_few_flights(run, path, missing):

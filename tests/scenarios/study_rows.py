@@ -36,7 +36,7 @@ def study_rows(flights, seed=20261121):
             "settling_time_s": generator.uniform(80.0, 140.0, flights),
         }
     )
-    inputs = pd.DataFrame({"flight_id": flight_ids, "trial": "study", "wind.speed_mps": wind, "turbulence.level": level})
+    inputs = pd.DataFrame({"flight_id": flight_ids, "wind.speed_mps": wind, "turbulence.level": level})
     return rows, inputs
 
 

@@ -93,7 +93,7 @@ class MonteCarloStudy(FlightStudy):
         progress("estimating", self.planned, self.planned)
         statistics = study_statistics(
             frame(journal.rows(SUMMARY), COLUMNS),
-            frame(journal.rows(DRAWS), self.tables[DRAWS]),
+            frame(journal.rows(DRAWS), ("flight_id", *self._experiment.keys)),
             confidence=self._scenario.statistics.confidence,
             seed=self._scenario.seed,
             look_number=self._look_number,

@@ -116,6 +116,15 @@ def test_a_report_whose_velocity_is_wrong_is_refused_for_what_it_makes_of_a_sile
         plan(scenario(vessel={"track": str(path)}, following=declared, flight={"crossings": 0, "duration_max_s": 300.0}))
 
 
+def test_a_folder_of_files_may_have_an_equals_sign_in_its_name(tmp_path):
+    # As archives that are parted by days have it.
+    (tmp_path / "day=2026-06-01").mkdir()
+    (tmp_path / "day=2026-06-01" / "ship.csv").write_bytes((CATALOG / "ais" / "made_danish.csv").read_bytes())
+    text = 'extends = "ship_from_ais"\ntitle = "mine"\nvessel.track = "day=2026-06-01/ship.csv"\n'
+    (tmp_path / "mine.toml").write_text(text, encoding="utf-8")
+    assert load_study(str(tmp_path / "mine.toml")).vessel.track == str(tmp_path / "day=2026-06-01" / "ship.csv")
+
+
 def test_a_track_file_is_relative_to_the_scenario_file_and_its_hash_is_in_the_manifest(tmp_path):
     (tmp_path / "ship.csv").write_bytes((CATALOG / "ais" / "made_danish.csv").read_bytes())
     (tmp_path / "mine.toml").write_text(

@@ -135,6 +135,10 @@ def test_a_part_is_known_to_its_flights_alone():
         load(SHORT, law="Pursuit")
 
 
+def test_a_law_as_an_object_may_have_parameters_of_numpy():
+    assert load(SHORT, law=Pursuit(gain=np.float64(1.5), lead_s=np.int64(2))) == load(SHORT, law=Pursuit(gain=1.5, lead_s=2))
+
+
 def test_numbers_of_numpy_are_numbers():
     scenario = load(SHORT, nu=np.linspace(0.3, 0.5, 3), seed=np.int64(3))
     assert scenario.changes == ("sweep.nu=[0.3, 0.4, 0.5]", "seed=3")
@@ -167,6 +171,7 @@ def local_law():
         ({"nu": "fast"}, "nu is 'fast'; give a number, as in nu=0.5, or a list of numbers"),
         ({"nu": 20.0}, "speed ratios lie between 0 and 10"),
         ({"jobs": 0}, "jobs is 0"),
+        ({"jobs": 2.5}, "jobs is 2.5"),
     ],
 )
 def test_what_is_wrong_is_one_line(keys, words, capfd):

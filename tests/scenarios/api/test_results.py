@@ -58,6 +58,18 @@ def test_tables_have_the_units_of_their_columns(flight):
     assert flight.history.attrs["meanings"]["roll_rad"] == "roll"
 
 
+def test_what_is_changed_in_a_table_changes_no_flight_and_no_report():
+    made = run(SHORT, jobs=1, histories=1)
+    nearest, crossings, page = made.flights["nu_0.50"].row["min_distance_m"], made.flights["nu_0.50"].crossings, made.report()
+    made.summary["min_distance_m"] /= 1000.0
+    made.summary["flight_id"] = "mine"
+    made.crossings["time_s"] = 0.0
+    assert list(made.flights) == ["nu_0.30", "nu_0.50"]
+    assert made.flights["nu_0.50"].row["min_distance_m"] == nearest
+    assert made.flights["nu_0.50"].crossings.equals(crossings)
+    assert made.report() == page
+
+
 def test_a_flight_says_how_it_ended(flight):
     assert flight.met
     assert flight.kept_out

@@ -137,3 +137,20 @@ def test_a_scheduler_that_is_not_there_is_named_in_one_line(tmp_path, monkeypatc
     with pytest.raises(InputError, match=r"--scheduler tcp://127\.0\.0\.1:\d+ does not answer") as refused:
         fly(tmp_path / "run", executor="dask", scheduler=f"tcp://127.0.0.1:{free_port()}")
     assert "\n" not in str(refused.value)
+
+
+def test_a_worker_without_the_program_is_named_in_one_line(monkeypatch):
+    # As distributed hands back what a worker raised that cannot import the module of the function that it is to run.
+    raised = Exception("ModuleNotFoundError(\"No module named 'scenarios'\")")
+    closed = []
+    client = SimpleNamespace(
+        wait_for_workers=lambda *_, **__: None,
+        run=lambda _, *, on_error: {"tcp://127.0.0.1:1": raised} if on_error == "return" else {},
+        close=lambda: closed.append(True),
+    )
+    monkeypatch.setattr("scenarios.engine.dask_executor.distributed.Client", lambda *_, **__: client)
+    executor = ExecutorFactory(executor="dask", scheduler="tcp://127.0.0.1:2")(Reading(Path()))
+    words = r"Dask worker tcp://127\.0\.0\.1:1 cannot run this program \(ModuleNotFoundError.*\); install it there"
+    with pytest.raises(InputError, match=words), executor:
+        pass
+    assert closed

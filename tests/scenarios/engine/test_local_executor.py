@@ -123,6 +123,14 @@ def test_a_task_whose_processes_are_killed_is_lost_and_says_why(jobs, tmp_path):
     assert [begun(tmp_path, number) for number in range(8)] == [1, 1, 1, MAX_ATTEMPTS, 1, 1, 1, 1]
 
 
+@pytest.mark.skipif(sys.platform != "linux", reason="other systems have no real-time signals")
+def test_a_signal_without_a_name_is_named_by_its_number(tmp_path):
+    number = signal.SIGRTMIN + 1
+    results = fly(Squares(marks=tmp_path, does={0: lambda: os.kill(os.getpid(), number)}), range(2))
+    assert_lost(results[0], f"the last one was ended by signal {number}")
+    assert_done(results, {1})
+
+
 def test_the_last_task_can_be_lost_too_and_so_can_all(tmp_path):
     results = fly(Squares(marks=tmp_path, does=dict.fromkeys(range(2), killed)), range(2))
     assert [result.lost for result in results] == [True] * 2

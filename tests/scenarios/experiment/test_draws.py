@@ -181,11 +181,22 @@ def test_an_index_beyond_the_list_is_refused_before_anything_is_flown():
         ("aircraft", "draws has 'aircraft', the same for all flights"),
         ("guidance.airspeed_mps", "are worked out once for it: give each value a run of its own"),
         ("plume.source_height_m", "worked out once for the altitude at the start.*: give flight.altitude_m, or each value"),
+        ("flight.altitude_min_m", "worked out once for the altitude at the start.*: give flight.altitude_m, or each value"),
     ],
 )
 def test_a_key_for_which_the_autopilot_is_designed_cannot_be_drawn(key, words):
     with pytest.raises(ValueError, match=words):
         scenario(draws=[{"key": key, "choice": [20.0, 21.0]}])
+
+
+@pytest.mark.parametrize("section", ["sweep", "draws"])
+def test_limits_of_the_altitude_differ_from_flight_to_flight_where_that_of_the_design_is_given(section):
+    varied = {
+        "sweep": {"flight.altitude_max_m": [60.0, 80.0]},
+        "draws": [{"key": "flight.altitude_max_m", "uniform": [60.0, 80.0]}],
+    }
+    given = load_study("sulphur", ["flight.altitude_m=40"]).model_dump()
+    assert Scenario.model_validate({**given, section: varied[section]}).altitude == 40.0
 
 
 POINTED = (

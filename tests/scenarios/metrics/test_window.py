@@ -6,7 +6,13 @@ import pytest
 
 from scenarios.metrics.window import measured_figures
 
-MEASURED = {"seconds_in_plume_s": 20.0, "fsc_noise_percent": 0.01, "sulphur_quality": "B", "outcome": "not_settled"}
+MEASURED = {
+    "seconds_in_plume_s": 20.0,
+    "fsc_noise_percent": 0.01,
+    "sulphur_quality": "B",
+    "outcome": "not_settled",
+    "duration_s": 400.0,
+}
 
 
 def test_information_is_that_of_a_minute_and_adds_up():
@@ -16,6 +22,10 @@ def test_information_is_that_of_a_minute_and_adds_up():
     # Noise falls with the root of time: twice the time at 1/sqrt(2) of the noise is as much information a minute.
     longer = MEASURED | {"fsc_noise_percent": 0.01 / math.sqrt(2.0), "seconds_in_plume_s": 40.0}
     assert measured_figures(longer, window=300.0) == pytest.approx(found)
+
+
+def test_a_flight_that_is_shorter_than_the_window_was_in_the_air_for_as_long_as_it_was():
+    assert measured_figures(MEASURED | {"duration_s": 75.0}, window=150.0) == measured_figures(MEASURED, window=75.0)
 
 
 @pytest.mark.parametrize(

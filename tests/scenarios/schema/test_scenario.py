@@ -35,6 +35,15 @@ START = {"place_m": [-400.0, 0.0], "course_deg": 0.0}
         # Seeds in turn, and each once; or each ten times.
         ({"flights": 2, "draws": [SEEDS]}, True),
         ({"flights": 20, "draws": [SEEDS]}, False),
+        ({"flights": 4, "draws": [{"key": "flight_seed", "choice": [7, 7, 7, 7]}]}, False),
+        # Two seeds with two winds each, or one seed with both: no flight twice, and no sample more than there are seeds.
+        ({"flights": 4, "draws": [SEEDS, FROM]}, False),
+        ({"flights": 2, "draws": [SEEDS, FROM]}, True),
+        ({"flights": 2, "draws": [FROM, SEEDS]}, False),
+        ({"flights": 4, "sweep": {"flight_seed": [1, 2]}, "draws": [FROM]}, False),
+        # Random variables of one value.
+        ({"flight_seed": 3, "flights": 8, "draws": [WIND | {"uniform": [5.0, 5.0]}]}, False),
+        ({"flight_seed": 3, "flights": 8, "draws": [FROM | {"weights": [0.0, 1.0, 0.0, 0.0]}]}, False),
         ({"flights": 1, "sweep": {"flight_seed": [1, 2]}}, True),
         ({"flights": 10, "sweep": {"flight_seed": [1, 2]}}, False),
         # In calm air nothing but the start depends on the seed.
@@ -68,8 +77,11 @@ def test_flights_are_a_random_sample_where_they_differ_by_chance_alone(keys, at_
         ({"sweep": {"nu": [0.3, 0.5]}, "flights": 8}, 2),
         ({"sweep": {"nu": [0.3, 0.5], "keepout.radius_m": [200.0, 250.0, 300.0]}}, 3),
         ({"sweep": {"keepout.radius_m": [200.0, 250.0, 300.0]}, "flights": 8}, 3),
+        ({"sweep": {"keepout.radius_m": [200.0, 250.0, 200.0]}, "flights": 8}, 2),
         ({"sweep": {"flight_seed": [1, 2, 3]}}, 1),
         ({"fidelity": "both", "flights": 8}, 2),
+        # Speed ratios of one flight each have seeds of their own, but all points of a sweep the same sample of random variables.
+        ({"sweep": {"nu": [0.3, 0.5]}, "draws": [FROM | {"weights": [1.0] * 4}]}, 2),
     ],
 )
 def test_flights_of_several_points_share_what_is_random(keys, shared):
@@ -77,6 +89,13 @@ def test_flights_of_several_points_share_what_is_random(keys, shared):
     assert flights_per_sample(scenario) == shared
     experiment = Experiment("own", scenario)
     assert len({experiment.request(i).seed for i in range(experiment.flights)}) == experiment.flights / shared
+
+
+def test_flights_with_swept_seeds_share_their_random_variables():
+    scenario = Scenario(title="own", sweep={"flight_seed": [1, 2, 3]}, draws=[WIND])
+    experiment = Experiment("own", scenario)
+    assert len({experiment.request(i).scenario.wind.speed_mps for i in range(3)}) == 1
+    assert flights_per_sample(scenario) == 3
 
 
 @pytest.mark.parametrize(
@@ -127,6 +146,16 @@ def test_what_no_flight_depends_on_is_neither_sampled_nor_set_for_some_flights(k
         checked({"title": "own", **keys}, Scenario)
     assert words in str(refusal.value)
     assert "\n" not in str(refusal.value)
+
+
+def test_two_comparisons_of_one_name_are_refused():
+    twice = [{"name": "own", "set": {"guidance.preview": of}} for of in (True, False)]
+    words = "2 comparisons are called 'own', and would count as one; give each a name of its own"
+    with pytest.raises(InputError, match=words):
+        checked({"title": "own", "comparison": {"variants": twice}}, Scenario)
+    cases = [{"name": "own", "comparison": True}, {"name": "other"}]
+    with pytest.raises(InputError, match=words):
+        checked({"title": "own", "cases": cases, "comparison": {"variants": twice[:1]}}, Scenario)
 
 
 def test_what_some_flights_may_depend_on_is_set_for_them():

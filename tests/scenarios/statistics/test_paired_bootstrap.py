@@ -67,3 +67,13 @@ def test_an_interval_of_normal_figures_is_as_wide_as_it_should_be():
     (estimate,) = paired_estimates(values, np.zeros(400), **{**OPTIONS, "resamples": 4000})
     # 1.96/sqrt(400) either side; scatter of the sample's deviation, 1/sqrt(800), and of 4,000 resamples' quantiles.
     assert 0.5 * (estimate.high - estimate.low) == pytest.approx(0.098, rel=0.12)
+
+
+@pytest.mark.parametrize("strata", [[0], [0, 1]], ids=["one flight", "two conditions of one flight"])
+def test_single_flights_have_no_interval_and_show_no_difference(strata):
+    values = np.array([[1.0, 2.0], [5.0, 6.0]])[:, : len(strata)]
+    best, other = paired_estimates(values, strata, **OPTIONS)
+    assert best.best
+    assert other.as_good
+    assert np.isnan([best.low, best.high, other.low, other.high, other.behind_low, other.behind_high]).all()
+    assert (best.behind_low, best.behind_high, other.mean) == (0.0, 0.0, values[1].mean())

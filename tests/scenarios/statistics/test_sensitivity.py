@@ -119,3 +119,22 @@ def test_where_there_are_no_indices_the_reason_is_given(change, message):
     assert found.message.startswith(message)
     assert found.inputs == ()
     assert np.isnan(found.delta_floor)
+
+
+def test_flights_of_one_sample_do_not_make_an_input_without_effect_a_driver():
+    above = 0
+    for seed in range(4):
+        generator = np.random.default_rng(seed)
+        # 100 samples at each of four points, which hardly differ: 400 flights, and no input has any effect.
+        inputs = pd.DataFrame(np.tile(generator.random((100, 3)), (4, 1)), columns=["a", "b", "c"])
+        figure = np.tile(generator.normal(size=100), 4) + 0.05 * generator.normal(size=400)
+        found = sensitivity_indices(inputs, figure, confidence=0.95, seed=seed, samples=np.arange(400) % 100)
+        above += sum(index.delta > found.delta_floor for index in found.inputs)
+    # Each exceeds the largest of five dummies one time in six, so that more than 5 of 12 have a probability of 1 %; all of them
+    # did where each flight was taken for a sample of its own.
+    assert above <= 5
+
+
+def test_flights_that_are_samples_of_their_own_have_the_indices_that_they_have_without_saying_so(found):
+    inputs, figure = words_and_noise()
+    assert sensitivity_indices(inputs, figure, confidence=0.95, seed=1, samples=np.arange(len(figure))) == found

@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 
 from common.intervals import clopper_pearson, quantile_interval, upper_bound
-from scenarios.statistics.estimates import NAMED_MAX, study_statistics
+from scenarios.statistics.estimates import NAMED_MAX, share, study_statistics
+from scenarios.statistics.sensitivity import sensitivity_indices
 from scenarios.statistics.stopping import confidence_at
 from tests.scenarios.study_rows import PREDICTED, RADIUS, few_indices, study_rows
 
@@ -143,3 +144,25 @@ def test_a_study_of_nothing_but_failures_and_one_of_nothing_have_statistics_that
         assert found["violation"]["measured"]["share"] is None
         assert found["figures"]["clearance_m"]["quantiles"][0] == {"probability": 0.01, "value": None, "low": None, "high": None}
         assert found["sensitivity"]["clearance_m"]["message"].startswith("0 flights have this figure")
+
+
+@pytest.mark.parametrize(("events", "whole"), [(1, 0), (99, 0), (100, 1), (150, 1), (200, 2)])
+def test_the_lower_limit_of_flights_that_share_samples_takes_their_events_for_those_of_as_few_samples_as_can_be(events, whole):
+    found = share(events, 200, 0.95, per_sample=100)
+    # 2 samples: events of one of them are up to 100, so that fewer need not be half of all.
+    assert found["low"] == clopper_pearson(whole, 2, 0.95).low <= found["share"]
+    assert found["high"] == clopper_pearson(min(events, 2), 2, 0.95).high
+
+
+@pytest.mark.parametrize(("per_sample", "expected"), [(1, [0, 1, 2, 3, 4, 5]), (3, [0, 1, 0, 1, 0, 1]), (6, None)])
+def test_what_drives_a_figure_is_judged_by_samples_of_which_each_point_has_one_flight(per_sample, expected, monkeypatch):
+    judged = []
+
+    def indices(*given, samples, **named):
+        judged.append(samples)
+        return sensitivity_indices(*given, samples=samples, **named)
+
+    monkeypatch.setattr("scenarios.statistics.estimates.sensitivity_indices", indices)
+    statistics_of(*study_rows(6), per_sample=per_sample)
+    assert all((samples is None and expected is None) or samples.tolist() == expected for samples in judged)
+    assert judged

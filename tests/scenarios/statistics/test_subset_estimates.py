@@ -151,3 +151,13 @@ def test_flights_of_unknown_end_raise_the_pessimistic_bound_by_their_own():
     # Clopper and Pearson's bound of 1 of 500 at 97.5 % is 1.11 %.
     assert found["violation"]["pessimistic"]["upper"] == pytest.approx(0.0111, abs=0.001)
     assert json.loads(json.dumps(found, allow_nan=False)) == found
+
+
+def test_estimates_that_scatter_by_decades_have_bounds_of_1_at_any_confidence():
+    # Of a plane of probability 1e-2, and planes of 1e-6 and 1e-9: their logarithms deviate by 8, and Student's t of three repeats
+    # at this confidence is 1,000: the bound's logarithm is beyond that of any number.
+    simulations = [simulated(linear(10.0**-power), [20261126, power], flights=200)[0] for power in (2, 6, 9)]
+    found = rare_probability(simulations, 0.999999)
+    assert found.reached == 3
+    assert (found.high, found.upper, found.low) == (1.0, 1.0, 0.0)
+    assert found.estimate <= 1.0

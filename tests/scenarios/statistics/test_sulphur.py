@@ -4,6 +4,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
+from common.intervals import clopper_pearson
 from scenarios.statistics.sulphur import COLUMNS, sulphur_statistics
 
 
@@ -11,7 +12,7 @@ def rows(errors, *, deviation=0.02, sensor="electrochemical", fuel=0.1, verdicts
     expected = 0.972 * fuel
     found = expected + np.asarray(errors)
     table = pd.DataFrame(index=range(len(found)), columns=list(COLUMNS), dtype=object)
-    table["flight_id"] = [f"a_{i}" for i in range(len(found))]
+    table["flight_id"], table["seed"] = [f"a_{i}" for i in range(len(found))], range(len(found))
     table["sensor"], table["fsc_fuel_percent"], table["fsc_expected_percent"] = sensor, fuel, expected
     table["sulphur_limit_percent"] = 0.1
     table["sulphur_verdict"] = verdicts or ["open"] * len(found)
@@ -78,3 +79,34 @@ def test_calls_above_one_limit_are_not_counted_with_those_above_another():
     )
     curve = sulphur_statistics(pd.concat([lax, strict]), confidence=0.95)["operating_curve"]
     assert [(entry["limit_percent"], entry["flights"], entry["above"]) for entry in curve] == [(0.1, 2, 1.0), (0.5, 2, 0.0)]
+
+
+def test_flights_of_one_seed_are_one_sample():
+    errors = np.array([0.01, -0.03, 0.05, 0.01])
+    points = [rows(errors, fuel=fuel, verdicts=["above", "above", "open", "above"]) for fuel in (0.08, 0.1, 0.12)]
+    swept = sulphur_statistics(pd.concat(points, ignore_index=True), confidence=0.95)
+    (alone,) = sulphur_statistics(points[0], confidence=0.95)["accuracy"]
+    whole, *of_fuels = swept["accuracy"]
+    # The same four sniffers at three fuels say no more of the method than at one; each fuel by itself says as much as before.
+    for entry in (whole, *of_fuels):
+        assert entry["coverage_interval"] == alone["coverage_interval"] == pytest.approx([0.1941, 0.9937], abs=1e-4)
+        assert entry["bias_standard_error_percent"] == pytest.approx(alone["bias_standard_error_percent"])
+    assert (whole["flights"], whole["coverage"]) == (12, 0.75)
+    assert all(entry["above_interval"] == alone["coverage_interval"] for entry in swept["operating_curve"])
+
+
+def test_a_seed_whose_flights_differ_counts_for_its_share_of_events():
+    table = pd.concat([rows([0.0, 0.05, 0.05]), rows([0.05, 0.0, 0.05])], ignore_index=True)
+    entry = sulphur_statistics(table, confidence=0.95)["accuracy"][0]
+    # 2 of 6 flights are covered, half of those of two of the three seeds: one of three samples at least, and at most.
+    assert entry["coverage_interval"] == pytest.approx([*_clopper(1, 3)])
+    table.loc[1, "fsc_high_percent"] = 1.0
+    table.loc[1, "fsc_low_percent"] = 0.0
+    entry = sulphur_statistics(table, confidence=0.95)["accuracy"][0]
+    # 1.5 of three: more than one, and less than two.
+    assert entry["coverage_interval"] == pytest.approx([_clopper(1, 3)[0], _clopper(2, 3)[1]])
+
+
+def _clopper(events, trials):
+    interval = clopper_pearson(events, trials, 0.95)
+    return interval.low, interval.high

@@ -11,7 +11,7 @@ from scenarios.engine.executors import ExecutorFactory
 from scenarios.engine.in_process_executor import InProcessExecutor
 from scenarios.errors import InputError
 from scenarios.schema.load import load_study
-from scenarios.studies.registry import run_study
+from scenarios.studies.registry import run_study, study_of
 from tests.run_tables import rows_of
 from tests.scenarios.short_trial import short_trial
 
@@ -204,6 +204,14 @@ def test_trials_that_need_different_autopilots_are_refused(tmp_path):
     (tmp_path / "two.toml").write_text(TRIAL + "[plume]\nsource_height_m = 80.0\n", encoding="utf-8")
     with pytest.raises(InputError, match=r"flights differ in .*the funnel of emission.ship\); give each a run of its own"):
         run(listed, tmp_path / "run")
+
+
+def test_a_share_of_a_trial_has_no_flight_that_only_rounding_adds():
+    # In double precision 0.07 * 200 is 14.000000000000002.
+    settings = ["trials=['sea_wind']", "fidelity=kinematic"]
+    shares = {"0.07": 14, "0.0701": 15, "0.001": 1, "1.0": 200}
+    studies = {share: study_of(load_study("sea_trial", [*settings, f"share={share}"]), "sea_trial") for share in shares}
+    assert {share: study.planned for share, study in studies.items()} == shares
 
 
 def test_what_happened_is_reported_in_lines(listed, tmp_path):

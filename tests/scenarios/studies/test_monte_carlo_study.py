@@ -8,9 +8,12 @@ import pytest
 
 from scenarios.engine.executors import ExecutorFactory
 from scenarios.engine.in_process_executor import InProcessExecutor
+from scenarios.engine.journal import Journal
+from scenarios.engine.run_directory import RunDirectory
 from scenarios.errors import InputError
 from scenarios.schema.load import load_study
-from scenarios.studies.registry import run_study
+from scenarios.statistics.sensitivity import sensitivity_indices
+from scenarios.studies.registry import run_study, study_of
 from tests.scenarios.losing_executor import losing
 
 SHORT = [
@@ -76,6 +79,24 @@ def test_statistics_are_written_and_bound_the_probability_of_an_entry(whole):
     assert (measured["events"], measured["flights"]) == (0, 40)
     # Clopper and Pearson's one-sided bound of 0 of n: 1 - (1 - confidence)^(1/n).
     assert measured["upper"] == pytest.approx(1.0 - 0.05 ** (1.0 / 40.0), rel=1e-9)
+
+
+def test_what_drives_a_figure_is_asked_of_the_random_variables_alone(whole, monkeypatch):
+    asked = []
+
+    def indices(inputs, *given, **named):
+        asked.append(list(inputs))
+        return sensitivity_indices(inputs, *given, **named)
+
+    monkeypatch.setattr("scenarios.statistics.estimates.sensitivity_indices", indices)
+    scenario = load_study("monte_carlo", [*SHORT, "flights=40"])
+    study, directory = study_of(scenario, "monte_carlo"), RunDirectory(whole)
+    journal = Journal(directory.journal, reading=True)
+    study.postprocess(directory, journal, lambda *_: None)
+    journal.close()
+    # Neither the trial nor the variant, which are those of all flights, nor nu, which follows from wind and vessel.
+    assert asked
+    assert all(keys == [draw.key for draw in scenario.draws] for keys in asked)
 
 
 def test_the_console_says_the_bound_of_the_statistics_in_which_a_lost_flight_counts_as_a_violation(whole, tmp_path):
