@@ -33,7 +33,7 @@ def build_reports(
     Parameters
     ----------
     directory : of the run
-    all_flights : print every flight that can be picked on the screen, not the telling ones alone
+    all_flights : print every flight that can be picked on the screen, and not only a selection
     settings : ``report.KEY=VALUE`` of title, author, organisation and logo, in place of those of the run
     tell_missing : called with the path of each file of the run that is gone or cannot be read; the reports name it
 
@@ -188,7 +188,7 @@ def command(
         ),
     ] = None,
     all_flights: Annotated[
-        bool, typer.Option("--all-flights", help="Print every flight that report.html shows, not the telling ones alone.")
+        bool, typer.Option("--all-flights", help="Print every flight that report.html shows, and not only a selection.")
     ] = False,
 ) -> None:
     """Rebuild report.html and report.pdf of a run or of a design, without flying anything; or export a run.

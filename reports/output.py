@@ -62,7 +62,7 @@ def write_report(run: RunData, path: Path, *, all_flights: bool = False) -> None
     Parameters
     ----------
     run, path : the run, and the file
-    all_flights : print every flight that can be picked on the screen, not the telling ones alone
+    all_flights : print every flight that can be picked on the screen, and not only a selection
 
     Raises
     ------
