@@ -55,17 +55,8 @@ class Approach:
     """
 
     __slots__ = (
-        "_held",
-        "_join_distance",
-        "_lag",
-        "_limit",
-        "_own",
-        "_parameters",
-        "_quarter_turn",
-        "_target",
-        "_time_step",
-        "_transit",
-    )
+        "_held", "_join_distance", "_lag", "_limit", "_own", "_parameters", "_quarter_turn", "_target", "_time_step", "_transit",
+    )  # fmt: skip
 
     def __init__(
         self,

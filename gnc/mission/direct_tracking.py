@@ -134,7 +134,7 @@ class DirectTracking:
 
     def plan(self, time: float) -> None:  # noqa: ARG002 - of the Protocol
         """Decide whether to go on round the vessel, to track the reference, and whether its orbit may close in."""
-        guarding = self._guard is not None and self._guard.intervening
+        guarding = self._guarding
         watching = self.overriding or self._closing or guarding or self._losable
         if self._approach is None or self._joining is None or not watching:
             return
@@ -167,8 +167,7 @@ class DirectTracking:
         """Return the heading rate that leads to where the orbit is joined, round the vessel [rad/s]; the law's without a way."""
         if self._approach is None:
             return self.tracker.heading_rate_command
-        guarding = self._guard is not None and self._guard.intervening
-        return self._approach.command(*self._joined_at(), last_command, additional_range=0.0, guarding=guarding)
+        return self._approach.command(*self._joined_at(), last_command, additional_range=0.0, guarding=self._guarding)
 
     def leave(self, fault: Fault) -> None:
         """Refuse to leave: this mission has no departure, and is not given a monitor that could demand it.
@@ -178,6 +177,11 @@ class DirectTracking:
         ValueError : always
         """
         raise ValueError(f"the vehicle has a fault, {fault.value}, and its mission has no departure; follow the plume instead")
+
+    @property
+    def _guarding(self) -> bool:
+        """Whether the keep-out guard turns the vehicle away."""
+        return self._guard is not None and self._guard.intervening
 
     def _joined_at(self) -> tuple[float, float]:
         """Return the centre of the orbit as it is joined, north and east of the vessel [m]."""

@@ -149,8 +149,7 @@ class PlumeFollowing:
         if self.leaving or self.departing:
             x, y = own.ground_north - target.north, own.ground_east - target.east
             return self._egress.command(x, y, self._approach.course_ahead(last_command), own.heading_rate)
-        guarding = self._guard is not None and self._guard.intervening
-        return self._approach.command(centre.x, centre.y, last_command, additional_range=self._orbit_range, guarding=guarding)
+        return self._approach.command(centre.x, centre.y, last_command, additional_range=self._orbit_range, guarding=self._guarding)
 
     def plan(self, time: float) -> None:
         """Move the centre, steer the reference, and decide what to do."""
@@ -182,6 +181,11 @@ class PlumeFollowing:
             self.mode = Mode.NO_PLUME
         else:
             self.mode = self.axis.mode if self._tracking else Mode.APPROACH
+
+    @property
+    def _guarding(self) -> bool:
+        """Whether the keep-out guard turns the vehicle away."""
+        return self._guard is not None and self._guard.intervening
 
     def _widen_margin(self) -> None:
         """Keep farther off while the vessel may be farther from where it is taken to be than as long as its reports come."""
@@ -245,13 +249,12 @@ class PlumeFollowing:
 
     def _decide(self) -> None:
         """Decide whether to track the reference, and whether the orbit may close in."""
-        tracked, own, centre, guard = self._parameters.approach.tracked, self._own, self.centre, self._guard
+        tracked, own, centre = self._parameters.approach.tracked, self._own, self.centre
         to_north = self.tracker.reference.north + own.drift_north - own.ground_north
         to_east = self.tracker.reference.east + own.drift_east - own.ground_east
         error = math.hypot(to_north, to_east)
-        guarding = guard is not None and guard.intervening
         self._tracking = self._approach.joins(
-            centre.x, centre.y, centre.axis, error=error, tracking=self._tracking, guarding=guarding
+            centre.x, centre.y, centre.axis, error=error, tracking=self._tracking, guarding=self._guarding
         )
         self._closing_in = self._tracking and error < (LOST_TRACK if self._closing_in else 1.0) * tracked
         self._reference.spend(1.0 if self._closing_in else self._parameters.joining_share)

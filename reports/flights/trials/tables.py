@@ -222,7 +222,7 @@ def _closest_after(trial: Trial, row: "pd.Series[Any]", *, beyond: bool) -> floa
 def failed_blocks(trials: Sequence[Trial]) -> list[Block]:
     """Return the flights that failed a criterion, keep-out violations first, ``FAILED_MAX`` at most, each with its reason."""
     by_key, summary = {trial.key: trial for trial in trials}, pd.concat([trial.rows for trial in trials])
-    failed = summary[~met(summary)]
+    failed = summary.assign(clearance_m=clearance(summary))[~met(summary)]
     if not len(failed):
         return []
     differ = radii_differ(summary)
@@ -233,7 +233,7 @@ def failed_blocks(trials: Sequence[Trial]) -> list[Block]:
             number(row["nu"] if pd.notna(row.get("duration_s")) else None, "{:.2f}"),
             number(row["keepout_violations"], "{:.0f}"),
             number(row["min_distance_m"], "{:.1f}"),
-            *([number(row["min_distance_m"] - row["keepout_radius_m"], "{:+.1f}")] if differ else []),
+            *([number(row["clearance_m"], "{:+.1f}")] if differ else []),
             ending(row),
         ]
         for _, row in failed.iloc[order[:FAILED_MAX]].iterrows()

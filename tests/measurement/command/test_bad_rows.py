@@ -14,6 +14,14 @@ def with_values(logged, column, rows, value):
     table.to_csv(logged, index=False)
 
 
+def refusal(logged, capsys):
+    """Return the one line by which a log is refused."""
+    assert run(logged) == 2
+    error = capsys.readouterr().err
+    assert error.count("\n") == 1
+    return error
+
+
 @pytest.mark.parametrize(
     ("column", "rows", "value", "told"),
     [
@@ -24,22 +32,18 @@ def with_values(logged, column, rows, value):
 )
 def test_a_reading_beyond_the_range_of_its_sensor_is_refused_with_its_row(logged, capsys, column, rows, value, told):
     with_values(logged, column, rows, value)
-    assert run(logged) == 2
-    error = capsys.readouterr().err
+    error = refusal(logged, capsys)
     assert told in error
     assert "leave such a cell empty" in error
-    assert error.count("\n") == 1
 
 
 def test_a_calibration_with_air_without_co2_is_refused_with_its_row(logged, capsys):
     # Zero air is 420 ppm below the background, more than a plume is above it: it drew the slope to 0.
     with_values(logged, "co2_ppm", range(40, 60), 2.0)
-    assert run(logged) == 2
-    error = capsys.readouterr().err
+    error = refusal(logged, capsys)
     # Air has 250 ppm at least; noise of 1 ppm, a zero of 5 ppm (1 sigma) and 1 ppm for what is not stated, 8 times: 42 ppm.
     assert "CO2 is 2 ppm in row 42, and 19 more are as low; air, noise, zero and other gases explain 208 ppm at least" in error
     assert "or is of a calibration from which the sensor has not recovered, leave it empty" in error
-    assert error.count("\n") == 1
 
 
 @pytest.mark.usefixtures("briefly")
@@ -79,11 +83,9 @@ def test_a_place_that_no_aircraft_reaches_is_refused_with_its_row(logged, capsys
         in_degrees(logged)
     table = pd.read_csv(logged)
     with_values(logged, column, [70], table[column][70] + (1.0 if column == "latitude_deg" else 111_195.0))
-    assert run(logged) == 2
-    error = capsys.readouterr().err
+    error = refusal(logged, capsys)
     assert "the place in row 72 is 111.2 km from that in row 71, 1 s earlier, which is faster than 340 m/s" in error
     assert "(1 of 2 such jumps)" in error
-    assert error.count("\n") == 1
 
 
 @pytest.mark.usefixtures("briefly")
@@ -119,20 +121,17 @@ HEAD = "time_s,so2_ppb,co2_ppm\n"
 )
 def test_a_table_that_is_no_log_is_refused_in_plain_words(logged, capsys, content, told):
     logged.write_text(content, encoding="utf-8")
-    assert run(logged) == 2
-    error = capsys.readouterr().err
+    error = refusal(logged, capsys)
     assert told in error
     assert "0.0.1" not in error
     assert "C error: Expected" not in error
-    assert error.count("\n") == 1
 
 
 def test_a_clock_that_is_set_back_is_told_apart_from_rows_that_are_not_sorted(logged, capsys):
     # Seconds of the day begin anew at midnight; rows sorted by them would be of two times at once.
     table = pd.read_csv(logged)
     table.assign(time_s=(86_300.0 + table["time_s"]) % 86_400.0).to_csv(logged, index=False)
-    assert run(logged) == 2
-    error = capsys.readouterr().err
+    error = refusal(logged, capsys)
     assert "86399 s in row 101 is followed by 0 s" in error
     assert "or, where the clock was set back, correct the times after it" in error
 
@@ -144,8 +143,7 @@ def test_a_row_without_a_time_is_named(logged, capsys, dates):
         table["time_s"] = (pd.Timestamp("2026-06-01T10:00:00") + pd.to_timedelta(table["time_s"], unit="s")).astype(str)
     table.loc[20, "time_s"] = np.nan
     table.to_csv(logged, index=False)
-    assert run(logged) == 2
-    error = capsys.readouterr().err
+    error = refusal(logged, capsys)
     assert error == f"error: '{logged}' has no time in row 22; give a time in every row, or remove the row\n"
 
 
@@ -155,8 +153,7 @@ def test_a_row_of_words_among_readings_is_named(logged, capsys, row, word):
     lines = logged.read_text(encoding="utf-8").splitlines()
     lines.insert(1 + row, word + "," * lines[0].count(","))
     logged.write_text("\n".join(lines), encoding="utf-8")
-    assert run(logged) == 2
-    assert f"time '{word}' in column 'time_s' cannot be read (row {row + 2})" in capsys.readouterr().err
+    assert f"time '{word}' in column 'time_s' cannot be read (row {row + 2})" in refusal(logged, capsys)
 
 
 def test_dates_and_times_of_digits_alone_are_no_seconds(logged, capsys):
@@ -164,5 +161,4 @@ def test_dates_and_times_of_digits_alone_are_no_seconds(logged, capsys):
     table = pd.read_csv(logged)
     moments = pd.Timestamp("2026-06-01T10:00:00") + pd.to_timedelta(table["time_s"], unit="s")
     table.assign(time_s=moments.dt.strftime("%Y%m%d%H%M%S")).to_csv(logged, index=False)
-    assert run(logged) == 2
-    assert "time 20260601100000 in column 'time_s' is a date and time without marks" in capsys.readouterr().err
+    assert "time 20260601100000 in column 'time_s' is a date and time without marks" in refusal(logged, capsys)
