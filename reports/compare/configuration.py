@@ -78,10 +78,10 @@ def _differing(runs: Sequence[Run]) -> dict[tuple[str, Values], list[str]]:
 
 
 def _settings(trial: Trial) -> dict[str, Any]:
-    """Return the values of a trial's configuration by dotted keys; draws, cases and variants by what they are called."""
-    config = {key: value for key, value in trial.config.items() if key not in _WORDS}
-    config["draws"] = {draw["key"]: distribution(draw, str(config.get("study"))) for draw in config.get("draws", [])}
-    return leaves(_named(config))
+    """Return the values of a trial's configuration by dotted keys: a sampled key’s distribution; cases and variants by name."""
+    config = {key: value for key, value in trial.config.items() if key not in (*_WORDS, "draws")}
+    sampled = {draw["key"]: distribution(draw, str(config.get("study"))) for draw in trial.sampled}
+    return leaves(_named(config)) | sampled
 
 
 def _named(value: Any) -> Any:

@@ -122,17 +122,20 @@ def _read_table(path: Path, _stamp: tuple[int, int]) -> TabledWind:
 
 def _rows(path: Path, cells: Iterator[list[str]]) -> Iterator[tuple[int, float, float, float, float]]:
     """Yield line, time [s], height [m], and where the wind blows to, north and east [m/s]; not a number for what has no column."""
-    heads = [head.strip().lower() for head in next(cells, [])]
-    if not any(heads):
+    lines = enumerate(cells, start=1)
+    first, heads = next(
+        ((line, [head.strip().lower() for head in row]) for line, row in lines if any(map(str.strip, row))), (0, [])
+    )
+    if not heads:
         columns = ",".join(COLUMNS[:1] + COLUMNS[2:])
         raise InputError(f"wind.table: {path}: the file is empty; give a table with the columns {columns}")
     if words := other_separator(",".join(heads)):
         raise InputError(f"wind.table: {path} {words}")
     if not set(COLUMNS[2:]) <= set(heads) or not set(COLUMNS[:2]) & set(heads):
         remedy = other_units(heads, COLUMNS[2:]) or "rename the columns to these"
-        raise InputError(f"wind.table: {path}, line 1: the header is {','.join(heads)[:80]!r}; it must be {','.join(COLUMNS)},"
-                         f" of which time_utc or height_m may be missing: {remedy}")  # fmt: skip
-    for line, row in enumerate(cells, start=2):
+        raise InputError(f"wind.table: {path}, line {first}: the header is {','.join(heads)[:80]!r}; it must be {','.join(COLUMNS)}"
+                         f", of which time_utc or height_m may be missing: {remedy}")  # fmt: skip
+    for line, row in lines:
         if not any(cell.strip() for cell in row):
             continue
         if words := _incomplete(heads, row):

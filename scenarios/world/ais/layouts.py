@@ -89,16 +89,17 @@ def rows_of(path: Path, mmsi: int | None) -> tuple[int, list[AisRow]]:
 
 
 def _all_rows(path: Path, file: TextIO, mmsi: int | None) -> Iterator[tuple[int, AisRow]]:
-    head = file.readline()
-    if not head.strip():
+    above, head = next(((above, line) for above, line in enumerate(file) if line.strip()), (0, ""))
+    if not head:
         raise InputError(f"{path}: the file is empty; give a file of AIS reports")
     if "!AI" in head or path.suffix.lower() == ".nmea":
         file.seek(0)
         return nmea_rows(file, path)
-    return _table_rows(path, head, file, mmsi)
+    return _table_rows(path, above + 1, head, file, mmsi)
 
 
-def _table_rows(path: Path, head: str, file: TextIO, mmsi: int | None) -> Iterator[tuple[int, AisRow]]:
+def _table_rows(path: Path, first: int, head: str, file: TextIO, mmsi: int | None) -> Iterator[tuple[int, AisRow]]:
+    """Return the rows below a header, which stands in line ``first``."""
     heads = [name.strip().removeprefix("#").strip().lower() for name in next(csv.reader([head]))]
     layout = next((layout for layout in LAYOUTS if set(layout.columns) <= set(heads)), None)
     if layout is None:
@@ -107,13 +108,13 @@ def _table_rows(path: Path, head: str, file: TextIO, mmsi: int | None) -> Iterat
         plain = LAYOUTS[0].columns
         remedy = other_units(heads, plain) or "rename the columns to these"
         raise InputError(
-            f"{path}, line 1: the header is {head.strip()[:_SHOWN]!r}; known are those of the Danish Maritime Authority and of"
-            f" Marine Cadastre, and {','.join(plain)}: {remedy}"
+            f"{path}, line {first}: the header is {head.strip()[:_SHOWN]!r}; known are those of the Danish Maritime Authority and"
+            f" of Marine Cadastre, and {','.join(plain)}: {remedy}"
         )
     places = [heads.index(column) for column in layout.columns]
     identifier = "" if mmsi is None else str(mmsi)
     # Files of a day have millions of lines: those of other vessels are passed over as they are.
-    lines = ((number, line) for number, line in enumerate(file, start=2) if identifier in line)
+    lines = ((number, line) for number, line in enumerate(file, start=first + 1) if identifier in line)
     for number, line in lines:
         cells = next(csv.reader([line]), [])
         if words := decimal_commas(cells, heads, places[2:]):

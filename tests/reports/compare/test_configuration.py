@@ -87,9 +87,16 @@ def test_random_variables_cases_and_variants_are_told_by_their_names(two):
         config_of(run)["draws"] = [draw | {"uniform": [2.0, high], "within": None}]
         config_of(run)["cases"] = [{"name": "near", "set": {"keepout.radius_m": 100.0 * high}, "comparison": False}]
     assert cells(two) == {
-        "draws.wind.speed_mps": ("uniform from 2 to 4", "uniform from 2 to 5"),
+        "wind.speed_mps": ("uniform from 2 to 4", "uniform from 2 to 5"),
         "cases.near.set.keepout.radius_m": ("400", "500"),
     }
+
+
+def test_a_key_that_one_run_samples_is_told_by_its_distribution_there(two):
+    draw = {"key": "wind.speed_mps", "uniform": [2.0, 4.0], "choice": None, "weights": None, "normal": None, "weibull": None}
+    config_of(two[0])["draws"], config_of(two[0])["wind"]["speed_mps"] = [draw | {"within": None}], 0.0
+    config_of(two[1])["wind"]["speed_mps"] = 3.0
+    assert cells(two) == {"wind.speed_mps": ("uniform from 2 to 4", "3")}
 
 
 def test_a_key_that_one_version_does_not_have_is_said_to_be_none(two):

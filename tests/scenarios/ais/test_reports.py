@@ -99,6 +99,12 @@ def test_a_row_of_no_use_is_dropped_and_counted(read, row, reason):
     assert found.described() == f"ais.csv: 3 of 4 rows of MMSI 219999001 used; dropped: 1 {reason}"
 
 
+def test_lines_without_anything_above_the_header_are_passed_over_and_counted(read):
+    assert len(read("\n  \n" + table(*rows())).time) == len(read(table(*rows())).time) == 3
+    with pytest.raises(InputError, match=r"line 3: the header is 'a,b,c'"):
+        read("\n\na,b,c\n1,2,3\n")
+
+
 def test_a_row_that_is_cut_off_before_its_time_is_dropped_and_counted(read):
     head, row = LAYOUTS["up to 2024"]
     lines = [row.format(second, 57.0 + 1e-5 * second) for second in (0, 10, 20)]
@@ -131,6 +137,7 @@ def test_a_vessel_at_rest_needs_no_course(read):
     ("text", "mmsi", "words"),
     [
         ("", None, ["the file is empty"]),
+        ("\n\n", None, ["the file is empty"]),
         ("a,b,c\n1,2,3\n", None, ["line 1", "the header is 'a,b,c'", PLAIN]),
         # 5 is in lines of the file, 366 in none: either way its vessels are named.
         (table(*rows()), 5, ["no row of MMSI 5; it has 219999001 (3 rows): check the number (vessel.mmsi)"]),

@@ -129,6 +129,14 @@ def test_a_description_is_of_the_scenario_that_gives_it_and_not_of_those_that_ex
     assert load_study("sea_wind", ["flights=2"]).description == load_study("sea_wind").description
 
 
+@pytest.mark.parametrize(
+    ("document", "words"), [({1: 2}, "the scenario has the key 1"), ({"wind": {3: 4}}, "'wind' has the key 3")]
+)
+def test_a_mapping_whose_keys_are_no_text_is_refused(document, words):
+    with pytest.raises(InputError, match=f"{words}, a value of int; keys are words in text"):
+        load_study({"extends": "sea_wind", **document})
+
+
 def test_overrides_come_after_what_a_file_extends(tmp_path):
     write(tmp_path, "base.toml", 'study = "flights"\ntitle = "base"\n[[draws]]\nkey = "wind.speed_mps"\nuniform = [0.0, 5.0]\n')
     path = write(tmp_path, "own.toml", 'extends = "base.toml"\n')

@@ -72,14 +72,15 @@ def test_a_table_over_time_may_have_a_profile_over_height(table):
     ("text", "changes", "words"),
     [
         ("", {}, ["the file is empty", "time_utc,speed_mps,from_deg"]),
-        ("speed_mps,from_deg\n5,0\n", {}, ["line 1", "the header is 'speed_mps,from_deg'"]),
+        ("\n , ,\n", {}, ["the file is empty"]),
+        ("\nspeed_mps,from_deg\n5,0\n", {}, ["line 2", "the header is 'speed_mps,from_deg'"]),
         ("height_m;speed_mps;from_deg\n10;5;0\n", {}, ["is separated by semicolons; separate its columns by commas"]),
         (
             "time_utc,speed_kn,from_deg\n2026-06-01T12:00:00Z,9,0\n", {},
             ["'speed_kn' is in another unit than 'speed_mps': convert its values before you rename it"],
         ),
         ("height_m,speed_mps,from_deg\n", {}, ["no row below the header"]),
-        (HOURLY + "noon,5,0\n", {}, ["line 5", "'noon' is no time"]),
+        ("\n" + HOURLY + "noon,5,0\n", {}, ["line 6", "'noon' is no time"]),
         (HOURLY + "2026-06-01T11:30:00Z,5,0\n", {}, ["line 5", "2026-06-01T11:30:00Z is before the line above", "sort"]),
         (HOURLY + "2026-06-01T12:00:00Z,5,0\n", {}, ["line 5", "once more"]),
         (HOURLY + "2026-06-01T13:00:00Z,-5,0\n", {}, ["line 5", "speeds go from 0 to 100 m/s"]),
