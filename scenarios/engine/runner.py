@@ -196,6 +196,11 @@ class _Execution:
                 study.postprocess(run, journal, self._progress)
         except KeyboardInterrupt:
             interrupted = True
+        except Exception:
+            # Results so far can be read whatever went wrong after them.
+            if not journal.is_empty():
+                study.export(run, journal)
+            raise
         changed = not self._is_as_before()
         # Always: tables may have been changed by others, and those that have not are left as they are.
         study.export(run, journal)

@@ -56,6 +56,20 @@ def test_an_interrupted_run_goes_on_where_it_was_and_comes_to_the_same(marks, ou
     assert (out / TABLE).read_bytes() == whole
 
 
+def test_results_stand_in_the_table_though_what_follows_from_them_fails_and_the_run_goes_on(marks, out, whole, monkeypatch):
+    def fail(*_):
+        raise ZeroDivisionError("of a statistic")
+
+    monkeypatch.setattr(SquareStudy, "postprocess", fail)
+    with pytest.raises(ZeroDivisionError, match="of a statistic"):
+        fly(SquareStudy(Squares(marks=marks)), out)
+    assert (out / TABLE).read_bytes() == whole
+    assert manifest(out)["state"] == "running"
+    monkeypatch.undo()
+    assert fly(SquareStudy(Squares(marks=marks)), out, resume=True).all_met
+    assert [begun(marks, number) for number in range(8)] == [1] * 8
+
+
 def test_a_run_that_is_done_can_be_gone_on_with_and_flies_nothing(marks, out, whole):
     study = SquareStudy(Squares(marks=marks))
     fly(study, out)
