@@ -111,7 +111,7 @@ class PlumeEstimator:
         self.signal_to_noise, self.found_at, self.innovation = 0.0, math.nan, 1.0
         self.passes = 0
         sensor = prior.sensor
-        self._watch = SensorWatch(interval=sensor.interval, saturated=sensor.saturated)
+        self._watch = SensorWatch(sensor)
         self._collector = PassCollector(delay=sensor.delay, tail=sensor.time_constant)
         self._reader = PassReader(sensor)
         self._time = self._diffused_at = 0.0

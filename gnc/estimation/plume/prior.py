@@ -97,6 +97,7 @@ class GasSensor:
     noise : standard deviation of a reading [ppm]
     background_drift : how fast the reading of clean air may change, by drift and by altitude [ppm/s]
     saturated : reading from which the channel is saturated [ppm]
+    resolution : step of the readings, 0 for none [ppm]
     """
 
     interval: float
@@ -105,6 +106,7 @@ class GasSensor:
     noise: float
     background_drift: float = 0.1
     saturated: float = math.inf
+    resolution: float = 0.0
 
     def __post_init__(self) -> None:
         for name, unit in (("interval", "s"), ("time_constant", "s"), ("noise", "ppm")):

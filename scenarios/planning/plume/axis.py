@@ -175,4 +175,5 @@ def co2_sensor(spec: SnifferSpec) -> GasSensor:
         time_constant=channel.constants[0],
         noise=channel.noise,
         saturated=channel.range_high,
+        resolution=channel.resolution,
     )
