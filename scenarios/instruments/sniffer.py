@@ -85,6 +85,11 @@ class SnifferSettings:
                 self.spec.check_known()
             except MeasurementError as error:
                 raise MeasurementError(f"sensor is a table of no use: {error}") from None
+            if "co2" not in (gases := self.spec.gases):
+                raise MeasurementError(
+                    f"sensor is a table of no use: its channels are {', '.join(gases)}, and co2, which shows the plume, is not"
+                    " among them: add the table payload.sensor.channels.co2"
+                )
         if not 0.0 < self.limit_percent <= 5.0:
             raise MeasurementError(
                 f"limit_percent is {self.limit_percent:g}; give above 0 to 5 % m/m, as 0.1 in an emission control area"

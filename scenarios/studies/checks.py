@@ -20,7 +20,7 @@ from scenarios.experiment.draws import check_draws
 from scenarios.experiment.requests import Experiment
 from scenarios.planning.declared_vessel import check_declared
 from scenarios.planning.limits import check_flyable, check_recorded
-from scenarios.planning.plume.axis import flown_altitudes
+from scenarios.planning.plume.axis import flown_altitudes, sniffer_on_board
 from scenarios.schema.extension_points import PAYLOADS, PLUME_MODELS, VESSEL_TRACKS
 from scenarios.schema.parts import names_file, part_names
 from scenarios.schema.scenario import Scenario
@@ -84,6 +84,7 @@ def check_without_design(scenario: Scenario) -> None:
         are of no use
     """
     _check_parts(scenario)
+    _check_sniffer(scenario)
     _check_record(scenario)
     _check_fault(scenario)
     _check_turbulence(scenario)
@@ -138,6 +139,19 @@ def _check_altitudes(scenario: Scenario) -> None:
         flown_altitudes(scenario)
     except InfeasibleError as error:
         raise InputError(str(error)) from None
+
+
+def _check_sniffer(scenario: Scenario) -> None:
+    """Refuse a sniffer without SO2 in flights that end with a verdict; where flights differ in it, each has its own result."""
+    if scenario.flight.until != "verdict" or "sniffer" not in scenario.payload.instruments:
+        return
+    if not any(draw.key.startswith(("payload.", "flight.until")) for draw in scenario.draws):
+        spec = sniffer_on_board(scenario)
+        if spec.channel("so2") is None:
+            raise InputError(
+                f"flight.until is 'verdict', but the channels of payload.sensor '{spec.name}' are {', '.join(spec.gases)}, and so2,"
+                " without which there is no verdict, is not among them: add the table payload.sensor.channels.so2"
+            )
 
 
 def _check_record(scenario: Scenario) -> None:

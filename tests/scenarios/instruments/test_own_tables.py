@@ -11,6 +11,7 @@ from measurement.sniffer import sensor_of
 from scenarios.errors import InputError
 from scenarios.experiment.points import points_of
 from scenarios.schema.load import load_study
+from scenarios.studies.checks import check_without_design
 from scenarios.world.exhaust import emission
 from tests.in_process import run_command
 
@@ -114,6 +115,11 @@ def test_keys_of_a_table_are_set_and_swept_like_others():
             "t90, delay or noise of so2 is not known; give its t90_s, delay_s and noise",
         ),
         ("payload.sensor={}", "payload.sensor is a table of no use: instrument 'own sniffer' has no channels"),
+        (
+            "payload.sensor={channels={so2={t90_s=3,delay_s=0,noise=1}}}",
+            "payload.sensor is a table of no use: its channels are so2, and co2, which shows the plume, is not among them: add the"
+            " table payload.sensor.channels.co2",
+        ),
     ],
 )
 def test_a_table_of_no_use_is_refused_in_one_line(override, words):
@@ -121,6 +127,18 @@ def test_a_table_of_no_use_is_refused_in_one_line(override, words):
         load_study(EXAMPLE, [override])
     assert words in str(refused.value)
     assert "\n" not in str(refused.value)
+
+
+@pytest.mark.parametrize("scenario", ["patrol", "plume_search"])
+def test_a_sniffer_without_so2_is_flown_but_not_until_a_verdict(scenario):
+    alone = 'payload.sensor={title="CO2 alone",channels={co2={t90_s=3,delay_s=0,noise=1}}}'
+    check_without_design(load_study("plume_search", [alone]))
+    with pytest.raises(InputError) as refused:
+        check_without_design(load_study(scenario, [alone, "flight.until=verdict"]))
+    assert str(refused.value) == (
+        "flight.until is 'verdict', but the channels of payload.sensor 'CO2 alone' are co2, and so2, without which there is no"
+        " verdict, is not among them: add the table payload.sensor.channels.so2"
+    )
 
 
 def test_a_sniffer_from_a_table_has_a_name_or_its_title():
