@@ -134,13 +134,17 @@ def assumption_table(run: RunData, record: Record) -> Table:
         ["Figures of the instrument", source.replace("\n", " ")],
         ["Method", METHODS[found["method"]]],
         ["Carbon in the fuel", f"{percent(carbon)} by mass ± {percent(CARBON_SD)} of it (1σ): {fsc_factor(carbon):.4f} % of sulphur"
-         " per ppb of SO2 and ppm of CO2"],
+         " per ppb of SO2 per ppm of CO2"],
         ["NO and NO2", _unmeasured(record)],
         ["Sulphate", f"{percent(SULPHATE_SHARE)} of the sulphur leaves as sulphate: stated, not corrected"],
+        ["Exhaust gas cleaning", "none is assumed: of a ship with a scrubber the content is that of a fuel which emits as much SO2"
+         " per CO2 without one, and not that of her own fuel"],
         ["A pass", f"a peak of CO2 of {SNR_LEAST:g} times its noise"],
         ["Limits", f"{limits} m/m"],
-        ["A verdict", f"from a probability of {percent(CONFIDENCE)} on: a guard band of {GUARD:.3f} standard uncertainties; the"
-         f" interval has {COVERAGE:.3f} on either side"],
+        ["A verdict", f"“above” where the content is more than {GUARD:.3f} standard uncertainties above the limit; “below” where"
+         f" the fuel is below it with a probability of more than {percent(CONFIDENCE)}, given that no content is below 0"],
+        ["Interval", f"the shortest that holds {percent(CONFIDENCE)}, given that no content is below 0: {COVERAGE:.3f} standard"
+         " uncertainties on either side far above 0, fewer nearer to it, and one that begins at 0 next to it"],
         ["Quality A", f"CO2 signal to noise of {SNR_GOOD:g}, a standard uncertainty of {UNCERTAINTY_GOOD:g} times the lowest"
          f" limit, {PASSES_GOOD} passes that agree with p ≥ {AGREEMENT_LEAST:g}"],
     ]  # fmt: skip

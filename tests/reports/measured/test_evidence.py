@@ -136,9 +136,18 @@ def test_the_analysis_names_its_configuration_thresholds_and_assumptions(directo
     assert rows["Configuration"] == [f"flight.toml, SHA-256 {digest}"]
     assert rows["Codes of missing readings"] == ["−9999"]
     # 0.2322 at 87 % carbon: Balzani Loov et al., AMT 7:2597 (2014).
-    assert rows["Carbon in the fuel"][0].replace("\N{NO-BREAK SPACE}", " ").startswith("87 % by mass ± 1.5 % of it (1σ): 0.2322 %")
+    carbon = rows["Carbon in the fuel"][0].replace("\N{NO-BREAK SPACE}", " ")
+    assert carbon == "87 % by mass ± 1.5 % of it (1σ): 0.2322 % of sulphur per ppb of SO2 per ppm of CO2"
+    assert rows["Exhaust gas cleaning"][0].startswith(
+        "none is assumed: of a ship with a scrubber the content is that of a fuel which"
+    )
     assert rows["A pass"] == ["a peak of CO2 of 5 times its noise"]
     assert rows["Limits"] == ["0.10 %, 0.50 % m/m"]
+    # A guard band on one side of 95 % is 1.645, half an interval of 95 % 1.960 deviations of a normal distribution.
+    assert rows["A verdict"][0].startswith(
+        "“above” where the content is more than 1.645 standard uncertainties above the limit; “below”"
+    )
+    assert "1.960 standard uncertainties on either side far above 0, fewer nearer to it" in rows["Interval"][0]
     assert rows["NO and NO2"] == ["NO is measured, and SO2 corrected for it; NO2 is measured, and SO2 corrected for it"]
 
 
