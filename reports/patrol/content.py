@@ -20,8 +20,8 @@ _SHOWN = 12
 
 _ORACLE = (
     "The oracle knows how long each ship takes: as long as a flight beside her that is told where her plume is, or as the patrol's"
-    " own where that took less. Of all orders it takes the one with the most verdicts within the endurance, and of those the"
-    " quickest. It does not go round other ships."
+    " own where that took less. It orders the ships for the most verdicts within the endurance, and then for the earliest end, as"
+    " the patrol does: of few ships it tries all orders, of many it finds a good one by insertion. It never goes round a ship."
 )
 
 

@@ -31,8 +31,8 @@ def oracle_table(patrols: Patrols) -> Table:
             ]
         )
     return Table(
-        caption="Each patrol, and the verdicts of an oracle that knows every plume and how long each ship takes, and tries every"
-        " order. Distances are the least to the ship that was served, and to any other.",
+        caption="Each patrol, and the verdicts of an oracle that knows every plume and how long each ship takes. Distances"
+        " are the least to the ship that was served, and to any other. Patrols are counted from 0, as in the names of flights.",
         head=[
             "Patrol", "Ships", "Served", "Correct", "Wrong", "Open", "Oracle's", "Served an hour", "Duration [min]",
             "In transit [%]", "Wind [m/s]", "Served ship [m]", "Other ships [m]", "Keep-out violations",
@@ -48,7 +48,7 @@ def ship_table(patrol: Patrol, index: int) -> Table:
     """Return the verdict on each ship of a patrol, by its number, and when it came."""
     rows = [_ship(ship) for _, ship in patrol.ships.iterrows()]
     return Table(
-        caption=f"Ships of patrol {index}: verdicts, and when they came. Turns are places in the order.",
+        caption=f"Ships of patrol {index}: verdicts, and when they came. Ships, and their turns in the order, are counted from 0.",
         head=[
             "Ship", "Speed [m/s]", "ν", "Stack [m]", f"Sulphur, true [{MASS_PERCENT}]", f"measured [{MASS_PERCENT}]",
             "Verdict", "Reached [min]", "Time to find [s]", "Beside her [s]", "told [s]", "Turn", "Oracle's turn",
@@ -73,8 +73,8 @@ def _ship(ship: "pd.Series[Any]") -> list[str]:
         number(ship["time_to_find_s"], "{:.0f}"),
         number(ship["ended_s"] - ship["reached_s"], "{:.0f}"),
         number(ship["told_service_s"], "{:.0f}"),
-        number(ship["position"] + 1, "{:.0f}"),
-        number(ship["oracle_position"] + 1, "{:.0f}"),
+        number(ship["position"], "{:.0f}"),
+        number(ship["oracle_position"], "{:.0f}"),
     ]
 
 

@@ -111,6 +111,8 @@ def test_the_map_has_every_ship_and_marks_those_that_are_not_served(run):
     assert {note.text for note in shown.notes} >= {"0", "1", "N"}
     served = ship_table(patrol, 0).rows[int(patrol.ships["position"].notna().to_numpy().argmax())]
     assert "correct" in served[6] or "open" in served[6]
+    # Ship and turn are those of ships.csv, both from 0: of one served ship the turn is 0.
+    assert (served[0], served[11]) == (str(patrol.ships["ship"][patrol.ships["position"] == 0].item()), "0")
 
 
 def test_a_patrol_that_failed_is_a_row_of_dashes_with_its_reason(run):
