@@ -15,6 +15,9 @@ from scenarios.schema.sections.section import Angle, NonNegative, Positive, Sect
 SOURCE_HEIGHT_MIN = 10.0
 """Least height of a funnel's mouth above the sea [m]."""
 
+GAP_MAX = 180.0
+"""Longest gap between reports of a file that is bridged, unless it is set [s]."""
+
 Shape = Literal["sphere", "cylinder"]
 """Shapes of the keep-out area."""
 
@@ -47,7 +50,7 @@ class VesselConfig(Section):
     """Track of the vessel: by its speed, course and manoeuvres, from a file of AIS reports (.csv, .nmea), or FILE.py:NAME."""
     mmsi: Annotated[int, Field(ge=0, le=999_999_999)] | None = None
     """MMSI of the vessel in a file of AIS reports; not needed if the file has only one vessel [-]."""
-    gap_max_s: Positive = 180.0
+    gap_max_s: Positive = GAP_MAX
     """Longest gap between reports of a file over which the track is interpolated [s]."""
     manoeuvres: tuple[ManoeuvreConfig, ...] = ()
     """Manoeuvres of the vessel, in the order of their times."""

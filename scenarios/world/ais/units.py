@@ -1,5 +1,6 @@
 """Whether speeds and courses of a file of AIS reports are in the units that its layout has: by the places between them."""
 
+import math
 from pathlib import Path
 
 import numpy as np
@@ -7,6 +8,7 @@ import numpy.typing as npt
 
 from common.physics.geodesy import cartesian
 from scenarios.errors import InputError
+from scenarios.schema.sections.world import GAP_MAX
 
 Array = npt.NDArray[np.float64]
 
@@ -15,6 +17,9 @@ _PAIRS_MIN = 10
 
 _WAY_MIN, _TIME_MAX = 30.0, 60.0
 """Least way between the places of a pair [m], which scatter by some, and longest time [s]: in it she goes nearly straight."""
+
+_TURN_MAX, _FASTER_MAX = math.radians(10.0), 1.2
+"""Change of course [rad], and larger over smaller speed [-], up to which she went straight and evenly in a longer time."""
 
 _RATIO = (0.7, 1.4)
 """Speeds over those between places, in the median [-]: metres per second for knots are 0.51, km/h are 1.85."""
@@ -54,7 +59,10 @@ def _against_places(time: Array, latitude: Array, longitude: Array, speed: Array
     way = np.diff(cartesian(latitude, longitude), axis=0)
     apart, passed = np.linalg.norm(way, axis=-1), np.diff(time)
     mean = 0.5 * (speed[1:] + speed[:-1])
-    judged = (np.maximum(apart, mean * passed) > _WAY_MIN) & (apart > 0.0) & (passed <= _TIME_MAX)
+    far = (np.maximum(apart, mean * passed) > _WAY_MIN * np.maximum(1.0, passed / _TIME_MAX)) & (apart > 0.0)
+    judged = far & (passed <= _TIME_MAX)
+    if np.count_nonzero(judged) < _PAIRS_MIN:
+        judged |= far & _straight(passed, speed, course)
     if np.count_nonzero(judged) < _PAIRS_MIN:
         return None
     sin_lat, cos_lat, sin_lon, cos_lon = (f(of[:-1]) for of in (latitude, longitude) for f in (np.sin, np.cos))
@@ -63,6 +71,16 @@ def _against_places(time: Array, latitude: Array, longitude: Array, speed: Array
     middle = np.angle(np.exp(1j * course[1:]) + np.exp(1j * course[:-1]))
     off = np.abs(np.angle(np.exp(1j * (np.arctan2(east, north) - middle))))
     return float(np.median((mean * passed / np.maximum(apart, 1e-9))[judged])), float(np.degrees(np.median(off[judged])))
+
+
+def _straight(passed: Array, speed: Array, course: Array) -> npt.NDArray[np.bool_]:
+    """Return which pairs, shape (n - 1,), that a track bridges lie within a straight and even stretch, with both neighbours."""
+    turned = np.abs(np.angle(np.exp(1j * np.diff(course))))
+    slower, faster = np.minimum(speed[1:], speed[:-1]), np.maximum(speed[1:], speed[:-1])
+    even = (passed <= GAP_MAX) & (turned <= _TURN_MAX) & (faster <= _FASTER_MAX * slower)
+    around = np.concatenate([[True], even, [True]])
+    straight: npt.NDArray[np.bool_] = even & around[:-2] & around[2:]
+    return straight
 
 
 def _agree(ratio: float, off: float, share: float = 1.0) -> bool:

@@ -174,21 +174,29 @@ def test_a_file_of_no_use_is_refused_in_one_line(read, text, mmsi, words):
         assert word in str(refusal.value)
 
 
-def sailed(*, knots=1.0, degrees=1.0, turned=0.0, swapped=False):
-    """Return a table of a vessel that goes north-east at 12 kn, 6.17 m/s, with speeds and courses in units of these sizes."""
+def sailed(*, knots=1.0, degrees=1.0, turned=0.0, swapped=False, interval=10, rate=0.0):
+    """Return a table of a vessel that goes north-east at 12 kn, 6.17 m/s, with speeds and courses in units of these sizes.
+
+    Reports are ``interval`` [s] apart, and she turns at a ``rate`` [deg/s].
+    """
     # A degree of latitude at 57 N is 111,362 m, one of longitude 60,772 m (WGS 84).
-    step = 12.0 * METRES_PER_SECOND_PER_KNOT * 10.0 * math.sqrt(0.5)
+    courses = 45.0 + rate * interval * np.arange(30)
+    # Its chord is as long as the arc but for sin(x)/x of half the turn, and has its middle course.
+    step = 12.0 * METRES_PER_SECOND_PER_KNOT * interval * np.sinc(rate * interval / 360.0)
+    ways = step * np.exp(1j * np.radians(courses + 0.5 * rate * interval))
     lines = []
-    for i in range(30):
-        place = f"{57.0 + i * step / 111362.0:.6f}", f"{11.3 + i * step / 60772.0:.6f}"
+    for i, (course, way) in enumerate(zip(courses, np.cumsum(ways) - ways, strict=True)):
+        place = f"{57.0 + way.real / 111362.0:.6f}", f"{11.3 + way.imag / 60772.0:.6f}"
         first, second = reversed(place) if swapped else place
-        time = f"2026-06-01T10:{i // 6:02d}:{10 * (i % 6):02d}Z"
-        lines.append(f"{time},219999001,{first},{second},{12.0 / knots:.3f},{45.0 / degrees + turned:.3f}")
+        time = f"2026-06-01T{10 + i * interval // 3600}:{i * interval // 60 % 60:02d}:{i * interval % 60:02d}Z"
+        lines.append(f"{time},219999001,{first},{second},{12.0 / knots:.3f},{course % 360.0 / degrees + turned:.3f}")
     return table(*lines)
 
 
-def test_a_file_in_its_own_units_is_read(read):
-    assert len(read(sailed()).time) == 30
+@pytest.mark.parametrize(("interval", "rate"), [(10, 0.0), (90, 0.0), (90, 0.1), (90, 0.5), (90, 2.0)])
+def test_a_file_in_its_own_units_is_read_straight_or_in_turns(read, interval, rate):
+    """At 0.1 deg/s and 90 s pairs of reports count as straight; at 2 deg/s she turns by 180 deg between two of them."""
+    assert len(read(sailed(interval=interval, rate=rate)).time) == 30
 
 
 @pytest.mark.parametrize(
@@ -196,6 +204,11 @@ def test_a_file_in_its_own_units_is_read(read):
     [
         # A metre per second is 1/0.5144 kn; a kilometre per hour 1/1.852 kn.
         (sailed(knots=1.0 / 0.514444), "reported speeds are 0.51 of those between places, in the median; they must be in knots"),
+        (
+            sailed(knots=1.0 / 0.514444, interval=90),
+            "reported speeds are 0.51 of those between places, in the median; they must be",
+        ),
+        (sailed(turned=180.0, interval=90), "reported courses are 180 deg off"),
         (sailed(knots=1.0 / 1.852), "reported speeds are 1.85 of those between places"),
         (sailed(degrees=math.degrees(1.0)), "reported courses are 44 deg off those between places, in the median; they must be"),
         (sailed(turned=180.0), "reported courses are 180 deg off"),
