@@ -121,7 +121,9 @@ def _table_rows(path: Path, first: int, head: str, file: TextIO, mmsi: int | Non
             raise InputError(f"{path}, line {number} {words}")
         # What a row that is cut off does not have it does not say.
         time, identity, *others = (cells[place] if place < len(cells) else "" for place in places)
-        if not identity.strip().isdigit():
+        # Tables that had a gap in this column have whole numbers with decimals.
+        identity = identity.strip().removesuffix(".0")
+        if not identity.isdigit():
             continue
         try:
             seconds = layout.seconds(time) if places[0] < len(cells) else math.nan
@@ -152,7 +154,9 @@ def _no_row(path: Path, mmsi: int | None, rows: Iterable[tuple[int, AisRow]]) ->
     """Return what says that the file has no row of the vessel, and whose rows it has."""
     counts = Counter(identity for identity, _ in rows)
     if not counts:
-        return InputError(f"{path}: no row with a report; give a file of AIS reports")
+        return InputError(
+            f"{path}: no row has an MMSI in digits, as 219999001, in the column of its name; give a file of AIS reports"
+        )
     return InputError(f"{path}: no row of MMSI {mmsi}; it has {_most(counts)}: check the number (vessel.mmsi)")
 
 

@@ -16,7 +16,9 @@ _TAG_TIME = re.compile(r"[\\,]c:(\d+)")
 _POSITION_REPORTS = (1, 2, 3, 18, 19)
 """Message types with position, speed and course (ITU-R M.1371-5): class A, and class B."""
 
-_MILLISECONDS_FROM = 100_000_000_000
+_MILLISECONDS_FROM, _DATE_FROM = 100_000_000_000, 10_000_000_000_000
+"""Times since 1970 from which on they are milliseconds, of seconds from the year 5138 on; and from which on they are no time, but a
+date without its marks, as 20260601100000, of milliseconds from the year 2286 on."""
 
 
 def nmea_rows(lines: Iterable[str], path: Path) -> Iterator[tuple[int, AisRow]]:
@@ -24,12 +26,14 @@ def nmea_rows(lines: Iterable[str], path: Path) -> Iterator[tuple[int, AisRow]]:
 
     Raises
     ------
-    InputError : pyais is not installed, or a report has no time
+    InputError : pyais is not installed, a report has no time, or there is no position report
     """
     try:
         import pyais
     except ImportError:
         raise InputError(f"{path}: NMEA sentences need pyais; install the extra: {install_words('ais')}") from None
+    others: set[int] = set()
+    read = False
     for number, line in enumerate(lines, start=1):
         head, mark, sentence = line.strip().partition("!")
         if not mark:
@@ -38,10 +42,19 @@ def nmea_rows(lines: Iterable[str], path: Path) -> Iterator[tuple[int, AisRow]]:
             said: dict[str, Any] = pyais.decode(mark + sentence).asdict()
         except Exception:  # noqa: BLE001 - whatever radio and decoder make of a line, it is one that says nothing
             continue
-        if said.get("msg_type") in _POSITION_REPORTS:
+        if said.get("msg_type") not in _POSITION_REPORTS:
+            others.add(int(said["msg_type"]))
+        else:
+            read = True
             speed, course = _value(said, "speed"), _value(said, "course")
             time = _time_of(head, path, number)
             yield int(said["mmsi"]), AisRow(number, time, _value(said, "lat"), _value(said, "lon"), speed, course)
+    if not read:
+        types = f"messages of type {', '.join(map(str, sorted(others)))} alone" if others else "no sentence that can be decoded"
+        raise InputError(
+            f"{path}: it has {types}; position reports of types {', '.join(map(str, _POSITION_REPORTS))} are read, others have no"
+            " speed and course, or none that is exact enough: give a file with these"
+        )
 
 
 def _value(said: dict[str, Any], name: str) -> float:
@@ -60,4 +73,9 @@ def _time_of(head: str, path: Path, number: int) -> float:
             f"{path}, line {number}: the sentence has no time; give each its time of reception, as in"
             " \\c:1780315200*5A\\!AIVDM,... or 2026-06-01T12:00:00Z !AIVDM,..."
         ) from None
+    if time >= _DATE_FROM:
+        raise InputError(
+            f"{path}, line {number}: the time {text} is beyond milliseconds since 1970, and no date without its marks is read; give"
+            " seconds since 1970, as 1780315200, or 2026-06-01T12:00:00Z"
+        )
     return time / 1000.0 if time >= _MILLISECONDS_FROM else time

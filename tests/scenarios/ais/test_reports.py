@@ -148,7 +148,7 @@ def test_a_vessel_at_rest_needs_no_course(read):
             ["'sog_mps' is in another unit than 'sog_kn': convert its values before you rename it"],
         ),
         (table(*reversed(rows())), None, ["1 of 3 rows", "2 out of order (first in line 2)", "sort the file by time"]),
-        (table(), None, ["no row with a report"]),
+        (table(), None, ["no row has an MMSI in digits, as 219999001, in the column of its name"]),
         (table(*rows(), "2026-06-01T10:00:05Z,7,57.0,11.3,12.0,20.5"), None, ["2 vessels", "name one of them (vessel.mmsi)"]),
         (
             table(*rows(), "04.05.2026 08:00:00,219999001,57.0,11.3,12.0,20.5"), None,
@@ -242,6 +242,25 @@ def test_nmea_sentences_are_decoded_with_the_time_before_them(read):
     np.testing.assert_allclose(np.degrees(found.latitude), [57.0, 57.001, 57.002], rtol=0.0, atol=9e-7)
     with pytest.raises(InputError, match="line 1: the sentence has no time"):
         read(lines[0].rpartition("\\")[2] + "\n", name="ais.nmea")
+
+
+def test_an_mmsi_that_a_table_has_with_decimals_is_the_same(read):
+    text = table(*rows()).replace(",219999001,", ",219999001.0,")
+    assert [read(text, mmsi).mmsi for mmsi in (None, 219999001)] == [219999001, 219999001]
+
+
+def test_nmea_sentences_of_which_none_is_read_are_refused_with_their_types(read):
+    encode = pytest.importorskip("pyais.encode", reason="pyais is an extra")
+    said = {"msg_type": 27, "mmsi": 219999001, "lat": 57.0, "lon": 11.3, "speed": 12, "course": 20}
+    far = "1780308000 " + encode.encode_dict(said, talker_id="AI")[0] + "\n"
+    with pytest.raises(InputError, match="messages of type 27 alone; position reports of types 1, 2, 3, 18, 19 are read"):
+        read(far, name="ais.nmea")
+    with pytest.raises(InputError, match="no sentence that can be decoded"):
+        read("1780308000 !AIVDM,1,1,,A,garbage,0*00\n", 219999001, name="ais.nmea")
+    # A date without its marks would be milliseconds in the year 2612.
+    said |= {"msg_type": 1, "speed": 12.0, "course": 20.5}
+    with pytest.raises(InputError, match="line 1: the time 20260601100000 is beyond milliseconds since 1970, and no date without"):
+        read("20260601100000 " + encode.encode_dict(said, talker_id="AI")[0] + "\n", name="ais.nmea")
 
 
 def test_the_files_that_come_with_the_project_are_those_that_are_made():
