@@ -26,6 +26,9 @@ Array = npt.NDArray[np.float64]
 COLUMNS = ("time_utc", "height_m", "speed_mps", "from_deg")
 """Of a table; one of the first two may be missing."""
 
+_TO = "to_deg"
+"""Column of where the wind blows to."""
+
 _SPEED_MAX = 100.0
 """Fastest wind that a table may have: a hurricane's is 90 m/s [m/s]."""
 
@@ -133,6 +136,8 @@ def _rows(path: Path, cells: Iterator[list[str]]) -> Iterator[tuple[int, float, 
         raise InputError(f"wind.table: {path} {words}")
     if not set(COLUMNS[2:]) <= set(heads) or not set(COLUMNS[:2]) & set(heads):
         remedy = other_units(heads, COLUMNS[2:]) or "rename the columns to these"
+        if _TO in heads and COLUMNS[3] not in heads:
+            remedy = f"{COLUMNS[3]} is where the wind comes from: add 180 deg to '{_TO}', less 360 where it is more, and rename it"
         raise InputError(f"wind.table: {path}, line {first}: the header is {','.join(heads)[:80]!r}; it must be {','.join(COLUMNS)}"
                          f", of which time_utc or height_m may be missing: {remedy}")  # fmt: skip
     for line, row in lines:

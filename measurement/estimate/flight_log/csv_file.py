@@ -13,6 +13,7 @@ import numpy as np
 import pandas as pd
 
 from measurement.errors import MeasurementError
+from measurement.estimate.flight_log.clock import check_seconds
 from measurement.estimate.flight_log.config import COLUMNS, LogConfig
 from measurement.estimate.flight_log.details import FlightRecord, times_of
 from measurement.estimate.flight_log.places import PLACES, ends, on_a_plane, places_of
@@ -37,9 +38,6 @@ _OPEN_QUOTE = re.compile(r"EOF inside string starting at row (\d+)")
 
 _NUMBER, _DECIMAL_COMMA = re.compile(r"[-+]?[\d.]+(e[-+]?\d+)?(\.\d+)?", re.IGNORECASE), re.compile(r"[-+]?\d+,\d+")
 """A number, with what pandas adds to one that is there twice; and one with a decimal comma."""
-
-_COMPACT = 1e13, 1e14
-"""Times of 14 digits, as 20240501120000, which are no seconds: they jump by 41 at every minute."""
 
 TRUE_COLUMNS = {f"{gas}_true_{UNITS[gas]}": gas for gas in GASES}
 """Columns of the true concentrations, which a simulated flight may have; they are shown, and take no part in the estimate."""
@@ -245,11 +243,7 @@ def _time(table: pd.DataFrame, name: str, path: Path) -> tuple[Array, tuple[date
     column = table[name]
     if pd.api.types.is_numeric_dtype(column):
         seconds = column.to_numpy(dtype=np.float64)
-        if _COMPACT[0] <= seconds[0] < _COMPACT[1]:
-            raise MeasurementError(
-                f"'{path}': time {seconds[0]:.0f} in column '{name}' is a date and time without marks; give seconds, or"
-                " 2024-05-01T12:00:00.0"
-            )
+        check_seconds(seconds, name, path)
         return seconds, None
     try:
         moments = pd.to_datetime(column, utc=True, format="ISO8601")

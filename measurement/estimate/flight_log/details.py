@@ -177,7 +177,9 @@ def _imo(value: Any, path: Path) -> int | None:
         return None
     digits = [int(digit) for digit in str(value)] if _is_number(value, 7) else []
     if not digits or sum(digit * weight for digit, weight in zip(digits, range(7, 1, -1), strict=False)) % 10 != digits[-1]:
-        raise MeasurementError(f"'{path}': flight.imo is {value!r}; give seven digits whose last is their check digit, as 9074729")
+        raise MeasurementError(
+            f"'{path}': flight.imo is {value!r}; give seven digits whose last is their check digit, as 9074729{_bare(value)}"
+        )
     return int(value)
 
 
@@ -185,8 +187,13 @@ def _mmsi(value: Any, path: Path) -> int | None:
     if value is None:
         return None
     if not _is_number(value, 9):
-        raise MeasurementError(f"'{path}': flight.mmsi is {value!r}; give nine digits, as 219000000")
+        raise MeasurementError(f"'{path}': flight.mmsi is {value!r}; give nine digits, as 219000000{_bare(value)}")
     return int(value)
+
+
+def _bare(value: Any) -> str:
+    """Return the remedy for a number that is given as a text, and nothing for others."""
+    return ", without quotation marks" if isinstance(value, str) else ""
 
 
 def _is_number(value: Any, digits: int) -> bool:

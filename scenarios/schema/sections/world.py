@@ -1,14 +1,16 @@
 """What a scenario file may say of the world: vessel, plume, wind, turbulence, keep-out area. What is absent is ideal."""
 
 from datetime import datetime
+from pathlib import Path
 from typing import Annotated, Any, Literal
 
 from pydantic import BeforeValidator, Field, field_validator, model_validator
 
 from common.files import is_data_file
+from common.registry import is_file_part
 from measurement.emission.fuel import SULPHUR_MAX_PERCENT, fuel_preset
 from measurement.emission.ship import funnel_height, ship_of
-from scenarios.schema.extension_points import PLUME_MODELS
+from scenarios.schema.extension_points import PLUME_MODELS, VESSEL_TRACKS
 from scenarios.schema.sections.part_section import PartSection
 from scenarios.schema.sections.section import Angle, NonNegative, Positive, Section
 
@@ -47,13 +49,21 @@ class VesselConfig(Section):
     course_deg: Angle = 0.0
     """Course, clockwise from north [deg]."""
     track: str = "manoeuvres"
-    """Track of the vessel: by its speed, course and manoeuvres, from a file of AIS reports (.csv, .nmea), or FILE.py:NAME."""
+    """Track of the vessel: by its speed, course and manoeuvres, from a file of AIS reports (.csv, .nmea, .txt), or FILE.py:NAME."""
     mmsi: Annotated[int, Field(ge=0, le=999_999_999)] | None = None
     """MMSI of the vessel in a file of AIS reports; not needed if the file has only one vessel [-]."""
     gap_max_s: Positive = GAP_MAX
     """Longest gap between reports of a file over which the track is interpolated [s]."""
     manoeuvres: tuple[ManoeuvreConfig, ...] = ()
     """Manoeuvres of the vessel, in the order of their times."""
+
+    @field_validator("track")
+    @classmethod
+    def _of_data(cls, track: str) -> str:
+        file = Path(track).suffix and not (is_file_part(track) or is_data_file(track))
+        if file and track not in VESSEL_TRACKS:
+            raise ValueError(f"track is '{track}'; the name of a file of AIS reports ends in .csv, .nmea or .txt: rename it")
+        return track
 
     @model_validator(mode="after")
     def _in_turn(self) -> "VesselConfig":

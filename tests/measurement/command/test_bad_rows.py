@@ -53,6 +53,22 @@ def test_a_reading_at_the_end_of_the_range_is_saturated(logged, capsys):
     assert "SO2 is saturated at 20000 ppb" in capsys.readouterr().out
 
 
+def test_times_of_the_day_without_marks_are_refused_with_the_row_of_a_new_minute(logged, capsys):
+    # The log has 301 rows, a second apart: from 10:00:30 on five minutes begin.
+    clock = pd.Timestamp("2026-06-01T10:00:30") + pd.to_timedelta(np.arange(301), unit="s")
+    with_values(logged, "time_s", range(301), clock.strftime("%H%M%S").astype(int))
+    words = "times in column 'time_s' go from 100059 to 100100 (row 32), and so at each of 5 minutes: they are hours, minutes and"
+    assert words in refusal(logged, capsys)
+
+
+@pytest.mark.usefixtures("briefly")
+@pytest.mark.parametrize("gap", [(), range(60, 100)])
+def test_seconds_are_no_times_of_the_day_even_where_one_gap_is_as_a_new_minute_is(logged, gap):
+    table = pd.read_csv(logged).iloc[:160]
+    table.drop(index=[*gap]).to_csv(logged, index=False)
+    assert run(logged) == 0
+
+
 def in_degrees(logged):
     table = pd.read_csv(logged)
     table["latitude_deg"] = 57.0 + table.pop("north_m") / 111_195.0

@@ -91,6 +91,11 @@ def test_a_date_other_than_that_of_the_log_is_refused(logged, capsys, date):
         ('flight.place = "a\\nb"', "flight.place is 'a\\nb'; give a text of one line"),
         ("flight.imo = 9074728", "flight.imo is 9074728; give seven digits whose last is their check digit, as 9074729"),
         ("flight.imo = 907472", "flight.imo is 907472; give seven digits"),
+        (
+            'flight.imo = "9074729"',
+            "is '9074729'; give seven digits whose last is their check digit, as 9074729, without quotation marks",
+        ),
+        ('flight.mmsi = "219000000"', "flight.mmsi is '219000000'; give nine digits, as 219000000, without quotation marks"),
         ("flight.mmsi = 2190000", "flight.mmsi is 2190000; give nine digits, as 219000000"),
         ("flight.date = 2026-06-01T10:00:00", "flight.date is 2026-06-01 10:00:00; give a date, as 2026-06-01, or a time with"),
         ("flight.date = 'June'", "flight.date is June; give a date, as 2026-06-01, or a time with its offset"),

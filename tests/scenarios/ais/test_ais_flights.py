@@ -155,6 +155,13 @@ def test_keys_that_contradict_a_track_from_a_file_are_refused(override, words):
         load_study("ship_from_ais", [override])
 
 
+def test_a_file_whose_name_does_not_end_as_those_of_reports_do_is_refused_with_how_they_end():
+    with pytest.raises(
+        InputError, match=r"vessel\.track: track is 'x\.log'; the name of a file of AIS reports ends in \.csv, \.nmea or"
+    ):
+        load_study("ship_from_ais", ["vessel.track=x.log"])
+
+
 def test_a_track_from_a_file_that_is_not_there_is_refused_before_any_flight(tmp_path):
     scenario = load_study("ship_from_ais", [f"vessel.track={tmp_path / 'none.csv'}", "fidelity=kinematic"])
     with pytest.raises(InputError, match=r"none\.csv: cannot be read"):

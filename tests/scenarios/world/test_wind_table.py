@@ -73,6 +73,10 @@ def test_a_table_over_time_may_have_a_profile_over_height(table):
     [
         ("", {}, ["the file is empty", "time_utc,speed_mps,from_deg"]),
         ("\n , ,\n", {}, ["the file is empty"]),
+        (
+            "height_m,speed_mps,to_deg\n10,5,0\n", {},
+            ["from_deg is where the wind comes from: add 180 deg to 'to_deg', less 360 where it is more, and rename it"],
+        ),
         ("\nspeed_mps,from_deg\n5,0\n", {}, ["line 2", "the header is 'speed_mps,from_deg'"]),
         ("height_m;speed_mps;from_deg\n10;5;0\n", {}, ["is separated by semicolons; separate its columns by commas"]),
         (
