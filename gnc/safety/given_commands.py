@@ -31,12 +31,13 @@ class GivenCommands:
     ----------
     under_way : commands that act within the delay, of the first perhaps a part [rad/s]
     change : largest change of command of late, over a full reversal, which counts the less the older it is [-]
+    last : command at the last look [rad/s]
     since, rates : commands since the last look, and the heading rate at each; whoever commands appends to them [rad/s]
     """
 
     __slots__ = (
-        "_begun", "_changing", "_doubt", "_fading", "_first", "_given", "_kept", "_lack", "_lack_max", "_lag", "_last", "_reversal",
-        "_slow", "_time_step", "change", "rates", "since", "under_way",
+        "_at_end", "_begun", "_changing", "_doubt", "_fading", "_first", "_kept", "_lack", "_lack_max", "_lag", "_reversal",
+        "_slow", "_time_step", "change", "last", "rates", "since", "under_way",
     )  # fmt: skip
 
     def __init__(self, *, lag: float, delay: float, slow_lag: float, time_step: float, heading_rate_max: float) -> None:
@@ -48,15 +49,15 @@ class GivenCommands:
         self._reversal = 2.0 * heading_rate_max
         self._lack_max = self._reversal * (delay + lag)
         self._fading = math.exp(-time_step / (CHANGED * lag)) if lag > 0.0 else 0.0
-        self.change, self._given = LEAST_CHANGE, 0.0
+        self.change, self.last = LEAST_CHANGE, 0.0
         count, self._first = commands_under_way(delay, time_step)
         self._kept = math.exp(-time_step / (FORGOTTEN * lag)) if lag > 0.0 else 0.0
         # Course turned in a step in which a lag follows one command, from the heading rates at its ends; and what is to be added
         # where another command begins to act within the step. So it is exact for a vehicle with just that dead time and lag.
-        self._last = self._changing = 0.0
+        self._at_end = self._changing = 0.0
         if lag > 0.0:
             turned = time_step / -math.expm1(-time_step / lag)
-            self._last = turned - lag
+            self._at_end = turned - lag
             self._changing = time_step - self._first + turned * math.expm1((self._first - time_step) / lag)
         self._lack, self._begun = 0.0, False
         self.under_way: deque[float] = deque(maxlen=count)
@@ -74,7 +75,7 @@ class GivenCommands:
         since, rates, under_way = self.since, self.rates, self.under_way
         if not (since or self._begun):
             # A flight begins: the turn that is flown is under way.
-            self._given = rate
+            self.last = rate
             under_way.extend([rate] * (under_way.maxlen or 0))
         elif since:
             self._begun = True
@@ -83,16 +84,16 @@ class GivenCommands:
             under_way.extend(since)
             acted -= self._course_under_way()
             changed = rate - rates[0]
-            turned = self._time_step * sum(rates) + self._last * changed
+            turned = self._time_step * sum(rates) + self._at_end * changed
             if under_way:
                 turned += self._changing * (under_way[0] - acting)
             lack = self._lack * self._kept ** len(since) + acted - turned - self._slow * changed
             self._lack = limited(lack, self._lack_max)
             # What changed little by little between two looks counts as if it had changed at once.
-            since.append(self._given)
+            since.append(self.last)
             changed = (max(since) - min(since)) / self._reversal
             self.change = max(changed, self.change * self._fading ** len(rates), LEAST_CHANGE)
-            self._given = since[-2]
+            self.last = since[-2]
             since.clear()
             rates.clear()
         if self._lag == 0.0:
@@ -100,6 +101,11 @@ class GivenCommands:
         # As much as slow commands may be followed sooner or later than said is none of it.
         lack, doubt = self._lack, self._doubt * abs(rate)
         return (lack - math.copysign(doubt, lack)) / self._lag if abs(lack) > doubt else 0.0
+
+    def changed_by(self, command: float) -> float:
+        """Return what ``change`` is if a command [rad/s] is given now."""
+        now = abs(command - self.last) / self._reversal
+        return now if now > self.change else self.change
 
     def _course_under_way(self) -> float:
         """Return by how much the commands under way turn the vehicle [rad]."""

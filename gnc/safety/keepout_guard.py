@@ -19,7 +19,7 @@ from gnc.estimation.reachable_set import Tube
 from gnc.numeric import limited
 from gnc.safety.given_commands import GivenCommands
 from gnc.safety.guard_parameters import GuardParameters
-from gnc.safety.turn_prediction import Motion, Start, TurnPrediction, nearer_side
+from gnc.safety.turn_prediction import Motion, TurnPrediction, nearer_side
 
 _RESOLUTION = 1e-3
 """Turn radii kept beyond the radius: the closest approach is predicted as well as that, 4 cm at a turn radius of 40 m [-]."""
@@ -51,9 +51,9 @@ class KeepoutGuard:
     """
 
     __slots__ = (
-        "_drift_rate", "_explained", "_free_steps", "_given", "_kept_off", "_lag", "_note", "_note_rate", "_prediction",
-        "_quarter_turn", "_radius", "_rate", "_resolution", "_side", "_speed_error", "_time_step", "_turn_speed", "_turn_time",
-        "_until_acting", "intervening", "interventions", "lost", "tubes",
+        "_drift_rate", "_explained", "_free_steps", "_given", "_highest", "_kept_off", "_lag", "_lowest", "_note", "_note_rate",
+        "_prediction", "_quarter_turn", "_radius", "_rate", "_resolution", "_side", "_speed_error", "_time_step", "_turn_speed",
+        "_turn_time", "_until_acting", "_within_step", "intervening", "interventions", "lost", "tubes",
     )  # fmt: skip
 
     def __init__(self, parameters: GuardParameters) -> None:
@@ -83,9 +83,10 @@ class KeepoutGuard:
         self._turn_time = 1.5 * math.pi / p.heading_rate_max + 2.0 * p.lag + p.delay + p.time_step
         # What the declared errors may take from the slack of a turn that was safe.
         self._explained = p.deviation + self._speed_error * self._turn_time + p.turbulence
-        # Within a step, too, the path bends: it is predicted to the step's end.
-        self._resolution = max(_RESOLUTION, 1.0 - math.cos(min(math.pi, 0.5 * p.heading_rate_max * p.time_step)))
-        self._side, self._free_steps = 0.0, 0
+        # Within a step a command may lead off the turn that was safe by all of a reversal: by V omega_max dt^2, in turn radii.
+        self._resolution = max(_RESOLUTION, min(math.pi, p.heading_rate_max * p.time_step) ** 2)
+        self._within_step = (self._resolution - _RESOLUTION) / p.heading_rate_max
+        self._side, self._free_steps, self._lowest, self._highest = 0.0, 0, 0.0, 0.0
         self._kept_off: Tube | None = None
         self.tubes: Sequence[Tube] = ()
         self.intervening = self.lost = False
@@ -102,16 +103,13 @@ class KeepoutGuard:
         speed : of the vehicle in the air mass, to reckon with: as fast as it may become [m/s]
         slowest : as slow as it may become [m/s]; a turn away has to keep off at all speeds between
         """
-        bounded = -self._rate <= command <= self._rate
-        if self._free_steps > 0 and bounded:
+        if self._free_steps > 0 and self._lowest <= command <= self._highest:
             self._free_steps -= 1
         else:
-            self._free_steps = 0
             free, situations = self._look(command, time, own, speed, slowest)
+            self._free_steps = max(0, int(free / self._time_step) - 1)
             if free >= 0.0:
                 self.intervening = self.lost = False
-                if bounded:
-                    self._free_steps = max(0, int(free / self._time_step) - 1)
             else:
                 self.interventions += not self.intervening
                 self.intervening = True
@@ -140,17 +138,19 @@ class KeepoutGuard:
     def clearance(self, time: float, own: AirMotion, speed: float, enough: float = math.inf) -> float:
         """Return by how much the better turn away, begun now, or one that does by ``enough``, keeps off [m]; negative if none can.
 
-        Parameters are those of ``limit``. That no other commands do better is argued in docs/keepout_guard.md.
+        It is less what the path may come nearer within a step. Parameters are those of ``limit``. That no other commands do better
+        is argued in docs/keepout_guard.md.
         """
-        best, to_come = -math.inf, self._given.still_to_come(own.heading_rate)
+        best, within, to_come = -math.inf, self._within_step * speed, self._given.still_to_come(own.heading_rate)
         for tube in self.tubes:
             then = self._prediction.when_acting(self._relative(tube, time, own, speed, speed, to_come), self._given.under_way)
             start = (then[0], then[1], then[4], then[6])
             for side in (nearer := nearer_side(*start[:3]), -nearer):
-                best = max(best, self._prediction.turn_away(side, start, then, self._until_acting, best)[0])
-                if best >= enough:
-                    return best
-        return best
+                kept, _ = self._prediction.turn_away(side, start, then, self._given.change, self._until_acting, best)
+                best = max(best, kept)
+                if best >= enough + within:
+                    return best - within
+        return best - within
 
     def _look(self, command: float, time: float, own: AirMotion, speed: float, slowest: float) -> tuple[float, list[Situation]]:
         """Return for how long [s] no command can spoil the turn away that follows this one, negative if no turn away keeps off.
@@ -169,6 +169,9 @@ class KeepoutGuard:
                 self._kept_off = tube
                 break
             situations.append((motions, tube))
+        # Commands that change by no more than is counted do not enlarge the deviation of the turn.
+        middle, half = 0.5 * (self._given.last + command), self._given.changed_by(command) * self._rate
+        self._lowest, self._highest = max(middle - half, -self._rate), min(middle + half, self._rate)
         return free, situations
 
     def _candidates(self, time: float, own: AirMotion) -> Sequence[Tube]:
@@ -201,7 +204,6 @@ class KeepoutGuard:
             self._speed_error + wrong + tube.growth + tube.acceleration * since,
             tube.acceleration,
             to_come,
-            self._given.change,
             slowest if slowest < speed - _SAME_SPEED else speed,
         )
 
@@ -216,32 +218,28 @@ class KeepoutGuard:
     def _when_acting(self, motion: Motion) -> tuple[Motion, ...]:
         """Return the motions of a situation."""
         acting, under_way = self._prediction.when_acting, self._given.under_way
-        if motion[12] == motion[5]:
+        if motion[11] == motion[5]:
             return (acting(motion, under_way),)
         # Round a disc, or past a small one, a turn may come nearer that is slow, or fast, from beginning to end.
-        steady = [(*motion[:5], speed, *motion[6:12], speed) for speed in (motion[12], motion[5])]
+        steady = [(*motion[:5], speed, *motion[6:11], speed) for speed in (motion[11], motion[5])]
         return tuple(acting(each, under_way) for each in (motion, *steady))
 
     def _free_by_turning_away(self, command: float, motions: tuple[Motion, ...]) -> float:
         """Return for how long [s] no command can spoil the turn away that follows this one; negative if there is none."""
-        starts = self._after(command, motions)
         floor = self._resolution * motions[0][5] / self._rate
-        for side in (nearer := nearer_side(*starts[0][:3]), -nearer):
-            slack, free = self._slack(side, starts, motions, floor)
+        for side in (nearer := nearer_side(*self._prediction.after(command, motions[0])[:3]), -nearer):
+            slack, free = self._slack(side, command, motions, floor)
             if slack >= floor:
                 self._side = side
                 return free
         return -1.0
 
-    def _after(self, command: float, motions: tuple[Motion, ...]) -> list[Start]:
-        """Return where a command held for one time step leads, in each motion."""
-        return [self._prediction.after(command, motion) for motion in motions]
-
-    def _slack(self, side: float, starts: Sequence[Start], motions: tuple[Motion, ...], floor: float) -> tuple[float, float]:
-        """Return slack [m] of a turn away, and for how long no command can spoil it [s]: the least of the motions."""
-        begun, slack, free = self._until_acting + self._time_step, math.inf, math.inf
-        for start, motion in zip(starts, motions, strict=True):
-            kept, kept_free = self._prediction.turn_away(side, start, motion, begun, floor)
+    def _slack(self, side: float, command: float, motions: tuple[Motion, ...], floor: float) -> tuple[float, float]:
+        """Return slack [m] of a turn away after a command, and for how long none can spoil it [s]: the least of the motions."""
+        begun, slack, free, change = self._until_acting + self._time_step, math.inf, math.inf, self._given.changed_by(command)
+        for motion in motions:
+            start = self._prediction.after(command, motion)
+            kept, kept_free = self._prediction.turn_away(side, start, motion, change, begun, floor)
             slack, free = min(slack, kept), min(free, kept_free)
             if slack < floor:
                 break
@@ -261,7 +259,7 @@ class KeepoutGuard:
         for _ in range(_BISECTIONS):
             fraction = 0.5 * (low + high)
             trial = command + fraction * (turn - command)
-            slack, _ = self._slack(side, self._after(trial, motions), motions, floor)
+            slack, _ = self._slack(side, trial, motions, floor)
             if slack >= floor:
                 high, mixed = fraction, trial
             else:
@@ -270,7 +268,7 @@ class KeepoutGuard:
 
     def _explains(self, motion: Motion) -> float:
         """Return what of the slack of a turn that was safe may be gone since [m]."""
-        return self._explained + _UNSTEADY * (motion[5] - motion[12]) / self._rate
+        return self._explained + _UNSTEADY * (motion[5] - motion[11]) / self._rate
 
     def _turn(self, side: float, motion: Motion) -> float:
         """Return the command of a turn away [rad/s]: straight away from the disc and no farther."""
@@ -289,8 +287,7 @@ class KeepoutGuard:
         found: list[tuple[float, float, tuple[Motion, ...], Tube]] = []
         for motions, tube in situations:
             for side in (self._side, -self._side) if self._side else (1.0, -1.0):
-                starts = self._after(self._turn(side, motions[0]), motions)
-                slack, _ = self._slack(side, starts, motions, -math.inf)
+                slack, _ = self._slack(side, self._turn(side, motions[0]), motions, -math.inf)
                 found.append((slack, side, motions, tube))
                 if self._side and slack >= 0.0:
                     return found[-1]

@@ -11,13 +11,13 @@ _TURN = 0.125
 _TURN_MAX = 2.5 * math.pi
 """Course after which a turn away is over [rad]: once round, and what a turn the other way before it and the disc's motion add."""
 
-Motion = tuple[float, float, float, float, float, float, float, float, float, float, float, float, float]
+Motion = tuple[float, float, float, float, float, float, float, float, float, float, float, float]
 """A vehicle's motion relative to a disc, and how the disc grows.
 
 North and east of the disc's centre [m]; the disc's velocity north and east in the air mass [m/s]; the vehicle's course and speed
 there, as fast as it may become, and its heading rate [rad, m/s, rad/s]; radius of the disc now [m], rate of its growth [m/s] and
-of that [m/s^2]; what the heading rate lacks for the course that is still to come of earlier commands [rad/s]; their largest change
-of late, over a full reversal [-]; and the vehicle's speed as slow as it may become [m/s].
+of that [m/s^2]; what the heading rate lacks for the course that is still to come of earlier commands [rad/s]; and the vehicle's
+speed as slow as it may become [m/s].
 """
 Start = tuple[float, float, float, float]
 """x, y, course and heading rate."""
@@ -69,7 +69,7 @@ class TurnPrediction:
         if not under_way:
             return motion
         x, y, velocity_north, velocity_east, course, speed, heading_rate, *others = motion
-        radius, growth, acceleration, to_come, change, slowest = others
+        radius, growth, acceleration, to_come, slowest = others
         held = self._first
         begun, middles = course, 0.0
         for command in under_way:
@@ -86,7 +86,7 @@ class TurnPrediction:
         y += (chord * sin - velocity_east) * self._delay
         return (
             x, y, velocity_north, velocity_east, course, speed, heading_rate,
-            radius, growth, acceleration, to_come, change, slowest,
+            radius, growth, acceleration, to_come, slowest,
         )  # fmt: skip
 
     def after(self, command: float, motion: Motion) -> Start:
@@ -104,7 +104,7 @@ class TurnPrediction:
             decay * heading_rate + (1.0 - decay) * command,
         )
 
-    def turn_away(self, side: float, start: Start, motion: Motion, time: float, floor: float) -> tuple[float, float]:
+    def turn_away(self, side: float, start: Start, motion: Motion, change: float, time: float, floor: float) -> tuple[float, float]:
         """Return by how much a full turn away keeps the radius [m], and for how long [s] no command before it can change that.
 
         It is over once the vehicle recedes and its turn makes it recede faster: by going on until it heads straight away, and
@@ -116,12 +116,13 @@ class TurnPrediction:
         side : 1 to the right, -1 to the left
         start : of the turn
         motion : when the command that is judged begins to act
+        change : largest change of command of late, over a full reversal [-]
         time : from now to the start [s]
         floor : [m]
         """
         cos, sin, sqrt = math.cos, math.sin, math.sqrt
         x, y, course, heading_rate = start
-        _, _, velocity_north, velocity_east, _, speed, _, fixed, error, acceleration, to_come, change, slowest = motion
+        _, _, velocity_north, velocity_east, _, speed, _, fixed, error, acceleration, to_come, slowest = motion
         # What is to come counts where it is against the turn.
         heading_rate += side * min(0.0, side * to_come)
         duration, turned, mean, decay = self._interval
@@ -134,6 +135,8 @@ class TurnPrediction:
         slack = sqrt(x * x + y * y) - (allowed := fixed + (error + half * time) * time)
         least, places = slack + deviation, [(x, y, course, allowed, speed)]
         outward, then = self._outward(side, start), None
+        # A command against the turn enlarges the deviation by 1/lag of what that of a full reversal exceeds it by in each second.
+        rolling = max(0.0, self._deviation - deviation) * stretch / (2.0 * speed * self._rate * max(lag, self._hold[0]))
         acting, gain, least_rate, rise, fade = time - self._delay, -1.0, math.inf, 0.0, self._hold[3] if time > self._delay else 1.0
         for point in range(math.ceil(self._points_max * stretch)):
             if least < floor:
@@ -153,7 +156,7 @@ class TurnPrediction:
             slack = sqrt(x * x + y * y) - (allowed := fixed + (error + half * time) * time + nearer)
             places.append((x, y, course, allowed, flown[5]))
             rise = slack - last
-            slack_rate = slack / (acting - lag * (1.0 - fade))
+            slack_rate = slack / (acting - lag * (1.0 - fade) + rolling)
             least_rate = slack_rate if slack_rate < least_rate else least_rate
             if rise < 0.0:
                 if gain >= 0.0:

@@ -47,7 +47,12 @@ def linear_controller(law: ControlLaw, trim: Trim) -> LinearModel:
 
 
 def operating_point(law: ControlLaw, trim: Trim) -> dict[str, float]:
-    """Return commands, measurements and the autopilot's states while the aircraft flies an equilibrium under it."""
+    """Return commands, measurements and the autopilot's states while the aircraft flies an equilibrium under it.
+
+    In straight flight it counts as level: propeller and ailerons bank it by a tenth of a degree or so, which is beyond the edge of
+    the tables at 0, and it turns to both sides from there.
+    """
+    roll = trim.roll if trim.yaw_rate else 0.0
     model_bank = law.model_bank(trim.yaw_rate, trim.airspeed, trim.airspeed)
     return {
         "airspeed_command": trim.airspeed,
@@ -57,12 +62,12 @@ def operating_point(law: ControlLaw, trim: Trim) -> dict[str, float]:
         "altitude": trim.altitude,
         "climb_rate": 0.0,
         "pitch": trim.pitch,
-        "roll": trim.roll,
+        "roll": roll,
         "beta": trim.beta,
         "heading_rate": trim.yaw_rate,
         **dict(zip("pqr", trim.rates_body, strict=True)),
         **dict.fromkeys(STATES, 0.0),
-        "bank_integral": trim.roll - model_bank,
+        "bank_integral": roll - model_bank,
         "model_rate": trim.yaw_rate,
     }
 

@@ -56,7 +56,13 @@ def vessel_limits(scenario: Scenario, horizon: float) -> VesselLimits:
     """
     f, reports = scenario.following, scenario.reports
     known = filter_parameters(reports)
-    between = mean_interval(reports.interval_s) if not reports.exact else NAVIGATION_TIME
+    # A flight begins with a report, however rare they are, and the vehicle's own error is another one after a while.
+    drawn = [scenario.flight.duration_max_s]
+    if not reports.exact:
+        drawn.append(mean_interval(reports.interval_s))
+    if reports.exact or scenario.sensors.position_sigma_m > 0.0:
+        drawn.append(NAVIGATION_TIME)
+    between = min(drawn)
     chances = SECONDS_PER_HOUR / between / f.touches_per_hour
     return VesselLimits(
         acceleration=f.vessel_acceleration_mps2,

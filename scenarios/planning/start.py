@@ -84,7 +84,7 @@ def check_start(
         return
     fastest = max(math.hypot(tube.velocity_north - wind[0], tube.velocity_east - wind[1]) for tube in vessel)
     away = airspeed * math.cos(min(math.pi, guard.heading_rate_max * guard.lag))
-    if away <= fastest < airspeed:
+    if away <= fastest:
         raise InfeasibleError(
             f"a UAV that turns at {guard.heading_rate_max:.3g} rad/s and lags by {guard.lag:.3g} s overshoots, and then leaves at"
             f" only {away:.1f} of its {airspeed:.1f} m/s, beside a vessel with {fastest:.1f} m/s through the air: slow the vessel,"

@@ -91,8 +91,8 @@ class VehicleSetup:
         """Return the airspeed up to which a heading rate [rad/s] can be flown at the autopilot's largest bank [m/s]."""
         if not self.turn_airspeeds:
             return math.inf
-        # Turns are slower the faster the aircraft flies.
-        return float(np.interp(-heading_rate, [-turn for turn in self.turn_rates], self.turn_airspeeds))
+        # At one bank the time of a full turn is proportional to the airspeed, but for what the angle of attack changes.
+        return float(np.interp(1.0 / heading_rate, [1.0 / turn for turn in self.turn_rates], self.turn_airspeeds))
 
 
 def spec_of(scenario: Scenario) -> AircraftSpec | None:
@@ -180,8 +180,8 @@ def aircraft_setup(found: Designed, scenario: Scenario, run: RunDirectory, *, ba
 
 def _slower_turns(schedule: Schedule) -> tuple[float, ...]:
     """Return the heading rate of the slower of both turns at the autopilot's largest bank, at each airspeed [rad/s]."""
-    bank = schedule.envelope.bank_max
+    tangent = math.tan(schedule.envelope.bank_max)
     return tuple(
-        min(abs(float(np.interp(side * bank, [t.roll for t in row], [t.yaw_rate for t in row]))) for side in (-1.0, 1.0))
+        min(abs(float(np.interp(side * tangent, np.tan([t.roll for t in row]), [t.yaw_rate for t in row]))) for side in (-1.0, 1.0))
         for row in schedule.trims
     )

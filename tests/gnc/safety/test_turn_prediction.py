@@ -65,8 +65,8 @@ def test_a_disc_in_the_way_of_a_turn_is_seen_however_small_it_is():
         duration = turned / HEADING_RATE_MAX
         ahead = moved((0.0, 0.0, 0.0, HEADING_RATE_MAX), HEADING_RATE_MAX, 0.25, duration)[:2]
         x, y = (v * duration - place + off for v, place, off in zip(velocity, ahead, generator.uniform(-3.0, 3.0, 2), strict=True))
-        motion = (x, y, *velocity, 0.0, SPEED, HEADING_RATE_MAX, 0.0, 0.0, 0.0, 0.0, 0.0, SPEED)
-        found, _ = prediction.turn_away(1.0, (x, y, 0.0, HEADING_RATE_MAX), motion, 0.0, -math.inf)
+        motion = (x, y, *velocity, 0.0, SPEED, HEADING_RATE_MAX, 0.0, 0.0, 0.0, 0.0, SPEED)
+        found, _ = prediction.turn_away(1.0, (x, y, 0.0, HEADING_RATE_MAX), motion, 0.0, 0.0, -math.inf)
         times = np.linspace(0.0, 1.2 * duration, 4000)
         arc = SPEED / HEADING_RATE_MAX * np.array([np.sin(HEADING_RATE_MAX * times), 1.0 - np.cos(HEADING_RATE_MAX * times)])
         apart = np.hypot(x + arc[0] - velocity[0] * times, y + arc[1] - velocity[1] * times)
@@ -100,8 +100,8 @@ def test_no_speed_between_the_fastest_and_the_slowest_comes_nearer_than_predicte
         )
 
         def kept(side, fastest, slowest, start=start, velocity=velocity, radius=radius):
-            motion = (*start[:2], *velocity, start[2], fastest, start[3], radius, 0.0, 0.0, 0.0, 0.0, slowest)
-            return prediction.turn_away(side, start, motion, 0.0, -math.inf)[0]
+            motion = (*start[:2], *velocity, start[2], fastest, start[3], radius, 0.0, 0.0, 0.0, slowest)
+            return prediction.turn_away(side, start, motion, 0.0, 0.0, -math.inf)[0]
 
         side = nearer_side(*start[:3])
         flown = min(turns_at_many_speeds(side, start, velocity, slow, fast)) - radius
@@ -144,9 +144,9 @@ def test_a_turn_that_leads_round_a_disc_comes_the_nearer_the_slower_it_is_flown(
     start = (0.0, -1.2 * TURN_RADIUS, 0.0, HEADING_RATE_MAX)
 
     def kept(slowest):
-        motion = (*start[:2], 0.0, 0.0, 0.0, 1.2 * SPEED, HEADING_RATE_MAX, TURN_RADIUS, 0.0, 0.0, 0.0, 0.0, slowest)
+        motion = (*start[:2], 0.0, 0.0, 0.0, 1.2 * SPEED, HEADING_RATE_MAX, TURN_RADIUS, 0.0, 0.0, 0.0, slowest)
         motions = guard._when_acting(motion)
-        return guard._slack(1.0, [start] * len(motions), motions, -math.inf)[0]
+        return guard._slack(1.0, HEADING_RATE_MAX, motions, -math.inf)[0]
 
     assert kept(1.2 * SPEED) == pytest.approx(0.2 * TURN_RADIUS, abs=0.1)
     # From 1.2 to the right its own circle of 0.95: its far side is 0.7 from the disc's centre.
@@ -157,8 +157,8 @@ def away(side=1.0, *, turn=0.0, course=0.0, closing=0.0, to_come=0.0, change=0.0
     """Return by how much a turn away keeps off [m], which is begun 250 m from the centre of a disc of 200 m, due south of it."""
     prediction = TurnPrediction(heading_rate_max=HEADING_RATE_MAX, lag=0.25, delay=0.0, time_step=TIME_STEP, deviation=deviation)
     place = {"x": -250.0, "y": 0.0} | start
-    motion = (*place.values(), closing, 0.0, course, SPEED, turn, RADIUS, 0.0, 0.0, to_come, change, SPEED)
-    return prediction.turn_away(side, (*place.values(), course, turn), motion, 0.0, -math.inf)[0]
+    motion = (*place.values(), closing, 0.0, course, SPEED, turn, RADIUS, 0.0, 0.0, to_come, SPEED)
+    return prediction.turn_away(side, (*place.values(), course, turn), motion, change, 0.0, -math.inf)[0]
 
 
 @pytest.mark.parametrize("side", [1.0, -1.0])

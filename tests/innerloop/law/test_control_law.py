@@ -162,11 +162,9 @@ def test_in_every_equilibrium_the_law_asks_for_its_controls_and_its_integrals_st
             # The law damps all of the roll rate, and a nose-up turn has its own, -yaw rate times sin(pitch): what aileron and
             # rudder then lack, the integral of the heading rate adds.
             by_roll_rate = dict(zip(("aileron", "rudder"), -gains.lateral[:, LATERAL.index("p")] * t.rates_body[0], strict=True))
-            # At its own nodes a table is exact, and every error is nought. At wings level the propeller's torque banks the X8 by
-            # 0.3 mrad, that far beside the node along slopes of up to 4 a radian.
-            at_node = 1e-9 if t.yaw_rate else 1.5e-3
+            # At its own nodes a table is exact, and every error is nought.
             for control_name, value in t.inputs.items():
-                assert controls[control_name] == pytest.approx(value + by_roll_rate.get(control_name, 0.0), abs=at_node)
+                assert controls[control_name] == pytest.approx(value + by_roll_rate.get(control_name, 0.0), abs=1e-9)
             assert rates["bank_integral"] == 0.0
             assert max(abs(rates["elevator_integral"]), abs(rates["throttle_integral"])) == 0.0
             assert rates["model_acceleration"] == pytest.approx(0.0, abs=1e-12)

@@ -13,7 +13,6 @@ import numpy as np
 import pytest
 from loop_reference import named
 
-from aircraft.dynamics.trim_search import pitch_for_climb
 from aircraft.fleet.x8 import X8
 from aircraft.simulation.state import body_velocity
 from innerloop.flight.autopiloted_aircraft import AutopilotedAircraft
@@ -66,9 +65,6 @@ def state_off_trim(found, name, size):
     elif name == "roll":
         roll = size  # about wings level, where the tables have their kink
         beta = 0.0  # sideslip, rolled, would climb
-    elif name == "own roll":
-        roll += size  # about the equilibrium's own bank, to one side of that kink
-        pitch = pitch_for_climb(alpha, beta, roll, 0.0)  # and without a climb
     elif name == "beta":
         beta += size
         roll = 0.0  # sideslip, rolled, would climb
@@ -175,12 +171,12 @@ def test_the_flown_feedback_is_the_designed_gain_times_the_deviation(x8_schedule
     np.testing.assert_allclose(flown, expected, rtol=1e-3, atol=5e-4)
 
 
-@pytest.mark.parametrize("name", [*(n for n in X8_SIZES if n != "roll"), "own roll"])
+@pytest.mark.parametrize("name", X8_SIZES)
 def test_the_linear_description_has_the_flown_feedback(x8_schedule, x8_root, name):
     assert_the_feedback_is_flown(x8_schedule, x8_root, name)
 
 
-@pytest.mark.parametrize("name", [*(n for n in SIZES if n != "roll"), "own roll"])
+@pytest.mark.parametrize("name", SIZES)
 def test_the_linear_description_has_the_flown_feedback_with_a_rudder_too(aerosonde, name):
     assert_the_feedback_is_flown(*aerosonde, name)
 
@@ -189,8 +185,8 @@ def assert_the_feedback_is_flown(schedule, root, name):
     found = schedule.level(MIDDLE)
     flown = slope_of_commands(root, found, name, spec=schedule.spec)
     system = linear_controller(ControlLaw(schedule), found)
-    # As above. Banked by more than 0.3 mrad the tables bend: the description is that of the equilibrium's own side.
-    np.testing.assert_allclose(flown, system.D[:, system.input_labels.index(name.removeprefix("own "))], rtol=1e-3, atol=5e-4)
+    # As above: the description, too, is that about wings level.
+    np.testing.assert_allclose(flown, system.D[:, system.input_labels.index(name)], rtol=1e-3, atol=5e-4)
 
 
 def test_sideslip_to_the_right_is_answered_by_rudder_to_the_right_at_once_and_ever_more(aerosonde):

@@ -6,11 +6,13 @@ import numpy as np
 import pytest
 
 from gnc.errors import InfeasibleError
+from gnc.estimation.plume.sensor_watch import equal_readings
 from gnc.mission.plume_axis import PredictedPlume
 from gnc.mission.searched_axis import SearchedPlume
+from measurement.sniffer.presets import sensor_preset, sensor_presets
 from scenarios.errors import InputError
 from scenarios.planning.planner import plan_flight
-from scenarios.planning.plume.axis import plume_axis
+from scenarios.planning.plume.axis import co2_sensor, plume_axis
 from scenarios.planning.plume.distance import additional_distance, information
 from scenarios.schema.load import load_study
 from scenarios.schema.sections.flight import ALTITUDE_MARGIN
@@ -96,3 +98,8 @@ def test_where_the_axis_is_below_the_limits_near_the_ship_it_is_measured_farther
         ["following.distance=best_measurement", "plume.source_height_m=15", "flight.altitude_m=80", "flight.altitude_min_m=55"],
     )
     assert additional_distance(low, VESSEL, 220.0, 8.0) > 50.0
+
+
+@pytest.mark.parametrize("name", [name for name in sensor_presets() if name != "unspecified"])
+def test_ten_equal_readings_are_enough_of_every_preset(name):
+    assert equal_readings(co2_sensor(sensor_preset(name))) == 10

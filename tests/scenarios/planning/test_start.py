@@ -7,8 +7,11 @@ import pytest
 from flight_cases import plan, scenario
 
 from gnc.errors import InfeasibleError
+from gnc.estimation.reachable_set import Tube
+from gnc.safety.guard_parameters import GuardParameters
 from scenarios.experiment.requests import Experiment
 from scenarios.planning.bounded_steering import farthest_start
+from scenarios.planning.start import Start, check_start
 from scenarios.schema.load import load_study
 from scenarios.schema.scenario import Scenario
 
@@ -118,3 +121,12 @@ def test_a_vehicle_that_lags_so_much_that_a_turn_away_does_not_lead_away_is_not_
     ):
         plan(tracking(kinematic={"heading_rate_lag_s": 4.0}))
     plan(tracking(kinematic={"heading_rate_lag_s": 0.4}))
+
+
+@pytest.mark.parametrize("reported", [19.95, 20.0, 25.0])
+def test_a_vessel_that_is_reported_to_be_as_fast_as_the_vehicle_or_faster_is_not_flown_beside(reported):
+    guard = GuardParameters(radius=200.0, heading_rate_max=0.49, lag=0.26, delay=0.26, slow_lag=0.39, time_step=0.05)
+    start, known = Start(north=300.0, east=0.0, course=0.0), {"wind": (0.0, 0.0), "airspeed": 20.0, "keepout_radius": 200.0}
+    with pytest.raises(InfeasibleError, match=f"leaves at only 19.8 of its 20.0 m/s, beside a vessel with {reported:.1f} m/s"):
+        check_start(start, guard, [Tube(0.0, 0.0, 0.0, reported, 0.0)], **known)
+    check_start(start, guard, [Tube(0.0, 0.0, 0.0, 19.0, 0.0)], **known)

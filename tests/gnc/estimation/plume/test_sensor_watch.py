@@ -7,8 +7,6 @@ import pytest
 
 from gnc.estimation.plume.prior import GasSensor
 from gnc.estimation.plume.sensor_watch import SensorState, SensorWatch, equal_readings
-from measurement.sniffer.presets import sensor_preset, sensor_presets
-from scenarios.planning.plume.axis import co2_sensor
 
 
 def _sensor(noise: float = 1.0, resolution: float = 0.1) -> GasSensor:
@@ -79,8 +77,3 @@ def test_a_sensor_with_coarse_readings_that_sticks_is_found_later() -> None:
 
 def test_noise_that_never_shows_says_nothing_of_equal_readings() -> None:
     assert equal_readings(_sensor(0.01, 1.0)) == math.inf
-
-
-@pytest.mark.parametrize("name", [name for name in sensor_presets() if name != "unspecified"])
-def test_ten_equal_readings_are_enough_of_every_preset(name: str) -> None:
-    assert equal_readings(co2_sensor(sensor_preset(name))) == 10

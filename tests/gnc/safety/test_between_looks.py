@@ -1,0 +1,84 @@
+"""What the vehicle does between two looks of the keep-out guard: within a step, and as its commands change."""
+
+import copy
+import math
+from collections import deque
+
+import numpy as np
+import pytest
+from guard_cases import aim_at_the_centre, moved
+
+from gnc.estimation.own_motion import KnownMotion
+from gnc.estimation.reachable_set import Tube
+from gnc.safety.guard_parameters import GuardParameters
+from gnc.safety.keepout_guard import KeepoutGuard
+
+SPEED = 20.0
+
+
+def guard_of(*, radius, heading_rate_max, time_step, lag=0.0, delay=0.0, deviation=0.0):
+    guard = KeepoutGuard(
+        GuardParameters(
+            radius=radius, heading_rate_max=heading_rate_max, lag=lag, delay=delay, slow_lag=lag + delay, time_step=time_step,
+            deviation=deviation,
+        )
+    )  # fmt: skip
+    guard.tubes = (Tube(0.0, 0.0, 0.0, 0.0, 0.0),)
+    return guard
+
+
+def motion_of(state):
+    north, east, course, heading_rate = state
+    return KnownMotion(ground_north=north, ground_east=east, course=course, heading_rate=heading_rate)
+
+
+@pytest.mark.parametrize(("rate_hz", "heading_rate_max"), [(5.0, 0.49), (5.0, 0.58), (8.0, 0.58), (10.0, 0.85)])
+def test_no_path_leads_in_within_a_wide_step(rate_hz, heading_rate_max):
+    generator = np.random.default_rng(3)
+    radius, step, nearest, worked = 10.0, 1.0 / rate_hz, math.inf, 0
+    for _ in range(60):
+        bearing, distance = generator.uniform(-math.pi, math.pi), generator.uniform(1.1, 8.0) * radius
+        state = (distance * math.cos(bearing), distance * math.sin(bearing), generator.uniform(-math.pi, math.pi), 0.0)
+        guard = guard_of(radius=radius, heading_rate_max=heading_rate_max, time_step=step)
+        if guard.clearance(0.0, motion_of(state), SPEED) < 0.0:
+            continue
+        for k in range(150):
+            wanted = generator.uniform(-1.0, 1.0) * heading_rate_max
+            if k % 4:
+                wanted = aim_at_the_centre(k, *state[:3], heading_rate_max)
+            command = guard.limit(wanted, k * step, motion_of(state), SPEED)
+            for _ in range(20):
+                state = moved(state, command, 0.0, step / 20.0, SPEED)
+                nearest = min(nearest, math.hypot(*state[:2]))
+            worked += guard.intervening
+    assert worked > 100
+    assert nearest >= radius
+
+
+@pytest.mark.parametrize("deviation", [0.0, 3.1, 19.7])
+def test_a_command_that_passes_leaves_a_turn_with_all_that_is_kept_for_its_own_change(deviation):
+    # A turn that is settled, beside the disc; then a law that steers inwards by a reversal. The vehicle has the guard's response.
+    heading_rate_max, lag, step = 0.49, 0.26, 0.05
+    worked, least = 0, math.inf
+    for gap in (1.0, 5.0, 15.0, 30.0):
+        guard = guard_of(
+            radius=200.0, heading_rate_max=heading_rate_max, time_step=step, lag=lag, delay=4 * step, deviation=deviation
+        )
+        state = (0.0, 200.0 + gap + 2.0 * SPEED / heading_rate_max, 0.0, -heading_rate_max)
+        under_way = deque([-heading_rate_max] * 4)
+        command, inwards = 0.0, False
+        for k in range(900):
+            # It has come round to the disc on the settled turn.
+            inwards = inwards or (k > 400 and state[1] < 200.0 + gap + 1.0)
+            wanted = aim_at_the_centre(k, *state[:3], heading_rate_max) if inwards else -heading_rate_max
+            # The turn away that keeps off by all that a change of command before it takes; once begun it is one itself.
+            if k and not (guard.intervening and abs(command) == heading_rate_max):
+                least = min(least, copy.deepcopy(guard).clearance(k * step, motion_of(state), SPEED))
+            command = guard.limit(wanted, k * step, motion_of(state), SPEED)
+            under_way.append(command)
+            state = moved(state, under_way.popleft(), lag, step, SPEED)
+            worked += guard.intervening
+            assert not guard.lost
+    assert worked > 0
+    # To what is kept for the looks.
+    assert least >= -0.01
