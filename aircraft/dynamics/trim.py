@@ -14,6 +14,7 @@ from aircraft.dynamics.trim_search import TOLERANCE, TrimProblem
 from aircraft.errors import TrimError
 from aircraft.simulation.fdm import Fdm
 from aircraft.spec import AircraftSpec
+from aircraft.spec_check import check_spec
 
 
 def trim(
@@ -82,7 +83,7 @@ def search_trim(
             raise TrimError(f"trim of '{fdm.spec.name}': {name} is {value} {unit}; it must be finite")
     if not abs(bank) < 0.5 * math.pi:
         raise TrimError(f"trim of '{fdm.spec.name}': bank is {math.degrees(bank):g} deg; it must lie within -90 and 90 deg")
-    fdm.spec.check()
+    check_spec(fdm.spec)
     problem = TrimProblem(fdm, airspeed=airspeed, altitude=altitude, bank=bank, climb_angle=climb_angle)
     tried: list[Trim] = []
     with fdm.frozen():
