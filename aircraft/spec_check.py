@@ -53,6 +53,8 @@ def _faults(spec: AircraftSpec) -> Iterator[str]:
         lower, upper = control.lower, control.upper
         if not -math.inf < lower < upper < math.inf:
             yield f"input '{control.name}' ranges from {lower:g} to {upper:g}; lower must be below upper, and both finite"
+        elif control.name != "throttle" and not lower < 0.0 < upper:
+            yield f"input '{control.name}' ranges from {lower:g} to {upper:g}; lower must be below 0, and upper above it"
     taken = [actuator.name for actuator in spec.own_actuators]
     for i, actuator in enumerate(spec.own_actuators):
         if not _ACTUATOR_NAME.fullmatch(actuator.name) or actuator.name in taken[:i]:

@@ -132,6 +132,10 @@ MAY = "; it needs elevator, aileron, throttle, may have rudder, and no others: c
         ({"inputs": (replace(THREE[0], commands=()), *THREE[1:])}, "input 'elevator' has no commands; name the JSBSim properties"),
         ({"inputs": (replace(THREE[0], lower=1.0, upper=-1.0), *THREE[1:])}, "input 'elevator' ranges from 1 to -1; lower must be"),
         (
+            {"inputs": (replace(THREE[0], lower=0.1), *THREE[1:])},
+            "'elevator' ranges from 0.1 to 1; lower must be below 0, and upper",
+        ),
+        (
             {"own_actuators": (Actuator(name="left elevon", commands=("a/b",)),)},
             "'left elevon' is no name of an actuator, or taken",
         ),
@@ -165,8 +169,8 @@ MAY = "; it needs elevator, aileron, throttle, may have rudder, and no others: c
         ({"configuration": (("fcs/flap", 0.3, 1.0),)}, "configuration[0] is ('fcs/flap', 0.3, 1.0), of type tuple; it must be"),
         (
             {"inputs": (replace(THREE[0], commands="fcs/elevator-cmd-norm"), *THREE[1:])},
-            "inputs[0].commands is 'fcs/elevator-cmd-norm', of type str; it must be of type tuple[str, ...], which of one item has a"
-            " comma: ('fcs/elevator-cmd-norm',); correct its spec",
+            "inputs[0].commands is 'fcs/elevator-cmd-norm', of type str; it must be of type tuple[str, ...], which of one item has"
+            " a comma: ('fcs/elevator-cmd-norm',); correct its spec",
         ),
         ({"inputs": THREE[0]}, "of type ControlInput; it must be of type tuple[ControlInput, ...]"),
         ({"envelope": (15.0, 25.0)}, "envelope is (15.0, 25.0), of type tuple; it must be of type Envelope"),
