@@ -15,6 +15,7 @@ from common.physics.coordinated_turn import heading_rate_for_bank
 from innerloop.analysis.checks import NOMINAL, REQUIRED, Check, Margin
 from innerloop.analysis.linear_model_check import verify_model
 from innerloop.analysis.margins import BREAK_NAMES, Loops
+from innerloop.analysis.perturbations import CASES
 from innerloop.designs.designed import Design, Record
 from innerloop.flight.autopiloted_aircraft import AutopilotedAircraft
 from innerloop.flight.perturbed_aircraft import aircraft_as_modelled, deviations_by_case, perturbed_aircraft
@@ -169,6 +170,7 @@ def _robustness_record(check: Check) -> Record:
     gain, phase = check.worst_gain, check.worst_phase
     return {
         "case": check.case,
+        "periods_late": CASES[check.case][1],
         "airspeed_mps": check.airspeed,
         "bank_rad": check.bank,
         "between": check.between,

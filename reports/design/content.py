@@ -63,15 +63,22 @@ def _reversals(design: Record) -> list[Block]:
 def _margins(design: Record) -> Section:
     required = design["required"]
     blocks: list[Block] = [
-        Heading(f"Worst of the grid, loop by loop; required are {required['gain_db']:g} dB and {required['phase_deg']:g}°"),
+        Heading(
+            f"Worst of the grid and the points between, loop by loop; required are {required['gain_db']:g} dB and"
+            f" {required['phase_deg']:g}°"
+        ),
         worst_margin_table(design),
         *margin_charts(design),
     ]
     if design["robustness"]:
         asked = f"{required['perturbed_gain_db']:g} dB and {required['perturbed_phase_deg']:g}°"
         blocks += [
-            Heading(f"Of a perturbed aircraft, worst of loops and grid; required are {asked}"),
+            Heading(f"Perturbed or with more delay, worst of loops, grid and points between; required are {asked}"),
             robustness_table(design),
+            Text(
+                "Control effectiveness is that of surfaces and throttle here; the perturbed aircraft that the search over reversals"
+                " flies have another effectiveness of their surfaces alone."
+            ),
         ]
     return Section(anchor="margins", title="Margins", blocks=blocks)
 

@@ -40,7 +40,7 @@ def complete(record: Record) -> Record:
         "trims": level(record["trims"]),
         "poles": level(record["poles"]),
         "margins": [_judged(row) for row in level(record["margins"])],
-        "robustness": [_judged(row) for row in record.get("robustness", [])],
+        "robustness": [_judged({"periods_late": 0, **row}) for row in record.get("robustness", [])],
         "loops": [{"airspeed_mps": record["design_airspeed_mps"], "bank_rad": 0.0, **loop} for loop in record["loops"]],
     }
 

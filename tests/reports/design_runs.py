@@ -8,7 +8,7 @@ import numpy as np
 AIRSPEEDS = [45.0, 50.0, 55.0, 60.0, 65.0]
 BANKS_DEG = [-33.0, -27.0, -21.0, -13.0, 0.0, 13.0, 21.0, 27.0, 33.0]
 LOOPS = ("elevator", "aileron", "throttle", "rudder", "airspeed", "altitude", "heading_rate", "sideslip")
-CASES = ("mass +20 %", "mass -20 %", "inertia +20 %", "control effectiveness -20 %", "one more step of delay")
+CASES = ("mass +20 %", "mass -20 %", "inertia +20 %", "control effectiveness -20 %", "one more period of delay")
 GRAVITY = 9.81
 
 
@@ -131,8 +131,9 @@ def margins(airspeed, bank_deg, between):
 def robustness(case, i, airspeed, bank_deg):
     away = abs(airspeed - 55.0) / 10.0 + abs(bank_deg) / 33.0
     return {
-        "case": case, "airspeed_mps": airspeed, "bank_rad": math.radians(bank_deg), "gain_db": 8.5 - 0.5 * i - away,
-        "gain_loop": "elevator", "phase_deg": 46.0 - 2.0 * i - away, "phase_loop": "heading_rate",
+        "case": case, "periods_late": int(case.endswith("of delay")), "airspeed_mps": airspeed, "bank_rad": math.radians(bank_deg),
+        "gain_db": 8.5 - 0.5 * i - away, "gain_loop": "elevator",
+        "phase_deg": 46.0 - 2.0 * i - away, "phase_loop": "heading_rate",
     }  # fmt: skip
 
 

@@ -128,8 +128,8 @@ def test_gravity_and_turning_are_those_of_a_body_without_forces(trims):
     np.testing.assert_allclose(found, expected, atol=1e-6)  # central differences over 1e-5
 
 
-def test_there_is_a_case_for_each_change_both_ways_and_one_for_one_more_step_of_delay():
-    assert {name: late for name, (_, late) in CASES.items() if late} == {"one more step of delay": 1}
+def test_there_is_a_case_for_each_change_both_ways_and_one_for_one_more_period_of_delay():
+    assert {name: late for name, (_, late) in CASES.items() if late} == {"one more period of delay": 1}
     for what in ("control effectiveness", "mass", "inertia"):
         assert {f"{what} +20 %", f"{what} -20 %"} < set(CASES)
     assert len(CASES) == 8
@@ -234,7 +234,7 @@ def test_the_autopilot_computes_as_seldom_as_leaves_every_loop_its_phase_margin_
 def test_a_loop_with_too_little_margin_is_slowed_and_the_others_are_left(monkeypatch, x8_design):
     points, asked, check = [], [], robustness.ClosedPoint.check
     # Two changes of the aircraft for all of them: they are checked one after the other.
-    cases = {case: CASES[case] for case in (NOMINAL, "mass +20 %", "one more step of delay")}
+    cases = {case: CASES[case] for case in (NOMINAL, "mass +20 %", "one more period of delay")}
     monkeypatch.setattr(robustness, "CASES", cases)
 
     def short_at_the_first_point(point, case, period):

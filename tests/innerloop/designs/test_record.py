@@ -29,9 +29,10 @@ def test_the_record_has_every_operating_point_and_every_loop(record, x8_schedule
     loops = ["elevator", "aileron", "throttle", "airspeed", "altitude", "heading_rate", "all controls"]
     assert [m["loop"] for m in here] == loops
     assert here[0]["gain_db"] == pytest.approx(expected.gain_db, rel=1e-12)
-    # Seven changed aircraft at each point, each with its worst loops.
+    # Six changed aircraft and one more period of delay at each point, each with its worst loops.
     assert len(record["robustness"]) == 65 * 7
     assert {row["stable"] for row in record["robustness"]} == {True}
+    assert {row["case"] for row in record["robustness"] if row["periods_late"]} == {"one more period of delay"}
     assert record["required"] == {"gain_db": 6.0, "phase_deg": 45.0, "perturbed_gain_db": 4.0, "perturbed_phase_deg": 30.0}
 
 

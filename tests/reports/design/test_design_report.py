@@ -84,11 +84,16 @@ def test_axes_have_units_and_every_curve_is_drawn_on_screen_and_in_print(report)
 def test_a_design_with_every_margin_is_called_good(report):
     verdict = report.verdict
     assert (verdict.holds, verdict.complete, verdict.failures) == (True, True, [])
-    assert verdict.headline == "Every loop has at least 6 dB and 45° of margin at every point of the grid"
+    assert verdict.headline == "Every loop has at least 6 dB and 45° of margin at every point of the grid and between"
     assert "45 points of the grid over airspeed and bank and at 20 points between them" in verdict.detail
+    # Four of the five cases change the aircraft, and one delays its autopilot.
+    assert "tried on 4 perturbed aircraft and with one more period of delay." in verdict.detail
     assert "1 of 45 equilibria are at a limit" in verdict.detail
     # At the corner of the grid: 11 dB less 2.2 dB for each of airspeed and bank.
     assert verdict.figures[0] == ("Worst gain margin: elevator, 45 m/s, −33°", "6.6 dB", "≥ 6 dB", True)
+    # Of the cases the last has the least margins, 8.5 - 0.5 x 4 dB less 1 dB for each of airspeed and bank.
+    worst = ("Worst gain margin with one more period of delay: elevator, 45 m/s, −33°", "4.5 dB", "≥ 4 dB", True)
+    assert verdict.figures[2] == worst
 
 
 def test_the_margin_table_has_the_worst_of_each_loop_and_where(report):
