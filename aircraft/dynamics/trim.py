@@ -32,16 +32,19 @@ def trim(
     if found.outcome is TrimOutcome.CONVERGED:
         return found
     where = f"{airspeed:g} m/s, {altitude:g} m, bank {math.degrees(bank):g} deg, climb {math.degrees(climb_angle):g} deg"
-    held = " and ".join(found.limits)
+    held, remedy = " and ".join(found.limits), _remedy(fdm.spec)
     if found.residual < TOLERANCE and held:
-        raise TrimError(
-            f"trim of '{fdm.spec.name}' at {where} did not converge: {held} is not enough; choose a condition inside the flight"
-            " envelope"
-        )
+        raise TrimError(f"trim of '{fdm.spec.name}' at {where} did not converge: {held} is not enough; {remedy}")
     raise TrimError(
         f"trim of '{fdm.spec.name}' at {where} did not converge: largest acceleration {found.residual:.2g}"
-        f"{f' with {held}' if held else ''} against a limit of {TOLERANCE:g}; choose a condition inside the flight envelope"
+        f"{f' with {held}' if held else ''} against a limit of {TOLERANCE:g}; {remedy}"
     )
+
+
+def _remedy(spec: AircraftSpec) -> str:
+    """Return what to do where there is no equilibrium: an envelope that the user states may be what is wrong."""
+    or_else = "" if spec.envelope is None else ", or state another one by airspeed_min, airspeed_max and bank"
+    return f"choose a condition inside the flight envelope{or_else}"
 
 
 def level_trim(spec: AircraftSpec, airspeed: float, altitude: float, start: Trim | None = None) -> Trim:

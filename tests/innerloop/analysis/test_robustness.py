@@ -217,6 +217,15 @@ def test_a_design_with_too_little_margin_is_refused_with_what_it_lacks_and_not_f
     assert "\n" not in str(caught.value)
 
 
+@pytest.mark.usefixtures("x8_grid")
+def test_a_design_that_lacks_margin_only_under_a_perturbation_is_refused_with_what_is_required_there(monkeypatch):
+    # As above, but the second of delay is a case of its own, of which less is required.
+    monkeypatch.setattr(robustness, "CASES", {NOMINAL: CASES[NOMINAL], "far too late": (CASES[NOMINAL][0], 120)})
+    monkeypatch.setattr(designer, "_ATTEMPTS", 1)
+    with pytest.raises(DesignError, match="no design has 4 dB and 30 deg at every operating point under every perturbation; the"):
+        design_autopilot(X8)
+
+
 @pytest.mark.parametrize(("name", "period"), [("x8", 3), ("T37", 2)])
 def test_the_autopilot_computes_as_seldom_as_leaves_every_loop_its_phase_margin_but_for_five_degrees(designs, name, period):
     # The X8's fastest loop crosses over at 6.1 rad/s and the T-37's, its elevator, at 13.2 rad/s: half a step of 1/120 s more
