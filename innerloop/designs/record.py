@@ -10,7 +10,7 @@ import numpy as np
 from aircraft.dynamics.equilibrium import Trim, TrimOutcome
 from aircraft.dynamics.trim import search_trim
 from aircraft.simulation.fdm import TIME_STEP, Fdm
-from aircraft.spec import AircraftSpec, Envelope
+from aircraft.spec import AircraftSpec, ControlInput, Envelope
 from common.physics.coordinated_turn import heading_rate_for_bank
 from innerloop.analysis.checks import NOMINAL, REQUIRED, Check, Margin
 from innerloop.analysis.linear_model_check import verify_model
@@ -57,6 +57,7 @@ def design_record(design: Design, root: Path) -> Record:
         "source": schedule.spec.source,
         "altitude_m": schedule.altitude,
         "envelope": _envelope_record(schedule.envelope),
+        "inputs": [_input_record(i) for i in schedule.spec.inputs],
         "design_airspeed_mps": level.airspeed,
         "airspeeds_mps": list(schedule.airspeeds),
         "banks_deg": [math.degrees(bank) for bank in schedule.banks],
@@ -129,6 +130,16 @@ def _envelope_record(envelope: Envelope) -> Record:
         "bank_deg": math.degrees(envelope.bank),
         "bank_max_deg": math.degrees(envelope.bank_max),
         "notes": list(envelope.notes),
+    }
+
+
+def _input_record(control_input: ControlInput) -> Record:
+    """Return a control's range as the autopilot has it: its throttle closes no further than flight idle."""
+    return {
+        "name": control_input.name,
+        "lower": control_input.lower,
+        "upper": control_input.upper,
+        "is_effect": bool(control_input.effectiveness),
     }
 
 
@@ -248,14 +259,18 @@ def _response_record(kind: str, response: Response) -> Record:
         "size": response.size,
         "rise_time_s": _finite(response.rise_time()),
         "overshoot": response.overshoot(),
-        **{f"{name}_largest_{unit}": response.largest(name) for name, unit in _UPSET.items() if name in response.channels},
+        **{
+            f"{name}_largest_{unit}": response.largest(name)
+            for name, unit in _UPSET.items()
+            if name in response.channels and name != response.command
+        },
         "time_s": response.time[::stride].round(6).tolist(),
         "channels": {_CHANNEL_NAMES.get(name, name): values[::stride].tolist() for name, values in response.channels.items()},
     }
 
 
 _UPSET = {"altitude": "m", "airspeed": "mps"}
-"""Quantities that a step should not move, and their units."""
+"""Quantities that a step of another one should not move, and their units."""
 
-_CHANNEL_NAMES = {"beta": "sideslip", "elevator_command": "elevator", "aileron_command": "aileron"}
+_CHANNEL_NAMES = {"beta": "sideslip", **{f"{name}_command": name for name in ("elevator", "aileron", "throttle")}}
 """Names of channels in reports, where they differ from those in the closed loop."""

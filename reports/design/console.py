@@ -14,7 +14,7 @@ def print_summary(record: Record) -> None:
     design = complete(record)
     perturbed = bool(design["robustness"])
     tables = [
-        ("Equilibria", trim_table(extreme_trims(design))),
+        ("Equilibria", trim_table(design, extreme_trims(design))),
         ("Poles of the grid", pole_table(design)),
         (f"Poles at {design['design_airspeed_mps']:g} m/s in level flight [1/s]", _poles(at_middle(design, design["poles"])[0])),
         ("Margins, the worst of grid and points between; servos, engine and computing delay included", worst_margin_table(design)),

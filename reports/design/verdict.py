@@ -140,9 +140,11 @@ def _figures(design: Record) -> list[Card]:
         figures.append(Card("Heading-rate overshoot beyond the model's", f"{100.0 * excess:.1f} %"))
     figures.append(Card("Flown heading rate lags by", f"{design['heading_rate_lag_s']:.2f} s"))
     # An input that moves nothing has no error to speak of; the table shows it.
-    errors = [float(row["error"]) for row in design["verification"] if row["error"] is not None]
+    errors = [row for row in design["verification"] if row["error"] is not None]
     if errors:
-        figures.append(Card("Linear model against small motions, worst", f"{100.0 * max(errors):.1f} %"))
+        largest = max(errors, key=lambda row: float(row["error"]))
+        moved = f"{largest['output'].replace('_', ' ')} by {largest['input']}"
+        figures.append(Card(f"Linear model against small motions, worst: {moved}", f"{100.0 * largest['error']:.1f} %"))
     return figures
 
 
@@ -150,7 +152,7 @@ def _margin_figure(name: str, rows: Sequence[Record], key: str, unit: str, requi
     space = " " if unit == "dB" else ""
     row = worst(rows, key)
     if rows and "case" in rows[0]:
-        name += f" with {case_name(row)}" if row else ", perturbed"
+        name += f", {case_name(row)}" if row else ", perturbed"
     if row is None:
         return Card(name, "unlimited", f"≥ {required:g}{space}{unit}", met=True)
     loop = str(row.get("loop") or row["gain_loop" if key == "gain_db" else "phase_loop"]).replace("_", " ")
