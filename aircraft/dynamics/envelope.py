@@ -111,8 +111,8 @@ def with_reserve_note(envelope: Envelope, trims: Sequence[Trim], spec: AircraftS
     if not lacking:
         return envelope
     note = (
-        f"{len(lacking)} of {len(trims)} equilibria in the envelope as stated lack a reserve for control: {lacking[0]}. Raise"
-        " airspeed_min, or lower airspeed_max or bank, to have one"
+        f"a reserve for control is lacking at {len(lacking)} of {len(trims)} equilibria in the envelope as stated: {lacking[0]}."
+        " Raise airspeed_min, or lower airspeed_max or bank, to have one"
     )
     return replace(envelope, notes=(*envelope.notes, note))
 

@@ -47,7 +47,7 @@ def test_a_stated_envelope_has_a_note_where_an_equilibrium_lacks_a_reserve_and_n
     noted = with_reserve_note(X8.envelope, slow, X8)
     assert replace(noted, notes=(), stall=0.0) == replace(X8.envelope, stall=0.0)
     assert noted.notes == (
-        "1 of 2 equilibria in the envelope as stated lack a reserve for control: 11 m/s and 55 deg of bank take"
+        "a reserve for control is lacking at 1 of 2 equilibria in the envelope as stated: 11 m/s and 55 deg of bank take"
         f" {slow[1].inputs['elevator']:.2f} of elevator; -0.9 to 0.9 leaves a reserve. Raise airspeed_min, or lower airspeed_max or"
         " bank, to have one",
     )
