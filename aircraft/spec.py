@@ -3,7 +3,6 @@
 import bisect
 import math
 import re
-from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -16,11 +15,6 @@ MODELS = Path(__file__).parent / "models"
 
 NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9_.\-]*")
 """What an aircraft and its model may be called: the name becomes part of file names and of XML."""
-
-_ACTUATOR_NAME = re.compile(
-    r"(?!(engine|none|vessel_data|satellite_navigation|sniffer_(dead|saturated))$)[A-Za-z_][A-Za-z0-9_.\-]*"
-)
-"""What an actuator may be called: the name becomes part of a JSBSim property, and may not be that of another fault."""
 
 SETTLE_TIMES = 0.1, 120.0
 """Range of the time in which servos and engines come to rest [s]."""
@@ -162,10 +156,6 @@ class Envelope:
         return tuple(self.airspeed_min + i * step for i in range(DESIGN_AIRSPEEDS))
 
 
-_INPUTS, _MORE_INPUTS = ("elevator", "aileron", "throttle"), ("rudder",)
-"""Control inputs that the autopilot needs, and those that it uses if there are any."""
-
-
 @dataclass(frozen=True, slots=True, kw_only=True)
 class AircraftSpec:
     """An aircraft: what a file in ``aircraft/fleet``, an entry point or a Python file of the user has to provide.
@@ -224,54 +214,6 @@ class AircraftSpec:
             if control_input.name == name:
                 return control_input
         raise AircraftError(f"aircraft '{self.name}' has no input '{name}'; it has {', '.join(i.name for i in self.inputs)}")
-
-    def check(self) -> None:
-        """See that an autopilot can be designed for what the spec says.
-
-        Raises
-        ------
-        AircraftError : the name has other letters than ``NAME``; an input is missing, unknown, or there twice; a driven state
-            follows no input, or one that has a state; a range, an actuator, the settle time or the envelope cannot be
-        """
-        if not NAME.fullmatch(self.name):
-            raise AircraftError(f"'{self.name}' is no name of an aircraft; use letters, digits, '_', '-' and '.': correct its spec")
-        names = [i.name for i in self.inputs]
-        if not set(_INPUTS) <= set(names) <= {*_INPUTS, *_MORE_INPUTS} or len(names) > len(set(names)):
-            raise AircraftError(
-                f"aircraft '{self.name}' has the inputs {', '.join(names) or '(none)'}; it needs {', '.join(_INPUTS)}, may have"
-                f" {', '.join(_MORE_INPUTS)}, and no others: correct its spec"
-            )
-        driven = [state.input for state in self.driven_states]
-        for i, state in enumerate(self.driven_states):
-            if state.input not in names or state.input in driven[:i]:
-                why = "as another one does" if state.input in names else f"which is none of {', '.join(names)}"
-                raise AircraftError(
-                    f"aircraft '{self.name}': driven state '{state.name}' follows input '{state.input}', {why}; correct its spec"
-                )
-        if reason := next(filter(None, self._faults()), ""):
-            raise AircraftError(f"aircraft '{self.name}': {reason}; correct its spec")
-
-    def _faults(self) -> Iterator[str]:
-        """Yield what is wrong with ranges, actuators, the settle time and the envelope; perhaps an empty text."""
-        for control in self.inputs:
-            if not control.commands:
-                yield f"input '{control.name}' has no commands; name the JSBSim properties that take it"
-            lower, upper = control.lower, control.upper
-            if not -math.inf < lower < upper < math.inf:
-                yield f"input '{control.name}' ranges from {lower:g} to {upper:g}; lower must be below upper, and both finite"
-        taken = [actuator.name for actuator in self.own_actuators]
-        for i, actuator in enumerate(self.own_actuators):
-            if not _ACTUATOR_NAME.fullmatch(actuator.name) or actuator.name in taken[:i]:
-                yield f"'{actuator.name}' is no name of an actuator, or taken; use letters, digits, '_', '-' and '.'"
-            if not actuator.commands:
-                yield f"actuator '{actuator.name}' has no commands; name the JSBSim properties that command it"
-            elif actuator.feedback is None and not any(set(actuator.commands) <= set(i.commands) for i in self.inputs):
-                yield f"actuator '{actuator.name}' has commands of its own and no feedback; name what reads command and position"
-        least, most = SETTLE_TIMES
-        if not least <= self.settle_time <= most:
-            yield f"settle_time is {self.settle_time:g} s; it must lie between {least:g} and {most:g} s"
-        if self.envelope is not None:
-            yield self.envelope.fault
 
 
 def surface(name: str) -> ControlInput:

@@ -16,6 +16,9 @@ from common.run_layout import DESIGN_RECORD, MANIFEST, MODEL
 if TYPE_CHECKING:
     from innerloop.designs.designed import Designed, Record
 
+_RUNS = Path("runs")
+"""Where designs are written if no directory is given."""
+
 _FLIES = {True: "flies", False: "-", None: "?"}
 """What the list says of an aircraft that flies, that cannot, and that was not designed before."""
 
@@ -64,6 +67,8 @@ def command(
         if check and not list_aircraft:
             raise AircraftError("--check is for --list, and designs every aircraft listed; leave it out, or add --list")
         if list_aircraft:
+            if aircraft is not None:
+                raise AircraftError(f"aircraft '{aircraft}' is given beside --list, which lists all of them; leave out one of both")
             _list(altitude, aircraft_dir, check=check)
             return
         name = aircraft if aircraft_dir is None else folder_path(aircraft_dir, aircraft)
@@ -73,7 +78,17 @@ def command(
     except (AircraftError, ReportError) as error:
         raise typer.Exit(refuse(error)) from None
     except OSError as error:
-        raise typer.Exit(refuse(f"'{error.filename}' cannot be written: {error.strerror}; choose another --out")) from None
+        raise typer.Exit(refuse(_file_refusal(error, out or _RUNS))) from None
+
+
+def _file_refusal(error: OSError, out: Path) -> str:
+    """Return why a file cannot be used, by whether it belongs to the directory that is written, and the remedy."""
+    if error.filename is None:
+        return f"a file cannot be written: {error.strerror}; check the space on disk"
+    path, written = Path(str(error.filename)).absolute(), out.absolute()
+    if path.is_relative_to(written) or written.is_relative_to(path):
+        return f"'{error.filename}' cannot be written: {error.strerror}; choose another --out"
+    return f"'{error.filename}' cannot be read: {error.strerror}; check the path and its permissions"
 
 
 def _list(altitude: float, directory: Path | None, *, check: bool) -> None:
@@ -111,7 +126,7 @@ def _design(
 
     spec = find_spec(aircraft)
     check_user_aircraft(spec)
-    out = out or Path("runs") / f"design-{spec.name}"
+    out = out or _RUNS / f"design-{spec.name}"
     _refuse_another_run(out)
 
     from common.files import remove_reports, write_json

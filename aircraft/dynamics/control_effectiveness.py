@@ -18,8 +18,8 @@ from aircraft.spec import AircraftSpec, ControlInput
 AXES = {"elevator": 1, "aileron": 0, "rudder": 2}
 """Axis of the angular acceleration that a surface controls: p, q, r."""
 
-_COMMANDS = np.linspace(-1.0, 1.0, 17)
-"""Commands at which the moment is measured [-]."""
+_STEPS = 8
+"""Steps of the command from 0 to either end of its range, at which the moment is measured [-]."""
 
 _NONLINEARITY_MAX = 0.05
 """Largest deviation of a moment from a straight line, over its span, for which the surface is left as it is [-]."""
@@ -31,8 +31,8 @@ _STOP_SLOPE = 0.05
 def with_linearised_controls(fdm: Fdm, level: Trim) -> AircraftSpec:
     """Return the aircraft's spec with surfaces commanded by their effect, measured in the level flight of ``level``.
 
-    The effect is 0 at the command 0, and spans 2 from stop to stop. Surfaces that have an effectiveness are left as
-    they are.
+    The effect is 0 at the command 0, and spans 2 from stop to stop, within the range of the command. Surfaces that have an
+    effectiveness are left as they are.
 
     Raises
     ------
@@ -43,26 +43,33 @@ def with_linearised_controls(fdm: Fdm, level: Trim) -> AircraftSpec:
 
 
 def _linearised(fdm: Fdm, level: Trim, control_input: ControlInput) -> ControlInput:
-    moment = _moments(fdm, level, control_input.name)
+    commands = _commands(control_input)
+    moment = _moments(fdm, level, control_input.name, commands)
     span = float(np.ptp(moment))
     if not span > 0.0:
         raise AircraftError(f"aircraft '{fdm.spec.name}' cannot be flown: its {control_input.name} has no effect")
-    line = moment[0] + (moment[-1] - moment[0]) * 0.5 * (_COMMANDS + 1.0)
+    line = moment[0] + (moment[-1] - moment[0]) * (commands - commands[0]) / (commands[-1] - commands[0])
     if float(np.max(np.abs(moment - line))) < _NONLINEARITY_MAX * span:
         return control_input
-    low, high = _travel(moment)
-    if _COMMANDS.size // 2 in (low, high):
+    low, high = _travel(commands, moment)
+    if _STEPS in (low, high):
         raise AircraftError(f"aircraft '{fdm.spec.name}' cannot be flown: its {control_input.name} moves it one way only")
-    effect = 2.0 * (moment - moment[_COMMANDS.size // 2]) / (moment[high] - moment[low])
-    points = tuple((float(e), float(c)) for e, c in zip(effect[low : high + 1], _COMMANDS[low : high + 1], strict=True))
+    effect = 2.0 * (moment - moment[_STEPS]) / (moment[high] - moment[low])
+    points = tuple((float(e), float(c)) for e, c in zip(effect[low : high + 1], commands[low : high + 1], strict=True))
     return replace(control_input, lower=points[0][0], upper=points[-1][0], effectiveness=points)
 
 
-def _moments(fdm: Fdm, level: Trim, name: str) -> npt.NDArray[np.float64]:
-    """Return the angular acceleration about the surface's axis over ``_COMMANDS`` [rad/s^2]."""
+def _commands(control_input: ControlInput) -> npt.NDArray[np.float64]:
+    """Return the commands at which the moment is measured [-]: over the input's range, in whose middle one is 0."""
+    below = np.linspace(control_input.lower, 0.0, _STEPS + 1)
+    return np.concatenate([below, np.linspace(0.0, control_input.upper, _STEPS + 1)[1:]])
+
+
+def _moments(fdm: Fdm, level: Trim, name: str, commands: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
+    """Return the angular acceleration about the surface's axis over its commands [rad/s^2]."""
     moments = []
     with fdm.frozen():
-        for value in _COMMANDS:
+        for value in commands:
             fdm.command({**level.inputs, name: float(value)})
             fdm.place(level.state())
             fdm.settle()
@@ -70,13 +77,12 @@ def _moments(fdm: Fdm, level: Trim, name: str) -> npt.NDArray[np.float64]:
     return np.array(moments)
 
 
-def _travel(moment: npt.NDArray[np.float64]) -> tuple[int, int]:
+def _travel(commands: npt.NDArray[np.float64], moment: npt.NDArray[np.float64]) -> tuple[int, int]:
     """Return the indices of the first and the last command of the range about 0 in which the moment is monotonic."""
-    slopes = np.diff(moment)
+    slopes = np.diff(moment) / np.diff(commands)
     mean = float(np.mean(slopes))
     moving = slopes / mean > _STOP_SLOPE
-    middle = moment.size // 2
-    low = high = middle
+    low = high = _STEPS
     while low > 0 and moving[low - 1]:
         low -= 1
     while high < moment.size - 1 and moving[high]:

@@ -1,6 +1,8 @@
 """The envelope of an aircraft: airspeeds between stall and the engines' limit, with a reserve for banked turns."""
 
 import math
+from collections.abc import Sequence
+from dataclasses import replace
 
 from aircraft.dynamics.equilibrium import Trim, TrimOutcome
 from aircraft.dynamics.trim import search_trim, trim
@@ -34,7 +36,8 @@ _MACH_MAX = 0.6
 
 _SPEED_OF_SOUND = 340.3
 _DENSITY = 1.225
-"""Speed of sound [m/s] and density [kg/m^3] of the ISO standard atmosphere at sea level."""
+"""Speed of sound [m/s] and density [kg/m^3] of the ISO standard atmosphere at sea level, taken at every altitude: the true Mach
+number is up to 6 % above the largest at 5,000 m, the highest altitude of a design."""
 
 _BANK_FRACTIONS = (1.0, 0.75, 0.5)
 """Fractions of the bank of the aircraft's class that are tried, one after the other [-]."""
@@ -59,7 +62,7 @@ def find_envelope(fdm: Fdm, altitude: float) -> Envelope:
 
     The range found begins 1.3 times above stall in the steepest turn of the autopilot's tables, and ends where level
     flight or that turn takes more than 95 % of the throttle or 90 % of a surface, at 1.6 times its beginning or at
-    Mach 0.6. Where that leaves no range, the bank is cut to three quarters and to a half.
+    204 m/s, which is Mach 0.6 at sea level. Where that leaves no range, the bank is cut to three quarters and to a half.
 
     Parameters
     ----------
@@ -93,6 +96,25 @@ def find_envelope(fdm: Fdm, altitude: float) -> Envelope:
             )
         why = why or ended
     raise AircraftError(f"aircraft '{fdm.spec.name}' cannot fly the study: {why}")
+
+
+def with_reserve_note(envelope: Envelope, trims: Sequence[Trim], spec: AircraftSpec) -> Envelope:
+    """Return an envelope with a note where equilibria in it lack the reserves that one that is found has.
+
+    Parameters
+    ----------
+    envelope : as a spec states it
+    trims : equilibria at its airspeeds and banks
+    spec : the aircraft as it was trimmed
+    """
+    lacking = [reason for t in trims if (reason := _lacks(t, spec))]
+    if not lacking:
+        return envelope
+    note = (
+        f"a reserve for control is lacking at {len(lacking)} of {len(trims)} equilibria in the envelope as stated: {lacking[0]}."
+        " Raise airspeed_min, or lower airspeed_max or bank, to have one"
+    )
+    return replace(envelope, notes=(*envelope.notes, note))
 
 
 def bank_by_class(mass: float) -> float:

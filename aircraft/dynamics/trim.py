@@ -14,6 +14,7 @@ from aircraft.dynamics.trim_search import TOLERANCE, TrimProblem
 from aircraft.errors import TrimError
 from aircraft.simulation.fdm import Fdm
 from aircraft.spec import AircraftSpec
+from aircraft.spec_check import check_spec
 
 
 def trim(
@@ -31,16 +32,19 @@ def trim(
     if found.outcome is TrimOutcome.CONVERGED:
         return found
     where = f"{airspeed:g} m/s, {altitude:g} m, bank {math.degrees(bank):g} deg, climb {math.degrees(climb_angle):g} deg"
-    held = " and ".join(found.limits)
+    held, remedy = " and ".join(found.limits), _remedy(fdm.spec)
     if found.residual < TOLERANCE and held:
-        raise TrimError(
-            f"trim of '{fdm.spec.name}' at {where} did not converge: {held} is not enough; choose a condition inside the flight"
-            " envelope"
-        )
+        raise TrimError(f"trim of '{fdm.spec.name}' at {where} did not converge: {held} is not enough; {remedy}")
     raise TrimError(
         f"trim of '{fdm.spec.name}' at {where} did not converge: largest acceleration {found.residual:.2g}"
-        f"{f' with {held}' if held else ''} against a limit of {TOLERANCE:g}; choose a condition inside the flight envelope"
+        f"{f' with {held}' if held else ''} against a limit of {TOLERANCE:g}; {remedy}"
     )
+
+
+def _remedy(spec: AircraftSpec) -> str:
+    """Return what to do where there is no equilibrium: an envelope that the user states may be what is wrong."""
+    or_else = "" if spec.envelope is None else ", or state another one by airspeed_min, airspeed_max and bank"
+    return f"choose a condition inside the flight envelope{or_else}"
 
 
 def level_trim(spec: AircraftSpec, airspeed: float, altitude: float, start: Trim | None = None) -> Trim:
@@ -82,7 +86,7 @@ def search_trim(
             raise TrimError(f"trim of '{fdm.spec.name}': {name} is {value} {unit}; it must be finite")
     if not abs(bank) < 0.5 * math.pi:
         raise TrimError(f"trim of '{fdm.spec.name}': bank is {math.degrees(bank):g} deg; it must lie within -90 and 90 deg")
-    fdm.spec.check()
+    check_spec(fdm.spec)
     problem = TrimProblem(fdm, airspeed=airspeed, altitude=altitude, bank=bank, climb_angle=climb_angle)
     tried: list[Trim] = []
     with fdm.frozen():

@@ -5,6 +5,7 @@ from aircraft.fleet.folder import folder_spec
 from aircraft.fleet.registry import AIRCRAFT
 from aircraft.fleet.stock import stock_names, stock_spec
 from aircraft.spec import AircraftSpec
+from aircraft.spec_check import check_spec
 from common.files import is_path
 from common.registry import PluginError, is_file_part
 from common.spelling import did_you_mean
@@ -41,5 +42,5 @@ def _registered(name: str) -> AircraftSpec:
         raise AircraftError(str(error)) from error
     if not isinstance(spec, AircraftSpec):
         raise AircraftError(f"aircraft '{name}' is of type {type(spec).__name__}; it must be an AircraftSpec of aircraft/spec.py")
-    spec.check()
+    check_spec(spec)
     return spec

@@ -29,7 +29,7 @@ def spec_of_model(files: ModelFiles, *, name: str, source: str, settings: ModelS
     files : of its model; the first root is that of the spec
     name : of the aircraft
     source : of the model's numbers
-    settings : what is said of it beyond the model; nothing if not given
+    settings : what the user says of it beyond the model, who may say more; None if it is no model of the user
 
     Raises
     ------
@@ -44,7 +44,8 @@ def spec_of_model(files: ModelFiles, *, name: str, source: str, settings: ModelS
     except AircraftError as error:
         raise AircraftError(f"aircraft '{name}' cannot be flown: {error}") from None
     inputs = _inputs(len(engines), said)
-    if reason := _no_aeroplane(config, engines, thrusters, lifting=lifting) or _deaf(inputs, config, files):
+    reason = _no_aeroplane(config, engines, thrusters, lifting=lifting)
+    if reason := reason or _deaf(inputs, config, files, of_user=settings is not None):
         raise AircraftError(f"aircraft '{name}' cannot be flown: {reason}")
     root, *others = files.roots
     usual = {
@@ -125,12 +126,16 @@ def _no_aeroplane(config: ET.Element, engines: list[str], thrusters: list[str], 
     return next((reason for holds, reason in reasons if holds), "")
 
 
-def _deaf(inputs: tuple[ControlInput, ...], config: ET.Element, files: ModelFiles) -> str:
-    """Return which commands no control of the model takes, or an empty text."""
+def _deaf(inputs: tuple[ControlInput, ...], config: ET.Element, files: ModelFiles, *, of_user: bool) -> str:
+    """Return which commands no control of the model takes, and what a user may say of it then; or an empty text."""
     text = _text(config, files)
     surfaces = [control for control in inputs if control.name in _SURFACES]
     missing = [control.name for control in surfaces if any(command not in text for command in control.commands)]
-    return f"its controls take no {' and no '.join(missing)} command" if missing else ""
+    if not missing:
+        return ""
+    taken = [f'{name} = "PROPERTY"' for name in missing]
+    remedy = f"; name what takes it in {files.model}.toml, {', '.join(taken)}{', or rudder = false' * ('rudder' in missing)}"
+    return f"its controls take no {' and no '.join(missing)} command{remedy * of_user}"
 
 
 def _text(config: ET.Element, files: ModelFiles) -> str:

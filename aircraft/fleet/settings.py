@@ -1,11 +1,13 @@
 """What a file beside a JSBSim model, NAME.toml, may say of the aircraft. What it leaves out is found."""
 
+import json
 import math
+import re
 import tomllib
 from pathlib import Path
 from typing import Annotated, Any, Self
 
-from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_validator, model_validator
+from pydantic import BaseModel, ConfigDict, Field, ValidationError, ValidationInfo, field_validator, model_validator
 
 from aircraft.errors import AircraftError
 from aircraft.spec import SETTLE_TIMES, Envelope
@@ -13,6 +15,22 @@ from common.spelling import did_you_mean
 
 _Property = Annotated[str, Field(pattern=r"^[A-Za-z_][\w.\-]*(\[\d+\])?(/[A-Za-z_][\w.\-]*(\[\d+\])?)*$")]
 _Commands = tuple[_Property, ...]
+
+_UNQUOTED = re.compile(r"^\s*([\w.\-\[\]]+(?:/[\w.\-\[\]]+)+)\s*=", re.MULTILINE)
+"""A JSBSim property that is a key without quotes, which TOML has no other letters for."""
+
+_TAKES = "give the JSBSim property that takes its command"
+_REMEDIES = {
+    "string_pattern_mismatch": 'give a JSBSim property, as in "fcs/elevator-cmd-norm"',
+    "string_type": "give text in quotes",
+    "tuple_type": _TAKES,
+    "too_short": _TAKES,
+    "model_type": "give a table with airspeed_min_mps, airspeed_mps, airspeed_max_mps and bank_deg, or leave the key out",
+    "dict_type": "give a table of JSBSim properties and their values",
+    "float_parsing": "it must be a number",
+    "float_type": "it must be a number",
+}
+"""What to write instead, by pydantic's kinds of errors."""
 
 
 class _Table(BaseModel):
@@ -70,8 +88,10 @@ class ModelSettings(_Table):
 
     @field_validator("elevator", "aileron", "rudder", "throttle", mode="before")
     @classmethod
-    def _one_or_more(cls, given: Any) -> Any:
-        return (given,) if isinstance(given, str) else () if given is False else given
+    def _one_or_more(cls, given: Any, key: ValidationInfo) -> Any:
+        if given is False and key.field_name == "rudder":
+            return ()
+        return (given,) if isinstance(given, str) else given
 
 
 def read_settings(path: Path) -> ModelSettings:
@@ -81,9 +101,13 @@ def read_settings(path: Path) -> ModelSettings:
     ------
     AircraftError : it is not TOML, or has a key that is unknown or out of range
     """
+    text = ""
     try:
-        return ModelSettings.model_validate(tomllib.loads(path.read_text(encoding="utf-8-sig")))
+        text = path.read_text(encoding="utf-8-sig")
+        return ModelSettings.model_validate(tomllib.loads(text))
     except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+        if bare := _UNQUOTED.search(text):
+            raise AircraftError(f'{path}: key {bare[1]} has a slash; write it in quotes, "{bare[1]}" = ...') from None
         raise AircraftError(f"{path}: not valid TOML: {error}; fix the file") from None
     except OSError as error:
         raise AircraftError(f"{path}: cannot be read: {error.strerror}; check its permissions") from None
@@ -101,7 +125,11 @@ def _explained(error: ValidationError) -> str:
         return f"unknown key '{name}'{did_you_mean(key, known) or ';'} known are {', '.join(known)}"
     if first["type"] == "missing":
         return f"key '{name}' is missing; give it, or leave out the whole table"
-    if first["type"] == "string_pattern_mismatch":
-        return f'{name} is {first["input"]!r}; give a JSBSim property, as in "fcs/elevator-cmd-norm"'
-    message = first["msg"].removeprefix("Value error, ")
-    return message if first["type"] == "value_error" else f"{name} is {first['input']!r}; {message[0].lower()}{message[1:]}"
+    if first["type"] == "value_error":
+        return first["msg"].removeprefix("Value error, ")
+    demanded = first["msg"].partition(",")[0].replace("Input should be", "it must be")
+    remedy = _REMEDIES.get(first["type"], demanded[0].lower() + demanded[1:])
+    if first["type"] in ("tuple_type", "too_short"):
+        remedy += f', as in "fcs/{key}-cmd-norm", or leave the key out{"; false is for no rudder" if key == "rudder" else ""}'
+    given = first["input"]
+    return f"{name} is {given if isinstance(given, float) else json.dumps(given, default=str)}; {remedy}"

@@ -35,7 +35,7 @@ from aircraft.spec import AircraftSpec
 from common.physics.units import METRES_PER_FOOT
 
 TIME_STEP = 1.0 / 120.0
-"""Integration step of JSBSim and of the autopilot inside it [s]."""
+"""Integration step of JSBSim [s]; the autopilot inside it computes every one, two or three of them."""
 
 _SETTLE_STRIDE = 4
 

@@ -1,7 +1,8 @@
 """Loop margins of the autopilot on the full linear aircraft: classical at each loop break, and disk margins.
 
 Everything comes from two frequency responses, of the aircraft (with its servos, its engine and the computing delay, as
-the exact exponential) and of the autopilot. With every loop closed, the sensitivity at a break is S = 1/(1 + L), where
+the exact exponential) and of the autopilot. The delay allows for a computer on board (``innerloop.synthesis.rate``): in
+JSBSim the fast loops have more margin. With every loop closed, the sensitivity at a break is S = 1/(1 + L), where
 L is the loop opened there and closed elsewhere; so L = 1/S - 1 follows for all breaks from one inverse.
 """
 

@@ -23,7 +23,12 @@ def _unchanged(model: LinearModel, trim: Trim) -> LinearModel:
 
 
 def _effectiveness(factor: float) -> Change:
-    """Return a change of the effectiveness of every control."""
+    """Return a change of the effectiveness of every control.
+
+    That of the throttle is among them: thrust changes by the factor, too. In a perturbed model, which the search over reversals
+    flies, only surfaces change (``aircraft.simulation.perturbed_model``): less effectiveness leaves the throttle's loop less
+    margin there than here, where it also lowers the loop's gain.
+    """
 
     def change(model: LinearModel, trim: Trim) -> LinearModel:
         del trim
@@ -122,6 +127,6 @@ def _changed(by: Perturbation) -> Change:
 CASES: dict[str, tuple[Change, int]] = {
     NOMINAL: (_unchanged, 0),
     **{name: (_changed(by), 0) for name, by in PERTURBATIONS.items()},
-    "one more step of delay": (_unchanged, 1),
+    "one more period of delay": (_unchanged, 1),
 }
-"""Each perturbation by name: the change of the linear aircraft, and by how many of its steps the autopilot is late."""
+"""Each perturbation by name: the change of the linear aircraft, and by how many of its periods the autopilot is late."""

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 from aircraft.dynamics.control_effectiveness import with_linearised_controls
-from aircraft.dynamics.envelope import find_envelope, first_trim
+from aircraft.dynamics.envelope import find_envelope, first_trim, with_reserve_note
 from aircraft.dynamics.equilibrium import Trim
 from aircraft.dynamics.flight_idle import flight_idle, idling_at
 from aircraft.dynamics.linear_model import LinearModel
@@ -12,7 +12,7 @@ from aircraft.dynamics.linearise import linearise
 from aircraft.dynamics.trim import trim
 from aircraft.simulation.fdm import Fdm
 from aircraft.spec import AircraftSpec, Envelope
-from innerloop.analysis.checks import ALL_CONTROLS, REQUIRED, Check
+from innerloop.analysis.checks import ALL_CONTROLS, NOMINAL, Check
 from innerloop.analysis.robustness import ClosedLoops, check_design, closed_loops, with_all_controls
 from innerloop.designs.designed import Design, DesignError
 from innerloop.synthesis.rate import PERIODS
@@ -77,8 +77,10 @@ def design_autopilot(spec: AircraftSpec, altitude: float = 100.0) -> Design:
             return Design(schedule=replace(schedule, period=period), bandwidths=bandwidths, checks=tuple(checks))
         bandwidths = _slowed(bandwidths, short)
     worst = min(short, key=lambda check: check.shortfall)
+    gain, phase = worst.required
+    when = "" if worst.case == NOMINAL else " under every perturbation"
     raise DesignError(
-        f"aircraft '{spec.name}': no design has {REQUIRED.gain_db:g} dB and {REQUIRED.phase_deg:g} deg at every operating point;"
+        f"aircraft '{spec.name}': no design has {gain:g} dB and {phase:g} deg at every operating point{when};"
         f" the slowest tried has {worst.describe()}. It cannot be flown"
     )
 
@@ -100,6 +102,8 @@ def linear_grid(spec: AircraftSpec, altitude: float) -> Grid:
         )
         trims.append(row)
         models.append(tuple(linearise(fdm, row[TRIM_BANKS.index(share)]) for share in GAIN_BANKS))
+    if spec.envelope is not None:
+        envelope = with_reserve_note(envelope, [t for row in trims for t in row], spec)
     spec = idling_at(spec, flight_idle(fdm, trims[len(trims) // 2][LEVEL]))
     return Grid(spec=spec, envelope=envelope, altitude=altitude, trims=tuple(trims), models=tuple(models))
 

@@ -6,6 +6,7 @@ from collections.abc import Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
 from dataclasses import dataclass
+from pathlib import Path
 
 from aircraft.errors import AircraftError
 from aircraft.fleet.find import find_spec
@@ -102,7 +103,8 @@ def examine(name: str, altitude: float) -> Discovered:
 
 
 def _reason(name: str, message: str) -> str:
-    """Return the reason alone: which aircraft it is stands beside it."""
-    for prefix in (f"aircraft '{name}' cannot be flown: ", f"aircraft '{name}' cannot fly the study: ", f"aircraft '{name}' "):
+    """Return the reason alone: which aircraft it is stands beside it, one of a directory by its path."""
+    called = f"aircraft '{Path(name).name}'"
+    for prefix in (f"{called} cannot be flown: ", f"{called} cannot fly the study: ", f"{called} ", f"{called}: "):
         message = message.removeprefix(prefix)
-    return message.removeprefix(f"aircraft '{name}': ")
+    return message

@@ -10,11 +10,12 @@ import numpy as np
 from aircraft.dynamics.equilibrium import Trim, TrimOutcome
 from aircraft.dynamics.trim import search_trim
 from aircraft.simulation.fdm import TIME_STEP, Fdm
-from aircraft.spec import AircraftSpec, Envelope
+from aircraft.spec import AircraftSpec, ControlInput, Envelope
 from common.physics.coordinated_turn import heading_rate_for_bank
 from innerloop.analysis.checks import NOMINAL, REQUIRED, Check, Margin
 from innerloop.analysis.linear_model_check import verify_model
 from innerloop.analysis.margins import BREAK_NAMES, Loops
+from innerloop.analysis.perturbations import CASES
 from innerloop.designs.designed import Design, Record
 from innerloop.flight.autopiloted_aircraft import AutopilotedAircraft
 from innerloop.flight.perturbed_aircraft import aircraft_as_modelled, deviations_by_case, perturbed_aircraft
@@ -56,6 +57,7 @@ def design_record(design: Design, root: Path) -> Record:
         "source": schedule.spec.source,
         "altitude_m": schedule.altitude,
         "envelope": _envelope_record(schedule.envelope),
+        "inputs": [_input_record(i) for i in schedule.spec.inputs],
         "design_airspeed_mps": level.airspeed,
         "airspeeds_mps": list(schedule.airspeeds),
         "banks_deg": [math.degrees(bank) for bank in schedule.banks],
@@ -131,6 +133,16 @@ def _envelope_record(envelope: Envelope) -> Record:
     }
 
 
+def _input_record(control_input: ControlInput) -> Record:
+    """Return a control's range as the autopilot has it: its throttle closes no further than flight idle."""
+    return {
+        "name": control_input.name,
+        "lower": control_input.lower,
+        "upper": control_input.upper,
+        "is_effect": bool(control_input.effectiveness),
+    }
+
+
 def _trim_record(t: Trim, bank: float) -> Record:
     """Return an equilibrium; ``bank`` is the grid's [rad], 0 in straight flight, even if a small roll balances the
     propeller's torque."""
@@ -169,6 +181,7 @@ def _robustness_record(check: Check) -> Record:
     gain, phase = check.worst_gain, check.worst_phase
     return {
         "case": check.case,
+        "periods_late": CASES[check.case][1],
         "airspeed_mps": check.airspeed,
         "bank_rad": check.bank,
         "between": check.between,
@@ -246,14 +259,18 @@ def _response_record(kind: str, response: Response) -> Record:
         "size": response.size,
         "rise_time_s": _finite(response.rise_time()),
         "overshoot": response.overshoot(),
-        **{f"{name}_largest_{unit}": response.largest(name) for name, unit in _UPSET.items() if name in response.channels},
+        **{
+            f"{name}_largest_{unit}": response.largest(name)
+            for name, unit in _UPSET.items()
+            if name in response.channels and name != response.command
+        },
         "time_s": response.time[::stride].round(6).tolist(),
         "channels": {_CHANNEL_NAMES.get(name, name): values[::stride].tolist() for name, values in response.channels.items()},
     }
 
 
 _UPSET = {"altitude": "m", "airspeed": "mps"}
-"""Quantities that a step should not move, and their units."""
+"""Quantities that a step of another one should not move, and their units."""
 
-_CHANNEL_NAMES = {"beta": "sideslip", "elevator_command": "elevator", "aileron_command": "aileron"}
+_CHANNEL_NAMES = {"beta": "sideslip", **{f"{name}_command": name for name in ("elevator", "aileron", "throttle")}}
 """Names of channels in reports, where they differ from those in the closed loop."""

@@ -28,6 +28,7 @@ CHANNELS: dict[str, tuple[str, float]] = {
     "beta": ("aero/beta-rad", 1.0),
     "elevator_command": ("autopilot/elevator-command", 1.0),
     "aileron_command": ("autopilot/aileron-command", 1.0),
+    "throttle_command": ("autopilot/throttle-command", 1.0),
 }
 """Recorded quantities, by their name in the closed loop: JSBSim property and SI value of its unit."""
 

@@ -10,6 +10,10 @@ allow. All of them divide the steps that JSBSim runs while engines are started, 
 def loop_delay(period: int, late: int = 0) -> float:
     """Return the delay between measurement and servo [s]: one time step of computing, and half a period of hold.
 
+    The step is an allowance for a computer on board. In JSBSim airspeed, sideslip and heading rate are one step old, but body
+    rates, attitude, altitude and climb rate are read in the step in which servos and forces act: loops on these have more margin
+    there than this delay says.
+
     Parameters
     ----------
     period : of the autopilot, as in ``PERIODS``

@@ -12,12 +12,13 @@ from reports.document.console import console_table, wide_console
 def print_summary(record: Record) -> None:
     """Print what a design's record says, in brief."""
     design = complete(record)
+    perturbed = bool(design["robustness"])
     tables = [
-        ("Equilibria", trim_table(extreme_trims(design))),
+        ("Equilibria", trim_table(design, extreme_trims(design))),
         ("Poles of the grid", pole_table(design)),
         (f"Poles at {design['design_airspeed_mps']:g} m/s in level flight [1/s]", _poles(at_middle(design, design["poles"])[0])),
-        ("Margins, the worst of the grid; servos, engine and computing delay included", worst_margin_table(design)),
-        *([("Margins of perturbed aircraft, the worst of loops and grid", robustness_table(design))] * bool(design["robustness"])),
+        ("Margins, the worst of grid and points between; servos, engine and computing delay included", worst_margin_table(design)),
+        *([("Margins when perturbed, the worst of loops, grid and points between", robustness_table(design))] * perturbed),
         ("Step responses", step_table(design)),
     ]
     console = wide_console()

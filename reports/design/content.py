@@ -63,15 +63,22 @@ def _reversals(design: Record) -> list[Block]:
 def _margins(design: Record) -> Section:
     required = design["required"]
     blocks: list[Block] = [
-        Heading(f"Worst of the grid, loop by loop; required are {required['gain_db']:g} dB and {required['phase_deg']:g}°"),
+        Heading(
+            f"Worst of the grid and the points between, loop by loop; required are {required['gain_db']:g} dB and"
+            f" {required['phase_deg']:g}°"
+        ),
         worst_margin_table(design),
         *margin_charts(design),
     ]
     if design["robustness"]:
         asked = f"{required['perturbed_gain_db']:g} dB and {required['perturbed_phase_deg']:g}°"
         blocks += [
-            Heading(f"Of a perturbed aircraft, worst of loops and grid; required are {asked}"),
+            Heading(f"Perturbed or with more delay, worst of loops, grid and points between; required are {asked}"),
             robustness_table(design),
+            Text(
+                "Control effectiveness is that of surfaces and throttle here; the perturbed aircraft that the search over reversals"
+                " flies have another effectiveness of their surfaces alone."
+            ),
         ]
     return Section(anchor="margins", title="Margins", blocks=blocks)
 
@@ -84,11 +91,14 @@ def _equilibria(design: Record) -> Section:
     shown = extreme_trims(design)
     climbs = any(climbing(t) for t in shown)
     title = "Level flight and the largest banks" + (", and the steepest climb and descent" if climbs else "")
-    blocks += [Heading(title), trim_table(shown)]
+    blocks += [Heading(title), trim_table(design, shown)]
     residuals = [float(t["residual"]) for t in design["trims"] if t.get("residual") is not None]
     if residuals:
         blocks.append(
-            Text(f"Largest acceleration left in any of the {len(residuals)} equilibria: {max(residuals):.1e} m/s2 or rad/s2.")
+            Text(
+                f"Largest linear or angular acceleration left in any of the {len(residuals)} equilibria:"
+                f" {max(residuals):.1e} (m/s² or rad/s²)."
+            )
         )
     return Section(anchor="equilibria", title="Equilibria", blocks=blocks)
 
@@ -98,7 +108,8 @@ def _verification(design: Record) -> Section:
     if design["verification"]:
         text = (
             "The linear model's answer to a small input against that of the simulation itself: largest error as a fraction of the"
-            " largest excursion."
+            " largest excursion. Of jets the throttle's is the largest, above all because its lag is measured with a throttle step"
+            " of 0.05, as a turbine spools at a steady rate, and here the throttle moves by 0.01."
         )
         blocks = [Text(text), verification_table(design)]
     return Section(anchor="linearisation", title="Is the linear model right?", nav_title="Linear model", blocks=blocks)
@@ -106,9 +117,11 @@ def _verification(design: Record) -> Section:
 
 def _weights(design: Record) -> Section:
     text = (
-        "Gains follow from the linear models by these weights, a set for the whole grid. By Bryson's rule the weight of a quantity"
-        " is one over the square of its acceptable deviation, which is what the table lists, in SI units; a control's is a fraction"
-        " of its travel."
+        "Gains follow from the linear models by weights. By Bryson's rule the weight of a quantity is one over the square of its"
+        " acceptable deviation; the table lists these, a set for the whole grid, in SI units. The weights of controls follow from"
+        " them and the bandwidths at each airspeed, and are not listed. Behind the deviations stand the model that the heading rate"
+        " follows, the largest errors of altitude and airspeed that the autopilot acts on, the rate at which integrals come back to"
+        " what controls can give (anti-windup), and how often the autopilot computes."
     )
     return Section(anchor="weights", title="Weights of the design", nav_title="Weights", blocks=[Text(text), weight_table(design)])
 

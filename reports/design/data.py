@@ -32,6 +32,7 @@ def complete(record: Record) -> Record:
 
     return {
         "envelope": None,
+        "inputs": [],
         "required": _REQUIRED,
         "verification": [],
         # Older autopilots compute at every time step.
@@ -40,7 +41,7 @@ def complete(record: Record) -> Record:
         "trims": level(record["trims"]),
         "poles": level(record["poles"]),
         "margins": [_judged(row) for row in level(record["margins"])],
-        "robustness": [_judged(row) for row in record.get("robustness", [])],
+        "robustness": [_judged({"periods_late": 0, **row}) for row in record.get("robustness", [])],
         "loops": [{"airspeed_mps": record["design_airspeed_mps"], "bank_rad": 0.0, **loop} for loop in record["loops"]],
     }
 
@@ -49,6 +50,16 @@ def _judged(row: Record) -> Record:
     if row.get("stable", True):
         return {"stable": True, **row}
     return {**row, **{key: 0.0 for key in _MARGINS if key in row}}
+
+
+def is_effect(design: Record, name: str) -> bool:
+    """Return whether the figures of a control are its measured effect, by which it is commanded, and not its command."""
+    return any(row["is_effect"] for row in design["inputs"] if row["name"] == name)
+
+
+def control_axis(design: Record, name: str) -> str:
+    """Return the label of the axis of a control."""
+    return f"{name.capitalize()} {'effect' if is_effect(design, name) else 'command'} [-]"
 
 
 def bank_deg(row: Record) -> float:

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from reports.design.data import Record, responses_of, speed
+from reports.design.data import CONTROLS, Record, control_axis, responses_of, speed
 from reports.document.chart import Chart, Line, Panel, Style
 from reports.document.tables import minus
 
@@ -23,13 +23,8 @@ _CHANNELS: dict[str, tuple[str, float]] = {
     "sideslip": ("Sideslip [deg]", _DEGREES),
     "altitude": ("Altitude [m]", 1.0),
     "airspeed": ("Airspeed [m/s]", 1.0),
-    "pitch": ("Pitch [deg]", _DEGREES),
-    "elevator": ("Elevator command [-]", 1.0),
-    "throttle": ("Throttle command [-]", 1.0),
-    "elevator_position": ("Elevator [deg]", _DEGREES),
-    "aileron_position": ("Aileron [deg]", _DEGREES),
 }
-"""Axis and scale by channel, in the order of their panels."""
+"""Axis and scale by channel, but for those of controls."""
 
 _FIRST = (
     ("heading_rate", "heading_rate", "Turn"),
@@ -39,8 +34,12 @@ _FIRST = (
 )
 """Command, channel and title of each panel of page 1."""
 
-_TURN = ("heading_rate", "roll", "sideslip", "altitude", "airspeed", "aileron_position")
-_CLIMB = ("airspeed", "altitude", "pitch", "elevator", "throttle", "elevator_position")
+_TURN = ("heading_rate", "roll", "sideslip", "altitude", "airspeed", "aileron")
+_CLIMB = {
+    "airspeed": ("Airspeed step", ("airspeed", "altitude", "throttle")),
+    "altitude": ("Altitude step", ("altitude", "airspeed", "elevator")),
+}
+"""Channels of the turn, and title and channels by the command of the other steps: the first is what was commanded."""
 
 
 def response_charts(design: Record) -> list[Chart]:
@@ -52,7 +51,9 @@ def response_charts(design: Record) -> list[Chart]:
 def first_chart(design: Record) -> Chart | None:
     """Return what page 1 shows: a turn, and steps of airspeed and altitude; None of a design without step responses."""
     steps = [(responses_of(design, command), channel, title) for command, channel, title in _FIRST]
-    panels = [_panel(responses, channel, title=title) for responses, channel, title in steps if _present([channel], responses)]
+    panels = [
+        _panel(design, responses, channel, title=title) for responses, channel, title in steps if _present([channel], responses)
+    ]
     if not panels:
         return None
     caption = (
@@ -64,15 +65,12 @@ def first_chart(design: Record) -> Chart | None:
 
 def _turn(design: Record) -> Chart:
     responses = responses_of(design, "heading_rate")
-    # An even number of panels leaves no gap.
-    channels = _present(_TURN, responses)
-    channels = channels[: len(channels) // 2 * 2] or channels
     model = " Dotted: the reference model that it is to follow." if "model" in {row["kind"] for row in responses} else ""
     return Chart(
         name="turnresponse",
         caption=f"A step of the heading-rate command by {_size(responses)} rad/s from level flight at"
         f" {speed(design['design_airspeed_mps'])}; deviations from trim.{model}",
-        panels=[_panel(responses, channel) for channel in channels],
+        panels=[_panel(design, responses, channel) for channel in _present(_TURN, responses)],
         columns=2,
         panel_height=0.28,
     )
@@ -80,11 +78,11 @@ def _turn(design: Record) -> Chart:
 
 def _climb(design: Record) -> Chart:
     panels = []
-    for command, title in (("airspeed", "Airspeed step"), ("altitude", "Altitude step")):
+    for command, (title, channels) in _CLIMB.items():
         responses = responses_of(design, command)
-        others = [channel for channel in _present(_CLIMB, responses) if channel != command]
         panels += [
-            _panel(responses, channel, title=title if channel == command else "") for channel in (command, *others[:2]) if responses
+            _panel(design, responses, channel, title=title if channel == command else "")
+            for channel in _present(channels, responses)
         ]
     return Chart(
         name="climbresponse",
@@ -104,8 +102,8 @@ def _size(responses: Sequence[Record]) -> str:
     return " and ".join(dict.fromkeys(minus(f"{response['size']:g}") for response in responses))
 
 
-def _panel(responses: Sequence[Record], channel: str, title: str = "") -> Panel:
-    axis, scale = _CHANNELS[channel]
+def _panel(design: Record, responses: Sequence[Record], channel: str, title: str = "") -> Panel:
+    axis, scale = (control_axis(design, channel), 1.0) if channel in CONTROLS else _CHANNELS[channel]
     lines = []
     for response in responses:
         if channel in response["channels"]:

@@ -26,7 +26,7 @@ def innerloop_section(record: Record) -> Section:
             _margin_table(design),
             *loop_charts(design),
             Heading(f"Equilibria: level, and at {bank:.3g} degrees of bank"),
-            trim_table(trims),
+            trim_table(design, trims),
         ],
     )
 

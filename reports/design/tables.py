@@ -13,6 +13,7 @@ from reports.design.data import (
     damping,
     down,
     grid_trims,
+    is_effect,
     loop_name,
     loops_of,
     responses_of,
@@ -80,9 +81,9 @@ def extreme_trims(design: Record) -> list[Record]:
     return [*sorted(chosen, key=lambda t: (t["airspeed_mps"], bank_deg(t))), *steepest]
 
 
-def trim_table(chosen: Sequence[Record]) -> Table:
+def trim_table(design: Record, chosen: Sequence[Record]) -> Table:
     """Return a table of equilibria, with the columns that all of them have."""
-    columns = _trim_columns(chosen)
+    columns = _trim_columns(design, chosen)
     limits = any(t.get("limits") for t in chosen)
     rows = [[_cell(t, *column) for column in columns] + ["; ".join(t.get("limits", []))] * limits for t in chosen]
     return Table(
@@ -94,7 +95,7 @@ def trim_table(chosen: Sequence[Record]) -> Table:
     )
 
 
-def _trim_columns(trims: Sequence[Record]) -> list[tuple[str, str, float]]:
+def _trim_columns(design: Record, trims: Sequence[Record]) -> list[tuple[str, str, float]]:
     """Return title, field and scale of each column that every equilibrium has."""
     degrees = math.degrees(1.0)
     columns = [
@@ -105,14 +106,15 @@ def _trim_columns(trims: Sequence[Record]) -> list[tuple[str, str, float]]:
         ("β [deg]", "sideslip_rad", degrees),
         ("θ [deg]", "pitch_rad", degrees),
         ("Yaw rate [rad/s]", "yaw_rate_rad_s", 1.0),
-        ("Elevator [-]", "elevator", 1.0),
-        ("Aileron [-]", "aileron", 1.0),
-        ("Rudder [-]", "rudder", 1.0),
-        ("Throttle [-]", "throttle", 1.0),
+        *((_control_head(design, name), name, 1.0) for name in ("elevator", "aileron", "rudder", "throttle")),
     ]
     if not any(climbing(t) for t in trims):
         columns = [column for column in columns if column[1] != "climb_angle_rad"]
     return [column for column in columns if all(column[1] in t for t in trims)]
+
+
+def _control_head(design: Record, name: str) -> str:
+    return f"{name.capitalize()}{' effect' if is_effect(design, name) else ''} [-]"
 
 
 def _cell(trim: Record, title: str, key: str, scale: float) -> str:
@@ -200,7 +202,7 @@ _WEIGHT_UNITS = {
 
 
 def weight_table(design: Record) -> Table:
-    """Return the acceptable deviations that the gains follow from, and the autopilot's rate, in two columns of pairs."""
+    """Return the acceptable deviations that the gains follow from, and what else the autopilot was designed with, as pairs."""
     pairs = [[_weight(name), f"{value:.3g}"] for name, value in design["weights"].items()]
     if "model_frequency_rad_s" in design and "model_frequency" not in design["weights"]:
         pairs += [
@@ -211,8 +213,8 @@ def weight_table(design: Record) -> Table:
     half = -(-len(pairs) // 2)
     rows = [[*left, *(pairs[half + i] if half + i < len(pairs) else ["", ""])] for i, left in enumerate(pairs[:half])]
     return Table(
-        caption="Acceptable deviations, from which the gains follow, and the autopilot's rate.",
-        head=["Weight", "Value", "Weight", "Value"],
+        caption="Acceptable deviations, from which the gains follow; the heading-rate model, limits of errors, and rates.",
+        head=["Quantity", "Value", "Quantity", "Value"],
         rows=rows,
         widths=[2.0, 0.7, 2.0, 0.7],
         left_columns=4,

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from reports.design.data import Record, bank_deg, climb_trims, grid_trims, speed
+from reports.design.data import Record, bank_deg, climb_trims, control_axis, grid_trims, is_effect, speed
 from reports.document.chart import Chart, Line, Panel, Style
 from reports.document.palette import Meaning, series_colour
 from reports.document.tables import minus
@@ -14,29 +14,37 @@ from reports.document.tables import minus
 _NEAR_LIMIT = 0.4
 """Fraction of a control's travel from which its limit is drawn: nearer to neutral it would only flatten the curves."""
 
+_LIMIT, _FLIGHT_IDLE = "limit of a control", "flight idle"
+_STYLES: dict[str, Style] = {_LIMIT: "dash", _FLIGHT_IDLE: "dot"}
+"""Labels of the lines at limits, and how they are drawn."""
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class _Quantity:
-    """A quantity of an equilibrium: its field, its axis, the unit that it is shown in, its limits."""
+    """A quantity of an equilibrium: its field, its axis, the unit that it is shown in, its limits and what they are."""
 
     key: str
     label: str
     scale: float = 1.0
-    limits: tuple[float, float] | None = None
+    limits: tuple[tuple[float, str], ...] = ()
 
 
 _ALPHA = _Quantity(key="alpha_rad", label="Angle of attack [deg]", scale=math.degrees(1.0))
-_ELEVATOR = _Quantity(key="elevator", label="Elevator command [-]", limits=(-1.0, 1.0))
-_THROTTLE = _Quantity(key="throttle", label="Throttle command [-]", limits=(0.0, 1.0))
-_QUANTITIES = (
-    _ALPHA,
-    _ELEVATOR,
-    _THROTTLE,
-    _Quantity(key="aileron", label="Aileron command [-]", limits=(-1.0, 1.0)),
-    _Quantity(key="rudder", label="Rudder command [-]", limits=(-1.0, 1.0)),
-    _Quantity(key="sideslip_rad", label="Sideslip [deg]", scale=math.degrees(1.0)),
-)
+_SIDESLIP = _Quantity(key="sideslip_rad", label="Sideslip [deg]", scale=math.degrees(1.0))
 _YAW_RATE = _Quantity(key="yaw_rate_rad_s", label="Yaw rate [rad/s]")
+
+
+def _control(design: Record, name: str) -> _Quantity:
+    """Return a control, between the limits that the autopilot has for it: its throttle stops at flight idle."""
+    limits = [
+        (
+            (row["lower"], _FLIGHT_IDLE if name == "throttle" and row["lower"] > 0.0 else _LIMIT),
+            (row["upper"], _LIMIT),
+        )
+        for row in design["inputs"]
+        if row["name"] == name
+    ]
+    return _Quantity(key=name, label=control_axis(design, name), limits=limits[0] if limits else ())
 
 
 def trim_charts(design: Record) -> list[Chart]:
@@ -48,11 +56,14 @@ def trim_charts(design: Record) -> list[Chart]:
 def trim_map(design: Record) -> Chart:
     """Return the equilibria over airspeed, a curve for each bank."""
     trims = grid_trims(design)
+    elevator, throttle, aileron, rudder = (_control(design, name) for name in ("elevator", "throttle", "aileron", "rudder"))
     # Without a rudder its place goes to the yaw rate, so that no panel is empty.
-    quantities = [q if q.key in trims[0] else _YAW_RATE for q in _QUANTITIES]
+    quantities = (_ALPHA, elevator, throttle, aileron, rudder if rudder.key in trims[0] else _YAW_RATE, _SIDESLIP)
     caption = "Equilibria over airspeed, a curve per bank; to the left dashed, to the right solid."
     if design["envelope"]:
         caption += " Upright lines: the limits of the commanded airspeed, and the stall where it is near."
+    if any(is_effect(design, quantity.key) for quantity in quantities):
+        caption += " The effect of a surface is proportional to its moment: 0 at the command 0, and 2 from stop to stop."
     if any(t.get("limits") for t in trims):
         caption += " Diamonds: equilibria at a limit, which the table names."
     return Chart(
@@ -97,8 +108,8 @@ def _limits_of(lines: Sequence[Line], quantity: _Quantity) -> tuple[float, float
     values = np.concatenate([line.y for line in lines])
     lowest, highest = float(np.nanmin(values)), float(np.nanmax(values))
     if quantity.limits:
-        lower, upper = quantity.limits
-        lowest = min(lowest, lower) if lower == 0.0 or lowest < _NEAR_LIMIT * lower else lowest
+        (lower, _), (upper, _) = quantity.limits
+        lowest = min(lowest, lower) if lower >= 0.0 or lowest < _NEAR_LIMIT * lower else lowest
         highest = max(highest, upper) if highest > _NEAR_LIMIT * upper else highest
     # A curve without any height still needs an axis with some.
     room = max(0.08 * (highest - lowest), 0.01)
@@ -106,11 +117,9 @@ def _limits_of(lines: Sequence[Line], quantity: _Quantity) -> tuple[float, float
 
 
 def _limit_lines(quantity: _Quantity, y_range: tuple[float, float], x_range: tuple[float, float]) -> list[Line]:
-    shown = [limit for limit in quantity.limits or () if y_range[0] < limit < y_range[1]]
+    shown = [limit for limit in quantity.limits if y_range[0] < limit[0] < y_range[1]]
     ends = np.array(x_range)
-    return [
-        Line(x=ends, y=np.array([limit, limit]), label="limit of a control", colour=Meaning.LIMIT, style="dash") for limit in shown
-    ]
+    return [Line(x=ends, y=np.array([at, at]), label=label, colour=Meaning.LIMIT, style=_STYLES[label]) for at, label in shown]
 
 
 def _envelope_lines(envelope: Record | None, y_range: tuple[float, float], x_range: tuple[float, float]) -> list[Line]:
@@ -145,7 +154,7 @@ def _climb_chart(design: Record, climbs: Sequence[Record]) -> Chart:
     return Chart(
         name="climbs",
         caption=f"Straight climbs and descents at {speed(design['design_airspeed_mps'])}.",
-        panels=[panel(quantity) for quantity in (_ALPHA, _ELEVATOR, _THROTTLE)],
+        panels=[panel(quantity) for quantity in (_ALPHA, _control(design, "elevator"), _control(design, "throttle"))],
         columns=3,
         panel_height=0.28,
     )

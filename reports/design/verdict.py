@@ -23,7 +23,7 @@ _UNSTABLE = 1e-4
 
 
 def design_verdict(design: Record) -> Verdict:
-    """Judge a design: it holds if it is stable over the whole grid, and is complete if every margin is as required."""
+    """Judge a design: it holds if it is stable at every point, and is complete if every margin is as required."""
     unstable = _unstable(design)
     nominal, perturbed = _nominal_failures(design), _perturbed_failures(design)
     required = design["required"]
@@ -34,9 +34,9 @@ def design_verdict(design: Record) -> Verdict:
         headline = f"Stable everywhere, but short of {asked} in {_loops(nominal)}"
     elif perturbed:
         less = f"{required['perturbed_gain_db']:g} dB and {required['perturbed_phase_deg']:g}°"
-        headline = f"Every loop has {asked} everywhere, but a perturbed aircraft is short of {less}"
+        headline = f"Every loop has {asked} everywhere, but is short of {less} under a perturbation"
     else:
-        headline = f"Every loop has at least {asked} of margin at every point of the grid"
+        headline = f"Every loop has at least {asked} of margin at every point of the grid and between"
     return Verdict(
         holds=not unstable,
         complete=not (nominal or perturbed),
@@ -110,8 +110,9 @@ def _detail(design: Record) -> str:
     detail = f"Margins were computed at {len(grid)} points of the grid over airspeed" + (" and bank" if len(banks) > 1 else "")
     detail += f" and at {len(between)} points between them, for which nothing was designed." if between else "."
     if design["robustness"]:
-        cases = {row["case"] for row in design["robustness"]}
-        detail += f" The same gains were tried on {len(cases)} perturbed aircraft."
+        perturbed = {row["case"] for row in design["robustness"] if not row["periods_late"]}
+        late = dict.fromkeys(case_name(row) for row in design["robustness"] if row["periods_late"])
+        detail += f" The same gains were tried on {' and with '.join([f'{len(perturbed)} perturbed aircraft', *late])}."
     at_limit = [t for t in grid_trims(design) if t.get("limits")]
     if at_limit:
         detail += f" {len(at_limit)} of {len(grid_trims(design))} equilibria are at a limit, which the section on equilibria names."
@@ -127,8 +128,8 @@ def _figures(design: Record) -> list[Card]:
     ]
     if robustness:
         figures += [
-            _margin_figure("Worst gain margin perturbed", robustness, "gain_db", "dB", required["perturbed_gain_db"]),
-            _margin_figure("Worst phase margin perturbed", robustness, "phase_deg", "°", required["perturbed_phase_deg"]),
+            _margin_figure("Worst gain margin", robustness, "gain_db", "dB", required["perturbed_gain_db"]),
+            _margin_figure("Worst phase margin", robustness, "phase_deg", "°", required["perturbed_phase_deg"]),
         ]
     together = worst((row for row in margins if row["loop"] == TOGETHER), "disk_gain_db")
     if together is not None:
@@ -139,15 +140,19 @@ def _figures(design: Record) -> list[Card]:
         figures.append(Card("Heading-rate overshoot beyond the model's", f"{100.0 * excess:.1f} %"))
     figures.append(Card("Flown heading rate lags by", f"{design['heading_rate_lag_s']:.2f} s"))
     # An input that moves nothing has no error to speak of; the table shows it.
-    errors = [float(row["error"]) for row in design["verification"] if row["error"] is not None]
+    errors = [row for row in design["verification"] if row["error"] is not None]
     if errors:
-        figures.append(Card("Linear model against small motions, worst", f"{100.0 * max(errors):.1f} %"))
+        largest = max(errors, key=lambda row: float(row["error"]))
+        moved = f"{largest['output'].replace('_', ' ')} by {largest['input']}"
+        figures.append(Card(f"Linear model against small motions, worst: {moved}", f"{100.0 * largest['error']:.1f} %"))
     return figures
 
 
 def _margin_figure(name: str, rows: Sequence[Record], key: str, unit: str, required: float) -> Card:
     space = " " if unit == "dB" else ""
     row = worst(rows, key)
+    if rows and "case" in rows[0]:
+        name += f", {case_name(row)}" if row else ", perturbed"
     if row is None:
         return Card(name, "unlimited", f"≥ {required:g}{space}{unit}", met=True)
     loop = str(row.get("loop") or row["gain_loop" if key == "gain_db" else "phase_loop"]).replace("_", " ")

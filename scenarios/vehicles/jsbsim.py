@@ -1,4 +1,4 @@
-"""The aircraft in six degrees of freedom: JSBSim with the autopilot, both at 120 Hz in C++."""
+"""The aircraft in six degrees of freedom: JSBSim at 120 Hz with the autopilot at its own rate, 40 to 120 Hz, both in C++."""
 
 import itertools
 import math

@@ -16,7 +16,8 @@ SAMPLE_COLUMNS = (
     "throttle",
     "rudder",
 )
-"""What a vehicle's ``sample`` returns, in order; not a number where it has no such thing. Controls are commands [-]."""
+"""What a vehicle's ``sample`` returns, in order; not a number where it has no such thing. Controls are commands [-], or the effect
+by which a surface is commanded whose travel is unequal (``aircraft.dynamics.control_effectiveness``)."""
 
 
 class Vehicle(Protocol):

@@ -80,3 +80,28 @@ def test_a_logo_that_is_no_picture_is_refused_before_anything_is_designed(tmp_pa
     assert ended.status == 2
     assert ended.errors.startswith("error: report.logo: 'gone.png' cannot be read")
     assert not (tmp_path / "x8").exists()
+
+
+def test_a_list_of_a_directory_has_of_each_aircraft_the_reason_alone(tmp_path):
+    (tmp_path / "wing").mkdir()
+    (tmp_path / "wing" / "wing.xml").write_text('<fdm_config name="wing"><propulsion/></fdm_config>', encoding="utf-8")
+    listed = run_command("innerloop.design", "--aircraft-dir", tmp_path, "--list")
+    assert listed.out.split(maxsplit=2) == ["-", str(tmp_path / "wing"), "it has no engine\n"]
+
+
+def test_a_list_is_not_that_of_one_aircraft():
+    refused = run_command("innerloop.design", "x8", "--list")
+    assert (refused.status, refused.out) == (2, "")
+    assert refused.errors == "error: aircraft 'x8' is given beside --list, which lists all of them; leave out one of both\n"
+
+
+def test_a_file_that_cannot_be_read_is_not_one_that_cannot_be_written(tmp_path):
+    long = "a" * 300
+    read = run_command("innerloop.design", f"{long}/wing")
+    assert read.errors.endswith(f"{long}/wing' cannot be read: File name too long; check the path and its permissions\n")
+    written = run_command("innerloop.design", "x8", "--out", tmp_path / long)
+    assert f"{long}/manifest.json' cannot be written: File name too long; choose another --out" in written.errors
+    (tmp_path / "file").touch()
+    below = run_command("innerloop.design", "x8", "--out", tmp_path / "file" / "a" / "b")
+    assert "cannot be written: Not a directory; choose another --out" in below.errors
+    assert (read.status, written.status, below.status) == (2, 2, 2)

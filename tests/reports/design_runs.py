@@ -8,7 +8,7 @@ import numpy as np
 AIRSPEEDS = [45.0, 50.0, 55.0, 60.0, 65.0]
 BANKS_DEG = [-33.0, -27.0, -21.0, -13.0, 0.0, 13.0, 21.0, 27.0, 33.0]
 LOOPS = ("elevator", "aileron", "throttle", "rudder", "airspeed", "altitude", "heading_rate", "sideslip")
-CASES = ("mass +20 %", "mass -20 %", "inertia +20 %", "control effectiveness -20 %", "one more step of delay")
+CASES = ("mass +20 %", "mass -20 %", "inertia +20 %", "control effectiveness -20 %", "one more period of delay")
 GRAVITY = 9.81
 
 
@@ -59,6 +59,7 @@ def record():
             "bank_max_deg": 33.0,
             "notes": ["The stall is that of level flight without flaps.", "Bank is limited by the load factor of 1.2."],
         },
+        "inputs": [control("elevator", -1.55, 0.45, True), control("aileron"), control("throttle", 0.35), control("rudder")],
         "design_airspeed_mps": 55.0,
         "airspeeds_mps": AIRSPEEDS,
         "banks_deg": BANKS_DEG,
@@ -79,6 +80,10 @@ def record():
             for j, output in enumerate(("airspeed", "q", "p"))
         ],
     }
+
+
+def control(name, lower=-1.0, upper=1.0, is_effect=False):
+    return {"name": name, "lower": lower, "upper": upper, "is_effect": is_effect}
 
 
 def trim(airspeed, bank_deg, climb=0.0):
@@ -131,8 +136,9 @@ def margins(airspeed, bank_deg, between):
 def robustness(case, i, airspeed, bank_deg):
     away = abs(airspeed - 55.0) / 10.0 + abs(bank_deg) / 33.0
     return {
-        "case": case, "airspeed_mps": airspeed, "bank_rad": math.radians(bank_deg), "gain_db": 8.5 - 0.5 * i - away,
-        "gain_loop": "elevator", "phase_deg": 46.0 - 2.0 * i - away, "phase_loop": "heading_rate",
+        "case": case, "periods_late": int(case.endswith("of delay")), "airspeed_mps": airspeed, "bank_rad": math.radians(bank_deg),
+        "gain_db": 8.5 - 0.5 * i - away, "gain_loop": "elevator",
+        "phase_deg": 46.0 - 2.0 * i - away, "phase_loop": "heading_rate",
     }  # fmt: skip
 
 
@@ -164,7 +170,8 @@ def response(kind, command, size, frequency, ratio):
     decay = np.exp(-ratio * frequency * time)
     step = 1.0 - decay * (np.cos(damped * time) + ratio * frequency / damped * np.sin(damped * time))
     bump = time * decay
-    channels = dict.fromkeys(("airspeed", "altitude", "heading_rate", "roll", "sideslip", "elevator"), 0.05 * size * bump)
+    names = ("airspeed", "altitude", "heading_rate", "roll", "sideslip", "elevator", "aileron", "throttle")
+    channels = dict.fromkeys(names, 0.05 * size * bump)
     if command == "heading_rate":
         channels |= {"roll": 0.28 * step, "altitude": -2.0 * bump * size, "airspeed": -0.5 * bump * size}
     channels[command] = size * step
@@ -172,7 +179,10 @@ def response(kind, command, size, frequency, ratio):
         channels = {"heading_rate": channels["heading_rate"]}
     return {
         "kind": kind, "command": command, "size": size, "rise_time_s": 1.8 / frequency, "overshoot": float(step.max() - 1.0),
-        "altitude_largest_m": float(np.abs(channels.get("altitude", np.zeros(1))).max()),
-        "airspeed_largest_mps": float(np.abs(channels.get("airspeed", np.zeros(1))).max()),
+        **{
+            f"{name}_largest_{unit}": float(np.abs(channels[name]).max())
+            for name, unit in (("altitude", "m"), ("airspeed", "mps"))
+            if name in channels and name != command
+        },
         "time_s": time.tolist(), "channels": {name: values.tolist() for name, values in channels.items()},
     }  # fmt: skip

@@ -46,6 +46,11 @@ def moments(spec, level, name, values):
     return np.array(found)
 
 
+def effect_of(command, control_input):
+    effects, commands = zip(*control_input.effectiveness, strict=True)
+    return float(np.interp(command, commands, effects))
+
+
 def slopes(x, y):
     return np.diff(y) / np.diff(x)
 
@@ -82,6 +87,20 @@ def test_the_new_command_runs_from_nought_at_the_old_and_over_two_from_stop_to_s
         assert control_input.command(0.0) == pytest.approx(0.0, abs=1e-12)
         assert control_input.upper - control_input.lower == pytest.approx(2.0)
         assert -1.0 <= control_input.command(control_input.lower) < control_input.command(control_input.upper) <= 1.0
+
+
+@pytest.mark.parametrize(("lower", "upper"), [(-0.5, 0.5), (-0.75, 0.25)])
+def test_a_surface_is_commanded_within_the_range_that_its_spec_states(twin, lower, upper):
+    fdm, level, whole = twin
+    stated = replace(fdm.spec, inputs=tuple(replace(i, lower=lower, upper=upper) if i.name in AXES else i for i in fdm.spec.inputs))
+    elevator = with_linearised_controls(Fdm(stated), level).input("elevator")
+    commands = [command for _, command in elevator.effectiveness]
+    assert (commands[0], commands[-1]) == (lower, upper)
+    assert (elevator.command(elevator.lower), elevator.command(elevator.upper)) == (lower, upper)
+    # The same surface: effects of the commands that both have are in proportion, but for a bend between two measured points.
+    both = (lower, 0.5 * lower, 0.5 * upper, upper)
+    ratio = np.divide(*([effect_of(command, i) for command in both] for i in (elevator, whole.input("elevator"))))
+    assert np.ptp(ratio) < 0.02 * ratio.mean()
 
 
 def test_linear_surfaces_and_the_throttle_are_left_as_they_are():

@@ -1,11 +1,12 @@
 """Where an aircraft can fly the study: stall, banks by class, reserve at the ends."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
-from aircraft.dynamics.envelope import bank_by_class, find_envelope, first_trim
+from aircraft.dynamics.envelope import bank_by_class, find_envelope, first_trim, with_reserve_note
 from aircraft.dynamics.equilibrium import TrimOutcome
 from aircraft.dynamics.trim import search_trim
 from aircraft.errors import AircraftError
@@ -34,6 +35,22 @@ def envelope(jet):
 @pytest.mark.parametrize("spec", [X8, AEROSONDE], ids=lambda spec: spec.name)
 def test_an_envelope_that_the_spec_states_is_taken_as_it_is(spec):
     assert find_envelope(Fdm(spec), ALTITUDE) is spec.envelope
+
+
+def test_a_stated_envelope_has_a_note_where_an_equilibrium_lacks_a_reserve_and_none_elsewhere():
+    fdm = Fdm(X8)
+    slow = [search_trim(fdm, airspeed=11.0, altitude=ALTITUDE, bank=math.radians(bank)) for bank in (0.0, 55.0)]
+    # Beyond nine tenths of its travel in the turn, and not in level flight.
+    assert slow[1].outcome is TrimOutcome.CONVERGED
+    assert slow[1].inputs["elevator"] < -0.9 < slow[0].inputs["elevator"]
+    assert with_reserve_note(X8.envelope, slow[:1], X8) is X8.envelope
+    noted = with_reserve_note(X8.envelope, slow, X8)
+    assert replace(noted, notes=(), stall=0.0) == replace(X8.envelope, stall=0.0)
+    assert noted.notes == (
+        "a reserve for control is lacking at 1 of 2 equilibria in the envelope as stated: 11 m/s and 55 deg of bank take"
+        f" {slow[1].inputs['elevator']:.2f} of elevator; -0.9 to 0.9 leaves a reserve. Raise airspeed_min, or lower airspeed_max or"
+        " bank, to have one",
+    )
 
 
 @pytest.mark.parametrize(

@@ -5,6 +5,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import jsbsim
+import numpy as np
 import pytest
 
 from aircraft.errors import AircraftError
@@ -131,6 +132,10 @@ MAY = "; it needs elevator, aileron, throttle, may have rudder, and no others: c
         ({"inputs": (replace(THREE[0], commands=()), *THREE[1:])}, "input 'elevator' has no commands; name the JSBSim properties"),
         ({"inputs": (replace(THREE[0], lower=1.0, upper=-1.0), *THREE[1:])}, "input 'elevator' ranges from 1 to -1; lower must be"),
         (
+            {"inputs": (replace(THREE[0], lower=0.1), *THREE[1:])},
+            "'elevator' ranges from 0.1 to 1; lower must be below 0, and upper",
+        ),
+        (
             {"own_actuators": (Actuator(name="left elevon", commands=("a/b",)),)},
             "'left elevon' is no name of an actuator, or taken",
         ),
@@ -148,9 +153,37 @@ MAY = "; it needs elevator, aileron, throttle, may have rudder, and no others: c
         ({"envelope": replace(X8.envelope, bank=0.0)}, "bank is 0 deg (0 rad); it must lie between 5 and 60 deg: give radians"),
         ({"envelope": replace(X8.envelope, bank=45.0)}, "bank is 2578.31 deg (45 rad); it must lie between 5 and 60 deg"),
         ({"name": "A&B/C"}, "'A&B/C' is no name of an aircraft; use letters, digits, '_', '-' and '.': correct its spec"),
+        # Of other types than the spec declares: each was a traceback, or was taken for something else.
+        ({"name": None}, "name is None, of type NoneType; it must be text; correct its spec"),
+        ({"root": "models"}, "aircraft 'own': root is 'models', of type str; it must be of type Path; correct its spec"),
+        ({"root": None}, "root is None, of type NoneType; it must be of type Path"),
+        ({"folder": "x8"}, "folder is 'x8', of type str; it must be of type Path"),
+        ({"settle_time": "2"}, "settle_time is '2', of type str; it must be a number"),
+        ({"settle_time": True}, "settle_time is True, of type bool; it must be a number"),
+        (
+            {"configuration": {"fcs/flap": 0.3}},
+            "configuration is {'fcs/flap': 0.3}, of type dict; it must be of type tuple[tuple[str, float], ...], as"
+            " (('fcs/flap', 0.3),); correct its spec",
+        ),
+        ({"configuration": ("fcs/flap", 0.3)}, "configuration[0] is 'fcs/flap', of type str; it must be of type tuple[str, float]"),
+        ({"configuration": (("fcs/flap", 0.3, 1.0),)}, "configuration[0] is ('fcs/flap', 0.3, 1.0), of type tuple; it must be"),
+        (
+            {"inputs": (replace(THREE[0], commands="fcs/elevator-cmd-norm"), *THREE[1:])},
+            "inputs[0].commands is 'fcs/elevator-cmd-norm', of type str; it must be of type tuple[str, ...], which of one item has"
+            " a comma: ('fcs/elevator-cmd-norm',); correct its spec",
+        ),
+        ({"inputs": THREE[0]}, "of type ControlInput; it must be of type tuple[ControlInput, ...]"),
+        ({"envelope": (15.0, 25.0)}, "envelope is (15.0, 25.0), of type tuple; it must be of type Envelope"),
+        ({"envelope": replace(X8.envelope, bank="45")}, "envelope.bank is '45', of type str; it must be a number"),
     ],
 )
 def test_an_aircraft_of_a_file_that_the_autopilot_cannot_fly_with_is_refused(tmp_path, monkeypatch, parts, why):
     own = replace(X8, **{"name": "own", **parts})
     monkeypatch.setattr("common.registry.part_in_file", lambda _: own)
     assert why in reason(f"{tmp_path / 'own.py'}:OWN")
+
+
+def test_lists_and_numbers_of_numpy_will_do_in_the_spec_of_a_file(tmp_path, monkeypatch):
+    own = replace(X8, name="own", inputs=list(X8.inputs), settle_time=np.float32(2.0), configuration=[("fcs/flap", 1)])
+    monkeypatch.setattr("common.registry.part_in_file", lambda _: own)
+    assert find_spec(f"{tmp_path / 'own.py'}:OWN") is own

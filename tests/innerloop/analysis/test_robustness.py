@@ -128,8 +128,8 @@ def test_gravity_and_turning_are_those_of_a_body_without_forces(trims):
     np.testing.assert_allclose(found, expected, atol=1e-6)  # central differences over 1e-5
 
 
-def test_there_is_a_case_for_each_change_both_ways_and_one_for_one_more_step_of_delay():
-    assert {name: late for name, (_, late) in CASES.items() if late} == {"one more step of delay": 1}
+def test_there_is_a_case_for_each_change_both_ways_and_one_for_one_more_period_of_delay():
+    assert {name: late for name, (_, late) in CASES.items() if late} == {"one more period of delay": 1}
     for what in ("control effectiveness", "mass", "inertia"):
         assert {f"{what} +20 %", f"{what} -20 %"} < set(CASES)
     assert len(CASES) == 8
@@ -217,6 +217,15 @@ def test_a_design_with_too_little_margin_is_refused_with_what_it_lacks_and_not_f
     assert "\n" not in str(caught.value)
 
 
+@pytest.mark.usefixtures("x8_grid")
+def test_a_design_that_lacks_margin_only_under_a_perturbation_is_refused_with_what_is_required_there(monkeypatch):
+    # As above, but the second of delay is a case of its own, of which less is required.
+    monkeypatch.setattr(robustness, "CASES", {NOMINAL: CASES[NOMINAL], "far too late": (CASES[NOMINAL][0], 120)})
+    monkeypatch.setattr(designer, "_ATTEMPTS", 1)
+    with pytest.raises(DesignError, match="no design has 4 dB and 30 deg at every operating point under every perturbation; the"):
+        design_autopilot(X8)
+
+
 @pytest.mark.parametrize(("name", "period"), [("x8", 3), ("T37", 2)])
 def test_the_autopilot_computes_as_seldom_as_leaves_every_loop_its_phase_margin_but_for_five_degrees(designs, name, period):
     # The X8's fastest loop crosses over at 6.1 rad/s and the T-37's, its elevator, at 13.2 rad/s: half a step of 1/120 s more
@@ -234,7 +243,7 @@ def test_the_autopilot_computes_as_seldom_as_leaves_every_loop_its_phase_margin_
 def test_a_loop_with_too_little_margin_is_slowed_and_the_others_are_left(monkeypatch, x8_design):
     points, asked, check = [], [], robustness.ClosedPoint.check
     # Two changes of the aircraft for all of them: they are checked one after the other.
-    cases = {case: CASES[case] for case in (NOMINAL, "mass +20 %", "one more step of delay")}
+    cases = {case: CASES[case] for case in (NOMINAL, "mass +20 %", "one more period of delay")}
     monkeypatch.setattr(robustness, "CASES", cases)
 
     def short_at_the_first_point(point, case, period):

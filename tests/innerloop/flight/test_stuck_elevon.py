@@ -12,6 +12,7 @@ from aircraft.atmosphere.weather import Weather
 from aircraft.fleet.x8 import X8
 from aircraft.simulation.fdm import Fdm
 from aircraft.spec import Actuator
+from aircraft.spec_check import check_spec
 from innerloop.flight.autopiloted_aircraft import AutopilotedAircraft
 from innerloop.flight.servo_monitor import ServoMonitor
 
@@ -113,7 +114,7 @@ def test_the_elevator_is_held_where_it_was_at_the_release_until_the_next_one(x8_
 def test_a_throttle_of_another_name_is_monitored_as_little_as_one_that_is_called_so(x8_aircraft, x8_schedule):
     release(x8_aircraft, x8_schedule)
     renamed = replace(X8, own_actuators=(*X8.own_actuators, Actuator(name="motor", commands=X8.input("throttle").commands)))
-    renamed.check()
+    check_spec(renamed)
     monitor = ServoMonitor(cast("Fdm", SimpleNamespace(spec=renamed, node=x8_aircraft.fdm.node)), TIME_STEP)
     # Of the elevons alone, in trim: rounding of JSBSim.
     assert monitor.error() < 1e-6

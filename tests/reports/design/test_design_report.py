@@ -15,7 +15,6 @@ from reports.design.loop_charts import disk_region, turned
 from reports.design.margin_charts import margin_charts
 from reports.design.section import innerloop_section
 from reports.design.section_charts import loop_charts
-from reports.design.trim_charts import trim_map
 from reports.document.blocks import Heading, Table, Text
 from reports.document.chart import Chart
 from reports.errors import ReportError
@@ -23,7 +22,7 @@ from reports.registry import content
 from reports.render import matplotlib_charts, plotly_charts
 from reports.run.run_data import read_run
 
-FIRST_VERSION_LACKS = ("envelope", "required", "robustness", "verification", "banks_deg")
+FIRST_VERSION_LACKS = ("envelope", "inputs", "required", "robustness", "verification", "banks_deg")
 LEVEL_LACKS = {"between", "climb_angle_rad", "limits", "rudder", "residual"}
 
 
@@ -84,11 +83,16 @@ def test_axes_have_units_and_every_curve_is_drawn_on_screen_and_in_print(report)
 def test_a_design_with_every_margin_is_called_good(report):
     verdict = report.verdict
     assert (verdict.holds, verdict.complete, verdict.failures) == (True, True, [])
-    assert verdict.headline == "Every loop has at least 6 dB and 45° of margin at every point of the grid"
+    assert verdict.headline == "Every loop has at least 6 dB and 45° of margin at every point of the grid and between"
     assert "45 points of the grid over airspeed and bank and at 20 points between them" in verdict.detail
+    # Four of the five cases change the aircraft, and one delays its autopilot.
+    assert "tried on 4 perturbed aircraft and with one more period of delay." in verdict.detail
     assert "1 of 45 equilibria are at a limit" in verdict.detail
     # At the corner of the grid: 11 dB less 2.2 dB for each of airspeed and bank.
     assert verdict.figures[0] == ("Worst gain margin: elevator, 45 m/s, −33°", "6.6 dB", "≥ 6 dB", True)
+    # Of the cases the last has the least margins, 8.5 - 0.5 x 4 dB less 1 dB for each of airspeed and bank.
+    worst = ("Worst gain margin, one more period of delay: elevator, 45 m/s, −33°", "4.5 dB", "≥ 4 dB", True)
+    assert verdict.figures[2] == worst
 
 
 def test_the_margin_table_has_the_worst_of_each_loop_and_where(report):
@@ -141,26 +145,6 @@ def test_every_loop_has_a_nichols_panel_with_the_region_that_is_excluded(report)
         assert set(zip(region.x, region.y, strict=True)) == {(-225.0, 0.0), (-180.0, 6.0), (-135.0, 0.0), (-180.0, -6.0)}
         assert panel.x_range[0] < -225.0
         assert panel.x_range[1] > -135.0
-
-
-def test_the_trim_map_has_a_curve_per_bank_and_marks_what_is_at_a_limit():
-    design = complete(record())
-    panels = {panel.y_label: panel for panel in trim_map(design).panels}
-    labels = [line.label for line in panels["Rudder command [-]"].lines]
-    assert labels[:3] == ["level", "bank +13°", "bank −13°"]
-    assert len([label for label in labels if label.startswith("bank")]) == len(BANKS_DEG) - 1
-    marked = next(line for line in panels["Elevator command [-]"].lines if line.label == "at a limit")
-    assert marked.x.tolist() == [45.0]
-    # Throttle is drawn between its stops, a rudder near neutral is not.
-    assert "limit of a control" in [line.label for line in panels["Throttle command [-]"].lines]
-    assert "limit of a control" not in labels
-
-
-@pytest.mark.parametrize(("stall", "drawn"), [(27.0, False), (40.0, True), (None, False)])
-def test_the_stall_is_drawn_where_it_is_near_the_grid(stall, drawn):
-    design = complete(record())
-    design["envelope"]["stall_airspeed_mps"] = stall
-    assert ("stall" in [line.label for line in trim_map(design).panels[0].lines]) == drawn
 
 
 def test_the_overshoot_is_counted_beyond_that_of_the_reference_model():

@@ -37,7 +37,7 @@ def test_a_perturbed_aircraft_that_falls_short_is_named():
     assert verdict.holds
     assert not verdict.complete
     # Less is required of it than of the aircraft as modelled.
-    assert verdict.headline == "Every loop has 6 dB and 45° everywhere, but a perturbed aircraft is short of 4 dB and 30°"
+    assert verdict.headline == "Every loop has 6 dB and 45° everywhere, but is short of 4 dB and 30° under a perturbation"
     assert verdict.failures == ["mass +20 %: phase margin 29.0 deg of heading rate at 45 m/s, −33°, required 30 deg"]
 
 

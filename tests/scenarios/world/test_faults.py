@@ -8,6 +8,7 @@ from aircraft.errors import AircraftError
 from aircraft.fleet.x8 import X8
 from aircraft.simulation.faults import ENGINE
 from aircraft.spec import Actuator
+from aircraft.spec_check import check_spec
 from scenarios.schema.sections.equipment import FaultConfig
 from scenarios.world.faults import NO_FAULT, NOT_OF_AIRCRAFT, SATELLITES, VESSEL_DATA, sampled_fault
 
@@ -43,6 +44,6 @@ def test_a_part_fails_for_good():
 @pytest.mark.parametrize("name", sorted({*NOT_OF_AIRCRAFT, ENGINE}))
 def test_no_actuator_may_have_the_name_of_another_fault(name):
     with pytest.raises(AircraftError, match=f"'{name}' is no name of an actuator"):
-        replace(X8, own_actuators=(Actuator(name=name, commands=X8.input("throttle").commands),)).check()
+        check_spec(replace(X8, own_actuators=(Actuator(name=name, commands=X8.input("throttle").commands),)))
     # Any other that an aircraft may have, a scenario can name.
     assert FaultConfig(kind="Left-elevon.1").kind == "Left-elevon.1"
