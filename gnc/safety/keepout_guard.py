@@ -51,9 +51,9 @@ class KeepoutGuard:
     """
 
     __slots__ = (
-        "_drift_rate", "_explained", "_free_steps", "_given", "_highest", "_kept_off", "_lag", "_lowest", "_note", "_note_rate",
-        "_prediction", "_quarter_turn", "_radius", "_rate", "_resolution", "_side", "_speed_error", "_time_step", "_turn_speed",
-        "_turn_time", "_until_acting", "_within_step", "intervening", "interventions", "lost", "tubes",
+        "_drift_rate", "_explained", "_fastest", "_free_steps", "_given", "_highest", "_kept_off", "_lag", "_lowest", "_note",
+        "_note_rate", "_prediction", "_quarter_turn", "_radius", "_rate", "_resolution", "_side", "_slowest", "_speed_error",
+        "_time_step", "_turn_speed", "_turn_time", "_until_acting", "_within_step", "intervening", "interventions", "lost", "tubes",
     )  # fmt: skip
 
     def __init__(self, parameters: GuardParameters) -> None:
@@ -86,7 +86,7 @@ class KeepoutGuard:
         # Within a step a command may lead off the turn that was safe by all of a reversal: by V omega_max dt^2, in turn radii.
         self._resolution = max(_RESOLUTION, min(math.pi, p.heading_rate_max * p.time_step) ** 2)
         self._within_step = (self._resolution - _RESOLUTION) / p.heading_rate_max
-        self._side, self._free_steps, self._lowest, self._highest = 0.0, 0, 0.0, 0.0
+        self._side, self._free_steps, self._lowest, self._highest, self._slowest, self._fastest = 0.0, 0, 0.0, 0.0, 0.0, 0.0
         self._kept_off: Tube | None = None
         self.tubes: Sequence[Tube] = ()
         self.intervening = self.lost = False
@@ -103,7 +103,8 @@ class KeepoutGuard:
         speed : of the vehicle in the air mass, to reckon with: as fast as it may become [m/s]
         slowest : as slow as it may become [m/s]; a turn away has to keep off at all speeds between
         """
-        if self._free_steps > 0 and self._lowest <= command <= self._highest:
+        counted = self._lowest <= command <= self._highest and speed <= self._fastest and slowest >= self._slowest
+        if self._free_steps > 0 and counted:
             self._free_steps -= 1
         else:
             free, situations = self._look(command, time, own, speed, slowest)
@@ -169,7 +170,8 @@ class KeepoutGuard:
                 self._kept_off = tube
                 break
             situations.append((motions, tube))
-        # Commands that change by no more than is counted do not enlarge the deviation of the turn.
+        # Until the next look: commands that change by no more than is counted for the turn's deviation, and speeds that it has.
+        self._fastest, self._slowest = speed + _SAME_SPEED, min(slowest, speed) - _SAME_SPEED
         middle, half = 0.5 * (self._given.last + command), self._given.changed_by(command) * self._rate
         self._lowest, self._highest = max(middle - half, -self._rate), min(middle + half, self._rate)
         return free, situations

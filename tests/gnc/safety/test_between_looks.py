@@ -82,3 +82,25 @@ def test_a_command_that_passes_leaves_a_turn_with_all_that_is_kept_for_its_own_c
     assert worked > 0
     # To what is kept for the looks.
     assert least >= -0.01
+
+
+@pytest.mark.parametrize(
+    ("command", "speed", "slowest", "looks"),
+    [
+        (0.09, SPEED, SPEED, 0), (0.11, SPEED, SPEED, 1), (-0.11, SPEED, SPEED, 1),
+        (0.0, SPEED + 0.04, SPEED - 0.04, 0), (0.0, SPEED + 0.06, SPEED, 1), (0.0, SPEED, SPEED - 0.06, 1),
+    ],
+)  # fmt: skip
+def test_another_command_or_speed_than_was_counted_is_looked_at_at_once(command, speed, slowest, looks, monkeypatch):
+    # Beside the disc, northbound: of a look some steps are free. A fifth of a reversal is counted, so a tenth to either side.
+    guard, own = (
+        guard_of(radius=200.0, heading_rate_max=0.5, time_step=0.05, lag=0.26, deviation=3.0),
+        motion_of((0.0, 220.0, 0.0, 0.0)),
+    )
+    assert guard.limit(0.0, 0.0, own, SPEED, SPEED) == 0.0
+    assert guard._free_steps > 0
+    asked = []
+    look = KeepoutGuard._look
+    monkeypatch.setattr(KeepoutGuard, "_look", lambda *given: asked.append(given) or look(*given))
+    guard.limit(command, 0.05, own, speed, slowest)
+    assert len(asked) == looks
