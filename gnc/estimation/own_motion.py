@@ -31,6 +31,7 @@ class AirMotion(Protocol):
     wind_north, wind_east : velocity of the air mass [m/s]
     wind_error : by how much more than at all times that may be wrong, as long as it was measured seldom [m/s]
     lost : for how long there has been no satellite navigation [s]
+    speed : of the motion through the mean air [m/s]
     """
 
     ground_north: float
@@ -41,6 +42,7 @@ class AirMotion(Protocol):
     wind_east: float
     wind_error: float
     lost: float
+    speed: float
 
 
 class OwnMotion(AirMotion, Protocol):
@@ -51,7 +53,6 @@ class OwnMotion(AirMotion, Protocol):
     Attributes
     ----------
     north, east : in the frame of the air mass [m]
-    speed : of the motion through the mean air [m/s]
     drift_north, drift_east : how far the frame of the air mass has drifted [m]
     airspeed : as measured, against gusty air [m/s]
     air_ratio : airspeed over the speed through the mean air [-]
@@ -59,7 +60,6 @@ class OwnMotion(AirMotion, Protocol):
 
     north: float
     east: float
-    speed: float
     drift_north: float
     drift_east: float
     airspeed: float
@@ -81,6 +81,7 @@ class KnownMotion:
     wind_east: float = 0.0
     wind_error: float = 0.0
     lost: float = 0.0
+    speed: float = 0.0
 
 
 class TrueNavigation:

@@ -84,7 +84,7 @@ class KeepoutGuard:
         # What the declared errors may take from the slack of a turn that was safe.
         self._explained = p.deviation + self._speed_error * self._turn_time + p.turbulence
         # Within a step a command may lead off the turn that was safe by all of a reversal: by V omega_max dt^2, in turn radii.
-        self._resolution = max(_RESOLUTION, min(math.pi, p.heading_rate_max * p.time_step) ** 2)
+        self._resolution = max(_RESOLUTION, (p.heading_rate_max * p.time_step) ** 2)
         self._within_step = (self._resolution - _RESOLUTION) / p.heading_rate_max
         self._side, self._free_steps, self._lowest, self._highest, self._slowest, self._fastest = 0.0, 0, 0.0, 0.0, 0.0, 0.0
         self._kept_off: Tube | None = None
@@ -115,18 +115,16 @@ class KeepoutGuard:
                 self.interventions += not self.intervening
                 self.intervening = True
                 command = self._mix(command, situations)
-        self._note(command if speed <= self._turn_speed else self._turned(command, speed))
+        # At the largest bank a command comes in part where the vehicle flies faster.
+        self._note(command if own.speed <= self._turn_speed else limited(command, self._rate * self._turn_speed / own.speed))
         self._note_rate(own.heading_rate)
         return command
-
-    def _turned(self, command: float, speed: float) -> float:
-        """Return what of a command comes at such a speed, at the largest bank [rad/s]."""
-        return limited(command, self._rate * self._turn_speed / speed)
 
     def allows(self, command: float, time: float, own: AirMotion, speed: float, slowest: float = math.inf) -> bool:
         """Return whether ``limit``, which is to be called next, lets the command pass if it is given the same parameters."""
         free, _ = self._look(command, time, own, speed, slowest)
         if free < 0.0:
+            self._free_steps = 0
             return False
         self.intervening = self.lost = False
         self._free_steps = max(1, int(free / self._time_step))
@@ -135,6 +133,8 @@ class KeepoutGuard:
     def overruled(self, command: float) -> None:
         """Take note of a heading rate that is flown in place of the last command [rad/s]."""
         self._given.since[-1] = command
+        if not self._lowest <= command <= self._highest:
+            self._free_steps = 0
 
     def clearance(self, time: float, own: AirMotion, speed: float, enough: float = math.inf) -> float:
         """Return by how much the better turn away, begun now, or one that does by ``enough``, keeps off [m]; negative if none can.
@@ -242,7 +242,8 @@ class KeepoutGuard:
         for motion in motions:
             start = self._prediction.after(command, motion)
             kept, kept_free = self._prediction.turn_away(side, start, motion, change, begun, floor)
-            slack, free = min(slack, kept), min(free, kept_free)
+            # In this order what is not a number stays so.
+            slack, free = min(kept, slack), min(kept_free, free)
             if slack < floor:
                 break
         return slack, free

@@ -3,6 +3,7 @@
 import math
 from collections import deque
 
+from gnc.numeric import limited
 from gnc.safety.closest_approach import leads_away, least_of_late, nearer_by_switch
 from gnc.safety.given_commands import commands_under_way
 
@@ -35,7 +36,8 @@ class TurnPrediction:
     """
 
     __slots__ = (
-        "_chord", "_delay", "_deviation", "_first", "_hold", "_interval", "_lag", "_passed", "_points_max", "_rate", "_turn_speed",
+        "_beyond", "_chord", "_delay", "_deviation", "_first", "_hold", "_interval", "_lag", "_passed", "_points_max", "_rate",
+        "_turn_speed",
     )  # fmt: skip
 
     def __init__(
@@ -51,8 +53,9 @@ class TurnPrediction:
         self._rate, self._deviation, self._turn_speed = heading_rate_max, deviation, turn_speed
         self._lag, self._delay = lag, delay
         self._hold = _held(time_step, lag)
-        # Sine of the angle by which straight away is passed by a turn that ends there: by its lag, and a step of holding commands.
-        self._passed = math.sin(min(heading_rate_max * (lag + time_step), 0.5 * math.pi))
+        # Angle by which straight away is passed by a turn that ends there: by its lag, and a step of holding commands.
+        self._beyond = min(heading_rate_max * (lag + time_step), 0.5 * math.pi)
+        self._passed = math.sin(self._beyond)
         # Of the commands under way the first acts only for what of it lies within the delay.
         self._first = _held(commands_under_way(delay, time_step)[1], lag)
         interval = max(min(_TURN / heading_rate_max, lag), 0.5 * _TURN / heading_rate_max)
@@ -92,6 +95,9 @@ class TurnPrediction:
     def after(self, command: float, motion: Motion) -> Start:
         """Return where a command held for one time step leads."""
         x, y, velocity_north, velocity_east, course, speed, heading_rate, *_, slowest = motion
+        if speed > self._turn_speed:
+            # At the largest bank a turn is the slower the faster the vehicle flies.
+            command = limited(command, self._rate * self._turn_speed / speed)
         duration, turned, mean, decay = self._hold
         middle = course + mean * heading_rate + (0.5 * duration - mean) * command
         cos, sin = math.cos(middle), math.sin(middle)
@@ -169,14 +175,14 @@ class TurnPrediction:
                 continue
             if before < 0.0 or point == 0:
                 least = min(least, nearest := least_of_late(places, (velocity_north, velocity_east), duration))
-                least_rate = min(least_rate, nearest / (acting - lag * (1.0 - fade)))
+                least_rate = min(least_rate, nearest / (acting - lag * (1.0 - fade) + rolling))
             # Also if it came past straight away between two points: it would have stopped there.
             if side * heading_rate >= 0.0 and (outward >= 0.0 or before_outward >= 0.0):
                 # It is over. One point more may allow more time until the next prediction.
                 best, gain = gain, max(gain, min(least_rate, rise / duration))
                 if gain == best or outward < 0.0:
                     break
-        return least, max(gain, 0.0) * stretch / (2.0 * speed * self._rate)
+        return least, min(max(gain, 0.0) * stretch / (2.0 * speed * self._rate), self._until_beyond(side, start))
 
     def _flown(self, side: float, speed: float) -> tuple[float, float, float, float, float, float]:
         """Return what is flown between two points of a full turn.
@@ -198,6 +204,12 @@ class TurnPrediction:
         outward = side * (y * cos - x * sin)
         over = -self._passed * math.sqrt(x * x + y * y) < outward < 0.0 and x * cos + y * sin > 0.0
         return 0.0 if over else outward
+
+    def _until_beyond(self, side: float, start: Start) -> float:
+        """Return how soon the vehicle may be so far beyond straight away that a turn away to that side leads once round [s]."""
+        x, y, course, _ = start
+        left = side * math.remainder(math.atan2(y, x) - course, 2.0 * math.pi) + self._beyond
+        return left / self._rate if left >= 0.0 else math.inf
 
 
 def nearer_side(x: float, y: float, course: float) -> float:

@@ -42,15 +42,16 @@ class DiscGuard:
     def interventions(self):
         return self.guard.interventions
 
-    def _own(self, x, y, velocity_north, velocity_east, course, heading_rate, radius_inflation):
+    def _own(self, x, y, velocity_north, velocity_east, course, speed, heading_rate, radius_inflation=0.0):
         place = (self._time, self._north, self._east, velocity_north, velocity_east)
         self.guard.tubes = (Tube(*place, radius_inflation, 0.0, self._acceleration),)
-        return KnownMotion(ground_north=self._north + x, ground_east=self._east + y, course=course, heading_rate=heading_rate)
+        place = {"ground_north": self._north + x, "ground_east": self._east + y}
+        return KnownMotion(**place, course=course, heading_rate=heading_rate, speed=speed)
 
     def limit(
         self, command, x, y, velocity_north, velocity_east, course, speed, heading_rate, *, radius_inflation=0.0, slowest=math.inf
     ):
-        own = self._own(x, y, velocity_north, velocity_east, course, heading_rate, radius_inflation)
+        own = self._own(x, y, velocity_north, velocity_east, course, speed, heading_rate, radius_inflation)
         answer = self.guard.limit(command, self._time, own, speed, slowest)
         self._time += TIME_STEP
         self._north += TIME_STEP * velocity_north
@@ -58,11 +59,11 @@ class DiscGuard:
         return answer
 
     def allows(self, command, x, y, velocity_north, velocity_east, course, speed, heading_rate, *, slowest=math.inf):
-        own = self._own(x, y, velocity_north, velocity_east, course, heading_rate, 0.0)
+        own = self._own(x, y, velocity_north, velocity_east, course, speed, heading_rate)
         return self.guard.allows(command, self._time, own, speed, slowest)
 
     def clearance(self, x, y, velocity_north, velocity_east, course, speed, heading_rate):
-        own = self._own(x, y, velocity_north, velocity_east, course, heading_rate, 0.0)
+        own = self._own(x, y, velocity_north, velocity_east, course, speed, heading_rate)
         return self.guard.clearance(self._time, own, speed)
 
 

@@ -8,6 +8,8 @@ import pytest
 from gnc_cases import HEADING_RATE_MAX, SPEED
 from guard_cases import LAGS, RADIUS, TIME_STEP, aim_at_the_centre, make_guard, moved
 
+from gnc.estimation.own_motion import KnownMotion
+
 
 @LAGS
 def test_it_allows_what_it_would_let_pass_and_asking_changes_nothing(lag, delay):
@@ -60,6 +62,28 @@ def test_it_remembers_of_a_fast_vehicle_no_more_than_it_can_turn():
         guard.limit(HEADING_RATE_MAX, 1000.0, 0.0, 0.0, 0.0, 0.0, speed, 0.0)
         # Flown at the largest bank; the command itself is passed on as it is.
         assert guard.guard._given.since[-1] == HEADING_RATE_MAX * SPEED / speed
+    # One that may become faster, and is not, turns in full: taken for a slow turn it flew 9 m into a disc of 10.
+    own = KnownMotion(ground_north=1000.0, ground_east=0.0, course=0.0, speed=SPEED)
+    guard.guard.limit(HEADING_RATE_MAX, 0.1, own, 1.5 * SPEED, SPEED)
+    assert guard.guard._given.since[-1] == HEADING_RATE_MAX
+
+
+def test_what_it_does_not_allow_frees_nothing():
+    guard = make_guard(deviation=3.1)
+    motion = (-250.0, 0.0, 0.0, 0.0, math.radians(10.0))
+    assert guard.limit(0.0, *motion, SPEED, 0.0) == 0.0
+    assert guard.guard._free_steps > 0
+    assert not guard.allows(-HEADING_RATE_MAX, *motion, 2.5 * SPEED, 0.0)
+    # As fast as it was asked about it has to turn at once, to the other side.
+    assert guard.limit(-HEADING_RATE_MAX, *motion, 2.5 * SPEED, 0.0) == HEADING_RATE_MAX
+    assert guard.intervening
+
+
+def test_a_command_that_is_not_a_number_is_not_passed_on_beside_the_area():
+    guard = make_guard()
+    answer = guard.limit(math.nan, -240.0, 0.0, 0.0, 0.0, 0.0, SPEED, 0.0)
+    assert abs(answer) == HEADING_RATE_MAX
+    assert guard.intervening
 
 
 @pytest.mark.parametrize("speed", [SPEED, 1.5 * SPEED])

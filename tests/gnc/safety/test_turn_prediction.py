@@ -83,6 +83,16 @@ def test_a_vehicle_faster_than_it_can_turn_at_omega_max_is_predicted_to_turn_as_
         assert found == pytest.approx(flown, abs=1e-3 * 1.5**2 * TURN_RADIUS)
 
 
+def test_of_a_command_that_is_judged_so_much_comes_as_the_vehicle_can_turn_at_its_speed():
+    prediction = TurnPrediction(heading_rate_max=HEADING_RATE_MAX, lag=0.25, delay=0.0, time_step=0.2, turn_speed=SPEED)
+    for fastest, come in ((SPEED, HEADING_RATE_MAX), (1.5 * SPEED, HEADING_RATE_MAX / 1.5)):
+        motion = (300.0, 0.0, 0.0, 0.0, math.pi, fastest, 0.0, RADIUS, 0.0, 0.0, 0.0, fastest)
+        *place, course, turn = prediction.after(HEADING_RATE_MAX, motion)
+        *flown, course_flown, turn_flown = moved((300.0, 0.0, math.pi, 0.0), come, 0.25, 0.2, fastest)
+        assert place == pytest.approx(flown, abs=1e-3)
+        assert (course, turn) == pytest.approx((course_flown, turn_flown), abs=1e-12)
+
+
 def test_no_speed_between_the_fastest_and_the_slowest_comes_nearer_than_predicted():
     generator = np.random.default_rng(1)
     prediction = TurnPrediction(heading_rate_max=HEADING_RATE_MAX, lag=0.25, delay=0.0, time_step=TIME_STEP)
