@@ -183,20 +183,10 @@ def scenario_path(name: str, folder: Path | None = None, *, extended: bool = Fal
 def _given(scenario: str | Document) -> tuple[Document, Document]:
     """Return what a scenario itself says, and the same with what it extends."""
     if not isinstance(scenario, str):
-        _refuse_other_keys(scenario)
         own, base = _resolved(copy.deepcopy(scenario), Path(), "scenario")
         return own, own if base is None else merged(_base(base, Path(), "scenario", ()), own)
     own, base = _own(path := scenario_path(scenario))
     return own, own if base is None else merged(_base(base, path.parent, path, (path,)), own)
-
-
-def _refuse_other_keys(document: Document, within: str = "the scenario") -> None:
-    """Raise ``InputError`` where a key of a mapping from a program is no text; a TOML file has no others."""
-    for key, value in document.items():
-        if not isinstance(key, str):
-            raise InputError(f"{within} has the key {key!r}, a value of {type(key).__name__}; keys are words in text")
-        if isinstance(value, dict):
-            _refuse_other_keys(value, f"'{key}'")
 
 
 def _read(path: Path, extended_by: tuple[Path, ...] = ()) -> Document:

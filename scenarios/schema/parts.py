@@ -60,11 +60,19 @@ def with_absolute_files(value: Any, folder: Path, key: str = "") -> Any:
     value : the document, a table, a list or a single value
     folder : directory that the files are relative to
     key : whose value it is; files of data are those of ``_DATA`` alone, and of pictures that of ``_PICTURE``
+
+    Raises
+    ------
+    InputError : a key is no text, as a mapping from a program may have; a TOML file has no others
     """
     last = key.rpartition(".")[2]
     if last in _WORDS or (key == _OVERRIDES and isinstance(value, list)):
         return value
     if isinstance(value, dict):
+        for name in value:
+            if not isinstance(name, str):
+                where, kind = f"'{key}'" if key else "the scenario", type(name).__name__
+                raise InputError(f"{where} has the key {name!r}, a value of {kind}; keys are words in text")
         # A random variable has its key beside its choices.
         named = str(value.get("key", ""))
         return {name: with_absolute_files(below, folder, named if name == "choice" else name) for name, below in value.items()}

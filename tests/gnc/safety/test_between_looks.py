@@ -43,10 +43,10 @@ def test_no_path_leads_in_within_a_wide_step(rate_hz, heading_rate_max):
         if guard.clearance(0.0, motion_of(state), SPEED) < 0.0:
             continue
         for k in range(150):
-            wanted = generator.uniform(-1.0, 1.0) * heading_rate_max
+            demanded = generator.uniform(-1.0, 1.0) * heading_rate_max
             if k % 4:
-                wanted = aim_at_the_centre(k, *state[:3], heading_rate_max)
-            command = guard.limit(wanted, k * step, motion_of(state), SPEED)
+                demanded = aim_at_the_centre(k, *state[:3], heading_rate_max)
+            command = guard.limit(demanded, k * step, motion_of(state), SPEED)
             for _ in range(20):
                 state = moved(state, command, 0.0, step / 20.0, SPEED)
                 nearest = min(nearest, math.hypot(*state[:2]))
@@ -70,11 +70,11 @@ def test_a_command_that_passes_leaves_a_turn_with_all_that_is_kept_for_its_own_c
         for k in range(900):
             # It has come round to the disc on the settled turn.
             inwards = inwards or (k > 400 and state[1] < 200.0 + gap + 1.0)
-            wanted = aim_at_the_centre(k, *state[:3], heading_rate_max) if inwards else -heading_rate_max
+            demanded = aim_at_the_centre(k, *state[:3], heading_rate_max) if inwards else -heading_rate_max
             # The turn away that keeps off by all that a change of command before it takes; once begun it is one itself.
             if k and not (guard.intervening and abs(command) == heading_rate_max):
                 least = min(least, copy.deepcopy(guard).clearance(k * step, motion_of(state), SPEED))
-            command = guard.limit(wanted, k * step, motion_of(state), SPEED)
+            command = guard.limit(demanded, k * step, motion_of(state), SPEED)
             under_way.append(command)
             state = moved(state, under_way.popleft(), lag, step, SPEED)
             worked += guard.intervening
