@@ -6,7 +6,7 @@ import pypdfium2
 import pytest
 from matplotlib.figure import Figure
 
-from reports.document.blocks import Table
+from reports.document.blocks import Section, Table, Text
 from reports.render.matplotlib_charts import draw
 from reports.render.pdf import write_pdf
 from tests.reports.test_blocks import a_chart, a_report
@@ -80,3 +80,17 @@ def test_no_row_of_a_table_goes_on_over_the_next_page(tmp_path):
     texts = pages_of([table], tmp_path / "report.pdf")
     assert page_with(texts, "end19") > page_with(texts, "begin0")
     assert all(page_with(texts, f"begin{i} ") == page_with(texts, f"end{i}") for i in range(20))
+
+
+def test_words_that_a_section_ends_with_stay_on_its_page_if_the_next_section_does_not_fit_there(tmp_path):
+    # What failed, below the figures of the verdict: a section without words of its own, whose figure fills a page, comes next.
+    report = a_report([tall("filler", 0.9), tall("one", 0.5), Text("The words. " * 60)])
+    following = Section(anchor="next", title="The next section", blocks=[tall("two", 1.1)])
+    write_pdf(replace(report, sections=[*report.sections, following]), tmp_path / "report.pdf")
+    document = pypdfium2.PdfDocument(tmp_path / "report.pdf")
+    texts = [page.get_textpage().get_text_range() for page in document]
+    document.close()
+    assert page_with(texts, "The words.") == page_with(texts, "Caption of one")
+    # Its heading goes along with its figure, and is also among the contents of page 1.
+    assert "The next section" in texts[page_with(texts, "Caption of two") - 1]
+    assert page_with(texts, "Caption of two") == page_with(texts, "Caption of one") + 1
