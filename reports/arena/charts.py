@@ -208,8 +208,9 @@ def _merit_panel(arena: Arena, entrants: Sequence[Entrant], figure: Figure, cond
 
 def _most(arena: Arena, figure: Figure, conditions: Iterable[str]) -> float:
     """Return the largest value of a figure that is drawn."""
-    found = [arena.of(figure, entrant, condition).high for condition in conditions for entrant in arena.entrants]
-    return max((value for value in found if math.isfinite(value)), default=0.0)
+    found = [arena.of(figure, entrant, condition) for condition in conditions for entrant in arena.entrants]
+    # A mean of too few flights has no interval.
+    return max((value for of in found for value in (of.mean, of.high) if math.isfinite(value)), default=0.0)
 
 
 def track_charts(arena: Arena, *, tracking: bool) -> list[Chart]:

@@ -157,6 +157,12 @@ def test_a_mean_of_single_flights_stands_without_an_interval():
     assert _interval(Estimate(mean=0.12, low=0.1, high=0.15, flights=4), ERROR) == "0.12 (0.10\N{EN DASH}0.15)"
 
 
+def test_a_mean_without_an_interval_is_on_its_panel(arena, monkeypatch):
+    monkeypatch.setattr(type(arena), "of", lambda *_: Estimate(mean=6.56, flights=1))
+    for panel in (*worth_chart(arena).panels, *crossing_chart(arena).panels):
+        assert panel.x_range[1] > 6.56
+
+
 def of_a_few_flights(run, path, missing):
     """Return the report of a copy of an arena of which the flights that are named by what they contain could not be flown."""
     rows, record = run.summary.copy(), json.loads((run.path / "arena.json").read_text(encoding="utf-8"))
