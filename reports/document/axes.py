@@ -73,11 +73,11 @@ def log_axis(limits: tuple[float, float] | None, curves: Sequence[Array]) -> tup
 
 
 def about_values(curves: Sequence[Array]) -> tuple[float, float] | None:
-    """Return limits of a linear axis whose values are nearly the same, so that its marks have few digits; none for others."""
+    """Return limits of a linear axis whose values are the same or nearly so, so that its marks have few digits; none for others."""
     known = np.concatenate([np.asarray(curve, dtype=np.float64) for curve in curves] or [np.empty(0)])
     known = known[np.isfinite(known)]
     largest = float(np.max(np.abs(known), initial=0.0))
-    if not len(known) or not 0.0 < float(np.ptp(known)) < _TINY * largest:
+    if not len(known) or float(np.ptp(known)) >= _TINY * largest:
         return None
     middle, spare = 0.5 * float(known.min() + known.max()), _ABOUT * largest
     return middle - spare, middle + spare

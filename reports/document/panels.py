@@ -111,18 +111,24 @@ def around(x: Array) -> tuple[float, float] | None:
     return low - spare, high + spare
 
 
-def histogram(series: Sequence[tuple[Array, str, str]], x_label: str, upright: Sequence[tuple[float, str]] = ()) -> Panel | None:
+def histogram(
+    series: Sequence[tuple[Array, str, str]],
+    x_label: str,
+    upright: Sequence[tuple[float, str]] = (),
+    upright_colour: str = Meaning.LIMIT,
+) -> Panel | None:
     """Return a panel that counts flights by a figure, or None if fewer than ``COUNTED_MIN`` have it.
 
     Parameters
     ----------
-    series : figures, name and colour
+    series : figures of the same flights, name and colour
     x_label : of the figure
-    upright : values to be marked, by name
+    upright, upright_colour : values to be marked, by name, and their colour
     """
-    every = np.concatenate([values[np.isfinite(values)] for values, _, _ in series])
-    if len(every) < COUNTED_MIN:
+    known = [values[np.isfinite(values)] for values, _, _ in series]
+    if max(map(len, known), default=0) < COUNTED_MIN:
         return None
+    every = np.concatenate(known)
     edges = np.histogram_bin_edges(every, bins=min(_BINS, math.ceil(2.0 * math.sqrt(len(every)))))
     marked = np.array([value for value, _ in upright])
     lines, most = [], 1
@@ -133,7 +139,7 @@ def histogram(series: Sequence[tuple[Array, str, str]], x_label: str, upright: S
         lines.append(Line(x=np.repeat(edges, 2), y=outline, label=label, colour=colour, fill=True))
     for value, label in upright:
         mark = np.array([value, value])
-        lines.append(Line(x=mark, y=np.array([0.0, 1.05 * most]), label=label, colour=Meaning.LIMIT, style="dash"))
+        lines.append(Line(x=mark, y=np.array([0.0, 1.05 * most]), label=label, colour=upright_colour, style="dash"))
     x_range, y_range = _around([edges, marked]), (0.0, 1.08 * most)
     return Panel(x_label=x_label, y_label="Flights", lines=lines, x_range=x_range, y_range=y_range, y_whole=True)
 

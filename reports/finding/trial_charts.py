@@ -6,7 +6,6 @@ import pandas as pd
 from measurement.estimate.verdict import COVERAGE
 from measurement.plume.passes import FOUND_WITHIN, HIT, passes
 from reports.document.chart import Chart, Line, Panel
-from reports.document.palette import Meaning
 from reports.document.panels import histogram
 from reports.finding.variants import Variant
 from reports.run.columns import Array, column
@@ -113,9 +112,7 @@ def _error_panel(variants: list[Variant]) -> Panel | None:
             lines.append(Line(x=deviation[known], y=error[known], label=variant.name, colour=variant.colour, style=variant.marker))
             most = max(most, 1.05 * float(np.max(deviation[known])))
     ends = np.array([0.0, most])
-    interval = [
-        Line(x=ends, y=side * COVERAGE * ends, label="95 % interval", colour=Meaning.LIMIT, style="dash") for side in (1.0, -1.0)
-    ]
+    interval = [Line(x=ends, y=side * COVERAGE * ends, label="95 % interval", colour="black", style="dash") for side in (1.0, -1.0)]
     return (
         Panel(x_label="Stated standard deviation [m]", y_label="Height believed minus true [m]", lines=[*lines, *interval])
         if lines

@@ -80,7 +80,7 @@ def _counted(key: str, values: Array, quantiles: list[dict[str, Any]]) -> Panel 
     marks = [
         (figure.scale * q["value"], label) for q in quantiles if q["probability"] in (0.05, 0.5, 0.95) and q["value"] is not None
     ]
-    return histogram([(figure.scale * _within(values), "flights", Meaning.FLOWN)], figure.label, marks)
+    return histogram([(figure.scale * _within(values), "flights", Meaning.FLOWN)], figure.label, marks, upright_colour="black")
 
 
 def _tail(near: Array, statistics: dict[str, Any]) -> Panel:

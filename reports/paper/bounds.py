@@ -30,8 +30,8 @@ def bounds_section(record: dict[str, Any]) -> Section:
 _BOUND = (
     "The paper's abstract announces sufficient conditions for the heading rate to stay within its bound; its text does not"
     " print them. docs/actuation_bounds.md derives one. The bound holds for law (30) in every state, at any distance and on any"
-    " course; beside it stands the largest command that a search over {samples:,} states, refined from the worst of them, comes"
-    " to."
+    " course; beside it stands the largest command that was found by a search over {samples:,} states, refined from the worst of"
+    " them."
 )
 
 _COST = (
@@ -116,14 +116,12 @@ def _cost_chart(rows: list[dict[str, Any]]) -> Chart:
             Panel(
                 x_label=x_label,
                 y_label="Estimated time to settle [s]",
-                lines=[Line(x=reserve, y=np.array([row["convergence_time_s"] for row in kept]), label="estimate", colour="blue")],
+                lines=[Line(x=reserve, y=np.array([row["convergence_time_s"] for row in kept]), label="", colour="black")],
             ),
             Panel(
                 x_label=x_label,
                 y_label="Crossing interval [s]",
-                lines=[
-                    Line(x=reserve, y=np.array([row["crossing_interval_s"] for row in kept]), label="interval", colour="orange")
-                ],
+                lines=[Line(x=reserve, y=np.array([row["crossing_interval_s"] for row in kept]), label="", colour="black")],
             ),
         ],
         columns=2,

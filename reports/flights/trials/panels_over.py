@@ -16,7 +16,7 @@ CLEARANCE = "Distance kept beyond r_min [m]"
 
 _OSCILLATIONS: tuple[tuple[str, str, str, Style], ...] = (
     ("sinusoid", "sinusoid", "grey", "dash"),
-    ("fastest", "fastest oscillation", "plum", "dash"),
+    ("fastest", "fastest oscillation", "black", "dash"),
 )
 """Shapes whose crossing interval is shown where another one is flown: name, label, colour and style."""
 

@@ -147,6 +147,15 @@ def test_an_axis_of_values_that_are_nearly_the_same_has_marks_of_few_digits_and_
     assert low < NEARLY_THE_SAME.min() < NEARLY_THE_SAME.max() < high
 
 
+def test_an_axis_of_values_that_are_all_the_same_is_as_long_on_the_screen_as_in_print():
+    # Largest heading rates, each at ω_max: Plotly by itself would draw 1 to both sides, and rates below 0.
+    line = Line(x=np.array([0.3, 0.6]), y=np.array([0.505, 0.505]), label="flight", colour="blue", style="points")
+    chart = Chart(name="a", caption="", panels=[Panel(x_label="x [-]", y_label="y [rad/s]", lines=[line])])
+    limits = plotly_charts.draw(chart)["layout"]["yaxis"]["range"]
+    assert limits == pytest.approx(matplotlib_charts.draw(chart).axes[0].get_ylim())
+    assert limits[0] > 0.4
+
+
 def test_no_axis_has_an_offset_where_its_limits_are_given_and_near_to_each_other():
     line = Line(x=np.array([0.3, 0.6]), y=NEARLY_THE_SAME, label="flight", colour="blue", style="points")
     panel = Panel(x_label="x [-]", y_label="y [rad/s]", lines=[line], y_range=(0.50492, 0.50498))

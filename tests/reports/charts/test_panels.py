@@ -49,3 +49,9 @@ def test_few_flights_are_counted_in_few_bars(flights, bars):
     # An outline has two points for each end of a bar.
     assert panel is not None
     assert len(panel.lines[0].x) == 2 * (bars + 1)
+
+
+def test_two_figures_of_three_flights_are_not_enough_for_a_histogram():
+    three = np.array([1.0, 2.0, 3.0])
+    assert histogram([(three, "largest", "black"), (three, "rms", "blue")], "Error [m]") is None
+    assert histogram([(np.arange(5.0), "largest", "black"), (three, "rms", "blue")], "Error [m]") is not None
