@@ -10,6 +10,7 @@ import pandas as pd
 from reports.compare.figures import MEASURES, Difference
 from reports.compare.pairs import Pairs
 from reports.compare.runs import Run
+from reports.document.axes import mark_text
 from reports.document.blocks import Table
 from reports.document.tables import ending, number
 from reports.monte_carlo.names import Figure
@@ -111,7 +112,11 @@ def signed(value: float, digits: int) -> str:
     """Return a difference with its sign: 0 where it is none at all, and two digits of one that is smaller than ``digits`` show."""
     if value == 0.0:
         return "0"
-    return number(value, "{:+.2g}" if abs(value) < 0.5 * 10.0**-digits else _pattern(digits, "+"))
+    if abs(value) >= 0.5 * 10.0**-digits:
+        return number(value, _pattern(digits, "+"))
+    small = number(value, "{:+.2g}")
+    mantissa, _, exponent = small.partition("e")
+    return f"{mantissa}·{mark_text(10.0 ** int(exponent))}" if exponent else small
 
 
 def _pattern(digits: int, sign: str = "") -> str:

@@ -174,8 +174,8 @@ def reversal_sentences(design: Record) -> str | None:
     said = (
         f"A reversal of the turn at {own['bank_deg']:.0f}° of bank is predicted by a dead time of {own['delay_s']:.2f} s and a lag"
         f" of {own['lag_s']:.2f} s. In {own['reversals']} reversals that a search flew the aircraft came up to"
-        f" {own['deviation_max_m']:.2f} m nearer to what it turned away from than predicted{_worst_case(own)}. Of the"
-        f" half of them that does not follow the worst ones 99 % stayed below {own['deviation_99_percent_m']:.2f} m."
+        f" {own['deviation_max_m']:.2f} m nearer to what it turned away from than predicted{_worst_case(own)}. Half of"
+        f" the reversals did not follow the worst ones: 99 % of these stayed below {own['deviation_99_percent_m']:.2f} m."
     )
     more = own.get("repeated_search")
     if more:

@@ -21,7 +21,10 @@ _NAME_MAX = 30
 _STEADY = 0.005
 """Change of the speed ratio up to which a vessel keeps her speed and course [-]."""
 
-_CALM = 0.05
+_MINUTES_MIN = 2.0
+"""Time of flight from which on it is told in minutes [min]."""
+
+CALM = 0.05
 """Speed of the wind below which air counts as still [m/s]."""
 
 
@@ -38,7 +41,7 @@ def flights_in_words(run: RunData, flown: pd.DataFrame) -> str:
     levels = levels[levels != "none"]
     changes = any(map(wind_changes, flight_configs(run, flown)))
     air = (
-        f"wind of {_range(wind)} m/s{' at the start' * changes}" if changes or np.nanmax(wind, initial=0.0) > _CALM else "still air"
+        f"wind of {_range(wind)} m/s{' at the start' * changes}" if changes or np.nanmax(wind, initial=0.0) > CALM else "still air"
     )
     some = f", in {len(levels):,} of them," * (len(levels) < len(flown))
     gusty = f" and{some} {' or '.join(map(str, levels.unique()))} turbulence" if len(levels) else ""
@@ -47,8 +50,10 @@ def flights_in_words(run: RunData, flown: pd.DataFrame) -> str:
 
 
 def simulated(flown: pd.DataFrame) -> str:
-    """Return how long all flights took together; less than an hour is told in minutes."""
+    """Return how long all flights took together; less than an hour is told in minutes, less than two minutes in seconds."""
     time = total(flown, "duration_s") / SECONDS_PER_HOUR
+    if 60.0 * time < _MINUTES_MIN:
+        return f"{SECONDS_PER_HOUR * time:.0f} s simulated"
     if time < 1.0:
         return f"{60.0 * time:.2g} min simulated"
     return f"{time:,.0f} h simulated" if time >= 100.0 else f"{time:.2g} h simulated"

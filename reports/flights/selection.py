@@ -9,6 +9,7 @@ import pandas as pd
 
 from reports.document.blocks import Block, FlightContent, FlightPicker, Section, Text
 from reports.document.tables import ending, number, outcome
+from reports.flights.first_page import CALM
 from reports.flights.flight_view import flight_view
 from reports.flights.names import flown_elsewhere, told_name
 from reports.flights.single_flight import flight_charts
@@ -30,6 +31,8 @@ _CLOSEST, _MEDIAN = "closest approach", "median of closest approaches"
 _LEAST_BEYOND, _MEDIAN_BEYOND = "least distance beyond its own r_min", "median of least distances beyond r_min"
 """The same of flights with different r_min."""
 
+_BY_CLEARANCE = "; where r_min differs, by the distance beyond each flight's own"
+
 _ALONE = "without a vessel"
 
 
@@ -41,16 +44,16 @@ def flight_section(trials: list[Trial]) -> Section:
         telling = {str(row["flight_id"]): why for _, row, why in picked}
         flights = [_of_sweep(trials[0], row, telling.get(str(row["flight_id"]), "")) for _, row in trials[0].rows.iterrows()]
         text = (
-            f"On the screen every flight of the sweep can be chosen. Printed are {len(telling)}, by what each shows:"
-            f" {', '.join(telling.values())}."
-            " The option --all-flights of plume-flight report prints them all."
+            f"report.html shows every flight of the sweep, report.pdf {len(telling)} of them, by what each shows:"
+            f" {', '.join(telling.values())}. With the option --all-flights, plume-flight report prints them all."
         )
     else:
+        several = any(radii_differ(beside_vessel(trial.rows)) for trial in trials)
         flights = [_content(trial, row, _state(row, why)) for trial, row, why in picked]
         text = (
-            "Of each trial the flights with the deepest keep-out violation and with a criterion that is not met, if there are such;"
-            " of those with a time history the closest approach, and the one nearest to the median of all closest approaches; where"
-            " r_min differs, by the distance beyond each flight's own."
+            f"{'Of each trial t' if len(trials) > 1 else 'T'}he flight with the deepest keep-out violation, and one with a"
+            " criterion that is not met, if there are such; of those with a time history the closest approach, and the one nearest"
+            f" to the median of all closest approaches{_BY_CLEARANCE * several}."
             if len(flights) > 1
             else _only(trials)
         )
@@ -81,6 +84,8 @@ def _content(trial: Trial, row: "pd.Series[Any]", state: str) -> FlightContent:
     if flown_elsewhere(trial):
         known[1], given = ("flown at ν = ", "nu", "{:.2f}"), given - {"nu"}
     flown = not pd.isna(row.get("duration_s"))
+    if float(row.get("wind_speed_mps") or 0.0) < CALM:
+        given = given | {"wind_speed_mps"}
     shown = [item for item in known if flown and item[1] not in given and not pd.isna(row.get(item[1]))]
     # A name, its figure and its unit stay on one line.
     world = ", ".join(f"{words}{number(row[key], pattern)}".replace(" ", "\N{NO-BREAK SPACE}") for words, key, pattern in shown)

@@ -46,6 +46,9 @@ _ALLOWED = "not required of every flight"
 _COMMAND, _DEMAND = (f"Heading rate {what}, largest, as a ratio to ω_max" for what in ("commanded", "demanded"))
 """Names of figures."""
 
+_ERROR = "Tracking error, rms after settling"
+"""Name of a figure, which goes on where it is of several flights."""
+
 _QUANTILE = 0.99
 """Fraction of flights whose tracking error is no larger than the one that is shown."""
 
@@ -95,11 +98,9 @@ def _headline(run: RunData, trials: list[Trial], flown: pd.DataFrame, planned: i
     if np.any(lost(rows) & ~passed(rows)):
         of = f"{planned:,} flight{'s' * (planned != 1)}"
         return f"{others[0].capitalize()}, of {of}{''.join(f', {other}' for other in others[1:])}. {kept}"
-    return (
-        f"{kept}; of {planned:,}, {', '.join(others)}"
-        if others
-        else f"{kept}; {'it' if planned == 1 else 'every flight'} met its criteria"
-    )
+    if planned == 1:
+        return f"{kept}; it {next((what for what, number_of in counts.items() if number_of), 'met its criteria')}"
+    return f"{kept}; of {planned:,}, {', '.join(others)}" if others else f"{kept}; every flight met its criteria"
 
 
 def _keeping_out(run: RunData, trials: list[Trial], flown: pd.DataFrame) -> str:
@@ -153,10 +154,10 @@ def _detail(run: RunData, trials: list[Trial], flown: pd.DataFrame, planned: int
         sentences.append("No bound on a probability follows from these flights: they are no random sample.")
     if "required" in rows and (rows["required"] == "keep_out").any():
         alone = rows[rows["required"] == "keep_out"]
+        are = "flight is" if len(alone) == 1 else "flights are"
         sentences.append(
-            f"Of {len(alone):,} flight{'s' * (len(alone) > 1)} it is required to keep out, not to complete:"
-            f" {count(kept_out(alone)):,} kept out,"
-            f" {count(completed(alone)):,} completed. The exit status is about the first."
+            f"{len(alone):,} {are} required to keep out, not to complete: {count(kept_out(alone)):,} kept out,"
+            f" {count(completed(alone)):,} completed. Of these the exit status counts those that kept out."
         )
     if run.manifest.get("state") != "complete":
         sentences.append(f"The run is {run.manifest.get('state', 'unfinished')}; continue it with --resume.")
@@ -221,7 +222,7 @@ def _figures(trials: list[Trial], flown: pd.DataFrame, planned: int) -> list[Car
         Card("Aircraft lost", f"{gone:,}", *(allowed or ("0", gone == 0))),
         *([Card("Plume crossings after settling", f"{crossings:,}")] if crossings else []),
         *(Card(name, worst) for name, worst in switched_off(trials)),
-        *_tracking(flown),
+        *(() if len(flown) == 1 and any(figure and figure.name.startswith(_ERROR) for figure in worst) else _tracking(flown)),
         Card(_COMMAND, "none") if command is None else Card(_COMMAND, f"{command:.3f}", "≤ 1", command <= 1.0 + ROUNDING),
     ]
     if any(trial.setting("guidance.tuning") == "bounded" for trial in trials):
@@ -262,9 +263,9 @@ def _tracking(flown: pd.DataFrame) -> list[Card]:
     if not len(known):
         return []
     if len(known) == 1:
-        return [Card("Tracking error, rms after settling", f"{known[0]:.3g} m")]
+        return [Card(_ERROR, f"{known[0]:.3g} m")]
     high = float(np.quantile(known, _QUANTILE))
-    name = f"Tracking error, rms after settling: {percent(_QUANTILE)} quantile of the flights, and their largest"
+    name = f"{_ERROR}: {percent(_QUANTILE)} quantile of the flights, and their largest"
     return [Card(name, f"{high:.3g} m, largest {known.max():.3g} m")]
 
 

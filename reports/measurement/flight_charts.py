@@ -167,7 +167,7 @@ def sulphur_track_chart(history: pd.DataFrame, about: Surroundings) -> Chart:
         ),
     ]
     caption = (
-        "CO2 along the track by its colour, as it was; in height with that of the plume's mean axis where it was crossed."
+        "The true CO2 concentration, as the colour of the track; in height with the plume's mean axis where it was crossed."
         f" {ship_words(about)}"
     )
     return Chart(name="sulphur-track", caption=caption, panels=panels, columns=2, panel_height=0.4, scale_label="CO2 [ppm]")

@@ -96,9 +96,8 @@ def sulphur_headline(run: RunData) -> str:
     bias, inside = _bias_and_coverage(measured)
     of = "" if len(measured) == len(sniffed) else f" of {len(sniffed):,}"
     return (
-        f"Fuel sulphur from {len(measured):,}{of} flights: mean difference from a perfect instrument"
-        f" {number(bias, '{:+.4f}')} {MASS_PERCENT}, whose reading lies within the 95 % interval in"
-        f" {percent(inside)} of them; {called_so}"
+        f"Fuel sulphur from {len(measured):,}{of} flights: on average {number(bias, '{:+.4f}')} {MASS_PERCENT} off what a perfect"
+        f" instrument reads, which the 95 % interval holds in {percent(inside)} of flights; {called_so}"
     )
 
 

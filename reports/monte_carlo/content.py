@@ -13,6 +13,9 @@ from reports.run.columns import radii_differ
 from reports.run.run_data import RunData
 from reports.run.trials import measured_from, shape_words
 
+_RARE = 0.5
+"""Probability below which it is told as one flight in so many."""
+
 
 def monte_carlo_sections(run: RunData) -> list[Section]:
     """Return the sections of a run with ``statistics.json``, and none of any other."""
@@ -44,10 +47,11 @@ def bound_in_words(statistics: dict[str, Any]) -> str:
     unknown = sum(found["flights"] for found in statistics["flights"]["unknown"].values())
     if not measured["flights"]:
         return "No flight was measured, so that no bound on the probability of a keep-out violation is known."
+    flights = f"{measured['flights']:,} flight{'s' * (measured['flights'] != 1)}"
+    rare = f", about one flight in {round(1.0 / measured['upper']):,}" if measured["upper"] < _RARE else ""
     words = (
-        f"With {confidence} confidence a flight of this study violates the keep-out area with a probability of at most"
-        f" {percent(measured['upper'])}, about one flight in {round(1.0 / measured['upper']):,}: {measured['events']:,} of"
-        f" {measured['flights']:,} flights did (one-sided bound of Clopper and Pearson)."
+        f"{measured['events']:,} of {flights} violated the keep-out area. With {confidence} confidence a flight of this study does"
+        f" so with a probability of at most {percent(measured['upper'])}{rare} (one-sided bound of Clopper and Pearson)."
     )
     if unknown:
         words += (
@@ -61,7 +65,7 @@ def bound_in_words(statistics: dict[str, Any]) -> str:
         )
     return words + (
         " The bound is on flights sampled as these were, in this simulation; it says nothing of what the simulation leaves out. It"
-        " is that of independent flights, and is kept for inputs from a low-discrepancy design, where it is too high as a rule."
+        " is that of independent flights; for inputs from a low-discrepancy design it is too high as a rule."
     )
 
 
@@ -69,7 +73,7 @@ def _spread(run: RunData, statistics: dict[str, Any]) -> list[Block]:
     several = radii_differ(run.summary)
     where = "beyond each flight's own r_min" if several else measured_from(shape_words(run.summary) or "sphere")
     text = (
-        f"Quantiles of the flights' figures, each with an interval in brackets that holds that of all such flights with"
+        f"Quantiles of the flights' figures. The interval in brackets contains the quantile of all such flights with"
         f" {percent(statistics['interval_confidence'])} confidence, whatever the distribution (from order statistics); a dash where"
         " there are too few flights for that side. Keep-out figures count from a flight's first second, the others from settling."
         f" Distances are {where}."

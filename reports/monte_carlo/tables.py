@@ -97,7 +97,8 @@ def left_out_rows(sensitivity: Record) -> list[str]:
         if found["message"]:
             # One reason for figures of which other numbers of flights are known: only its end is the same.
             reason = str(found["message"]).rpartition("; ")[2]
-            without.setdefault(reason, []).append(f"{FIGURES[key].name} ({found['flights']:,} flights)")
-    lines = [f"Without indices, as {reason}: {'; '.join(names)}." for reason, names in without.items()]
+            flights = f"{found['flights']:,} flight{'s' * (found['flights'] != 1)}"
+            without.setdefault(reason, []).append(f"{FIGURES[key].name} ({flights})")
+    lines = [f"No sensitivity indices of {'; '.join(names)}: {reason}." for reason, names in without.items()]
     reasons = {(key, why) for found in sensitivity.values() if not found["message"] for key, why in found["left_out"].items()}
     return [*lines, *(f"{input_name(key)} has no index: {why}." for key, why in sorted(reasons))]

@@ -170,7 +170,7 @@ def test_of_a_sweep_the_closest_flight_and_a_typical_one_are_printed_and_all_if_
     assert [flight_id for flight_id, flight in flights.items() if flight.printed] == list(flights)
     assert "closest approach" in flights["nu_0.90"].label
     (section,) = (section for section in report.sections if section.anchor == "flights")
-    assert " Printed are 3, by what each shows: " in section.blocks[0].text
+    assert "report.pdf 3 of them, by what each shows: " in section.blocks[0].text
     summary = pd.read_csv(copy / "summary.csv")
     more = summary[summary["flight_id"] == "nu_0.50"].assign(flight_id="nu_0.51", min_distance_m=215.0)
     pd.concat([summary, more]).to_csv(copy / "summary.csv", index=False)

@@ -108,7 +108,8 @@ def _over_key(trial: Trial, key: str, name: str) -> list[Chart]:
     """Return four figures over one key."""
     over = PanelsOver(trial, key, by_words(trial), by_words=True)
     interval = over.interval()
-    bank = "Largest commanded heading rate against ω_max, largest bank, and settling time."
+    settling = over.figure("settling_time_s", "Settling time [s]")
+    bank = f"Largest commanded heading rate against ω_max, {'largest bank, and settling time' if settling else 'and largest bank'}."
     if trial.setting("fidelity") == "kinematic":
         bank += " The kinematic vehicle has no bank: shown is that of a coordinated turn."
     charts = [
@@ -139,7 +140,7 @@ def _over_key(trial: Trial, key: str, name: str) -> list[Chart]:
             [
                 over.command(),
                 over.figure("bank_max_deg", "Largest bank [deg]"),
-                over.figure("settling_time_s", "Settling time [s]"),
+                settling,
             ],
             0.32, columns=3,
         ),
@@ -213,7 +214,7 @@ def _starts(trial: Trial) -> list[Chart]:
     settling, guard = column(rows, "settling_time_s"), column(rows, "guard_time_s")
     never: Group = (np.isnan(settling), "never settled", "black")
     guarded: list[Group] = [
-        (guard == 0.0, "no guard", "grey"),
+        (guard == 0.0, "no intervention", "grey"),
         (guard > 0.0, "guard changed commands", Meaning.GUARD),
     ]
     acted = bool(np.any(guard > 0.0))

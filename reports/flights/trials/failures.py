@@ -120,7 +120,7 @@ def tracking_lines(trial: Trial, *, only: bool = True) -> list[str]:
     nothing = f"nothing that the summary records {'explains it' if alone else 'sets them apart'}"
     why = f"after settling {told}" if told else nothing
     line = (
-        f"{which} tracking error, rms after settling, is {'' if alone else 'up to '}{np.nanmax(errors):.3g} m, above the"
+        f"{which} tracking error, rms after settling, is {'up to ' * (len(far) > 1)}{np.nanmax(errors):.3g} m, above the"
         f" {band:g} m within which a flight counts as settled, and no criterion limits it: {why}."
     )
     return [line if only else f"{trial.title}: {line[0].lower()}{line[1:]}"]
@@ -135,8 +135,9 @@ def _told_apart(far: pd.DataFrame, others: pd.DataFrame) -> list[str]:
     for words, mask in happened.items():
         here, there = count(mask[: len(far)]), count(mask[len(far) :])
         if here and here + there < len(mask):
-            elsewhere = f", of the others in {there:,} of {len(others):,}" if len(others) else ""
-            told.append(f"{words} (in {here:,} of these{elsewhere})")
+            these = [f"in {here:,} of these"] if len(far) > 1 else []
+            elsewhere = [f"of the others in {there:,} of {len(others):,}"] if len(others) else []
+            told.append(f"{words} ({', '.join([*these, *elsewhere])})")
     return told
 
 

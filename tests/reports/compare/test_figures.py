@@ -91,7 +91,7 @@ def test_values_that_are_nearly_0_are_written_with_as_many_digits_as_their_diffe
 
 
 @pytest.mark.parametrize(
-    ("value", "text"), [(0.0, "0"), (-0.0, "0"), (1234.56, "+1,234.6"), (-0.04, "−0.04"), (-0.06, "−0.1"), (1.5e-7, "+1.5e-07")]
+    ("value", "text"), [(0.0, "0"), (-0.0, "0"), (1234.56, "+1,234.6"), (-0.04, "−0.04"), (-0.06, "−0.1"), (1.5e-7, "+1.5·10⁻⁷")]
 )
 def test_a_difference_that_digits_would_hide_is_written_with_two(value, text):
     assert signed(value, 1) == text

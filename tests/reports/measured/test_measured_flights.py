@@ -108,8 +108,8 @@ def test_page_1_tells_the_fuel_with_interval_and_verdict_before_the_keep_out_are
         plain,
     )
     assert re.match(
-        r"Fuel sulphur from 12 flights: mean difference from a perfect instrument [+−]0\.\d{4} % m/m, whose reading lies within the"
-        r" 95 % interval in \d.* of them; \d+ above",
+        r"Fuel sulphur from 12 flights: on average [+−]0\.\d{4} % m/m off what a perfect instrument reads, which the 95 % interval"
+        r" holds in \d.* of flights; \d+ above",
         several.verdict.headline.replace("\N{NO-BREAK SPACE}", " "),
     )
 

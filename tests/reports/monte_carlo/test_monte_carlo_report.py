@@ -94,7 +94,8 @@ def test_the_bound_is_said_in_words_with_its_confidence_and_what_is_not_known(ru
     found = run.statistics["violation"]
     assert "With 95 % confidence" in words.replace("\N{NO-BREAK SPACE}", " ")
     assert f"at most {percent(found['measured']['upper'])}" in words
-    assert "1 of 249 flights did" in words
+    assert words.startswith("1 of 249 flights violated the keep-out area. With ")
+    assert f", about one flight in {round(1.0 / found['measured']['upper'])} (" in words
     assert "1 flight is of unknown end" in words
     assert f"the bound is {percent(found['pessimistic']['upper'])}" in words
     assert "looks" not in words
@@ -213,7 +214,7 @@ def test_why_there_are_no_indices_is_said():
     texts = [block.text for block in section.blocks if isinstance(block, Text)]
     # Two figures have indices at all here, each of 50 flights: one sentence, and not a word on how to read indices.
     without = "Distance kept beyond r_min (50 flights); Settling time (50 flights)"
-    assert texts == [f"Without indices, as indices take 200 at least: {without}."]
+    assert texts == [f"No sensitivity indices of {without}: indices take 200 at least."]
     assert charts_of(section) == {}
 
 

@@ -81,8 +81,8 @@ def test_where_a_fault_is_flown_on_purpose_a_lost_aircraft_is_shown_and_keeping_
     assert (report.verdict.holds, report.verdict.complete) == (True, False)
     assert report.verdict.headline.endswith("; of 4, 1 lost the aircraft")
     assert (
-        "required to keep out, not to complete: 1 kept out, 0 completed. The exit status is about the first."
-        in report.verdict.detail
+        "1 flight is required to keep out, not to complete: 1 kept out, 0 completed. Of these the exit status counts those that"
+        " kept out." in report.verdict.detail
     )
     assert ("Aircraft lost", "1", "not required of every flight", None) in report.verdict.figures
     assert rows_of(report, "Steady")[0][:6] == ["2", "2", "1", "1", "1", "2"]
@@ -94,6 +94,17 @@ def test_a_mission_that_was_not_completed_is_not_met_and_said(run):
     assert (report.verdict.holds, report.verdict.complete) == (True, False)
     assert report.verdict.headline.endswith("; of 4, 1 did not complete the mission")
     assert report.verdict.failures == ["steady_00000: incomplete; flew 1 of 3 crossings"]
+
+
+def test_of_a_flight_alone_the_headline_says_what_it_failed_and_no_figure_is_told_twice(run):
+    failed = with_values(run, 0, outcome="incomplete", message="flew 1 of 3 crossings", criteria_met=False, duration_s=64.0)
+    limited = with_criterion(failed, "steady", "tracking_error_rms_m", 2.5)
+    alone = replace(limited, summary=limited.summary.iloc[:1], manifest=limited.manifest | {"flights_planned": 1})
+    verdict = content(alone).verdict
+    assert verdict.headline == "No keep-out violation in 1 flight (64 s simulated); it did not complete the mission"
+    # The other trial, of which nothing is left, does not limit it.
+    names = [card.name for card in verdict.figures if card.name.startswith("Tracking error")]
+    assert names == ["Tracking error, rms after settling, worst of the trials that limit it"]
 
 
 def test_faults_that_began_are_named_on_page_1(run):
@@ -232,7 +243,7 @@ def test_what_no_criterion_asks_for_is_on_the_first_page_too(run):
     report = content(with_values(run, 2, tracking_error_rms_m=107.0, guard_lost_s=3.2, guard_interventions=1, manoeuvres_unflown=1))
     (tracking,) = (value for name, value, *_ in report.verdict.figures if "99" in name)
     assert tracking.endswith(" m, largest 107 m")
-    assert report.verdict.failures[0].startswith("Turns: in 1 of 2 flights the tracking error, rms after settling, is up to 107 m")
+    assert report.verdict.failures[0].startswith("Turns: in 1 of 2 flights the tracking error, rms after settling, is 107 m")
     assert report.verdict.failures[1:] == [
         "In 1 of 4 flights the guard could not hold its own radius, for up to 3.2 s.",
         "In 1 flight a manoeuvre of the vessel begins after the end of the flight, and was never flown.",
@@ -250,9 +261,9 @@ def test_a_large_tracking_error_that_no_criterion_limits_is_told_with_what_happe
     (line,) = content(with_values(limited, 3, **far)).verdict.failures
     # The vessel of the second trial turns at 150 s, in both flights; its settling band is the schema's, 5 m.
     assert line == (
-        "Turns: in 1 of 2 flights the tracking error, rms after settling, is up to 39 m, above the 5 m within which a flight counts"
-        " as settled, and no criterion limits it: after settling the keep-out guard changed commands (in 1 of these, of the others"
-        " in 0 of 1), the mode was 'outrun' for a time (in 1 of these, of the others in 0 of 1)."
+        "Turns: in 1 of 2 flights the tracking error, rms after settling, is 39 m, above the 5 m within which a flight counts"
+        " as settled, and no criterion limits it: after settling the keep-out guard changed commands (of the others in 0 of 1), the"
+        " mode was 'outrun' for a time (of the others in 0 of 1)."
     )
     # Of a trial with a criterion that tells; it is not judged by it where it does not have to settle.
     assert content(with_values(limited, 0, tracking_error_rms_m=39.04)).verdict.failures == []

@@ -37,6 +37,13 @@ def test_a_missing_history_is_said_and_other_flights_are_looked_at_instead(run_p
     assert "deepest keep-out violation" in picker.flights[0].title
 
 
+def test_still_air_has_no_wind_in_the_title_of_a_flight(run):
+    picker = flight_section(read_trials(with_values(run, 0, wind_speed_mps=0.0))).blocks[1]
+    titles = {flight.flight_id: flight.title for flight in picker.flights}
+    assert " wind" not in titles["steady_00000"].replace("\N{NO-BREAK SPACE}", " ")
+    assert " wind" in titles["steady_00001"].replace("\N{NO-BREAK SPACE}", " ")
+
+
 def test_flights_are_drawn_about_the_plume_as_the_trial_measured_them(run):
     for trial in read_trials(run):
         for _, row in trial.rows.iterrows():
