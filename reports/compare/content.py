@@ -80,7 +80,7 @@ def comparison_content(runs: Sequence[Run], compared: Sequence[Compared]) -> Con
     names = " and ".join(run.name for run in runs) if len(runs) == 2 else f"{runs[0].name} and {len(runs) - 1} others"
     return Content(
         title=f"Comparison of {len(runs)} runs",
-        letterhead=replace(letterhead(runs[0].data, {}), run=names),
+        letterhead=replace(letterhead(runs[0].data, {}), run=names, done=f"{runs[0].letter} flown"),
         description="",
         changes="",
         flown=f"{described}.",

@@ -28,6 +28,9 @@ _TWO_COLUMNS = 6
 
 _TIME = "Time [s]"
 
+_VESSEL_ERROR = "Vessel error [m]"
+_VESSEL_WORDS = " Vessel error: from where the vessel is to where the guidance takes her to be."
+
 
 def flight_charts(view: FlightView | None) -> list[Chart]:
     """Return the figures of one flight; none if it has no time history."""
@@ -50,10 +53,12 @@ class _Histories:
         panels = [replace(in_kilometres(panel), bands=bands) for panel in (make() for make in makers) if panel is not None]
         columns = 2 if len(panels) <= _TWO_COLUMNS else 3
         small = floor_words([self._view.samples])
+        vessel = _VESSEL_WORDS * any(panel.y_label == _VESSEL_ERROR for panel in panels)
         return Chart(
             name="histories",
-            caption=f"{flight_name(trial, self._view.row)}: time histories.{self._distance_words()}{small}{self._gap_words()}"
-            " Dashed in the panel of the heading rate: ω_max." + (" Tinted: the keep-out guard changed commands." if bands else ""),
+            caption=f"{flight_name(trial, self._view.row)}: time histories.{self._distance_words()}{small}{vessel}"
+            f"{self._gap_words()} Dashed in the panel of the heading rate: ω_max."
+            + (" Tinted: the keep-out guard changed commands." if bands else ""),
             panels=panels,
             columns=columns,
             share_x=True,
@@ -134,7 +139,7 @@ class _Histories:
         error = np.hypot(north, east)
         if not np.nanmax(error, initial=0.0) > NOTICEABLE:
             return None
-        return Panel(x_label=_TIME, y_label="Vessel off [m]", lines=[self._line(error)])
+        return Panel(x_label=_TIME, y_label=_VESSEL_ERROR, lines=[self._line(error)])
 
     def _rate_panel(self) -> Panel:
         limit = float(self._view.row["heading_rate_limit_rad_s"])

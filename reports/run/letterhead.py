@@ -24,7 +24,7 @@ class Letterhead:
     ----------
     run : name of the run
     when : date and time at which it began, in UTC, or that they were not recorded
-    done : what was done then, where the date of the run is not to be taken for that of the flight; else empty
+    done : what was done then, where the date is not to be taken for that of the flight, or of a report on several; else empty
     author, organisation : as given, or empty
     logo : as given, or None
     """

@@ -29,6 +29,7 @@ def test_the_report_says_what_was_changed_what_came_of_it_and_in_which_flights(r
         ["keepout.radius_m", "200", "230"],
         ["criteria.tracking_error_rms_m", "5", "1e-09"],
     ]
+    assert report.letterhead.dated == f"A flown {report.letterhead.when}"
     assert report.verdict.headline == "Of 3 pairs of flights, 3 no longer meet the criteria"
     assert report.verdict.holds
     assert not report.verdict.complete

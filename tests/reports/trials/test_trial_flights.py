@@ -58,6 +58,15 @@ def test_flights_are_drawn_about_the_plume_as_the_trial_measured_them(run):
             assert math.hypot(closest.x[0], closest.y[0]) == pytest.approx(row["min_distance_m"], abs=0.02)
 
 
+def test_the_caption_says_what_the_error_of_the_vessel_is_where_she_is_not_known_exactly(run):
+    shown = {}
+    for trial in read_trials(run):
+        histories = flight_charts(flight_view(trial, trial.rows.iloc[0]))[1]
+        shown[trial.key] = any(panel.y_label == "Vessel error [m]" for panel in histories.panels)
+        assert ("where the guidance takes her to be" in histories.caption) is shown[trial.key]
+    assert shown == {"steady": False, "turns": True}
+
+
 def test_flights_cross_the_axis_where_the_trial_found_crossings(run):
     trial = read_trials(run)[0]
     row = trial.rows.iloc[0]
