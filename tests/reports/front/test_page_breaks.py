@@ -94,3 +94,14 @@ def test_words_that_a_section_ends_with_stay_on_its_page_if_the_next_section_doe
     # Its heading goes along with its figure, and is also among the contents of page 1.
     assert "The next section" in texts[page_with(texts, "Caption of two") - 1]
     assert page_with(texts, "Caption of two") == page_with(texts, "Caption of one") + 1
+
+
+def test_a_table_without_room_for_a_row_below_its_caption_is_planned_on_the_next_page(tmp_path):
+    # Below the first figure there is room for the caption and the head of the table alone.
+    rows = [[f"row {i}", "word " * 40] for i in range(8)]
+    table = Table(head=["Row", "Words"], rows=rows, widths=[1.0, 3.0], breakable=True, caption="Rows. " + "Long caption. " * 36)
+    figures = [tall("two", 0.5), tall("three", 0.35), tall("four", 1.2)]
+    texts = pages_of([tall("one", 1.18), table, *figures], tmp_path / "report.pdf")
+    assert page_with(texts, "Rows.") == page_with(texts, "row 0") == page_with(texts, "Caption of one") + 1
+    # The third is smaller, beside the second, and not alone on a page before the fourth.
+    assert page_with(texts, "Caption of three") == page_with(texts, "Caption of two")
