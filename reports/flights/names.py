@@ -31,11 +31,11 @@ _BARE = ("none", "yes", "no", "not set")
 
 def flight_name(trial: Trial, row: "pd.Series[Any]") -> str:
     """Return what a flight is called in its trial: by what was swept, or as in the files of the run."""
-    flight_id = str(row["flight_id"])
-    if not trial.swept:
+    flight_id, values = str(row["flight_id"]), _values(trial, row)
+    if not values:
         return flight_id
     counted = re.search(r"_(\d+)$", flight_id)
-    first, *others = (_swept(trial, key, value) for key, value in _values(trial, row).items())
+    first, *others = (_swept(trial, key, value) for key, value in values.items())
     words = [first, *(words[0].lower() + words[1:] for words in others)]
     # Of several flights at the same values each has its number.
     return ", ".join([*words, *([f"flight {int(counted[1])}"] if counted and _repeated(trial) else [])])
@@ -52,7 +52,12 @@ def swept_column(trial: Trial) -> tuple[str, Callable[["pd.Series[Any]"], str]]:
     if len(trial.swept) > 1 or _repeated(trial):
         return "Flight", partial(flight_name, trial)
     (key,) = trial.swept
-    return "ν" if key == "nu" else input_name(key), lambda row: _value(key, _values(trial, row)[key], _numbers(trial, key))
+
+    def called(row: "pd.Series[Any]") -> str:
+        values = _values(trial, row)
+        return _value(key, values[key], _numbers(trial, key)) if values else str(row["flight_id"])
+
+    return "ν" if key == "nu" else input_name(key), called
 
 
 def swept_words(trial: Trial) -> dict[str, list[str]]:
@@ -80,9 +85,10 @@ def _repeated(trial: Trial) -> bool:
 
 
 def _values(trial: Trial, row: "pd.Series[Any]") -> dict[str, Any]:
-    """Return the values of a flight of what was swept."""
+    """Return the values of a flight of what was swept; none of one that was lost with its process, before it wrote any."""
     flight_id = str(row["flight_id"])
-    return {key: trial.input(_SPEED_RATIO if key == "nu" else key)[flight_id] for key in trial.swept}
+    values = {key: trial.input(_SPEED_RATIO if key == "nu" else key)[flight_id] for key in trial.swept}
+    return {} if any(_is_number(value) and math.isnan(value) for value in values.values()) else values
 
 
 def _words(trial: Trial) -> "dict[str, pd.Series[Any]]":

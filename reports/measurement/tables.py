@@ -35,7 +35,8 @@ def result_table(record: Record) -> Table:
     ]  # fmt: skip
     caption = (
         "The result by each method. Interval and probabilities above limits are of one distribution: the normal one of content and"
-        " standard uncertainty, without what is below 0. Where the interval begins at 0, the content is above its end with 5 %."
+        " standard uncertainty, without what is below 0. Where the interval begins at 0, the probability of a content above its end"
+        " is 5 %."
     )
     return Table(caption=caption, head=head, rows=rows, widths=[1.8, 1.2, 0.8, 1.9, 1.5, 0.7])
 

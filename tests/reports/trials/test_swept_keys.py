@@ -63,6 +63,18 @@ def test_a_flight_is_called_by_all_that_was_swept(trial):
     assert flight_name(trial, trial.rows.iloc[0]) == "ν = 0.20, keep-out radius 150 m, cascade"
 
 
+def test_a_flight_that_was_lost_with_its_process_is_called_as_in_the_files(trial):
+    # It has no row in draws.csv.
+    row = trial.rows.iloc[0]
+    lost = replace(trial, run=replace(trial.run, draws=trial.run.draws.iloc[1:]))
+    assert flight_name(lost, row) == str(row["flight_id"])
+    assert swept_column(lost)[1](row) == str(row["flight_id"])
+    run = replace(lost.run, manifest=lost.run.manifest | {"trial_flights": {lost.key: 1}})
+    head, called = swept_column(replace(lost, run=run, config=lost.config | {"sweep": {"nu": [0.2]}}))
+    assert (head, called(row)) == ("ν", str(row["flight_id"]))
+    assert flight_name(lost, trial.rows.iloc[1]) == flight_name(trial, trial.rows.iloc[1])
+
+
 def test_page_1_tells_of_flights_with_different_radii_how_far_each_stayed_beyond_its_own(trial):
     found = content(trial.run)
     kept = column(trial.rows, "min_distance_m") - column(trial.rows, "keepout_radius_m")
