@@ -14,6 +14,7 @@ from innerloop.designs.cache import cache_directory
 from innerloop.designs.designed import DesignError
 from reports.output import write_report
 from reports.run.run_data import read_run
+from scenarios.engine.in_process_executor import InProcessExecutor
 from scenarios.errors import InputError
 from scenarios.run import command
 from scenarios.schema.load import load_study
@@ -27,7 +28,7 @@ LOOSE = ["criteria.crossing_interval_error=0.1", "criteria.tracking_error_rms_m=
 
 
 def run(path, *overrides, name="sweep_nu"):
-    return run_study(load_study(name, [*SHORT, *overrides]), name, path)
+    return run_study(load_study(name, [*SHORT, *overrides]), name, path, executor_factory=InProcessExecutor)
 
 
 def exit_status(path, *overrides):
