@@ -112,13 +112,6 @@ def test_the_airspeed_is_trimmed_by_the_along_track_error_within_its_limit(along
     assert guidance.airspeed_command == pytest.approx(expected, abs=1e-12)
 
 
-def test_without_an_airspeed_gain_the_airspeed_stays():
-    guidance = make_guidance(make_reference(paper_oscillation(0.5)), airspeed_gain=0.0)
-    for step in range(3):
-        guidance.step(step * TIME_STEP, motion(-300.0, 0.0, 0.0))
-        assert guidance.airspeed_command == SPEED
-
-
 @pytest.mark.parametrize("answer", [0.2, -0.3, 0.0])
 def test_the_guards_answer_is_what_is_commanded(guarded_by, answer):
     guidance = guarded_by(RecordingGuard(answer))

@@ -119,8 +119,3 @@ def test_a_report_of_trials_is_set_for_their_list():
 def test_a_report_that_varies_from_flight_to_flight_is_refused(override, scenario):
     with pytest.raises(InputError, match=r"'report\.title' varies from flight to flight; a report is of all flights"):
         study_of(load_study(str(scenario), [override]), "short")
-
-
-def test_an_unknown_key_of_the_report_is_refused_with_the_known_one(scenario):
-    with pytest.raises(InputError, match=r"unknown key 'report\.titel'; did you mean 'report\.title'\?"):
-        load_study(str(scenario), ["report.titel=x"])

@@ -150,7 +150,7 @@ def test_a_run_that_another_process_is_writing_is_refused_and_one_that_was_kille
     try:
         assert opened.wait(30.0)
         assert_refused(compared(*copies), "another program is writing to", str(copies[1]))
-        assert_refused(run_command("reports.build", copies[1]), "another program is writing to")
+        assert_refused(run_command("reports.build", copies[1]), "another program is writing to", "; wait until it has ended")
     finally:
         writer.kill()
         writer.join()

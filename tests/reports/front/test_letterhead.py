@@ -2,7 +2,6 @@
 
 import json
 import shutil
-import sqlite3
 
 import pytest
 from PIL import Image
@@ -120,18 +119,3 @@ def test_a_run_directory_without_a_version_is_read(run_path):
     assert manifest.pop("format") == 1
     (run_path / "manifest.json").write_text(json.dumps(manifest), encoding="utf-8")
     assert content(read_run(run_path)).title == "Short"
-
-
-def test_a_run_that_another_program_is_writing_is_refused_and_one_that_was_killed_is_not(run_path):
-    changed(run_path, state="running")
-    assert read_run(run_path).manifest["state"] == "running"
-    writing = sqlite3.connect(run_path / "journal.sqlite", isolation_level=None)
-    try:
-        # As the engine's journal holds it (scenarios.engine.journal).
-        writing.execute("PRAGMA locking_mode = EXCLUSIVE")
-        writing.execute("PRAGMA journal_mode = WAL")
-        writing.execute("CREATE TABLE more (number INTEGER)")
-        with pytest.raises(ReportError, match=r"another program is writing to '.*'; wait until it has ended"):
-            read_run(run_path)
-    finally:
-        writing.close()

@@ -115,32 +115,6 @@ def test_what_was_drawn_for_each_flight_is_a_table(whole):
     assert [row["nu"] for row in drawn] == [row["nu"] for row in flown]
 
 
-def test_an_interrupted_run_keeps_what_is_done_and_resumes_to_the_same_result(listed, whole, tmp_path):
-    interrupts = []
-
-    def interrupt_once(doing, done, total):
-        if done == 2 and not interrupts:
-            interrupts.append(done)
-            raise KeyboardInterrupt
-
-    broken = tmp_path / "broken"
-    result = run(listed, broken, progress=interrupt_once)
-    assert result.interrupted
-    assert 2 <= result.summary.done == len(rows_of(broken)) < 8
-    assert json.loads((broken / "manifest.json").read_text(encoding="utf-8"))["state"] == "interrupted"
-    flown = []
-
-    def count(doing, done, total):
-        flown.append(done)
-
-    kept = result.summary.done
-    result = run(listed, broken, resume=True, progress=count)
-    assert not result.interrupted
-    # It goes on where it was, after the design of the autopilot.
-    assert flown[1:] == list(range(kept, 9))
-    assert same(whole, broken)
-
-
 def test_a_run_is_resumed_with_the_same_trials_only(tmp_path):
     listed = written(tmp_path)
     run(listed, tmp_path / "run", "share=0.1")
@@ -248,13 +222,6 @@ def state_of(directory):
     """Return content and time of every file."""
     files = (path for path in sorted(directory.rglob("*")) if path.is_file())
     return {path.relative_to(directory).as_posix(): (path.read_bytes(), path.stat().st_mtime_ns) for path in files}
-
-
-def test_a_resumed_list_that_had_nothing_to_do_rewrites_nothing(listed, whole, tmp_path):
-    shutil.copytree(whole, tmp_path / "run")
-    before = state_of(tmp_path / "run")
-    assert not run(listed, tmp_path / "run", resume=True).changed
-    assert state_of(tmp_path / "run") == before
 
 
 def test_a_table_that_somebody_has_changed_is_written_again(listed, whole, tmp_path):
