@@ -1,7 +1,6 @@
 """What a resumed run rewrites, removes and begins anew."""
 
 import functools
-import json
 import multiprocessing
 import os
 import time
@@ -11,6 +10,7 @@ from engine_cases import TABLE, Squares, SquareStudy, fly, interrupt_at
 
 from scenarios.engine.run_directory import RunDirectory
 from scenarios.errors import InputError
+from tests.run_tables import change_manifest, manifest_of
 
 
 def state_of(out):
@@ -58,11 +58,10 @@ def test_a_run_that_goes_on_has_no_report_of_how_it_was_before(marks, out):
 def test_the_duration_of_a_run_is_that_of_all_its_sessions(marks, out):
     study = SquareStudy(Squares(marks=marks))
     fly(study, out, progress=interrupt_at(3))
-    manifest = json.loads((out / "manifest.json").read_text(encoding="utf-8"))
     # As if the first session had taken an hour.
-    (out / "manifest.json").write_text(json.dumps(manifest | {"wall_time_s": 3600.0}), encoding="utf-8")
+    change_manifest(out, wall_time_s=3600.0)
     assert fly(study, out, resume=True).all_met
-    assert 3600.0 < json.loads((out / "manifest.json").read_text(encoding="utf-8"))["wall_time_s"] < 3700.0
+    assert 3600.0 < manifest_of(out)["wall_time_s"] < 3700.0
 
 
 @pytest.mark.parametrize("resume", [False, True])

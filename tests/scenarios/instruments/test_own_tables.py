@@ -1,6 +1,5 @@
 """A ship and a sniffer of one's own, as tables in a scenario file."""
 
-import json
 from pathlib import Path
 
 import pandas as pd
@@ -14,6 +13,7 @@ from scenarios.schema.load import load_study
 from scenarios.studies.checks import check_without_design
 from scenarios.world.exhaust import emission
 from tests.in_process import run_command
+from tests.run_tables import manifest_of
 
 EXAMPLE = str(Path(__file__).parents[3] / "docs" / "examples" / "own_ship.toml")
 QUICK = (
@@ -38,7 +38,7 @@ def test_the_example_measures_with_its_own_sniffer_beside_its_own_ship(run):
     changed = (history["co2_reading_ppm"].diff() != 0.0).mean()
     assert 0.17 < changed <= 0.21
     assert load_study(EXAMPLE).source_height == 22.0
-    config = json.loads((run / "manifest.json").read_text(encoding="utf-8"))["trials"]["own_ship"]
+    config = manifest_of(run)["trials"]["own_ship"]
     assert config["emission"]["ship"]["stack_height"] == 22.0
     assert config["payload"]["sensor"]["channels"]["so2"]["t90_s"] == 15.0
 

@@ -11,7 +11,7 @@ from scenarios.engine.in_process_executor import InProcessExecutor
 from scenarios.errors import InputError
 from scenarios.schema.load import load_study
 from scenarios.studies.registry import run_study, study_of
-from tests.run_tables import rows_of
+from tests.run_tables import manifest_of, rows_of
 from tests.scenarios.short_trial import short_trial
 
 TRIAL = short_trial(flights=4, duration=4.0, rate=5.0)
@@ -81,7 +81,7 @@ def test_a_share_of_the_flights_is_the_first_ones_of_each_trial(listed, whole, t
 def test_a_key_of_the_trials_is_set_in_every_one(listed, tmp_path):
     run(listed, tmp_path / "run", "keepout.radius_m=150", "seed=5", "share=0.1")
     assert [row["keepout_radius_m"] for row in rows_of(tmp_path / "run")] == [150.0, 150.0]
-    manifest = json.loads((tmp_path / "run" / "manifest.json").read_text(encoding="utf-8"))
+    manifest = manifest_of(tmp_path / "run")
     assert {trial["seed"] for trial in manifest["trials"].values()} == {5}
     assert {trial["keepout"]["radius_m"] for trial in manifest["trials"].values()} == {150.0}
     assert manifest["flights_planned"] == 2
