@@ -6,7 +6,7 @@ import os
 import time
 
 import pytest
-from engine_cases import TABLE, Squares, SquareStudy, fly, interrupt_at
+from engine_cases import TABLE, Squares, SquareStudy, begun, fly, interrupt_at
 
 from scenarios.engine.run_directory import RunDirectory
 from scenarios.errors import InputError
@@ -43,6 +43,8 @@ def test_a_resumed_run_makes_what_is_missing_and_leaves_the_rest(marks, out):
     assert after[TABLE][0] == before[TABLE][0]
     differing = {name for name in {*before, *after} if before.get(name) != after.get(name)}
     assert differing == {TABLE, "manifest.json"}
+    # Nothing is flown for it.
+    assert [begun(marks, number) for number in range(8)] == [1] * 8
 
 
 def test_a_run_that_goes_on_has_no_report_of_how_it_was_before(marks, out):

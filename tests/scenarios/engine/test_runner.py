@@ -65,15 +65,6 @@ def test_results_stand_in_the_table_though_what_follows_from_them_fails_and_the_
     assert [begun(marks, number) for number in range(8)] == [1] * 8
 
 
-def test_a_run_that_is_done_can_be_gone_on_with_and_flies_nothing(marks, out, whole):
-    study = SquareStudy(Squares(marks=marks))
-    fly(study, out)
-    (out / TABLE).unlink()
-    assert fly(study, out, resume=True).all_met
-    assert [begun(marks, number) for number in range(8)] == [1] * 8
-    assert (out / TABLE).read_bytes() == whole
-
-
 def test_a_run_that_was_killed_before_its_tables_were_written_goes_on_too(marks, out, whole):
     study = SquareStudy(Squares(marks=marks))
     fly(study, out, progress=interrupt_at(5))
