@@ -175,15 +175,6 @@ def test_a_run_is_no_scenario_and_its_flights_are_replayed_by_name(tmp_path, run
         assert_refused(run_here(name), "'a' is a run, not a scenario; to replay one of its flights, give a/flights/ID")
 
 
-def test_a_report_of_nothing_is_refused(tmp_path):
-    in_process.assert_refused(in_process.run_command("reports.build", tmp_path), "holds no run")
-
-
-def test_an_unknown_aircraft_cannot_be_designed_for(tmp_path):
-    refused = in_process.run_command("innerloop.design", "zeppelin", "--out", tmp_path)
-    in_process.assert_refused(refused, "unknown aircraft 'zeppelin'")
-
-
 def test_flights_that_miss_a_criterion_or_cannot_be_flown_are_exit_status_1(tmp_path, run_here):
     out = tmp_path / "run"
     result = run_here(
