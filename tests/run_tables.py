@@ -1,10 +1,26 @@
-"""Reading what a run or a flight left: rows of its tables, and time histories."""
+"""Reading what a run or a flight left: its manifest, rows of its tables, and time histories."""
 
 import io
+import json
 
 import pandas as pd
 
 from common.run_layout import HISTORY_SUFFIX
+
+
+def manifest_of(run):
+    """Return a run's manifest."""
+    return json.loads((run / "manifest.json").read_text(encoding="utf-8"))
+
+
+def write_manifest(run, manifest):
+    """Write a manifest in the place of a run's own."""
+    (run / "manifest.json").write_text(json.dumps(manifest), encoding="utf-8")
+
+
+def change_manifest(run, **entries):
+    """Have a run's manifest say something else."""
+    write_manifest(run, manifest_of(run) | entries)
 
 
 def rows_of(directory, table="summary.csv"):

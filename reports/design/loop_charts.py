@@ -32,7 +32,7 @@ def turned(loop: Record) -> Array:
     return shifted
 
 
-def disk_region(gain_margin_db: float, points: int = 181) -> tuple[Array, Array]:
+def disk_region(gain_margin_db: float) -> tuple[Array, Array]:
     """Return phase [deg] and gain [dB] of the outline of the region that a disk margin keeps an open loop out of.
 
     Factors (1 + c d)/(1 - c d) with abs(d) <= 1 are those that the loop bears; c follows from the largest real one, which is the
@@ -40,7 +40,7 @@ def disk_region(gain_margin_db: float, points: int = 181) -> tuple[Array, Array]
     disk margins, IEEE Control Systems Magazine, 2020).
     """
     largest = 10.0 ** (gain_margin_db / 20.0)
-    change = (largest - 1.0) / (largest + 1.0) * np.exp(1j * np.linspace(0.0, 2.0 * np.pi, points))
+    change = (largest - 1.0) / (largest + 1.0) * np.exp(1j * np.linspace(0.0, 2.0 * np.pi, 181))
     factor = (1.0 - change) / (1.0 + change)
     return _CRITICAL + np.degrees(np.angle(factor)), 20.0 * np.log10(np.abs(factor))
 

@@ -176,9 +176,9 @@ class Chart:
         return (float(known.min()), float(known.max())) if len(known) else None
 
 
-def circle(radius: float, points: int = 181) -> tuple[Array, Array]:
+def circle(radius: float) -> tuple[Array, Array]:
     """Return the outline of a circle about the origin."""
-    angle = np.linspace(0.0, 2.0 * np.pi, points)
+    angle = np.linspace(0.0, 2.0 * np.pi, 181)
     return radius * np.cos(angle), radius * np.sin(angle)
 
 

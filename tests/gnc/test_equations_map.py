@@ -1,6 +1,7 @@
 """gnc/EQUATIONS.md is complete, and everything it names exists (house style 4)."""
 
 import ast
+import functools
 import importlib
 import inspect
 import re
@@ -31,6 +32,12 @@ def resolve(name):
     return getattr(importlib.import_module(module), attribute)
 
 
+@functools.cache
+def tree_of(file):
+    """Return the syntax tree of a file, by its path from the root."""
+    return ast.parse((ROOT / file).read_text(encoding="utf-8"))
+
+
 def module_of(path):
     """Return the dotted name of a file of gnc."""
     return ".".join(path.relative_to(ROOT).with_suffix("").parts)
@@ -39,14 +46,14 @@ def module_of(path):
 def docstrings():
     """Yield file name and docstring of every module, class and function of gnc."""
     for path in sorted((ROOT / "gnc").rglob("*.py")):
-        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        for node in ast.walk(tree_of(path)):
             if isinstance(node, ast.Module | ast.ClassDef | ast.FunctionDef):
                 yield path.name, ast.get_docstring(node) or ""
 
 
 def names_used(file, function):
     """Return the names that a test uses, and those that the helpers use which it uses, in its file and in gnc_cases.py."""
-    trees = [ast.parse((ROOT / path).read_text(encoding="utf-8")) for path in ("tests/gnc/cases/gnc_cases.py", file)]
+    trees = [tree_of("tests/gnc/cases/gnc_cases.py"), tree_of(file)]
     bodies = {node.name: node for tree in trees for node in tree.body if isinstance(node, ast.FunctionDef | ast.ClassDef)}
     bodies |= {
         target.id: node
@@ -96,8 +103,7 @@ def test_each_named_function_exists_and_cites_its_equations(name):
 @pytest.mark.parametrize("test", TESTS)
 def test_each_named_test_exists(test):
     file, _, function = test.partition("::")
-    tree = ast.parse((ROOT / file).read_text(encoding="utf-8"))
-    assert function in {node.name for node in tree.body if isinstance(node, ast.FunctionDef)}
+    assert function in {node.name for node in tree_of(file).body if isinstance(node, ast.FunctionDef)}
 
 
 def test_every_equation_cited_in_gnc_is_in_the_map():
@@ -109,7 +115,7 @@ def test_every_equation_cited_in_gnc_is_in_the_map():
 
 def test_every_place_where_gnc_says_that_it_differs_is_in_the_list_of_differences():
     for path in sorted((ROOT / "gnc").rglob("*.py")):
-        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        for node in ast.walk(tree_of(path)):
             if isinstance(node, ast.ClassDef | ast.FunctionDef) and "differs " in (ast.get_docstring(node) or "").lower():
                 assert f"`{module_of(path)}.{node.name}`" in DIFFERENCES
 

@@ -50,14 +50,6 @@ def test_two_moves_make_one(course, speed, heading_rate, first, second):
     assert end == pytest.approx(unicycle_move(0.0, 0.0, course, speed, heading_rate, first + second), rel=0.0, abs=1e-8)
 
 
-def test_a_full_turn_returns_to_the_start():
-    heading_rate = 0.25
-    north, east, course = unicycle_move(3.0, 4.0, 1.0, 20.0, heading_rate, 2.0 * math.pi / heading_rate)
-    # Rounding of a 500 m circumference.
-    assert (north, east) == pytest.approx((3.0, 4.0), abs=1e-11)
-    assert course == pytest.approx(1.0 + 2.0 * math.pi, abs=1e-14)
-
-
 def test_half_a_turn_ends_a_diameter_away_on_the_side_of_the_turn():
     # Radius v/omega, from equation (1) with constant omega: 20/0.25 = 80 m; to the right, east of a northbound vehicle.
     assert unicycle_move(0.0, 0.0, 0.0, 20.0, 0.25, math.pi / 0.25) == pytest.approx((0.0, 160.0, math.pi), abs=1e-12)

@@ -7,6 +7,7 @@ import pytest
 from reports.registry import content
 from reports.run.run_data import read_run
 from tests.in_process import run_command
+from tests.run_tables import manifest_of
 
 HEIGHT = ("--altitude", 60.0)
 """That of the designs that other tests have too."""
@@ -19,7 +20,7 @@ def test_the_command_leaves_a_directory_that_can_be_reported_on_again_and_may_re
     assert {"manifest.json", "innerloop.json", "report.html", "report.pdf", "model"} <= {
         p.name for p in (tmp_path / "x8").iterdir()
     }
-    manifest = json.loads((tmp_path / "x8" / "manifest.json").read_text(encoding="utf-8"))
+    manifest = manifest_of(tmp_path / "x8")
     assert (manifest["study"], manifest["name"]) == ("design", "x8")
     assert manifest["packages"]["jsbsim"]
     assert content(read_run(tmp_path / "x8")).verdict.headline in ended.out

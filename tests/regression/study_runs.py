@@ -5,6 +5,7 @@ from pathlib import Path
 
 import pandas as pd
 
+from scenarios.engine.in_process_executor import InProcessExecutor
 from scenarios.schema.load import load_study
 from scenarios.studies.registry import run_study
 from tests.run_tables import rows_of
@@ -29,7 +30,7 @@ class StudyRun:
 def fly_study(path, aircraft, *overrides, nus=(0.5,)):
     """Fly the sweep at some speed ratios with nothing else changed, in one process."""
     words = [f"aircraft={aircraft}", f"sweep.nu={list(nus)}", "comparison.variants=[]", *overrides]
-    run_study(load_study("sweep_nu", words), "sweep_nu", path)
+    run_study(load_study("sweep_nu", words), "sweep_nu", path, executor_factory=InProcessExecutor)
     return StudyRun(path=path, rows={row["nu"]: row for row in rows_of(path)})
 
 

@@ -6,6 +6,7 @@ The guard kept off where the vessel was predicted; a report that moved her, a lo
 import pandas as pd
 import pytest
 
+from scenarios.engine.in_process_executor import InProcessExecutor
 from scenarios.schema.load import load_study
 from scenarios.studies.registry import run_study
 
@@ -43,7 +44,7 @@ def test_corners_that_a_search_has_found_are_kept_out_of(settings, tmp_path):
     name, *overrides = settings
     comparisons = ["comparison.variants=[]"] if name == "sweep_nu" else []
     study = load_study(name, [*overrides, *comparisons])
-    run_study(study, name, tmp_path / "run")
+    run_study(study, name, tmp_path / "run", executor_factory=InProcessExecutor)
     rows = pd.read_csv(tmp_path / "run" / "summary.csv")
     # None of them was refused: every one has a closest approach.
     assert (rows["min_distance_m"] >= rows["keepout_radius_m"]).all()
@@ -60,7 +61,7 @@ def test_an_aircraft_that_is_gaining_speed_turns_away_as_predicted(tmp_path):
         "flight.duration_max_s": 150, "flight.crossings": 0,
     }  # fmt: skip
     study = load_study("sea_wind", ["draws=[]", "flights=1", *(f"{key}={value}" for key, value in keys.items())])
-    run_study(study, "sea_wind", tmp_path / "run")
+    run_study(study, "sea_wind", tmp_path / "run", executor_factory=InProcessExecutor)
     (row,) = pd.read_csv(tmp_path / "run" / "summary.csv").to_dict("records")
     assert row["guard_time_s"] > 1.0
     assert row["min_distance_m"] > row["keepout_radius_m"] + 0.5
@@ -80,7 +81,8 @@ def test_a_vehicle_that_takes_on_any_airspeed_at_once_keeps_out(tmp_path, nu, fl
     words = ["fidelity=kinematic", "keepout.radius_m=50", "start.distance_m=[70,300]", "start.spread_deg=180", f"sweep.nu=[{nu}]"]
     flight = ["flights=1", f"flight_seed={flight_seed}", "flight.duration_max_s=200", "flight.crossings=0"]
     law = ["comparison.variants=[]", "guidance.approach=false", *(f"guidance.{key}={value}" for key, value in keys.items())]
-    run_study(load_study("sweep_nu", [*words, *flight, *law]), "sweep_nu", tmp_path / "run")
+    study = load_study("sweep_nu", [*words, *flight, *law])
+    run_study(study, "sweep_nu", tmp_path / "run", executor_factory=InProcessExecutor)
     rows = pd.read_csv(tmp_path / "run" / "summary.csv")
     assert rows["guard_interventions"].sum() > 0
     assert (rows["min_distance_m"] > rows["keepout_radius_m"]).all()

@@ -6,6 +6,7 @@ The commands are those of the search, each with one or two of the flights that h
 import pandas as pd
 import pytest
 
+from scenarios.engine.in_process_executor import InProcessExecutor
 from scenarios.schema.load import load_study
 from scenarios.studies.registry import run_study
 
@@ -27,7 +28,7 @@ def flown(tmp_path, *overrides, table=None):
         (tmp_path / "wind.csv").write_text(table)
         overrides = (*overrides, f"wind.table={tmp_path / 'wind.csv'}")
     study = load_study("sea_wind", [*NOWHERE, *overrides])
-    run_study(study, "sea_wind", tmp_path / "run")
+    run_study(study, "sea_wind", tmp_path / "run", executor_factory=InProcessExecutor)
     return pd.read_csv(tmp_path / "run" / "summary.csv")
 
 

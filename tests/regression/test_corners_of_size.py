@@ -3,6 +3,7 @@
 import pandas as pd
 import pytest
 
+from scenarios.engine.in_process_executor import InProcessExecutor
 from scenarios.schema.load import load_study
 from scenarios.studies.registry import run_study
 
@@ -24,7 +25,7 @@ def flown(tmp_path, *overrides):
     """Return the rows of flights of ``sea_wind`` whose law flies at the ship."""
     (tmp_path / "law.py").write_text(AT_HER)
     keys = ["draws=[]", "flight.crossings=0", "guidance.mission=standoff", f"guidance.law={tmp_path / 'law.py'}:AtHer", *overrides]
-    run_study(load_study("sea_wind", keys), "sea_wind", tmp_path / "run")
+    run_study(load_study("sea_wind", keys), "sea_wind", tmp_path / "run", executor_factory=InProcessExecutor)
     return pd.read_csv(tmp_path / "run" / "summary.csv")
 
 

@@ -6,6 +6,7 @@ import pytest
 from reports.registry import content
 from reports.render.html import write_html
 from reports.run.run_data import read_run
+from scenarios.engine.in_process_executor import InProcessExecutor
 from scenarios.schema.load import load_study
 from scenarios.studies.registry import run_study
 
@@ -22,7 +23,7 @@ def directory(tmp_path_factory):
         "flight.crossings=10",
     ]
     scenario = load_study("sweep_nu", overrides)
-    result = run_study(scenario, "sweep_nu", path, overrides=overrides)
+    result = run_study(scenario, "sweep_nu", path, executor_factory=InProcessExecutor, overrides=overrides)
     assert result.all_met
     return path
 

@@ -5,7 +5,7 @@ import json
 import pandas as pd
 import pytest
 
-from scenarios.engine.executors import ExecutorFactory
+from scenarios.engine.in_process_executor import InProcessExecutor
 from scenarios.schema.load import load_study
 from scenarios.studies.registry import run_study
 
@@ -16,7 +16,7 @@ FLIGHTS = 6
 def directory(tmp_path_factory):
     out = tmp_path_factory.mktemp("monte_carlo") / "run"
     scenario = load_study("monte_carlo", [f"flights={FLIGHTS}", "flight.duration_max_s=60", "histories=1"])
-    run_study(scenario, "monte_carlo", out, executor_factory=ExecutorFactory(jobs=2))
+    run_study(scenario, "monte_carlo", out, executor_factory=InProcessExecutor)
     return out
 
 

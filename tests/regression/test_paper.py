@@ -16,6 +16,7 @@ from reports.document.blocks import Table
 from reports.registry import content
 from reports.render.html import write_html
 from reports.run.run_data import read_run
+from scenarios.engine.in_process_executor import InProcessExecutor
 from scenarios.schema.load import load_study
 from scenarios.studies import paper
 from scenarios.studies.registry import run_study
@@ -33,7 +34,7 @@ def directory(tmp_path_factory):
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(paper, "SEARCH_STATES", 50_000)
         patch.setattr(paper, "RESERVES", FEW_RESERVES)
-        result = run_study(load_study("paper"), "paper", path)
+        result = run_study(load_study("paper"), "paper", path, executor_factory=InProcessExecutor)
     assert result.planned == result.summary.done == len(rows_of(path)) == 8
     return path
 
@@ -206,7 +207,7 @@ def few_bounds(monkeypatch):
 
 def test_the_kinematic_half_flies_alone(tmp_path, few_bounds):
     scenario = load_study("paper", ["fidelity=kinematic", "guidance.rate_hz=10", "flight.crossings=10"])
-    result = run_study(scenario, "paper", tmp_path / "run")
+    result = run_study(scenario, "paper", tmp_path / "run", executor_factory=InProcessExecutor)
     assert [row["flight_id"] for row in rows_of(tmp_path / "run")] == [
         "sim1_kinematic",
         "sim2_delta_kinematic",
@@ -232,7 +233,7 @@ def test_the_kinematic_half_flies_alone(tmp_path, few_bounds):
 def test_what_is_not_the_papers_is_not_called_reproduced(changes, headline, tmp_path, few_bounds):
     # An override has its way in every case, also where the case sets that key; report and exit status then agree.
     scenario = load_study("paper", ["fidelity=kinematic", "guidance.rate_hz=10", "flight.crossings=10", *changes])
-    result = run_study(scenario, "paper", tmp_path / "run")
+    result = run_study(scenario, "paper", tmp_path / "run", executor_factory=InProcessExecutor)
     assert not result.all_met
     report = content(read_run(tmp_path / "run"))
     assert report.verdict.headline == headline
@@ -252,7 +253,7 @@ def test_what_is_not_the_papers_is_not_called_reproduced(changes, headline, tmp_
 def test_a_study_of_cases_with_a_sniffer_has_its_sulphur_statistics(tmp_path, few_bounds):
     overrides = ["study=paper", 'cases=[{name="one"}]', "fidelity=kinematic"]
     short = ["flight.after_settling_s=1", "flight.duration_max_s=3"]
-    run_study(load_study("sulphur", [*overrides, *short]), "sulphur", tmp_path / "run")
+    run_study(load_study("sulphur", [*overrides, *short]), "sulphur", tmp_path / "run", executor_factory=InProcessExecutor)
     # Too short for a result: its tables are empty, but they are there, and so are the bounds.
     assert json.loads((tmp_path / "run" / "sulphur.json").read_text(encoding="utf-8"))["accuracy"] == []
     assert (tmp_path / "run" / "bounds.json").is_file()

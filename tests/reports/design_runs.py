@@ -5,6 +5,8 @@ import math
 
 import numpy as np
 
+from tests.run_tables import write_manifest
+
 AIRSPEEDS = [45.0, 50.0, 55.0, 60.0, 65.0]
 BANKS_DEG = [-33.0, -27.0, -21.0, -13.0, 0.0, 13.0, 21.0, 27.0, 33.0]
 LOOPS = ("elevator", "aileron", "throttle", "rudder", "airspeed", "altitude", "heading_rate", "sideslip")
@@ -18,7 +20,7 @@ def write_design(path, **changes):
     for folder, name in (("aircraft/c172x", "c172x"), ("systems", "c172x_autopilot"), ("scripts", "c172x")):
         (path / "model" / folder).mkdir(parents=True, exist_ok=True)
         (path / "model" / folder / f"{name}.xml").write_text("<xml/>", encoding="utf-8")
-    (path / "manifest.json").write_text(json.dumps(manifest()), encoding="utf-8")
+    write_manifest(path, manifest())
     text = json.dumps({**record(), **changes}, allow_nan=False)
     (path / "innerloop.json").write_text(text, encoding="utf-8")
     return path

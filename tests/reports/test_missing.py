@@ -1,6 +1,5 @@
 """Pieces of a run that are gone, empty or cut: the report names them, and so does the exit status."""
 
-import json
 import shutil
 
 import pytest
@@ -14,6 +13,7 @@ from scenarios.engine.in_process_executor import InProcessExecutor
 from scenarios.schema.load import load_study
 from scenarios.studies.registry import run_study
 from tests.in_process import assert_refused, run_command
+from tests.run_tables import change_manifest, manifest_of, write_manifest
 from tests.scenarios.short_trial import short_trial
 
 
@@ -39,17 +39,17 @@ def named(run):
 
 def had(run, *names):
     """Have the manifest of a run say that it had these files as well."""
-    manifest = json.loads((run / "manifest.json").read_text(encoding="utf-8"))
+    manifest = manifest_of(run)
     manifest["files"] = sorted([*manifest["files"], *names])
-    (run / "manifest.json").write_text(json.dumps(manifest), encoding="utf-8")
+    write_manifest(run, manifest)
 
 
 def test_flights_of_a_scenario_whose_name_is_all_digits_are_found(copy):
     for table in copy.glob("*.csv"):
         table.write_text(table.read_text(encoding="utf-8").replace(",short,", ",2026,"), encoding="utf-8")
-    manifest = json.loads((copy / "manifest.json").read_text(encoding="utf-8"))
+    manifest = manifest_of(copy)
     manifest["trials"] = {"2026": manifest["trials"]["short"]}
-    (copy / "manifest.json").write_text(json.dumps(manifest), encoding="utf-8")
+    write_manifest(copy, manifest)
     run = read_run(copy)
     (trial,) = read_trials(run)
     assert list(trial.rows["flight_id"]) == ["short_00000", "short_00001"]
@@ -58,7 +58,7 @@ def test_flights_of_a_scenario_whose_name_is_all_digits_are_found(copy):
 
 def test_of_a_whole_run_nothing_is_missing(whole):
     assert named(whole) == []
-    assert json.loads((whole / "manifest.json").read_text(encoding="utf-8"))["files"] == [
+    assert manifest_of(whole)["files"] == [
         "crossings.csv",
         "draws.csv",
         "flights/short_00000.parquet",
@@ -114,8 +114,7 @@ def test_the_exit_status_says_that_pieces_are_missing(copy):
 
 @pytest.mark.parametrize("name", ["../../x", "/tmp/x", "", 3, None])
 def test_an_export_of_a_run_with_a_name_that_leads_elsewhere_is_refused(copy, name):
-    manifest = json.loads((copy / "manifest.json").read_text(encoding="utf-8"))
-    (copy / "manifest.json").write_text(json.dumps(manifest | {"name": name}), encoding="utf-8")
+    change_manifest(copy, name=name)
     before = sorted(copy.parent.parent.rglob("*"))
     assert_refused(run_command("reports.build", copy, "--export", "tracks_csv"), "no name of a file; do not use this run")
     assert sorted(copy.parent.parent.rglob("*")) == before

@@ -25,6 +25,7 @@ from scenarios.engine.in_process_executor import InProcessExecutor
 from scenarios.schema.effect import unused
 from scenarios.schema.load import load_study
 from scenarios.studies.registry import run_study
+from tests.run_tables import change_manifest, manifest_of, write_manifest
 
 # Three crossings are too few for the study's own criteria.
 CRITERIA = ["criteria.tracking_error_rms_m=5.0", "criteria.crossing_interval_error=0.1"]
@@ -135,7 +136,7 @@ def test_an_infeasible_flight_is_in_the_report_with_its_reason(report):
 
 
 def test_every_key_that_acts_is_among_the_parameters(run_path, report):
-    config = json.loads((run_path / "manifest.json").read_text(encoding="utf-8"))["config"]
+    config = manifest_of(run_path)["config"]
     _, parameters = blocks_of(report, Table, "parameters")
     listed, scenario = {row[0] for row in parameters.rows}, load_study("sweep_nu", OVERRIDES)
     for section, values in config.items():
@@ -153,11 +154,11 @@ def html_of(report, directory):
 
 
 def test_an_interrupted_run_can_be_reported_on(copy):
-    manifest = json.loads((copy / "manifest.json").read_text(encoding="utf-8"))
+    manifest = manifest_of(copy)
     for key in ("outcomes", "flights_met_criteria", "wall_time_s"):
         del manifest[key]
     manifest["state"] = "running"
-    (copy / "manifest.json").write_text(json.dumps(manifest), encoding="utf-8")
+    write_manifest(copy, manifest)
     (copy / "innerloop.json").unlink()
     (copy / "comparison.csv").unlink()
     shutil.rmtree(copy / "flights")
@@ -214,28 +215,18 @@ def test_limits_have_three_digits_and_no_exponent(value, text):
     assert limit(value) == text
 
 
-def with_study(path, study):
-    manifest = json.loads((path / "manifest.json").read_text(encoding="utf-8"))
-    (path / "manifest.json").write_text(json.dumps({**manifest, "study": study}), encoding="utf-8")
-
-
 def without(path, entry):
-    manifest = json.loads((path / "manifest.json").read_text(encoding="utf-8"))
+    manifest = manifest_of(path)
     del manifest[entry]
-    (path / "manifest.json").write_text(json.dumps(manifest), encoding="utf-8")
-
-
-def with_manifest(path, **entries):
-    manifest = json.loads((path / "manifest.json").read_text(encoding="utf-8"))
-    (path / "manifest.json").write_text(json.dumps(manifest | entries), encoding="utf-8")
+    write_manifest(path, manifest)
 
 
 def test_a_run_that_names_no_study_is_a_sweep_and_so_is_one_of_flights(copy, report):
-    manifest = json.loads((copy / "manifest.json").read_text(encoding="utf-8"))
+    manifest = manifest_of(copy)
     titles = []
     for study in ({}, {"study": "flights"}):
         rest = {key: value for key, value in manifest.items() if key != "study"}
-        (copy / "manifest.json").write_text(json.dumps({**rest, **study}), encoding="utf-8")
+        write_manifest(copy, {**rest, **study})
         titles.append([section.title for section in content(read_run(copy)).sections])
     assert titles[0] == titles[1] == [section.title for section in report.sections]
 
@@ -247,12 +238,12 @@ def test_a_run_that_names_no_study_is_a_sweep_and_so_is_one_of_flights(copy, rep
         (lambda path: (path / "manifest.json").write_text("{", encoding="utf-8"), "cannot be read"),
         (lambda path: (path / "manifest.json").write_text("{}", encoding="utf-8"), "not that of a run"),
         (lambda path: (path / "manifest.json").write_text("[1]", encoding="utf-8"), "not that of a run"),
-        (lambda path: with_study(path, "opera"), "study is 'opera', which has no report; those that have one: flights"),
-        (lambda path: with_study(path, ["flights"]), "study is \\['flights'\\], which has no report"),
-        (lambda path: with_study(path, "sea_trial"), "study is 'sea_trial', which has no report"),
+        (lambda path: change_manifest(path, study="opera"), "study is 'opera', which has no report; those that have one: flights"),
+        (lambda path: change_manifest(path, study=["flights"]), "study is \\['flights'\\], which has no report"),
+        (lambda path: change_manifest(path, study="sea_trial"), "study is 'sea_trial', which has no report"),
         (lambda path: without(path, "trials"), "another version: its manifest.json has no 'trials'"),
-        (lambda path: with_manifest(path, trials={}), "manifest.json names no trials, whose flights these are"),
-        (lambda path: with_manifest(path, trials=None), "manifest.json names no trials"),
+        (lambda path: change_manifest(path, trials={}), "manifest.json names no trials, whose flights these are"),
+        (lambda path: change_manifest(path, trials=None), "manifest.json names no trials"),
         (lambda path: (path / "summary.csv").unlink(), "no summary.csv"),
         (lambda path: (path / "summary.csv").write_text("x,y\n" + 9 * "1,2\n", encoding="utf-8"), "is damaged"),
         (lambda path: (path / "crossings.csv").write_text("x,y\n1,2\n", encoding="utf-8"), "is damaged"),

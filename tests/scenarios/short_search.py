@@ -1,7 +1,5 @@
 """A search for the worst flight, kinematic and short, and what its runs hold."""
 
-import json
-
 import pandas as pd
 
 from scenarios.engine.in_process_executor import InProcessExecutor
@@ -58,11 +56,6 @@ def run(search, out, *overrides, factory=InProcessExecutor, resume=False, progre
     """Fly the search of a scenario file."""
     scenario = load_study(str(search), overrides)
     return run_study(scenario, "short", out, executor_factory=factory, resume=resume, progress=progress, overrides=overrides)
-
-
-def manifest(out):
-    """Return a run's manifest."""
-    return json.loads((out / "manifest.json").read_text(encoding="utf-8"))
 
 
 def tables(out):

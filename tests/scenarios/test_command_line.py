@@ -1,6 +1,5 @@
 """The commands as a user types them: in a process of their own where that is tested, else in this one, which has imported all."""
 
-import json
 import multiprocessing
 import os
 import shlex
@@ -16,6 +15,7 @@ import pytest
 from scenarios.engine.runner import RunResult, StudySummary
 from scenarios.run import main
 from tests import in_process
+from tests.run_tables import manifest_of
 
 ROOT = Path(__file__).parents[2]
 SHORT = ["--set", "flight.crossings=2", "--set", "comparison.variants=[]", "--no-report"]
@@ -175,15 +175,6 @@ def test_a_run_is_no_scenario_and_its_flights_are_replayed_by_name(tmp_path, run
         assert_refused(run_here(name), "'a' is a run, not a scenario; to replay one of its flights, give a/flights/ID")
 
 
-def test_a_report_of_nothing_is_refused(tmp_path):
-    in_process.assert_refused(in_process.run_command("reports.build", tmp_path), "holds no run")
-
-
-def test_an_unknown_aircraft_cannot_be_designed_for(tmp_path):
-    refused = in_process.run_command("innerloop.design", "zeppelin", "--out", tmp_path)
-    in_process.assert_refused(refused, "unknown aircraft 'zeppelin'")
-
-
 def test_flights_that_miss_a_criterion_or_cannot_be_flown_are_exit_status_1(tmp_path, run_here):
     out = tmp_path / "run"
     result = run_here(
@@ -193,7 +184,7 @@ def test_flights_that_miss_a_criterion_or_cannot_be_flown_are_exit_status_1(tmp_
     assert "must be below 1" in result.stdout
     summary = pd.read_csv(out / "summary.csv")
     assert list(summary["outcome"]) == ["completed", "infeasible"]
-    manifest = json.loads((out / "manifest.json").read_text(encoding="utf-8"))
+    manifest = manifest_of(out)
     assert manifest["outcomes"]["infeasible"] == 1
 
 
@@ -220,7 +211,7 @@ def test_an_interrupted_run_keeps_what_is_done_and_resumes_to_the_same_result(tm
     errors = (tmp_path / "errors").read_text(encoding="utf-8")
     assert "Traceback" not in errors
     assert "--resume" in errors
-    assert json.loads((broken / "manifest.json").read_text(encoding="utf-8"))["state"] == "interrupted"
+    assert manifest_of(broken)["state"] == "interrupted"
     kept = pd.read_csv(broken / "summary.csv")
     assert 1 <= len(kept) < len(nus)
     resumed = run_here(*settings, "--out", broken, "--resume")
@@ -277,7 +268,7 @@ def test_a_list_of_trials_takes_its_own_keys_and_hands_on_those_of_the_trials(tm
     result = run_here("sea_trial", *settings, "--seed", "7", "--no-report", "--jobs", "1", "--out", tmp_path / "run")
     assert result.returncode == 1, result.stderr
     assert "flights: 1 planned, 1 flown" in result.stdout
-    manifest = json.loads((tmp_path / "run" / "manifest.json").read_text(encoding="utf-8"))
+    manifest = manifest_of(tmp_path / "run")
     assert manifest["trials"]["sea_wind"]["seed"] == 7
     summary = pd.read_csv(tmp_path / "run" / "summary.csv")
     assert list(summary["outcome"]) == ["not_settled"]

@@ -1,7 +1,6 @@
 """Parts that a user adds, each by one file: they fly in a sweep, stand in its manifest, and are refused in one line."""
 
 import importlib.metadata
-import json
 from dataclasses import replace
 
 import pandas as pd
@@ -16,17 +15,13 @@ from scenarios.errors import InputError
 from scenarios.schema.load import load_study, with_values
 from scenarios.studies.registry import run_study
 from scenarios.studies.replay import Replay
-from tests.run_tables import rows_of
+from tests.run_tables import manifest_of, rows_of
 from tests.scenarios.plugin_files import LAW, PARTS, TRACK, line_of, write_scenario
 
 
 def run(path, out, *overrides, resume=False):
     scenario = load_study(path, overrides)
     return run_study(scenario, "own", out, executor_factory=InProcessExecutor, resume=resume, overrides=overrides)
-
-
-def manifest(out):
-    return json.loads((out / "manifest.json").read_text(encoding="utf-8"))
 
 
 def refusal(path, out, *overrides, resume=False):
@@ -65,8 +60,8 @@ def test_a_part_of_one_file_flies_in_a_sweep_and_stands_in_the_manifest(tmp_path
         assert (row["outcome"], row["keepout_violations"]) == ("completed", 0), row["message"]
         assert row["aircraft"] == (str(tmp_path / name) if key == "aircraft" else "none")
     part = str(tmp_path / name)
-    assert manifest(tmp_path / "run")["plugins"] == {part: file_hash(part)}
-    config = manifest(tmp_path / "run")["config"]
+    assert manifest_of(tmp_path / "run")["plugins"] == {part: file_hash(part)}
+    config = manifest_of(tmp_path / "run")["config"]
     section, _, last = key.partition(".")
     value = config[section][last] if last else config[section]
     assert value == ({"instruments": [part]} if key == "payload" else part)
@@ -95,7 +90,7 @@ def test_a_steering_laws_fields_are_keys_of_guidance(tmp_path):
     run(path, other, "sweep.nu=[0.5]", "guidance.lead_s=2.0")
     errors = [rows_of(out)[0]["tracking_error_rms_m"] for out in (one, other)]
     assert errors[0] != errors[1]
-    assert manifest(other)["config"]["guidance"]["lead_s"] == 2.0
+    assert manifest_of(other)["config"]["guidance"]["lead_s"] == 2.0
 
 
 def test_another_law_does_not_inherit_the_keys_of_the_law_that_it_replaces(tmp_path):
@@ -175,7 +170,7 @@ def test_files_may_be_swept_sampled_compared_and_set_in_cases(tmp_path):
     for name, more in text.items():
         (tmp_path / f"{name}.toml").write_text('extends = "own.toml"\n' + more, encoding="utf-8")
         run(str(tmp_path / f"{name}.toml"), tmp_path / name, "sweep.nu=[0.5]")
-        assert list(manifest(tmp_path / name)["plugins"]) == [str(tmp_path / law)], name
+        assert list(manifest_of(tmp_path / name)["plugins"]) == [str(tmp_path / law)], name
         assert {row["outcome"] for row in rows_of(tmp_path / name)} == {"completed"}, name
     assert {row["flight_id"][:15] for row in rows_of(tmp_path / "sweep")} == {"nu_0.50_law_Pur", "nu_0.50_law_cas"}
     assert {row["variant"] for row in rows_of(tmp_path / "comparison", "comparison.csv")} == {"own"}
@@ -260,4 +255,4 @@ def test_an_installed_package_announces_a_part_as_an_entry_point(tmp_path, monke
     assert run(path, tmp_path / "run").all_met
     assert "pursuit" in STEERING_LAWS.names()
     # It is installed, with a version of its own: no file to be asked for again.
-    assert manifest(tmp_path / "run")["plugins"] == {}
+    assert manifest_of(tmp_path / "run")["plugins"] == {}

@@ -11,7 +11,7 @@ import pytest
 from scipy.interpolate import BPoly
 from scipy.optimize import brentq, minimize_scalar
 
-from scenarios.engine.executors import ExecutorFactory
+from scenarios.engine.in_process_executor import InProcessExecutor
 from scenarios.schema.load import load_study
 from scenarios.studies.registry import run_study
 
@@ -80,7 +80,7 @@ def run(request, tmp_path_factory):
     name, *overrides = RUNS[request.param]
     out = tmp_path_factory.mktemp(request.param) / "run"
     scenario = load_study(name, overrides)
-    run_study(scenario, name, out, executor_factory=ExecutorFactory(jobs=2), overrides=overrides)
+    run_study(scenario, name, out, executor_factory=InProcessExecutor, overrides=overrides)
     return out, float(scenario.source_height)
 
 

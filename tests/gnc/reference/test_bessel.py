@@ -60,18 +60,6 @@ def test_a_faster_vessel_needs_a_smaller_oscillation(one, other):
         assert eta_for_speed_ratio(slow) >= eta_for_speed_ratio(fast) - 1e-5
 
 
-@examples(100)
-@given(nu=ratios)
-def test_eta_lies_between_zero_and_the_first_zero_of_j_0(nu):
-    # Section III.C: the domain on which J_0 is inverted. The bound itself is rounded.
-    assert 0.0 <= eta_for_speed_ratio(nu) <= ETA_MAX + 1e-13
-
-
-def test_a_vessel_at_rest_needs_the_first_zero_of_j_0():
-    # Rounding.
-    assert eta_for_speed_ratio(0.0) == pytest.approx(ETA_MAX, abs=1e-14)
-
-
 def test_a_vessel_as_fast_as_the_uav_needs_no_oscillation():
     # J_0(0) = 1.
     assert eta_for_speed_ratio(1.0) == 0.0

@@ -71,15 +71,6 @@ def test_the_reference_passes_the_centre_twice_a_period(nu):
     assert offset(oscillation, [0.0, oscillation.crossing_interval]) == pytest.approx(np.zeros((2, 2)), abs=1e-12)
 
 
-@examples(100)
-@given(nu=ratios)
-def test_the_advance_in_a_quarter_period_is_that_of_the_vessel(nu):
-    oscillation = paper_oscillation(nu)
-    # paper-notes: exactly nu V_r T/4, by the Bessel integral. Rounding of sin(2 k pi/2), some 1e-15 times 50 m.
-    advance = SPEED * float(f_x(oscillation, 0.25 * oscillation.period))
-    assert advance == pytest.approx(0.25 * nu * SPEED * oscillation.period, rel=1e-13, abs=1e-12)
-
-
 @examples(14)
 @given(nu=ratios)
 def test_the_half_widths_are_the_largest_offsets_of_the_orbit(nu):

@@ -7,7 +7,6 @@ from hypothesis import strategies as st
 
 from common.physics.units import STANDARD_GRAVITY
 from gnc.errors import InfeasibleError
-from gnc.reference.bessel import eta_for_speed_ratio
 from gnc.reference.oscillation import design_oscillation
 
 ROLL_RATE_MAX = math.radians(40.0)
@@ -54,20 +53,6 @@ def test_the_roll_rate_takes_over_for_fast_vessels():
     assert fast.limit == "roll rate"
     # Roundings of the square root.
     assert fast.omega_0**2 * fast.eta == pytest.approx(STANDARD_GRAVITY * ROLL_RATE_MAX / SPEED, rel=1e-14)
-
-
-def test_the_oscillation_carries_its_speed_ratio_and_eta():
-    oscillation = paper_oscillation(0.37)
-    assert (oscillation.nu, oscillation.speed) == (0.37, SPEED)
-    assert oscillation.eta == eta_for_speed_ratio(0.37)
-
-
-def test_period_amplitude_and_crossing_interval_follow_from_eta_and_omega_0():
-    oscillation = paper_oscillation(0.5)
-    # Section III.C: A = eta omega_0, T = 2 pi/omega_0; two crossings a period (paper-notes). Tolerances are roundings.
-    assert oscillation.amplitude == pytest.approx(oscillation.eta * oscillation.omega_0, rel=1e-15)
-    assert oscillation.period * oscillation.omega_0 == pytest.approx(2.0 * math.pi, rel=1e-15)
-    assert oscillation.crossing_interval == pytest.approx(0.5 * oscillation.period, rel=1e-15)
 
 
 @pytest.mark.parametrize(

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from loop_reference import closed_poles, opened
 
+from innerloop.analysis.checks import NOMINAL
 from innerloop.analysis.closed_loop import closed_loop
 from innerloop.analysis.margins import FREQUENCIES, Loops, loop_margins
 from innerloop.law.control_law import COMMANDS, ControlLaw
@@ -149,17 +150,19 @@ def test_what_is_commanded_is_reached_and_nothing_else_moves(systems, condition)
 
 
 @pytest.mark.parametrize("name", ["x8", "aerosonde"])
-def test_every_single_loop_has_six_decibels_and_forty_five_degrees_everywhere(designs, name):
-    # MIL-F-9490D's customary requirement, on the nominal aircraft, at every point of the grid and half-way between.
-    checks = [check for check in designs(name).design.checks if check.case == "as modelled"]
-    # Five airspeeds by five banks, and between them four by five and five by four.
-    assert (len(checks), sum(check.between for check in checks)) == (65, 40)
+def test_every_single_loop_has_six_decibels_and_forty_five_degrees_everywhere_and_less_when_changed(designs, name):
+    checks = designs(name).design.checks
+    # Five airspeeds by five banks, and between them four by five and five by four: the aircraft as modelled and changed in 7 ways.
+    assert (len(checks), sum(check.between for check in checks)) == (65 * 8, 40 * 8)
     for check, margin in itertools.chain.from_iterable(((c, m) for m in c.margins) for c in checks):
         assert check.stable
         if margin.loop == "all controls":
             continue  # has disk margins only, and no requirement
-        assert margin.gain_db >= 6.0, (check.airspeed, check.bank, margin)
-        assert margin.phase_deg >= 45.0, (check.airspeed, check.bank, margin)
+        # MIL-F-9490D's customary requirement. A fifth of gain is 1.6 to 1.9 dB, so of 6 dB 4 must be left of a changed aircraft; a
+        # step of delay at 5 rad/s is 2.4 degrees of 45.
+        gain_db, phase_deg = (6.0, 45.0) if check.case == NOMINAL else (4.0, 30.0)
+        assert margin.gain_db >= gain_db, (check.airspeed, check.bank, margin)
+        assert margin.phase_deg >= phase_deg, (check.airspeed, check.bank, margin)
         # A disk lies inside both classical intervals, on whatever grid of frequencies.
         assert margin.disk_gain_db <= margin.gain_db * 1.005
         assert margin.disk_phase_deg <= margin.phase_deg * 1.005

@@ -135,19 +135,6 @@ def test_there_is_a_case_for_each_change_both_ways_and_one_for_one_more_period_o
     assert len(CASES) == 8
 
 
-@pytest.mark.parametrize("name", ["x8", "aerosonde"])
-def test_every_change_is_checked_at_every_point_and_leaves_four_decibels_and_thirty_degrees(designs, name):
-    checks = designs(name).design.checks
-    # 25 points of the grid and 40 between, each eight times.
-    assert len(checks) == 65 * 8
-    for check in checks:
-        if check.case != NOMINAL:
-            # A fifth of gain is 1.6 to 1.9 dB, so of 6 dB 4 must be left; a step of delay at 5 rad/s is 2.4 degrees of 45.
-            assert check.stable
-            assert check.worst_gain.gain_db >= 4.0
-            assert check.worst_phase.phase_deg >= 30.0
-
-
 def test_points_between_lie_half_way_between_neighbours_along_airspeed_and_along_bank(x8_schedule):
     points = operating_points(x8_schedule)
     between = [p.trim for p in points if p.between]

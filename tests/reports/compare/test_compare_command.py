@@ -1,6 +1,5 @@
 """``python -m reports.compare``: what it prints and writes, and what it refuses."""
 
-import json
 import multiprocessing
 import shutil
 
@@ -11,15 +10,11 @@ from reports.run.run_data import read_run
 from scenarios.engine.journal import Journal
 from scenarios.engine.task import Result, Task
 from tests.in_process import assert_refused, run_command
+from tests.run_tables import change_manifest, manifest_of, write_manifest
 
 
 def compared(*arguments):
     return run_command("reports.compare.__main__", *arguments)
-
-
-def change_manifest(run, **entries):
-    manifest = json.loads((run / "manifest.json").read_text(encoding="utf-8"))
-    (run / "manifest.json").write_text(json.dumps(manifest | entries), encoding="utf-8")
 
 
 @pytest.fixture
@@ -97,9 +92,9 @@ def test_a_run_that_was_killed_before_its_tables_were_written_is_refused(copies)
 
 @pytest.mark.parametrize("entry", ["trials", "fingerprint", "config_hash"])
 def test_a_manifest_of_another_version_is_refused(copies, entry):
-    manifest = json.loads((copies[1] / "manifest.json").read_text(encoding="utf-8"))
+    manifest = manifest_of(copies[1])
     del manifest[entry]
-    (copies[1] / "manifest.json").write_text(json.dumps(manifest), encoding="utf-8")
+    write_manifest(copies[1], manifest)
     assert_refused(compared(*copies), "another version", f"'{entry}'")
 
 
@@ -150,7 +145,7 @@ def test_a_run_that_another_process_is_writing_is_refused_and_one_that_was_kille
     try:
         assert opened.wait(30.0)
         assert_refused(compared(*copies), "another program is writing to", str(copies[1]))
-        assert_refused(run_command("reports.build", copies[1]), "another program is writing to")
+        assert_refused(run_command("reports.build", copies[1]), "another program is writing to", "; wait until it has ended")
     finally:
         writer.kill()
         writer.join()

@@ -1,6 +1,5 @@
 """Reports of made-up convergence studies: what is counted, listed and said."""
 
-import json
 import re
 
 import numpy as np
@@ -16,6 +15,7 @@ from reports.document.blocks import Table, Text
 from reports.errors import ReportError
 from reports.registry import content
 from reports.run.run_data import read_run
+from tests.run_tables import manifest_of, write_manifest
 
 
 def small(path, **options):
@@ -179,9 +179,9 @@ def change(path, how):
 
 
 def without_ensemble(path):
-    manifest = json.loads((path / "manifest.json").read_text(encoding="utf-8"))
+    manifest = manifest_of(path)
     del manifest["config"]["ensemble"]
-    (path / "manifest.json").write_text(json.dumps(manifest), encoding="utf-8")
+    write_manifest(path, manifest)
 
 
 @pytest.mark.parametrize(

@@ -49,8 +49,10 @@ def first_version():
 
 
 def test_both_reports_are_built_from_disk_alone(path, monkeypatch):
-    # Page 1 has the figure of disk margins; every figure is laid out below.
-    draw_all_but(monkeypatch, "first", "classicalmargins", "bode", "climbresponse", "trims")
+    # Page 1 has the figure of disk margins, and a sweep's report, which is printed too, curves and steps like these; every figure
+    # is laid out below.
+    alike = ("bode", "nichols", "turnresponse", "climbresponse", "climbs", "trims")
+    draw_all_but(monkeypatch, "first", "classicalmargins", *alike)
     assert "Autopilot of the Cessna 172" in built(path)
 
 

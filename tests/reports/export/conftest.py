@@ -1,6 +1,5 @@
 """A run of the flight that the tests of exports share."""
 
-import json
 import math
 
 import numpy as np
@@ -9,6 +8,7 @@ import pytest
 
 from common.physics.geodesy import LocalFrame
 from tests.reports.export.placed_flight import PLACES, track
+from tests.run_tables import write_manifest
 
 
 @pytest.fixture(params=PLACES)
@@ -18,7 +18,7 @@ def run_path(request, tmp_path):
     (path / "flights").mkdir(parents=True)
     manifest = {"study": "flights", "name": "made", "title": "Made, <&> here", "config": {}, "flights_planned": 1}
     manifest |= {"begun_utc": "2026-06-02T08:00:00Z", "command": "plume-flight run made.toml"}
-    (path / "manifest.json").write_text(json.dumps(manifest), encoding="utf-8")
+    write_manifest(path, manifest)
     row = {
         "flight_id": "a, <b>", "trial": "made", "place_latitude_deg": latitude, "place_longitude_deg": longitude,
         "start_utc": "2026-06-01T10:00:00Z", "keepout_radius_m": 200.0, "plume_elevation_deg": 0.0,

@@ -1,6 +1,5 @@
 """Exporters: the project's own, and one that a user adds in a file."""
 
-import json
 import runpy
 import sys
 
@@ -17,6 +16,7 @@ from reports.output import write_flight
 from reports.run.run_data import read_run
 from tests.in_process import assert_refused, run_command
 from tests.reports.convergence_runs import write_convergence_run
+from tests.run_tables import change_manifest, write_manifest
 
 OWN = """
 from pathlib import Path
@@ -40,7 +40,7 @@ def run_path(tmp_path):
     path = tmp_path / "run"
     (path / "flights").mkdir(parents=True)
     manifest = {"study": "flights", "name": "small", "config": {}, "flights_planned": 2}
-    (path / "manifest.json").write_text(json.dumps(manifest), encoding="utf-8")
+    write_manifest(path, manifest)
     pd.DataFrame({"flight_id": ["nu_0.50", "nu_1.00"], "nu": [0.5, 1.0]}).to_csv(path / "summary.csv", index=False)
     time = np.arange(3.0)
     flown = {"time_s": time, "north_m": 7.0 * time, "east_m": 0.0 * time, "altitude_m": 60.0 + time}
@@ -69,8 +69,7 @@ def test_tracks_are_exported_with_the_vessel_that_was_flown_about(run_path):
 
 @pytest.mark.parametrize(("run", "expected"), [("small", "small.nu_0.50"), ("nu", "nu_0.50"), ("n" * 198, "nu_0.50")])
 def test_the_file_of_a_flight_has_the_name_of_the_run_once_and_no_more_letters_than_a_file_may(run_path, run, expected):
-    manifest = json.loads((run_path / "manifest.json").read_text(encoding="utf-8"))
-    (run_path / "manifest.json").write_text(json.dumps(manifest | {"name": run}), encoding="utf-8")
+    change_manifest(run_path, name=run)
     assert [path.name for path in export_run(run_path, "tracks_csv", "nu_0.50")] == [f"{expected}.tracks.csv"]
 
 

@@ -1,8 +1,6 @@
 """Title, author, organisation and logo of reports that exist, and runs that cannot be reported on."""
 
-import json
 import shutil
-import sqlite3
 
 import pytest
 from PIL import Image
@@ -15,6 +13,7 @@ from scenarios.engine.in_process_executor import InProcessExecutor
 from scenarios.schema.load import load_study
 from scenarios.studies.registry import run_study
 from tests.in_process import run_command
+from tests.run_tables import change_manifest, manifest_of, write_manifest
 
 SHORT = """
 title = "Short"
@@ -41,11 +40,6 @@ def run_path(flown, tmp_path):
     return shutil.copytree(flown, tmp_path / "run")
 
 
-def changed(run_path, **entries):
-    path = run_path / "manifest.json"
-    path.write_text(json.dumps(json.loads(path.read_text(encoding="utf-8")) | entries), encoding="utf-8")
-
-
 def refused(*arguments):
     ended = run_command("reports.build", *arguments)
     assert ended.status == 2
@@ -69,9 +63,9 @@ def test_reports_of_a_run_that_exists_take_another_title_and_logo_and_leave_the_
 
 
 def test_a_run_without_a_date_or_settings_has_the_scenarios_title(run_path):
-    manifest = json.loads((run_path / "manifest.json").read_text(encoding="utf-8"))
+    manifest = manifest_of(run_path)
     del manifest["begun_utc"], manifest["report"]
-    (run_path / "manifest.json").write_text(json.dumps(manifest), encoding="utf-8")
+    write_manifest(run_path, manifest)
     report = content(read_run(run_path))
     assert report.title == "Short"
     assert (report.letterhead.when, report.letterhead.signature, report.letterhead.logo) == ("date not recorded", "", None)
@@ -101,7 +95,7 @@ def test_a_logo_that_is_no_picture_ends_the_command_with_status_2(run_path):
 
 
 def test_a_logo_that_the_run_has_lost_is_named_among_its_missing_files(run_path):
-    changed(run_path, report={"logo": "logo.png"})
+    change_manifest(run_path, report={"logo": "logo.png"})
     report = content(read_run(run_path))
     assert report.letterhead.logo is None
     (section,) = (section for section in report.sections if section.anchor == "missing")
@@ -110,28 +104,13 @@ def test_a_logo_that_the_run_has_lost_is_named_among_its_missing_files(run_path)
 
 @pytest.mark.parametrize("version", [0, 2, "3"])
 def test_a_run_directory_of_another_version_is_refused_in_one_line(version, run_path):
-    changed(run_path, format=version)
+    change_manifest(run_path, format=version)
     said = f"is a run of format {version!r}, and this version reads 1; use the version that made it\n"
     assert refused(run_path).endswith(said)
 
 
 def test_a_run_directory_without_a_version_is_read(run_path):
-    manifest = json.loads((run_path / "manifest.json").read_text(encoding="utf-8"))
+    manifest = manifest_of(run_path)
     assert manifest.pop("format") == 1
-    (run_path / "manifest.json").write_text(json.dumps(manifest), encoding="utf-8")
+    write_manifest(run_path, manifest)
     assert content(read_run(run_path)).title == "Short"
-
-
-def test_a_run_that_another_program_is_writing_is_refused_and_one_that_was_killed_is_not(run_path):
-    changed(run_path, state="running")
-    assert read_run(run_path).manifest["state"] == "running"
-    writing = sqlite3.connect(run_path / "journal.sqlite", isolation_level=None)
-    try:
-        # As the engine's journal holds it (scenarios.engine.journal).
-        writing.execute("PRAGMA locking_mode = EXCLUSIVE")
-        writing.execute("PRAGMA journal_mode = WAL")
-        writing.execute("CREATE TABLE more (number INTEGER)")
-        with pytest.raises(ReportError, match=r"another program is writing to '.*'; wait until it has ended"):
-            read_run(run_path)
-    finally:
-        writing.close()

@@ -77,6 +77,8 @@ def test_the_time_of_an_estimate_and_of_a_flight_say_what_they_are_counted_from(
 def test_a_track_from_near_has_no_legend_for_what_lies_outside_and_shows_the_axis_where_it_was_crossed(one):
     chart = named_charts(one)["sulphur-track"]
     assert not any(label.startswith("ship, ") for label in chart.labels)
+    # Other charts of a sniffer are printed in the report of a log.
+    matplotlib_charts.draw(chart).canvas.draw()
     track, axis = chart.panels[1].lines
     assert axis.label == "plume's mean axis, where it was crossed"
     assert 0 < len(axis.x) < 0.2 * len(track.x)

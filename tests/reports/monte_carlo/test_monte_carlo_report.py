@@ -24,6 +24,7 @@ from scenarios.schema.documented import documented_keys
 from scenarios.schema.load import load_study
 from scenarios.statistics.estimates import study_statistics
 from scenarios.studies.manifest import initial_manifest, parameters
+from tests.run_tables import write_manifest
 from tests.scenarios.study_rows import RADIUS, few_indices, study_rows
 
 FLIGHTS = 250
@@ -268,7 +269,7 @@ def test_a_scatter_has_the_documented_unit_of_its_input(run):
 
 
 def test_statistics_and_inputs_are_read_from_the_run_directory(run, tmp_path):
-    (tmp_path / "manifest.json").write_text(json.dumps({"config": {}}), encoding="utf-8")
+    write_manifest(tmp_path, {"config": {}})
     run.summary.to_csv(tmp_path / "summary.csv", index=False)
     assert read_run(tmp_path).statistics is None
     assert len(read_run(tmp_path).draws) == 0

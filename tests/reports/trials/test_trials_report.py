@@ -26,6 +26,7 @@ from reports.run.trials import Kind, Trial, read_trials
 from scenarios.schema.load import OPERATIONAL, bases, load_study
 from scenarios.schema.overrides import given_keys
 from scenarios.studies.manifest import parameters
+from tests.run_tables import manifest_of, write_manifest
 
 BRIEF = pytest.mark.usefixtures("without_single_flights")
 
@@ -167,10 +168,10 @@ def test_a_run_without_any_history_and_with_a_trial_not_begun_is_reported_on(run
     shutil.rmtree(path / "flights")
     summary = pd.read_csv(path / "summary.csv")
     summary[summary["trial"] == "steady"].to_csv(path / "summary.csv", index=False)
-    manifest = json.loads((path / "manifest.json").read_text(encoding="utf-8"))
+    manifest = manifest_of(path)
     # As it was interrupted: two flights had an outcome.
     manifest |= {"state": "interrupted", "outcomes": {"completed": 2}}
-    (path / "manifest.json").write_text(json.dumps(manifest), encoding="utf-8")
+    write_manifest(path, manifest)
     report = content(read_run(path))
     assert not report.verdict.complete
     assert "Turns: 2 of 2 not flown yet" in report.verdict.failures

@@ -1,7 +1,6 @@
 """A program gets what the command line gets: the same rows, crossings and time histories, byte for byte."""
 
 import csv
-import json
 import tomllib
 
 import pandas as pd
@@ -11,6 +10,7 @@ from scenarios import InputError, fly, load, run
 from scenarios.engine.fingerprint import fingerprint
 from scenarios.schema.load import load_study
 from tests.in_process import run_command
+from tests.run_tables import manifest_of
 
 SHORT = """
 title = "Two short flights"
@@ -71,14 +71,10 @@ def test_files_of_a_run_are_the_same(by_command, by_program):
 
 
 def test_the_manifest_has_the_same_configuration(by_program, by_command):
-    theirs = manifest(by_command)
+    theirs = manifest_of(by_command)
     for entry in ("config_hash", "config", "overrides", "name", "trials"):
         assert by_program.manifest[entry] == theirs[entry]
     assert by_program.manifest["fingerprint"] == fingerprint()
-
-
-def manifest(directory):
-    return json.loads((directory / "manifest.json").read_text(encoding="utf-8"))
 
 
 @pytest.mark.parametrize("flight_id", ["nu_0.50", "nu_0.50_no_guard"])

@@ -1,16 +1,16 @@
 """What a resumed run rewrites, removes and begins anew."""
 
 import functools
-import json
 import multiprocessing
 import os
 import time
 
 import pytest
-from engine_cases import TABLE, Squares, SquareStudy, fly, interrupt_at
+from engine_cases import TABLE, Squares, SquareStudy, begun, fly, interrupt_at
 
 from scenarios.engine.run_directory import RunDirectory
 from scenarios.errors import InputError
+from tests.run_tables import change_manifest, manifest_of
 
 
 def state_of(out):
@@ -43,6 +43,8 @@ def test_a_resumed_run_makes_what_is_missing_and_leaves_the_rest(marks, out):
     assert after[TABLE][0] == before[TABLE][0]
     differing = {name for name in {*before, *after} if before.get(name) != after.get(name)}
     assert differing == {TABLE, "manifest.json"}
+    # Nothing is flown for it.
+    assert [begun(marks, number) for number in range(8)] == [1] * 8
 
 
 def test_a_run_that_goes_on_has_no_report_of_how_it_was_before(marks, out):
@@ -58,11 +60,10 @@ def test_a_run_that_goes_on_has_no_report_of_how_it_was_before(marks, out):
 def test_the_duration_of_a_run_is_that_of_all_its_sessions(marks, out):
     study = SquareStudy(Squares(marks=marks))
     fly(study, out, progress=interrupt_at(3))
-    manifest = json.loads((out / "manifest.json").read_text(encoding="utf-8"))
     # As if the first session had taken an hour.
-    (out / "manifest.json").write_text(json.dumps(manifest | {"wall_time_s": 3600.0}), encoding="utf-8")
+    change_manifest(out, wall_time_s=3600.0)
     assert fly(study, out, resume=True).all_met
-    assert 3600.0 < json.loads((out / "manifest.json").read_text(encoding="utf-8"))["wall_time_s"] < 3700.0
+    assert 3600.0 < manifest_of(out)["wall_time_s"] < 3700.0
 
 
 @pytest.mark.parametrize("resume", [False, True])

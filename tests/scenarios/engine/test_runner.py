@@ -1,7 +1,6 @@
 """A run directory that is flown, interrupted, out of room and gone on with."""
 
 import errno
-import json
 import os
 import re
 import signal
@@ -12,11 +11,7 @@ from engine_cases import TABLE, Squares, SquareStudy, begun, fly, interrupt_at
 from scenarios.engine.journal import Journal
 from scenarios.engine.run_directory import RunDirectory
 from scenarios.errors import InputError
-from tests.run_tables import rows_of
-
-
-def manifest(out):
-    return json.loads((out / "manifest.json").read_text(encoding="utf-8"))
+from tests.run_tables import manifest_of, rows_of, write_manifest
 
 
 def test_a_run_has_its_table_its_files_and_says_how_it_ended(marks, out):
@@ -26,7 +21,7 @@ def test_a_run_has_its_table_its_files_and_says_how_it_ended(marks, out):
     assert (result.what, result.directory) == ("squares", out)
     assert rows_of(out, TABLE) == [{"number": i, "square": float(i**2)} for i in range(8)]
     assert sorted(path.name for path in (out / "files").iterdir()) == [f"{i}.txt" for i in range(8)]
-    assert (manifest(out)["state"], manifest(out)["squares_done"]) == ("complete", 8)
+    assert (manifest_of(out)["state"], manifest_of(out)["squares_done"]) == ("complete", 8)
     assert told == [*(("flying", i, 8) for i in range(9)), ("finishing", 8, 8)]
 
 
@@ -43,13 +38,13 @@ def test_an_interrupted_run_goes_on_where_it_was_and_comes_to_the_same(marks, ou
     assert first.interrupted
     assert not first.all_met
     assert first.summary.done == 3
-    assert manifest(out)["state"] == "interrupted"
+    assert manifest_of(out)["state"] == "interrupted"
     kept = [row["number"] for row in rows_of(out, TABLE)]
     assert len(kept) == 3
     told = []
     again = fly(study, out, jobs=jobs, resume=True, progress=lambda *report: told.append(report))
     assert again.all_met
-    assert manifest(out)["state"] == "complete"
+    assert manifest_of(out)["state"] == "complete"
     # It says so from the beginning, and nothing that was done is done again.
     assert [done for doing, done, _ in told if doing == "flying"] == [3, 4, 5, 6, 7, 8]
     assert [begun(marks, number) for number in kept] == [1, 1, 1]
@@ -64,19 +59,10 @@ def test_results_stand_in_the_table_though_what_follows_from_them_fails_and_the_
     with pytest.raises(ZeroDivisionError, match="of a statistic"):
         fly(SquareStudy(Squares(marks=marks)), out)
     assert (out / TABLE).read_bytes() == whole
-    assert manifest(out)["state"] == "running"
+    assert manifest_of(out)["state"] == "running"
     monkeypatch.undo()
     assert fly(SquareStudy(Squares(marks=marks)), out, resume=True).all_met
     assert [begun(marks, number) for number in range(8)] == [1] * 8
-
-
-def test_a_run_that_is_done_can_be_gone_on_with_and_flies_nothing(marks, out, whole):
-    study = SquareStudy(Squares(marks=marks))
-    fly(study, out)
-    (out / TABLE).unlink()
-    assert fly(study, out, resume=True).all_met
-    assert [begun(marks, number) for number in range(8)] == [1] * 8
-    assert (out / TABLE).read_bytes() == whole
 
 
 def test_a_run_that_was_killed_before_its_tables_were_written_goes_on_too(marks, out, whole):
@@ -84,7 +70,7 @@ def test_a_run_that_was_killed_before_its_tables_were_written_goes_on_too(marks,
     fly(study, out, progress=interrupt_at(5))
     # As kill -9 leaves it: what was being written lies about, and nothing says that it has ended.
     (out / TABLE).unlink()
-    (out / "manifest.json").write_text(json.dumps(study.initial_manifest() | {"state": "running"}), encoding="utf-8")
+    write_manifest(out, study.initial_manifest() | {"state": "running"})
     parts = [out / f".{TABLE}.123.part", out / ".probe-0a1b.part", out / "files" / ".5.txt.123.part"]
     for part in parts:
         part.write_bytes(b"half")
@@ -125,7 +111,7 @@ def test_a_task_whose_process_was_lost_is_a_row_and_is_tried_again_when_the_run_
     lost = rows_of(out, TABLE)[4]
     assert lost["number"] == 4
     assert "SIGKILL" in lost["reason"]
-    assert manifest(out)["state"] == "complete"
+    assert manifest_of(out)["state"] == "complete"
     assert fly(SquareStudy(Squares(marks=marks)), out, resume=True).all_met
     assert [begun(marks, number) for number in range(8)] == [1, 1, 1, 1, 3, 1, 1, 1]
     assert (out / TABLE).read_bytes() == whole
@@ -244,17 +230,17 @@ def test_a_journal_that_cannot_be_written_any_more_is_refused_in_a_line(marks, o
 def test_a_run_that_other_code_began_is_not_gone_on_with(marks, out):
     study = SquareStudy(Squares(marks=marks))
     fly(study, out, progress=interrupt_at(3))
-    before = manifest(out)
+    before = manifest_of(out)
     for name in ("jsbsim", "source"):
         other = before | {"fingerprint": before["fingerprint"] | {name: "0.0.1"}}
-        (out / "manifest.json").write_text(json.dumps(other), encoding="utf-8")
+        write_manifest(out, other)
         words = rf"was started with {name} 0\.0\.1, now it is .*: results would not be comparable"
         with pytest.raises(InputError, match=words) as refused:
             fly(study, out, resume=True)
         assert "\n" not in str(refused.value)
     # Nothing of it was touched.
     assert len(list((out / "files").iterdir())) >= 3
-    (out / "manifest.json").write_text(json.dumps(before), encoding="utf-8")
+    write_manifest(out, before)
     assert fly(study, out, resume=True).all_met
 
 

@@ -1,6 +1,5 @@
 """A ship and a sniffer of one's own, as tables in a scenario file."""
 
-import json
 from pathlib import Path
 
 import pandas as pd
@@ -8,12 +7,15 @@ import pytest
 
 from measurement.emission.ship import Ship, ship_of, ship_preset
 from measurement.sniffer import sensor_of
+from reports.output import write_report
+from reports.run.run_data import read_run
 from scenarios.errors import InputError
 from scenarios.experiment.points import points_of
 from scenarios.schema.load import load_study
 from scenarios.studies.checks import check_without_design
 from scenarios.world.exhaust import emission
 from tests.in_process import run_command
+from tests.run_tables import manifest_of
 
 EXAMPLE = str(Path(__file__).parents[3] / "docs" / "examples" / "own_ship.toml")
 QUICK = (
@@ -26,11 +28,11 @@ QUICK = (
 def run(tmp_path_factory):
     out = tmp_path_factory.mktemp("own") / "run"
     keys = [word for key in QUICK for word in ("--set", key)]
-    assert run_command("scenarios.run", EXAMPLE, *keys, "--out", out).status == 0
+    assert run_command("scenarios.run", EXAMPLE, *keys, "--out", out, "--no-report").status == 0
     return out
 
 
-def test_the_example_measures_with_its_own_sniffer_beside_its_own_ship(run):
+def test_the_example_measures_with_its_own_sniffer_beside_its_own_ship(run, tmp_path):
     (row,) = pd.read_csv(run / "summary.csv").to_dict("records")
     assert row["sensor"] == "own cells"
     # Two readings a second: each stands for five of the ten rows.
@@ -38,9 +40,11 @@ def test_the_example_measures_with_its_own_sniffer_beside_its_own_ship(run):
     changed = (history["co2_reading_ppm"].diff() != 0.0).mean()
     assert 0.17 < changed <= 0.21
     assert load_study(EXAMPLE).source_height == 22.0
-    config = json.loads((run / "manifest.json").read_text(encoding="utf-8"))["trials"]["own_ship"]
+    config = manifest_of(run)["trials"]["own_ship"]
     assert config["emission"]["ship"]["stack_height"] == 22.0
     assert config["payload"]["sensor"]["channels"]["so2"]["t90_s"] == 15.0
+    write_report(read_run(run), page := tmp_path / "report.html")
+    assert "own cells" in page.read_text(encoding="utf-8")
 
 
 def test_the_page_shows_the_example_as_it_is():

@@ -9,7 +9,3 @@ def test_the_rms_of_a_sine_over_its_period_is_its_amplitude_over_the_root_of_two
     phase = 2.0 * np.pi * np.arange(64) / 64
     # Exact for equally spaced samples, up to rounding.
     assert math.isclose(rms(3.0 * np.sin(phase)), 3.0 / math.sqrt(2.0), rel_tol=1e-14)
-
-
-def test_the_rms_has_the_sign_and_unit_of_a_magnitude():
-    assert rms(np.array([-2.0, -2.0])) == 2.0

@@ -1,6 +1,5 @@
 """Runs for aircraft other than the X8, as far as no flight of theirs is needed (tests/regression flies them)."""
 
-import json
 import math
 
 import pandas as pd
@@ -14,11 +13,12 @@ from innerloop.designs.cache import cache_directory
 from innerloop.designs.designed import DesignError
 from reports.output import write_report
 from reports.run.run_data import read_run
+from scenarios.engine.in_process_executor import InProcessExecutor
 from scenarios.errors import InputError
 from scenarios.run import command
 from scenarios.schema.load import load_study
 from scenarios.studies.registry import run_study
-from tests.run_tables import rows_of
+from tests.run_tables import manifest_of, rows_of
 
 SHORT = ["sweep.nu=[0.5]", "flight.crossings=2", "comparison.variants=[]"]
 
@@ -27,7 +27,7 @@ LOOSE = ["criteria.crossing_interval_error=0.1", "criteria.tracking_error_rms_m=
 
 
 def run(path, *overrides, name="sweep_nu"):
-    return run_study(load_study(name, [*SHORT, *overrides]), name, path)
+    return run_study(load_study(name, [*SHORT, *overrides]), name, path, executor_factory=InProcessExecutor)
 
 
 def exit_status(path, *overrides):
@@ -84,7 +84,7 @@ def test_a_design_that_is_refused_is_rows_with_its_reason_and_exit_status_1(refu
     assert set(summary["outcome"]) == {"trim_failed"}
     assert set(summary["message"]) == {str(error)}
     assert not summary["criteria_met"].any()
-    manifest = json.loads((out / "manifest.json").read_text(encoding="utf-8"))
+    manifest = manifest_of(out)
     assert (manifest["state"], manifest["outcomes"]["trim_failed"], manifest["flights_met_criteria"]) == ("complete", 2, 0)
     # The reports are built all the same, and say why nothing was flown.
     html = (out / "report.html").read_text(encoding="utf-8")
@@ -111,7 +111,7 @@ def test_the_kinematic_vehicle_flies_as_the_aircraft_that_is_named_would(designs
     out = tmp_path / "run"
     assert run(out, "fidelity=kinematic", "aircraft=aerosonde", *LOOSE).all_met
     flown = pd.read_parquet(out / "flights" / "nu_0.50.parquet")
-    manifest = json.loads((out / "manifest.json").read_text(encoding="utf-8"))
+    manifest = manifest_of(out)
     assert manifest["config"]["guidance"]["airspeed_mps"] == AEROSONDE.envelope.airspeed
     assert flown["airspeed_mps"].iloc[-1] == pytest.approx(25.0, abs=1.3)  # its own airspeed, trimmed by up to 1.29 m/s
     # omega_max of 45 degrees at 25 m/s.

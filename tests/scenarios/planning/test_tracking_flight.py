@@ -124,7 +124,6 @@ def test_the_guard_keeps_the_disc_that_the_keep_out_sphere_cuts_out_at_the_heigh
     ("overrides", "nu", "words"),
     [
         ([], 1.0, "nu is 1; it must be below 1"),
-        ([], 1.3, "nu is 1.3"),
         (["guidance.look_ahead_m=40"], 0.5, "R is 40 m; it must exceed"),
     ],
 )

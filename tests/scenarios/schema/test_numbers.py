@@ -23,9 +23,7 @@ from scenarios.schema.scenario import Scenario
             "tracking_error_rms_m is true; a truth value is no number: give a number",
         ),
         ("sweep_nu", "criteria.tracking_error_rms_m=0", "value is 0; give a limit above 0, or false where"),
-        ("sweep_nu", "criteria.crossing_interval_error=0.0", "value is 0.0; give a limit above 0, or false where"),
         ("sweep_nu", "criteria.crossing_distance_m=[300, 200]", "crossing_distance_m is [300.0, 200.0]; its first value must not"),
-        ("sweep_nu", "criteria.crossing_interval_s=[9, 8]", "crossing_interval_s is [9.0, 8.0]; its first value must not"),
         ("sweep_nu", 'criteria.modes_at_end=["traking"]', "'traking' is not a mode; did you mean 'tracking'? modes are approach,"),
     ],
 )

@@ -6,6 +6,7 @@ import pytest
 from flight_cases import scenario
 
 from gnc.mission.mode import Mode
+from scenarios.engine.in_process_executor import InProcessExecutor
 from scenarios.schema.load import load_study
 from scenarios.schema.sections.flight import DITCHED
 from scenarios.studies.registry import run_study
@@ -35,7 +36,7 @@ def flown(designs, tmp_path_factory):
     with pytest.MonkeyPatch.context() as patch:
         # The design of the other tests, for 60 m.
         patch.setattr("scenarios.studies.flight_study.design_of", lambda *_: (designs("x8"), ""))
-        run_study(flights, "faults", path)
+        run_study(flights, "faults", path, executor_factory=InProcessExecutor)
     return {row["fault"]: (row, pd.read_parquet(path / "flights" / f"{row['flight_id']}.parquet")) for row in rows_of(path)}
 
 
@@ -67,7 +68,8 @@ def test_a_stuck_elevon_is_found_within_seconds_and_the_flight_leads_away_from_t
 def test_an_aircraft_that_is_lost_before_its_last_crossing_is_not_met_and_decides_the_exit_status(tmp_path, required, status):
     # Issue: an engine that fails in sea_wind ended in the sea, with "met every criterion" and exit status 0.
     keys = ["flights=1", "fault.kind=engine", "fault.at_s=[20, 20]", f"criteria.required={required}"]
-    result = run_study(load_study("sea_wind", keys), "sea_wind", tmp_path / "run", overrides=keys)
+    study = load_study("sea_wind", keys)
+    result = run_study(study, "sea_wind", tmp_path / "run", executor_factory=InProcessExecutor, overrides=keys)
     (row,) = rows_of(tmp_path / "run")
     assert (row["outcome"], row["criteria_met"], row["kept_out"]) == ("aircraft_lost", False, True)
     assert row["message"].startswith("it came down on the sea at ")

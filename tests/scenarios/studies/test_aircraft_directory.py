@@ -3,7 +3,6 @@
 The aircraft is that of docs/scripts/aircraft_directory.py, so that its design is made once.
 """
 
-import json
 import runpy
 import shutil
 from pathlib import Path
@@ -16,6 +15,7 @@ from reports.output import write_report
 from reports.run.run_data import read_run
 from scenarios.schema.load import load_document
 from tests.in_process import assert_refused, run_command
+from tests.run_tables import manifest_of
 
 SCRIPT = Path(__file__).parents[3] / "docs" / "scripts" / "aircraft_directory.py"
 SWEEP = ["--set", "sweep.nu=[0.6]", "--set", "flight.crossings=4", "--set", "comparison.variants=[]", "--set", "histories=2"]
@@ -38,17 +38,13 @@ def flown(heavy, heavy_design):
     return out, ended
 
 
-def read_manifest(out):
-    return json.loads((out / "manifest.json").read_text(encoding="utf-8"))
-
-
 def test_a_sweep_with_it_meets_every_criterion_and_names_it_in_report_and_manifest(flown, heavy, tmp_path):
     out, ended = flown
     assert ended.status == 0, ended
     rows = pd.read_csv(out / "summary.csv")
     assert rows["criteria_met"].tolist() == [True]
     assert rows["aircraft"].tolist() == [str(heavy)]
-    manifest = read_manifest(out)
+    manifest = manifest_of(out)
     assert manifest["config"]["aircraft"] == str(heavy)
     assert len(manifest["plugins"][str(heavy)]) == 16
     assert "criteria.tracking_error_rms_m" in manifest["scaled_parameters"]["sweep_nu"]

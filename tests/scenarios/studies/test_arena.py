@@ -12,7 +12,7 @@ from scenarios.schema.load import load_study
 from scenarios.studies.arena.entrants import conditions_of, entrants_of
 from scenarios.studies.registry import run_study
 from tests.in_process import assert_refused, run_command
-from tests.run_tables import rows_of
+from tests.run_tables import manifest_of, rows_of
 from tests.scenarios.plugin_files import LAW
 
 QUICK = (
@@ -74,7 +74,7 @@ def test_every_law_has_the_same_budget_and_seeds_that_the_comparison_does_not_us
 
 
 def test_flights_have_the_tuned_parameters_and_the_manifest_says_them(run, record):
-    manifest = json.loads((run / "manifest.json").read_text(encoding="utf-8"))
+    manifest = manifest_of(run)
     tuned = {entrant["name"]: entrant["tuned"] for entrant in record["entrants"]}
     assert manifest["tuned"] == tuned
     for case in manifest["trials"]["calm"]["cases"]:
@@ -171,7 +171,7 @@ def test_a_law_whose_tuning_was_lost_is_not_compared_with_its_defaults_and_is_tu
     lost, whole = tmp_path / "lost", tmp_path / "whole"
     assert (lost / "arena.json").read_bytes() == (whole / "arena.json").read_bytes()
     assert (lost / "draws.csv").read_bytes() == (whole / "draws.csv").read_bytes()
-    tuned = json.loads((lost / "manifest.json").read_text(encoding="utf-8"))["tuned"]["npfg"]
+    tuned = manifest_of(lost)["tuned"]["npfg"]
     assert pd.read_csv(lost / "draws.csv")["guidance.npfg_period_s"][0] == tuned["npfg_period_s"]
 
 

@@ -1,6 +1,5 @@
 """A convergence study from its file to its run directory, with few trajectories from near by."""
 
-import json
 import shutil
 
 import pandas as pd
@@ -15,6 +14,7 @@ from scenarios.errors import InputError
 from scenarios.schema.load import load_study
 from scenarios.schema.sections.convergence import ConvergenceScenario
 from scenarios.studies.registry import run_study
+from tests.run_tables import manifest_of
 
 FEW = ["ensemble.trajectories=12", "ensemble.distance_max_m=100", "ensemble.samples=2"]
 
@@ -81,7 +81,7 @@ def test_those_that_do_not_converge_are_kept_with_their_time_histories(tmp_path)
     assert len(failed) == 12
     assert failed["message"].str.contains("m from the reference after 1 s").all()
     assert len(list((tmp_path / "run" / "trajectories").glob("cascade_*.parquet"))) == 12
-    manifest = json.loads((tmp_path / "run" / "manifest.json").read_text(encoding="utf-8"))
+    manifest = manifest_of(tmp_path / "run")
     assert manifest["outcomes"]["time_up"] == 12
 
 
@@ -97,7 +97,7 @@ def test_an_interrupted_study_resumes_to_the_same_rows(directory, tmp_path):
     first = run(study(), path, progress=interrupt)
     assert first.interrupted
     assert 0 < first.summary.done < 24
-    assert json.loads((path / "manifest.json").read_text(encoding="utf-8"))["state"] == "interrupted"
+    assert manifest_of(path)["state"] == "interrupted"
     again = run(study(), path, resume=True)
     assert again.summary.done == again.planned == 24
     pd.testing.assert_frame_equal(pd.read_csv(path / "summary.csv"), pd.read_csv(directory / "summary.csv"), check_exact=True)
@@ -153,7 +153,7 @@ def test_an_interrupt_while_time_histories_are_kept_leaves_a_run_that_can_be_res
         first = run(few, tmp_path / "run")
     assert first.interrupted
     assert first.summary.done == first.planned
-    assert json.loads((tmp_path / "run" / "manifest.json").read_text(encoding="utf-8"))["state"] == "interrupted"
+    assert manifest_of(tmp_path / "run")["state"] == "interrupted"
     assert run(few, tmp_path / "run", resume=True).all_met
 
 

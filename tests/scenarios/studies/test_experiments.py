@@ -1,7 +1,5 @@
 """Experiments on any scenario, in any study: what was once refused in calm air or in wind flies in both."""
 
-import json
-
 import pandas as pd
 import pytest
 
@@ -10,7 +8,7 @@ from scenarios.errors import InputError
 from scenarios.experiment.requests import Experiment
 from scenarios.schema.load import load_study
 from scenarios.studies.registry import run_study
-from tests.run_tables import rows_of
+from tests.run_tables import manifest_of, rows_of
 
 SLOW_STEPS = ("fidelity=kinematic", "guidance.rate_hz=5", "flight.log_rate_hz=5")
 KINEMATIC = (*SLOW_STEPS, "comparison.variants=[]", "flight.crossings=2")
@@ -140,7 +138,7 @@ def test_operational_scenarios_are_compared_with_variants_of_the_same_seeds(tmp_
         assert variant["flight_id"] == f"{variant['variant']}_{number % 2:05d}"
         assert variant["beside"] == rows[number % 2]["flight_id"]
     assert not any("beside" in row for row in rows)
-    manifest = json.loads((tmp_path / "run" / "manifest.json").read_text(encoding="utf-8"))
+    manifest = manifest_of(tmp_path / "run")
     assert manifest["flights_planned"] == 3
     study = load_study(given[0], given[1:])
     again = run_study(study, "sea_wind", tmp_path / "run", overrides=given[1:], executor_factory=InProcessExecutor, resume=True)

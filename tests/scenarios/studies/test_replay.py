@@ -18,6 +18,7 @@ from scenarios.schema.load import is_flight, load_study
 from scenarios.studies.registry import run_study
 from scenarios.studies.replay import Replay
 from tests.in_process import assert_refused, run_command
+from tests.run_tables import change_manifest, manifest_of, write_manifest
 from tests.scenarios.short_trial import short_trial
 
 TRIAL = short_trial(flights=3, duration=10.0, histories=3, spread=180.0)
@@ -80,11 +81,11 @@ def test_a_report_of_one_flight_is_about_that_flight(runs, tmp_path, run, flight
 
 def test_a_flight_that_goes_another_way_is_reported_with_what_has_changed(runs, tmp_path):
     copy = shutil.copytree(runs / "trials", tmp_path / "copy")
-    manifest = json.loads((copy / "manifest.json").read_text(encoding="utf-8"))
+    manifest = manifest_of(copy)
     # As if it had been flown from another distance by another version.
     manifest["trials"]["one"]["start"]["distance_m"] = [500.0, 520.0]
     manifest["fingerprint"]["numpy"] = "1.0"
-    (copy / "manifest.json").write_text(json.dumps(manifest), encoding="utf-8")
+    write_manifest(copy, manifest)
     result = replay(copy / "flights" / "one_00000", tmp_path / "again")
     assert not result.all_met
     assert "differs from the flight in" in result.summary.lines[-1]
@@ -141,9 +142,9 @@ def files_below(folder):
 @pytest.mark.parametrize("trial", ["../../../../pwned/x", "/pwned/x", "..", "a\\b", "a\nb", "", "x" * 201])
 def test_a_run_whose_trial_is_no_name_of_a_file_is_not_replayed(runs, tmp_path, trial):
     copy = shutil.copytree(runs / "trials", tmp_path / "a" / "b" / "copy")
-    manifest = json.loads((copy / "manifest.json").read_text(encoding="utf-8"))
+    manifest = manifest_of(copy)
     manifest["trials"] = {trial: manifest["trials"]["one"]}
-    (copy / "manifest.json").write_text(json.dumps(manifest), encoding="utf-8")
+    write_manifest(copy, manifest)
     tampered(copy, {"trial": trial, "flight_id": "planted"})
     before = files_below(tmp_path)
     with pytest.raises(InputError, match=r"names a trial .*, which cannot be the name of a trial; do not use this run") as refused:
@@ -171,8 +172,7 @@ def test_a_flight_with_a_number_that_its_trial_does_not_have_is_refused(runs, tm
 @pytest.mark.parametrize("trials", [3, {"one": 5}, {"one": {"title": 5}}, [], {}])
 def test_a_manifest_that_is_not_that_of_a_run_is_refused_in_a_line(runs, tmp_path, trials):
     copy = shutil.copytree(runs / "trials", tmp_path / "copy")
-    manifest = json.loads((copy / "manifest.json").read_text(encoding="utf-8"))
-    (copy / "manifest.json").write_text(json.dumps(manifest | {"trials": trials}), encoding="utf-8")
+    change_manifest(copy, trials=trials)
     with pytest.raises(InputError) as refused:
         Replay(str(copy / "flights" / "one_00000"))
     assert "\n" not in str(refused.value)

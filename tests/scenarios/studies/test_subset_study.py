@@ -22,6 +22,7 @@ from scenarios.schema.load import load_study
 from scenarios.studies.registry import run_study, study_of
 from scenarios.studies.replay import Replay
 from scenarios.world.noise import Noise
+from tests.run_tables import manifest_of
 
 RARE = """
 study = "monte_carlo"
@@ -131,7 +132,7 @@ def test_every_flight_has_a_row_and_every_level_its_figures(whole):
 def test_no_bound_is_claimed_from_flights_of_which_each_follows_from_others(whole):
     result, out = whole
     assert not any("of flights sampled as these were" in line for line in result.summary.lines)
-    assert json.loads((out / "manifest.json").read_text(encoding="utf-8"))["sampled_at_random"] == {"short": False}
+    assert manifest_of(out)["sampled_at_random"] == {"short": False}
 
 
 def test_no_point_outside_the_declared_speed_ratios_is_flown(whole):

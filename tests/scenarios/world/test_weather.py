@@ -16,13 +16,6 @@ def sampled(given, seed=9):
     return sampled_weather(given, wind_of(given, given_place(given.place, 60.0)), np.random.default_rng(seed))
 
 
-@pytest.mark.parametrize(
-    ("from_deg", "blows_to"), [(0.0, (-10.0, 0.0)), (90.0, (0.0, -10.0)), (180.0, (10.0, 0.0)), (270.0, (0.0, 10.0))]
-)
-def test_the_wind_blows_to_where_it_does_not_come_from(from_deg, blows_to):
-    assert wind_ned(WindConfig(speed_mps=10.0, from_deg=from_deg)) == pytest.approx(blows_to, abs=1e-12)
-
-
 @pytest.mark.parametrize("roughness", [1e-8, 2e-4, 1.0])
 def test_a_wind_with_a_profile_is_the_one_given_at_its_height_whatever_the_roughness(roughness):
     given = scenario(wind={"speed_mps": 10.0, "from_deg": 180.0, "roughness_m": roughness, "height_m": 20.0})

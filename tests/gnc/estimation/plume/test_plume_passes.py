@@ -23,16 +23,21 @@ def _path(readings: np.ndarray | None = None, *, duration: float = 9.0, seed: in
     return Path(time, np.full_like(time, 230.0), across, np.full_like(time, 60.0), read_at, values)
 
 
-def _pulse(read_at: np.ndarray, strength: float, *, place: float, spread: float, duration: float = 9.0) -> np.ndarray:
-    """Return the readings of a Gaussian pulse through the sensor's lag, by its convolution in steps of 1 ms."""
-    fine = np.arange(0.0, duration, 1e-3)
-    air = strength * np.exp(-0.5 * ((_SPEED * (fine - 0.5 * duration) - place) / spread) ** 2)
+def _lagged(air: np.ndarray) -> np.ndarray:
+    """Return what the sensor's lag makes of the air, by its convolution in steps of 1 ms."""
     lagged, decay = np.empty_like(air), math.exp(-1e-3 / SENSOR.time_constant)
     state = 0.0
     for i, value in enumerate(air.tolist()):
         state = decay * state + (1.0 - decay) * value
         lagged[i] = state
-    return np.interp(read_at, fine, lagged)
+    return lagged
+
+
+def _pulse(read_at: np.ndarray, strength: float, *, place: float, spread: float) -> np.ndarray:
+    """Return the readings of a Gaussian pulse on the way of ``_path``."""
+    fine = np.arange(0.0, 9.0, 1e-3)
+    air = strength * np.exp(-0.5 * ((_SPEED * (fine - 4.5) - place) / spread) ** 2)
+    return np.interp(read_at, fine, _lagged(air))
 
 
 PLACES, SPREADS = np.linspace(-40.0, 40.0, 17), np.array([6.0, 9.0, 13.0])
@@ -67,11 +72,7 @@ def test_clean_air_after_a_plume_is_clean_air(place: float) -> None:
     # The plume is gone by the turn, at 90 m: the second pass meets nothing.
     across = _SPEED * (np.minimum(fine, duration) - 0.5 * duration)
     air = np.where(fine < duration, 300.0 * np.exp(-0.5 * ((across - place) / 9.0) ** 2), 0.0)
-    lagged, decay = np.empty_like(air), math.exp(-1e-3 / SENSOR.time_constant)
-    state = 0.0
-    for i, value in enumerate(air.tolist()):
-        state = decay * state + (1.0 - decay) * value
-        lagged[i] = state
+    lagged = _lagged(air)
 
     def path(begun: float, first: float, end: float, sign: float, seed: int) -> Path:
         time = np.arange(begun, end + 0.25, 0.25)

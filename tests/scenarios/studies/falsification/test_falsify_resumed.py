@@ -7,8 +7,9 @@ import pandas as pd
 
 from scenarios.studies.falsification import study as falsification
 from scenarios.studies.falsification.results import UNFLOWN, SearchedFlight, search_lines, search_manifest
+from tests.run_tables import manifest_of
 from tests.scenarios.losing_executor import losing
-from tests.scenarios.short_search import CONFIRMATIONS, KEPT, POPULATION, manifest, run, same_tables, tables
+from tests.scenarios.short_search import CONFIRMATIONS, KEPT, POPULATION, run, same_tables, tables
 
 TURNS = "search.generations=4"
 """Each method's turn, and one more: what the first turns found decides the later ones."""
@@ -74,8 +75,8 @@ def test_a_search_by_time_ends_after_it_and_a_resumed_one_continues_for_as_long(
     assert len(after) > len(before)
     first = after.iloc[: len(before)].drop(columns="wall_time_s")
     pd.testing.assert_frame_equal(first, before.drop(columns="wall_time_s"), check_exact=True)
-    worst = {entry["flight_id"] for entry in manifest(out)["search"]["worst"]}
+    worst = {entry["flight_id"] for entry in manifest_of(out)["search"]["worst"]}
     # What the first run repeated stays in the tables, also where it is not among the worst any more.
     assert set(repeats_after["confirms"]) == worst | set(repeats["confirms"])
-    assert manifest(out)["flights_planned"] == len(after) + len(repeats_after)
+    assert manifest_of(out)["flights_planned"] == len(after) + len(repeats_after)
     assert len(list((out / "worst").iterdir())) == KEPT

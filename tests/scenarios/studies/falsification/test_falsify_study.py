@@ -15,13 +15,13 @@ from scenarios.engine.runner import fly_study
 from scenarios.schema.load import load_study
 from scenarios.studies.registry import run_study
 from scenarios.studies.replay import Replay
+from tests.run_tables import manifest_of
 from tests.scenarios.short_search import (
     CONFIRMATIONS,
     GENERATIONS,
     KEPT,
     METHODS,
     POPULATION,
-    manifest,
     run,
     same_tables,
     tables,
@@ -53,7 +53,7 @@ def test_every_flight_says_which_method_proposed_it(found):
     searched, repeats = tables(found)
     assert dict.fromkeys(searched["search_method"]) == dict.fromkeys(METHODS)
     assert set(repeats["search_method"]) == {"confirmation"}
-    said = manifest(found)["search"]
+    said = manifest_of(found)["search"]
     for name, of in said["methods"].items():
         rows = pd.concat([searched, repeats])
         rows = rows[rows["search_method"] == name]
@@ -71,7 +71,7 @@ def test_violations_are_listed_the_worst_first(search, tmp_path):
     searched, repeats = tables(tmp_path / "run")
     rows = pd.concat([searched, repeats])
     violating = rows[rows["keepout_violations"] > 0].sort_values("min_distance_m", kind="stable")
-    said = manifest(tmp_path / "run")["search"]
+    said = manifest_of(tmp_path / "run")["search"]
     assert len(violating) > 0
     assert [entry["flight_id"] for entry in said["violations"]] == violating["flight_id"].tolist()
     assert [entry["method"] for entry in said["violations"]] == violating["search_method"].tolist()
@@ -80,7 +80,7 @@ def test_violations_are_listed_the_worst_first(search, tmp_path):
 
 def test_the_worst_flights_are_repeated_with_fresh_noise(found):
     searched, repeats = tables(found)
-    worst = manifest(found)["search"]["worst"]
+    worst = manifest_of(found)["search"]["worst"]
     assert repeats["confirms"].tolist() == [entry["flight_id"] for entry in sorted(worst, key=lambda of: of["flight_id"])
                                             for _ in range(CONFIRMATIONS)]  # fmt: skip
     assert repeats["seed"].nunique() == len(repeats) == KEPT * CONFIRMATIONS
@@ -166,7 +166,7 @@ def test_a_method_of_ones_own_takes_its_turns(search, tmp_path):
     assert searched["search_method"].value_counts().to_dict() == {"corners": 2 * POPULATION, name: 2 * POPULATION}
     assert searched[searched["search_method"] == name]["start.range_m"].between(400.0 + 0.4 * 800.0, 400.0 + 0.6 * 800.0).all()
     assert not len(repeats)
-    assert list(manifest(out)["plugins"]) == [name]
+    assert list(manifest_of(out)["plugins"]) == [name]
 
 
 def test_its_report_says_what_was_found(found, tmp_path):
@@ -180,10 +180,10 @@ def test_its_report_says_what_was_found(found, tmp_path):
     assert f"The closest that it found stayed {least:.1f} m outside the keep-out area." in text
     for words in ("corner sampling", "differential evolution", "local climb", "CMA-ES", "repeated with fresh noise"):
         assert words in text
-    worst = manifest(found)["search"]["worst"]
+    worst = manifest_of(found)["search"]["worst"]
     assert all(entry["flight_id"] in text for entry in worst)
     assert f"0 of {CONFIRMATIONS}" in text
-    assert manifest(found)["worst_clearance_m"] == pytest.approx(least, rel=1e-12)
+    assert manifest_of(found)["worst_clearance_m"] == pytest.approx(least, rel=1e-12)
 
 
 def test_how_well_sulphur_is_measured_is_not_stated_from_flights_that_were_searched_for(search, tmp_path):
