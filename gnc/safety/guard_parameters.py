@@ -20,6 +20,7 @@ class GuardParameters:
     deviation : by how much nearer the vehicle may come in a full reversal of its turn than predicted [m]
     drift_rate : how fast dead reckoning may go wrong, where satellite navigation may be lost [m/s]
     turbulence : of the radius, what is kept for turbulence, which takes the vehicle off any turn predicted [m]
+    wander : by how much the error of its own place may change during a turn away [m]
     turn_speed : up to which it can turn at ``heading_rate_max``; faster it turns at the same acceleration across [m/s]
     """
 
@@ -33,4 +34,5 @@ class GuardParameters:
     deviation: float = 0.0
     drift_rate: float = 0.0
     turbulence: float = 0.0
+    wander: float = 0.0
     turn_speed: float = math.inf

@@ -15,6 +15,9 @@ from scenarios.vehicles.sensors import NAVIGATION_TIME
 VESSEL_ACCELERATION, VESSEL_MEMORY = 0.02, 40.0
 """Standard deviation [m/s^2] and time constant [s] of the acceleration that the vessel's filter reckons with: a ship's."""
 
+_ROUNDS = 10
+"""In which k is found that its own rarity depends on: each leaves a tenth of the error or less [-]."""
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class KeepoutMargin:
@@ -56,23 +59,36 @@ def vessel_limits(scenario: Scenario, horizon: float) -> VesselLimits:
     """
     f, reports = scenario.following, scenario.reports
     known = filter_parameters(reports)
-    # A flight begins with a report, however rare they are, and the vehicle's own error is another one after a while.
-    drawn = [scenario.flight.duration_max_s]
-    if not reports.exact:
-        drawn.append(mean_interval(reports.interval_s))
-    if reports.exact or scenario.sensors.position_sigma_m > 0.0:
-        drawn.append(NAVIGATION_TIME)
-    between = min(drawn)
-    chances = SECONDS_PER_HOUR / between / f.touches_per_hour
     return VesselLimits(
         acceleration=f.vessel_acceleration_mps2,
         speed_max=math.inf if f.vessel_speed_max_mps is None else f.vessel_speed_max_mps,
         position_sigma=math.hypot(known.position_sigma, scenario.sensors.position_sigma_m),
         velocity_sigma=known.velocity_sigma,
-        # A normal error in two dimensions exceeds k standard deviations with the probability exp(-k^2/2).
-        deviations=math.sqrt(2.0 * math.log(max(1.0, chances))),
+        deviations=_deviations(scenario),
         horizon=horizon,
     )
+
+
+def _deviations(scenario: Scenario) -> float:
+    """Return how many standard deviations errors exceed as often as the keep-out area may be touched [-].
+
+    A normal error in two dimensions exceeds k standard deviations with the probability p = exp(-k^2/2). That of a report, as it
+    ages, goes from that of her place to that of her velocity, and exceeds k at some age with p (1 + k sqrt(pi/8)) at most, by
+    Rice's formula over a quarter of a circle. That of the vehicle's own place wanders with a time constant T, and comes to exceed k
+    with a rate of p k^2/T at most (Kramers, "Brownian motion in a field of force and the diffusion model of chemical reactions",
+    Physica, 1940).
+    """
+    flight, reports = scenario.flight, scenario.reports
+    # A flight begins with a report, however rare they are.
+    reported = SECONDS_PER_HOUR / flight.duration_max_s
+    if not reports.exact:
+        reported += SECONDS_PER_HOUR / mean_interval(reports.interval_s)
+    wandering = SECONDS_PER_HOUR / NAVIGATION_TIME if scenario.sensors.position_sigma_m > 0.0 else 0.0
+    k = 1.0
+    for _ in range(_ROUNDS):
+        chances = reported * (1.0 + k * math.sqrt(math.pi / 8.0)) + wandering * k * k
+        k = math.sqrt(2.0 * math.log(max(1.0, chances / scenario.following.touches_per_hour)))
+    return k
 
 
 def widest_tube(limits: VesselLimits, reports: VesselReportsConfig, *, plan_period: float, noise: float = 0.0) -> Tube:

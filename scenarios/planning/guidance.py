@@ -5,6 +5,7 @@ from collections.abc import Sequence
 
 from common.physics.coordinated_turn import heading_rate_for_bank
 from gnc.airspeed.pace_hold import SpeedHold, design_speed_hold
+from gnc.estimation.navigation import NOISE_DEVIATIONS
 from gnc.mission.approach import ApproachParameters
 from gnc.mission.plume_axis import AxisParameters
 from gnc.mission.plume_following import FollowingParameters
@@ -97,6 +98,7 @@ def guard_parameters(
     drift_rate : how fast dead reckoning may go wrong [m/s]
     """
     f, air = scenario.following, scenario.turbulence
+    wander = math.sqrt(-2.0 * math.expm1(-turn_time(scenario, setup.reversal) / NAVIGATION_TIME))
     speed_error = max(f.speed_error_mps, velocity_error(scenario, drift_rate)) + air.gust_speed_mps + wind_change
     return GuardParameters(
         radius=radius + turbulence,
@@ -110,6 +112,7 @@ def guard_parameters(
         speed_error=speed_error if scenario.follows else 0.0,
         drift_rate=drift_rate,
         turbulence=turbulence,
+        wander=NOISE_DEVIATIONS * scenario.sensors.position_sigma_m * wander if scenario.follows else 0.0,
         turn_speed=setup.turning_airspeed(omega_max(scenario.guidance)),
     )
 

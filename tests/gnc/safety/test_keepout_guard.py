@@ -204,14 +204,15 @@ def test_lost_is_said_and_the_better_turn_is_flown():
     assert not any(lost[-200:])
 
 
-def test_what_is_kept_for_turbulence_explains_as_much():
-    # 3 m of the radius are taken already; a guard that knows nothing of turbulence has no explanation.
+@pytest.mark.parametrize("declared", ["turbulence", "wander"])
+def test_what_turbulence_or_an_error_of_the_own_place_takes_is_explained(declared):
+    # 3 m of the radius are taken already; a guard that knows of neither has no explanation.
     motion = (0.0, RADIUS - 3.0, 0.0, 0.0, 0.5 * math.pi, SPEED, 0.0)
-    for turbulence in (0.0, 10.0):
-        guard = make_guard(turbulence=turbulence)
+    for size in (0.0, 10.0):
+        guard = make_guard(**{declared: size})
         guard.limit(0.0, *motion)
         assert guard.intervening
-        assert guard.lost == (turbulence == 0.0)
+        assert guard.lost == (size == 0.0)
 
 
 @pytest.mark.parametrize("off", [0.0, 0.01, -0.01])

@@ -30,6 +30,13 @@ def test_in_steady_air_it_is_what_is_declared_and_without_a_loss_there_is_none()
     assert drift_rate(scenario(), CALM, TURN) == 0.0
 
 
+def test_an_aircraft_reckons_no_better_than_to_two_per_cent_of_its_airspeed_whatever_is_declared():
+    exact = {"drift_rate_mps": 0.0}
+    assert rate(following=exact) == pytest.approx(0.02 * scenario().guidance.airspeed_mps)
+    # What sensors add comes on top of it.
+    assert rate(following=exact, sensors={"airspeed_bias_mps": 0.5}) == pytest.approx(rate(following=exact) + 1.0)
+
+
 def test_guard_and_mission_reckon_with_the_same_rate():
     guidance = plan(scenario(fault=FAULT, following={"drift_rate_mps": 1.7})).guidance
     assert guidance.guard.drift_rate == guidance.mission.drift_rate == 1.7
@@ -73,7 +80,9 @@ def test_turbulence_displaces_by_more_than_is_reckoned_with_about_as_often_as_th
 def test_a_compass_with_noise_makes_it_go_wrong_by_no_more_than_planned(sigma_deg):
     # Twenty flights that weave in a wind for 300 s, and then for 60 s without satellites.
     flown = scenario(fault=FAULT, sensors={"heading_sigma_deg": sigma_deg}, following={"drift_rate_mps": 0.0})
-    planned, generator = drift_rate(flown, CALM, TURN), np.random.default_rng(int(sigma_deg))
+    # Without what an aircraft adds to it, which is none.
+    planned = drift_rate(flown, CALM, TURN) - rate(following={"drift_rate_mps": 0.0})
+    generator = np.random.default_rng(int(sigma_deg))
     speed, time_step, (w_north, w_east) = flown.guidance.airspeed_mps, 1.0 / flown.guidance.rate_hz, (3.0, -4.0)
     for _ in range(20):
         navigation = Navigation(navigation_parameters(flown, kinematic_setup(flown)))
