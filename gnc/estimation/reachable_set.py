@@ -23,6 +23,9 @@ KEPT = 3
 """Newest reports that discs are made of: an older one could be nearer the truth only by its luck [-]."""
 
 
+_EXACT = 1e-3
+"""Standard deviation of a place below which its error grows with that of the velocity from the first moment on [m]."""
+
 Value = TypeVar("Value", float, npt.NDArray[np.float64])
 """A number, or many."""
 
@@ -92,10 +95,11 @@ def tube(report: VesselReport, limits: VesselLimits, time: float) -> Tube:
     """
     age, k, acceleration = time - report.time, limits.deviations, limits.acceleration
     place, drift = limits.position_sigma, limits.velocity_sigma
-    # Of the errors' growth no more than the first and second derivative now are needed: the second one falls.
+    # Of the errors' growth no more than the first and second derivative now are needed: the second one falls. Of a place that is
+    # next to exact the second is beyond all bounds at first; the growth is never above that of the velocity's error.
     spread = math.hypot(place, drift * age)
     drifting, faster = k * drift, 0.0
-    if place > 0.0:
+    if place > _EXACT:
         drifting, faster = k * drift * drift * age / spread, k * (drift * place) ** 2 / spread**3
     return Tube(
         time,
