@@ -21,8 +21,10 @@ from scenarios.world.vessel import (
     track_times,
 )
 
-_INCONSISTENCY_MAX = 0.02
-"""By how much the velocity of a track of one's own may differ from the rate of its places [m/s]: by rounding, and no more."""
+_INCONSISTENCY_MAX = 0.01
+"""By how much the way of a track of one's own may differ from the integral of its velocity [m].
+
+That is a sum: of curves and splines whose velocity is exact they differ by up to 0.6 mm in an hour."""
 
 _LOOKS = 10
 """Points of a track from one look at it to the next [-], 0.5 s: in between its distance from a disc bends by millimetres."""
@@ -45,31 +47,38 @@ def check_declared(scenario: Scenario, vessel: VesselTruth) -> None:
     if not scenario.guidance.keepout_guard:
         return
     # A steady vessel does at any time what she does at first.
-    f, duration = scenario.following, 0.0 if isinstance(vessel, SteadyVessel) else scenario.flight.duration_max_s
+    f, duration = scenario.following, 0.0 if type(vessel) is SteadyVessel else scenario.flight.duration_max_s
     acceleration, speed = largest_acceleration(vessel, duration), largest_speed(vessel, duration)
     other = "fly another time of its file (place.utc)" if isinstance(vessel, AisVessel) else ""
     scripted = "vessel.manoeuvres" if isinstance(vessel, ManoeuvringVessel) else f"vessel.track '{scenario.vessel.track}'"
     if acceleration > f.vessel_acceleration_mps2:
         raise InfeasibleError(
-            f"the vessel accelerates by {acceleration:.3g} m/s2, changes of speed and course together; declared are at most"
+            f"the vessel accelerates by {_at_least(acceleration)} m/s2, changes of speed and course together; declared are at most"
             f" following.vessel_acceleration_mps2 = {f.vessel_acceleration_mps2:g}, on which the keep-out guard relies: declare"
             f" more, or {other or f'manoeuvre more gently ({scripted})'}"
         )
     if f.vessel_speed_max_mps is not None and speed > f.vessel_speed_max_mps:
         raise InfeasibleError(
-            f"the vessel moves at up to {speed:.3g} m/s over the ground; it is declared to stay within"
+            f"the vessel moves at up to {_at_least(speed)} m/s over the ground; it is declared to stay within"
             f" following.vessel_speed_max_mps = {f.vessel_speed_max_mps:g}, on which the keep-out guard relies: declare more, or"
             f" {other or 'sail more slowly'}"
         )
     if (off := largest_inconsistency(vessel, duration)) > _INCONSISTENCY_MAX:
         raise InfeasibleError(
-            f"vessel.track '{scenario.vessel.track}': its places move at another velocity than motion() returns, by up to {off:.3g}"
-            " m/s; let the velocity be the derivative of the place: the keep-out guard relies on it"
+            f"vessel.track '{scenario.vessel.track}': its places and the integral of the velocity that motion() returns differ"
+            f" by up to {off:.2g} m; {_INCONSISTENCY_MAX:g} m are allowed for rounding: let the velocity be the derivative of the"
+            " place, on which the keep-out guard relies"
         )
 
 
 def _check_reports(vessel: AisVessel, limits: VesselLimits, duration: float) -> None:
     """Raise an InfeasibleError for reports of a file from which the guard would take the vessel to be elsewhere.
+
+def _at_least(value: float) -> str:
+    """Return a positive number rounded up to four digits: it suffices to declare that."""
+    digit = 10.0 ** (math.floor(math.log10(value)) - 3)
+    return f"{math.ceil(value / digit) * digit:.4g}"
+
 
     The smooth track has to stay within the disc of each report to the end of the flight: all reports after it may be lost.
 
