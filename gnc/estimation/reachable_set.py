@@ -85,6 +85,12 @@ def radius_after(limits: VesselLimits, age: Value) -> Value:
     return radius
 
 
+def radius_by_speed(limits: VesselLimits, age: Value) -> Value:
+    """Return the radius [m] of the disc about a reported place that she cannot have left by her largest speed so long after [s]."""
+    radius: Value = limits.deviations * limits.position_sigma + limits.speed_max * age
+    return radius
+
+
 def tube(report: VesselReport, limits: VesselLimits, time: float) -> Tube:
     """Return the disc at ``time`` [s] of a vessel that may have accelerated since its report, as it grows from then on.
 
@@ -121,7 +127,7 @@ def tube_by_speed(report: VesselReport, limits: VesselLimits, time: float) -> Tu
     than the vessel, always. Since it begins no larger, the one takes over from the other before that.
     """
     by_acceleration, speed = tube(report, limits, time), limits.speed_max
-    since_report = limits.deviations * limits.position_sigma + speed * (time - report.time)
+    since_report = radius_by_speed(limits, time - report.time)
     if by_acceleration.radius <= since_report:
         return Tube(time, by_acceleration.north, by_acceleration.east, 0.0, 0.0, by_acceleration.radius, speed)
     return Tube(time, report.north, report.east, 0.0, 0.0, since_report, speed)
