@@ -23,6 +23,9 @@ KEPT = 3
 """Newest reports that discs are made of: an older one could be nearer the truth only by its luck [-]."""
 
 
+_EXACT = 1e-3
+"""Standard deviation of a place below which its error grows with that of the velocity from the first moment on [m]."""
+
 Value = TypeVar("Value", float, npt.NDArray[np.float64])
 """A number, or many."""
 
@@ -82,6 +85,12 @@ def radius_after(limits: VesselLimits, age: Value) -> Value:
     return radius
 
 
+def radius_by_speed(limits: VesselLimits, age: Value) -> Value:
+    """Return the radius [m] of the disc about a reported place that she cannot have left by her largest speed so long after [s]."""
+    radius: Value = limits.deviations * limits.position_sigma + limits.speed_max * age
+    return radius
+
+
 def tube(report: VesselReport, limits: VesselLimits, time: float) -> Tube:
     """Return the disc at ``time`` [s] of a vessel that may have accelerated since its report, as it grows from then on.
 
@@ -92,10 +101,11 @@ def tube(report: VesselReport, limits: VesselLimits, time: float) -> Tube:
     """
     age, k, acceleration = time - report.time, limits.deviations, limits.acceleration
     place, drift = limits.position_sigma, limits.velocity_sigma
-    # Of the errors' growth no more than the first and second derivative now are needed: the second one falls.
+    # Of the errors' growth no more than the first and second derivative now are needed: the second one falls. Of a place that is
+    # next to exact the second is beyond all bounds at first; the growth is never above that of the velocity's error.
     spread = math.hypot(place, drift * age)
     drifting, faster = k * drift, 0.0
-    if place > 0.0:
+    if place > _EXACT:
         drifting, faster = k * drift * drift * age / spread, k * (drift * place) ** 2 / spread**3
     return Tube(
         time,
@@ -117,7 +127,7 @@ def tube_by_speed(report: VesselReport, limits: VesselLimits, time: float) -> Tu
     than the vessel, always. Since it begins no larger, the one takes over from the other before that.
     """
     by_acceleration, speed = tube(report, limits, time), limits.speed_max
-    since_report = limits.deviations * limits.position_sigma + speed * (time - report.time)
+    since_report = radius_by_speed(limits, time - report.time)
     if by_acceleration.radius <= since_report:
         return Tube(time, by_acceleration.north, by_acceleration.east, 0.0, 0.0, by_acceleration.radius, speed)
     return Tube(time, report.north, report.east, 0.0, 0.0, since_report, speed)

@@ -4,10 +4,11 @@ import math
 from dataclasses import replace
 
 import numpy as np
+import numpy.typing as npt
 
 from common.times import utc_text
 from gnc.errors import InfeasibleError
-from gnc.estimation.reachable_set import VesselLimits, radius_after
+from gnc.estimation.reachable_set import KEPT, VesselLimits, radius_after, radius_by_speed
 from gnc.estimation.vessel_filter import VesselReport
 from scenarios.schema.scenario import Scenario
 from scenarios.world.ais.track import AisVessel
@@ -21,11 +22,15 @@ from scenarios.world.vessel import (
     track_times,
 )
 
-_INCONSISTENCY_MAX = 0.02
-"""By how much the velocity of a track of one's own may differ from the rate of its places [m/s]: by rounding, and no more."""
+_INCONSISTENCY_MAX = 0.01
+"""By how much the way of a track of one's own may differ from the integral of its velocity [m].
+
+That is a sum: of curves and splines whose velocity is exact they differ by up to 0.6 mm in an hour."""
 
 _LOOKS = 10
 """Points of a track from one look at it to the next [-], 0.5 s: in between its distance from a disc bends by millimetres."""
+
+Array = npt.NDArray[np.float64]
 
 
 def check_vessel(scenario: Scenario, vessel: VesselTruth, limits: VesselLimits) -> None:
@@ -45,33 +50,40 @@ def check_declared(scenario: Scenario, vessel: VesselTruth) -> None:
     if not scenario.guidance.keepout_guard:
         return
     # A steady vessel does at any time what she does at first.
-    f, duration = scenario.following, 0.0 if isinstance(vessel, SteadyVessel) else scenario.flight.duration_max_s
+    f, duration = scenario.following, 0.0 if type(vessel) is SteadyVessel else scenario.flight.duration_max_s
     acceleration, speed = largest_acceleration(vessel, duration), largest_speed(vessel, duration)
     other = "fly another time of its file (place.utc)" if isinstance(vessel, AisVessel) else ""
     scripted = "vessel.manoeuvres" if isinstance(vessel, ManoeuvringVessel) else f"vessel.track '{scenario.vessel.track}'"
     if acceleration > f.vessel_acceleration_mps2:
         raise InfeasibleError(
-            f"the vessel accelerates by {acceleration:.3g} m/s2, changes of speed and course together; declared are at most"
+            f"the vessel accelerates by {_at_least(acceleration)} m/s2, changes of speed and course together; declared are at most"
             f" following.vessel_acceleration_mps2 = {f.vessel_acceleration_mps2:g}, on which the keep-out guard relies: declare"
             f" more, or {other or f'manoeuvre more gently ({scripted})'}"
         )
     if f.vessel_speed_max_mps is not None and speed > f.vessel_speed_max_mps:
         raise InfeasibleError(
-            f"the vessel moves at up to {speed:.3g} m/s over the ground; it is declared to stay within"
+            f"the vessel moves at up to {_at_least(speed)} m/s over the ground; it is declared to stay within"
             f" following.vessel_speed_max_mps = {f.vessel_speed_max_mps:g}, on which the keep-out guard relies: declare more, or"
             f" {other or 'sail more slowly'}"
         )
     if (off := largest_inconsistency(vessel, duration)) > _INCONSISTENCY_MAX:
         raise InfeasibleError(
-            f"vessel.track '{scenario.vessel.track}': its places move at another velocity than motion() returns, by up to {off:.3g}"
-            " m/s; let the velocity be the derivative of the place: the keep-out guard relies on it"
+            f"vessel.track '{scenario.vessel.track}': its places and the integral of the velocity that motion() returns differ"
+            f" by up to {off:.2g} m; {_INCONSISTENCY_MAX:g} m are allowed for rounding: let the velocity be the derivative of the"
+            " place, on which the keep-out guard relies"
         )
+
+
+def _at_least(value: float) -> str:
+    """Return a positive number rounded up to four digits: it suffices to declare that."""
+    digit = 10.0 ** (math.floor(math.log10(value)) - 3)
+    return f"{math.ceil(value / digit) * digit:.4g}"
 
 
 def _check_reports(vessel: AisVessel, limits: VesselLimits, duration: float) -> None:
     """Raise an InfeasibleError for reports of a file from which the guard would take the vessel to be elsewhere.
 
-    The smooth track has to stay within the disc of each report to the end of the flight: all reports after it may be lost.
+    The smooth track has to stay within the discs of each report to the end of the flight: all reports after it may be lost.
 
     Parameters
     ----------
@@ -81,23 +93,42 @@ def _check_reports(vessel: AisVessel, limits: VesselLimits, duration: float) -> 
     """
     times = track_times(duration)[::_LOOKS]
     places = vessel.places[: _LOOKS * len(times) : _LOOKS]
-    for report in vessel.reports:
+    before = sum(report.time <= 0.0 for report in vessel.reports)
+    for report in vessel.reports[max(0, before - KEPT) :]:
         if report.time >= 0.0 and _within_for_good(report, vessel, limits):
             continue
         begins = int(np.searchsorted(times, report.time))
         age = np.concatenate([[max(0.0, -report.time)], times[begins:] - report.time])
-        place = np.vstack([vessel.motion(max(0.0, report.time))[:2], places[begins:]])
-        north = place[:, 0] - report.north - report.velocity_north * age
-        east = place[:, 1] - report.east - report.velocity_east * age
-        off, allowed = np.hypot(north, east), radius_after(limits, age)
-        worst = int(np.argmax(off - allowed))
-        if off[worst] > allowed[worst]:
-            raise InfeasibleError(
-                f"the report of {utc_text(vessel.place.utc + report.time)} and the smooth track through all reports lie"
-                f" {off[worst]:.1f} m apart after {age[worst]:.1f} s; {allowed[worst]:.1f} m are allowed for by"
-                " reports.position_sigma_m, reports.velocity_sigma_mps and following.vessel_acceleration_mps2: declare more, or"
-                " delete the report"
-            )
+        way = np.vstack([vessel.motion(max(0.0, report.time))[:2], places[begins:]]) - (report.north, report.east)
+        velocity, allowed = np.array([report.velocity_north, report.velocity_east]), radius_after(limits, age)
+        drifted = "reports.velocity_sigma_mps and following.vessel_acceleration_mps2"
+        _check_within(vessel, report, age, way - age[:, None] * velocity, allowed, drifted)
+        if limits.speed_max < math.inf:
+            by_speed = radius_by_speed(limits, age)
+            # The guard keeps off it only where it is the smaller one. Nothing else checks the speed before the start.
+            by_speed[by_speed >= allowed] = math.inf
+            _check_within(vessel, report, age, way, by_speed, f"following.vessel_speed_max_mps = {limits.speed_max:g}")
+
+
+def _check_within(vessel: AisVessel, report: VesselReport, age: Array, off_centre: Array, allowed: Array, declared: str) -> None:
+    """Raise an InfeasibleError where the track leaves a report's disc.
+
+    Parameters
+    ----------
+    vessel, report : the track and the report
+    age : of the report, shape (n,) [s]
+    off_centre, allowed : track from the disc's centre, shape (n, 2), and the disc's radius [m]
+    declared : keys that the radius follows from
+    """
+    off = np.hypot(*off_centre.T)
+    worst = int(np.argmax(off - allowed))
+    if off[worst] > allowed[worst]:
+        raise InfeasibleError(
+            f"the report of {utc_text(vessel.place.utc + report.time)} and the smooth track through all reports lie"
+            f" {off[worst]:.1f} m apart after {age[worst]:.1f} s; {allowed[worst]:.1f} m are allowed for by"
+            f" reports.position_sigma_m and {declared}: declare more, delete the report, or fly another time"
+            " of its file (place.utc)"
+        )
 
 
 def _within_for_good(report: VesselReport, vessel: AisVessel, limits: VesselLimits) -> bool:

@@ -36,10 +36,10 @@ class Scenario(ScenarioKeys):
                 "guidance.command_limit is false and guidance.approach true; the way to the orbit has turns at the limit:"
                 " set guidance.approach to false"
             )
-        if not self.guidance.command_limit and self.guidance.keepout_guard and self.kinematic.heading_rate_lag_s > 0.0:
+        if not (self.guidance.command_limit or self.circles) and self.guidance.keepout_guard:
             raise ValueError(
-                "guidance.command_limit is false with kinematic.heading_rate_lag_s; the keep-out guard predicts one with a lag"
-                " within the limit alone: leave one of them out, or set guidance.keepout_guard to false"
+                "guidance.command_limit is false; the keep-out guard predicts turns within the limit alone: set"
+                " guidance.command_limit to true, or guidance.keepout_guard to false"
             )
         if self.fidelity == "kinematic" and not self.turbulence.calm:
             raise ValueError(

@@ -14,8 +14,8 @@ from scenarios.schema.sections.world import VesselConfig
 TRACK_STEP = 0.05
 """Time step of a tabled track [s]; between its points the track is a parabola to 1e-5 m."""
 
-_ROUNDING = 1e-3
-"""Relative error of what is taken from a table of velocities [-]."""
+_ROUNDING = 1e-6
+"""Relative error of what is taken from a table of velocities [-]: 4e-13 of vessels at their limit; in 5 minutes, millimetres."""
 
 _COLUMNS = 5
 """Of the table: north, east, their rates, the course."""
@@ -76,9 +76,7 @@ class TabledVessel:
     """
 
     def __init__(self, velocity: Array, course: Array, manoeuvres_end: float) -> None:
-        place = np.zeros_like(velocity)
-        place[1:] = np.cumsum(0.5 * TRACK_STEP * (velocity[1:] + velocity[:-1]), axis=0)
-        self._table = np.column_stack([place, velocity, course])
+        self._table = np.column_stack([_integral(velocity), velocity, course])
         self._last = len(velocity) - 2
         self.manoeuvres_end = manoeuvres_end
 
@@ -180,31 +178,39 @@ def by_manoeuvres(vessel: VesselConfig, speed: float, duration: float) -> Vessel
 
 
 def largest_acceleration(vessel: VesselTruth, duration: float) -> float:
-    """Return the largest acceleration of a vessel, along its course and across it together, rounded down by 0.1 % [m/s^2]."""
+    """Return the largest acceleration of a vessel, along its course and across it together, less rounding [m/s^2]."""
     velocity, _ = sampled(vessel, duration)
     return (1.0 - _ROUNDING) * float(np.hypot(*np.diff(velocity, axis=0).T).max()) / TRACK_STEP
 
 
 def largest_speed(vessel: VesselTruth, duration: float) -> float:
-    """Return the largest speed of a vessel over the ground, rounded down by 0.1 % [m/s]."""
+    """Return the largest speed of a vessel over the ground, less rounding [m/s]."""
     velocity, _ = sampled(vessel, duration)
     return (1.0 - _ROUNDING) * float(np.hypot(*velocity.T).max())
 
 
 def largest_inconsistency(vessel: VesselTruth, duration: float) -> float:
-    """Return by how much the rate of a track's places differs from its velocity at most [m/s]; 0 where both come from one table."""
-    if isinstance(vessel, SteadyVessel | TabledVessel):
+    """Return by how much, between any two times, the way of a track differs from the integral of its velocity at most [m].
+
+    It is 0 where both come from one table, and otherwise exact to the trapezoidal rule: less than a millimetre in an hour.
+    """
+    if type(vessel) is SteadyVessel or isinstance(vessel, TabledVessel):
         return 0.0
     motion = np.array([vessel.motion(time) for time in track_times(duration).tolist()])
-    rate, velocity = np.diff(motion[:, :2], axis=0) / TRACK_STEP, motion[:, 2:]
-    # Between two samples of a velocity that changes evenly the mean may be off by a quarter of the change.
-    off = np.hypot(*(rate - 0.5 * (velocity[1:] + velocity[:-1])).T) - 0.25 * np.hypot(*np.diff(velocity, axis=0).T)
-    return max(0.0, float(off.max()))
+    off = motion[:, :2] - _integral(motion[:, 2:])
+    return float(np.hypot(*np.ptp(off, axis=0)))
 
 
 def track_times(duration: float) -> Array:
     """Return the times at which a track is tabled [s], somewhat beyond ``duration``."""
     return np.asarray(TRACK_STEP * np.arange(math.ceil(duration / TRACK_STEP) + 3), dtype=np.float64)
+
+
+def _integral(velocity: Array) -> Array:
+    """Return the way since the first of the velocities at ``track_times`` [m], both of shape (n, 2)."""
+    way = np.zeros_like(velocity)
+    way[1:] = np.cumsum(0.5 * TRACK_STEP * (velocity[1:] + velocity[:-1]), axis=0)
+    return way
 
 
 def sampled(vessel: VesselTruth, duration: float) -> tuple[Array, Array]:

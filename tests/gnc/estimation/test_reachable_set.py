@@ -143,6 +143,13 @@ def test_without_a_position_error_the_disc_of_a_new_report_grows_by_its_velocity
     assert (disc.radius, disc.growth) == pytest.approx((0.0, 5.0 * 0.15), rel=1e-12)
 
 
+def test_a_place_that_is_next_to_exact_makes_a_disc_that_is_next_to_that_of_an_exact_one():
+    exact, nearly = (replace(LIMITS, position_sigma=sigma) for sigma in (0.0, 1e-110))
+    report = VesselReport(0.0, 3.0, -4.0, 8.0, 0.0)
+    for age in (0.0, 20.0):
+        assert tube(report, nearly, age) == pytest.approx(tube(report, exact, age), rel=1e-12)
+
+
 def test_normal_errors_are_outside_of_a_disc_as_rarely_as_its_deviations_say():
     # Two dimensions: exp(-k^2/2), 1.1 % at k = 3. 20000 reports, each 12 s old, of a vessel at rest that stays.
     generator = np.random.default_rng(11)

@@ -116,6 +116,44 @@ def test_a_report_whose_velocity_is_wrong_is_refused_for_what_it_makes_of_a_sile
         plan(scenario(vessel={"track": str(path)}, following=declared, flight={"crossings": 0, "duration_max_s": 300.0}))
 
 
+@pytest.mark.parametrize(
+    ("slows_down", "silence", "fastest", "words"),
+    [
+        # From 15 to 8 m/s while nothing is received: 1035 m in the 90 s before the start, and 8.6 m/s are 774 m, and 5.6 * 5 m.
+        (
+            (-80.0, -10.0),
+            (-85.0, 5.0),
+            8.6,
+            r"apart after 90\.0 s; 80\d\.\d m .* following.vessel_speed_max_mps = 8.6: declare more",
+        ),
+        ((-80.0, -10.0), (-85.0, 5.0), 15.1, None),
+        # Of the reports before the start the guard keeps the newest three, of the last 20 s, and those are of a slow ship.
+        ((-55.0, -35.0), (0.5, 0.5), 8.6, None),
+    ],
+)
+def test_a_ship_that_was_faster_than_declared_is_refused_where_the_guard_relies_on_it(
+    tmp_path, slows_down, silence, fastest, words
+):
+    path, lines = tmp_path / "slower.csv", ["time_utc,mmsi,lat_deg,lon_deg,sog_kn,cog_deg"]
+    for time in range(-200, 201, 10):
+        if silence[0] < time < silence[1]:
+            continue
+        since = np.clip(time - slows_down[0], 0.0, (lasts := slows_down[1] - slows_down[0]))
+        after = max(0.0, time - slows_down[1])
+        north = 15.0 * min(time, slows_down[0]) + 15.0 * since - 7.0 / lasts * since**2 / 2.0 + 8.0 * after
+        utc = np.datetime64("2026-06-01T12:00:00") + np.timedelta64(time, "s")
+        lines.append(f"{utc}Z,219999001,{55.0 + north / 111320.0:.7f},10.0,{(15.0 - 7.0 * since / lasts) / 0.514444:.2f},0.0")
+    path.write_text("\n".join(lines))
+    declared = {"vessel_acceleration_mps2": 0.35, "vessel_speed_max_mps": fastest}
+    changes = {"start": {"distance_m": (3000.0, 3000.0)}, "flight": {"crossings": 0, "duration_max_s": 60.0}}
+    changes |= {"place": {"utc": "2026-06-01T12:00:00Z"}, "following": declared, "vessel": {"track": str(path)}}
+    if words is None:
+        plan(scenario(**changes))
+        return
+    with pytest.raises(InfeasibleError, match=words):
+        plan(scenario(**changes))
+
+
 def test_a_folder_of_files_may_have_an_equals_sign_in_its_name(tmp_path):
     # As archives that are parted by days have it.
     (tmp_path / "day=2026-06-01").mkdir()

@@ -223,7 +223,7 @@ def test_a_flight_whose_time_is_up_is_truncated_and_not_terminated_even_where_it
     ("keys", "words"),
     [
         (
-            {"guidance.command_limit": False, "guidance.approach": False, "fidelity": "kinematic"},
+            KINEMATIC | {"guidance.command_limit": False, "guidance.approach": False, "guidance.keepout_guard": False},
             "command_limit is false; an environment needs a limit",
         ),
         ({"sweep.nv": [0.3]}, "unknown key 'nv'"),

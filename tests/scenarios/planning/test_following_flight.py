@@ -61,9 +61,11 @@ def test_what_is_declared_of_the_vessel_is_what_its_discs_are_made_of():
 
 def test_a_steady_vessel_that_is_faster_than_declared_is_refused():
     changes = {"reports": {"interval_s": (2.0, 10.0)}}
-    with pytest.raises(InfeasibleError, match=r"moves at up to 7\.99 m/s .*vessel_speed_max_mps = 7, on which .* relies: declare"):
+    with pytest.raises(InfeasibleError, match=r"moves at up to 8 m/s .*vessel_speed_max_mps = 7, on which .* relies: declare"):
         plan(scenario(following={"vessel_speed_max_mps": 7.0}, **changes))
-    # Her own speed is no more than that.
+    # What is less by 0.05 % is not rounding: 1.2 m in 5 minutes. The speed that is given is what has to be declared.
+    with pytest.raises(InfeasibleError, match=r"moves at up to 8 m/s .*vessel_speed_max_mps = 7\.996"):
+        plan(scenario(following={"vessel_speed_max_mps": 7.996}, **changes))
     plan(scenario(following={"vessel_speed_max_mps": 8.0}, **changes))
 
 
@@ -84,6 +86,31 @@ def test_a_track_of_ones_own_that_accelerates_more_than_is_declared_is_told_to_b
         InfeasibleError, match=r"accelerates by 0\.4 m/s2.*: declare more, or manoeuvre more gently \(vessel\.track "
     ):
         check_declared(scenario(), Swerving())
+
+
+class Faster:
+    """A track whose places move faster than its velocity says, by a little."""
+
+    manoeuvres_end = math.nan
+
+    def course(self, _time):
+        return 0.0
+
+    def motion(self, time):
+        return 8.0199 * time, 0.0, 8.0, 0.0
+
+
+def test_a_track_of_ones_own_whose_velocity_is_a_little_wrong_is_refused():
+    # 0.0199 m/s in the 200 s of the flight: kinematic flights of a law that flies at her came within r_min by 6 m in 300 s.
+    with pytest.raises(InfeasibleError, match=r"differ by up to 4 m; 0\.01 m are allowed.*: let the velocity be the derivative"):
+        check_declared(scenario(flight={"duration_max_s": 200.0}), Faster())
+
+
+def test_a_manoeuvre_beyond_what_is_declared_by_a_thousandth_is_refused():
+    braking = {"speed_mps": 8.0, "manoeuvres": [{"at_s": 40.0, "speed_mps": 0.0, "acceleration_mps2": 0.2502}]}
+    with pytest.raises(InfeasibleError, match=r"accelerates by 0\.2502 m/s2.*acceleration_mps2 = 0\.25, on"):
+        plan(scenario(vessel=braking, following={"vessel_acceleration_mps2": 0.25}))
+    plan(scenario(vessel=braking, following={"vessel_acceleration_mps2": 0.2502}))
 
 
 def test_a_vessel_that_is_known_exactly_does_no_more_than_is_declared_either():

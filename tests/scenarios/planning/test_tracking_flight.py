@@ -63,15 +63,16 @@ def test_the_airspeed_is_trimmed_within_what_the_vehicle_flies():
 
 
 def test_commands_may_be_left_uncut():
-    flight = plan("fidelity=kinematic", "guidance.command_limit=false", "guidance.approach=false")
+    flight = plan("fidelity=kinematic", "guidance.command_limit=false", "guidance.approach=false", "guidance.keepout_guard=false")
     assert flight.guidance.tracking.heading_rate_max == math.inf
     # What they are judged by.
     assert flight.heading_rate_max == pytest.approx(9.80665 / 19.42, rel=1e-12)
 
 
-def test_an_orbit_that_is_joined_needs_commands_that_are_cut():
-    with pytest.raises(InputError, match=r"command_limit is false with kinematic.heading_rate_lag_s; .*: leave one of them out"):
-        plan("fidelity=kinematic", "guidance.command_limit=false", "guidance.approach=false", "kinematic.heading_rate_lag_s=0.4")
+def test_the_guard_and_an_orbit_that_is_joined_need_commands_that_are_cut():
+    # At 5 Hz 5 of 6 flights of a law that flies at the vessel came within r_min, by up to 3 m.
+    with pytest.raises(InputError, match=r"command_limit is false; the keep-out guard .*, or guidance.keepout_guard to false"):
+        plan("fidelity=kinematic", "guidance.command_limit=false", "guidance.approach=false")
     with pytest.raises(InputError, match=r"command_limit is false and guidance.approach true.*: set guidance.approach to false"):
         plan("fidelity=kinematic", "guidance.command_limit=false")
 
