@@ -21,6 +21,7 @@ class GuardParameters:
     drift_rate : how fast dead reckoning may go wrong, where satellite navigation may be lost [m/s]
     turbulence : of the radius, what is kept for turbulence, which takes the vehicle off any turn predicted [m]
     turn_speed : up to which it can turn at ``heading_rate_max``; faster it turns at the same acceleration across [m/s]
+    slowest : airspeed that it may fall to in any turn away, as without thrust; infinite where it keeps to its commands [m/s]
     """
 
     radius: float
@@ -34,3 +35,4 @@ class GuardParameters:
     drift_rate: float = 0.0
     turbulence: float = 0.0
     turn_speed: float = math.inf
+    slowest: float = math.inf
