@@ -22,6 +22,7 @@ class GuardParameters:
     turbulence : of the radius, what is kept for turbulence, which takes the vehicle off any turn predicted [m]
     wander : by how much the error of its own place may change during a turn away [m]
     turn_speed : up to which it can turn at ``heading_rate_max``; faster it turns at the same acceleration across [m/s]
+    slowest : airspeed that it may fall to in any turn away, as without thrust; infinite where it keeps to its commands [m/s]
     """
 
     radius: float
@@ -36,3 +37,4 @@ class GuardParameters:
     turbulence: float = 0.0
     wander: float = 0.0
     turn_speed: float = math.inf
+    slowest: float = math.inf

@@ -51,14 +51,15 @@ class KeepoutGuard:
     """
 
     __slots__ = (
-        "_drift_rate", "_explained", "_fastest", "_free_steps", "_given", "_highest", "_kept_off", "_lag", "_lowest", "_note",
-        "_note_rate", "_prediction", "_quarter_turn", "_radius", "_rate", "_resolution", "_side", "_slowest", "_speed_error",
-        "_time_step", "_turn_speed", "_turn_time", "_until_acting", "_within_step", "intervening", "interventions", "lost", "tubes",
+        "_drift_rate", "_explained", "_fallen", "_fastest", "_free_steps", "_given", "_highest", "_kept_off", "_lag", "_lowest",
+        "_note", "_note_rate", "_prediction", "_quarter_turn", "_radius", "_rate", "_resolution", "_side", "_slowest",
+        "_speed_error", "_time_step", "_turn_speed", "_turn_time", "_until_acting", "_within_step", "intervening", "interventions",
+        "lost", "tubes",
     )  # fmt: skip
 
     def __init__(self, parameters: GuardParameters) -> None:
         p = parameters
-        self._radius, self._turn_speed = p.radius, p.turn_speed
+        self._radius, self._turn_speed, self._fallen = p.radius, p.turn_speed, p.slowest
         self._rate, self._time_step, self._quarter_turn = p.heading_rate_max, p.time_step, 0.5 * math.pi / p.heading_rate_max
         self._lag, self._until_acting = p.lag, p.delay
         self._given = GivenCommands(
@@ -143,12 +144,11 @@ class KeepoutGuard:
         is argued in docs/keepout_guard.md.
         """
         best, within, to_come = -math.inf, self._within_step * speed, self._given.still_to_come(own.heading_rate)
+        turn, since = self._prediction.turn_away, (self._given.change, self._until_acting)
         for tube in self.tubes:
-            then = self._prediction.when_acting(self._relative(tube, time, own, speed, speed, to_come), self._given.under_way)
-            start = (then[0], then[1], then[4], then[6])
-            for side in (nearer := nearer_side(*start[:3]), -nearer):
-                kept, _ = self._prediction.turn_away(side, start, then, self._given.change, self._until_acting, best)
-                best = max(best, kept)
+            motions = self._when_acting(self._relative(tube, time, own, speed, speed, to_come))
+            for side in (nearer := nearer_side(motions[0][0], motions[0][1], motions[0][4]), -nearer):
+                best = max(best, min(turn(side, (*at[:2], at[4], at[6]), at, *since, best)[0] for at in motions))
                 if best >= enough + within:
                     return best - within
         return best - within
@@ -192,7 +192,7 @@ class KeepoutGuard:
 
     def _relative(self, tube: Tube, time: float, own: AirMotion, speed: float, slowest: float, to_come: float) -> Motion:
         """Return the vehicle's motion relative to a disc, with all that is uncertain in the disc's radius and growth."""
-        since, wrong = time - tube.time, own.wind_error
+        since, wrong, slowest = time - tube.time, own.wind_error, min(slowest, self._fallen)
         drifted = (self._drift_rate + wrong) * own.lost
         return (
             own.ground_north - (tube.north + tube.velocity_north * since),

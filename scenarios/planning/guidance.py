@@ -3,8 +3,10 @@
 import math
 from collections.abc import Sequence
 
+from aircraft.simulation.faults import ENGINE
 from common.physics.coordinated_turn import heading_rate_for_bank
 from gnc.airspeed.pace_hold import SpeedHold, design_speed_hold
+from gnc.estimation.health_monitor import CHECK_INTERVAL, PATIENCE
 from gnc.estimation.navigation import NOISE_DEVIATIONS
 from gnc.mission.approach import ApproachParameters
 from gnc.mission.plume_axis import AxisParameters
@@ -53,6 +55,19 @@ ROUND_BY = 0.8
 def lost_thrust(airspeed: float, slowest: float) -> float:
     """Return the mean lack of airspeed at which thrust counts as lost, by V_r and the slowest airspeed [m/s]."""
     return max(THRUST_LOST_FRACTION * (airspeed - slowest), LEAST_LACK * airspeed)
+
+
+def slowest_without_thrust(scenario: Scenario, setup: VehicleSetup) -> float:
+    """Return the airspeed to which the vehicle may fall in a turn at V_r before it is known that its engine has failed [m/s].
+
+    Infinite where that is not declared. While the airspeed falls at a rate, its mean lack, of a time constant, is behind its lack
+    by no more than the product of the two; and it is looked at in intervals.
+    """
+    if not (setup.airspeed_fall > 0.0 and scenario.follows and ENGINE in scenario.declared_faults):
+        return math.inf
+    airspeed = scenario.guidance.airspeed_mps
+    detected = lost_thrust(airspeed, speed_hold(scenario, setup).airspeed_min)
+    return airspeed - detected - setup.airspeed_fall * (PATIENCE + CHECK_INTERVAL)
 
 
 def controlled_heading_rate(guidance: GuidanceConfig) -> float:
@@ -114,6 +129,7 @@ def guard_parameters(
         turbulence=turbulence,
         wander=NOISE_DEVIATIONS * scenario.sensors.position_sigma_m * wander if scenario.follows else 0.0,
         turn_speed=setup.turning_airspeed(omega_max(scenario.guidance)),
+        slowest=slowest_without_thrust(scenario, setup),
     )
 
 

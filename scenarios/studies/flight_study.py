@@ -196,7 +196,7 @@ class FlightStudy:
         settings = [setting for experiment in self.experiments.values() for setting in experiment.settings()]
         steepest = max(bank_for_heading_rate(omega_max(s.guidance), s.guidance.airspeed_mps) for s in [first, *settings])
         try:
-            setup = aircraft_setup(flown, first, run, bank=steepest) if flown else None
+            setup = aircraft_setup(flown, first, run, bank=steepest, settings=settings) if flown else None
             with plugins_explained("the keep-out margin cannot be predicted", settings):
                 spreads = predicted_spreads(settings, flown, setup)
         except AircraftError as error:

@@ -2,6 +2,7 @@
 
 import math
 import tempfile
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -11,11 +12,14 @@ from aircraft.dynamics.equilibrium import Trim
 from aircraft.dynamics.trim import level_trim
 from aircraft.errors import AircraftError
 from aircraft.fleet.find import find_spec
+from aircraft.simulation.faults import ENGINE
 from aircraft.simulation.user_check import check_user_aircraft
 from aircraft.spec import AircraftSpec, Envelope
 from common.files import write_tree
 from innerloop.designs.cache import designed
 from innerloop.designs.designed import Designed
+from innerloop.flight.autopiloted_aircraft import AutopilotedAircraft
+from innerloop.flight.engine_failure import measure_airspeed_fall
 from innerloop.flight.turn_reversal import TurnReversalResponse
 from innerloop.jsbsim.root import write_root
 from innerloop.synthesis.schedule import Schedule
@@ -66,6 +70,7 @@ class VehicleSetup:
     altitude_error : by which the altitude may differ from its command in a turn away [m]
     airspeed_bandwidth, airspeed_min, airspeed_max : of the airspeed behind its command, and its range [rad/s, m/s]
     airspeed_overshoot : of the airspeed over a step of its command [-]
+    airspeed_fall : rate of its fall in a turn in which the engine fails; 0 where that was not measured [m/s2]
     altitude_reach : difference of the altitude from its command within which the autopilot removes it for certain [m]
     turn_airspeeds, turn_rates : the slower turn at the autopilot's largest bank over airspeed; empty without a limit [m/s, rad/s]
     crab_banks, crab_offsets : banks in steady turns, and course through the air minus heading at each [rad]
@@ -80,6 +85,7 @@ class VehicleSetup:
     airspeed_max: float
     altitude_error: float = 0.0
     airspeed_overshoot: float = 0.0
+    airspeed_fall: float = 0.0
     altitude_reach: float = math.inf
     turn_airspeeds: tuple[float, ...] = ()
     turn_rates: tuple[float, ...] = ()
@@ -134,7 +140,9 @@ def kinematic_setup(scenario: Scenario) -> VehicleSetup:
     )
 
 
-def aircraft_setup(found: Designed, scenario: Scenario, run: RunDirectory, *, bank: float = 0.0) -> VehicleSetup:
+def aircraft_setup(
+    found: Designed, scenario: Scenario, run: RunDirectory, *, bank: float = 0.0, settings: Sequence[Scenario] = ()
+) -> VehicleSetup:
     """Return what flights of the aircraft need; write its autopilot into the run directory.
 
     Parameters
@@ -143,6 +151,7 @@ def aircraft_setup(found: Designed, scenario: Scenario, run: RunDirectory, *, ba
     scenario : whose airspeed and height the flights start at
     run : the run directory
     bank : steepest that the guidance asks for [rad]
+    settings : of all the flights, in some of which an engine may be declared to fail
     """
     schedule = found.design.schedule
     with tempfile.TemporaryDirectory() as folder:
@@ -156,6 +165,10 @@ def aircraft_setup(found: Designed, scenario: Scenario, run: RunDirectory, *, ba
         from innerloop.designs.record import reversal_record  # needs python-control
 
         reversal = reversal_record(schedule.spec, run.model, start, max(bank, schedule.envelope.bank), slow_lag)
+    fall = 0.0
+    if any(ENGINE in setting.declared_faults for setting in settings):
+        failable = AutopilotedAircraft(schedule.spec, run.model, failable=True)
+        fall = measure_airspeed_fall(failable, start, max(bank, schedule.envelope.bank))
     return VehicleSetup(
         lag=slow_lag,
         reversal=TurnReversalResponse(delay=reversal["delay_s"], lag=reversal["lag_s"]),
@@ -169,6 +182,7 @@ def aircraft_setup(found: Designed, scenario: Scenario, run: RunDirectory, *, ba
             for response in found.record["responses"]
             if (response["kind"], response["command"]) == ("flown", "airspeed")
         ),
+        airspeed_fall=fall,
         altitude_reach=schedule.weights.altitude_error_max,
         turn_airspeeds=tuple(schedule.airspeeds),
         turn_rates=_slower_turns(schedule),

@@ -10,6 +10,7 @@ from aircraft.errors import AircraftError
 from aircraft.fleet.x8 import X8
 from common.physics.units import STANDARD_GRAVITY
 from innerloop.flight.autopiloted_aircraft import AutopilotedAircraft
+from innerloop.flight.engine_failure import measure_airspeed_fall
 
 TIME_STEP = 1.0 / 120.0
 FOOT = 0.3048
@@ -103,3 +104,15 @@ def test_what_cannot_fail_says_so(x8_schedule, x8_aircraft, failable):
         failable.fail("rudder")
     with pytest.raises(AircraftError, match="'engine' cannot fail; make it with failable=True"):
         x8_aircraft.fail("engine")
+
+
+def test_without_its_engine_the_airspeed_falls_in_a_turn_by_drag_over_mass(x8_schedule, failable):
+    start = x8_schedule.level(MIDDLE)
+    fall = measure_airspeed_fall(failable, start, math.radians(45.0))
+    # The published polynomials at 20 m/s and 1.41 times the weight. Within the second of the measurement the aircraft becomes
+    # slower by a fifteenth; and the propeller adds drag while it runs down.
+    pressure, weight = 0.5 * 1.2147 * 20.0**2 * x8.WING_AREA, x8.MASS * STANDARD_GRAVITY
+    lift = math.sqrt(2.0) * weight / pressure
+    alpha, elevator = np.linalg.solve([[x8.CL_A, x8.CL_DE], [x8.CM_A, x8.CM_DE]], [lift - x8.CL_0, -x8.CM_0])
+    drag = x8.drag_coefficient(x8.Air(airspeed=20.0, alpha=alpha, elevator=elevator)) * pressure
+    assert fall == pytest.approx(drag / x8.MASS, rel=0.05)
