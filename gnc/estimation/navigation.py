@@ -20,6 +20,7 @@ class NavigationParameters:
     airspeed_sigma, course_sigma, wind_drift : of ``gnc.estimation.wind_filter.WindFilter`` [m/s, rad, m/s]
     wind_noise, wind_error : largest errors by the noise of the sensors of a single measurement of the wind, and of its estimate in
         the end, with which the guard reckons at all times [m/s]
+    first_wind_error : largest error of the first wind that is measured by the vehicle's own motion, as it rolls or climbs [m/s]
     wind_interval : guidance steps between measurements of the wind
     time_step : of the guidance [s]
     """
@@ -31,6 +32,7 @@ class NavigationParameters:
     wind_drift: float
     wind_noise: float = 0.0
     wind_error: float = 0.0
+    first_wind_error: float = 0.0
     wind_interval: int
     time_step: float
 
@@ -52,6 +54,7 @@ class Navigation:
     """
 
     __slots__ = (
+        "_first_variance",
         "_parameters",
         "_step_east",
         "_step_north",
@@ -79,6 +82,7 @@ class Navigation:
         self.drift_north = self.drift_east = self.lost = self.wind_error = 0.0
         self._step_north = self._step_east = self._unmeasured = 0.0
         self._until_measured = 0
+        self._first_variance = 0.0
 
     def update(self, position: tuple[float, float, float, float] | None, airspeed: float, heading: float, roll: float) -> None:
         """Take in what the sensors say now.
@@ -106,8 +110,12 @@ class Navigation:
         since = p.wind_interval * p.time_step + self._unmeasured
         wind.update(airspeed, air_course, self.velocity_north, self.velocity_east, since)
         self._unmeasured = 0.0
+        variance = wind.sigma**2
+        self._first_variance = self._first_variance or variance
+        # As much of the first measurement is left in the estimate as in a mean of as many.
+        self.wind_error = p.first_wind_error * variance / self._first_variance
         if p.wind_noise > p.wind_error:
-            self.wind_error = max(0.0, min(p.wind_noise, NOISE_DEVIATIONS * wind.sigma) - p.wind_error)
+            self.wind_error += max(0.0, min(p.wind_noise, NOISE_DEVIATIONS * wind.sigma) - p.wind_error)
         self._step_north, self._step_east = p.time_step * wind.north, p.time_step * wind.east
 
     def _reckon(self, airspeed: float, air_course: float) -> None:

@@ -19,6 +19,7 @@ from innerloop.flight.turn_reversal import TurnReversalResponse
 from scenarios.margin.keepout_margin import KeepoutMargin
 from scenarios.margin.satellite_noise import noise_allowance, position_scatter
 from scenarios.planning.air.dead_reckoning import velocity_error
+from scenarios.planning.air.flown_heights import climbs
 from scenarios.planning.bounded_steering import Steering, given_steering, steering_law
 from scenarios.planning.limits import omega_max, plan_interval
 from scenarios.planning.reference import shape_of
@@ -67,7 +68,8 @@ def slowest_without_thrust(scenario: Scenario, setup: VehicleSetup) -> float:
         return math.inf
     airspeed = scenario.guidance.airspeed_mps
     detected = lost_thrust(airspeed, speed_hold(scenario, setup).airspeed_min)
-    return airspeed - detected - setup.airspeed_fall * (PATIENCE + CHECK_INTERVAL)
+    fall = setup.climbing_fall if climbs(scenario) else setup.airspeed_fall
+    return airspeed - detected - fall * (PATIENCE + CHECK_INTERVAL)
 
 
 def controlled_heading_rate(guidance: GuidanceConfig) -> float:

@@ -70,7 +70,8 @@ class VehicleSetup:
     altitude_error : by which the altitude may differ from its command in a turn away [m]
     airspeed_bandwidth, airspeed_min, airspeed_max : of the airspeed behind its command, and its range [rad/s, m/s]
     airspeed_overshoot : of the airspeed over a step of its command [-]
-    airspeed_fall : rate of its fall in a turn in which the engine fails; 0 where that was not measured [m/s2]
+    airspeed_fall, climbing_fall : rate of its fall in a turn in which the engine fails, level and in a climb; 0 where that was not
+        measured [m/s2]
     altitude_reach : difference of the altitude from its command within which the autopilot removes it for certain [m]
     turn_airspeeds, turn_rates : the slower turn at the autopilot's largest bank over airspeed; empty without a limit [m/s, rad/s]
     crab_banks, crab_offsets : banks in steady turns, and course through the air minus heading at each [rad]
@@ -86,6 +87,7 @@ class VehicleSetup:
     altitude_error: float = 0.0
     airspeed_overshoot: float = 0.0
     airspeed_fall: float = 0.0
+    climbing_fall: float = 0.0
     altitude_reach: float = math.inf
     turn_airspeeds: tuple[float, ...] = ()
     turn_rates: tuple[float, ...] = ()
@@ -165,10 +167,13 @@ def aircraft_setup(
         from innerloop.designs.record import reversal_record  # needs python-control
 
         reversal = reversal_record(schedule.spec, run.model, start, max(bank, schedule.envelope.bank), slow_lag)
-    fall = 0.0
-    if any(ENGINE in setting.declared_faults for setting in settings):
+    level = climbing = 0.0
+    if failing := [setting for setting in settings if ENGINE in setting.declared_faults]:
         failable = AutopilotedAircraft(schedule.spec, run.model, failable=True)
-        fall = measure_airspeed_fall(failable, start, max(bank, schedule.envelope.bank))
+        gradient = max(setting.following.climb_gradient for setting in failing)
+        level, climbing = (
+            measure_airspeed_fall(failable, start, max(bank, schedule.envelope.bank), each) for each in (0.0, gradient)
+        )
     return VehicleSetup(
         lag=slow_lag,
         reversal=TurnReversalResponse(delay=reversal["delay_s"], lag=reversal["lag_s"]),
@@ -182,7 +187,8 @@ def aircraft_setup(
             for response in found.record["responses"]
             if (response["kind"], response["command"]) == ("flown", "airspeed")
         ),
-        airspeed_fall=fall,
+        airspeed_fall=level,
+        climbing_fall=climbing,
         altitude_reach=schedule.weights.altitude_error_max,
         turn_airspeeds=tuple(schedule.airspeeds),
         turn_rates=_slower_turns(schedule),

@@ -3,6 +3,8 @@
 The guard kept off where the vessel was predicted; a report that moved her, a long silence, gusts and steep banks got the X8 in.
 """
 
+from pathlib import Path
+
 import pandas as pd
 import pytest
 
@@ -52,28 +54,15 @@ def test_corners_that_a_search_has_found_are_kept_out_of(settings, tmp_path):
     assert rows["guard_lost_s"].sum() == 0.0
 
 
-AT_THE_SHIP = """
-import math
-from dataclasses import dataclass
-
-
-@dataclass(frozen=True)
-class AtTheShip:
-    gain: float = 20.0
-
-    def heading_rate(self, reference, to_north, to_east, course, speed):
-        # The nearest point of a circle about the ship, which is far outside: the other way is the ship.
-        return self.gain * math.remainder(math.atan2(-to_east, -to_north) - course, math.tau)
-"""
+AT_THE_SHIP = f"{Path(__file__).parent}/law_at_the_ship.py:AtTheShip"
 
 
 @pytest.mark.parametrize(("place", "fails"), [(421.05, 0.749), (463.85, 1.3425)])
 def test_an_aircraft_whose_engine_fails_before_it_turns_away_keeps_out(place, fails, tmp_path):
     # Until that is detected it slows down from 19.4 m/s or more to 14.7. As long as the turn was predicted at the airspeed of the
     # moment these two came in, by 0.7 and 0.5 m.
-    (tmp_path / "law.py").write_text(AT_THE_SHIP, encoding="utf-8")
     keys = {
-        "guidance.law": f"{tmp_path}/law.py:AtTheShip", "guidance.mission": "standoff", "reference.standoff_radius_m": 9000,
+        "guidance.law": AT_THE_SHIP, "guidance.mission": "standoff", "reference.standoff_radius_m": 9000,
         "vessel.speed_mps": 15, "start.range_m": place, "start.aspect_deg": 180, "start.course_deg": 180, "fault.kind": "engine",
         "fault.at_s": [fails, fails], "flight.duration_max_s": 15, "flight.crossings": 0,
     }  # fmt: skip
@@ -84,6 +73,21 @@ def test_an_aircraft_whose_engine_fails_before_it_turns_away_keeps_out(place, fa
     assert row["guard_time_s"] > 1.0
     assert row["min_distance_m"] > row["keepout_radius_m"] + 0.5
     assert row["guard_lost_s"] == 0.0
+
+
+def test_an_aircraft_whose_engine_fails_in_a_climb_keeps_out(tmp_path):
+    # It slows down the faster, to 13.4 m/s, and came in by 0.86 m.
+    keys = {
+        "guidance.law": AT_THE_SHIP, "guidance.mission": "standoff", "reference.standoff_radius_m": 9000, "vessel.speed_mps": 15,
+        "start.distance_m": [380, 520], "start.aspect_deg": 180, "start.course_deg": 180, "fault.kind": "engine",
+        "fault.at_s": [0.5, 8], "flight.duration_max_s": 40, "flight.crossings": 0, "plume.elevation_deg": 20,
+        "keepout.shape": "cylinder", "flight_seed": 3003838512,
+    }  # fmt: skip
+    study = load_study("sea_wind", ["draws=[]", "flights=1", *(f"{key}={value}" for key, value in keys.items())])
+    run_study(study, "sea_wind", tmp_path / "run", executor_factory=InProcessExecutor)
+    (row,) = pd.read_csv(tmp_path / "run" / "summary.csv").to_dict("records")
+    assert row["guard_time_s"] > 1.0
+    assert row["min_distance_m"] > row["keepout_radius_m"]
 
 
 def test_an_aircraft_that_is_gaining_speed_turns_away_as_predicted(tmp_path):

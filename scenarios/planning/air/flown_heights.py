@@ -40,6 +40,11 @@ def glides(scenario: Scenario) -> bool:
     return not scenario.declared_faults <= NOT_OF_AIRCRAFT
 
 
+def climbs(scenario: Scenario) -> bool:
+    """Return whether the altitude changes before anything has failed."""
+    return len(set(_crossed_heights(scenario, climbed_along(scenario)))) > 1
+
+
 def _crossed_heights(scenario: Scenario, distance: float) -> list[float]:
     """Return the height at the start, the lowest and the highest of a plume that is climbed along up to a distance [m]."""
     flight, source = scenario.flight, scenario.source_height

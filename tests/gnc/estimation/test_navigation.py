@@ -153,6 +153,16 @@ def test_no_more_is_wrong_than_a_measurement_by_its_noise():
     assert quiet.wind_error == 0.0
 
 
+def test_a_first_wind_that_is_wrong_by_the_vehicles_own_motion_is_averaged_out():
+    navigation = make(first_wind_error=0.8)
+    fly(navigation, steps=1)
+    assert navigation.wind_error == pytest.approx(0.8)
+    first = navigation.wind.sigma
+    fly(navigation, steps=40, first=1)
+    assert navigation.wind_error == pytest.approx(0.8 * (navigation.wind.sigma / first) ** 2)
+    assert 0.0 < navigation.wind_error < 0.4
+
+
 @pytest.mark.parametrize("measured", [1, 3, 20])
 def test_a_noisy_compass_makes_the_wind_wrong_by_no_more_than_that(measured):
     # Of a normal error in a plane one in 90 exceeds three deviations of its worst direction; 1,000 winds were estimated.
