@@ -110,12 +110,13 @@ class Navigation:
         since = p.wind_interval * p.time_step + self._unmeasured
         wind.update(airspeed, air_course, self.velocity_north, self.velocity_east, since)
         self._unmeasured = 0.0
-        variance = wind.sigma**2
+        sigma = wind.sigma
+        variance = sigma**2
         self._first_variance = self._first_variance or variance
         # As much of the first measurement is left in the estimate as in a mean of as many.
         self.wind_error = p.first_wind_error * variance / self._first_variance
         if p.wind_noise > p.wind_error:
-            self.wind_error += max(0.0, min(p.wind_noise, NOISE_DEVIATIONS * wind.sigma) - p.wind_error)
+            self.wind_error += max(0.0, min(p.wind_noise, NOISE_DEVIATIONS * sigma) - p.wind_error)
         self._step_north, self._step_east = p.time_step * wind.north, p.time_step * wind.east
 
     def _reckon(self, airspeed: float, air_course: float) -> None:

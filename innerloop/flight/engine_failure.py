@@ -1,4 +1,4 @@
-"""How fast an aircraft loses airspeed when its engine fails in a turn that it goes on flying at its altitude."""
+"""How fast an aircraft loses airspeed when its engine fails in a turn that it goes on flying, level or in a climb."""
 
 import math
 
@@ -42,11 +42,11 @@ def measure_airspeed_fall(aircraft: AutopilotedAircraft, start: Trim, bank: floa
     for step in range(failing + round(_WATCHED / TIME_STEP)):
         if step == failing:
             aircraft.fail(ENGINE)
-            airspeeds = [read()]
         if step % round(_STEP / TIME_STEP) == 0:
             aircraft.command_altitude(start.altitude + gradient * start.airspeed * step * TIME_STEP)
-        aircraft.run()
         airspeeds.append(read())
+        aircraft.run()
+    airspeeds.append(read())
     over = round(_OVER / TIME_STEP)
-    flown = METRES_PER_FOOT * np.array(airspeeds)
+    flown = METRES_PER_FOOT * np.array(airspeeds[failing:])
     return float(np.max(flown[:-over] - flown[over:])) / (over * TIME_STEP)

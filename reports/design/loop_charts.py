@@ -8,7 +8,7 @@ import numpy as np
 from reports.design.data import CONTROLS, Record, at_middle, loop_name, speed
 from reports.design.loop_styles import LOOP_STYLES, OTHER_LOOP
 from reports.document.axes import cut_words
-from reports.document.chart import Chart, Line, Panel
+from reports.document.chart import Chart, Line, Panel, circle
 from reports.document.palette import Meaning
 from reports.run.columns import Array
 
@@ -40,7 +40,8 @@ def disk_region(gain_margin_db: float) -> tuple[Array, Array]:
     disk margins, IEEE Control Systems Magazine, 2020).
     """
     largest = 10.0 ** (gain_margin_db / 20.0)
-    change = (largest - 1.0) / (largest + 1.0) * np.exp(1j * np.linspace(0.0, 2.0 * np.pi, 181))
+    real, imaginary = circle((largest - 1.0) / (largest + 1.0))
+    change = real + 1j * imaginary
     factor = (1.0 - change) / (1.0 + change)
     return _CRITICAL + np.degrees(np.angle(factor)), 20.0 * np.log10(np.abs(factor))
 

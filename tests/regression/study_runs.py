@@ -1,4 +1,4 @@
-"""Whole runs of the sweep by an aircraft, as the command flies them."""
+"""Whole runs as the command flies them, in one process: of a catalog scenario, and of the sweep by an aircraft."""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -9,6 +9,9 @@ from scenarios.engine.in_process_executor import InProcessExecutor
 from scenarios.schema.load import load_study
 from scenarios.studies.registry import run_study
 from tests.run_tables import rows_of
+
+AT_THE_SHIP = ("guidance.mission=standoff", f"guidance.law={Path(__file__).parent}/law_at_the_ship.py:AtTheShip")
+"""Settings of flights that are steered at the ship."""
 
 
 @dataclass(frozen=True)
@@ -25,6 +28,19 @@ class StudyRun:
         """Return the part of a flight's history from settling on."""
         history = self.history(nu)
         return history[history["time_s"] >= self.rows[nu]["settling_time_s"]]
+
+
+def flown(path, name, *overrides):
+    """Fly a catalog scenario and return its rows, as a frame."""
+    run_study(load_study(name, overrides), name, path, executor_factory=InProcessExecutor)
+    return pd.read_csv(path / "summary.csv")
+
+
+def flown_once(path, name, keys, *overrides):
+    """Fly one flight of a catalog scenario, with nothing drawn but what keys say, and return its row."""
+    words = ["draws=[]", "flights=1", *overrides, *(f"{key}={value}" for key, value in keys.items())]
+    (row,) = flown(path, name, *words).to_dict("records")
+    return row
 
 
 def fly_study(path, aircraft, *overrides, nus=(0.5,)):

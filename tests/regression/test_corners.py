@@ -3,14 +3,8 @@
 The guard kept off where the vessel was predicted; a report that moved her, a long silence, gusts and steep banks got the X8 in.
 """
 
-from pathlib import Path
-
-import pandas as pd
 import pytest
-
-from scenarios.engine.in_process_executor import InProcessExecutor
-from scenarios.schema.load import load_study
-from scenarios.studies.registry import run_study
+from study_runs import AT_THE_SHIP, flown, flown_once
 
 SILENT_BRAKING = [
     "sea_faults", "draws=[]", "flights=2", "fault.kind=vessel_data", "fault.at_s=[200,200]", "flight.duration_max_s=250",
@@ -45,16 +39,11 @@ FAST = [
 def test_corners_that_a_search_has_found_are_kept_out_of(settings, tmp_path):
     name, *overrides = settings
     comparisons = ["comparison.variants=[]"] if name == "sweep_nu" else []
-    study = load_study(name, [*overrides, *comparisons])
-    run_study(study, name, tmp_path / "run", executor_factory=InProcessExecutor)
-    rows = pd.read_csv(tmp_path / "run" / "summary.csv")
+    rows = flown(tmp_path / "run", name, *overrides, *comparisons)
     # None of them was refused: every one has a closest approach.
     assert (rows["min_distance_m"] >= rows["keepout_radius_m"]).all()
     assert rows["guard_interventions"].sum() > 0
     assert rows["guard_lost_s"].sum() == 0.0
-
-
-AT_THE_SHIP = f"{Path(__file__).parent}/law_at_the_ship.py:AtTheShip"
 
 
 @pytest.mark.parametrize(("place", "fails"), [(421.05, 0.749), (463.85, 1.3425)])
@@ -62,13 +51,11 @@ def test_an_aircraft_whose_engine_fails_before_it_turns_away_keeps_out(place, fa
     # Until that is detected it slows down from 19.4 m/s or more to 14.7. As long as the turn was predicted at the airspeed of the
     # moment these two came in, by 0.7 and 0.5 m.
     keys = {
-        "guidance.law": AT_THE_SHIP, "guidance.mission": "standoff", "reference.standoff_radius_m": 9000,
+        "reference.standoff_radius_m": 9000,
         "vessel.speed_mps": 15, "start.range_m": place, "start.aspect_deg": 180, "start.course_deg": 180, "fault.kind": "engine",
         "fault.at_s": [fails, fails], "flight.duration_max_s": 15, "flight.crossings": 0,
     }  # fmt: skip
-    study = load_study("sea_wind", ["draws=[]", "flights=1", *(f"{key}={value}" for key, value in keys.items())])
-    run_study(study, "sea_wind", tmp_path / "run", executor_factory=InProcessExecutor)
-    (row,) = pd.read_csv(tmp_path / "run" / "summary.csv").to_dict("records")
+    row = flown_once(tmp_path / "run", "sea_wind", keys, *AT_THE_SHIP)
     assert row["airspeed_min_mps"] < 15.0
     assert row["guard_time_s"] > 1.0
     assert row["min_distance_m"] > row["keepout_radius_m"] + 0.5
@@ -78,14 +65,12 @@ def test_an_aircraft_whose_engine_fails_before_it_turns_away_keeps_out(place, fa
 def test_an_aircraft_whose_engine_fails_in_a_climb_keeps_out(tmp_path):
     # It slows down the faster, to 13.4 m/s, and came in by 0.86 m.
     keys = {
-        "guidance.law": AT_THE_SHIP, "guidance.mission": "standoff", "reference.standoff_radius_m": 9000, "vessel.speed_mps": 15,
+        "reference.standoff_radius_m": 9000, "vessel.speed_mps": 15,
         "start.distance_m": [380, 520], "start.aspect_deg": 180, "start.course_deg": 180, "fault.kind": "engine",
         "fault.at_s": [0.5, 8], "flight.duration_max_s": 40, "flight.crossings": 0, "plume.elevation_deg": 20,
         "keepout.shape": "cylinder", "flight_seed": 3003838512,
     }  # fmt: skip
-    study = load_study("sea_wind", ["draws=[]", "flights=1", *(f"{key}={value}" for key, value in keys.items())])
-    run_study(study, "sea_wind", tmp_path / "run", executor_factory=InProcessExecutor)
-    (row,) = pd.read_csv(tmp_path / "run" / "summary.csv").to_dict("records")
+    row = flown_once(tmp_path / "run", "sea_wind", keys, *AT_THE_SHIP)
     assert row["guard_time_s"] > 1.0
     assert row["min_distance_m"] > row["keepout_radius_m"]
 
@@ -98,9 +83,7 @@ def test_an_aircraft_that_is_gaining_speed_turns_away_as_predicted(tmp_path):
         "start.range_m": 320, "start.aspect_deg": 87.511, "start.course_deg": 60.313, "flight_seed": 598176553,
         "flight.duration_max_s": 150, "flight.crossings": 0,
     }  # fmt: skip
-    study = load_study("sea_wind", ["draws=[]", "flights=1", *(f"{key}={value}" for key, value in keys.items())])
-    run_study(study, "sea_wind", tmp_path / "run", executor_factory=InProcessExecutor)
-    (row,) = pd.read_csv(tmp_path / "run" / "summary.csv").to_dict("records")
+    row = flown_once(tmp_path / "run", "sea_wind", keys)
     assert row["guard_time_s"] > 1.0
     assert row["min_distance_m"] > row["keepout_radius_m"] + 0.5
     assert row["guard_lost_s"] == 0.0
@@ -119,8 +102,6 @@ def test_a_vehicle_that_takes_on_any_airspeed_at_once_keeps_out(tmp_path, nu, fl
     words = ["fidelity=kinematic", "keepout.radius_m=50", "start.distance_m=[70,300]", "start.spread_deg=180", f"sweep.nu=[{nu}]"]
     flight = ["flights=1", f"flight_seed={flight_seed}", "flight.duration_max_s=200", "flight.crossings=0"]
     law = ["comparison.variants=[]", "guidance.approach=false", *(f"guidance.{key}={value}" for key, value in keys.items())]
-    study = load_study("sweep_nu", [*words, *flight, *law])
-    run_study(study, "sweep_nu", tmp_path / "run", executor_factory=InProcessExecutor)
-    rows = pd.read_csv(tmp_path / "run" / "summary.csv")
+    rows = flown(tmp_path / "run", "sweep_nu", *words, *flight, *law)
     assert rows["guard_interventions"].sum() > 0
     assert (rows["min_distance_m"] > rows["keepout_radius_m"]).all()

@@ -3,14 +3,8 @@
 The commands are those of the search, each with one or two of the flights that had come in, until a little after they did.
 """
 
-from pathlib import Path
-
-import pandas as pd
 import pytest
-
-from scenarios.engine.in_process_executor import InProcessExecutor
-from scenarios.schema.load import load_study
-from scenarios.studies.registry import run_study
+import study_runs
 
 NOWHERE = ["draws=[]", "flight.crossings=0", "fidelity=kinematic"]
 REVERSED = """time_utc,speed_mps,from_deg
@@ -29,9 +23,7 @@ def flown(tmp_path, *overrides, table=None):
     if table is not None:
         (tmp_path / "wind.csv").write_text(table)
         overrides = (*overrides, f"wind.table={tmp_path / 'wind.csv'}")
-    study = load_study("sea_wind", [*NOWHERE, *overrides])
-    run_study(study, "sea_wind", tmp_path / "run", executor_factory=InProcessExecutor)
-    return pd.read_csv(tmp_path / "run" / "summary.csv")
+    return study_runs.flown(tmp_path / "run", "sea_wind", *NOWHERE, *overrides)
 
 
 @pytest.mark.parametrize("outage", [60, 150])
@@ -138,14 +130,11 @@ def test_an_aircraft_whose_dead_reckoning_is_declared_better_than_its_own_keeps_
     # 57 m in: its turns change all the time, and the crab angles that it reckons with are those of steady ones. And 7 m, where
     # the wind had been measured once, as it rolled in.
     keys = {
-        "guidance.mission": "standoff", "guidance.law": f"{Path(__file__).parent}/law_at_the_ship.py:AtTheShip",
         "reference.standoff_radius_m": 9000, "vessel.speed_mps": 14, "wind.speed_mps": 3, "wind.from_deg": 180,
         "start.range_m": 450, "start.aspect_deg": 180, "following.drift_rate_mps": 0, "fault.kind": "satellite_navigation",
         "fault.at_s": 5, "fault.satellite_navigation_s": 300, "flight.duration_max_s": 310, "flight.crossings": 0, **changes,
     }  # fmt: skip
-    study = load_study("sea_wind", ["draws=[]", "flights=1", *(f"{key}={value}" for key, value in keys.items())])
-    run_study(study, "sea_wind", tmp_path / "run", executor_factory=InProcessExecutor)
-    (row,) = pd.read_csv(tmp_path / "run" / "summary.csv").to_dict("records")
+    row = study_runs.flown_once(tmp_path / "run", "sea_wind", keys, *study_runs.AT_THE_SHIP)
     assert row["guard_time_s"] > 20.0
     assert row["min_distance_m"] > row["keepout_radius_m"]
     assert row["guard_lost_s"] == 0.0

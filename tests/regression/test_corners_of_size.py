@@ -1,32 +1,13 @@
 """A keep-out area that is small beside the turn radius, and a law that flies at the ship: flights had come within r_min."""
 
-import pandas as pd
 import pytest
-
-from scenarios.engine.in_process_executor import InProcessExecutor
-from scenarios.schema.load import load_study
-from scenarios.studies.registry import run_study
-
-AT_HER = """
-import math
-from dataclasses import dataclass
-
-@dataclass(frozen=True)
-class AtHer:
-    gain: float = 20.0
-
-    def heading_rate(self, reference, to_north, to_east, course, speed):
-        # The nearest point of a circle about her lies on the other side, while it is wider than the vehicle's distance.
-        return self.gain * math.remainder(math.atan2(-to_east, -to_north) - course, math.tau)
-"""
+import study_runs
 
 
 def flown(tmp_path, *overrides):
     """Return the rows of flights of ``sea_wind`` whose law flies at the ship."""
-    (tmp_path / "law.py").write_text(AT_HER)
-    keys = ["draws=[]", "flight.crossings=0", "guidance.mission=standoff", f"guidance.law={tmp_path / 'law.py'}:AtHer", *overrides]
-    run_study(load_study("sea_wind", keys), "sea_wind", tmp_path / "run", executor_factory=InProcessExecutor)
-    return pd.read_csv(tmp_path / "run" / "summary.csv")
+    keys = ["draws=[]", "flight.crossings=0", *study_runs.AT_THE_SHIP, *overrides]
+    return study_runs.flown(tmp_path / "run", "sea_wind", *keys)
 
 
 @pytest.mark.parametrize(("airspeed", "radius"), [(200, 200), (50, 10)])

@@ -1,0 +1,50 @@
+"""Tracking errors on page 1: large ones that no criterion limits are told with what happened, and nothing is told twice."""
+
+import re
+from dataclasses import replace
+
+import pytest
+from report_parts import blocks_of
+from trial_runs import with_criterion, with_values
+
+from reports.document.blocks import Table
+from reports.registry import content
+
+pytestmark = pytest.mark.usefixtures("without_single_flights")
+
+
+def test_a_large_tracking_error_that_no_criterion_limits_is_told_with_what_happened_after_settling(run):
+    limited = with_criterion(run, "steady", "tracking_error_rms_m", 1.5)
+    far = {
+        "tracking_error_rms_m": 39.04,
+        "settling_time_s": 60.0,
+        "guard_after_settling_s": 3.2,
+        "modes": "approach, tracking, outrun",
+    }
+    (line,) = content(with_values(limited, 3, **far)).verdict.failures
+    # The vessel of the second trial turns at 150 s, in both flights; its settling band is the schema's, 5 m.
+    assert line == (
+        "Turns: in 1 of 2 flights the tracking error, rms after settling, is 39 m, above the 5 m within which a flight counts"
+        " as settled, and no criterion limits it: after settling the keep-out guard changed commands (of the others in 0 of 1), the"
+        " mode was 'outrun' for a time (of the others in 0 of 1)."
+    )
+    # Of a trial with a criterion that tells; it is not judged by it where it does not have to settle.
+    assert content(with_values(limited, 0, tracking_error_rms_m=39.04)).verdict.failures == []
+    assert len(content(with_values(with_criterion(run, "turns", "tracking_error_rms_m", 1.5), 3, **far)).verdict.failures) == 1
+
+
+def test_of_a_flight_alone_the_table_of_flights_says_why_its_tracking_error_is_large(run):
+    only = run.summary.iloc[:1].assign(tracking_error_rms_m=39.04, guard_after_settling_s=0.0)
+    manifest = run.manifest | {"trials": {"steady": run.manifest["trials"]["steady"] | {"flights": 1}}, "flights_planned": 1}
+    manifest["trial_flights"] = {"steady": 1}
+    report = content(replace(run, summary=only, manifest=manifest))
+    words = "and no criterion limits it: nothing that the summary records explains it."
+    assert report.verdict.failures[0].startswith("The tracking error, rms after settling, is 39 m, above the 5 m")
+    assert [words in table.caption for table in blocks_of(report, Table, "trial1")] == [True]
+
+
+def test_of_one_flight_there_is_no_quantile_of_the_tracking_error(run):
+    alone = content(replace(run, summary=run.summary.iloc[:1])).verdict
+    (tracking,) = (card for card in alone.figures if card.name.startswith("Tracking error"))
+    assert tracking.name == "Tracking error, rms after settling"
+    assert re.fullmatch(r"[\d.e-]+ m", tracking.value)
