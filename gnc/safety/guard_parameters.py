@@ -19,7 +19,7 @@ class GuardParameters:
     speed_error : largest error of the vehicle's own velocity, of the wind, and by gusts, together [m/s]
     deviation : by how much nearer the vehicle may come in a full reversal of its turn than predicted [m]
     drift_rate : how fast dead reckoning may go wrong, where satellite navigation may be lost [m/s]
-    turbulence : of the radius, what is kept for turbulence, which takes the vehicle off any turn predicted [m]
+    allowance : of the radius, what is kept for what takes the vehicle off any turn predicted: turbulence, a failed engine [m]
     wander : by how much the error of its own place may change during a turn away [m]
     turn_speed : up to which it can turn at ``heading_rate_max``; faster it turns at the same acceleration across [m/s]
     slowest : airspeed that it may fall to in any turn away, as without thrust; infinite where it keeps to its commands [m/s]
@@ -34,7 +34,7 @@ class GuardParameters:
     speed_error: float = 0.0
     deviation: float = 0.0
     drift_rate: float = 0.0
-    turbulence: float = 0.0
+    allowance: float = 0.0
     wander: float = 0.0
     turn_speed: float = math.inf
     slowest: float = math.inf

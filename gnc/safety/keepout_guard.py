@@ -46,7 +46,7 @@ class KeepoutGuard:
     tubes : discs that contain the vessel; whoever knows of it sets them, the one known best first
     intervening : whether the last command was changed
     interventions : how often interventions began
-    lost : whether, at the last step, no turn away kept off by more than deviation, speed error, turbulence, wander and resolution
+    lost : whether, at the last step, no turn away kept off by more than deviation, speed error, allowance, wander and resolution
         explain; the best is flown
     """
 
@@ -83,7 +83,7 @@ class KeepoutGuard:
         # Half a turn to the nearer side, half as much again for the disc's motion, and what the lag takes from any heading rate.
         self._turn_time = 1.5 * math.pi / p.heading_rate_max + 2.0 * p.lag + p.delay + p.time_step
         # What the declared errors may take from the slack of a turn that was safe.
-        self._explained = p.deviation + self._speed_error * self._turn_time + p.turbulence + p.wander
+        self._explained = p.deviation + self._speed_error * self._turn_time + p.allowance + p.wander
         # Within a step a command may lead off the turn that was safe by all of a reversal: by V omega_max dt^2, in turn radii.
         self._resolution = max(_RESOLUTION, (p.heading_rate_max * p.time_step) ** 2)
         self._within_step = (self._resolution - _RESOLUTION) / p.heading_rate_max

@@ -99,7 +99,7 @@ def following_flight(
     nearest = _nearest(scenario, guarded, widest, oscillation)
     farthest = max(radius + f.margin_min_m, nearest) + level
     reach = widest.reach(turn_time(scenario, setup.reversal))
-    margin = KeepoutMargin(tracking_sigma=sigma, total=farthest - radius, guard=level, reach=reach)
+    margin = KeepoutMargin(tracking_sigma=sigma, total=farthest - radius, guard=guarded.allowance, reach=reach)
     mission: FollowingParameters | StandoffParameters
     orbit: PeriodicPath
     if scenario.stands_off:

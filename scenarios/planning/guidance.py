@@ -15,6 +15,7 @@ from gnc.reference.moving_centre import CentreParameters
 from gnc.reference.reference import Swing
 from gnc.safety.guard_parameters import GuardParameters
 from gnc.tracker import TrackingParameters
+from innerloop.flight.engine_failure import EngineFailure, glide_airspeed
 from innerloop.flight.turn_reversal import TurnReversalResponse
 from scenarios.margin.keepout_margin import KeepoutMargin
 from scenarios.margin.satellite_noise import noise_allowance, position_scatter
@@ -64,12 +65,18 @@ def slowest_without_thrust(scenario: Scenario, setup: VehicleSetup) -> float:
     Infinite where that is not declared. While the airspeed falls at a rate, its mean lack, of a time constant, is behind its lack
     by no more than the product of the two; and it is looked at in intervals.
     """
-    if not (setup.airspeed_fall > 0.0 and scenario.follows and ENGINE in scenario.declared_faults):
+    failure, airspeed = engine_failure(scenario, setup), scenario.guidance.airspeed_mps
+    if failure is None:
         return math.inf
-    airspeed = scenario.guidance.airspeed_mps
     detected = lost_thrust(airspeed, speed_hold(scenario, setup).airspeed_min)
-    fall = setup.climbing_fall if climbs(scenario) else setup.airspeed_fall
-    return airspeed - detected - fall * (PATIENCE + CHECK_INTERVAL)
+    return airspeed - detected - failure.airspeed_fall * (PATIENCE + CHECK_INTERVAL)
+
+
+def engine_failure(scenario: Scenario, setup: VehicleSetup) -> EngineFailure | None:
+    """Return what an engine failure does to the vehicle, or None where the scenario declares none."""
+    if not (scenario.follows and ENGINE in scenario.declared_faults):
+        return None
+    return setup.failing_climbing if climbs(scenario) else setup.failing_level
 
 
 def controlled_heading_rate(guidance: GuidanceConfig) -> float:
@@ -117,8 +124,10 @@ def guard_parameters(
     f, air = scenario.following, scenario.turbulence
     wander = math.sqrt(-2.0 * math.expm1(-turn_time(scenario, setup.reversal) / NAVIGATION_TIME))
     speed_error = max(f.speed_error_mps, velocity_error(scenario, drift_rate)) + air.gust_speed_mps + wind_change
+    failure = engine_failure(scenario, setup)
+    allowance = turbulence + (failure.glide_deviation if failure else 0.0)
     return GuardParameters(
-        radius=radius + turbulence,
+        radius=radius + allowance,
         deviation=max(setup.response_error, f.turn_deviation_m if scenario.follows else 0.0),
         heading_rate_max=omega_max(scenario.guidance),
         lag=setup.reversal.lag,
@@ -128,7 +137,7 @@ def guard_parameters(
         # A gust may begin at any moment; and one that blows turns with the vehicle in the prediction, but not in the air.
         speed_error=speed_error if scenario.follows else 0.0,
         drift_rate=drift_rate,
-        turbulence=turbulence,
+        allowance=allowance,
         wander=NOISE_DEVIATIONS * scenario.sensors.position_sigma_m * wander if scenario.follows else 0.0,
         turn_speed=setup.turning_airspeed(omega_max(scenario.guidance)),
         slowest=slowest_without_thrust(scenario, setup),
@@ -212,7 +221,6 @@ def following_parameters(
     """
     g, f, reports = scenario.guidance, scenario.following, scenario.reports
     fastest, radius = omega_max(g), scenario.keepout.radius_m
-    hold = speed_hold(scenario, setup)
     centre = CentreParameters(
         distance_min=radius + margin.total + additional_distance,
         speed_ratio_max=f.speed_ratio_max,
@@ -232,7 +240,7 @@ def following_parameters(
         speed_ratio_max=f.speed_ratio_max,
         approach=approach_parameters(scenario, setup, radius + margin.total),
         standoff=f.standoff_m,
-        glide_airspeed=0.5 * (g.airspeed_mps + hold.airspeed_min),
+        glide_airspeed=glide_airspeed(g.airspeed_mps, setup.airspeed_min),
         stale=max(STALE_MIN, reports.interval_s[1] + reports.latency_max_s),
         reach=margin.reach,
         reach_time=turn_time(scenario, setup.reversal),

@@ -11,7 +11,7 @@ from gnc.errors import InfeasibleError
 from gnc.mission.axis_height import AxisHeight
 from gnc.mission.plume_axis import Climb
 from gnc.mission.standoff import StandoffParameters
-from scenarios.planning.guidance import speed_hold
+from innerloop.flight.engine_failure import glide_airspeed
 from scenarios.planning.limits import omega_max, plan_interval
 from scenarios.planning.plume.axis import PREDICTED_TIME
 from scenarios.planning.reference import RATIO_STEPS
@@ -108,7 +108,7 @@ def standoff_parameters(scenario: Scenario, setup: VehicleSetup, radius: float, 
         tracked=scenario.following.tracked_m,
         speed=g.airspeed_mps,
         speed_ratio_max=scenario.following.speed_ratio_max,
-        glide_airspeed=0.5 * (g.airspeed_mps + speed_hold(scenario, setup).airspeed_min),
+        glide_airspeed=glide_airspeed(g.airspeed_mps, setup.airspeed_min),
         plan_interval=plan_interval(scenario.guidance),
         height=height,
         climb=Climb(time=PREDICTED_TIME, gradient=scenario.following.climb_gradient),

@@ -19,7 +19,7 @@ from common.files import write_tree
 from innerloop.designs.cache import designed
 from innerloop.designs.designed import Designed
 from innerloop.flight.autopiloted_aircraft import AutopilotedAircraft
-from innerloop.flight.engine_failure import measure_airspeed_fall
+from innerloop.flight.engine_failure import EngineFailure, measure_engine_failure
 from innerloop.flight.turn_reversal import TurnReversalResponse
 from innerloop.jsbsim.root import write_root
 from innerloop.synthesis.schedule import Schedule
@@ -70,8 +70,7 @@ class VehicleSetup:
     altitude_error : by which the altitude may differ from its command in a turn away [m]
     airspeed_bandwidth, airspeed_min, airspeed_max : of the airspeed behind its command, and its range [rad/s, m/s]
     airspeed_overshoot : of the airspeed over a step of its command [-]
-    airspeed_fall, climbing_fall : rate of its fall in a turn in which the engine fails, level and in a climb; 0 where that was not
-        measured [m/s2]
+    failing_level, failing_climbing : what an engine failure does in a turn, level and in a climb; none where that was not measured
     altitude_reach : difference of the altitude from its command within which the autopilot removes it for certain [m]
     turn_airspeeds, turn_rates : the slower turn at the autopilot's largest bank over airspeed; empty without a limit [m/s, rad/s]
     crab_banks, crab_offsets : banks in steady turns, and course through the air minus heading at each [rad]
@@ -86,8 +85,8 @@ class VehicleSetup:
     airspeed_max: float
     altitude_error: float = 0.0
     airspeed_overshoot: float = 0.0
-    airspeed_fall: float = 0.0
-    climbing_fall: float = 0.0
+    failing_level: EngineFailure | None = None
+    failing_climbing: EngineFailure | None = None
     altitude_reach: float = math.inf
     turn_airspeeds: tuple[float, ...] = ()
     turn_rates: tuple[float, ...] = ()
@@ -167,12 +166,12 @@ def aircraft_setup(
         from innerloop.designs.record import reversal_record  # needs python-control
 
         reversal = reversal_record(schedule.spec, run.model, start, max(bank, schedule.envelope.bank), slow_lag)
-    level = climbing = 0.0
+    level = climbing = None
     if failing := [setting for setting in settings if ENGINE in setting.declared_faults]:
         failable = AutopilotedAircraft(schedule.spec, run.model, failable=True)
-        gradient = max(setting.following.climb_gradient for setting in failing)
+        gradient, turn = max(setting.following.climb_gradient for setting in failing), max(bank, schedule.envelope.bank)
         level, climbing = (
-            measure_airspeed_fall(failable, start, max(bank, schedule.envelope.bank), each) for each in (0.0, gradient)
+            measure_engine_failure(failable, start, turn, schedule.envelope.airspeed_min, each) for each in (0.0, gradient)
         )
     return VehicleSetup(
         lag=slow_lag,
@@ -187,8 +186,8 @@ def aircraft_setup(
             for response in found.record["responses"]
             if (response["kind"], response["command"]) == ("flown", "airspeed")
         ),
-        airspeed_fall=level,
-        climbing_fall=climbing,
+        failing_level=level,
+        failing_climbing=climbing,
         altitude_reach=schedule.weights.altitude_error_max,
         turn_airspeeds=tuple(schedule.airspeeds),
         turn_rates=_slower_turns(schedule),

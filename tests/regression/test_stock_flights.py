@@ -3,7 +3,7 @@
 import math
 
 import pytest
-from study_runs import assert_flown_as_the_issue_asks, fly_study
+from study_runs import AT_THE_SHIP, assert_flown_as_the_issue_asks, flown_once, fly_study
 
 from reports.document.blocks import Table
 from reports.document.chart import Chart
@@ -48,6 +48,20 @@ def test_its_airspeeds_are_named_where_the_scenario_leaves_them(t37, tmp_path):
     with pytest.raises(InputError, match=r"asks for 45\.0 deg of bank; the autopilot of T37 stops at 35: lower guidance\.bank_deg"):
         fly_study(tmp_path / "steep", "T37", *SHORT, "guidance.bank_deg=45.0")
     assert list(tmp_path.iterdir()) == []
+
+
+def test_an_aircraft_that_pushes_over_to_a_glide_in_its_turn_away_keeps_out(designs, tmp_path):
+    # A law flies a jet trainer at the ship, and its engines fail. As it pushes over it turns more slowly, and came in by 4.2 m, as
+    # long as the guard did not allow for that.
+    designs("T37")
+    keys = {
+        "aircraft": "T37", "vessel.speed_mps": 55, "start.distance_m": [7500, 9500], "start.aspect_deg": 180,
+        "start.course_deg": 180, "reference.standoff_radius_m": 90000, "fault.kind": "engine", "fault.at_s": [5, 50],
+        "flight.duration_max_s": 120, "flight.crossings": 0, "flight_seed": 1871587661,
+    }  # fmt: skip
+    row = flown_once(tmp_path / "run", "sea_wind", keys, *AT_THE_SHIP)
+    assert row["guard_time_s"] > 1.0
+    assert row["min_distance_m"] > row["keepout_radius_m"]
 
 
 @pytest.fixture(scope="module")

@@ -204,8 +204,8 @@ def test_lost_is_said_and_the_better_turn_is_flown():
     assert not any(lost[-200:])
 
 
-@pytest.mark.parametrize("declared", ["turbulence", "wander"])
-def test_what_turbulence_or_an_error_of_the_own_place_takes_is_explained(declared):
+@pytest.mark.parametrize("declared", ["allowance", "wander"])
+def test_what_an_allowance_or_an_error_of_the_own_place_takes_is_explained(declared):
     # 3 m of the radius are taken already; a guard that knows of neither has no explanation.
     motion = (0.0, RADIUS - 3.0, 0.0, 0.0, 0.5 * math.pi, SPEED, 0.0)
     for size in (0.0, 10.0):

@@ -9,6 +9,7 @@ from flight_cases import SPEED, plan, scenario
 from gnc.errors import InfeasibleError
 from gnc.estimation.wind_filter import WindFilter
 from gnc.mission.plume_following import FollowingParameters
+from innerloop.flight.engine_failure import EngineFailure
 from scenarios.planning.air.estimated_wind import navigation_parameters, wind_followed
 from scenarios.planning.declared_vessel import check_declared
 from scenarios.planning.guidance import lost_thrust
@@ -34,14 +35,25 @@ def test_near_the_slowest_airspeed_a_gust_does_not_pass_for_lost_thrust(airspeed
 
 
 def test_the_guard_reckons_with_the_airspeed_at_which_lost_thrust_is_detected():
-    setup = replace(kinematic_setup(scenario()), airspeed_min=15.0, airspeed_fall=1.25)
+    failing = EngineFailure(airspeed_fall=1.25, glide_deviation=4.3)
+    setup = replace(kinematic_setup(scenario()), airspeed_min=15.0, failing_level=failing)
     given = scenario(guidance={"airspeed_mps": 19.42}, fault={"declared": ["engine"]})
     guarded = plan(given, setup=setup).guidance.guard
     # Of a steady fall the mean lack is behind the lack by a time constant of 2 s, and it is looked at every 0.2 s. Measured in 96
     # flights of the X8 at a ship: 14.3 m/s or more.
     assert guarded.slowest == pytest.approx(19.42 - 0.55 * 4.42 - 1.25 * (2.0 + 0.2))
+    # Then it pushes over to a glide, which takes it off its turn: the guard keeps as much more.
+    assert (guarded.radius, guarded.allowance) == (204.3, 4.3)
     # Only where it is declared: a list of trials has one setup.
-    assert plan(scenario(), setup=setup).guidance.guard.slowest == math.inf
+    sound = plan(scenario(guidance={"airspeed_mps": 19.42}), setup=setup)
+    assert (sound.guidance.guard.slowest, sound.guidance.guard.allowance) == (math.inf, 0.0)
+    # Beside an orbit of its least margin there is room for that much, and not for ten times as much.
+    deviations = (0.0, 4.3, 43.0)
+    totals = [
+        plan(given, setup=replace(setup, failing_level=replace(failing, glide_deviation=of))).margin.total for of in deviations
+    ]
+    assert totals[0] == totals[1] == sound.margin.total
+    assert totals[2] > sound.margin.total + 20.0
 
 
 @pytest.mark.parametrize(("bank", "rate"), [(45.0, 9.80665 / SPEED), (17.0, 0.1544), (5.0, 0.1544)])
