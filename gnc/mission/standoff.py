@@ -40,6 +40,7 @@ class StandoffParameters:
     speed_ratio_max : above it the vessel outruns the vehicle [-]
     glide_airspeed : while leaving without thrust or control [m/s]
     plan_interval : guidance steps between plans
+    altitude : at the start [m]
     height : of the plume's axis, and so of the flight
     climb : how the altitude follows it
     """
@@ -50,6 +51,7 @@ class StandoffParameters:
     speed_ratio_max: float
     glide_airspeed: float
     plan_interval: int
+    altitude: float
     height: AxisHeight
     climb: Climb
 
@@ -173,7 +175,7 @@ class StandoffOrbit:
         self.tracker = CircleTracker(tracking, parameters, own, target)
         self.centre = SteadyCentre(0.0, 0.0, 0.0)
         self.centre_error, self.leaving, self.started = self.tracker.radius - parameters.radius, False, False
-        self.airspeed, self.altitude, self.mode = parameters.speed, parameters.height.source, Mode.APPROACH
+        self.airspeed, self.altitude, self.mode = parameters.speed, parameters.altitude, Mode.APPROACH
 
     @property
     def in_place(self) -> bool:

@@ -11,6 +11,7 @@ from functools import cached_property
 import numpy as np
 
 from common.run_layout import COMPARISON, SUMMARY
+from scenarios.errors import InputError
 from scenarios.experiment.draws import SampledFlight, Values, not_displaced, sampled_flight
 from scenarios.experiment.points import Point, points_of
 from scenarios.schema.experiment_checks import swept_key
@@ -22,6 +23,9 @@ from scenarios.world.noise import Noise
 
 _PLANNED_FOR = ("guidance.", "turbulence.level", "reference.shape", "following.margin_law")
 """Beginnings of keys for each choice of which the tracking in turbulence is worked out before any flight."""
+
+_MEASURED_FOR = ("guidance.bank_deg", "guidance.heading_rate_max_rad_s", "following.climb_gradient")
+"""Keys for the largest values of which the aircraft is measured before any flight."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -157,6 +161,27 @@ class Experiment:
             ]
             for chosen in itertools.product(*choices):
                 yield with_values(point.scenario, dict(chosen)) if chosen else point.scenario
+
+    def steepest(self) -> Iterator[Scenario]:
+        """Yield the settings, and those of the steepest turns and climbs that may be sampled.
+
+        Raises
+        ------
+        InputError : these have no limit
+        """
+        yield from self.settings()
+        for point in self.points:
+            largest = dict[str, float]()
+            for draw in point.scenario.draws:
+                if draw.key in _MEASURED_FOR and not displaced(draw.key, point.given):
+                    if draw.largest is None:
+                        raise InputError(
+                            f"'{draw.key}' is sampled from a distribution without an upper limit, for which the aircraft would have"
+                            " to be measured; give the draw one with within = [lowest, highest]"
+                        )
+                    largest[draw.key] = draw.largest
+            if largest:
+                yield with_values(point.scenario, largest)
 
     def _point(self, number: int) -> tuple[Point, int]:
         i = bisect.bisect_right(self._ends, number)

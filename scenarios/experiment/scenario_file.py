@@ -8,7 +8,7 @@ from scenarios.schema.sections.experiment import SweepConfig
 def scenario_file(request: FlightRequest, *, title: str) -> bytes:
     """Return a scenario that replays a flight, to the last bit.
 
-    But where an experiment varies the bank beyond the design's, or the climb with an engine that may fail: the vehicle is measured
+    But where an experiment varies the bank beyond the design's, or the climb with a part that may fail: the vehicle is measured
     for the steepest of all its flights, and here for that of this one.
     """
     import tomli_w

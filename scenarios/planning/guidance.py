@@ -3,7 +3,7 @@
 import math
 from collections.abc import Sequence
 
-from aircraft.simulation.faults import ENGINE
+from aircraft.simulation.faults import OF_THRUST
 from common.physics.coordinated_turn import heading_rate_for_bank
 from gnc.airspeed.pace_hold import SpeedHold, design_speed_hold
 from gnc.estimation.health_monitor import CHECK_INTERVAL, PATIENCE
@@ -15,12 +15,12 @@ from gnc.reference.moving_centre import CentreParameters
 from gnc.reference.reference import Swing
 from gnc.safety.guard_parameters import GuardParameters
 from gnc.tracker import TrackingParameters
-from innerloop.flight.engine_failure import EngineFailure, glide_airspeed
+from innerloop.flight.part_failure import PartFailure, glide_airspeed
 from innerloop.flight.turn_reversal import TurnReversalResponse
 from scenarios.margin.keepout_margin import KeepoutMargin
 from scenarios.margin.satellite_noise import noise_allowance, position_scatter
 from scenarios.planning.air.dead_reckoning import velocity_error
-from scenarios.planning.air.flown_heights import climbs
+from scenarios.planning.air.flown_heights import climbs, glides
 from scenarios.planning.bounded_steering import Steering, given_steering, steering_law
 from scenarios.planning.limits import omega_max, plan_interval
 from scenarios.planning.reference import shape_of
@@ -62,19 +62,20 @@ def lost_thrust(airspeed: float, slowest: float) -> float:
 def slowest_without_thrust(scenario: Scenario, setup: VehicleSetup) -> float:
     """Return the airspeed to which the vehicle may fall in a turn at V_r before it is known that its engine has failed [m/s].
 
-    Infinite where that is not declared. While the airspeed falls at a rate, its mean lack, of a time constant, is behind its lack
-    by no more than the product of the two; and it is looked at in intervals.
+    A throttle that is stuck takes less of the thrust, and counts as much. Infinite where neither is declared. While the airspeed
+    falls at a rate, its mean lack, of a time constant, is behind its lack by no more than the product of the two; and it is looked
+    at in intervals.
     """
-    failure, airspeed = engine_failure(scenario, setup), scenario.guidance.airspeed_mps
-    if failure is None:
+    failure, airspeed = part_failure(scenario, setup), scenario.guidance.airspeed_mps
+    if failure is None or not scenario.declared_faults & OF_THRUST:
         return math.inf
     detected = lost_thrust(airspeed, speed_hold(scenario, setup).airspeed_min)
     return airspeed - detected - failure.airspeed_fall * (PATIENCE + CHECK_INTERVAL)
 
 
-def engine_failure(scenario: Scenario, setup: VehicleSetup) -> EngineFailure | None:
-    """Return what an engine failure does to the vehicle, or None where the scenario declares none."""
-    if not (scenario.follows and ENGINE in scenario.declared_faults):
+def part_failure(scenario: Scenario, setup: VehicleSetup) -> PartFailure | None:
+    """Return what the failure of a part does to the vehicle, or None where the scenario declares none."""
+    if not (scenario.follows and glides(scenario)):
         return None
     return setup.failing_climbing if climbs(scenario) else setup.failing_level
 
@@ -124,7 +125,7 @@ def guard_parameters(
     f, air = scenario.following, scenario.turbulence
     wander = math.sqrt(-2.0 * math.expm1(-turn_time(scenario, setup.reversal) / NAVIGATION_TIME))
     speed_error = max(f.speed_error_mps, velocity_error(scenario, drift_rate)) + air.gust_speed_mps + wind_change
-    failure = engine_failure(scenario, setup)
+    failure = part_failure(scenario, setup)
     allowance = turbulence + (failure.glide_deviation if failure else 0.0)
     return GuardParameters(
         radius=radius + allowance,

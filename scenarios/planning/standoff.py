@@ -11,7 +11,7 @@ from gnc.errors import InfeasibleError
 from gnc.mission.axis_height import AxisHeight
 from gnc.mission.plume_axis import Climb
 from gnc.mission.standoff import StandoffParameters
-from innerloop.flight.engine_failure import glide_airspeed
+from innerloop.flight.part_failure import glide_airspeed
 from scenarios.planning.limits import omega_max, plan_interval
 from scenarios.planning.plume.axis import PREDICTED_TIME
 from scenarios.planning.reference import RATIO_STEPS
@@ -110,6 +110,7 @@ def standoff_parameters(scenario: Scenario, setup: VehicleSetup, radius: float, 
         speed_ratio_max=scenario.following.speed_ratio_max,
         glide_airspeed=glide_airspeed(g.airspeed_mps, setup.airspeed_min),
         plan_interval=plan_interval(scenario.guidance),
+        altitude=scenario.altitude,
         height=height,
         climb=Climb(time=PREDICTED_TIME, gradient=scenario.following.climb_gradient),
     )

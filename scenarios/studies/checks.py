@@ -64,9 +64,10 @@ def check_flights(experiments: Iterable[Experiment], envelope: Envelope | None) 
         )
     for scenario in points:
         check_without_design(scenario)
+        _check_vessel(scenario)
+    for scenario in (setting for experiment in experiments for setting in experiment.steepest()):
         if envelope is not None and scenario.fidelity == "six_dof":
             check_flyable(scenario.guidance, find_spec(scenario.aircraft).title, envelope)
-        _check_vessel(scenario)
     for experiment in experiments:
         if experiment.scenario.draws:
             for point in experiment.points:

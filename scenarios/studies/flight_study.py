@@ -193,7 +193,7 @@ class FlightStudy:
         # Of a trial that has been scaled to the aircraft: its airspeed is where flights start.
         first = next(iter(self.trials.values()))
         flown = self._design if first.fidelity != "kinematic" else None
-        settings = [setting for experiment in self.experiments.values() for setting in experiment.settings()]
+        settings = [setting for experiment in self.experiments.values() for setting in experiment.steepest()]
         steepest = max(bank_for_heading_rate(omega_max(s.guidance), s.guidance.airspeed_mps) for s in [first, *settings])
         try:
             setup = aircraft_setup(flown, first, run, bank=steepest, settings=settings) if flown else None

@@ -12,14 +12,14 @@ from aircraft.dynamics.equilibrium import Trim
 from aircraft.dynamics.trim import level_trim
 from aircraft.errors import AircraftError
 from aircraft.fleet.find import find_spec
-from aircraft.simulation.faults import ENGINE
+from aircraft.simulation.faults import fault_names
 from aircraft.simulation.user_check import check_user_aircraft
 from aircraft.spec import AircraftSpec, Envelope
 from common.files import write_tree
 from innerloop.designs.cache import designed
 from innerloop.designs.designed import Designed
 from innerloop.flight.autopiloted_aircraft import AutopilotedAircraft
-from innerloop.flight.engine_failure import EngineFailure, measure_engine_failure
+from innerloop.flight.part_failure import PartFailure, measure_part_failure
 from innerloop.flight.turn_reversal import TurnReversalResponse
 from innerloop.jsbsim.root import write_root
 from innerloop.synthesis.schedule import Schedule
@@ -70,7 +70,7 @@ class VehicleSetup:
     altitude_error : by which the altitude may differ from its command in a turn away [m]
     airspeed_bandwidth, airspeed_min, airspeed_max : of the airspeed behind its command, and its range [rad/s, m/s]
     airspeed_overshoot : of the airspeed over a step of its command [-]
-    failing_level, failing_climbing : what an engine failure does in a turn, level and in a climb; none where that was not measured
+    failing_level, failing_climbing : what the failure of a part does in a turn, level, and also in a climb; none if not measured
     altitude_reach : difference of the altitude from its command within which the autopilot removes it for certain [m]
     turn_airspeeds, turn_rates : the slower turn at the autopilot's largest bank over airspeed; empty without a limit [m/s, rad/s]
     crab_banks, crab_offsets : banks in steady turns, and course through the air minus heading at each [rad]
@@ -85,8 +85,8 @@ class VehicleSetup:
     airspeed_max: float
     altitude_error: float = 0.0
     airspeed_overshoot: float = 0.0
-    failing_level: EngineFailure | None = None
-    failing_climbing: EngineFailure | None = None
+    failing_level: PartFailure | None = None
+    failing_climbing: PartFailure | None = None
     altitude_reach: float = math.inf
     turn_airspeeds: tuple[float, ...] = ()
     turn_rates: tuple[float, ...] = ()
@@ -142,7 +142,7 @@ def kinematic_setup(scenario: Scenario) -> VehicleSetup:
 
 
 def aircraft_setup(
-    found: Designed, scenario: Scenario, run: RunDirectory, *, bank: float = 0.0, settings: Sequence[Scenario] = ()
+    found: Designed, scenario: Scenario, run: RunDirectory, *, settings: Sequence[Scenario], bank: float = 0.0
 ) -> VehicleSetup:
     """Return what flights of the aircraft need; write its autopilot into the run directory.
 
@@ -151,8 +151,8 @@ def aircraft_setup(
     found : its autopilot
     scenario : whose airspeed and height the flights start at
     run : the run directory
+    settings : of all the flights, in some of which a part of the aircraft may be declared to fail
     bank : steepest that the guidance asks for [rad]
-    settings : of all the flights, in some of which an engine may be declared to fail
     """
     schedule = found.design.schedule
     with tempfile.TemporaryDirectory() as folder:
@@ -166,13 +166,14 @@ def aircraft_setup(
         from innerloop.designs.record import reversal_record  # needs python-control
 
         reversal = reversal_record(schedule.spec, run.model, start, max(bank, schedule.envelope.bank), slow_lag)
-    level = climbing = None
-    if failing := [setting for setting in settings if ENGINE in setting.declared_faults]:
+    level, climbing, parts = None, None, fault_names(schedule.spec)
+    if failing := [setting for setting in settings if setting.declared_faults.intersection(parts)]:
         failable = AutopilotedAircraft(schedule.spec, run.model, failable=True)
         gradient, turn = max(setting.following.climb_gradient for setting in failing), max(bank, schedule.envelope.bank)
         level, climbing = (
-            measure_engine_failure(failable, start, turn, schedule.envelope.airspeed_min, each) for each in (0.0, gradient)
+            measure_part_failure(failable, start, turn, schedule.envelope.airspeed_min, each) for each in (0.0, gradient)
         )
+        climbing = climbing.or_worse(level)
     return VehicleSetup(
         lag=slow_lag,
         reversal=TurnReversalResponse(delay=reversal["delay_s"], lag=reversal["lag_s"]),

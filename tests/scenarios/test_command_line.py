@@ -101,6 +101,7 @@ def test_help_and_list_answer():
         (["sweep_nu", "--set", "aircraft=SGS"], ["aircraft 'SGS' cannot be flown", "it has no engine"]),
         (["sweep_nu", "--set", "aircraft=J246"], ["aircraft 'J246' cannot be flown", "rocket engines"]),
         (["sweep_nu", "--set", "guidance.bank_deg=60"], ["60.0 deg of bank", "stops at 50", "lower guidance.bank_deg"]),
+        (["sea_wind", "--set", 'draws=[{key="guidance.bank_deg", uniform=[55, 60]}]'], ["60.0 deg of bank", "stops at 50"]),
         (["sweep_nu", "--set", "start.distance_m=[100, 150]"], ["begins at 100 m", "must exceed keepout.radius_m, 200 m"]),
         (
             ["sweep_nu", "--set", "guidance.law=own.py:Law"],

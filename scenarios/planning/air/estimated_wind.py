@@ -5,7 +5,7 @@ import math
 from aircraft.atmosphere.turbulence import TURBULENCE, intensities, scale_lengths
 from aircraft.atmosphere.wind import WindField
 from gnc.estimation.navigation import NOISE_DEVIATIONS, Navigation, NavigationParameters
-from scenarios.planning.air.flown_heights import flown_heights, glides
+from scenarios.planning.air.flown_heights import climbs, flown_heights, glides
 from scenarios.planning.limits import plan_interval, plan_period
 from scenarios.schema.scenario import Scenario
 from scenarios.vehicles.vehicle_setup import VehicleSetup
@@ -51,9 +51,12 @@ def wind_noise(scenario: Scenario) -> float:
 def wind_bias(scenario: Scenario) -> float:
     """Return by how much biases of airspeed and heading make the measured wind wrong at most [m/s].
 
-    The error turns with the vehicle: an estimate keeps that of the courses flown so far.
+    The error turns with the vehicle: an estimate keeps that of the courses flown so far. In a climb the airspeed is read that is
+    flown along it, of which a little less leads ahead.
     """
-    return _wrong_by(scenario, scenario.sensors.airspeed_bias_mps, scenario.sensors.heading_bias_deg)
+    climbing = 1.0 - 1.0 / math.hypot(1.0, scenario.following.climb_gradient) if climbs(scenario) else 0.0
+    airspeed = scenario.sensors.airspeed_bias_mps + climbing * scenario.guidance.airspeed_mps
+    return _wrong_by(scenario, airspeed, scenario.sensors.heading_bias_deg)
 
 
 def wind_noise_left(scenario: Scenario) -> float:

@@ -130,6 +130,12 @@ class DrawConfig(Section):
             raise ValueError(f"draw of '{self.key}' has weights {list(self.weights)}; give each choice one, and not all 0")
         return self
 
+    @property
+    def largest(self) -> float | None:
+        """Return the largest number that may be sampled; None where there is none."""
+        numbers = self.uniform or self.within or tuple(value for value in self.choice or () if isinstance(value, int | float))
+        return max(numbers, default=None)
+
 
 class StatisticsConfig(Section):
     """Confidence of the figures of a Monte Carlo study, and when the study may stop."""

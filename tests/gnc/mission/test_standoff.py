@@ -31,6 +31,7 @@ def mission(law, vessel=(6.0, 3.0), height=LEVEL):
         speed_ratio_max=0.97,
         glide_airspeed=15.0,
         plan_interval=10,
+        altitude=height.source,
         height=height,
         climb=Climb(time=20.0, gradient=0.05),
     )

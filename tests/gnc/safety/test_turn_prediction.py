@@ -97,7 +97,7 @@ def test_no_speed_between_the_fastest_and_the_slowest_comes_nearer_than_predicte
     generator = np.random.default_rng(1)
     prediction = TurnPrediction(heading_rate_max=HEADING_RATE_MAX, lag=0.25, delay=0.0, time_step=TIME_STEP)
     slow, fast = 0.95 * SPEED, 1.2 * SPEED
-    beyond, beyond_two = [], []
+    beyond, beyond_two, beyond_rising = [], [], []
     for _ in range(40):
         radius = TURN_RADIUS * generator.choice([0.35, 0.5, 1.0, 2.0, 5.0, 10.0])
         bearing, distance = generator.uniform(-math.pi, math.pi), radius + generator.uniform(0.2, 3.0) * TURN_RADIUS
@@ -118,16 +118,21 @@ def test_no_speed_between_the_fastest_and_the_slowest_comes_nearer_than_predicte
         # Where it comes to lie upon the vessel, the cubic between two points is none.
         if flown > -0.9 * radius:
             beyond.append(kept(side, fast, slow) - flown)
-            beyond_two.append(min(kept(side, fast, fast), kept(side, slow, slow)) - flown)
+            at_one = min(kept(side, fast, fast), kept(side, slow, slow))
+            beyond_two.append(at_one - flown)
+            rising = min(turns_at_many_speeds(side, start, velocity, fast, slow)) - radius
+            beyond_rising.append(min(kept(side, fast, slow), at_one) - rising)
     assert len(beyond) > 30
     # Turn radii of 46 and 37 m. Two predictions at constant speeds miss what comes by more than a metre.
     assert max(beyond) < 0.05 * (fast - slow) / HEADING_RATE_MAX
     assert max(beyond_two) > 1.0
     assert np.median(beyond) > -0.3
+    # One that speeds up, as without thrust once it glides, comes no nearer than one that keeps its speed.
+    assert max(beyond_rising) < 0.02
 
 
-def turns_at_many_speeds(side, start, velocity, slow, fast, piece=0.02):
-    """Return the closest approaches to a disc's centre [m] of full turns, fast until one of many times and slow from then on."""
+def turns_at_many_speeds(side, start, velocity, later, first, piece=0.02):
+    """Return the closest approaches to a disc's centre [m] of full turns, at one speed until one of many times, then at another."""
     x, y, course, turn = start
     duration = 2.0 * math.pi / HEADING_RATE_MAX
     courses = []
@@ -137,7 +142,7 @@ def turns_at_many_speeds(side, start, velocity, slow, fast, piece=0.02):
         courses.append(0.5 * (before + course))
     times, courses = piece * np.arange(1, len(courses) + 1), np.array(courses)
     for until in np.linspace(0.0, duration, 40):
-        speed = np.where(times <= until, fast, slow)
+        speed = np.where(times <= until, first, later)
         north = x + piece * np.cumsum(speed * np.cos(courses)) - velocity[0] * times
         east = y + piece * np.cumsum(speed * np.sin(courses)) - velocity[1] * times
         left = side * (np.arctan2(east, north) - courses)

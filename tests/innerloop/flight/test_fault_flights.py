@@ -10,7 +10,7 @@ from aircraft.errors import AircraftError
 from aircraft.fleet.x8 import X8
 from common.physics.units import STANDARD_GRAVITY
 from innerloop.flight.autopiloted_aircraft import AutopilotedAircraft
-from innerloop.flight.engine_failure import measure_engine_failure
+from innerloop.flight.part_failure import measure_part_failure
 
 TIME_STEP = 1.0 / 120.0
 FOOT = 0.3048
@@ -108,7 +108,7 @@ def test_what_cannot_fail_says_so(x8_schedule, x8_aircraft, failable):
 
 def test_without_its_engine_the_airspeed_falls_in_a_turn_by_drag_over_mass(x8_schedule, failable):
     start = x8_schedule.level(MIDDLE)
-    found = measure_engine_failure(failable, start, math.radians(45.0), 15.0)
+    found = measure_part_failure(failable, start, math.radians(45.0), 15.0)
     # The published polynomials at 20 m/s and 1.41 times the weight. Within the second of the measurement the aircraft becomes
     # slower by a fifteenth; and the propeller adds drag while it runs down.
     pressure, weight = 0.5 * 1.2147 * 20.0**2 * x8.WING_AREA, x8.MASS * STANDARD_GRAVITY
@@ -122,7 +122,7 @@ def test_the_push_over_to_a_glide_takes_from_a_turn_what_it_takes_from_the_lift(
     # At one bank lift turns the aircraft by L sin(bank)/(m V), and pushes it over by L cos(bank)/m less g. So whatever the time it
     # takes, to sink with w costs the course omega w/g, until the autopilot has banked more.
     start, bank = x8_schedule.level(MIDDLE), math.radians(45.0)
-    level, climbing = (measure_engine_failure(failable, start, bank, 15.0, gradient).glide_deviation for gradient in (0.0, 0.2))
+    level, climbing = (measure_part_failure(failable, start, bank, 15.0, gradient).glide_deviation for gradient in (0.0, 0.2))
     rate = STANDARD_GRAVITY / start.airspeed
     lag = rate * 2.4 / STANDARD_GRAVITY
     # It is regained while the aircraft turns on, within a second or two of a turn of six.

@@ -9,7 +9,7 @@ from flight_cases import SPEED, plan, scenario
 from gnc.errors import InfeasibleError
 from gnc.estimation.wind_filter import WindFilter
 from gnc.mission.plume_following import FollowingParameters
-from innerloop.flight.engine_failure import EngineFailure
+from innerloop.flight.part_failure import PartFailure
 from scenarios.planning.air.estimated_wind import navigation_parameters, wind_followed
 from scenarios.planning.declared_vessel import check_declared
 from scenarios.planning.guidance import lost_thrust
@@ -35,7 +35,7 @@ def test_near_the_slowest_airspeed_a_gust_does_not_pass_for_lost_thrust(airspeed
 
 
 def test_the_guard_reckons_with_the_airspeed_at_which_lost_thrust_is_detected():
-    failing = EngineFailure(airspeed_fall=1.25, glide_deviation=4.3)
+    failing = PartFailure(airspeed_fall=1.25, glide_deviation=4.3)
     setup = replace(kinematic_setup(scenario()), airspeed_min=15.0, failing_level=failing)
     given = scenario(guidance={"airspeed_mps": 19.42}, fault={"declared": ["engine"]})
     guarded = plan(given, setup=setup).guidance.guard
@@ -44,6 +44,10 @@ def test_the_guard_reckons_with_the_airspeed_at_which_lost_thrust_is_detected():
     assert guarded.slowest == pytest.approx(19.42 - 0.55 * 4.42 - 1.25 * (2.0 + 0.2))
     # Then it pushes over to a glide, which takes it off its turn: the guard keeps as much more.
     assert (guarded.radius, guarded.allowance) == (204.3, 4.3)
+    # A throttle that sticks takes thrust, too; a surface that is stuck does not, and the aircraft leaves gliding all the same.
+    stuck = [plan(scenario(fault={"declared": [part]}), setup=setup).guidance.guard for part in ("throttle", "left_elevon")]
+    assert [guard.allowance for guard in stuck] == [4.3, 4.3]
+    assert [guard.slowest < math.inf for guard in stuck] == [True, False]
     # Only where it is declared: a list of trials has one setup.
     sound = plan(scenario(guidance={"airspeed_mps": 19.42}), setup=setup)
     assert (sound.guidance.guard.slowest, sound.guidance.guard.allowance) == (math.inf, 0.0)

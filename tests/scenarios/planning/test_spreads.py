@@ -40,7 +40,8 @@ def test_a_flight_has_the_spread_of_its_speed_ratio_and_none_in_still_air():
 def x8(designs, tmp_path_factory):
     """The design that other tests have too, and what flights need of it."""
     found = designs("x8")
-    return found, aircraft_setup(found, gusty(level="none"), RunDirectory(tmp_path_factory.mktemp("x8")))
+    flown = gusty(level="none")
+    return found, aircraft_setup(found, flown, RunDirectory(tmp_path_factory.mktemp("x8")), settings=[flown])
 
 
 def gusty(**turbulence):

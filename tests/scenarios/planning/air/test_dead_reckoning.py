@@ -37,6 +37,13 @@ def test_an_aircraft_reckons_no_better_than_to_two_per_cent_of_its_airspeed_what
     assert rate(following=exact, sensors={"airspeed_bias_mps": 0.5}) == pytest.approx(rate(following=exact) + 1.0)
 
 
+def test_in_a_climb_it_reckons_with_the_airspeed_along_it_which_leads_ahead_by_its_cosine():
+    exact = {"drift_rate_mps": 0.0, "climb_gradient": 0.3}
+    climbing = rate(following=exact, emission={"ship": "container"}) - rate(following={"drift_rate_mps": 0.0})
+    # Once in the wind, and once, after half a turn, in what is reckoned with it.
+    assert climbing == pytest.approx(2.0 * (1.0 - math.cos(math.atan(0.3))) * scenario().guidance.airspeed_mps)
+
+
 def test_guard_and_mission_reckon_with_the_same_rate():
     guidance = plan(scenario(fault=FAULT, following={"drift_rate_mps": 1.7})).guidance
     assert guidance.guard.drift_rate == guidance.mission.drift_rate == 1.7

@@ -1,4 +1,4 @@
-"""What an aircraft whose engine fails in a turn is measured for: how fast it loses airspeed, and how far its glide leads off."""
+"""What an aircraft a part of which fails in a turn is measured for: how fast it loses airspeed, and how far its glide leads off."""
 
 import itertools
 import math
@@ -16,6 +16,9 @@ from innerloop.flight.autopiloted_aircraft import AutopilotedAircraft
 
 _AIRSPEED = "velocities/vt-fps"
 
+_SIDES = -1.0, 1.0
+"""Of a turn: to the left, to the right."""
+
 _WATCHED, _OVER = 5.0, 1.0
 """For how long the fall is watched, an engine may run down for seconds, and time over which it is taken [s]."""
 
@@ -25,28 +28,39 @@ _CLIMBED, _STEP = 8.0, 0.5
 _ROOM = 1000.0
 """How much higher a glide begins than flights do, so that it does not end in the sea, and how much lower it is commanded [m]."""
 
+_KNOWN_AFTER = 2.0
+"""For how long the airspeed may go on to fall below the slowest commanded until the failure is known [s]."""
+
 _FALLEN = 120.0
 """For how long its airspeed may take to fall before it is commanded to glide all the same [s]."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class EngineFailure:
-    """What an engine failure in a turn at the largest bank does.
+class PartFailure:
+    """What the failure of a part in the steepest turn that is commanded does.
 
     Attributes
     ----------
-    airspeed_fall : largest rate at which the airspeed falls until the failure is known [m/s2]
-    glide_deviation : how far the turn is led off then, while the aircraft pushes over to its glide [m]
+    airspeed_fall : largest rate at which the airspeed falls until it is known that the engine has failed [m/s2]
+    glide_deviation : how far the turn is led off while the aircraft pushes over to its glide, after any failure [m]
     """
 
     airspeed_fall: float
     glide_deviation: float
 
+    def or_worse(self, other: "PartFailure") -> "PartFailure":
+        """Return the larger of each figure."""
+        fall, deviation = max(self.airspeed_fall, other.airspeed_fall), max(self.glide_deviation, other.glide_deviation)
+        return PartFailure(airspeed_fall=fall, glide_deviation=deviation)
 
-def measure_engine_failure(
+
+def measure_part_failure(
     aircraft: AutopilotedAircraft, start: Trim, bank: float, airspeed_min: float, gradient: float = 0.0
-) -> EngineFailure:
-    """Return what it does to the aircraft when its engine fails in a settled turn, or as it has begun to climb in one.
+) -> PartFailure:
+    """Return what it does to the aircraft when a part of it fails in a settled turn, or as it has begun to climb in one.
+
+    Where the engine has failed the glide begins as slowly as that may have become; with a surface that is stuck it begins at once,
+    and with the engine's power it may be commanded to sink faster.
 
     Parameters
     ----------
@@ -57,12 +71,13 @@ def measure_engine_failure(
     gradient : of the commanded climb [-]
     """
     glide = glide_airspeed(start.airspeed, airspeed_min)
+    fall = max(_airspeed_fall(_Turn(aircraft, start, side, bank, gradient)) for side in _SIDES)
     deviations = [
         _glide_deviation(_Turn(aircraft, start, side, bank, gradient, room=_ROOM), glide, begins)
-        for side in (-1.0, 1.0)
-        for begins in (glide, airspeed_min)
+        for side in _SIDES
+        for begins in (math.inf, glide, airspeed_min, airspeed_min - _KNOWN_AFTER * fall)
     ]
-    return EngineFailure(airspeed_fall=_airspeed_fall(_Turn(aircraft, start, 1.0, bank, gradient)), glide_deviation=max(deviations))
+    return PartFailure(airspeed_fall=fall, glide_deviation=max(deviations))
 
 
 def glide_airspeed(airspeed: float, airspeed_min: float) -> float:
@@ -71,7 +86,7 @@ def glide_airspeed(airspeed: float, airspeed_min: float) -> float:
 
 
 class _Turn:
-    """A settled turn in which the engine fails, level or in a climb that has lasted for some seconds.
+    """A settled turn, level or in a climb that has lasted for some seconds.
 
     Attributes
     ----------
@@ -90,15 +105,15 @@ class _Turn:
         for _ in range(round(2.0 * math.pi / abs(self.rate) / TIME_STEP)):
             aircraft.run()
 
-    def until_known(self) -> Iterator[float]:
-        """Let it climb, fail and fly on as commanded; yield the airspeed before each time step from the failure on [m/s]."""
-        read, failing = self.aircraft.fdm.node(_AIRSPEED).get_double_value, round(_CLIMBED / TIME_STEP)
+    def flown(self, *, failing: bool = True) -> Iterator[float]:
+        """Let it climb, its engine perhaps fail, and fly on as commanded; yield the airspeed before each time step then [m/s]."""
+        read, begun = self.aircraft.fdm.node(_AIRSPEED).get_double_value, round(_CLIMBED / TIME_STEP)
         for step in itertools.count():
             if step % round(_STEP / TIME_STEP) == 0:
                 self.aircraft.command_altitude(self.altitude + self._climb_rate * step * TIME_STEP)
-            if step == failing:
+            if failing and step == begun:
                 self.aircraft.fail(ENGINE)
-            if step >= failing:
+            if step >= begun:
                 yield METRES_PER_FOOT * read()
             self.aircraft.run()
 
@@ -106,7 +121,7 @@ class _Turn:
 def _airspeed_fall(turn: _Turn) -> float:
     """Return the largest rate at which the airspeed falls [m/s2]."""
     over = round(_OVER / TIME_STEP)
-    flown = np.array(list(itertools.islice(turn.until_known(), round(_WATCHED / TIME_STEP) + 1)))
+    flown = np.array(list(itertools.islice(turn.flown(), round(_WATCHED / TIME_STEP) + 1)))
     return float(np.max(flown[:-over] - flown[over:])) / (over * TIME_STEP)
 
 
@@ -115,11 +130,11 @@ def _glide_deviation(turn: _Turn, glide: float, begins: float) -> float:
 
     Parameters
     ----------
-    turn : in which the engine fails
+    turn : in which a part fails
     glide : airspeed commanded in the glide [m/s]
-    begins : airspeed at which it begins [m/s]
+    begins : airspeed at which it begins, after the engine has failed; infinite at once, with its power [m/s]
     """
-    for airspeed in itertools.islice(turn.until_known(), round(_FALLEN / TIME_STEP)):
+    for airspeed in itertools.islice(turn.flown(failing=math.isfinite(begins)), round(_FALLEN / TIME_STEP)):
         if airspeed <= begins:
             break
     aircraft, velocities = turn.aircraft, list[tuple[float, float]]()
