@@ -12,13 +12,12 @@ from reports.document.console import console_table, wide_console
 def print_summary(record: Record) -> None:
     """Print what a design's record says, in brief."""
     design = complete(record)
-    perturbed = bool(design["robustness"])
     tables = [
         ("Equilibria", trim_table(design, extreme_trims(design))),
         ("Poles of the grid", pole_table(design)),
         (f"Poles at {design['design_airspeed_mps']:g} m/s in level flight [1/s]", _poles(at_middle(design, design["poles"])[0])),
         ("Margins, the worst of grid and points between; servos, engine and computing delay included", worst_margin_table(design)),
-        *([("Margins when perturbed, the worst of loops, grid and points between", robustness_table(design))] * perturbed),
+        ("Margins when perturbed, the worst of loops, grid and points between", robustness_table(design)),
         ("Step responses", step_table(design)),
     ]
     console = wide_console()
@@ -30,12 +29,8 @@ def print_summary(record: Record) -> None:
         console.print(console_table(heading, table))
     console.print(f"\nThe autopilot computes {design['autopilot_rate_hz']:.3g} times a second.")
     console.print(f"The heading rate lags its command by {record['heading_rate_lag_s']:.3f} s in simulated flight.")
-    reversals = reversal_sentences(design)
-    if reversals:
-        console.print(reversals, markup=False, highlight=False)
-    excess = excess_overshoot(design)
-    if excess is not None:
-        console.print(f"A heading-rate step overshoots its reference model by {100.0 * excess:.1f} %.")
+    console.print(reversal_sentences(design), markup=False, highlight=False)
+    console.print(f"A heading-rate step overshoots its reference model by {100.0 * excess_overshoot(design):.1f} %.")
     verdict = design_verdict(design)
     for line in (verdict.headline, *verdict.failures):
         console.print(line, markup=False, highlight=False)

@@ -40,7 +40,9 @@ def design_content(run: RunData) -> Findings:
         _margins(design),
         Section(anchor="loops", title="Loop shapes", blocks=loop_charts(design)),
         Section(
-            anchor="responses", title="Step responses", blocks=[*response_charts(design), step_table(design), *_reversals(design)]
+            anchor="responses",
+            title="Step responses",
+            blocks=[*response_charts(design), step_table(design), Text(reversal_sentences(design))],
         ),
         _equilibria(design),
         Section(anchor="poles", title="Poles", blocks=[pole_chart(design), pole_table(design)]),
@@ -55,13 +57,9 @@ def design_content(run: RunData) -> Findings:
     return Findings(flown=flown, verdict=design_verdict(design), picture=first_chart(design), sections=sections)
 
 
-def _reversals(design: Record) -> list[Block]:
-    said = reversal_sentences(design)
-    return [Text(said)] if said else []
-
-
 def _margins(design: Record) -> Section:
     required = design["required"]
+    asked = f"{required['perturbed_gain_db']:g} dB and {required['perturbed_phase_deg']:g}°"
     blocks: list[Block] = [
         Heading(
             f"Worst of the grid and the points between, loop by loop; required are {required['gain_db']:g} dB and"
@@ -69,25 +67,19 @@ def _margins(design: Record) -> Section:
         ),
         worst_margin_table(design),
         *margin_charts(design),
+        Heading(f"Perturbed or with more delay, worst of loops, grid and points between; required are {asked}"),
+        robustness_table(design),
+        Text(
+            "Control effectiveness is that of surfaces and throttle here; the perturbed aircraft that the search over reversals"
+            " flies have another effectiveness of their surfaces alone."
+        ),
     ]
-    if design["robustness"]:
-        asked = f"{required['perturbed_gain_db']:g} dB and {required['perturbed_phase_deg']:g}°"
-        blocks += [
-            Heading(f"Perturbed or with more delay, worst of loops, grid and points between; required are {asked}"),
-            robustness_table(design),
-            Text(
-                "Control effectiveness is that of surfaces and throttle here; the perturbed aircraft that the search over reversals"
-                " flies have another effectiveness of their surfaces alone."
-            ),
-        ]
     return Section(anchor="margins", title="Margins", blocks=blocks)
 
 
 def _equilibria(design: Record) -> Section:
-    blocks: list[Block] = []
-    if design["envelope"]:
-        blocks += [envelope_table(design["envelope"]), *(Text(note) for note in design["envelope"].get("notes", []))]
-    blocks += trim_charts(design)
+    envelope = design["envelope"]
+    blocks: list[Block] = [envelope_table(envelope), *(Text(note) for note in envelope["notes"]), *trim_charts(design)]
     shown = extreme_trims(design)
     climbs = any(climbing(t) for t in shown)
     title = "Level flight and the largest banks" + (", and the steepest climb and descent" if climbs else "")
@@ -104,14 +96,12 @@ def _equilibria(design: Record) -> Section:
 
 
 def _verification(design: Record) -> Section:
-    blocks: list[Block] = []
-    if design["verification"]:
-        text = (
-            "The linear model's answer to a small input against that of the simulation itself: largest error as a fraction of the"
-            " largest excursion. Of jets the throttle's is the largest, above all because its lag is measured with a throttle step"
-            " of 0.05, as a turbine spools at a steady rate, and here the throttle moves by 0.01."
-        )
-        blocks = [Text(text), verification_table(design)]
+    text = (
+        "The linear model's answer to a small input against that of the simulation itself: largest error as a fraction of the"
+        " largest excursion. Of jets the throttle's is the largest, above all because its lag is measured with a throttle step"
+        " of 0.05, as a turbine spools at a steady rate, and here the throttle moves by 0.01."
+    )
+    blocks: list[Block] = [Text(text), verification_table(design)]
     return Section(anchor="linearisation", title="Is the linear model right?", nav_title="Linear model", blocks=blocks)
 
 

@@ -1,4 +1,4 @@
-"""A design record as reports use it: fields that an older record lacks, and the questions that several figures ask."""
+"""A design record as reports use it: its margins as they count, and the questions that several figures ask."""
 
 import math
 from collections.abc import Iterable
@@ -17,39 +17,19 @@ TOGETHER = "all controls"
 FAST = 45.0
 """Poles farther out [rad/s] belong to servos and delays, and would hide those of the flight."""
 
-_REQUIRED = {"gain_db": 6.0, "phase_deg": 45.0, "perturbed_gain_db": 4.0, "perturbed_phase_deg": 30.0}
 _MARGINS = ("gain_db", "phase_deg", "disk_gain_db", "disk_phase_deg")
 
 
 def complete(record: Record) -> Record:
-    """Return a design record with every field that reports need: one made before there was a grid over bank lacks some.
+    """Return a design record as reports judge it.
 
     A row that says of itself that its loop is not stable has no margins, whatever distance to the critical point was measured.
     """
-
-    def level(rows: Iterable[Record]) -> list[Record]:
-        return [{"bank_rad": 0.0, "climb_angle_rad": 0.0, "between": False, **row} for row in rows]
-
-    return {
-        "envelope": None,
-        "inputs": [],
-        "required": _REQUIRED,
-        "verification": [],
-        # Older autopilots compute at every time step.
-        "autopilot_rate_hz": 120.0,
-        **record,
-        "trims": level(record["trims"]),
-        "poles": level(record["poles"]),
-        "margins": [_judged(row) for row in level(record["margins"])],
-        "robustness": [_judged({"periods_late": 0, **row}) for row in record.get("robustness", [])],
-        "loops": [{"airspeed_mps": record["design_airspeed_mps"], "bank_rad": 0.0, **loop} for loop in record["loops"]],
-    }
+    return {**record, **{name: [_judged(row) for row in record[name]] for name in ("margins", "robustness")}}
 
 
 def _judged(row: Record) -> Record:
-    if row.get("stable", True):
-        return {"stable": True, **row}
-    return {**row, **{key: 0.0 for key in _MARGINS if key in row}}
+    return row if row["stable"] else {**row, **{key: 0.0 for key in _MARGINS if key in row}}
 
 
 def is_effect(design: Record, name: str) -> bool:
@@ -152,11 +132,9 @@ def responses_of(record: Record, command: str) -> list[Record]:
     return sorted(rows, key=lambda row: order.get(row["kind"], 0))
 
 
-def excess_overshoot(record: Record) -> float | None:
-    """Return how far a flown heading-rate step goes past its reference model, as a fraction of the step; none without a model."""
+def excess_overshoot(record: Record) -> float:
+    """Return how far a flown heading-rate step goes past its reference model, as a fraction of the step."""
     overshoot = {row["kind"]: float(row["overshoot"]) for row in responses_of(record, "heading_rate")}
-    if not {"model", "flown"} <= set(overshoot):
-        return None
     return max(0.0, overshoot["flown"] - overshoot["model"])
 
 
@@ -166,11 +144,9 @@ def damping(pole: tuple[float, float]) -> float:
     return -pole[0] / size if size else 0.0
 
 
-def reversal_sentences(design: Record) -> str | None:
-    """Return how far reversals stray from their response, or None for a record that was made before they were searched."""
-    own = design.get("turn_reversal")
-    if not own or "deviation_max_m" not in own:
-        return None
+def reversal_sentences(design: Record) -> str:
+    """Return how far reversals stray from their response."""
+    own = design["turn_reversal"]
     said = (
         f"A reversal of the turn at {own['bank_deg']:.0f}° of bank is predicted by a dead time of {own['delay_s']:.2f} s and a lag"
         f" of {own['lag_s']:.2f} s. In {own['reversals']} reversals that a search flew the aircraft came up to"

@@ -6,14 +6,11 @@ from reports.design.tables import step_table, trim_table
 from reports.document.blocks import Heading, Section, Table
 from reports.document.tables import number
 
-_BANK_SHOWN = 45.0
-"""Bank of the equilibria shown beside those in level flight [deg], where a record does not say with which bank it is flown."""
-
 
 def innerloop_section(record: Record) -> Section:
     """Return the section on a design record: step responses, margins, loop shapes, poles and trims."""
     design = complete(record)
-    flown = float((design.get("envelope") or {}).get("bank_deg") or _BANK_SHOWN)
+    flown = float(design["envelope"]["bank_deg"])
     bank = min({bank_deg(t) for t in design["trims"]}, key=lambda known: abs(known - flown))
     trims = sorted((t for t in grid_trims(design) if bank_deg(t) in (0.0, bank)), key=lambda t: float(t["airspeed_mps"]))
     return Section(

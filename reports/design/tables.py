@@ -228,7 +228,7 @@ def _weight(name: str) -> str:
 
 def envelope_table(envelope: Record) -> Table:
     """Return where the aircraft may be flown, and where the study flies it."""
-    stall = envelope.get("stall_airspeed_mps")
+    stall = envelope["stall_airspeed_mps"]
     rows = [
         ["Airspeed that may be commanded", f"{envelope['airspeed_min_mps']:.4g} to {envelope['airspeed_max_mps']:.4g} m/s"],
         ["Airspeed of the study", f"{envelope['airspeed_mps']:.4g} m/s"],

@@ -59,9 +59,10 @@ def trim_map(design: Record) -> Chart:
     elevator, throttle, aileron, rudder = (_control(design, name) for name in ("elevator", "throttle", "aileron", "rudder"))
     # Without a rudder its place goes to the yaw rate, so that no panel is empty.
     quantities = (_ALPHA, elevator, throttle, aileron, rudder if rudder.key in trims[0] else _YAW_RATE, _SIDESLIP)
-    caption = "Equilibria over airspeed, a curve per bank; to the left dashed, to the right solid."
-    if design["envelope"]:
-        caption += " Upright lines: the limits of the commanded airspeed, and the stall where it is near."
+    caption = (
+        "Equilibria over airspeed, a curve per bank; to the left dashed, to the right solid. Upright lines: the limits of the"
+        " commanded airspeed, and the stall where it is near."
+    )
     if any(is_effect(design, quantity.key) for quantity in quantities):
         caption += " The effect of a surface is proportional to its moment: 0 at the command 0, and 2 from stop to stop."
     if any(t.get("limits") for t in trims):
@@ -122,13 +123,11 @@ def _limit_lines(quantity: _Quantity, y_range: tuple[float, float], x_range: tup
     return [Line(x=ends, y=np.array([at, at]), label=label, colour=Meaning.LIMIT, style=_STYLES[label]) for at, label in shown]
 
 
-def _envelope_lines(envelope: Record | None, y_range: tuple[float, float], x_range: tuple[float, float]) -> list[Line]:
-    if not envelope:
-        return []
+def _envelope_lines(envelope: Record, y_range: tuple[float, float], x_range: tuple[float, float]) -> list[Line]:
     marks: list[tuple[float | None, str, Style]] = [
         (envelope["airspeed_min_mps"], "envelope", "solid"),
         (envelope["airspeed_max_mps"], "envelope", "solid"),
-        (envelope.get("stall_airspeed_mps"), "stall", "dot"),
+        (envelope["stall_airspeed_mps"], "stall", "dot"),
     ]
     # A stall far below the grid would push the curves to the edge.
     reach = x_range[0] - 0.5 * (x_range[1] - x_range[0])

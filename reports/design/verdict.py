@@ -109,10 +109,9 @@ def _detail(design: Record) -> str:
     banks = {bank_deg(row) for row in design["margins"]}
     detail = f"Margins were computed at {len(grid)} points of the grid over airspeed" + (" and bank" if len(banks) > 1 else "")
     detail += f" and at {len(between)} points between them, for which nothing was designed." if between else "."
-    if design["robustness"]:
-        perturbed = {row["case"] for row in design["robustness"] if not row["periods_late"]}
-        late = dict.fromkeys(case_name(row) for row in design["robustness"] if row["periods_late"])
-        detail += f" The same gains were tried on {' and with '.join([f'{len(perturbed)} perturbed aircraft', *late])}."
+    perturbed = {row["case"] for row in design["robustness"] if not row["periods_late"]}
+    late = dict.fromkeys(case_name(row) for row in design["robustness"] if row["periods_late"])
+    detail += f" The same gains were tried on {' and with '.join([f'{len(perturbed)} perturbed aircraft', *late])}."
     at_limit = [t for t in grid_trims(design) if t.get("limits")]
     if at_limit:
         detail += f" {len(at_limit)} of {len(grid_trims(design))} equilibria are at a limit, which the section on equilibria names."
@@ -125,19 +124,14 @@ def _figures(design: Record) -> list[Card]:
     figures = [
         _margin_figure("Worst gain margin", margins, "gain_db", "dB", required["gain_db"]),
         _margin_figure("Worst phase margin", margins, "phase_deg", "°", required["phase_deg"]),
+        _margin_figure("Worst gain margin", robustness, "gain_db", "dB", required["perturbed_gain_db"]),
+        _margin_figure("Worst phase margin", robustness, "phase_deg", "°", required["perturbed_phase_deg"]),
     ]
-    if robustness:
-        figures += [
-            _margin_figure("Worst gain margin", robustness, "gain_db", "dB", required["perturbed_gain_db"]),
-            _margin_figure("Worst phase margin", robustness, "phase_deg", "°", required["perturbed_phase_deg"]),
-        ]
     together = worst((row for row in margins if row["loop"] == TOGETHER), "disk_gain_db")
     if together is not None:
         value = f"{down(together['disk_gain_db'])} dB, {down(together['disk_phase_deg'])}°"
         figures.append(Card(f"Disk margin, all controls: {where(together)}", value))
-    excess = excess_overshoot(design)
-    if excess is not None:
-        figures.append(Card("Heading-rate overshoot beyond the model's", f"{100.0 * excess:.1f} %"))
+    figures.append(Card("Heading-rate overshoot beyond the model's", f"{100.0 * excess_overshoot(design):.1f} %"))
     figures.append(Card("Flown heading rate lags by", f"{design['heading_rate_lag_s']:.2f} s"))
     # An input that moves nothing has no error to speak of; the table shows it.
     errors = [row for row in design["verification"] if row["error"] is not None]

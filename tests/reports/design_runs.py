@@ -11,6 +11,10 @@ AIRSPEEDS = [45.0, 50.0, 55.0, 60.0, 65.0]
 BANKS_DEG = [-33.0, -27.0, -21.0, -13.0, 0.0, 13.0, 21.0, 27.0, 33.0]
 LOOPS = ("elevator", "aileron", "throttle", "rudder", "airspeed", "altitude", "heading_rate", "sideslip")
 CASES = ("mass +20 %", "mass -20 %", "inertia +20 %", "control effectiveness -20 %", "one more period of delay")
+REVERSALS = {
+    "bank_deg": 45.0, "airspeed_mps": 19.42, "delay_s": 0.254, "lag_s": 0.254, "reversals": 100, "deviation_99_percent_m": 2.37,
+    "deviation_max_m": 4.39, "worst_command_before": -1.0, "worst_airspeed_before_mps": 18.9,
+}  # fmt: skip
 GRAVITY = 9.81
 
 
@@ -76,6 +80,8 @@ def record():
         "loops": [loop_shape(name, i) for i, name in enumerate(LOOPS)],
         "responses": responses(),
         "heading_rate_lag_s": 0.61,
+        "autopilot_rate_hz": 120.0,
+        "turn_reversal": dict(REVERSALS),
         "verification": [
             {"input": control, "output": output, "error": 0.001 * (2 + i + 3 * j)}
             for i, control in enumerate(("elevator", "aileron", "throttle", "rudder"))
@@ -125,7 +131,7 @@ def margins(airspeed, bank_deg, between):
     for i, loop in enumerate((*LOOPS, "all controls")):
         together = loop == "all controls"
         rows.append({
-            "airspeed_mps": airspeed, "bank_rad": math.radians(bank_deg), "between": between, "loop": loop,
+            "airspeed_mps": airspeed, "bank_rad": math.radians(bank_deg), "between": between, "stable": True, "loop": loop,
             "gain_db": None if together or loop == "throttle" else 11.0 + 2.0 * i - 2.2 * away,
             "phase_deg": None if together else 75.0 - 3.0 * i - 2.0 * away,
             "crossover": None if together else 6.0 / (1 + i),
@@ -139,7 +145,7 @@ def robustness(case, i, airspeed, bank_deg):
     away = abs(airspeed - 55.0) / 10.0 + abs(bank_deg) / 33.0
     return {
         "case": case, "periods_late": int(case.endswith("of delay")), "airspeed_mps": airspeed, "bank_rad": math.radians(bank_deg),
-        "gain_db": 8.5 - 0.5 * i - away, "gain_loop": "elevator",
+        "stable": True, "gain_db": 8.5 - 0.5 * i - away, "gain_loop": "elevator",
         "phase_deg": 46.0 - 2.0 * i - away, "phase_loop": "heading_rate",
     }  # fmt: skip
 

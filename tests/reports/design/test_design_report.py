@@ -5,7 +5,7 @@ import math
 
 import numpy as np
 import pytest
-from design_runs import AIRSPEEDS, BANKS_DEG, CASES, LOOPS, record, write_design
+from design_runs import AIRSPEEDS, BANKS_DEG, CASES, LOOPS, REVERSALS, record, write_design
 from report_parts import assert_axes_read_quantity_and_unit, blocks_of, built, draw_all_but
 
 from reports.build import build_reports
@@ -22,9 +22,6 @@ from reports.registry import content
 from reports.render import matplotlib_charts, plotly_charts
 from reports.run.run_data import read_run
 
-FIRST_VERSION_LACKS = ("envelope", "inputs", "required", "robustness", "verification", "banks_deg")
-LEVEL_LACKS = {"between", "climb_angle_rad", "limits", "rudder", "residual"}
-
 
 @pytest.fixture(scope="module")
 def path(tmp_path_factory):
@@ -34,18 +31,6 @@ def path(tmp_path_factory):
 @pytest.fixture(scope="module")
 def report(path):
     return content(read_run(path))
-
-
-def first_version():
-    """Return a design as it was recorded before there was a grid over bank."""
-    design = {key: value for key, value in record().items() if key not in FIRST_VERSION_LACKS}
-    for name in ("margins", "poles", "trims"):
-        level = [row for row in design[name] if not (row["bank_rad"] or row.get("between") or row.get("climb_angle_rad"))]
-        lost = LEVEL_LACKS if name == "trims" else {*LEVEL_LACKS, "bank_rad"}
-        design[name] = [{key: value for key, value in row.items() if key not in lost} for row in level]
-    design["loops"] = [{k: v for k, v in loop.items() if k not in ("airspeed_mps", "bank_rad")} for loop in design["loops"]]
-    design["responses"] = [row for row in design["responses"] if row["kind"] != "model"]
-    return design
 
 
 def test_both_reports_are_built_from_disk_alone(path, monkeypatch):
@@ -154,7 +139,6 @@ def test_the_overshoot_is_counted_beyond_that_of_the_reference_model():
     overshoot = {r["kind"]: r["overshoot"] for r in design["responses"] if r["command"] == "heading_rate"}
     assert excess_overshoot(design) == pytest.approx(overshoot["flown"] - overshoot["model"])
     assert excess_overshoot(design) > 0.0
-    assert excess_overshoot(complete(first_version())) is None
 
 
 def test_perturbations_and_checks_of_the_linear_model_are_listed(report):
@@ -176,29 +160,15 @@ def test_how_to_fly_it_elsewhere_names_the_files_that_are_there(report, tmp_path
     assert len(blocks_of(content(read_run(path)), Text, "elsewhere")) == 1
 
 
-@pytest.mark.usefixtures("sketched")
-def test_a_design_recorded_before_the_grid_over_bank_can_be_reported_on(tmp_path):
-    path = write_design(tmp_path / "run")
-    (path / "innerloop.json").write_text(json.dumps(first_version()), encoding="utf-8")
-    report = content(read_run(path))
-    assert report.verdict.complete
-    assert "linearisation" not in [section.anchor for section in report.sections]
-    assert len(blocks_of(report, Table, "margins")) == 1
-    # Without a rudder the yaw rate has its place.
-    trims = next(chart for chart in blocks_of(report, Chart) if chart.name == "trims")
-    assert [panel.y_label for panel in trims.panels][-2:] == ["Yaw rate [rad/s]", "Sideslip [deg]"]
-    assert len(build_reports(path)) == 2
-
-
-# Of all banks the one that the envelope says is flown; a record that says nothing has none but level flight.
-@pytest.mark.parametrize(("design", "bank"), [(record(), 27), (first_version(), 0)])
-def test_a_sweeps_report_takes_from_a_design_only_what_belongs_to_level_flight(design, bank):
+def test_a_sweeps_report_takes_from_a_design_only_what_belongs_to_level_flight():
+    design = record()
     section = innerloop_section(design)
     steps, margins, trims = (block for block in section.blocks if isinstance(block, Table))
     assert len(steps.rows) == len(design["responses"])
     assert [row[0] for row in margins.rows] == [*(loop.replace("_", " ") for loop in LOOPS), "all controls"]
-    assert {float(row[1]) for row in trims.rows} == {0.0, bank}
-    assert section.blocks[-2] == Heading(f"Equilibria: level, and at {bank} degrees of bank")
+    # Of all banks the one that the envelope says is flown.
+    assert {float(row[1]) for row in trims.rows} == {0.0, 27.0}
+    assert section.blocks[-2] == Heading("Equilibria: level, and at 27 degrees of bank")
     curves = loop_charts(complete(design))[0].panels[0].lines
     assert all(line.x.tolist() == AIRSPEEDS for line in curves)
     assert len(loop_charts(complete(design))[2].panels[1].lines) == len(LOOPS)
@@ -234,18 +204,8 @@ def test_a_damaged_design_is_refused_in_one_line(damage, words, tmp_path):
     assert str(refusal.value).startswith("'")
 
 
-REVERSALS = {
-    "bank_deg": 45.0, "airspeed_mps": 19.42, "delay_s": 0.254, "lag_s": 0.254, "reversals": 100, "deviation_99_percent_m": 2.37,
-    "deviation_max_m": 4.39, "worst_command_before": -1.0, "worst_airspeed_before_mps": 18.9,
-}  # fmt: skip
-
-
-def test_how_far_reversals_stray_is_said_where_it_was_searched():
-    # Records of before the search lack it, or all of it but the response.
-    for old in (record(), record() | {"turn_reversal": {"delay_s": 0.254, "lag_s": 0.254}}):
-        assert reversal_sentences(old) is None
-    searched = record() | {"turn_reversal": REVERSALS}
-    said = reversal_sentences(searched)
+def test_how_far_reversals_stray_is_said():
+    said = reversal_sentences(record())
     assert "a dead time of 0.25 s and a lag of 0.25 s. In 100 reversals" in said
     assert said.endswith(
         "up to 4.39 m nearer to what it turned away from than predicted. Half of the reversals did not follow the worst"
@@ -257,9 +217,8 @@ def test_how_far_reversals_stray_is_said_where_it_was_searched():
 
 
 def test_the_report_and_the_console_say_how_far_reversals_stray(tmp_path, capsys):
-    searched = record() | {"turn_reversal": REVERSALS}
-    write_design(tmp_path, turn_reversal=REVERSALS)
+    write_design(tmp_path)
     (section,) = (section for section in content(read_run(tmp_path)).sections if section.anchor == "responses")
-    assert reversal_sentences(searched) in [block.text for block in section.blocks if isinstance(block, Text)]
-    print_summary(searched)
+    assert reversal_sentences(record()) in [block.text for block in section.blocks if isinstance(block, Text)]
+    print_summary(record())
     assert "4.39 m nearer" in " ".join(capsys.readouterr().out.split())
