@@ -6,8 +6,7 @@ MANIFEST = "manifest.json"
 """Configuration, software, and how the run ended."""
 
 FORMAT = 1
-"""Version of a run directory, the manifest's entry ``format``; one without is of version 1. It rises when files or entries that
-are read change their meaning."""
+"""Version of a run directory, the manifest's entry ``format``. It rises when what is read changes its meaning."""
 
 FILES = "files"
 """Entry of the manifest with the files that a run had when it ended."""

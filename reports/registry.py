@@ -50,7 +50,7 @@ def content(run: RunData, settings: Mapping[str, str] | None = None) -> Content:
     ------
     ReportError : the manifest names a study that has no report, or is of another version; or the logo is no picture
     """
-    study = run.manifest.get("study", "flights")
+    study = run.manifest.get("study")
     if not isinstance(study, str) or not (study in STUDIES or is_file_part(study) or study in announced("study")):
         raise ReportError(f"'{run.path}': study is {study!r}, which has no report; those that have one: {', '.join(STUDIES)}")
     # Studies of flights that others add have the report of any flights.

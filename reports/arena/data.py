@@ -188,6 +188,4 @@ def _of_case(flight: str, trial: str, case: str, fidelity: str) -> bool:
 
 def _estimate(entry: dict[str, Any]) -> Estimate:
     mean, low, high = (math.nan if entry[key] is None else float(entry[key]) for key in ("mean", "low", "high"))
-    # Records of earlier versions compare every law with every other.
-    whole = bool(entry.get("whole", entry["flights"] > 0))
-    return Estimate(mean, low, high, best=entry["best"], as_good=entry["as_good"], whole=whole, flights=entry["flights"])
+    return Estimate(mean, low, high, best=entry["best"], as_good=entry["as_good"], whole=entry["whole"], flights=entry["flights"])

@@ -1,7 +1,6 @@
 """Where a run comes from: how it was made, of which source and input, with which software, on which kind of host."""
 
 from common.provenance import without_folders
-from common.run_layout import FORMAT
 from reports.document.blocks import Section
 from reports.document.tables import pairs_table, run_config
 from reports.run.letterhead import Letterhead
@@ -77,5 +76,5 @@ def _host(run: RunData) -> list[list[str]]:
         ["Host", manifest["platform"] + (f", {cores} cores" if cores else "")],
         ["Python", manifest["python"]],
         ["Packages", ", ".join(f"{name} {version}" for name, version in manifest["packages"].items())],
-        ["Format of the run", str(manifest.get("format", FORMAT))],
+        ["Format of the run", str(manifest["format"])],
     ]

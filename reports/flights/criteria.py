@@ -8,7 +8,7 @@ from typing import Any, TypedDict
 import numpy as np
 import pandas as pd
 
-from reports.document.tables import limit, parameter_value, span
+from reports.document.tables import limit, span
 from reports.run.columns import Array, Mask, column, completed, count, interval_error, largest, was_flown
 from reports.run.trials import Trial
 
@@ -141,14 +141,11 @@ def _criterion(trial: Trial, key: str, value: Any) -> Criterion:
         return replace(found, limit=f"{found.limit}{_SCALED}") if trial.is_scaled(f"criteria.{key}") else found
     if key in _BETWEEN:
         return _between(trial, key, value, _BETWEEN[key])
-    if key in _DEMAND:
-        return _demand(trial, key)
     if key == "modes_at_end":
         return _modes(trial, [str(mode) for mode in value])
     if key == "within_altitudes":
         return _figure(trial.rows, key, 0.0, _OUTSIDE)
-    words = key.replace("_", " ").capitalize()
-    return Criterion(key=key, what=words, limit=parameter_value(value), worst="see the flights that failed it", failed=0)
+    return _demand(trial, key)
 
 
 def _judged(rows: pd.DataFrame, key: str) -> pd.DataFrame:

@@ -152,7 +152,7 @@ def read_run(path: Path) -> RunData:
         raise ReportError(f"'{path}': {MANIFEST} is not that of a run; run the scenario again in another --out")
     if "trials" in manifest and not (isinstance(manifest["trials"], dict) and manifest["trials"]):
         raise ReportError(f"'{path}': {MANIFEST} names no trials, whose flights these are; run the scenario again in another --out")
-    if (version := manifest.get("format", FORMAT)) != FORMAT:
+    if (version := manifest.get("format")) != FORMAT:
         raise ReportError(f"'{path}' is a run of format {version!r}, and this version reads {FORMAT}; use the version that made it")
     if manifest.get("study") not in WITHOUT_SUMMARY and not (path / SUMMARY).is_file():
         raise ReportError(f"'{path}' holds nothing finished (no {SUMMARY}); continue the run with --resume")

@@ -116,6 +116,7 @@ def manifest(planned, seed, state):
         {"key": "guidance.laws", "value": list(LAWS), "unit": "", "meaning": "Eq. (24); eq. (30); eq. (30) cut at omega_max."},
     ]
     return {
+        "format": 1,
         "name": "convergence",
         "study": "convergence",
         "converged_distance_m": 0.02,

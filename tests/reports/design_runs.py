@@ -32,6 +32,7 @@ def write_design(path, **changes):
 
 def manifest():
     return {
+        "format": 1,
         "study": "design",
         "name": "c172x",
         "title": "Autopilot of the Cessna 172",

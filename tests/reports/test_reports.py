@@ -221,16 +221,6 @@ def without(path, entry):
     write_manifest(path, manifest)
 
 
-def test_a_run_that_names_no_study_is_a_sweep_and_so_is_one_of_flights(copy, report):
-    manifest = manifest_of(copy)
-    titles = []
-    for study in ({}, {"study": "flights"}):
-        rest = {key: value for key, value in manifest.items() if key != "study"}
-        write_manifest(copy, {**rest, **study})
-        titles.append([section.title for section in content(read_run(copy)).sections])
-    assert titles[0] == titles[1] == [section.title for section in report.sections]
-
-
 @pytest.mark.parametrize(
     ("damage", "words"),
     [
@@ -241,6 +231,8 @@ def test_a_run_that_names_no_study_is_a_sweep_and_so_is_one_of_flights(copy, rep
         (lambda path: change_manifest(path, study="opera"), "study is 'opera', which has no report; those that have one: flights"),
         (lambda path: change_manifest(path, study=["flights"]), "study is \\['flights'\\], which has no report"),
         (lambda path: change_manifest(path, study="sea_trial"), "study is 'sea_trial', which has no report"),
+        (lambda path: without(path, "format"), "is a run of format None, and this version reads 1"),
+        (lambda path: without(path, "study"), "study is None, which has no report"),
         (lambda path: without(path, "trials"), "another version: its manifest.json has no 'trials'"),
         (lambda path: change_manifest(path, trials={}), "manifest.json names no trials, whose flights these are"),
         (lambda path: change_manifest(path, trials=None), "manifest.json names no trials"),

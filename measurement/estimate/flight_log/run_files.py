@@ -57,7 +57,7 @@ SAMPLE_MEANINGS = {
 """Columns of ``SAMPLES`` and their meanings."""
 
 SOURCE_HASH = "source_hash"
-"""Entry of the manifest with the SHA-256 of the log's content; earlier versions kept its first letters."""
+"""Entry of the manifest with the SHA-256 of the log's content."""
 
 _HASH_LETTERS = 16
 """Letters that are kept of the hash of all input."""
@@ -107,8 +107,7 @@ def refuse_another_log(directory: Path, source: Path) -> None:
         known = json.loads((directory / MANIFEST).read_text(encoding="utf-8")).get(SOURCE_HASH)
     except (FileNotFoundError, NotADirectoryError):
         return
-    # Estimates of earlier versions do not say of what they are.
-    if known is not None and not _digest(source.read_bytes()).startswith(str(known)):
+    if known != _digest(source.read_bytes()):
         raise MeasurementError(f"'{directory}' holds the estimate of another log than '{source}'; give another --out")
 
 

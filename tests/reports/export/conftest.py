@@ -16,7 +16,7 @@ def run_path(request, tmp_path):
     latitude, longitude = PLACES[request.param]
     path = tmp_path / "run"
     (path / "flights").mkdir(parents=True)
-    manifest = {"study": "flights", "name": "made", "title": "Made, <&> here", "config": {}, "flights_planned": 1}
+    manifest = {"format": 1, "study": "flights", "name": "made", "title": "Made, <&> here", "config": {}, "flights_planned": 1}
     manifest |= {"begun_utc": "2026-06-02T08:00:00Z", "command": "plume-flight run made.toml"}
     write_manifest(path, manifest)
     row = {

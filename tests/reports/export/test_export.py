@@ -39,7 +39,7 @@ def run_path(tmp_path):
     """Return a run of two flights, of which one has a time history."""
     path = tmp_path / "run"
     (path / "flights").mkdir(parents=True)
-    manifest = {"study": "flights", "name": "small", "config": {}, "flights_planned": 2}
+    manifest = {"format": 1, "study": "flights", "name": "small", "config": {}, "flights_planned": 2}
     write_manifest(path, manifest)
     pd.DataFrame({"flight_id": ["nu_0.50", "nu_1.00"], "nu": [0.5, 1.0]}).to_csv(path / "summary.csv", index=False)
     time = np.arange(3.0)

@@ -107,10 +107,3 @@ def test_a_run_directory_of_another_version_is_refused_in_one_line(version, run_
     change_manifest(run_path, format=version)
     said = f"is a run of format {version!r}, and this version reads 1; use the version that made it\n"
     assert refused(run_path).endswith(said)
-
-
-def test_a_run_directory_without_a_version_is_read(run_path):
-    manifest = manifest_of(run_path)
-    assert manifest.pop("format") == 1
-    write_manifest(run_path, manifest)
-    assert content(read_run(run_path)).title == "Short"

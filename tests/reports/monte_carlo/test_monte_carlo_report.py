@@ -269,7 +269,7 @@ def test_a_scatter_has_the_documented_unit_of_its_input(run):
 
 
 def test_statistics_and_inputs_are_read_from_the_run_directory(run, tmp_path):
-    write_manifest(tmp_path, {"config": {}})
+    write_manifest(tmp_path, {"format": 1, "config": {}})
     run.summary.to_csv(tmp_path / "summary.csv", index=False)
     assert read_run(tmp_path).statistics is None
     assert len(read_run(tmp_path).draws) == 0

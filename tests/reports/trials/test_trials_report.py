@@ -103,12 +103,6 @@ def test_a_figure_has_three_digits_and_none_below_a_thousandth_of_its_limit(run,
 
 
 @BRIEF
-def test_a_criterion_that_the_report_does_not_know_is_shown_all_the_same(run):
-    rows = rows_of(content(with_criterion(run, "turns", "loops_per_hour", 7)), "Turns")
-    assert ["Loops per hour", "7", "see the flights that failed it", "0"] in rows
-
-
-@BRIEF
 @pytest.mark.parametrize("settles", [True, False])
 def test_what_is_measured_after_settling_is_judged_where_flights_have_to_settle(run, settles):
     judged = with_criterion(with_criterion(run, "turns", "settles", settles), "turns", "tracking_error_rms_m", 1e-9)
