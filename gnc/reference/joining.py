@@ -3,6 +3,7 @@
 import math
 from dataclasses import dataclass
 
+from gnc.reference.oscillating import OscillatingReference, start_reference
 from gnc.reference.reference import Orbit, OscillatingPoint, ReferenceShape
 
 _PHASES = 72
@@ -30,15 +31,15 @@ class JoinedOrbit:
 
     def reference(self, phase: float, centre_north: float, centre_east: float, *, share: float = 1.0) -> OscillatingPoint:
         """Return the reference at a phase [rad] of the orbit about a centre [m], and the part of its heading rate that it takes."""
-        return self.shape.reference(
+        start = start_reference(
             self.orbit,
             phase=phase,
             centre_north=centre_north,
             centre_east=centre_east,
             vessel_course=self.vessel_course,
-            time_step=self.time_step,
             share=share,
         )
+        return OscillatingReference(self.orbit, start, phase=phase, time_step=self.time_step, share=share)
 
     def nearest(
         self, centre_north: float, centre_east: float, *, north: float, east: float, course: float, turn_radius: float

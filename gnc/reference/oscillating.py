@@ -2,7 +2,7 @@
 
 import math
 
-from gnc.reference.reference import Orbit, OscillatingPoint, ReferenceStart
+from gnc.reference.reference import Orbit, ReferenceStart
 
 
 def start_reference(
@@ -101,31 +101,3 @@ class OscillatingReference:
         self.share, self._steps = self._share_demand, 0
         self._omega_0 = self.share * self._frequency
         return self._phase
-
-
-class OscillatingShape:
-    """What shapes have in common whose references follow their orbits in time."""
-
-    __slots__ = ()
-
-    def reference(
-        self,
-        orbit: Orbit,
-        *,
-        phase: float,
-        centre_north: float,
-        centre_east: float,
-        vessel_course: float,
-        time_step: float,
-        share: float = 1.0,
-    ) -> OscillatingPoint:
-        """Return a reference on an orbit of this shape; parameters are those of ``ReferenceShape``."""
-        start = start_reference(
-            orbit,
-            phase=phase,
-            centre_north=centre_north,
-            centre_east=centre_east,
-            vessel_course=vessel_course,
-            share=share,
-        )
-        return OscillatingReference(orbit, start, phase=phase, time_step=time_step, share=share)

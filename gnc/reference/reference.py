@@ -184,29 +184,6 @@ class ReferenceShape(Protocol):
         InfeasibleError : there is none
         """
 
-    def reference(
-        self,
-        orbit: Orbit,
-        *,
-        phase: float,
-        centre_north: float,
-        centre_east: float,
-        vessel_course: float,
-        time_step: float,
-        share: float = 1.0,
-    ) -> OscillatingPoint:
-        """Return a reference on an orbit of this shape.
-
-        Parameters
-        ----------
-        orbit : as designed
-        phase : at the start, omega_0 times the time of ``Orbit.offset`` [rad]
-        centre_north, centre_east : centre of oscillation at the start [m]
-        vessel_course : course of the centre [rad]
-        time_step : [s]
-        share : part of its heading rate that it takes at first, on a larger orbit that meets the other one at phase 0 [-]
-        """
-
     def swing(self, *, speed: float, heading_rate: float, roll_rate_max: float) -> Swing:
         """Return the courses of this shape for a reference that is steered.
 
@@ -223,7 +200,7 @@ class ReferenceShape(Protocol):
 
 
 REFERENCE_SHAPES: Registry[Callable[..., ReferenceShape]] = Registry(
-    "reference_shape", folder="gnc.reference.shapes", methods=("design", "reference", "swing")
+    "reference_shape", folder="gnc.reference.shapes", methods=("design", "swing")
 )
 """Reference shapes by name; calling one with its parameters makes it."""
 

@@ -8,7 +8,6 @@ import numpy as np
 import numpy.typing as npt
 from scipy.optimize import brentq
 
-from gnc.reference.oscillating import OscillatingShape
 from gnc.reference.oscillation import available_heading_rate
 from gnc.reference.reference import Array, Swing, reference_shape
 from gnc.reference.shapes.bank_swing import BankSwing, bank_swing
@@ -93,7 +92,7 @@ class FastestOscillation:
 
 @reference_shape("fastest")
 @dataclass(frozen=True, slots=True)
-class Fastest(OscillatingShape):
+class Fastest:
     """The reference whose bank is a trapezoid: the shortest crossing interval within the heading rate and the roll rate.
 
     Differs from equation (2), whose heading rate is a sinusoid, because that reaches its limit for moments alone.

@@ -17,7 +17,6 @@ from scipy.optimize import brentq
 from common.physics.coordinated_turn import bank_for_heading_rate
 from common.physics.units import STANDARD_GRAVITY
 from gnc.errors import InfeasibleError
-from gnc.reference.oscillating import OscillatingShape
 from gnc.reference.oscillation import available_heading_rate
 from gnc.reference.reference import Array, Swing, reference_shape
 from gnc.reference.shapes.course_path import CoursePath, fourier_coefficients
@@ -150,7 +149,7 @@ class Loiter:
 
 @reference_shape("loiter")
 @dataclass(frozen=True, slots=True)
-class LoiterShape(OscillatingShape):
+class LoiterShape:
     """The reference that circles with the vessel and meets its plume twice a turn.
 
     Differs from equation (2) in that its course goes all the way round, because a slow vessel's plume is crossed more often so.

@@ -9,7 +9,6 @@ from scipy.special import j0, jv
 
 from common.physics.units import STANDARD_GRAVITY
 from gnc.reference.orbit_tables import ETA_STEP, OrbitTables
-from gnc.reference.oscillating import OscillatingShape
 from gnc.reference.oscillation import Oscillation, design_oscillation
 from gnc.reference.reference import ETA_FREQUENCY, Swing, reference_shape
 
@@ -68,7 +67,7 @@ class SinusoidSwing:
 
 @reference_shape("sinusoid")
 @dataclass(frozen=True, slots=True)
-class Sinusoid(OscillatingShape):
+class Sinusoid:
     """The paper's reference: its course oscillates about the vessel's as a sinusoid."""
 
     @property

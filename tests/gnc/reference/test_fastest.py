@@ -31,9 +31,8 @@ def design(nu=0.5, **changes):
 
 
 def reference_on(orbit, *, phase=0.0, share=1.0, vessel_course=0.3):
-    return Fastest().reference(
-        orbit, phase=phase, centre_north=-214.0, centre_east=5.0, vessel_course=vessel_course, time_step=TIME_STEP, share=share
-    )
+    joined = JoinedOrbit(shape=Fastest(), orbit=orbit, vessel_course=vessel_course, time_step=TIME_STEP)
+    return joined.reference(phase, -214.0, 5.0, share=share)
 
 
 def interval_by_integration(nu):

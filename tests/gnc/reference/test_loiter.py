@@ -9,6 +9,7 @@ from orbit_cases import assert_a_point_that_turns_so_flies
 
 from common.physics.units import STANDARD_GRAVITY
 from gnc.errors import InfeasibleError
+from gnc.reference.joining import JoinedOrbit
 from gnc.reference.placement import PlumeAxis, distance_exact
 from gnc.reference.shapes.loiter import LoiterShape
 
@@ -78,8 +79,8 @@ def test_beside_a_vessel_at_rest_it_is_a_circle():
 @pytest.mark.parametrize("share", [0.8, 0.5])
 def test_the_slower_one_meets_it_at_phase_0_and_becomes_it_there(share):
     orbit = design(0.2)
-    place = {"centre_north": 0.0, "centre_east": 0.0, "vessel_course": 0.0, "time_step": TIME_STEP}
-    slow = LoiterShape().reference(orbit, phase=-1.0, share=share, **place)
+    joined = JoinedOrbit(shape=LoiterShape(), orbit=orbit, vessel_course=0.0, time_step=TIME_STEP)
+    slow = joined.reference(-1.0, 0.0, 0.0, share=share)
     slow.spend(1.0)
     steps = 0
     while slow.share != 1.0:

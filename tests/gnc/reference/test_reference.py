@@ -120,17 +120,9 @@ def test_a_circling_reference_is_a_unicycle_that_turns_steadily(heading_rate):
     assert reference.course == pytest.approx(state[2], rel=0.0, abs=1e-9)
 
 
-def test_the_papers_shape_is_known_by_name_and_is_the_papers_oscillation_and_reference():
+def test_the_papers_shape_is_known_by_name_and_is_the_papers_oscillation():
     shape = REFERENCE_SHAPES.get("sinusoid")()
     task = {"nu": 0.5, "speed": SPEED, "heading_rate_max": HEADING_RATE_MAX, "reserve": 0.1}
     orbit = shape.design(**task, vessel_heading_rate=0.0, roll_rate_max=math.inf)
     assert orbit == design_oscillation(**task)
     assert orbit.half_widths() == half_widths(orbit)
-    reference = shape.reference(orbit, phase=0.4, centre_north=-214.0, centre_east=5.0, vessel_course=0.3, time_step=TIME_STEP)
-    start = start_reference(orbit, phase=0.4, centre_north=-214.0, centre_east=5.0, vessel_course=0.3)
-    alone = OscillatingReference(orbit, start, phase=0.4, time_step=TIME_STEP)
-    for _ in range(100):
-        reference.step()
-        alone.step()
-    # The same arithmetic.
-    assert (reference.north, reference.east, reference.course) == (alone.north, alone.east, alone.course)

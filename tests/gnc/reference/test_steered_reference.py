@@ -8,6 +8,7 @@ from hypothesis import strategies as st
 from scipy.special import j0
 
 from gnc.reference.bessel import eta_for_speed_ratio
+from gnc.reference.joining import JoinedOrbit
 from gnc.reference.orbit import offset
 from gnc.reference.oscillation import design_oscillation
 from gnc.reference.reference import REFERENCE_SHAPES
@@ -50,7 +51,7 @@ def test_with_constant_parameters_it_is_the_reference_of_its_shape(shape, nu):
         nu=reference.speed_ratio, speed=SPEED, heading_rate_max=HEADING_RATE_MAX, reserve=0.0, vessel_heading_rate=0.0,
         roll_rate_max=ROLL_RATE_MAX,
     )  # fmt: skip
-    fixed = made.reference(orbit, phase=0.0, centre_north=-214.0, centre_east=35.0, vessel_course=0.7, time_step=TIME_STEP)
+    fixed = JoinedOrbit(shape=made, orbit=orbit, vessel_course=0.7, time_step=TIME_STEP).reference(0.0, -214.0, 35.0)
     for _ in range(2000):
         reference.step()
         fixed.step()
