@@ -1,13 +1,11 @@
 """The largest command of the cascade law by search, to measure bounds against."""
 
 import math
-from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
 from scipy.optimize import minimize
 
-from gnc.analysis.bounds import heading_rate_bound
 from gnc.errors import InfeasibleError
 from gnc.laws.delta import LookAhead
 
@@ -27,52 +25,6 @@ _LOG_DISTANCES = (-7.0, 5.0)
 
 _LOG10_ANGLES = (-3.0, 0.0)
 """Decimal log of the gathered samples' angles to head on [-]: from what the refinement takes over, 0.001 rad, to a right angle."""
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Tightness:
-    """How close a bound comes to the largest command that a search finds.
-
-    Attributes
-    ----------
-    bound : of the heading rate, over all states [rad/s]
-    largest : command found [rad/s]
-    """
-
-    bound: float
-    largest: float
-
-    @property
-    def ratio(self) -> float:
-        """Bound over largest command; 1 would be tight [-]."""
-        return self.bound / self.largest
-
-
-def tightness(
-    parameters: LookAhead,
-    *,
-    speed: float,
-    reference_heading_rate_max: float,
-    gain: float,
-    steering_max: float,
-    samples: int,
-    generator: np.random.Generator,
-) -> Tightness:
-    """Return the bound of ``heading_rate_bound`` beside the command of ``largest_heading_rate``, which explains the parameters."""
-    return Tightness(
-        bound=heading_rate_bound(
-            parameters, speed=speed, reference_heading_rate_max=reference_heading_rate_max, steering_max=steering_max
-        ),
-        largest=largest_heading_rate(
-            parameters,
-            speed=speed,
-            reference_heading_rate_max=reference_heading_rate_max,
-            gain=gain,
-            steering_max=steering_max,
-            samples=samples,
-            generator=generator,
-        ),
-    )
 
 
 def largest_heading_rate(

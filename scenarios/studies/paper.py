@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from gnc.analysis.worst_case_search import tightness
+from gnc.analysis.worst_case_search import largest_heading_rate
 from gnc.errors import InfeasibleError
 from scenarios.engine.journal import Journal
 from scenarios.engine.run_directory import RunDirectory
@@ -85,7 +85,7 @@ def _flown(requests: list[FlightRequest], generator: np.random.Generator) -> lis
         if key in rows:
             rows[key]["flights"].append(request.flight_id)
             continue
-        found = tightness(
+        largest = largest_heading_rate(
             steering.look_ahead,
             speed=speed,
             reference_heading_rate_max=turn,
@@ -103,8 +103,8 @@ def _flown(requests: list[FlightRequest], generator: np.random.Generator) -> lis
             "epsilon_per_m": steering.look_ahead.epsilon,
             "look_ahead_m": steering.look_ahead.radius,
             "steering_max_rad_s": steering.steering_max,
-            "bound_rad_s": found.bound,
-            "largest_found_rad_s": found.largest,
+            "bound_rad_s": steering.bound,
+            "largest_found_rad_s": largest,
         }
     return list(rows.values())
 
