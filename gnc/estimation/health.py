@@ -3,6 +3,13 @@
 import math
 from enum import Enum
 
+PATIENCE = 2.0
+"""Time constant of the means by which a fault is found [s]."""
+
+STUCK, SERVO_PATIENCE = 0.1, 0.1
+"""Mean error of a control surface, over its travel [-], above which it counts as stuck, and time constant of that mean [s]: several
+lags of a servo. Of sound ones it is up to 0.03, in severe and in light turbulence."""
+
 
 class Fault(Enum):
     """A fault of the vehicle."""
@@ -24,11 +31,8 @@ class Health:
     ----------
     airspeed_error : mean lack of airspeed above which thrust counts as lost [m/s]
     heading_rate_error : mean absolute difference above which control counts as lost [rad/s]
-    servo_error : mean error of a control surface, over its travel, above which it counts as stuck [-]
     lag : of the heading rate behind its command [s]
     time_step : between checks [s]
-    patience : time constant of the means [s]
-    servo_patience : time constant of the mean of the servos' errors, several lags of a servo [s]
 
     Attributes
     ----------
@@ -47,23 +51,12 @@ class Health:
         "_mean_servo_error",
         "_rate_error",
         "_servo_decay",
-        "_servo_error",
         "fault",
     )  # fmt: skip
 
-    def __init__(
-        self,
-        *,
-        airspeed_error: float,
-        heading_rate_error: float,
-        servo_error: float,
-        lag: float,
-        time_step: float,
-        patience: float,
-        servo_patience: float,
-    ) -> None:
-        self._airspeed_error, self._rate_error, self._servo_error = airspeed_error, heading_rate_error, servo_error
-        self._decay, self._servo_decay = math.exp(-time_step / patience), math.exp(-time_step / servo_patience)
+    def __init__(self, *, airspeed_error: float, heading_rate_error: float, lag: float, time_step: float) -> None:
+        self._airspeed_error, self._rate_error = airspeed_error, heading_rate_error
+        self._decay, self._servo_decay = math.exp(-time_step / PATIENCE), math.exp(-time_step / SERVO_PATIENCE)
         self._lag_decay = math.exp(-time_step / lag) if lag > 0.0 else 0.0
         self._mean_lack = self._mean_gain = self._mean_error = self._mean_servo_error = self._expected = 0.0
         self._last_airspeed = 0.0
@@ -89,7 +82,7 @@ class Health:
         self._mean_error = decay * self._mean_error + (1.0 - decay) * abs(heading_rate - self._expected)
         self._mean_servo_error = servo_decay * self._mean_servo_error + (1.0 - servo_decay) * servo_error
         if self.fault is Fault.NONE:
-            if self._mean_servo_error > self._servo_error:
+            if self._mean_servo_error > STUCK:
                 self.fault = Fault.ACTUATOR_STUCK
             elif self._mean_lack > self._airspeed_error and self._mean_gain < 0.0:
                 self.fault = Fault.THRUST_LOST

@@ -18,15 +18,6 @@ One heading rate is compared with the mean of the commands in between, from whic
 longer that is.
 """
 
-PATIENCE = 2.0
-"""Time constant of the means by which a fault is found [s]."""
-
-STUCK, SERVO_PATIENCE = 0.1, 0.1
-"""Mean error of a control surface, over its travel [-], at which it counts as stuck, and time constant of that mean [s].
-
-Of sound ones it is up to 0.03, in severe and in light turbulence.
-"""
-
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class HealthParameters:
@@ -64,11 +55,8 @@ class HealthMonitor:
         self._health = Health(
             airspeed_error=p.airspeed_error,
             heading_rate_error=UNCONTROLLED * p.heading_rate_max,
-            servo_error=STUCK,
             lag=p.lag,
             time_step=self._interval * p.time_step,
-            patience=PATIENCE,
-            servo_patience=SERVO_PATIENCE,
         )
         self._speed, self._steps, self._commanded = p.speed, self._interval - 1, 0.0
         self.fault = Fault.NONE

@@ -3,22 +3,14 @@ import math
 
 import pytest
 
-from gnc.estimation.health import Fault, Health
+from gnc.estimation.health import PATIENCE, SERVO_PATIENCE, Fault, Health
 
-TIME_STEP, LAG, PATIENCE, SERVO_PATIENCE = 0.05, 0.4, 2.0, 0.1
+TIME_STEP, LAG = 0.05, 0.4
 AIRSPEED = 19.42
 
 
 def make(lag=LAG):
-    return Health(
-        airspeed_error=2.4,
-        heading_rate_error=0.2,
-        servo_error=0.1,
-        lag=lag,
-        time_step=TIME_STEP,
-        patience=PATIENCE,
-        servo_patience=SERVO_PATIENCE,
-    )
+    return Health(airspeed_error=2.4, heading_rate_error=0.2, lag=lag, time_step=TIME_STEP)
 
 
 def checks_until_a_fault(health, lack=0.0, heading_rate=0.0, command=0.0, servo_error=0.0, limit=4000, gain=-0.01):
