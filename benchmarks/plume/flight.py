@@ -10,7 +10,7 @@ from scipy.optimize import brentq
 from scipy.special import j0
 
 from gnc.estimation.plume.estimator import GasSensor, PlumeEstimator, PlumePrior, PlumeState
-from gnc.estimation.plume.prior import expected_plume
+from gnc.estimation.plume.prior import Expectation, expected_plume
 from gnc.mission.plume_search import Search
 from measurement.emission.emission import emission_of
 from measurement.emission.fuel import fuel_preset
@@ -96,10 +96,7 @@ def prior_of(case: Case, sensor: GasSensor, distance: float) -> PlumePrior:
     load = math.sqrt(LOADS[0] * LOADS[1])
     usual = emission_of(ship, fuel, power=load * ship.power_max)
     north, east = (a + b for a, b in zip(case.apparent, case.wind_error, strict=True))
-    return expected_plume(
-        distance=distance,
-        apparent_wind=math.hypot(north, east),
-        wind_speed=math.hypot(case.wind[0] + case.wind_error[0], case.wind[1] + case.wind_error[1]),
+    expected = Expectation(
         wind_deviation=WIND_ERROR,
         source_height=0.5 * sum(STACKS),
         source_deviation=(STACKS[1] - STACKS[0]) / math.sqrt(12.0),
@@ -113,6 +110,8 @@ def prior_of(case: Case, sensor: GasSensor, distance: float) -> PlumePrior:
         lowest=LOWEST,
         highest=HIGHEST,
     )
+    wind_speed = math.hypot(case.wind[0] + case.wind_error[0], case.wind[1] + case.wind_error[1])
+    return expected_plume(expected, distance=distance, apparent_wind=math.hypot(north, east), wind_speed=wind_speed)
 
 
 class Orbit:

@@ -7,7 +7,7 @@ import numpy as np
 from gnc.estimation.plume.estimator import PlumeEstimator
 from gnc.estimation.plume.pass_reader import Evidence
 from gnc.estimation.plume.passes import Path
-from gnc.estimation.plume.prior import PlumePrior
+from gnc.estimation.plume.prior import BEARING_DRIFT, HEIGHT_DRIFT, PlumePrior
 
 COUNT = 1000
 """Particles [-]."""
@@ -39,7 +39,7 @@ class ParticleEstimator(PlumeEstimator):
         return self.grid.height, np.log(self.grid.strength), self.grid.bearing
 
     def _diffuse(self, time: float) -> None:
-        drifts = np.array([0.0, self.prior.height_drift, 0.0, self.prior.bearing_drift]) * math.sqrt(time)
+        drifts = np.array([0.0, HEIGHT_DRIFT, 0.0, BEARING_DRIFT]) * math.sqrt(time)
         self._particles += drifts[:, np.newaxis] * self._generator.standard_normal(self._particles.shape)
 
     def _correct(self, path: Path, evidence: Evidence, altitude: float) -> None:

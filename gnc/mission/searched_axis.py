@@ -2,11 +2,10 @@
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, fields
-from typing import Any
+from dataclasses import dataclass
 
 from gnc.estimation.plume.estimator import PlumeEstimator, PlumeState, SensorState
-from gnc.estimation.plume.prior import GasSensor, expected_plume
+from gnc.estimation.plume.prior import Expectation, expected_plume
 from gnc.mission.axis_height import AxisHeight
 from gnc.mission.mode import Mode
 from gnc.mission.plume_axis import Climb, Situation, apparent_wind
@@ -29,28 +28,6 @@ Place = tuple[float, float, float, float]
 
 _PASS_TIME, _PASS_MEMORY = 8.0, 0.3
 """Time between passes before the first two [s], and weight of the last one in its mean [-]."""
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Expectation:
-    """What is known beforehand of the ship's class and of the sensor, as arguments of ``prior.expected_plume``."""
-
-    source_height: float
-    source_deviation: float
-    stack_diameter: float
-    exhaust_speed: float
-    momentum_flux: float
-    buoyancy_flux: float
-    co2_rate: float
-    load_deviation: float
-    wind_deviation: float
-    sensor: GasSensor
-    lowest: float
-    highest: float
-
-    def arguments(self) -> dict[str, Any]:
-        """Return them by name."""
-        return {of.name: getattr(self, of.name) for of in fields(self)}
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -161,7 +138,7 @@ class SearchedAxis:
                 return
             blowing = math.hypot(situation.own.wind_north, situation.own.wind_east)
             distance = situation.centre.distance
-            prior = expected_plume(distance=distance, apparent_wind=wind, wind_speed=blowing, **p.expected.arguments())
+            prior = expected_plume(p.expected, distance=distance, apparent_wind=wind, wind_speed=blowing)
             self._estimator = PlumeEstimator(prior)
             self._last_note = self._last_pass = time
             self._take_note(self._estimator)

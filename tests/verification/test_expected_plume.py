@@ -7,7 +7,7 @@ import pytest
 from exhaust_cases import SENSOR
 
 from gnc.estimation.plume.estimator import HIT
-from gnc.estimation.plume.prior import PlumePrior, expected_plume, rise
+from gnc.estimation.plume.prior import Expectation, PlumePrior, expected_plume, rise
 from gnc.mission.axis_height import AxisHeight
 from measurement.emission.emission import Emission, emission_of
 from measurement.emission.fuel import fuel_preset
@@ -21,12 +21,15 @@ from measurement.plume.spread import spreads
 EMISSION = emission_of(ship_preset("container"), fuel_preset("mgo", 0.1), power=10e6)
 
 
-def prior_of(of: Emission = EMISSION, *, load_deviation: float = 0.3, **situation: float) -> PlumePrior:
-    return expected_plume(
+def prior_of(
+    of: Emission = EMISSION, *, load_deviation: float = 0.3, wind_deviation: float, source_height: float, **situation: float
+) -> PlumePrior:
+    expected = Expectation(
         stack_diameter=of.stack_diameter, exhaust_speed=of.exhaust_speed, momentum_flux=of.momentum_flux,
         buoyancy_flux=of.buoyancy_flux, co2_rate=of.rates[GASES.index("co2")], load_deviation=load_deviation, sensor=SENSOR,
-        source_deviation=5.0, lowest=20.0, highest=120.0, **situation,
+        source_height=source_height, source_deviation=5.0, wind_deviation=wind_deviation, lowest=20.0, highest=120.0,
     )  # fmt: skip
+    return expected_plume(expected, **situation)
 
 
 @pytest.mark.parametrize("source", [20.0, 35.0, 60.0])

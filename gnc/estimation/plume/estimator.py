@@ -10,7 +10,7 @@ import numpy.typing as npt
 from gnc.estimation.plume.grid import STRENGTH_STEP, PlumeGrid, normalised, over_nothing, wandered
 from gnc.estimation.plume.pass_reader import Evidence, PassReader
 from gnc.estimation.plume.passes import PassCollector, Path
-from gnc.estimation.plume.prior import SPEED_MIN, GasSensor, PlumePrior
+from gnc.estimation.plume.prior import BEARING_DRIFT, HEIGHT_DRIFT, SPEED_MIN, GasSensor, PlumePrior
 from gnc.estimation.plume.sensor_watch import SensorState, SensorWatch
 from gnc.numeric import clip
 
@@ -211,11 +211,11 @@ class PlumeEstimator:
 
     def _diffuse(self, time: float) -> None:
         """Let the axis wander for ``time`` [s], and let some of what is known be forgotten."""
-        prior, grid = self.prior, self.grid
+        grid = self.grid
         forgotten = -math.expm1(-time / _FORGET)
-        self.cells = wandered(self.cells, 1, prior.height_drift**2 * time / (grid.height[1] - grid.height[0]) ** 2)
+        self.cells = wandered(self.cells, 1, HEIGHT_DRIFT**2 * time / (grid.height[1] - grid.height[0]) ** 2)
         self.cells += forgotten * (grid.prior - self.cells)
-        self.bearings = wandered(self.bearings, 0, prior.bearing_drift**2 * time / (grid.bearing[1] - grid.bearing[0]) ** 2)
+        self.bearings = wandered(self.bearings, 0, BEARING_DRIFT**2 * time / (grid.bearing[1] - grid.bearing[0]) ** 2)
         self.bearings += forgotten * (grid.bearing_prior - self.bearings)
 
     def _correct(self, path: Path, evidence: Evidence, altitude: float) -> None:

@@ -7,7 +7,7 @@ import numpy.typing as npt
 from scipy.special import ndtr
 
 from gnc.estimation.plume.pass_reader import BEND_MIN
-from gnc.estimation.plume.prior import PlumePrior
+from gnc.estimation.plume.prior import BUOYANT_SPREAD, PlumePrior
 
 Array = npt.NDArray[np.float64]
 
@@ -84,7 +84,7 @@ class PlumeGrid:
         self._paired = np.diff(self._pairs, append=_HEIGHTS)
         self.bearing: Array = np.linspace(-_REACH, _REACH, _BEARINGS) * prior.bearing_deviation
         rises = prior.rise_of(self.height)
-        squares = prior.buoyant_spread**2 * (rises**2 - prior.rise_of(prior.height) ** 2)
+        squares = BUOYANT_SPREAD**2 * (rises**2 - prior.rise_of(prior.height) ** 2)
         step = _SPREAD_STEP * prior.sigma_deviation
         self._scales = step * (np.arange(_SPREADS) - _MIDDLE)
         scales = np.exp(self._scales)[:, np.newaxis]

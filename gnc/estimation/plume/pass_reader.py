@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from gnc.estimation.plume.passes import FINE, Path
-from gnc.estimation.plume.prior import GasSensor
+from gnc.estimation.plume.prior import BACKGROUND_DRIFT, GasSensor
 
 Array = npt.NDArray[np.float64]
 
@@ -126,11 +126,10 @@ class PassReader:
             self._tail = 0.0
         fading = np.exp(-since / sensor.time_constant)
         y = y - level - self._tail * fading
-        drift = sensor.background_drift
         background = np.empty((3, len(y)))
         # Passes without readings, or that are not believed, leave the level time to drift.
-        background[0] = math.hypot(self._level_deviation, drift * unread)
-        background[1] = drift * (since - 0.5 * since[-1])
+        background[0] = math.hypot(self._level_deviation, BACKGROUND_DRIFT * unread)
+        background[1] = BACKGROUND_DRIFT * (since - 0.5 * since[-1])
         background[2] = (_TAIL_ERROR * abs(self._tail) + sensor.noise) * fading
         noise = sensor.noise**2
         _, middle, high = _spread_of(y)
@@ -168,7 +167,7 @@ class PassReader:
         end = background[:2, -1]
         self._level = level + float(end @ known[:2])
         fitted = math.sqrt(variance * float(end @ covariance[:2, :2] @ end))
-        self._level_deviation = fitted + _UNSEEN_DRIFT * self._sensor.background_drift
+        self._level_deviation = fitted + _UNSEEN_DRIFT * BACKGROUND_DRIFT
 
     def _templates(self, path: Path, places: Array, spreads: Array) -> Array:
         """Responses to pulses of strength 1 at every place with every spread, shape (w j, m)."""

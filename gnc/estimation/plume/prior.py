@@ -16,7 +16,7 @@ _ENTRAINMENT = 0.6
 SPEED_MIN = 1.0
 """Apparent wind that rise, spreads and strength are computed for at least [m/s]: below it a plume has no direction."""
 
-_BUOYANT = 0.4 / math.sqrt(2.0)
+BUOYANT_SPREAD = 0.4 / math.sqrt(2.0)
 """Spread that the rise makes, over the rise [-]: AERMOD's buoyancy-induced dispersion."""
 
 _SIGMA_V, _SIGMA_W = 1.9, 1.3
@@ -55,6 +55,12 @@ _MODEL_ERROR, _SPREAD_ERROR, _BEARING_ERROR = 0.1, 0.25, 0.02
 
 _GROWTH, _NEAR = 0.85, 0.2
 """Power of the distance with which spreads and meander grow, and least distance over the prior's that it is taken for [-, -]."""
+
+HEIGHT_DRIFT, BEARING_DRIFT = 0.1, 0.002
+"""How far the axis wanders in a second [m, rad]; it grows with the root of time."""
+
+BACKGROUND_DRIFT = 0.1
+"""How fast the reading of clean air may change, by drift and by altitude [ppm/s]."""
 
 _MEANDER_MIN = 0.5
 """Least standard deviation of the meander [m]."""
@@ -95,7 +101,6 @@ class GasSensor:
     delay : of tube and pump [s]
     time_constant : of its first-order lag, t90/ln 10 [s]
     noise : standard deviation of a reading [ppm]
-    background_drift : how fast the reading of clean air may change, by drift and by altitude [ppm/s]
     saturated : reading from which the channel is saturated [ppm]
     resolution : step of the readings, 0 for none [ppm]
     """
@@ -104,7 +109,6 @@ class GasSensor:
     delay: float
     time_constant: float
     noise: float
-    background_drift: float = 0.1
     saturated: float = math.inf
     resolution: float = 0.0
 
@@ -133,7 +137,6 @@ class PlumePrior:
         its logarithm [-]; both at the expected height and spread, so that the error of the spread is not in it
     sensor : what reads it
     lowest, highest : altitudes that may be flown, above the sea [m]
-    height_drift, bearing_drift : how far the axis wanders in a second [m, rad]; it grows with the root of time
     """
 
     distance: float
@@ -155,8 +158,6 @@ class PlumePrior:
     sensor: GasSensor
     lowest: float
     highest: float
-    height_drift: float = 0.1
-    bearing_drift: float = 0.002
 
     def __post_init__(self) -> None:
         if not self.lowest < self.highest:
@@ -166,11 +167,6 @@ class PlumePrior:
         for name in ("distance", "apparent_wind", "height_deviation", "bearing_deviation", "sigma_y", "sigma_z", "peak"):
             if not getattr(self, name) > 0.0:
                 raise InfeasibleError(f"{name} of the expected plume is {getattr(self, name):g}; it must be above 0")
-
-    @property
-    def buoyant_spread(self) -> float:
-        """Spread over rise that buoyancy makes [-]."""
-        return _BUOYANT
 
     def rise_of(self, height: Array | float) -> Array:
         """Return the expected rise of axes that are so high at the prior's distance and wind [m], at least 0.
@@ -213,24 +209,36 @@ class PlumePrior:
         return result
 
 
-def expected_plume(
-    *,
-    distance: float,
-    apparent_wind: float,
-    wind_speed: float,
-    wind_deviation: float,
-    source_height: float,
-    source_deviation: float,
-    stack_diameter: float,
-    exhaust_speed: float,
-    momentum_flux: float,
-    buoyancy_flux: float,
-    co2_rate: float,
-    load_deviation: float,
-    sensor: GasSensor,
-    lowest: float,
-    highest: float,
-) -> PlumePrior:
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Expectation:
+    """What is known beforehand of the ship's class and of the sensor.
+
+    Attributes
+    ----------
+    source_height, source_deviation : of the funnel's mouth [m]
+    stack_diameter, exhaust_speed : of the funnel's mouth [m], and of the exhaust in it at the load that is expected [m/s]
+    momentum_flux, buoyancy_flux, co2_rate : of the exhaust at that load [m^4/s^2, m^4/s^3, mol/s]
+    load_deviation : of the logarithm of the two latter [-]
+    wind_deviation : of each component of the apparent wind, as it is estimated on board [m/s]
+    sensor : for CO2
+    lowest, highest : altitudes that may be flown [m]
+    """
+
+    source_height: float
+    source_deviation: float
+    stack_diameter: float
+    exhaust_speed: float
+    momentum_flux: float
+    buoyancy_flux: float
+    co2_rate: float
+    load_deviation: float
+    wind_deviation: float
+    sensor: GasSensor
+    lowest: float
+    highest: float
+
+
+def expected_plume(expected: Expectation, *, distance: float, apparent_wind: float, wind_speed: float) -> PlumePrior:
     """Return the plume that a ship of a class makes in some wind, over the sea in neutral air.
 
     Spreads about a moving centre are those of source, buoyancy and turbulence; the meander has the rest of the turbulence. That the
@@ -238,50 +246,44 @@ def expected_plume(
 
     Parameters
     ----------
+    expected : of ship and sensor
     distance : behind the funnel, where it is to be crossed [m]
     apparent_wind, wind_speed : past the ship, and over the sea at 10 m [m/s]
-    wind_deviation : of each component of the apparent wind, as it is estimated on board [m/s]
-    source_height, source_deviation : of the funnel's mouth [m]
-    stack_diameter, exhaust_speed : of the funnel's mouth [m], and of the exhaust in it at the load that is expected [m/s]
-    momentum_flux, buoyancy_flux, co2_rate : of the exhaust at that load [m^4/s^2, m^4/s^3, mol/s]
-    load_deviation : of the logarithm of the two latter [-]
-    sensor : for CO2
-    lowest, highest : altitudes that may be flown [m]
     """
     wind = max(apparent_wind, SPEED_MIN)
-    climbed = rise(momentum_flux, buoyancy_flux, distance, wind)
-    wind_share, age = wind_deviation / wind, distance / wind
+    climbed = rise(expected.momentum_flux, expected.buoyancy_flux, distance, wind)
+    wind_share, age = expected.wind_deviation / wind, distance / wind
     # The rise goes with the cube root of the flux, and with 1/U.
-    rise_deviation = climbed * math.hypot(load_deviation / 3.0, wind_share, _MODEL_ERROR)
-    mouth = max(0.0, source_height - downwash(stack_diameter, exhaust_speed, wind))
+    rise_deviation = climbed * math.hypot(expected.load_deviation / 3.0, wind_share, _MODEL_ERROR)
+    mouth = max(0.0, expected.source_height - downwash(expected.stack_diameter, expected.exhaust_speed, wind))
     height = mouth + climbed
     friction = max(wind_speed, _WIND_MIN) * (_DRAG + _DRAG_SLOPE * wind_speed)
     path = _SIGMA_W * friction * age
     across, up = _SIGMA_V * friction * age, path / math.sqrt(1.0 + path / (_SURFACE_SCALE * height))
-    own = math.hypot(_SOURCE_SPREAD, _BUOYANT * climbed)
-    own_across = across * min(_OWN_UP, _OWN_SHARE * (_OWN_HEIGHT * _OWN_FRICTION / (source_height * friction)) ** 0.25)
+    own = math.hypot(_SOURCE_SPREAD, BUOYANT_SPREAD * climbed)
+    own_across = across * min(_OWN_UP, _OWN_SHARE * (_OWN_HEIGHT * _OWN_FRICTION / (expected.source_height * friction)) ** 0.25)
     own_up = min(own_across, _OWN_UP * up)
     sigma_y, sigma_z = math.hypot(own, own_across), math.hypot(own, own_up)
     # Twice the load is twice the gas, and makes what buoyancy has of the spreads 2^(1/3) times as wide.
-    by_load = 1.0 - (_BUOYANT * climbed) ** 2 * (1.0 / sigma_y**2 + 1.0 / sigma_z**2) / 3.0
+    by_load = 1.0 - (BUOYANT_SPREAD * climbed) ** 2 * (1.0 / sigma_y**2 + 1.0 / sigma_z**2) / 3.0
     return PlumePrior(
         distance=distance,
         apparent_wind=wind,
         source_height=mouth,
-        source_deviation=source_deviation,
+        source_deviation=expected.source_deviation,
         height=height,
-        height_deviation=math.hypot(source_deviation, rise_deviation),
+        height_deviation=math.hypot(expected.source_deviation, rise_deviation),
         bearing_deviation=math.hypot(wind_share, _BEARING_ERROR),
         sigma_y=sigma_y,
         sigma_z=sigma_z,
         sigma_deviation=_SPREAD_ERROR,
         meander_y=max(math.sqrt(across**2 - own_across**2), _MEANDER_MIN),
         meander_z=max(math.sqrt(up**2 - own_up**2), _MEANDER_MIN),
-        meander_length=_MEANDER_HEIGHT * source_height,
-        meander_time=_MEANDER_LENGTH * source_height / wind,
-        peak=1e6 * co2_rate / (2.0 * math.pi * wind * sigma_y * sigma_z * _AIR_DENSITY),
-        peak_deviation=math.hypot(by_load * load_deviation, wind_share, _MODEL_ERROR),
-        sensor=sensor,
-        lowest=lowest,
-        highest=highest,
+        meander_length=_MEANDER_HEIGHT * expected.source_height,
+        meander_time=_MEANDER_LENGTH * expected.source_height / wind,
+        peak=1e6 * expected.co2_rate / (2.0 * math.pi * wind * sigma_y * sigma_z * _AIR_DENSITY),
+        peak_deviation=math.hypot(by_load * expected.load_deviation, wind_share, _MODEL_ERROR),
+        sensor=expected.sensor,
+        lowest=expected.lowest,
+        highest=expected.highest,
     )

@@ -5,10 +5,10 @@ import math
 import numpy as np
 
 from gnc.errors import InfeasibleError
-from gnc.estimation.plume.prior import GasSensor
+from gnc.estimation.plume.prior import Expectation, GasSensor
 from gnc.mission.axis_height import AxisHeight
 from gnc.mission.plume_axis import AxisParameters, Climb, PredictedPlume
-from gnc.mission.searched_axis import Expectation, SearchedPlume
+from gnc.mission.searched_axis import SearchedPlume
 from measurement.emission.emission import Emission
 from measurement.gases import GASES
 from measurement.sniffer.spec import SnifferSpec

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from gnc.estimation.plume.estimator import PlumeEstimator
-from gnc.estimation.plume.prior import GasSensor, PlumePrior
+from gnc.estimation.plume.prior import BUOYANT_SPREAD, GasSensor, PlumePrior
 
 SENSOR = GasSensor(interval=0.2, delay=1.0, time_constant=0.43, noise=0.5)
 
@@ -82,7 +82,7 @@ class MadePlume:
 def spread_at(prior: PlumePrior, height: float) -> float:
     """Return the spread in height of an axis so high [m]: the part that buoyancy makes goes with the rise."""
     climbed, expected = float(prior.rise_of(height)), float(prior.rise_of(prior.height))
-    return math.sqrt(prior.sigma_z**2 + prior.buoyant_spread**2 * (climbed**2 - expected**2))
+    return math.sqrt(prior.sigma_z**2 + BUOYANT_SPREAD**2 * (climbed**2 - expected**2))
 
 
 def estimated(plume: MadePlume, altitudes: list[float]) -> PlumeEstimator:

@@ -7,9 +7,10 @@ import pytest
 from exhaust_cases import SENSOR
 
 from gnc.estimation.plume.estimator import SensorState
+from gnc.estimation.plume.prior import Expectation
 from gnc.mission.mode import Mode
 from gnc.mission.plume_axis import Climb
-from gnc.mission.searched_axis import Expectation, SearchedPlume
+from gnc.mission.searched_axis import SearchedPlume
 from tests.gnc.mission.axis_cases import PLAN_TIME, RISING, SPEED, situation
 
 FAST = replace(SENSOR, saturated=20000.0)

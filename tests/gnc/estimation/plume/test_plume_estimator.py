@@ -9,6 +9,7 @@ from exhaust_cases import PRIOR, SENSOR, MadePlume, estimated
 
 from gnc.errors import InfeasibleError
 from gnc.estimation.plume.estimator import PlumeEstimator, PlumeState, SensorState
+from gnc.estimation.plume.prior import BACKGROUND_DRIFT, BEARING_DRIFT, HEIGHT_DRIFT
 
 AROUND = [65.0, 72.0, 58.0, 68.0, 62.0, 70.0]
 """Altitudes of passes about the expected height [m]."""
@@ -35,7 +36,7 @@ def test_after_a_silence_a_plume_that_was_found_is_known_as_little_as_it_has_dri
         estimator.update(230.0, 60.0 * math.cos(0.035 * i), 68.0, math.nan)
     # A pass ahead of the ship says nothing, and drift is reckoned with it.
     MadePlume(height=68.0, peak=0.0, prior=replace(PRIOR, distance=10.0)).fly(estimator, [68.0])
-    drifts = PRIOR.height_drift * math.sqrt(silence), PRIOR.bearing_drift * math.sqrt(silence)
+    drifts = HEIGHT_DRIFT * math.sqrt(silence), BEARING_DRIFT * math.sqrt(silence)
     # 1/6000 per second of the prior beside it, and some seconds of passes: a tenth and a quarter more.
     found = estimator.height_deviation, estimator.bearing_deviation
     for before, drift, after in zip(known, drifts, found, strict=True):
@@ -246,7 +247,7 @@ def test_a_background_that_drifts_while_nothing_is_read_is_no_plume(unread: str)
             away = 40.0 < time < 100.0
             along = -230.0 if away and unread == "ahead of the ship" else 230.0
             reads = i % 4 == 0 and not (away and unread == "silent")
-            reading = 420.0 + SENSOR.background_drift * time + SENSOR.noise * generator.standard_normal() if reads else math.nan
+            reading = 420.0 + BACKGROUND_DRIFT * time + SENSOR.noise * generator.standard_normal() if reads else math.nan
             estimator.predict(0.05)
             estimator.update(along, 60.0 * math.cos(math.pi * time / 9.0), 65.0, reading)
         assert estimator.state is PlumeState.SEARCHING

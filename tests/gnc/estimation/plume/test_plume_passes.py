@@ -9,6 +9,7 @@ from exhaust_cases import PRIOR, SENSOR
 from gnc.estimation.plume.estimator import PlumeEstimator, PlumeState
 from gnc.estimation.plume.pass_reader import PassReader
 from gnc.estimation.plume.passes import PassCollector, Path
+from gnc.estimation.plume.prior import BACKGROUND_DRIFT
 
 _SPEED = 20.0
 
@@ -127,7 +128,7 @@ def test_slope_and_bend_are_those_of_the_whole_covariance() -> None:
     background = np.stack(
         [
             np.full(len(y), 1e3),
-            SENSOR.background_drift * (since - 0.5 * since[-1]),
+            BACKGROUND_DRIFT * (since - 0.5 * since[-1]),
             SENSOR.noise * np.exp(-since / SENSOR.time_constant),
         ]
     )
