@@ -1,36 +1,68 @@
-"""How wide a plume is drawn."""
+"""How wide and how high a plume is drawn, also against the plume model itself."""
 
 import math
 
 import numpy as np
 import pytest
 
+from measurement.emission.emission import emission_of
+from measurement.emission.fuel import fuel_preset
+from measurement.emission.ship import ship_preset
+from measurement.plume.air import MarineAir
+from measurement.plume.fluctuating_plume import FluctuatingPlume
+from measurement.plume.settings import PlumeSettings
 from reports.run.flight_config import source_height
 from reports.run.plume_shape import LINE_HALF_WIDTH, SPREADS, plume_shape
 
-LINE = {"plume": {"model": "straight", "elevation_deg": 10.0, "source_height_m": 35.0}, "emission": {"ship": None}}
+SPEED, WIND, HEIGHT, LENGTH = 12.0, 7.0, 35.0, 800.0
+LINE = {"plume": {"model": "straight", "elevation_deg": 10.0, "source_height_m": HEIGHT}, "emission": {"ship": None}}
 SMOKE = {
-    "plume": {"model": "fluctuating", "elevation_deg": 0.0, "source_height_m": 35.0},
+    "plume": {"model": "fluctuating", "elevation_deg": 0.0, "source_height_m": HEIGHT},
     "emission": {"ship": "container", "fuel": "mgo", "sulphur_percent": 0.1, "load": None},
     "wind": {"temperature_c": 15.0, "stability_per_s": 0.0},
 }
 
 
-def shape_of(config, apparent_wind=10.0, wind=7.0):
-    return plume_shape(config, speed=12.0, wind=wind, apparent_wind=apparent_wind, length=800.0)
+def shape_of(config, apparent_wind=10.0, speed=SPEED):
+    return plume_shape(config, speed=speed, wind=WIND, apparent_wind=apparent_wind, length=LENGTH)
 
 
 def test_an_axis_alone_has_no_width_of_its_own_and_rises_as_configured():
     shape = shape_of(LINE)
     assert not shape.smoke
     assert shape.half_width == pytest.approx(np.full(len(shape.distance), LINE_HALF_WIDTH))
-    assert shape.height[-1] == pytest.approx(35.0 + 800.0 * math.tan(math.radians(10.0)))
+    assert shape.height[-1] == pytest.approx(HEIGHT + LENGTH * math.tan(math.radians(10.0)))
 
 
-def test_smoke_widens_with_distance_and_in_weaker_wind_past_the_funnel():
+def test_at_its_edge_the_mean_plume_has_exp_of_minus_two_of_its_axis():
+    # A ship on a course to the north in wind from there: the smoke trails to the south in the apparent wind of both.
+    apparent = SPEED + WIND
+    shape = shape_of(SMOKE, apparent)
+    time = np.arange(-120.0, 1.0, 0.5)
+    plume = FluctuatingPlume(
+        emission_of(ship_preset("container"), fuel_preset("mgo", 0.1), speed=SPEED),
+        MarineAir(wind_speed=WIND, temperature=288.15),
+        time=time,
+        north=apparent * time,
+        east=np.zeros(len(time)),
+        source_height=HEIGHT,
+        settings=PlumeSettings(mean=True),
+    )
+    # Away from the funnel, where the axis is not level.
+    far = slice(4, None)
+    now, south = np.zeros(len(shape.distance[far])), -shape.distance[far]
+    edge = plume.sample(now, south, shape.half_width[far], shape.height[far])
+    # To 1 %: the tables of the shape and of the plume are linear between ages 0.1 s apart.
+    assert edge.dilution / edge.axis_dilution == pytest.approx(math.exp(-2.0), rel=0.01)
+    assert edge.axis_height == pytest.approx(shape.height[far], abs=0.05)
+
+
+def test_smoke_rises_and_widens_with_distance_and_in_weaker_wind_past_the_funnel():
     wide, narrow = shape_of(SMOKE, apparent_wind=6.0), shape_of(SMOKE, apparent_wind=14.0)
     assert wide.smoke
+    assert wide.distance[[0, -1]] == pytest.approx([0.0, LENGTH])
     assert np.all(np.diff(wide.half_width) > 0.0)
+    assert np.all(np.diff(narrow.height) > 0.0)
     # The same distance is reached at a greater age.
     assert np.all(wide.half_width[1:] > narrow.half_width[1:])
 
@@ -59,8 +91,20 @@ def test_far_away_the_mean_plume_is_as_wide_as_the_turbulence_makes_it():
     assert 0.5 * 0.47 * 80.0 < sigma < 1.2 * 0.47 * 80.0
 
 
-@pytest.mark.parametrize(("key", "value"), [("apparent", 0.5), ("sulphur", 50.0)])
-def test_what_has_no_plume_is_drawn_as_its_axis(key, value):
-    # No direction in too weak a wind; and a fuel that this version does not take.
-    config = SMOKE | {"emission": SMOKE["emission"] | ({"sulphur_percent": value} if key == "sulphur" else {})}
-    assert not shape_of(config, apparent_wind=value if key == "apparent" else 10.0).smoke
+@pytest.mark.parametrize(
+    ("changes", "situation"),
+    [
+        ({"emission": {"ship": None}}, {}),
+        ({"plume": SMOKE["plume"] | {"model": "straight"}}, {}),
+        # No direction in too weak a wind, a fuel that this version does not take, and a speed that the ship does not make.
+        ({}, {"apparent_wind": 0.0}),
+        ({}, {"apparent_wind": 0.5}),
+        ({"emission": SMOKE["emission"] | {"sulphur_percent": 50.0}}, {}),
+        ({}, {"speed": 30.0, "apparent_wind": 37.0}),
+    ],
+)
+def test_what_has_no_plume_is_drawn_as_its_axis(changes, situation):
+    shape = shape_of(SMOKE | changes, **situation)
+    assert not shape.smoke
+    assert np.all(shape.half_width == LINE_HALF_WIDTH)
+    assert np.all(shape.height == HEIGHT)
