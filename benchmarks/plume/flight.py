@@ -32,6 +32,9 @@ LOWEST, HIGHEST = 20.0, 120.0
 KEEP_OUT = 200.0
 """Least distance from the ship [m]."""
 
+SPEEDS = 3.0, 12.0
+"""Speeds of ship and wind that are drawn from [m/s]."""
+
 STACKS, LOADS = (20.0, 60.0), (0.2, 0.9)
 """Heights of the funnel's mouth [m] and loads of the engine that are drawn from [-]."""
 
@@ -61,13 +64,13 @@ class Case:
         return self.wind[0] - self.ship_speed, self.wind[1]
 
 
-def draw_case(seed: int, *, wind: tuple[float, float] = (3.0, 12.0), ship: tuple[float, float] = (3.0, 12.0)) -> Case:
+def draw_case(seed: int) -> Case:
     """Return a case in which the vehicle is faster than the ship through the air, by 0.25 to 0.9."""
     generator = np.random.default_rng(seed)
     while True:
-        speed, bearing = generator.uniform(*wind), generator.uniform(0.0, 2.0 * math.pi)
+        speed, bearing = generator.uniform(*SPEEDS), generator.uniform(0.0, 2.0 * math.pi)
         case = Case(
-            ship_speed=generator.uniform(*ship),
+            ship_speed=generator.uniform(*SPEEDS),
             wind=(speed * math.cos(bearing), speed * math.sin(bearing)),
             wind_error=(generator.normal(0.0, WIND_ERROR), generator.normal(0.0, WIND_ERROR)),
             stack=generator.uniform(*STACKS),

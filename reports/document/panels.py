@@ -140,7 +140,7 @@ def histogram(
     for value, label in upright:
         mark = np.array([value, value])
         lines.append(Line(x=mark, y=np.array([0.0, 1.05 * most]), label=label, colour=upright_colour, style="dash"))
-    x_range, y_range = _around([edges, marked]), (0.0, 1.08 * most)
+    x_range, y_range = around(np.append(edges, marked)), (0.0, 1.08 * most)
     return Panel(x_label=x_label, y_label="Flights", lines=lines, x_range=x_range, y_range=y_range, y_whole=True)
 
 
@@ -179,17 +179,7 @@ def strips(
         x_label=x_label,
         y_label=y_label if named else "",
         lines=lines,
-        x_range=_around([values, np.array([value for value, _ in upright])]),
+        x_range=around(np.append(values, [value for value, _ in upright])),
         y_range=(float(reach[0]), float(reach[1])),
         y_names=names,
     )
-
-
-def _around(values: Sequence[Array]) -> tuple[float, float] | None:
-    """Return limits of an axis with room to spare on both sides, or None without values."""
-    every = np.concatenate(values)
-    known = every[np.isfinite(every)]
-    if not len(known):
-        return None
-    spare = 0.04 * float(np.ptp(known)) or 1.0
-    return float(known.min()) - spare, float(known.max()) + spare

@@ -9,8 +9,9 @@ from reports.document.chart import Chart, Line, Note, Panel
 from reports.document.map_marks import on_map
 from reports.document.palette import Meaning
 from reports.document.panels import around, level
-from reports.measurement.data import SINCE, Record, after_gap, errors, finite, in_parts, over_time, thinned, value
+from reports.measurement.data import SINCE, Record, after_gap, errors, finite, in_parts, over_time, value
 from reports.run.columns import Array, column
+from reports.run.time_history import thinned
 
 POINTS_MAX = 2500
 """Samples of a figure at most."""

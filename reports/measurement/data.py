@@ -114,11 +114,6 @@ def in_parts(samples: pd.DataFrame) -> pd.DataFrame:
     return samples.set_axis(order).reindex(np.sort(np.concatenate([order, order[after_gap(samples)] - 0.5])))
 
 
-def thinned(samples: pd.DataFrame, most: int) -> pd.DataFrame:
-    """Return evenly so many rows at most."""
-    return samples.iloc[:: max(1, -(-len(samples) // most))]
-
-
 def finite(*columns: Array) -> bool:
     """Return whether each column has a number."""
     return all(bool(np.isfinite(values).any()) for values in columns)

@@ -131,15 +131,15 @@ def _own_words(key: str, text: str, section: object) -> str:
 
 def _of_field(kind: type[BaseModel], key: str) -> dict[str, Any]:
     """Return unit and default of a dotted key, as far as the schema has it."""
-    field = _field(kind, key)
+    field = _field(kind, key.split("."))
     return {"unit": split_unit(line(field.description or ""))[1], "default": field.default} if field else {}
 
 
-def _field(kind: type[BaseModel], key: str) -> FieldInfo | None:
-    """Return the field of a dotted key, if the schema has it."""
+def _field(kind: type[BaseModel], parts: Sequence[str]) -> FieldInfo | None:
+    """Return the field of the parts of a key, if the schema has it."""
     model: type[BaseModel] | None = kind
     field: FieldInfo | None = None
-    for part in key.split("."):
+    for part in parts:
         if not part.isdecimal():
             field = model.model_fields.get(part) if model else None
             model = next(models_in(field.annotation), (None, False))[0] if field else None
@@ -153,10 +153,11 @@ def _list_example(kind: type[BaseModel], key: str, value: object) -> str:
     ----------
     value : what was given in its place, of which the example consists if it can
     """
-    if entry := entry_model(kind, key.split(".")):
+    parts = key.split(".")
+    if entry := entry_model(kind, parts):
         needed = {name: example_value(field) for name, field in entry.model_fields.items() if field.is_required()}
         return f"[{{ {', '.join(f'{name} = {json.dumps(of)}' for name, of in needed.items())} }}]"
-    field = _field(kind, key)
+    field = _field(kind, parts)
     lists = [of for of in _with_members(field.annotation) if typing.get_origin(of) is tuple] if field else []
     members = typing.get_args(lists[0]) if lists else ()
     if any(of is str or typing.get_origin(of) is typing.Literal for member in members for of in _with_members(member)):
@@ -191,12 +192,9 @@ def _example(kind: type[BaseModel], section: str) -> str:
 
 def entry_model(kind: type[BaseModel], parts: Sequence[str]) -> type[BaseModel] | None:
     """Return the schema of the entries of the list that a key names; None if it is not a list of sections."""
-    found: tuple[type[BaseModel], bool] | None = kind, False
-    for part in parts:
-        if found and not part.isdecimal():
-            field = found[0].model_fields.get(part)
-            found = next(models_in(field.annotation), None) if field else None
-    return found[0] if found and found[1] else None
+    field = _field(kind, parts)
+    model, listed = next(models_in(field.annotation), (None, False)) if field else (None, False)
+    return model if listed else None
 
 
 def example_value(field: FieldInfo) -> object:

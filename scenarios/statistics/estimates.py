@@ -93,7 +93,7 @@ def interval_confidence(confidence: float, look_number: int | None) -> float:
     return confidence if look_number is None else confidence_at(look_number, confidence)
 
 
-def pessimistic_share(found: Violations, level: float, *, per_sample: int = 1) -> Json:
+def pessimistic_share(found: Violations, level: float, *, per_sample: int) -> Json:
     """Return the share of flights with a keep-out violation as ``share`` does, if every unknown flight had one."""
     return share(found.events_at_most, found.flights, level, per_sample=per_sample)
 

@@ -179,12 +179,3 @@ def test_the_poles_of_the_linear_model_are_those_of_the_published_equations(bank
         # Otherwise inertia 9e-5, and 0.6 % of thrust's slope for the phugoid; the earth's rate, 7e-5 rad/s, for the slowest.
         assert abs(nearest - pole) < (0.025 if pole.real < -45.0 else 2e-3) * abs(pole) + 1e-3, pole
     assert len(found_poles) == len(expected)
-
-
-def test_a_positive_rudder_yaws_left(fdm):
-    with fdm.frozen():
-        yaws = []
-        for rudder in (0.0, 0.1):
-            hold(fdm, 25.0, 0.05, 0.0, STILL, (0.0, 0.0, rudder))
-            yaws.append(fdm.angular_acceleration()[2])
-    assert yaws[1] < yaws[0]  # C_n_dr = -0.069; its size has its own test
