@@ -102,7 +102,7 @@ class _Turn:
         self.altitude, self._climb_rate = start.altitude + room, gradient * start.airspeed
         aircraft.release(replace(start.state(), altitude=self.altitude), airspeed=start.airspeed, altitude=self.altitude)
         aircraft.command_heading_rate(self.rate)
-        for _ in range(round(2.0 * math.pi / abs(self.rate) / TIME_STEP)):
+        for _ in range(round(math.pi / abs(self.rate) / TIME_STEP)):
             aircraft.run()
 
     def flown(self, *, failing: bool = True) -> Iterator[float]:

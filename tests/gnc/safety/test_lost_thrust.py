@@ -33,7 +33,7 @@ def fly(fails, closing, slowest):
     return closest, lost
 
 
-@pytest.mark.parametrize("closing", [5.0, 9.0, 13.0])
+@pytest.mark.parametrize("closing", [5.0, 13.0])
 def test_a_vehicle_that_slows_down_to_the_slowest_keeps_out_whenever_it_begins_to(closing):
     # Both close in by 340 m until the guard acts; the fall takes 4.2 s, a turn away 6 s.
     until = 340.0 / (SPEED + closing)
