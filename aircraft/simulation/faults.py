@@ -17,10 +17,10 @@ from aircraft.simulation.fdm import Fdm
 from aircraft.spec import Actuator, AircraftSpec
 
 ENGINE = "engine"
+"""Name of the loss of all thrust: the throttle's command is 0, and running engines are shut down."""
 
 OF_THRUST = frozenset({ENGINE, "throttle"})
 """Parts by whose failure thrust is lost, or stays what it was."""
-"""Name of the loss of all thrust: the throttle's command is 0, and running engines are shut down."""
 
 _FAILED, _HELD = "fault/{}/failed", "fault/{}/held"
 _SHUT_DOWN = (("propulsion/magneto_cmd", 0.0), ("propulsion/cutoff_cmd", 1.0))

@@ -92,6 +92,7 @@ class _Turn:
     ----------
     aircraft : in the turn
     rate : commanded heading rate [rad/s]
+    half : time steps of half a turn
     altitude : at which it begins, ``room`` above that of the equilibrium [m]
     """
 
@@ -102,7 +103,8 @@ class _Turn:
         self.altitude, self._climb_rate = start.altitude + room, gradient * start.airspeed
         aircraft.release(replace(start.state(), altitude=self.altitude), airspeed=start.airspeed, altitude=self.altitude)
         aircraft.command_heading_rate(self.rate)
-        for _ in range(round(math.pi / abs(self.rate) / TIME_STEP)):
+        self.half = round(math.pi / abs(self.rate) / TIME_STEP)
+        for _ in range(self.half):
             aircraft.run()
 
     def flown(self, *, failing: bool = True) -> Iterator[float]:
@@ -141,7 +143,7 @@ def _glide_deviation(turn: _Turn, glide: float, begins: float) -> float:
     north, east = (aircraft.fdm.node(f"velocities/v-{side}-fps").get_double_value for side in ("north", "east"))
     aircraft.command_airspeed(glide)
     aircraft.command_altitude(turn.altitude - _ROOM)
-    for _ in range(round(math.pi / abs(turn.rate) / TIME_STEP)):
+    for _ in range(turn.half):
         velocities.append((north(), east()))
         aircraft.run()
     flown = METRES_PER_FOOT * np.array([complex(*each) for each in velocities])

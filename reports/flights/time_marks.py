@@ -56,11 +56,12 @@ def marks_beside(x: Array, y: Array, words: Sequence[str], drawn: Sequence[Line]
     # Beyond all curves the figure may end, and cut a word off.
     points = np.concatenate([np.empty((0, 2)), *(np.column_stack([line.x, line.y]) for line in drawn)])
     points = points[np.isfinite(points).all(axis=1)]
+    corners = (points.min(axis=0), points.max(axis=0)) if len(points) else None
     for i, text in enumerate(words):
         free = [word for word in _places(float(x[i]), float(y[i]), text, size) if not any(_touch(word, of) for of in taken)]
         passes = {word: sum(_passes(line, word) for line in drawn) for word in free}
         if bearable := [word for word in free if passes[word] <= _PASSES_MAX]:
-            word = min(bearable, key=lambda word: (not _among(word, points), passes[word]))
+            word = min(bearable, key=lambda word: (corners is None or not _within(word, *corners), passes[word]))
             taken.append(word)
             kept.append(i)
             notes.append(Note(x=word.at, y=word.middle[1], text=text, align=word.align))
@@ -96,11 +97,9 @@ def _places(x: float, y: float, text: str, size: float) -> Iterable[_Word]:
     yield _Word((x, y - off - half[1]), half, x, "center")
 
 
-def _among(word: _Word, points: Array) -> bool:
-    """Return whether a word stands between the outermost of some points, shape (n, 2)."""
-    if not len(points):
-        return False
-    inside = (points.min(axis=0) <= np.subtract(word.middle, word.half)) & (np.add(word.middle, word.half) <= points.max(axis=0))
+def _within(word: _Word, least: Array, most: Array) -> bool:
+    """Return whether a word stands between two corners, shape (2,) each."""
+    inside = (least <= np.subtract(word.middle, word.half)) & (np.add(word.middle, word.half) <= most)
     return bool(inside.all())
 
 

@@ -171,17 +171,14 @@ class Experiment:
         """
         yield from self.settings()
         for point in self.points:
-            largest = dict[str, float]()
-            for draw in point.scenario.draws:
-                if draw.key in _MEASURED_FOR and not displaced(draw.key, point.given):
-                    if draw.largest is None:
-                        raise InputError(
-                            f"'{draw.key}' is sampled from a distribution without an upper limit, for which the aircraft would have"
-                            " to be measured; give the draw one with within = [lowest, highest]"
-                        )
-                    largest[draw.key] = draw.largest
-            if largest:
-                yield with_values(point.scenario, largest)
+            draws = [d for d in point.scenario.draws if d.key in _MEASURED_FOR and not displaced(d.key, point.given)]
+            if unlimited := [draw.key for draw in draws if draw.largest is None]:
+                raise InputError(
+                    f"'{unlimited[0]}' is sampled from a distribution without an upper limit, for which the aircraft would have to"
+                    " be measured; give the draw one with within = [lowest, highest]"
+                )
+            if draws:
+                yield with_values(point.scenario, {draw.key: draw.largest for draw in draws})
 
     def _point(self, number: int) -> tuple[Point, int]:
         i = bisect.bisect_right(self._ends, number)
