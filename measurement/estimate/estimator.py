@@ -5,22 +5,21 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-import pandas as pd
 
 from measurement.errors import MeasurementError
 from measurement.estimate.areas import Areas, area_ratio
-from measurement.estimate.budget import CARBON_SD, SULPHATE_SHARE, common_errors, unmeasured
+from measurement.estimate.budget import CARBON_SD, SAMPLING_SD, SULPHATE_SHARE, common_errors, unmeasured
 from measurement.estimate.fit.alignment import Alignment, align, stated
 from measurement.estimate.fit.groups import grouped
 from measurement.estimate.fit.regression import fitted, regress
-from measurement.estimate.fit.signals import Signals, make_signals, used_gases
+from measurement.estimate.fit.signals import make_signals, samples_of, used_gases
 from measurement.estimate.passes import SNR_LEAST, Pass, co2_excesses, find_passes, read_coarsely, readings_noise
 from measurement.estimate.plausible import unlikely
 from measurement.estimate.quality import judged_quality, late, noise_alone, stranger
 from measurement.estimate.record import Record, checked_record
 from measurement.estimate.result import Figures, FscEstimate, Method
 from measurement.estimate.verdict import LIMITS_PERCENT, interval, judged
-from measurement.gases import CARBON_FRACTION, UNITS, fsc_factor
+from measurement.gases import CARBON_FRACTION, fsc_factor
 from measurement.sniffer.lag import Array
 from measurement.sniffer.sniffer import Readings
 from measurement.sniffer.spec import SnifferSpec
@@ -34,9 +33,6 @@ OVERLAP_LEAST = 0.95
 EXPLAINED_LEAST = 0.5
 """Share of a misfit that another delay has to explain for it to be the true one."""
 
-_OUTSIDE = 0.1
-"""Share of the samples with the least CO2, by which the level outside the plume is shown."""
-
 
 @dataclass(frozen=True, kw_only=True)
 class _Ratio:
@@ -47,6 +43,7 @@ class _Ratio:
     misfit: float
     common: dict[str, float]
     alignment: Alignment
+    overlap: float = 0.0
     problems: tuple[str, ...] = ()
 
 
@@ -179,8 +176,17 @@ def _areas(record: Record, instrument: SnifferSpec, passes: Sequence[Pass]) -> _
     problems: tuple[str, ...] = ()
     if found.share < OVERLAP_LEAST:
         problems = (_unread(found, instrument.known("so2").t90_s),)
-    common["overlap"] = abs(found.separate - found.ratio)
-    return _Ratio(ratio=found.ratio, noise=found.noise, misfit=1.0, common=common, alignment=alignment, problems=problems)
+    overlap = found.separate - found.ratio
+    common["overlap"] = abs(overlap)
+    return _Ratio(
+        ratio=found.ratio,
+        noise=found.noise,
+        misfit=1.0,
+        common=common,
+        alignment=alignment,
+        overlap=overlap,
+        problems=problems,
+    )
 
 
 def _unread(found: Areas, t90_s: float) -> str:
@@ -215,10 +221,11 @@ def _told(
     for gas, (_, deviation) in absent.items():
         common[gas] = math.hypot(common.get(gas, 0.0), deviation)
     common["carbon"] = CARBON_SD * abs(fsc)
+    common["sampling"] = SAMPLING_SD * record.step / instrument.known("co2").constants[0] * abs(fsc)
     total = math.sqrt(noise**2 + sum(value**2 for value in common.values()))
     signals = make_signals(record, instrument)
     groups = grouped(signals, passes, ratio.ratio, misfit=ratio.misfit, response=ratio.common.get("response", 0.0))
-    samples, so2_snr = _samples(signals, ratio.ratio)
+    samples, so2_snr = samples_of(signals, ratio.ratio)
     snr = float(np.median([found.snr for found in passes])) if passes else 0.0
     quality, reasons = judged_quality(
         problems=problems,
@@ -236,6 +243,7 @@ def _told(
         fsc_percent=fsc,
         noise_percent=noise,
         common_percent=common,
+        overlap_percent=factor * ratio.overlap,
         total_percent=total,
         low_percent=low,
         high_percent=high,
@@ -272,21 +280,3 @@ def _figures(record: Record, passes: tuple[Pass, ...], instrument: SnifferSpec, 
         co2_snr=snr,
         so2_snr=so2_snr,
     )
-
-
-def _samples(signals: Signals, slope: float) -> tuple[pd.DataFrame, float]:
-    """Return readings, equalised excesses, fit and residual by sample, and the signal to noise of SO2."""
-    record = signals.record
-    co2, so2 = signals.excess()
-    # Beside the background both have a mean of 0; they are shown from the level that CO2 has outside the plume.
-    level = float(np.quantile(co2, _OUTSIDE))
-    fit, rest = slope * co2, float(np.std(so2 - slope * co2))
-    columns = {"time_s": record.time}
-    columns |= {f"{gas}_{UNITS[gas]}": record.of(gas) for gas in used_gases(record)}
-    columns |= {
-        "co2_excess_ppm": co2 - level,
-        "so2_excess_ppb": so2 - slope * level,
-        "fit_ppb": fit - slope * level,
-        "residual_ppb": so2 - fit,
-    }
-    return pd.DataFrame(columns), float(np.std(fit)) / rest if rest > 0.0 else math.inf

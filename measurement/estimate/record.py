@@ -38,9 +38,6 @@ SHORTEST = 8
 _SATURATED_MAX, _MISSING_MAX = 0.0, 0.1
 """Shares of saturated and of missing samples from which on there is no verdict."""
 
-_CUT_LEAST, _CUT_OVER, _CUT_STEPS = 8, 3.0, 5
-"""Readings at the largest one, and how often as many as at any of the next steps below it, that show where readings are cut off."""
-
 _SAME = 1e-9
 """Readings that differ by less, relative to the largest, are the same."""
 
@@ -148,7 +145,11 @@ def checked_record(readings: Readings, instrument: SnifferSpec) -> Record:
         times.append(grid)
         parts.append({gas: np.interp(grid, time[segment], column[segment]) for gas, column in logged.items()})
     if not times:
-        raise MeasurementError(f"no {SHORTEST} samples in a row have both SO2 and CO2; give a record with fewer gaps")
+        *names, last = (gas.upper() for gas in gases)
+        fewest = min(gases, key=lambda gas: int(np.isfinite(logged[gas]).sum()))
+        remedy = "" if fewest in ("so2", "co2") else f", or leave out the column of {fewest.upper()}, which has fewest"
+        every = f"no {SHORTEST} samples in a row have all of {', '.join(names)} and {last}"
+        raise MeasurementError(f"{every}; give a record with fewer gaps{remedy}")
     # Samples that are interpolated lie on straight lines, and show no noise.
     whole = [run for run in pieces(time, np.flatnonzero(known), step, _WHOLE) if len(run) > 2] or segments
     resolution = {gas: shown_step(column) for gas, column in logged.items()}
@@ -218,16 +219,6 @@ def shown_step(values: Array) -> float:
     return float(changes.min()) if len(changes) else 0.0
 
 
-def _cut(values: Array) -> int:
-    """Return how many readings are cut off at the largest: noise and plumes end in fewer and fewer, and not in a heap."""
-    known, step = values[np.isfinite(values)], shown_step(values)
-    if not step:
-        return 0
-    below = np.round((known.max() - known) / step)
-    heap, *near = (int(np.sum(below == steps)) for steps in range(_CUT_STEPS + 1))
-    return heap if heap >= _CUT_LEAST and heap > _CUT_OVER * max(near) else 0
-
-
 def shown_scatter(segments: Sequence[Array], step: float) -> float:
     """Return the standard deviation of readings in these steps that their second differences show.
 
@@ -272,10 +263,6 @@ def _problems(time: Array, values: Array, gases: list[str], instrument: SnifferS
         full = float(np.mean(column >= channel.range_high - 0.5 * channel.resolution)) if math.isfinite(channel.range_high) else 0.0
         if full > _SATURATED_MAX:
             problems.append(f"{name} is saturated at {channel.range_high:g} {unit} in {100.0 * full:.1f} % of the readings")
-        elif cut := _cut(column):
-            problems.append(
-                f"{name} reads {np.nanmax(column):g} {unit}, and never more, {cut} times, and hardly ever just less: it is cut off"
-            )
         floor = lowest_reading(gas, values, instrument)
         if (least := float(np.nanmin(column))) < floor:
             problems.append(f"{name} reads {least:g} {unit}, which its noise and zero do not explain (from {floor:.0f} {unit})")

@@ -83,6 +83,7 @@ WORDS = {
     "response": "response and delay",
     "carbon": "carbon content",
     "overlap": "overlapping passes",
+    "sampling": "time between readings",
 }
 """Parts of the uncertainty."""
 

@@ -72,7 +72,8 @@ def fuel_estimate(readings: Readings, instrument: SnifferSpec, *, limit: float, 
     by, verdict = found.estimate, found.estimate.verdicts[0]
     figures = _figures(by, "fsc")
     if found.other:
-        figures |= _figures(found.other, "areas_fsc") | {"areas_fsc_separate_percent": _separate(found.other)}
+        separate = found.other.fsc_percent + found.other.overlap_percent
+        figures |= _figures(found.other, "areas_fsc") | {"areas_fsc_separate_percent": separate}
     figures |= {
         "fsc_common_percent": math.sqrt(sum(value**2 for value in by.common_percent.values())),
         "sulphur_quality": by.quality,
@@ -104,11 +105,6 @@ def _verdict_after(table: "pd.DataFrame", elapsed: float, name: str) -> str:
 
     known = table.loc[table["elapsed_s"] <= elapsed, name]
     return str(known.iloc[-1]) if len(known) else OPEN
-
-
-def _separate(areas: "FscEstimate") -> float:
-    """Return what areas would read if passes did not overlap in the slow channel, by the closed form [% m/m]."""
-    return areas.fsc_percent + areas.common_percent.get("overlap", 0.0)
 
 
 def _figures(found: "FscEstimate", name: str) -> dict[str, Any]:

@@ -118,6 +118,12 @@ def test_a_single_pass_that_the_record_cuts_off_is_reported_as_that():
     assert "nan" not in " ".join(found.quality_reasons)
 
 
+def test_a_gas_with_next_to_no_readings_is_named_as_what_to_leave_out():
+    readings, spec = flight("electrochemical", 0.25, 1)
+    readings.values[3:, 3] = math.nan
+    assert outcome(readings, spec).endswith("give a record with fewer gaps, or leave out the column of NO2, which has fewest")
+
+
 def test_a_plume_below_the_detection_limit_is_none():
     spec = sensor_preset("electrochemical")
     assert_no_verdict(estimate(read(spec, crossings(0.25, peak=4.0)), spec), "no pass through a plume")

@@ -14,6 +14,7 @@ from measurement.estimate.fit.signals import make_signals
 from measurement.estimate.passes import find_passes
 from measurement.estimate.record import Record, checked_record
 from measurement.gases import fsc_factor
+from measurement.sniffer import Readings, sensor_preset
 from measurement.sniffer.lag import lag
 
 TAU = 20.0 / math.log(10.0)
@@ -121,6 +122,27 @@ def test_areas_of_overlapping_passes_read_what_is_predicted():
         found = area_ratio(record, spec, find_passes(record, changed(spec, "co2", noise=1.0).known("co2")))
         assert found.share == pytest.approx(fsc_factor() * found.ratio / 0.25, rel=0.1)
         assert 0.2 < found.share < 0.5
+
+
+def test_areas_do_not_depend_on_the_origin_of_time():
+    # Windows that end where the next pass begins were no longer recognised among seconds since 1970, which are known to 2e-7.
+    spec = plain_sniffer(20.0, 4.0, so2_noise=1.0, co2_noise=1.0)
+    readings = read(spec, crossings(0.25))
+    since_1970 = Readings(readings.time + 1_750_000_000.0, readings.values)
+    found, other = (estimate(each, spec, method="areas") for each in (readings, since_1970))
+    assert other.fsc_percent == pytest.approx(found.fsc_percent, abs=1e-5)
+
+
+def test_what_areas_would_read_of_separate_passes_is_above_or_below_what_they_read():
+    spec, signs = sensor_preset("fast"), set()
+    for seed in range(6):
+        readings = read(spec, crossings(0.2, duration=200.0, seed=seed + 50), seed=seed)
+        record = checked_record(readings, spec)
+        areas = area_ratio(record, spec, find_passes(record, spec.known("co2")))
+        found = estimate(readings, spec, method="areas")
+        assert found.fsc_percent + found.overlap_percent == pytest.approx(fsc_factor() * areas.separate, rel=1e-6)
+        signs.add(np.sign(found.overlap_percent))
+    assert signs == {-1.0, 1.0}
 
 
 def test_areas_of_separate_passes_are_unbiased():

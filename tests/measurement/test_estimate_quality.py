@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from crossings import crossings, flight, plain_sniffer, read
+from crossings import changed, crossings, flight, plain_sniffer, read
 
 from measurement.estimate import estimate
 from measurement.estimate.areas import area_ratio
@@ -60,11 +60,22 @@ def test_readings_that_are_cut_off_below_the_stated_range_have_no_verdict(gas, m
     assert f"{name}, and never more, " in reasons(Readings(readings.time, values), spec)
 
 
+@pytest.mark.parametrize("noise", ["stated", "not stated"])
+def test_readings_that_are_cut_off_at_zero_have_no_verdict(noise):
+    # Clean air reads 0 and no less, which is too much in the mean: in weak plumes 0.124 was read for 0.15 %.
+    readings, spec = flight("electrochemical", 0.15, 1)
+    values = readings.values.copy()
+    values[:, 0] = np.maximum(values[:, 0] - np.quantile(values[:, 0], 0.3), 0.0)
+    analyst = spec if noise == "stated" else changed(spec, "so2", noise=math.nan)
+    assert "SO2 reads 0 ppb, and never less, " in reasons(Readings(readings.time, values), analyst)
+
+
 @pytest.mark.parametrize("decimals", [0, 1, 2])
 def test_whole_flights_rounded_to_any_step_are_not_cut_off(decimals):
     for seed in range(4):
         readings, spec = flight("electrochemical", 0.25, seed)
-        assert "cut off" not in reasons(Readings(readings.time, readings.values.round(decimals)), spec)
+        for analyst in (spec, sensor_preset("unspecified")):
+            assert "cut off" not in reasons(Readings(readings.time, readings.values.round(decimals)), analyst)
 
 
 @pytest.mark.parametrize(("column", "gas"), [(2, "NO"), (3, "NO2")])

@@ -66,21 +66,28 @@ def transients(time: Array, common: Poles) -> Array:
 
 def shifted(signal: Array, step: float, delay: float) -> Array:
     """Return a smooth signal ``delay`` later, by a cubic through four samples; beyond its ends it stays at its last value."""
-    place = -delay / step
-    whole = math.floor(place)
-    share = place - whole
-    if share < _ON_SAMPLE or share > 1.0 - _ON_SAMPLE:
-        whole, share = round(place), 0.0
-    # Lagrange's weights of the samples before, at, after and two after.
-    weights = (
-        -share * (share - 1.0) * (share - 2.0) / 6.0,
-        (share + 1.0) * (share - 1.0) * (share - 2.0) / 2.0,
-        -(share + 1.0) * share * (share - 2.0) / 2.0,
-        (share + 1.0) * share * (share - 1.0) / 6.0,
-    )
+    whole, weights = between_samples(step, delay)
     samples = np.arange(len(signal)) + whole
     moved = np.zeros(len(signal))
     for offset, weight in zip((-1, 0, 1, 2), weights, strict=True):
         if weight:
             moved += weight * signal.take(samples + offset, mode="clip")
     return moved
+
+
+def between_samples(step: float, delay: float) -> tuple[int, tuple[float, float, float, float]]:
+    """Return the sample before a time ``delay`` [s] earlier, and the weights of the one before it, itself, and the next two.
+
+    They are Lagrange's. Their squares sum to 0.64 halfway between samples, and to 1 on one: what is shifted has less noise.
+    """
+    place = -delay / step
+    whole = math.floor(place)
+    share = place - whole
+    if share < _ON_SAMPLE or share > 1.0 - _ON_SAMPLE:
+        whole, share = round(place), 0.0
+    return whole, (
+        -share * (share - 1.0) * (share - 2.0) / 6.0,
+        (share + 1.0) * (share - 1.0) * (share - 2.0) / 2.0,
+        -(share + 1.0) * share * (share - 2.0) / 2.0,
+        (share + 1.0) * share * (share - 1.0) / 6.0,
+    )

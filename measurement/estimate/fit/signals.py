@@ -1,19 +1,24 @@
 """SO2 and CO2 of a record, corrected for other gases and brought to one response and one delay."""
 
+import math
 from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
+import pandas as pd
 
 from measurement.estimate.fit.background import background_basis, without
-from measurement.estimate.fit.response import Poles, adjoint, equalised, impulse, shifted, slowest
+from measurement.estimate.fit.response import Poles, adjoint, between_samples, equalised, impulse, shifted, slowest
 from measurement.estimate.record import Record
-from measurement.gases import GASES
+from measurement.gases import GASES, UNITS
 from measurement.sniffer.lag import Array
 from measurement.sniffer.spec import SnifferSpec
 
 _MEMORY = 12.0
 """Time constants after which a filter has forgotten."""
+
+_OUTSIDE = 0.1
+"""Share of the samples with the least CO2, by which the level outside the plume is shown."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -61,14 +66,16 @@ class Signals:
 
     def noise_energy(self, gas: str) -> float:
         """Return the expected sum of squares, beside the background, of a gas's equalised noise of standard deviation 1."""
-        return self.record.once(("noise energy", self.poles(gas), self.common), lambda: self._noise_energy(gas))
+        weights = between_samples(self.record.step, self._late(gas))[1]
+        return self.record.once(("noise energy", self.poles(gas), self.common, weights), lambda: self._noise_energy(gas))
 
     def _noise_energy(self, gas: str) -> float:
         energy = 0.0
         for segment in self.record.times:
             squares = self._impulse(gas, len(segment)) ** 2
             energy += float(np.sum(squares * (len(segment) - np.arange(len(squares)))))
-        return energy - float(np.sum(self.backwards(gas, self.basis) ** 2))
+        key = "background energy", self.poles(gas), self.common
+        return energy - self.record.once(key, lambda: float(np.sum(self.backwards(gas, self.basis) ** 2)))
 
     def noise_correlation(self, gas: str) -> float:
         """Return the sum over all lags of the squared autocovariance of a gas's equalised noise of standard deviation 1."""
@@ -77,7 +84,12 @@ class Signals:
 
     def _impulse(self, gas: str, longest: int) -> Array:
         length = min(longest, int(_MEMORY * sum(self.common) / self.record.step) + 2)
-        return impulse(length, self.record.step, self.poles(gas), self.common)
+        response = impulse(length, self.record.step, self.poles(gas), self.common)
+        weights = between_samples(self.record.step, self._late(gas))[1]
+        return response if weights[1] == 1.0 else np.convolve(response, weights)[:longest]
+
+    def _late(self, gas: str) -> float:
+        return self.instrument.known("so2").delay_s - self.instrument.known(gas).delay_s
 
 
 def used_gases(record: Record) -> tuple[str, ...]:
@@ -137,3 +149,21 @@ def _brought(record: Record, gas: str, own: Poles, common: Poles, late: float) -
         return np.concatenate([shifted(part, record.step, late) for part in parts])
 
     return record.once(("brought", gas, own, common, late), brought)
+
+
+def samples_of(signals: Signals, slope: float) -> tuple[pd.DataFrame, float]:
+    """Return readings, equalised excesses, fit and residual by sample, and the signal to noise of SO2."""
+    record = signals.record
+    co2, so2 = signals.excess()
+    # Beside the background both have a mean of 0; they are shown from the level that CO2 has outside the plume.
+    level = float(np.quantile(co2, _OUTSIDE))
+    fit, rest = slope * co2, float(np.std(so2 - slope * co2))
+    columns = {"time_s": record.time}
+    columns |= {f"{gas}_{UNITS[gas]}": record.of(gas) for gas in used_gases(record)}
+    columns |= {
+        "co2_excess_ppm": co2 - level,
+        "so2_excess_ppb": so2 - slope * level,
+        "fit_ppb": fit - slope * level,
+        "residual_ppb": so2 - fit,
+    }
+    return pd.DataFrame(columns), float(np.std(fit)) / rest if rest > 0.0 else math.inf

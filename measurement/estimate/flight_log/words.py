@@ -22,6 +22,7 @@ ERRORS = {
     "response": "response time and delay",
     "carbon": "carbon content of the fuel",
     "overlap": "passes that overlap",
+    "sampling": "time between readings",
 }
 """Common errors by name."""
 
