@@ -11,7 +11,7 @@ from scenarios.console.describe import value_text
 from scenarios.errors import InputError
 from scenarios.schema.documented import DocumentedSection, documented_sections
 from scenarios.schema.documented_parts import DIMENSIONLESS, DocumentedKey, documented_part_keys
-from scenarios.schema.effect import unused
+from scenarios.schema.effect import compares, unused
 from scenarios.schema.load import OPERATIONAL, OPERATIONAL_STUDIES, load_document, load_study
 from scenarios.schema.overrides import Document, as_toml
 from scenarios.schema.scenario import Scenario
@@ -59,6 +59,8 @@ def template(name: str, file: str) -> str:
     file : what it will be called
     """
     document, config = load_document(name), load_study(name)
+    if isinstance(config, Scenario) and compares(config):
+        document, config = _at_swept_ratios(document, config)
     sections = {section.name: section for section in documented_sections(type(config))}
     lines = [*_comment(_HEAD.format(name=name, file=file)), ""]
     if document.get("study") in OPERATIONAL_STUDIES:
@@ -67,6 +69,16 @@ def template(name: str, file: str) -> str:
         if not section.listed:
             lines += _section(section, document, config, sections)
     return "\n".join(lines)
+
+
+def _at_swept_ratios(document: Document, config: Scenario) -> tuple[Document, Scenario]:
+    """Return both with those ratios of ``comparison.nu`` that are swept: of others a file of its own must not speak."""
+    swept = [nu for nu in config.comparison.nu if nu in config.sweep.nu]
+    if not swept:
+        return document, config
+    comparison = config.comparison.model_copy(update={"nu": tuple(swept)})
+    document = {**document, "comparison": {**document["comparison"], "nu": swept}}
+    return document, config.model_copy(update={"comparison": comparison})
 
 
 def _section(
@@ -120,7 +132,10 @@ def _list(section: DocumentedSection, values: Mapping[str, Any], config: BaseMod
     if not entries:
         yield from (f"# {name} = []", "")
         return
-    before = "# " if isinstance(config, Scenario) and unused(config, whole) else ""
+    flown = not isinstance(config, Scenario) or not (
+        unused(config, whole) or (whole == "comparison.variants" and not compares(config))
+    )
+    before = "" if flown else "# "
     yield from (f"{before}{name} = [", *(f"{before}  {as_toml(entry)}," for entry in entries), f"{before}]", "")
 
 

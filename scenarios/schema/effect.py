@@ -1,8 +1,9 @@
 """Which keys of a scenario act: one that no part of its flights uses is refused, with the part that would use it."""
 
 import functools
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 
+from common.registry import PluginError
 from scenarios.errors import InputError
 from scenarios.schema.effect_rules import OPERATIONAL, RULES, Rule
 from scenarios.schema.experiment_checks import unsteady
@@ -15,6 +16,9 @@ _DISPLACED_BY = {
     "vessel.speed_mps": ("vessel.speed_ratio",),
 }
 """Keys that other keys put aside, where flights have these."""
+
+_OF_LAW = ("guidance.law", "guidance.tuning")
+"""Keys of which it is looked at what they are set to; others count as making what depends on them act."""
 
 
 def refuse_unused(scenario: Scenario, given: Iterable[str], *, overridden: Scenario | None = None) -> None:
@@ -58,18 +62,52 @@ def _put_aside_by(scenario: Scenario, key: str) -> str | None:
 
 def unused(scenario: Scenario, key: str) -> str:
     """Return the part that would use a dotted key, where no part of a scenario's flights does; otherwise nothing."""
-    varied = {*scenario.sweep.root, *(draw.key for draw in scenario.draws)}
-    varied |= {other for variant in scenario.comparison.variants for other in variant.set}
-    varied |= {other for case in scenario.cases for other in (*case.set, *case.set_kinematic)}
-    if scenario.study == "arena":
-        varied |= {"guidance.law", "guidance.mission", *(other for of in scenario.arena.conditions for other in of.set)}
     # A mission that is given does not follow from the air, the vessel or the equipment.
     mission = ("guidance.mission", *(OPERATIONAL if scenario.guidance.mission is None else ()))
     for rule in _rules_of(key):
         depends = (*rule.depends, *(mission if rule.by_mission else ()))
-        if not rule.acts(scenario) and not any(named_by(other, depends) for other in varied):
+        if not rule.acts(scenario) and not (depends and _acts_in_some(rule, scenario, depends)):
             return rule.user
     return ""
+
+
+def _acts_in_some(rule: Rule, scenario: Scenario, depends: tuple[str, ...]) -> bool:
+    """Return whether a rule's keys act in some flights, as what that depends on differs from flight to flight."""
+    for values in _differing(scenario):
+        if not (other := {key: value for key, value in values.items() if named_by(key, depends)}):
+            continue
+        if not all(key in _OF_LAW and isinstance(value, str) for key, value in other.items()):
+            return True
+        guidance = scenario.guidance.model_copy(update={key.partition(".")[2]: value for key, value in other.items()})
+        try:
+            acts = rule.acts(scenario.model_copy(update={"guidance": guidance}))
+        except PluginError:
+            # A law that is unknown is refused where it is named.
+            acts = True
+        if acts:
+            return True
+    return False
+
+
+def _differing(scenario: Scenario) -> Iterator[Mapping[str, object]]:
+    """Yield what some flights of a scenario set beside it, by dotted keys."""
+    for key, swept in scenario.sweep.root.items():
+        yield from ({key: value} for value in swept)
+    for draw in scenario.draws:
+        yield from ({draw.key: value} for value in draw.choice or (None,))
+    if compares(scenario):
+        for variant in scenario.comparison.variants:
+            yield variant.set
+    yield from (case.set | case.set_kinematic for case in scenario.cases)
+    if scenario.study == "arena":
+        yield {"guidance.law": None, "guidance.mission": None}
+        yield from (of.set for of in scenario.arena.conditions)
+
+
+def compares(scenario: Scenario) -> bool:
+    """Return whether variants are flown at all: at every point, at one of a speed ratio that is swept, or in cases."""
+    ratios = scenario.comparison.nu
+    return not ratios or bool(scenario.cases) or not {*ratios}.isdisjoint(scenario.sweep.nu)
 
 
 def _varied_by(scenario: Scenario, given: Iterable[str]) -> Iterator[tuple[str, str]]:

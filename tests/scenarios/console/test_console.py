@@ -11,6 +11,7 @@ from scenarios import fly
 from scenarios.console.describe import described
 from scenarios.console.main import commands
 from scenarios.console.template import template
+from scenarios.experiment.points import points_of
 from scenarios.schema.documented import documented_sections
 from scenarios.schema.effect import unused
 from scenarios.schema.load import catalog, load_study
@@ -221,6 +222,17 @@ def _leaves(values, before=""):
 def test_a_new_file_flies_the_same(file, tmp_path):
     assert console("new", tmp_path / "mine.toml", "--from", file).status == 0
     assert fly(tmp_path / "mine.toml", nu=0.5).history.equals(fly(file, nu=0.5).history)
+
+
+@pytest.mark.parametrize(("swept", "compared"), [([0.3], []), ([0.15, 0.3], [0.15])])
+def test_a_new_file_flies_the_comparisons_of_its_source(swept, compared, tmp_path):
+    # Those of sweep_nu are of 0.15 and 0.5; the first of these sources flies none, and the second at one ratio.
+    source, path = tmp_path / "source.toml", tmp_path / "mine.toml"
+    source.write_text(f'title = "Own"\nextends = "sweep_nu"\nsweep = {{ nu = {swept} }}\n', encoding="utf-8")
+    assert console("new", path, "--from", source).status == 0
+    for file in (source, path):
+        points = points_of(load_study(str(file)))
+        assert [point.nu for point in points if point.variant == "no_preview"] == compared
 
 
 def test_a_file_that_is_there_is_not_overwritten(file):

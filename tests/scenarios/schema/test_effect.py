@@ -9,6 +9,7 @@ from scenarios.schema.load import load_study
 
 LAG = 'sweep."kinematic.heading_rate_lag_s" = [0.1, 0.2]\n'
 DIRECTION = '[[draws]]\nkey = "wind.from_deg"\nuniform = [0.0, 90.0]\n'
+PAPER = "guidance.lyapunov_gain_per_m2 = 0.002\nsweep.nu = [0.3]\n"
 GAIN = '"guidance.lyapunov_gain_per_m2" = [0.001, 0.002]\n'
 
 
@@ -37,6 +38,21 @@ def test_a_swept_or_sampled_key_that_no_flight_uses_is_refused(tmp_path, text, w
         loaded(tmp_path, text)
     assert words in str(refused.value)
     assert "\n" not in str(refused.value)
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        # A variant has another law, which has no such key either; or it would, and is flown at no swept ratio.
+        f'{PAPER}[[comparison.variants]]\nname = "sight"\nset = {{ "guidance.law" = "line_of_sight" }}\n',
+        'extends = "sweep_nu"\nguidance.law = "lyapunov"\nguidance.gain_per_s = 0.5\nsweep.nu = [0.3]\n',
+    ],
+)
+def test_a_key_of_another_law_than_flights_and_variants_have_is_refused(tmp_path, text):
+    with pytest.raises(
+        InputError, match="has no effect here: it is used by the steering law (lyapunov|cascade or line_of_sight): set guidance.law"
+    ):
+        loaded(tmp_path, text)
 
 
 @pytest.mark.parametrize(
