@@ -61,7 +61,8 @@ def command(
     """Fly a scenario and write a report.
 
     Exit status: 0 every flight kept out, completed and met its criteria (or kept out, where the scenario requires no more; or
-    every trajectory converged), 1 some did not, 2 bad input, 130 interrupted.
+    every trajectory converged), 1 some did not, 2 bad input, 130 interrupted. Of a flight that is replayed: 0 its row is identical,
+    1 it is not.
     """
     from scenarios.engine.executors import ExecutorFactory
     from scenarios.engine.task import Limits

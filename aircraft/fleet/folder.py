@@ -70,7 +70,10 @@ def folder_spec(path: str) -> AircraftSpec:
     """
     folder = Path(path).absolute()
     if not folder.is_dir():
-        raise AircraftError(f"aircraft '{path}': there is no such directory; check the path")
+        remedy = (
+            f"give its folder, '{Path(path).parent}'" if folder.is_file() else "check the path, or name another with --aircraft-dir"
+        )
+        raise AircraftError(f"aircraft '{path}': there is no such directory; {remedy}")
     model = _model(folder)
     for name in (folder.name, model):
         if not NAME.fullmatch(name):

@@ -103,7 +103,7 @@ def begun(law: SteeringLaw, surroundings: Surroundings, time_step: float) -> Ste
     return law if begin is None else begin(surroundings, time_step)
 
 
-_MUST = "its method heading_rate(reference, to_north, to_east, course, speed) has to return a finite number [rad/s]"
+_MUST = "its method heading_rate(reference, to_north, to_east, course, speed) has to return a number [rad/s]"
 
 
 def within_limit(demand: Any, limit: float, law: str, given: Sequence[float]) -> float:

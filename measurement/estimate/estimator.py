@@ -215,7 +215,8 @@ def _told(
     """Return the estimate that a ratio means."""
     factor, instrument = fsc_factor(carbon), ratio.alignment.instrument
     absent = unmeasured(instrument, used_gases(record), carbon)
-    fsc = factor * ratio.ratio - sum(shift for shift, _ in absent.values())
+    assumed = -sum(shift for shift, _ in absent.values())
+    fsc = factor * ratio.ratio + assumed
     noise = factor * ratio.noise
     common = {name: factor * value for name, value in ratio.common.items()}
     for gas, (_, deviation) in absent.items():
@@ -244,6 +245,7 @@ def _told(
         noise_percent=noise,
         common_percent=common,
         overlap_percent=factor * ratio.overlap,
+        assumed_percent=assumed,
         total_percent=total,
         low_percent=low,
         high_percent=high,
@@ -255,7 +257,7 @@ def _told(
         verdicts=tuple(judged(limit, fsc, total, admitted=quality != "C") for limit in limits),
         figures=_figures(record, passes, instrument, snr, so2_snr),
         passes=passes,
-        pass_percent=tuple(factor * slope - sum(shift for shift, _ in absent.values()) for slope in groups.slopes),
+        pass_percent=tuple(factor * slope + assumed for slope in groups.slopes),
         pass_deviation_percent=tuple(factor * deviation for deviation in groups.deviations),
         agreement=groups.agreement,
         so2_t90_s=instrument.known("so2").t90_s,

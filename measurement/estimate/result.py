@@ -49,6 +49,7 @@ class FscEstimate:
     noise_percent : standard uncertainty by noise, which falls with the number of passes
     common_percent : standard uncertainties by errors that do not average out, by name
     overlap_percent : by how much areas of passes that do not overlap would read more; 0 by regression
+    assumed_percent : what of the estimate corrects SO2 for NO and NO2 that were not measured, as ships emit them on average
     total_percent : standard uncertainty by both
     low_percent, high_percent : 95 % interval, of the distribution that the verdicts' probabilities are of
     sulphate_percent : mean error by sulphur that leaves as sulphate, stated and not corrected
@@ -70,6 +71,7 @@ class FscEstimate:
     noise_percent: float
     common_percent: dict[str, float]
     overlap_percent: float
+    assumed_percent: float
     total_percent: float
     low_percent: float
     high_percent: float

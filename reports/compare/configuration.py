@@ -160,8 +160,10 @@ def _packages(runs: Sequence[Run]) -> list[list[str]]:
 def _files(runs: Sequence[Run]) -> list[list[str]]:
     """Return a row for each file of the user that some run takes a part or a vessel's track from."""
     used = [run.manifest.get("plugins", {}) | run.manifest.get("vessel_files", {}) for run in runs]
-    names = sorted({name for of in used for name in of})
-    return [[f"File {name}", *(_file(of.get(name)) for of in used)] for name in names]
+    # Without their directories, which are those of a machine.
+    named = [{name.replace("\\", "/").rpartition("/")[2]: known for name, known in of.items()} for of in used]
+    names = sorted({name for of in named for name in of})
+    return [[f"File {name}", *(_file(of.get(name)) for of in named)] for name in names]
 
 
 def _file(known: Any) -> str:

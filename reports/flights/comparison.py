@@ -1,6 +1,7 @@
 """Comparisons: the same flights from the same starts, with a part changed."""
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -23,6 +24,9 @@ _SHOWN_TURNS = 45.5
 
 _SHOWN_BANDS = 1.2
 """Largest distance that a panel shows, over the settling band [-]."""
+
+_LEAST_BANDS, _ROOM = 0.02, 1.05
+"""The same at least, and a panel's height over the largest error in any [-]."""
 
 _HEIGHT = 1.1
 """Height of all panels at most, over the width of the page: with heading and caption they stand on one."""
@@ -88,16 +92,24 @@ def _chart(trial: Trial, pairs: pd.DataFrame) -> Chart | None:
                     y_label="Tracking error [m]",
                     lines=lines,
                     title=flight_name(trial, first),
-                    x_range=(0.0, shown),
-                    y_range=(0.0, band),
                 )
             )
+    panels = _fitted(panels, shown, band)
     caption = (
         "Tracking error, the distance to the reference, from settling on, of flights of the study and with parts"
         f" changed.{_missing(without, len(panels))}{cut_words(panels)}"
     )
     name = f"{trial.name}-comparison"
     return Chart(name=name, caption=caption, panels=panels, panel_height=min(0.34, _HEIGHT / len(panels))) if panels else None
+
+
+def _fitted(panels: Sequence[Panel], duration: float, band: float) -> list[Panel]:
+    """Return panels with the same axes: as long as the longest line, and as high as the largest error, up to the limits."""
+    x, y = (np.concatenate([getattr(line, axis) for panel in panels for line in panel.lines] or [np.empty(0)]) for axis in "xy")
+    x, y = x[np.isfinite(x)], y[np.isfinite(y)]
+    end = float(x.max(initial=0.0)) or duration
+    height = min(band, max(_ROOM * float(y.max(initial=0.0)), _LEAST_BANDS * band))
+    return [replace(panel, x_range=(0.0, end), y_range=(0.0, height)) for panel in panels]
 
 
 def _why(row: "pd.Series[Any]") -> str:

@@ -126,7 +126,7 @@ def _readings(rows: pd.DataFrame, time: Array, gas: str, unit: str) -> list[Line
 
 def regression_chart(samples: pd.DataFrame, record: Record) -> Chart | None:
     """Return SO2 over CO2 at one response, with the slope, and the sulphur content of groups of passes."""
-    found = record["estimate"]
+    found = _by_regression(record)
     # A sample that is interpolated has no reading, and is no evidence.
     rows = thinned(samples[np.isfinite(column(samples, "co2_ppm"))], POINTS_MAX)
     co2, so2 = column(rows, "co2_excess_ppm"), column(rows, "so2_excess_ppb")
@@ -134,26 +134,36 @@ def regression_chart(samples: pd.DataFrame, record: Record) -> Chart | None:
     if not finite(co2, so2) or not np.isfinite(slope):
         return None
     ends = np.array([float(np.nanmin(co2)), float(np.nanmax(co2))])
+    # Beside the background the mean of both is 0, wherever they are shown from.
+    middle_co2, middle_so2 = (float(np.nanmean(column(samples, name))) for name in ("co2_excess_ppm", "so2_excess_ppb"))
     scatter = Panel(
         x_label="CO2 excess [ppm]",
         y_label="SO2 excess [ppb]",
         title="Samples at one response",
         lines=[
             Line(x=co2, y=so2, label="sample", colour="blue", style="points"),
-            Line(x=ends, y=slope * ends, label=f"slope {slope:.3f} ppb/ppm", colour="black"),
+            Line(x=ends, y=middle_so2 + slope * (ends - middle_co2), label=f"slope {slope:.3f} ppb/ppm", colour="black"),
         ],
     )
     panels = [scatter, *_groups(record)]
     factor = fsc_factor(float(record.get("carbon") or CARBON_FRACTION))
+    assumed = value(found, "assumed_percent")
+    corrected = f", and {assumed:+.3f} % for NO and NO2 that the log does not have" if abs(assumed) >= 5e-4 else ""
     caption = (
-        "SO2 over CO2 without background, at the response of the slowest channel; the sulphur content is"
-        f" {factor:.4f} times the slope. Groups of passes: neighbouring ones together, with their noise, 1σ."
+        "SO2 over CO2 without background, at the response of the slowest channel; the sulphur content by regression is"
+        f" {factor:.4f} times the slope{corrected}. Groups of passes: neighbouring ones together, with their noise, 1σ."
     )
     return Chart(name="regression", caption=caption, panels=panels, columns=len(panels), panel_height=0.21)
 
 
+def _by_regression(record: Record) -> Record:
+    """Return the estimate by regression, also where the result is by areas."""
+    found: list[Record] = [record["estimate"], record.get("other") or {}]
+    return next((of for of in found if of.get("method") == "regression"), found[0])
+
+
 def _groups(record: Record) -> list[Panel]:
-    found = record["estimate"]
+    found = _by_regression(record)
     percent, deviation = (np.array(found.get(name) or [], dtype=np.float64) for name in ("pass_percent", "pass_deviation_percent"))
     if len(percent) < 2:
         return []

@@ -71,15 +71,11 @@ def _ship_words(details: dict[str, Any]) -> str:
 
 
 def flown_facts(run: RunData) -> list[Fact]:
-    """Return which instruments simulated flights measured with, and place and time where their scenario has them.
-
-    Flights without a sniffer have no facts.
-    """
-    rows = flights_flown(run.summary)
-    if "sensor" not in rows or not len(rows := rows[rows["sensor"].notna()]):
-        return []
-    sensors = [_sensor_words(str(name)) for name in rows["sensor"].unique()]
-    facts = [Fact("Instrument" if len(sensors) == 1 else "Instruments", "; ".join(sensors))]
+    """Return which instruments simulated flights measured with, if any, and place and time where their scenario has them."""
+    rows, facts = flights_flown(run.summary), list[Fact]()
+    if "sensor" in rows and len(measured := rows[rows["sensor"].notna()]):
+        rows, sensors = measured, [_sensor_words(str(name)) for name in measured["sensor"].unique()]
+        facts.append(Fact("Instrument" if len(sensors) == 1 else "Instruments", "; ".join(sensors)))
     if place := _places(rows):
         facts.append(Fact("Place", place))
     if times := _times(rows):

@@ -73,7 +73,7 @@ def unused(scenario: Scenario, key: str) -> str:
 
 def _acts_in_some(rule: Rule, scenario: Scenario, depends: tuple[str, ...]) -> bool:
     """Return whether a rule's keys act in some flights, as what that depends on differs from flight to flight."""
-    for values in _differing(scenario):
+    for values in differing(scenario):
         if not (other := {key: value for key, value in values.items() if named_by(key, depends)}):
             continue
         if not all(key in _OF_LAW and isinstance(value, str) for key, value in other.items()):
@@ -89,7 +89,7 @@ def _acts_in_some(rule: Rule, scenario: Scenario, depends: tuple[str, ...]) -> b
     return False
 
 
-def _differing(scenario: Scenario) -> Iterator[Mapping[str, object]]:
+def differing(scenario: Scenario) -> Iterator[Mapping[str, object]]:
     """Yield what some flights of a scenario set beside it, by dotted keys."""
     for key, swept in scenario.sweep.root.items():
         yield from ({key: value} for value in swept)

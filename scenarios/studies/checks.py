@@ -73,6 +73,7 @@ def check_flights(experiments: Iterable[Experiment], envelope: Envelope | None) 
             for point in experiment.points:
                 with plugins_explained("a flight cannot be sampled", [point.scenario]):
                     check_draws(experiment.name, point.scenario, point.given)
+                _check_margins(point.scenario)
 
 
 def check_without_design(scenario: Scenario) -> None:
@@ -127,6 +128,21 @@ def _check_turbulence(scenario: Scenario) -> None:
                 f"turbulence.level is '{level}': {error}; fly lower (flight.altitude_m, else plume.source_height_m, else the funnel"
                 " of emission.ship) or without"
             ) from None
+
+
+def _check_margins(scenario: Scenario) -> None:
+    """Refuse guidance that is sampled continuously where there may be turbulence: margins are planned before it is sampled."""
+    if scenario.fidelity == "kinematic":
+        return
+    levels = [draw.choice or () for draw in scenario.draws if draw.key == "turbulence.level"]
+    if {scenario.turbulence.level, *(level for of in levels for level in of)} == {"none"}:
+        return
+    for draw in scenario.draws:
+        if draw.choice is None and draw.key.startswith(("guidance.", "reference.")):
+            raise InputError(
+                f"'{draw.key}' is sampled from a continuous distribution beside turbulence, in which each value takes a margin of"
+                " its own: give it a choice of values, as in choice = [0.5, 1.0], or set turbulence.level to 'none'"
+            )
 
 
 def _check_altitudes(scenario: Scenario) -> None:

@@ -22,7 +22,7 @@ from scenarios.engine.fingerprint import fingerprint
 from scenarios.engine.run_directory import RunDirectory
 from scenarios.errors import InputError
 from scenarios.schema.documented_parts import DIMENSIONLESS, DocumentedKey, described_fields, documented_part_keys
-from scenarios.schema.effect import unused
+from scenarios.schema.effect import differing, unused
 from scenarios.schema.keys import line, split_unit
 from scenarios.schema.load import AnyStudy
 from scenarios.schema.parts import names_file, names_folder, part_names
@@ -171,12 +171,18 @@ def _of_sections(scenario: BaseModel) -> list[dict[str, Any]]:
 
 
 def _varied_of_parts(scenario: BaseModel, listed: Collection[str]) -> list[dict[str, Any]]:
-    """Return the keys of parts that are swept or sampled and set nowhere else, with their defaults as values."""
+    """Return the keys of parts that are swept or sampled, and of laws of some flights, that are set nowhere else, with defaults."""
     if not isinstance(scenario, Scenario):
         return []
     varied = dict.fromkeys([*scenario.sweep.root, *(draw.key for draw in scenario.draws)])
     found = (known[0] for key in varied if key != "nu" and key not in listed and (known := _documented(key)))
-    return [{"key": of.key, "value": of.default, "default": of.default, **_about(of)} for of in found]
+    brought = [{"key": of.key, "value": of.default, "default": of.default, **_about(of)} for of in found]
+    for law in dict.fromkeys(
+        values["guidance.law"] for values in differing(scenario) if isinstance(values.get("guidance.law"), str)
+    ):
+        of_law = _of_parts("guidance", scenario.guidance.model_copy(update={"law": law}))
+        brought += [of for of in of_law if of["key"] not in {*listed, *(known["key"] for known in brought)}]
+    return brought
 
 
 def _of_parts(name: str, section: BaseModel) -> list[dict[str, Any]]:

@@ -151,7 +151,8 @@ class Replay(SingleFlight):
             name for name in dict.fromkeys([*self._row, *rows[0]])
             if name not in NOT_COMPARED and json.dumps(self._row.get(name)) != json.dumps(rows[0].get(name))
         ]  # fmt: skip
-        lines = [f"{self._flight_id}: {rows[0]['outcome']} {rows[0].get('message', '')}".rstrip()]
+        message = rows[0].get("message", "")
+        lines = [f"{self._flight_id}: {rows[0]['outcome']}{f': {message}' if message else ''}"]
         if not differing:
             lines.append(f"identical to the flight in {self._from}: every value of its row agrees to the last bit")
         else:

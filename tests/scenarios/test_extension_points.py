@@ -13,6 +13,7 @@ from scenarios.engine.in_process_executor import InProcessExecutor
 from scenarios.engine.runner import fly_study
 from scenarios.errors import InputError
 from scenarios.schema.load import load_study, with_values
+from scenarios.studies.manifest import parameters
 from scenarios.studies.registry import run_study
 from scenarios.studies.replay import Replay
 from tests.run_tables import manifest_of, rows_of
@@ -91,6 +92,13 @@ def test_a_steering_laws_fields_are_keys_of_guidance(tmp_path):
     errors = [rows_of(out)[0]["tracking_error_rms_m"] for out in (one, other)]
     assert errors[0] != errors[1]
     assert manifest_of(other)["config"]["guidance"]["lead_s"] == 2.0
+
+
+def test_the_fields_of_every_law_that_is_flown_are_listed(tmp_path):
+    laws = f'["cascade", "{tmp_path / "law.py"}:Pursuit"]'
+    listed = {of["key"]: of["value"] for of in parameters(load_study(write_scenario(tmp_path, ""), [f"sweep.guidance.law={laws}"]))}
+    assert listed["guidance.lead_s"] == 1.0
+    assert "guidance.lyapunov_gain_per_m2" not in listed
 
 
 def test_another_law_does_not_inherit_the_keys_of_the_law_that_it_replaces(tmp_path):

@@ -27,6 +27,10 @@ ERRORS = {
 """Common errors by name."""
 
 
+_ASSUMED_LEAST = 0.0005
+"""Smallest correction that is told [% m/m]."""
+
+
 def summary(analysis: Analysis, name: str) -> Iterator[str]:
     """Yield the lines of a summary of a flight called ``name``."""
     found, figures = analysis.estimate, analysis.estimate.figures
@@ -35,6 +39,8 @@ def summary(analysis: Analysis, name: str) -> Iterator[str]:
     yield f"{name}, with: {analysis.instrument.title}"
     yield f"{figures.duration_s:.0f} s, {passes}{every}, CO2 signal to noise {figures.co2_snr:.0f}"
     yield result(found)
+    if assumed := assumed_words(found.assumed_percent):
+        yield assumed
     if math.isfinite(found.total_percent):
         yield f"standard uncertainty (1 sigma) {found.total_percent:.4f} %, of which"
         yield f"  noise {found.noise_percent:.4f}"
@@ -73,6 +79,13 @@ def result(found: FscEstimate) -> str:
     if not found.total_percent <= FUEL_SULPHUR_MOST:
         return "fuel sulphur content: none can be given"
     return f"fuel sulphur content {content_words(found.fsc_percent, found.low_percent, found.high_percent)}"
+
+
+def assumed_words(assumed_percent: float) -> str:
+    """Return how much of a result corrects for NO and NO2 that were not measured [% m/m]; nothing if none of it does."""
+    if not abs(assumed_percent) >= _ASSUMED_LEAST:
+        return ""
+    return f"of it {assumed_percent:+.3f} % correct SO2 for NO and NO2 that the log does not have, as ships emit them on average"
 
 
 def by_size(found: FscEstimate) -> list[tuple[str, float]]:

@@ -144,7 +144,7 @@ def _of_one(path: Path, mmsi: int | None, rows: Iterable[tuple[int, AisRow]]) ->
         if mmsi is None or identity == mmsi:
             found.append(row)
     if mmsi is None and len(counts) > 1:
-        raise InputError(f"{path}: it has {len(counts)} vessels, {_most(counts)}; name one of them (vessel.mmsi)")
+        raise InputError(f"{path}: it has {len(counts)} vessels, {_most(counts)}; name one of them by its MMSI (vessel.mmsi)")
     if not found:
         return None
     return mmsi if mmsi is not None else next(iter(counts)), found

@@ -157,7 +157,8 @@ def test_of_runs_alike_nothing_but_what_they_are_called_stands_out(two):
 def test_versions_files_and_hashes_that_differ_stand_out(two):
     two[1].manifest["packages"]["jsbsim"] = "0.9"
     two[1].manifest["fingerprint"]["source"] = "abc"
-    two[1].manifest["plugins"] = {"mylaw.py:MyLaw": "0123"}
+    # A path of the machine that flew is told by neither.
+    two[1].manifest["plugins"] = {"/home/jo/laws/mylaw.py:MyLaw": "0123"}
     two[1].manifest["state"] = "running"
     rows, bold = software(two)
     assert rows["Version of jsbsim"][1] == "0.9"

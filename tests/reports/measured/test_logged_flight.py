@@ -142,9 +142,38 @@ def test_limits_are_told_with_all_their_decimals(record):
 
 def test_the_caption_has_the_factor_of_the_fuels_carbon(run_directory, record):
     samples = pd.read_csv(run_directory / "samples.csv")
-    assert "the sulphur content is 0.2322 times the slope" in regression_chart(samples, record).caption
+    assert "the sulphur content by regression is 0.2322 times the slope. Groups" in regression_chart(samples, record).caption
     # In proportion to carbon: 0.2322 x 0.85/0.87.
-    assert "the sulphur content is 0.2269 times the slope" in regression_chart(samples, record | {"carbon": 0.85}).caption
+    assert "is 0.2269 times the slope" in regression_chart(samples, record | {"carbon": 0.85}).caption
+
+
+def test_what_is_assumed_of_gases_that_a_log_does_not_have_is_told(tmp_path, capsys):
+    log = pd.read_csv(ROOT / EXAMPLE[0]).drop(columns=["no_ppb", "no2_ppb"])
+    log.to_csv(tmp_path / "log.csv", index=False)
+    out = tmp_path / "run"
+    assert main([str(tmp_path / "log.csv"), "--config", str(ROOT / EXAMPLE[1]), "--out", str(out), "--no-report"]) == 0
+    found = json.loads((out / "estimate.json").read_text(encoding="utf-8"))
+    estimate, samples = found["estimate"], pd.read_csv(out / "samples.csv")
+    # 0.015 of 18 ppb/ppm of NO and -0.16 of 2 ppb/ppm of NO2, to 0.2322 %: less 0.063 %, and more 0.074 %.
+    assert estimate["assumed_percent"] == pytest.approx(0.012, abs=0.0015)
+    assert estimate["fsc_percent"] == pytest.approx(0.2322 * estimate["slope_ppb_per_ppm"] + estimate["assumed_percent"], abs=1e-4)
+    words = f"{estimate['assumed_percent']:+.3f} % "
+    assert f"of it {words}correct SO2 for NO and NO2 that the log does not have" in capsys.readouterr().out
+    assert f"times the slope, and {words}for NO and NO2 that the log does not have" in regression_chart(samples, found).caption
+
+
+def test_where_the_result_is_by_areas_the_regression_is_still_shown_with_its_own_line(tmp_path):
+    config = tmp_path / "config.toml"
+    config.write_text('method = "areas"\n' + (ROOT / EXAMPLE[1]).read_text(encoding="utf-8"), encoding="utf-8")
+    assert main([str(ROOT / EXAMPLE[0]), "--config", str(config), "--out", str(tmp_path / "run"), "--no-report"]) == 0
+    found = json.loads((tmp_path / "run" / "estimate.json").read_text(encoding="utf-8"))
+    assert found["estimate"]["method"] == "areas"
+    scatter, groups = regression_chart(pd.read_csv(tmp_path / "run" / "samples.csv"), found).panels
+    points, line = scatter.lines
+    expected = np.interp(points.x, line.x, line.y)
+    # Least squares, but for the noise of CO2: the rest does not follow CO2.
+    assert abs(np.corrcoef(points.x, points.y - expected)[0, 1]) < 0.2
+    assert groups.lines[1].y[0] == found["other"]["fsc_percent"]
 
 
 @pytest.mark.parametrize(("agreement", "shown"), [(3.1e-8, "3.1e-08"), (0.374, "0.37")])

@@ -289,4 +289,7 @@ def test_page_1_has_place_and_time_where_the_scenario_has_them():
     assert told["Time (UTC)"] == "2026-06-01 10:00:00 to 10:11:40 UTC (by the scenario)"
     told = dict(flown_facts(SimpleNamespace(summary=rows.assign(place_latitude_deg=[56.9, 57.0, 1.0]))))
     assert told["Place"] == "56.90000° N, 11.50000° E, and 1 more (the ship at time 0, by the scenario)"
-    assert not flown_facts(SimpleNamespace(summary=rows.drop(columns=["sensor"])))
+    # Beside a ship from AIS flights have place and time whatever they carry; beside others they have no facts.
+    without = rows.drop(columns=["sensor"])
+    assert {"Place", "Time (UTC)"} == dict(flown_facts(SimpleNamespace(summary=without))).keys()
+    assert not flown_facts(SimpleNamespace(summary=without[["duration_s"]]))

@@ -29,6 +29,17 @@ def test_a_comparison_is_named_as_the_flight_of_the_study_also_where_that_is_not
     assert [panel.title for chart in charts for panel in chart.panels] == ["steady_00007"]
 
 
+def test_panels_are_as_long_and_as_high_as_their_curves(run):
+    compared = run.summary.iloc[[0]].assign(variant="no_preview", beside="steady_00000")
+    (chart,) = blocks_of(content(replace(run, comparison=compared)), Chart, "comparison")
+    lines = [line for panel in chart.panels for line in panel.lines]
+    assert {panel.x_range[1] for panel in chart.panels} == {max(line.x.max() for line in lines)}
+    (height,) = {panel.y_range[1] for panel in chart.panels}
+    # Up to 1.2 settling bands of 5 m, which would hide the errors of two good trackers, and from a fiftieth of that on.
+    largest = max(line.y.max() for line in lines)
+    assert height == pytest.approx(min(6.0, max(1.05 * largest, 0.12)))
+
+
 def test_a_comparison_without_a_curve_is_named_below_the_figure_with_its_reason(run):
     steady = run.summary[run.summary["trial"] == "steady"]
     never = {"outcome": "not_settled", "settling_time_s": math.nan, "criteria_met": False, "beside": steady["flight_id"]}

@@ -2,6 +2,7 @@
 
 import json
 import shutil
+from pathlib import Path
 
 import pandas as pd
 import pytest
@@ -201,6 +202,15 @@ def test_manoeuvres_that_overlap_in_every_flight_are_refused_before_any_is_flown
     path.write_text(f'title = "two"\nfidelity = "kinematic"\n[vessel]\nmanoeuvres = {turns}\n', encoding="utf-8")
     with pytest.raises(InputError, match=r"vessel\.manoeuvres\.1 begins at 60 s, before an earlier one has ended, at 190 s"):
         run(path, tmp_path / "run")
+    assert not (tmp_path / "run").exists()
+
+
+@pytest.mark.parametrize("level", ["turbulence.level=light", 'draws.1={key="turbulence.level", choice=["none", "light"]}'])
+def test_guidance_that_is_sampled_continuously_beside_turbulence_is_refused_before_any_is_flown(level, tmp_path):
+    # Each flight with turbulence failed instead, and counted as a violation.
+    draw = 'draws=[{key="guidance.look_ahead_m", uniform=[20.0, 30.0]}, {key="wind.speed_mps", uniform=[3.0, 5.0]}]'
+    with pytest.raises(InputError, match=r"'guidance\.look_ahead_m' is sampled from a continuous distribution beside turbulence"):
+        run(Path("sea_wind"), tmp_path / "run", draw, level, "flights=2")
     assert not (tmp_path / "run").exists()
 
 
