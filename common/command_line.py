@@ -9,6 +9,8 @@ from typing import Annotated, Any, NoReturn, TextIO
 
 import typer
 
+from common.spelling import one_line
+
 PROGRAM = "plume-flight"
 """Name of the console command."""
 
@@ -41,9 +43,6 @@ def run_command(command: Callable[..., None] | Mapping[str, Callable[..., None]]
         message = _with_value(error, str(getattr(error, "format_message", error.__str__)()).rstrip("."), sys.argv[1:])
         called = getattr(getattr(error, "ctx", None), "command_path", name)
         status = refuse(f"{message}; see {called} --help")
-    except typer.Abort:
-        print("interrupted", file=sys.stderr)
-        status = INTERRUPTED
     # Here, and not while the interpreter ends, where a reader that is gone would be an exception.
     for stream in (sys.stdout, sys.stderr):
         stream.flush()
@@ -132,6 +131,5 @@ def _with_version(text: str) -> Callable[..., None]:
 
 def refuse(error: Exception | str) -> int:
     """Print what is wrong with the input as one line, whatever names it quotes; return the exit status."""
-    line = "".join(letter if letter.isprintable() else letter.encode("unicode_escape").decode() for letter in str(error))
-    print(f"error: {line}", file=sys.stderr)
+    print(f"error: {one_line(str(error))}", file=sys.stderr)
     return BAD_INPUT

@@ -225,7 +225,8 @@ def _module_in(path: Path, digest: str) -> Any:
     sys.modules[name] = module
     try:
         spec.loader.exec_module(module)
-    except Exception as error:
+    # A script that ends the process when it is read is no part, and must not end the command without a word.
+    except (Exception, SystemExit) as error:
         del sys.modules[name]
         raise PluginError(f"{path} does not load: {type(error).__name__}: {error}") from error
     return module

@@ -1,10 +1,16 @@
-"""Names that are nearly right: the known name that is spelt most like an unknown one, and names with another unit."""
+"""Names that are nearly right: the known name spelt most like an unknown one, names with another unit; and words in one line."""
 
 import difflib
 from collections.abc import Iterable
 
 _SHORT = 3
 """Letters of a name that counts as short."""
+
+
+def one_line(words: str) -> str:
+    """Return words in one line, without letters that a terminal takes for orders."""
+    joined = " ".join(part for line in words.splitlines() if (part := line.strip()))
+    return "".join(letter if letter.isprintable() else letter.encode("unicode_escape").decode() for letter in joined)
 
 
 def nearest(name: str, known: Iterable[str]) -> str | None:

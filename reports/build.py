@@ -9,9 +9,11 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from common.command_line import refuse, run_command
+from common.registry import is_file_part
 from common.run_layout import EXPORT, NAME_BYTES_MAX, REPORT_HTML, REPORT_PDF, is_file_name
 
 if TYPE_CHECKING:
+    from reports.export.exporter import Exporter
     from reports.run.run_data import RunData
 
 MISSING = 1
@@ -75,10 +77,9 @@ def export_run(directory: Path, name: str, flight_id: str | None = None) -> list
     PluginError : there is no such exporter, or it does not load
     """
     from reports.errors import ReportError
-    from reports.export import EXPORTERS
-    from reports.run.files import damage_named, written
+    from reports.run.files import damage_named, failure_named, written
 
-    exporter = EXPORTERS.get(name)()
+    exporter = made_exporter(name)
     run, folder = _run_of(directory, flight_id), directory / EXPORT
     run_name = run.manifest.get("name")
     if not is_file_name(run_name):
@@ -92,7 +93,8 @@ def export_run(directory: Path, name: str, flight_id: str | None = None) -> list
         folder.mkdir(exist_ok=True)
     except OSError as error:
         raise ReportError(f"'{folder}' cannot be written: {error.strerror}; check permissions and space") from None
-    with damage_named(directory):
+    # What fails in one of the user's own is no damage of the run.
+    with failure_named(f"exporter '{name}'") if is_file_part(name) else damage_named(directory):
         return [written(folder / f"{stem}{exporter.suffix}", partial(exporter.write, part)) for stem, part in parts.items()]
 
 
@@ -110,10 +112,23 @@ def check_exporters(names: Sequence[str]) -> None:
     ReportError : a package is missing that one of them needs
     PluginError : there is no such exporter, or it does not load
     """
-    from reports.export import EXPORTERS
-
     for name in names:
-        EXPORTERS.get(name)()
+        made_exporter(name)
+
+
+def made_exporter(name: str) -> "Exporter":
+    """Return an exporter; errors are those of ``check_exporters``."""
+    from reports.errors import ReportError
+    from reports.export import EXPORTERS
+    from reports.run.files import failure_named
+
+    part = EXPORTERS.get(name)
+    with failure_named(f"exporter '{name}'"):
+        exporter = part()
+        suffix = getattr(exporter, "suffix", None)
+        if not (isinstance(suffix, str) and suffix.startswith(".") and is_file_name(suffix)):
+            raise ReportError(f"exporter '{name}' has suffix = {suffix!r}; it needs one with a leading dot and no slash, as '.csv'")
+    return exporter
 
 
 def stream_run(directory: Path, address: str, flight_id: str | None = None) -> tuple[str, int, float]:

@@ -120,7 +120,7 @@ def check_picklable(parts: Parts) -> None:
             ) from None
 
 
-def named(given: Mapping[str, Any], key: str = "") -> tuple[dict[str, Any], Parts]:
+def named(given: Mapping[str, Any]) -> tuple[dict[str, Any], Parts]:
     """Return a table with names in place of objects, and the parts that the names stand for.
 
     A steering law that is made already brings the keys of its fields: ``law=MyLaw(gain=2.0)`` sets ``gain`` beside ``law``. So do
@@ -129,14 +129,13 @@ def named(given: Mapping[str, Any], key: str = "") -> tuple[dict[str, Any], Part
     Parameters
     ----------
     given : a table of a scenario, or keys with dots
-    key : dotted key of the table
 
     Raises
     ------
     InputError : an object where the scenario has no part, or one that is not of the kind; two that have one name
     """
     namer = _Namer()
-    table = namer.table(given, key)
+    table = namer.table(given, "")
     return table, tuple(namer.found.values())
 
 

@@ -1,5 +1,6 @@
 """A complete scenario file with every key, its meaning, unit, range and default, made from another scenario."""
 
+import contextlib
 import textwrap
 from collections.abc import Iterator, Mapping
 from pathlib import Path
@@ -47,6 +48,9 @@ def write_template(path: Path, name: str) -> None:
     except FileExistsError:
         raise InputError(f"'{path}' is there already, and is not overwritten; choose another name") from None
     except OSError as error:
+        # What a full disk has left of it would be in the way of the next try.
+        with contextlib.suppress(OSError):
+            path.unlink(missing_ok=True)
         raise InputError(f"'{path}' cannot be written: {error.strerror}; choose another path") from None
 
 

@@ -74,13 +74,8 @@ def orbits(
     return tuple(o.period for o in oscillations), tuple(o.half_widths() for o in oscillations)
 
 
-def placed_distance(scenario: Scenario, orbit: Orbit, axis: PlumeAxis) -> float:
-    """Return r_CO [m], at which an orbit keeps the tracking allowance from the keep-out area."""
-    return distance_kept(scenario.guidance, scenario.keepout, orbit, axis)
-
-
 def distance_kept(guidance: GuidanceConfig, keepout: KeepoutConfig, orbit: Orbit, axis: PlumeAxis) -> float:
-    """Return r_CO [m], as ``placed_distance`` does of a scenario with such sections."""
+    """Return r_CO [m], at which an orbit keeps the tracking allowance from the keep-out area."""
     rule = distance_by_paper if guidance.placement == "paper" else distance_exact
     distance_min = keepout.radius_m + guidance.tracking_allowance_m
     if keepout.shape == "sphere":

@@ -1,6 +1,6 @@
 """A scenario scaled to an aircraft: keys that it does not set follow from the aircraft's airspeed and tightest turn.
 
-The defaults of ``scenarios.schema.config`` are numbers for an aircraft that flies 19.42 m/s and turns with 45 degrees of bank.
+The defaults of ``scenarios.schema.sections`` are numbers for an aircraft that flies 19.42 m/s and turns with 45 degrees of bank.
 One that flies V with omega_max = g tan(bank)/V has a unit of time, 1/omega_max, and one of length, V/omega_max; in these units
 every aircraft flies the same study. The vessel and its keep-out area keep their sizes.
 """

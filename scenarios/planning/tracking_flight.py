@@ -13,7 +13,7 @@ from scenarios.planning.bounded_steering import Steering, plan_steering
 from scenarios.planning.flight_plan import FlightPlan
 from scenarios.planning.guidance import approach_parameters, guard_parameters, tracking_parameters
 from scenarios.planning.limits import omega_max, plan_interval
-from scenarios.planning.reference import circle, joined_orbit, oscillation_at, placed_distance
+from scenarios.planning.reference import circle, distance_kept, joined_orbit, oscillation_at
 from scenarios.planning.start import check_start, placed, sampled_start
 from scenarios.schema.scenario import Scenario
 from scenarios.vehicles.vehicle_setup import VehicleSetup
@@ -57,7 +57,7 @@ def tracking_flight(scenario: Scenario, flight_id: str, noise: Noise, setup: Veh
     nu = scenario.nu_over_ground
     oscillation = oscillation_at(g, scenario.reference, nu)
     axis = PlumeAxis(heading=math.radians(scenario.plume.heading_deg), elevation=math.radians(scenario.plume.elevation_deg))
-    distance = placed_distance(scenario, oscillation, axis)
+    distance = distance_kept(g, scenario.keepout, oscillation, axis)
     ahead, right, above = centre_of_oscillation(distance, axis)
     steering = plan_steering(scenario, omega_max(g), oscillation.amplitude)
     start = sampled_start(scenario.start, start_generator(noise), course=course, axis=plume.axis(0.0))

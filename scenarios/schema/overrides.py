@@ -30,18 +30,26 @@ def parse_override(override: str) -> tuple[str, object]:
     if not equals or not key.strip():
         raise InputError(f"--set '{override}' is not of the form key=value, e.g. --set guidance.preview=false")
     try:
-        value = tomllib.loads(f"value = {text}")["value"]
+        document = tomllib.loads(f"value = {text}")
     except tomllib.TOMLDecodeError as error:
         if text.strip().startswith(("[", "{")):
             raise InputError(
                 f"--set '{override}' is not valid TOML: {error}; words in a list are quoted: 'key=[\"word\"]'"
             ) from None
         value = text
+    except RecursionError:
+        raise InputError(f"--set {key.strip()}: value {text.strip()[:20]}... has too many brackets within each other") from None
     except ValueError:
         # Python reads no whole number of more than some thousand digits.
         raise InputError(
             f"--set {key.strip()}: value {text.strip()[:20]}... has too many digits; give a number with fewer"
         ) from None
+    else:
+        value = document.pop("value")
+        if document:
+            raise InputError(
+                f"--set {key.strip()}: a line break, and {next(iter(document))!r} after it; give each key a --set of its own"
+            )
     if key.strip() == "extends":
         raise InputError(f"--set '{override}': extends stands in a scenario file; name the scenario to fly instead")
     return key.strip(), value

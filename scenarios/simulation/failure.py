@@ -4,6 +4,7 @@ import traceback
 from pathlib import Path
 
 from aircraft.errors import AircraftError
+from common.spelling import one_line
 from gnc.errors import InfeasibleError, LawError
 from measurement.errors import MeasurementError
 from scenarios.engine.task import Row
@@ -21,16 +22,16 @@ def failure(error: Exception) -> Row:
     if isinstance(error, MemoryError):
         raise error
     if isinstance(error, InfeasibleError | MeasurementError):
-        return {"outcome": Outcome.INFEASIBLE.value, "message": str(error), "criteria_met": False}
+        return unflown(Outcome.INFEASIBLE, str(error))
     message = str(error)
     if not isinstance(error, AircraftError | InputError | LawError):
         frames = traceback.extract_tb(error.__traceback__)
         # Methods of dataclasses are made from text, and have no file: what called them has.
         where = next((frame for frame in reversed(frames) if not frame.filename.startswith("<")), frames[-1])
         message = f"{type(error).__name__}: {error} ({Path(where.filename).name}:{where.lineno})"
-    return {"outcome": Outcome.FAILED.value, "message": message, "criteria_met": False}
+    return unflown(Outcome.FAILED, message)
 
 
 def unflown(outcome: Outcome, message: str) -> Row:
-    """Return the outcome and the message of a flight that was never begun, or whose process was lost."""
-    return {"outcome": outcome.value, "message": message, "criteria_met": False}
+    """Return the outcome and the message, in one line, of a flight that was not flown or not to its end."""
+    return {"outcome": outcome.value, "message": one_line(message), "criteria_met": False}

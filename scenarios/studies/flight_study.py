@@ -171,7 +171,7 @@ class FlightStudy:
     @property
     def _numbers(self) -> int:
         """Number of flights, comparisons among them."""
-        return sum(experiment.flights for experiment in self.experiments.values())
+        return self.planned + self.beside
 
     def initial_manifest(self) -> dict[str, Any]:
         """Return the manifest as written before the first flight."""

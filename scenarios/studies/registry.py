@@ -1,9 +1,10 @@
 """Choice of the study that a scenario describes, and its execution."""
 
 from collections.abc import Callable, Sequence
+from contextlib import nullcontext
 from pathlib import Path
 
-from common.registry import PluginError
+from common.registry import PluginError, is_file_part
 from scenarios.engine.executor import Executor
 from scenarios.engine.executors import ExecutorFactory
 from scenarios.engine.run_directory import RunDirectory
@@ -14,6 +15,7 @@ from scenarios.schema.load import AnyStudy
 from scenarios.schema.scenario import Scenario
 from scenarios.schema.sections.convergence import ConvergenceScenario
 from scenarios.schema.sections.experiment import TrialList
+from scenarios.studies.checks import plugins_explained
 from scenarios.studies.study import STUDIES
 
 
@@ -41,7 +43,8 @@ def study_of(scenario: AnyStudy, name: str, overrides: Sequence[str] = ()) -> St
         made = STUDIES.get(scenario.study)
     except PluginError as error:
         raise InputError(str(error)) from None
-    return made(scenario, name, {name: scenario}, overrides=overrides)
+    with plugins_explained(f"study '{scenario.study}'", [scenario]):
+        return made(scenario, name, {name: scenario}, overrides=overrides)
 
 
 def run_study(
@@ -82,4 +85,6 @@ def run_study(
     progress("preparing", 0, 1)
     study = study_of(scenario, name, overrides)
     factory = executor_factory or ExecutorFactory()
-    return fly_study(study, directory, executor_factory=factory, resume=resume, progress=progress, command=command)
+    own = [scenario] if isinstance(scenario, Scenario) and is_file_part(scenario.study) else []
+    with plugins_explained(f"study '{scenario.study}'", own) if own else nullcontext():
+        return fly_study(study, directory, executor_factory=factory, resume=resume, progress=progress, command=command)

@@ -118,6 +118,7 @@ class TabledVessel:
         return course + (time / TRACK_STEP - at // _COLUMNS) * (after - course)
 
 
+@vessel_track("manoeuvres")
 class ManoeuvringVessel(TabledVessel):
     """A vessel whose course and speed change at the steady rates of its manoeuvres, which do not overlap (``check_manoeuvres``).
 
@@ -169,12 +170,6 @@ def check_manoeuvres(vessel: VesselConfig, speed: float) -> None:
                 " or turn faster (turn_rate_deg_s) or accelerate harder (acceleration_mps2), or make one manoeuvre of both"
             )
         end = max(end, until)
-
-
-@vessel_track("manoeuvres")
-def by_manoeuvres(vessel: VesselConfig, speed: float, duration: float) -> VesselTruth:
-    """Return the vessel that a scenario's speed, course and manoeuvres describe."""
-    return ManoeuvringVessel(vessel, speed, duration)
 
 
 def largest_acceleration(vessel: VesselTruth, duration: float) -> float:

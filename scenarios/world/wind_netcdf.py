@@ -19,6 +19,12 @@ _TIMES = ("valid_time", "time")
 
 _PLACES = ("latitude", "longitude")
 
+_OTHER_NAMES = {"lat": "latitude", "lon": "longitude"}
+"""What other files than ERA5's call places."""
+
+_METRES_PER_SECOND = {"m s**-1", "m s-1", "m s^-1", "m/s", "ms-1", "m.s-1", "metre per second", "meter per second"}
+"""Units of a wind that need no conversion, as netCDF files write them."""
+
 _CLOSED = 1e-3
 """What a grid that goes round the earth may lack to 360 deg after its last step [deg]: its longitudes may be single precision."""
 
@@ -60,6 +66,9 @@ def _wind_at(
             f"wind.table: {path}: it has {', '.join(sorted(map(str, data.variables)))[:120]}; needed are a time and u10 with v10,"
             " or u and v over height"
         )
+    data = data.rename({other: name for other, name in _OTHER_NAMES.items() if other in data.dims and name not in data.variables})
+    _check_wind(path, data, time, [name for _, *names in pairs for name in names] or ["u", "v"])
+    data = data.sortby(time)
     if set(_PLACES) <= set(data.dims):
         data = _at_place(path, data, latitude_deg, longitude_deg)
     if pairs:
@@ -74,6 +83,21 @@ def _wind_at(
     if not np.isfinite(velocity).all():
         raise InputError(f"wind.table: {path}: it has no wind at {latitude_deg:.3f}, {longitude_deg:.3f} deg; give another place")
     return tuple(float(t) for t in data_times), heights, np.asarray(velocity, dtype=np.float64)
+
+
+def _check_wind(path: Path, data: Any, time: str, names: list[str]) -> None:
+    """Refuse a wind in another unit than m/s, without a time, or with dimensions that are neither time nor place."""
+    for name in names:
+        unit = str(data[name].attrs.get("units", "m/s")).strip()
+        if unit not in _METRES_PER_SECOND:
+            raise InputError(f"wind.table: {path}: {name} is in {unit!r}; it has to be in m/s: convert it")
+        if others := [str(of) for of in data[name].dims if of not in (time, "height", *_PLACES)]:
+            raise InputError(
+                f"wind.table: {path}: {name} has the dimension '{others[0]}' beside time and place; select one of its"
+                f" {data.sizes[others[0]]} values, and write that to a file"
+            )
+    if not data.sizes[time]:
+        raise InputError(f"wind.table: {path}: it has no times; give a file with the time of the flight")
 
 
 def _at_place(path: Path, data: Any, latitude_deg: float, longitude_deg: float) -> Any:

@@ -140,6 +140,8 @@ def _rows(path: Path, cells: Iterator[list[str]]) -> Iterator[tuple[int, float, 
             remedy = f"{COLUMNS[3]} is where the wind comes from: add 180 deg to '{_TO}', less 360 where it is more, and rename it"
         raise InputError(f"wind.table: {path}, line {first}: the header is {','.join(heads)[:80]!r}; it must be {','.join(COLUMNS)}"
                          f", of which time_utc or height_m may be missing: {remedy}")  # fmt: skip
+    if twice := [column for column in COLUMNS if heads.count(column) > 1]:
+        raise InputError(f"wind.table: {path}, line {first}: the header has '{twice[0]}' twice; leave one of the columns out")
     for line, row in lines:
         if not any(cell.strip() for cell in row):
             continue

@@ -192,6 +192,13 @@ def test_files_may_be_swept_sampled_compared_and_set_in_cases(tmp_path):
     [
         ("guidance.law", "import nowhere_to_be_found\n", "own.py does not load: ModuleNotFoundError: No module named 'nowhere_to"),
         ("guidance.law", "class Part:\n", "own.py does not load: IndentationError"),
+        ("guidance.law", "import sys\nsys.exit(0)\n", "own.py does not load: SystemExit: 0"),
+        ("study", "class Part: ...\n", "has no method work(); see the Protocol in scenarios.studies"),
+        (
+            "study",
+            "class Part:\n    work = run = postprocess = export = summary = planned = None.__init__\n",
+            "Part': TypeError: Part() takes no arguments",
+        ),
         ("guidance.law", "class Pert: ...\n", "own.py has no 'Part'; did you mean 'Pert'?"),
         ("guidance.law", "class Part: ...\n", "has no method heading_rate(); see the Protocol in gnc.laws"),
         ("guidance.law", "class Part:\n    def heading_rate(self): ...\n", "is not a dataclass; its fields are the keys"),

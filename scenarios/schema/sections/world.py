@@ -88,9 +88,18 @@ class PlaceConfig(Section):
     utc: datetime | None = None
     """Time of the start, as in 2026-06-01T12:00:00Z; for a track from a file, that of the first report if not given."""
 
+    @field_validator("utc", mode="before")
+    @classmethod
+    def _no_number(cls, utc: object) -> object:
+        if isinstance(utc, int | float) or (isinstance(utc, str) and utc.strip().isdecimal()):
+            raise ValueError(f"value is {utc}, a number; give date and time, as in 2026-06-01T12:00:00Z")
+        return utc
+
     @field_validator("utc")
     @classmethod
     def _with_a_zone(cls, utc: datetime | None) -> datetime | None:
+        if utc is not None and not 1970 <= utc.year < 2200:
+            raise ValueError(f"value is {utc.isoformat()}; give a time from 1970 to 2199")
         if utc is not None and utc.tzinfo is None:
             raise ValueError(f"value is {utc.isoformat()}, without a zone; give a time in UTC, as in {utc.isoformat()}Z")
         return utc

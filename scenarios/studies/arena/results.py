@@ -17,7 +17,7 @@ from scenarios.schema.sections.experiment import ArenaConfig
 from scenarios.schema.sections.guidance import GuidanceConfig
 from scenarios.statistics.estimates import without_nan
 from scenarios.statistics.paired_bootstrap import paired_estimates
-from scenarios.studies.arena.entrants import TRACKING, Entrant, Refused
+from scenarios.studies.arena.entrants import TRACKING, Entrant
 
 Array = npt.NDArray[np.float64]
 
@@ -113,11 +113,6 @@ def limits(rows: Mapping[str, Sequence[Row]], arena: ArenaConfig, guidance: Guid
         if flown:
             found[condition] = float(np.mean(np.interp(flown, ratios, most)))
     return found
-
-
-def refused_record(refused: Iterable[Refused]) -> list[dict[str, Any]]:
-    """Return the laws that do not take part in a task, with the reason."""
-    return [asdict(law) for law in refused]
 
 
 def _groups(entrants: Sequence[Entrant], figure: str) -> list[list[int]]:

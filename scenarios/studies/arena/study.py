@@ -1,7 +1,7 @@
 """Steering laws side by side: each is tuned with the same budget, then all fly from the same starts in the same air."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import fields, replace
+from dataclasses import asdict, fields, replace
 from typing import Any
 
 from common.run_layout import ARENA, DRAWS
@@ -15,7 +15,7 @@ from scenarios.metrics.window import MEASURED_COLUMNS, WINDOW_COLUMNS
 from scenarios.schema.scenario import Scenario
 from scenarios.schema.sections.experiment import CaseConfig
 from scenarios.studies.arena.entrants import cases_of, conditions_of, entrants_of
-from scenarios.studies.arena.results import estimates, limits, refused_record, tuned_record
+from scenarios.studies.arena.results import estimates, limits, tuned_record
 from scenarios.studies.arena.tuning import Tuner
 from scenarios.studies.arena.work import TUNING_TABLE, WINDOW_TABLE, ArenaWork
 from scenarios.studies.flight_study import FlightStudy
@@ -128,7 +128,7 @@ class ArenaStudy(FlightStudy):
             "conditions": [{"name": name, "title": trial.title} for name, trial in self.trials.items()],
             "flights": self._scenario.flights,
             "entrants": tuned_record(self.entrants, journal.rows(TUNING_TABLE)),
-            "refused": refused_record(self._refused),
+            "refused": [asdict(law) for law in self._refused],
             "estimates": estimates(self.entrants, rows, self._arena, self._seed),
             "limits": limits(rows, self._arena, next(iter(self.trials.values())).guidance),
         }

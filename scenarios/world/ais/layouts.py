@@ -111,6 +111,8 @@ def _table_rows(path: Path, first: int, head: str, file: TextIO, mmsi: int | Non
             f"{path}, line {first}: the header is {head.strip()[:_SHOWN]!r}; known are those of the Danish Maritime Authority and"
             f" of Marine Cadastre, and {','.join(plain)}: {remedy}"
         )
+    if twice := [column for column in layout.columns if heads.count(column) > 1]:
+        raise InputError(f"{path}, line {first}: the header has '{twice[0]}' twice; leave one of the columns out")
     places = [heads.index(column) for column in layout.columns]
     identifier = "" if mmsi is None else str(mmsi)
     # Files of a day have millions of lines: those of other vessels are passed over as they are.

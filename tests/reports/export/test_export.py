@@ -102,6 +102,25 @@ def test_a_user_adds_an_exporter_in_a_file_of_one_class(run_path, tmp_path):
         export_run(run_path, f"{tmp_path / 'mine.py'}:Unfit")
 
 
+@pytest.mark.parametrize(
+    ("body", "words"),
+    [
+        ("def write(self, run, path): ...", "has suffix = None; it needs one with a leading dot and no slash, as '.csv'"),
+        ("suffix = '/../x'\n    def write(self, run, path): ...", "has suffix = '/../x'"),
+        ("suffix = '.x'\n    def __init__(self, a): ...\n    def write(self, run, path): ...", "missing 1 required positional"),
+        ("suffix = '.x'\n    def write(self, run, path): raise KeyError('speed')", "Part': KeyError: 'speed'"),
+        ("suffix = '.x'\n    def write(self, run, path): raise RuntimeError('a\\nb')", "Part': RuntimeError: a"),
+    ],
+)
+def test_what_is_wrong_with_a_users_exporter_is_no_damage_of_the_run(run_path, tmp_path, body, words):
+    (tmp_path / "mine.py").write_text(f"class Part:\n    {body}\n", encoding="utf-8")
+    with pytest.raises(ReportError) as refused:
+        export_run(run_path, f"{tmp_path / 'mine.py'}:Part")
+    assert words in str(refused.value)
+    assert "damaged" not in str(refused.value)
+    assert "\n" not in str(refused.value)
+
+
 def test_a_run_without_time_histories_has_no_tracks(run_path):
     (run_path / "flights" / "nu_0.50.parquet").unlink()
     with pytest.raises(ReportError, match="has no time histories of flights"):

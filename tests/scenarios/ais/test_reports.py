@@ -147,9 +147,13 @@ def test_a_vessel_at_rest_needs_no_course(read):
             table(*rows()).replace("sog_kn", "sog_mps"), None,
             ["'sog_mps' is in another unit than 'sog_kn': convert its values before you rename it"],
         ),
+        (
+            "\n".join(f"{line},{end}" for line, end in zip(table(*rows()).splitlines(), ["sog_kn", 1, 1, 1], strict=True)), None,
+            ["line 1: the header has 'sog_kn' twice; leave one of the columns out"],
+        ),
         (table(*reversed(rows())), None, ["1 of 3 rows", "2 out of order (first in line 2)", "sort the file by time"]),
         (table(), None, ["no row has an MMSI in digits, as 219999001, in the column of its name"]),
-        (table(*rows(), "2026-06-01T10:00:05Z,7,57.0,11.3,12.0,20.5"), None, ["2 vessels", "name one of them (vessel.mmsi)"]),
+        (table(*rows(), "2026-06-01T10:00:05Z,7,57.0,11.3,12.0,20.5"), None, ["2 vessels", "name one of them by its MMSI"]),
         (
             table(*rows(), "04.05.2026 08:00:00,219999001,57.0,11.3,12.0,20.5"), None,
             ["line 5", "'04.05.2026 08:00:00' is no time of the layout plain, as in 2026-06-01T10:00:00Z; correct it"],

@@ -7,6 +7,7 @@ import pytest
 from flight_cases import ASTERN, fly
 
 from gnc.laws.steering_law import STEERING_LAWS
+from scenarios.simulation.failure import failure
 
 
 @dataclass(frozen=True)
@@ -25,6 +26,14 @@ class _Begun:
     def heading_rate(self, *_):
         self._until -= 1
         return 0.0 if self._until > 0 else self._answer
+
+
+def test_what_a_law_raises_in_several_lines_is_told_in_one():
+    try:
+        raise RuntimeError("first line\n  second \x1b[31m")
+    except RuntimeError as error:
+        told = failure(error)["message"]
+    assert told.startswith("RuntimeError: first line second \\x1b[31m (test_laws_without_an_answer.py:")
 
 
 @dataclass(frozen=True)
@@ -81,7 +90,7 @@ class Frozen:
         return 0.0
 
 
-MUST = "its method heading_rate(reference, to_north, to_east, course, speed) has to return a finite number [rad/s]"
+MUST = "its method heading_rate(reference, to_north, to_east, course, speed) has to return a number [rad/s]"
 
 
 @pytest.mark.parametrize("mission", ["track", "follow", "standoff"])

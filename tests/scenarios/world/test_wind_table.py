@@ -83,6 +83,7 @@ def test_a_table_over_time_may_have_a_profile_over_height(table):
             "time_utc,speed_kn,from_deg\n2026-06-01T12:00:00Z,9,0\n", {},
             ["'speed_kn' is in another unit than 'speed_mps': convert its values before you rename it"],
         ),
+        ("height_m,speed_mps,from_deg,speed_mps\n10,5,0,7\n", {}, ["line 1: the header has 'speed_mps' twice; leave one of"]),
         ("height_m,speed_mps,from_deg\n", {}, ["no row below the header"]),
         ("\n" + HOURLY + "noon,5,0\n", {}, ["line 6", "'noon' is no time"]),
         (HOURLY + "2026-06-01T11:30:00Z,5,0\n", {}, ["line 5", "2026-06-01T11:30:00Z is before the line above", "sort"]),
@@ -202,6 +203,37 @@ def with_longitudes(path, longitudes, at):
 def test_netcdf_has_the_wind_of_a_longitude_however_its_grid_counts_it(longitudes, at, tmp_path):
     found = read_netcdf(with_longitudes(tmp_path / "era5.nc", longitudes, at), 57.2, at)[2]
     assert found[0] == pytest.approx(np.array([[1.0, 0.0]]), abs=1e-9)
+
+
+def test_netcdf_is_read_by_its_units_names_and_dimensions(tmp_path):
+    xarray = pytest.importorskip("xarray", reason="xarray is an extra")
+    with xarray.open_dataset(with_longitudes(tmp_path / "era5.nc", np.array([11.0, 12.0]), 11.5)) as opened:
+        data = opened.load()
+
+    def read(name, changed):
+        changed.to_netcdf(tmp_path / name, engine="h5netcdf", encoding={"valid_time": {"units": "seconds since 1970-01-01"}})
+        return read_netcdf(tmp_path / name, 57.2, 11.2)
+
+    expected = read_netcdf(tmp_path / "era5.nc", 57.2, 11.2)[2]
+    two = xarray.concat([data, data.assign_coords(valid_time=data["valid_time"] - np.timedelta64(1, "h"))], "valid_time")
+    times, _, wind = read("backwards.nc", two)
+    assert times[1] - times[0] == 3600.0
+    assert wind[1] == pytest.approx(expected[0])
+    assert read("short.nc", data.rename(latitude="lat", longitude="lon"))[2] == pytest.approx(expected)
+    in_metres = data.assign(u10=data["u10"].assign_attrs(units="m s**-1"))
+    assert read("metres.nc", in_metres)[2] == pytest.approx(expected)
+    knots = data.assign(v10=data["v10"].assign_attrs(units="knots"))
+    for name, changed, words in (
+        ("knots.nc", knots, r"v10 is in 'knots'; it has to be in m/s: convert it"),
+        (
+            "ensemble.nc",
+            data.expand_dims(number=2),
+            "u10 has the dimension 'number' beside time and place; select one of its 2 values",
+        ),
+        ("empty.nc", data.isel(valid_time=slice(0)), "it has no times; give a file with the time of the flight"),
+    ):
+        with pytest.raises(InputError, match=words):
+            read(name, changed)
 
 
 @pytest.mark.parametrize("longitudes", [np.array([11.0, 12.0]), np.arange(0.0, 350.0, 0.25)])
