@@ -104,20 +104,14 @@ def _stem(run_name: str, flight_id: str) -> str:
     return flight_id if flight_id.startswith(f"{run_name}_") or len(both.encode()) > NAME_BYTES_MAX else both
 
 
-def check_exporters(names: Sequence[str]) -> None:
-    """Refuse exporters before any of them writes.
+def made_exporter(name: str) -> "Exporter":
+    """Return an exporter.
 
     Raises
     ------
-    ReportError : a package is missing that one of them needs
+    ReportError : a package is missing that it needs, or it has no suffix
     PluginError : there is no such exporter, or it does not load
     """
-    for name in names:
-        made_exporter(name)
-
-
-def made_exporter(name: str) -> "Exporter":
-    """Return an exporter; errors are those of ``check_exporters``."""
     from reports.errors import ReportError
     from reports.export import EXPORTERS
     from reports.run.files import failure_named
@@ -220,7 +214,9 @@ def command(
             raise ReportError("--set is of the reports, which --export and --stream do not write: leave it out")
         if export or stream:
             exporters = [name for names in export or () for name in names.split(",")]
-            check_exporters(exporters)
+            # Before any of them writes.
+            for name in exporters:
+                made_exporter(name)
             for name in exporters:
                 for path in export_run(directory, name, flight):
                     print(f"export: {path}")

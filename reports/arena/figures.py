@@ -7,10 +7,6 @@ from dataclasses import dataclass
 from measurement.gases import MASS_PERCENT
 
 
-def _as_it_is(value: float) -> float:
-    return value
-
-
 def _percent(share: float) -> float:
     return 100.0 * share
 
@@ -39,7 +35,7 @@ class Figure:
     title: str
     pattern: str
     greater_first: bool = False
-    shown: Callable[[float], float] = _as_it_is
+    shown: Callable[[float], float] = float
 
     @property
     def quantity(self) -> str:

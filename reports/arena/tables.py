@@ -9,7 +9,8 @@ from reports.arena.data import ALL, Arena, Entrant, Estimate
 from reports.arena.figures import CROSSINGS, ERROR, MEASURING_FIGURES, SULPHUR, TRACKING_FIGURES, Figure
 from reports.document.blocks import Table
 from reports.document.tables import number, parameter_value
-from reports.run.columns import column, least, total
+from reports.flights.trials.tables import nearest_cells
+from reports.run.columns import column, total
 
 
 def condition_table(arena: Arena) -> Table:
@@ -60,7 +61,7 @@ def plume_table(arena: Arena) -> Table:
 
 
 def _closest(entrant: Entrant) -> str:
-    return number(least(column(entrant.rows, "min_distance_m")), "{:.1f}")
+    return nearest_cells(entrant.rows)[0]
 
 
 def _table(

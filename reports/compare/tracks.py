@@ -142,7 +142,8 @@ def _whole(flown: list[_Flight], about: Surroundings) -> Panel:
 
 def _settled(flown: list[_Flight], about: Surroundings) -> Panel:
     """Return the tracks from when both have settled; the second half of the flights if one never has."""
-    settled = max(float(flight.row["settling_time_s"]) for flight in flown)
+    # Of one that never settled it is not a number, and so is the largest.
+    settled = float(np.max([float(flight.row["settling_time_s"]) for flight in flown]))
     known = math.isfinite(settled)
     begin = settled if known else 0.5 * min(float(flight.history["time_s"].iloc[-1]) for flight in flown)
     late = [flight.history[flight.history["time_s"] >= begin] for flight in flown]

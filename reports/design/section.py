@@ -1,6 +1,6 @@
 """The autopilot's design, as a section of a report."""
 
-from reports.design.data import Record, at_middle, bank_deg, complete, grid_trims
+from reports.design.data import Record, at_middle, bank_deg, complete, down, grid_trims
 from reports.design.section_charts import loop_charts, step_charts
 from reports.design.tables import step_table, trim_table
 from reports.document.blocks import Heading, Section, Table
@@ -33,20 +33,13 @@ def _margin_table(design: Record) -> Table:
     rows = [
         [
             m["loop"].replace("_", " "),
-            _margin(m["gain_db"], "{:.1f}", m["loop"]),
-            _margin(m["phase_deg"], "{:.1f}", m["loop"]),
+            *("–" if m["loop"] == "all controls" and m[key] is None else down(m[key]) for key in ("gain_db", "phase_deg")),
             number(m["crossover"], "{:.2f}"),
-            number(m["disk_gain_db"], "{:.1f}"),
-            number(m["disk_phase_deg"], "{:.1f}"),
+            down(m["disk_gain_db"]),
+            down(m["disk_phase_deg"]),
         ]
         for m in at_middle(design, design["margins"])
         if not m["between"]
     ]
     head = ["Loop opened at", "Gain [dB]", "Phase [deg]", "Crossover [rad/s]", "Disk gain [dB]", "Disk phase [deg]"]
     return Table(head=head, rows=rows, widths=[1.6, 1.0, 1.0, 1.2, 1.1, 1.2])
-
-
-def _margin(value: float | None, pattern: str, loop: str) -> str:
-    if value is None:
-        return "–" if loop == "all controls" else "∞"
-    return pattern.format(value)

@@ -14,7 +14,9 @@ from reports.run.columns import Array
 _FAR = 10_000.0
 """Distances from which axes are in kilometres [m]."""
 
-_MANTISSAS = ((1,), (1, 3), (1, 2, 5), (1, 2, 3, 4, 5, 6, 7, 8, 9))
+_MANTISSAS: tuple[tuple[float, ...], ...] = (
+    (1,), (1, 3), (1, 2, 5), (1, 2, 3, 4, 5, 6, 7, 8, 9), tuple(tenth / 10.0 for tenth in range(10, 100))
+)  # fmt: skip
 """Figures at which a logarithmic axis is marked, the fewest first."""
 
 _MARKS_MIN, _MARKS_MAX = 3, 8

@@ -47,6 +47,12 @@ _LISTED_MAX = 30
 """Missing files that are listed, at most."""
 
 
+def _remedy(run: RunData) -> str:
+    study = str(run.manifest.get("study", ""))
+    commands = {"measurement": "plume-flight estimate makes them", "design": "plume-flight design makes them"}
+    return commands.get(study, "plume-flight run with --resume makes them")
+
+
 def missing_sections(run: RunData) -> list[Section]:
     """Return the section that names what is missing, if anything is."""
     names = run.missing()
@@ -57,10 +63,7 @@ def missing_sections(run: RunData) -> list[Section]:
         [name, "cannot be read" if name in run.unread else "is gone", _SHOWN.get(name, _SHOWN.get(name.split("/")[0], "nothing"))]
         for name in names[:_LISTED_MAX]
     ]
-    text = (
-        f"{len(names)} {'files' if len(names) > 1 else 'file'} of this run cannot be shown; plume-flight run with --resume makes"
-        " them again."
-    )
+    text = f"{len(names)} {'files' if len(names) > 1 else 'file'} of this directory cannot be shown; {_remedy(run)} again."
     table = Table(
         caption="Files that are gone or cannot be read.",
         head=["File", "State", "What is not shown"],

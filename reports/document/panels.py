@@ -8,6 +8,7 @@ import numpy as np
 
 from reports.document.chart import Line, Panel
 from reports.document.palette import Meaning
+from reports.document.tables import limit
 from reports.run.columns import Array, Mask
 
 Group = tuple[Mask, str, str]
@@ -92,7 +93,7 @@ def capped(x: Array, y: Array, groups: Sequence[Group], limit: float, unit: str 
 
 def beyond_label(values: Array, unit: str, what: str = "") -> str:
     """Return what the legend says of values that a panel has no room for: each of a few, else how far they reach."""
-    shown = ", ".join(f"{value:.3g}" for value in np.sort(values)) if len(values) <= _NAMED else f"up to {np.max(values):.3g}"
+    shown = ", ".join(map(limit, np.sort(values))) if len(values) <= _NAMED else f"up to {limit(float(np.max(values)))}"
     return f"{what} beyond the panel: {shown} {unit}".strip()
 
 

@@ -1,5 +1,6 @@
 """Tables that every report has, and how their cells are written."""
 
+import math
 import re
 from collections.abc import Mapping
 from typing import Any
@@ -70,6 +71,40 @@ def limit(value: float) -> str:
     return f"{float(f'{value:.3g}'):g}"
 
 
+def approach(distance: float, radius: float, sign: str = "") -> str:
+    """Return a closest approach to 0.1 m; where that contradicts its judgement, rounded down, with as many digits as it takes.
+
+    Parameters
+    ----------
+    distance, radius : what was kept, and what was to be kept [m]; a dash without a distance
+    sign : "+" for one with its sign
+    """
+    if not math.isfinite(distance):
+        return "–"
+    down = (f"{math.floor(distance * 10.0**places) / 10.0**places:{sign}.{places}f}" for places in (1, 2, 3))
+    texts = (f"{distance:{sign}.1f}", *down)
+    shown = (
+        text for text in texts if (float(text) >= float(f"{radius:g}")) == (distance >= radius) and text not in ("-0.0", "+-0.0")
+    )
+    return minus(next(shown, f"{distance:{sign}.6f}"))
+
+
+def beside_limit(value: float, bound: float, digits: int = 3) -> str:
+    """Return a figure to as many digits as show it on that side of its bound on which it lies; no exponent."""
+    for places in range(digits, 12):
+        text = f"{float(f'{value:.{places}g}'):.{max(places, 6)}g}"
+        if (float(text) > bound, float(text) < bound) == (value > bound, value < bound) or float(text) == value:
+            break
+    return minus(text)
+
+
+_RANGES = {
+    "start.distance_m", "reports.interval_s", "fault.at_s", "criteria.crossing_interval_s", "criteria.crossing_distance_m",
+    "following.source_height_m", "following.load", "speed_ratio", "search.mutation",
+}  # fmt: skip
+"""Keys with a lower and an upper limit; other lists of two figures are two values, or a place."""
+
+
 def vehicle_flown(run: RunData) -> str:
     """Return the vehicle of a run, to go on a sentence with."""
     fidelity = run_config(run).get("fidelity")
@@ -132,8 +167,7 @@ def parameter_value(value: Any, key: str = "") -> str:
     if isinstance(value, bool):
         return "yes" if value else "no"
     if isinstance(value, list):
-        # Of all lists the starting distances alone are a range.
-        between = " to " if key == "start.distance_m" else ", "
+        between = " to " if key in _RANGES else ", "
         return between.join(_entry_in_words(entry) for entry in value) or "none"
     if isinstance(value, Mapping):
         return ", ".join(f"{name} = {_in_braces(of, name)}" for name, of in value.items()) or "none"

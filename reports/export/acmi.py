@@ -42,7 +42,7 @@ class Acmi:
 
 def _vessel_line(flight: GeographicFlight, vessel: Body, i: int) -> str:
     named = f",Type=Sea+Watercraft,Name=Vessel,Color=Blue,EngagementRange={flight.keepout_radius:g}" if i == 0 else ""
-    return f"{_VESSEL},T={_place(vessel, i)}|0|0|{vessel.course[i]:.2f}{named}"
+    return f"{_VESSEL},T={_place(vessel, i)}|0|0|{flight.vessel_heading[i]:.2f}{named}"
 
 
 def _place(body: Body, i: int) -> str:

@@ -15,6 +15,7 @@ from reports.errors import ReportError
 from reports.run.columns import Array, column
 from reports.run.flight_config import flight_config, source_height
 from reports.run.run_data import RunData
+from reports.run.time_history import vessel_heading
 
 PLUME_LENGTH = 1000.0
 """How much of the plume's axis is shown [m]."""
@@ -77,7 +78,7 @@ class GeographicFlight:
     airspeed, climb_rate : [m/s]
     throttle : [-]
     readings : of the sniffer at each sample, by the name of their column of ``READINGS``; none without a sniffer
-    vessel : the ship, or none
+    vessel, vessel_heading : the ship, or none, and where her bow points from true north, at rest as before [deg]
     plume_end : a point of the plume's axis, ``PLUME_LENGTH`` from the funnel, or none
     source_height : of the funnel above the sea [m]
     keepout_radius : r_min, not a number without a vessel [m]
@@ -97,6 +98,7 @@ class GeographicFlight:
     throttle: Array
     readings: Mapping[str, Array]
     vessel: Body | None
+    vessel_heading: Array
     plume_end: Body | None
     source_height: float
     keepout_radius: float
@@ -165,13 +167,16 @@ def _flight(run: RunData, row: dict[str, object], history: pd.DataFrame) -> Geog
     uav = _body(frame, north, east, altitude, of("velocity_north_mps"), of("velocity_east_mps"))
     turned = np.degrees(frame.true_north(np.radians(uav.latitude), np.radians(uav.longitude)))
     heading = column(history, "heading_rad") if "heading_rad" in history else of("course_rad")
-    funnel = _source_height(run, row, float(commanded[0]))
+    config = flight_config(run, row)
+    funnel = source_height(config) if "plume" in config else float(commanded[0])
     radius, axis = known("keepout_radius_m", math.nan), of("plume_axis_rad", math.nan)
-    vessel = plume_end = None
+    vessel, bow, plume_end = None, np.zeros(len(history)), None
     if math.isfinite(radius):
         v_north, v_east = of("vessel_north_m"), of("vessel_east_m")
         moving = of("vessel_velocity_north_mps"), of("vessel_velocity_east_mps")
         vessel = _body(frame, v_north, v_east, np.zeros(len(history)), *moving)
+        bow = vessel_heading(history, float(config.get("vessel", {}).get("course_deg") or 0.0))
+        bow = (np.degrees(bow - frame.true_north(np.radians(vessel.latitude), np.radians(vessel.longitude)))) % 360.0
         if np.isfinite(axis).all():
             up = math.radians(known("plume_elevation_deg", 0.0))
             level = PLUME_LENGTH * math.cos(up)
@@ -191,6 +196,7 @@ def _flight(run: RunData, row: dict[str, object], history: pd.DataFrame) -> Geog
         throttle=of("throttle"),
         readings={name: column(history, name) for name in READINGS if name in history and history[name].notna().any()},
         vessel=vessel,
+        vessel_heading=bow,
         plume_end=plume_end,
         source_height=funnel,
         keepout_radius=radius,
@@ -214,9 +220,3 @@ def _body(frame: LocalFrame, north: Array, east: Array, altitude: Array, v_north
 def _start(text: object) -> float:
     begun = moment(text)
     return NO_TIME if begun is None else begun.timestamp()
-
-
-def _source_height(run: RunData, row: dict[str, object], default: float) -> float:
-    """Return the height of the funnel that the flight was configured with [m]."""
-    config = flight_config(run, row)
-    return source_height(config) if "plume" in config else default

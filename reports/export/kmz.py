@@ -67,8 +67,8 @@ def _folder(flight: GeographicFlight, *, shown: bool) -> ET.Element:
         _append_readings(uav, flight)
     folder.append(uav)
     if flight.vessel is not None:
-        # A ship is flat on the sea: without angles of its own it points where it goes.
-        folder.append(_track(flight, "Vessel", "vessel", flight.vessel, [f"{course:.2f} 0 0" for course in flight.vessel.course]))
+        # A ship is flat on the sea.
+        folder.append(_track(flight, "Vessel", "vessel", flight.vessel, [f"{bow:.2f} 0 0" for bow in flight.vessel_heading]))
         for i, until in _whiles(flight):
             folder.append(_plume(flight, i, until))
             folder.append(_keepout(flight, i, until))

@@ -8,7 +8,7 @@ from typing import Any, TypedDict
 import numpy as np
 import pandas as pd
 
-from reports.document.tables import limit, span
+from reports.document.tables import beside_limit, limit
 from reports.run.columns import Array, Mask, column, completed, count, interval_error, largest, was_flown
 from reports.run.trials import Trial
 
@@ -131,7 +131,7 @@ def switched_off(trials: Sequence[Trial]) -> list[tuple[str, str]]:
     for key, measure in _MEASURES.items():
         worst = largest(np.concatenate([measure.values(trial.rows) for trial in trials]))
         if key not in judged and f"criteria.{key}" in by_default and worst is not None:
-            figures.append((f"{measure.what}, worst", f"{measure.scale * worst:.3g} {measure.unit}"))
+            figures.append((f"{measure.what}, worst", f"{limit(measure.scale * worst)} {measure.unit}"))
     return figures
 
 
@@ -160,9 +160,15 @@ def _between(trial: Trial, key: str, limits: Sequence[float], measure: _Measure)
         key=key,
         what=measure.what,
         limit=f"{low:g} to {high:g} {measure.unit}",
-        worst=f"{span(measured, '{:.4g}')} {measure.unit}" if np.isfinite(measured).any() else "none measured",
+        worst=f"{_ends(measured, low, high)} {measure.unit}" if np.isfinite(measured).any() else "none measured",
         **_failed(~((low <= measured) & (measured <= high)), trial.rows),
     )
+
+
+def _ends(measured: Array, low: float, high: float) -> str:
+    """Return the least and the largest figure, each on the side of its limit on which it lies."""
+    ends = [beside_limit(float(end), bound, 4) for end, bound in ((np.nanmin(measured), low), (np.nanmax(measured), high))]
+    return ends[0] if ends[0] == ends[1] else " to ".join(ends)
 
 
 def _demand(trial: Trial, key: str) -> Criterion:
@@ -171,11 +177,14 @@ def _demand(trial: Trial, key: str) -> Criterion:
     met = demand <= most * (1.0 + _ROUNDING) if within else demand > most
     known = (demand / most)[np.isfinite(demand / most)]
     worst = (float(known.max()) if within else float(known.min())) if len(known) else math.nan
+    words = f"{worst:.3f}"
     return Criterion(
         key=key,
         what="Heading rate that the law demands, largest of a flight",
         limit=_DEMAND[key],
-        worst=f"{worst:.3f} ω_max" if len(known) else "none measured",
+        worst=f"{words if (float(words) > 1.0) == (worst > 1.0) else beside_limit(worst, 1.0)} ω_max"
+        if len(known)
+        else "none measured",
         **_failed(~met, trial.rows),
     )
 
@@ -184,7 +193,10 @@ def _figure(rows: pd.DataFrame, key: str, value: float, measure: _Measure) -> Cr
     measured = measure.values(rows)
     known = measured[np.isfinite(measured)]
     worst = float(known.max()) if len(known) else float("nan")
-    words = f"{_rounded(measure.scale * worst, measure.scale * value):.3g} {measure.unit}" if len(known) else "none measured"
+    bound = measure.scale * value
+    shown = _rounded(measure.scale * worst, bound) if len(known) else worst
+    # What is met may be written as the limit; what is not may not.
+    words = f"{beside_limit(shown, bound) if shown > bound else limit(shown)} {measure.unit}" if len(known) else "none measured"
     return Criterion(
         key=key,
         what=measure.what,

@@ -7,7 +7,7 @@ import pandas as pd
 
 from common.physics.units import SECONDS_PER_HOUR
 from reports.document.chart import Chart
-from reports.document.tables import vehicle_flown
+from reports.document.tables import approach, vehicle_flown
 from reports.flights.names import told_name
 from reports.flights.tracks import track_picture
 from reports.run.columns import Array, Mask, beside_vessel, clearance, column, radii_differ, recorded_at, total
@@ -56,7 +56,7 @@ def simulated(flown: pd.DataFrame) -> str:
         return f"{SECONDS_PER_HOUR * time:.0f} s simulated"
     if time < 1.0:
         return f"{60.0 * time:.2g} min simulated"
-    return f"{time:,.0f} h simulated" if time >= 100.0 else f"{time:.2g} h simulated"
+    return f"{time:,.0f} h simulated" if time >= 99.5 else f"{time:.2g} h simulated"
 
 
 def _range(values: Array) -> str:
@@ -85,7 +85,10 @@ def closest_and_typical(trials: Sequence[Trial]) -> Chart | None:
         trial, rows, i = flights[place]
         row = rows.iloc[i]
         names[what] = told_name(trial, row)
-        shown.append((trial, row, f"{distances[place]:.1f} m beyond r_min" if beyond else f"{float(row['min_distance_m']):.1f} m"))
+        distance, radius = float(row["min_distance_m"]), float(row["keepout_radius_m"])
+        shown.append(
+            (trial, row, f"{approach(distance - radius, 0.0)} m beyond r_min" if beyond else f"{approach(distance, radius)} m")
+        )
     # Longer names would touch above the panels; a flight that is alone has none there.
     long = len(shown) == 1 or any(len(name) > _NAME_MAX for name in names.values())
     shown = [

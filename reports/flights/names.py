@@ -87,6 +87,9 @@ def _repeated(trial: Trial) -> bool:
 def _values(trial: Trial, row: "pd.Series[Any]") -> dict[str, Any]:
     """Return the values of a flight of what was swept; none of one that was lost with its process, before it wrote any."""
     flight_id = str(row["flight_id"])
+    if not (trial.rows["flight_id"] == flight_id).any():
+        # A comparison's flight has the values of the study's own that it is compared with.
+        return {}
     values = {key: trial.input(_SPEED_RATIO if key == "nu" else key)[flight_id] for key in trial.swept}
     return {} if any(_is_number(value) and math.isnan(value) for value in values.values()) else values
 

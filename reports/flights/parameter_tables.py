@@ -109,11 +109,9 @@ def _default(parameter: Parameters) -> str:
 
 
 def value_in_words(value: Any, key: str = "") -> str:
-    """Return a value in words; a list of sections can only be manoeuvres, one of two figures only a range, but for speed ratios."""
+    """Return a value in words; a list of sections can only be manoeuvres."""
     if isinstance(value, list) and (isinstance(value[0], dict) if value else key.endswith("manoeuvres")):
         return manoeuvre_name(value)
-    if isinstance(value, list) and len(value) == 2 and not key.endswith("nu") and all(isinstance(bound, float) for bound in value):
-        return " to ".join(f"{bound:g}" for bound in value)
     return parameter_value(value, key)
 
 

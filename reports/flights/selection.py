@@ -1,5 +1,6 @@
 """Which flights of a run are shown one by one."""
 
+import math
 from collections.abc import Iterator
 from dataclasses import replace
 from typing import Any
@@ -8,7 +9,7 @@ import numpy as np
 import pandas as pd
 
 from reports.document.blocks import Block, FlightContent, FlightPicker, Section, Text
-from reports.document.tables import ending, number, outcome
+from reports.document.tables import approach, ending, number, outcome
 from reports.flights.first_page import CALM
 from reports.flights.flight_view import flight_view
 from reports.flights.names import flown_elsewhere, told_name
@@ -46,6 +47,8 @@ def flight_section(trials: list[Trial]) -> Section:
         text = (
             f"report.html shows every flight of the sweep, report.pdf {len(telling)} of them, by what each shows:"
             f" {', '.join(telling.values())}. With the option --all-flights, plume-flight report prints them all."
+            if telling
+            else "report.html lists every flight of the sweep; none has a time history (histories), and so report.pdf shows none."
         )
     else:
         several = any(radii_differ(beside_vessel(trial.rows)) for trial in trials)
@@ -79,7 +82,8 @@ def _of_sweep(trial: Trial, row: "pd.Series[Any]", why: str) -> FlightContent:
 def _content(trial: Trial, row: "pd.Series[Any]", state: str) -> FlightContent:
     name = told_name(trial, row)
     speed = "{:.1f} m/s" + " at the start" * wind_changes(trial.flight_config(row))
-    known = [("", "min_distance_m", "{:.1f} m"), ("ν = ", "nu", "{:.2f}"), ("wind ", "wind_speed_mps", speed)]
+    nearest = approach(float(row.get("min_distance_m", math.nan)), float(row.get("keepout_radius_m", math.nan)))
+    known = [("", "min_distance_m", f"{nearest} m"), ("ν = ", "nu", "{:.2f}"), ("wind ", "wind_speed_mps", speed)]
     given = {key.replace("wind.speed_mps", "wind_speed_mps") for key in trial.swept}
     if flown_elsewhere(trial):
         known[1], given = ("flown at ν = ", "nu", "{:.2f}"), given - {"nu"}

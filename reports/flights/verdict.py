@@ -8,7 +8,7 @@ import pandas as pd
 
 from common.intervals import percent
 from reports.document.blocks import Card, Verdict
-from reports.document.tables import minus, span
+from reports.document.tables import approach, span
 from reports.flights.bounds import counted_as_violations, sampled, violation_bound
 from reports.flights.criteria import MEASURED, Criterion, counted, criteria_of, switched_off
 from reports.flights.first_page import simulated
@@ -100,7 +100,9 @@ def _headline(run: RunData, trials: list[Trial], flown: pd.DataFrame, planned: i
         return f"{others[0].capitalize()}, of {of}{''.join(f', {other}' for other in others[1:])}. {kept}"
     if planned == 1:
         return f"{kept}; it {next((what for what, number_of in counts.items() if number_of), 'met its criteria')}"
-    return f"{kept}; of {planned:,}, {', '.join(others)}" if others else f"{kept}; every flight met its criteria"
+    if others:
+        return f"{kept}; of {planned:,}, {', '.join(others)}"
+    return f"{kept}; every flight met its criteria" if met(rows).all() else kept
 
 
 def _keeping_out(run: RunData, trials: list[Trial], flown: pd.DataFrame) -> str:
@@ -171,12 +173,12 @@ def _closest(trials: list[Trial], beside: pd.DataFrame) -> str:
     name, shape = told_name(trial, closest), keepout_shape(trial.flight_config(closest))
     where = f" ({name})" if trial.swept else f", in {name}"
     distance, radius = float(closest["min_distance_m"]), float(closest["keepout_radius_m"])
-    approach = f"{_distance(distance, radius)} {measured_from(shape)}"
-    words = f"Closest approach of any flight, from its first second: {approach}{where}"
+    nearest = f"{approach(distance, radius)} m {measured_from(shape)}"
+    words = f"Closest approach of any flight, from its first second: {nearest}{where}"
     if radii_differ(beside):
         words = (
             f"Each flight is judged by its own r_min, {span(column(beside, 'keepout_radius_m'), '{:g}')} m. Least distance beyond"
-            f" it, from the first second: {_distance(distance - radius, 0.0)}{where}: {approach}, where r_min is {radius:g} m"
+            f" it, from the first second: {approach(distance - radius, 0.0)} m{where}: {nearest}, where r_min is {radius:g} m"
         )
     horizontal = closest.get("horizontal_distance_min_m", math.nan)
     if shape == "sphere" and horizontal < float(closest["min_distance_m"]) - 1.0:
@@ -244,16 +246,9 @@ def _closest_figure(trials: list[Trial], beside: pd.DataFrame) -> Card:
     distance, radius = float(nearest["min_distance_m"]), float(nearest["keepout_radius_m"])
     if radii_differ(beside):
         return Card(
-            "Closest approach, beyond the flight's own r_min", _distance(distance - radius, 0.0), "≥ 0 m", distance >= radius
+            "Closest approach, beyond the flight's own r_min", f"{approach(distance - radius, 0.0)} m", "≥ 0 m", distance >= radius
         )
-    return Card(name, _distance(distance, radius), f"≥ {radius:g} m", distance >= radius)
-
-
-def _distance(distance: float, radius: float) -> str:
-    """Return a closest approach to 0.1 m; where that contradicts its judgement, rounded down, with as many digits as it takes."""
-    down = (f"{math.floor(distance * 10.0**places) / 10.0**places:.{places}f}" for places in (1, 2, 3))
-    shown = (text for text in (f"{distance:.1f}", *down) if (float(text) >= float(f"{radius:g}")) == (distance >= radius))
-    return minus(f"{next(shown, f'{distance:.6f}')} m")
+    return Card(name, f"{approach(distance, radius)} m", f"≥ {radius:g} m", distance >= radius)
 
 
 def _tracking(flown: pd.DataFrame) -> list[Card]:

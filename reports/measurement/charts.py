@@ -151,7 +151,9 @@ def regression_chart(samples: pd.DataFrame, record: Record) -> Chart | None:
     corrected = f", and {assumed:+.3f} % for NO and NO2 that the log does not have" if abs(assumed) >= 5e-4 else ""
     caption = (
         "SO2 over CO2 without background, at the response of the slowest channel; the sulphur content by regression is"
-        f" {factor:.4f} times the slope{corrected}. Groups of passes: neighbouring ones together, with their noise, 1σ."
+        f" {factor:.4f} times the slope{corrected}."
+        + " Groups of passes: neighbouring ones together, with their noise, 1σ."
+        * (len(panels) > 1)
     )
     return Chart(name="regression", caption=caption, panels=panels, columns=len(panels), panel_height=0.21)
 

@@ -21,6 +21,7 @@ from reports.run.columns import column, flights_flown
 from reports.run.flight_config import flight_config
 from reports.run.run_data import RunData
 from reports.run.surroundings import surroundings
+from reports.run.time_history import keepout_distance
 from reports.run.trials import Name
 
 _FEW = 8
@@ -178,7 +179,11 @@ def _since(run: RunData, row: "pd.Series[Any]") -> str:
 def _track(run: RunData, row: "pd.Series[Any]", history: pd.DataFrame) -> Chart | None:
     """Return the track of a flight once it had settled; None where it never had."""
     settled = history[history["time_s"] >= row["settling_time_s"]]
-    return sulphur_track_chart(settled, surroundings(flight_config(run, row), row, settled)) if len(settled) > 1 else None
+    if len(settled) < 2:
+        return None
+    config = flight_config(run, row)
+    nearest = int(np.nanargmin(keepout_distance(settled, config)))
+    return sulphur_track_chart(settled, surroundings(config, row, settled, nearest))
 
 
 def _verdict_words(row: "pd.Series[Any]") -> str:

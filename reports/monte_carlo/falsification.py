@@ -8,6 +8,7 @@ import pandas as pd
 from reports.document.blocks import Block, Heading, Section, Table, Text
 from reports.document.chart import Chart, Line, Panel, Style
 from reports.document.palette import Meaning, series_colour
+from reports.document.tables import approach, beside_limit
 from reports.run.columns import beside_vessel, clearance, violated
 from reports.run.run_data import RunData
 
@@ -60,9 +61,18 @@ def _searched(run: RunData) -> pd.DataFrame:
     return found.fillna({"search_method": "", "confirms": ""})
 
 
+_SHALLOW = 0.05
+"""Depth below which a violation is 0.0 m to one digit [m]."""
+
+
 def method_name(name: str) -> str:
     """Return what a search method is called."""
     return _IN_WORDS.get(name, name.rpartition(":")[2].replace("_", " "))
+
+
+def _depth(metres: float) -> str:
+    """Return how deep a violation is to 0.1 m, and a shallower one with the digits that it takes."""
+    return f"{metres:.1f}" if metres >= _SHALLOW else beside_limit(metres, 0.0, 1)
 
 
 def _in_words(config: dict[str, Any], search: dict[str, Any], flights: pd.DataFrame) -> str:
@@ -70,13 +80,13 @@ def _in_words(config: dict[str, Any], search: dict[str, Any], flights: pd.DataFr
     searched = flights[flights["confirms"] == ""]
     least, inside = float(np.min(clearance(searched))), int(violated(searched).sum())
     found = (
-        f"The closest that it found stayed {least:.1f} m outside the keep-out area."
+        f"The closest that it found stayed {approach(least, 0.0)} m outside the keep-out area."
         if least >= 0.0
-        else f"{inside:,} of the flights violated the keep-out area, the deepest by {-least:.1f} m."
+        else f"{inside:,} of the flights violated the keep-out area, the deepest by {_depth(-least)} m."
     )
     again = float(np.min(clearance(flights)))
     if least > again >= 0.0:
-        found += f" The closest repeat with fresh noise stayed {again:.1f} m outside."
+        found += f" The closest repeat with fresh noise stayed {approach(again, 0.0)} m outside."
     methods = _methods(settings["methods"], set(searched["search_method"]))
     budget = (
         f"{settings['generations'] + 1} turns of {settings['population']} points"
@@ -181,9 +191,9 @@ def worst_table(flights: pd.DataFrame, worst: list[dict[str, Any]]) -> Table:
                 str(i),
                 str(entry["flight_id"]),
                 method_name(entry["method"]),
-                f"{entry['clearance_m']:.1f}",
+                approach(entry["clearance_m"], 0.0),
                 f"{entry['confirmations_violating']} of {repeats}" if repeats else "–",
-                f"{nearest:.1f}" if nearest is not None else "–",
+                approach(nearest, 0.0) if nearest is not None else "–",
                 f"{float(row['keepout_margin_m']):.1f}",
                 str(row["fault"]).replace("_", " "),
                 f"{float(row['nu_min']):.2f}–{float(row['nu_max']):.2f}",

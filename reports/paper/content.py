@@ -11,7 +11,7 @@ from common.run_layout import BOUNDS
 from reports.design.section import innerloop_section
 from reports.document.blocks import Findings, FlightContent, FlightPicker, Heading, Section, Table, Text
 from reports.document.chart import Chart
-from reports.document.tables import kinematic, length, number, outcome, parameter_table
+from reports.document.tables import approach, kinematic, length, number, outcome, parameter_table
 from reports.flights.flight_view import flight_view
 from reports.flights.single_flight import flight_charts
 from reports.flights.tracks import track_picture
@@ -119,7 +119,7 @@ def _flight_table(run: RunData) -> Table:
             number(row[_DEMAND], "{:.3f}"),
             number(row["crossing_interval_mean_s"], "{:.3f}"),
             number(row["crossing_distance_mean_m"], "{:.2f}"),
-            number(row["min_distance_m"], "{:.1f}"),
+            approach(float(row["min_distance_m"]), float(row["keepout_radius_m"])),
             outcome(row),
         ])  # fmt: skip
     head = [

@@ -57,12 +57,10 @@ class Patrols:
     ----------
     run : the run
     patrols : in their order
-    ships : rows of all their ships
     """
 
     run: RunData
     patrols: list[Patrol]
-    ships: pd.DataFrame
 
     @property
     def counts(self) -> PatrolCounts:
@@ -90,5 +88,4 @@ def read_patrols(run: RunData) -> Patrols:
             )
             for _, row in run.summary.iterrows()
         ],
-        ships=ships,
     )

@@ -1,10 +1,12 @@
 """Pieces of a run that are gone, empty or cut: the report names them, and so does the exit status."""
 
 import shutil
+from dataclasses import replace
 
 import pytest
 
 from reports.document.blocks import Table
+from reports.document.missing import missing_sections
 from reports.output import flight_figure
 from reports.registry import content
 from reports.run.run_data import read_run
@@ -54,6 +56,16 @@ def test_flights_of_a_scenario_whose_name_is_all_digits_are_found(copy):
     (trial,) = read_trials(run)
     assert list(trial.rows["flight_id"]) == ["short_00000", "short_00001"]
     assert len(flight_figure(run, "short_00001").axes) > 1
+
+
+@pytest.mark.parametrize(
+    ("study", "words"), [("flights", "plume-flight run with --resume makes them again"), ("measurement", "plume-flight estimate")]
+)
+def test_what_is_missing_is_made_again_by_the_command_that_made_it(copy, study, words):
+    (copy / "crossings.csv").unlink()
+    run = read_run(copy)
+    (section,) = missing_sections(replace(run, manifest=run.manifest | {"study": study}))
+    assert words in section.blocks[0].text
 
 
 def test_of_a_whole_run_nothing_is_missing(whole):

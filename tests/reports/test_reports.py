@@ -17,6 +17,7 @@ from reports.document.blocks import FlightPicker, Table
 from reports.document.chart import Chart
 from reports.document.tables import limit
 from reports.errors import ReportError
+from reports.output import flight_figure
 from reports.registry import content
 from reports.render import matplotlib_charts, plotly_charts
 from reports.render.html import write_html
@@ -123,6 +124,18 @@ def test_a_violation_is_in_the_headline(report, copy):
     judged = content(read_run(copy)).verdict
     assert not judged.holds
     assert judged.headline == "Keep-out violations in 1 of 2 flights, 1 in all"
+
+
+def test_a_flight_of_a_comparison_is_drawn(run_path):
+    # It is not in the summary, which has what was swept; that was a KeyError, and the run was called damaged.
+    run = read_run(run_path)
+    assert len(flight_figure(run, str(run.comparison["flight_id"].iloc[0])).axes) > 1
+
+
+def test_without_time_histories_no_flight_is_said_to_be_printed(copy):
+    shutil.rmtree(copy / "flights")
+    (section,) = (section for section in content(read_run(copy)).sections if section.anchor == "flights")
+    assert "none has a time history (histories)" in section.blocks[0].text or "report.pdf 1 of them" in section.blocks[0].text
 
 
 def test_an_infeasible_flight_is_in_the_report_with_its_reason(report):

@@ -10,7 +10,7 @@ import pandas as pd
 from common.intervals import CONFIDENCE, percent
 from common.run_layout import SUMMARY
 from reports.document.blocks import Block, Table, Text
-from reports.document.tables import ending, number, outcome, span
+from reports.document.tables import approach, ending, number, outcome, span
 from reports.flights.bounds import trial_bound
 from reports.flights.criteria import counted, criteria_of
 from reports.flights.names import fault_name, told_name
@@ -20,7 +20,6 @@ from reports.run.columns import (
     completed,
     count,
     kept_out,
-    least,
     lost,
     met,
     radii_differ,
@@ -91,9 +90,7 @@ def flight_table(
         rows = rows.assign(flown_ratio=rows["nu"].where(was_flown(rows)))
         columns = (("ν flown [-]", "flown_ratio", "{:.2f}"), *columns)
         caption += " ν is swept as the ratio of the speeds over the ground; as flown, in wind, it is that through the air."
-    cells = [
-        [name(row), outcome(row), *(number(row.get(key), pattern) for _, key, pattern in columns)] for _, row in rows.iterrows()
-    ]
+    cells = [[name(row), outcome(row), *(_cell(row, key, pattern) for _, key, pattern in columns)] for _, row in rows.iterrows()]
     words = [min(_WORDS_MAX, max(1.0, 0.1 * max((len(row[i]) for row in cells), default=0))) for i in (0, 1)]
     # A name goes on over the next line where a word of it ends.
     parts = (part for row in cells for part in re.split(r" |(?<=_)(?=[a-z])", row[0]))
@@ -108,6 +105,23 @@ def flight_table(
         left_columns=2,
         breakable=True,
     )
+
+
+def _cell(row: "pd.Series[Any]", key: str, pattern: str) -> str:
+    """Return a figure of a flight; a distance on the side of r_min on which it lies."""
+    value = row.get(key)
+    if key == "min_distance_m" and not pd.isna(value):
+        return approach(float(value), float(row["keepout_radius_m"]))
+    return approach(float(value), 0.0, "+") if key == "clearance_m" and not pd.isna(value) else number(value, pattern)
+
+
+def nearest_cells(rows: pd.DataFrame) -> tuple[str, str]:
+    """Return the closest approach of some flights, and the closest one beyond the flight's own r_min; dashes without any."""
+    distances, beyond = column(rows, "min_distance_m"), clearance(rows)
+    if not np.isfinite(distances).any():
+        return "–", "–"
+    radius = float(column(rows, "keepout_radius_m")[np.nanargmin(distances)])
+    return approach(float(np.nanmin(distances)), radius), approach(float(np.nanmin(beyond)), 0.0, "+")
 
 
 def trial_table(trials: list[Trial]) -> Table:
@@ -125,8 +139,7 @@ def trial_table(trials: list[Trial]) -> Table:
             f"{count(kept_out(flown))}",
             _NOTHING if (bound := trial_bound(trial)) is None else percent(bound),
             f"{total(flown, 'keepout_violations')}",
-            number(least(column(flown, "min_distance_m")), "{:.1f}"),
-            number(least(clearance(flown)), "{:+.1f}"),
+            *nearest_cells(flown),
             f"{count(column(flown, 'guard_interventions') > 0.0)}",
             counted(flown["mode_at_end"]) if "mode_at_end" in flown else _NOTHING,
         ])  # fmt: skip
@@ -188,8 +201,7 @@ def fault_table(trial: Trial) -> Table:
             f"{count(completed(members))}",
             f"{count(lost(members))}",
             f"{total(members, 'keepout_violations')}",
-            number(least(column(members, "min_distance_m")), "{:.1f}"),
-            *([number(least(clearance(members)), "{:+.1f}")] if differ else []),
+            *nearest_cells(members)[: 2 if differ else 1],
             number(min(known, default=None), "{:+.1f}" if differ else "{:.1f}")
             + (f" (of {len(known)})" if known and len(known) < len(closest) else ""),
             span(column(members, "end_distance_m"), "{:.0f}"),
@@ -232,8 +244,8 @@ def failed_blocks(trials: Sequence[Trial]) -> list[Block]:
             told_name(by_key[row["trial"]], row),
             number(row["nu"] if pd.notna(row.get("duration_s")) else None, "{:.2f}"),
             number(row["keepout_violations"], "{:.0f}"),
-            number(row["min_distance_m"], "{:.1f}"),
-            *([number(row["clearance_m"], "{:+.1f}")] if differ else []),
+            _cell(row, "min_distance_m", ""),
+            *([_cell(row, "clearance_m", "")] if differ else []),
             ending(row),
         ]
         for _, row in failed.iloc[order[:FAILED_MAX]].iterrows()

@@ -19,6 +19,7 @@ from reports.render import matplotlib_charts, plotly_charts
         ((0.7, 130.0), [1.0, 10.0, 100.0]),
         ((2.0, 130.0), [3.0, 10.0, 30.0, 100.0]),
         ((1.5, 6.0), [2.0, 3.0, 4.0, 5.0, 6.0]),
+        ((0.0121, 0.0149), [0.013, 0.014]),
     ],
 )
 def test_a_logarithmic_axis_has_three_marks_at_least_and_powers_of_ten_where_they_are_enough(limits, marks):

@@ -1,6 +1,7 @@
 """The report on two short sweeps, and the table of their pairs."""
 
 import json
+import math
 from dataclasses import replace
 
 import numpy as np
@@ -220,6 +221,14 @@ def test_each_flight_has_its_own_limit_in_its_colour_and_within_the_panel_of_the
         assert set(limit.y) == {radius}
         assert limit.colour == flown[run.title]
         assert panel.y_range[0] < radius < panel.y_range[1]
+
+
+def test_of_a_flight_that_never_settled_the_second_half_is_shown(first, larger):
+    runs = read_runs([first, larger])
+    never = replace(runs[1], data=replace(runs[1].data, summary=runs[1].data.summary.assign(settling_time_s=math.nan)))
+    titles = [panel.title for panel in comparison_content([runs[0], never], compare([runs[0], never])).picture.panels]
+    assert "Second half of the flight" in titles
+    assert "Once both have settled" not in titles
 
 
 def test_flights_without_a_time_history_have_no_tracks(first, larger):

@@ -146,6 +146,16 @@ def test_geojson_has_the_places_in_pieces_that_keep_to_one_side_of_the_date_line
     assert off([[crossed[1], crossed[0]]], [np.degrees(np.array(frame.to_geodetic(north, east)))]) < TOLERANCE
 
 
+def test_a_ship_that_stops_keeps_her_heading(run_path):
+    path = run_path / "flights" / "a, <b>.parquet"
+    history = pd.read_parquet(path)
+    history.loc[300:, ["vessel_velocity_north_mps", "vessel_velocity_east_mps"]] = 0.0
+    history.to_parquet(path)
+    (flight,) = recorded_flights(read_run(run_path))
+    # By her place the true north turns by a hundredth of a degree.
+    assert flight.vessel_heading == pytest.approx(np.full(601, math.degrees(math.atan2(6.0, 5.0))), abs=0.02)
+
+
 def test_a_flight_without_a_place_is_shown_at_the_origin(run_path):
     rows = pd.read_csv(run_path / "summary.csv").drop(columns=["place_latitude_deg", "place_longitude_deg", "start_utc"])
     rows.to_csv(run_path / "summary.csv", index=False)

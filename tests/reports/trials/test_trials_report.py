@@ -15,8 +15,9 @@ from trial_runs import charts_of, rows_of, with_criterion, with_values
 
 from reports.build import build_reports
 from reports.document.blocks import FlightPicker, Table, Text
-from reports.document.tables import ending, parameter_value
+from reports.document.tables import approach, beside_limit, ending, parameter_value
 from reports.errors import ReportError
+from reports.flights.parameter_tables import value_in_words
 from reports.flights.trials.panels_over import PanelsOver, by_violation
 from reports.flights.trials.tables import FAILED_MAX
 from reports.output import write_report
@@ -241,6 +242,37 @@ def test_a_scenario_with_manoeuvres_of_its_own_has_a_manifest(run):
 )  # fmt: skip
 def test_a_parameter_is_written_in_words(value, words):
     assert parameter_value(value) == words
+
+
+@pytest.mark.parametrize(
+    ("key", "words"), [("fault.at_s", "100 to 250"), ("start.place_m", "100, 250"), ("sweep.keepout.radius_m", "100, 250")]
+)
+def test_two_figures_are_a_range_where_their_key_has_limits(key, words):
+    assert value_in_words([100.0, 250.0], key) == words
+
+
+@pytest.mark.parametrize(
+    ("distance", "radius", "words"),
+    [
+        (212.345, 200.0, "212.3"), (199.96, 200.0, "199.9"), (199.9996, 200.0, "199.9"), (200.0, 200.0, "200.0"),
+        (-0.04, 0.0, "−0.1"), (math.nan, 200.0, "–"),
+    ],
+)  # fmt: skip
+def test_a_distance_is_written_on_the_side_of_the_radius_on_which_it_lies(distance, radius, words):
+    assert approach(distance, radius) == words
+
+
+@pytest.mark.parametrize(
+    ("value", "bound", "words"),
+    [(1.504, 1.5, "1.504"), (1.5, 1.5, "1.5"), (1.61, 1.5, "1.61"), (7.99996, 8.0, "7.99996"), (1234.0, 100.0, "1230")],
+)
+def test_a_figure_is_written_on_the_side_of_its_limit_on_which_it_lies(value, bound, words):
+    assert beside_limit(value, bound) == words
+
+
+def test_a_criterion_that_is_just_failed_is_not_written_as_its_limit(run):
+    failed = with_values(with_criterion(run, "steady", "tracking_error_rms_m", 1.5), 0, tracking_error_rms_m=1.504)
+    assert ["≤ 1.5 m", "1.504 m", "1"] in [row[1:] for row in rows_of(content(failed), "Steady")]
 
 
 def test_a_criterion_that_does_not_apply_is_no_limit(run):
