@@ -17,6 +17,7 @@ from collections.abc import Sequence
 from gnc.estimation.own_motion import AirMotion
 from gnc.estimation.reachable_set import Tube
 from gnc.numeric import limited
+from gnc.safety.free_commands import FreeCommands
 from gnc.safety.given_commands import GivenCommands
 from gnc.safety.guard_parameters import GuardParameters
 from gnc.safety.turn_prediction import Motion, TurnPrediction, nearer_side
@@ -30,6 +31,8 @@ _UNSTEADY = 0.05
 _BISECTIONS = 5
 """Halvings of the fraction of the turn away, which is found to 1/32."""
 
+Free = tuple[float, float, float]
+"""For how long commands are free [s], course that they may take from the turn away [rad], and the change that is counted [-]."""
 Situation = tuple[tuple[Motion, ...], Tube]
 """A disc, and the motion relative to it when a command begins to act: fast first and slow then, slow, fast; or at one speed."""
 
@@ -51,10 +54,9 @@ class KeepoutGuard:
     """
 
     __slots__ = (
-        "_drift_rate", "_explained", "_fallen", "_fastest", "_free_steps", "_given", "_highest", "_kept_off", "_lag", "_lowest",
-        "_note", "_note_rate", "_prediction", "_quarter_turn", "_radius", "_rate", "_resolution", "_side", "_slowest",
-        "_speed_error", "_time_step", "_turn_speed", "_turn_time", "_until_acting", "_within_step", "intervening", "interventions",
-        "lost", "tubes",
+        "_cover", "_drift_rate", "_explained", "_fallen", "_free", "_given", "_kept_off", "_lag", "_note", "_note_rate",
+        "_prediction", "_quarter_turn", "_radius", "_rate", "_resolution", "_side", "_speed_error", "_time_step", "_turn_speed",
+        "_turn_time", "_until_acting", "_within_step", "intervening", "interventions", "lost", "tubes",
     )  # fmt: skip
 
     def __init__(self, parameters: GuardParameters) -> None:
@@ -87,7 +89,8 @@ class KeepoutGuard:
         # Within a step a command may lead off the turn that was safe by all of a reversal: by V omega_max dt^2, in turn radii.
         self._resolution = max(_RESOLUTION, (p.heading_rate_max * p.time_step) ** 2)
         self._within_step = (self._resolution - _RESOLUTION) / p.heading_rate_max
-        self._side, self._free_steps, self._lowest, self._highest, self._slowest, self._fastest = 0.0, 0, 0.0, 0.0, 0.0, 0.0
+        self._side, self._free = 0.0, FreeCommands(p.heading_rate_max, p.time_step)
+        self._cover = self._free.cover
         self._kept_off: Tube | None = None
         self.tubes: Sequence[Tube] = ()
         self.intervening = self.lost = False
@@ -104,12 +107,8 @@ class KeepoutGuard:
         speed : of the vehicle in the air mass, to reckon with: as fast as it may become [m/s]
         slowest : as slow as it may become [m/s]; a turn away has to keep off at all speeds between
         """
-        counted = self._lowest <= command <= self._highest and speed <= self._fastest and slowest >= self._slowest
-        if self._free_steps > 0 and counted:
-            self._free_steps -= 1
-        else:
+        if not self._cover(command, speed, slowest):
             free, situations = self._look(command, time, own, speed, slowest)
-            self._free_steps = max(0, int(free / self._time_step) - 1)
             if free >= 0.0:
                 self.intervening = self.lost = False
             else:
@@ -125,17 +124,15 @@ class KeepoutGuard:
         """Return whether ``limit``, which is to be called next, lets the command pass if it is given the same parameters."""
         free, _ = self._look(command, time, own, speed, slowest)
         if free < 0.0:
-            self._free_steps = 0
             return False
         self.intervening = self.lost = False
-        self._free_steps = max(1, int(free / self._time_step))
+        self._free.repeat(command)
         return True
 
     def overruled(self, command: float) -> None:
         """Take note of a heading rate that is flown in place of the last command [rad/s]."""
+        self._free.replace(self._given.since[-1], command)
         self._given.since[-1] = command
-        if not self._lowest <= command <= self._highest:
-            self._free_steps = 0
 
     def clearance(self, time: float, own: AirMotion, speed: float, enough: float = math.inf) -> float:
         """Return by how much the better turn away, begun now, or one that does by ``enough``, keeps off [m]; negative if none can.
@@ -160,20 +157,20 @@ class KeepoutGuard:
         """
         free, situations, to_come = -1.0, [], self._given.still_to_come(own.heading_rate)
         for tube in self._candidates(time, own):
+            side, to_lose, change = 0.0, math.inf, self._given.changed_by(command)
             motion = self._relative(tube, time, own, speed, slowest, to_come)
             free = self._free_when_far(motion)
             motions: tuple[Motion, ...] = ()
             if free <= 0.0:
                 motions = self._when_acting(motion)
-                free = self._free_by_turning_away(command, motions)
+                (free, to_lose, change), side = self._free_by_turning_away(command, motions), self._side
             if free >= 0.0:
                 self._kept_off = tube
                 break
             situations.append((motions, tube))
         # Until the next look: commands that change by no more than is counted for the turn's deviation, and speeds that it has.
-        self._fastest, self._slowest = speed + _SAME_SPEED, min(slowest, speed) - _SAME_SPEED
-        middle, half = 0.5 * (self._given.last + command), self._given.changed_by(command) * self._rate
-        self._lowest, self._highest = max(middle - half, -self._rate), min(middle + half, self._rate)
+        self._free.begin(free, side, to_lose, command, self._given.last, change)
+        self._free.at_speeds(min(slowest, speed) - _SAME_SPEED, speed + _SAME_SPEED)
         return free, situations
 
     def _candidates(self, time: float, own: AirMotion) -> Sequence[Tube]:
@@ -226,27 +223,30 @@ class KeepoutGuard:
         steady = [(*motion[:5], speed, *motion[6:11], speed) for speed in (motion[11], motion[5])]
         return tuple(acting(each, under_way) for each in (motion, *steady))
 
-    def _free_by_turning_away(self, command: float, motions: tuple[Motion, ...]) -> float:
-        """Return for how long [s] no command can spoil the turn away that follows this one; negative if there is none."""
+    def _free_by_turning_away(self, command: float, motions: tuple[Motion, ...]) -> Free:
+        """Return what cannot spoil the turn away that follows this command; for a negative time if there is none."""
         floor = self._resolution * motions[0][5] / self._rate
         for side in (nearer := nearer_side(*self._prediction.after(command, motions[0])[:3]), -nearer):
             slack, free = self._slack(side, command, motions, floor)
             if slack >= floor:
                 self._side = side
                 return free
-        return -1.0
+        return -1.0, 0.0, 0.0
 
-    def _slack(self, side: float, command: float, motions: tuple[Motion, ...], floor: float) -> tuple[float, float]:
-        """Return slack [m] of a turn away after a command, and for how long none can spoil it [s]: the least of the motions."""
-        begun, slack, free, change = self._until_acting + self._time_step, math.inf, math.inf, self._given.changed_by(command)
+    def _slack(self, side: float, command: float, motions: tuple[Motion, ...], floor: float) -> tuple[float, Free]:
+        """Return slack [m] of a turn away after a command, and what cannot spoil it: the least of the motions."""
+        begun, change, prediction = self._until_acting + self._time_step, self._given.changed_by(command), self._prediction
+        slack = free = to_lose = math.inf
+        counted, against = 1.0, 0.5 - 0.5 * self._free.least(side, command) / self._rate
         for motion in motions:
-            start = self._prediction.after(command, motion)
-            kept, kept_free = self._prediction.turn_away(side, start, motion, change, begun, floor)
+            start = prediction.after(command, motion)
+            counted = min(counted, max(change, prediction.rolled(side, start[3], motion)))
+            kept, kept_free, kept_lost = prediction.turn_away(side, start, motion, change, begun, floor, against)
             # In this order what is not a number stays so.
-            slack, free = min(kept, slack), min(kept_free, free)
+            slack, free, to_lose = min(kept, slack), min(kept_free, free), min(kept_lost, to_lose)
             if slack < floor:
                 break
-        return slack, free
+        return slack, (free, to_lose, counted)
 
     def _mix(self, command: float, situations: Sequence[Situation]) -> float:
         """Return the command with the least of a turn away that keeps off, or the turn that was safe before [rad/s]."""

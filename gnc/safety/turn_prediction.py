@@ -11,6 +11,8 @@ _TURN = 0.125
 """Course turned between two points of a predicted turn, at most; half of it where the lag is shorter than that takes [rad]."""
 _TURN_MAX = 2.5 * math.pi
 """Course after which a turn away is over [rad]: once round, and what a turn the other way before it and the disc's motion add."""
+_ROLLING = 3.0
+"""For how many times as long as commands take that are as far against the turn as they may be, what they add by rolling is kept."""
 
 Motion = tuple[float, float, float, float, float, float, float, float, float, float, float, float]
 """A vehicle's motion relative to a disc, and how the disc grows.
@@ -110,8 +112,12 @@ class TurnPrediction:
             decay * heading_rate + (1.0 - decay) * command,
         )
 
-    def turn_away(self, side: float, start: Start, motion: Motion, change: float, time: float, floor: float) -> tuple[float, float]:
-        """Return by how much a full turn away keeps the radius [m], and for how long [s] no command before it can change that.
+    def turn_away(
+        self, side: float, start: Start, motion: Motion, change: float, time: float, floor: float, against: float = 1.0
+    ) -> tuple[float, float, float]:
+        """Return by how much a full turn away keeps the radius [m], and what commands before it cannot change that.
+
+        For how long [s] they are given, and what course they may take from the turn [rad].
 
         It is over once the vehicle recedes and its turn makes it recede faster: by going on until it heads straight away, and
         straight on then, it recedes for good. From a disc that closes in faster than it flies it turns no farther than that, and is
@@ -125,6 +131,7 @@ class TurnPrediction:
         change : largest change of command of late, over a full reversal [-]
         time : from now to the start [s]
         floor : [m]
+        against : how far those commands may be against it, over a full reversal [-]
         """
         cos, sin, sqrt = math.cos, math.sin, math.sqrt
         x, y, course, heading_rate = start
@@ -139,10 +146,10 @@ class TurnPrediction:
         # The farther the vehicle has to roll into the turn, or rolled of late, the more it deviates; where it is now not yet.
         fixed += (deviation := self._deviation * max(change, 0.5 - 0.5 * side * heading_rate / self._rate))
         slack = sqrt(x * x + y * y) - (allowed := fixed + (error + half * time) * time)
-        least, places = slack + deviation, [(x, y, course, allowed, speed)]
-        outward, then = self._outward(side, start), None
-        # A command against the turn enlarges the deviation by 1/lag of what that of a full reversal exceeds it by in each second.
-        rolling = max(0.0, self._deviation - deviation) * stretch / (2.0 * speed * self._rate * max(lag, self._hold[0]))
+        least, places, outward, then = slack + deviation, [(x, y, course, allowed, speed)], self._outward(side, start), None
+        # A command against the turn enlarges the deviation by 1/lag of what that of such a change exceeds it by in each second.
+        lost = 2.0 * speed * self._rate * against / _ROLLING
+        rolling = max(0.0, self._deviation * max(change, against) - deviation) / (lost * max(lag, self._hold[0]))
         acting, gain, least_rate, rise, fade = time - self._delay, -1.0, math.inf, 0.0, self._hold[3] if time > self._delay else 1.0
         for point in range(math.ceil(self._points_max * stretch)):
             if least < floor:
@@ -182,7 +189,11 @@ class TurnPrediction:
                 best, gain = gain, max(gain, min(least_rate, rise / duration))
                 if gain == best or outward < 0.0:
                     break
-        return least, min(max(gain, 0.0) * stretch / (2.0 * speed * self._rate), self._until_beyond(side, start))
+        return least, min(max(gain, 0.0) / lost, self._until_beyond(side, start)), max(gain, 0.0) / speed
+
+    def rolled(self, side: float, heading_rate: float, motion: Motion) -> float:
+        """Return how far a vehicle has to roll into a turn, over a full reversal [-]: what is to come counts against the turn."""
+        return 0.5 - 0.5 * (side * heading_rate + min(0.0, side * motion[10])) / self._rate
 
     def _flown(self, side: float, speed: float) -> tuple[float, float, float, float, float, float]:
         """Return what is flown between two points of a full turn.

@@ -101,7 +101,7 @@ def lacking(flights, record, *, remembers):
                 motion = guard._relative(disc, time, now, speed, speed, to_come if remembers else 0.0)
                 then = guard._prediction.when_acting(motion, guard._given.under_way)
                 start = (then[0], then[1], then[4], then[6])
-                kept, _ = guard._prediction.turn_away(1.0, start, then, guard._given.change, record["delay_s"], -math.inf)
+                kept, *_ = guard._prediction.turn_away(1.0, start, then, guard._given.change, record["delay_s"], -math.inf)
                 flown = np.hypot(*(path - place + closing * after[:, None] * towards).T)
                 if np.argmin(flown) < len(path) - 1:
                     lacks.append(kept - float(np.min(flown) - RADIUS))

@@ -41,9 +41,23 @@ def test_what_is_allowed_at_a_speed_is_safe_at_that_speed_from_then_on():
     guard = make_guard()
     # It need not look for a while, and does so all the same before the vehicle becomes faster.
     guard.limit(0.0, -far - 60.0, 0.0, 0.0, 0.0, 0.0, SPEED, 0.0)
-    free = guard.guard._free_steps
+    free = guard.guard._free.steps
     assert guard.allows(0.0, -far - 60.0, 0.0, 0.0, 0.0, 0.0, 1.5 * SPEED, 0.0)
-    assert 0 < guard.guard._free_steps < free
+    assert 0 < guard.guard._free.steps < free
+
+
+@pytest.mark.parametrize("command", [0.0, 0.5 * HEADING_RATE_MAX, -0.5 * HEADING_RATE_MAX])
+@pytest.mark.parametrize("bearing", [80.0, -80.0])
+def test_to_ask_first_frees_no_more(bearing, command):
+    # Beside the disc, so that a turn away is needed, and what commands may take from it is counted.
+    motion = (-240.0, 0.0, 0.0, 0.0, math.radians(bearing), SPEED, 0.0)
+    guard, asked = make_guard(), make_guard()
+    assert guard.limit(command, *motion) == command
+    assert asked.allows(command, *motion)
+    assert asked.limit(command, *motion) == command
+    assert guard.guard._free._towards != 0.0
+    assert asked.guard._free._left == pytest.approx(guard.guard._free._left, abs=1e-12)
+    assert asked.guard._free.steps == guard.guard._free.steps
 
 
 def test_it_allows_nothing_that_a_slower_vehicle_could_not_turn_away_after():
@@ -72,7 +86,7 @@ def test_what_it_does_not_allow_frees_nothing():
     guard = make_guard(deviation=3.1)
     motion = (-250.0, 0.0, 0.0, 0.0, math.radians(10.0))
     assert guard.limit(0.0, *motion, SPEED, 0.0) == 0.0
-    assert guard.guard._free_steps > 0
+    assert guard.guard._free.steps > 0
     assert not guard.allows(-HEADING_RATE_MAX, *motion, 2.5 * SPEED, 0.0)
     # As fast as it was asked about it has to turn at once, to the other side.
     assert guard.limit(-HEADING_RATE_MAX, *motion, 2.5 * SPEED, 0.0) == HEADING_RATE_MAX

@@ -87,20 +87,59 @@ def test_a_command_that_passes_leaves_a_turn_with_all_that_is_kept_for_its_own_c
 @pytest.mark.parametrize(
     ("command", "speed", "slowest", "looks"),
     [
-        (0.09, SPEED, SPEED, 0), (0.11, SPEED, SPEED, 1), (-0.11, SPEED, SPEED, 1),
+        (0.24, SPEED, SPEED, 0), (0.26, SPEED, SPEED, 1), (-0.26, SPEED, SPEED, 1),
         (0.0, SPEED + 0.04, SPEED - 0.04, 0), (0.0, SPEED + 0.06, SPEED, 1), (0.0, SPEED, SPEED - 0.06, 1),
     ],
 )  # fmt: skip
 def test_another_command_or_speed_than_was_counted_is_looked_at_at_once(command, speed, slowest, looks, monkeypatch):
-    # Beside the disc, northbound: of a look some steps are free. A fifth of a reversal is counted, so a tenth to either side.
+    # Beside the disc, northbound: of a look some steps are free. Half a reversal is counted, which it has to roll into the turn
+    # as well, so a quarter to either side.
     guard, own = (
         guard_of(radius=200.0, heading_rate_max=0.5, time_step=0.05, lag=0.26, deviation=3.0),
         motion_of((0.0, 220.0, 0.0, 0.0)),
     )
     assert guard.limit(0.0, 0.0, own, SPEED, SPEED) == 0.0
-    assert guard._free_steps > 0
+    assert guard._free.steps > 0
     asked = []
     look = KeepoutGuard._look
     monkeypatch.setattr(KeepoutGuard, "_look", lambda *given: asked.append(given) or look(*given))
     guard.limit(command, 0.05, own, speed, slowest)
     assert len(asked) == looks
+
+
+def flown(state, under_way, command, lag):
+    """Return where a vehicle is after a step in which the oldest of the commands under way acts."""
+    under_way.append(command)
+    return moved(state, under_way.popleft(), lag, 0.05, SPEED)
+
+
+@pytest.mark.parametrize("deviation", [0.0, 3.1, 19.7])
+@pytest.mark.parametrize("order", ["at its worst", "at random"])
+def test_whatever_needs_no_look_leaves_the_turn_that_was_found(deviation, order):
+    # The worst that passes without a look, or anything that does, until nothing does: the better turn away then still keeps off by
+    # all that is kept for the last change of command. The vehicle has the guard's response; the disc moves half as fast as it.
+    heading_rate_max, lag, step, velocity = 0.49, 0.26, 0.05, (0.5 * SPEED, 0.0)
+    generator, passed, least = np.random.default_rng(5), 0, math.inf
+    for _ in range(60):
+        guard = guard_of(
+            radius=200.0, heading_rate_max=heading_rate_max, time_step=step, lag=lag, delay=4 * step, deviation=deviation
+        )
+        guard.tubes = (Tube(0.0, 0.0, *velocity, 0.0),)
+        bearing, distance = generator.uniform(-math.pi, math.pi), 200.0 + deviation + generator.uniform(2.0, 90.0)
+        state = (distance * math.cos(bearing), distance * math.sin(bearing), generator.uniform(-math.pi, math.pi), 0.0)
+        under_way, k, free = deque([0.0] * 4), 0, [0.0]
+        while free and k < 200:
+            side = guard._free._towards
+            demanded = min(free, key=lambda each, side=side: side * each) if order == "at its worst" else generator.choice(free)
+            command = guard.limit(float(demanded), k * step, motion_of(state), SPEED)
+            if guard.intervening:
+                break
+            state, k = flown(state, under_way, command, lag), k + 1
+            tried = np.linspace(-1.0, 1.0, 9) * heading_rate_max
+            free = [each for each in tried if copy.deepcopy(guard._free).cover(each, SPEED, SPEED)]
+        if k > 1 and not guard.intervening and math.hypot(state[0] - k * step * velocity[0], state[1]) < 500.0:
+            passed += 1
+            least = min(least, guard.clearance(k * step, motion_of(state), SPEED))
+    assert passed > 20
+    # To what is kept for the looks.
+    assert least >= -0.01

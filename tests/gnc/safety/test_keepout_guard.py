@@ -120,8 +120,8 @@ def test_looking_less_often_where_nothing_can_happen_changes_nothing(lag, delay)
             x, y, course, heading_rate = state
             motion = (x, y, *velocity, course, SPEED, heading_rate)
             fresh = copy.deepcopy(guard)
-            fresh.guard._free_steps = 0
-            skipped += guard.guard._free_steps > 0
+            fresh.guard._free.steps = 0
+            skipped += guard.guard._free.steps > 0
             command = guard.limit(want(step), *motion)
             assert fresh.limit(want(step), *motion) == command
             under_way.append(command)

@@ -66,7 +66,7 @@ def test_a_disc_in_the_way_of_a_turn_is_seen_however_small_it_is():
         ahead = moved((0.0, 0.0, 0.0, HEADING_RATE_MAX), HEADING_RATE_MAX, 0.25, duration)[:2]
         x, y = (v * duration - place + off for v, place, off in zip(velocity, ahead, generator.uniform(-3.0, 3.0, 2), strict=True))
         motion = (x, y, *velocity, 0.0, SPEED, HEADING_RATE_MAX, 0.0, 0.0, 0.0, 0.0, SPEED)
-        found, _ = prediction.turn_away(1.0, (x, y, 0.0, HEADING_RATE_MAX), motion, 0.0, 0.0, -math.inf)
+        found, *_ = prediction.turn_away(1.0, (x, y, 0.0, HEADING_RATE_MAX), motion, 0.0, 0.0, -math.inf)
         times = np.linspace(0.0, 1.2 * duration, 4000)
         arc = SPEED / HEADING_RATE_MAX * np.array([np.sin(HEADING_RATE_MAX * times), 1.0 - np.cos(HEADING_RATE_MAX * times)])
         apart = np.hypot(x + arc[0] - velocity[0] * times, y + arc[1] - velocity[1] * times)

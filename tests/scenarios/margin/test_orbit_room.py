@@ -56,7 +56,7 @@ def interventions(nu, distance, vessel):
         guard.tubes = (vessel._replace(time=time, north=mean * time, velocity_north=mean),)
         own = KnownMotion(ground_north=state[0], ground_east=state[1], course=state[2], heading_rate=state[3])
         # Asked afresh: it keeps nothing in mind but the commands under way.
-        guard._kept_off, guard._free_steps = None, 0
+        guard._kept_off, guard._free.steps = None, 0
         command = guard.limit(float(commands[first + step]), time, own, SPEED)
         count += guard.intervening
         under_way.append(float(commands[first + step]) if guard.intervening else command)
