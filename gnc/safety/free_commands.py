@@ -57,7 +57,7 @@ class FreeCommands:
 
     def least(self, side: float, command: float) -> float:
         """Return how little of a turn to a side commands may be if this one is given [rad/s]."""
-        return max(side * command - _LESS * self._rate, -self._rate)
+        return max(min(side * command, self._rate) - _LESS * self._rate, -self._rate)
 
     def begin(self, time: float, side: float, to_lose: float, command: float, last: float, change: float) -> None:
         """Begin with what a look has found.

@@ -189,7 +189,7 @@ class TurnPrediction:
                 best, gain = gain, max(gain, min(least_rate, rise / duration))
                 if gain == best or outward < 0.0:
                     break
-        return least, min(max(gain, 0.0) / lost, self._until_beyond(side, start)), max(gain, 0.0) / speed
+        return least, min(max(gain, 0.0) / lost, self._until_beyond(side, start, motion)), max(gain, 0.0) / speed
 
     def rolled(self, side: float, heading_rate: float, motion: Motion) -> float:
         """Return how far a vehicle has to roll into a turn, over a full reversal [-]: what is to come counts against the turn."""
@@ -216,11 +216,20 @@ class TurnPrediction:
         over = -self._passed * math.sqrt(x * x + y * y) < outward < 0.0 and x * cos + y * sin > 0.0
         return 0.0 if over else outward
 
-    def _until_beyond(self, side: float, start: Start) -> float:
-        """Return how soon the vehicle may be so far beyond straight away that a turn away to that side leads once round [s]."""
+    def _until_beyond(self, side: float, start: Start, motion: Motion) -> float:
+        """Return how soon the vehicle may be so far beyond straight away that a turn away to that side leads once round [s].
+
+        Its course turns at omega_max at most, and the direction in which the disc lies the other way, by what crosses it: all of
+        the disc's speed, and of the vehicle's what lies across while it has so far left to turn.
+        """
         x, y, course, _ = start
         left = side * math.remainder(math.atan2(y, x) - course, 2.0 * math.pi) + self._beyond
-        return left / self._rate if left >= 0.0 else math.inf
+        if left < 0.0:
+            return math.inf
+        speed, disc = motion[5], math.hypot(motion[2], motion[3])
+        across = speed * math.sin(min(max(left - self._beyond, 0.0), 0.5 * math.pi)) + disc
+        nearest = max(motion[7], math.hypot(x, y) - (speed + disc) * left / self._rate)
+        return left / (self._rate + across / nearest) if nearest > 0.0 else 0.0
 
 
 def nearer_side(x: float, y: float, course: float) -> float:

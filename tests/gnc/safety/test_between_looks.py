@@ -113,31 +113,40 @@ def flown(state, under_way, command, lag):
     return moved(state, under_way.popleft(), lag, 0.05, SPEED)
 
 
-@pytest.mark.parametrize("deviation", [0.0, 3.1, 19.7])
-@pytest.mark.parametrize("order", ["at its worst", "at random"])
-def test_whatever_needs_no_look_leaves_the_turn_that_was_found(deviation, order):
+@pytest.mark.parametrize(
+    ("deviation", "radius", "closing"), [(0.0, 200.0, 0.5), (3.1, 200.0, 0.5), (19.7, 200.0, 0.5), (6.1, 41.0, 0.9)]
+)
+@pytest.mark.parametrize("order", ["against the turn", "at random", "of the turn"])
+def test_whatever_needs_no_look_leaves_the_turn_that_was_found(deviation, radius, closing, order):
     # The worst that passes without a look, or anything that does, until nothing does: the better turn away then still keeps off by
-    # all that is kept for the last change of command. The vehicle has the guard's response; the disc moves half as fast as it.
-    heading_rate_max, lag, step, velocity = 0.49, 0.26, 0.05, (0.5 * SPEED, 0.0)
+    # all that is kept for the last change of command. The vehicle has the guard's response; the disc follows it.
+    heading_rate_max, lag, step = 0.49, 0.26, 0.05
     generator, passed, least = np.random.default_rng(5), 0, math.inf
-    for _ in range(60):
+    for _ in range(120):
         guard = guard_of(
-            radius=200.0, heading_rate_max=heading_rate_max, time_step=step, lag=lag, delay=4 * step, deviation=deviation
+            radius=radius, heading_rate_max=heading_rate_max, time_step=step, lag=lag, delay=4 * step, deviation=deviation
         )
+        bearing, distance = generator.uniform(-math.pi, math.pi), radius + deviation + generator.uniform(2.0, 90.0)
+        velocity = (closing * SPEED * math.cos(bearing), closing * SPEED * math.sin(bearing))
         guard.tubes = (Tube(0.0, 0.0, *velocity, 0.0),)
-        bearing, distance = generator.uniform(-math.pi, math.pi), 200.0 + deviation + generator.uniform(2.0, 90.0)
         state = (distance * math.cos(bearing), distance * math.sin(bearing), generator.uniform(-math.pi, math.pi), 0.0)
         under_way, k, free = deque([0.0] * 4), 0, [0.0]
         while free and k < 200:
             side = guard._free._towards
-            demanded = min(free, key=lambda each, side=side: side * each) if order == "at its worst" else generator.choice(free)
+            against = min(free, key=lambda each, side=side: side * each)
+            ordered = {"against the turn": against, "of the turn": max(free, key=lambda each, side=side: side * each)}
+            demanded = ordered.get(order) if order in ordered else generator.choice(free)
             command = guard.limit(float(demanded), k * step, motion_of(state), SPEED)
             if guard.intervening:
                 break
             state, k = flown(state, under_way, command, lag), k + 1
             tried = np.linspace(-1.0, 1.0, 9) * heading_rate_max
             free = [each for each in tried if copy.deepcopy(guard._free).cover(each, SPEED, SPEED)]
-        if k > 1 and not guard.intervening and math.hypot(state[0] - k * step * velocity[0], state[1]) < 500.0:
+        if (
+            k > 1
+            and not guard.intervening
+            and math.hypot(state[0] - k * step * velocity[0], state[1] - k * step * velocity[1]) < 500.0
+        ):
             passed += 1
             least = min(least, guard.clearance(k * step, motion_of(state), SPEED))
     assert passed > 20

@@ -258,3 +258,29 @@ def test_no_bounded_command_keeps_farther_off_than_the_better_turn_away(nu):
         # The search integrates in steps of 0.05 s, 0.97 m: good to a few centimetres on the way in.
         assert np.max(best) - RADIUS <= mine + 0.1
     assert met == 5
+
+
+def test_no_turn_passes_straight_away_sooner_than_it_says():
+    # Straight away turns as well, by what of the vehicle's and the disc's motion crosses it: towards a vehicle that turns away.
+    prediction = TurnPrediction(heading_rate_max=HEADING_RATE_MAX, lag=0.2, delay=0.0, time_step=0.05)
+    generator, step, least = np.random.default_rng(2), 0.002, math.inf
+    for _ in range(200):
+        distance, bearing, side = (
+            generator.uniform(20.0, 400.0),
+            generator.uniform(-math.pi, math.pi),
+            generator.choice([-1.0, 1.0]),
+        )
+        course, towards = bearing - side * generator.uniform(0.0, 2.5), generator.uniform(-math.pi, math.pi)
+        x, y = distance * math.cos(bearing), distance * math.sin(bearing)
+        disc = generator.uniform(0.0, 0.9) * SPEED
+        motion = (x, y, disc * math.cos(towards), disc * math.sin(towards), course, SPEED, 0.0, 15.0, 0.0, 0.0, 0.0, SPEED)
+        time = prediction._until_beyond(side, (x, y, course, 0.0), motion)
+        for _ in range(int(time / step)):
+            x += (SPEED * math.cos(course) - motion[2]) * step
+            y += (SPEED * math.sin(course) - motion[3]) * step
+            course += side * HEADING_RATE_MAX * step
+            # Within the disc the bound is none.
+            if math.hypot(x, y) < motion[7]:
+                break
+            least = min(least, side * math.remainder(math.atan2(y, x) - course, 2.0 * math.pi) + prediction._beyond)
+    assert -0.002 < least < 0.1
