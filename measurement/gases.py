@@ -44,6 +44,10 @@ FUEL_SULPHUR_MOST = 5.0
 """More sulphur than marine fuels have [% m/m]: their limit was 4.5 % until 2012 (MARPOL Annex VI, regulation 14)."""
 
 
+ASSUMED_LEAST = 0.0005
+"""Smallest correction for gases assumed, not measured, that is told [% m/m]: three decimals show no smaller one."""
+
+
 MASS_PERCENT = "% m/m"
 """Unit of a sulphur content where it stands first; what follows it, as its interval and its limits, is in plain %."""
 

@@ -240,10 +240,10 @@ class KeepoutGuard:
         counted, against = 1.0, 0.5 - 0.5 * self._free.least(side, command) / self._rate
         for motion in motions:
             start = prediction.after(command, motion)
-            counted = min(counted, max(change, prediction.rolled(side, start[3], motion)))
-            kept, kept_free, kept_lost = prediction.turn_away(side, start, motion, change, begun, floor, against)
+            kept, kept_free, kept_lost, kept_counted = prediction.turn_away(side, start, motion, change, begun, floor, against)
             # In this order what is not a number stays so.
             slack, free, to_lose = min(kept, slack), min(kept_free, free), min(kept_lost, to_lose)
+            counted = min(counted, kept_counted)
             if slack < floor:
                 break
         return slack, (free, to_lose, counted)

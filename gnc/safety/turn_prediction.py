@@ -114,10 +114,11 @@ class TurnPrediction:
 
     def turn_away(
         self, side: float, start: Start, motion: Motion, change: float, time: float, floor: float, against: float = 1.0
-    ) -> tuple[float, float, float]:
+    ) -> tuple[float, float, float, float]:
         """Return by how much a full turn away keeps the radius [m], and what commands before it cannot change that.
 
-        For how long [s] they are given, and what course they may take from the turn [rad].
+        For how long [s] they are given, what course they may take from the turn [rad], and the change that its deviation counts, of
+        command or by rolling into it, over a full reversal [-].
 
         It is over once the vehicle recedes and its turn makes it recede faster: by going on until it heads straight away, and
         straight on then, it recedes for good. From a disc that closes in faster than it flies it turns no farther than that, and is
@@ -144,7 +145,7 @@ class TurnPrediction:
         chord, ahead, gained, won, stretch, _ = flown
         north, east, half, lag = velocity_north * duration, velocity_east * duration, 0.5 * acceleration, self._lag
         # The farther the vehicle has to roll into the turn, or rolled of late, the more it deviates; where it is now not yet.
-        fixed += (deviation := self._deviation * max(change, 0.5 - 0.5 * side * heading_rate / self._rate))
+        fixed += (deviation := self._deviation * (counted := max(change, 0.5 - 0.5 * side * heading_rate / self._rate)))
         slack = sqrt(x * x + y * y) - (allowed := fixed + (error + half * time) * time)
         least, places, outward, then = slack + deviation, [(x, y, course, allowed, speed)], self._outward(side, start), None
         # A command against the turn enlarges the deviation by 1/lag of what that of such a change exceeds it by in each second.
@@ -189,11 +190,7 @@ class TurnPrediction:
                 best, gain = gain, max(gain, min(least_rate, rise / duration))
                 if gain == best or outward < 0.0:
                     break
-        return least, min(max(gain, 0.0) / lost, self._until_beyond(side, start, motion)), max(gain, 0.0) / speed
-
-    def rolled(self, side: float, heading_rate: float, motion: Motion) -> float:
-        """Return how far a vehicle has to roll into a turn, over a full reversal [-]: what is to come counts against the turn."""
-        return 0.5 - 0.5 * (side * heading_rate + min(0.0, side * motion[10])) / self._rate
+        return least, min(max(gain, 0.0) / lost, self._until_beyond(side, start, motion)), max(gain, 0.0) / speed, counted
 
     def _flown(self, side: float, speed: float) -> tuple[float, float, float, float, float, float]:
         """Return what is flown between two points of a full turn.

@@ -83,9 +83,7 @@ def approach(distance: float, radius: float, sign: str = "") -> str:
         return "–"
     down = (f"{math.floor(distance * 10.0**places) / 10.0**places:{sign}.{places}f}" for places in (1, 2, 3))
     texts = (f"{distance:{sign}.1f}", *down)
-    shown = (
-        text for text in texts if (float(text) >= float(f"{radius:g}")) == (distance >= radius) and text not in ("-0.0", "+-0.0")
-    )
+    shown = (text for text in texts if (float(text) >= float(f"{radius:g}")) == (distance >= radius) and text != "-0.0")
     return minus(next(shown, f"{distance:{sign}.6f}"))
 
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pandas as pd
 
-from measurement.gases import CARBON_FRACTION, MASS_PERCENT, fsc_factor, limit_words
+from measurement.gases import ASSUMED_LEAST, CARBON_FRACTION, MASS_PERCENT, fsc_factor, limit_words
 from reports.document.axes import in_kilometres
 from reports.document.chart import Chart, Line, Note, Panel
 from reports.document.map_marks import on_map
@@ -148,7 +148,7 @@ def regression_chart(samples: pd.DataFrame, record: Record) -> Chart | None:
     panels = [scatter, *_groups(record)]
     factor = fsc_factor(float(record.get("carbon") or CARBON_FRACTION))
     assumed = value(found, "assumed_percent")
-    corrected = f", and {assumed:+.3f} % for NO and NO2 that the log does not have" if abs(assumed) >= 5e-4 else ""
+    corrected = f", and {assumed:+.3f} % for NO and NO2 that the log does not have" if abs(assumed) >= ASSUMED_LEAST else ""
     caption = (
         "SO2 over CO2 without background, at the response of the slowest channel; the sulphur content by regression is"
         f" {factor:.4f} times the slope{corrected}."

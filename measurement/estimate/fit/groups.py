@@ -76,7 +76,7 @@ def grouped(signals: Signals, passes: Sequence[Pass], slope: float, *, misfit: f
 def _part(signals: Signals, start: float, end: float) -> Array:
     """Return the equalised CO2 excess of the readings between two times."""
     record, channel = signals.record, signals.instrument.known("co2")
-    late = signals.instrument.known("so2").delay_s - channel.delay_s
+    late = signals.late("co2")
     parts = []
     for time, excess in zip(record.times, co2_excesses(record, channel.noise), strict=True):
         inside = np.where((time >= start) & (time < end), excess / channel.gain, 0.0)

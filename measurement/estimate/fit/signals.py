@@ -66,8 +66,7 @@ class Signals:
 
     def noise_energy(self, gas: str) -> float:
         """Return the expected sum of squares, beside the background, of a gas's equalised noise of standard deviation 1."""
-        weights = between_samples(self.record.step, self._late(gas))[1]
-        return self.record.once(("noise energy", self.poles(gas), self.common, weights), lambda: self._noise_energy(gas))
+        return self.record.once(("noise energy", self.poles(gas), self.common, self._weights(gas)), lambda: self._noise_energy(gas))
 
     def _noise_energy(self, gas: str) -> float:
         energy = 0.0
@@ -85,11 +84,15 @@ class Signals:
     def _impulse(self, gas: str, longest: int) -> Array:
         length = min(longest, int(_MEMORY * sum(self.common) / self.record.step) + 2)
         response = impulse(length, self.record.step, self.poles(gas), self.common)
-        weights = between_samples(self.record.step, self._late(gas))[1]
+        weights = self._weights(gas)
         return response if weights[1] == 1.0 else np.convolve(response, weights)[:longest]
 
-    def _late(self, gas: str) -> float:
+    def late(self, gas: str) -> float:
+        """Return by how much later a gas's readings have to be to come as late as those of SO2 [s]."""
         return self.instrument.known("so2").delay_s - self.instrument.known(gas).delay_s
+
+    def _weights(self, gas: str) -> tuple[float, float, float, float]:
+        return between_samples(self.record.step, self.late(gas))[1]
 
 
 def used_gases(record: Record) -> tuple[str, ...]:

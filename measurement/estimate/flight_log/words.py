@@ -11,7 +11,7 @@ from measurement.estimate.flight_log.gaps import found_gaps
 from measurement.estimate.result import FscEstimate
 from measurement.estimate.verdict import OPEN
 from measurement.estimate.words import content_words, needed, next_step, verdict_words
-from measurement.gases import FUEL_SULPHUR_MOST, GASES
+from measurement.gases import ASSUMED_LEAST, FUEL_SULPHUR_MOST, GASES
 from measurement.sniffer.sniffer import Readings
 from measurement.sniffer.spec import SnifferSpec
 
@@ -25,10 +25,6 @@ ERRORS = {
     "sampling": "time between readings",
 }
 """Common errors by name."""
-
-
-_ASSUMED_LEAST = 0.0005
-"""Smallest correction that is told [% m/m]."""
 
 
 def summary(analysis: Analysis, name: str) -> Iterator[str]:
@@ -83,7 +79,7 @@ def result(found: FscEstimate) -> str:
 
 def assumed_words(assumed_percent: float) -> str:
     """Return how much of a result corrects for NO and NO2 that were not measured [% m/m]; nothing if none of it does."""
-    if not abs(assumed_percent) >= _ASSUMED_LEAST:
+    if not abs(assumed_percent) >= ASSUMED_LEAST:
         return ""
     return f"of it {assumed_percent:+.3f} % correct SO2 for NO and NO2 that the log does not have, as ships emit them on average"
 

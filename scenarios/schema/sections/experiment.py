@@ -126,9 +126,7 @@ class DrawConfig(Section):
             check_ordered(f"{name} of the draw of '{self.key}'", getattr(self, name))
         if self.within is not None and given[0] not in ("normal", "weibull"):
             raise ValueError(f"draw of '{self.key}' has within beside {given[0]}; it cuts off a normal or a weibull")
-        if self.weights is not None and (
-            self.choice is None or len(self.weights) != len(self.choice) or not 0.0 < sum(self.weights) < math.inf
-        ):
+        if self.weights is not None and not (len(self.weights) == len(self.choice or ()) and 0.0 < sum(self.weights) < math.inf):
             raise ValueError(f"draw of '{self.key}' has weights {list(self.weights)}; give each choice one, with a sum above 0")
         return self
 

@@ -15,9 +15,7 @@ from trial_runs import charts_of, rows_of, with_criterion, with_values
 
 from reports.build import build_reports
 from reports.document.blocks import FlightPicker, Table, Text
-from reports.document.tables import approach, beside_limit, ending, parameter_value
 from reports.errors import ReportError
-from reports.flights.parameter_tables import value_in_words
 from reports.flights.trials.panels_over import PanelsOver, by_violation
 from reports.flights.trials.tables import FAILED_MAX
 from reports.output import write_report
@@ -225,51 +223,6 @@ def test_a_scenario_with_manoeuvres_of_its_own_has_a_manifest(run):
     assert listed["vessel.manoeuvres"]["default"] == []
 
 
-@pytest.mark.parametrize(
-    ("value", "words"),
-    [
-        ([], "none"),
-        ({}, "none"),
-        ("", "none"),
-        (None, "not set"),
-        ([1.0, 2.5], "1, 2.5"),
-        ("/home/somebody/tracks/ship.csv", "ship.csv"),
-        ([{"name": "calm_air", "set": {}}, {"name": "wind"}], "calm air, wind"),
-        ({"wind.speed_mps": 4.0, "draws": [{"key": "wind.from_deg", "uniform": [0.0, 360.0]}]},
-         "wind.speed_mps = 4, draws = wind.from_deg uniform 0, 360"),
-        ({"title": "own", "channels": {"so2": {"t90_s": 15.0}}}, "title = own, channels = { so2 = { t90_s = 15 } }"),
-    ],
-)  # fmt: skip
-def test_a_parameter_is_written_in_words(value, words):
-    assert parameter_value(value) == words
-
-
-@pytest.mark.parametrize(
-    ("key", "words"), [("fault.at_s", "100 to 250"), ("start.place_m", "100, 250"), ("sweep.keepout.radius_m", "100, 250")]
-)
-def test_two_figures_are_a_range_where_their_key_has_limits(key, words):
-    assert value_in_words([100.0, 250.0], key) == words
-
-
-@pytest.mark.parametrize(
-    ("distance", "radius", "words"),
-    [
-        (212.345, 200.0, "212.3"), (199.96, 200.0, "199.9"), (199.9996, 200.0, "199.9"), (200.0, 200.0, "200.0"),
-        (-0.04, 0.0, "−0.1"), (math.nan, 200.0, "–"),
-    ],
-)  # fmt: skip
-def test_a_distance_is_written_on_the_side_of_the_radius_on_which_it_lies(distance, radius, words):
-    assert approach(distance, radius) == words
-
-
-@pytest.mark.parametrize(
-    ("value", "bound", "words"),
-    [(1.504, 1.5, "1.504"), (1.5, 1.5, "1.5"), (1.61, 1.5, "1.61"), (7.99996, 8.0, "7.99996"), (1234.0, 100.0, "1230")],
-)
-def test_a_figure_is_written_on_the_side_of_its_limit_on_which_it_lies(value, bound, words):
-    assert beside_limit(value, bound) == words
-
-
 def test_a_criterion_that_is_just_failed_is_not_written_as_its_limit(run):
     failed = with_values(with_criterion(run, "steady", "tracking_error_rms_m", 1.5), 0, tracking_error_rms_m=1.504)
     assert ["≤ 1.5 m", "1.504 m", "1"] in [row[1:] for row in rows_of(content(failed), "Steady")]
@@ -291,26 +244,6 @@ def test_altitudes_that_have_to_be_kept_are_a_criterion_on_the_time_outside(run)
     rows = changed.summary.assign(altitude_outside_s=[0.0 if trial != "turns" else 1.5 for trial in changed.summary["trial"]])
     shown = rows_of(content(replace(changed, summary=rows)), "Turns")
     assert ["Time outside the altitudes of the scenario", "≤ 0 s", "1.5 s", "2"] in shown
-
-
-@pytest.mark.parametrize(
-    ("outcome", "message", "words"),
-    [
-        (
-            "not_settled",
-            "did not settle within 20 s: allow more time (flight.duration_max_s), or",
-            "not settled: did not settle within 20 s",
-        ),
-        ("infeasible", "nu is 1.5; it must be below 1: slow the vessel", "infeasible: ν is 1.5"),
-        (
-            "completed",
-            "rms tracking error 2.00 m, above the limit of 1.5 m; ended outrun",
-            "completed: rms tracking error 2.00 m, above the limit of 1.5 m; ended outrun",
-        ),
-    ],
-)
-def test_an_ending_is_without_its_advice(outcome, message, words):
-    assert ending(pd.Series({"criteria_met": False, "outcome": outcome, "message": message})) == words
 
 
 def test_a_flight_has_one_name_in_a_report_which_is_that_of_its_files(report, run):
