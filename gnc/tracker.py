@@ -1,6 +1,5 @@
 """Tracking a reference point: preview by the vehicle's lag, the steering law, omega_max."""
 
-import copy
 import math
 from collections import deque
 from dataclasses import dataclass
@@ -75,7 +74,7 @@ class Tracker(Generic[AnyReference]):
     Parameters
     ----------
     parameters : of the tracking
-    reference : at time 0; it is copied
+    reference : at time 0; from then on the tracker moves it
     surroundings : that the law may look at
 
     Attributes
@@ -97,7 +96,7 @@ class Tracker(Generic[AnyReference]):
         self._law = type(parameters.law).__qualname__
         self._steer, self._limit = law.heading_rate, parameters.heading_rate_max
         self.reference = PlacedReference(reference)
-        self.ahead = copy.copy(reference)
+        self.ahead = reference
         # The reference moves once, ahead of time; until then its places wait in line.
         self._until_ahead: deque[tuple[float, float, float, float]] = deque()
         lead = round(parameters.lag / parameters.time_step)

@@ -1,5 +1,6 @@
 """The mission beside a steady vessel that is known exactly: track the paper's reference, on the way to it go round the vessel."""
 
+import copy
 import math
 from dataclasses import dataclass
 from typing import Any, NamedTuple
@@ -109,7 +110,7 @@ class DirectTracking:
         guard: KeepoutGuard | None,
         altitude: float,
     ) -> None:
-        self.tracker: Tracker[Any] = Tracker(tracking, parameters.reference)
+        self.tracker: Tracker[Any] = Tracker(tracking, copy.copy(parameters.reference))
         self.centre, self._axis = parameters.centre, math.atan2(parameters.centre.y, parameters.centre.x)
         self._own, self._target, self._guard, self._tracking = own, target, guard, tracking
         self._joining, self._closing = parameters.joining, False

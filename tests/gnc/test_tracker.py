@@ -1,3 +1,4 @@
+import copy
 import math
 
 import numpy as np
@@ -61,7 +62,7 @@ def test_without_lag_the_command_is_the_law_now_whatever_the_measured_heading_ra
 def test_with_lag_the_command_is_the_law_as_it_will_stand_then(heading_rate):
     lag = 0.4
     reference = make_reference(paper_oscillation(0.5))
-    tracker = Tracker(tracking_parameters(lag=lag), reference)
+    tracker = Tracker(tracking_parameters(lag=lag), copy.copy(reference))
     for _ in range(8):
         reference.step()
     # Nearly towards the end of the look-ahead, where h is within its bound.
@@ -130,7 +131,7 @@ def test_a_kinematic_vehicle_settles_on_the_reference_at_20_hertz(nu, law):
 @pytest.mark.parametrize("lag", [0.0, 0.4])
 def test_the_reference_shown_is_the_one_now_also_with_preview(lag):
     alone = make_reference(paper_oscillation(0.3), phase=0.7, centre=(-214.0, 5.0), vessel_course=0.3)
-    tracker = Tracker(tracking_parameters(lag=lag), alone)
+    tracker = Tracker(tracking_parameters(lag=lag), copy.copy(alone))
     for _ in range(100):
         shown = tracker.reference
         # The same arithmetic.

@@ -1,5 +1,6 @@
 """The planned margin: Rice's formula against a simulated process, the loop against hand calculation, the spread against flights."""
 
+import copy
 import math
 from dataclasses import replace
 from types import SimpleNamespace
@@ -143,7 +144,7 @@ def test_a_slow_gust_is_given_as_airspeed_and_leaves_no_error(x8_schedule):
 def fly_in_turbulence(root, start, flight, hold, seed):
     """Errors along and across [m], settled, at 20 Hz, of a flight that starts on its reference."""
     aircraft = AutopilotedAircraft(X8, root)
-    tracker = Tracker(flight.guidance.tracking, flight.guidance.mission.reference)
+    tracker = Tracker(flight.guidance.tracking, copy.copy(flight.guidance.mission.reference))
     reference = tracker.reference
     vehicle = JsbsimVehicle(
         aircraft, start, X8.envelope, north=reference.north, east=reference.east, altitude=60.0, course=reference.course,
