@@ -9,13 +9,18 @@ PYTHON ?= $(or $(SYSTEM_PYTHON),python3)
 BIN := .venv/bin
 INSTALL := $(BIN)/python -m pip install --quiet --disable-pip-version-check -c constraints.txt
 
-.PHONY: sweep_nu test check docs bench lock clean
+.PHONY: sweep_nu test fast check docs bench lock clean
 
 sweep_nu: .venv
 	@$(BIN)/python -m scenarios.run sweep_nu
 
 test: .venv/.developer
 	@$(BIN)/python -m pytest -n 2 --dist loadfile --no-loadscope-reorder
+
+# Compiles the guidance; needs a C compiler. Flights with it are compared with those of the sources, to the last bit.
+fast: .venv/.developer
+	@$(BIN)/python -m benchmarks.compiled
+	@$(BIN)/python -m pytest -n 2 tests/regression/compiled_flights.py
 
 check: .venv/.developer
 	$(BIN)/ruff check .
@@ -58,3 +63,4 @@ lock: .venv/.developer .venv/.docs
 
 clean:
 	rm -rf .venv runs docs/_build docs/generated
+	find gnc -name '*.so' -delete

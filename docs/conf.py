@@ -11,6 +11,8 @@ ROOT = Path(__file__).parents[1]
 sys.path[:0] = [str(ROOT), str(Path(__file__).parent / "_ext")]
 # Tutorials are run in temporary directories, by processes of their own.
 os.environ["PYTHONPATH"] = os.pathsep.join(filter(None, (str(ROOT), os.environ.get("PYTHONPATH"))))
+# Signatures and docstrings are those of the sources.
+os.environ["PLUME_FLIGHT_SOURCES"] = "1"
 # They are the same whatever a user has set up for IPython, and say nothing that is no error.
 _ipython = tempfile.TemporaryDirectory(prefix="ipython-")
 os.environ["IPYTHONDIR"] = _ipython.name

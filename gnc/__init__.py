@@ -3,3 +3,7 @@
 Escudeiro, "UAV-based Measurement of Marine Vessels Smoke Plumes - Guidance and Control System". ``EQUATIONS.md`` maps its
 equations to functions and tests. The plane is north-east, in metres; course angles are clockwise from north, in radians.
 """
+
+from gnc.compiled import choose
+
+choose()

@@ -19,6 +19,8 @@ from typing import TYPE_CHECKING
 
 # Tests run in two processes; threads under each of their small matrices would only be in the way. Before numpy is imported.
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+# What `make fast` has compiled takes no stand-ins for its parts. PLUME_FLIGHT_SOURCES= tests that all the same.
+os.environ.setdefault("PLUME_FLIGHT_SOURCES", "1")
 
 import pytest
 

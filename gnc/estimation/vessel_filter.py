@@ -172,11 +172,11 @@ class VesselFilter:
         total = column[i] + variance
         if total <= 0.0:
             return
-        k0, k1, k2 = (c / total for c in column)
+        c0, c1, c2 = column
+        k0, k1, k2 = c0 / total, c1 / total, c2 / total
         off_north, off_east = north - self._north[i], east - self._east[i]
         self._north = (self._north[0] + k0 * off_north, self._north[1] + k1 * off_north, self._north[2] + k2 * off_north)
         self._east = (self._east[0] + k0 * off_east, self._east[1] + k1 * off_east, self._east[2] + k2 * off_east)
-        c0, c1, c2 = column
         self._covariance = (
             p[0] - k0 * c0, p[1] - k0 * c1, p[2] - k0 * c2, p[3] - k1 * c1, p[4] - k1 * c2, p[5] - k2 * c2
         )  # fmt: skip
