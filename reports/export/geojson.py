@@ -1,6 +1,8 @@
 """GeoJSON of RFC 7946: tracks of UAV and vessel, crossings, and the keep-out area at the end, of all flights."""
 
+import itertools
 import json
+import math
 from pathlib import Path
 from typing import Any
 
@@ -12,10 +14,13 @@ from reports.run.run_data import RunData
 
 Position = list[float]
 
+_CORNERS = 3
+"""Fewest places of a closed ring that has an area, less one [-]."""
+
 
 @EXPORTERS.register("geojson")
 class GeoJson:
-    """A collection of features; a track over the date line is cut there, as the standard asks for."""
+    """A collection of features; what goes over the date line is cut there, as the standard asks for."""
 
     suffix = ".geojson"
 
@@ -33,7 +38,7 @@ def _features(flight: GeographicFlight) -> list[dict[str, Any]]:
         features.append(_feature(_track(flight.vessel), about | {"what": "vessel"} | times))
         ring = [[longitude, latitude] for longitude, latitude in flight.keepout_ring(len(flight.time) - 1)]
         keepout = {"what": "keepout_at_end", "radius_m": flight.keepout_radius}
-        features.append(_feature({"type": "Polygon", "coordinates": [_rounded(ring)]}, about | keepout))
+        features.append(_feature(_area(ring), about | keepout))
     for crossing in flight.crossings.to_dict("records"):
         at = float(crossing["time_s"])
         if flight.time[0] <= at <= flight.time[-1]:
@@ -62,7 +67,7 @@ def _at(flight: GeographicFlight, time: float) -> Position:
 
 
 def _track(body: Body) -> dict[str, Any]:
-    """Return a line, or several where it goes over the date line."""
+    """Return a line, several where it goes over the date line, or a point where there is one place alone."""
     parts: list[list[Position]] = [[]]
     before: Position | None = None
     for longitude, latitude, altitude in zip(body.longitude, body.latitude, body.altitude, strict=True):
@@ -77,9 +82,35 @@ def _track(body: Body) -> dict[str, Any]:
         parts[-1].append(here)
         before = here
     lines = [_rounded(part) for part in parts]
+    if len(body.longitude) == 1:
+        return {"type": "Point", "coordinates": lines[0][0]}
     if len(lines) == 1:
         return {"type": "LineString", "coordinates": lines[0]}
     return {"type": "MultiLineString", "coordinates": lines}
+
+
+def _area(ring: list[Position]) -> dict[str, Any]:
+    """Return a convex polygon, or the two parts of one that lies over the date line; the ring is in one piece, and closed."""
+    edge = math.copysign(180.0, ring[0][0])
+    parts = [(_part(ring, edge, side), side) for side in (1.0, -1.0)]
+    # What is beyond the date line is given from there.
+    shifted = [[[x - 2.0 * edge * (side * edge < 0.0), *rest] for x, *rest in part] for part, side in parts if len(part) > _CORNERS]
+    coordinates = [[_rounded(part)] for part in shifted]
+    if len(coordinates) == 1:
+        return {"type": "Polygon", "coordinates": coordinates[0]}
+    return {"type": "MultiPolygon", "coordinates": coordinates}
+
+
+def _part(ring: list[Position], edge: float, side: float) -> list[Position]:
+    """Return the part of a convex ring to one side of a meridian: 1 for the west, -1 for the east of it; closed, or empty."""
+    part: list[Position] = []
+    for (x, y), (x_next, y_next) in itertools.pairwise(ring):
+        inside, next_inside = side * (edge - x) >= 0.0, side * (edge - x_next) >= 0.0
+        if inside:
+            part.append([x, y])
+        if inside != next_inside:
+            part.append([edge, y + (edge - x) / (x_next - x) * (y_next - y)])
+    return [*part, part[0]] if part else part
 
 
 def _rounded(places: list[Position]) -> list[Position]:

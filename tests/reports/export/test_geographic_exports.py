@@ -134,16 +134,49 @@ def test_geojson_has_the_places_in_pieces_that_keep_to_one_side_of_the_date_line
             assert np.abs(np.diff([place[0] for place in part])).max() < 1.0
         places = [place for part in parts for place in part if abs(place[0]) != 180.0]
         assert off(np.array(places)[:, [1, 0]], true) < TOLERANCE
-    ring = np.array(by_what["keepout_at_end"]["geometry"]["coordinates"][0])
-    assert ring[0] == pytest.approx(ring[-1], abs=1e-7)
-    # Counter-clockwise, as RFC 7946 has it: its area by longitude and latitude is positive.
-    assert np.sum(ring[:-1, 0] * ring[1:, 1] - ring[1:, 0] * ring[:-1, 1]) > 0.0
+    geometry = by_what["keepout_at_end"]["geometry"]
+    polygons = [geometry["coordinates"]] if geometry["type"] == "Polygon" else geometry["coordinates"]
+    area = 0.0
+    for (ring,) in polygons:
+        x, y = np.array(ring).T
+        assert np.abs(x).max() <= 180.0
+        assert (x[0], y[0]) == (x[-1], y[-1])
+        # Counter-clockwise, as RFC 7946 has it: its area by longitude and latitude is positive.
+        part = 0.5 * float(np.sum((x[:-1] - x[0]) * (y[1:] - y[0]) - (x[1:] - x[0]) * (y[:-1] - y[0])))
+        assert part > 0.0
+        area += part * math.radians(1.0) ** 2 * 6.4e6**2 * math.cos(math.radians(y[0]))
+    # The earth's radii of curvature differ from 6.4e6 m by 1 %.
+    assert area == pytest.approx(math.pi * 200.0**2, rel=0.02)
     at = 30.05
     north, east = (np.interp(at, track()["time_s"], track()[f"{axis}_m"]) for axis in ("north", "east"))
     row = pd.read_csv(run_path / "summary.csv").iloc[0]
     frame = LocalFrame(math.radians(row["place_latitude_deg"]), math.radians(row["place_longitude_deg"]), 60.0)
     crossed = by_what["crossing"]["geometry"]["coordinates"]
     assert off([[crossed[1], crossed[0]]], [np.degrees(np.array(frame.to_geodetic(north, east)))]) < TOLERANCE
+
+
+@pytest.mark.parametrize(("longitude", "pieces"), [(179.999, 2), (-179.999, 2), (180.0, 2), (179.9, 1), (-179.9, 1), (0.0, 1)])
+def test_a_keepout_area_over_the_date_line_is_two(run_path, longitude, pieces):
+    path = run_path / "summary.csv"
+    # The vessel ends 300 m and 360 m from where the frame has its origin.
+    rows = pd.read_csv(path).assign(place_latitude_deg=-300.0 / 111e3, place_longitude_deg=longitude - 360.0 / 111.3e3)
+    rows.to_csv(path, index=False)
+    collection = json.loads(exported(run_path, "geojson").read_text(encoding="utf-8"))
+    (area,) = (feature["geometry"] for feature in collection["features"] if feature["properties"]["what"] == "keepout_at_end")
+    assert area["type"] == {1: "Polygon", 2: "MultiPolygon"}[pieces]
+    places = np.array([place for polygon in area["coordinates"] for place in (polygon if pieces == 1 else polygon[0])]).reshape(
+        -1, 2
+    )
+    assert np.abs(places[:, 0]).max() <= 180.0
+    assert off(places[:, ::-1], np.tile([0.0, longitude], (len(places), 1))) < 210.0
+
+
+def test_a_track_of_one_place_is_a_point(run_path):
+    path = run_path / "flights" / "a, <b>.parquet"
+    pd.read_parquet(path).iloc[:1].to_parquet(path)
+    collection = json.loads(exported(run_path, "geojson").read_text(encoding="utf-8"))
+    kinds = {feature["properties"]["what"]: feature["geometry"]["type"] for feature in collection["features"]}
+    assert (kinds["uav"], kinds["vessel"]) == ("Point", "Point")
 
 
 def test_a_ship_that_stops_keeps_her_heading(run_path):
