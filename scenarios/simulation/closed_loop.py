@@ -101,7 +101,7 @@ class ClosedLoop:
                     break
             command, airspeed = yield command, guidance.airspeed_command
             advance(command, airspeed - airspeed_error)
-        ending.guarded = bool(guarding)
+        ending.guarded, ending.saturated = bool(guarding), saturated / (step + 1)
         rows = recorder.rows()
         return FlightRecord(
             outcome=ending.outcome,
@@ -113,7 +113,7 @@ class ClosedLoop:
             columns=recorder.columns,
             history=rows[::log_interval] if self._every_step else rows,
             every_step=rows,
-            saturation_fraction=saturated / (step + 1),
+            saturation_fraction=ending.saturated,
             heading_rate_demand_max=demand_max,
             heading_rate_command_max=command_max,
             guard_time=len(guarding) * time_step,

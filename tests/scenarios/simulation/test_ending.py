@@ -30,6 +30,7 @@ def ended(
     tracked=0.0,
     centre_error=math.inf,
     guarded=False,
+    saturated=0.3,
     fault_at=math.inf,
 ):
     """Return how a flight ended at 300 s."""
@@ -41,7 +42,7 @@ def ended(
     judge = SimpleNamespace(enough=enough, over=lambda *_: True, words=f"{enough and enough.value}: it left") if enough else None
     settling = SimpleNamespace(at=settled, crossings=flown, tracked=tracked, centre_error=centre_error, centre_band=15.0)
     ending = Ending(plan, vehicle, guidance, settling, judge)
-    ending.guarded = guarded
+    ending.guarded, ending.saturated = guarded, saturated
     ending.reached(300.0, (0.0, 0.0, 0.0, 0.0, 0.0), sample, complete=0 < asked <= flown)
     return ending
 
@@ -121,3 +122,11 @@ def test_a_flight_completes_only_with_its_aircraft_and_its_mission(flight, outco
     assert ("may not settle either" in ending.message) == (outcome is Outcome.NOT_SETTLED)
     # A cause that does not apply is not named.
     assert ("the guard" in ending.message) <= bool(flight.get("guarded"))
+
+
+def test_a_law_that_asks_for_too_much_all_the_time_is_named_as_the_cause():
+    ending = ended(settled=math.nan, flown=0, saturated=0.98)
+    assert ending.outcome is Outcome.NOT_SETTLED
+    assert "in 98 % of the steps; check that it returns rad/s, positive to the right (guidance.law)" in ending.message
+    # To fly longer is no remedy.
+    assert "more time" not in ending.message
