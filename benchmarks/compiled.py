@@ -1,7 +1,7 @@
 """``make fast``: compile what the guidance spends its time in by mypyc, each file to a module beside it.
 
 A compiled module computes what its source does, to the last bit: a test compares flights. What is compiled takes numbers alone;
-what takes arrays, or is given what a user's own class returns, is left out.
+what takes arrays, is given what a user's own class returns, or is copied is left out.
 """
 
 import os
@@ -20,7 +20,7 @@ MODULES = (
     "estimation/vessel_filter", "estimation/wind_filter",
     "laws/delta",
     "mission/approach", "mission/direct_tracking", "mission/egress", "mission/mode", "mission/plume_following", "mission/transit",
-    "reference/circling", "reference/closing", "reference/moving_centre", "reference/orbit_tables", "reference/steered",
+    "reference/closing", "reference/moving_centre", "reference/orbit_tables", "reference/steered",
     "safety/closest_approach", "safety/free_commands", "safety/given_commands", "safety/guard_parameters",
     "safety/guarded_commands", "safety/keepout_guard", "safety/speed_reckoning", "safety/turn_prediction",
 )  # fmt: skip

@@ -11,6 +11,29 @@ Mask = npt.NDArray[np.bool_]
 Indices = npt.NDArray[np.int64]
 
 
+@dataclass(slots=True, kw_only=True)
+class Counts:
+    """What was tried for the sample of a level.
+
+    Attributes
+    ----------
+    evaluated : number of points whose values were asked for
+    moved, accepted : moves of the inputs, and those that were accepted
+    blended, blended_accepted : moves of the blended noise, and those that were accepted
+    renewed, renewed_accepted : renewals of a seed on which the value depends, and those that were accepted
+    outside : moves to points that are not allowed, which were not evaluated
+    """
+
+    evaluated: int = 0
+    moved: int = 0
+    accepted: int = 0
+    blended: int = 0
+    blended_accepted: int = 0
+    renewed: int = 0
+    renewed_accepted: int = 0
+    outside: int = 0
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Level:
     """The sample of one level.
@@ -25,11 +48,7 @@ class Level:
     dummies : shape (n, ``DUMMIES``), likewise
     values : shape (n,); infinite where there is none
     chains : number of the chain of each, shape (n,)
-    evaluated : number of points whose values were asked for
-    moved, accepted : moves of the inputs, and those that were accepted
-    blended, blended_accepted : moves of the blended noise, and those that were accepted
-    renewed, renewed_accepted : renewals of a seed on which the value depends, and those that were accepted
-    outside : moves to points that are not allowed, which were not evaluated
+    counts : of what was tried
     scale, noise_scale : of the steps of inputs and of the blend at the end of the level [-]
     """
 
@@ -41,14 +60,7 @@ class Level:
     dummies: Array
     values: Array
     chains: Indices
-    evaluated: int
-    moved: int
-    accepted: int
-    blended: int
-    blended_accepted: int
-    renewed: int
-    renewed_accepted: int
-    outside: int
+    counts: Counts
     scale: float
     noise_scale: float
 

@@ -40,12 +40,12 @@ alone.
 
 import math
 from collections.abc import Callable, Generator, Sequence
-from dataclasses import asdict, dataclass, field, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from scipy.special import ndtr
 
-from scenarios.statistics.subset_levels import Array, Indices, Level, Simulation, variation
+from scenarios.statistics.subset_levels import Array, Counts, Indices, Level, Simulation, variation
 
 ACCEPTANCE = 0.44
 """Acceptance rate that steps adapt to: Papaioannou et al. (2015)."""
@@ -97,18 +97,6 @@ class _States:
 
 
 @dataclass(slots=True, kw_only=True)
-class _Counts:
-    evaluated: int = 0
-    moved: int = 0
-    accepted: int = 0
-    blended: int = 0
-    blended_accepted: int = 0
-    renewed: int = 0
-    renewed_accepted: int = 0
-    outside: int = 0
-
-
-@dataclass(slots=True, kw_only=True)
 class _Scales:
     inputs: float = FIRST_SCALE
     blend: float = FIRST_SCALE
@@ -139,7 +127,7 @@ class SubsetSimulation:
 
     def run(self, generator: np.random.Generator) -> Simulating:
         """Yield the points of a wave, take their values; infinite for a point that has none, which passes no threshold."""
-        counts, levels = _Counts(), list[Level]()
+        counts, levels = Counts(), list[Level]()
         states, chains = (yield from self._first(generator, counts)), np.arange(self.flights)
         below, scales = math.inf, _Scales()
         while True:
@@ -159,18 +147,18 @@ class SubsetSimulation:
                     dummies=ndtr(states.normal[:, self.dimension :]),
                     values=states.values,
                     chains=chains,
+                    counts=counts,
                     scale=scales.inputs,
                     noise_scale=scales.blend,
-                    **asdict(counts),
                 )
             )
             if last:
                 return Simulation(levels=tuple(levels), stalled=stalled)
-            counts, below = _Counts(), threshold
+            counts, below = Counts(), threshold
             seeds = states.at(np.flatnonzero(passed))
             states, chains = yield from self._grown(seeds, threshold, scales, generator, counts)
 
-    def _first(self, generator: np.random.Generator, counts: _Counts) -> Generator[list[Point], Array, _States]:
+    def _first(self, generator: np.random.Generator, counts: Counts) -> Generator[list[Point], Array, _States]:
         """Have a plain random sample evaluated."""
         found: list[Array] = []
         while len(found) < self.flights:
@@ -188,7 +176,7 @@ class SubsetSimulation:
         return _States(normal=normal, noise=noise, values=values)
 
     def _grown(
-        self, seeds: _States, threshold: float, scales: _Scales, generator: np.random.Generator, counts: _Counts
+        self, seeds: _States, threshold: float, scales: _Scales, generator: np.random.Generator, counts: Counts
     ) -> Generator[list[Point], Array, tuple[_States, Indices]]:
         """Grow a chain from each seed, all in step, until they are as many states as a level has; return these and their chains."""
         # In random order: the chains that get one state more than others are not always those of the same seeds.
@@ -211,7 +199,7 @@ class SubsetSimulation:
         return _States.joined(parts), chains
 
     def _moved(
-        self, states: _States, threshold: float, scales: _Scales, spread: Array, generator: np.random.Generator, counts: _Counts
+        self, states: _States, threshold: float, scales: _Scales, spread: Array, generator: np.random.Generator, counts: Counts
     ) -> Generator[list[Point], Array, _States]:
         """Propose a move of each chain; return the states after it."""
         count = len(states.values)

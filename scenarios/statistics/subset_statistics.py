@@ -79,21 +79,17 @@ def _simulation(simulation: Simulation) -> Json:
 
 
 def _level(level: Level) -> Json:
+    counts = asdict(level.counts)
+    flights = counts.pop("evaluated")
     return {
         "below_m": level.below,
         "threshold_m": level.threshold,
         "probability": level.probability,
         "variation": level.variation,
-        "flights": level.evaluated,
+        "flights": flights,
         "nearest_m": float(level.values.min()),
         "without_measurement": int(sum(math.isinf(value) for value in level.values)),
-        "moved": level.moved,
-        "accepted": level.accepted,
-        "blended": level.blended,
-        "blended_accepted": level.blended_accepted,
-        "renewed": level.renewed,
-        "renewed_accepted": level.renewed_accepted,
-        "outside": level.outside,
+        **counts,
         "scale": level.scale,
         "noise_scale": level.noise_scale,
     }

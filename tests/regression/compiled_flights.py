@@ -19,7 +19,7 @@ ENGINE_FAILS = [
 
 STUDIES = {
     "calm air": ["sweep_nu", "sweep.nu=[0.1,0.5,0.95]", "flight.crossings=4", "start.spread_deg=180"],
-    "the paper's vehicle": ["sim3"],
+    "the paper": ["paper"],
     "a fast oscillation": ["sweep_nu", "sweep.nu=[0.5]", "comparison.variants=[]", "reference.shape=fastest", "flight.crossings=6"],
     "a loiter": ["sweep_nu", "sweep.nu=[0.1]", "comparison.variants=[]", "reference.shape=loiter", "flight.crossings=6"],
     "samples": ["monte_carlo", "flights=6", "flight.duration_max_s=200"],

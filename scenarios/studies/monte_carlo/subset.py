@@ -126,7 +126,7 @@ class SubsetStudy(ChosenFlightsStudy):
     def _first_lines(self, journal: Journal, found: RareProbability) -> list[str]:
         """Return what of the first levels, which are a plain sample, was sampled again, and what is not known to its end."""
         first = [simulation.levels[0] for simulation in self._simulations]
-        flights, outside = sum(len(level.values) for level in first), sum(level.outside for level in first)
+        flights, outside = sum(len(level.values) for level in first), sum(level.counts.outside for level in first)
         lines = []
         if outside:
             lines.append(f"{outside} of {flights + outside} points of the first levels were beyond speed_ratio and sampled again")

@@ -26,7 +26,7 @@ def statistics_of(value, **settings):
     frames = [pd.DataFrame(at, columns=names) for at in (first, near)]
     for frame in frames:
         frame["turbulence.level"] = np.where(frame["turbulence.level"] < 0.5, "none", "light")
-    flown = sum(level.evaluated for one in simulations for level in one.levels)
+    flown = sum(level.counts.evaluated for one in simulations for level in one.levels)
     return subset_statistics(study_rows(flown)[0], simulations, input_shifts(*frames, (first, near)), confidence=0.95)
 
 

@@ -39,7 +39,7 @@ def test_a_rare_event_takes_thousands_of_flights_where_plain_sampling_takes_a_bi
     found, evaluated = simulated(linear(1e-7), 3)
     # Seven levels or eight, of which all but the first one keep a tenth.
     assert 500 + 5 * 450 <= evaluated <= 500 + 8 * 450
-    assert evaluated == sum(level.evaluated for level in found.levels)
+    assert evaluated == sum(level.counts.evaluated for level in found.levels)
 
 
 def test_four_branches_in_as_many_directions_are_all_found():
@@ -84,7 +84,7 @@ def test_noise_belongs_to_the_event_whether_it_moves_by_small_steps_or_is_renewe
     found = estimates(value, 12, noise=True, flights=300)[:, 0]
     assert abs(found.mean() - 1e-4) < 0.15e-4 + 4.0 * standard_error(found)
     simulation, _ = simulated(value, 5, noise=True, flights=300)
-    last = simulation.levels[-1]
+    last = simulation.levels[-1].counts
     # A fifth of the moves are renewals; four standard deviations of that count.
     moves = last.moved + last.blended + last.renewed
     assert abs(last.renewed - 0.2 * moves) < 4.0 * math.sqrt(0.16 * moves)
@@ -115,9 +115,9 @@ def test_a_seed_that_nothing_depends_on_is_renewed_without_an_evaluation():
     found, fewer = simulated(linear(1e-4), 4, noise=True, seeded=lambda _: False)
     assert found.below(0.0) == whole.below(0.0)
     # And it says nothing of how chains mix.
-    assert sum(level.renewed + level.renewed_accepted for level in found.levels) == 0
-    renewed = sum(level.renewed for level in whole.levels)
-    assert renewed == sum(level.renewed_accepted for level in whole.levels)
+    assert sum(level.counts.renewed + level.counts.renewed_accepted for level in found.levels) == 0
+    renewed = sum(level.counts.renewed for level in whole.levels)
+    assert renewed == sum(level.counts.renewed_accepted for level in whole.levels)
     assert fewer == evaluated - renewed < evaluated
     # Where it does at some of the points, those of others are evaluated.
     _, some = simulated(linear(1e-4), 4, noise=True, seeded=lambda inputs: inputs[0] < 0.5)
