@@ -20,7 +20,7 @@ test: .venv/.developer
 # Compiles the guidance; needs a C compiler. Flights with it are compared with those of the sources, to the last bit.
 fast: .venv/.developer
 	@$(BIN)/python -m benchmarks.compiled
-	@$(BIN)/python -m pytest -n 2 tests/regression/compiled_flights.py
+	@$(BIN)/python -m pytest -n 2 tests/regression/compiled_flights.py || { rm -rf build/compiled-*; exit 1; }
 
 check: .venv/.developer
 	$(BIN)/ruff check .
@@ -62,5 +62,4 @@ lock: .venv/.developer .venv/.docs
 		$(BIN)/python -m pip freeze --exclude-editable; } > constraints.txt
 
 clean:
-	rm -rf .venv runs docs/_build docs/generated
-	find gnc -name '*.so' -delete
+	rm -rf .venv runs build docs/_build docs/generated

@@ -20,7 +20,7 @@ from benchmarks.engine import REFERENCE_STEP, report_engine
 from benchmarks.guidance import report_guidance
 from benchmarks.reports import report_reports
 from benchmarks.vehicle import x8_setup
-from gnc.compiled import runs_compiled
+from gnc.compiled import compiled_modules
 from innerloop.flight.autopiloted_aircraft import AutopilotedAircraft
 from scenarios.metrics.figures import flight_figures
 from scenarios.metrics.relative_state import flight_history
@@ -59,7 +59,7 @@ def main() -> None:
             for name, run in runs.items():
                 times[name].append(run())
         other_parts = {name: statistics.median(part() for _ in range(ROUNDS)) for name, part in parts.items()}
-        print("guidance: " + ("compiled" if runs_compiled() else "its sources are run; `make fast` compiles them"))
+        print("guidance: " + ("compiled" if compiled_modules() else "its sources are run; `make fast` compiles them"))
         _report(times)
         named = ", ".join(f"{name} {1e3 * seconds:.1f}" for name, seconds in other_parts.items())
         print(f"the other parts of a flight take {1e3 * sum(other_parts.values()):.1f} ms: {named}")

@@ -1,17 +1,22 @@
-"""``make fast``: compile what the guidance spends its time in by mypyc, each file to a module beside it.
+"""``make fast``: compile what the guidance spends its time in by mypyc.
 
-A compiled module computes what its source does, to the last bit: a test compares flights. What is compiled takes numbers alone;
-what takes arrays, is given what a user's own class returns, or is copied is left out.
+A compiled module computes what its source does, to the last bit: a test compares flights. What is compiled takes numbers alone.
+What takes arrays, is handed to parts of a user's own, or calls them is left out.
 """
 
+import json
 import os
+import shutil
 import sys
 import tempfile
+from importlib.machinery import EXTENSION_SUFFIXES
 from pathlib import Path
 
 from mypyc.build import mypycify
 from setuptools import Distribution
-from setuptools.errors import BaseError
+from setuptools.errors import BaseError, CompileError, LinkError
+
+from gnc.compiled import FOLDER, INDEX, ROOT, sources_hash
 
 MODULES = (
     "numeric", "unicycle",
@@ -20,7 +25,7 @@ MODULES = (
     "estimation/vessel_filter", "estimation/wind_filter",
     "laws/delta",
     "mission/approach", "mission/direct_tracking", "mission/egress", "mission/mode", "mission/plume_following", "mission/transit",
-    "reference/closing", "reference/moving_centre", "reference/orbit_tables", "reference/steered",
+    "reference/moving_centre", "reference/orbit_tables",
     "safety/closest_approach", "safety/free_commands", "safety/given_commands", "safety/guard_parameters",
     "safety/guarded_commands", "safety/keepout_guard", "safety/speed_reckoning", "safety/turn_prediction",
 )  # fmt: skip
@@ -32,37 +37,42 @@ _MYPY = ("--config-file=", "--ignore-missing-imports", "--follow-imports=silent"
 _SAME_ARITHMETIC = "-ffp-contract=off"
 """Compiler's option: a product and a sum stay two operations with a rounding each, on every kind of processor."""
 
-_ROOM = Path(__file__).parents[1] / "gnc"
-
 
 def main() -> int:
     """Compile the modules; return the exit status."""
-    remove()
-    files = [str(_ROOM / f"{name}.py") for name in MODULES]
+    sources = sources_hash()
     with tempfile.TemporaryDirectory() as folder:
-        extensions = mypycify(
-            [*_MYPY, "--cache-dir", folder, *files], opt_level="3", separate=True, target_dir=str(Path(folder) / "c")
-        )
-        for extension in extensions:
-            extension.extra_compile_args.append(_SAME_ARITHMETIC)
-        command = Distribution({"ext_modules": extensions}).get_command_obj("build_ext")
-        command.inplace, command.build_temp, command.parallel = True, folder, os.cpu_count()
         try:
-            command.ensure_finalized()
-            command.run()
-        except BaseError as error:
-            remove()
+            built = build(Path(folder))
+        except (BaseError, CompileError, LinkError) as error:
             remedy = "it needs a C compiler and the headers of Python (Debian: apt install gcc python3-dev)"
             print(f"error: the guidance cannot be compiled: {error}; {remedy}", file=sys.stderr)
             return 2
-    print(f"{len(MODULES)} modules of the guidance are compiled; they are run until a source of theirs is edited")
+        except KeyboardInterrupt:
+            print("interrupted; nothing is compiled", file=sys.stderr)
+            return 130
+        shutil.rmtree(FOLDER, ignore_errors=True)
+        shutil.copytree(built, FOLDER)
+    files = sorted(file.relative_to(FOLDER).as_posix() for file in FOLDER.rglob("*.*"))
+    modules = {file.removesuffix(EXTENSION_SUFFIXES[0]).replace("/", "."): file for file in files}
+    # Of the sources as they were before: one that was edited meanwhile is noticed.
+    INDEX.write_text(json.dumps({"sources": sources, "modules": modules}, indent=1), encoding="utf-8")
+    print(f"{len(MODULES)} modules of the guidance are compiled; they are run until a source of it is edited")
     return 0
 
 
-def remove() -> None:
-    """Remove what was compiled before, for any Python."""
-    for form in (form for suffix in ("*.so", "*.pyd") for form in _ROOM.rglob(suffix)):
-        form.unlink()
+def build(folder: Path) -> Path:
+    """Compile the modules in a folder of their own, and return the one that holds them by packages."""
+    files = [str(ROOT / "gnc" / f"{name}.py") for name in MODULES]
+    options = [*_MYPY, "--cache-dir", str(folder / "cache")]
+    extensions = mypycify([*options, *files], opt_level="3", separate=True, target_dir=str(folder / "c"))
+    for extension in extensions:
+        extension.extra_compile_args.append(_SAME_ARITHMETIC)
+    command = Distribution({"ext_modules": extensions}).get_command_obj("build_ext")
+    command.build_lib, command.build_temp, command.parallel = str(folder / "lib"), str(folder / "objects"), os.cpu_count()
+    command.ensure_finalized()
+    command.run()
+    return folder / "lib"
 
 
 if __name__ == "__main__":

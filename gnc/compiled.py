@@ -1,50 +1,67 @@
-"""Which form of a module is run where `make fast` has compiled it: the compiled one, until a source is edited."""
+"""Modules that `make fast` has compiled: they are run in place of their sources until one of these is edited."""
 
+import hashlib
+import json
 import os
 import sys
-from collections.abc import Sequence
-from importlib.machinery import EXTENSION_SUFFIXES, SOURCE_SUFFIXES, FileFinder, ModuleSpec, SourceFileLoader
+from collections.abc import Mapping, Sequence
+from importlib.machinery import ModuleSpec
+from importlib.util import spec_from_file_location
 from pathlib import Path
 from types import ModuleType
 
 SOURCES = "PLUME_FLIGHT_SOURCES"
 """Environment variable; whatever it is set to, the sources are run."""
 
-_ROOM = Path(__file__).parent
+ROOT = Path(__file__).parents[1]
+FOLDER = ROOT / "build" / f"compiled-{sys.implementation.cache_tag}"
+"""What was compiled for this Python: apart from the sources, so that no other commit finds it."""
+
+INDEX = FOLDER / "index.json"
+"""``sources``, their hash; ``modules``, names of modules and of files. Written last: without it there is nothing."""
+
+_PACKAGES = ("common", "gnc")
+"""Whose sources count: those of compiled modules, and what these import."""
 
 
-class _SourceFinder:
-    """Finds the modules of this package as sources alone, as Python does where nothing is compiled."""
+class _Finder:
+    """Finds modules in files of other names than Python looks for.
 
-    def find_spec(self, name: str, path: Sequence[str] | None, _target: ModuleType | None = None) -> ModuleSpec | None:
-        if path is None or not name.startswith(f"{_ROOM.name}."):
-            return None
-        found = (FileFinder(folder, (SourceFileLoader, SOURCE_SUFFIXES)).find_spec(name) for folder in path)
-        return next((spec for spec in found if spec), None)
-
-
-def compiled_modules() -> dict[Path, Path]:
-    """Return the compiled form of each module that is compiled for this Python, by its source."""
-    suffix = EXTENSION_SUFFIXES[0]
-    forms = {form.with_name(form.name.removesuffix(suffix) + ".py"): form for form in _ROOM.rglob(f"*{suffix}")}
-    return {source: form for source, form in forms.items() if source.is_file()}
-
-
-def runs_compiled() -> bool:
-    """Return whether compiled modules are run: there are some, each is newer than its source, and sources are not asked for.
-
-    Compiled modules call each other without a look at their sources: so all of them are run, or none.
+    Parameters
+    ----------
+    files : by the names of modules
     """
-    modules = compiled_modules()
-    return bool(modules) and not os.environ.get(SOURCES) and all(newer(form, source) for source, form in modules.items())
+
+    def __init__(self, files: Mapping[str, Path]) -> None:
+        self._files = files
+
+    def find_spec(self, name: str, _path: Sequence[str] | None, _target: ModuleType | None = None) -> ModuleSpec | None:
+        file = self._files.get(name)
+        return spec_from_file_location(name, file) if file else None
 
 
-def newer(form: Path, source: Path) -> bool:
-    """Return whether a file is not older than another one."""
-    return form.stat().st_mtime >= source.stat().st_mtime
+def sources_hash() -> str:
+    """Return a hash of the sources as they are."""
+    digest = hashlib.sha256()
+    for package in _PACKAGES:
+        for path in sorted((ROOT / package).rglob("*.py")):
+            digest.update(path.relative_to(ROOT).as_posix().encode())
+            digest.update(path.read_bytes())
+    return digest.hexdigest()
+
+
+def compiled_modules() -> dict[str, Path]:
+    """Return the file of each compiled module by its name: none if one is missing, or the sources are others by now."""
+    try:
+        index = json.loads(INDEX.read_text(encoding="utf-8"))
+    except FileNotFoundError:
+        return {}
+    files = {name: FOLDER / file for name, file in index["modules"].items()}
+    whole = all(file.is_file() for file in files.values()) and index["sources"] == sources_hash()
+    return files if whole else {}
 
 
 def choose() -> None:
-    """Have the sources be imported from now on, unless compiled modules are to be run."""
-    if not runs_compiled():
-        sys.meta_path.insert(0, _SourceFinder())
+    """Have compiled modules be imported from now on, if there are any that are to be run."""
+    if not os.environ.get(SOURCES) and (files := compiled_modules()):
+        sys.meta_path.insert(0, _Finder(files))

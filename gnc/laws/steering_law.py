@@ -121,7 +121,8 @@ def within_limit(demand: Any, limit: float, law: str, given: Sequence[float]) ->
     LawError : it returned what is no number, asked with numbers
     """
     if _is_number(demand) and (-limit <= demand <= limit or not math.isnan(demand) or not all(map(math.isfinite, given))):
-        return limited(demand, limit)
+        # A number of NumPy's would have all that follows computed in its own precision, or be changed in place.
+        return float(limited(demand, limit))
     shown = repr(demand) if isinstance(demand, str) else " ".join(str(demand).split())
     raise LawError(f"steering law '{law}' returned {shown}: {_MUST}")
 

@@ -74,7 +74,7 @@ def _host(run: RunData) -> list[list[str]]:
     cores = manifest.get("cores")
     return [
         ["Host", manifest["platform"] + (f", {cores} cores" if cores else "")],
-        ["Python", manifest["python"] + (", guidance compiled" if manifest.get("guidance") == "compiled" else "")],
+        ["Python", manifest["python"]],
         ["Packages", ", ".join(f"{name} {version}" for name, version in manifest["packages"].items())],
         ["Format of the run", str(manifest["format"])],
     ]

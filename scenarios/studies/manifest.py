@@ -14,7 +14,6 @@ from aircraft.simulation.model_copy import model_hash
 from common.provenance import provenance
 from common.registry import PluginError, file_hash, file_of
 from common.run_layout import FORMAT, LOGO
-from gnc.compiled import runs_compiled
 from measurement.emission.ship import Ship
 from measurement.gases import UNITS
 from measurement.sniffer.channel import Channel
@@ -61,7 +60,6 @@ def initial_manifest(scenario: AnyStudy, name: str, overrides: Sequence[str]) ->
         "config": config,
         "config_hash": config_hash(scenario),
         "fingerprint": fingerprint(),
-        "guidance": "compiled" if runs_compiled() else "source",
         "parameters": parameters(scenario),
         "report": report_entry(scenario.report),
         **provenance(),
