@@ -4,6 +4,7 @@ import os
 import subprocess
 import sys
 from importlib.machinery import EXTENSION_SUFFIXES
+from pathlib import Path
 
 import pandas as pd
 import pytest
@@ -17,6 +18,11 @@ ENGINE_FAILS = [
 ]  # fmt: skip
 """A turn away that is predicted at two speeds."""
 
+LOOKING_AHEAD = [
+    "sea_wind", "draws=[]", "flights=1", "flight.crossings=6",
+    f"guidance.law={Path(__file__).parent}/law_that_looks_ahead.py:LooksAhead",
+]  # fmt: skip
+
 STUDIES = {
     "calm air": ["sweep_nu", "sweep.nu=[0.1,0.5,0.95]", "flight.crossings=4", "start.spread_deg=180"],
     "the paper": ["paper"],
@@ -28,6 +34,7 @@ STUDIES = {
     "no satellites": ["sea_wind", "flights=2", "fault.kind=satellite_navigation", "flight.duration_max_s=251"],
     "a failing engine": ENGINE_FAILS,
     "a stuck surface": ["sea_faults", "flights=2", "fault.kind=left_elevon", "flight.duration_max_s=300"],
+    "a law that copies its reference": LOOKING_AHEAD,
     "a search": ["sulphur", "following.plume=estimated", "flight.duration_max_s=200"],
 }
 
