@@ -4,7 +4,6 @@ A compiled module computes what its source does, to the last bit: a test compare
 What takes arrays, calls parts of a user's own, or is copied by them is left out.
 """
 
-import json
 import os
 import shutil
 import sys
@@ -16,6 +15,7 @@ from mypyc.build import mypycify
 from setuptools import Distribution
 from setuptools.errors import BaseError, CompileError, LinkError
 
+from common.files import write_json
 from gnc.compiled import FOLDER, INDEX, ROOT, sources_hash
 
 MODULES = (
@@ -56,7 +56,7 @@ def main() -> int:
     files = sorted(file.relative_to(FOLDER).as_posix() for file in FOLDER.rglob("*.*"))
     modules = {file.removesuffix(EXTENSION_SUFFIXES[0]).replace("/", "."): file for file in files}
     # Of the sources as they were before: one that was edited meanwhile is noticed.
-    INDEX.write_text(json.dumps({"sources": sources, "modules": modules}, indent=1), encoding="utf-8")
+    write_json(INDEX, {"sources": sources, "modules": modules})
     print(f"{len(MODULES)} modules of the guidance are compiled; they are run until a source of it is edited")
     return 0
 

@@ -1,10 +1,11 @@
 """Files that are written completely or not at all."""
 
 import filecmp
+import hashlib
 import json
 import os
 import shutil
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -71,6 +72,15 @@ def write_tree(source: Path, target: Path) -> None:
         copy = target / path.relative_to(source)
         copy.parent.mkdir(parents=True, exist_ok=True)
         write_whole(copy, partial(shutil.copyfile, path))
+
+
+def files_hash(root: Path, paths: Iterable[Path]) -> str:
+    """Return a SHA-256 of files below a folder, by their paths in it and their contents, in the order given."""
+    digest = hashlib.sha256()
+    for path in paths:
+        digest.update(path.relative_to(root).as_posix().encode())
+        digest.update(path.read_bytes())
+    return digest.hexdigest()
 
 
 def remove_reports(directory: Path) -> None:

@@ -1,6 +1,5 @@
 """Modules that `make fast` has compiled: they are run in place of their sources until one of these is edited."""
 
-import hashlib
 import json
 import os
 import sys
@@ -9,6 +8,8 @@ from importlib.machinery import ModuleSpec
 from importlib.util import spec_from_file_location
 from pathlib import Path
 from types import ModuleType
+
+from common.files import files_hash
 
 SOURCES = "PLUME_FLIGHT_SOURCES"
 """Environment variable; whatever it is set to, the sources are run."""
@@ -42,16 +43,13 @@ class _Finder:
 
 def sources_hash() -> str:
     """Return a hash of the sources as they are."""
-    digest = hashlib.sha256()
-    for package in _PACKAGES:
-        for path in sorted((ROOT / package).rglob("*.py")):
-            digest.update(path.relative_to(ROOT).as_posix().encode())
-            digest.update(path.read_bytes())
-    return digest.hexdigest()
+    return files_hash(ROOT, (path for package in _PACKAGES for path in sorted((ROOT / package).rglob("*.py"))))
 
 
 def compiled_modules() -> dict[str, Path]:
-    """Return the file of each compiled module by its name: none if one is missing, or the sources are others by now."""
+    """Return the file of each compiled module by its name: none if one is missing, the sources are others by now, or asked for."""
+    if os.environ.get(SOURCES):
+        return {}
     try:
         index = json.loads(INDEX.read_text(encoding="utf-8"))
     except FileNotFoundError:
@@ -63,5 +61,5 @@ def compiled_modules() -> dict[str, Path]:
 
 def choose() -> None:
     """Have compiled modules be imported from now on, if there are any that are to be run."""
-    if not os.environ.get(SOURCES) and (files := compiled_modules()):
+    if files := compiled_modules():
         sys.meta_path.insert(0, _Finder(files))

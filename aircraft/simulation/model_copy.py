@@ -1,6 +1,5 @@
 """A copy of a JSBSim model without its own outputs, sockets and autopilots, and a hash of it."""
 
-import hashlib
 import re
 import shutil
 import tempfile
@@ -9,6 +8,7 @@ from pathlib import Path
 
 from aircraft.errors import AircraftError
 from aircraft.model_files import SHARED, ModelFiles, read_model, read_xml
+from common.files import files_hash
 
 _OWN_AUTOPILOT = re.compile(r"(^|[^a-z])(ap|autopilot|autothrottle)([^a-z]|$)")
 _PLAY = ("hysteresis_width", "deadband_width")
@@ -63,13 +63,9 @@ def model_hash(files: ModelFiles) -> str:
     ------
     AircraftError : a file of the model is missing or not XML
     """
-    digest = hashlib.sha256()
     with tempfile.TemporaryDirectory() as folder:
         copy_model(files, Path(folder))
-        for path in sorted(path for path in Path(folder).rglob("*") if path.is_file()):
-            digest.update(path.relative_to(folder).as_posix().encode())
-            digest.update(path.read_bytes())
-    return digest.hexdigest()
+        return files_hash(Path(folder), sorted(path for path in Path(folder).rglob("*") if path.is_file()))
 
 
 def _not_read(folder: str, names: list[str]) -> list[str]:

@@ -134,19 +134,19 @@ class TurnPrediction:
         floor : [m]
         against : how far those commands may be against it, over a full reversal [-]
         """
-        cos, sin, sqrt, then, leaving = math.cos, math.sin, math.sqrt, None, False
+        cos, sin, sqrt = math.cos, math.sin, math.sqrt
         x, y, course, heading_rate = start
         _, _, velocity_north, velocity_east, _, speed, _, fixed, error, acceleration, to_come, slowest = motion
         # What is to come counts where it is against the turn.
         heading_rate += side * min(0.0, side * to_come)
         duration, turned, mean, decay = self._interval
-        chord, ahead, gained, won, stretch, flown = fast = self._flown(side, speed)
+        chord, ahead, gained, won, stretch, way_speed = fast = self._flown(side, speed)
         slow = self._flown(side, slowest) if (uneven := slowest != speed) else fast
         north, east, half, lag = velocity_north * duration, velocity_east * duration, 0.5 * acceleration, self._lag
         # The farther the vehicle has to roll into the turn, or rolled of late, the more it deviates; where it is now not yet.
         fixed += (deviation := self._deviation * (counted := max(change, 0.5 - 0.5 * side * heading_rate / self._rate)))
         slack = sqrt(x * x + y * y) - (allowed := fixed + (error + half * time) * time)
-        least, places, outward = slack + deviation, [(x, y, course, allowed, speed)], self._outward(side, start)
+        least, places, outward, then = slack + deviation, [(x, y, course, allowed, speed)], self._outward(side, start), None
         # A command against the turn enlarges the deviation by 1/lag of what that of such a change exceeds it by in each second.
         lost = 2.0 * speed * self._rate * against / _ROLLING
         rolling = max(0.0, self._deviation * max(change, against) - deviation) / (lost * max(lag, self._hold[0]))
@@ -156,10 +156,9 @@ class TurnPrediction:
                 break
             middle = course + mean * heading_rate + ahead
             cos_m, sin_m = cos(middle), sin(middle)
-            if uneven and leads_away(x, y, cos_m, sin_m, chord, north, east) != leaving:
-                leaving = not leaving
-                chord, ahead, gained, won, _, flown = slow if leaving else fast
-                then = (x, y, course, side * (course - start[2])) if leaving else None
+            if uneven and leads_away(x, y, cos_m, sin_m, chord, north, east) != bool(then):
+                chord, ahead, gained, won, _, way_speed = fast if then else slow
+                then = None if then else (x, y, course, side * (course - start[2]))
             x += chord * cos_m - north
             y += chord * sin_m - east
             course += turned * heading_rate + gained
@@ -168,7 +167,7 @@ class TurnPrediction:
             last, before, before_outward, outward = slack, rise, outward, side * (y * cos_m - x * sin_m)
             nearer = nearer_by_switch(side, (speed - slowest) * stretch / self._rate, then, x, y, course) if then else 0.0
             slack = sqrt(x * x + y * y) - (allowed := fixed + (error + half * time) * time + nearer)
-            places.append((x, y, course, allowed, flown))
+            places.append((x, y, course, allowed, way_speed))
             rise = slack - last
             slack_rate = slack / (acting - lag * (1.0 - fade) + rolling)
             least_rate = slack_rate if slack_rate < least_rate else least_rate

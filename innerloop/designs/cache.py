@@ -16,7 +16,7 @@ import innerloop
 from aircraft.errors import AircraftError
 from aircraft.simulation.model_copy import model_hash
 from aircraft.spec import AircraftSpec
-from common.files import write_whole
+from common.files import files_hash, write_whole
 from innerloop.designs.designed import Designed, DesignError
 from innerloop.designs.stored import as_text, from_text
 from innerloop.jsbsim.root import write_root
@@ -107,9 +107,7 @@ def _program_hash() -> str:
         digest.update(text.encode())
     for package in (aircraft, common, innerloop):
         for folder in package.__path__:
-            for path in sorted(Path(folder).rglob("*.py")):
-                digest.update(str(path.relative_to(folder)).encode())
-                digest.update(path.read_bytes())
+            digest.update(files_hash(Path(folder), sorted(Path(folder).rglob("*.py"))).encode())
     return digest.hexdigest()
 
 

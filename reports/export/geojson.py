@@ -92,10 +92,9 @@ def _track(body: Body) -> dict[str, Any]:
 def _area(ring: list[Position]) -> dict[str, Any]:
     """Return a convex polygon, or the two parts of one that lies over the date line; the ring is in one piece, and closed."""
     edge = math.copysign(180.0, ring[0][0])
-    parts = [(_part(ring, edge, side), side) for side in (1.0, -1.0)]
-    # What is beyond the date line is given from there.
-    shifted = [[[x - 2.0 * edge * (side * edge < 0.0), *rest] for x, *rest in part] for part, side in parts if len(part) > _CORNERS]
-    coordinates = [[_rounded(part)] for part in shifted]
+    beyond = [[x - 2.0 * edge, y] for x, y in _part(ring, edge, -math.copysign(1.0, edge))]
+    parts = (_part(ring, edge, math.copysign(1.0, edge)), beyond)
+    coordinates = [[_rounded(part)] for part in parts if len(part) > _CORNERS]
     if len(coordinates) == 1:
         return {"type": "Polygon", "coordinates": coordinates[0]}
     return {"type": "MultiPolygon", "coordinates": coordinates}

@@ -1,11 +1,12 @@
 """The software that results depend on: versions of packages, and the project's own source with its data."""
 
 import functools
-import hashlib
 import importlib.metadata
 import platform
 from collections.abc import Mapping
 from pathlib import Path
+
+from common.files import files_hash
 
 _PACKAGES = ("jsbsim", "numpy", "scipy", "control", "slycot", "pydantic", "cma")
 SOURCE = ("aircraft", "common", "gnc", "innerloop", "measurement", "scenarios")
@@ -27,14 +28,9 @@ def fingerprint() -> dict[str, str]:
 
 def source_hash(project: Path) -> str:
     """Return a hash of the files of a project that results depend on, by their paths in it and their contents."""
-    digest = hashlib.sha256()
-    for package in SOURCE:
-        for path in sorted((project / package).rglob("*.*")):
-            name = path.relative_to(project).as_posix()
-            if path.suffix in _SUFFIXES and not name.startswith(_CATALOG):
-                digest.update(name.encode())
-                digest.update(path.read_bytes())
-    return digest.hexdigest()[:16]
+    found = (path for package in SOURCE for path in sorted((project / package).rglob("*.*")) if path.suffix in _SUFFIXES)
+    counted = (path for path in found if not path.relative_to(project).as_posix().startswith(_CATALOG))
+    return files_hash(project, counted)[:16]
 
 
 def differences(theirs: Mapping[str, str]) -> list[str]:

@@ -138,16 +138,15 @@ class Ending:
         else:
             return f"ended {mode.value} after {settling.crossings} crossings: the plume was no longer crossed"
         ended = f", and ended {mode.value}" if mode in _GIVEN_UP else ""
+        what = f"{flown} within {plan.duration_max:g} s{ended}"
         if math.isnan(settling.at) and self.saturated > _SATURATED:
             return (
-                f"{flown} within {plan.duration_max:g} s{ended}: its steering law asked for more than the largest heading rate in"
-                f" {100.0 * self.saturated:.0f} % of the steps; check that it returns rad/s, positive to the right (guidance.law)"
+                f"{what}: its steering law asked for more than the largest heading rate in {100.0 * self.saturated:.0f} % of the"
+                " steps; check that it returns rad/s, positive to the right (guidance.law)"
             )
         guard = ", start closer, or see whether the guard holds it off (guidance.keepout_guard)"
-        return (
-            f"{flown} within {plan.duration_max:g} s{ended}: allow more time (flight.duration_max_s{caveat})"
-            f"{guard if self.guarded else ', or start closer'}"
-        )
+        more_time = f"allow more time (flight.duration_max_s{caveat})"
+        return f"{what}: {more_time}{guard if self.guarded else ', or start closer'}"
 
     def _orbit(self) -> str:
         """Return how the orbit stood to its place at the end of a flight that tracked it and did not settle."""

@@ -279,7 +279,7 @@ def test_no_turn_passes_straight_away_sooner_than_it_says():
             x += (SPEED * math.cos(course) - motion[2]) * step
             y += (SPEED * math.sin(course) - motion[3]) * step
             course += side * HEADING_RATE_MAX * step
-            # Within the disc the bound is none.
+            # The bound is for a vehicle outside of the disc.
             if math.hypot(x, y) < motion[7]:
                 break
             least = min(least, side * math.remainder(math.atan2(y, x) - course, 2.0 * math.pi) + prediction._beyond)
