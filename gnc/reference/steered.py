@@ -27,6 +27,13 @@ _RATE_FRACTION = 0.3
 _SMOOTHING = 0.25
 """Time constant of their rates, over one through the heading rate [-]: that of a rolling aircraft does not jump."""
 
+_STATE = (
+    "_available", "_cos_course", "_cos_phase", "_eta_demand", "_eta_rate", "_mean_demand", "_mean_rate", "_rate_gain",
+    "_rate_max", "_share_demand", "_sin_course", "_smoothing", "_swing", "_time_step", "course", "east", "eta", "heading_rate",
+    "mean_course", "north", "omega_0", "phase", "share", "speed",
+)  # fmt: skip
+"""Attributes of a reference."""
+
 
 class SteeredReference:
     """The reference point, moved in equal time steps, with a mean velocity that ``steer`` sets.
@@ -49,11 +56,7 @@ class SteeredReference:
     share : part of its heading rate that it takes now [-]
     """
 
-    __slots__ = (
-        "_available", "_cos_course", "_cos_phase", "_eta_demand", "_eta_rate", "_mean_demand", "_mean_rate", "_rate_gain",
-        "_rate_max", "_share_demand", "_sin_course", "_smoothing", "_swing", "_time_step", "course", "east", "eta", "heading_rate",
-        "mean_course", "north", "omega_0", "phase", "share", "speed",
-    )  # fmt: skip
+    __slots__ = _STATE
 
     def __init__(
         self,
@@ -87,6 +90,27 @@ class SteeredReference:
         self._cos_course, self._sin_course = math.cos(self.course), math.sin(self.course)
         self.heading_rate = self.eta * self.omega_0 * swing.slopes(self.eta, phase)[1]
 
+    def __copy__(self) -> "SteeredReference":
+        """Return a copy, which a law may move ahead. Python cannot make one of what is compiled."""
+        other = SteeredReference(
+            north=self.north,
+            east=self.east,
+            mean_course=self.mean_course,
+            speed_ratio=0.0,
+            phase=self.phase,
+            swing=self._swing,
+            speed=self.speed,
+            heading_rate=self._available,
+            time_step=self._time_step,
+        )
+        for name in _STATE:
+            setattr(other, name, getattr(self, name))
+        return other
+
+    def __deepcopy__(self, _memo: object) -> "SteeredReference":
+        """Return a copy: its shape never changes."""
+        return self.__copy__()
+
     def steer(self, mean_course: float, speed_ratio: float) -> None:
         """Set the mean course [rad] and the mean speed over the speed [-] that are demanded from now on."""
         self._mean_demand = mean_course
@@ -98,7 +122,7 @@ class SteeredReference:
 
     def step(self) -> None:
         """Advance one time step."""
-        cos, sin, dt, rate_max, smoothing = math.cos, math.sin, self._time_step, self._rate_max, self._smoothing
+        dt, rate_max, smoothing = self._time_step, self._rate_max, self._smoothing
         swing = self._swing
         phase, eta, mean_course, cos_phase = self.phase, self.eta, self.mean_course, self._cos_phase
         gate = _GATE + (1.0 - _GATE) * cos_phase * cos_phase
@@ -116,13 +140,13 @@ class SteeredReference:
         if self.share != self._share_demand and math.floor(after / math.pi) != math.floor(phase / math.pi):
             self.share = self._share_demand
         phase = after
-        self._cos_phase = cos(phase)
+        self._cos_phase = math.cos(phase)
         self.course = last = mean_course + swing.course(eta, phase)
         cos_first, sin_first = self._cos_course, self._sin_course
-        self._cos_course, self._sin_course = cos_last, sin_last = cos(last), sin(last)
+        self._cos_course, self._sin_course = cos_last, sin_last = math.cos(last), math.sin(last)
         distance = self.speed * dt / 6.0
-        self.north += distance * (cos_first + 4.0 * cos(middle) + cos_last)
-        self.east += distance * (sin_first + 4.0 * sin(middle) + sin_last)
+        self.north += distance * (cos_first + 4.0 * math.cos(middle) + cos_last)
+        self.east += distance * (sin_first + 4.0 * math.sin(middle) + sin_last)
         by_eta, by_phase = swing.slopes(eta, phase)
         self.heading_rate = mean_rate + eta_rate * by_eta + eta * omega_0 * by_phase
 

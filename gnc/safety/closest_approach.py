@@ -1,7 +1,6 @@
 """How near a predicted turn comes to a disc: between two of its points, and if its speed changes elsewhere than predicted."""
 
 import math
-from collections.abc import Sequence
 
 Place = tuple[float, float, float, float, float]
 """x, y, course, the distance that is allowed for there [m], and the speed on the way there [m/s]."""
@@ -42,23 +41,22 @@ def nearer_by_switch(side: float, radii: float, then: Switch, x: float, y: float
     return max(0.0, away - math.hypot(x + shift * math.cos(middle), y + shift * math.sin(middle)))
 
 
-def least_of_late(places: Sequence[Place], velocity: tuple[float, float], duration: float) -> float:
+def least_of_late(earlier: Place, late: Place, now: Place, velocity: tuple[float, float], duration: float, *, first: bool) -> float:
     """Return the least slack of late [m] at a point of a turn from which on it rises: before the last point, or since.
 
     Parameters
     ----------
-    places : all so far
+    earlier, late, now : the last points
     velocity, duration : of the disc, north and east [m/s], and between points [s]
+    first : whether the turn began at ``late``, and there is no earlier point
     """
     velocity_north, velocity_east = velocity
-    (x, y, course, allowed, _), now = places[-2:]
+    x, y, course, allowed, _ = late
     speed = now[4]
     outwards = (speed * math.cos(course) - velocity_north) * x + (speed * math.sin(course) - velocity_east) * y
     if outwards / math.hypot(x, y) <= (now[3] - allowed) / duration:
-        return _least_between(places[-2], now, velocity, duration)
-    if len(places) > 2:
-        return _least_between(places[-3], places[-2], velocity, duration)
-    return math.hypot(x, y) - allowed
+        return _least_between(late, now, velocity, duration)
+    return math.hypot(x, y) - allowed if first else _least_between(earlier, late, velocity, duration)
 
 
 def _least_between(begin: Place, end: Place, velocity: tuple[float, float], duration: float) -> float:

@@ -134,7 +134,6 @@ class TurnPrediction:
         floor : [m]
         against : how far those commands may be against it, over a full reversal [-]
         """
-        cos, sin, sqrt = math.cos, math.sin, math.sqrt
         x, y, course, heading_rate = start
         _, _, velocity_north, velocity_east, _, speed, _, fixed, error, acceleration, to_come, slowest = motion
         # What is to come counts where it is against the turn.
@@ -145,8 +144,9 @@ class TurnPrediction:
         north, east, half, lag = velocity_north * duration, velocity_east * duration, 0.5 * acceleration, self._lag
         # The farther the vehicle has to roll into the turn, or rolled of late, the more it deviates; where it is now not yet.
         fixed += (deviation := self._deviation * (counted := max(change, 0.5 - 0.5 * side * heading_rate / self._rate)))
-        slack = sqrt(x * x + y * y) - (allowed := fixed + (error + half * time) * time)
-        least, places, outward, then = slack + deviation, [(x, y, course, allowed, speed)], self._outward(side, start), None
+        slack = math.sqrt(x * x + y * y) - (allowed := fixed + (error + half * time) * time)
+        least, outward, then, now = slack + deviation, self._outward(side, start), None, (x, y, course, allowed, speed)
+        late = now
         # A command against the turn enlarges the deviation by 1/lag of what that of such a change exceeds it by in each second.
         lost = 2.0 * speed * self._rate * against / _ROLLING
         rolling = max(0.0, self._deviation * max(change, against) - deviation) / (lost * max(lag, self._hold[0]))
@@ -155,7 +155,7 @@ class TurnPrediction:
             if least < floor:
                 break
             middle = course + mean * heading_rate + ahead
-            cos_m, sin_m = cos(middle), sin(middle)
+            cos_m, sin_m = math.cos(middle), math.sin(middle)
             if uneven and leads_away(x, y, cos_m, sin_m, chord, north, east) != bool(then):
                 chord, ahead, gained, won, _, way_speed = fast if then else slow
                 then = None if then else (x, y, course, side * (course - start[2]))
@@ -166,8 +166,8 @@ class TurnPrediction:
             time, acting, fade = time + duration, acting + duration, fade * decay
             last, before, before_outward, outward = slack, rise, outward, side * (y * cos_m - x * sin_m)
             nearer = nearer_by_switch(side, (speed - slowest) * stretch / self._rate, then, x, y, course) if then else 0.0
-            slack = sqrt(x * x + y * y) - (allowed := fixed + (error + half * time) * time + nearer)
-            places.append((x, y, course, allowed, way_speed))
+            slack = math.sqrt(x * x + y * y) - (allowed := fixed + (error + half * time) * time + nearer)
+            earlier, late, now = late, now, (x, y, course, allowed, way_speed)
             rise = slack - last
             slack_rate = slack / (acting - lag * (1.0 - fade) + rolling)
             least_rate = slack_rate if slack_rate < least_rate else least_rate
@@ -181,8 +181,8 @@ class TurnPrediction:
                     uneven = False
                 continue
             if before < 0.0 or point == 0:
-                least = min(least, nearest := least_of_late(places, (velocity_north, velocity_east), duration))
-                least_rate = min(least_rate, nearest / (acting - lag * (1.0 - fade) + rolling))
+                nearest = least_of_late(earlier, late, now, (velocity_north, velocity_east), duration, first=point == 0)
+                least, least_rate = min(least, nearest), min(least_rate, nearest / (acting - lag * (1.0 - fade) + rolling))
             # Also if it came past straight away between two points: it would have stopped there.
             if side * heading_rate >= 0.0 and (outward >= 0.0 or before_outward >= 0.0):
                 # It is over. One point more may allow more time until the next prediction.

@@ -23,6 +23,11 @@ LOOKING_AHEAD = [
     f"guidance.law={Path(__file__).parent}/law_that_looks_ahead.py:LooksAhead",
 ]  # fmt: skip
 
+OWN_SHAPE = [
+    "sea_wind", "draws=[]", "flights=1", "flight.crossings=6",
+    f"reference.shape={Path(__file__).parent}/shape_of_lists.py:ShapeOfLists",
+]  # fmt: skip
+
 STUDIES = {
     "calm air": ["sweep_nu", "sweep.nu=[0.1,0.5,0.95]", "flight.crossings=4", "start.spread_deg=180"],
     "the paper": ["paper"],
@@ -35,6 +40,7 @@ STUDIES = {
     "a failing engine": ENGINE_FAILS,
     "a stuck surface": ["sea_faults", "flights=2", "fault.kind=left_elevon", "flight.duration_max_s=300"],
     "a law that copies its reference": LOOKING_AHEAD,
+    "a shape that answers in lists": OWN_SHAPE,
     "a search": ["sulphur", "following.plume=estimated", "flight.duration_max_s=200"],
 }
 

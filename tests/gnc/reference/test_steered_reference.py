@@ -1,3 +1,4 @@
+import copy
 import math
 
 import numpy as np
@@ -11,6 +12,7 @@ from gnc.reference.bessel import eta_for_speed_ratio
 from gnc.reference.joining import JoinedOrbit
 from gnc.reference.orbit import offset
 from gnc.reference.oscillation import design_oscillation
+from gnc.reference.plain_swing import PlainSwing
 from gnc.reference.reference import REFERENCE_SHAPES
 from gnc.reference.shapes.sinusoid import SinusoidSwing
 from gnc.reference.steered import SteeredReference
@@ -184,3 +186,33 @@ def test_it_turns_the_shorter_way():
         assert reference.mean_course > 2.9
     # As above.
     assert math.remainder(reference.mean_course + 3.0, 2.0 * math.pi) == pytest.approx(0.0, abs=0.01)
+
+
+@pytest.mark.parametrize("copied", [copy.copy, copy.deepcopy])
+def test_a_copy_goes_on_as_its_original_would_and_leaves_that_where_it_is(copied):
+    reference = steered(mean_course=0.3, phase=1.1)
+    reference.steer(0.9, 0.4)
+    reference.spend(0.6)
+    for _ in range(37):
+        reference.step()
+    other, place = copied(reference), (reference.north, reference.east)
+    for _ in range(80):
+        other.step()
+    assert (reference.north, reference.east) == place
+    for _ in range(80):
+        reference.step()
+    assert [getattr(other, name) for name in SteeredReference.__slots__] == [
+        getattr(reference, name) for name in SteeredReference.__slots__
+    ]
+
+
+def test_courses_of_ones_own_become_plain_numbers():
+    class Listed:
+        def __getattr__(self, name):
+            return lambda *values: [np.float32(0.5), np.float32(0.25)] if name in {"slopes", "offset"} else np.float32(sum(values))
+
+    plain = PlainSwing(Listed())
+    numbers = [plain.eta(0.5), plain.speed_ratio(1.5), plain.frequency(1.0, 0.5), plain.course(0.25, 0.5)]
+    assert numbers == [0.5, 1.5, 1.5, 0.75]
+    assert plain.slopes(1.0, 0.0) == plain.offset(1.0, 0.0) == (0.5, 0.25)
+    assert {type(number) for number in [*numbers, *plain.slopes(1.0, 0.0), *plain.offset(1.0, 0.0)]} == {float}
