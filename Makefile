@@ -33,7 +33,10 @@ docs: .venv/.docs
 	@$(BIN)/python -m sphinx --nitpicky --fail-on-warning --keep-going --quiet docs docs/_build/html
 	@echo "documentation: docs/_build/html/index.html"
 
+# Of the compiled guidance, where it can be compiled; `PLUME_FLIGHT_SOURCES=1 make bench` of the sources.
 bench: .venv/.developer
+	@[ -n "$$PLUME_FLIGHT_SOURCES" ] || $(BIN)/python -c 'import gnc.compiled as c; c.compiled_modules() or exit(1)' || \
+		$(MAKE) --no-print-directory fast || true
 	@OPENBLAS_NUM_THREADS=1 $(BIN)/python -m benchmarks.closed_loop
 
 .venv: .venv/.installed

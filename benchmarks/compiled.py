@@ -65,7 +65,7 @@ def build(folder: Path) -> Path:
     """Compile the modules in a folder of their own, and return the one that holds them by packages."""
     files = [str(ROOT / "gnc" / f"{name}.py") for name in MODULES]
     options = [*_MYPY, "--cache-dir", str(folder / "cache")]
-    extensions = mypycify([*options, *files], opt_level="3", separate=True, target_dir=str(folder / "c"))
+    extensions = mypycify([*options, *files], opt_level="3", target_dir=str(folder / "c"))
     for extension in extensions:
         extension.extra_compile_args.append(_SAME_ARITHMETIC)
     command = Distribution({"ext_modules": extensions}).get_command_obj("build_ext")

@@ -145,8 +145,8 @@ class TurnPrediction:
         # The farther the vehicle has to roll into the turn, or rolled of late, the more it deviates; where it is now not yet.
         fixed += (deviation := self._deviation * (counted := max(change, 0.5 - 0.5 * side * heading_rate / self._rate)))
         slack = math.sqrt(x * x + y * y) - (allowed := fixed + (error + half * time) * time)
-        least, outward, then, now = slack + deviation, self._outward(side, start), None, (x, y, course, allowed, speed)
-        late = now
+        least, outward, slowed, now = slack + deviation, self._outward(side, start), False, (x, y, course, allowed, speed)
+        late, then = now, (x, y, course, 0.0)
         # A command against the turn enlarges the deviation by 1/lag of what that of such a change exceeds it by in each second.
         lost = 2.0 * speed * self._rate * against / _ROLLING
         rolling = max(0.0, self._deviation * max(change, against) - deviation) / (lost * max(lag, self._hold[0]))
@@ -156,16 +156,17 @@ class TurnPrediction:
                 break
             middle = course + mean * heading_rate + ahead
             cos_m, sin_m = math.cos(middle), math.sin(middle)
-            if uneven and leads_away(x, y, cos_m, sin_m, chord, north, east) != bool(then):
-                chord, ahead, gained, won, _, way_speed = fast if then else slow
-                then = None if then else (x, y, course, side * (course - start[2]))
+            if uneven and leads_away(x, y, cos_m, sin_m, chord, north, east) != slowed:
+                chord, ahead, gained, won, _, way_speed = fast if slowed else slow
+                slowed = not slowed
+                then = (x, y, course, side * (course - start[2]))
             x += chord * cos_m - north
             y += chord * sin_m - east
             course += turned * heading_rate + gained
             heading_rate = decay * heading_rate + won
             time, acting, fade = time + duration, acting + duration, fade * decay
             last, before, before_outward, outward = slack, rise, outward, side * (y * cos_m - x * sin_m)
-            nearer = nearer_by_switch(side, (speed - slowest) * stretch / self._rate, then, x, y, course) if then else 0.0
+            nearer = nearer_by_switch(side, (speed - slowest) * stretch / self._rate, then, x, y, course) if slowed else 0.0
             slack = math.sqrt(x * x + y * y) - (allowed := fixed + (error + half * time) * time + nearer)
             earlier, late, now = late, now, (x, y, course, allowed, way_speed)
             rise = slack - last
