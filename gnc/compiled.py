@@ -52,9 +52,10 @@ def compiled_modules() -> dict[str, Path]:
         return {}
     try:
         index = json.loads(INDEX.read_text(encoding="utf-8"))
-    except FileNotFoundError:
+        files = {name: FOLDER / file for name, file in index["modules"].items()}
+    except (OSError, ValueError, LookupError, TypeError):
+        # There is none, or it is damaged.
         return {}
-    files = {name: FOLDER / file for name, file in index["modules"].items()}
     whole = all(file.is_file() for file in files.values()) and index["sources"] == sources_hash()
     return files if whole else {}
 

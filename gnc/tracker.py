@@ -1,12 +1,12 @@
 """Tracking a reference point: preview by the vehicle's lag, the steering law, omega_max."""
 
-import math
 from collections import deque
 from dataclasses import dataclass
 from typing import Generic, TypeVar
 
 from gnc.laws.steering_law import STILL_AIR, SteeringLaw, Surroundings, begun, call_error, within_limit
 from gnc.reference.reference import Reference
+from gnc.unicycle import lag_ahead
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -40,26 +40,6 @@ class PlacedReference:
     def __init__(self, reference: Reference) -> None:
         self.north, self.east = reference.north, reference.east
         self.course, self.heading_rate, self.speed = reference.course, reference.heading_rate, reference.speed
-
-
-def lag_ahead(
-    north: float, east: float, course: float, speed: float, heading_rate: float, command: float, lag: float
-) -> tuple[float, float, float]:
-    """Return position [m] and course [rad] after the lag, with a heading rate that goes from the measured value to the command.
-
-    Parameters
-    ----------
-    north, east, course, speed : now [m, m, rad, m/s]
-    heading_rate, command : measured, and last commanded [rad/s]
-    lag : [s]
-    """
-    # Integrals over the lag of a heading rate that is linear in time.
-    middle = course + lag * (heading_rate / 3.0 + command / 6.0)
-    return (
-        north + speed * lag * math.cos(middle),
-        east + speed * lag * math.sin(middle),
-        course + 0.5 * lag * (heading_rate + command),
-    )
 
 
 AnyReference = TypeVar("AnyReference", bound=Reference)

@@ -66,3 +66,23 @@ def lagged_move(
     distance = speed * piece
     turned = command * duration - gap * lag * decay
     return north + distance * along, east + distance * across, course + turned, command + gap * (1.0 + decay)
+
+
+def lag_ahead(
+    north: float, east: float, course: float, speed: float, heading_rate: float, command: float, lag: float
+) -> tuple[float, float, float]:
+    """Return position [m] and course [rad] after the lag, with a heading rate that goes from the measured value to the command.
+
+    Parameters
+    ----------
+    north, east, course, speed : now [m, m, rad, m/s]
+    heading_rate, command : measured, and last commanded [rad/s]
+    lag : [s]
+    """
+    # Integrals over the lag of a heading rate that is linear in time.
+    middle = course + lag * (heading_rate / 3.0 + command / 6.0)
+    return (
+        north + speed * lag * math.cos(middle),
+        east + speed * lag * math.sin(middle),
+        course + 0.5 * lag * (heading_rate + command),
+    )

@@ -22,7 +22,8 @@ from gnc.mission.mode import Mode
 from gnc.mission.plume_axis import Climb
 from gnc.mission.plume_following import GLIDE_ALTITUDE
 from gnc.numeric import wrap
-from gnc.tracker import TrackingParameters, lag_ahead
+from gnc.tracker import TrackingParameters
+from gnc.unicycle import lag_ahead
 from gnc.vectors import Vector, along, course_of, minus, norm, plus, scaled
 
 _CLOCKWISE = 1

@@ -24,6 +24,13 @@ def start_reference(
     )
 
 
+_STATE = (
+    "_base", "_cos_course", "_distance", "_frequency", "_omega_0", "_oscillation", "_phase", "_share_demand", "_sin_course",
+    "_steps", "_swing", "_time_step", "_turn", "course", "east", "heading_rate", "north", "share", "speed",
+)  # fmt: skip
+"""Attributes of a reference."""
+
+
 class OscillatingReference:
     """The reference point, moved in equal time steps: equations (2), (3) and (4).
 
@@ -47,13 +54,10 @@ class OscillatingReference:
     share : part of its heading rate that it takes now [-]
     """
 
-    __slots__ = (
-        "_base", "_cos_course", "_distance", "_frequency", "_omega_0", "_phase", "_share_demand", "_sin_course", "_steps",
-        "_swing", "_time_step", "_turn", "course", "east", "heading_rate", "north", "share", "speed",
-    )  # fmt: skip
+    __slots__ = _STATE
 
     def __init__(self, oscillation: Orbit, start: ReferenceStart, *, phase: float, time_step: float, share: float = 1.0) -> None:
-        self._swing, self._turn = oscillation.course, oscillation.heading_rate
+        self._oscillation, self._swing, self._turn = oscillation, oscillation.course, oscillation.heading_rate
         self._frequency = oscillation.omega_0
         self._omega_0 = share * self._frequency
         self.share = self._share_demand = share
@@ -69,9 +73,20 @@ class OscillatingReference:
         self._cos_course, self._sin_course = math.cos(start.course), math.sin(start.course)
         self.heading_rate = share * oscillation.heading_rate(phase)
 
+    def __copy__(self) -> "OscillatingReference":
+        """Return a copy, which a law may move ahead. Python cannot make one of what is compiled."""
+        start = ReferenceStart(north=self.north, east=self.east, course=self.course)
+        other = OscillatingReference(self._oscillation, start, phase=self._phase, time_step=self._time_step)
+        for name in _STATE:
+            setattr(other, name, getattr(self, name))
+        return other
+
+    def __deepcopy__(self, _memo: object) -> "OscillatingReference":
+        """Return a copy: its oscillation never changes."""
+        return self.__copy__()
+
     def step(self, vessel_heading_rate: float = 0.0) -> None:
         """Advance one time step while the vessel turns at ``vessel_heading_rate`` omega_V [rad/s]."""
-        cos, sin = math.cos, math.sin
         steps, time_step, omega_0, distance = self._steps, self._time_step, self._omega_0, self._distance
         turn = vessel_heading_rate * time_step
         angle = omega_0 * (steps + 0.5) * time_step + self._phase
@@ -83,9 +98,9 @@ class OscillatingReference:
             angle = self._changed(angle)
         self.course = last = base + self._swing(angle)
         cos_first, sin_first = self._cos_course, self._sin_course
-        self._cos_course, self._sin_course = cos_last, sin_last = cos(last), sin(last)
-        self.north += distance * (cos_first + 4.0 * cos(middle) + cos_last)
-        self.east += distance * (sin_first + 4.0 * sin(middle) + sin_last)
+        self._cos_course, self._sin_course = cos_last, sin_last = math.cos(last), math.sin(last)
+        self.north += distance * (cos_first + 4.0 * math.cos(middle) + cos_last)
+        self.east += distance * (sin_first + 4.0 * math.sin(middle) + sin_last)
         self.heading_rate = vessel_heading_rate + self.share * self._turn(angle)
 
     def spend(self, share: float) -> None:

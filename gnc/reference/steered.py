@@ -96,7 +96,7 @@ class SteeredReference:
             north=self.north,
             east=self.east,
             mean_course=self.mean_course,
-            speed_ratio=0.0,
+            speed_ratio=self.speed_ratio,
             phase=self.phase,
             swing=self._swing,
             speed=self.speed,

@@ -9,7 +9,7 @@ from gnc.errors import InfeasibleError
 from gnc.reference.circling import CirclingReference
 from gnc.reference.joining import JoinedOrbit
 from gnc.reference.placement import PlumeAxis, distance_by_paper, distance_exact
-from gnc.reference.plain_swing import PlainSwing
+from gnc.reference.plain import made_plain
 from gnc.reference.reference import REFERENCE_SHAPES, Orbit, ReferenceShape, ReferenceStart, Swing
 from scenarios.planning.limits import omega_max
 from scenarios.schema.scenario import Scenario
@@ -30,7 +30,8 @@ def shape_of(reference: ReferenceConfig) -> ReferenceShape:
     ------
     PluginError : there is no such shape
     """
-    return REFERENCE_SHAPES.get(reference.shape)()
+    shape: ReferenceShape = made_plain(REFERENCE_SHAPES.get(reference.shape)())
+    return shape
 
 
 def oscillation_at(guidance: GuidanceConfig, reference: ReferenceConfig, nu: float) -> Orbit:
@@ -55,12 +56,11 @@ def oscillation_at(guidance: GuidanceConfig, reference: ReferenceConfig, nu: flo
 
 def swing_of(guidance: GuidanceConfig, reference: ReferenceConfig) -> Swing:
     """Return the courses of a reference that is steered, or raise an InfeasibleError."""
-    swing = shape_of(reference).swing(
+    return shape_of(reference).swing(
         speed=guidance.airspeed_mps,
         heading_rate=(1.0 - guidance.reserve) * omega_max(guidance),
         roll_rate_max=math.radians(guidance.roll_rate_max_deg_s),
     )
-    return swing if type(swing).__module__.startswith("gnc.") else PlainSwing(swing)
 
 
 @functools.lru_cache(maxsize=8)

@@ -63,3 +63,10 @@ def test_a_part_of_what_was_compiled_is_not_run(packages):
     (folder,) = (packages / "build").iterdir()
     (folder / "health.py").unlink()
     assert not is_compiled(packages)
+
+
+@pytest.mark.parametrize("left", ["", "{}", "[]"])
+def test_what_has_a_damaged_index_is_not_run(packages, left):
+    (folder,) = (packages / "build").iterdir()
+    (folder / "index.json").write_text(left, encoding="utf-8")
+    assert not is_compiled(packages)

@@ -18,20 +18,18 @@ ENGINE_FAILS = [
 ]  # fmt: skip
 """A turn away that is predicted at two speeds."""
 
-LOOKING_AHEAD = [
-    "sea_wind", "draws=[]", "flights=1", "flight.crossings=6",
-    f"guidance.law={Path(__file__).parent}/law_that_looks_ahead.py:LooksAhead",
-]  # fmt: skip
+IN_WIND = ["sea_wind", "draws=[]", "flights=1", "flight.crossings=6"]
 
-OWN_SHAPE = [
-    "sea_wind", "draws=[]", "flights=1", "flight.crossings=6",
-    f"reference.shape={Path(__file__).parent}/shape_of_lists.py:ShapeOfLists",
-]  # fmt: skip
+IN_CALM_AIR = ["sweep_nu", "sweep.nu=[0.5]", "comparison.variants=[]", "flight.crossings=6"]
+
+LOOKING_AHEAD = f"guidance.law={Path(__file__).parent}/law_that_looks_ahead.py:LooksAhead"
+
+OWN_SHAPE = f"reference.shape={Path(__file__).parent}/shape_of_lists.py:ShapeOfLists"
 
 STUDIES = {
     "calm air": ["sweep_nu", "sweep.nu=[0.1,0.5,0.95]", "flight.crossings=4", "start.spread_deg=180"],
     "the paper": ["paper"],
-    "a fast oscillation": ["sweep_nu", "sweep.nu=[0.5]", "comparison.variants=[]", "reference.shape=fastest", "flight.crossings=6"],
+    "a fast oscillation": [*IN_CALM_AIR, "reference.shape=fastest"],
     "a loiter": ["sweep_nu", "sweep.nu=[0.1]", "comparison.variants=[]", "reference.shape=loiter", "flight.crossings=6"],
     "samples": ["monte_carlo", "flights=6", "flight.duration_max_s=200"],
     "silent braking": SILENT_BRAKING,
@@ -39,8 +37,10 @@ STUDIES = {
     "no satellites": ["sea_wind", "flights=2", "fault.kind=satellite_navigation", "flight.duration_max_s=251"],
     "a failing engine": ENGINE_FAILS,
     "a stuck surface": ["sea_faults", "flights=2", "fault.kind=left_elevon", "flight.duration_max_s=300"],
-    "a law that copies its reference": LOOKING_AHEAD,
-    "a shape that answers in lists": OWN_SHAPE,
+    "a law that copies its reference": [*IN_WIND, LOOKING_AHEAD],
+    "a law that copies it in calm air": [*IN_CALM_AIR, LOOKING_AHEAD],
+    "a shape that answers in lists": [*IN_WIND, OWN_SHAPE],
+    "a shape that does in calm air": [*IN_CALM_AIR, OWN_SHAPE],
     "a search": ["sulphur", "following.plume=estimated", "flight.duration_max_s=200"],
 }
 

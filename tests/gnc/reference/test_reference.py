@@ -1,3 +1,4 @@
+import copy
 import math
 
 import numpy as np
@@ -126,3 +127,19 @@ def test_the_papers_shape_is_known_by_name_and_is_the_papers_oscillation():
     orbit = shape.design(**task, vessel_heading_rate=0.0, roll_rate_max=math.inf)
     assert orbit == design_oscillation(**task)
     assert orbit.half_widths() == half_widths(orbit)
+
+
+@pytest.mark.parametrize("copied", [copy.copy, copy.deepcopy])
+def test_a_copy_goes_on_as_its_original_would_and_leaves_that_where_it_is(copied):
+    _, reference = make(0.5, phase=1.1)
+    reference.spend(0.6)
+    for _ in range(137):
+        reference.step()
+    other, place = copied(reference), (reference.north, reference.east)
+    for _ in range(200):
+        other.step()
+    assert (reference.north, reference.east) == place
+    for _ in range(200):
+        reference.step()
+    names = set(OscillatingReference.__slots__)
+    assert {name: getattr(other, name) for name in names} == {name: getattr(reference, name) for name in names}

@@ -12,7 +12,6 @@ from gnc.reference.bessel import eta_for_speed_ratio
 from gnc.reference.joining import JoinedOrbit
 from gnc.reference.orbit import offset
 from gnc.reference.oscillation import design_oscillation
-from gnc.reference.plain_swing import PlainSwing
 from gnc.reference.reference import REFERENCE_SHAPES
 from gnc.reference.shapes.sinusoid import SinusoidSwing
 from gnc.reference.steered import SteeredReference
@@ -204,15 +203,3 @@ def test_a_copy_goes_on_as_its_original_would_and_leaves_that_where_it_is(copied
     assert [getattr(other, name) for name in SteeredReference.__slots__] == [
         getattr(reference, name) for name in SteeredReference.__slots__
     ]
-
-
-def test_courses_of_ones_own_become_plain_numbers():
-    class Listed:
-        def __getattr__(self, name):
-            return lambda *values: [np.float32(0.5), np.float32(0.25)] if name in {"slopes", "offset"} else np.float32(sum(values))
-
-    plain = PlainSwing(Listed())
-    numbers = [plain.eta(0.5), plain.speed_ratio(1.5), plain.frequency(1.0, 0.5), plain.course(0.25, 0.5)]
-    assert numbers == [0.5, 1.5, 1.5, 0.75]
-    assert plain.slopes(1.0, 0.0) == plain.offset(1.0, 0.0) == (0.5, 0.25)
-    assert {type(number) for number in [*numbers, *plain.slopes(1.0, 0.0), *plain.offset(1.0, 0.0)]} == {float}
