@@ -58,11 +58,11 @@ def write_json(path: Path, value: Mapping[str, Any], *, indent: int | None = 1) 
 
 def json_text(value: Mapping[str, Any], *, indent: int | None) -> str:
     """Return what ``write_json`` writes."""
-    return json.dumps(value, indent=indent, allow_nan=False, default=_plain_number) + "\n"
+    return json.dumps(value, indent=indent, allow_nan=False, default=plain_number) + "\n"
 
 
-def _plain_number(value: object) -> object:
-    """Return the number that one of NumPy's is, such as a part of a user's own may answer."""
+def plain_number(value: object) -> object:
+    """Return the number that one of NumPy's is, for JSON: such as a part of a user's own may answer."""
     if callable(item := getattr(value, "item", None)):
         return item()
     raise TypeError(f"JSON has nothing for {type(value).__name__}")

@@ -2,7 +2,7 @@
 
 import math
 
-from gnc.reference.reference import Orbit, ReferenceStart
+from gnc.reference.reference import Orbit, ReferenceStart, with_state_of
 
 
 def start_reference(
@@ -77,9 +77,7 @@ class OscillatingReference:
         """Return a copy, which a law may move ahead. Python cannot make one of what is compiled."""
         start = ReferenceStart(north=self.north, east=self.east, course=self.course)
         other = OscillatingReference(self._oscillation, start, phase=self._phase, time_step=self._time_step)
-        for name in _STATE:
-            setattr(other, name, getattr(self, name))
-        return other
+        return with_state_of(self, other, _STATE)
 
     def __deepcopy__(self, _memo: object) -> "OscillatingReference":
         """Return a copy: its oscillation never changes."""

@@ -1,8 +1,8 @@
 """What a reference is, and which shapes its orbit about the centre of oscillation can have."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
-from typing import Protocol
+from typing import Any, Protocol, TypeVar
 
 import numpy as np
 import numpy.typing as npt
@@ -10,6 +10,8 @@ import numpy.typing as npt
 from common.registry import Registry
 
 Array = npt.NDArray[np.float64]
+
+Copied = TypeVar("Copied")
 
 ETA_FREQUENCY = 0.2
 """Amplitude below which the frequency of a steered reference no longer rises [rad]: nearly straight flight needs none."""
@@ -197,6 +199,13 @@ class ReferenceShape(Protocol):
         ------
         InfeasibleError : a reference of this shape cannot be steered
         """
+
+
+def with_state_of(reference: Any, other: Copied, names: Iterable[str]) -> Copied:
+    """Return another reference in the state of this one, of which these are the names: for copies that Python cannot make."""
+    for name in names:
+        setattr(other, name, getattr(reference, name))
+    return other
 
 
 REFERENCE_SHAPES: Registry[Callable[..., ReferenceShape]] = Registry(

@@ -13,7 +13,7 @@ change of eta. Both therefore move mostly while the reference passes the centre.
 import math
 
 from gnc.numeric import limited, wrap
-from gnc.reference.reference import Swing
+from gnc.reference.reference import Swing, with_state_of
 
 _GATE = 0.2
 """Fraction of their rates that mean course and amplitude keep where the reference is farthest from the centre [-]."""
@@ -103,9 +103,7 @@ class SteeredReference:
             heading_rate=self._available,
             time_step=self._time_step,
         )
-        for name in _STATE:
-            setattr(other, name, getattr(self, name))
-        return other
+        return with_state_of(self, other, _STATE)
 
     def __deepcopy__(self, _memo: object) -> "SteeredReference":
         """Return a copy: its shape never changes."""

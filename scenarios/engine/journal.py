@@ -13,9 +13,10 @@ import sqlite3
 import time
 from collections.abc import Iterator
 from pathlib import Path
-from typing import IO, Any
+from typing import IO
 
 from common.cells import cell
+from common.files import plain_number
 from scenarios.engine.task import Result, Row, Task
 from scenarios.errors import InputError
 
@@ -106,7 +107,7 @@ class Journal:
             json.dumps(result.task.point),
             result.items,
             int(result.lost),
-            json.dumps(result.tables, default=_plain),
+            json.dumps(result.tables, default=plain_number),
         )
         self._database.execute("INSERT OR REPLACE INTO results VALUES (?, ?, ?, ?, ?, ?)", (*fields, _checksum(*fields)))
 
@@ -216,8 +217,3 @@ def _is_tables(text: object) -> bool:
     return isinstance(tables, dict) and all(
         isinstance(rows, list) and all(isinstance(row, dict) for row in rows) for rows in tables.values()
     )
-
-
-def _plain(value: Any) -> Any:
-    """Return a numpy scalar as a Python number."""
-    return value.item()

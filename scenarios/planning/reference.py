@@ -9,8 +9,8 @@ from gnc.errors import InfeasibleError
 from gnc.reference.circling import CirclingReference
 from gnc.reference.joining import JoinedOrbit
 from gnc.reference.placement import PlumeAxis, distance_by_paper, distance_exact
-from gnc.reference.plain import made_plain
 from gnc.reference.reference import REFERENCE_SHAPES, Orbit, ReferenceShape, ReferenceStart, Swing
+from gnc.reference.shapes.plain import made_plain
 from scenarios.planning.limits import omega_max
 from scenarios.schema.scenario import Scenario
 from scenarios.schema.sections.guidance import GuidanceConfig, ReferenceConfig

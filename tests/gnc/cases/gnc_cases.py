@@ -47,6 +47,18 @@ def paper_oscillation(nu, **changes):
     return design_oscillation(**({"nu": nu, "speed": SPEED, "heading_rate_max": HEADING_RATE_MAX} | changes))
 
 
+def assert_a_copy_goes_on(reference, copied):
+    """A copy goes on as its original would, and leaves that where it is."""
+    other, place = copied(reference), (reference.north, reference.east)
+    for _ in range(200):
+        other.step()
+    assert (reference.north, reference.east) == place
+    for _ in range(200):
+        reference.step()
+    names = type(reference).__slots__
+    assert [getattr(other, name) for name in names] == [getattr(reference, name) for name in names]
+
+
 OSCILLATION = paper_oscillation(0.5)
 
 

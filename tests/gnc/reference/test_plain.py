@@ -5,7 +5,7 @@ import copy
 import numpy as np
 from gnc_cases import paper_oscillation
 
-from gnc.reference.plain import made_plain
+from gnc.reference.shapes.plain import made_plain
 
 
 class Single:

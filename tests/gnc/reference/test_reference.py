@@ -3,7 +3,7 @@ import math
 
 import numpy as np
 import pytest
-from gnc_cases import HEADING_RATE_MAX, SPEED, paper_oscillation
+from gnc_cases import HEADING_RATE_MAX, SPEED, assert_a_copy_goes_on, paper_oscillation
 from scipy.integrate import solve_ivp
 
 from gnc.reference.circling import CirclingReference
@@ -135,11 +135,4 @@ def test_a_copy_goes_on_as_its_original_would_and_leaves_that_where_it_is(copied
     reference.spend(0.6)
     for _ in range(137):
         reference.step()
-    other, place = copied(reference), (reference.north, reference.east)
-    for _ in range(200):
-        other.step()
-    assert (reference.north, reference.east) == place
-    for _ in range(200):
-        reference.step()
-    names = set(OscillatingReference.__slots__)
-    assert {name: getattr(other, name) for name in names} == {name: getattr(reference, name) for name in names}
+    assert_a_copy_goes_on(reference, copied)

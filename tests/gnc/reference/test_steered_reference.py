@@ -3,7 +3,7 @@ import math
 
 import numpy as np
 import pytest
-from gnc_cases import HEADING_RATE_MAX, SPEED, examples
+from gnc_cases import HEADING_RATE_MAX, SPEED, assert_a_copy_goes_on, examples
 from hypothesis import assume, given
 from hypothesis import strategies as st
 from scipy.special import j0
@@ -194,12 +194,4 @@ def test_a_copy_goes_on_as_its_original_would_and_leaves_that_where_it_is(copied
     reference.spend(0.6)
     for _ in range(37):
         reference.step()
-    other, place = copied(reference), (reference.north, reference.east)
-    for _ in range(80):
-        other.step()
-    assert (reference.north, reference.east) == place
-    for _ in range(80):
-        reference.step()
-    assert [getattr(other, name) for name in SteeredReference.__slots__] == [
-        getattr(reference, name) for name in SteeredReference.__slots__
-    ]
+    assert_a_copy_goes_on(reference, copied)
