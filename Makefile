@@ -20,7 +20,7 @@ test: .venv/.developer
 # Compiles the guidance; needs a C compiler. Flights with it are compared with those of the sources, to the last bit.
 fast: .venv/.developer
 	@$(BIN)/python -m benchmarks.compiled
-	@trap : INT TERM; $(BIN)/python -m pytest -n 2 tests/regression/compiled_flights.py || \
+	@trap : INT TERM; $(BIN)/python -m pytest -n 2 tests/regression/compiled/compare_flights.py || \
 		{ rm -rf build/compiled-*; echo "error: what was compiled was not shown to fly the same; the sources are run"; exit 1; }
 
 check: .venv/.developer

@@ -4,7 +4,7 @@ import math
 from typing import NamedTuple
 
 from gnc.analysis.dynamics import state_rates
-from gnc.laws.cascade import h
+from gnc.laws.cascade_equation import h
 from gnc.laws.delta import LookAhead, RelativeState
 
 

@@ -29,7 +29,7 @@ from gnc.analysis.cascade_system import (
     v_1_unforced_rate,
 )
 from gnc.analysis.dynamics import state_rates, v_1_rate
-from gnc.laws.cascade import cascade_law, h
+from gnc.laws.cascade_equation import cascade_law, h
 from gnc.laws.delta import RelativeState, look_ahead, relative_velocity
 
 heading_rates = st.floats(-0.5, 0.5)

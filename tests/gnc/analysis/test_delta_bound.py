@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from scipy.integrate import quad
 
 from gnc.analysis.cascade_system import delta_bound, excursion_time
-from gnc.laws.cascade import h
+from gnc.laws.cascade_equation import h
 from gnc.laws.delta import look_ahead
 
 

@@ -23,7 +23,7 @@ from scipy.integrate import solve_ivp
 
 from gnc.analysis.cascade_system import v_1_rate_split
 from gnc.analysis.dynamics import equilibrium, state_rates, v_1, v_1_rate, v_2_rate
-from gnc.laws.cascade import cascade_law
+from gnc.laws.cascade_equation import cascade_law
 from gnc.laws.delta import RelativeState, distance_squared_rate, relative_velocity
 from gnc.numeric import wrap
 

@@ -16,7 +16,7 @@ from gnc.analysis.ensemble_motion import MOTIONS, Steering
 from gnc.analysis.ensemble_result import DISTANCE_CONVERGED, Outcome, Tolerances
 from gnc.analysis.turning_reference import TurningReferences
 from gnc.errors import InfeasibleError
-from gnc.laws.cascade import cascade_law
+from gnc.laws.cascade_equation import cascade_law
 from gnc.laws.delta import relative_velocity
 from gnc.laws.lyapunov import lyapunov_law
 from gnc.numeric import wrap

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from gnc.analysis.bounds import heading_rate_bound
 from gnc.analysis.worst_case_search import heading_rates, largest_heading_rate
 from gnc.errors import InfeasibleError
-from gnc.laws.cascade import cascade_law
+from gnc.laws.cascade_equation import cascade_law
 from gnc.laws.delta import look_ahead, relative_velocity
 
 DESIGNS = {

@@ -4,7 +4,7 @@ from gnc_cases import SPEED
 from hypothesis import strategies as st
 
 from gnc.analysis.bounds import convergence_time, fastest_within
-from gnc.laws.cascade import cascade_law
+from gnc.laws.cascade_equation import cascade_law
 from gnc.laws.delta import look_ahead, relative_state, relative_velocity
 
 # omega_max of the tables of docs/actuation_bounds.md; paper-notes give 0.503.

@@ -11,7 +11,8 @@ from scipy.integrate import solve_ivp
 
 from gnc.analysis.dynamics import equilibrium
 from gnc.errors import InfeasibleError
-from gnc.laws.cascade import CascadeLaw, cascade_law, h
+from gnc.laws.cascade import CascadeLaw
+from gnc.laws.cascade_equation import cascade_law, h
 from gnc.laws.delta import RelativeState, relative_velocity
 from gnc.laws.line_of_sight import LineOfSightLaw, line_of_sight_law
 from gnc.laws.lyapunov import LyapunovLaw, lyapunov_law
