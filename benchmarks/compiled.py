@@ -25,7 +25,7 @@ MODULES = (
     "estimation/vessel_filter", "estimation/wind_filter",
     "laws/cascade_equation", "laws/delta",
     "mission/approach", "mission/direct_tracking", "mission/egress", "mission/mode", "mission/plume_following", "mission/transit",
-    "reference/moving_centre", "reference/orbit_tables", "reference/oscillating", "reference/oscillation", "reference/steered",
+    "reference/moving_centre", "reference/orbit_tables", "reference/oscillating", "reference/steered",
     "safety/closest_approach", "safety/free_commands", "safety/given_commands", "safety/guard_parameters",
     "safety/guarded_commands", "safety/keepout_guard", "safety/speed_reckoning", "safety/turn_prediction",
 )  # fmt: skip

@@ -87,10 +87,11 @@ class ClosedLoop:
                 sensing.act(step, time, motion)
                 airspeed_error = sensing.airspeed_error
             tracker = mission.tracker
-            demand, command = abs(tracker.heading_rate_demand), guidance.heading_rate_command
-            demand_max = demand if demand > demand_max else demand_max
-            size = abs(command)
-            command_max = size if size > command_max else command_max
+            demand, command = tracker.heading_rate_demand, guidance.heading_rate_command
+            if demand > demand_max or -demand > demand_max:
+                demand_max = abs(demand)
+            if command > command_max or -command > command_max:
+                command_max = abs(command)
             saturated += tracker.saturated
             if guidance.guarding and guard is not None:
                 guarding.append((step, math.hypot(motion[0] - target.north, motion[1] - target.east), guard.lost))
