@@ -73,7 +73,9 @@ def test_a_command_that_passes_leaves_a_turn_with_all_that_is_kept_for_its_own_c
             demanded = aim_at_the_centre(k, *state[:3], heading_rate_max) if inwards else -heading_rate_max
             # The turn away that keeps off by all that a change of command before it takes; once begun it is one itself.
             if k and not (guard.intervening and abs(command) == heading_rate_max):
-                least = min(least, copy.deepcopy(guard).clearance(k * step, motion_of(state), SPEED))
+                asked = copy.copy(guard)
+                asked._given = copy.deepcopy(guard._given)
+                least = min(least, asked.clearance(k * step, motion_of(state), SPEED))
             command = guard.limit(demanded, k * step, motion_of(state), SPEED)
             under_way.append(command)
             state = moved(state, under_way.popleft(), lag, step, SPEED)
@@ -122,6 +124,7 @@ def test_whatever_needs_no_look_leaves_the_turn_that_was_found(deviation, radius
     # all that is kept for the last change of command. The vehicle has the guard's response; the disc follows it.
     heading_rate_max, lag, step = 0.49, 0.26, 0.05
     generator, passed, least = np.random.default_rng(5), 0, math.inf
+    tried = np.linspace(-1.0, 1.0, 9) * heading_rate_max
     for _ in range(120):
         guard = guard_of(
             radius=radius, heading_rate_max=heading_rate_max, time_step=step, lag=lag, delay=4 * step, deviation=deviation
@@ -140,8 +143,7 @@ def test_whatever_needs_no_look_leaves_the_turn_that_was_found(deviation, radius
             if guard.intervening:
                 break
             state, k = flown(state, under_way, command, lag), k + 1
-            tried = np.linspace(-1.0, 1.0, 9) * heading_rate_max
-            free = [each for each in tried if copy.deepcopy(guard._free).cover(each, SPEED, SPEED)]
+            free = [each for each in tried if copy.copy(guard._free).cover(each, SPEED, SPEED)]
         if (
             k > 1
             and not guard.intervening
