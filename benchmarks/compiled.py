@@ -1,4 +1,4 @@
-"""``make fast``: compile what the guidance spends its time in by mypyc.
+"""``make fast``: compile what guidance and closed loop spend their time in by mypyc.
 
 A compiled module computes what its source does, to the last bit: a test compares flights. What is compiled takes numbers alone.
 What takes arrays, or what parts of a user's own extend, is left out. All is one library: calls within it cost least.
@@ -18,18 +18,25 @@ from setuptools.errors import BaseError, CompileError, LinkError
 from common.files import write_json
 from gnc.compiled import FOLDER, INDEX, ROOT, sources_hash
 
-MODULES = (
-    "numeric", "unicycle",
-    "airspeed/along_track", "airspeed/pace_hold",
-    "estimation/health", "estimation/health_monitor", "estimation/navigation", "estimation/own_motion", "estimation/target_motion",
-    "estimation/vessel_filter", "estimation/wind_filter",
-    "laws/cascade_equation", "laws/delta",
-    "mission/approach", "mission/direct_tracking", "mission/egress", "mission/mode", "mission/plume_following", "mission/transit",
-    "reference/moving_centre", "reference/orbit_tables", "reference/oscillating", "reference/steered",
-    "safety/closest_approach", "safety/free_commands", "safety/given_commands", "safety/guard_parameters",
-    "safety/guarded_commands", "safety/keepout_guard", "safety/speed_reckoning", "safety/turn_prediction",
-)  # fmt: skip
-"""Modules of ``gnc`` that are compiled."""
+MODULES = {
+    "gnc": (
+        "guidance", "numeric", "unicycle",
+        "airspeed/along_track", "airspeed/pace_hold",
+        "estimation/health", "estimation/health_monitor", "estimation/navigation", "estimation/own_motion",
+        "estimation/target_motion", "estimation/vessel_filter", "estimation/wind_filter",
+        "laws/cascade_equation", "laws/delta",
+        "mission/approach", "mission/direct_tracking", "mission/egress", "mission/mode", "mission/plume_following",
+        "mission/transit",
+        "reference/moving_centre", "reference/orbit_tables", "reference/oscillating", "reference/steered",
+        "safety/closest_approach", "safety/free_commands", "safety/given_commands", "safety/guard_parameters",
+        "safety/guarded_commands", "safety/keepout_guard", "safety/speed_reckoning", "safety/turn_prediction",
+    ),
+    "scenarios": (
+        "simulation/closed_loop", "simulation/ending", "simulation/recorder", "simulation/settling",
+        "vehicles/jsbsim", "vehicles/telemetry",
+    ),
+}  # fmt: skip
+"""Modules that are compiled, by package."""
 
 _MYPY = ("--config-file=", "--ignore-missing-imports", "--follow-imports=silent")
 """Types are checked by `make check`, with what is installed; here they are only read."""
@@ -46,7 +53,7 @@ def main() -> int:
             built = build(Path(folder))
         except (BaseError, CompileError, LinkError) as error:
             remedy = "it needs a C compiler and the headers of Python (Debian: apt install gcc python3-dev)"
-            print(f"error: the guidance cannot be compiled: {error}; {remedy}", file=sys.stderr)
+            print(f"error: guidance and closed loop cannot be compiled: {error}; {remedy}", file=sys.stderr)
             return 2
         except KeyboardInterrupt:
             print("interrupted; nothing is compiled", file=sys.stderr)
@@ -57,13 +64,14 @@ def main() -> int:
     modules = {file.removesuffix(EXTENSION_SUFFIXES[0]).replace("/", "."): file for file in files}
     # Of the sources as they were before: one that was edited meanwhile is noticed.
     write_json(INDEX, {"sources": sources, "modules": modules})
-    print(f"{len(MODULES)} modules of the guidance are compiled; they are run until a source of it is edited")
+    count = sum(len(names) for names in MODULES.values())
+    print(f"{count} modules of guidance and closed loop are compiled; they are run until a source of the program is edited")
     return 0
 
 
 def build(folder: Path) -> Path:
     """Compile the modules in a folder of their own, and return the one that holds them by packages."""
-    files = [str(ROOT / "gnc" / f"{name}.py") for name in MODULES]
+    files = [str(ROOT / package / f"{name}.py") for package, names in MODULES.items() for name in names]
     options = [*_MYPY, "--cache-dir", str(folder / "cache")]
     extensions = mypycify([*options, *files], opt_level="3", target_dir=str(folder / "c"))
     for extension in extensions:

@@ -20,6 +20,7 @@ import pandas as pd
 from benchmarks.vehicle import x8_setup
 from common.run_layout import SUMMARY, time_history_path
 from gnc.compose import compose
+from gnc.estimation.own_motion import Motion
 from gnc.estimation.target_motion import ReportedTarget
 from gnc.guidance import Guidance
 from gnc.mission.searched_axis import SearchedAxis
@@ -33,6 +34,7 @@ from scenarios.schema.sections.equipment import PayloadConfig, VesselReportsConf
 from scenarios.schema.sections.flight import FlightConfig, StartConfig
 from scenarios.schema.sections.guidance import FollowingConfig
 from scenarios.schema.sections.world import EmissionConfig, PlumeConfig, VesselConfig, WindConfig
+from scenarios.simulation.onboard import OnboardSensing
 from scenarios.simulation.plume_readings import axis_of
 from scenarios.vehicles.vehicle_setup import VehicleSetup
 
@@ -62,6 +64,9 @@ _EVERY = 2
 
 _INTERVAL, _PARCEL = 4, 2
 """Steps between the readings of the fast sniffer, and readings that are passed on together [-]."""
+
+_MOTION = ["time_s", "north_m", "east_m", "velocity_north_mps", "velocity_east_mps", "heading_rate_rad_s"]
+"""Time, and what a guidance that knows its motion exactly is given."""
 
 Measured = Sequence[tuple[float, Any]]
 """Time, and what is measured then, in the form that the guidance takes."""
@@ -112,15 +117,18 @@ def _flown(scenario: Scenario, setup: VehicleSetup) -> tuple[FlightPlan, Measure
     """Return the plan of a flight, what its guidance measures at each step, and what a search would get."""
     work = FlightWork(experiments=(Experiment("bench", scenario),), histories=1, setup=setup, spreads=PredictedSpreads())
     measured: list[tuple[float, Any]] = []
-    step = Guidance.step
+    read = OnboardSensing.read
 
-    def noted(guidance: Guidance, at: float, measurement: Any) -> None:
-        measured.append((at, measurement))
-        step(guidance, at, measurement)
+    def noted(sensing: OnboardSensing, step: int, at: float, motion: Motion) -> Any:
+        measured.append((at, read(sensing, step, at, motion)))
+        return measured[-1][1]
 
-    with mock.patch.object(Guidance, "step", noted):
+    with mock.patch.object(OnboardSensing, "read", noted):
         result = work.fly(Task(number=0))
     history = pd.read_parquet(io.BytesIO(result.files[time_history_path(result.tables[SUMMARY][0]["flight_id"])]))
+    if not measured:
+        # It knows its motion exactly.
+        measured = [(at, tuple(motion)) for at, *motion in history[_MOTION].itertuples(index=False, name=None)]
     return work.plan(work.request(Task(number=0))), measured, _plume_readings(history)
 
 

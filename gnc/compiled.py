@@ -21,7 +21,7 @@ FOLDER = ROOT / "build" / f"compiled-{sys.implementation.cache_tag}"
 INDEX = FOLDER / "index.json"
 """``sources``, their hash; ``modules``, names of modules and of files. Written last: without it there is nothing."""
 
-_PACKAGES = ("common", "gnc")
+_PACKAGES = ("aircraft", "common", "gnc", "innerloop", "scenarios")
 """Whose sources count: those of compiled modules, and what these import."""
 
 

@@ -113,8 +113,11 @@ class Tracker(Generic[AnyReference]):
             inside = -limit <= demand <= limit
         except (TypeError, ValueError):
             inside = False
+        command = demand
         # Of an array of one number it is an array, too.
-        command = demand if inside is True else within_limit(demand, limit, self._law, (to_north, to_east, then_course, speed))
+        if inside is not True:
+            command = within_limit(demand, limit, self._law, (to_north, to_east, then_course, speed))
+            demand = float(demand)
         self.heading_rate_demand, self.heading_rate_command = demand, command
         self.saturated = command != demand
         ahead.step()

@@ -24,6 +24,9 @@ class _Package(ModuleType):
 
 sys.modules[__name__].__class__ = _Package
 
+# Before any module of this package: it has those found that are compiled.
+importlib.import_module("gnc.compiled")
+
 
 def __getattr__(name: str) -> object:
     """Return a public name, loaded at its first use."""

@@ -2,7 +2,8 @@
 
 import math
 import struct
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from typing import Any
 
 import numpy as np
 
@@ -43,8 +44,9 @@ class Recorder:
         self._guidance, self._own, self._target = guidance, guidance.own, guidance.target
         self._mission, self._guard = guidance.mission, guidance.guard
         self._sample, self._payload, self._settled = vehicle.sample, payload, settling.update
-        self._vessel_at = world.vessel.motion if world else _no_vessel
-        self._axis_at = world.plume.axis if world else _no_axis
+        # A track or plume of a user's own may answer in other numbers than Python's.
+        self._vessel_at: Callable[[float], Any] = world.vessel.motion if world else _no_vessel
+        self._axis_at: Callable[[float], Any] = world.plume.axis if world else _no_axis
         self.columns = COLUMNS + tuple(column for instrument in payload for column in instrument.COLUMNS)
         # As bytes: tuples would be numbers by the hundred thousand for Python to look after, and slow to make an array of.
         self._rows, self._pack = list[bytes](), struct.Struct(f"{len(self.columns)}d").pack
@@ -87,7 +89,8 @@ class Recorder:
             return sample, False
         error = math.hypot(north - own_north, east - own_east)
         place = centre_error if mission.in_place else math.inf
-        return sample, self._settled(time, error, place, own_north - vessel[0], own_east - vessel[1], axis)
+        x, y = float(own_north - vessel[0]), float(own_east - vessel[1])
+        return sample, self._settled(time, error, place, x, y, float(axis))
 
     def rows(self) -> Array:
         """Return what is recorded, shape (rows, columns)."""
