@@ -17,7 +17,7 @@ sweep_nu: .venv
 test: .venv/.developer
 	@$(BIN)/python -m pytest -n 2 --dist loadfile --no-loadscope-reorder
 
-# Compiles the guidance; needs a C compiler. Flights with it are compared with those of the sources, to the last bit.
+# Compiles guidance and closed loop; needs a C compiler. Flights with them are compared with those of the sources, to the last bit.
 fast: .venv/.developer
 	@$(BIN)/python -m benchmarks.compiled
 	@trap : INT TERM; $(BIN)/python -m pytest -n 2 tests/regression/compiled/compare_flights.py || \
@@ -34,7 +34,7 @@ docs: .venv/.docs
 	@$(BIN)/python -m sphinx --nitpicky --fail-on-warning --keep-going --quiet docs docs/_build/html
 	@echo "documentation: docs/_build/html/index.html"
 
-# Of the compiled guidance, where it can be compiled; `PLUME_FLIGHT_SOURCES=1 make bench` of the sources.
+# Of what `make fast` compiles, where it can be compiled; `PLUME_FLIGHT_SOURCES=1 make bench` of the sources.
 bench: .venv/.developer
 	@[ -n "$$PLUME_FLIGHT_SOURCES" ] || $(BIN)/python -c 'import gnc.compiled as c; c.compiled_modules() or exit(1)' || \
 		$(MAKE) --no-print-directory fast || true
