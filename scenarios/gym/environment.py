@@ -26,7 +26,7 @@ from scenarios.gym.observation import Array, Observer, observation_space
 from scenarios.gym.reward import LOST, VIOLATION, CrossingReward
 from scenarios.instruments.instrument import Instrument
 from scenarios.schema.sections.experiment import STUDY
-from scenarios.simulation.closed_loop import ClosedLoop, Commands
+from scenarios.simulation.closed_loop import ClosedLoop, Commands, record_of
 from scenarios.simulation.outcome import Outcome
 from scenarios.simulation.record import FlightRecord
 from scenarios.simulation.release import failable, release
@@ -179,8 +179,8 @@ class PlumeCrossing(gymnasium.Env[Array, Array]):
         lost = truncated = False
         try:
             episode.commands = episode.steps.send((heading_rate, airspeed))
-        except StopIteration as ended:
-            record: FlightRecord = ended.value
+        except StopIteration as over:
+            record = record_of(over)
             lost = record.outcome in (Outcome.DIVERGED, Outcome.AIRCRAFT_LOST)
             # A flight without a number of crossings completes when its time is up.
             truncated = not lost and (episode.time_is_up or record.outcome in (Outcome.NOT_SETTLED, Outcome.INCOMPLETE))

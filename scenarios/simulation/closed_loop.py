@@ -137,8 +137,20 @@ def fly(
         while True:
             commands = follow(commands)
     except StopIteration as over:
-        record: FlightRecord = over.value
-        return record
+        return record_of(over)
+
+
+def record_of(over: StopIteration) -> FlightRecord:
+    """Return the record of a flight whose steps are over.
+
+    Raises
+    ------
+    RuntimeError : a part of the user's has ended them. Python itself says so (PEP 479), but not of compiled steps
+    """
+    record = over.value
+    if not isinstance(record, FlightRecord):
+        raise RuntimeError("generator raised StopIteration") from over
+    return record
 
 
 def _sensing(plan: FlightPlan, vehicle: Vehicle, guidance: Guidance, reader: GasReader | None) -> OnboardSensing | None:

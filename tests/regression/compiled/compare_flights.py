@@ -26,6 +26,8 @@ LOOKING_AHEAD = f"guidance.law={Path(__file__).parent}/law_that_looks_ahead.py:L
 
 OWN_SHAPE = f"reference.shape={Path(__file__).parent}/shape_of_lists.py:ShapeOfLists"
 
+OWN_INSTRUMENT = f'payload=["{Path(__file__).parent}/instrument_of_lists.py:InstrumentOfLists"]'
+
 STUDIES = {
     "calm air": ["sweep_nu", "sweep.nu=[0.1,0.5,0.95]", "flight.crossings=4", "start.spread_deg=180"],
     "the paper": ["paper"],
@@ -41,6 +43,7 @@ STUDIES = {
     "a law that copies it in calm air": [*IN_CALM_AIR, LOOKING_AHEAD],
     "a shape that answers in lists": [*IN_WIND, OWN_SHAPE],
     "a shape that does in calm air": [*IN_CALM_AIR, OWN_SHAPE],
+    "an instrument that answers in lists": [*IN_CALM_AIR, OWN_INSTRUMENT],
     "a search": ["sulphur", "following.plume=estimated", "flight.duration_max_s=200"],
 }
 

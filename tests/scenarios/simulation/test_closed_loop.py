@@ -109,3 +109,12 @@ def test_a_following_flight_in_a_rising_plume_is_commanded_to_the_height_of_its_
     towards = np.sign(expected[-1] - 60.0)
     assert towards * (commanded[-1] - commanded[0]) > 25.0
     assert abs(commanded[-1] - expected[-1]) < 0.05 * abs(expected[-1] - 60.0)
+
+
+def test_a_part_that_ends_the_steps_of_a_flight_is_no_record_of_it():
+    # Python makes such an error of it by itself; where steps are compiled, the exception of the part gets through.
+    for value in (None, "stop"):
+        with pytest.raises(RuntimeError, match="generator raised StopIteration"):
+            closed_loop.record_of(StopIteration(value))
+    record = flown(tracking())
+    assert closed_loop.record_of(StopIteration(record)) is record
