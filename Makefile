@@ -17,7 +17,8 @@ sweep_nu: .venv
 test: .venv/.developer
 	@$(BIN)/python -m pytest -n 2 --dist loadfile --no-loadscope-reorder
 
-# Compiles guidance and closed loop; needs a C compiler. Flights with them are compared with those of the sources, to the last bit.
+# Compiles guidance and closed loop; needs a C compiler. Flights with them are compared with those of the sources, to
+# the last bit.
 fast: .venv/.developer
 	@$(BIN)/python -m benchmarks.compiled
 	@trap : INT TERM; $(BIN)/python -m pytest -n 2 tests/regression/compiled/compare_flights.py || \

@@ -116,8 +116,7 @@ class Tracker(Generic[AnyReference]):
         command = demand
         # Of an array of one number it is an array, too.
         if inside is not True:
-            command = within_limit(demand, limit, self._law, (to_north, to_east, then_course, speed))
-            demand = float(demand)
+            demand, command = within_limit(demand, limit, self._law, (to_north, to_east, then_course, speed))
         self.heading_rate_demand, self.heading_rate_command = demand, command
         self.saturated = command != demand
         ahead.step()

@@ -106,8 +106,8 @@ def begun(law: SteeringLaw, surroundings: Surroundings, time_step: float) -> Ste
 _MUST = "its method heading_rate(reference, to_north, to_east, course, speed) has to return a number [rad/s]"
 
 
-def within_limit(demand: Any, limit: float, law: str, given: Sequence[float]) -> float:
-    """Return what a law demanded, kept within minus and plus ``limit`` [rad/s].
+def within_limit(demand: Any, limit: float, law: str, given: Sequence[float]) -> tuple[float, float]:
+    """Return what a law demanded, as a plain number, and that kept within minus and plus ``limit`` [rad/s].
 
     Parameters
     ----------
@@ -122,7 +122,7 @@ def within_limit(demand: Any, limit: float, law: str, given: Sequence[float]) ->
     """
     if _is_number(demand) and (-limit <= demand <= limit or not math.isnan(demand) or not all(map(math.isfinite, given))):
         # A number of NumPy's would have all that follows computed in its own precision, or be changed in place.
-        return float(limited(demand, limit))
+        return float(demand), float(limited(demand, limit))
     shown = repr(demand) if isinstance(demand, str) else " ".join(str(demand).split())
     raise LawError(f"steering law '{law}' returned {shown}: {_MUST}")
 

@@ -145,9 +145,9 @@ class CircleTracker:
                 raise call_error(self._law, error) from None
             # The reference is where it will be at the next step, as that of any tracker.
             placed(reference, self._time_step)
-        command = within_limit(demand, self._limit, self._law, (ahead.north - north, ahead.east - east, course, speed))
-        self.heading_rate_demand, self.heading_rate_command = float(demand), command
-        self.saturated = command != self.heading_rate_demand
+        demand, command = within_limit(demand, self._limit, self._law, (ahead.north - north, ahead.east - east, course, speed))
+        self.heading_rate_demand, self.heading_rate_command = demand, command
+        self.saturated = command != demand
         return command
 
 

@@ -67,7 +67,7 @@ class Oscillation:
 
     def heading_rate(self, phase: float) -> float:
         """Return omega_r = -A sin(theta) [rad/s]: equation (2)."""
-        return -(self.eta * self.omega_0) * math.sin(phase)
+        return -self.amplitude * math.sin(phase)
 
     def sidebands(self, orders: npt.NDArray[np.int64]) -> Array:
         """Return J_n(eta)^2, by the Jacobi-Anger expansion [-]."""

@@ -16,7 +16,7 @@ MODULE = "gnc.estimation.health"
 @pytest.fixture
 def packages(tmp_path):
     """Copies of the packages, and a module that stands for what was compiled of them."""
-    for name in ("common", "gnc"):
+    for name in ("common", "gnc", "scenarios"):
         shutil.copytree(ROOT / name, tmp_path / name, ignore=shutil.ignore_patterns("__pycache__"))
     found = asked(tmp_path, "from gnc.compiled import FOLDER, sources_hash; print(FOLDER); print(sources_hash())")
     folder, sources = found.splitlines()
@@ -49,7 +49,9 @@ def test_what_was_compiled_is_run_unless_sources_are_asked_for(packages):
     assert not is_compiled(packages, PLUME_FLIGHT_SOURCES="1")
 
 
-@pytest.mark.parametrize("edited", ["gnc/estimation/health.py", "gnc/guidance.py", "common/physics/units.py"])
+@pytest.mark.parametrize(
+    "edited", ["gnc/estimation/health.py", "gnc/guidance.py", "common/physics/units.py", "scenarios/simulation/record.py"]
+)
 def test_once_a_source_is_edited_the_sources_are_run(packages, edited):
     path = packages / edited
     times = path.stat()

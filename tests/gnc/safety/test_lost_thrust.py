@@ -19,7 +19,7 @@ def fly(fails, closing, slowest):
     """Return the closest approach [m] to a disc that closes in, of a vehicle that is steered at it, and how often it was lost."""
     guard = make_guard(lag=LAG, slowest=slowest)
     state, x, closest, lost, speed = (0.0, 3.0, 0.0, 0.0), -600.0, math.inf, 0, SPEED
-    for step in range(round(30.0 / TIME_STEP)):
+    for step in range(round(45.0 / TIME_STEP)):
         _, y, course, rate = state
         command = aim_at_the_centre(step, x, y, course)
         command = guard.limit(command, x, y, -closing, 0.0, course, SPEED, rate, slowest=speed)
