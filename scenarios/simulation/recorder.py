@@ -43,12 +43,12 @@ class Recorder:
     ) -> None:
         self._guidance, self._own, self._target = guidance, guidance.own, guidance.target
         self._mission, self._guard = guidance.mission, guidance.guard
-        self._sample, self._settled = vehicle.sample, settling.update
+        instruments: Sequence[Any] = payload
+        self._sample, self._payload, self._settled = vehicle.sample, instruments, settling.update
         # A track, plume or instrument of a user's own may answer in other numbers than Python's, and in other rows than tuples.
-        self._payload: Sequence[Any] = payload
         self._vessel_at: Callable[[float], Any] = world.vessel.motion if world else _no_vessel
         self._axis_at: Callable[[float], Any] = world.plume.axis if world else _no_axis
-        self.columns = COLUMNS + tuple(column for instrument in self._payload for column in instrument.COLUMNS)
+        self.columns = COLUMNS + tuple(column for instrument in instruments for column in instrument.COLUMNS)
         # As bytes: tuples would be numbers by the hundred thousand for Python to look after, and slow to make an array of.
         self._rows, self._pack = list[bytes](), struct.Struct(f"{len(self.columns)}d").pack
 
