@@ -109,15 +109,20 @@ def _all_windows(record: Record, windows: Sequence[tuple[float, float]], late: f
 
 
 def _puffs(record: Record, instrument: SnifferSpec, passes: Sequence[Pass], gas: str) -> Array:
-    """Return what a gas's channel reads of puffs with the dose of each pass, if it read CO2: sums of exponentials."""
+    """Return what a gas's channel reads of puffs with the dose of each pass, if it read CO2: sums of exponentials [ppm].
+
+    Each sample is the mean from half a step before it to half a step after it. At single moments, an area would depend on where
+    between two samples a puff arrives.
+    """
     channel, co2 = instrument.known(gas), instrument.known("co2")
     arrivals = np.array([found.centre_s for found in passes]) - sum(co2.constants) + channel.delay_s - co2.delay_s
     since = record.time[:, np.newaxis] - arrivals
+    begin, end = (np.maximum(since + half, 0.0) for half in (-0.5 * record.step, 0.5 * record.step))
     doses = np.array([found.dose_ppm_s for found in passes])
     read = np.zeros(len(since))
     for weight, constant in parallel(channel.constants):
-        read += weight / constant * (np.where(since >= 0.0, np.exp(-np.maximum(since, 0.0) / constant), 0.0) @ doses)
-    return read * channel.gain / co2.gain
+        read += weight / record.step * ((np.exp(-begin / constant) - np.exp(-end / constant)) @ doses)
+    return read
 
 
 def _add_window(weights: Array, record: Record, window: tuple[float, float], free: tuple[float, float]) -> None:

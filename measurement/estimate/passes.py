@@ -50,8 +50,8 @@ class Pass:
     ----------
     time_s, centre_s : of the CO2 reading's peak, and of the centre of its area [s]
     start_s, end_s : where the CO2 reading leaves its background and is back, or the trough to the neighbour [s]
-    height_ppm, snr : of the peak over the background, and over the noise [-]
-    dose_ppm_s : area of the CO2 excess, with what the channel remembers at the end less that at the start [ppm s]
+    height_ppm, snr : of the reading's peak over its background, and over its noise [-]
+    dose_ppm_s : area of the excess of CO2 in the air, with what the channel remembers at the end less that at the start [ppm s]
     """
 
     time_s: float
@@ -146,6 +146,7 @@ def _bounded(time: Array, excess: Array, peaks: npt.NDArray[np.int64], channel: 
         # The low quantile lies above the background where a plume is never far: then the troughs tell it better.
         level = min(0.0, 0.5 * float(excess[start] + excess[end]))
         weights = np.maximum(excess[inside], 0.0)
+        area = float(np.trapezoid(excess[inside] - level, time[inside]) + memory * (excess[end] - excess[start]))
         passes.append(
             Pass(
                 time_s=float(time[peak]),
@@ -154,7 +155,7 @@ def _bounded(time: Array, excess: Array, peaks: npt.NDArray[np.int64], channel: 
                 end_s=float(time[end]),
                 height_ppm=height,
                 snr=height / noise if noise > 0.0 else math.inf,
-                dose_ppm_s=float(np.trapezoid(excess[inside] - level, time[inside]) + memory * (excess[end] - excess[start])),
+                dose_ppm_s=area / channel.gain,
             )
         )
     return passes

@@ -39,7 +39,7 @@ def unlikely(record: Record, readings: Readings, instrument: SnifferSpec) -> lis
     problems += [*sticking(readings, instrument.known("co2")), *_spikes(record, readings, instrument.known("co2"))]
     for channel in map(instrument.known, telling):
         problems += sticking(readings, channel) or quiet(record.scatter[channel.gas], channel)
-    return problems or _exchanged(record)
+    return problems or _exchanged(record, instrument)
 
 
 def _cut_off(readings: Readings, channel: Channel) -> list[str]:
@@ -96,16 +96,17 @@ def _spikes(record: Record, readings: Readings, channel: Channel) -> list[str]:
     ]
 
 
-def _exchanged(record: Record) -> list[str]:
+def _exchanged(record: Record, instrument: SnifferSpec) -> list[str]:
     """Return the problem of NO2 that exceeds NO by more than ozone makes of it, if it does.
 
     Of the NOx of exhaust 3 to 20 % are NO2.
     """
     if not {"no", "no2"} <= set(used_gases(record)):
         return []
-    no, no2 = (float(np.ptp(np.quantile(record.of(gas), (_LOW, _HIGH)))) for gas in ("no", "no2"))
+    gains = {gas: instrument.known(gas).gain for gas in ("no", "no2")}
+    no, no2 = (float(np.ptp(np.quantile(record.of(gas), (_LOW, _HIGH)))) / gain for gas, gain in gains.items())
     # The squares of what noise and plume do add up.
-    if no2**2 - (_SIGMAS * record.scatter["no2"]) ** 2 <= (no + OZONE_MOST) ** 2:
+    if no2**2 - (_SIGMAS * record.scatter["no2"] / gains["no2"]) ** 2 <= (no + OZONE_MOST) ** 2:
         return []
     return [
         f"NO2 varies by {no2:.0f} ppb in the plume and NO by {no:.0f} ppb: exhaust has more NO than NO2, and ozone makes at most"

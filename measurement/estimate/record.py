@@ -12,6 +12,7 @@ import numpy.typing as npt
 
 from measurement.errors import MeasurementError
 from measurement.gases import EXPECTED_PPB_PER_PPM, GASES, UNITS
+from measurement.sniffer.channel import Channel
 from measurement.sniffer.lag import Array
 from measurement.sniffer.sniffer import Readings
 from measurement.sniffer.spec import SnifferSpec
@@ -133,7 +134,7 @@ def checked_record(readings: Readings, instrument: SnifferSpec) -> Record:
     gases = _used(values, instrument)
     logged = {gas: values[:, GASES.index(gas)] for gas in gases}
     for gas, column in logged.items():
-        check_units(gas, column)
+        check_units(instrument.known(gas), column)
     problems = _problems(time, values, gases, instrument)
     known = np.isfinite(list(logged.values())).all(axis=0)
     segments = [segment for segment in pieces(time, np.flatnonzero(known), step) if len(segment) >= SHORTEST]
@@ -190,15 +191,15 @@ def check_increasing(time: Array, path: Path | None = None) -> None:
     )
 
 
-def check_units(gas: str, values: Array) -> None:
-    """Refuse readings of a gas that cannot be in its unit, shape (m,).
+def check_units(channel: Channel, values: Array) -> None:
+    """Refuse readings of a channel that cannot be in its gas's unit, shape (m,).
 
     Raises
     ------
     MeasurementError : they are CO2 without its background, or no gas has them
     """
-    known = values[np.isfinite(values)]
-    middle, least, most = float(np.median(known)), float(known.min()), float(known.max())
+    gas, known = channel.gas, values[np.isfinite(values)]
+    middle, least, most = float(np.median(known)) / channel.gain, float(known.min()), float(known.max())
     if gas == "co2" and not CO2_LEAST <= middle <= CO2_MOST:
         raise MeasurementError(
             f"CO2 has a median of {middle:g} ppm; air has {CO2_LEAST:g} to {CO2_MOST:g} ppm: check the unit; keep the background"
@@ -248,8 +249,8 @@ def lowest_reading(gas: str, values: Array, instrument: SnifferSpec) -> float:
     if math.isnan(noise):
         noise = shown_scatter([column[np.isfinite(column)]], shown_step(column))
     explained = _NEGATIVE_SIGMA * math.hypot(noise, channel.zero_sd, 1.0) - min(channel.zero, 0.0)
-    floor = -explained - _cross_floor(channel.cross, values)
-    return max(0.0, CO2_LEAST + floor) if gas == "co2" else floor
+    floor = -explained - channel.gain * _cross_floor(channel.cross, values, instrument)
+    return max(0.0, channel.gain * CO2_LEAST + floor) if gas == "co2" else floor
 
 
 def _problems(time: Array, values: Array, gases: list[str], instrument: SnifferSpec) -> tuple[str, ...]:
@@ -273,11 +274,13 @@ def _problems(time: Array, values: Array, gases: list[str], instrument: SnifferS
     return tuple(problems)
 
 
-def _cross_floor(cross: Mapping[str, float], values: Array) -> float:
-    """Return how far below zero a cell may truly read, for what it makes of the other gases, measured or as ships emit them."""
-    lowest, co2 = 0.0, values[:, GASES.index("co2")]
+def _cross_floor(cross: Mapping[str, float], values: Array, instrument: SnifferSpec) -> float:
+    """Return how far below zero a cell of gain 1 may truly read: what it makes of other gases, measured or as ships emit them."""
+    channels = [instrument.channel(gas) for gas in GASES]
+    concentrations = values / [channel.gain if channel else 1.0 for channel in channels]
+    lowest, co2 = 0.0, concentrations[:, GASES.index("co2")]
     for gas, share in cross.items():
-        column = values[:, GASES.index(gas)]
+        column = concentrations[:, GASES.index(gas)]
         if share < 0.0 and np.isfinite(column).any():
             lowest += -share * max(0.0, float(np.nanmax(column)))
         elif share < 0.0 and gas in EXPECTED_PPB_PER_PPM:

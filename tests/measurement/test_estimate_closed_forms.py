@@ -115,13 +115,37 @@ def test_a_delay_that_is_not_known_lowers_the_result_by_the_closed_form(late):
 
 
 def test_areas_of_overlapping_passes_read_what_is_predicted():
-    # The issue asks for 10 %. Sums of exponentials with the dose of each pass, against the areas without noise.
+    # The issue asks for 10 %; 1.9 % were measured. Sums of exponentials with the dose of each pass, against areas without noise.
     spec = plain_sniffer(20.0, 4.0)
     for seed in range(5):
         record = checked_record(read(spec, crossings(0.25, seed=seed)), spec)
         found = area_ratio(record, spec, find_passes(record, changed(spec, "co2", noise=1.0).known("co2")))
-        assert found.share == pytest.approx(fsc_factor() * found.ratio / 0.25, rel=0.1)
+        assert found.share == pytest.approx(fsc_factor() * found.ratio / 0.25, rel=0.03)
+        assert fsc_factor() * found.separate == pytest.approx(0.25, rel=0.03)
         assert 0.2 < found.share < 0.5
+
+
+@pytest.mark.parametrize("preset", ["laser", "fast"])
+@pytest.mark.parametrize("duration", [60.0, 180.0])
+def test_areas_of_separate_passes_are_whole_wherever_between_two_samples_they_come(preset, duration):
+    spec = sensor_preset(preset)
+    for phase in np.linspace(0.0, 1.0 / spec.rate_hz, 5):
+        air = crossings(0.2, duration=duration, step=0.02, interval=60.0, meander=0.0, first=30.0 + phase)
+        record = checked_record(read(spec, air, step=0.02), spec)
+        found = area_ratio(record, spec, find_passes(record, spec.known("co2")))
+        # 0.79 to 1.25, as long as what is read of a puff was taken at single moments.
+        assert found.share == pytest.approx(1.0, abs=0.01)
+
+
+@pytest.mark.parametrize("interval", [9.5, 75.0])
+def test_areas_and_doses_do_not_depend_on_the_gains(interval):
+    results = []
+    for so2, co2 in ((1.0, 1.0), (1.3, 1.0), (0.8, 1.0), (1.0, 1.5)):
+        spec = changed(changed(plain_sniffer(20.0, 4.0, so2_noise=1.0, co2_noise=1.0), "so2", gain=so2), "co2", gain=co2)
+        # A reading's noise is that of its sensor, and counts for less where the gain is larger.
+        found = estimate(read(spec, crossings(0.25, interval=interval)), spec, method="areas")
+        results.append((found.fsc_percent, found.overlap_percent, found.figures.dose_ppm_s))
+    assert np.array(results[1:]) == pytest.approx(np.array(3 * [results[0]]), rel=0.02, abs=0.001)
 
 
 def test_areas_do_not_depend_on_the_origin_of_time():
@@ -133,16 +157,16 @@ def test_areas_do_not_depend_on_the_origin_of_time():
     assert other.fsc_percent == pytest.approx(found.fsc_percent, abs=1e-5)
 
 
-def test_what_areas_would_read_of_separate_passes_is_above_or_below_what_they_read():
-    spec, signs = sensor_preset("fast"), set()
+def test_the_overlap_is_what_areas_would_read_more_of_separate_passes():
+    spec = sensor_preset("fast")
     for seed in range(6):
         readings = read(spec, crossings(0.2, duration=200.0, seed=seed + 50), seed=seed)
         record = checked_record(readings, spec)
         areas = area_ratio(record, spec, find_passes(record, spec.known("co2")))
         found = estimate(readings, spec, method="areas")
         assert found.fsc_percent + found.overlap_percent == pytest.approx(fsc_factor() * areas.separate, rel=1e-6)
-        signs.add(np.sign(found.overlap_percent))
-    assert signs == {-1.0, 1.0}
+        # SO2 answers more slowly than CO2, and overlaps more.
+        assert 0.0 < found.overlap_percent < 0.01 * found.fsc_percent
 
 
 def test_areas_of_separate_passes_are_unbiased():

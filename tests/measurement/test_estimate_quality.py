@@ -10,6 +10,7 @@ from measurement.estimate import estimate
 from measurement.estimate.areas import area_ratio
 from measurement.estimate.passes import find_passes
 from measurement.estimate.record import checked_record
+from measurement.gases import GASES
 from measurement.sniffer import Readings, sensor_preset
 from measurement.sniffer.presets import read_spec
 
@@ -101,6 +102,26 @@ def test_no2_that_exceeds_no_has_no_verdict_where_so2_responds_to_both(preset, o
     values = readings.values.copy()
     values[:, [one, other]] = values[:, [other, one]]
     assert "exhaust has more NO than NO2" in reasons(Readings(readings.time, values), spec)
+
+
+@pytest.mark.parametrize("method", ["regression", "areas"])
+@pytest.mark.parametrize("preset", ["electrochemical", "alphasense_a4"])
+def test_the_same_air_by_channels_of_other_gains_is_judged_alike(preset, method):
+    # NO2 takes hundreds of ppb from the SO2 reading of the second preset.
+    readings, spec = flight(preset, 0.25, 1)
+    gains = {"so2": 2.0, "co2": 0.5, "no": 0.4, "no2": 5.0}
+    values, other = readings.values.copy(), spec
+    for gas in spec.gases:
+        gain, channel = gains[gas], spec.known(gas)
+        values[:, GASES.index(gas)] *= gain
+        fields = {name: gain * getattr(channel, name) for name in ("noise", "zero", "zero_sd", "random_walk", "resolution")}
+        other = changed(other, gas, gain=gain, range_high=gain * channel.range_high, **fields)
+    found, same = estimate(readings, spec, method=method), estimate(Readings(readings.time, values), other, method=method)
+    assert same.quality == found.quality
+    assert same.quality_reasons == found.quality_reasons
+    for name in ("fsc_percent", "total_percent", "overlap_percent"):
+        assert getattr(same, name) == pytest.approx(getattr(found, name), rel=1e-6), name
+    assert same.figures.dose_ppm_s == pytest.approx(found.figures.dose_ppm_s, rel=1e-6)
 
 
 def test_no2_that_ozone_makes_of_no_is_no_exchange_of_columns():

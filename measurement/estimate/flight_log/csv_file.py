@@ -208,7 +208,7 @@ def _check_range(values: Array, config: LogConfig, path: Path) -> None:
         channel, column = config.instrument.known(gas), values[:, GASES.index(gas)]
         if gas == "co2" and np.isfinite(column).any():
             # In another unit, or without its background, none of it is right, and not a reading here or there.
-            check_units(gas, column)
+            check_units(channel, column)
         beyond = np.flatnonzero(column > channel.range_high + channel.resolution)
         if beyond.size:
             unit, more = UNITS[gas], f", and {beyond.size - 1} more" if beyond.size > 1 else ""
