@@ -136,6 +136,7 @@ class SearchedAxis:
             if not tracking:
                 self.demanded = p.height.at(situation.centre.distance, wind)
                 return
+            # At the vehicle's height: nobody on board knows how it changes with height.
             blowing = math.hypot(situation.own.wind_north, situation.own.wind_east)
             distance = situation.centre.distance
             prior = expected_plume(p.expected, distance=distance, apparent_wind=wind, wind_speed=blowing)

@@ -91,7 +91,8 @@ def emission_of(
     MeasurementError : speed, power or temperature out of range, both or neither of the first two, or air hotter than the exhaust
 
     Sources: P = P_max (v/v_max)^3, BSH library 188756, p. 17; consumption with load, STEAM2, ACP 12:2641 (2012); exhaust at part
-    load, MAN B&W project guide 198 43 20-3.3, figs. 6.04.11 and 6.04.12, applied to all ships; fluxes, Briggs, as in AERMOD.
+    load, MAN B&W project guide 198 43 20-3.3, figs. 6.04.11 and 6.04.12, applied to all ships and loads: dead slow, exhaust is by
+    131 K hotter than at full power, which nobody has checked there; fluxes, Briggs, as in AERMOD.
     """
     check_air(air_temperature, AIR_PRESSURE)
     load = _load(ship, speed, power)

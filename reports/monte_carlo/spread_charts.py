@@ -62,10 +62,9 @@ def spread_charts(run: RunData, statistics: dict[str, Any]) -> list[Chart]:
 
 def _crossing(rows: pd.DataFrame) -> dict[str, Array]:
     """Return each flight's nearest crossing, beyond its own r_min where these differ."""
-    near = column(rows, "crossing_distance_min_m")
     if radii_differ(rows):
-        return {"crossing_clearance_m": near - column(rows, "keepout_radius_m")}
-    return {"crossing_distance_min_m": near}
+        return {"crossing_clearance_m": column(rows, "crossing_clearance_min_m")}
+    return {"crossing_distance_min_m": column(rows, "crossing_distance_min_m")}
 
 
 def _within(values: Array, lowest: float = _SHOWN) -> Array:

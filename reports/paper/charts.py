@@ -93,8 +93,7 @@ def sim_3_charts(run: RunData) -> list[Chart]:
         crossings = run.crossings_of(str(flown.row["flight_id"]))
         config = flight_config(run, flown.row)
         times, distance = crossings["time_s"].to_numpy(dtype=np.float64), keepout_distance(flown.history, config)
-        # The table has those from the funnel's mouth, which are a sphere's.
-        crossed = column(crossings, "distance_m") if keepout_shape(config) == "sphere" else np.interp(times, flown.time, distance)
+        crossed = column(crossings, "distance_m" if keepout_shape(config) == "sphere" else "horizontal_distance_m")
         return [
             _level(flown.time, float(flown.row["keepout_radius_m"]), "r_min"),
             Line(x=flown.time, y=distance, label="UAV", colour=Meaning.FLOWN),

@@ -9,7 +9,8 @@ SUMMARY_COLUMNS = (
     "keepout_margin_m", "keepout_violations", "keepout_time_s", "keepout_depth_m", "min_distance_m",
     "horizontal_distance_min_m", "end_distance_m", "settling_time_s", "crossing_count", "crossing_interval_mean_s",
     "crossing_interval_std_s", "crossing_interval_predicted_s", "crossing_distance_mean_m", "crossing_distance_min_m",
-    "crossing_angle_mean_deg", "tracking_error_rms_m", "tracking_error_max_m", "tracking_error_end_m", "spread_m",
+    "crossing_clearance_min_m", "crossing_angle_mean_deg", "tracking_error_rms_m", "tracking_error_max_m",
+    "tracking_error_end_m", "spread_m",
     "spread_predicted_m", "manoeuvre_end_s", "manoeuvres_unflown", "resume_time_s", "resume_periods",
     "airspeed_error_rms_mps", "airspeed_error_max_mps", "airspeed_trim_rms_mps", "airspeed_min_mps", "airspeed_max_mps",
     "speed_max_mps", "altitude_error_rms_m", "altitude_error_max_m", "altitude_min_m", "bank_max_deg",
@@ -24,7 +25,10 @@ SUMMARY_COLUMNS = (
 FLIGHT_COLUMNS = ("flight_id", "trial", "variant")
 """Of every table: what names a flight."""
 
-CROSSING_COLUMNS = (*FLIGHT_COLUMNS, "nu", "crossing", "time_s", "axis_distance_m", "distance_m", "angle_deg", "height_m")
+CROSSING_COLUMNS = (
+    *FLIGHT_COLUMNS, "nu", "crossing", "time_s", "axis_distance_m", "distance_m", "horizontal_distance_m", "angle_deg",
+    "height_m",
+)  # fmt: skip
 """Of ``crossings.csv``: a row per crossing."""
 
 INTERVENTION_COLUMNS = (*FLIGHT_COLUMNS, "time_s", "duration_s", "distance_min_m", "lost")

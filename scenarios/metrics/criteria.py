@@ -77,9 +77,9 @@ def _command_checks(row: Row, criteria: CriteriaConfig) -> list[Check]:
 
 def _crossing_checks(row: Row, criteria: CriteriaConfig) -> list[Check]:
     checks = []
-    if "crossing_distance_min_m" in row:
-        nearest, radius = row["crossing_distance_min_m"], row["keepout_radius_m"]
-        checks.append((nearest >= radius, f"crossed at {nearest:.2f} m, inside {radius:g} m"))
+    if "crossing_clearance_min_m" in row:
+        clearance, radius = row["crossing_clearance_min_m"], row["keepout_radius_m"]
+        checks.append((clearance >= 0.0, f"crossed at {radius + clearance:.2f} m, inside {radius:g} m"))
     if criteria.crossing_interval_error:
         interval, predicted = row.get("crossing_interval_mean_s", math.nan), row["crossing_interval_predicted_s"]
         error = interval / predicted - 1.0

@@ -25,7 +25,7 @@ class Crossing:
     ----------
     time : [s]
     axis_distance : along the axis from the plume's origin [m]
-    distance : three-dimensional, to the plume's origin [m]
+    distance, horizontal_distance : to the plume's origin, three-dimensional, and seen from above [m]
     angle : between the path in the vessel's frame and the axis, 90 degrees for a square cut [rad]
     height : above the straight axis from the plume's origin, which is level for smoke: that rises above it [m]
     """
@@ -33,6 +33,7 @@ class Crossing:
     time: float
     axis_distance: float
     distance: float
+    horizontal_distance: float
     angle: float
     height: float
 
@@ -71,6 +72,7 @@ def find_crossings(
                 time=moment,
                 axis_distance=along / math.cos(elevation),
                 distance=math.sqrt(north * north + east * east + up * up),
+                horizontal_distance=math.hypot(north, east),
                 angle=abs(math.atan2(abs(v_across), v_along)),
                 height=up - along * math.tan(elevation),
             )
@@ -104,6 +106,7 @@ def crossing_rows(crossings: Sequence[Crossing]) -> list[dict[str, Any]]:
             "time_s": crossing.time,
             "axis_distance_m": crossing.axis_distance,
             "distance_m": crossing.distance,
+            "horizontal_distance_m": crossing.horizontal_distance,
             "angle_deg": math.degrees(crossing.angle),
             "height_m": crossing.height,
         }

@@ -250,9 +250,12 @@ def _crossing_figures(plan: FlightPlan, record: FlightRecord, crossings: list[Cr
     row: Row = {"crossing_count": len(crossings)}
     if crossings:
         distances = [crossing.distance for crossing in crossings]
+        level = plan.keepout_shape == "cylinder"
+        to_centre = [crossing.horizontal_distance for crossing in crossings] if level else distances
         row |= {
             "crossing_distance_mean_m": float(np.mean(distances)),
             "crossing_distance_min_m": min(distances),
+            "crossing_clearance_min_m": min(to_centre) - plan.keepout_radius,
             "crossing_angle_mean_deg": math.degrees(float(np.mean([crossing.angle for crossing in crossings]))),
         }
     if len(crossings) > 1:

@@ -72,12 +72,14 @@ def measured_figures(row: Row, *, window: float) -> Row:
     The plume's is the time in which the concentration is above exp(-2) of that on its axis. Of the fuel's sulphur content it is the
     information, 1/sigma^2 by noise, the part of the standard uncertainty that more time takes away; the gains and zeros of the
     instrument are the same for everyone. Information adds up over time and over flights, and is 0 where a result is not admitted
-    (quality C) or lost with the aircraft; its mean over flights, to the power of -1/2, is the standard uncertainty by noise of a
-    minute.
+    (quality C) or lost with the aircraft, and not a number where the sniffer has no noise; its mean over flights, to the power of
+    -1/2, is the standard uncertainty by noise of a minute.
     """
     if "seconds_in_plume_s" not in row:
         return {}
     minutes, noise = min(window, row["duration_s"]) / _SECONDS_PER_MINUTE, float(row.get("fsc_noise_percent", math.nan))
-    admitted = row["sulphur_quality"] != "C" and noise > 0.0 and row["outcome"] != Outcome.AIRCRAFT_LOST.value
-    information = 1.0 / (noise**2 * minutes) if admitted else 0.0
+    admitted = row["sulphur_quality"] != "C" and noise >= 0.0 and row["outcome"] != Outcome.AIRCRAFT_LOST.value
+    information = 0.0
+    if admitted:
+        information = 1.0 / (noise**2 * minutes) if noise else math.nan
     return {"plume_s_per_minute": row["seconds_in_plume_s"] / minutes, "sulphur_information_per_minute": information}

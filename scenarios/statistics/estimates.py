@@ -35,7 +35,8 @@ NAMED_MAX = 10
 
 COLUMNS = (
     "flight_id", "outcome", "mode_at_end", "min_distance_m", "keepout_radius_m", "keepout_violations", "crossing_interval_mean_s",
-    "crossing_interval_predicted_s", "crossing_distance_min_m", "tracking_error_rms_m", "settling_time_s",
+    "crossing_interval_predicted_s", "crossing_distance_min_m", "crossing_clearance_min_m", "tracking_error_rms_m",
+    "settling_time_s",
 )  # fmt: skip
 """Columns of the summary that the estimates use."""
 
@@ -113,7 +114,7 @@ def study_figures(rows: pd.DataFrame) -> dict[str, Array]:
         "clearance_m": column("min_distance_m") - column("keepout_radius_m"),
         "crossing_interval_error": column("crossing_interval_mean_s") / column("crossing_interval_predicted_s") - 1.0,
         "crossing_distance_min_m": column("crossing_distance_min_m"),
-        "crossing_clearance_m": column("crossing_distance_min_m") - column("keepout_radius_m"),
+        "crossing_clearance_m": column("crossing_clearance_min_m"),
         "tracking_error_rms_m": column("tracking_error_rms_m"),
         "settling_time_s": column("settling_time_s"),
     }

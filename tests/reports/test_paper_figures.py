@@ -36,9 +36,9 @@ def test_figure_9_shows_the_distance_that_the_keep_out_area_is_about(sim_3, shap
     config = sim_3.manifest["config"] | {"keepout": {"shape": shape}}
     expected = np.interp(flown.x, history["time_s"], keepout_distance(history, config))
     assert flown.y == pytest.approx(expected, abs=1e-9)
-    # As the flight was flown it crossed at the height of the mouth, where both distances are one. Within 0.2 s it turns.
+    # As the flight was flown it crossed at the height of the mouth, where both distances are one.
     table = sim_3.crossings_of("sim3_kinematic")["distance_m"].to_numpy()
-    assert crossed.y == pytest.approx(table, abs=0.5)
+    assert crossed.y == pytest.approx(table, abs=0.1)
     on_curve = np.interp(crossed.x, flown.x, flown.y)
-    # 200 m and more away, and 60 m higher.
-    assert (np.abs(on_curve - crossed.y).max() < 1e-9) if shape == "cylinder" else (on_curve - crossed.y).min() > 5.0
+    # 200 m and more away, and 60 m higher. Within 0.2 s it turns.
+    assert (np.abs(on_curve - crossed.y).max() < 0.5) if shape == "cylinder" else (on_curve - crossed.y).min() > 5.0

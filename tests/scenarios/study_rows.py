@@ -32,6 +32,7 @@ def study_rows(flights, seed=20261121):
             "crossing_interval_mean_s": PREDICTED * (1.0 + 0.001 * generator.standard_normal(flights)),
             "crossing_interval_predicted_s": PREDICTED,
             "crossing_distance_min_m": RADIUS + clearance + 3.0,
+            "crossing_clearance_min_m": clearance + 3.0,
             "tracking_error_rms_m": 0.1 + 0.05 * wind,
             "settling_time_s": generator.uniform(80.0, 140.0, flights),
         }

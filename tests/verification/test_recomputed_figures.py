@@ -98,5 +98,6 @@ def test_tables_agree_with_what_the_time_histories_say(run):
         distances = flight.distance(np.array(times))
         assert listed["distance_m"].to_numpy() == pytest.approx(distances, abs=METRES)
         assert row["crossing_distance_min_m"] == pytest.approx(min(distances), abs=METRES)
+        assert row["crossing_clearance_min_m"] == pytest.approx(min(distances) - row["keepout_radius_m"], abs=METRES)
         assert row["crossing_distance_mean_m"] == pytest.approx(np.mean(distances), abs=METRES)
         assert row["crossing_interval_mean_s"] == pytest.approx(np.mean(np.diff(times)), abs=SECONDS)

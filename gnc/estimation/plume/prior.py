@@ -248,7 +248,9 @@ def expected_plume(expected: Expectation, *, distance: float, apparent_wind: flo
     ----------
     expected : of ship and sensor
     distance : behind the funnel, where it is to be crossed [m]
-    apparent_wind, wind_speed : past the ship, and over the sea at 10 m [m/s]
+    apparent_wind : past the ship [m/s]
+    wind_speed : over the sea at 10 m; where a wind that grows with height is taken from 60 to 110 m, the meander is up to 29 % too
+        large and the peak 17 % too low (8 m/s over a roughness of 0.2 mm), within the prior's deviations [m/s]
     """
     wind = max(apparent_wind, SPEED_MIN)
     climbed = rise(expected.momentum_flux, expected.buoyancy_flux, distance, wind)

@@ -114,7 +114,7 @@ def test_of_a_study_without_any_measurement_nothing_is_claimed():
     rows, inputs = study_rows(5)
     rows["outcome"] = "failed"
     measured = ["min_distance_m", "crossing_interval_mean_s", "crossing_distance_min_m", "tracking_error_rms_m", "settling_time_s"]
-    rows[[*measured, "keepout_violations"]] = np.nan
+    rows[[*measured, "crossing_clearance_min_m", "keepout_violations"]] = np.nan
     run = run_of(rows, inputs)
     assert bound_in_words(run.statistics).startswith("No flight was measured")
     assert not any(charts_of(section) for section in monte_carlo_sections(run))
@@ -124,6 +124,7 @@ def test_of_a_study_without_any_measurement_nothing_is_claimed():
 def test_distances_of_flights_with_several_keep_out_radii_are_beyond_their_own():
     rows, inputs = study_rows(FLIGHTS)
     rows["keepout_radius_m"] = np.where(np.arange(FLIGHTS) % 2, RADIUS, RADIUS - 50.0)
+    rows["crossing_clearance_min_m"] = rows["crossing_distance_min_m"] - rows["keepout_radius_m"]
     run = run_of(rows, inputs)
     spread = next(section for section in monte_carlo_sections(run) if section.anchor == "spread")
     assert "Distances are beyond each flight's own r_min." in spread.blocks[0].text
@@ -132,7 +133,7 @@ def test_distances_of_flights_with_several_keep_out_radii_are_beyond_their_own()
     assert {name for name in named if "Closest" in name or ("crossing" in name.split(",")[0] and "[m]" in name)} == {
         "Nearest crossing, beyond r_min [m]"
     }
-    median = np.median(rows["crossing_distance_min_m"] - rows["keepout_radius_m"])
+    median = np.median(rows["crossing_clearance_min_m"])
     assert named["Nearest crossing, beyond r_min [m]"][percent(0.5)].startswith(f"{median:.1f}\n")
     assert any(panel.x_label == "Nearest crossing, beyond r_min [m]" for panel in charts_of(spread)["spread"].panels)
 

@@ -10,7 +10,7 @@ from scenarios.schema.sections.flight import CriteriaConfig
 GOOD = {
     "outcome": "completed", "message": "", "mode_at_end": "tracking", "fault": "none", "fault_time_s": math.nan,
     "duration_s": 300.0, "settling_time_s": 80.0, "resume_periods": 1.5, "tracking_error_end_m": 1.0,
-    "keepout_violations": 0, "keepout_depth_m": 0.0, "keepout_radius_m": 200.0, "crossing_distance_min_m": 200.0,
+    "keepout_violations": 0, "keepout_depth_m": 0.0, "keepout_radius_m": 200.0, "crossing_clearance_min_m": 0.0,
     "tracking_error_rms_m": 1.5, "airspeed_error_rms_mps": 0.3, "altitude_error_max_m": 1.5, "crossing_interval_mean_s": 10.0,
     "crossing_interval_predicted_s": 10.0, "crossing_distance_mean_m": 215.0, "heading_rate_command_max_rad_s": 0.5,
     "heading_rate_limit_rad_s": 0.5, "heading_rate_demand_max_rad_s": 0.6,
@@ -39,7 +39,7 @@ def test_a_flight_at_every_limit_has_met_them():
         ({"outcome": "diverged", "message": "it rolled over"}, {"settles": False}, "it rolled over"),
         ({"outcome": "diverged", "fault": "left_elevon", "fault_time_s": 50.0}, {"settles": False}, "did not complete"),
         ({"settling_time_s": math.nan}, {}, "did not settle"),
-        ({"crossing_distance_min_m": 199.99}, {}, "crossed at 199.99 m"),
+        ({"crossing_clearance_min_m": -0.01}, {}, "crossed at 199.99 m"),
         ({"tracking_error_rms_m": 1.51}, {}, "rms tracking error 1.51 m, above the limit of 1.5 m, in the 220 s since it settled"),
         ({"tracking_error_rms_m": math.nan}, {}, "tracking error"),
         ({"airspeed_error_rms_mps": 0.31}, {}, "airspeed error"),

@@ -97,6 +97,16 @@ def test_crossings_are_counted_and_timed(plan):
     assert row["crossing_distance_mean_m"] == pytest.approx(230.0, abs=1e-6)
 
 
+def test_a_crossing_keeps_out_of_a_sphere_by_its_distance_and_of_a_cylinder_by_that_seen_from_above():
+    # 230 m off, and 161 m above the funnel's mouth: 35 degrees.
+    for shape, to_centre in (("sphere", math.hypot(230.0, 161.0)), ("cylinder", 230.0)):
+        plan = planned(scenario(vessel={"speed_mps": 8.0}, keepout={"shape": shape}))
+        row, crossings = figures(plan, weave(plan, altitude_m=plan.source_height + 161.0))
+        assert row["crossing_distance_min_m"] == pytest.approx(math.hypot(230.0, 161.0), abs=1e-3)
+        assert row["crossing_clearance_min_m"] == pytest.approx(to_centre - 200.0, abs=1e-3)
+        assert [crossing.horizontal_distance for crossing in crossings] == pytest.approx(len(crossings) * [230.0], abs=1e-3)
+
+
 def test_crossings_count_from_settling_on(plan):
     row, crossings = figures(plan, weave(plan), settled_at=52.0)
     assert row["crossing_count"] == 5

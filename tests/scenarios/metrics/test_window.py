@@ -37,3 +37,7 @@ def test_a_result_that_is_not_admitted_or_lost_with_the_aircraft_is_no_informati
 
 def test_a_flight_without_a_sniffer_has_neither():
     assert measured_figures({}, window=150.0) == {}
+
+
+def test_what_a_sniffer_without_noise_is_worth_has_no_number():
+    assert math.isnan(measured_figures(MEASURED | {"fsc_noise_percent": 0.0}, window=150.0)["sulphur_information_per_minute"])

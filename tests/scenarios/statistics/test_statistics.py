@@ -135,7 +135,7 @@ def test_what_drives_a_figure_is_found_whatever_order_the_inputs_are_in(study, s
 def test_a_study_of_nothing_but_failures_and_one_of_nothing_have_statistics_that_json_can_say():
     rows, inputs = study_rows(5)
     figures = ["min_distance_m", "keepout_violations", "crossing_interval_mean_s", "crossing_distance_min_m"]
-    rows[[*figures, "tracking_error_rms_m", "settling_time_s"]] = math.nan
+    rows[[*figures, "crossing_clearance_min_m", "tracking_error_rms_m", "settling_time_s"]] = math.nan
     rows["outcome"] = "failed"
     for some in (rows, rows.head(0)):
         found = statistics_of(some, inputs)
