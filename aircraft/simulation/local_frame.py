@@ -20,7 +20,7 @@ class EquatorFrame:
 
     With s = M phi (1 + e^2 phi^2/2) the length of the meridian and u = a lambda that of the equator, and K = 1/(a M) the curvature
     there, north is s (1 + K u^2/6) and east u (1 - K s^2/3). That is ``common.physics.geodesy.LocalFrame`` at the origin, to
-    0.1 mm within 20 km.
+    0.1 mm within a distance of 20 km.
 
     Parameters
     ----------

@@ -142,7 +142,7 @@ def checked_record(readings: Readings, instrument: SnifferSpec) -> Record:
     for segment in segments:
         grid = time[segment[0]] + step * np.arange(math.floor((time[segment[-1]] - time[segment[0]]) / step + 1e-6) + 1)
         # A grid of the record's own times is left as it is.
-        grid = time[segment] if len(grid) == len(segment) and np.allclose(grid, time[segment], atol=1e-3 * step) else grid
+        grid = time[segment] if len(grid) == len(segment) and np.allclose(grid, time[segment], rtol=0.0, atol=1e-3 * step) else grid
         times.append(grid)
         parts.append({gas: np.interp(grid, time[segment], column[segment]) for gas, column in logged.items()})
     if not times:

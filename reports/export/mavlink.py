@@ -15,8 +15,12 @@ _GEOMETRIC, _SURFACE_VEHICLE, _ADSB_VALID = 1, 18, 1 | 2 | 4 | 8
 """Of an ADSB_VEHICLE: altitude by satellites, MAV's emitter type of a service vehicle on the surface, and which fields are valid:
 place, altitude, heading, velocity."""
 
-_CARGO, _AIS_VALID = 70, 1 | 2 | 4 | 4096
-"""Of an AIS_VESSEL: its type, and its AIS_FLAGS: POSITION_ACCURACY, VALID_COG, VALID_VELOCITY, VALID_NAME. Turns are unknown."""
+_CARGO, _AIS_VALID, _VALID_COG = 70, 1 | 4 | 4096, 2
+"""Of an AIS_VESSEL: its type, and its AIS_FLAGS: POSITION_ACCURACY, VALID_VELOCITY, VALID_NAME; VALID_COG of one that moves. Turns
+are unknown."""
+
+_AT_REST = 0.05
+"""Speed below which a vessel has no course over the ground [m/s]; AIS gives speeds in steps of 0.05."""
 
 _MMSI = 999_999_999
 """Of a vessel whose MMSI is not recorded."""
@@ -63,8 +67,9 @@ def messages(flight: GeographicFlight) -> Iterator[tuple[float, bytes]]:
             yield time, packer.pack("HEARTBEAT", 0, _FIXED_WING, _NO_AUTOPILOT, _ARMED, _ACTIVE, _VERSION)
             yield time, packer.pack("SYSTEM_TIME", round(1e6 * (flight.start + time)), _milliseconds(time))
             if flight.vessel is not None:
-                yield time, _ais(packer, flight.vessel, i)
-                yield time, _adsb(packer, flight.vessel, i)
+                bow = round(100.0 * float(flight.vessel_heading[i])) % 36000
+                yield time, _ais(packer, flight.vessel, i, bow)
+                yield time, _adsb(packer, flight.vessel, i, bow)
         yield from ((time, message) for message in _of_sample(packer, flight, i, time))
 
 
@@ -83,18 +88,19 @@ def _of_sample(packer: Packer, flight: GeographicFlight, i: int, time: float) ->
     )  # fmt: skip
 
 
-def _ais(packer: Packer, vessel: Body, i: int) -> bytes:
-    course, speed = round(100.0 * float(vessel.course[i])) % 36000, _centi(vessel.speed[i])
+def _ais(packer: Packer, vessel: Body, i: int, bow: int) -> bytes:
+    course, speed = round(100.0 * float(vessel.course[i])) % 36000, float(vessel.speed[i])
+    valid = _AIS_VALID | _VALID_COG if speed >= _AT_REST else _AIS_VALID
     return packer.pack(
-        "AIS_VESSEL", _MMSI, *_place(vessel, i), course, course, speed, 0, 0, 0, _AIS_VALID, 0, 0, _CARGO, 0, 0, b"", b"VESSEL"
+        "AIS_VESSEL", _MMSI, *_place(vessel, i), course, bow, _centi(speed), 0, 0, 0, valid, 0, 0, _CARGO, 0, 0, b"", b"VESSEL"
     )
 
 
-def _adsb(packer: Packer, vessel: Body, i: int) -> bytes:
+def _adsb(packer: Packer, vessel: Body, i: int, bow: int) -> bytes:
     """Return the vessel once more, for ground stations that show no AIS."""
-    course, speed = round(100.0 * float(vessel.course[i])) % 36000, _centi(vessel.speed[i])
+    speed = _centi(vessel.speed[i])
     return packer.pack(
-        "ADSB_VEHICLE", 1, *_place(vessel, i), 0, course, speed, 0, _ADSB_VALID, 0, _GEOMETRIC, b"VESSEL", _SURFACE_VEHICLE, 0
+        "ADSB_VEHICLE", 1, *_place(vessel, i), 0, bow, speed, 0, _ADSB_VALID, 0, _GEOMETRIC, b"VESSEL", _SURFACE_VEHICLE, 0
     )
 
 
