@@ -100,6 +100,7 @@ def reversal_record(spec: AircraftSpec, root: Path, start: Trim, bank: float, sl
         "delay_s": response.delay,
         "lag_s": response.lag,
         "reversals": found.reversals,
+        "unguided_reversals": found.unguided,
         "deviation_99_percent_m": found.usual,
         "deviation_max_m": found.deviation,
         "worst_command_before": found.command_before,

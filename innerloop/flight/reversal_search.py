@@ -70,7 +70,8 @@ class ReversalSearch:
     reversals : flown [-]
     deviation : largest, over the change of heading rate as a fraction of a full reversal [m]
     deviations : largest of each aircraft [m]; minus infinity of one that flew none
-    usual : 99 % quantile of the first half of the reversals, which do not climb [m]
+    unguided : of the reversals, those that did not follow the worst so far [-]
+    usual : least deviation that at most one in a hundred of these exceeds [m]
     command_before : heading-rate command just before the worst, over omega_max to the side of the turn [-]
     airspeed_before : airspeed at its beginning [m/s]
     altitude_error : largest difference of the altitude from the one that is held, in all of the flight [m]
@@ -79,6 +80,7 @@ class ReversalSearch:
     reversals: int
     deviation: float
     deviations: tuple[float, ...]
+    unguided: int
     usual: float
     command_before: float
     airspeed_before: float
@@ -150,13 +152,15 @@ def search_reversals(
         for before in _SETTLED_TURNS:
             reverse(which, before)
     worst_of_all = max(found, key=lambda entry: entry.deviation)
+    unguided = [entry.deviation for entry in found[:first] + found[reversals:]]
     return ReversalSearch(
         reversals=len(found),
         deviation=max(0.0, worst_of_all.deviation),
         deviations=tuple(
             max((entry.deviation for entry in found if entry.which == which), default=-math.inf) for which in range(len(flights))
         ),
-        usual=max(0.0, float(np.quantile([entry.deviation for entry in found[:first]], 0.99))),
+        unguided=len(unguided),
+        usual=max(0.0, float(np.quantile(unguided, 0.99, method="higher"))),
         command_before=worst_of_all.before.side * worst_of_all.before.commands[-1][0],
         airspeed_before=worst_of_all.airspeed,
         altitude_error=max(flight.altitude_error for flight in flights),

@@ -144,14 +144,20 @@ def damping(pole: tuple[float, float]) -> float:
     return -pole[0] / size if size else 0.0
 
 
+_HUNDRED = 100
+"""Reversals up to which one that exceeds a limit is one in a hundred or more."""
+
+
 def reversal_sentences(design: Record) -> str:
     """Return how far reversals stray from their response."""
     own = design["turn_reversal"]
+    exceeding = "none" if own["unguided_reversals"] <= _HUNDRED else "at most one in a hundred"
     said = (
         f"A reversal of the turn at {own['bank_deg']:.0f}° of bank is predicted by a dead time of {own['delay_s']:.2f} s and a lag"
         f" of {own['lag_s']:.2f} s. In {own['reversals']} reversals that a search flew the aircraft came up to"
-        f" {own['deviation_max_m']:.2f} m nearer to what it turned away from than predicted{_worst_case(own)}. Half of"
-        f" the reversals did not follow the worst ones: 99 % of these stayed below {own['deviation_99_percent_m']:.2f} m."
+        f" {own['deviation_max_m']:.2f} m nearer to what it turned away from than predicted{_worst_case(own)}. Of the"
+        f" {own['unguided_reversals']} that did not follow the worst ones {exceeding} came nearer by more than"
+        f" {own['deviation_99_percent_m']:.2f} m."
     )
     more = own.get("repeated_search")
     if more:

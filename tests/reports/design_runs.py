@@ -12,7 +12,8 @@ BANKS_DEG = [-33.0, -27.0, -21.0, -13.0, 0.0, 13.0, 21.0, 27.0, 33.0]
 LOOPS = ("elevator", "aileron", "throttle", "rudder", "airspeed", "altitude", "heading_rate", "sideslip")
 CASES = ("mass +20 %", "mass -20 %", "inertia +20 %", "control effectiveness -20 %", "one more period of delay")
 REVERSALS = {
-    "bank_deg": 45.0, "airspeed_mps": 19.42, "delay_s": 0.254, "lag_s": 0.254, "reversals": 100, "deviation_99_percent_m": 2.37,
+    "bank_deg": 45.0, "airspeed_mps": 19.42, "delay_s": 0.254, "lag_s": 0.254, "reversals": 100, "unguided_reversals": 64,
+    "deviation_99_percent_m": 2.37,
     "deviation_max_m": 4.39, "worst_command_before": -1.0, "worst_airspeed_before_mps": 18.9,
 }  # fmt: skip
 GRAVITY = 9.81
