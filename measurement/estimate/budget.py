@@ -54,25 +54,24 @@ class CommonErrors:
 
 
 def common_errors(
-    instrument: SnifferSpec, measured: tuple[str, ...], fitted: Callable[[SnifferSpec], tuple[float, Array]]
+    instrument: SnifferSpec, measured: tuple[str, ...], changes: Callable[[SnifferSpec], tuple[float, Array]]
 ) -> CommonErrors:
     """Return what gains, responses, delays and cross-sensitivities do that are not known exactly.
 
-    Each property is moved by its standard deviation, and the result found anew with ``fitted``; those of a name add in squares.
+    Each property is moved by its standard deviation, and the result found anew; those of a name add in squares.
 
     Parameters
     ----------
     instrument : as it is known, with response and delay of SO2 as they fit where they are not given
     measured : gases of the record
-    fitted : result and residuals as a function of the instrument
+    changes : by how much result and residuals differ from those of the instrument as it is known, for another one
     """
-    found, residual = fitted(instrument)
     squares: dict[str, float] = {}
     energy = 0.0
     for name, moved in _moved(instrument, measured):
-        other, left = fitted(moved)
-        squares[name] = squares.get(name, 0.0) + (other - found) ** 2
-        energy += float(np.sum((left - residual) ** 2))
+        change, of_residuals = changes(moved)
+        squares[name] = squares.get(name, 0.0) + change**2
+        energy += float(np.sum(of_residuals**2))
     return CommonErrors({name: math.sqrt(square) for name, square in squares.items()}, energy)
 
 

@@ -12,7 +12,7 @@ from measurement.estimate.budget import CARBON_SD, SAMPLING_SD, SULPHATE_SHARE, 
 from measurement.estimate.fit.alignment import Alignment, align, stated
 from measurement.estimate.fit.groups import grouped
 from measurement.estimate.fit.regression import fitted, regress
-from measurement.estimate.fit.signals import make_signals, samples_of, used_gases
+from measurement.estimate.fit.signals import Ends, Signals, make_signals, samples_of, used_gases
 from measurement.estimate.passes import SNR_LEAST, Pass, co2_excesses, find_passes, read_coarsely, readings_noise
 from measurement.estimate.plausible import unlikely
 from measurement.estimate.quality import judged_quality, late, noise_alone, stranger
@@ -127,10 +127,18 @@ def _regressed(record: Record, instrument: SnifferSpec) -> _Ratio:
     alignment = align(record, instrument)
     found = regress(make_signals(record, alignment.instrument))
 
-    def anew(moved: SnifferSpec) -> tuple[float, Array]:
-        return fitted(make_signals(record, align(record, moved, start=alignment.instrument).instrument))
+    def aligned(moved: SnifferSpec, ends: Ends = (0, 0)) -> Signals:
+        return make_signals(record, align(record, moved, start=alignment.instrument).instrument, ends)
 
-    errors = common_errors(alignment.instrument, used_gases(record), anew)
+    as_known = aligned(alignment.instrument)
+
+    def changes(moved: SnifferSpec) -> tuple[float, Array]:
+        # Both of the samples that both know.
+        other = aligned(moved, as_known.ends)
+        (slope, residual), (before, left) = fitted(other), fitted(aligned(alignment.instrument, other.ends))
+        return slope - before, residual - left
+
+    errors = common_errors(alignment.instrument, used_gases(record), changes)
     common = {**errors.parts, "response": math.hypot(errors.parts.get("response", 0.0), alignment.slope_deviation)}
     strange = stranger(found.misfit, found.residual_energy, errors.residual_energy, len(record.time))
     problems = (*_out_of_time(record, instrument, found.misfit), *strange)
@@ -151,10 +159,11 @@ def _out_of_time(record: Record, instrument: SnifferSpec, misfit: float) -> tupl
     if not regress(make_signals(record, free.instrument)).misfit - 1.0 < (1.0 - EXPLAINED_LEAST) * (misfit - 1.0):
         return ()
 
-    def anew(moved: SnifferSpec) -> tuple[float, Array]:
-        return _delay(align(record, moved, start=free.instrument).instrument), np.zeros(1)
+    def changes(moved: SnifferSpec) -> tuple[float, Array]:
+        return _delay(align(record, moved, start=free.instrument).instrument) - delay, np.zeros(1)
 
-    parts = common_errors(free.instrument, used_gases(record), anew).parts
+    delay = _delay(align(record, free.instrument, start=free.instrument).instrument)
+    parts = common_errors(free.instrument, used_gases(record), changes).parts
     deviation = math.hypot(so2.delay_sd_s, free.delay_sd_s, *parts.values())
     return late(_delay(instrument), _delay(free.instrument), deviation)
 
@@ -169,10 +178,10 @@ def _areas(record: Record, instrument: SnifferSpec, passes: Sequence[Pass]) -> _
     alignment = stated(instrument)
     found = area_ratio(record, instrument, passes)
 
-    def anew(moved: SnifferSpec) -> tuple[float, Array]:
-        return area_ratio(record, moved, passes).ratio, np.zeros(1)
+    def changes(moved: SnifferSpec) -> tuple[float, Array]:
+        return area_ratio(record, moved, passes).ratio - found.ratio, np.zeros(1)
 
-    common = common_errors(instrument, used_gases(record), anew).parts
+    common = common_errors(instrument, used_gases(record), changes).parts
     problems: tuple[str, ...] = ()
     if found.share < OVERLAP_LEAST:
         problems = (_unread(found, instrument.known("so2").t90_s),)

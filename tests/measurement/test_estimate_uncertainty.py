@@ -197,7 +197,7 @@ def test_without_a_stated_response_nox_shows_only_how_much_of_it_there_is(emitte
     assert (seen.total_percent > unseen.total_percent) == wider
 
 
-@pytest.mark.parametrize("seed", [0, 4, 5, 7])
+@pytest.mark.parametrize("seed", [0, 5, 7, 8])
 def test_a_response_that_is_not_given_is_not_taken_for_a_fast_one_where_so2_is_noisy(seed):
     # Noise of 25 ppb, as much as passes raise SO2; a t90 of 0 would smooth it most, and read a quarter of the content.
     readings = read(plain_sniffer(so2_noise=25.0, co2_noise=1.0), crossings(0.25, seed=seed), seed=seed)

@@ -115,7 +115,7 @@ def _round(record: Record, instrument: SnifferSpec, place: Array, free: npt.NDAr
     step = np.zeros(2)
     step[free] = np.clip(-(inverse @ (derivatives.T @ residual))[1:], -_JUMPS[free], _JUMPS[free])
     # The residuals' noise is not white: it reaches the fit by its own covariance.
-    expected = residual_variance(signals, slope) * len(residual)
+    expected = residual_variance(signals, slope) * signals.count
     misfit = max(1.0, float(residual @ residual) / expected) if expected > 0.0 else 1.0
     noise = misfit * noise_covariance(signals, derivatives, slope)
     spread = inverse @ noise @ inverse
@@ -127,14 +127,15 @@ def _round(record: Record, instrument: SnifferSpec, place: Array, free: npt.NDAr
 
 def _derivative(signals: Signals, instrument: SnifferSpec, place: Array, i: int, slope: float) -> Array:
     """Return what the residuals change by with log(t90) or delay, relative to the noise that SO2 has left."""
-    sides, noise = [], _noise(signals)
+    sides, noise, known = [], _noise(signals), signals.known
     for sign in (1.0, -1.0):
         moved = place.copy()
         moved[i] += sign * _STEPS[i]
         other = make_signals(signals.record, _applied(instrument, moved))
         co2, so2 = other.excess()
         sides.append((so2 - slope * co2) * math.sqrt(noise / _noise(other)))
-    return np.asarray((sides[0] - sides[1]) / (2.0 * _STEPS[i]))
+        known = known * other.known
+    return np.asarray(known * (sides[0] - sides[1]) / (2.0 * _STEPS[i]))
 
 
 def _noise(signals: Signals) -> float:
@@ -155,7 +156,7 @@ def _searched(record: Record, instrument: SnifferSpec, free: npt.NDArray[np.int6
         _, so2 = signals.excess()
         energy, noise = float(so2 @ so2), _noise(signals)
         for delay in _DELAY_SEARCH if 1 in free else (given,):
-            co2 = without(signals.basis, shifted(signals.co2, record.step, delay - given))
+            co2 = without(signals.basis, signals.known * shifted(signals.co2, record.step, delay - given))
             # SO2 does not fall where CO2 rises: a negative share is none.
             explained = max(0.0, float(co2 @ so2)) / max(float(np.linalg.norm(co2)), 1e-30)
             if (energy - explained**2) / noise < least:

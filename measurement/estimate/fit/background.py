@@ -18,8 +18,8 @@ _INDEPENDENT = 1e-6
 """Size of a column, relative to the first, under which it says nothing that the others do not."""
 
 
-def background_basis(record: Record, common: Poles) -> Array:
-    """Return an orthonormal basis of the background over all samples, shape (n, k)."""
+def background_basis(record: Record, common: Poles, known: Array) -> Array:
+    """Return an orthonormal basis of the background over all samples, shape (n, k); it is 0 where these are not ``known``."""
     time = record.time
     pieces = 1 if record.duration <= STRAIGHT_MAX else math.ceil(record.duration / KNOT_INTERVAL)
     place = (time - time[0]) / max(record.duration, 1e-9) * pieces
@@ -32,7 +32,10 @@ def background_basis(record: Record, common: Poles) -> Array:
             columns.append(column)
         start += len(segment)
     # In a gap a knot may have no samples.
-    unit = np.stack([column / np.linalg.norm(column) for column in columns if column.any()], axis=1)
+    columns = [column for column in (known * column for column in columns) if column.any()]
+    if not columns:
+        return np.zeros((len(time), 0))
+    unit = np.stack([column / np.linalg.norm(column) for column in columns], axis=1)
     basis, sizes, _ = np.linalg.svd(unit, full_matrices=False)
     return np.asarray(basis[:, sizes > _INDEPENDENT * sizes[0]])
 

@@ -54,7 +54,7 @@ def grouped(signals: Signals, passes: Sequence[Pass], slope: float, *, misfit: f
     cuts = [0.5 * (passes[part[-1]].end_s + passes[part[-1] + 1].start_s) for part in parts[:-1]]
     bounds = zip([-math.inf, *cuts], [*cuts, math.inf], strict=True)
     co2 = np.stack([_part(signals, low, high) for low, high in bounds], axis=1)
-    co2 = without(signals.basis, co2)
+    co2 = without(signals.basis, signals.known[:, np.newaxis] * co2)
     sizes = np.linalg.svd(co2, compute_uv=False)
     if sizes[-1] <= _INDEPENDENT * sizes[0]:
         return nothing

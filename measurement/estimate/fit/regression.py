@@ -86,11 +86,11 @@ def _noise_energy(signals: Signals, so2: float, co2: float) -> float:
 
 def _correlated(signals: Signals) -> float:
     """Return N times the sum of the squared autocovariance of the CO2 signal's noise."""
-    return len(signals.co2) * sum(
+    return signals.count * sum(
         (in_co2 * signals.noise(gas)) ** 4 * signals.noise_correlation(gas) for gas, (_, in_co2) in signals.shares.items() if in_co2
     )
 
 
 def residual_variance(signals: Signals, slope: float) -> float:
     """Return the mean square that the residuals have by the stated noise."""
-    return _noise_energy(signals, 1.0, -slope) / len(signals.so2)
+    return _noise_energy(signals, 1.0, -slope) / signals.count

@@ -75,6 +75,13 @@ def shifted(signal: Array, step: float, delay: float) -> Array:
     return moved
 
 
+def unread(step: float, delay: float) -> tuple[int, int]:
+    """Return how many samples at either end of a signal that is ``shifted`` by ``delay`` [s] come from beyond its ends."""
+    whole, weights = between_samples(step, delay)
+    used = [whole + offset for offset, weight in zip((-1, 0, 1, 2), weights, strict=True) if weight]
+    return max(0, -min(used)), max(0, *used)
+
+
 def between_samples(step: float, delay: float) -> tuple[int, tuple[float, float, float, float]]:
     """Return the sample before a time ``delay`` [s] earlier, and the weights of the one before it, itself, and the next two.
 

@@ -8,7 +8,7 @@ import numpy as np
 import pandas as pd
 
 from measurement.estimate.fit.background import background_basis, without
-from measurement.estimate.fit.response import Poles, adjoint, between_samples, equalised, impulse, shifted, slowest
+from measurement.estimate.fit.response import Poles, adjoint, between_samples, equalised, impulse, shifted, slowest, unread
 from measurement.estimate.record import Record
 from measurement.gases import GASES, UNITS
 from measurement.sniffer.lag import Array
@@ -21,6 +21,10 @@ _OUTSIDE = 0.1
 """Share of the samples with the least CO2, by which the level outside the plume is shown."""
 
 
+Ends = tuple[int, int]
+"""Samples at the beginning and at the end of each segment [-]."""
+
+
 @dataclass(frozen=True, kw_only=True)
 class Signals:
     """What is regressed: ``so2 = slope co2 + background + noise``.
@@ -29,6 +33,8 @@ class Signals:
     ----------
     record, instrument : what they are made of
     co2, so2 : at the common response and delay, with their backgrounds, shape (n,) [ppm], [ppb]
+    ends : what at least one channel of another delay has no readings for
+    known : 0 of these and 1 of all others, shape (n,): these alone count
     basis : orthonormal, of the backgrounds, shape (n, k)
     common : poles of the common response
     shares : of each gas's reading in ``so2`` and in ``co2``
@@ -38,6 +44,8 @@ class Signals:
     instrument: SnifferSpec
     co2: Array
     so2: Array
+    ends: Ends
+    known: Array
     basis: Array
     common: Poles
     shares: dict[str, tuple[float, float]]
@@ -51,12 +59,17 @@ class Signals:
         return self.instrument.known(gas).noise
 
     def excess(self) -> tuple[Array, Array]:
-        """Return CO2 and SO2 without what the background explains."""
+        """Return CO2 and SO2 without what the background explains, and 0 where they are not known."""
         return self._excess
 
     @cached_property
     def _excess(self) -> tuple[Array, Array]:
-        return without(self.basis, self.co2), without(self.basis, self.so2)
+        return without(self.basis, self.known * self.co2), without(self.basis, self.known * self.so2)
+
+    @cached_property
+    def count(self) -> int:
+        """Samples that are known [-]; 1 at least."""
+        return max(1, int(self.known.sum()))
 
     def backwards(self, gas: str, weights: Array) -> Array:
         """Return the weights of a gas's readings in a weighted sum of its equalised samples, shape (n,) or (n, k)."""
@@ -66,14 +79,17 @@ class Signals:
 
     def noise_energy(self, gas: str) -> float:
         """Return the expected sum of squares, beside the background, of a gas's equalised noise of standard deviation 1."""
-        return self.record.once(("noise energy", self.poles(gas), self.common, self._weights(gas)), lambda: self._noise_energy(gas))
+        key = "noise energy", self.poles(gas), self.common, self._weights(gas), self.ends
+        return self.record.once(key, lambda: self._noise_energy(gas))
 
     def _noise_energy(self, gas: str) -> float:
         energy = 0.0
         for segment in self.record.times:
             squares = self._impulse(gas, len(segment)) ** 2
-            energy += float(np.sum(squares * (len(segment) - np.arange(len(squares)))))
-        key = "background energy", self.poles(gas), self.common
+            # Each reading is in all samples after it.
+            first, end = self.ends[0], len(segment) - self.ends[1]
+            energy += float(np.sum(squares * np.maximum(0, end - np.maximum(first, np.arange(len(squares))))))
+        key = "background energy", self.poles(gas), self.common, self.ends
         return energy - self.record.once(key, lambda: float(np.sum(self.backwards(gas, self.basis) ** 2)))
 
     def noise_correlation(self, gas: str) -> float:
@@ -125,8 +141,11 @@ def common_poles(instrument: SnifferSpec, gases: tuple[str, ...], shares: dict[s
     return slowest([poles, *slow])
 
 
-def make_signals(record: Record, instrument: SnifferSpec) -> Signals:
-    """Return the signals of a record, given the instrument's response, delays, gains and cross-sensitivities."""
+def make_signals(record: Record, instrument: SnifferSpec, ends: Ends = (0, 0)) -> Signals:
+    """Return the signals of a record, given the instrument's response, delays, gains and cross-sensitivities.
+
+    Samples at the ends of segments count as not known, the first and the last ``ends`` of each at least.
+    """
     gases = used_gases(record)
     shares = shares_of(instrument, gases)
     common = common_poles(instrument, gases, shares)
@@ -137,8 +156,21 @@ def make_signals(record: Record, instrument: SnifferSpec) -> Signals:
         signal = _brought(record, gas, channel.constants, common, reference - channel.delay_s)
         so2 += shares[gas][0] * signal
         co2 += shares[gas][1] * signal
-    basis = record.once(("basis", common), lambda: background_basis(record, common))
-    return Signals(record=record, instrument=instrument, co2=co2, so2=so2, basis=basis, common=common, shares=shares)
+    unknown = [ends, *(unread(record.step, reference - instrument.known(gas).delay_s) for gas in gases)]
+    ends = max(begin for begin, _ in unknown), max(end for _, end in unknown)
+    known = record.once(("known", ends), lambda: _known(record, ends))
+    basis = record.once(("basis", common, ends), lambda: background_basis(record, common, known))
+    return Signals(
+        record=record, instrument=instrument, co2=co2, so2=so2, ends=ends, known=known, basis=basis, common=common, shares=shares
+    )
+
+
+def _known(record: Record, ends: Ends) -> Array:
+    """Return 1 for each sample of the record, and 0 at the ends of its segments, shape (n,)."""
+    parts = [np.zeros(len(time)) for time in record.times]
+    for part in parts:
+        part[ends[0] : len(part) - ends[1]] = 1.0
+    return np.concatenate(parts)
 
 
 def _brought(record: Record, gas: str, own: Poles, common: Poles, late: float) -> Array:
@@ -157,16 +189,18 @@ def _brought(record: Record, gas: str, own: Poles, common: Poles, late: float) -
 def samples_of(signals: Signals, slope: float) -> tuple[pd.DataFrame, float]:
     """Return readings, equalised excesses, fit and residual by sample, and the signal to noise of SO2."""
     record = signals.record
-    co2, so2 = signals.excess()
+    (co2, so2), known = signals.excess(), signals.known > 0.0
     # Beside the background both have a mean of 0; they are shown from the level that CO2 has outside the plume.
-    level = float(np.quantile(co2, _OUTSIDE))
-    fit, rest = slope * co2, float(np.std(so2 - slope * co2))
+    level = float(np.quantile(co2[known], _OUTSIDE)) if known.any() else 0.0
+    fit = slope * co2
+    signal, rest = (float(np.std(values[known])) if known.any() else 0.0 for values in (fit, so2 - fit))
     columns = {"time_s": record.time}
     columns |= {f"{gas}_{UNITS[gas]}": record.of(gas) for gas in used_gases(record)}
-    columns |= {
+    excesses = {
         "co2_excess_ppm": co2 - level,
         "so2_excess_ppb": so2 - slope * level,
         "fit_ppb": fit - slope * level,
         "residual_ppb": so2 - fit,
     }
-    return pd.DataFrame(columns), float(np.std(fit)) / rest if rest > 0.0 else math.inf
+    columns |= {name: np.where(known, values, math.nan) for name, values in excesses.items()}
+    return pd.DataFrame(columns), signal / rest if rest > 0.0 else math.inf
