@@ -47,8 +47,8 @@ _SULPHUR = (
 _GIVEN = (
     "Each law had the same number of settings to try, the default first, half of them spread evenly over the ranges and half by"
     " Nelder and Mead's simplex, which tries the best of these again, on flights of the kinematic vehicle with the aircraft's lag"
-    " and with seeds that the comparison does not use. The cost is the rms error of the end of a flight and what the heading rate in"
-    " excess of the reference's counts as."
+    " and with seeds that the comparison does not use. The cost is the rms error of the end of a flight and what the heading rate"
+    " in excess of the reference's counts as."
 )
 
 _ONCE = (
