@@ -62,7 +62,9 @@ def build_reports(
         return [html, written(directory / REPORT_PDF, partial(write_pdf, report, all_flights=all_flights))]
 
 
-def export_run(directory: Path, name: str, flight_id: str | None = None) -> list[Path]:
+def export_run(
+    directory: Path, name: str, flight_id: str | None = None, *, tell_missing: Callable[[str], None] = lambda _: None
+) -> list[Path]:
     """Write a run by an exporter into its subdirectory ``export`` and return the paths.
 
     Parameters
@@ -70,6 +72,7 @@ def export_run(directory: Path, name: str, flight_id: str | None = None) -> list
     directory : of the run
     name : of the exporter, or ``FILE.py:NAME``
     flight_id : of the only flight to be written; all of them if not given, each into a file of its own where the format holds one
+    tell_missing : called with the path of each file of the run that is gone or cannot be read, and so is not in the export
 
     Raises
     ------
@@ -95,7 +98,10 @@ def export_run(directory: Path, name: str, flight_id: str | None = None) -> list
         raise ReportError(f"'{folder}' cannot be written: {error.strerror}; check permissions and space") from None
     # What fails in one of the user's own is no damage of the run.
     with failure_named(f"exporter '{name}'") if is_file_part(name) else damage_named(directory):
-        return [written(folder / f"{stem}{exporter.suffix}", partial(exporter.write, part)) for stem, part in parts.items()]
+        paths = [written(folder / f"{stem}{exporter.suffix}", partial(exporter.write, part)) for stem, part in parts.items()]
+    for file in run.missing() if flight_id is None else sorted(run.unread):
+        tell_missing(file)
+    return paths
 
 
 def _stem(run_name: str, flight_id: str) -> str:
@@ -207,6 +213,7 @@ def command(
     from common.registry import PluginError
     from reports.errors import ReportError
 
+    missing: dict[str, None] = {}
     try:
         if flight is not None and not (export or stream):
             raise ReportError("--flight is of use beside --export or --stream; reports are of the whole run: leave it out")
@@ -218,23 +225,23 @@ def command(
             for name in exporters:
                 made_exporter(name)
             for name in exporters:
-                for path in export_run(directory, name, flight):
+                for path in export_run(directory, name, flight, tell_missing=missing.setdefault):
                     print(f"export: {path}")
             if stream:
                 sent, messages, seconds = stream_run(directory, stream, flight)
                 print(f"stream: {messages} messages of {sent}, {seconds:.0f} s of flight, to {stream}")
         else:
-            missing: list[str] = []
-            for path in build_reports(directory, all_flights=all_flights, settings=overrides or (), tell_missing=missing.append):
+            for path in build_reports(
+                directory, all_flights=all_flights, settings=overrides or (), tell_missing=missing.setdefault
+            ):
                 print(f"report: {path}")
-            for name in missing:
-                print(
-                    f"missing: {directory / name} is gone or cannot be read; the report says what it does not show", file=sys.stderr
-                )
-            if missing:
-                raise typer.Exit(MISSING)
     except (ReportError, PluginError) as error:
         raise typer.Exit(refuse(error)) from None
+    lack = "the export lacks it" if export else "the report says what it does not show"
+    for name in missing:
+        print(f"missing: {directory / name} is gone or cannot be read; {lack}", file=sys.stderr)
+    if missing:
+        raise typer.Exit(MISSING)
 
 
 def main() -> None:

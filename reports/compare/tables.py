@@ -14,7 +14,7 @@ from reports.document.axes import mark_text
 from reports.document.blocks import Table
 from reports.document.tables import ending, number
 from reports.monte_carlo.names import Figure
-from reports.run.columns import Array, Mask, column, completed, count, kept_out, lost, met
+from reports.run.columns import Array, Mask, column, completed, count, kept_out, lost, met, was_flown
 
 LISTED_MAX = 40
 """Flights that are listed one by one."""
@@ -23,8 +23,9 @@ _DIGITS_MAX = 5
 """Digits after the point at most of figures that are nearly 0."""
 
 _COUNTS: dict[str, Callable[[pd.DataFrame], Mask]] = {
+    "Flights that were flown": was_flown,
     "Flights that met every criterion": met,
-    "Flights that kept out": kept_out,
+    "Flights that are known to have kept out": kept_out,
     "Missions completed": completed,
     "Aircraft lost": lost,
     "Flights in which the guard intervened": lambda rows: column(rows, "guard_interventions") > 0.0,

@@ -141,14 +141,14 @@ def _whole(flown: list[_Flight], about: Surroundings) -> Panel:
 
 
 def _settled(flown: list[_Flight], about: Surroundings) -> Panel:
-    """Return the tracks from when both have settled; the second half of the flights if one never has."""
-    # Of one that never settled it is not a number, and so is the largest.
-    settled = float(np.max([float(flight.row["settling_time_s"]) for flight in flown]))
-    known = math.isfinite(settled)
-    begin = settled if known else 0.5 * min(float(flight.history["time_s"].iloc[-1]) for flight in flown)
-    late = [flight.history[flight.history["time_s"] >= begin] for flight in flown]
-    tracks = [flight.curve(*about_the_plume(history)) for flight, history in zip(flown, late, strict=True)]
-    title = "Once both have settled" if known else "Second half of the flight"
+    """Return the track of each flight from when it had settled; of one that never had, the second half."""
+    settled = [float(flight.row["settling_time_s"]) for flight in flown]
+    tracks = []
+    for flight, begin in zip(flown, settled, strict=True):
+        time = flight.history["time_s"]
+        late = flight.history[time >= (begin if math.isfinite(begin) else 0.5 * float(time.iloc[-1]))]
+        tracks.append(flight.curve(*about_the_plume(late)))
+    title = "Each once settled" if all(map(math.isfinite, settled)) else "Each once settled, or its second half"
     return ship_panel(about, tracks, title=title, shown=tracks, aspect=_ASPECT)
 
 

@@ -107,12 +107,12 @@ def _in_words(config: dict[str, Any], search: dict[str, Any], flights: pd.DataFr
 
 
 def _methods(asked: list[str], flown: set[str]) -> str:
-    """Return the methods that proposed a flight, and those that had no turn within the budget."""
+    """Return the methods of which points were flown, and those of which none was: they had no turn, or no point that could be."""
     had = [method_name(name) for name in asked if name in flown]
     without = [method_name(name) for name in asked if name not in flown]
     if not had or not without:
         return ", ".join(had or without)
-    return f"{', '.join(had)} ({', '.join(without)} had no turn within the budget)"
+    return f"{', '.join(had)} (no point of {', '.join(without)} was flown)"
 
 
 def _about_worst(config: dict[str, Any], search: dict[str, Any]) -> str:

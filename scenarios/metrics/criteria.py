@@ -83,7 +83,10 @@ def _crossing_checks(row: Row, criteria: CriteriaConfig) -> list[Check]:
     if criteria.crossing_interval_error:
         interval, predicted = row.get("crossing_interval_mean_s", math.nan), row["crossing_interval_predicted_s"]
         error = interval / predicted - 1.0
-        found = f"mean crossing interval {interval:.3f} s, {100.0 * error:+.1f} % of {predicted:.3f} s"
+        found = (
+            f"mean crossing interval {interval:.3f} s, {100.0 * abs(error):.1f} % {'longer' if error > 0.0 else 'shorter'} than the"
+            f" predicted {predicted:.3f} s, more than the {100.0 * criteria.crossing_interval_error:g} % that are allowed"
+        )
         message = "too few crossings for an interval" if math.isnan(error) else found
         checks.append((abs(error) <= criteria.crossing_interval_error, message))
     for name, key, unit, limits in (

@@ -120,12 +120,12 @@ class Ending:
         settling, plan, mode = self._settling, self._plan, self._guidance.mission.mode
         if self._judge is not None and self._judge.enough is not None:
             return self._judge.words
-        caveat = ""
+        ended = f", and ended {mode.value}" if mode in _GIVEN_UP else ""
+        within = f"within {plan.duration_max:g} s{ended}"
+        guard = ", and the keep-out guard may hold it off its orbit" if self.guarded else ""
         if math.isnan(settling.at):
-            flown, caveat = "did not settle", ", though a longer flight may not settle either"
-            if settling.tracked >= plan.settling_period:
-                flown = f"tracked its reference for {settling.tracked:.0f} s, but {self._orbit()}, so it did not settle"
-        elif self._missing:
+            return self._unsettled(f"did not settle {within}", guard)
+        if self._missing:
             flown = f"flew {plan.after_settling - self._missing:.0f} of {plan.after_settling:g} s after settling"
         elif plan.after_settling < math.inf and not plan.crossings:
             # It ended as it was to end, before the end of the longest flight.
@@ -137,16 +137,20 @@ class Ending:
             flown = f"flew {settling.crossings}{f' of {plan.crossings}' if plan.crossings else ''} crossings after settling"
         else:
             return f"ended {mode.value} after {settling.crossings} crossings: the plume was no longer crossed"
-        ended = f", and ended {mode.value}" if mode in _GIVEN_UP else ""
-        what = f"{flown} within {plan.duration_max:g} s{ended}"
-        if math.isnan(settling.at) and self.saturated > _SATURATED:
+        return f"{flown} {within}: allow more time (flight.duration_max_s), or start closer{guard}"
+
+    def _unsettled(self, what: str, guard: str) -> str:
+        """Return why a flight did not settle, and what may help."""
+        tracked = self._settling.tracked
+        if self.saturated > _SATURATED:
             return (
                 f"{what}: its steering law asked for more than the largest heading rate in {100.0 * self.saturated:.0f} % of the"
                 " steps; check that it returns rad/s, positive to the right (guidance.law)"
             )
-        guard = ", start closer, or see whether the guard holds it off (guidance.keepout_guard)"
-        more_time = f"allow more time (flight.duration_max_s{caveat})"
-        return f"{what}: {more_time}{guard if self.guarded else ', or start closer'}"
+        remedy = f"ly longer (flight.duration_max_s) or start closer, though neither may be enough{guard}"
+        if tracked < self._plan.settling_period:
+            return f"{what}: f{remedy}"
+        return f"{what}: it tracked its reference for {tracked:.0f} s, but {self._orbit()}. F{remedy}"
 
     def _orbit(self) -> str:
         """Return how the orbit stood to its place at the end of a flight that tracked it and did not settle."""
@@ -154,5 +158,5 @@ class Ending:
         if off == math.inf:
             return "its orbit was still closing in on its place"
         if off >= most:
-            return f"its orbit was {off:.0f} m from its place at the end, where less than {most:g} m count as there"
+            return f"its orbit was still {off:.0f} m from its place at the end ({most:g} m are near enough)"
         return "its orbit was not in its place for a whole period"

@@ -132,7 +132,8 @@ class FlightCounts:
         if math.isinf(self.nearest):
             return counts
         beside = f"{self.flown - self.without_area}{' beside a vessel' if self.without_area else ''}"
-        kept = f"{self.kept_out} of {beside} kept out, {self.keepout_violations} keep-out violations"
+        violations = f"{self.keepout_violations} keep-out violation{'s' * (self.keepout_violations != 1)}"
+        kept = f"{self.kept_out} of {beside} kept out, {violations}"
         about = f" ({_MEASURED_FROM[next(iter(self.shapes))]})" if len(self.shapes) == 1 else ""
         return f"{counts}; {kept}, closest approach {self.nearest:.1f} m{about}"
 

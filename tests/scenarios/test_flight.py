@@ -44,7 +44,7 @@ def test_what_cannot_be_flown_is_an_infeasible_row_with_one_clear_line(changes, 
         (
             20.0,
             "not_settled",
-            r"did not settle within 20 s: allow more time \(flight\.duration_max_s, though a longer flight may not settle either\)",
+            r"did not settle within 20 s: fly longer \(flight\.duration_max_s\) or start closer, though neither may be enough",
         ),
         # 400 m astern it settles within a minute and a half; 40 crossings take six.
         (

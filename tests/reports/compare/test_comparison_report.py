@@ -134,7 +134,7 @@ def test_a_flight_that_one_run_has_not_flown_yet_has_no_partner(first, same):
     assert "Without a partner are 1 of A." in texts_of(report)
     (figures,) = blocks_of(report, Table, "figures")
     # Counts of 3 and of 2 flights have no difference that says anything.
-    assert next(row for row in figures.rows if row[0] == "Flights that kept out")[1:] == ["3 of 3", "2 of 2", "–"]
+    assert next(row for row in figures.rows if row[0] == "Flights that are known to have kept out")[1:] == ["3 of 3", "2 of 2", "–"]
     assert [row[-1] for row in figures.rows] == ["−1"] + ["–"] * (len(figures.rows) - 1)
 
 
@@ -227,8 +227,21 @@ def test_of_a_flight_that_never_settled_the_second_half_is_shown(first, larger):
     runs = read_runs([first, larger])
     never = replace(runs[1], data=replace(runs[1].data, summary=runs[1].data.summary.assign(settling_time_s=math.nan)))
     titles = [panel.title for panel in comparison_content([runs[0], never], compare([runs[0], never])).picture.panels]
-    assert "Second half of the flight" in titles
-    assert "Once both have settled" not in titles
+    assert "Each once settled, or its second half" in titles
+    assert "Each once settled" not in titles
+
+
+def test_of_two_flights_that_are_never_settled_at_the_same_time_each_is_shown_from_its_own_settling(first, larger):
+    tables = [(run, run.data.summary) for run in read_runs([first, larger])]
+    # The first just before its end, the second from its beginning on.
+    settled = [rows["duration_s"] - 1.0 if first else 0.0 for first, (_, rows) in zip((True, False), tables, strict=True)]
+    runs = [
+        replace(run, data=replace(run.data, summary=rows.assign(settling_time_s=at)))
+        for (run, rows), at in zip(tables, settled, strict=True)
+    ]
+    panels = {panel.title: panel for panel in comparison_content(runs, compare(runs)).picture.panels}
+    sizes = {line.label: len(line.x) for line in panels["Each once settled"].lines}
+    assert 0 < sizes[runs[0].title] < sizes[runs[1].title]
 
 
 def test_flights_without_a_time_history_have_no_tracks(first, larger):

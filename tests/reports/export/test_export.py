@@ -67,6 +67,17 @@ def test_tracks_are_exported_with_the_vessel_that_was_flown_about(run_path):
     assert tracks["velocity_north_mps"].isna().all()
 
 
+@pytest.mark.parametrize("exporter", ["tracks_csv", "geojson"])
+def test_a_time_history_that_cannot_be_read_is_named_and_the_status_is_1(run_path, exporter):
+    (run_path / "flights" / "nu_1.00.parquet").write_bytes((run_path / "flights" / "nu_0.50.parquet").read_bytes()[:200])
+    ended = run_command("reports.build", run_path, "--export", exporter)
+    assert ended.status == 1
+    assert "nu_1.00.parquet is gone or cannot be read; the export lacks it" in ended.errors
+    assert "export: " in ended.out
+    # Of the other flight alone nothing is missing.
+    assert run_command("reports.build", run_path, "--export", exporter, "--flight", "nu_0.50").status == 0
+
+
 @pytest.mark.parametrize(("run", "expected"), [("small", "small.nu_0.50"), ("nu", "nu_0.50"), ("n" * 198, "nu_0.50")])
 def test_the_file_of_a_flight_has_the_name_of_the_run_once_and_no_more_letters_than_a_file_may(run_path, run, expected):
     change_manifest(run_path, name=run)

@@ -82,7 +82,7 @@ def test_a_flight_says_how_it_ended(flight):
 
 def test_a_reason_is_a_whole_sentence_with_its_remedy():
     (reason,) = fly(SHORT, nu=0.5, flight={"duration_max_s": 5.0}).reasons
-    assert reason.startswith("did not settle within 5 s: allow more time (flight.duration_max_s, though")
+    assert reason.startswith("did not settle within 5 s: fly longer (flight.duration_max_s) or start closer")
 
 
 def test_a_flight_that_cannot_be_flown_is_a_flight_with_its_reason():

@@ -67,24 +67,28 @@ def ended(
         (
             {"settled": math.nan, "tracked": 242.0},
             Outcome.NOT_SETTLED,
-            "tracked its reference for 242 s, but its orbit was still closing in on its place, so it did not settle within 300 s",
+            "did not settle within 300 s: it tracked its reference for 242 s, but its orbit was still closing in on its place. Fly",
         ),
         (
             {"settled": math.nan, "tracked": 242.0, "centre_error": 21.3},
             Outcome.NOT_SETTLED,
-            "but its orbit was 21 m from its place at the end, where less than 15 m count as there, so it did not settle",
+            "but its orbit was still 21 m from its place at the end (15 m are near enough). Fly longer (flight.duration_max_s)",
         ),
         (
             {"settled": math.nan, "tracked": 242.0, "centre_error": 3.0},
             Outcome.NOT_SETTLED,
-            "but its orbit was not in its place for a whole period, so it did not settle",
+            "but its orbit was not in its place for a whole period. Fly longer",
         ),
         (
             {"settled": math.nan},
             Outcome.NOT_SETTLED,
-            "(flight.duration_max_s, though a longer flight may not settle either), or start closer",
+            "fly longer (flight.duration_max_s) or start closer, though neither may be enough",
         ),
-        ({"settled": math.nan, "guarded": True}, Outcome.NOT_SETTLED, "start closer, or see whether the guard holds it off"),
+        (
+            {"settled": math.nan, "guarded": True},
+            Outcome.NOT_SETTLED,
+            "may be enough, and the keep-out guard may hold it off its orbit",
+        ),
         ({"settled": math.nan, "mode": Mode.OUTRUN}, Outcome.NOT_SETTLED, "did not settle within 300 s, and ended outrun"),
         ({"flown": 0}, Outcome.INCOMPLETE, "flew 0 crossings after settling within 300 s"),
         ({"asked": 30}, Outcome.INCOMPLETE, "flew 12 of 30 crossings after settling within 300 s"),
@@ -119,9 +123,9 @@ def test_a_flight_completes_only_with_its_aircraft_and_its_mission(flight, outco
     assert ending.outcome is outcome
     assert words in ending.message
     assert bool(ending.message) == (outcome is not Outcome.COMPLETED)
-    assert ("may not settle either" in ending.message) == (outcome is Outcome.NOT_SETTLED)
+    assert ("neither may be enough" in ending.message) == (outcome is Outcome.NOT_SETTLED)
     # A cause that does not apply is not named.
-    assert ("the guard" in ending.message) <= bool(flight.get("guarded"))
+    assert ("guard" in ending.message) <= bool(flight.get("guarded"))
 
 
 def test_a_law_that_asks_for_too_much_all_the_time_is_named_as_the_cause():
