@@ -17,13 +17,18 @@ from reports.document.ship_map import ship_panel, ship_words
 from reports.run.columns import Array, column
 from reports.run.flight_config import Config, flight_config
 from reports.run.surroundings import Surroundings, surroundings
-from reports.run.time_history import ERROR_MIN, about_the_plume, floor_words, keepout_distance, thinned, tracking_error
+from reports.run.time_history import (
+    ERROR_MIN,
+    about_the_plume,
+    flight_points,
+    floor_words,
+    keepout_distance,
+    thinned,
+    tracking_error,
+)
 
 _JUDGED = ("clearance_m", "crossing_interval_error", "tracking_error_rms_m", "settling_time_s")
 """Figures by which a flight differs much or little."""
-
-_POINTS_MAX = 1300
-"""Points of a curve at most."""
 
 _FAR = 1.6
 """Least end of the distances that are shown, over r_min [-]."""
@@ -83,7 +88,7 @@ def _chart(pairs: Pairs, place: int, why: str) -> Chart | None:
         history = run.data.history(str(row["flight_id"]))
         if history is None or len(history) < 2:
             return None
-        flown.append(_Flight(run=run, row=row, history=thinned(history, _POINTS_MAX), colour=colour))
+        flown.append(_Flight(run=run, row=row, history=thinned(history, flight_points(history)), colour=colour))
     vessel = all(np.isfinite(column(flight.history, "vessel_north_m")).any() for flight in flown)
     about = _about(flown[0]) if vessel else None
     distances = [_distances(flown)] if about else []

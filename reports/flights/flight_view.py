@@ -11,11 +11,8 @@ import pandas as pd
 from reports.document.chart import Band, Line, Style
 from reports.document.palette import Meaning
 from reports.run.columns import Array, column
-from reports.run.time_history import guard_stretches, keepout_distance
+from reports.run.time_history import flight_points, guard_stretches, keepout_distance
 from reports.run.trials import Trial
-
-POINTS_MAX = 1300
-"""Points of a curve at most, beside the closest approach."""
 
 GUARD, GUARD_LOST = "guard changed commands", "guard lost its radius"
 """What stretches of the keep-out guard are called."""
@@ -56,7 +53,7 @@ class FlightView:
         distance = self.distance_of(history)
         self.vessel = not math.isnan(float(row["min_distance_m"]))
         nearest = int(np.nanargmin(distance)) if self.vessel else 0
-        step = max(1, math.ceil(len(history) / POINTS_MAX))
+        step = max(1, math.ceil(len(history) / flight_points(history)))
         kept = np.union1d(np.arange(0, len(history), step), [nearest, len(history) - 1])
         self.samples, self.distance = history.iloc[kept], distance[kept]
         self.closest = history.iloc[[nearest]]

@@ -19,6 +19,12 @@ ERROR_MIN = 0.1
 _LOST = 2.0
 """Value of the column ``guard`` where the guard cannot hold its own radius; it is 1 where it changes commands, and else 0."""
 
+_FLIGHT_POINTS, _LONG_POINTS = 1300, 4000
+"""Points of a curve of a flight, and of one of an hour."""
+
+_TURNING = 1.0
+"""Time between two points within which an X8 on its orbit turns by 30 degrees at most [s]."""
+
 
 def tracking_error(history: pd.DataFrame) -> Array:
     """Return the distance to the reference at every sample [m]."""
@@ -59,6 +65,12 @@ def about_the_plume(history: pd.DataFrame, prefix: str = "") -> tuple[Array, Arr
 def turned(north: Array, east: Array, up: Array | float) -> tuple[Array, Array]:
     """Return metres to the right and up of a page on which the course ``up`` [rad] is up."""
     return np.cos(up) * east - np.sin(up) * north, np.cos(up) * north + np.sin(up) * east
+
+
+def flight_points(history: pd.DataFrame) -> int:
+    """Return how many samples curves of a flight show at most: more of a long one, that its turns do not become corners."""
+    time = column(history, "time_s")
+    return round(min(max(_FLIGHT_POINTS, (float(time[-1]) - float(time[0])) / _TURNING), _LONG_POINTS))
 
 
 def thinned(history: pd.DataFrame, points_max: int) -> pd.DataFrame:
