@@ -9,7 +9,7 @@ import numpy as np
 from measurement.errors import MeasurementError
 from measurement.estimate.areas import Areas, area_ratio
 from measurement.estimate.budget import CARBON_SD, SAMPLING_SD, SULPHATE_SHARE, common_errors, unmeasured
-from measurement.estimate.fit.alignment import Alignment, align, stated
+from measurement.estimate.fit.alignment import Alignment, align, stated, widened
 from measurement.estimate.fit.groups import grouped
 from measurement.estimate.fit.regression import fitted, regress
 from measurement.estimate.fit.signals import Ends, Signals, make_signals, samples_of, used_gases
@@ -130,11 +130,12 @@ def _regressed(record: Record, instrument: SnifferSpec) -> _Ratio:
     def aligned(moved: SnifferSpec, ends: Ends = (0, 0)) -> Signals:
         return make_signals(record, align(record, moved, start=alignment.instrument).instrument, ends)
 
-    as_known = aligned(alignment.instrument)
+    as_known, others = aligned(alignment.instrument), list[SnifferSpec]()
 
     def changes(moved: SnifferSpec) -> tuple[float, Array]:
         # Both of the samples that both know.
         other = aligned(moved, as_known.ends)
+        others.append(other.instrument)
         (slope, residual), (before, left) = fitted(other), fitted(aligned(alignment.instrument, other.ends))
         return slope - before, residual - left
 
@@ -142,6 +143,7 @@ def _regressed(record: Record, instrument: SnifferSpec) -> _Ratio:
     common = {**errors.parts, "response": math.hypot(errors.parts.get("response", 0.0), alignment.slope_deviation)}
     strange = stranger(found.misfit, found.residual_energy, errors.residual_energy, len(record.time))
     problems = (*_out_of_time(record, instrument, found.misfit), *strange)
+    alignment = widened(alignment, as_known.instrument, others)
     return _Ratio(ratio=found.slope, noise=found.noise, misfit=found.misfit, common=common, alignment=alignment, problems=problems)
 
 

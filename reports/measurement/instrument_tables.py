@@ -43,7 +43,8 @@ def instrument_table(record: Record) -> Table:
         *(row(f"Response to {gas.upper()} ± 1σ [per {UNITS[gas]}]", _response(gas), "cross", "cross_sd") for gas in others),
         row("Effect of pressure, not corrected [1/hPa]", lambda of, _: _plain(of["pressure_effect"]), "pressure_effect"),
     ]
-    found = f" “{_FOUND.capitalize()}”: not stated, and estimated." if any(_FOUND in cell for row in rows for cell in row) else ""
+    estimated = f" “{_FOUND.capitalize()}”: not stated, and estimated; its 1σ is without what lies between readings."
+    found = estimated if any(_FOUND in cell for row in rows for cell in row) else ""
     return Table(
         caption=f"The channels as the analysis used them.{found} What has no unit of its own is in that of its column."
         f" Instrument: {instrument['title']}.",

@@ -38,6 +38,9 @@ def result_table(record: Record) -> Table:
         " standard uncertainty, without what is below 0. Where the interval begins at 0, the probability of a content above its end"
         " is 5 %."
     )
+    other = record.get("other")
+    if other is not None and other["quality"] == "C":
+        caption += f" Why {METHODS[other['method']]} have quality C: {'; '.join(other['quality_reasons'])}."
     return Table(caption=caption, head=head, rows=rows, widths=[1.8, 1.2, 0.8, 1.9, 1.5, 0.7])
 
 

@@ -208,3 +208,16 @@ def test_a_response_that_is_not_given_is_not_taken_for_a_fast_one_where_so2_is_n
     # The truth is 0.25 %; the stated uncertainty is a quarter of it.
     assert abs(found.fsc_percent - 0.25) < 2.0 * found.total_percent
     assert [verdict.verdict for verdict in found.verdicts] == ["above", "below"]
+
+
+@pytest.mark.parametrize("co2_t90", [1.5, 4.5])
+def test_a_response_that_is_found_is_as_uncertain_as_that_of_co2_makes_it(co2_t90):
+    # Of CO2 3 s are stated, to 50 %. By noise alone t90 had 0.3 s and the delay 0.03 s, for errors of 2 and 0.5 s.
+    readings = read(
+        plain_sniffer(20.0, co2_t90, so2_noise=1.0, co2_noise=0.5, rate_hz=5.0, delay_s=3.0),
+        crossings(0.25, interval=30.0, width=2.0, meander=0.0),
+    )
+    stated = sensor_preset("unspecified")
+    found = estimate(readings, stated.with_channel(replace(stated.known("so2"), cross={}, cross_sd={})))
+    assert abs(found.so2_t90_s - 20.0) < 2.0 * found.so2_t90_sd_s < 10.0
+    assert abs(found.delay_s - 3.0) < 2.0 * found.delay_sd_s < 1.0

@@ -1,6 +1,7 @@
 """Response time and delay of SO2, found from the record where they are not given: those that fit best."""
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -37,7 +38,7 @@ class Alignment:
     ----------
     instrument : with the response and delay that fit, where they were not given
     slope_deviation : standard deviation of the slope by what noise does to the fit; 0 where both were given [ppb/ppm]
-    t90_sd_s, delay_sd_s : standard deviations of t90 of SO2, and of its delay after CO2 [s]
+    t90_sd_s, delay_sd_s : standard deviations of t90 of SO2, and of its delay after CO2, without what lies between readings [s]
     """
 
     instrument: SnifferSpec
@@ -86,6 +87,23 @@ def align(record: Record, instrument: SnifferSpec, start: SnifferSpec | None = N
         slope_deviation=slope_deviation,
         t90_sd_s=found.known("so2").t90_s * (float(spread[0]) if 0 in free else so2.t90_sd),
         delay_sd_s=float(spread[1]) if 1 in free else math.hypot(so2.delay_sd_s, co2.delay_sd_s),
+    )
+
+
+def widened(alignment: Alignment, known: SnifferSpec, others: Sequence[SnifferSpec]) -> Alignment:
+    """Return an alignment whose deviations have what errors of the instrument do to what was found from the record.
+
+    Parameters
+    ----------
+    alignment : with its deviations by noise
+    known, others : the instrument aligned as it is known, and with one error each
+    """
+    so2 = alignment.instrument.known("so2")
+    log_t90, delay = np.linalg.norm([_place(other) - _place(known) for other in others] or np.zeros((1, 2)), axis=0).tolist()
+    return replace(
+        alignment,
+        t90_sd_s=math.hypot(alignment.t90_sd_s, so2.t90_s * log_t90) if math.isinf(so2.t90_sd) else alignment.t90_sd_s,
+        delay_sd_s=math.hypot(alignment.delay_sd_s, delay) if math.isinf(so2.delay_sd_s) else alignment.delay_sd_s,
     )
 
 

@@ -16,7 +16,7 @@ from reports.document.chart import Chart, Line, Panel
 from reports.errors import ReportError
 from reports.measurement.charts import over_time_chart, regression_chart
 from reports.measurement.data import errors
-from reports.measurement.tables import over_time_table, record_table
+from reports.measurement.tables import over_time_table, record_table, result_table
 from reports.measurement.verdict import measurement_verdict, probability
 from reports.registry import content
 from reports.render import matplotlib_charts, plotly_charts
@@ -160,6 +160,10 @@ def test_what_is_assumed_of_gases_that_a_log_does_not_have_is_told(tmp_path, cap
     words = f"{estimate['assumed_percent']:+.3f} % "
     assert f"of it {words}correct SO2 for NO and NO2 that the log does not have" in capsys.readouterr().out
     assert f"times the slope, and {words}for NO and NO2 that the log does not have" in regression_chart(samples, found).caption
+
+
+def test_why_areas_have_quality_c_is_told_below_their_result(record):
+    assert "Why areas of passes have quality C: passes every 9.6 s overlap in an SO2 channel" in result_table(record).caption
 
 
 def test_where_the_result_is_by_areas_the_regression_is_still_shown_with_its_own_line(tmp_path):
