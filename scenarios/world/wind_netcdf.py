@@ -96,6 +96,10 @@ def _check_wind(path: Path, data: Any, time: str, names: list[str]) -> None:
                 f"wind.table: {path}: {name} has the dimension '{others[0]}' beside time and place; select one of its"
                 f" {data.sizes[others[0]]} values, and write that to a file"
             )
+    if not np.issubdtype(data[time].dtype, np.datetime64):
+        raise InputError(
+            f"wind.table: {path}: its times have no unit and origin, as 'hours since 2026-06-01'; give {time} such units"
+        )
     if not data.sizes[time]:
         raise InputError(f"wind.table: {path}: it has no times; give a file with the time of the flight")
 

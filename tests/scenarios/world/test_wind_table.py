@@ -234,6 +234,10 @@ def test_netcdf_is_read_by_its_units_names_and_dimensions(tmp_path):
     ):
         with pytest.raises(InputError, match=words):
             read(name, changed)
+    # Numbers were taken for milliseconds since 1970.
+    data.assign_coords(valid_time=[12.0]).to_netcdf(tmp_path / "numbers.nc", engine="h5netcdf")
+    with pytest.raises(InputError, match="its times have no unit and origin, as 'hours since 2026-06-01'; give valid_time such"):
+        read_netcdf(tmp_path / "numbers.nc", 57.2, 11.2)
 
 
 @pytest.mark.parametrize("longitudes", [np.array([11.0, 12.0]), np.arange(0.0, 350.0, 0.25)])
