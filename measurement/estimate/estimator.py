@@ -136,12 +136,15 @@ def _regressed(record: Record, instrument: SnifferSpec) -> _Ratio:
         # Both of the samples that both know.
         other = aligned(moved, as_known.ends)
         others.append(other.instrument)
-        (slope, residual), (before, left) = fitted(other), fitted(aligned(alignment.instrument, other.ends))
+        (slope, residual), (before, left) = fitted(other), fitted(make_signals(record, as_known.instrument, other.ends))
+        if not math.isfinite(slope - before):
+            # It may be anything.
+            return found.slope, np.zeros(1)
         return slope - before, residual - left
 
     errors = common_errors(alignment.instrument, used_gases(record), changes)
     common = {**errors.parts, "response": math.hypot(errors.parts.get("response", 0.0), alignment.slope_deviation)}
-    strange = stranger(found.misfit, found.residual_energy, errors.residual_energy, len(record.time))
+    strange = stranger(found.misfit, found.residual_energy, errors.residual_energy, as_known.count)
     problems = (*_out_of_time(record, instrument, found.misfit), *strange)
     alignment = widened(alignment, as_known.instrument, others)
     return _Ratio(ratio=found.slope, noise=found.noise, misfit=found.misfit, common=common, alignment=alignment, problems=problems)
@@ -154,7 +157,7 @@ def _out_of_time(record: Record, instrument: SnifferSpec, misfit: float) -> tupl
     delay is sought over its whole range, as if it were not stated; where noise alone explains the residuals it is not needed.
     """
     so2 = instrument.known("so2")
-    if math.isinf(so2.delay_sd_s) or not misfit > 0.0 or noise_alone(misfit, len(record.time)):
+    if math.isinf(so2.delay_sd_s) or not misfit > 0.0 or noise_alone(misfit, make_signals(record, instrument).count):
         return ()
     free = align(record, instrument.with_channel(replace(so2, delay_sd_s=math.inf)))
     # A clean fuel leaves what NO and NO2 were not corrected for, which may follow CO2 of another pass a little better than its own.

@@ -157,12 +157,13 @@ def _derivative(signals: Signals, instrument: SnifferSpec, place: Array, i: int,
 
 
 def _noise(signals: Signals) -> float:
-    """Return the mean square of the noise that SO2 has left, 1 where it has none.
+    """Return the mean square of the noise that SO2 has left, 1 where it has none, or too few samples are known.
 
     SO2 is smoothed where CO2 or a gas that corrects it is slower, the more the faster SO2 is taken for: where its noise is large,
     the residuals would be least for a t90 of 0.
     """
-    return residual_variance(signals, 0.0) or 1.0
+    found = residual_variance(signals, 0.0)
+    return found if found > 0.0 and signals.enough else 1.0
 
 
 def _searched(record: Record, instrument: SnifferSpec, free: npt.NDArray[np.int64]) -> Array:

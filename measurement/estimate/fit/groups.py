@@ -17,6 +17,9 @@ from measurement.sniffer.lag import Array
 GROUPS_MAX = 8
 """Groups of passes at most: single passes overlap in a slow sensor, and tell little apart."""
 
+_TELLING = 0.1
+"""Size of a group's CO2 beside the background over the median's, from which on the group has a content of its own [-]."""
+
 _INDEPENDENT = 1e-6
 """Least size of what is particular to a group, relative to all."""
 
@@ -55,6 +58,11 @@ def grouped(signals: Signals, passes: Sequence[Pass], slope: float, *, misfit: f
     bounds = zip([-math.inf, *cuts], [*cuts, math.inf], strict=True)
     co2 = np.stack([_part(signals, low, high) for low, high in bounds], axis=1)
     co2 = without(signals.basis, signals.known[:, np.newaxis] * co2)
+    # Of some groups little or nothing may be known.
+    norms = np.linalg.norm(co2, axis=0)
+    co2 = co2[:, norms > _TELLING * np.median(norms)]
+    if co2.shape[1] < 2:
+        return nothing
     sizes = np.linalg.svd(co2, compute_uv=False)
     if sizes[-1] <= _INDEPENDENT * sizes[0]:
         return nothing

@@ -30,11 +30,12 @@ class Slope:
 def fitted(signals: Signals) -> tuple[float, Array]:
     """Return the slope and the residuals.
 
-    The slope is corrected for the noise of CO2, which would attenuate it; it is not a number where CO2 is noise alone.
+    The slope is corrected for the noise of CO2, which would attenuate it; it is not a number where CO2 is noise alone, or too few
+    samples are known.
     """
     co2, so2 = signals.excess()
     energy = float(co2 @ co2) - _noise_energy(signals, 0.0, 1.0)
-    slope = float(co2 @ so2) / energy if energy > 0.0 else math.nan
+    slope = float(co2 @ so2) / energy if energy > 0.0 and signals.enough else math.nan
     return slope, so2 - slope * co2
 
 

@@ -17,6 +17,9 @@ from measurement.sniffer.spec import SnifferSpec
 _MEMORY = 12.0
 """Time constants after which a filter has forgotten."""
 
+_FREE_LEAST = 3
+"""Known samples beside those that the background takes up, at least [-]."""
+
 _OUTSIDE = 0.1
 """Share of the samples with the least CO2, by which the level outside the plume is shown."""
 
@@ -70,6 +73,11 @@ class Signals:
     def count(self) -> int:
         """Samples that are known [-]; 1 at least."""
         return max(1, int(self.known.sum()))
+
+    @property
+    def enough(self) -> bool:
+        """Whether more samples are known than the background takes up: of as many all is explained, and only rounding is left."""
+        return bool(self.known.sum() >= self.basis.shape[1] + _FREE_LEAST)
 
     def backwards(self, gas: str, weights: Array) -> Array:
         """Return the weights of a gas's readings in a weighted sum of its equalised samples, shape (n,) or (n, k)."""
@@ -144,7 +152,8 @@ def common_poles(instrument: SnifferSpec, gases: tuple[str, ...], shares: dict[s
 def make_signals(record: Record, instrument: SnifferSpec, ends: Ends = (0, 0)) -> Signals:
     """Return the signals of a record, given the instrument's response, delays, gains and cross-sensitivities.
 
-    Samples at the ends of segments count as not known, the first and the last ``ends`` of each at least.
+    Samples at the ends of segments count as not known where a channel that counts has no reading for them, and the first and the
+    last ``ends`` of each in any case.
     """
     gases = used_gases(record)
     shares = shares_of(instrument, gases)
@@ -156,7 +165,7 @@ def make_signals(record: Record, instrument: SnifferSpec, ends: Ends = (0, 0)) -
         signal = _brought(record, gas, channel.constants, common, reference - channel.delay_s)
         so2 += shares[gas][0] * signal
         co2 += shares[gas][1] * signal
-    unknown = [ends, *(unread(record.step, reference - instrument.known(gas).delay_s) for gas in gases)]
+    unknown = [ends, *(unread(record.step, reference - instrument.known(gas).delay_s) for gas in gases if any(shares[gas]))]
     ends = max(begin for begin, _ in unknown), max(end for _, end in unknown)
     known = record.once(("known", ends), lambda: _known(record, ends))
     basis = record.once(("basis", common, ends), lambda: background_basis(record, common, known))
@@ -169,7 +178,7 @@ def _known(record: Record, ends: Ends) -> Array:
     """Return 1 for each sample of the record, and 0 at the ends of its segments, shape (n,)."""
     parts = [np.zeros(len(time)) for time in record.times]
     for part in parts:
-        part[ends[0] : len(part) - ends[1]] = 1.0
+        part[ends[0] : max(0, len(part) - ends[1])] = 1.0
     return np.concatenate(parts)
 
 

@@ -72,7 +72,7 @@ def test_figures_draw_nothing_where_the_log_has_no_readings(report):
     time = co2.x[np.isfinite(co2.y)]
     assert not np.any((time > 149.5) & (time < 169.5))
     assert np.isnan(co2.y[np.searchsorted(np.nan_to_num(co2.x, nan=160.0), 160.0)])
-    assert "Lines end where the log has no readings." in charts["channels"].caption
+    assert "Lines end where the log has no readings, and where" in charts["channels"].caption
     # 280 rows, one of them without CO2.
     assert len(charts["regression"].panels[0].lines[0].x) == 279
     height = charts["track"].panels[1].lines[0]

@@ -1,0 +1,70 @@
+"""Ends of a record and of its parts, where channels of different delays have not all read the same air."""
+
+import math
+
+import numpy as np
+import pytest
+from crossings import changed, crossings, plain_sniffer, read, sniffer_of
+
+from measurement.estimate import estimate, over_time
+from measurement.estimate.fit.signals import make_signals
+from measurement.estimate.record import checked_record
+from measurement.sniffer import Channel, Readings
+
+AIR = {"interval": 30.0, "meander": 0.0, "width": 2.0}
+
+
+def parts(readings, period, kept):
+    inside = readings.time % period < kept
+    return Readings(readings.time[inside], readings.values[inside])
+
+
+def with_no(delay, **so2):
+    """Return a sniffer whose NO channel is so much later than the others [s]."""
+    return sniffer_of(
+        Channel(gas="so2", t90_s=15.0, noise=1.0, **so2),
+        Channel(gas="co2", t90_s=3.0, noise=0.5),
+        Channel(gas="no", t90_s=5.0, noise=5.0, delay_s=delay),
+    )
+
+
+def test_where_the_background_explains_all_that_is_known_there_is_no_result():
+    # Of parts of 32 s a channel that is 32 s late leaves less than the background takes up: 0 % was found, "below", quality A.
+    spec = sniffer_of(Channel(gas="so2", t90_s=4.0, noise=0.5), Channel(gas="co2", t90_s=3.0, noise=0.5, delay_s=32.0))
+    readings = read(spec, crossings(0.25, duration=600.0, interval=34.0, meander=0.0, width=2.0), seed=1)
+    found = estimate(parts(readings, 34.0, 31.5), spec)
+    assert math.isnan(found.fsc_percent)
+    assert found.quality == "C"
+
+
+@pytest.mark.parametrize("delay", [3.0, 9.0, 15.0])
+def test_a_beginning_that_is_shorter_than_the_delay_has_an_estimate_or_none(delay):
+    spec = plain_sniffer(3.0, 2.0, so2_noise=1.0, co2_noise=0.5, delay_s=delay)
+    readings = read(spec, crossings(0.25, duration=60.0, interval=12.0, meander=0.3, width=1.0, first=4.0), seed=2)
+    unknown = changed(spec, "so2", t90_sd=math.inf, delay_sd_s=math.inf)
+    assert len(over_time(readings, unknown, elapsed_s=(8, 9, 10, 11, 12, 14, 16, 20, 30))) == 9
+
+
+def test_a_correction_that_comes_after_the_end_of_the_record_leaves_no_result():
+    spec = with_no(310.0, cross={"no": 0.01})
+    found = estimate(read(spec, crossings(0.25, **AIR)), spec)
+    assert math.isnan(found.fsc_percent)
+    assert found.quality == "C"
+
+
+def test_a_gas_that_corrects_nothing_takes_no_samples_away():
+    spec = with_no(60.0)
+    readings = read(spec, crossings(0.25, **AIR))
+    assert make_signals(checked_record(readings, spec), spec).known.all()
+    corrected = with_no(60.0, cross={"no": 0.01})
+    known = make_signals(checked_record(readings, corrected), corrected).known
+    assert np.count_nonzero(known == 0.0) == 60
+
+
+def test_of_passes_that_not_all_channels_read_the_others_are_compared():
+    spec = with_no(60.0, cross={"no": 0.01})
+    found = estimate(read(spec, crossings(0.25, **AIR)), spec)
+    # Ten passes, of which two are before NO has its first or after the last reading that it is for.
+    assert len(found.pass_percent) == len(found.pass_deviation_percent) >= 6
+    assert np.array(found.pass_percent) == pytest.approx(0.25, rel=0.1)
+    assert not math.isnan(found.agreement)
