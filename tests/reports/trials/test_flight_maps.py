@@ -10,7 +10,7 @@ from reports.flights.flight_view import GUARD, GUARD_LOST, FlightView, flight_vi
 from reports.flights.single_flight import flight_charts
 from reports.flights.tracks import track_picture
 from reports.run.surroundings import surroundings
-from reports.run.time_history import about_the_plume, guard_stretches, vessel_heading
+from reports.run.time_history import about_the_plume, flight_points, guard_stretches, vessel_heading
 from reports.run.trials import read_trials
 
 
@@ -146,3 +146,8 @@ def test_the_ground_lies_along_the_way_of_a_ship_that_goes_far(run):
         assert way.y == pytest.approx(np.zeros(len(way.y)), abs=1e-6)
         assert np.all(np.diff(way.x) >= 0.0)
     assert high
+
+
+@pytest.mark.parametrize(("duration", "points"), [(400.0, 1300), (3000.0, 3000), (7200.0, 4000)])
+def test_a_long_flight_has_a_point_a_second_and_its_turns_are_no_corners(duration, points):
+    assert flight_points(pd.DataFrame({"time_s": np.array([0.0, duration])})) == points
