@@ -99,7 +99,7 @@ def export_run(
     # What fails in one of the user's own is no damage of the run.
     with failure_named(f"exporter '{name}'") if is_file_part(name) else damage_named(directory):
         paths = [written(folder / f"{stem}{exporter.suffix}", partial(exporter.write, part)) for stem, part in parts.items()]
-    for file in run.missing() if flight_id is None else sorted(run.unread):
+    for file in sorted(run.unread) if flight_id else run.missing():
         tell_missing(file)
     return paths
 

@@ -136,7 +136,8 @@ def _regressed(record: Record, instrument: SnifferSpec) -> _Ratio:
         # Both of the samples that both know.
         other = aligned(moved, as_known.ends)
         others.append(other.instrument)
-        (slope, residual), (before, left) = fitted(other), fitted(make_signals(record, as_known.instrument, other.ends))
+        same = as_known if other.ends == as_known.ends else make_signals(record, as_known.instrument, other.ends)
+        (slope, residual), (before, left) = fitted(other), fitted(same)
         if not math.isfinite(slope - before):
             # It may be anything.
             return found.slope, np.zeros(1)
@@ -145,19 +146,19 @@ def _regressed(record: Record, instrument: SnifferSpec) -> _Ratio:
     errors = common_errors(alignment.instrument, used_gases(record), changes)
     common = {**errors.parts, "response": math.hypot(errors.parts.get("response", 0.0), alignment.slope_deviation)}
     strange = stranger(found.misfit, found.residual_energy, errors.residual_energy, as_known.count)
-    problems = (*_out_of_time(record, instrument, found.misfit), *strange)
+    problems = (*_out_of_time(record, instrument, found.misfit, as_known.count), *strange)
     alignment = widened(alignment, as_known.instrument, others)
     return _Ratio(ratio=found.slope, noise=found.noise, misfit=found.misfit, common=common, alignment=alignment, problems=problems)
 
 
-def _out_of_time(record: Record, instrument: SnifferSpec, misfit: float) -> tuple[str, ...]:
+def _out_of_time(record: Record, instrument: SnifferSpec, misfit: float, samples: int) -> tuple[str, ...]:
     """Return the problem of SO2 and CO2 that do not fit in time, as where two loggers have two clocks.
 
     Far from the true delay the slope is near 0 and changes little: an error that small steps of the delay do not show. So the
     delay is sought over its whole range, as if it were not stated; where noise alone explains the residuals it is not needed.
     """
     so2 = instrument.known("so2")
-    if math.isinf(so2.delay_sd_s) or not misfit > 0.0 or noise_alone(misfit, make_signals(record, instrument).count):
+    if math.isinf(so2.delay_sd_s) or not misfit > 0.0 or noise_alone(misfit, samples):
         return ()
     free = align(record, instrument.with_channel(replace(so2, delay_sd_s=math.inf)))
     # A clean fuel leaves what NO and NO2 were not corrected for, which may follow CO2 of another pass a little better than its own.

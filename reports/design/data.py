@@ -19,6 +19,9 @@ FAST = 45.0
 
 _MARGINS = ("gain_db", "phase_deg", "disk_gain_db", "disk_phase_deg")
 
+_HUNDRED = 100
+"""Reversals up to which one that exceeds a limit is one in a hundred or more."""
+
 
 def complete(record: Record) -> Record:
     """Return a design record as reports judge it.
@@ -142,10 +145,6 @@ def damping(pole: tuple[float, float]) -> float:
     """Return the damping ratio of a pole [-]; 1 for a real stable one."""
     size = math.hypot(*pole)
     return -pole[0] / size if size else 0.0
-
-
-_HUNDRED = 100
-"""Reversals up to which one that exceeds a limit is one in a hundred or more."""
 
 
 def reversal_sentences(design: Record) -> str:

@@ -67,7 +67,7 @@ def messages(flight: GeographicFlight) -> Iterator[tuple[float, bytes]]:
             yield time, packer.pack("HEARTBEAT", 0, _FIXED_WING, _NO_AUTOPILOT, _ARMED, _ACTIVE, _VERSION)
             yield time, packer.pack("SYSTEM_TIME", round(1e6 * (flight.start + time)), _milliseconds(time))
             if flight.vessel is not None:
-                bow = round(100.0 * float(flight.vessel_heading[i])) % 36000
+                bow = _centidegrees(flight.vessel_heading[i])
                 yield time, _ais(packer, flight.vessel, i, bow)
                 yield time, _adsb(packer, flight.vessel, i, bow)
         yield from ((time, message) for message in _of_sample(packer, flight, i, time))
@@ -77,7 +77,7 @@ def _of_sample(packer: Packer, flight: GeographicFlight, i: int, time: float) ->
     uav = flight.uav
     roll, pitch, yaw = (math.radians(float(angle[i])) for angle in (flight.roll, flight.pitch, flight.heading))
     yield packer.pack("ATTITUDE", _milliseconds(time), roll, pitch, math.remainder(yaw, math.tau), 0.0, 0.0, 0.0)
-    height, heading = round(1e3 * float(uav.altitude[i])), round(100.0 * float(flight.heading[i])) % 36000
+    height, heading = round(1e3 * float(uav.altitude[i])), _centidegrees(flight.heading[i])
     yield packer.pack(
         "GLOBAL_POSITION_INT", _milliseconds(time), *_place(uav, i), height, height,
         _centi(uav.north[i]), _centi(uav.east[i]), _centi(-flight.climb_rate[i]), heading,
@@ -89,7 +89,7 @@ def _of_sample(packer: Packer, flight: GeographicFlight, i: int, time: float) ->
 
 
 def _ais(packer: Packer, vessel: Body, i: int, bow: int) -> bytes:
-    course, speed = round(100.0 * float(vessel.course[i])) % 36000, float(vessel.speed[i])
+    course, speed = _centidegrees(vessel.course[i]), float(vessel.speed[i])
     valid = _AIS_VALID | _VALID_COG if speed >= _AT_REST else _AIS_VALID
     return packer.pack(
         "AIS_VESSEL", _MMSI, *_place(vessel, i), course, bow, _centi(speed), 0, 0, 0, valid, 0, 0, _CARGO, 0, 0, b"", b"VESSEL"
@@ -110,6 +110,10 @@ def _place(body: Body, i: int) -> tuple[int, int]:
 
 def _centi(speed: float) -> int:
     return max(-32768, min(32767, round(100.0 * float(speed))))
+
+
+def _centidegrees(angle: float) -> int:
+    return round(100.0 * float(angle)) % 36000
 
 
 def _milliseconds(time: float) -> int:

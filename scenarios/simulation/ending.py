@@ -147,10 +147,10 @@ class Ending:
                 f"{what}: its steering law asked for more than the largest heading rate in {100.0 * self.saturated:.0f} % of the"
                 " steps; check that it returns rad/s, positive to the right (guidance.law)"
             )
-        remedy = f"ly longer (flight.duration_max_s) or start closer, though neither may be enough{guard}"
+        remedy = f"fly longer (flight.duration_max_s) or start closer, though neither may be enough{guard}"
         if tracked < self._plan.settling_period:
-            return f"{what}: f{remedy}"
-        return f"{what}: it tracked its reference for {tracked:.0f} s, but {self._orbit()}. F{remedy}"
+            return f"{what}: {remedy}"
+        return f"{what}: it tracked its reference for {tracked:.0f} s, but {self._orbit()}. {remedy.capitalize()}"
 
     def _orbit(self) -> str:
         """Return how the orbit stood to its place at the end of a flight that tracked it and did not settle."""

@@ -10,6 +10,9 @@ from measurement.sniffer.lag import Array, lag
 Poles = tuple[float, ...]
 """Time constants [s], the largest first."""
 
+_AROUND = (-1, 0, 1, 2)
+"""Samples between which a signal is read, from the one before the place [-]."""
+
 _ON_SAMPLE = 1e-9
 """Share of a step by which a delay may miss a whole number of steps and still be one."""
 
@@ -69,7 +72,7 @@ def shifted(signal: Array, step: float, delay: float) -> Array:
     whole, weights = between_samples(step, delay)
     samples = np.arange(len(signal)) + whole
     moved = np.zeros(len(signal))
-    for offset, weight in zip((-1, 0, 1, 2), weights, strict=True):
+    for offset, weight in zip(_AROUND, weights, strict=True):
         if weight:
             moved += weight * signal.take(samples + offset, mode="clip")
     return moved
@@ -78,7 +81,7 @@ def shifted(signal: Array, step: float, delay: float) -> Array:
 def unread(step: float, delay: float) -> tuple[int, int]:
     """Return how many samples at either end of a signal that is ``shifted`` by ``delay`` [s] come from beyond its ends."""
     whole, weights = between_samples(step, delay)
-    used = [whole + offset for offset, weight in zip((-1, 0, 1, 2), weights, strict=True) if weight]
+    used = [whole + offset for offset, weight in zip(_AROUND, weights, strict=True) if weight]
     return max(0, -min(used)), max(0, *used)
 
 

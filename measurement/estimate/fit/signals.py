@@ -77,7 +77,7 @@ class Signals:
     @property
     def enough(self) -> bool:
         """Whether more samples are known than the background takes up: of as many all is explained, and only rounding is left."""
-        return bool(self.known.sum() >= self.basis.shape[1] + _FREE_LEAST)
+        return bool(self.count >= self.basis.shape[1] + _FREE_LEAST)
 
     def backwards(self, gas: str, weights: Array) -> Array:
         """Return the weights of a gas's readings in a weighted sum of its equalised samples, shape (n,) or (n, k)."""
