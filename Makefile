@@ -66,5 +66,6 @@ lock: .venv/.developer .venv/.docs
 	@{ echo '# Pinned versions of everything the environment holds. `make lock` writes this file anew.'; \
 		$(BIN)/python -m pip freeze --exclude-editable; } > constraints.txt
 
+# Runs stay: they may have taken hours.
 clean:
-	rm -rf .venv runs build docs/_build docs/generated
+	rm -rf .venv build docs/_build docs/generated

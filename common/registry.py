@@ -116,6 +116,8 @@ class Registry(Generic[Part]):
                 raise
             except Exception as error:
                 raise PluginError(f"{self.words} '{name}' of package {found.value}: {type(error).__name__}: {error}") from error
+        if name.endswith(".py"):
+            raise PluginError(f"{self.words} '{name}' is a file without the name of a part in it; give {name}:NAME")
         names = self.names()
         raise PluginError(
             f"unknown {self.words} '{name}'{did_you_mean(name, names) or ';'} known are {', '.join(names)}, or FILE.py:NAME"

@@ -277,12 +277,12 @@ class FlightStudy:
         lines = [*(reports.described() for reports in self.vessel_files.values()), f"flights: {whole.line()}"]
         if len(trial_counts) > 1:
             lines += [f"  {trial}: {counts.line()}" for trial, counts in trial_counts.items()]
-        lines += self._comparison_lines(journal)
-        lines += whole.sulphur_lines()
+        lines += [*self._comparison_lines(journal), *whole.sulphur_lines()]
         if whole.flown > whole.without_area and all(self._sampled_at_random().values()):
             samples = sum(of.beside // flights_per_sample(self.trials[trial]) for trial, of in trial_counts.items())
             lines.append(self.bound_line(whole, samples, journal))
-        lines += [whole.exit_line(), *whole.not_met_lines("    "), *whole.warnings()]
+        left = self.beside - sum(1 for _ in journal.rows(COMPARISON)) if self.beside else 0
+        lines += [whole.exit_line(left=left), *whole.not_met_lines("    "), *whole.warnings()]
         return StudySummary(
             done=whole.done,
             met=whole.passed == whole.planned,

@@ -196,13 +196,18 @@ class FlightCounts:
         bound, sure = (percent(p).replace("\N{NO-BREAK SPACE}", " ") for p in (upper, confidence))
         return f"{line}; at most {bound} of flights sampled as these were, at {sure} confidence"
 
-    def exit_line(self) -> str:
-        """Return the exit status of a run that is done, and how many flights did what status 0 requires of each."""
+    def exit_line(self, *, left: int = 0) -> str:
+        """Return the exit status of a run that is done, and how many flights did what status 0 requires of each.
+
+        Parameters
+        ----------
+        left : number of flights of comparisons that are still to be flown, without which no run is done
+        """
         about = {"criteria": "met every criterion", "keep_out": "kept out"}
         kinds = [about[kind] for kind in about if self.required[kind]] or ["met every criterion"]
         flights, each = ("flight", "it") if self.planned == 1 else ("flights", "each")
         did = f"{self.passed} of {self.planned} {flights} {' or '.join(kinds)}, as required of {each}"
-        if self.done < self.planned:
+        if left or self.done < self.planned:
             return f"so far {did} for exit status 0"
         return f"exit status {int(self.passed != self.planned)}: {did}"
 

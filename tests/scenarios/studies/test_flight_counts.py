@@ -57,6 +57,9 @@ def test_the_exit_status_is_about_every_criterion_unless_keeping_out_alone_is_re
     assert FlightCounts.of(met, planned=1).exit_line() == "exit status 0: 1 of 1 flight met every criterion, as required of it"
     missing = FlightCounts.of(met, planned=2).exit_line()
     assert missing == "so far 1 of 2 flights met every criterion, as required of each for exit status 0"
+    # A run whose comparisons are still to be flown has not ended either.
+    without_comparisons = FlightCounts.of(met, planned=1).exit_line(left=3)
+    assert without_comparisons == "so far 1 of 1 flight met every criterion, as required of it for exit status 0"
 
 
 def test_a_bound_follows_from_the_flights_that_were_flown():
