@@ -49,6 +49,24 @@ class Areas:
     separate: float
     interval_s: float
 
+    def unread(self, t90_s: float) -> str:
+        """Return why areas hold too little of the SO2: passes overlap; a single one is cut off where the record or a part ends.
+
+        Parameters
+        ----------
+        t90_s : of SO2 [s]
+        """
+        share = f"{100.0 * self.share:.0f} %"
+        if math.isnan(self.interval_s):
+            return (
+                f"the record ends before an SO2 channel with a t90 of {t90_s:g} s has read the pass: about {share} of its area"
+                " of SO2 is there; use the regression"
+            )
+        return (
+            f"passes every {self.interval_s:.1f} s overlap in an SO2 channel with a t90 of {t90_s:g} s: about {share} of an area"
+            " of SO2 remains; use the regression"
+        )
+
 
 def area_ratio(record: Record, instrument: SnifferSpec, passes: Sequence[Pass]) -> Areas:
     """Return the ratio of the areas of SO2, corrected for the gases that its cell responds to, and of CO2.

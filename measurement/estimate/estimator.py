@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from measurement.errors import MeasurementError
-from measurement.estimate.areas import Areas, area_ratio
+from measurement.estimate.areas import area_ratio
 from measurement.estimate.budget import CARBON_SD, SAMPLING_SD, SULPHATE_SHARE, common_errors, unmeasured
 from measurement.estimate.fit.alignment import Alignment, align, stated, widened
 from measurement.estimate.fit.groups import grouped
@@ -15,7 +15,7 @@ from measurement.estimate.fit.regression import fitted, regress
 from measurement.estimate.fit.signals import Ends, Signals, make_signals, samples_of, used_gases
 from measurement.estimate.passes import SNR_LEAST, Pass, co2_excesses, find_passes, read_coarsely, readings_noise
 from measurement.estimate.plausible import unlikely
-from measurement.estimate.quality import judged_quality, late, noise_alone, stranger
+from measurement.estimate.quality import judged_quality, late, noise_alone, not_arrived, stranger
 from measurement.estimate.record import Record, checked_record
 from measurement.estimate.result import Figures, FscEstimate, Method
 from measurement.estimate.verdict import LIMITS_PERCENT, interval, judged
@@ -190,7 +190,7 @@ def _areas(record: Record, instrument: SnifferSpec, passes: Sequence[Pass]) -> _
     common = common_errors(instrument, used_gases(record), changes).parts
     problems: tuple[str, ...] = ()
     if found.share < OVERLAP_LEAST:
-        problems = (_unread(found, instrument.known("so2").t90_s),)
+        problems = (found.unread(instrument.known("so2").t90_s),)
     overlap = found.separate - found.ratio
     common["overlap"] = abs(overlap)
     return _Ratio(
@@ -201,20 +201,6 @@ def _areas(record: Record, instrument: SnifferSpec, passes: Sequence[Pass]) -> _
         alignment=alignment,
         overlap=overlap,
         problems=problems,
-    )
-
-
-def _unread(found: Areas, t90_s: float) -> str:
-    """Return why the areas hold too little of the SO2: passes overlap; a single one is cut off where the record or a part ends."""
-    share = f"{100.0 * found.share:.0f} %"
-    if math.isnan(found.interval_s):
-        return (
-            f"the record ends before an SO2 channel with a t90 of {t90_s:g} s has read the pass: about {share} of its area"
-            " of SO2 is there; use the regression"
-        )
-    return (
-        f"passes every {found.interval_s:.1f} s overlap in an SO2 channel with a t90 of {t90_s:g} s: about {share} of an area of"
-        " SO2 remains; use the regression"
     )
 
 
@@ -239,6 +225,9 @@ def _told(
     common["carbon"] = CARBON_SD * abs(fsc)
     common["sampling"] = SAMPLING_SD * record.step / instrument.known("co2").constants[0] * abs(fsc)
     total = math.sqrt(noise**2 + sum(value**2 for value in common.values()))
+    if math.isinf(instrument.known("so2").delay_sd_s):
+        left, doses = [record.time[-1] - found.end_s for found in passes], [found.dose_ppm_s for found in passes]
+        problems += not_arrived(fsc, total, left, doses)
     signals = make_signals(record, instrument)
     groups = grouped(signals, passes, ratio.ratio, misfit=ratio.misfit, response=ratio.common.get("response", 0.0))
     samples, so2_snr = samples_of(signals, ratio.ratio)

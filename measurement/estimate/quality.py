@@ -3,6 +3,7 @@
 import math
 from collections.abc import Sequence
 
+from measurement.estimate.fit.alignment import DELAY_MOST
 from measurement.estimate.result import Quality
 from measurement.gases import FUEL_SULPHUR_MOST
 from measurement.sniffer.channel import Channel
@@ -36,6 +37,9 @@ In ppm it is a thousandth; a data sheet that states 2 sigma, or smoothing in the
 STRANGE_SIGMA = 4.0
 """By so many of its standard deviations each property of the instrument may differ, and the residuals by so many of theirs, until
 the instrument is not the one that is stated."""
+
+ARRIVED_SIGMA, ARRIVED_SHARE = 3.0, 0.5
+"""A result above 0 by so many standard uncertainties is SO2 that has arrived; share of the CO2 that has to be old enough for it."""
 
 NEGATIVE_SIGMA = 3.0
 """A result below 0 by so many standard uncertainties contradicts them."""
@@ -136,6 +140,28 @@ def noise_alone(misfit: float, samples: int) -> bool:
     """Return whether the noise of so many samples explains a misfit."""
     # The mean square of white noise over so many samples has a relative standard deviation of sqrt(2/samples).
     return misfit <= 1.0 + STRANGE_SIGMA * math.sqrt(2.0 / samples)
+
+
+def not_arrived(fsc: float, deviation: float, left: Sequence[float], doses: Sequence[float]) -> tuple[str, ...]:
+    """Return the problem of SO2 whose delay is not stated, and which may not have arrived yet, if it may not.
+
+    SO2 that stands out has. Without it most of the CO2 must be from so long before the end that any delay has gone by.
+
+    Parameters
+    ----------
+    fsc, deviation : result and its standard uncertainty [% m/m]
+    left : from the end of each pass to that of the record [s]
+    doses : of CO2 in each pass [ppm s]
+    """
+    if not left or fsc > ARRIVED_SIGMA * deviation:
+        return ()
+    waited = sum(dose for time, dose in zip(left, doses, strict=True) if time >= DELAY_MOST)
+    if waited >= ARRIVED_SHARE * sum(doses):
+        return ()
+    return (
+        f"SO2 does not stand out, and may still come: its delay is not stated, and may be up to {DELAY_MOST:g} s; state it, or"
+        " record longer after the passes",
+    )
 
 
 def late(stated: float, shown: float, deviation: float) -> tuple[str, ...]:

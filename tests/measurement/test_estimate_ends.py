@@ -68,3 +68,27 @@ def test_of_passes_that_not_all_channels_read_the_others_are_compared():
     assert len(found.pass_percent) == len(found.pass_deviation_percent) >= 6
     assert np.array(found.pass_percent) == pytest.approx(0.25, rel=0.1)
     assert not math.isnan(found.agreement)
+
+
+@pytest.mark.parametrize(("fsc", "delay", "verdicts"), [
+    # Of 0.25 % the first 25 s were "below", quality B, before its SO2 had arrived.
+    (0.25, 25.0, ["open", "open", "open", "above"]),
+    (0.25, 3.0, ["above", "above", "above", "above"]),
+    # Of a clean fuel nothing arrives: half of the CO2 must be older than any delay.
+    (0.0, 3.0, ["open", "open", "open", "below"]),
+])  # fmt: skip
+def test_without_a_stated_delay_no_fuel_is_below_a_limit_before_its_so2_can_have_arrived(fsc, delay, verdicts):
+    spec = plain_sniffer(3.0, 2.0, so2_noise=1.0, co2_noise=0.5, delay_s=delay)
+    readings = read(spec, crossings(fsc, duration=90.0, interval=12.0, meander=0.3, width=1.0, first=4.0), seed=0)
+    unknown = changed(spec, "so2", t90_sd=math.inf, delay_sd_s=math.inf)
+    assert over_time(readings, unknown, elapsed_s=(15, 20, 25, 90))["verdict_0.1"].tolist() == verdicts
+
+
+def test_so2_that_may_still_come_is_named_with_what_to_do():
+    spec = plain_sniffer(3.0, 2.0, so2_noise=1.0, co2_noise=0.5, delay_s=25.0)
+    unknown = changed(spec, "so2", t90_sd=math.inf, delay_sd_s=math.inf)
+    found = estimate(read(spec, crossings(0.25, duration=20.0, interval=12.0, meander=0.3, width=1.0, first=4.0)), unknown)
+    assert found.quality_reasons == (
+        "SO2 does not stand out, and may still come: its delay is not stated, and may be up to 30 s; state it, or record longer"
+        " after the passes",
+    )

@@ -26,7 +26,10 @@ _STEPS, _JUMPS = np.array([0.02, 0.1]), np.array([0.3, 1.0])
 """Of the numerical derivatives, and the largest of one round: log(t90), delay [s]."""
 
 _T90_SEARCH = tuple(float(t) for t in np.geomspace(0.5, 120.0, 14))
-_DELAY_SEARCH = tuple(float(d) for d in np.arange(-5.0, 31.0, 1.0))
+DELAY_MOST = 30.0
+"""Up to which delay after CO2 SO2 is sought [s]."""
+
+_DELAY_SEARCH = tuple(float(d) for d in np.arange(-5.0, DELAY_MOST + 1.0, 1.0))
 """Where a t90 [s], and a delay after CO2 [s], are sought first."""
 
 
