@@ -174,6 +174,7 @@ class AircraftSpec:
     envelope : as published by its maker or its model's author; None if it is to be found by trimming
     configuration : JSBSim properties and their values in every flight, such as a retracted gear
     engine_flags : JSBSim properties that are 1 while an engine runs
+    alpha_max : largest angle of attack of an equilibrium, up to which the model is right; not a number if not known [rad]
     settle_time : in which servos and engines come to rest while the aircraft is held [s]
     source : of the model's numbers
     """
@@ -190,6 +191,7 @@ class AircraftSpec:
     envelope: Envelope | None = None
     configuration: tuple[tuple[str, float], ...] = ()
     engine_flags: tuple[str, ...] = ()
+    alpha_max: float = math.nan
     settle_time: float = 2.0
     source: str
 

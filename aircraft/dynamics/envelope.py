@@ -111,7 +111,7 @@ def with_reserve_note(envelope: Envelope, trims: Sequence[Trim], spec: AircraftS
     if not lacking:
         return envelope
     note = (
-        f"a reserve for control is lacking at {len(lacking)} of {len(trims)} equilibria in the envelope as stated: {lacking[0]}."
+        f"a reserve is lacking at {len(lacking)} of {len(trims)} equilibria in the envelope as stated: {lacking[0]}."
         " Raise airspeed_min, or lower airspeed_max or bank, to have one"
     )
     return replace(envelope, notes=(*envelope.notes, note))
@@ -123,11 +123,21 @@ def bank_by_class(mass: float) -> float:
 
 
 def first_trim(fdm: Fdm, altitude: float) -> Trim:
-    """Return level flight at the airspeed of the spec's envelope, or at one with an ordinary lift coefficient."""
-    if fdm.spec.envelope is not None:
-        return trim(fdm, airspeed=fdm.spec.envelope.airspeed, altitude=altitude)
+    """Return level flight at the airspeed of the spec's envelope, or at one with an ordinary lift coefficient.
+
+    Raises
+    ------
+    AircraftError : the model has no weight or no wing area, or it does not trim
+    """
     weight = fdm.read("inertia/weight-lbs") * NEWTONS_PER_POUND
     area = fdm.read("metrics/Sw-sqft") * METRES_PER_FOOT**2
+    for what, value, unit, key in (("weight", weight, "N", "emptywt"), ("wing area", area, "m²", "wingarea")):
+        if not value > 0.0:
+            raise AircraftError(
+                f"aircraft '{fdm.spec.name}': its {what} is {value:g} {unit}; it must be above 0: correct {key} in the model"
+            )
+    if fdm.spec.envelope is not None:
+        return trim(fdm, airspeed=fdm.spec.envelope.airspeed, altitude=altitude)
     found: list[Trim] = []
     for lift_coefficient in _START_LIFT_COEFFICIENTS:
         airspeed = math.sqrt(2.0 * weight / (_DENSITY * area * lift_coefficient))
@@ -205,4 +215,9 @@ def _lacks(t: Trim, spec: AircraftSpec) -> str:
         low, high = _THROTTLE_RANGE if name == "throttle" else (_SURFACE_FRACTION * travel.lower, _SURFACE_FRACTION * travel.upper)
         if not low <= value <= high:
             return f"{where} take {value:.2f} of {name}; {low:g} to {high:g} leaves a reserve"
+    if t.alpha > spec.alpha_max:
+        return (
+            f"{where} take {math.degrees(t.alpha):.1f} deg of angle of attack; the model is right up to"
+            f" {math.degrees(spec.alpha_max):.1f} deg"
+        )
     return ""

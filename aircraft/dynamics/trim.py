@@ -44,7 +44,7 @@ def trim(
 def _remedy(spec: AircraftSpec) -> str:
     """Return what to do where there is no equilibrium: an envelope that the user states may be what is wrong."""
     or_else = "" if spec.envelope is None else ", or state another one: its airspeeds and its bank"
-    return f"choose a condition inside the flight envelope{or_else}"
+    return f"choose a condition inside the flight envelope{or_else}; or correct the model"
 
 
 def level_trim(spec: AircraftSpec, airspeed: float, altitude: float, start: Trim | None = None) -> Trim:

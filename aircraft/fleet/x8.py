@@ -23,6 +23,8 @@ X8 = AircraftSpec(
     own_actuators=(*_ELEVONS, Actuator(name="throttle", commands=throttle(1).commands)),
     driven_states=(servo_position("elevator"), servo_position("aileron"), propeller_speed()),
     envelope=Envelope(airspeed_min=15.0, airspeed_max=25.0, airspeed=19.42, bank=math.radians(45.0)),
+    # The published lift has no stall.
+    alpha_max=0.2,
     source="Gryte et al., ICUAS 2018; inertia and propulsion as explained in the model file",
 )
 AIRCRAFT.register(X8.name)(X8)

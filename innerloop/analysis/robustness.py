@@ -29,11 +29,12 @@ class OperatingPoint:
 
 
 def operating_points(schedule: Schedule) -> list[OperatingPoint]:
-    """Return the points of the grid, and those in the middle between them along airspeed and along bank.
+    """Return the points of the grid, those in the middle between them along airspeed and along bank, and those at the largest bank.
 
-    Between, the linear model is interpolated, and so is the equilibrium: both are smooth there. Where two neighbours'
-    measured lags are of different order there is nothing to interpolate, and the point is checked with either
-    aircraft.
+    The largest bank that the autopilot commands lies beyond the gains', in the middle between the last of these and the end of the
+    tables, to a tenth of a degree. Between, the linear model is interpolated, and so is the equilibrium: both are smooth there.
+    Where two neighbours' measured lags are of different order there is nothing to interpolate, and the point is checked with
+    either aircraft.
     """
     columns = [TRIM_BANKS.index(share) for share in GAIN_BANKS]
     at = {
@@ -46,6 +47,10 @@ def operating_points(schedule: Schedule) -> list[OperatingPoint]:
         for neighbour in ((i + 1, j), (i, j + 1)):
             if neighbour in at:
                 points += _middle(point, at[neighbour])
+    last = len(columns) - 1
+    for i, (row, edges) in enumerate(zip(schedule.trims, schedule.edges, strict=True)):
+        for j, trim, bank, model in zip((0, last), (row[0], row[-1]), (schedule.banks[0], schedule.banks[-1]), edges, strict=True):
+            points += _middle(at[i, j], OperatingPoint(trim=trim, bank=bank, model=model, between=True))
     return points
 
 

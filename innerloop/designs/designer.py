@@ -43,7 +43,7 @@ class Grid:
     Attributes
     ----------
     spec, envelope, altitude : the aircraft, its envelope, and the altitude [m]
-    trims, models : as in ``Schedule``
+    trims, models, edges : as in ``Schedule``
     """
 
     spec: AircraftSpec
@@ -51,6 +51,7 @@ class Grid:
     altitude: float
     trims: tuple[tuple[Trim, ...], ...]
     models: tuple[tuple[LinearModel, ...], ...]
+    edges: tuple[tuple[LinearModel, LinearModel], ...]
 
 
 def design_autopilot(spec: AircraftSpec, altitude: float = 100.0) -> Design:
@@ -93,7 +94,7 @@ def linear_grid(spec: AircraftSpec, altitude: float) -> Grid:
     envelope = find_envelope(fdm, altitude)
     banks = table_banks(envelope, TRIM_BANKS)
     trims: list[tuple[Trim, ...]] = []
-    models = []
+    models, edges = [], []
     near: Trim | None = None
     for airspeed in envelope.design_airspeeds:
         near = trim(fdm, airspeed=airspeed, altitude=altitude, start=near)
@@ -102,10 +103,11 @@ def linear_grid(spec: AircraftSpec, altitude: float) -> Grid:
         )
         trims.append(row)
         models.append(tuple(linearise(fdm, row[TRIM_BANKS.index(share)]) for share in GAIN_BANKS))
+        edges.append((linearise(fdm, row[0]), linearise(fdm, row[-1])))
     if spec.envelope is not None:
         envelope = with_reserve_note(envelope, [t for row in trims for t in row], spec)
     spec = idling_at(spec, flight_idle(fdm, trims[len(trims) // 2][LEVEL]))
-    return Grid(spec=spec, envelope=envelope, altitude=altitude, trims=tuple(trims), models=tuple(models))
+    return Grid(spec=spec, envelope=envelope, altitude=altitude, trims=tuple(trims), models=tuple(models), edges=tuple(edges))
 
 
 def schedule_at(grid: Grid, bandwidths: LoopBandwidths) -> Schedule:
@@ -125,6 +127,7 @@ def schedule_at(grid: Grid, bandwidths: LoopBandwidths) -> Schedule:
         airspeeds=airspeeds,
         trims=grid.trims,
         models=grid.models,
+        edges=grid.edges,
         gains=tuple(gains),
         period=PERIODS[0],
     )

@@ -41,6 +41,7 @@ class Schedule:
     airspeeds : shape (n,) [m/s], ascending
     trims : equilibria by airspeed, then by bank in the order of ``TRIM_BANKS``
     models : linear models by airspeed, then by bank in the order of ``GAIN_BANKS``
+    edges : linear models by airspeed, at the least and the largest bank of ``TRIM_BANKS``, for which no gains are designed
     gains : as ``models``
     period : time steps from one computation of the autopilot to the next
     """
@@ -52,6 +53,7 @@ class Schedule:
     airspeeds: tuple[float, ...]
     trims: tuple[tuple[Trim, ...], ...]
     models: tuple[tuple[LinearModel, ...], ...]
+    edges: tuple[tuple[LinearModel, LinearModel], ...]
     gains: tuple[tuple[Gains, ...], ...]
     period: int
 

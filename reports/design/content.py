@@ -62,7 +62,7 @@ def _margins(design: Record) -> Section:
     asked = f"{required['perturbed_gain_db']:g} dB and {required['perturbed_phase_deg']:g}°"
     blocks: list[Block] = [
         Heading(
-            f"Worst of the grid and the points between, loop by loop; required are {required['gain_db']:g} dB and"
+            f"Worst of the grid, the points between and the largest bank, loop by loop; required are {required['gain_db']:g} dB and"
             f" {required['phase_deg']:g}°"
         ),
         worst_margin_table(design),
@@ -97,9 +97,10 @@ def _equilibria(design: Record) -> Section:
 
 def _verification(design: Record) -> Section:
     text = (
-        "The linear model's answer to a small input against that of the simulation itself: largest error as a fraction of the"
-        " largest excursion. Of jets the throttle's is the largest, above all because its lag is measured with a throttle step"
-        " of 0.05, as a turbine spools at a steady rate, and here the throttle moves by 0.01."
+        "The linear model's answer to a small input against that of the simulation itself, in which servos have no play here:"
+        " largest error as a fraction of the largest excursion. An aircraft whose servos have play flies with a limit cycle, which"
+        " no linear model has; step responses show it. Of jets the throttle's is the largest, above all because its lag is measured"
+        " with a throttle step of 0.05, as a turbine spools at a steady rate, and here the throttle moves by 0.01."
     )
     blocks: list[Block] = [Text(text), verification_table(design)]
     return Section(anchor="linearisation", title="Is the linear model right?", nav_title="Linear model", blocks=blocks)

@@ -59,7 +59,7 @@ def _chart(design: Record, name: str, margins: Sequence[_Margin], caption: str) 
         panels += [_panel(rows, margin, over_bank=True) for margin in margins]
         caption += " Above, the worst over bank at each airspeed; below, the worst over airspeed at each bank."
     if any(row["between"] for row in rows):
-        caption += " Diamonds: at points between those of the grid, for which nothing was designed."
+        caption += " Diamonds: at points between those of the grid and at the largest bank, for which nothing was designed."
     return Chart(name=name, caption=caption + cut_words(panels), panels=panels, columns=2, panel_height=0.24)
 
 

@@ -108,7 +108,9 @@ def _detail(design: Record) -> str:
     between = _points([row for row in design["margins"] if row["between"]])
     banks = {bank_deg(row) for row in design["margins"]}
     detail = f"Margins were computed at {len(grid)} points of the grid over airspeed" + (" and bank" if len(banks) > 1 else "")
-    detail += f" and at {len(between)} points between them, for which nothing was designed." if between else "."
+    detail += (
+        f" and at {len(between)} points between them and at the largest bank, for which nothing was designed." if between else "."
+    )
     perturbed = {row["case"] for row in design["robustness"] if not row["periods_late"]}
     late = dict.fromkeys(case_name(row) for row in design["robustness"] if row["periods_late"])
     detail += f" The same gains were tried on {' and with '.join([f'{len(perturbed)} perturbed aircraft', *late])}."

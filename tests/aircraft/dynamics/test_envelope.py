@@ -1,6 +1,8 @@
 """Where an aircraft can fly the study: stall, banks by class, reserve at the ends."""
 
 import math
+import re
+import shutil
 from dataclasses import replace
 
 import numpy as np
@@ -15,7 +17,7 @@ from aircraft.fleet.find import find_spec
 from aircraft.fleet.x8 import X8
 from aircraft.simulation.fdm import Fdm
 from aircraft.simulation.state import RigidBodyState, body_velocity
-from aircraft.spec import BANK_RESERVE
+from aircraft.spec import BANK_RESERVE, MODELS
 from common.physics.units import NEWTONS_PER_POUND
 
 ALTITUDE = 100.0
@@ -47,10 +49,41 @@ def test_a_stated_envelope_has_a_note_where_an_equilibrium_lacks_a_reserve_and_n
     noted = with_reserve_note(X8.envelope, slow, X8)
     assert replace(noted, notes=(), stall=0.0) == replace(X8.envelope, stall=0.0)
     assert noted.notes == (
-        "a reserve for control is lacking at 1 of 2 equilibria in the envelope as stated: 11 m/s and 55 deg of bank take"
+        "a reserve is lacking at 1 of 2 equilibria in the envelope as stated: 11 m/s and 55 deg of bank take"
         f" {slow[1].inputs['elevator']:.2f} of elevator; -0.9 to 0.9 leaves a reserve. Raise airspeed_min, or lower airspeed_max or"
         " bank, to have one",
     )
+
+
+def test_an_equilibrium_beyond_the_angle_of_attack_up_to_which_the_model_is_right_is_noted():
+    # At 5,000 m the density is 0.6 of that at the sea, and so is the lift at an airspeed.
+    steep = search_trim(Fdm(X8), airspeed=15.0, altitude=5000.0, bank=math.radians(-55.0))
+    assert steep.outcome is TrimOutcome.CONVERGED
+    assert steep.alpha == pytest.approx(0.2022, abs=1e-4)
+    (note,) = with_reserve_note(X8.envelope, [steep], X8).notes
+    assert "15 m/s and -55 deg of bank take 11.6 deg of angle of attack; the model is right up to 11.5 deg" in note
+    # Of a model that states none nothing is known.
+    assert with_reserve_note(X8.envelope, [steep], replace(X8, alpha_max=math.nan)) is X8.envelope
+
+
+@pytest.mark.parametrize(
+    ("key", "pattern", "found"),
+    [
+        ("emptywt", r"(<emptywt[^>]*>)[^<]*", "weight is -"),
+        ("emptywt", r"(<emptywt[^>]*>)[^<]*", "weight is 0 N"),
+        ("wingarea", r"(<wingarea[^>]*>)[^<]*", "wing area is 0 m²"),
+    ],
+)
+@pytest.mark.parametrize("stated", [True, False])
+def test_a_model_without_weight_or_wing_area_is_refused_in_a_line(tmp_path, key, pattern, found, stated):
+    root = shutil.copytree(MODELS, tmp_path / "models")
+    file = root / "aircraft" / "x8" / "x8.xml"
+    number = "-3.0" if found.endswith("-") else "0.0"
+    file.write_text(re.sub(pattern, rf"\g<1> {number} ", file.read_text(encoding="utf-8")), encoding="utf-8")
+    spec = replace(X8, root=root, envelope=X8.envelope if stated else None)
+    with pytest.raises(AircraftError, match=found) as caught:
+        first_trim(Fdm(spec), ALTITUDE)
+    assert str(caught.value).endswith(f"it must be above 0: correct {key} in the model")
 
 
 @pytest.mark.parametrize(

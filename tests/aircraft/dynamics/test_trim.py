@@ -168,7 +168,9 @@ def test_an_impossible_condition_is_refused_in_one_line_that_names_it_and_a_reme
         trim(x8_fdm, **{"airspeed": 20.0, "altitude": 100.0, **IMPOSSIBLE[named]})
     assert named in str(caught.value)
     # The X8's spec states its envelope, which may be what is wrong.
-    assert str(caught.value).endswith("inside the flight envelope, or state another one: its airspeeds and its bank")
+    assert str(caught.value).endswith(
+        "inside the flight envelope, or state another one: its airspeeds and its bank; or correct the model"
+    )
     assert "\n" not in str(caught.value)
 
 

@@ -1,6 +1,7 @@
 """Changed aircraft: each change is what changing JSBSim's own model makes of the linear one; what too little margin leads to."""
 
 import dataclasses
+import itertools
 import math
 import re
 import shutil
@@ -140,9 +141,13 @@ def test_points_between_lie_half_way_between_neighbours_along_airspeed_and_along
     between = [p.trim for p in points if p.between]
     v, bank = x8_schedule.airspeeds, x8_schedule.gain_banks
     assert len(points) - len(between) == len(v) * len(bank)
-    assert (len(between), len({(round(t.airspeed, 9), round(t.roll, 3)) for t in between})) == (40, 40)
+    assert (len(between), len({(round(t.airspeed, 9), round(t.roll, 3)) for t in between})) == (50, 50)
     assert any(t.airspeed == pytest.approx(0.5 * (v[0] + v[1])) and t.roll == pytest.approx(bank[4]) for t in between)
     assert any(t.airspeed == v[3] and t.roll == pytest.approx(0.5 * (bank[2] + bank[3]), abs=1e-3) for t in between)
+    # At every airspeed the largest bank that the autopilot commands, either way; the tables reach a tenth farther.
+    largest = [t for t in between if abs(t.roll) > bank[4] + 0.01]
+    assert sorted((t.airspeed, t.roll > 0.0) for t in largest) == sorted(itertools.product(v, (False, True)))
+    assert [abs(t.roll) for t in largest] == pytest.approx([X8.envelope.bank_max] * 10, abs=math.radians(0.1))
 
 
 @pytest.mark.parametrize("along", ["airspeed", "bank"])
@@ -150,7 +155,7 @@ def test_between_grid_points_interpolated_margins_are_those_of_the_aircraft_line
     fdm, law = Fdm(X8), ControlLaw(x8_schedule)
     points = [p for p in operating_points(x8_schedule) if p.between]
     chosen = [p for p in points if (p.trim.airspeed in x8_schedule.airspeeds) == (along == "bank")][::5]
-    assert len(chosen) == 4
+    assert len(chosen) == {"airspeed": 4, "bank": 6}[along]
     for point in chosen:
         bank = 0.0 if point.trim.yaw_rate == 0.0 else point.trim.roll
         there = trim(fdm, airspeed=point.trim.airspeed, altitude=x8_schedule.altitude, bank=bank)
@@ -245,7 +250,7 @@ def test_a_loop_with_too_little_margin_is_slowed_and_the_others_are_left(monkeyp
     monkeypatch.setattr(robustness.ClosedPoint, "check", short_at_the_first_point)
     found = design_autopilot(X8, x8_design.schedule.altitude)
     # Designed twice, then checked with the longest period, first as modelled; with the shortest no change of a good design is.
-    assert asked[-325:] == [(NOMINAL, 1)] * 65 + [(NOMINAL, 3)] * 65 + [(case, 3) for case in cases] * 65
+    assert asked[-375:] == [(NOMINAL, 1)] * 75 + [(NOMINAL, 3)] * 75 + [(case, 3) for case in cases] * 75
     assert found.bandwidths.lateral == pytest.approx(0.8 * x8_design.bandwidths.lateral)
     assert found.bandwidths.longitudinal == x8_design.bandwidths.longitudinal
     assert found.bandwidths.airspeed == x8_design.bandwidths.airspeed

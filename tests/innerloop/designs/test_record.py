@@ -22,7 +22,7 @@ def test_the_record_is_json_without_nan_or_infinity(record):
 def test_the_record_has_every_operating_point_and_every_loop(record, x8_schedule):
     assert record["airspeeds_mps"] == [15.0, 17.5, 20.0, 22.5, 25.0]
     # 25 points and 40 between; three controls, three measurements, and at the points all controls at once.
-    assert len(record["margins"]) == 65 * 6 + 25
+    assert len(record["margins"]) == 75 * 6 + 25
     level = x8_schedule.level(2)
     expected = Loops(x8_schedule.models[2][2], linear_controller(ControlLaw(x8_schedule), level), x8_schedule.delay).margins()[0]
     here = [m for m in record["margins"] if m["airspeed_mps"] == 20.0 and m["bank_rad"] == 0.0]
@@ -30,7 +30,7 @@ def test_the_record_has_every_operating_point_and_every_loop(record, x8_schedule
     assert [m["loop"] for m in here] == loops
     assert here[0]["gain_db"] == pytest.approx(expected.gain_db, rel=1e-12)
     # Six changed aircraft and one more period of delay at each point, each with its worst loops.
-    assert len(record["robustness"]) == 65 * 7
+    assert len(record["robustness"]) == 75 * 7
     assert {row["stable"] for row in record["robustness"]} == {True}
     assert {row["case"] for row in record["robustness"] if row["periods_late"]} == {"one more period of delay"}
     assert record["required"] == {"gain_db": 6.0, "phase_deg": 45.0, "perturbed_gain_db": 4.0, "perturbed_phase_deg": 30.0}

@@ -118,7 +118,7 @@ def test_a_table_has_a_row_for_each_bank_and_a_column_for_each_airspeed(x8_sched
 
 def test_a_slower_heading_rate_model_is_designed_when_asked_for(x8_design, tmp_path):
     old = x8_design.schedule
-    grid = Grid(spec=X8, envelope=old.envelope, altitude=old.altitude, trims=old.trims, models=old.models)
+    grid = Grid(spec=X8, envelope=old.envelope, altitude=old.altitude, trims=old.trims, models=old.models, edges=old.edges)
     schedule = schedule_at(grid, x8_design.bandwidths.scaled(lateral=3.0 / x8_design.bandwidths.lateral))
     aircraft = AutopilotedAircraft(X8, write_root(schedule, tmp_path))
     flown = flown_step(aircraft, schedule.level(1), "heading_rate", 0.1, 6.0)
