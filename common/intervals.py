@@ -77,6 +77,24 @@ def clopper_pearson(events: int, trials: int, confidence: float) -> Interval:
     return Interval(1.0 - upper_bound(trials - events, trials, 1.0 - tail), high)
 
 
+def shared_interval(events: npt.NDArray[np.bool_], samples: npt.ArrayLike, confidence: float) -> Interval:
+    """Return the interval of a probability, of trials of which some share their random sample and count as one.
+
+    Where such trials differ, the share of them with an event counts, and each limit is that of the whole number beyond it.
+
+    Parameters
+    ----------
+    events : whether each trial had an event, shape (n,)
+    samples : of each trial, which random sample it has, shape (n,)
+    confidence : of the two-sided interval, between 0 and 1
+    """
+    _, of, counts = np.unique(np.asarray(samples), return_inverse=True, return_counts=True)
+    # Rounded: shares of a third add up to whole numbers but for rounding.
+    total = round(float(np.sum(np.bincount(of, weights=events) / counts)), 6)
+    low, high = (clopper_pearson(whole(total), len(counts), confidence) for whole in (math.floor, math.ceil))
+    return Interval(low.low, high.high)
+
+
 def quantile_interval(values: Array, probability: float, confidence: float) -> Interval:
     """Return the confidence interval of a quantile from order statistics, for any distribution.
 

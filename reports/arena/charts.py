@@ -150,7 +150,7 @@ def crossing_chart(arena: Arena) -> Chart:
     limit = " The dashed line is the most that any path allows at these speed ratios." if arena.limits else ""
     return Chart(
         name="crossings",
-        caption=f"Plume crossings per minute over the end of the flights; a mark is a law's mean, with its 95 % interval.{limit}",
+        caption=f"Plume crossings per minute over the end of the flights; a mark is a law's mean{_interval_words(arena)}.{limit}",
         panels=panels,
         columns=len(panels),
         panel_height=0.1 + 0.025 * len(entrants),
@@ -169,7 +169,8 @@ def worth_chart(arena: Arena) -> Chart:
     return Chart(
         name="worth",
         caption="What a minute is worth, over all conditions: the standard uncertainty by noise that the fuel's sulphur content is"
-        " left with after it, the time that it has in the plume, and its crossings. A mark is a law's mean, with its 95 % interval."
+        " left with after it, the time that it has in the plume, and its crossings. A mark is a law's mean"
+        f"{_interval_words(arena)}."
         " The best on the sulphur content come first.",
         panels=panels,
         columns=len(panels),
@@ -258,3 +259,8 @@ def _track_panel(arena: Arena, entrant: Entrant, *, tracking: bool) -> Panel | N
 def _square(middle: float, half: float) -> Line:
     """Return what a panel has to show: a square about a place on the plume's axis."""
     return Line(x=np.array([-half, half]), y=np.array([middle - half, middle + half]), label="", colour=Meaning.PLUME)
+
+
+def _interval_words(arena: Arena) -> str:
+    """Return what is drawn beside a mean: of one flight in each condition there is no interval."""
+    return ", with its 95 % interval" if arena.flights > 1 else ""

@@ -13,9 +13,10 @@ from reports.run.columns import count, flights_flown, lost, total, violated
 from reports.run.run_data import RunData
 
 _BOLD = (
-    "In bold: the best mean, and those that the paired bootstrap over starts and air does not tell from it with 95 % confidence. In"
-    " brackets are 95 % intervals of the mean; of few flights they are too narrow rather than too wide. A law that lacks flights"
-    " which another flew is not compared: it is never in bold, it stands last, and beside its mean is of how many flights that is."
+    "In bold: the laws that may be the best, as the flights do not show with 95 % confidence that another is better (multiple"
+    " comparisons with the best, by a paired bootstrap over starts and air). In brackets are 95 % intervals of the mean. A law that"
+    " lacks flights which another flew is not compared: it is never in bold, it stands last, and beside its mean is of how many"
+    " flights that is."
 )
 
 _TRACKING = (
@@ -97,7 +98,7 @@ def _tracking(arena: Arena) -> list[Block]:
     return [
         Text(_TRACKING),
         Heading("Over all conditions"),
-        Text(_BOLD),
+        Text(_BOLD if arena.flights > 1 else _ONCE),
         tracking_table(arena, tracking=True),
         Heading("Tracking error by condition, rms [m]"),
         by_condition_table(arena, ERROR, tracking=True),
@@ -161,7 +162,10 @@ def _verdict(arena: Arena) -> Verdict:
             for task, entrant in best
         ),
         *(
-            Card(f"Best on {figure.quantity.lower()}: {first.title}", f"{_mean(arena, first, figure)} {figure.unit}")
+            Card(
+                f"Best on {figure.quantity.lower()}: {_best_of(arena, first, figure)}",
+                f"{_mean(arena, first, figure)} {figure.unit}",
+            )
             for figure in (CROSSINGS, SULPHUR)
             if (first := arena.best(figure, arena.entrants))
         ),
@@ -220,6 +224,15 @@ def _alike(arena: Arena, best: list[tuple[bool, Entrant]]) -> str:
         if others:
             words.append(f"The flights do not tell {' and '.join(others)} from {first.title}.")
     return " ".join(words)
+
+
+def _best_of(arena: Arena, first: Entrant, figure: Figure) -> str:
+    """Return the law with the best mean, and how many others have the same, as it is written."""
+    mean = _mean(arena, first, figure)
+    same = sum(
+        of is not first and arena.of(figure, of, arena.together).whole and _mean(arena, of, figure) == mean for of in arena.entrants
+    )
+    return f"{first.title} and {same} more" if same else first.title
 
 
 def _mean(arena: Arena, entrant: Entrant, figure: Figure) -> str:

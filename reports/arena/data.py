@@ -28,7 +28,7 @@ class Estimate:
     Attributes
     ----------
     mean, low, high : of the figure
-    best, as_good : whether no other law's mean is better, and whether the flights do not tell the law from the best
+    best, as_good : whether no other law's mean is better, and whether the flights do not show that another law is better
     whole : whether it is of every flight of which any law has the figure; otherwise it is not compared with the others
     flights : number of flights that it is of
     """

@@ -81,7 +81,7 @@ def _table(
         ahead = [str(entrant.number), entrant.title, *(before[i] if before else [])]
         means = [_interval(estimate, figure) + few(arena, estimate, arena.together) for figure, estimate in found]
         rows.append([*ahead, *means, *extra[i]])
-        bold += [(i, len(ahead) + j) for j, (_, estimate) in enumerate(found) if estimate.as_good or estimate.best]
+        bold += [(i, len(ahead) + j) for j, (_, estimate) in enumerate(found) if arena.flights > 1 and estimate.as_good]
     left = 3 if before else 2
     return Table(
         head=head, rows=rows, widths=widths, left_columns=left, bold=bold, print_size_pt=6.4, breakable=True, caption=caption
@@ -116,7 +116,7 @@ def by_condition_table(arena: Arena, figure: Figure, *, tracking: bool | None = 
         few_of = [few(arena, estimate, condition) for estimate, condition in zip(found, conditions, strict=True)]
         means = [figure.written(estimate.mean) + words for estimate, words in zip(found, few_of, strict=True)]
         rows.append([str(entrant.number), entrant.title, *means])
-        bold += [(i, 2 + j) for j, estimate in enumerate(found) if estimate.best or estimate.as_good]
+        bold += [(i, 2 + j) for j, estimate in enumerate(found) if arena.flights > 1 and estimate.as_good]
     if figure is CROSSINGS and arena.limits:
         most = [figure.written(arena.limits.get(condition, math.nan)) for condition in conditions]
         rows.append(["", "limit of any path", *most])

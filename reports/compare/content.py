@@ -148,11 +148,17 @@ def _difference_sentences(compared: Compared) -> str:
     others = "" if at_random else " These flights are no random sample: it says how far they agree, not what others would show."
     same = [of.figure.name.lower() for name, of in compared.found.items() if of.is_none and name != "keepout_violations"]
     equal = f" The same in every pair that has them: {'; '.join(same)}." if same else ""
-    if len(compared.pairs) < PAIRS_MIN:
-        return f"Differences are those of each pair; of fewer than {PAIRS_MIN} pairs a median has no interval.{equal}"
+    samples = len(compared.pairs.before.groupby(["trial", "seed"]))
+    shared = (
+        f" Pairs that share their random sample count as one, with the mean of their differences: there are {samples:,} of these."
+        if samples < len(compared.pairs)
+        else ""
+    )
+    if samples < PAIRS_MIN:
+        return f"Differences are those of each pair; of fewer than {PAIRS_MIN} a median has no interval.{shared}{equal}"
     return (
-        "Differences are those of each pair. The interval is the exact one of their median at 95 %, from order statistics, for any"
-        f" distribution; it takes {PAIRS_MIN} pairs, and is bold where it leaves out 0, as one in twenty does by chance."
+        f"Differences are those of each pair.{shared} The interval is the exact one of their median at 95 %, from order statistics,"
+        f" for any distribution; it takes {PAIRS_MIN} pairs, and is bold where it leaves out 0, as one in twenty does by chance."
         f"{others}{equal}"
     )
 

@@ -76,7 +76,8 @@ class Difference:
     ----------
     figure : which one
     before, after : of each flight, in the first run and in the other, in the figure's unit
-    median, low, high : of the differences, and the exact interval of their median; not a number of fewer than ``PAIRS_MIN`` pairs
+    median, low, high : of the differences, and the exact interval of their median; not a number of fewer than ``PAIRS_MIN``. Pairs
+        that share their random sample, such as those at the points of a sweep, count as one, with the mean of their differences
     """
 
     figure: Figure
@@ -117,14 +118,21 @@ def differences(pairs: Pairs) -> dict[str, Difference]:
         change = after - before
         known = np.isfinite(change)
         if known.any() and np.any(before[known] != 0.0) | np.any(after[known] != 0.0) | (name == "keepout_violations"):
+            samples = _by_sample(change[known], pairs.before[known])
             # The exact interval of order statistics: for any distribution, however few flights and many ties.
-            interval = quantile_interval(change[known], 0.5, CONFIDENCE)
+            interval = quantile_interval(samples, 0.5, CONFIDENCE)
             found[name] = Difference(
                 figure=measure.figure,
                 before=before,
                 after=after,
-                median=float(np.median(change[known])),
+                median=float(np.median(samples)),
                 low=interval.low,
                 high=interval.high,
             )
     return found
+
+
+def _by_sample(change: Array, rows: pd.DataFrame) -> Array:
+    """Return the mean difference of each random sample: flights of a trial that have one seed share it."""
+    means = pd.Series(change).groupby([rows["trial"].to_numpy(), rows["seed"].to_numpy()]).mean()
+    return np.asarray(means, dtype=np.float64)

@@ -27,7 +27,7 @@ def settling_table(data: ConvergenceData) -> Table:
                     "all" if reference is None else REFERENCES[reference][0],
                     f"{len(of):,}",
                     f"{len(of) - len(failed(of)):,}",
-                    *(_time(of["settling_time_s"], fraction) for fraction in QUANTILES),
+                    *(settled_time(of["settling_time_s"], fraction) for fraction in QUANTILES),
                     rate(of["heading_rate_max_rad_s"]),
                 ])  # fmt: skip
     head = [
@@ -72,9 +72,9 @@ def rate(values: "pd.Series[float]") -> str:
     return number(largest, "{:,.0f}" if largest >= 100.0 else "{:.3f}")
 
 
-def _time(times: "pd.Series[float]", fraction: float) -> str:
+def settled_time(times: "pd.Series[float]", fraction: float) -> str:
     """Return when so many of all had settled, and a dash if never."""
     if not len(times):
         return "–"
-    when = float(np.quantile(times.fillna(np.inf), fraction, method="higher"))
+    when = float(np.quantile(times.fillna(np.inf), fraction, method="inverted_cdf"))
     return f"{when:,.0f}" if np.isfinite(when) else "–"

@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from common.intervals import percent, upper_bound
+from common.intervals import CONFIDENCE, percent, shared_interval
 from measurement.estimate.verdict import COVERAGE
 from measurement.gases import MASS_PERCENT
 from measurement.plume.passes import FOUND_WITHIN
@@ -55,17 +55,16 @@ def height_table(variants: list[Variant]) -> Table | None:
         known = np.isfinite(error) & np.isfinite(deviation)
         if not known.any():
             continue
-        flights, held = int(np.count_nonzero(known)), int(np.count_nonzero(np.abs(error) <= COVERAGE * deviation))
-        # Two one-sided bounds of 97.5 % each (Clopper and Pearson).
-        low, high = 1.0 - upper_bound(flights - held, flights, 0.975), upper_bound(held, flights, 0.975)
+        held = np.abs(error[known]) <= COVERAGE * deviation[known]
+        interval = shared_interval(held, variant.rows.loc[known, "seed"], CONFIDENCE)
         rows.append([
             variant.name,
-            f"{flights:,}",
+            f"{len(held):,}",
             number(float(np.mean(error[known])), "{:+.1f}"),
             number(_rms(error), "{:.1f}"),
             number(_median(deviation), "{:.1f}"),
-            percent(held / flights),
-            f"{percent(low)} to {percent(high)}",
+            percent(float(held.mean())),
+            f"{percent(interval.low)} to {percent(interval.high)}",
         ])  # fmt: skip
     return (
         Table(

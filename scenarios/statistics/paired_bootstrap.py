@@ -1,13 +1,20 @@
-"""Means of several entrants over the same flights, and how sure it is that one is better than another: the paired bootstrap.
+"""Means of several entrants over the same flights, and which may be the best: the paired bootstrap.
 
 Every entrant flies the same starts and the same air. Resampled are these, for all entrants together, so that what is common to all
 of them, such as a wind that is hard on everyone, does not count as a difference (B. Efron, R. J. Tibshirani, "An Introduction to
-the Bootstrap", 1993, chapters 8 and 13). Percentile intervals are used: of a handful of flights they are too narrow rather than too
-wide, and that is to be said beside them. Where no stratum has two flights, every resample is the same: there is no interval, and no
-difference is shown. An entrant that lacks the figure of a flight of which another has it has a mean over other flights, perhaps
-easier ones: it is not compared.
+the Bootstrap", 1993, chapters 8 and 13). Resamples of a few flights scatter too little: deviations from the mean of a stratum are
+larger by sqrt(n/(n - 1)) here, and by Student's t over the normal quantile.
+
+The best mean is one of the same flights, and one of many. So an entrant counts as worse than the best only if some other is ahead
+of it by more than the largest lead that any would have of it if all had the mean that they have in expectation: multiple
+comparisons with the best (J. C. Hsu, "Multiple Comparisons", 1996, chapter 4), with leads over their own deviations. Of entrants
+that are equal, each is called worse in one arena of twenty at most, however many there are.
+
+Where no stratum has two flights, every resample is the same: there is no interval, and no difference is shown. An entrant that
+lacks the figure of a flight of which another has it has a mean over other flights, perhaps easier ones: it is not compared.
 """
 
+import math
 from dataclasses import dataclass
 from typing import Any
 
@@ -15,6 +22,9 @@ import numpy as np
 import numpy.typing as npt
 
 Array = npt.NDArray[np.float64]
+
+_STILL = 1e-9
+"""Deviation of a lead over the lead itself up to which it does not scatter but for rounding."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -29,6 +39,7 @@ class Estimate:
     behind_low, behind_high : interval of the difference from the best entrant's mean; 0 for the best, not a number if not compared,
         or if there is no interval
     flights : number of flights that have the figure
+    as_good : whether it is compared, and the flights do not show that another is better
     """
 
     mean: float
@@ -39,11 +50,7 @@ class Estimate:
     behind_low: float
     behind_high: float
     flights: int
-
-    @property
-    def as_good(self) -> bool:
-        """Return whether the flights do not show a difference from the best."""
-        return self.whole and not (self.behind_low > 0.0 or self.behind_high < 0.0)
+    as_good: bool
 
 
 def paired_estimates(
@@ -69,11 +76,12 @@ def paired_estimates(
     known = np.isfinite(values)
     whole = np.logical_and(known[:, known.any(axis=0)].all(axis=1), known.any())
     means = np.array([_mean(row) for row in values])
-    sampled = np.array([_means(row, columns) for row in values])
+    sampled = np.array([_means(_scattered(row, strata, confidence), columns) for row in values])
     sampled[[not _has_several(strata[row]) for row in known]] = np.nan
     worth = np.where(whole, means if greater_is_better else -means, np.nan)
     best = int(np.nanargmax(worth)) if np.isfinite(worth).any() else -1
     tail = 50.0 * (1.0 - confidence)
+    as_good = _may_be_best(worth, sampled if greater_is_better else -sampled, confidence)
     found = []
     for i, mean in enumerate(means):
         low, high = _interval(sampled[i], tail)
@@ -88,8 +96,57 @@ def paired_estimates(
                 behind_low=float(behind[0]),
                 behind_high=float(behind[1]),
                 flights=int(known[i].sum()),
+                as_good=bool(as_good[i]),
             )
         )
+    return found
+
+
+def _scattered(row: Array, strata: npt.NDArray[Any], confidence: float) -> Array:
+    """Return the figures of one entrant with deviations from the mean of each stratum as large as they have to be."""
+    from scipy.special import ndtri, stdtrit
+
+    scattered, freedom = row.copy(), 0
+    for stratum in np.unique(strata):
+        within = (strata == stratum) & np.isfinite(row)
+        count = int(np.count_nonzero(within))
+        if count > 1:
+            mean = row[within].mean()
+            scattered[within] = mean + (row[within] - mean) * math.sqrt(count / (count - 1.0))
+            freedom += count - 1
+    if not freedom:
+        return scattered
+    level = 0.5 + 0.5 * confidence
+    means = np.array(
+        [np.nanmean(row[strata == stratum]) if np.isfinite(row[strata == stratum]).any() else 0.0 for stratum in strata]
+    )
+    wider: Array = means + (scattered - means) * float(stdtrit(freedom, level) / ndtri(level))
+    return wider
+
+
+def _may_be_best(worth: Array, sampled: Array, confidence: float) -> npt.NDArray[np.bool_]:
+    """Return which entrants may be the best, with their worth, shape (n,), and its resamples, shape (n, resamples).
+
+    Those that are not compared, whose worth is not a number, may not.
+    """
+    found = np.isfinite(worth)
+    for i in np.flatnonzero(found):
+        others = np.flatnonzero(np.isfinite(worth) & (np.arange(len(worth)) != i))
+        leads = worth[others] - worth[i]
+        scatter = (sampled[others] - sampled[i]) - leads[:, np.newaxis]
+        # A resample may have none of the flights of which there is a figure.
+        scatter = scatter[:, np.isfinite(scatter).all(axis=0)]
+        if not scatter.size:
+            continue
+        deviations = scatter.std(axis=1)
+        still = deviations <= _STILL * np.abs(leads)
+        if np.any(still & (leads > 0.0)):
+            # It is ahead by as much in every resample.
+            found[i] = False
+        elif not still.all():
+            ahead = leads[~still] / deviations[~still]
+            largest = (scatter[~still] / deviations[~still, np.newaxis]).max(axis=0)
+            found[i] = bool(ahead.max() <= np.quantile(largest, confidence))
     return found
 
 

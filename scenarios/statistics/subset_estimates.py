@@ -13,6 +13,8 @@ probability, as Clopper and Pearson have it. States of one chain are alike, and 
 state: n is the number of different states that they began at. If no simulation has reached any, all are judged at the
 threshold that even the least of them has reached: where some came much nearer than others, the probability of that
 threshold scatters, and the bound is the larger.
+
+What all simulations have in their first levels needs none of that: together these are a plain sample (Clopper and Pearson).
 """
 
 import math
@@ -20,10 +22,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+import numpy.typing as npt
 import pandas as pd
 from scipy.special import stdtrit
 
-from common.intervals import upper_bound
+from common.intervals import clopper_pearson, upper_bound
 from scenarios.statistics.subset_levels import Array, Indices, Simulation
 
 CURVE_POINTS = 80
@@ -88,6 +91,9 @@ def rare_probability(simulations: Sequence[Simulation], confidence: float, *, va
     found = np.array([simulation.below(value) for simulation in simulations])
     estimates, reached = found[:, 0], found[:, 0] > 0.0
     two_sided, one_sided = 0.5 + 0.5 * confidence, confidence
+    first = [simulation.levels[0] for simulation in simulations]
+    if reached.any() and all(value > level.threshold or len(of.levels) == 1 for level, of in zip(first, simulations, strict=True)):
+        return _of_plain_samples(np.concatenate([level.values for level in first]) < value, int(reached.sum()), confidence)
     if reached.all():
         centre, deviation = _log_mean(estimates, found[:, 1])
         t = _t_quantile(two_sided, len(estimates)) * deviation
@@ -101,6 +107,19 @@ def rare_probability(simulations: Sequence[Simulation], confidence: float, *, va
     high, upper = (_left_open(simulations, estimates, found[:, 1], level) for level in (two_sided, one_sided))
     return RareProbability(
         estimate=float(estimates.mean()), low=0.0, high=high, upper=upper, reached=int(np.count_nonzero(reached))
+    )
+
+
+def _of_plain_samples(event: npt.NDArray[np.bool_], reached: int, confidence: float) -> RareProbability:
+    """Return a probability that is not rare: first levels are plain samples, of which there is an exact interval."""
+    events, trials = int(np.count_nonzero(event)), len(event)
+    interval = clopper_pearson(events, trials, confidence)
+    return RareProbability(
+        estimate=events / trials,
+        low=interval.low,
+        high=interval.high,
+        upper=upper_bound(events, trials, confidence),
+        reached=reached,
     )
 
 

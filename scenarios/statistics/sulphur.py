@@ -4,7 +4,6 @@ Flights of one seed, such as those at the points of a sweep, have the same sniff
 are those of as many samples as there are seeds, each with the mean over its flights.
 """
 
-import math
 from collections.abc import Iterator
 from typing import Any
 
@@ -12,7 +11,7 @@ import numpy as np
 import numpy.typing as npt
 import pandas as pd
 
-from common.intervals import clopper_pearson
+from common.intervals import shared_interval
 
 METHODS = {"regression": "fsc", "areas": "areas_fsc"}
 """Methods, and what the columns of their figures begin with."""
@@ -97,11 +96,8 @@ def _by_seed(values: "pd.Series[Any]", flights: pd.DataFrame) -> Array:
 
 def _interval(events: "pd.Series[bool]", flights: pd.DataFrame, confidence: float) -> list[float]:
     """Return the interval of the probability of an event, of which flights of one seed have a share together."""
-    shares = _by_seed(events, flights)
-    # Rounded first: shares of a third add up to whole numbers but for rounding.
-    total = round(float(shares.sum()), 6)
-    low, high = (clopper_pearson(whole(total), len(shares), confidence) for whole in (math.floor, math.ceil))
-    return [low.low, high.high]
+    found = shared_interval(events.to_numpy(dtype=np.bool_), flights["seed"].to_numpy(), confidence)
+    return [found.low, found.high]
 
 
 def _share(part: Array, whole: Array) -> float | None:

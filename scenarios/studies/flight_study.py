@@ -256,7 +256,7 @@ class FlightStudy:
     def postprocess(self, run: RunDirectory, journal: Journal, _progress: Progress) -> None:
         """Write ``sulphur.json`` where flights had a sniffer; everything else is in the tables."""
         if SULPHUR_TABLE in self.tables:
-            rows = frame((row for row in journal.rows(SUMMARY) if "fsc_percent" in row), SULPHUR_COLUMNS)
+            rows = frame((row for row in journal.rows(SUMMARY) if "sulphur_verdict" in row), SULPHUR_COLUMNS)
             run.write_json(run.path / SULPHUR, sulphur_statistics(rows, confidence=CONFIDENCE))
 
     def export(self, run: RunDirectory, journal: Journal) -> None:

@@ -156,7 +156,8 @@ class FlightCounts:
                 for why, count in self.unmeasured.most_common(NOT_MET_SHOWN)
             ]
         if (flights := self.verdicts.total()) > 1:
-            return [f"fuel sulphur of {flights} flights: {counted_verdicts(self.verdicts.elements())}"]
+            of = f"{flights} of {self.done}" if flights < self.done else flights
+            return [f"fuel sulphur of {of} flights: {counted_verdicts(self.verdicts.elements())}"]
         words = verdict_words(
             row["sulphur_verdict"], row["sulphur_limit_percent"], row["probability_above"], row["sulphur_quality"]
         )

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.stats import binom
 
-from common.intervals import Interval, clopper_pearson, quantile_interval, upper_bound
+from common.intervals import Interval, clopper_pearson, quantile_interval, shared_interval, upper_bound
 
 
 def test_no_event_in_ten_thousand_bounds_the_probability_by_the_root_of_what_confidence_leaves():
@@ -34,6 +34,17 @@ def test_an_interval_ends_at_0_or_1_where_nothing_or_everything_happened_and_wit
     assert clopper_pearson(0, 20, 0.95).low == 0.0
     assert clopper_pearson(20, 20, 0.95).high == 1.0
     assert clopper_pearson(0, 0, 0.95) == Interval(0.0, 1.0)
+
+
+def test_trials_that_share_their_sample_count_as_one():
+    # As often as one likes the same four: 4 of 4 is 39.8 % to 100 % (0.025^(1/4)).
+    alone = shared_interval(np.ones(4, dtype=bool), np.arange(4), 0.95)
+    shared = shared_interval(np.ones(20, dtype=bool), np.tile(np.arange(4), 5), 0.95)
+    assert (alone.low, alone.high) == pytest.approx((0.025**0.25, 1.0), abs=1e-9)
+    assert shared == alone
+    # Two and a half of four samples: from the low end of two to the high end of three.
+    halves = shared_interval(np.array([1, 1, 1, 0, 0], dtype=bool), np.array([7, 8, 9, 9, 5]), 0.95)
+    assert halves == Interval(clopper_pearson(2, 4, 0.95).low, clopper_pearson(3, 4, 0.95).high)
 
 
 def test_the_median_of_ten_lies_between_the_second_and_the_ninth():

@@ -6,6 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pandas as pd
 
+from common.intervals import upper_bound
 from common.run_layout import SUMMARY
 from gnc.errors import InfeasibleError
 from scenarios.engine.journal import Journal
@@ -131,6 +132,9 @@ class SubsetStudy(ChosenFlightsStudy):
         if outside:
             lines.append(f"{outside} of {flights + outside} points of the first levels were beyond speed_ratio and sampled again")
         plain = count_violations(frame(journal.rows(SUMMARY, below=flights), COLUMNS))
+        alone = upper_bound(plain.events_at_most, plain.flights, self._statistics.confidence)
+        if alone < found.upper:
+            lines.append(f"the first levels alone, a plain sample of {flights} flights, bound the probability below by {alone:.2g}")
         if unknown := plain.events_at_most - plain.events:
             upper = pessimistic_upper(self._simulations, found, unknown, flights, self._statistics.confidence)
             lines.append(

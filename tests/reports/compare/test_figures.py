@@ -110,3 +110,15 @@ def test_every_figure_has_a_unit_and_a_name_of_its_own():
 def test_the_uncertainty_of_the_sulphur_content_says_that_it_is_one_sigma():
     # Reports on flights give it at 95 %.
     assert MEASURES["fsc_uncertainty_percent"].figure.name == "Uncertainty of the sulphur content, 1σ"
+
+
+def test_pairs_that_share_their_random_sample_count_as_one():
+    # Three seeds at two points of a sweep: differences of one seed are alike, and six pairs are three samples.
+    rows = [rows_of(range(3), prefix=f"p{point}_", tracking_error_rms_m=[1.0, 1.0, 1.0]) for point in (0, 1)]
+    moved = [rows_of(range(3), prefix=f"p{point}_", tracking_error_rms_m=[2.0, 3.0, 5.0 + point]) for point in (0, 1)]
+    pairs = paired(made_run("A", [*rows[0], *rows[1]]), made_run("B", [*moved[0], *moved[1]]))
+    found = differences(pairs)["tracking_error_rms_m"]
+    assert len(found.known) == 6
+    assert found.median == 2.0
+    assert math.isnan(found.low)
+    assert math.isnan(found.high)

@@ -9,7 +9,7 @@ from convergence_runs import LAWS, REFERENCES, TRAJECTORIES, write_convergence_r
 from report_parts import blocks_of, built, draw_all_but, named_charts
 
 from reports.build import build_reports
-from reports.convergence.tables import FAILED_ROWS
+from reports.convergence.tables import FAILED_ROWS, settled_time
 from reports.convergence.verdict import FAILURES_NAMED, percentage
 from reports.document.blocks import Table, Text
 from reports.errors import ReportError
@@ -201,3 +201,10 @@ def test_a_damaged_study_is_refused_in_one_line(damage, words, tmp_path):
     with pytest.raises(ReportError, match=words) as refusal:
         build_reports(path)
     assert "\n" not in str(refusal.value)
+
+
+def test_a_share_had_settled_when_so_many_had():
+    # Of 300 trajectories 99 % are 297: the 297th time, and not the 298th. Of four with one that never did, half had at the second.
+    assert settled_time(pd.Series(np.arange(1.0, 301.0)), 0.99) == "297"
+    assert settled_time(pd.Series([30.0, 10.0, np.nan, 20.0]), 0.5) == "20"
+    assert settled_time(pd.Series([30.0, 10.0, np.nan, 20.0]), 0.99) == "–"

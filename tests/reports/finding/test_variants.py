@@ -17,6 +17,7 @@ ROWS = pd.DataFrame({
     "flight_id": [f"search_{number:05d}" for number in range(4)],
     "trial": "search",
     "variant": "study",
+    "seed": [1, 2, 3, 4],
     "orbit_at_s": [20.0, 20.0, 30.0, math.nan],
     "time_to_find_s": [10.0, 50.0, math.nan, math.nan],
     "hit_rate_found": [0.5, 0.7, math.nan, math.nan],

@@ -161,3 +161,15 @@ def test_estimates_that_scatter_by_decades_have_bounds_of_1_at_any_confidence():
     assert found.reached == 3
     assert (found.high, found.upper, found.low) == (1.0, 1.0, 0.0)
     assert found.estimate <= 1.0
+
+
+@pytest.mark.parametrize("probability", [0.5, 0.9995])
+def test_of_what_the_first_levels_see_the_interval_is_that_of_a_plain_sample(probability):
+    # Where all but one in 2,000 have it most repeats see nothing else: their scatter of 0 gave [1, 1], which holds nothing.
+    studies = [repeats_of(linear(probability), i, flights=200) for i in range(20)]
+    found = [rare_probability(simulations, 0.95) for simulations in studies]
+    values = np.concatenate([simulation.levels[0].values for simulation in studies[0]])
+    assert found[0].estimate == np.mean(values < 0.0)
+    assert found[0].upper == upper_bound(int(np.sum(values < 0.0)), len(values), 0.95)
+    assert sum(study.low <= probability <= study.high for study in found) >= 17
+    assert all(study.low < study.high for study in found)
