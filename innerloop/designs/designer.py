@@ -95,6 +95,8 @@ def linear_grid(spec: AircraftSpec, altitude: float) -> Grid:
     banks = table_banks(envelope, TRIM_BANKS)
     trims: list[tuple[Trim, ...]] = []
     models, edges = [], []
+    # An aircraft of its own: what was flown last is in the last bits of the next equilibrium, and so of gains and flights.
+    beyond = Fdm(spec)
     near: Trim | None = None
     for airspeed in envelope.design_airspeeds:
         near = trim(fdm, airspeed=airspeed, altitude=altitude, start=near)
@@ -103,7 +105,7 @@ def linear_grid(spec: AircraftSpec, altitude: float) -> Grid:
         )
         trims.append(row)
         models.append(tuple(linearise(fdm, row[TRIM_BANKS.index(share)]) for share in GAIN_BANKS))
-        edges.append((linearise(fdm, row[0]), linearise(fdm, row[-1])))
+        edges.append((linearise(beyond, row[0]), linearise(beyond, row[-1])))
     if spec.envelope is not None:
         envelope = with_reserve_note(envelope, [t for row in trims for t in row], spec)
     spec = idling_at(spec, flight_idle(fdm, trims[len(trims) // 2][LEVEL]))
