@@ -2,7 +2,7 @@
 
 from rich.markup import escape
 
-from reports.design.data import Record, at_middle, complete, excess_overshoot, reversal_sentences
+from reports.design.data import Record, at_middle, complete, excess_overshoot, reversal_sentences, speed
 from reports.design.tables import extreme_trims, pole_table, robustness_table, step_table, trim_table, worst_margin_table
 from reports.design.verdict import design_verdict
 from reports.document.blocks import Table
@@ -15,7 +15,7 @@ def print_summary(record: Record) -> None:
     tables = [
         ("Equilibria", trim_table(design, extreme_trims(design))),
         ("Poles of the grid", pole_table(design)),
-        (f"Poles at {design['design_airspeed_mps']:g} m/s in level flight [1/s]", _poles(at_middle(design, design["poles"])[0])),
+        (f"Poles at {speed(design['design_airspeed_mps'])} in level flight [1/s]", _poles(at_middle(design, design["poles"])[0])),
         ("Margins, the worst of grid and points between; servos, engine and computing delay included", worst_margin_table(design)),
         ("Margins when perturbed, the worst of loops, grid and points between", robustness_table(design)),
         ("Step responses", step_table(design)),

@@ -59,7 +59,10 @@ def _chart(design: Record, name: str, margins: Sequence[_Margin], caption: str) 
         panels += [_panel(rows, margin, over_bank=True) for margin in margins]
         caption += " Above, the worst over bank at each airspeed; below, the worst over airspeed at each bank."
     if any(row["between"] for row in rows):
-        caption += " Diamonds: at points between those of the grid and at the largest bank, for which nothing was designed."
+        caption += (
+            " Diamonds, and rings of dashed and dotted loops: at points between those of the grid and at the largest bank, for"
+            " which nothing was designed."
+        )
     return Chart(name=name, caption=caption + cut_words(panels), panels=panels, columns=2, panel_height=0.24)
 
 
@@ -96,7 +99,8 @@ def _curve(rows: Sequence[Record], key: str, *, over_bank: bool, between: bool) 
             y=np.array(list(least.values()), dtype=np.float64),
             label="" if between else loop_name(rows[0]),
             colour=colour,
-            style="diamonds" if between else style,
+            # Of two loops of one colour one is dashed or dotted, and has the open marker.
+            style=style if not between else "diamonds" if style in ("solid", "thin") else "ring",
         )
     ]
 

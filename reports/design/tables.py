@@ -18,6 +18,7 @@ from reports.design.data import (
     loops_of,
     responses_of,
     short_of,
+    speed,
     where,
     worst,
 )
@@ -230,8 +231,8 @@ def envelope_table(envelope: Record) -> Table:
     """Return where the aircraft may be flown, and where the study flies it."""
     stall = envelope["stall_airspeed_mps"]
     rows = [
-        ["Airspeed that may be commanded", f"{envelope['airspeed_min_mps']:.4g} to {envelope['airspeed_max_mps']:.4g} m/s"],
-        ["Airspeed of the study", f"{envelope['airspeed_mps']:.4g} m/s"],
+        ["Airspeed that may be commanded", f"{round(envelope['airspeed_min_mps'], 1):g} to {speed(envelope['airspeed_max_mps'])}"],
+        ["Airspeed of the study", speed(envelope["airspeed_mps"])],
         ["Stall", "not known" if stall is None else f"{stall:.1f} m/s"],
         ["Largest bank commanded", f"{envelope['bank_max_deg']:g}°"],
         ["Bank of the study", f"{envelope['bank_deg']:g}°"],
