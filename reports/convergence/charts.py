@@ -66,8 +66,8 @@ def _histories(data: ConvergenceData, law: Law, *, converged: bool) -> list[Line
             finite = history[np.isfinite(history["distance_m"])]
             known = finite.iloc[_thinned(len(finite), HISTORY_POINTS)]
             distance = np.maximum(_column(known, "distance_m"), DISTANCE_SHOWN_MIN_M)
-            name, colour = REFERENCES[str(row["reference"])]
-            lines.append(Line(x=_column(known, "time_s"), y=distance, label=f"{name} reference", colour=colour))
+            name, colour, style = REFERENCES[str(row["reference"])]
+            lines.append(Line(x=_column(known, "time_s"), y=distance, label=f"{name} reference", colour=colour, style=style))
     return [line for line in lines if len(line.x)]
 
 
@@ -131,10 +131,10 @@ def _curves(
 def _law_curves(data: ConvergenceData, law: Law, values: Callable[[pd.DataFrame], Array]) -> list[Line]:
     lines = []
     for reference in data.references:
-        name, colour = REFERENCES[reference]
+        name, colour, style = REFERENCES[reference]
         x, fraction = cumulative(values(data.of(law, reference)))
         if len(x):
-            lines.append(Line(x=x, y=100.0 * fraction, label=f"{name} reference", colour=colour))
+            lines.append(Line(x=x, y=100.0 * fraction, label=f"{name} reference", colour=colour, style=style))
     return lines
 
 

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import pandas as pd
 
 from common.run_layout import HISTORY_SUFFIX, TRAJECTORIES
+from reports.document.chart import Style
 from reports.run.run_data import RunData
 
 
@@ -32,8 +33,12 @@ LAWS = (
     Law(key="cascade_cut", name="Law (30), cut at ω_max", proven=False),
 )
 
-REFERENCES = {"circle": ("circling", "blue"), "oscillation": ("oscillating", "orange"), "random": ("randomly turning", "green")}
-"""Kinds of reference: what they are called, and the colour of curves about them."""
+REFERENCES: dict[str, tuple[str, str, Style]] = {
+    "circle": ("circling", "blue", "solid"),
+    "oscillation": ("oscillating", "orange", "dash"),
+    "random": ("randomly turning", "green", "dot"),
+}
+"""Kinds of reference: what they are called, and colour and style of curves about them, which are told apart in grey, too."""
 
 CONVERGED = "converged"
 """What a trajectory that did is called."""
