@@ -75,6 +75,8 @@ def read_flight(path: Path, config: LogConfig) -> LoggedFlight:
         # Without ``index_col`` rows that end in a comma would move every column by one; what would be lost by it is refused.
         with warnings.catch_warnings(action="error", category=pd.errors.ParserWarning):
             table = pd.read_csv(path, skipinitialspace=True, low_memory=False, index_col=False)
+            # As they stand there: pandas gives the second of a name a number.
+            names = pd.read_csv(path, skipinitialspace=True, header=None, nrows=1, dtype=str, index_col=False).iloc[0]
     except MeasurementError:
         raise
     except (pd.errors.ParserWarning, pd.errors.ParserError, pd.errors.EmptyDataError) as error:
@@ -91,8 +93,9 @@ def read_flight(path: Path, config: LogConfig) -> LoggedFlight:
             f"'{path}' is not CSV: {str(error).splitlines()[0].strip()}; give a CSV file with a head line"
         ) from None
     table.columns = table.columns.map(str).str.strip()
-    if len(twice := table.columns[table.columns.duplicated()]):
-        raise MeasurementError(f"'{path}' has the column '{twice[0]}' twice; rename or remove one of them")
+    names = names.dropna().str.strip()
+    if len(twice := names[names.duplicated() & ~names.str.fullmatch(_NUMBER)]):
+        raise MeasurementError(f"'{path}' has the column '{twice.iloc[0]}' twice; rename or remove one of them")
     if table.empty:
         raise MeasurementError(f"'{path}' has a head line and 0 readings; it needs a row per reading")
     for key, name in config.columns.items():
