@@ -5,16 +5,18 @@ import math
 
 import numpy as np
 
+from common.registry import PluginError
 from gnc.errors import InfeasibleError
 from gnc.reference.circling import CirclingReference
 from gnc.reference.joining import JoinedOrbit
 from gnc.reference.placement import PlumeAxis, distance_by_paper, distance_exact
 from gnc.reference.reference import REFERENCE_SHAPES, Orbit, ReferenceShape, ReferenceStart, Swing
-from gnc.reference.shapes.plain import made_plain
+from gnc.reference.shapes.plain import Plain, made_plain
 from scenarios.planning.limits import omega_max
 from scenarios.schema.scenario import Scenario
 from scenarios.schema.sections.guidance import GuidanceConfig, ReferenceConfig
 from scenarios.schema.sections.world import KeepoutConfig
+from scenarios.world.own_part import asked, is_number, is_own, refuse_answer
 
 STEPS_MIN = 6
 """Least steps of the guidance between two crossings [-]: fewer do not show the oscillation."""
@@ -22,21 +24,49 @@ STEPS_MIN = 6
 RATIO_STEPS = 48
 """Steps of nu at which orbits are tabled."""
 
+_OF_ORBIT = ("nu", "speed", "eta", "omega_0", "amplitude", "period", "crossing_interval")
+"""Numbers that an orbit has."""
+
+_OF_SWING = ("eta", "speed_ratio", "frequency", "course", "slopes", "offset")
+"""Methods that a shape's courses have."""
+
 
 def shape_of(reference: ReferenceConfig) -> ReferenceShape:
     """Return the shape of a reference's orbit.
 
     Raises
     ------
-    PluginError : there is no such shape
+    PluginError : there is no such shape, or it cannot be made
     """
-    shape: ReferenceShape = made_plain(REFERENCE_SHAPES.get(reference.shape)())
+    part, kind = _named(reference), REFERENCE_SHAPES.get(reference.shape)
+    made = asked(part, "cannot be made", "no arguments: its fields need defaults", kind)
+    if is_own(made) and not is_number(getattr(made, "joining_share", None)):
+        raise PluginError(
+            f"{part} has no joining_share, the part of its heading rate that the reference takes until it is tracked [-]; give it"
+            " one, 1.0 as the sinusoid has"
+        )
+    shape: ReferenceShape = made_plain(made)
     return shape
 
 
+def _named(reference: ReferenceConfig) -> str:
+    return f"reference.shape '{reference.shape}'"
+
+
 def oscillation_at(guidance: GuidanceConfig, reference: ReferenceConfig, nu: float) -> Orbit:
-    """Return the reference's oscillation at a speed ratio, or raise an InfeasibleError."""
-    orbit = shape_of(reference).design(
+    """Return the reference's oscillation at a speed ratio.
+
+    Raises
+    ------
+    InfeasibleError : it has none
+    PluginError : a shape of a user's own failed, or returned none
+    """
+    part, shape = _named(reference), shape_of(reference)
+    orbit = asked(
+        part,
+        f"failed in design() at nu = {nu:.4g}",
+        "nu, speed, vessel_heading_rate, heading_rate_max, reserve and roll_rate_max, each by its name",
+        shape.design,
         nu=nu,
         speed=guidance.airspeed_mps,
         vessel_heading_rate=0.0,
@@ -44,6 +74,8 @@ def oscillation_at(guidance: GuidanceConfig, reference: ReferenceConfig, nu: flo
         reserve=guidance.reserve,
         roll_rate_max=math.radians(guidance.roll_rate_max_deg_s),
     )
+    if isinstance(shape, Plain) and not all(is_number(getattr(orbit, name, None)) for name in _OF_ORBIT):
+        refuse_answer(part, f"design() at nu = {nu:.4g}", orbit, f"an orbit, with finite {', '.join(_OF_ORBIT)}")
     steps = orbit.crossing_interval * guidance.rate_hz
     if steps < STEPS_MIN:
         raise InfeasibleError(
@@ -55,12 +87,26 @@ def oscillation_at(guidance: GuidanceConfig, reference: ReferenceConfig, nu: flo
 
 
 def swing_of(guidance: GuidanceConfig, reference: ReferenceConfig) -> Swing:
-    """Return the courses of a reference that is steered, or raise an InfeasibleError."""
-    return shape_of(reference).swing(
+    """Return the courses of a reference that is steered.
+
+    Raises
+    ------
+    InfeasibleError : it cannot be
+    PluginError : a shape of a user's own failed, or returned none
+    """
+    part, shape = _named(reference), shape_of(reference)
+    swing = asked(
+        part,
+        "failed in swing()",
+        "speed, heading_rate and roll_rate_max, each by its name",
+        shape.swing,
         speed=guidance.airspeed_mps,
         heading_rate=(1.0 - guidance.reserve) * omega_max(guidance),
         roll_rate_max=math.radians(guidance.roll_rate_max_deg_s),
     )
+    if isinstance(shape, Plain) and not all(callable(getattr(swing, name, None)) for name in _OF_SWING):
+        refuse_answer(part, "swing()", swing, f"courses, with the methods {', '.join(_OF_SWING)}")
+    return swing
 
 
 @functools.lru_cache(maxsize=8)

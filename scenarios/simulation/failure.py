@@ -4,6 +4,7 @@ import traceback
 from pathlib import Path
 
 from aircraft.errors import AircraftError
+from common.registry import PluginError
 from common.spelling import one_line
 from gnc.errors import InfeasibleError, LawError
 from measurement.errors import MeasurementError
@@ -24,7 +25,7 @@ def failure(error: Exception) -> Row:
     if isinstance(error, InfeasibleError | MeasurementError):
         return unflown(Outcome.INFEASIBLE, str(error))
     message = str(error)
-    if not isinstance(error, AircraftError | InputError | LawError):
+    if not isinstance(error, AircraftError | InputError | LawError | PluginError):
         frames = traceback.extract_tb(error.__traceback__)
         # Methods of dataclasses are made from text, and have no file: what called them has.
         where = next((frame for frame in reversed(frames) if not frame.filename.startswith("<")), frames[-1])

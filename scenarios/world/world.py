@@ -9,11 +9,13 @@ import numpy.typing as npt
 
 from aircraft.atmosphere.weather import Weather
 from aircraft.atmosphere.wind import WindField
+from common.registry import PluginError
 from scenarios.schema.extension_points import PLUME_MODELS, VESSEL_TRACKS
 from scenarios.schema.scenario import Scenario
 from scenarios.world.ais.track import AisVessel, ais_vessel
 from scenarios.world.exhaust import Exhaust
 from scenarios.world.faults import TimedFault
+from scenarios.world.own_part import are_numbers, asked, is_number, is_own, refuse_answer
 from scenarios.world.place import Place, given_place
 from scenarios.world.plume import Plume
 from scenarios.world.vessel import SteadyVessel, VesselTruth, sampled, track_times
@@ -22,6 +24,18 @@ from scenarios.world.wind_table import first_time
 
 TRACK_MARGIN = 5.0
 """How long the track goes on after the longest flight [s]."""
+
+_LOOK_STEP = 1.0
+"""Time between the looks at a track, or a plume, of a user's own before its flight [s]."""
+
+_ORIGIN_MAX = 0.01
+"""By how much a track of a user's own may begin beside the origin, for rounding [m]."""
+
+_COURSE_MAX = math.radians(1.0)
+"""By how much its course may differ from the direction of its velocity [rad]: one to first order in a swing of 20 degrees does."""
+
+_AT_REST = 0.1
+"""Speed below which a vessel's course is that of her bow [m/s]."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -53,7 +67,7 @@ def vessel_of(scenario: Scenario) -> VesselTruth:
 
     Raises
     ------
-    PluginError : it has no such track
+    PluginError : it has no such track, or that is none: it cannot be made, or its motion and its course are of no use
     InputError : its file cannot be read, or does not cover the longest flight
     """
     config, duration = scenario.vessel, scenario.flight.duration_max_s
@@ -62,8 +76,36 @@ def vessel_of(scenario: Scenario) -> VesselTruth:
         return ais_vessel(config, altitude=altitude, utc=scenario.place.utc, duration=duration, margin=TRACK_MARGIN)
     if config.track == "manoeuvres" and not config.manoeuvres:
         return SteadyVessel(scenario.vessel_speed, math.radians(config.course_deg))
-    track: VesselTruth = VESSEL_TRACKS.get(config.track)(config, scenario.vessel_speed, duration + TRACK_MARGIN)
+    part, made = f"vessel.track '{config.track}'", VESSEL_TRACKS.get(config.track)
+    called_with = "the [vessel] section, the speed [m/s] and the duration [s]"
+    track: VesselTruth = asked(part, "cannot be made", called_with, made, config, scenario.vessel_speed, duration + TRACK_MARGIN)
+    if is_own(track):
+        _check_track(part, track, duration)
     return track
+
+
+def _check_track(part: str, track: VesselTruth, duration: float) -> None:
+    """Raise a PluginError for a track of a user's own that is of no use; ``check_declared`` compares place and velocity."""
+    if not is_number(getattr(track, "manoeuvres_end", None), finite=False):
+        raise PluginError(
+            f"{part} has no manoeuvres_end, the time at which its last manoeuvre ends [s]; give it one, math.nan without any"
+        )
+    for time in np.arange(0.0, duration, _LOOK_STEP).tolist():
+        motion = asked(part, f"failed in motion({time:g})", "the time [s]", track.motion, time)
+        if not are_numbers(motion, 4):
+            refuse_answer(part, f"motion({time:g})", motion, "four finite numbers: north, east [m] and their rates [m/s]")
+        course = asked(part, f"failed in course({time:g})", "the time [s]", track.course, time)
+        if not is_number(course):
+            refuse_answer(part, f"course({time:g})", course, "a finite number: the course, clockwise from north [rad]")
+        north, east, v_north, v_east = map(float, motion)
+        if time == 0.0 and math.hypot(north, east) > _ORIGIN_MAX:
+            raise PluginError(f"{part} begins at {north:g} m north and {east:g} m east; let it begin at the origin: motion(0)")
+        flown = math.atan2(v_east, v_north)
+        if math.hypot(v_north, v_east) > _AT_REST and abs(math.remainder(course - flown, math.tau)) > _COURSE_MAX:
+            raise PluginError(
+                f"{part}: course({time:g}) is {course:.4g} rad, and the velocity of motion({time:g}) points to {flown:.4g} rad; let"
+                f" them agree to {_COURSE_MAX:.2g} rad, clockwise from north"
+            )
 
 
 def place_of(scenario: Scenario, vessel: VesselTruth) -> Place:
@@ -86,12 +128,19 @@ def plume_of(scenario: Scenario, vessel: VesselTruth) -> Plume:
 
     Raises
     ------
-    PluginError : there is no such plume model
+    PluginError : there is no such plume model, or it cannot be made, or its axis is of no use
     """
+    part, called_with = f"plume.model '{scenario.plume.model}'", "plume, vessel, wind, duration, by_wind=..."
     model = PLUME_MODELS.get(scenario.plume.model)
     duration = scenario.flight.duration_max_s + TRACK_MARGIN
     section = scenario.plume.model_copy(update={"source_height_m": scenario.source_height})
-    plume: Plume = model(section, vessel, mean_wind(scenario, vessel), duration, by_wind=scenario.plume_by_wind)
+    given, by_wind = (section, vessel, mean_wind(scenario, vessel), duration), scenario.plume_by_wind
+    plume: Plume = asked(part, "cannot be made", called_with, model, *given, by_wind=by_wind)
+    if is_own(plume):
+        for time in np.arange(0.0, duration, _LOOK_STEP).tolist():
+            axis = asked(part, f"failed in axis({time:g})", "the time [s]", plume.axis, time)
+            if not is_number(axis):
+                refuse_answer(part, f"axis({time:g})", axis, "a finite number: the course along which the plume trails [rad]")
     return plume
 
 

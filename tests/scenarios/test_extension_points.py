@@ -235,7 +235,9 @@ def test_a_part_that_raises_before_any_flight_is_refused_in_one_line(tmp_path):
     text = TRACK.replace("        self._speed,", '        raise RuntimeError("no chart")\n        self._speed,')
     draws = '[[draws]]\nkey = "wind.speed_mps"\nuniform = [0.0, 5.0]\n'
     message = refusal(write_scenario(tmp_path, 'vessel.track = "own.py:Weaving"\n' + draws, text), tmp_path / "run")
-    assert message.startswith("a flight cannot be sampled: RuntimeError: no chart (own.py:")
+    assert message.startswith(
+        f"a flight cannot be sampled: vessel.track '{tmp_path / 'own.py'}:Weaving' cannot be made: RuntimeError: no chart (own.py:"
+    )
 
 
 def test_a_run_is_resumed_and_replayed_with_the_same_file_only(tmp_path):

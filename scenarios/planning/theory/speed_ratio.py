@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from common.physics.coordinated_turn import bank_for_heading_rate
+from common.registry import PluginError
 from gnc.errors import InfeasibleError
 from gnc.reference.placement import PlumeAxis
 from scenarios.planning.limits import omega_max
@@ -60,7 +61,8 @@ def _points(
             orbit = oscillation_at(guidance, reference, nu)
             distance = distance_kept(guidance, keepout, orbit, axis)
             others = [_crossing_interval(guidance, shape, nu) for shape in _OSCILLATIONS]
-        except InfeasibleError:
+        except (InfeasibleError, PluginError):
+            # A shape of a user's own may fail at a point; flights there say why.
             break
         points.append((nu, orbit.crossing_interval, distance, *others))
     return tuple(points)
