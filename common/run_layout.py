@@ -62,6 +62,17 @@ SHIPS = "ships.csv"
 PHASES = "phases.csv"
 """A row per stretch of a patrol: the way to a ship, and what was done beside her."""
 
+TUNING_TABLE = "tuning.csv"
+"""A row for each setting that the tuner of an arena tried."""
+
+WINDOW_TABLE = "window.csv"
+"""A row for each flight of an arena: figures of its end."""
+
+TABLES = (
+    SUMMARY, COMPARISON, CROSSINGS, INTERVENTIONS, DRAWS, COUNTEREXAMPLES, SAMPLES, SHIPS, PHASES, TUNING_TABLE, WINDOW_TABLE,
+)  # fmt: skip
+"""Tables that a run writes of itself; that of the sulphur content is the sniffer's."""
+
 MODEL = "model"
 """Directory of the aircraft's model with the autopilot."""
 

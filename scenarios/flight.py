@@ -16,13 +16,13 @@ import pandas as pd
 
 from common.run_layout import CROSSINGS, DRAWS, INTERVENTIONS
 from scenarios.engine.task import Result, Row, Task
-from scenarios.errors import InputError
 from scenarios.experiment.requests import Experiment, FlightRequest, table_of
 from scenarios.instruments.instrument import EvaluatedInstrument, GasReader, Instrument
 from scenarios.metrics.criteria import failed_criteria, kept_out
 from scenarios.metrics.crossings import crossing_rows
 from scenarios.metrics.figures import flight_figures, plan_row
 from scenarios.metrics.finding import finding_figures
+from scenarios.metrics.own_instruments import check_instruments, evaluated
 from scenarios.metrics.relative_state import flight_history
 from scenarios.planning.flight_plan import FlightPlan
 from scenarios.planning.planner import plan_flight
@@ -32,12 +32,12 @@ from scenarios.schema.sections.experiment import STUDY
 from scenarios.simulation.closed_loop import fly
 from scenarios.simulation.failure import failure, unflown
 from scenarios.simulation.outcome import Outcome
-from scenarios.simulation.plume_readings import PlumeBelief
-from scenarios.simulation.record import MEANINGS, FlightRecord
+from scenarios.simulation.record import FlightRecord
 from scenarios.simulation.release import release
 from scenarios.simulation.time_history import history_files
 from scenarios.vehicles.vehicle_setup import VehicleSetup, kinematic_setup
 from scenarios.world.noise import PAYLOAD, own_generator
+from scenarios.world.own_part import asked
 
 _Tables = dict[str, list[Row]]
 """Rows by the file name of their table."""
@@ -118,16 +118,18 @@ class FlightWork:
             history = flight_history(plan, record)
             figures, found = flight_figures(plan, record)
             row |= figures | _never_flown(request, figures)
+            # Before an instrument of a user's own may fail.
+            row |= {"kept_out": kept_out(row)} if "keepout_violations" in row else {}
             tables[CROSSINGS] = [named | {"nu": row.get("nu")} | crossing for crossing in crossing_rows(found)]
             tables[INTERVENTIONS] = [named | stretch._asdict() for stretch in record.interventions]
-            for instrument in instruments:
+            for name, instrument in zip(plan.payload, instruments, strict=True):
                 if isinstance(instrument, EvaluatedInstrument):
-                    evaluation = instrument.evaluate(record.column, _measured_from(request, record))
+                    evaluation = evaluated(name, instrument, record.column, _measured_from(request, record))
                     # Each sample stands until the next, where every step is recorded.
                     held = np.searchsorted(record.column("time_s"), history["time_s"], side="right") - 1
                     history[list(instrument.COLUMNS)] = evaluation.columns[held]
                     row |= evaluation.figures
-                    tables |= {file: [named | of for of in rows] for file, rows in evaluation.tables.items()}
+                    tables |= {file: [named | of | named for of in rows] for file, rows in evaluation.tables.items()}
                     document = evaluation.document or document
             if sniffer := next((instrument for instrument in instruments if isinstance(instrument, GasReader)), None):
                 noise = sniffer.spec.known("co2").noise
@@ -136,7 +138,6 @@ class FlightWork:
             tables |= self.more_tables(request, plan, record, row)
             failed = failed_criteria(row, request.scenario.criteria)
             row |= {"criteria_met": not failed, "message": "; ".join(failed)}
-            row |= {"kept_out": kept_out(row)} if "keepout_violations" in row else {}
         except Exception as error:  # noqa: BLE001 - a flight that fails is a row with its reason, and the study goes on
             row |= failure(error)
         return self._result(task, row | {"wall_time_s": time.perf_counter() - began}, tables, history, document)
@@ -230,19 +231,13 @@ def payload_of(request: FlightRequest, plan: FlightPlan) -> list[Instrument | Ev
 
     Raises
     ------
-    InputError : one fills a column of the time history that the flight or another one fills
+    PluginError : one cannot be made
+    InputError : one fills a column, a figure or a table that the flight or another one fills
     """
-    generator = own_generator(request.noise, PAYLOAD)
-    instruments = [PAYLOADS.get(name)(request.scenario, plan.world, generator) for name in plan.payload]
-    filled = dict.fromkeys((*MEANINGS, *PlumeBelief.COLUMNS), "the flight itself")
-    for name, instrument in zip(plan.payload, instruments, strict=True):
-        for column in instrument.COLUMNS:
-            if column in filled:
-                raise InputError(
-                    f"payload: instrument '{name}' fills the column '{column}', which {filled[column]} fills already; call it"
-                    " otherwise, or leave the instrument out"
-                )
-            filled[column] = f"instrument '{name}'"
+    given = request.scenario, plan.world, own_generator(request.noise, PAYLOAD)
+    called_with = "the scenario, the world and a random generator"
+    instruments = [asked(f"payload '{name}'", "cannot be made", called_with, PAYLOADS.get(name), *given) for name in plan.payload]
+    check_instruments(zip(plan.payload, instruments, strict=True))
     return instruments
 
 

@@ -63,16 +63,15 @@ class Evaluation:
 class EvaluatedInstrument(Protocol):
     """An instrument whose readings are computed after the flight, all at once; otherwise as ``Instrument``.
 
+    It may have ``FIGURES``, the columns of the summary that it fills, and ``TABLES``, the columns of the tables that it fills, by
+    file, beside those that name the flight. A figure that it does not return is empty.
+
     Attributes
     ----------
     COLUMNS : as of ``Instrument``
-    FIGURES : columns of the summary that it fills
-    TABLES : columns of the tables that it fills, by file, beside those that name the flight
     """
 
     COLUMNS: tuple[str, ...]
-    FIGURES: tuple[str, ...]
-    TABLES: Mapping[str, tuple[str, ...]]
 
     def evaluate(self, column: Callable[[str], Array], since: float, /) -> Evaluation:
         """Return what it makes of the flight.
@@ -108,6 +107,18 @@ class GasReader(Protocol):
 
     def readings(self, since: float, /) -> Readings:
         """Return what has been read since a time [s]."""
+
+
+def figures_of(instrument: Any) -> tuple[str, ...]:
+    """Return the columns of the summary that an instrument, or a class of instruments, fills."""
+    figures: tuple[str, ...] = getattr(instrument, "FIGURES", ())
+    return figures
+
+
+def tables_of(instrument: Any) -> Mapping[str, tuple[str, ...]]:
+    """Return the columns of the tables that an instrument, or a class of instruments, fills, by file."""
+    tables: Mapping[str, tuple[str, ...]] = getattr(instrument, "TABLES", {})
+    return tables
 
 
 def evaluated_instruments(scenarios: Iterable[Scenario]) -> list[Any]:

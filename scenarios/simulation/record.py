@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
+from common.spelling import did_you_mean
 from scenarios.simulation.interventions import Intervention
 from scenarios.simulation.outcome import Outcome
 
@@ -114,7 +115,14 @@ class FlightRecord:
     guard_time: float
 
     def column(self, name: str) -> Array:
-        """Return one column of the history."""
+        """Return one column of the history.
+
+        Raises
+        ------
+        ValueError : it has no such column
+        """
+        if name not in self.columns:
+            raise ValueError(f"the flight's record has no column '{name}'{did_you_mean(name, self.columns)}")
         return self.history[:, self.columns.index(name)]
 
 

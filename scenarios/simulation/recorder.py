@@ -13,6 +13,7 @@ from scenarios.instruments.instrument import Instrument
 from scenarios.simulation.record import COLUMNS, Array
 from scenarios.simulation.settling import Settling
 from scenarios.vehicles.vehicle import Vehicle
+from scenarios.world.own_part import are_numbers, asked, refuse_answer
 from scenarios.world.world import World
 
 Place = tuple[float, float, float, float]
@@ -77,7 +78,10 @@ class Recorder:
         vessel, axis = self._vessel_at(time), self._axis_at(time)
         seen_north, seen_east = target.north, target.east
         sample = self._sample()
-        read = [value for instrument in self._payload for value in instrument.read(time, motion, sample)] if self._payload else ()
+        read: Sequence[Any] = ()
+        if self._payload:
+            read_all = _read_all if self._rows else _read_first
+            read = read_all(self._payload, time, motion, sample)
         self._rows.append(self._pack(
             time, *motion, math.atan2(v_east, v_north), *vessel, axis, north, east, course, heading_rate,
             seen_north + centre.x, seen_east + centre.y, centre_error, own.wind_north, own.wind_east,
@@ -96,6 +100,23 @@ class Recorder:
     def rows(self) -> Array:
         """Return what is recorded, shape (rows, columns)."""
         return np.frombuffer(b"".join(self._rows)).reshape(-1, len(self.columns))
+
+
+def _read_all(payload: Sequence[Any], time: float, motion: Motion, sample: tuple[float, ...]) -> list[Any]:
+    """Return what instruments read, one after the other."""
+    return [value for instrument in payload for value in instrument.read(time, motion, sample)]
+
+
+def _read_first(payload: Sequence[Any], time: float, motion: Motion, sample: tuple[float, ...]) -> list[Any]:
+    """Return what instruments read first; an error says which of them reads what is of no use."""
+    values: list[Any] = []
+    for instrument in payload:
+        part, count = f"payload: instrument of class {type(instrument).__qualname__}", len(instrument.COLUMNS)
+        read = asked(part, "failed in read()", "time, motion and sample", instrument.read, time, motion, sample)
+        if not are_numbers(read, count, finite=False):
+            refuse_answer(part, "read()", read, f"a tuple of {count} number{'s' * (count != 1)}, one for each of its COLUMNS")
+        values.extend(read)
+    return values
 
 
 def _no_vessel(_time: float) -> Place:

@@ -18,6 +18,7 @@ from gnc.reference.reference import REFERENCE_SHAPES
 from scenarios.errors import InputError
 from scenarios.experiment.draws import check_draws
 from scenarios.experiment.requests import Experiment
+from scenarios.metrics.own_instruments import check_instruments
 from scenarios.planning.declared_vessel import check_declared
 from scenarios.planning.limits import check_flyable, check_recorded
 from scenarios.planning.plume.axis import flown_altitudes, sniffer_on_board
@@ -220,6 +221,8 @@ def _check_parts(scenario: Scenario) -> None:
                 PART_REGISTRIES[key].get(name)
         except PluginError as error:
             raise InputError(f"{key}: {error}") from None
+    # What another callable makes is checked before its flight.
+    check_instruments((name, part) for name, part in scenario.payload.parts().items() if isinstance(part, type))
     if scenario.emission.ship is None or sampled or any(draw.key == "plume.model" for draw in scenario.draws):
         return
     model = PLUME_MODELS.get(scenario.plume.model)

@@ -30,7 +30,7 @@ from scenarios.errors import InputError
 from scenarios.experiment.random_sample import flights_per_sample, is_random_sample
 from scenarios.experiment.requests import Experiment
 from scenarios.flight import FlightWork
-from scenarios.instruments.instrument import evaluated_instruments
+from scenarios.instruments.instrument import evaluated_instruments, figures_of, tables_of
 from scenarios.metrics.columns import (
     CROSSING_COLUMNS,
     FLIGHT_COLUMNS,
@@ -108,7 +108,7 @@ class FlightStudy:
         keys = dict.fromkeys(key for experiment in self.experiments.values() for key in experiment.keys)
         points = [point.scenario for experiment in self.experiments.values() for point in experiment.points]
         instruments = evaluated_instruments(points)
-        figures = (*SUMMARY_COLUMNS, *dict.fromkeys(name for instrument in instruments for name in instrument.FIGURES))
+        figures = (*SUMMARY_COLUMNS, *dict.fromkeys(name for instrument in instruments for name in figures_of(instrument)))
         if any(point.finds for point in points):
             figures += FINDING_FIGURES
         self.tables = {
@@ -118,7 +118,7 @@ class FlightStudy:
             DRAWS: (*INPUT_COLUMNS, *keys),
         }
         for instrument in instruments:
-            self.tables |= {file: (*FLIGHT_COLUMNS, *columns) for file, columns in instrument.TABLES.items()}
+            self.tables |= {file: (*FLIGHT_COLUMNS, *columns) for file, columns in tables_of(instrument).items()}
         if self._numbers > self.planned:
             self.tables[COMPARISON] = figures
         self.plugins = plugins(points)

@@ -1,6 +1,7 @@
 """Parts of a user's own: what they raise, and answers that are of no use, are told with the part, its method and the remedy."""
 
 import math
+import sys
 import traceback
 from collections.abc import Callable
 from pathlib import Path
@@ -52,8 +53,15 @@ def asked(part: str, doing: str, called_with: str, method: Callable[..., Answer]
     except Exception as error:
         # The first frame is this function's: without another one the call itself has failed.
         frames = [frame for frame in traceback.extract_tb(error.__traceback__)[1:] if not frame.filename.startswith(_OTHERS)]
-        where = f" ({Path(frames[-1].filename).name}:{frames[-1].lineno})" if frames else f"; it is called with {called_with}"
+        own = [frame for frame in frames if frame.filename == _file_of(method)] or frames
+        where = f" ({Path(own[-1].filename).name}:{own[-1].lineno})" if frames else f"; it is called with {called_with}"
         raise PluginError(one_line(f"{part} {doing}: {type(error).__name__}: {error}{where}")) from error
+
+
+def _file_of(method: Callable[..., object]) -> str | None:
+    """Return the file of a method, or of a class, whose line says more than one in what it calls."""
+    file: str | None = getattr(sys.modules.get(getattr(method, "__module__", "")), "__file__", None)
+    return file
 
 
 def refuse_answer(part: str, method: str, answer: object, must: str) -> None:

@@ -41,6 +41,24 @@ class PartSection(Section):
         names = {of.name for of in fields(made)}
         return _adapter(made).validate_python({key: value for key, value in (self.model_extra or {}).items() if key in names})
 
+    def __getattr__(self, name: str) -> Any:
+        """Say where the value of a part's key is, to a part that looks for it here: the section has those alone that are given."""
+        try:
+            return super().__getattr__(name)  # type: ignore[misc]
+        except AttributeError:
+            if name.startswith("_") or name in type(self).model_fields or not self._takes(name):
+                raise
+            raise AttributeError(
+                f"'{name}' is a key of SETTINGS, which this scenario leaves at its default; take it, given or not, from the"
+                f" section's settings(type(self)).{name}"
+            ) from None
+
+    def _takes(self, name: str) -> bool:
+        try:
+            return name in self.part_keys
+        except PluginError:
+            return False
+
     @model_validator(mode="after")
     def _known_keys(self) -> "PartSection":
         given = self.model_extra

@@ -4,7 +4,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import asdict, fields, replace
 from typing import Any
 
-from common.run_layout import ARENA, DRAWS
+from common.run_layout import ARENA, DRAWS, TUNING_TABLE, WINDOW_TABLE
 from scenarios.engine.journal import Journal
 from scenarios.engine.run_directory import RunDirectory
 from scenarios.engine.runner import Fly, Progress, StudySummary
@@ -17,7 +17,7 @@ from scenarios.schema.sections.experiment import CaseConfig
 from scenarios.studies.arena.entrants import cases_of, conditions_of, entrants_of
 from scenarios.studies.arena.results import estimates, limits, tuned_record
 from scenarios.studies.arena.tuning import Tuner
-from scenarios.studies.arena.work import TUNING_TABLE, WINDOW_TABLE, ArenaWork
+from scenarios.studies.arena.work import ArenaWork
 from scenarios.studies.flight_study import FlightStudy
 from scenarios.studies.study import study
 

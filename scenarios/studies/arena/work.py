@@ -3,6 +3,7 @@
 import time
 from dataclasses import dataclass, replace
 
+from common.run_layout import TUNING_TABLE, WINDOW_TABLE
 from scenarios.engine.task import Result, Row, Task
 from scenarios.experiment.requests import FlightRequest
 from scenarios.flight import FlightWork
@@ -12,9 +13,6 @@ from scenarios.schema.load import with_values
 from scenarios.simulation.record import FlightRecord
 from scenarios.studies.arena.entrants import Entrant
 from scenarios.studies.arena.tuning import Tuner
-
-TUNING_TABLE, WINDOW_TABLE = "tuning.csv", "window.csv"
-"""A row for each setting that the tuner tried, and one for each flight of the comparison: figures of its end."""
 
 _GUIDANCE = "guidance."
 

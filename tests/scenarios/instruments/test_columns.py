@@ -1,7 +1,12 @@
-"""Columns that instruments fill in the time history: each is one instrument's alone."""
+"""Columns, figures and tables that instruments fill: each is one instrument's alone, and none is the flight's own."""
 
 import pytest
 from flight_cases import fly
+
+from scenarios.errors import InputError
+from scenarios.schema.load import load_study
+from scenarios.studies.checks import check_without_design
+from scenarios.studies.registry import study_of
 
 INSTRUMENTS = """
 class Own:
@@ -37,3 +42,170 @@ def test_instruments_with_columns_of_their_own_fly_together(tmp_path):
     (tmp_path / "own.py").write_text(INSTRUMENTS, encoding="utf-8")
     result = fly(payload={"instruments": [f"{tmp_path / 'own.py'}:Own"]}, flight={"duration_max_s": 5.0, "crossings": 0})
     assert result.history["so2_ppb"].tolist() == [1.0] * len(result.history)
+
+
+EVALUATED = """
+import numpy as np
+from dataclasses import dataclass
+from scenarios.instruments.instrument import Evaluation
+
+class Bare:
+    COLUMNS = ("y_ppb",)
+    def __init__(self, *_): pass
+    def evaluate(self, column, since): return Evaluation(columns=np.ones((len(column("time_s")), 1)))
+
+class Peak(Bare):
+    FIGURES = ("y_peak_ppb", "y_low_ppb")
+    TABLES = {"y.csv": ("y_ppb",)}
+    def evaluate(self, column, since):
+        tables = {"y.csv": [{"y_ppb": 1.0, "flight_id": "another"}]}
+        return Evaluation(columns=super().evaluate(column, since).columns, figures={"y_peak_ppb": 3.0}, tables=tables)
+
+class Undeclared(Peak):
+    FIGURES = ()
+class UndeclaredTable(Peak):
+    TABLES = {}
+class Short(Bare):
+    def evaluate(self, column, since): return Evaluation(columns=np.ones((3, 1)))
+class Plain(Bare):
+    def evaluate(self, column, since): return [1.0]
+class Late(Bare):
+    def evaluate(self, column, since): raise ValueError("late")
+class Misspelt(Bare):
+    def evaluate(self, column, since): return column("times_s")
+class WithoutArguments(Bare):
+    def __init__(self): pass
+
+class Reads:
+    COLUMNS = ("x_ppb",)
+    def __init__(self, *_): pass
+class ReadsTwo(Reads):
+    def read(self, *_): return 1.0, 2.0
+class ReadsNone(Reads):
+    def read(self, *_): return None
+class ReadsText(Reads):
+    def read(self, *_): return ("high",)
+class ReadsAtOnce(Reads):
+    def read(self, time): return (1.0,)
+
+class Gain(Reads):
+    @dataclass(frozen=True)
+    class SETTINGS:
+        gain_factor: float = 2.0
+    def __init__(self, scenario, world, generator): self.gain = scenario.payload.settings(type(self)).gain_factor
+    def read(self, *_): return (self.gain,)
+class GainOfTheSection(Gain):
+    def __init__(self, scenario, world, generator): self.gain = scenario.payload.gain_factor
+
+class Safe(Bare):
+    FIGURES = ("keepout_violations", "min_distance_m")
+class Replaced(Bare):
+    TABLES = {"crossings.csv": ("y_ppb",)}
+class Folder(Bare):
+    TABLES = {"../y.csv": ("y_ppb",)}
+class Renamed(Bare):
+    TABLES = {"y.csv": ("flight_id", "y_ppb")}
+class Text(Bare):
+    FIGURES = "y_peak_ppb"
+class Also(Bare):
+    COLUMNS = ("z_ppb",)
+    FIGURES = ("y_peak_ppb",)
+class Nameless:
+    def read(self, *_): return ()
+"""
+
+
+def evaluated(folder, *names):
+    """Fly with instruments of one's own."""
+    (folder / "own.py").write_text(EVALUATED, encoding="utf-8")
+    parts = [f"{folder / 'own.py'}:{name}" for name in names]
+    return fly(payload={"instruments": parts}, flight={"duration_max_s": 5.0, "crossings": 0})
+
+
+@pytest.mark.parametrize(
+    ("names", "words"),
+    [
+        (("Safe",), "Safe' fills the figure 'keepout_violations', which the flight itself fills already; call it otherwise"),
+        (("Replaced",), "Replaced' fills the table 'crossings.csv', which the run itself fills already; call it otherwise"),
+        (("Peak", "Also"), "Also' fills the figure 'y_peak_ppb', which instrument '"),
+        (("Renamed",), "Renamed' fills the column 'flight_id', which the run itself fills already"),
+        (("Folder",), "Folder' has '../y.csv'; give a file's name that ends in .csv, without a folder"),
+        (("Text",), "Text' is the text 'y_peak_ppb'; give a tuple of names, as in ('y_peak_ppb',)"),
+        (("Nameless",), "Nameless' has no COLUMNS, the names of the columns of the time history that it fills; give it a tuple"),
+    ],
+)
+def test_figures_and_tables_of_the_flight_and_of_others_are_refused_before_any_flight(names, words, tmp_path):
+    (tmp_path / "own.py").write_text(EVALUATED, encoding="utf-8")
+    parts = ",".join(f'"{tmp_path / "own.py"}:{name}"' for name in names)
+    with pytest.raises(InputError) as refused:
+        check_without_design(load_study("sweep_nu", [f"payload=[{parts}]"]))
+    assert str(refused.value).startswith("payload: ")
+    assert words in str(refused.value)
+    assert "\n" not in str(refused.value)
+
+
+def test_an_instrument_that_is_evaluated_needs_no_figures_and_no_tables(tmp_path):
+    result = evaluated(tmp_path, "Bare")
+    assert (result.row["outcome"], result.history["y_ppb"].unique().tolist()) == ("not_settled", [1.0])
+    study = study_of(load_study("sweep_nu", ["fidelity=kinematic", f'payload=["{tmp_path / "own.py"}:Bare"]']), "own")
+    assert "y.csv" not in study.tables
+
+
+def test_a_figure_that_is_declared_and_not_returned_is_empty_and_a_row_of_a_table_keeps_its_flight(tmp_path):
+    result = evaluated(tmp_path, "Peak")
+    assert result.row["y_peak_ppb"] == 3.0
+    assert "y_low_ppb" not in result.row
+    assert [(row["flight_id"], row["y_ppb"]) for row in result.tables["y.csv"]] == [(result.row["flight_id"], 1.0)]
+
+
+@pytest.mark.parametrize(
+    ("name", "words"),
+    [
+        ("Undeclared", ": evaluate() returned the figure 'y_peak_ppb', which FIGURES does not name; add it there"),
+        ("UndeclaredTable", ": evaluate() returned the table 'y.csv', which TABLES does not name; add it there"),
+        ("Short", ": evaluate() returned columns of shape (3, 1); it has to be (51, 1): a row for each sample of the flight"),
+        ("Plain", ": evaluate() returned [1.0]; it has to return an Evaluation"),
+        ("Late", " failed in evaluate(): ValueError: late (own.py:27)"),
+        ("Misspelt", " the flight's record has no column 'times_s'; did you mean 'time_s'? (own.py:29)"),
+    ],
+)
+def test_what_fails_after_the_flight_leaves_what_is_known_of_it(name, words, tmp_path):
+    row = evaluated(tmp_path, name).row
+    assert (row["outcome"], row["criteria_met"], row["kept_out"]) == ("failed", False, True)
+    assert row["min_distance_m"] > 200.0
+    assert row["message"].startswith(f"payload '{tmp_path / 'own.py'}:{name}'")
+    assert words in row["message"]
+
+
+@pytest.mark.parametrize(
+    ("name", "words"),
+    [
+        (
+            "WithoutArguments",
+            " cannot be made: TypeError: WithoutArguments.__init__() takes 1 positional argument but 4 were given;",
+        ),
+        (
+            "ReadsTwo",
+            "class ReadsTwo: read() returned (1.0, 2.0); it has to return a tuple of 1 number, one for each of its COLUMNS",
+        ),
+        ("ReadsNone", "class ReadsNone: read() returned None; it has to return"),
+        ("ReadsText", "class ReadsText: read() returned ('high',); it has to return"),
+        (
+            "ReadsAtOnce",
+            "class ReadsAtOnce failed in read(): TypeError: ReadsAtOnce.read() takes 2 positional arguments but 4 were",
+        ),
+        (
+            "GainOfTheSection",
+            "'gain_factor' is a key of SETTINGS, which this scenario leaves at its default; take it, given or not,",
+        ),
+    ],
+)
+def test_an_instrument_that_cannot_be_made_or_read_is_named(name, words, tmp_path):
+    row = evaluated(tmp_path, name).row
+    assert row["outcome"] == "failed"
+    assert row["message"].startswith("payload")
+    assert words in row["message"]
+
+
+def test_settings_are_at_their_defaults_where_the_scenario_says_nothing(tmp_path):
+    assert evaluated(tmp_path, "Gain").history["x_ppb"].unique().tolist() == [2.0]
