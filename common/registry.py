@@ -7,6 +7,7 @@ import importlib.metadata
 import importlib.util
 import pkgutil
 import sys
+import traceback
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
@@ -102,6 +103,8 @@ class Registry(Generic[Part]):
         ------
         PluginError : there is none, or it does not load, or it lacks a method
         """
+        if name.endswith(".py:"):
+            raise self._without_name(name, name.removesuffix(":"))
         if is_file_part(name):
             return self.checked(name, part_in_file(name))
         if name not in self._parts and name.isidentifier() and importlib.util.find_spec(f"{self._folder}.{name}"):
@@ -117,11 +120,14 @@ class Registry(Generic[Part]):
             except Exception as error:
                 raise PluginError(f"{self.words} '{name}' of package {found.value}: {type(error).__name__}: {error}") from error
         if name.endswith(".py"):
-            raise PluginError(f"{self.words} '{name}' is a file without the name of a part in it; give {name}:NAME")
+            raise self._without_name(name, name)
         names = self.names()
         raise PluginError(
             f"unknown {self.words} '{name}'{did_you_mean(name, names) or ';'} known are {', '.join(names)}, or FILE.py:NAME"
         )
+
+    def _without_name(self, name: str, file: str) -> PluginError:
+        return PluginError(f"{self.words} '{name}' is a file without the name of a part in it; give {file}:NAME")
 
     def _known(self) -> dict[str, Part]:
         if not self._complete:
@@ -140,8 +146,10 @@ class Registry(Generic[Part]):
 
         Raises
         ------
-        PluginError : it lacks one
+        PluginError : it lacks one, or is an object, of which no flight could make its own
         """
+        if self._methods and not callable(part):
+            raise PluginError(f"{self.words} '{name}' is an object of class {type(part).__name__}; give the class itself")
         for method in () if isinstance(part, FunctionType) else self._methods:
             if not any(callable(getattr(part, alternative, None)) for alternative in method.split("|")):
                 missing = method.replace("|", "() or ")
@@ -230,5 +238,20 @@ def _module_in(path: Path, digest: str) -> Any:
     # A script that ends the process when it is read is no part, and must not end the command without a word.
     except (Exception, SystemExit) as error:
         del sys.modules[name]
-        raise PluginError(f"{path} does not load: {type(error).__name__}: {error}") from error
+        raise PluginError(
+            f"{path} does not load: {type(error).__name__}: {error}{_where(path, error)}{_beside(path, error)}"
+        ) from error
     return module
+
+
+def _where(path: Path, error: BaseException) -> str:
+    """Return the line of a file at which its loading failed, if that is known; an error of its syntax says it itself."""
+    lines = [frame.lineno for frame in traceback.extract_tb(error.__traceback__) if frame.filename == str(path.absolute())]
+    return f" ({path.name}:{lines[-1]})" if lines else ""
+
+
+def _beside(path: Path, error: BaseException) -> str:
+    """Return a hint where a module is not found that is a file beside a part."""
+    name = (error.name or "").partition(".")[0] if isinstance(error, ModuleNotFoundError) else ""
+    there = name and ((path.parent / f"{name}.py").is_file() or (path.parent / name).is_dir())
+    return f"; '{name}' lies beside it, but a part is one file, or an installed package: put it into {path.name}" if there else ""

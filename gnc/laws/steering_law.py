@@ -90,6 +90,9 @@ STILL_AIR = Surroundings(_StillAir())
 """Surroundings without wind, of a path over the ground."""
 
 
+_BEGINS = "its method begin(surroundings, time_step) has to return the law of one flight, with a method heading_rate, or itself"
+
+
 def begun(law: SteeringLaw, surroundings: Surroundings, time_step: float) -> SteeringLaw:
     """Return the law of one flight: a law that has a state, or looks at its surroundings, has a method ``begin`` for it.
 
@@ -98,9 +101,22 @@ def begun(law: SteeringLaw, surroundings: Surroundings, time_step: float) -> Ste
     law : as chosen
     surroundings : of the flight
     time_step : with which it will be called [s]
+
+    Raises
+    ------
+    LawError : its ``begin`` cannot be called so, or returns no law
     """
     begin: Callable[[Surroundings, float], SteeringLaw] | None = getattr(law, "begin", None)
-    return law if begin is None else begin(surroundings, time_step)
+    if begin is None:
+        return law
+    name = type(law).__qualname__
+    try:
+        flown = begin(surroundings, time_step)
+    except TypeError as error:
+        raise call_error(name, error, _BEGINS) from None
+    if not callable(getattr(flown, "heading_rate", None)):
+        raise LawError(f"steering law '{name}' returned {flown!r} from begin(): {_BEGINS}")
+    return flown
 
 
 _MUST = "its method heading_rate(reference, to_north, to_east, course, speed) has to return a number [rad/s]"
@@ -134,12 +150,19 @@ def _is_number(demand: Any) -> bool:
     return isinstance(demand, float | Real)
 
 
-def call_error(law: str, error: TypeError) -> Exception:
-    """Return what to raise for an error of a call: the same where it comes from inside the law, where it names its place."""
+def call_error(law: str, error: TypeError, must: str = _MUST) -> Exception:
+    """Return what to raise for an error of a call: the same where it comes from inside the law, where it names its place.
+
+    Parameters
+    ----------
+    law : its name
+    error : of the call
+    must : what the method that was called has to be
+    """
     raised = error.__traceback__
     if raised is not None and raised.tb_next is not None:
         return error
-    return LawError(f"steering law '{law}' cannot be called ({error}): {_MUST}")
+    return LawError(f"steering law '{law}' cannot be called ({error}): {must}")
 
 
 STEERING_LAWS: Registry[Callable[..., SteeringLaw]] = Registry("steering_law", folder="gnc.laws", methods=("heading_rate",))

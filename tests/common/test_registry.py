@@ -4,7 +4,7 @@ import sys
 
 import pytest
 
-from common.registry import Registry
+from common.registry import PluginError, Registry
 
 
 def test_a_module_that_does_not_load_hides_no_part_at_the_next_call(tmp_path, monkeypatch):
@@ -47,3 +47,10 @@ def test_a_part_that_is_lent_or_registered_by_others_is_none_of_its_own(tmp_path
     finally:
         for name in [name for name in sys.modules if name.partition(".")[0] == package.name]:
             del sys.modules[name]
+
+
+@pytest.mark.parametrize("name", ["mine.py", "mine.py:"])
+def test_a_file_without_the_name_of_a_part_is_told_to_be_named(name):
+    with pytest.raises(PluginError) as refused:
+        Registry("part", folder="scenarios.search").get(name)
+    assert str(refused.value) == f"part '{name}' is a file without the name of a part in it; give mine.py:NAME"

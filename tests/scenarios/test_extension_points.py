@@ -193,6 +193,20 @@ def test_files_may_be_swept_sampled_compared_and_set_in_cases(tmp_path):
         ("guidance.law", "import nowhere_to_be_found\n", "own.py does not load: ModuleNotFoundError: No module named 'nowhere_to"),
         ("guidance.law", "class Part:\n", "own.py does not load: IndentationError"),
         ("guidance.law", "import sys\nsys.exit(0)\n", "own.py does not load: SystemExit: 0"),
+        ("guidance.law", "\n1 / 0\n", "own.py does not load: ZeroDivisionError: division by zero (own.py:2)"),
+        ("guidance.law", "import beside\n", "(own.py:1); 'beside' lies beside it, but a part is one file, or an installed"),
+        ("vessel.track", "class Of:\n    motion = course = id\nPart = Of()\n", "is an object of class Of; give the class itself"),
+        ("guidance.law", LAW.replace("Pursuit:", "Part:\n    cannot = 'standoff'"), "has cannot = 'standoff'; give the reason"),
+        (
+            "guidance.law",
+            LAW.replace("Pursuit:", "Part:\n    cannot = {'oscillaton': 'no'}"),
+            "has the task 'oscillaton' in cannot; did you mean 'oscillation'? tasks are oscillation and standoff",
+        ),
+        (
+            "guidance.law",
+            LAW.replace("Pursuit:", "Part:\n    cannot = {'standoff': 3}"),
+            "has cannot['standoff'] = 3; give the reason",
+        ),
         ("study", "class Part: ...\n", "has no method work(); see the Protocol in scenarios.studies"),
         (
             "study",
@@ -210,6 +224,7 @@ def test_files_may_be_swept_sampled_compared_and_set_in_cases(tmp_path):
     ],
 )
 def test_a_file_that_does_not_load_or_is_not_the_part_is_refused_in_one_line(tmp_path, key, text, words):
+    (tmp_path / "beside.py").touch()
     message = refusal(write_scenario(tmp_path, line_of(key, "own.py:Part"), text), tmp_path / "run")
     assert words in message
     assert "own.py" in message

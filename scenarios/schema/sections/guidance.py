@@ -1,6 +1,7 @@
 """What a scenario file may say of the guidance: the reference, the steering law, following a vessel that is not known exactly."""
 
 import sys
+from collections.abc import Mapping
 from dataclasses import MISSING, fields
 from dataclasses import Field as DataclassField
 from typing import Annotated, Any, Literal
@@ -8,8 +9,8 @@ from typing import Annotated, Any, Literal
 from pydantic import ConfigDict, Field, field_validator, model_validator
 
 from common.registry import PluginError
-from common.spelling import nearest
-from gnc.laws.steering_law import STEERING_LAWS
+from common.spelling import did_you_mean, nearest
+from gnc.laws.steering_law import ON_CIRCLE, ON_OSCILLATION, STEERING_LAWS
 from scenarios.schema.sections.section import Angle, NonNegative, Positive, Section, check_divides, check_ordered
 
 Share = Annotated[float, Field(gt=0.0, le=1.0)]
@@ -149,11 +150,32 @@ class GuidanceConfig(Section):
 
 def law_refusal(law: str, task: str) -> str:
     """Return why a steering law cannot do a task, ``gnc.laws.steering_law.ON_OSCILLATION`` or ``ON_CIRCLE``; nothing if it can."""
-    reasons: dict[str, str] = getattr(STEERING_LAWS.get(law), "cannot", {})
-    return reasons.get(task, "")
+    return _reasons(law).get(task, "")
+
+
+def _reasons(law: str) -> Mapping[str, str]:
+    """Return what a steering law cannot do, by the task."""
+    reasons: Any = getattr(STEERING_LAWS.get(law), "cannot", {})
+    tasks = (ON_OSCILLATION, ON_CIRCLE)
+    if not isinstance(reasons, Mapping):
+        raise PluginError(
+            f"steering law '{law}' has cannot = {reasons!r}; give the reason by the task, as in"
+            f" cannot = {{'{ON_CIRCLE}': 'it ...'}}"
+        )
+    for task, reason in reasons.items():
+        if task not in tasks:
+            raise PluginError(
+                f"steering law '{law}' has the task {task!r} in cannot{did_you_mean(str(task), tasks) or ';'} tasks are"
+                f" {' and '.join(tasks)}"
+            )
+        if not isinstance(reason, str) or not reason:
+            raise PluginError(f"steering law '{law}' has cannot['{task}'] = {reason!r}; give the reason in words")
+    found: Mapping[str, str] = reasons
+    return found
 
 
 def _law_keys(law: str) -> dict[str, Any]:
+    _reasons(law)
     try:
         of_dataclass = _fields_of(STEERING_LAWS.get(law))
     except TypeError:

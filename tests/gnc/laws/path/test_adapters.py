@@ -6,6 +6,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from gnc.errors import LawError
 from gnc.laws.path.adapter import path_motion
 from gnc.laws.steering_law import ON_CIRCLE, ON_OSCILLATION, STEERING_LAWS, Surroundings, begun
 from gnc.vectors import along, course_of, norm, plus, scaled
@@ -113,6 +114,36 @@ def test_the_path_of_a_reference_in_wind_is_that_of_its_velocity_over_the_ground
 def test_a_law_without_surroundings_is_begun_as_it_is():
     law = STEERING_LAWS.get("cascade")()
     assert begun(law, surroundings(), 0.05) is law
+
+
+class BeginsNothing:
+    def heading_rate(self, *_):
+        return 0.0
+
+    def begin(self, _surroundings, _time_step):
+        return None
+
+
+class BeginsAtOnce(BeginsNothing):
+    def begin(self):
+        return self
+
+
+class BeginsInVain(BeginsNothing):
+    def begin(self, _surroundings, time_step):
+        return time_step + "s"
+
+
+def test_a_law_that_begins_with_no_law_is_named():
+    with pytest.raises(
+        LawError, match=r"'BeginsNothing' returned None from begin\(\): its method begin\(surroundings, time_step\) has"
+    ):
+        begun(BeginsNothing(), surroundings(), 0.05)
+    with pytest.raises(LawError, match=r"'BeginsAtOnce' cannot be called .*: its method begin\(surroundings, time_step\) has to"):
+        begun(BeginsAtOnce(), surroundings(), 0.05)
+    # What fails inside the law names its own line.
+    with pytest.raises(TypeError, match="unsupported operand"):
+        begun(BeginsInVain(), surroundings(), 0.05)
 
 
 @pytest.mark.parametrize("name", CIRCLES + POINTS)
