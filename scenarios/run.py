@@ -160,8 +160,9 @@ def _run(
         print(line)
     print(f"results: {result.directory}")
     if result.interrupted:
-        kept = f"{result.summary.done} of {result.planned} {result.what} are done and kept"
-        print(f"interrupted; {kept}. Continue with: {_again(directory, out=out, resume=resume)}", file=sys.stderr)
+        kept, left = f"{result.summary.done} of {result.planned} {result.what} are done and kept", result.summary.beside_left
+        beside = f"; of the comparisons {left} {'is' if left == 1 else 'are'} left to fly" if left else ""
+        print(f"interrupted; {kept}{beside}. Continue with: {_again(directory, out=out, resume=resume)}", file=sys.stderr)
         return INTERRUPTED
     status = _report(directory, changed=result.changed, wanted=not no_report)
     return status or (MET if result.all_met else NOT_MET)

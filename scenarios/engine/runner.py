@@ -37,12 +37,14 @@ class StudySummary:
     met : whether all planned items are done and met their criteria
     lines : the result in lines of text, for the console
     manifest : entries for the manifest of the run
+    beside_left : number of items of comparisons that are not done, which count neither as done nor as planned
     """
 
     done: int
     met: bool
     lines: list[str]
     manifest: dict[str, Any]
+    beside_left: int = 0
 
 
 class Study(Protocol):

@@ -13,7 +13,7 @@ from scenarios.errors import InputError
 from scenarios.simulation.outcome import Outcome
 
 
-def failure(error: Exception) -> Row:
+def failure(error: Exception | SystemExit) -> Row:
     """Return the outcome and the message of a flight that an error ended.
 
     Raises

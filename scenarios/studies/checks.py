@@ -103,7 +103,8 @@ def plugins_explained(what: str, scenarios: Iterable[Scenario]) -> Iterator[None
         yield
     except InputError:
         raise
-    except Exception as error:
+    # A part that ends the process must not end the command without a word.
+    except (Exception, SystemExit) as error:
         if not any(names_file(name) for scenario in scenarios for _, name in part_names(scenario)):
             raise
         raise InputError(f"{what}: {failure(error)['message']}") from error

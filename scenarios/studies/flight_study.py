@@ -283,12 +283,8 @@ class FlightStudy:
             lines.append(self.bound_line(whole, samples, journal))
         left = self.beside - sum(1 for _ in journal.rows(COMPARISON)) if self.beside else 0
         lines += [whole.exit_line(left=left), *whole.not_met_lines("    "), *whole.warnings()]
-        return StudySummary(
-            done=whole.done,
-            met=whole.passed == whole.planned,
-            lines=lines,
-            manifest=whole.manifest() | self._sizes() | {"guidance_lag_s": self._manifest.get("guidance_lag_s")},
-        )
+        manifest = whole.manifest() | self._sizes() | {"guidance_lag_s": self._manifest.get("guidance_lag_s")}
+        return StudySummary(done=whole.done, met=whole.passed == whole.planned, lines=lines, manifest=manifest, beside_left=left)
 
     def _comparison_lines(self, journal: Journal) -> list[str]:
         """Return a line for each comparison: its flights, which do not count."""

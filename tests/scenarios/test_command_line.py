@@ -251,12 +251,14 @@ def test_an_interrupted_replay_is_resumed_by_the_command_that_is_printed(tmp_pat
 
 def test_an_interrupted_run_is_resumed_by_what_was_typed_with_its_directory(run_here, monkeypatch):
     def interrupted(_study, _stem, directory, **_):
-        summary = StudySummary(done=2, met=False, lines=[], manifest={})
+        summary = StudySummary(done=2, met=False, lines=[], manifest={}, beside_left=3)
         return RunResult(directory=directory, what="flights", planned=9, summary=summary, interrupted=True)
 
     monkeypatch.setattr("scenarios.studies.registry.run_study", interrupted)
     typed = ["sweep_nu", "--jobs", "3", "--seed", "7", "--set", "flight.crossings=3", "--time-limit", "90", "--memory-limit=2.5"]
-    *words, out, directory, resume = shlex.split(run_here(*typed).stderr.rpartition("Continue with: ")[2])
+    told, _, again = run_here(*typed).stderr.rpartition("Continue with: ")
+    assert told.endswith("interrupted; 2 of 9 flights are done and kept; of the comparisons 3 are left to fly. ")
+    *words, out, directory, resume = shlex.split(again)
     assert words == ["plume-flight", "run", *typed]
     assert (out, resume) == ("--out", "--resume")
     assert directory.startswith("runs/sweep_nu-")

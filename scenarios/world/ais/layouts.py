@@ -80,6 +80,10 @@ def rows_of(path: Path, mmsi: int | None) -> tuple[int, list[AisRow]]:
             found = _of_one(path, mmsi, _all_rows(path, file, mmsi))
             if found is None:
                 file.seek(0)
+                lines = list(islice((line for line in file if line.strip()), 2))
+                if len(lines) == 1 and "!AI" not in lines[0]:
+                    raise InputError(f"{path}: it has a header, and no rows below it; give a file of AIS reports")
+                file.seek(0)
                 raise _no_row(path, mmsi, islice(_all_rows(path, file, None), _COUNTED))
             return found
     except OSError as error:

@@ -152,7 +152,8 @@ def test_a_vessel_at_rest_needs_no_course(read):
             ["line 1: the header has 'sog_kn' twice; leave one of the columns out"],
         ),
         (table(*reversed(rows())), None, ["1 of 3 rows", "2 out of order (first in line 2)", "sort the file by time"]),
-        (table(), None, ["no row has an MMSI in digits, as 219999001, in the column of its name"]),
+        (table(), None, ["it has a header, and no rows below it; give a file of AIS reports"]),
+        (table("2026-06-01T10:00:05Z,,57.0,11.3,12.0,20.5"), None, ["no row has an MMSI in digits, as 219999001, in the column"]),
         (table(*rows(), "2026-06-01T10:00:05Z,7,57.0,11.3,12.0,20.5"), None, ["2 vessels", "name one of them by its MMSI"]),
         (
             table(*rows(), "04.05.2026 08:00:00,219999001,57.0,11.3,12.0,20.5"), None,
