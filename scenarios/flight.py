@@ -139,7 +139,9 @@ class FlightWork:
             failed = failed_criteria(row, request.scenario.criteria)
             row |= {"criteria_met": not failed, "message": "; ".join(failed)}
         except Exception as error:  # noqa: BLE001 - a flight that fails is a row with its reason, and the study goes on
-            row |= failure(error)
+            # Of an aircraft that has diverged nobody knows where it went on, whatever fails after it.
+            diverged = row.get("outcome") == Outcome.DIVERGED.value
+            row |= failure(error) | ({"outcome": Outcome.DIVERGED.value} if diverged else {})
         return self._result(task, row | {"wall_time_s": time.perf_counter() - began}, tables, history, document)
 
     def lost(self, task: Task, reason: str) -> Result:

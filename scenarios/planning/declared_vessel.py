@@ -66,7 +66,8 @@ def check_declared(scenario: Scenario, vessel: VesselTruth) -> None:
             f" following.vessel_speed_max_mps = {f.vessel_speed_max_mps:g}, on which the keep-out guard relies: declare more, or"
             f" {other or 'sail more slowly'}"
         )
-    if (off := largest_inconsistency(vessel, duration)) > _INCONSISTENCY_MAX:
+    # Not a number is no agreement.
+    if not (off := largest_inconsistency(vessel, duration)) <= _INCONSISTENCY_MAX:
         raise InfeasibleError(
             f"vessel.track '{scenario.vessel.track}': its places and the integral of the velocity that motion() returns differ"
             f" by up to {off:.2g} m; {_INCONSISTENCY_MAX:g} m are allowed for rounding: let the velocity be the derivative of the"

@@ -105,7 +105,8 @@ def plugins_explained(what: str, scenarios: Iterable[Scenario]) -> Iterator[None
         raise
     # A part that ends the process must not end the command without a word.
     except (Exception, SystemExit) as error:
-        if not any(names_file(name) for scenario in scenarios for _, name in part_names(scenario)):
+        own = any(names_file(name) for scenario in scenarios for _, name in part_names(scenario))
+        if not own and not isinstance(error, PluginError):
             raise
         raise InputError(f"{what}: {failure(error)['message']}") from error
 

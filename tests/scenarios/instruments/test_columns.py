@@ -3,6 +3,7 @@
 import pytest
 from flight_cases import fly
 
+from scenarios import flight
 from scenarios.errors import InputError
 from scenarios.schema.load import load_study
 from scenarios.studies.checks import check_without_design
@@ -175,6 +176,19 @@ def test_what_fails_after_the_flight_leaves_what_is_known_of_it(name, words, tmp
     assert row["min_distance_m"] > 200.0
     assert row["message"].startswith(f"payload '{tmp_path / 'own.py'}:{name}'")
     assert words in row["message"]
+
+
+def test_an_aircraft_that_has_diverged_has_whatever_fails_after_it(tmp_path, monkeypatch):
+    figures_of = flight.flight_figures
+
+    def diverged(plan, record):
+        figures, found = figures_of(plan, record)
+        return figures | {"outcome": "diverged"}, found
+
+    monkeypatch.setattr(flight, "flight_figures", diverged)
+    row = evaluated(tmp_path, "Late").row
+    assert (row["outcome"], row["kept_out"], row["criteria_met"]) == ("diverged", False, False)
+    assert "failed in evaluate(): ValueError: late" in row["message"]
 
 
 @pytest.mark.parametrize(
