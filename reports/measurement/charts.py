@@ -112,7 +112,10 @@ def channels_chart(samples: pd.DataFrame, x_label: str = _TIME) -> Chart:
         Line(x=time, y=column(rows, "fit_ppb"), label="what CO2 explains", colour="black"),
     ]
     panels.append(Panel(x_label=x_label, y_label="ΔSO2 [ppb]", lines=equal))
-    caption = "Readings. ΔSO2: SO2 without background, corrected, at the slowest response, and CO2 at it times the slope."
+    caption = (
+        "Readings. ΔSO2, above the background. Orange: SO2, corrected and smoothed to the slowest sensor; black: CO2, smoothed"
+        " alike, times the slope."
+    )
     if not np.isfinite(column(rows, "co2_ppm")).all():
         caption += " Lines end where the log has no readings, and where a channel of another delay has none yet or no more."
     return Chart(name="channels", caption=caption, panels=panels, columns=2, share_x=True, panel_height=0.125)

@@ -80,7 +80,7 @@ def accuracy_table(statistics: Record) -> Table:
             ]
             for entry in rows
         ],
-        widths=[1.8, 2.3, 0.8, 1.05, 0.95, 1.1, 1.0, 1.0, 0.9, 1.0, 1.9],
+        widths=[1.6, 1.7, 0.8, 1.1, 0.85, 1.15, 1.1, 1.1, 1.1, 1.05, 1.4],
         left_columns=2,
     )  # fmt: skip
 

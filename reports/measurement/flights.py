@@ -132,9 +132,10 @@ def _blocks(run: RunData, measured: pd.DataFrame, name: Name) -> list[Block]:
     curve = operating_curve(statistics)
     return [
         Text(
-            "Each result is compared with what a perfect instrument would read, which is less than the fuel's own content by the"
-            " sulphur that leaves as sulphate. Share read: mean of the results over mean of that. Predicted: by the closed form of"
-            " passes that overlap in the slow channel. Covered: the stated 95 % interval holds it."
+            "Each result is compared with what a perfect instrument would read. That differs from the fuel's own content by the"
+            " sulphur that leaves as sulphate, and by the carbon content that the method assumes. Share read: mean of the"
+            " results over mean of that. Predicted: by the closed form of passes that overlap in the slow channel. Covered: the"
+            " stated 95 % interval holds it."
         ),
         accuracy_table(statistics),
         error_chart(measured),

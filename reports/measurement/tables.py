@@ -34,8 +34,8 @@ def result_table(record: Record) -> Table:
         f"95 % interval [{MASS_PERCENT}]", "Quality",
     ]  # fmt: skip
     caption = (
-        "The result by each method. Interval and probabilities above limits are of one distribution: the normal one of content and"
-        " standard uncertainty, without what is below 0. Where the interval begins at 0, the probability of a content above its end"
+        "The result by each method. Interval and probabilities come from a normal distribution of content and standard"
+        " uncertainty, cut off at 0. Where the interval begins at 0, the probability of a content above its end"
         " is 5 %."
     )
     other = record.get("other")
@@ -72,7 +72,7 @@ def over_time_table(record: Record, since: str = SINCE) -> Table | None:
         *(f"Limit {limit_words(float(v))}" for v in limits),
     ]
     caption = (
-        f"What was known so long after {since}. A pass is a peak of CO2 of {SNR_LEAST:g} times its noise: where smoke"
+        f"Result after each time since {since}. A pass is a peak of CO2 of {SNR_LEAST:g} times its noise: where smoke"
         " meanders, not every crossing of the plume's axis meets it. With quality C there is no verdict."
     )
     return Table(caption=caption, head=head, rows=rows, widths=[0.8, 0.8, 1.3, 1.6, 0.8, *(1.0 for _ in limits)])
