@@ -26,6 +26,9 @@ _STRIP, _STRIP_MAX = 0.13, 0.28
 _ROOM = 0.04
 """Room about what a map shows, over its size."""
 
+_LETTER = 0.024
+"""Width of a letter of the words on a map, over its height."""
+
 _BAR = 0.18
 """Longest scale bar, over the width of the map."""
 
@@ -126,18 +129,25 @@ def _view(
     lines: Sequence[Line], notes: Sequence[Note], aspect: float, strip: float
 ) -> tuple[tuple[float, float], tuple[float, float]]:
     """Return limits that hold all lines and words below a strip, which is a share of the height, of a panel of an aspect."""
+    x, y = (np.concatenate([getattr(line, axis) for line in lines] or [np.empty(0)]) for axis in "xy")
+    size = max(float(np.ptp(y[np.isfinite(y)])), float(np.ptp(x[np.isfinite(x)])) / aspect)
+    ends = [end for note in notes for end in _ends(note, _LETTER * size)]
     (left, right), (bottom, top) = (
         (float(np.nanmin(values)), float(np.nanmax(values)))
-        for values in (
-            np.concatenate([*(line.x for line in lines), [note.x for note in notes]]),
-            np.concatenate([*(line.y for line in lines), [note.y for note in notes]]),
-        )
+        for values in (np.append(x, ends), np.append(y, [note.y for note in notes]))
     )
     room = _ROOM * max(right - left, top - bottom) or 1.0
     width, height = right - left + 2.0 * room, (top - bottom + 2.0 * room) / (1.0 - strip)
     wider, higher = max(width, aspect * height), max(height, width / aspect)
     middle, spare = 0.5 * (left + right), 0.5 * (higher - height)
     return (middle - 0.5 * wider, middle + 0.5 * wider), (bottom - room - spare, bottom - room - spare + higher)
+
+
+def _ends(note: Note, letter: float) -> tuple[float, float]:
+    """Return where a word begins and ends, given the width of a letter."""
+    width = letter * len(note.text)
+    left = note.x - {"left": 0.0, "center": 0.5, "right": 1.0}[note.align] * width
+    return left, left + width
 
 
 def _round_length(most: float) -> float:

@@ -2,11 +2,43 @@
 
 from collections.abc import Sequence
 
+import numpy as np
+
 from reports.document.chart import Line, Note, Panel, circle
 from reports.document.map_marks import hull_line, on_map, plume_lines
 from reports.document.palette import Meaning
 from reports.run.ship import Hull
 from reports.run.surroundings import Surroundings
+
+AREA, SHIP, PLUME = "keep-out area", "ship", "plume"
+"""What a map is about, as legends begin and as captions name it."""
+
+_SEEN = 0.03
+"""Size of what a caption names at least, over the width of its panel: some five points, as of the marks on a track."""
+
+
+_POINTS = 500
+"""Points of a line that are looked at."""
+
+
+def seen(panels: Sequence[Panel]) -> list[str]:
+    """Return which of ship, keep-out area and plume are large enough on any of some maps to be seen there."""
+    return [what for what in (SHIP, AREA, PLUME) if any(_large(line, of) for of in panels for line in of.lines if _is(line, what))]
+
+
+def _is(line: Line, what: str) -> bool:
+    """Return whether a line is of the ship, the area or the plume: not the track of the ship, nor a place on the plume's axis."""
+    return line.label.startswith((f"{what}, ", "plume's axis" if what == PLUME else f"{what}, "))
+
+
+def _large(line: Line, panel: Panel) -> bool:
+    """Return whether the part of a line that lies within its panel is large enough to be seen."""
+    # Between its points, too: an axis has two.
+    at, every = np.arange(len(line.x)), np.linspace(0.0, len(line.x) - 1.0, _POINTS)
+    x, y = np.interp(every, at, line.x), np.interp(every, at, line.y)
+    (left, right), (bottom, top) = panel.x_range or (x.min(), x.max()), panel.y_range or (y.min(), y.max())
+    inside = (left <= x) & (x <= right) & (bottom <= y) & (y <= top)
+    return bool(inside.any() and max(np.ptp(x[inside]), np.ptp(y[inside])) >= _SEEN * (right - left))
 
 
 def ship_lines(about: Surroundings, up: float, x: float = 0.0, y: float = 0.0) -> list[Line]:
@@ -44,16 +76,26 @@ def ship_panel(
     return on_map(panel, north=-about.axis, wind=(speed, towards - about.axis), shown=shown, aspect=aspect)
 
 
-def ship_words(*about: Surroundings) -> str:
-    """Return what maps about the ship show, one or several side by side, for a caption."""
+def ship_words(*about: Surroundings, panels: Sequence[Panel] | None = None) -> str:
+    """Return what maps about the ship show, one or several side by side, for a caption.
+
+    Parameters
+    ----------
+    about : of each
+    panels : the maps, where some of ship, keep-out area and plume may lie outside of them; None where all is inside
+    """
+    shown = (SHIP, AREA, PLUME) if panels is None else seen(panels)
     shapes = " or ".join(dict.fromkeys(of.shape for of in about))
     hulls = "; or ".join(hull_words(hull) for hull in dict.fromkeys(of.hull for of in about))
-    smoke, changing = any(of.plume.smoke for of in about), any(of.changing for of in about)
+    smoke, changing = PLUME in shown and any(of.plume.smoke for of in about), any(of.changing for of in about)
     width = " Its width is two standard deviations of the mean smoke to either side." if smoke else ""
-    moved = " Ship, north and wind are as they were at the closest approach." if changing else ""
+    told = "; ".join([f"the keep-out {shapes} is about her funnel"] * (AREA in shown) + [hulls] * (SHIP in shown))
+    still = "Ship, north and wind are" if SHIP in shown else "North and wind are"
+    moved = f" {still} as they were at the closest approach." if changing else ""
     return (
-        f"Seen from the ship, with the axis of her plume up the page.{width} The keep-out {shapes} is about her funnel;"
-        f" {hulls}.{moved}"
+        f"Seen from the ship, with the axis of her plume up the page.{width}"
+        + (f" {told[0].upper()}{told[1:]}." if told else "")
+        + moved
     )
 
 

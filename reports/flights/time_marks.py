@@ -41,7 +41,7 @@ class _Word(NamedTuple):
 
 
 def marks_beside(x: Array, y: Array, words: Sequence[str], drawn: Sequence[Line], size: float) -> tuple[list[Line], list[Note]]:
-    """Return marks, each with its word to the right, to the left, above or below, where the fewest curves are.
+    """Return marks, each with its word to a side or a corner of it, where the fewest curves are.
 
     Parameters
     ----------
@@ -95,6 +95,10 @@ def _places(x: float, y: float, text: str, size: float) -> Iterable[_Word]:
     yield _Word((x - off - half[0], y), half, x - off, "right")
     yield _Word((x, y + off + half[1]), half, x, "center")
     yield _Word((x, y - off - half[1]), half, x, "center")
+    # Beside a track that goes up or down at an angle.
+    for side in (off + half[1], -off - half[1]):
+        yield _Word((x + half[0], y + side), half, x, "left")
+        yield _Word((x - half[0], y + side), half, x, "right")
 
 
 def _within(word: _Word, least: Array, most: Array) -> bool:

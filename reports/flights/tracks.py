@@ -12,7 +12,7 @@ from reports.document.axes import in_kilometres
 from reports.document.chart import Chart, Line, Note, Panel
 from reports.document.map_marks import on_map
 from reports.document.palette import Meaning
-from reports.document.ship_map import ship_lines, ship_panel, ship_words
+from reports.document.ship_map import seen, ship_lines, ship_panel, ship_words
 from reports.flights.flight_view import FlightView, Place, flight_view
 from reports.flights.time_marks import marks_beside, marks_in_a_row
 from reports.run.columns import Array, column
@@ -49,6 +49,9 @@ _FILLED, _HIGHER, _GROUND = 0.5, 1.5, 0.19
 """Part of that panel's width that the tracks fill at least, or else it is higher, by this factor; and its height, over the width of
 the page."""
 
+_TURNED, _LEGS, _NORTH_UP = math.radians(10.0), 40, 0.34
+"""Change of the ship's course from which north is up over the ground, parts of the flight that have one, and that map's height."""
+
 _WAY = "ship's track"
 """What the legend calls the way of a ship over the ground."""
 
@@ -80,7 +83,7 @@ def track_picture(shown: Sequence[tuple[Trial, "pd.Series[Any]", str]], told: st
         chart = found[0][0].chart(_LARGE)
         return replace(chart, name=_PICTURE, caption=chart.caption + told)
     panels = [tracks.picture(title) for tracks, title in found]
-    words = _words([tracks.about for tracks, _ in found])
+    words = _words([tracks.about for tracks, _ in found], panels)
     return Chart(name=_PICTURE, caption=words + told, panels=panels, columns=len(panels), panel_height=0.42)
 
 
@@ -98,13 +101,12 @@ class _Tracks:
         """Return where it went; of two panels beside each other each has an aspect."""
         about = self.about
         if about is None:
-            return Chart(name="tracks", caption=_words([about]), panels=[in_kilometres(self.ground())], panel_height=0.42)
+            return Chart(name="tracks", caption=_words([about], []), panels=[in_kilometres(self.ground())], panel_height=0.42)
         near, (ground, height) = self._near(about, aspect), self._below()
         panels = [self._whole(about, "The whole flight", aspect if near else _WIDE), *([near] if near else [])]
-        over = " Below, over the ground, with ship, keep-out area and plume as they were at the closest approach." if ground else ""
         return Chart(
             name="tracks",
-            caption=_words([about]) + over,
+            caption=_words([about], panels) + (_ground_words(ground) if ground else ""),
             panels=[in_kilometres(panel) for panel in [*panels, *([ground] if ground else [])]],
             columns=len(panels),
             panel_height=0.35,
@@ -148,9 +150,11 @@ class _Tracks:
         return ship_panel(about, lines, title=title, shown=[track, reference], aspect=aspect)
 
     def _below(self) -> tuple[Panel | None, float]:
-        """Return the flight over the ground, along the way of a ship that goes far, and its height; nothing of any other."""
-        if self._way() is None:
+        """Return the flight over the ground, beside a ship that goes far, and its height; nothing of any other."""
+        if not self._goes_far():
             return None, 0.0
+        if self._way() is None:
+            return self.ground(), _NORTH_UP
         panel = self.ground()
         places = np.concatenate([line.x for line in panel.lines if line.label in ("flown", _WAY)])
         left, right = panel.x_range or (-math.inf, math.inf)
@@ -159,7 +163,7 @@ class _Tracks:
         return self.ground(flat=_FLAT / _HIGHER), _GROUND * _HIGHER
 
     def ground(self, title: str = "", flat: float = _FLAT) -> Panel:
-        """Return the flight over the ground: flat, along the way of a ship that goes far; else with north up the page."""
+        """Return the flight over the ground: flat, along the way of a ship that goes far and straight; else with north up."""
         view, about, way = self.view, self.about, self._way()
         up = way or 0.0
 
@@ -175,28 +179,39 @@ class _Tracks:
             *view.guarded(place),
             view.line(place, view.samples, "flown", Meaning.FLOWN),
             *([] if view.vessel else [self._reference(place, view.samples)]),
-            *view.marks(place, far=way is not None),
+            *view.marks(place, far=self._goes_far()),
             *view.ends_of(place),
         ]
         marked, notes = self._times(place, lines, until=float(view.ends[1]), in_a_row=way is not None)
         labels = ("East [m]", "North [m]") if way is None else ("Along the ship's way [m]", "To port [m]")
         panel = Panel(x_label=labels[0], y_label=labels[1], title=title, lines=[*lines, *marked], notes=notes)
         wind = None if about is None else (about.wind[0], about.wind[1] - up)
-        return on_map(panel, north=-up, wind=wind, aspect=_WIDE if way is None else flat)
+        if way is None:
+            wide, high = np.ptp(np.array([place(view.samples), place(view.samples, "vessel_" if view.vessel else "")]), axis=(0, 2))
+            flat = float(np.clip(wide / max(high, 1.0), _BESIDE, _WIDE))
+        return on_map(panel, north=-up, wind=wind, aspect=flat)
+
+    def _ship(self) -> Array:
+        """Return where the ship was, north and east, shape (n, 2) [m]."""
+        return np.column_stack([column(self.view.samples, f"vessel_{axis}_m") for axis in ("north", "east")])
+
+    def _goes_far(self) -> bool:
+        """Return whether there is a ship that goes farther than the track about her is wide."""
+        if not self.view.vessel:
+            return False
+        (north, east), size = np.ptp(self._ship(), axis=0), np.nanmax(np.hypot(*about_the_plume(self.view.samples)))
+        return bool(np.hypot(north, east) >= _AWAY * size)
 
     def _way(self) -> float | None:
-        """Return the course that puts the ship's way across the page [rad]; None where she does not go far."""
-        view = self.view
-        if not view.vessel:
+        """Return the course that puts the ship's way across the page [rad]; None where she does not go far, or turns."""
+        if not self._goes_far():
             return None
-        places = np.column_stack([column(view.samples, f"vessel_{axis}_m") for axis in ("north", "east")])
-        # Along the largest extent of her way, as she went it first.
-        _, _, directions = np.linalg.svd(places - places.mean(axis=0), full_matrices=False)
-        along = places @ directions[0]
-        size = float(np.nanmax(np.hypot(*about_the_plume(view.samples))))
-        if float(np.ptp(along)) < _AWAY * size:
+        places = self._ship()
+        legs = np.diff(places[np.linspace(0, len(places) - 1, min(_LEGS + 1, len(places))).astype(int)], axis=0)
+        legs = legs[np.hypot(*legs.T) > 0.0]
+        if float(np.ptp(np.unwrap(np.arctan2(legs[:, 1], legs[:, 0])))) > _TURNED:
             return None
-        north, east = directions[0] * (1.0 if along[len(along) // 2] > along[0] else -1.0)
+        north, east = places[-1] - places[0]
         return math.atan2(east, north) - 0.5 * math.pi
 
     @staticmethod
@@ -218,10 +233,18 @@ class _Tracks:
         return marks_in_a_row(x, y, words, top + _ABOVE * length / _FLAT, length)
 
 
-def _words(about: Sequence[Surroundings | None]) -> str:
-    """Return what the tracks of flights are seen from, for a caption, given what was about each."""
+def _words(about: Sequence[Surroundings | None], panels: Sequence[Panel]) -> str:
+    """Return what the tracks of flights are seen from, for a caption, given what was about each, and the maps about the ship."""
     beside = [of for of in about if of is not None]
-    return ship_words(*beside) if beside else "Over the ground."
+    return ship_words(*beside, panels=panels) if beside else "Over the ground."
+
+
+def _ground_words(panel: Panel) -> str:
+    """Return what a map over the ground shows below those about the ship."""
+    still = seen([panel])
+    names = f"{', '.join(still[:-1])} and {still[-1]}" if len(still) > 1 else "".join(still)
+    shown = f", with {names} as {'they were' if len(still) > 1 else 'it was'} at the closest approach" if still else ""
+    return f" Below, over the ground{shown}."
 
 
 def _reference_of(samples: pd.DataFrame) -> pd.DataFrame:

@@ -9,7 +9,7 @@ from reports.document.palette import Meaning, series_colour
 from reports.document.panels import level
 from reports.document.ship_map import ship_panel, ship_words
 from reports.measurement.data import Record, measured_minutes, share_read
-from reports.run.columns import column
+from reports.run.columns import Array, Mask, column
 from reports.run.run_data import RunData
 from reports.run.surroundings import Surroundings
 from reports.run.time_history import about_the_plume
@@ -28,38 +28,64 @@ _BARS_MAX = 60
 _WIDE = 10.0
 """Largest sulphur content over the smallest from which on axes are logarithmic; of a fuel without any they are not."""
 
+_EDGE, _ASIDE = 1.12, 0.05
+"""Ordinate of results below the scale, over its lower limit; and how far flights of one fuel stand aside, over its content."""
+
 _FUELS_MIN, _OF_EACH_MIN = 3, 4
 """Fuels of an operating curve at least, and flights of each in the median: intervals of fewer fill the panel."""
 
 
 def error_chart(rows: pd.DataFrame) -> Chart:
     """Return the result of each flight against what a perfect instrument reads, by method."""
-    panels = []
+    panels: list[Panel] = []
+    below = dict.fromkeys(_METHODS.values(), 0)
+    expected = rows["fsc_expected_percent"]
+    ends = np.array([0.8, 1.25]) * [float(expected.min()), float(expected.max())]
+    wide = bool(ends[1] > _WIDE * ends[0] > 0.0)
     for prefix, title in _METHODS.items():
-        lines = []
+        lines, limits = [], _positive(rows, prefix) if wide else None
         for number, (sensor, group) in enumerate(rows.groupby("sensor")):
-            expected, found = column(group, "fsc_expected_percent"), column(group, f"{prefix}_percent")
-            # Flights of one fuel stand beside each other, in the order of their numbers.
-            shown = expected * (1.0 + 0.1 * (np.linspace(-0.5, 0.5, len(group)) if len(group) > 1 else 0.0))
-            low, high = (column(group, f"{prefix}_{end}_percent") for end in ("low", "high"))
+            shown, colour = _side_by_side(column(group, "fsc_expected_percent")), series_colour(number)
+            found, low, high = (column(group, f"{prefix}_{end}percent") for end in ("", "low_", "high_"))
+            # What lies below a logarithmic scale, as all that is not above 0, stands at its lower edge.
+            cut = found < limits[0] if limits else np.zeros(len(group), dtype=bool)
+            found = np.where(cut, _EDGE * limits[0] if limits else found, found)
             error = np.maximum([found - low, high - found], 0.0) if len(group) <= _BARS_MAX else None
-            lines.append(Line(x=shown, y=found, label=str(sensor), colour=series_colour(number), style="points", error=error))
-        ends = np.array([0.8, 1.25]) * [float(rows["fsc_expected_percent"].min()), float(rows["fsc_expected_percent"].max())]
+            parts: dict[Style, tuple[str, Mask]] = {"points": (str(sensor), ~cut), "diamonds": (f"{sensor}, below the scale", cut)}
+            for style, (label, which) in parts.items():
+                bars = None if error is None else error[:, which]
+                if which.any():
+                    lines.append(Line(x=shown[which], y=found[which], label=label, colour=colour, style=style, error=bars))
+            below[title] += int(np.count_nonzero(cut))
         lines.append(Line(x=ends, y=ends, label="perfect", colour="black", style="dash"))
-        wide = bool(ends[1] > _WIDE * ends[0] > 0.0)
         panels.append(
             Panel(
                 x_label=f"A perfect instrument [{MASS_PERCENT}]", y_label=f"Measured [{MASS_PERCENT}]", title=title, lines=lines,
-                log_x=wide, log_y=wide, y_range=_positive(rows, prefix) if wide else None,
+                log_x=wide, log_y=wide, y_range=limits,
             )
         )  # fmt: skip
-    caption = "What flights measured over what a perfect instrument reads. Flights of one fuel are drawn side by side."
+    caption = "What flights measured over what a perfect instrument reads."
+    if rows.duplicated(["sensor", "fsc_expected_percent"]).any():
+        caption += " Flights of one sensor and fuel are drawn side by side."
+    if any(below.values()):
+        counted = ", ".join(f"{count} by {title}" for title, count in below.items() if count)
+        caption += f" Diamonds at the lower edge: results below the scale, {counted}."
     return Chart(name="sulphur-errors", caption=caption, panels=panels, columns=2, panel_height=0.4)
 
 
 def _positive(rows: pd.DataFrame, prefix: str) -> tuple[float, float]:
     found = column(rows, f"{prefix}_percent")
     return 0.2 * float(rows["fsc_expected_percent"].min()), 1.5 * float(np.nanmax(found))
+
+
+def _side_by_side(expected: Array) -> Array:
+    """Return abscissae of one sensor's flights, those of one fuel beside each other in the order of their numbers."""
+    shown = expected.copy()
+    for value in np.unique(expected):
+        same = np.flatnonzero(expected == value)
+        if len(same) > 1:
+            shown[same] *= 1.0 + _ASIDE * np.linspace(-1.0, 1.0, len(same))
+    return shown
 
 
 def operating_curve(statistics: Record) -> Chart | None:
@@ -168,6 +194,6 @@ def sulphur_track_chart(history: pd.DataFrame, about: Surroundings) -> Chart:
     ]
     caption = (
         "The true CO2 concentration, as the colour of the track; in height with the plume's mean axis where it was crossed."
-        f" {ship_words(about)}"
+        f" {ship_words(about, panels=panels)}"
     )
     return Chart(name="sulphur-track", caption=caption, panels=panels, columns=2, panel_height=0.4, scale_label="CO2 [ppm]")

@@ -8,9 +8,10 @@ import numpy as np
 import pytest
 
 from measurement.emission.ship import ship_preset
-from reports.document.chart import Line, Panel
+from reports.document.chart import Line, Note, Panel
 from reports.document.map_marks import arrow, hull_line, on_map, plume_lines
 from reports.document.palette import Meaning
+from reports.document.ship_map import seen
 from reports.run.ship import ANY, HULLS, Hull, hull_of
 from reports.run.time_history import turned
 
@@ -52,6 +53,35 @@ def test_a_map_shows_every_line_below_its_strip_whatever_its_aspect():
         # Bar, arrows and words lie in the strip.
         assert all(line.y.min() >= strip.y.min() for line in panel.lines[2:])
         assert all(strip.y.min() < note.y < top for note in panel.notes)
+
+
+@pytest.mark.parametrize("align", ["left", "center", "right"])
+def test_a_word_at_the_edge_of_a_map_has_room_for_its_letters(align):
+    x = np.array([-300.0, 500.0])
+    lines = [Line(x=x, y=np.array([0.0, 400.0]), label="track", colour="blue")]
+    # Ten letters of 4 points each in a map that is some 170 points high take a quarter of its height.
+    for at in x.tolist():
+        notes = [Note(x=at, y=200.0, text="10 minutes", align=align)]
+        panel = on_map(Panel(x_label="", y_label="", lines=lines, notes=notes), north=None, aspect=1.5)
+        (left, right), height = panel.x_range, float(np.ptp(panel.y_range))
+        begin, end = {"left": (0.0, 1.0), "center": (-0.5, 0.5), "right": (-1.0, 0.0)}[align]
+        assert left < at + begin * 0.2 * height
+        assert at + end * 0.2 * height < right
+
+
+def test_a_caption_names_what_is_large_enough_to_be_seen():
+    def names(size):
+        lines = [
+            hull_line(Hull(title="a ship", length=150.0, beam=23.0), 0.0),
+            *plume_lines(np.array([0.0, 600.0]), None),
+            Line(x=np.array([0.0, size]), y=np.zeros(2), label="ship's track", colour="black"),
+        ]
+        return seen([on_map(Panel(x_label="", y_label="", lines=lines), north=None)])
+
+    assert names(1000.0) == ["ship", "plume"]
+    # A ship of 150 m over 12 km of the page is smaller than the marks of the track.
+    assert names(12_000.0) == ["plume"]
+    assert names(40_000.0) == []
 
 
 def test_the_scale_bar_is_as_long_as_it_says():

@@ -8,7 +8,8 @@ import pytest
 
 from reports.flights.flight_view import GUARD, GUARD_LOST, FlightView, flight_view
 from reports.flights.single_flight import flight_charts
-from reports.flights.tracks import track_picture
+from reports.flights.time_marks import TIMES
+from reports.flights.tracks import track_chart, track_picture
 from reports.run.surroundings import surroundings
 from reports.run.time_history import about_the_plume, flight_points, guard_stretches, vessel_heading
 from reports.run.trials import read_trials
@@ -146,6 +147,28 @@ def test_the_ground_lies_along_the_way_of_a_ship_that_goes_far(run):
         assert way.y == pytest.approx(np.zeros(len(way.y)), abs=1e-6)
         assert np.all(np.diff(way.x) >= 0.0)
     assert high
+
+
+@pytest.mark.parametrize(
+    ("turn_deg", "labels"), [(5.0, ("Along the ship's way [m]", "To port [m]")), (60.0, ("East [m]", "North [m]"))]
+)
+def test_north_is_up_over_the_ground_where_the_ship_turns(flight, turn_deg, labels):
+    trial, row = flight
+    history = trial.run.history(str(row["flight_id"]))
+    # The same flight beside a ship that goes 2 km, half of it on another course.
+    way = np.linspace(0.0, 2000.0, len(history))
+    before, after = np.minimum(way, 1000.0), np.maximum(way - 1000.0, 0.0)
+    moved = {"north": before + math.cos(math.radians(turn_deg)) * after, "east": math.sin(math.radians(turn_deg)) * after}
+    changed = {f"vessel_{axis}_m": of for axis, of in moved.items()}
+    changed |= {f"{axis}_m": history[f"{axis}_m"] - history[f"vessel_{axis}_m"] + of for axis, of in moved.items()}
+    panel = track_chart(FlightView(trial, row, history.assign(**changed))).panels[-1]
+    assert (panel.x_label, panel.y_label) == labels
+    (way,) = (line for line in panel.lines if line.label == "ship's track")
+    if turn_deg > 10.0:
+        assert (way.x[-1], way.y[-1]) == pytest.approx((moved["east"][-1], moved["north"][-1]))
+        # Every mark of the time has its word.
+        marks = [line for line in panel.lines if line.label == TIMES]
+        assert sum(len(line.x) for line in marks) == sum(note.text.endswith((" s", " min")) for note in panel.notes)
 
 
 @pytest.mark.parametrize(("duration", "points"), [(400.0, 1300), (3000.0, 3000), (7200.0, 4000)])
