@@ -107,6 +107,6 @@ def refuse_other_version(run: RunData, needed: Sequence[str]) -> None:
 
 
 def _figures(verdict: Verdict) -> list[Block]:
-    """Return every figure of a verdict, and every failure where page 1 has no room for all."""
-    failures: list[Block] = [Heading("What failed"), *map(Text, verdict.failures)]
-    return [figure_table(verdict), *(failures if len(verdict.failures) > FAILURES_MAX else [])]
+    """Return every figure of a verdict, and the failures and remarks that page 1 has no room for."""
+    left: list[Block] = [Heading("More failures and remarks"), *map(Text, verdict.failures[FAILURES_MAX:])]
+    return [figure_table(verdict), *(left if len(left) > 1 else [])]

@@ -192,7 +192,7 @@ class Verdict:
     holds : nothing happened that must never happen
     complete : everything that was planned was done, and is as required
     headline, detail : in words
-    failures : a line for each failure
+    failures : a line for each failure, and for what else is to be known of the flights
     figures : what it rests on, the most important first: page 1 shows these
     judges : whether figures have criteria, unlike those of a comparison
     """

@@ -8,7 +8,6 @@ import pandas as pd
 from measurement.estimate.verdict import COVERAGE
 from measurement.plume.passes import FOUND_WITHIN
 from reports.document.blocks import Block, Heading, Section, Text
-from reports.document.tables import number
 from reports.finding.flight_charts import height_chart, section_chart
 from reports.finding.search_view import SearchView, search_view
 from reports.finding.tables import height_table, search_table
@@ -94,8 +93,9 @@ def _told(row: "pd.Series[Any]") -> str:
     time, error = float(row.get("time_to_find_s", np.nan)), float(row.get(_LATE, np.nan))
     words = [f"Found {time:.0f} s after the orbit was reached" if np.isfinite(time) else "The plume was not found"]
     if np.isfinite(error):
-        believed = f"believed {number(error, '{:+.1f} m')} off, ± {COVERAGE * row['axis_height_deviation_3min_m']:.1f} m (95 %)"
-        words.append(f"after 3 minutes its height of {row['axis_height_3min_m']:.1f} m was {believed}")
+        believed = f"believed {abs(error):.1f} m too {'high' if error > 0.0 else 'low'}"
+        sure = f"± {COVERAGE * row['axis_height_deviation_3min_m']:.1f} m (95 %)"
+        words.append(f"after 3 minutes its height of {row['axis_height_3min_m']:.1f} m was {believed}, {sure}")
     if np.isfinite(hits := float(row.get("hit_rate_found", np.nan))):
         words.append(f"{100.0 * hits:.0f} % of the passes since then hit it")
     enough = row.get("enough")

@@ -49,8 +49,11 @@ _COMMAND, _DEMAND = (f"Heading rate {what}, largest, as a ratio to ω_max" for w
 _ERROR = "Tracking error, rms after settling"
 """Name of a figure, which goes on where it is of several flights."""
 
-_QUANTILE = 0.99
-"""Fraction of flights whose tracking error is no larger than the one that is shown."""
+_QUANTILE, _QUANTILE_OF = 0.99, 100
+"""Fraction of flights whose tracking error is no larger than the one that is shown, and flights of which there is one at least."""
+
+_LIMITED = " of the trials that limit it"
+"""How the worst figure is named that is not that of all flights."""
 
 
 def flight_verdict(run: RunData, trials: list[Trial]) -> Verdict:
@@ -159,7 +162,7 @@ def _detail(run: RunData, trials: list[Trial], flown: pd.DataFrame, planned: int
         are = "flight is" if len(alone) == 1 else "flights are"
         sentences.append(
             f"{len(alone):,} {are} required to keep out, not to complete: {count(kept_out(alone)):,} kept out,"
-            f" {count(completed(alone)):,} completed. Of these the exit status counts those that kept out."
+            f" {count(completed(alone)):,} completed. For the exit status, it is enough that these kept out."
         )
     if run.manifest.get("state") != "complete":
         sentences.append(f"The run is {run.manifest.get('state', 'unfinished')}; continue it with --resume.")
@@ -224,7 +227,7 @@ def _figures(trials: list[Trial], flown: pd.DataFrame, planned: int) -> list[Car
         Card("Aircraft lost", f"{gone:,}", *(allowed or ("0", gone == 0))),
         *([Card("Plume crossings after settling", f"{crossings:,}")] if crossings else []),
         *(Card(name, worst) for name, worst in switched_off(trials)),
-        *(() if len(flown) == 1 and any(figure and figure.name.startswith(_ERROR) for figure in worst) else _tracking(flown)),
+        *_tracking(flown, told=any(of and _tells_of_all(of.name, len(flown)) for of in worst)),
         Card(_COMMAND, "none") if command is None else Card(_COMMAND, f"{command:.3f}", "≤ 1", command <= 1.0 + ROUNDING),
     ]
     if any(trial.setting("guidance.tuning") == "bounded" for trial in trials):
@@ -251,14 +254,23 @@ def _closest_figure(trials: list[Trial], beside: pd.DataFrame) -> Card:
     return Card(name, f"{approach(distance, radius)} m", f"≥ {radius:g} m", distance >= radius)
 
 
-def _tracking(flown: pd.DataFrame) -> list[Card]:
-    """Return the tracking error of nearly all flights that settled, whether or not a criterion asks for it."""
+def _tells_of_all(name: str, flights: int) -> bool:
+    """Return whether the figure of a criterion is the tracking error of all flights."""
+    return name.startswith(_ERROR) and (flights == 1 or _LIMITED not in name)
+
+
+def _tracking(flown: pd.DataFrame, *, told: bool) -> list[Card]:
+    """Return the tracking error of nearly all flights that settled, whether or not a criterion asks for it.
+
+    Of few flights there is no such quantile, and the largest alone is shown, unless that has been told.
+    """
     errors = column(flown, "tracking_error_rms_m")
     known = errors[np.isfinite(errors)]
     if not len(known):
         return []
-    if len(known) == 1:
-        return [Card(_ERROR, f"{known[0]:.3g} m")]
+    if len(known) < _QUANTILE_OF:
+        name = f"{_ERROR}, largest of the flights" if len(known) > 1 else _ERROR
+        return [] if told else [Card(name, f"{known.max():.3g} m")]
     high = float(np.quantile(known, _QUANTILE))
     name = f"{_ERROR}: {percent(_QUANTILE)} quantile of the flights, and their largest"
     return [Card(name, f"{high:.3g} m, largest {known.max():.3g} m")]
@@ -276,5 +288,5 @@ def _worst(criteria: list[Criterion], key: str) -> Card | None:
     without = f" ({'; '.join(missing)})" if missing and worst.fraction <= 1.0 else ""
     # The tracking error of every trial is a figure of its own, which may be larger where nothing limits it.
     everywhere = sum(criterion.key == key for criterion in criteria) == sum(criterion.key == "mission" for criterion in criteria)
-    of = "" if everywhere else " of the trials that limit it"
+    of = "" if everywhere else _LIMITED
     return Card(f"{worst.what}, worst{of}{without}", worst.worst, worst.limit, not failed)

@@ -2,6 +2,7 @@
 
 import json
 import re
+from dataclasses import replace
 
 import numpy as np
 import pypdfium2
@@ -9,6 +10,7 @@ import pytest
 
 from reports.document.blocks import Card, Content, FlightContent, FlightPicker, Heading, Section, Table, Text, Verdict
 from reports.document.chart import Chart, Line, Panel
+from reports.registry import _figures
 from reports.render.html import write_html
 from reports.render.pdf import write_pdf
 from reports.run.letterhead import Letterhead
@@ -180,3 +182,12 @@ def test_a_unit_in_the_head_of_a_printed_table_is_not_divided(tmp_path):
 @pytest.mark.parametrize(("rows", "classes"), [(14, 'class="scroll whole"'), (15, 'class="scroll"')])
 def test_a_short_table_stays_on_one_printed_page_and_a_long_one_may_go_on_over_the_next(rows, classes, tmp_path):
     assert classes in html_of([Table(head=["a"], rows=[["1"]] * rows, widths=[1.0])], tmp_path)
+
+
+def test_what_page_1_has_no_room_for_stands_below_the_key_figures_and_nothing_twice():
+    verdict = Verdict(holds=True, complete=False, headline="", detail="", failures=[f"flight {i}" for i in range(7)], figures=[])
+    heading, *more = _figures(verdict)[1:]
+    assert heading == Heading("More failures and remarks")
+    assert [*verdict.first_failures[:4], *(text.text for text in more)] == verdict.failures
+    assert verdict.first_failures[4] == "and 3 more, under “Key figures”"
+    assert len(_figures(replace(verdict, failures=verdict.failures[:4]))) == 1

@@ -115,7 +115,8 @@ def tracking_lines(trial: Trial, *, only: bool = True) -> list[str]:
     if not len(far):
         return []
     alone = len(flown) == 1
-    which = "The" if alone else f"In {len(far):,} of {len(flown):,} flights the"
+    known = count(np.isfinite(errors))
+    which = "The" if alone else f"In {len(far):,} of {known:,} flights{' that settled' if known < len(flown) else ''} the"
     told = ", ".join(_told_apart(far, flown[errors <= band]))
     nothing = f"nothing that the summary records {'explains it' if alone else 'sets them apart'}"
     why = f"after settling {told}" if told else nothing
@@ -135,8 +136,9 @@ def _told_apart(far: pd.DataFrame, others: pd.DataFrame) -> list[str]:
     for words, mask in happened.items():
         here, there = count(mask[: len(far)]), count(mask[len(far) :])
         if here and here + there < len(mask):
-            these = [f"in {here:,} of these"] if len(far) > 1 else []
-            elsewhere = [f"of the others in {there:,} of {len(others):,}"] if len(others) else []
+            these = [f"in {'all' if here == len(far) else f'{here:,} of'} these {len(far):,}"] if len(far) > 1 else []
+            elsewhere = [f"in {f'{there:,}' if there else 'none'} of the {len(others):,} others"] if len(others) > 1 else []
+            elsewhere = ["also in the other" if there else "not in the other"] if len(others) == 1 else elsewhere
             told.append(f"{words} ({', '.join([*these, *elsewhere])})")
     return told
 

@@ -10,7 +10,8 @@ import pytest
 from report_parts import blocks_of
 from trial_runs import rows_of, with_criterion, with_values
 
-from reports.document.blocks import Table
+from reports.document.blocks import Card, Table
+from reports.flights import verdict
 from reports.registry import content
 from reports.run.columns import interval_error
 
@@ -81,7 +82,7 @@ def test_where_a_fault_is_flown_on_purpose_a_lost_aircraft_is_shown_and_keeping_
     assert (report.verdict.holds, report.verdict.complete) == (True, False)
     assert report.verdict.headline.endswith("; of 4, 1 lost the aircraft")
     assert (
-        "1 flight is required to keep out, not to complete: 1 kept out, 0 completed. Of these the exit status counts those that"
+        "1 flight is required to keep out, not to complete: 1 kept out, 0 completed. For the exit status, it is enough that these"
         " kept out." in report.verdict.detail
     )
     assert ("Aircraft lost", "1", "not required of every flight", None) in report.verdict.figures
@@ -241,13 +242,23 @@ def test_a_handful_of_flights_states_no_bound_as_it_would_say_nothing(run):
 
 def test_what_no_criterion_asks_for_is_on_the_first_page_too(run):
     report = content(with_values(run, 2, tracking_error_rms_m=107.0, guard_lost_s=3.2, guard_interventions=1, manoeuvres_unflown=1))
-    (tracking,) = (value for name, value, *_ in report.verdict.figures if "99" in name)
-    assert tracking.endswith(" m, largest 107 m")
+    largest = "Tracking error, rms after settling, largest of the flights"
+    (tracking,) = (value for name, value, *_ in report.verdict.figures if name == largest)
+    assert tracking == "107 m"
     assert report.verdict.failures[0].startswith("Turns: in 1 of 2 flights the tracking error, rms after settling, is 107 m")
     assert report.verdict.failures[1:] == [
         "In 1 of 4 flights the guard could not hold its own radius, for up to 3.2 s.",
         "In 1 flight a manoeuvre of the vessel begins after the end of the flight, and was never flown.",
     ]
+
+
+def test_the_quantile_of_tracking_errors_is_told_of_a_hundred_flights_at_least_and_of_fewer_the_largest_once():
+    rows = pd.DataFrame({"tracking_error_rms_m": np.arange(1.0, 101.0)})
+    # Of 100 values 1 to 100: between the 99th and the 100th.
+    assert verdict._tracking(rows, told=True)[0].value == "99 m, largest 100 m"
+    (few,) = verdict._tracking(rows[:99], told=False)
+    assert few == Card("Tracking error, rms after settling, largest of the flights", "99 m")
+    assert verdict._tracking(rows[:99], told=True) == []
 
 
 def test_the_shape_of_the_keep_out_area_is_said_where_a_distance_is_printed(run):

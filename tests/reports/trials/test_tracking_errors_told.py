@@ -3,12 +3,16 @@
 import re
 from dataclasses import replace
 
+import numpy as np
+import pandas as pd
 import pytest
 from report_parts import blocks_of
 from trial_runs import with_criterion, with_values
 
 from reports.document.blocks import Table
+from reports.flights.trials.failures import tracking_lines
 from reports.registry import content
+from reports.run.trials import read_trials
 
 pytestmark = pytest.mark.usefixtures("without_single_flights")
 
@@ -25,12 +29,24 @@ def test_a_large_tracking_error_that_no_criterion_limits_is_told_with_what_happe
     # The vessel of the second trial turns at 150 s, in both flights; its settling band is the schema's, 5 m.
     assert line == (
         "Turns: in 1 of 2 flights the tracking error, rms after settling, is 39 m, above the 5 m within which a flight counts"
-        " as settled, and no criterion limits it: after settling the keep-out guard changed commands (of the others in 0 of 1), the"
-        " mode was 'outrun' for a time (of the others in 0 of 1)."
+        " as settled, and no criterion limits it: after settling the keep-out guard changed commands (not in the other), the mode"
+        " was 'outrun' for a time (not in the other)."
     )
     # Of a trial with a criterion that tells; it is not judged by it where it does not have to settle.
     assert content(with_values(limited, 0, tracking_error_rms_m=39.04)).verdict.failures == []
     assert len(content(with_values(with_criterion(run, "turns", "tracking_error_rms_m", 1.5), 3, **far)).verdict.failures) == 1
+
+
+def test_flights_with_a_large_error_are_counted_among_those_that_settled(run):
+    error, guard = np.array([39.0, 50.0, 1.0, 1.0, 1.0, np.nan]), np.array([1.0, 1.0, 1.0, 0.0, 0.0, 0.0])
+    trial = read_trials(run)[1]
+    rows = pd.concat([trial.rows.iloc[:1]] * 6, ignore_index=True)
+    rows = rows.assign(
+        tracking_error_rms_m=error, guard_after_settling_s=guard, settling_time_s=60.0, manoeuvre_end_s=np.nan, modes="tracking"
+    )
+    (line,) = tracking_lines(replace(trial, rows=rows))
+    assert line.startswith("In 2 of 5 flights that settled the tracking error")
+    assert line.endswith("after settling the keep-out guard changed commands (in all these 2, in 1 of the 3 others).")
 
 
 def test_of_a_flight_alone_the_table_of_flights_says_why_its_tracking_error_is_large(run):
