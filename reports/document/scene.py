@@ -26,6 +26,7 @@ class Scene:
         east of the vessel, altitude above the sea [m]; angles without jumps, clockwise from north where they are courses [rad]
     guard : stretches in which the keep-out guard changed commands: from, to [s], and whether it held its radius
     crossings : times at which the plume was crossed, shape (k,) [s]
+    distances : least and largest distance that its curve shows, of what the keep-out area is about [m]
     keepout_radius : r_min [m]
     keepout_shape : "sphere" or "cylinder"
     source_height : of the funnel's mouth above the sea [m]
@@ -38,6 +39,7 @@ class Scene:
     columns: Mapping[str, Array]
     guard: Sequence[tuple[float, float, bool]]
     crossings: Array
+    distances: tuple[float, float]
     keepout_radius: float
     keepout_shape: str
     source_height: float

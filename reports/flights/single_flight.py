@@ -14,17 +14,17 @@ from reports.flights.tracks import track_chart
 from reports.flights.trials.crossing_gaps import crossing_gap, gap_words
 from reports.run.columns import NOTICEABLE, Array, column
 from reports.run.flight_config import keepout_shape, source_height
-from reports.run.time_history import ERROR_MIN, floor_words, tracking_error, true_wind
+from reports.run.time_history import ERROR_MIN, floor_words, shown_distances, tracking_error, true_wind
 from reports.run.trials import measured_from
-
-_NEAR, _FAR, _USUAL = 0.95, 1.6, 1.2
-"""Distances that the time history shows: nearest and farthest over r_min, and farthest over the usual one [-]."""
 
 _HIDDEN = 0.2
 """Height within which a flight that stays there hides a level [m]."""
 
 _TWO_COLUMNS = 6
 """Panels that stand in two columns; more are in three, so that each is higher than its label is long."""
+
+_LONG_S, _WITHIN_S, _TINT = 900.0, 30.0, 0.35
+"""Duration from which turns would fill a panel [s], time of which their range is shown then, some turns long [s], and its tint."""
 
 _TIME = "Time [s]"
 
@@ -58,6 +58,7 @@ class _Histories:
             name="histories",
             caption=f"{flight_name(trial, self._view.row)}: time histories.{self._distance_words()}{small}{vessel}"
             f"{self._gap_words()} Dashed in the panel of the heading rate: ω_max."
+            + (f" Rate and bank: the range of the values within each {_WITHIN_S:g} s." if self._long else "")
             + (" Tinted: the keep-out guard changed commands." if bands else ""),
             panels=panels,
             columns=columns,
@@ -65,11 +66,15 @@ class _Histories:
             panel_height=min(0.2, 0.45 / -(-len(panels) // columns)),
         )
 
+    @property
+    def _long(self) -> bool:
+        return bool(self._view.ends[1] - self._view.ends[0] > _LONG_S)
+
     def _line(self, y: Array, label: str = "flown", colour: str = Meaning.FLOWN, style: Style = "solid") -> Line:
         return Line(x=self._view.time, y=y, label=label, colour=colour, style=style)
 
     def _command(self, y: Array) -> Line:
-        return self._line(y, "command", Meaning.ASKED, "thin")
+        return self._line(y, "command", Meaning.ASKED)
 
     def _column(self, name: str) -> Array:
         return column(self._view.samples, name)
@@ -95,9 +100,9 @@ class _Histories:
         """Return what the panel of the distance shows; nothing without a ship."""
         if not self._view.vessel:
             return ""
-        far = self._distance_range()[1]
+        far, farthest = self._distance_range()[1], float(np.nanmax(self._view.distance))
         where = measured_from(keepout_shape(self._view.config))
-        return f" Distance is {where}, dashed r_min; of more than {far:.0f} m it is off the panel."
+        return f" Distance is {where}, dashed r_min.{f' Distances above {far:.0f} m are not shown.' if farthest > far else ''}"
 
     def _gap_words(self) -> str:
         """Return how long the flight did not cross the plume though it had settled; nothing where that was not long."""
@@ -105,15 +110,9 @@ class _Histories:
         return f" No crossing for {gap_words(gap)}, before the vessel's last manoeuvre had ended." if gap else ""
 
     def _distance_range(self) -> tuple[float, float]:
-        """Return the least and the largest distance that are shown [m]: about r_min, and what the flight has on its orbit.
-
-        Of one that never settled it is what it has at most times.
-        """
-        radius, distance = self._view.radius, self._view.distance
-        nearest = float(np.nanmin(distance))
-        settled = distance[self._view.time >= float(self._view.row.get("settling_time_s", math.nan))]
-        usual = float(np.nanmedian(settled if np.isfinite(settled).any() else distance))
-        return min(_NEAR * radius, nearest - 2.0), max(_FAR * radius, 1.1 * nearest, _USUAL * usual)
+        """Return the least and the largest distance that are shown [m]."""
+        settled = self._view.time >= float(self._view.row.get("settling_time_s", math.nan))
+        return shown_distances(self._view.distance, settled, self._view.radius)
 
     def _tracking_panel(self) -> Panel:
         error = np.maximum(tracking_error(self._view.samples), ERROR_MIN)
@@ -144,14 +143,29 @@ class _Histories:
     def _rate_panel(self) -> Panel:
         limit = float(self._view.row["heading_rate_limit_rad_s"])
         lines = [self._level(side * limit, "limit", Meaning.LIMIT) for side in (1.0, -1.0)]
-        lines += [self._line(self._column("heading_rate_rad_s")), self._command(self._column("heading_rate_command_rad_s"))]
+        # What is flown lies over its command: of many turns the one that is above hides the other.
+        lines += self._fast("heading_rate_command_rad_s", "command", Meaning.ASKED, 1.0)
+        lines += self._fast("heading_rate_rad_s", "flown", Meaning.FLOWN, 1.0)
         return Panel(x_label=_TIME, y_label="Rate [rad/s]", lines=lines)
 
+    def _fast(self, name: str, label: str, colour: str, factor: float) -> list[Line]:
+        """Return a column that swings with every turn; of a long flight, whose turns would fill the panel, between which values."""
+        if not self._long:
+            return [self._line(factor * self._column(name), label, colour)]
+        time, values = (column(self._view.whole, of) for of in ("time_s", name))
+        starts = np.flatnonzero(np.diff(np.floor(time / _WITHIN_S), prepend=-1.0) > 0.0)
+        known = np.nan_to_num(factor * values)
+        least, most = np.minimum.reduceat(known, starts), np.maximum.reduceat(known, starts)
+        edges = np.append(time[starts], time[-1])
+        x, low, high = np.repeat(edges, 2)[1:-1], np.repeat(least, 2), np.repeat(most, 2)
+        outline = np.concatenate([x, x[::-1]]), np.concatenate([high, low[::-1]])
+        return [Line(x=outline[0], y=outline[1], label=label, colour=colour, style="thin", fill=label == "flown", opacity=_TINT)]
+
     def _bank_panel(self) -> Panel:
-        return Panel(x_label=_TIME, y_label="Bank [deg]", lines=[self._line(np.degrees(self._column("roll_rad")))])
+        return Panel(x_label=_TIME, y_label="Bank [deg]", lines=self._fast("roll_rad", "flown", Meaning.FLOWN, math.degrees(1.0)))
 
     def _airspeed_panel(self) -> Panel:
-        lines = [self._line(self._column("airspeed_mps")), self._command(self._column("airspeed_command_mps"))]
+        lines = [self._command(self._column("airspeed_command_mps")), self._line(self._column("airspeed_mps"))]
         return Panel(x_label=_TIME, y_label="Airspeed [m/s]", lines=lines)
 
     def _altitude_panel(self) -> Panel:

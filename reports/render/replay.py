@@ -38,6 +38,8 @@ _STRAIGHT = 1e-6
 
 _MEANINGS = {
     "flown": Meaning.FLOWN,
+    # The track of hours is a heap that an aircraft of its colour is not seen on.
+    "aircraft": "black",
     "reference": Meaning.ASKED,
     "limit": Meaning.LIMIT,
     "guard": Meaning.GUARD,
@@ -94,6 +96,7 @@ def draw_scene(scene: Scene) -> Data:
         "columns": {name: packed_column(values, _ANGLE if name in _ANGLES else _PLACE) for name, values in scene.columns.items()},
         "guard": [list(stretch) for stretch in scene.guard],
         "crossings": np.round(scene.crossings, 2).tolist(),
+        "distances": [round(end, 2) for end in scene.distances],
         "keepout": {"radius": scene.keepout_radius, "shape": scene.keepout_shape, "height": scene.source_height},
         "hull": _hull(scene.hull),
         "plumes": [[time, _sections(plume)] for time, plume in scene.plumes],

@@ -10,7 +10,7 @@ from reports.run.columns import Array, column
 from reports.run.flight_config import Config, keepout_shape, source_height
 from reports.run.plume_shape import PlumeShape, plume_shape
 from reports.run.ship import hull_of
-from reports.run.time_history import guard_stretches, true_wind, vessel_heading
+from reports.run.time_history import guard_stretches, shown_distances, true_wind, vessel_heading
 from reports.run.trials import Trial
 
 INTERVAL = 0.2
@@ -59,14 +59,16 @@ def flight_scene(trial: Trial, row: "pd.Series[Any]", history: pd.DataFrame | No
         for prefix in ("", "reference_")
         for axis in ("north", "east")
     }
-    config = trial.flight_config(row)
+    config, altitude, radius = trial.flight_config(row), at_times(column(history, "altitude_m")), float(row["keepout_radius_m"])
+    up = 0.0 if keepout_shape(config) == "cylinder" else altitude - source_height(config)
+    distance = np.hypot(np.hypot(places["north"], places["east"]), up)
     return Scene(
         start=float(time[0]),
         interval=interval,
         columns={
             **places,
             **{f"vessel_{axis}": place for axis, place in vessel.items()},
-            "altitude": at_times(column(history, "altitude_m")),
+            "altitude": altitude,
             # A kinematic vehicle has neither heading nor pitch.
             "heading": angle("heading_rad", column(history, "course_rad")),
             "pitch": angle("pitch_rad", np.arctan2(column(history, "climb_rate_mps"), column(history, "airspeed_mps"))),
@@ -79,7 +81,8 @@ def flight_scene(trial: Trial, row: "pd.Series[Any]", history: pd.DataFrame | No
             for first, after, held in guard_stretches(history)
         ],
         crossings=column(trial.run.crossings_of(str(row["flight_id"])).dropna(subset="time_s"), "time_s"),
-        keepout_radius=float(row["keepout_radius_m"]),
+        distances=shown_distances(distance, time >= float(row["settling_time_s"]), radius),
+        keepout_radius=radius,
         keepout_shape=keepout_shape(config),
         source_height=source_height(config),
         hull=hull_of(config),

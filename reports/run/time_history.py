@@ -7,7 +7,7 @@ import numpy as np
 import pandas as pd
 
 from common.physics.wind import wind_velocity
-from reports.run.columns import Array, column
+from reports.run.columns import Array, Mask, column
 from reports.run.flight_config import Config, Row, keepout_shape, source_height
 
 _AT_REST = 0.01
@@ -18,6 +18,10 @@ ERROR_MIN = 0.1
 
 _LOST = 2.0
 """Value of the column ``guard`` where the guard cannot hold its own radius; it is 1 where it changes commands, and else 0."""
+
+_NEAR, _FAR, _ROOM, _USUAL = 0.95, 1.6, 1.05, 0.9
+"""Distances that curves over time show: nearest and farthest over r_min, farthest over the largest after settling, and the fraction
+of a flight that never settled whose distances are shown [-]."""
 
 _FLIGHT_POINTS, _LONG_POINTS = 1300, 4000
 """Points of a curve of a flight, and of one of an hour."""
@@ -54,6 +58,22 @@ def keepout_distance(history: pd.DataFrame, config: Config) -> Array:
     up = np.zeros(len(history)) if level else column(history, "altitude_m") - source_height(config)
     distance: Array = np.sqrt(north**2 + east**2 + up**2)
     return distance
+
+
+def shown_distances(distance: Array, since_settling: Mask, radius: float) -> tuple[float, float]:
+    """Return the least and the largest distance that curves over time show [m]: r_min, and all that comes after settling.
+
+    How a flight begins, often far away, may lie outside: how near it comes would not be seen beside that.
+
+    Parameters
+    ----------
+    distance : what the keep-out area is about, of every sample [m]
+    since_settling : which samples come after settling; of a flight without any, what it has at most times is shown
+    radius : r_min [m]
+    """
+    settled, nearest = distance[since_settling & np.isfinite(distance)], float(np.nanmin(distance))
+    usual = float(np.max(settled)) if len(settled) else float(np.nanquantile(distance, _USUAL))
+    return min(_NEAR * radius, nearest - 2.0), max(_FAR * radius, 1.1 * nearest, _ROOM * usual)
 
 
 def about_the_plume(history: pd.DataFrame, prefix: str = "") -> tuple[Array, Array]:

@@ -1,6 +1,6 @@
 // Where a flight is seen from: behind the aircraft, beside the vessel, or from a place that stays.
 
-const CAMERAS = ["follow", "vessel", "free"], LOOK_BACK = 2.5;
+const CAMERAS = ["follow", "vessel", "free"], LOOK_BACK = 2.5, FARTHER = 1.08, EDGE = 0.85;
 
 class Camera {
   constructor(canvas, onChange) {
@@ -36,9 +36,22 @@ class Camera {
       const far = flight.keepout.radius * (this.camera.aspect < 1.1 ? 4.0 : 2.9);
       target.copy(this.focus(flight, time));
       offset.set(-0.72, 0.55, -0.42).multiplyScalar(far).applyAxisAngle(UP, -flight.value("plume_axis", time));
+      this.fit(flight, time, offset);
     }
     if (mode !== "free") this.camera.position.copy(target).add(offset);
     this.controls.update();
+  }
+
+  // Lengthen an offset from what is looked at until the aircraft is within the picture, too, or the camera is as far as it may be.
+  fit(flight, time, offset) {
+    const now = flight.at(time), {target, maxDistance} = this.controls, place = new THREE.Vector3();
+    for (; offset.length() < maxDistance / FARTHER; offset.multiplyScalar(FARTHER)) {
+      this.camera.position.copy(target).add(offset);
+      this.camera.lookAt(target);
+      this.camera.updateMatrixWorld();
+      place.set(now.east, now.altitude, -now.north).project(this.camera);
+      if (Math.max(Math.abs(place.x), Math.abs(place.y)) < EDGE && place.z < 1) return;
+    }
   }
 
   // Take the camera along to a time [s], by how what it looks at moves and turns.

@@ -32,6 +32,7 @@ class Flight {
     this.end = data.start + data.interval * (data.samples - 1);
     this.guard = data.guard;
     this.crossings = data.crossings;
+    this.distances = data.distances;
     this.keepout = data.keepout;
     this.hull = data.hull;
     this.plumes = data.plumes;

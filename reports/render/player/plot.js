@@ -1,7 +1,7 @@
-// Distance to the vessel and bank over time, and the time shown as a line through both. The largest distances are left out:
-// of a flight that begins far away how near it comes would not be seen beside them.
+// Distance to the vessel and bank over time, and the time shown as a line through both. Distances are shown as far as in the
+// figures of the flight: of one that begins far away how near it comes would not be seen beside that.
 
-const MARGIN = {left: 58, right: 14, top: 18, bottom: 30}, GAP = 16, POINTS = 1200, MOST = 0.9;
+const MARGIN = {left: 58, right: 14, top: 18, bottom: 30}, GAP = 16, POINTS = 1200;
 
 function ticks(low, high, count) {
   const raw = (high - low) / count, power = 10 ** Math.floor(Math.log10(raw));
@@ -27,11 +27,10 @@ class Plot {
       distance.push(now.distance);
       bank.push((now.roll * 180) / Math.PI);
     }
-    const nearest = Math.min(...distance), most = Math.max(10, ...bank.map(Math.abs));
-    const usual = [...distance].sort((a, b) => a - b)[MOST * POINTS], high = Math.max(1.8 * radius, 1.1 * nearest, 1.05 * usual);
+    const [low, high] = flight.distances, most = Math.max(10, ...bank.map(Math.abs));
     const beyond = Math.max(...distance) > high ? `above ${Math.round(high)} m: not shown` : "";
     this.panels = [
-      {label: "Distance [m]", values: distance, low: Math.min(0.95 * radius, nearest - 2), high, limit: radius, beyond},
+      {label: "Distance [m]", values: distance, low, high, limit: radius, beyond},
       {label: "Bank [deg]", values: bank, low: -1.1 * most, high: 1.1 * most},
     ];
     this.resize();

@@ -21,7 +21,7 @@ class World {
     this.ship = shipShape(flight.hull, flight.keepout.height, colours.ship);
     this.plumes = flight.plumes.map(([, rows]) => plumeShape(rows, colours.plume));
     this.vessel.add(this.ship, ...this.plumes, keepoutShape(flight.keepout, colours.limit));
-    this.aircraft = aircraftShape(colours.flown);
+    this.aircraft = aircraftShape(colours.aircraft);
     this.aircraft.rotation.order = "YXZ";
     const ball = new THREE.SphereGeometry(1, 16, 12);
     this.reference = new THREE.Mesh(ball, new THREE.MeshLambertMaterial({color: colours.reference}));
