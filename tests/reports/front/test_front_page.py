@@ -155,6 +155,16 @@ def test_single_flights_stand_in_print_below_the_words_on_them(built, report):
     assert built[1][1].count("Single flights") == 1
 
 
+def test_a_tile_does_not_break_between_figure_and_unit_and_plots_have_names(report, tmp_path):
+    verdict = replace(report.verdict, figures=[Card("Interval", "0.041 to 0.134 % m/m")])
+    write_html(replace(report, verdict=verdict), tmp_path / "page")
+    page = (tmp_path / "page").read_text(encoding="utf-8")
+    assert "<b>0.041 to 0.134\N{NO-BREAK SPACE}%\N{NO-BREAK SPACE}m/m</b>" in page
+    plots = re.findall(r'<div class="plot[^>]*>', page)
+    assert len(plots) > 1
+    assert all(re.search(r'role="img" aria-label="[^"]{8,}"', plot) for plot in plots)
+
+
 def test_page_1_is_one_page_however_much_failed(report, tmp_path):
     long = "a flight that failed, " * 15
     verdict = replace(report.verdict, detail=long * 2, failures=[long] * 9)
