@@ -8,7 +8,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from reports.document.chart import Panel
+from reports.document.chart import Chart, Panel
 from reports.run.columns import Array
 
 _FAR = 10_000.0
@@ -52,6 +52,24 @@ def in_kilometres(panel: Panel) -> Panel:
         label, limits = panel.y_label.replace("[m]", "[km]"), _thousandth(panel.y_range)
         panel = replace(panel, lines=lines, notes=notes, y_label=label, y_range=limits)
     return panel
+
+
+def with_one_abscissa(chart: Chart) -> Chart:
+    """Return a chart whose panels share their abscissa with the same limits, in every column, for all of the same quantity.
+
+    Limits that a panel has are kept.
+    """
+    if not chart.share_x:
+        return chart
+    limits: dict[str, tuple[float, float]] = {}
+    for panel in chart.panels:
+        known = np.concatenate([line.x for line in panel.lines] or [np.empty(0)])
+        known = known[np.isfinite(known)]
+        if len(known) and not panel.log_x:
+            low, high = limits.get(panel.x_label, (math.inf, -math.inf))
+            limits[panel.x_label] = min(low, float(known.min())), max(high, float(known.max()))
+    panels = [replace(panel, x_range=panel.x_range or limits.get(panel.x_label)) for panel in chart.panels]
+    return replace(chart, panels=panels)
 
 
 def log_axis(limits: tuple[float, float] | None, curves: Sequence[Array]) -> tuple[tuple[float, float], list[float]]:

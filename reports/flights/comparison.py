@@ -96,11 +96,17 @@ def _chart(trial: Trial, pairs: pd.DataFrame) -> Chart | None:
             )
     panels = _fitted(panels, shown, band)
     caption = (
-        "Tracking error, the distance to the reference, from settling on, of flights of the study and with parts"
-        f" changed.{_missing(without, len(panels))}{cut_words(panels)}"
+        "Tracking error, the distance to the reference, of flights of the study and with parts changed:"
+        f" {_shown_words(pairs, shown)}.{_missing(without, len(panels))}{cut_words(panels)}"
     )
     name = f"{trial.name}-comparison"
     return Chart(name=name, caption=caption, panels=panels, panel_height=min(0.34, _HEIGHT / len(panels))) if panels else None
+
+
+def _shown_words(pairs: pd.DataFrame, shown: float) -> str:
+    """Return how much of the flights is drawn: what follows settling, or the first of it where any flight lasts longer."""
+    lasts = column(pairs, "duration_s") - column(pairs, "settling_time_s")
+    return f"the first {shown:g} s after settling" if np.any(lasts > shown) else "from settling on"
 
 
 def _fitted(panels: Sequence[Panel], duration: float, band: float) -> list[Panel]:

@@ -66,9 +66,24 @@ def swept_words(trial: Trial) -> dict[str, list[str]]:
 
 
 def words_together(trial: Trial) -> list[str]:
-    """Return what each flown flight is called by all words that were swept, with the names of their keys where these say which."""
-    called = [[_swept(trial, key, value).replace("_", " ") for value in of] for key, of in _words(trial).items()]
+    """Return what each flown flight is called by all words that were swept, with the names of their keys where these say which.
+
+    Of words that change nothing in the flights, as of sensors that only listen, markers would cover each other: they are left out.
+    """
+    words = {key: of for key, of in _words(trial).items() if changes_flights(trial, key)}
+    called = [[_swept(trial, key, value).replace("_", " ") for value in of] for key, of in words.items()]
     return [", ".join(each) for each in zip(*called, strict=True)]
+
+
+def changes_flights(trial: Trial, key: str) -> bool:
+    """Return whether flights that differ in a key that was swept, and in no other, differ in how near they came."""
+    ids = trial.flown["flight_id"]
+    values = {of: trial.input(_SPEED_RATIO if of == "nu" else of).reindex(ids).astype(str).tolist() for of in trial.swept}
+    others = [of for of in trial.swept if of != key]
+    found = pd.DataFrame(values).assign(nearest=column(trial.flown, "min_distance_m"))
+    alike = found.groupby(others) if others else found.groupby(lambda _: 0)
+    differ = alike[key].nunique() > 1
+    return not differ.any() or bool((alike["nearest"].nunique(dropna=False)[differ] > 1).any())
 
 
 def flown_elsewhere(trial: Trial) -> bool:

@@ -19,6 +19,9 @@ POINTS_MAX = 2500
 _TIME, _FSC = "Time [s]", f"Fuel sulphur content [{MASS_PERCENT}]"
 
 
+_ABOVE = 0.06
+"""Height of a limit's word above its line, over that of the panel."""
+
 _BAR = 0.72
 """Height of a bar, over the distance between two."""
 
@@ -54,12 +57,25 @@ def over_time_chart(record: Record, since: str = SINCE) -> Chart | None:
         Line(x=time, y=found, label="estimate", colour=Meaning.FLOWN),
     ]
     top = 1.25 * max(float(np.max(found)), float(high[-1]), *(limit for limit in limits if limit < 2.0 * float(high[-1])))
-    lines += [level(time, limit, f"limit {limit_words(limit)}") for limit in limits if limit < top]
+    told = [limit for limit in limits if limit < top]
+    lines += [level(time, limit, "limit", Meaning.LIMIT) for limit in told]
+    # The legend would have the same dashes for each.
+    notes = [
+        Note(
+            x=float(time[-1]),
+            y=limit + (_ABOVE if limit < 0.9 * top else -_ABOVE) * top,
+            text=f"limit {limit_words(limit)} ",
+            align="right",
+        )
+        for limit in told
+    ]
     if record.get("true_percent") is not None:
         lines.append(level(time, value(record, "true_percent"), "a perfect instrument", "black"))
     # An estimate may be below 0, though its interval is cut there.
     y_range = (1.25 * min(0.0, float(np.min(found))), top)
-    panel = Panel(x_label=f"Time since {since} [s]", y_label=_FSC, lines=lines, y_range=y_range, x_range=(0.0, float(time[-1])))
+    panel = Panel(
+        x_label=f"Time since {since} [s]", y_label=_FSC, lines=lines, notes=notes, y_range=y_range, x_range=(0.0, float(time[-1]))
+    )
     caption = "Fuel sulphur content from all readings up to a time, with its 95 % interval."
     return Chart(name="fsc-over-time", caption=caption, panels=[panel], panel_height=0.21)
 

@@ -8,7 +8,7 @@ from matplotlib.figure import Figure, SubFigure
 from matplotlib.patheffects import withStroke
 from matplotlib.ticker import MaxNLocator, NullLocator
 
-from reports.document.axes import about_values, log_axis, mark_text, wrapped
+from reports.document.axes import about_values, log_axis, mark_text, with_one_abscissa, wrapped
 from reports.document.chart import Chart, Line, Panel
 from reports.document.palette import BAND_OPACITY, COLOURS, INK, SCALE
 from reports.run.columns import Array
@@ -88,6 +88,7 @@ def draw(*charts: Chart) -> Figure:
 
 def _draw_on(figure: Figure | SubFigure, chart: Chart) -> None:
     """Draw a chart on a figure, or on a part of one."""
+    chart = with_one_abscissa(chart)
     axes = _axes(figure, chart)
     handles: dict[str, Any] = {}
     shaded = None

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from reports.document.axes import about_values, log_axis, mark_text, wrapped
+from reports.document.axes import about_values, log_axis, mark_text, with_one_abscissa, wrapped
 from reports.document.chart import Chart, Panel
 from reports.document.palette import BAND_OPACITY, COLOURS, INK
 
@@ -64,6 +64,7 @@ Data = dict[str, Any]
 
 def layout(chart: Chart) -> Data:
     """Return the layout for a wide screen."""
+    chart = with_one_abscissa(chart)
     place = _Place(chart, WIDTH)
     found: Data = {"annotations": _words(chart, place), "shapes": _bands(chart)}
     for i, panel in enumerate(chart.panels):

@@ -2,7 +2,6 @@
 
 import math
 from collections.abc import Sequence
-from typing import Any
 
 import numpy as np
 
@@ -10,7 +9,7 @@ from reports.document.chart import Chart, Line, Panel, circle
 from reports.document.map_marks import hull_line, on_map, plume_lines
 from reports.document.palette import Meaning
 from reports.document.panels import COUNTED_MIN, Group, capped, classes, histogram, points, quartiles, strips
-from reports.flights.names import fault_name, manoeuvres_flown, swept_words
+from reports.flights.names import changes_flights, fault_name, manoeuvres_flown, swept_words
 from reports.flights.trials.panels_over import CLEARANCE, LIMIT_LABEL, PanelsOver, by_violation, by_words
 from reports.monte_carlo.names import input_name
 from reports.run.columns import NOTICEABLE, Array, clearance, column, total
@@ -31,6 +30,9 @@ _LIMIT_TOLD = (
     " nothing reserved for feedback."
 )
 """What a caption says of the shortest interval of any path, where that is drawn."""
+
+_NEVER = "never settled"
+"""What the legend calls flights that did not settle: black as the slowest to settle, and so of another shape."""
 
 _R_MIN = (0.0, "r_min")
 _TRACKING = ("tracking_error_rms_m", "Tracking error, rms [m]")
@@ -68,7 +70,7 @@ def _sweep(trial: Trial) -> list[Chart]:
         charts = [chart for keys in in_rows for chart in _over_keys(trial, keys, names[keys[0]])]
     else:
         charts = [chart for key in numbers for chart in _over_key(trial, key, names[key])]
-    return [*charts, *(_by_word(trial, key, of, names[key]) for key, of in words.items())]
+    return [*charts, *(_by_word(trial, key, of, names[key]) for key, of in words.items() if changes_flights(trial, key))]
 
 
 def _by_word(trial: Trial, key: str, words: list[str], name: str) -> Chart:
@@ -171,7 +173,7 @@ def _distances(trial: Trial) -> list[Chart]:
     counted = None if counted_there else histogram(all_flights, CLEARANCE, [_R_MIN])
     if trial.kind is Kind.APPROACH:
         other = histogram([(column(trial.flown, "settling_time_s"), "", Meaning.FLOWN)], "Settling time [s]")
-        shown = "beyond r_min, and settling time, of those that settled."
+        shown = f"beyond r_min{', and settling time, of those that settled' if other else ''}."
     else:
         other = PanelsOver(trial, "nu", by_violation(trial)).margin()
         shown = f"beyond r_min: {'counted, and ' if counted else ''}against the planned margin."
@@ -212,7 +214,8 @@ def _starts(trial: Trial) -> list[Chart]:
         return []
     right, along = distance * np.sin(aspect), distance * np.cos(aspect)
     settling, guard = column(rows, "settling_time_s"), column(rows, "guard_time_s")
-    never: Group = (np.isnan(settling), "never settled", "black")
+    unsettled = np.isnan(settling) & np.isfinite(distance)
+    never = Line(x=right[unsettled], y=along[unsettled], label=_NEVER, colour="black", style="cross")
     guarded: list[Group] = [
         (guard == 0.0, "no intervention", "grey"),
         (guard > 0.0, "guard changed commands", Meaning.GUARD),
@@ -223,20 +226,21 @@ def _starts(trial: Trial) -> list[Chart]:
         f" how long flights took to settle{' (left), and by whether the keep-out guard changed commands (right)' if acted else ''}."
     )
     settled = classes(settling, quartiles(settling, 10.0), "settled", "s")
-    by_colour = [[*settled, never], *([guarded] if acted else [])]
-    panels = [_places(trial, right, along, groups) for groups in by_colour]
+    marks = [[*points(right, along, settled), *([never] if len(never.x) else [])]]
+    marks += [points(right, along, guarded)] if acted else []
+    panels = [_places(trial, float(np.nanmax(distance)), of) for of in marks]
     return [_chart(trial, "starts", caption, panels, 0.48)]
 
 
-def _places(trial: Trial, right: Array, along: Array, groups: list[Any]) -> Panel:
+def _places(trial: Trial, farthest: float, marks: list[Line]) -> Panel:
     x, y = circle(trial.radius)
-    reach = 1.08 * float(np.nanmax(np.hypot(right, along)))
+    reach = 1.08 * farthest
     # Flights differ in where their ship heads, so that she is drawn as in calm air: the plume trails behind her.
     lines = [
         Line(x=x, y=y, label="keep-out area, r_min", colour=Meaning.LIMIT, fill=True),
         *plume_lines(np.array([0.0, reach]), None),
         hull_line(hull_of(trial.config), math.pi),
-        *points(right, along, groups),
+        *marks,
     ]
     panel = Panel(x_label="Right of the plume's axis [m]", y_label="Along it [m]", lines=lines)
     return on_map(panel, north=None)

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from matplotlib.text import Text
 
-from reports.document.axes import about_values, cut_words, in_kilometres, log_axis, mark_text, wrapped
+from reports.document.axes import about_values, cut_words, in_kilometres, log_axis, mark_text, with_one_abscissa, wrapped
 from reports.document.chart import Chart, Line, Note, Panel
 from reports.render import matplotlib_charts, plotly_charts
 
@@ -163,6 +163,22 @@ def test_no_axis_has_an_offset_where_its_limits_are_given_and_near_to_each_other
     figure = matplotlib_charts.draw(Chart(name="a", caption="", panels=[panel]))
     figure.canvas.draw()
     assert figure.axes[0].yaxis.get_offset_text().get_text() == ""
+
+
+def test_panels_that_share_their_abscissa_have_the_same_limits_of_it_in_every_column():
+    def panel(end, label="Time [s]"):
+        return Panel(x_label=label, y_label="", lines=[Line(x=np.array([0.0, end]), y=np.zeros(2), label="", colour="blue")])
+
+    # In the first column marks, whose room an axis adds to by itself, and a shorter curve.
+    panels = [panel(3600.0), panel(3599.0), panel(9.0, "Distance [m]"), panel(3000.0)]
+    chart = Chart(name="", caption="", panels=panels, columns=2, share_x=True)
+    limits = [of.x_range for of in with_one_abscissa(chart).panels]
+    assert limits == [(0.0, 3600.0), (0.0, 3600.0), (0.0, 9.0), (0.0, 3600.0)]
+    assert [of.x_range for of in with_one_abscissa(replace(chart, share_x=False)).panels] == [None] * 4
+    chart = replace(chart, panels=[panels[0], panels[1], panels[3]])
+    drawn = plotly_charts.draw(chart)["layout"]
+    assert {tuple(drawn[f"xaxis{number}"]["range"]) for number in ("", "2", "3")} == {(0.0, 3600.0)}
+    assert {axes.get_xlim() for axes in matplotlib_charts.draw(chart).axes[:3]} == {(0.0, 3600.0)}
 
 
 def test_limits_of_values_that_differ_are_left_to_the_axis():

@@ -137,7 +137,7 @@ def test_limits_are_told_with_all_their_decimals(record):
     for row in record["over_time"]:
         row["verdict_0.125"] = "above"
     assert "Limit 0.125 %" in over_time_table(record).head
-    assert "limit 0.125 %" in {line.label for line in over_time_chart(record).panels[0].lines}
+    assert "limit 0.125 %" in {note.text.strip() for note in over_time_chart(record).panels[0].notes}
 
 
 def test_the_caption_has_the_factor_of_the_fuels_carbon(run_directory, record):

@@ -1,6 +1,7 @@
 """Comparisons of a run: the same flights with parts changed, in a table, and as curves where they have any."""
 
 import math
+import re
 from dataclasses import replace
 
 import pandas as pd
@@ -33,7 +34,13 @@ def test_panels_are_as_long_and_as_high_as_their_curves(run):
     compared = run.summary.iloc[[0]].assign(variant="no_preview", beside="steady_00000")
     (chart,) = blocks_of(content(replace(run, comparison=compared)), Chart, "comparison")
     lines = [line for panel in chart.panels for line in panel.lines]
-    assert {panel.x_range[1] for panel in chart.panels} == {max(line.x.max() for line in lines)}
+    (end,) = {panel.x_range[1] for panel in chart.panels}
+    assert end == max(line.x.max() for line in lines)
+    # The words say where a curve ends before its flight does.
+    whole = end == pytest.approx(float((compared["duration_s"] - compared["settling_time_s"]).iloc[0]), abs=0.2)
+    assert ("from settling on" if whole else f"the first {end:g} s after settling") in chart.caption
+    longer = content(replace(run, comparison=compared.assign(duration_s=1e4)))
+    assert re.search(r"changed: the first \d+ s after settling\.", blocks_of(longer, Chart, "comparison")[0].caption)
     (height,) = {panel.y_range[1] for panel in chart.panels}
     # Up to 1.2 settling bands of 5 m, which would hide the errors of two good trackers, and from a fiftieth of that on.
     largest = max(line.y.max() for line in lines)

@@ -10,7 +10,7 @@ from report_parts import blocks_of
 
 from reports.document.blocks import Card, FlightPicker, Table
 from reports.errors import ReportError
-from reports.flights.names import _swept, flight_name, flown_elsewhere, swept_column, words_together
+from reports.flights.names import _swept, changes_flights, flight_name, flown_elsewhere, swept_column, words_together
 from reports.flights.trials.charts import trial_charts
 from reports.flights.trials.panels_over import LIMIT_LABEL
 from reports.flights.trials.tables import failed_blocks, fault_table, flight_table
@@ -57,6 +57,18 @@ def test_several_numbers_have_a_column_each_in_two_figures_and_words_have_one_of
         # Speed ratio and radius side by side, twice.
         assert [panel.x_label for panel in chart.panels] == ["Speed ratio ν [-]", "Keep-out radius [m]"] * 2
     assert [panel.y_label for panel in charts[1].panels[::2]] == ["Tracking error, rms [m]", "Settling time [s]"]
+
+
+def test_words_that_change_nothing_in_the_flights_are_no_groups_of_markers(trial):
+    assert changes_flights(trial, "guidance.law")
+    assert set(words_together(trial)) == {"cascade", "line of sight"}
+    # As of sensors that only listen: each flight twice.
+    rows = trial.rows.assign(min_distance_m=trial.rows.groupby(["nu", "keepout_radius_m"])["min_distance_m"].transform("first"))
+    alike = replace(trial, rows=rows)
+    assert not changes_flights(alike, "guidance.law")
+    assert changes_flights(alike, "keepout.radius_m")
+    assert words_together(alike) == []
+    assert [chart.name.rpartition("-")[2] for chart in trial_charts(alike)] == ["crossings", "errors"]
 
 
 def test_a_flight_is_called_by_all_that_was_swept(trial):

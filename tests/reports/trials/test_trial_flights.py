@@ -6,6 +6,7 @@ import shutil
 from dataclasses import replace
 
 import numpy as np
+import pandas as pd
 import pytest
 from report_parts import blocks_of
 from trial_runs import with_values
@@ -122,6 +123,21 @@ def test_every_kind_of_trial_has_figures_of_any_run(run, kind, monkeypatch):
         # No vessel manoeuvres, and so no crossing resumes, but there is always a closest approach to show: by itself, not counted.
         assert bool(charts) == (kind is not Kind.APPROACH)
         assert all(len(line.x) for chart in charts for panel in chart.panels for line in panel.lines)
+
+
+def test_flights_that_never_settled_have_marks_of_their_own_and_no_panel_of_a_settling_time(run, monkeypatch):
+    monkeypatch.setattr(Trial, "kind", Kind.APPROACH)
+    trial = read_trials(run)[0]
+    rows = pd.concat([trial.rows] * 4, ignore_index=True)
+    # Six of eight settle: that is a panel of their times; with two of eight there is none.
+    for settled in (6, 2):
+        times = np.where(np.arange(len(rows)) < settled, 80.0, np.nan)
+        starts, distances = trial_charts(replace(trial, rows=rows.assign(settling_time_s=times)))
+        (never,) = (line for line in starts.panels[0].lines if line.label == "never settled")
+        assert never.style not in {line.style for line in starts.panels[0].lines if line.label.startswith(("above", "settled"))}
+        assert len(never.x) == len(rows) - settled
+        assert len(distances.panels) == 1 + (settled == 6)
+        assert ("and settling time" in distances.caption) == (settled == 6)
 
 
 def test_no_more_flights_are_shown_than_stated_and_every_trial_has_its_share(run):
