@@ -1,6 +1,6 @@
 // Where a flight is seen from: behind the aircraft, beside the vessel, or from a place that stays.
 
-const CAMERAS = ["follow", "vessel", "free"], LOOK_BACK = 2.5, FARTHER = 1.08, EDGE = 0.85;
+const CAMERAS = ["follow", "vessel", "free"], LOOK_BACK = 2.5, HALVES = 14, EDGE = 0.85;
 
 class Camera {
   constructor(canvas, onChange) {
@@ -18,6 +18,9 @@ class Camera {
     this.controls.addEventListener("change", onChange);
     this.mode = "follow";
     this.turn = 0;
+    // Of a view that was turned by hand nothing but its place is changed.
+    this.turned = false;
+    this.controls.addEventListener("start", () => { this.turned = true; });
   }
 
   // Begin a way of looking at a flight from where it is told best; a free camera begins with what is seen.
@@ -25,6 +28,7 @@ class Camera {
     if (mode === "free") this.track(flight, time);
     this.mode = mode;
     this.turn = 0;
+    this.turned = false;
     const {target} = this.controls, offset = new THREE.Vector3();
     if (mode === "follow") {
       target.copy(this.focus(flight, time));
@@ -36,22 +40,31 @@ class Camera {
       const far = flight.keepout.radius * (this.camera.aspect < 1.1 ? 4.0 : 2.9);
       target.copy(this.focus(flight, time));
       offset.set(-0.72, 0.55, -0.42).multiplyScalar(far).applyAxisAngle(UP, -flight.value("plume_axis", time));
-      this.fit(flight, time, offset);
+      this.beside = offset.clone();
     }
     if (mode !== "free") this.camera.position.copy(target).add(offset);
+    if (mode === "vessel") this.fit(flight, time);
     this.controls.update();
   }
 
-  // Lengthen an offset from what is looked at until the aircraft is within the picture, too, or the camera is as far as it may be.
-  fit(flight, time, offset) {
-    const now = flight.at(time), {target, maxDistance} = this.controls, place = new THREE.Vector3();
-    for (; offset.length() < maxDistance / FARTHER; offset.multiplyScalar(FARTHER)) {
-      this.camera.position.copy(target).add(offset);
+  // Look from beside the vessel, from farther off while the aircraft would be out of the picture; until someone turns the view.
+  fit(flight, time) {
+    const {target, maxDistance} = this.controls, now = flight.at(time), place = new THREE.Vector3();
+    const sees = (factor) => {
+      this.camera.position.copy(target).addScaledVector(this.beside, factor);
       this.camera.lookAt(target);
       this.camera.updateMatrixWorld();
       place.set(now.east, now.altitude, -now.north).project(this.camera);
-      if (Math.max(Math.abs(place.x), Math.abs(place.y)) < EDGE && place.z < 1) return;
+      return Math.max(Math.abs(place.x), Math.abs(place.y)) < EDGE && place.z < 1;
+    };
+    let near = 1, far = Math.max(1, maxDistance / this.beside.length());
+    if (sees(near)) return;
+    for (let half = 0; half < HALVES; half++) {
+      const middle = 0.5 * (near + far);
+      if (sees(middle)) far = middle;
+      else near = middle;
     }
+    sees(far);
   }
 
   // Take the camera along to a time [s], by how what it looks at moves and turns.
@@ -65,6 +78,7 @@ class Camera {
       }
       this.controls.target.copy(focus);
       this.camera.position.copy(focus).add(offset);
+      if (this.mode === "vessel" && !this.turned) this.fit(flight, time);
     }
     this.controls.update();
     return this.controls.target;
@@ -86,6 +100,7 @@ class Camera {
 
   // Turn about what is looked at, rise, or come nearer; from the keyboard.
   move(turn, rise, nearer) {
+    this.turned = true;
     const {target, maxPolarAngle, minDistance, maxDistance} = this.controls, offset = this.camera.position.clone().sub(target);
     const distance = Math.min(Math.max(offset.length() * nearer, minDistance), maxDistance), course = Math.atan2(offset.x, offset.z) + turn;
     const polar = Math.min(Math.max(Math.acos(offset.y / offset.length()) - rise, 0.05), maxPolarAngle);

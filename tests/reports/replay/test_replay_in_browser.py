@@ -199,6 +199,16 @@ def test_a_flight_opens_with_its_aircraft_in_the_picture(browser, page):
         browser.run("window.replay.look('vessel')")
         # Of the picture from -1 to 1; 1 is how far the camera sees.
         assert np.max(np.abs(browser.run(place))) < 1.0, kind
+        # Nearer by its end, where the aircraft is; a view that was turned by hand keeps its distance.
+        far = "window.replay.camera.camera.position.distanceTo(window.replay.camera.controls.target)"
+        begun = browser.run(far)
+        browser.run("window.replay.seek(window.replay.flight.end)")
+        ended = browser.run(f"(window.replay.place(), {far})")
+        assert ended <= begun * 1.001, kind
+        browser.run("window.replay.camera.move(0.1, 0, 1.5)")
+        turned_by_hand = browser.run(far)
+        browser.run("window.replay.seek(0)")
+        assert browser.run(f"(window.replay.place(), {far})") == pytest.approx(turned_by_hand), kind
 
 
 def test_a_ship_of_unknown_size_is_pale_and_the_key_and_the_caption_say_so(browser, page):
