@@ -80,7 +80,7 @@ def accuracy_table(statistics: Record) -> Table:
             ]
             for entry in rows
         ],
-        widths=[1.6, 1.7, 0.8, 1.1, 0.85, 1.15, 1.1, 1.1, 1.1, 1.05, 1.4],
+        widths=[1.6, 2.1, 0.7, 1.0, 0.92, 1.1, 1.0, 1.0, 1.0, 0.95, 1.7],
         left_columns=2,
     )  # fmt: skip
 

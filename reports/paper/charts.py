@@ -83,7 +83,7 @@ def sim_3_charts(run: RunData) -> list[Chart]:
         return [
             *ship_lines(about, 0.0, *place),
             _path(flown, "vessel_", "ship's track", Meaning.SHIP, "thin"),
-            _path(flown, "", "UAV"),
+            _path(flown, "", "flown"),
             _path(flown, "reference_", "reference", Meaning.ASKED, "thin"),
             _crossings(east, north),
         ]
@@ -96,7 +96,7 @@ def sim_3_charts(run: RunData) -> list[Chart]:
         crossed = column(crossings, "distance_m" if keepout_shape(config) == "sphere" else "horizontal_distance_m")
         return [
             _level(flown.time, float(flown.row["keepout_radius_m"]), "r_min"),
-            Line(x=flown.time, y=distance, label="UAV", colour=Meaning.FLOWN),
+            Line(x=flown.time, y=distance, label="flown", colour=Meaning.FLOWN),
             _crossings(times, crossed),
         ]
 
@@ -174,7 +174,7 @@ def _common_ranges(lines: list[Line]) -> tuple[tuple[float, float], tuple[float,
 
 def _figure_3(flights: dict[str, Flown]) -> list[Line]:
     flown = flights["sim1"]
-    return [_path(flown, "", "UAV"), _reference(flown), _starts([flown])]
+    return [_path(flown, "", "flown"), _reference(flown), _starts([flown])]
 
 
 def _figure_4(flights: dict[str, Flown]) -> list[Line]:

@@ -60,6 +60,9 @@ OSCILLATION_COLUMNS = (
 )
 
 
+_APART = 1.25
+"""Relative width of the column of distances beyond r_min, whose head would touch that of the one before it."""
+
 _WORDS_MAX, _NUMBER, _LETTER, _NAME_LETTER = 3.2, 0.9, 0.15, 0.13
 """Relative widths of a table's columns: of words at most, of numbers at least, and of a letter of a heading and of a name [-]."""
 
@@ -96,7 +99,10 @@ def flight_table(
     parts = (part for row in cells for part in re.split(r" |(?<=_)(?=[a-z])", row[0]))
     words[0] = max(words[0], _NAME_LETTER * max(map(len, parts), default=0))
     # The longest word of a heading has to fit.
-    widths = [*words, *(max(_NUMBER, _LETTER * max(map(len, title.split()))) for title, _, _ in columns)]
+    widths = [
+        *words,
+        *(max(_APART if title == _BEYOND else _NUMBER, _LETTER * max(map(len, title.split()))) for title, _, _ in columns),
+    ]
     return Table(
         caption=caption,
         head=[head, "Outcome", *(title for title, _, _ in columns)],
