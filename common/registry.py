@@ -101,12 +101,12 @@ class Registry(Generic[Part]):
 
         Raises
         ------
-        PluginError : there is none, or it does not load, or it lacks a method
+        PluginError : there is none, or it does not load, or it lacks a method, or is an object, of which no flight makes its own
         """
         if name.endswith(".py:"):
             raise self._without_name(name, name.removesuffix(":"))
         if is_file_part(name):
-            return self.checked(name, part_in_file(name))
+            return self.checked(name, self._callable(name, part_in_file(name)))
         if name not in self._parts and name.isidentifier() and importlib.util.find_spec(f"{self._folder}.{name}"):
             # A file of its name comes first: the others may take long to import.
             importlib.import_module(f"{self._folder}.{name}")
@@ -114,7 +114,7 @@ class Registry(Generic[Part]):
             return self._parts[name]
         if (found := self._entry_points().get(name)) is not None:
             try:
-                return self.checked(name, found.load())
+                return self.checked(name, self._callable(name, found.load()))
             except PluginError:
                 raise
             except Exception as error:
@@ -125,6 +125,11 @@ class Registry(Generic[Part]):
         raise PluginError(
             f"unknown {self.words} '{name}'{did_you_mean(name, names) or ';'} known are {', '.join(names)}, or FILE.py:NAME"
         )
+
+    def _callable(self, name: str, part: Any) -> Any:
+        if self._methods and not callable(part):
+            raise PluginError(f"{self.words} '{name}' is an object of class {type(part).__name__}; give the class itself")
+        return part
 
     def _without_name(self, name: str, file: str) -> PluginError:
         return PluginError(f"{self.words} '{name}' is a file without the name of a part in it; give {file}:NAME")
@@ -146,10 +151,8 @@ class Registry(Generic[Part]):
 
         Raises
         ------
-        PluginError : it lacks one, or is an object, of which no flight could make its own
+        PluginError : it lacks one
         """
-        if self._methods and not callable(part):
-            raise PluginError(f"{self.words} '{name}' is an object of class {type(part).__name__}; give the class itself")
         for method in () if isinstance(part, FunctionType) else self._methods:
             if not any(callable(getattr(part, alternative, None)) for alternative in method.split("|")):
                 missing = method.replace("|", "() or ")

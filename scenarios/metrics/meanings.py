@@ -5,7 +5,7 @@ Units are the ends of the names. "Settled" is said of the flight from its settli
 
 from collections.abc import Mapping
 
-from common.run_layout import COMPARISON, CROSSINGS, DRAWS, INTERVENTIONS, SULPHUR_TABLE, SUMMARY
+from common.run_layout import COMPARISON, CROSSINGS, DRAWS, INTERVENTIONS, SULPHUR_TABLE, SUMMARY, TUNING_TABLE, WINDOW_TABLE
 
 _OF_FLIGHT = {
     "flight_id": "name of the flight",
@@ -202,7 +202,7 @@ MEANINGS: Mapping[str, Mapping[str, str]] = {
         "verdict": "above, below or open",
         "probability_above": "probability that the fuel is above the limit",
     },
-    "window.csv": {
+    WINDOW_TABLE: {
         **_OF_FLIGHT,
         "window_s": "time before the end of the flight over which it is evaluated",
         "error_rms_m": "root mean square distance to the reference",
@@ -219,7 +219,7 @@ MEANINGS: Mapping[str, Mapping[str, str]] = {
         "plume_s_per_minute": "seconds in the plume in a minute",
         "sulphur_information_per_minute": "1/sigma^2 of the sulphur content by noise, in a minute",
     },
-    "tuning.csv": {
+    TUNING_TABLE: {
         "entrant": "steering law and task",
         "evaluation": "number of the setting that was tried, from 0",
         "cost_m": "cost of the setting: its error, and its excess times a weight",
