@@ -62,7 +62,7 @@ def _map(patrol: Patrol) -> Panel:
     flown = [Line(x=np.zeros(1), y=np.zeros(1), label="start", colour=Meaning.FLOWN, style="ring")]
     for _, leg in patrol.phases.iterrows():
         x, y = (np.array([leg[f"from_{axis}_m"], leg[f"to_{axis}_m"]], dtype=np.float64) for axis in ("east", "north"))
-        flown.append(Line(x=x, y=y, label="UAV", colour=Meaning.FLOWN))
+        flown.append(Line(x=x, y=y, label="flown", colour=Meaning.FLOWN))
     measured = patrol.phases[patrol.phases["phase"] == "measuring"]
     x, y = column(measured, "to_east_m"), column(measured, "to_north_m")
     flown.append(Line(x=x, y=y, label="measured", colour=Meaning.CROSSING, style="square"))

@@ -74,10 +74,16 @@ def written(path: Path, write: Callable[[Path], object]) -> Path:
     ------
     ReportError : it cannot be written
     """
+
+    def whole(part: Path) -> None:
+        write(part)
+        if not part.exists():
+            raise ReportError(f"'{path}': what was to write it wrote no file; an exporter writes to the path that it is given")
+
     try:
         if not path.parent.is_dir():
             raise ReportError(f"'{path}' cannot be written: there is no directory '{path.parent}'; make it, or give another path")
-        write_whole(path, write)
+        write_whole(path, whole)
     except OSError as error:
         # An error of a library may have no number, and so no text of its own.
         reason = error.strerror or next(iter(str(error).splitlines()), "")

@@ -119,6 +119,7 @@ def test_a_user_adds_an_exporter_in_a_file_of_one_class(run_path, tmp_path):
         ("def write(self, run, path): ...", "has suffix = None; it needs one with a leading dot and no slash, as '.csv'"),
         ("suffix = '/../x'\n    def write(self, run, path): ...", "has suffix = '/../x'"),
         ("suffix = '.x'\n    def __init__(self, a): ...\n    def write(self, run, path): ...", "missing 1 required positional"),
+        ("suffix = '.x'\n    def write(self, run, path): ...", "wrote no file; an exporter writes to the path that it is given"),
         ("suffix = '.x'\n    def write(self, run, path): raise KeyError('speed')", "Part': KeyError: 'speed'"),
         ("suffix = '.x'\n    def write(self, run, path): raise RuntimeError('a\\nb')", "Part': RuntimeError: a"),
     ],
