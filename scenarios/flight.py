@@ -39,6 +39,8 @@ from scenarios.vehicles.vehicle_setup import VehicleSetup, kinematic_setup
 from scenarios.world.noise import PAYLOAD, own_generator
 from scenarios.world.own_part import asked
 
+_GONE = (Outcome.DIVERGED.value, Outcome.AIRCRAFT_LOST.value)
+
 _Tables = dict[str, list[Row]]
 """Rows by the file name of their table."""
 
@@ -139,9 +141,9 @@ class FlightWork:
             failed = failed_criteria(row, request.scenario.criteria)
             row |= {"criteria_met": not failed, "message": "; ".join(failed)}
         except Exception as error:  # noqa: BLE001 - a flight that fails is a row with its reason, and the study goes on
-            # Of an aircraft that has diverged nobody knows where it went on, whatever fails after it.
-            diverged = row.get("outcome") == Outcome.DIVERGED.value
-            row |= failure(error) | ({"outcome": Outcome.DIVERGED.value} if diverged else {})
+            # After its flight an aircraft stays lost, whatever fails then, and what was flown is not infeasible.
+            flown = {"outcome": row["outcome"] if row["outcome"] in _GONE else Outcome.FAILED.value} if "outcome" in row else {}
+            row |= failure(error) | flown
         return self._result(task, row | {"wall_time_s": time.perf_counter() - began}, tables, history, document)
 
     def lost(self, task: Task, reason: str) -> Result:

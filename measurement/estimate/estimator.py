@@ -9,7 +9,7 @@ import numpy as np
 from measurement.errors import MeasurementError
 from measurement.estimate.areas import area_ratio
 from measurement.estimate.budget import CARBON_SD, SAMPLING_SD, SULPHATE_SHARE, common_errors, unmeasured
-from measurement.estimate.fit.alignment import Alignment, align, stated, widened
+from measurement.estimate.fit.alignment import DELAY_MOST, Alignment, align, stated, widened
 from measurement.estimate.fit.groups import grouped
 from measurement.estimate.fit.regression import fitted, regress
 from measurement.estimate.fit.signals import Ends, Signals, make_signals, samples_of, used_gases
@@ -226,8 +226,8 @@ def _told(
     common["sampling"] = SAMPLING_SD * record.step / instrument.known("co2").constants[0] * abs(fsc)
     total = math.sqrt(noise**2 + sum(value**2 for value in common.values()))
     if math.isinf(instrument.known("so2").delay_sd_s):
-        left, doses = [record.time[-1] - found.end_s for found in passes], [found.dose_ppm_s for found in passes]
-        problems += not_arrived(fsc, total, left, doses)
+        read = [_read_after(record, found.end_s) for found in passes]
+        problems += not_arrived(fsc, total, read, [found.dose_ppm_s for found in passes])
     signals = make_signals(record, instrument)
     groups = grouped(signals, passes, ratio.ratio, misfit=ratio.misfit, response=ratio.common.get("response", 0.0))
     samples, so2_snr = samples_of(signals, ratio.ratio)
@@ -271,6 +271,12 @@ def _told(
         instrument=instrument,
         signals=samples,
     )
+
+
+def _read_after(record: Record, end: float) -> float:
+    """Return which share was read of the time after the end of a pass [s] in which its SO2 may come."""
+    after = record.time - end
+    return min(1.0, np.count_nonzero((after > 0.0) & (after <= DELAY_MOST)) * record.step / DELAY_MOST)
 
 
 def _figures(record: Record, passes: tuple[Pass, ...], instrument: SnifferSpec, snr: float, so2_snr: float) -> Figures:

@@ -39,7 +39,8 @@ STRANGE_SIGMA = 4.0
 the instrument is not the one that is stated."""
 
 ARRIVED_SIGMA, ARRIVED_SHARE = 3.0, 0.5
-"""A result above 0 by so many standard uncertainties is SO2 that has arrived; share of the CO2 that has to be old enough for it."""
+"""A result above 0 by so many standard uncertainties is SO2 that has arrived; otherwise readings must follow this share of CO2 for
+as long as SO2 may take."""
 
 NEGATIVE_SIGMA = 3.0
 """A result below 0 by so many standard uncertainties contradicts them."""
@@ -142,7 +143,7 @@ def noise_alone(misfit: float, samples: int) -> bool:
     return misfit <= 1.0 + STRANGE_SIGMA * math.sqrt(2.0 / samples)
 
 
-def not_arrived(fsc: float, deviation: float, left: Sequence[float], doses: Sequence[float]) -> tuple[str, ...]:
+def not_arrived(fsc: float, deviation: float, read: Sequence[float], doses: Sequence[float]) -> tuple[str, ...]:
     """Return the problem of SO2 whose delay is not stated, and which may not have arrived yet, if it may not.
 
     SO2 that stands out has. Without it most of the CO2 must be from so long before the end that any delay has gone by.
@@ -150,13 +151,12 @@ def not_arrived(fsc: float, deviation: float, left: Sequence[float], doses: Sequ
     Parameters
     ----------
     fsc, deviation : result and its standard uncertainty [% m/m]
-    left : from the end of each pass to that of the record [s]
+    read : share of the time after each pass, in which its SO2 may come, that was read [-]
     doses : of CO2 in each pass [ppm s]
     """
-    if not left or fsc > ARRIVED_SIGMA * deviation:
+    if not read or fsc > ARRIVED_SIGMA * deviation:
         return ()
-    waited = sum(dose for time, dose in zip(left, doses, strict=True) if time >= DELAY_MOST)
-    if waited >= ARRIVED_SHARE * sum(doses):
+    if sum(share * dose for share, dose in zip(read, doses, strict=True)) >= ARRIVED_SHARE * sum(doses):
         return ()
     return (
         f"SO2 does not stand out, and may still come: its delay is not stated, and may be up to {DELAY_MOST:g} s; state it, or"

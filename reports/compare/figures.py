@@ -134,5 +134,7 @@ def differences(pairs: Pairs) -> dict[str, Difference]:
 
 def _by_sample(change: Array, rows: pd.DataFrame) -> Array:
     """Return the mean difference of each random sample: flights of a trial that have one seed share it."""
-    means = pd.Series(change).groupby([rows["trial"].to_numpy(), rows["seed"].to_numpy()]).mean()
+    # One without a seed is a sample of its own.
+    alone = np.where(rows["seed"].isna(), np.arange(len(rows)), -1)
+    means = pd.Series(change).groupby([rows["trial"].to_numpy(), rows["seed"].to_numpy(), alone], dropna=False).mean()
     return np.asarray(means, dtype=np.float64)

@@ -74,8 +74,8 @@ def error_chart(rows: pd.DataFrame) -> Chart:
 
 
 def _positive(rows: pd.DataFrame, prefix: str) -> tuple[float, float]:
-    found = column(rows, f"{prefix}_percent")
-    return 0.2 * float(rows["fsc_expected_percent"].min()), 1.5 * float(np.nanmax(found))
+    expected, found = rows["fsc_expected_percent"], column(rows, f"{prefix}_percent")
+    return 0.2 * float(expected.min()), 1.5 * max(float(expected.max()), *found[np.isfinite(found)].tolist(), 0.0)
 
 
 def _side_by_side(expected: Array) -> Array:

@@ -82,7 +82,7 @@ def _in_print(sections: Sequence[Section]) -> list[Section]:
 
 
 def _card(card: Card, *, judges: bool) -> Data:
-    return {"name": card.name, "value": card.value, "tone": card.tone, "judgement": card.judgement if judges else ""}
+    return {"name": card.name, "value": unbroken(card.value), "tone": card.tone, "judgement": card.judgement if judges else ""}
 
 
 def _section(section: Section, figures: Figures) -> Data:

@@ -97,7 +97,8 @@ def kept_out(rows: pd.DataFrame) -> Mask:
 def passed(rows: pd.DataFrame) -> Mask:
     """Return which flights did what exit status 0 requires of them."""
     alone = (rows["required"] == "keep_out").to_numpy(dtype=np.bool_) if "required" in rows else np.zeros(len(rows), dtype=np.bool_)
-    return np.where(alone, kept_out(rows), met(rows))
+    # What failed after its flight, as an instrument may, has kept out, but does not count as done.
+    return np.where(alone, kept_out(rows) & (rows["outcome"] != "failed").to_numpy(dtype=np.bool_), met(rows))
 
 
 def recorded_at(values: Array, recorded: Mask, rank: int) -> tuple[int, bool]:

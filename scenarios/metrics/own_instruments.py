@@ -1,6 +1,7 @@
 """What instruments declare and answer: columns, figures and tables of their own, and none of the flight's or of each other's."""
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Collection, Iterable, Mapping
+from types import FunctionType
 from typing import Any
 
 import numpy as np
@@ -17,6 +18,9 @@ from scenarios.simulation.record import MEANINGS
 from scenarios.world.own_part import asked, refuse_answer
 
 Array = npt.NDArray[np.float64]
+
+_FIGURE = (str, bool, int, float, np.generic, type(None))
+"""What a cell of the summary may hold."""
 
 _FLIGHT, _RUN = "the flight itself", "the run itself"
 
@@ -37,6 +41,8 @@ def check_instruments(named: Iterable[tuple[str, Any]]) -> None:
     tables = dict.fromkeys(TABLES, _RUN)
     for name, instrument in named:
         who = f"instrument '{name}'"
+        if isinstance(instrument, type) and _is_of_each_object(instrument):
+            continue
         if not hasattr(instrument, "COLUMNS"):
             raise InputError(
                 f"payload: {who} has no COLUMNS, the names of the columns of the time history that it fills; give it a tuple, as in"
@@ -54,13 +60,21 @@ def check_instruments(named: Iterable[tuple[str, Any]]) -> None:
             _fill(who, "column", _names(who, f"TABLES of '{file}'", of), dict.fromkeys(FLIGHT_COLUMNS, _RUN))
 
 
+def _is_of_each_object(kind: type) -> bool:
+    """Return whether objects of a class have COLUMNS of their own, by ``__init__`` or a property: they are checked later."""
+    made = vars(kind).get("__init__")
+    named: tuple[str, ...] = made.__code__.co_names if isinstance(made, FunctionType) else ()
+    return "COLUMNS" in named or isinstance(getattr(kind, "COLUMNS", None), property)
+
+
 def _names(who: str, what: str, given: Any) -> tuple[str, ...]:
     """Return names that an instrument declares."""
     if isinstance(given, str):
         raise InputError(f"payload: {what} of {who} is the text {given!r}; give a tuple of names, as in ({given!r},)")
-    if not isinstance(given, tuple | list) or not all(isinstance(name, str) and name for name in given):
+    given = tuple(given) if isinstance(given, Collection) else given
+    if not isinstance(given, tuple) or not all(isinstance(name, str) and name for name in given):
         raise InputError(f"payload: {what} of {who} is {given!r}; give a tuple of names")
-    return tuple(given)
+    return given
 
 
 def _fill(who: str, what: str, names: Iterable[str], filled: dict[str, str]) -> None:
@@ -90,6 +104,13 @@ def evaluated(name: str, instrument: EvaluatedInstrument, column: Callable[[str]
     found = asked(part, "failed in evaluate()", "column and since", instrument.evaluate, column, since)
     if not isinstance(found, Evaluation):
         refuse_answer(part, "evaluate()", found, "an Evaluation of scenarios.instruments.instrument")
+    try:
+        np.asarray(found.columns, dtype=np.float64)
+    except (TypeError, ValueError):
+        refuse_answer(part, "evaluate()", found.columns, "columns of numbers")
+    for figure, value in found.figures.items():
+        if not isinstance(value, _FIGURE):
+            refuse_answer(part, f"figure '{figure}' of evaluate()", value, "a number, a truth value, text or None")
     demanded = (len(column("time_s")), len(instrument.COLUMNS))
     if np.shape(found.columns) != demanded:
         raise PluginError(

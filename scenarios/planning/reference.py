@@ -74,8 +74,12 @@ def oscillation_at(guidance: GuidanceConfig, reference: ReferenceConfig, nu: flo
         reserve=guidance.reserve,
         roll_rate_max=math.radians(guidance.roll_rate_max_deg_s),
     )
-    if isinstance(shape, Plain) and not all(is_number(getattr(orbit, name, None)) for name in _OF_ORBIT):
-        refuse_answer(part, f"design() at nu = {nu:.4g}", orbit, f"an orbit, with finite {', '.join(_OF_ORBIT)}")
+    if isinstance(shape, Plain):
+        for name in _OF_ORBIT:
+            if not hasattr(orbit, name):
+                refuse_answer(part, f"design() at nu = {nu:.4g}", orbit, f"an orbit, with finite {', '.join(_OF_ORBIT)}")
+            if not is_number(found := getattr(orbit, name)):
+                refuse_answer(part, f"{name} of design() at nu = {nu:.4g}", found, "a finite number")
     steps = orbit.crossing_interval * guidance.rate_hz
     if steps < STEPS_MIN:
         raise InfeasibleError(

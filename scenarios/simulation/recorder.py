@@ -2,7 +2,7 @@
 
 import math
 import struct
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from typing import Any
 
 import numpy as np
@@ -113,6 +113,7 @@ def _read_first(payload: Sequence[Any], time: float, motion: Motion, sample: tup
     for instrument in payload:
         part, count = f"payload: instrument of class {type(instrument).__qualname__}", len(instrument.COLUMNS)
         read = asked(part, "failed in read()", "time, motion and sample", instrument.read, time, motion, sample)
+        read = read if isinstance(read, str) or not isinstance(read, Iterable) else tuple(read)
         if not are_numbers(read, count, finite=False):
             refuse_answer(part, "read()", read, f"a tuple of {count} number{'s' * (count != 1)}, one for each of its COLUMNS")
         values.extend(read)

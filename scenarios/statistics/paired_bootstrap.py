@@ -8,7 +8,7 @@ larger by sqrt(n/(n - 1)) here, and by Student's t over the normal quantile.
 The best mean is one of the same flights, and one of many. So an entrant counts as worse than the best only if some other is ahead
 of it by more than the largest lead that any would have of it if all had the mean that they have in expectation: multiple
 comparisons with the best (J. C. Hsu, "Multiple Comparisons", 1996, chapter 4), with leads over their own deviations. Of entrants
-that are equal, each is called worse in one arena of twenty at most, however many there are.
+that are equal, each is called worse in about one arena of twenty, however many there are; with two flights alone in one of ten.
 
 Where no stratum has two flights, every resample is the same: there is no interval, and no difference is shown. An entrant that
 lacks the figure of a flight of which another has it has a mean over other flights, perhaps easier ones: it is not compared.
@@ -81,10 +81,14 @@ def paired_estimates(
     worth = np.where(whole, means if greater_is_better else -means, np.nan)
     best = int(np.nanargmax(worth)) if np.isfinite(worth).any() else -1
     tail = 50.0 * (1.0 - confidence)
-    as_good = _may_be_best(worth, sampled if greater_is_better else -sampled, confidence)
+    freedom = sum(max(0, int(np.count_nonzero(strata[known.any(axis=0)] == stratum)) - 1) for stratum in np.unique(strata))
+    as_good = _may_be_best(worth, sampled if greater_is_better else -sampled, freedom, confidence)
     found = []
     for i, mean in enumerate(means):
         low, high = _interval(sampled[i], tail)
+        if not np.any(values[i] < 0.0):
+            # Of errors and counts, which deviations that are made larger would lead below 0.
+            low = max(low, 0.0)
         behind = (0.0, 0.0) if i == best else _interval(sampled[i] - sampled[best], tail) if whole[i] else (np.nan, np.nan)
         found.append(
             Estimate(
@@ -104,8 +108,6 @@ def paired_estimates(
 
 def _scattered(row: Array, strata: npt.NDArray[Any], confidence: float) -> Array:
     """Return the figures of one entrant with deviations from the mean of each stratum as large as they have to be."""
-    from scipy.special import ndtri, stdtrit
-
     scattered, freedom = row.copy(), 0
     for stratum in np.unique(strata):
         within = (strata == stratum) & np.isfinite(row)
@@ -116,18 +118,24 @@ def _scattered(row: Array, strata: npt.NDArray[Any], confidence: float) -> Array
             freedom += count - 1
     if not freedom:
         return scattered
-    level = 0.5 + 0.5 * confidence
     means = np.array(
         [np.nanmean(row[strata == stratum]) if np.isfinite(row[strata == stratum]).any() else 0.0 for stratum in strata]
     )
-    wider: Array = means + (scattered - means) * float(stdtrit(freedom, level) / ndtri(level))
+    wider: Array = means + (scattered - means) * _wider(freedom, 0.5 + 0.5 * confidence)
     return wider
 
 
-def _may_be_best(worth: Array, sampled: Array, confidence: float) -> npt.NDArray[np.bool_]:
+def _wider(freedom: int, level: float) -> float:
+    """Return Student's quantile over that of the normal distribution."""
+    from scipy.special import ndtri, stdtrit
+
+    return float(stdtrit(freedom, level) / ndtri(level))
+
+
+def _may_be_best(worth: Array, sampled: Array, freedom: int, confidence: float) -> npt.NDArray[np.bool_]:
     """Return which entrants may be the best, with their worth, shape (n,), and its resamples, shape (n, resamples).
 
-    Those that are not compared, whose worth is not a number, may not.
+    Those that are not compared, whose worth is not a number, may not; ``freedom`` is the number of degrees of it, of all strata.
     """
     found = np.isfinite(worth)
     for i in np.flatnonzero(found):
@@ -146,7 +154,9 @@ def _may_be_best(worth: Array, sampled: Array, confidence: float) -> npt.NDArray
         elif not still.all():
             ahead = leads[~still] / deviations[~still]
             largest = (scatter[~still] / deviations[~still, np.newaxis]).max(axis=0)
-            found[i] = bool(ahead.max() <= np.quantile(largest, confidence))
+            # Few flights make the tails of the largest of many leads heavier than those of one.
+            wider = _wider(freedom, confidence ** (1.0 / int(np.count_nonzero(~still)))) / _wider(freedom, 0.5 + 0.5 * confidence)
+            found[i] = bool(ahead.max() <= wider * np.quantile(largest, confidence))
     return found
 
 

@@ -88,7 +88,9 @@ class FlightCounts:
         self.without_area += row["outcome"] == Outcome.COMPLETED.value and "keepout_violations" not in row
         self.outcomes[row["outcome"]] += 1
         self.required[required] += 1
-        self.passed += kept_out if required == "keep_out" else bool(row["criteria_met"])
+        # What failed after its flight, as an instrument may, has kept out, but does not count as done.
+        done = kept_out and row["outcome"] != Outcome.FAILED.value
+        self.passed += done if required == "keep_out" else bool(row["criteria_met"])
         self.violating += row.get("keepout_violations", 0) > 0
         self.keepout_violations += int(row.get("keepout_violations", 0))
         if "keepout_shape" in row:

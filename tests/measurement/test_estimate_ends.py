@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from crossings import changed, crossings, plain_sniffer, read, sniffer_of
+from crossings import BACKGROUND, changed, crossings, plain_sniffer, read, sniffer_of
 
 from measurement.estimate import estimate, over_time
 from measurement.estimate.fit.signals import make_signals
@@ -92,3 +92,14 @@ def test_so2_that_may_still_come_is_named_with_what_to_do():
         "SO2 does not stand out, and may still come: its delay is not stated, and may be up to 30 s; state it, or record longer"
         " after the passes",
     )
+
+
+def test_so2_that_may_have_come_in_a_gap_is_waited_for():
+    # Two passes, then a gap in which the SO2 came, and five minutes of clean air: 0.25 % was "below", quality B.
+    spec = plain_sniffer(3.0, 2.0, so2_noise=1.0, co2_noise=0.5, delay_s=25.0)
+    passes = crossings(0.25, duration=22.0, interval=12.0, meander=0.3, width=1.0, first=4.0)
+    readings = read(spec, np.vstack([passes, np.tile(BACKGROUND, (3230, 1))]), seed=1)
+    kept = (readings.time < 22.0) | (readings.time > 51.0)
+    unknown = changed(spec, "so2", t90_sd=math.inf, delay_sd_s=math.inf)
+    found = estimate(Readings(readings.time[kept], readings.values[kept]), unknown)
+    assert [verdict.verdict for verdict in found.verdicts] == ["open", "open"]

@@ -94,7 +94,7 @@ def read_flight(path: Path, config: LogConfig) -> LoggedFlight:
         ) from None
     table.columns = table.columns.map(str).str.strip()
     names = names.dropna().str.strip()
-    if len(twice := names[names.duplicated() & ~names.str.fullmatch(_NUMBER)]):
+    if len(twice := names[names.duplicated() & names.isin([*config.columns.values(), *TRUE_COLUMNS])]):
         raise MeasurementError(f"'{path}' has the column '{twice.iloc[0]}' twice; rename or remove one of them")
     if table.empty:
         raise MeasurementError(f"'{path}' has a head line and 0 readings; it needs a row per reading")

@@ -168,7 +168,7 @@ def _reasons(law: str) -> Mapping[str, str]:
                 f"steering law '{law}' has the task {task!r} in cannot{did_you_mean(str(task), tasks) or ';'} tasks are"
                 f" {' and '.join(tasks)}"
             )
-        if not isinstance(reason, str) or not reason:
+        if not isinstance(reason, str):
             raise PluginError(f"steering law '{law}' has cannot['{task}'] = {reason!r}; give the reason in words")
     found: Mapping[str, str] = reasons
     return found

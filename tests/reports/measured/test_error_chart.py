@@ -47,3 +47,9 @@ def test_only_flights_of_one_fuel_are_drawn_beside_each_other():
     assert "side by side" not in once.caption
     np.testing.assert_allclose(often.panels[0].lines[0].x, [0.05, 0.095, 0.105, 1.0])
     assert "of one sensor and fuel are drawn side by side" in often.caption
+
+
+@pytest.mark.parametrize("found", [[-0.02, -0.01, -0.3], [np.nan, np.nan, np.nan]])
+def test_where_no_result_is_above_0_the_scale_is_that_of_the_fuels(found):
+    (panel, _) = flight_charts.error_chart(_results([0.05, 0.1, 1.0], found)).panels
+    assert panel.y_range == pytest.approx((0.01, 1.5))

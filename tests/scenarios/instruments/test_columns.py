@@ -113,6 +113,14 @@ class Also(Bare):
     FIGURES = ("y_peak_ppb",)
 class Nameless:
     def read(self, *_): return ()
+class OfItsOwn(Bare):
+    def __init__(self, *_): self.COLUMNS = ("own_ppb",)
+class Pair(Bare):
+    FIGURES = ("y_peak_ppb",)
+    def evaluate(self, column, since):
+        return Evaluation(columns=np.ones((len(column("time_s")), 1)), figures={"y_peak_ppb": np.ones(2)})
+class Words(Bare):
+    def evaluate(self, column, since): return Evaluation(columns=np.full((len(column("time_s")), 1), "x"))
 """
 
 
@@ -152,6 +160,12 @@ def test_an_instrument_that_is_evaluated_needs_no_figures_and_no_tables(tmp_path
     assert "y.csv" not in study.tables
 
 
+def test_an_object_may_have_columns_of_its_own(tmp_path):
+    assert evaluated(tmp_path, "OfItsOwn").history["own_ppb"].unique().tolist() == [1.0]
+    (tmp_path / "own.py").write_text(EVALUATED, encoding="utf-8")
+    check_without_design(load_study("sweep_nu", [f'payload=["{tmp_path / "own.py"}:OfItsOwn"]']))
+
+
 def test_a_figure_that_is_declared_and_not_returned_is_empty_and_a_row_of_a_table_keeps_its_flight(tmp_path):
     result = evaluated(tmp_path, "Peak")
     assert result.row["y_peak_ppb"] == 3.0
@@ -165,6 +179,8 @@ def test_a_figure_that_is_declared_and_not_returned_is_empty_and_a_row_of_a_tabl
         ("Undeclared", ": evaluate() returned the figure 'y_peak_ppb', which FIGURES does not name; add it there"),
         ("UndeclaredTable", ": evaluate() returned the table 'y.csv', which TABLES does not name; add it there"),
         ("Short", ": evaluate() returned columns of shape (3, 1); it has to be (51, 1): a row for each sample of the flight"),
+        ("Pair", ": figure 'y_peak_ppb' of evaluate() returned array([1., 1.]); it has to return a number, a truth value, text or"),
+        ("Words", "it has to return columns of numbers"),
         ("Plain", ": evaluate() returned [1.0]; it has to return an Evaluation"),
         ("Late", " failed in evaluate(): ValueError: late (own.py:27)"),
         ("Misspelt", " the flight's record has no column 'times_s'; did you mean 'time_s'? (own.py:29)"),

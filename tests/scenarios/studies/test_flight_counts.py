@@ -52,6 +52,10 @@ def test_the_exit_status_is_about_every_criterion_unless_keeping_out_alone_is_re
     # The flight that lost its aircraft kept out; that which was never flown did not.
     assert alone.passed == alone.kept_out == 2
     assert alone.exit_line() == "exit status 1: 2 of 4 flights kept out, as required of each"
+    # What failed after its flight, as an instrument may, kept out, and is not done.
+    failed = [{**each, "required": "keep_out", "outcome": "failed"} for each in ROWS if each.get("kept_out")]
+    assert FlightCounts.of(failed, planned=2).kept_out == 2
+    assert FlightCounts.of(failed, planned=2).passed == 0
     # The status is 0 where every flight did it, and none while flights are missing.
     met = [row for row in ROWS if row["criteria_met"]]
     assert FlightCounts.of(met, planned=1).exit_line() == "exit status 0: 1 of 1 flight met every criterion, as required of it"
