@@ -92,7 +92,7 @@ def estimates(
                     strict=True,
                 ):
                     entry = {"figure": figure, "condition": condition, "entrant": entrants[i].name}
-                    found.append(entry | without_nan(asdict(estimate)) | {"as_good": estimate.as_good})
+                    found.append(entry | without_nan(asdict(estimate)))
     return found
 
 
