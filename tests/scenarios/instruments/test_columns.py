@@ -194,16 +194,17 @@ def test_what_fails_after_the_flight_leaves_what_is_known_of_it(name, words, tmp
     assert words in row["message"]
 
 
-def test_an_aircraft_that_has_diverged_has_whatever_fails_after_it(tmp_path, monkeypatch):
+@pytest.mark.parametrize(("outcome", "kept_out"), [("diverged", False), ("aircraft_lost", True)])
+def test_an_aircraft_that_is_gone_is_gone_whatever_fails_after_it(outcome, kept_out, tmp_path, monkeypatch):
     figures_of = flight.flight_figures
 
-    def diverged(plan, record):
+    def gone(plan, record):
         figures, found = figures_of(plan, record)
-        return figures | {"outcome": "diverged"}, found
+        return figures | {"outcome": outcome}, found
 
-    monkeypatch.setattr(flight, "flight_figures", diverged)
+    monkeypatch.setattr(flight, "flight_figures", gone)
     row = evaluated(tmp_path, "Late").row
-    assert (row["outcome"], row["kept_out"], row["criteria_met"]) == ("diverged", False, False)
+    assert (row["outcome"], row["kept_out"], row["criteria_met"]) == (outcome, kept_out, False)
     assert "failed in evaluate(): ValueError: late" in row["message"]
 
 
