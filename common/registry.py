@@ -132,7 +132,7 @@ class Registry(Generic[Part]):
         return part
 
     def _without_name(self, name: str, file: str) -> PluginError:
-        return PluginError(f"{self.words} '{name}' is a file without the name of a part in it; give {file}:NAME")
+        return PluginError(f"{self.words} '{name}' names a file, and no part in it; give {file}:NAME")
 
     def _known(self) -> dict[str, Part]:
         if not self._complete:

@@ -74,8 +74,9 @@ def next_step(quality: Quality | str, *, passes: int, undecided: bool, noise: fl
         return "Next: check the CO2 sensor, and measure again in the plume."
     if quality == _WITHOUT:
         return (
-            "Next: correct what the reason for quality C names; or analyse apart, as logs of their own, those parts of the log that"
-            " are free of it, each with a whole crossing of the plume; or measure again."
+            "Next: correct what the reason for quality C names, or record longer where it is that the record is short; or analyse"
+            " apart, as logs of their own, those parts of the log that are free of it, each with a whole crossing of the plume; or"
+            " measure again."
         )
     if not undecided:
         return ""

@@ -101,7 +101,10 @@ def _figures(runs: Sequence[Run]) -> list[Block]:
     if len({len(run.data.summary) for run in runs}) > 1:
         text += " There is no difference from a run with another number of flights; those of the paired flights are below."
     else:
-        text += " There is no difference of a figure that another number of flights has; those of the paired flights are below."
+        text += (
+            " Where runs have a figure of different numbers of flights, no difference is shown; those of the paired flights are"
+            " below."
+        )
     return [Text(text), side_by_side(runs)]
 
 

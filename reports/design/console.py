@@ -12,12 +12,18 @@ from reports.document.console import console_table, wide_console
 def print_summary(record: Record) -> None:
     """Print what a design's record says, in brief."""
     design = complete(record)
+    required = design["required"]
+    asked = f"{required['perturbed_gain_db']:g} dB and {required['perturbed_phase_deg']:g}°"
     tables = [
         ("Equilibria", trim_table(design, extreme_trims(design))),
         ("Poles of the grid", pole_table(design)),
         (f"Poles at {speed(design['design_airspeed_mps'])} in level flight [1/s]", _poles(at_middle(design, design["poles"])[0])),
-        ("Margins, the worst of grid and points between; servos, engine and computing delay included", worst_margin_table(design)),
-        ("Margins when perturbed, the worst of loops, grid and points between", robustness_table(design)),
+        (
+            "Margins, the worst of grid and points between, with servos, engine and computing delay; of all controls at once"
+            " nothing is required",
+            worst_margin_table(design),
+        ),
+        (f"Margins when perturbed, the worst of loops, grid and points between; required are {asked}", robustness_table(design)),
         ("Step responses", step_table(design)),
     ]
     console = wide_console()

@@ -209,7 +209,7 @@ class FlightCounts:
         about = {"criteria": "met every criterion", "keep_out": "kept out"}
         kinds = [about[kind] for kind in about if self.required[kind]] or ["met every criterion"]
         flights, each = ("flight", "it") if self.planned == 1 else ("flights", "each")
-        did = f"{self.passed} of {self.planned} {flights} {' or '.join(kinds)}, as required of {each}"
+        did = f"{self.passed} of {self.planned} {flights} {' or '.join(kinds)}, which is required of {each}"
         if left or self.done < self.planned:
             return f"so far {did} for exit status 0"
         return f"exit status {int(self.passed != self.planned)}: {did}"

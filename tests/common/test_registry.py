@@ -53,4 +53,4 @@ def test_a_part_that_is_lent_or_registered_by_others_is_none_of_its_own(tmp_path
 def test_a_file_without_the_name_of_a_part_is_told_to_be_named(name):
     with pytest.raises(PluginError) as refused:
         Registry("part", folder="scenarios.search").get(name)
-    assert str(refused.value) == f"part '{name}' is a file without the name of a part in it; give mine.py:NAME"
+    assert str(refused.value) == f"part '{name}' names a file, and no part in it; give mine.py:NAME"

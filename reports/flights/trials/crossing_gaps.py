@@ -33,7 +33,7 @@ def gap_lines(trial: Trial, *, only: bool = True) -> list[str]:
     which = "The flight" if len(flown) == 1 else f"{len(gaps):,} of {len(flown):,} flights"
     name = "" if len(flown) == 1 else f" {told_name(trial, row)},"
     line = (
-        f"{which} settled, and then did not cross the plume for more than {_INTERVALS:g} crossing intervals before the vessel's"
+        f"{which}, once settled, did not cross the plume for more than {_INTERVALS:g} crossing intervals before the vessel's"
         f" last manoeuvre had ended; longest:{name} {gap_words(longest)}."
     )
     return [line if only else f"{trial.title}: {line[0].lower()}{line[1:]}"]

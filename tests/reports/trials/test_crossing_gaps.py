@@ -34,7 +34,7 @@ def test_the_gap_of_a_flight_that_settled_before_the_last_manoeuvre_had_ended_is
     trial = turning(run)
     assert crossing_gap(trial, trial.rows.iloc[0]) == (110.0, 210.0)
     (line,) = gap_lines(trial)
-    assert line.startswith("1 of 2 flights settled, and then did not cross the plume for more than 5 crossing intervals")
+    assert line.startswith("1 of 2 flights, once settled, did not cross the plume for more than 5 crossing intervals")
     assert line.endswith("longest: turns_00000, 100 s from 110 s on.")
     assert gap_lines(trial, only=False) == [f"Turns: {line}"]
     assert f"Turns: {line}" in flight_verdict(trial.run, read_trials(trial.run)).failures

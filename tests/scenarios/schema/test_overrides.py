@@ -54,7 +54,7 @@ def test_the_short_word_for_the_speed_ratio_gets_the_key_that_sets_it(scenario, 
         ("vessel.manoeuvres=[{at_s=1, turn_dg=3}]", "did you mean 'vessel.manoeuvres.0.turn_deg'?"),
         ("turbulence.level=sever", "turbulence.level: value is 'sever'; did you mean 'severe'? it must be 'none', 'light'"),
         ("guidance.law=lyapunow", "guidance.law: unknown steering law 'lyapunow'; did you mean 'lyapunov'? known are ardupilot_l1"),
-        ("guidance.law=mine.py", "steering law 'mine.py' is a file without the name of a part in it; give mine.py:NAME"),
+        ("guidance.law=mine.py", "steering law 'mine.py' names a file, and no part in it; give mine.py:NAME"),
         ("study=monte_karlo", "study is 'monte_karlo'; did you mean 'monte_carlo'? it must be one of"),
         ("extends=sim3", "extends stands in a scenario file"),
         # A digit to Unicode that is no decimal.

@@ -78,4 +78,4 @@ def test_an_aircraft_that_is_lost_before_its_last_crossing_is_not_met_and_decide
         "flights: 1 planned, 1 flown, 0 completed, 0 met every criterion, 1 lost the aircraft;"
     )
     about = "kept out" if required == "keep_out" else "met every criterion"
-    assert f"exit status {int(not status)}: {int(status)} of 1 flight {about}, as required of it" in result.summary.lines
+    assert f"exit status {int(not status)}: {int(status)} of 1 flight {about}, which is required of it" in result.summary.lines

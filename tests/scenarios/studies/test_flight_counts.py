@@ -47,23 +47,25 @@ def test_flights_are_counted_as_planned_flown_completed_and_met():
 def test_the_exit_status_is_about_every_criterion_unless_keeping_out_alone_is_required():
     every = FlightCounts.of(ROWS, planned=4)
     assert every.passed == 1
-    assert every.exit_line() == "exit status 1: 1 of 4 flights met every criterion, as required of each"
+    assert every.exit_line() == "exit status 1: 1 of 4 flights met every criterion, which is required of each"
     alone = FlightCounts.of(({**each, "required": "keep_out"} for each in ROWS), planned=4)
     # The flight that lost its aircraft kept out; that which was never flown did not.
     assert alone.passed == alone.kept_out == 2
-    assert alone.exit_line() == "exit status 1: 2 of 4 flights kept out, as required of each"
+    assert alone.exit_line() == "exit status 1: 2 of 4 flights kept out, which is required of each"
     # What failed after its flight, as an instrument may, kept out, and is not done.
     failed = [{**each, "required": "keep_out", "outcome": "failed"} for each in ROWS if each.get("kept_out")]
     assert FlightCounts.of(failed, planned=2).kept_out == 2
     assert FlightCounts.of(failed, planned=2).passed == 0
     # The status is 0 where every flight did it, and none while flights are missing.
     met = [row for row in ROWS if row["criteria_met"]]
-    assert FlightCounts.of(met, planned=1).exit_line() == "exit status 0: 1 of 1 flight met every criterion, as required of it"
+    assert (
+        FlightCounts.of(met, planned=1).exit_line() == "exit status 0: 1 of 1 flight met every criterion, which is required of it"
+    )
     missing = FlightCounts.of(met, planned=2).exit_line()
-    assert missing == "so far 1 of 2 flights met every criterion, as required of each for exit status 0"
+    assert missing == "so far 1 of 2 flights met every criterion, which is required of each for exit status 0"
     # A run whose comparisons are still to be flown has not ended either.
     without_comparisons = FlightCounts.of(met, planned=1).exit_line(left=3)
-    assert without_comparisons == "so far 1 of 1 flight met every criterion, as required of it for exit status 0"
+    assert without_comparisons == "so far 1 of 1 flight met every criterion, which is required of it for exit status 0"
 
 
 def test_a_bound_follows_from_the_flights_that_were_flown():

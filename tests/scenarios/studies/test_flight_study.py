@@ -192,7 +192,7 @@ def test_what_happened_is_reported_in_lines(listed, tmp_path):
         "flights: 2 planned, 0 flown, 0 completed, 0 met every criterion",
         *(f"  {trial}: 1 planned, 0 flown, 0 completed, 0 met every criterion" for trial in ("one", "two")),
     ]
-    assert lines[3] == "exit status 1: 0 of 2 flights kept out, as required of each"
+    assert lines[3] == "exit status 1: 0 of 2 flights kept out, which is required of each"
     assert lines[4].startswith("    one_00000: infeasible: the vessel moves at up to")
 
 
