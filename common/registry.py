@@ -104,7 +104,7 @@ class Registry(Generic[Part]):
         PluginError : there is none, or it does not load, or it lacks a method, or is an object, of which no flight makes its own
         """
         if name.endswith(".py:"):
-            raise self._without_name(name, name.removesuffix(":"))
+            raise self._without_name(name)
         if is_file_part(name):
             return self.checked(name, self._callable(name, part_in_file(name)))
         if name not in self._parts and name.isidentifier() and importlib.util.find_spec(f"{self._folder}.{name}"):
@@ -120,7 +120,7 @@ class Registry(Generic[Part]):
             except Exception as error:
                 raise PluginError(f"{self.words} '{name}' of package {found.value}: {type(error).__name__}: {error}") from error
         if name.endswith(".py"):
-            raise self._without_name(name, name)
+            raise self._without_name(name)
         names = self.names()
         raise PluginError(
             f"unknown {self.words} '{name}'{did_you_mean(name, names) or ';'} known are {', '.join(names)}, or FILE.py:NAME"
@@ -131,8 +131,8 @@ class Registry(Generic[Part]):
             raise PluginError(f"{self.words} '{name}' is an object of class {type(part).__name__}; give the class itself")
         return part
 
-    def _without_name(self, name: str, file: str) -> PluginError:
-        return PluginError(f"{self.words} '{name}' names a file, and no part in it; give {file}:NAME")
+    def _without_name(self, name: str) -> PluginError:
+        return PluginError(f"{self.words} '{name}' names a file, and no part in it; give {name.removesuffix(':')}:NAME")
 
     def _known(self) -> dict[str, Part]:
         if not self._complete:

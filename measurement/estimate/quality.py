@@ -146,7 +146,7 @@ def noise_alone(misfit: float, samples: int) -> bool:
 def not_arrived(fsc: float, deviation: float, read: Sequence[float], doses: Sequence[float]) -> tuple[str, ...]:
     """Return the problem of SO2 whose delay is not stated, and which may not have arrived yet, if it may not.
 
-    SO2 that stands out has. Without it most of the CO2 must be from so long before the end that any delay has gone by.
+    SO2 that stands out has. Without it most of the CO2 must be followed by readings for as long as any delay.
 
     Parameters
     ----------

@@ -151,8 +151,7 @@ def _difference_sentences(compared: Compared) -> str:
     others = "" if at_random else " These flights are no random sample: it says how far they agree, not what others would show."
     same = [of.figure.name.lower() for name, of in compared.found.items() if of.is_none and name != "keepout_violations"]
     equal = f" The same in every pair that has them: {'; '.join(same)}." if same else ""
-    rows = compared.pairs.before
-    samples = len(rows[["trial", "seed"]].drop_duplicates()) + max(0, int(rows["seed"].isna().sum()) - 1)
+    samples = len(set(compared.pairs.samples.tolist()))
     shared = (
         f" Pairs that share their random sample count as one, with the mean of their differences: there are {samples:,} of these."
         if samples < len(compared.pairs)

@@ -118,7 +118,8 @@ def differences(pairs: Pairs) -> dict[str, Difference]:
         change = after - before
         known = np.isfinite(change)
         if known.any() and np.any(before[known] != 0.0) | np.any(after[known] != 0.0) | (name == "keepout_violations"):
-            samples = _by_sample(change[known], pairs.before[known])
+            means = pd.Series(change[known]).groupby(pairs.samples[known]).mean()
+            samples = np.asarray(means, dtype=np.float64)
             # The exact interval of order statistics: for any distribution, however few flights and many ties.
             interval = quantile_interval(samples, 0.5, CONFIDENCE)
             found[name] = Difference(
@@ -130,11 +131,3 @@ def differences(pairs: Pairs) -> dict[str, Difference]:
                 high=interval.high,
             )
     return found
-
-
-def _by_sample(change: Array, rows: pd.DataFrame) -> Array:
-    """Return the mean difference of each random sample: flights of a trial that have one seed share it."""
-    # One without a seed is a sample of its own.
-    alone = np.where(rows["seed"].isna(), np.arange(len(rows)), -1)
-    means = pd.Series(change).groupby([rows["trial"].to_numpy(), rows["seed"].to_numpy(), alone], dropna=False).mean()
-    return np.asarray(means, dtype=np.float64)

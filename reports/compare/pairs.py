@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 import pandas as pd
 
 from reports.compare.runs import Run
@@ -59,6 +60,13 @@ class Pairs:
         before, after = (rows["sulphur_verdict"].fillna("").to_numpy(dtype=str) for rows in (self.before, self.after))
         differs: Mask = before != after
         return differs
+
+    @property
+    def samples(self) -> npt.NDArray[np.int64]:
+        """Number of each pair's random sample: pairs of a trial that have one seed share it, and one without a seed is alone."""
+        alone = np.where(self.before["seed"].isna(), np.arange(len(self)), -1)
+        numbers = self.before.groupby(["trial", "seed", alone], dropna=False).ngroup()
+        return np.asarray(numbers, dtype=np.int64)
 
     @property
     def names(self) -> list[str]:

@@ -16,7 +16,6 @@ AREA, SHIP, PLUME = "keep-out area", "ship", "plume"
 _SEEN = 0.03
 """Size of what a caption names at least, over the width of its panel: some five points, as of the marks on a track."""
 
-
 _POINTS = 500
 """Points of a line that are looked at."""
 
@@ -28,7 +27,7 @@ def seen(panels: Sequence[Panel]) -> list[str]:
 
 def _is(line: Line, what: str) -> bool:
     """Return whether a line is of the ship, the area or the plume: not the track of the ship, nor a place on the plume's axis."""
-    return line.label.startswith((f"{what}, ", "plume's axis" if what == PLUME else f"{what}, "))
+    return line.label.startswith((f"{what}, ", *(["plume's axis"] if what == PLUME else [])))
 
 
 def _large(line: Line, panel: Panel) -> bool:

@@ -77,11 +77,11 @@ def paired_estimates(
     whole = np.logical_and(known[:, known.any(axis=0)].all(axis=1), known.any())
     means = np.array([_mean(row) for row in values])
     sampled = np.array([_means(_scattered(row, strata, confidence), columns) for row in values])
-    sampled[[not _has_several(strata[row]) for row in known]] = np.nan
+    sampled[[not _freedom(strata[row]) for row in known]] = np.nan
     worth = np.where(whole, means if greater_is_better else -means, np.nan)
     best = int(np.nanargmax(worth)) if np.isfinite(worth).any() else -1
     tail = 50.0 * (1.0 - confidence)
-    freedom = sum(max(0, int(np.count_nonzero(strata[known.any(axis=0)] == stratum)) - 1) for stratum in np.unique(strata))
+    freedom = _freedom(strata[known.any(axis=0)])
     as_good = _may_be_best(worth, sampled if greater_is_better else -sampled, freedom, confidence)
     found = []
     for i, mean in enumerate(means):
@@ -108,21 +108,17 @@ def paired_estimates(
 
 def _scattered(row: Array, strata: npt.NDArray[Any], confidence: float) -> Array:
     """Return the figures of one entrant with deviations from the mean of each stratum as large as they have to be."""
-    scattered, freedom = row.copy(), 0
+    scattered, known = row.copy(), np.isfinite(row)
+    if not (freedom := _freedom(strata[known])):
+        return scattered
+    wider = _wider(freedom, 0.5 + 0.5 * confidence)
     for stratum in np.unique(strata):
-        within = (strata == stratum) & np.isfinite(row)
+        within = (strata == stratum) & known
         count = int(np.count_nonzero(within))
         if count > 1:
             mean = row[within].mean()
-            scattered[within] = mean + (row[within] - mean) * math.sqrt(count / (count - 1.0))
-            freedom += count - 1
-    if not freedom:
-        return scattered
-    means = np.array(
-        [np.nanmean(row[strata == stratum]) if np.isfinite(row[strata == stratum]).any() else 0.0 for stratum in strata]
-    )
-    wider: Array = means + (scattered - means) * _wider(freedom, 0.5 + 0.5 * confidence)
-    return wider
+            scattered[within] = mean + (row[within] - mean) * math.sqrt(count / (count - 1.0)) * wider
+    return scattered
 
 
 def _wider(freedom: int, level: float) -> float:
@@ -160,9 +156,9 @@ def _may_be_best(worth: Array, sampled: Array, freedom: int, confidence: float) 
     return found
 
 
-def _has_several(strata: npt.NDArray[Any]) -> bool:
-    """Return whether two flights are of one stratum."""
-    return bool(len(np.unique(strata)) < len(strata))
+def _freedom(strata: npt.NDArray[Any]) -> int:
+    """Return the degrees of freedom of flights about the means of their strata; 0 where no two are of one stratum."""
+    return len(strata) - len(np.unique(strata))
 
 
 def _mean(row: Array) -> float:

@@ -18,17 +18,17 @@ from scenarios.errors import InputError
 Answer = TypeVar("Answer")
 
 _TOLD = (AircraftError, InfeasibleError, InputError, LawError, MeasurementError, MemoryError, PluginError)
-"""Errors that say themselves what is wrong, or are none of the part's."""
+"""Errors that say themselves what is wrong, or do not come from the part."""
 
 _OTHERS = ("<", plain.__file__)
-"""Files of frames that are none of a part's: text of dataclasses, and what passes calls on to a shape."""
+"""Files of frames that are not of a part: text of dataclasses, and what passes calls on to a shape."""
 
 _SHOWN = 80
 """Letters of an answer that a message shows at most."""
 
 
 def is_own(part: object) -> bool:
-    """Return whether an object is a part of a user's own: of a class that is none of the project's."""
+    """Return whether an object is a part of a user's own: of a class from outside the project."""
     return not type(part).__module__.startswith(("scenarios.", "gnc."))
 
 

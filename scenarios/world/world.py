@@ -67,7 +67,7 @@ def vessel_of(scenario: Scenario) -> VesselTruth:
 
     Raises
     ------
-    PluginError : it has no such track, or that is none: it cannot be made, or its motion and its course are of no use
+    PluginError : it has no such track, or it cannot be made, or its motion and its course are of no use
     InputError : its file cannot be read, or does not cover the longest flight
     """
     config, duration = scenario.vessel, scenario.flight.duration_max_s

@@ -132,6 +132,7 @@ HEAD = "time_s,so2_ppb,co2_ppm\n"
         (ROWS.replace(".0", ".5").replace("2.5", "0.5"), "has no head line, but numbers in its first line"),
         (HEAD + '"0,0","2,5","420,1"\n', "or 2024-05-01T12:00:00.0; write decimals with a point, as in 0.0"),
         (HEAD + '0,"2,5",420\n', "it must hold numbers, or be empty; write decimals with a point, as in 2.5"),
+        ("time_s,so2_ppb,so2_ppb,co2_ppm\n1,2,2,420\n", "has the column 'so2_ppb' twice; rename or remove one of them"),
         (HEAD + '"' + ROWS, "has a quotation mark in line 2 that is not closed; remove it"),
     ],
 )
