@@ -22,7 +22,10 @@ def type_fault(value: Any, prefix: str = "") -> str:
     """
     kind: Any = type(value)
     hints = _hints(kind)
-    faults = (_fault(getattr(value, f.name), hints[f.name], f"{prefix}{f.name}") for f in dataclasses.fields(value))
+    faults = (
+        _fault(getattr(value, f.name), hints[f.name], f"{prefix}{f.name}")
+        for f in dataclasses.fields(value)
+    )
     return next(filter(None, faults), "")
 
 
@@ -39,7 +42,11 @@ def _fault(value: Any, kind: Any, name: str) -> str:
     if arguments:
         return _tuple_fault(value, kind, arguments, name)
     if kind is float:
-        return "" if isinstance(value, numbers.Real) and not isinstance(value, bool) else _told(value, "a number", name)
+        return (
+            ""
+            if isinstance(value, numbers.Real) and not isinstance(value, bool)
+            else _told(value, "a number", name)
+        )
     if not isinstance(value, kind):
         return _told(value, {str: "text"}.get(kind, f"of type {kind.__name__}"), name)
     return type_fault(value, f"{name}.") if dataclasses.is_dataclass(kind) else ""
@@ -47,10 +54,14 @@ def _fault(value: Any, kind: Any, name: str) -> str:
 
 def _tuple_fault(value: Any, kind: Any, arguments: tuple[Any, ...], name: str) -> str:
     of_any_length = arguments[1:] == (...,)
-    if not isinstance(value, (tuple, list) if of_any_length else tuple) or not (of_any_length or len(value) == len(arguments)):
+    if not isinstance(value, (tuple, list) if of_any_length else tuple) or not (
+        of_any_length or len(value) == len(arguments)
+    ):
         return _told(value, f"of type {kind}".replace("aircraft.spec.", ""), name)
     kinds = [arguments[0]] * len(value) if of_any_length else arguments
-    return next(filter(None, (_fault(item, kinds[i], f"{name}[{i}]") for i, item in enumerate(value))), "")
+    return next(
+        filter(None, (_fault(item, kinds[i], f"{name}[{i}]") for i, item in enumerate(value))), ""
+    )
 
 
 def _told(value: Any, demanded: str, name: str) -> str:

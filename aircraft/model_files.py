@@ -87,5 +87,9 @@ def read_xml(path: Path) -> "ET.ElementTree[ET.Element]":
         return ET.parse(path)
     except OSError as error:
         raise AircraftError(f"{path}: cannot be read: {error.strerror}; check the file") from None
-    except (ET.ParseError, LookupError, ValueError) as error:  # the last two by encodings that the parser does not know
+    except (
+        ET.ParseError,
+        LookupError,
+        ValueError,
+    ) as error:  # the last two by encodings that the parser does not know
         raise AircraftError(f"{path}: not valid XML: {error}; correct it") from None

@@ -208,14 +208,18 @@ class AircraftSpec:
     @property
     def actuators(self) -> tuple[Actuator, ...]:
         """Return the actuators: its own ones, or one for each control input."""
-        return self.own_actuators or tuple(Actuator(name=i.name, commands=i.commands) for i in self.inputs)
+        return self.own_actuators or tuple(
+            Actuator(name=i.name, commands=i.commands) for i in self.inputs
+        )
 
     def input(self, name: str) -> ControlInput:
         """Return the control input called ``name``; raises AircraftError if there is no such input."""
         for control_input in self.inputs:
             if control_input.name == name:
                 return control_input
-        raise AircraftError(f"aircraft '{self.name}' has no input '{name}'; it has {', '.join(i.name for i in self.inputs)}")
+        raise AircraftError(
+            f"aircraft '{self.name}' has no input '{name}'; it has {', '.join(i.name for i in self.inputs)}"
+        )
 
 
 def surface(name: str) -> ControlInput:
@@ -241,4 +245,9 @@ def servo_position(name: str) -> DrivenState:
 
 def propeller_speed() -> DrivenState:
     """Return the speed of an only engine's propeller [rad/s]."""
-    return DrivenState(name="propeller_speed", position="propulsion/engine/propeller-rpm", input="throttle", scale=RAD_S_PER_RPM)
+    return DrivenState(
+        name="propeller_speed",
+        position="propulsion/engine/propeller-rpm",
+        input="throttle",
+        scale=RAD_S_PER_RPM,
+    )

@@ -29,7 +29,9 @@ def check_spec(spec: AircraftSpec) -> None:
     if fault := type_fault(spec):
         raise AircraftError(f"aircraft '{spec.name}': {fault}; correct its spec")
     if not NAME.fullmatch(spec.name):
-        raise AircraftError(f"'{spec.name}' is no name of an aircraft; use letters, digits, '_', '-' and '.': correct its spec")
+        raise AircraftError(
+            f"'{spec.name}' is no name of an aircraft; use letters, digits, '_', '-' and '.': correct its spec"
+        )
     names = [i.name for i in spec.inputs]
     if not set(_INPUTS) <= set(names) <= {*_INPUTS, *_MORE_INPUTS} or len(names) > len(set(names)):
         raise AircraftError(
@@ -45,7 +47,11 @@ def _faults(spec: AircraftSpec) -> Iterator[str]:
     names, driven = [i.name for i in spec.inputs], [state.input for state in spec.driven_states]
     for i, state in enumerate(spec.driven_states):
         if state.input not in names or state.input in driven[:i]:
-            why = "as another one does" if state.input in names else f"which is none of {', '.join(names)}"
+            why = (
+                "as another one does"
+                if state.input in names
+                else f"which is none of {', '.join(names)}"
+            )
             yield f"driven state '{state.name}' follows input '{state.input}', {why}"
     for control in spec.inputs:
         if not control.commands:
@@ -61,7 +67,9 @@ def _faults(spec: AircraftSpec) -> Iterator[str]:
             yield f"'{actuator.name}' is no name of an actuator, or taken; use letters, digits, '_', '-' and '.'"
         if not actuator.commands:
             yield f"actuator '{actuator.name}' has no commands; name the JSBSim properties that command it"
-        elif actuator.feedback is None and not any(set(actuator.commands) <= set(i.commands) for i in spec.inputs):
+        elif actuator.feedback is None and not any(
+            set(actuator.commands) <= set(i.commands) for i in spec.inputs
+        ):
             yield f"actuator '{actuator.name}' has commands of its own and no feedback; name what reads command and position"
     least, most = SETTLE_TIMES
     if not least <= spec.settle_time <= most:

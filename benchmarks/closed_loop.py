@@ -47,7 +47,12 @@ Timed = Callable[[], float]
 def main() -> None:
     """Print the benchmark."""
     # So many crossings are never reached: the flight ends by its duration.
-    words = ["vessel.speed_ratio=0.5", "start.course_deg=0.0", f"flight.duration_max_s={SIMULATED_TIME}", "flight.crossings=10000"]
+    words = [
+        "vessel.speed_ratio=0.5",
+        "start.course_deg=0.0",
+        f"flight.duration_max_s={SIMULATED_TIME}",
+        "flight.crossings=10000",
+    ]
     scenario = checked(load_document("sweep_nu", words), Scenario)
     with tempfile.TemporaryDirectory() as folder:
         setup = x8_setup(scenario, Path(folder))[1]
@@ -58,8 +63,17 @@ def main() -> None:
         for _ in range(ROUNDS):
             for name, run in runs.items():
                 times[name].append(run())
-        other_parts = {name: statistics.median(part() for _ in range(ROUNDS)) for name, part in parts.items()}
-        print("guidance: " + ("compiled" if compiled_modules() else "its sources are run; `make fast` compiles them"))
+        other_parts = {
+            name: statistics.median(part() for _ in range(ROUNDS)) for name, part in parts.items()
+        }
+        print(
+            "guidance: "
+            + (
+                "compiled"
+                if compiled_modules()
+                else "its sources are run; `make fast` compiles them"
+            )
+        )
         _report(times)
         named = ", ".join(f"{name} {1e3 * seconds:.1f}" for name, seconds in other_parts.items())
         print(f"the other parts of a flight take {1e3 * sum(other_parts.values()):.1f} ms: {named}")
@@ -68,7 +82,9 @@ def main() -> None:
     report_reports(STUDIES)
 
 
-def _loops(scenario: Scenario, setup: VehicleSetup, folder: Path) -> tuple[dict[str, Timed], dict[str, Timed]]:
+def _loops(
+    scenario: Scenario, setup: VehicleSetup, folder: Path
+) -> tuple[dict[str, Timed], dict[str, Timed]]:
     """Return the loops, and the other parts of a flight."""
     if setup.aircraft is None:
         raise TypeError("the benchmark flies an aircraft; give it one")
@@ -93,12 +109,18 @@ def _loops(scenario: Scenario, setup: VehicleSetup, folder: Path) -> tuple[dict[
         vehicle = release(plan, setup)
         return _timed(lambda: fly(plan, vehicle))
 
-    loops: dict[str, Timed] = {"JSBSim": fly_bare, "JSBSim with autopilot": fly_autopiloted, "full closed loop": fly_guided}
+    loops: dict[str, Timed] = {
+        "JSBSim": fly_bare,
+        "JSBSim with autopilot": fly_autopiloted,
+        "full closed loop": fly_guided,
+    }
     parts: dict[str, Timed] = {
         "planning": lambda: _timed(planned),
         "aircraft and release": lambda: _timed(lambda: release(plan, setup)),
         "figures": lambda: _timed(lambda: flight_figures(plan, record)),
-        "time history": lambda: _timed(lambda: flight_history(plan, record).to_parquet(folder / "bench.parquet")),
+        "time history": lambda: _timed(
+            lambda: flight_history(plan, record).to_parquet(folder / "bench.parquet")
+        ),
     }
     return loops, parts
 
@@ -119,7 +141,9 @@ def _report(times: dict[str, list[float]]) -> None:
         over_raw = statistics.median(a / b for a, b in zip(values, raw, strict=True))
         over_autopilot = statistics.median(a / b for a, b in zip(values, autopiloted, strict=True))
         step = 1e6 * median * TIME_STEP / SIMULATED_TIME
-        print(f"{name:24}{step:9.2f}{SIMULATED_TIME / median:11.0f}{over_raw:10.2f}{over_autopilot:13.2f}")
+        print(
+            f"{name:24}{step:9.2f}{SIMULATED_TIME / median:11.0f}{over_raw:10.2f}{over_autopilot:13.2f}"
+        )
     scaled = REFERENCE_STEP * over_raw * SIMULATED_TIME / TIME_STEP
     print(
         f"a flight of {SIMULATED_TIME:g} s: {median:.3f} s, {over_raw:.2f} times JSBSim alone (limit {LOOP_MAX:g});"

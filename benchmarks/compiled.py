@@ -53,7 +53,10 @@ def main() -> int:
             built = build(Path(folder))
         except (BaseError, CompileError, LinkError) as error:
             remedy = "it needs a C compiler and the headers of Python (Debian: apt install gcc python3-dev)"
-            print(f"error: guidance and closed loop cannot be compiled: {error}; {remedy}", file=sys.stderr)
+            print(
+                f"error: guidance and closed loop cannot be compiled: {error}; {remedy}",
+                file=sys.stderr,
+            )
             return 2
         except KeyboardInterrupt:
             print("interrupted; nothing is compiled", file=sys.stderr)
@@ -65,19 +68,27 @@ def main() -> int:
     # Of the sources as they were before: one that was edited meanwhile is noticed.
     write_json(INDEX, {"sources": sources, "modules": modules})
     count = sum(len(names) for names in MODULES.values())
-    print(f"{count} modules of guidance and closed loop are compiled; they are run until a source of the program is edited")
+    print(
+        f"{count} modules of guidance and closed loop are compiled; they are run until a source of the program is edited"
+    )
     return 0
 
 
 def build(folder: Path) -> Path:
     """Compile the modules in a folder of their own, and return the one that holds them by packages."""
-    files = [str(ROOT / package / f"{name}.py") for package, names in MODULES.items() for name in names]
+    files = [
+        str(ROOT / package / f"{name}.py") for package, names in MODULES.items() for name in names
+    ]
     options = [*_MYPY, "--cache-dir", str(folder / "cache")]
     extensions = mypycify([*options, *files], opt_level="3", target_dir=str(folder / "c"))
     for extension in extensions:
         extension.extra_compile_args.append(_SAME_ARITHMETIC)
     command = Distribution({"ext_modules": extensions}).get_command_obj("build_ext")
-    command.build_lib, command.build_temp, command.parallel = str(folder / "lib"), str(folder / "objects"), os.cpu_count()
+    command.build_lib, command.build_temp, command.parallel = (
+        str(folder / "lib"),
+        str(folder / "objects"),
+        os.cpu_count(),
+    )
     command.ensure_finalized()
     command.run()
     return folder / "lib"

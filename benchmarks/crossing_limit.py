@@ -67,7 +67,9 @@ def shortest_period(nu: float, turns: int, *, bank: float, roll_rate: float) -> 
             return _solved(nu, turns, bank=bank, roll_rate=roll_rate, start=start)
         except RuntimeError as error:
             last = error
-    raise RuntimeError(f"no shortest period at nu = {nu:g} with {turns} turns, from {len(STARTS)} starts: {last}")
+    raise RuntimeError(
+        f"no shortest period at nu = {nu:g} with {turns} turns, from {len(STARTS)} starts: {last}"
+    )
 
 
 def _solved(nu: float, turns: int, *, bank: float, roll_rate: float, start: float) -> float:
@@ -75,10 +77,16 @@ def _solved(nu: float, turns: int, *, bank: float, roll_rate: float, start: floa
     import casadi as ca
 
     problem = ca.Opti()
-    states, rolls, period = problem.variable(4, PIECES + 1), problem.variable(1, PIECES), problem.variable()
+    states, rolls, period = (
+        problem.variable(4, PIECES + 1),
+        problem.variable(1, PIECES),
+        problem.variable(),
+    )
 
     def rates(state: "ca.MX", roll: "ca.MX") -> "ca.MX":
-        return ca.vertcat(ca.cos(state[2]) - nu, ca.sin(state[2]), ca.tan(state[3]) / math.tan(bank), roll)
+        return ca.vertcat(
+            ca.cos(state[2]) - nu, ca.sin(state[2]), ca.tan(state[3]) / math.tan(bank), roll
+        )
 
     step = period / PIECES
     for k in range(PIECES):
@@ -87,7 +95,9 @@ def _solved(nu: float, turns: int, *, bank: float, roll_rate: float, start: floa
         second = rates(now + 0.5 * step * first, roll)
         third = rates(now + 0.5 * step * second, roll)
         fourth = rates(now + step * third, roll)
-        problem.subject_to(states[:, k + 1] == now + step / 6.0 * (first + 2.0 * second + 2.0 * third + fourth))
+        problem.subject_to(
+            states[:, k + 1] == now + step / 6.0 * (first + 2.0 * second + 2.0 * third + fourth)
+        )
     problem.subject_to(problem.bounded(-bank, states[3, :], bank))
     problem.subject_to(problem.bounded(-roll_rate, rolls, roll_rate))
     problem.subject_to(states[:2, 0] == 0.0)
@@ -100,10 +110,16 @@ def _solved(nu: float, turns: int, *, bank: float, roll_rate: float, start: floa
     problem.set_initial(period, length)
     problem.set_initial(states[2, :], course)
     turning = np.gradient(course) * PIECES / length
-    problem.set_initial(states[3, :], np.clip(np.arctan(turning * math.tan(bank)), -0.9 * bank, 0.9 * bank))
+    problem.set_initial(
+        states[3, :], np.clip(np.arctan(turning * math.tan(bank)), -0.9 * bank, 0.9 * bank)
+    )
     places = np.cumsum(np.stack([np.cos(course) - nu, np.sin(course)]), axis=1) * length / PIECES
     problem.set_initial(states[:2, :], places - places[:, :1])
-    problem.solver("ipopt", {"print_time": False}, {"print_level": 0, "sb": "yes", "max_iter": 2000, "tol": 1e-9})
+    problem.solver(
+        "ipopt",
+        {"print_time": False},
+        {"print_level": 0, "sb": "yes", "max_iter": 2000, "tol": 1e-9},
+    )
     return float(problem.solve().value(period))
 
 
@@ -124,7 +140,11 @@ def limits(guidance: GuidanceConfig) -> dict[str, object]:
     found: dict[str, list[float | None]] = {"oscillating": [], "going_round": []}
     for nu, (turns, name) in itertools.product(RATIOS, enumerate(found)):
         solved = nu <= ROUND_MAX or turns == 0
-        found[name].append(round(0.5 * shortest_period(nu, turns, bank=bank, roll_rate=ratio), 5) if solved else None)
+        found[name].append(
+            round(0.5 * shortest_period(nu, turns, bank=bank, roll_rate=ratio), 5)
+            if solved
+            else None
+        )
     return {
         "what": "shortest crossing interval times omega_max, two crossings a period, by speed ratio; null where not solved for",
         "source": f"python -m benchmarks.crossing_limit --write; CasADi {version('casadi')} with IPOPT, {PIECES} pieces a period",
@@ -158,7 +178,12 @@ def _figure(guidance: GuidanceConfig, found: dict[str, Any], path: Path) -> None
     (interval, bank), (course, orbit) = figure.subplots(2, 2)
     ratios = np.linspace(0.0, 0.97, 98)
     for shape, label in SHAPES.items():
-        interval.plot(ratios, [designed(guidance, shape, nu) for nu in ratios.tolist()], color=COLOURS[shape], label=label)
+        interval.plot(
+            ratios,
+            [designed(guidance, shape, nu) for nu in ratios.tolist()],
+            color=COLOURS[shape],
+            label=label,
+        )
         made = REFERENCE_SHAPES.get(shape)()
         flown = made.design(
             nu=0.25, speed=guidance.airspeed_mps, heading_rate_max=omega_max(guidance), reserve=0.0, vessel_heading_rate=0.0,
@@ -167,15 +192,27 @@ def _figure(guidance: GuidanceConfig, found: dict[str, Any], path: Path) -> None
         times = np.linspace(0.0, flown.period, 400)
         phases = (flown.omega_0 * times).tolist()
         rates = [flown.heading_rate(phase) for phase in phases]
-        bank.plot(times, [math.degrees(bank_for_heading_rate(rate, flown.speed)) for rate in rates], color=COLOURS[shape])
-        course.plot(times, [math.degrees(flown.course(phase)) for phase in phases], color=COLOURS[shape])
+        bank.plot(
+            times,
+            [math.degrees(bank_for_heading_rate(rate, flown.speed)) for rate in rates],
+            color=COLOURS[shape],
+        )
+        course.plot(
+            times, [math.degrees(flown.course(phase)) for phase in phases], color=COLOURS[shape]
+        )
         along, right = flown.offset(times)
         orbit.plot(right, along, color=COLOURS[shape])
     unit = omega_max(guidance)
     for name, mark in (("oscillating", "o"), ("going_round", "s")):
-        shown = [(nu, value / unit) for nu, value in zip(found["nu"], found[name], strict=True) if value is not None]
+        shown = [
+            (nu, value / unit)
+            for nu, value in zip(found["nu"], found[name], strict=True)
+            if value is not None
+        ]
         label = f"optimal control, {name.replace('_', ' ')}"
-        interval.plot(*zip(*shown, strict=True), mark, color="#222222", fillstyle="none", label=label)
+        interval.plot(
+            *zip(*shown, strict=True), mark, color="#222222", fillstyle="none", label=label
+        )
     interval.set(xlabel="Speed ratio [-]", ylabel="Crossing interval [s]", ylim=(0.0, 20.0))
     interval.legend(fontsize=8)
     bank.set(xlabel="Time [s]", ylabel="Bank [deg]", title="nu = 0.25")
@@ -188,20 +225,30 @@ def _figure(guidance: GuidanceConfig, found: dict[str, Any], path: Path) -> None
 
 def main() -> None:
     """Print the table, and write what is asked for."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--write", action="store_true", help=f"solve anew, and write {CROSSING_LIMITS.name}")
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    parser.add_argument(
+        "--write", action="store_true", help=f"solve anew, and write {CROSSING_LIMITS.name}"
+    )
     parser.add_argument("--figure", type=Path, help="file of the figure, as PNG")
     asked = parser.parse_args()
     guidance = GuidanceConfig()
     if asked.write:
         CROSSING_LIMITS.write_text(json.dumps(limits(guidance), indent=1) + "\n", encoding="utf-8")
     found = json.loads(CROSSING_LIMITS.read_text(encoding="utf-8"))
-    print("| nu | optimal control, oscillating | fastest | optimal control, going round | loiter | sinusoid |")
+    print(
+        "| nu | optimal control, oscillating | fastest | optimal control, going round | loiter | sinusoid |"
+    )
     print("|---|---|---|---|---|---|")
     for i, nu in enumerate(found["nu"]):
         solved = [found[name][i] for name in ("oscillating", "going_round")]
-        best = [f"{value / omega_max(guidance):.3f}" if value is not None else "" for value in solved]
-        shapes = [f"{designed(guidance, shape, nu):.3f}" for shape in ("fastest", "loiter", "sinusoid")]
+        best = [
+            f"{value / omega_max(guidance):.3f}" if value is not None else "" for value in solved
+        ]
+        shapes = [
+            f"{designed(guidance, shape, nu):.3f}" for shape in ("fastest", "loiter", "sinusoid")
+        ]
         print(f"| {nu:g} | {best[0]} | {shapes[0]} | {best[1]} | {shapes[1]} | {shapes[2]} |")
     if asked.figure:
         _figure(guidance, found, asked.figure)

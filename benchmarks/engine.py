@@ -42,8 +42,12 @@ def report_engine(rounds: int, jsbsim: Callable[[], float]) -> None:
     """
     with tempfile.TemporaryDirectory() as folder:
         work = _work(300.0, Path(folder) / "bare")
-        one, two, bare = zip(*((_whole_study(1), _whole_study(2), _bare(work)) for _ in range(rounds)), strict=True)
-    ratio, bare_ratio = (statistics.median(a / b for a, b in zip(one, times, strict=True)) for times in (two, bare))
+        one, two, bare = zip(
+            *((_whole_study(1), _whole_study(2), _bare(work)) for _ in range(rounds)), strict=True
+        )
+    ratio, bare_ratio = (
+        statistics.median(a / b for a, b in zip(one, times, strict=True)) for times in (two, bare)
+    )
     print(
         f"{FLIGHTS} flights of 300 s, journal and tables included, {rounds} interleaved rounds: {statistics.median(one):.2f} s with"
         f" one process, {statistics.median(two):.2f} s with two, a speed-up of {ratio:.2f}; two processes without the engine reach"
@@ -51,7 +55,10 @@ def report_engine(rounds: int, jsbsim: Callable[[], float]) -> None:
     )
     with tempfile.TemporaryDirectory() as folder:
         works = [_work(length, Path(folder) / f"{length:g}") for length in LENGTHS]
-        short, long, alone = zip(*((*(_flight(work) for work in works), jsbsim()) for _ in range(5 * rounds)), strict=True)
+        short, long, alone = zip(
+            *((*(_flight(work) for work in works), jsbsim()) for _ in range(5 * rounds)),
+            strict=True,
+        )
     seconds = [(b - a) / (LENGTHS[1] - LENGTHS[0]) for a, b in zip(short, long, strict=True)]
     per_second = statistics.median(seconds)
     starting = statistics.median(a - per_second * LENGTHS[0] for a in short)
@@ -66,7 +73,9 @@ def report_engine(rounds: int, jsbsim: Callable[[], float]) -> None:
 
 def _whole_study(jobs: int) -> float:
     """Return the time of a study, from its first flight to its tables [s]."""
-    study = study_of(load_study("monte_carlo", [f"flights={FLIGHTS}", "sampling=random", *SETTINGS]), "bench")
+    study = study_of(
+        load_study("monte_carlo", [f"flights={FLIGHTS}", "sampling=random", *SETTINGS]), "bench"
+    )
     times: list[float] = []
 
     def record_time(activity: str, *_: int) -> None:
@@ -74,14 +83,22 @@ def _whole_study(jobs: int) -> float:
             times.append(time.perf_counter())
 
     with tempfile.TemporaryDirectory() as folder:
-        fly_study(study, Path(folder) / "run", executor_factory=ExecutorFactory(jobs=jobs), resume=False, progress=record_time)
+        fly_study(
+            study,
+            Path(folder) / "run",
+            executor_factory=ExecutorFactory(jobs=jobs),
+            resume=False,
+            progress=record_time,
+        )
     return times[-1] - times[0]
 
 
 def _bare(work: Work) -> float:
     """Return the time of two processes that fly half of the same flights each, and store nothing [s]."""
     halves = [range(half, FLIGHTS, 2) for half in (0, 1)]
-    processes = [multiprocessing.Process(target=_fly_each, args=(work, numbers)) for numbers in halves]
+    processes = [
+        multiprocessing.Process(target=_fly_each, args=(work, numbers)) for numbers in halves
+    ]
     began = time.perf_counter()
     for process in processes:
         process.start()

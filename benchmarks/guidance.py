@@ -65,7 +65,14 @@ _EVERY = 2
 _INTERVAL, _PARCEL = 4, 2
 """Steps between the readings of the fast sniffer, and readings that are passed on together [-]."""
 
-_MOTION = ["time_s", "north_m", "east_m", "velocity_north_mps", "velocity_east_mps", "heading_rate_rad_s"]
+_MOTION = [
+    "time_s",
+    "north_m",
+    "east_m",
+    "velocity_north_mps",
+    "velocity_east_mps",
+    "heading_rate_rad_s",
+]
 """Time, and what a guidance that knows its motion exactly is given."""
 
 Measured = Sequence[tuple[float, Any]]
@@ -92,11 +99,15 @@ def report_guidance(rounds: int, setup: VehicleSetup) -> None:
         f" plume, {100.0 * added:.0f} % more"
     )
     for name, speed in (("slow", 3.0), ("fast", 12.0)):
-        predicted, estimated = (_flown(searching(speed, plume), setup) for plume in ("predicted", "estimated"))
+        predicted, estimated = (
+            _flown(searching(speed, plume), setup) for plume in ("predicted", "estimated")
+        )
         pairs = [(_step_time(*predicted), _step_time(*estimated)) for _ in range(rounds)]
         without, with_it = (statistics.median(times) for times in zip(*pairs, strict=True))
         ratio = statistics.median(b / a for a, b in pairs)
-        print(f"  beside a {name} ship: {without:.1f} us without a search, {with_it:.1f} us with one, {ratio:.2f} times as long")
+        print(
+            f"  beside a {name} ship: {without:.1f} us without a search, {with_it:.1f} us with one, {ratio:.2f} times as long"
+        )
 
 
 def searching(vessel_speed: float, plume: str) -> Scenario:
@@ -106,16 +117,27 @@ def searching(vessel_speed: float, plume: str) -> Scenario:
             "vessel": VesselConfig(speed_mps=vessel_speed),
             "plume": PlumeConfig(model="fluctuating", source_height_m=35.0),
             "emission": EmissionConfig(ship="container", load=0.6),
-            "payload": PayloadConfig.model_validate({"instruments": ("sniffer",), "sensor": "fast"}),
-            "following": FollowingConfig.model_validate({"plume": plume, "source_height_m": (20.0, 60.0), "load": (0.2, 0.9)}),
-            "flight": FlightConfig.model_validate({**_FLIGHT.model_dump(exclude_unset=True), "altitude_m": 60.0}),
+            "payload": PayloadConfig.model_validate(
+                {"instruments": ("sniffer",), "sensor": "fast"}
+            ),
+            "following": FollowingConfig.model_validate(
+                {"plume": plume, "source_height_m": (20.0, 60.0), "load": (0.2, 0.9)}
+            ),
+            "flight": FlightConfig.model_validate(
+                {**_FLIGHT.model_dump(exclude_unset=True), "altitude_m": 60.0}
+            ),
         }
     )
 
 
 def _flown(scenario: Scenario, setup: VehicleSetup) -> tuple[FlightPlan, Measured, PlumeReadings]:
     """Return the plan of a flight, what its guidance measures at each step, and what a search would get."""
-    work = FlightWork(experiments=(Experiment("bench", scenario),), histories=1, setup=setup, spreads=PredictedSpreads())
+    work = FlightWork(
+        experiments=(Experiment("bench", scenario),),
+        histories=1,
+        setup=setup,
+        spreads=PredictedSpreads(),
+    )
     measured: list[tuple[float, Any]] = []
     read = OnboardSensing.read
 
@@ -125,10 +147,15 @@ def _flown(scenario: Scenario, setup: VehicleSetup) -> tuple[FlightPlan, Measure
 
     with mock.patch.object(OnboardSensing, "read", noted):
         result = work.fly(Task(number=0))
-    history = pd.read_parquet(io.BytesIO(result.files[time_history_path(result.tables[SUMMARY][0]["flight_id"])]))
+    history = pd.read_parquet(
+        io.BytesIO(result.files[time_history_path(result.tables[SUMMARY][0]["flight_id"])])
+    )
     if not measured:
         # It knows its motion exactly.
-        measured = [(at, tuple(motion)) for at, *motion in history[_MOTION].itertuples(index=False, name=None)]
+        measured = [
+            (at, tuple(motion))
+            for at, *motion in history[_MOTION].itertuples(index=False, name=None)
+        ]
     return work.plan(work.request(Task(number=0))), measured, _plume_readings(history)
 
 
@@ -163,7 +190,9 @@ def _step_time(plan: FlightPlan, measured: Measured, passed_on: PlumeReadings = 
     return 1e6 * (time.process_time() - began) / (len(measured) - first)
 
 
-def _step_through(guidance: Guidance, measured: Measured, reports: list[Any], passed_on: PlumeReadings) -> None:
+def _step_through(
+    guidance: Guidance, measured: Measured, reports: list[Any], passed_on: PlumeReadings
+) -> None:
     target, axis = guidance.target, axis_of(guidance)
     for i, (at, measurement) in enumerate(measured):
         while reports and reports[-1][0] <= at and isinstance(target, ReportedTarget):

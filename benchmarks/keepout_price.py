@@ -62,8 +62,13 @@ DECLARATIONS: dict[str, tuple[str, ...]] = {
 
 def prices(scenario_file: Path) -> dict[str, list[float]]:
     """Return how far the orbit lies outside of r_min [m], at each speed ratio, by declaration."""
-    scenario_file.write_text('title = "price"\nguidance.mission = "follow"\nstart.range_m = 1000.0\n', encoding="utf-8")
-    return {title: [_margin(scenario_file, keys, ratio) for ratio in RATIOS] for title, keys in DECLARATIONS.items()}
+    scenario_file.write_text(
+        'title = "price"\nguidance.mission = "follow"\nstart.range_m = 1000.0\n', encoding="utf-8"
+    )
+    return {
+        title: [_margin(scenario_file, keys, ratio) for ratio in RATIOS]
+        for title, keys in DECLARATIONS.items()
+    }
 
 
 def _margin(scenario_file: Path, keys: tuple[str, ...], ratio: float) -> float:
@@ -83,9 +88,17 @@ def _figure(found: dict[str, list[float]], path: Path) -> None:
     figure = Figure(figsize=(9.0, 0.42 * len(found) + 1.2), layout="constrained")
     axes = figure.subplots()
     places = range(len(found))
-    for i, (ratio, colour) in enumerate(zip(RATIOS, ("#0072B2", "#E69F00", "#009E73"), strict=True)):
+    for i, (ratio, colour) in enumerate(
+        zip(RATIOS, ("#0072B2", "#E69F00", "#009E73"), strict=True)
+    ):
         widths = [margins[i] for margins in found.values()]
-        axes.barh([place + 0.26 * (i - 1) for place in places], widths, 0.24, color=colour, label=f"nu = {ratio:g}")
+        axes.barh(
+            [place + 0.26 * (i - 1) for place in places],
+            widths,
+            0.24,
+            color=colour,
+            label=f"nu = {ratio:g}",
+        )
     axes.set_yticks(list(places), list(found))
     axes.invert_yaxis()
     axes.set_xlabel("Distance of the orbit from the keep-out area [m]")
@@ -96,7 +109,9 @@ def _figure(found: dict[str, list[float]], path: Path) -> None:
 
 def main() -> None:
     """Print the table, and write the figure if it is asked for."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
     parser.add_argument("--figure", type=Path, help="file of the figure, as PNG")
     asked = parser.parse_args()
     with tempfile.TemporaryDirectory() as folder:

@@ -36,7 +36,9 @@ def main() -> None:
         seconds += between - began, time.perf_counter() - between
         pairs.append((inserted, exact))
     print(compared(pairs))
-    print(f"{1e3 * seconds[0] / given.patrols:.1f} ms by insertion, {1e3 * seconds[1] / given.patrols:.1f} ms exact, a patrol")
+    print(
+        f"{1e3 * seconds[0] / given.patrols:.1f} ms by insertion, {1e3 * seconds[1] / given.patrols:.1f} ms exact, a patrol"
+    )
 
 
 def expected(patrol: Patrol, scenario: Scenario) -> Prospect:
@@ -56,7 +58,11 @@ def expected(patrol: Patrol, scenario: Scenario) -> Prospect:
 def compared(pairs: list[tuple[Order, Order]]) -> str:
     """Return how orders by insertion compare with exact ones, in a sentence."""
     less = np.array([exact.verdicts - inserted.verdicts for inserted, exact in pairs])
-    alike = [(inserted, exact) for inserted, exact in pairs if exact.verdicts - inserted.verdicts < _ALIKE]
+    alike = [
+        (inserted, exact)
+        for inserted, exact in pairs
+        if exact.verdicts - inserted.verdicts < _ALIKE
+    ]
     later = np.array([inserted.ends - exact.ends for inserted, exact in alike])
     return (
         f"as many expected verdicts in {len(alike)} of {len(pairs)} patrols, {np.mean(less):.3f} fewer in the mean,"

@@ -57,7 +57,9 @@ def draw_first_page(report: Path, picture: Path) -> int:
         document.close()
     drawn.quantize(COLOURS, dither=Image.Dither.NONE).save(picture, optimize=True)
     if (size := picture.stat().st_size) > SIZE_MAX:
-        raise SystemExit(f"error: '{picture.name}' has {size / 1000:.0f} kB, the limit is {SIZE_MAX / 1000:.0f} kB; lower WIDTH")
+        raise SystemExit(
+            f"error: '{picture.name}' has {size / 1000:.0f} kB, the limit is {SIZE_MAX / 1000:.0f} kB; lower WIDTH"
+        )
     return size
 
 
@@ -65,9 +67,15 @@ def make_picture(name: str, folder: Path) -> None:
     """Make the run of a name, and draw its report."""
     with tempfile.TemporaryDirectory() as directory:
         run = Path(directory) / name
-        done = subprocess.run([sys.executable, "-m", *COMMANDS[name], "--out", str(run)], check=False, stdout=subprocess.DEVNULL)
+        done = subprocess.run(
+            [sys.executable, "-m", *COMMANDS[name], "--out", str(run)],
+            check=False,
+            stdout=subprocess.DEVNULL,
+        )
         if done.returncode not in _FLOWN:
-            raise SystemExit(f"error: the run for '{name}' ended with status {done.returncode}; see its message above")
+            raise SystemExit(
+                f"error: the run for '{name}' ended with status {done.returncode}; see its message above"
+            )
         folder.mkdir(parents=True, exist_ok=True)
         size = draw_first_page(run / REPORT_PDF, folder / f"{name}.png")
     print(f"{name}.png: {size / 1000:.0f} kB")
@@ -75,8 +83,16 @@ def make_picture(name: str, folder: Path) -> None:
 
 def main() -> None:
     """Entry point."""
-    parser = argparse.ArgumentParser(prog="python -m benchmarks.pictures", description="Draw page 1 of reports for docs/pictures.")
-    parser.add_argument("names", nargs="*", metavar="NAME", help=f"of {', '.join(COMMANDS)}; all of them if none is given")
+    parser = argparse.ArgumentParser(
+        prog="python -m benchmarks.pictures",
+        description="Draw page 1 of reports for docs/pictures.",
+    )
+    parser.add_argument(
+        "names",
+        nargs="*",
+        metavar="NAME",
+        help=f"of {', '.join(COMMANDS)}; all of them if none is given",
+    )
     names = parser.parse_args().names or list(COMMANDS)
     if unknown := [name for name in names if name not in COMMANDS]:
         parser.error(f"unknown picture '{unknown[0]}'; give one of {', '.join(COMMANDS)}")

@@ -72,7 +72,9 @@ def refused_starts(keys: list[str]) -> Iterator[Refused | None]:
     with tempfile.TemporaryDirectory() as folder:
         setup = x8_setup(study, Path(folder))[1]
     experiment = Experiment(STUDY, study)
-    points = Points(study.sampling, dimension=len(study.draws), flights=experiment.flights, seed=study.seed)
+    points = Points(
+        study.sampling, dimension=len(study.draws), flights=experiment.flights, seed=study.seed
+    )
     for number in range(experiment.flights):
         flight = experiment.request(number, points.at(number))
         try:
@@ -80,9 +82,18 @@ def refused_starts(keys: list[str]) -> Iterator[Refused | None]:
         except InfeasibleError:
             vessel = vessel_of(flight.scenario)
             course, velocity = vessel.course(0.0), vessel.motion(0.0)[2:]
-            start = sampled_start(flight.scenario.start, start_generator(flight.noise), course=course, axis=course + math.pi)
+            start = sampled_start(
+                flight.scenario.start,
+                start_generator(flight.noise),
+                course=course,
+                axis=course + math.pi,
+            )
             yield Refused(
-                place=(start.north, start.east), course=start.course, vessel=velocity, scenario=flight.scenario, setup=setup
+                place=(start.north, start.east),
+                course=start.course,
+                vessel=velocity,
+                scenario=flight.scenario,
+                setup=setup,
             )
         else:
             yield None
@@ -103,7 +114,11 @@ def farthest(start: Refused, *, full_throttle: bool) -> float:
     kept = math.exp(-STEP / lag)
     for i in range(round(DURATION / STEP)):
         since = i * STEP - setup.reversal.delay
-        share = np.where(since < until, first, np.where(since < until_second, second, third)) if since >= 0.0 else 0.0 * first
+        share = (
+            np.where(since < until, first, np.where(since < until_second, second, third))
+            if since >= 0.0
+            else 0.0 * first
+        )
         command = share * min(limit, heading_rate_for_bank(bank, airspeed))
         mean = command + (turn - command) * lag * (1.0 - kept) / STEP
         middle = course + 0.25 * STEP * (turn + mean)
@@ -111,7 +126,9 @@ def farthest(start: Refused, *, full_throttle: bool) -> float:
         east += (airspeed * np.sin(middle) - start.vessel[1]) * STEP
         course, turn = course + mean * STEP, command + (turn - command) * kept
         if full_throttle:
-            airspeed += (setup.airspeed_max - airspeed) * (1.0 - math.exp(-STEP * setup.airspeed_bandwidth))
+            airspeed += (setup.airspeed_max - airspeed) * (
+                1.0 - math.exp(-STEP * setup.airspeed_bandwidth)
+            )
         np.minimum(closest, np.hypot(north, east), out=closest)
     return float(closest.max())
 
@@ -120,14 +137,18 @@ def _commands() -> list[np.ndarray]:
     """Return commands as shares of the largest: a first, a second and a third, and until when the first two are given [s]."""
     pairs = [(until, second) for until in SWITCHES for second in SWITCHES if second >= until]
     sides = itertools.product((1.0, -1.0), (0.0, 1.0), (1.0, 0.0, -1.0))
-    bangs = [(side, -side * back, side * last, *pair) for side, back, last in sides for pair in pairs]
+    bangs = [
+        (side, -side * back, side * last, *pair) for side, back, last in sides for pair in pairs
+    ]
     constants = [(share, share, share, 0.0, 0.0) for share in CONSTANTS]
     return list(np.array(bangs + constants).T)
 
 
 def main() -> None:
     """Print how many starts are refused, and from how many of them the search finds an escape."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
     parser.add_argument("keys", nargs="*", metavar="KEY=VALUE", help="keys of the scenario")
     asked = parser.parse_args()
     try:
@@ -137,7 +158,10 @@ def main() -> None:
     refused = [start for start in starts if start is not None]
     print(f"{len(starts)} starts, {len(refused)} refused")
     for title, full_throttle in (("the guidance's airspeed", False), ("full throttle", True)):
-        spare = [farthest(start, full_throttle=full_throttle) - start.scenario.keepout.radius_m for start in refused]
+        spare = [
+            farthest(start, full_throttle=full_throttle) - start.scenario.keepout.radius_m
+            for start in refused
+        ]
         found = [value for value in spare if value >= 0.0]
         most = f", by {max(found):.2f} m at most" if found else ""
         print(f"at {title}: an escape from {len(found)} of them{most}")

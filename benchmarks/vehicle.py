@@ -14,4 +14,6 @@ def x8_setup(scenario: Scenario, folder: Path) -> tuple[Designed, VehicleSetup]:
     design, refusal = design_of(X8, scenario.source_height)
     if design is None:
         raise SystemExit(f"error: {refusal}")
-    return design, aircraft_setup(design, scenario, RunDirectory(folder / "run"), settings=[scenario])
+    return design, aircraft_setup(
+        design, scenario, RunDirectory(folder / "run"), settings=[scenario]
+    )

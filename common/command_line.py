@@ -22,7 +22,9 @@ _USAGE_ERROR: type[Exception] = typer.BadParameter.__bases__[0]
 """Base class of the errors that typer raises for bad options, which it does not export."""
 
 
-def run_command(command: Callable[..., None] | Mapping[str, Callable[..., None]], name: str, version: str = "") -> None:
+def run_command(
+    command: Callable[..., None] | Mapping[str, Callable[..., None]], name: str, version: str = ""
+) -> None:
     """Run a command as a command line called ``name`` and exit with its status, 2 for bad options.
 
     Parameters
@@ -40,7 +42,9 @@ def run_command(command: Callable[..., None] | Mapping[str, Callable[..., None]]
     try:
         status = _without_types(typer.main.get_command(app))(prog_name=name, standalone_mode=False)
     except _USAGE_ERROR as error:
-        message = _with_value(error, str(getattr(error, "format_message", error.__str__)()).rstrip("."), sys.argv[1:])
+        message = _with_value(
+            error, str(getattr(error, "format_message", error.__str__)()).rstrip("."), sys.argv[1:]
+        )
         called = getattr(getattr(error, "ctx", None), "command_path", name)
         status = refuse(f"{message}; see {called} --help")
     # Here, and not while the interpreter ends, where a reader that is gone would be an exception.
@@ -70,7 +74,9 @@ def _with_value(error: Exception, message: str, given: Sequence[str]) -> str:
     """Return what is wrong with an option, with its value: "--jobs is 0; it must be ..."; any other message as it is."""
     names = getattr(getattr(error, "param", None), "opts", [])
     _, said, demanded = message.partition("Input should be ")
-    values = [word.partition("=")[2] for word in given if word.partition("=")[0] in names and "=" in word]
+    values = [
+        word.partition("=")[2] for word in given if word.partition("=")[0] in names and "=" in word
+    ]
     values += [value for word, value in itertools.pairwise(given) if word in names]
     if not said or not values:
         return message
@@ -92,7 +98,9 @@ class _Output(io.TextIOWrapper):
         stream.reconfigure(errors="backslashreplace")
         if stream not in (sys.__stdout__, sys.__stderr__):
             return stream
-        return _Output(stream.buffer, stream.encoding, stream.errors, line_buffering=stream.line_buffering)
+        return _Output(
+            stream.buffer, stream.encoding, stream.errors, line_buffering=stream.line_buffering
+        )
 
     def write(self, text: str) -> int:
         try:
@@ -121,7 +129,9 @@ def _with_version(text: str) -> Callable[..., None]:
             print(text)
             raise typer.Exit
 
-    option = typer.Option("--version", help="Print the version and exit.", callback=printed, is_eager=True)
+    option = typer.Option(
+        "--version", help="Print the version and exit.", callback=printed, is_eager=True
+    )
 
     def options(_version: Annotated[bool, option] = False) -> None:
         """Fly a fixed-wing UAV through a ship's exhaust plume."""

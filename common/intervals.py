@@ -77,7 +77,9 @@ def clopper_pearson(events: int, trials: int, confidence: float) -> Interval:
     return Interval(1.0 - upper_bound(trials - events, trials, 1.0 - tail), high)
 
 
-def shared_interval(events: npt.NDArray[np.bool_], samples: npt.ArrayLike, confidence: float) -> Interval:
+def shared_interval(
+    events: npt.NDArray[np.bool_], samples: npt.ArrayLike, confidence: float
+) -> Interval:
     """Return the interval of a probability, of trials of which some share their random sample and count as one.
 
     Where such trials differ, the share of them with an event counts, and each limit is that of the whole number beyond it.
@@ -91,7 +93,9 @@ def shared_interval(events: npt.NDArray[np.bool_], samples: npt.ArrayLike, confi
     _, of, counts = np.unique(np.asarray(samples), return_inverse=True, return_counts=True)
     # Rounded: shares of a third add up to whole numbers but for rounding.
     total = round(float(np.sum(np.bincount(of, weights=events) / counts)), 6)
-    low, high = (clopper_pearson(whole(total), len(counts), confidence) for whole in (math.floor, math.ceil))
+    low, high = (
+        clopper_pearson(whole(total), len(counts), confidence) for whole in (math.floor, math.ceil)
+    )
     return Interval(low.low, high.high)
 
 
@@ -121,7 +125,9 @@ def quantile_interval(values: Array, probability: float, confidence: float) -> I
 
     _check(confidence)
     if not 0.0 < probability < 1.0:
-        raise ValueError(f"probability is {probability:g}; quantiles are of probabilities between 0 and 1")
+        raise ValueError(
+            f"probability is {probability:g}; quantiles are of probabilities between 0 and 1"
+        )
     if not len(values):
         return Interval(math.nan, math.nan)
     tail, count = 0.5 * (1.0 - confidence), len(values)
@@ -137,7 +143,9 @@ def quantile_interval(values: Array, probability: float, confidence: float) -> I
 
 def _check(confidence: float) -> None:
     if not 0.0 < confidence < 1.0:
-        raise ValueError(f"confidence is {confidence:g}; it must be between 0 and 1, such as {CONFIDENCE:g}")
+        raise ValueError(
+            f"confidence is {confidence:g}; it must be between 0 and 1, such as {CONFIDENCE:g}"
+        )
 
 
 def percent(fraction: float) -> str:

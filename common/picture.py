@@ -54,9 +54,13 @@ def read_picture(path: Path) -> Picture:
     try:
         content = path.read_bytes()
     except (OSError, ValueError) as error:
-        raise PictureError(f"'{path.name}' cannot be read ({getattr(error, 'strerror', error)}); give a PNG, JPEG or SVG") from None
+        raise PictureError(
+            f"'{path.name}' cannot be read ({getattr(error, 'strerror', error)}); give a PNG, JPEG or SVG"
+        ) from None
     if len(content) > BYTES_MAX:
-        raise PictureError(f"'{path.name}' has {len(content) / 1e6:.1f} MB; at most {BYTES_MAX / 1e6:g} MB: give a smaller picture")
+        raise PictureError(
+            f"'{path.name}' has {len(content) / 1e6:.1f} MB; at most {BYTES_MAX / 1e6:g} MB: give a smaller picture"
+        )
     media_type = _media_type(content)
     if media_type is None:
         raise PictureError(f"'{path.name}' is not a picture; give a whole PNG, JPEG or SVG file")
@@ -74,8 +78,14 @@ def _media_type(content: bytes) -> str | None:
     except (OSError, ValueError, SyntaxError, Image.DecompressionBombError):
         pass
     try:
-        return "image/svg+xml" if ET.fromstring(content).tag == _SVG and _is_printed(content) else None
-    except (ET.ParseError, LookupError, ValueError):  # the last two by encodings that the parser does not know
+        return (
+            "image/svg+xml" if ET.fromstring(content).tag == _SVG and _is_printed(content) else None
+        )
+    except (
+        ET.ParseError,
+        LookupError,
+        ValueError,
+    ):  # the last two by encodings that the parser does not know
         return None
 
 
@@ -84,7 +94,10 @@ def _is_printed(svg: bytes) -> bool:
     import typst
 
     try:
-        typst.compile(b'#image(bytes(sys.inputs.svg), format: "svg", width: 20pt)', sys_inputs={"svg": svg.decode()})
+        typst.compile(
+            b'#image(bytes(sys.inputs.svg), format: "svg", width: 20pt)',
+            sys_inputs={"svg": svg.decode()},
+        )
     except typst.TypstError:
         return False
     return True

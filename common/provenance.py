@@ -14,7 +14,18 @@ from typing import Any
 
 from common.command_line import PROGRAM
 
-_PACKAGES = ("jsbsim", "numpy", "scipy", "control", "slycot", "pandas", "pyarrow", "matplotlib", "pydantic", "typst")
+_PACKAGES = (
+    "jsbsim",
+    "numpy",
+    "scipy",
+    "control",
+    "slycot",
+    "pandas",
+    "pyarrow",
+    "matplotlib",
+    "pydantic",
+    "typst",
+)
 
 
 _HOSTS = ("--scheduler", "--flightgear")
@@ -42,7 +53,13 @@ def command_line(module: str, given: Sequence[str]) -> str:
     host = False
     for argument in given[1:]:
         option, equals, _ = argument.partition("=")
-        text = "HOST:PORT" if host else f"{option}=HOST:PORT" if equals and option in _HOSTS else without_folders(argument)
+        text = (
+            "HOST:PORT"
+            if host
+            else f"{option}=HOST:PORT"
+            if equals and option in _HOSTS
+            else without_folders(argument)
+        )
         shown.append(shlex.quote(text))
         host = argument in _HOSTS
     return " ".join([program, *shown])
@@ -78,6 +95,10 @@ def _git_revision() -> str:
         return "unknown"
     here = Path(__file__).parent
     revision = subprocess.run(
-        [git, "describe", "--always", "--dirty", "--abbrev=12"], cwd=here, capture_output=True, text=True, check=False
+        [git, "describe", "--always", "--dirty", "--abbrev=12"],
+        cwd=here,
+        capture_output=True,
+        text=True,
+        check=False,
     )
     return revision.stdout.strip() or "unknown"

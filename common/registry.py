@@ -71,7 +71,9 @@ class Registry(Generic[Part]):
             yield
             return
         if name in self.names():
-            raise PluginError(f"{self.words} '{name}' is known already, and is not the object that was given; rename yours")
+            raise PluginError(
+                f"{self.words} '{name}' is known already, and is not the object that was given; rename yours"
+            )
         self._parts[name] = part
         try:
             yield
@@ -89,7 +91,9 @@ class Registry(Generic[Part]):
     def own_names(self) -> list[str]:
         """Return the names of the project's own parts, in alphabetical order: those that modules of ``folder`` register."""
         return sorted(
-            name for name, part in self._known().items() if getattr(part, "__module__", "").startswith(f"{self._folder}.")
+            name
+            for name, part in self._known().items()
+            if getattr(part, "__module__", "").startswith(f"{self._folder}.")
         )
 
     def __contains__(self, name: str) -> bool:
@@ -107,7 +111,11 @@ class Registry(Generic[Part]):
             raise self._without_name(name)
         if is_file_part(name):
             return self.checked(name, self._callable(name, part_in_file(name)))
-        if name not in self._parts and name.isidentifier() and importlib.util.find_spec(f"{self._folder}.{name}"):
+        if (
+            name not in self._parts
+            and name.isidentifier()
+            and importlib.util.find_spec(f"{self._folder}.{name}")
+        ):
             # A file of its name comes first: the others may take long to import.
             importlib.import_module(f"{self._folder}.{name}")
         if name in self._parts or name in self._known():
@@ -118,7 +126,9 @@ class Registry(Generic[Part]):
             except PluginError:
                 raise
             except Exception as error:
-                raise PluginError(f"{self.words} '{name}' of package {found.value}: {type(error).__name__}: {error}") from error
+                raise PluginError(
+                    f"{self.words} '{name}' of package {found.value}: {type(error).__name__}: {error}"
+                ) from error
         if name.endswith(".py"):
             raise self._without_name(name)
         names = self.names()
@@ -128,11 +138,15 @@ class Registry(Generic[Part]):
 
     def _callable(self, name: str, part: Any) -> Any:
         if self._methods and not callable(part):
-            raise PluginError(f"{self.words} '{name}' is an object of class {type(part).__name__}; give the class itself")
+            raise PluginError(
+                f"{self.words} '{name}' is an object of class {type(part).__name__}; give the class itself"
+            )
         return part
 
     def _without_name(self, name: str) -> PluginError:
-        return PluginError(f"{self.words} '{name}' names a file, and no part in it; give {name.removesuffix(':')}:NAME")
+        return PluginError(
+            f"{self.words} '{name}' names a file, and no part in it; give {name.removesuffix(':')}:NAME"
+        )
 
     def _known(self) -> dict[str, Part]:
         if not self._complete:
@@ -154,16 +168,23 @@ class Registry(Generic[Part]):
         PluginError : it lacks one
         """
         for method in () if isinstance(part, FunctionType) else self._methods:
-            if not any(callable(getattr(part, alternative, None)) for alternative in method.split("|")):
+            if not any(
+                callable(getattr(part, alternative, None)) for alternative in method.split("|")
+            ):
                 missing = method.replace("|", "() or ")
-                raise PluginError(f"{self.words} '{name}' has no method {missing}(); see the Protocol in {self._folder}")
+                raise PluginError(
+                    f"{self.words} '{name}' has no method {missing}(); see the Protocol in {self._folder}"
+                )
         found: Part = part
         return found
 
 
 def announced(kind: str) -> dict[str, importlib.metadata.EntryPoint]:
     """Return the parts of a kind that installed packages announce as entry points, by name."""
-    return {point.name: point for point in _points(f"{ENTRY_POINTS}.{kind}", importlib.metadata.entry_points, _places())}
+    return {
+        point.name: point
+        for point in _points(f"{ENTRY_POINTS}.{kind}", importlib.metadata.entry_points, _places())
+    }
 
 
 @functools.lru_cache(maxsize=64)
@@ -249,7 +270,11 @@ def _module_in(path: Path, digest: str) -> Any:
 
 def _where(path: Path, error: BaseException) -> str:
     """Return the line of a file at which its loading failed, if that is known; an error of its syntax says it itself."""
-    lines = [frame.lineno for frame in traceback.extract_tb(error.__traceback__) if frame.filename == str(path.absolute())]
+    lines = [
+        frame.lineno
+        for frame in traceback.extract_tb(error.__traceback__)
+        if frame.filename == str(path.absolute())
+    ]
     return f" ({path.name}:{lines[-1]})" if lines else ""
 
 
@@ -257,4 +282,8 @@ def _beside(path: Path, error: BaseException) -> str:
     """Return a hint where a module is not found that is a file beside a part."""
     name = (error.name or "").partition(".")[0] if isinstance(error, ModuleNotFoundError) else ""
     there = name and ((path.parent / f"{name}.py").is_file() or (path.parent / name).is_dir())
-    return f"; '{name}' lies beside it, but a part is one file, or an installed package: put it into {path.name}" if there else ""
+    return (
+        f"; '{name}' lies beside it, but a part is one file, or an installed package: put it into {path.name}"
+        if there
+        else ""
+    )

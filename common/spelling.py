@@ -10,7 +10,10 @@ _SHORT = 3
 def one_line(words: str) -> str:
     """Return words in one line, without letters that a terminal takes for orders."""
     joined = " ".join(part for line in words.splitlines() if (part := line.strip()))
-    return "".join(letter if letter.isprintable() else letter.encode("unicode_escape").decode() for letter in joined)
+    return "".join(
+        letter if letter.isprintable() else letter.encode("unicode_escape").decode()
+        for letter in joined
+    )
 
 
 def nearest(name: str, known: Iterable[str]) -> str | None:
@@ -19,7 +22,11 @@ def nearest(name: str, known: Iterable[str]) -> str | None:
     One that only has a letter more at its end comes before others that are as similar.
     """
     by_lower_case = {each.lower(): each for each in known}
-    begun = [each for each in by_lower_case if each.startswith(name.lower()) and len(each) == len(name) + 1]
+    begun = [
+        each
+        for each in by_lower_case
+        if each.startswith(name.lower()) and len(each) == len(name) + 1
+    ]
     if begun and name.lower() not in by_lower_case:
         return by_lower_case[min(begun)]
     # Of a short name one letter is much.
@@ -31,10 +38,17 @@ def nearest(name: str, known: Iterable[str]) -> str | None:
 def other_units(heads: Iterable[str], columns: Iterable[str]) -> str:
     """Return, as a remedy, which of ``heads`` are those of missing ``columns`` but for the unit at their end, or nothing."""
     known = set(heads)
-    missing = {column.rpartition("_")[0]: column for column in columns if "_" in column and column not in known}
-    pairs = [(head, missing[stem]) for head in heads if (stem := head.rpartition("_")[0]) in missing]
+    missing = {
+        column.rpartition("_")[0]: column
+        for column in columns
+        if "_" in column and column not in known
+    }
+    pairs = [
+        (head, missing[stem]) for head in heads if (stem := head.rpartition("_")[0]) in missing
+    ]
     return "; ".join(
-        f"'{head}' is in another unit than '{column}': convert its values before you rename it" for head, column in pairs
+        f"'{head}' is in another unit than '{column}': convert its values before you rename it"
+        for head, column in pairs
     )
 
 

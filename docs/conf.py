@@ -18,7 +18,9 @@ _ipython = tempfile.TemporaryDirectory(prefix="ipython-")
 os.environ["IPYTHONDIR"] = _ipython.name
 _profile = Path(_ipython.name) / "profile_default"
 _profile.mkdir()
-(_profile / "ipython_kernel_config.py").write_text("get_config().IPKernelApp.log_level = 'ERROR'\n", encoding="utf-8")
+(_profile / "ipython_kernel_config.py").write_text(
+    "get_config().IPKernelApp.log_level = 'ERROR'\n", encoding="utf-8"
+)
 logging.getLogger("traitlets").setLevel(logging.WARNING)
 
 project = "Plume flight study"

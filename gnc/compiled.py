@@ -36,14 +36,18 @@ class _Finder:
     def __init__(self, files: Mapping[str, Path]) -> None:
         self._files = files
 
-    def find_spec(self, name: str, _path: Sequence[str] | None, _target: ModuleType | None = None) -> ModuleSpec | None:
+    def find_spec(
+        self, name: str, _path: Sequence[str] | None, _target: ModuleType | None = None
+    ) -> ModuleSpec | None:
         file = self._files.get(name)
         return spec_from_file_location(name, file) if file else None
 
 
 def sources_hash() -> str:
     """Return a hash of the sources as they are."""
-    return files_hash(ROOT, (path for package in _PACKAGES for path in sorted((ROOT / package).rglob("*.py"))))
+    return files_hash(
+        ROOT, (path for package in _PACKAGES for path in sorted((ROOT / package).rglob("*.py")))
+    )
 
 
 def compiled_modules() -> dict[str, Path]:

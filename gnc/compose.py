@@ -22,7 +22,9 @@ def compose(parameters: GuidanceParameters) -> Guidance:
     own: OwnMotion = EstimatedNavigation(p.navigation) if p.navigation else TrueNavigation()
     target: TargetMotion
     if isinstance(p.vessel, ReportedVessel):
-        target = ReportedTarget(VesselFilter(p.vessel.filter), ReachableSet(p.vessel.limits), p.tracking.time_step)
+        target = ReportedTarget(
+            VesselFilter(p.vessel.filter), ReachableSet(p.vessel.limits), p.tracking.time_step
+        )
     else:
         target = SteadyTarget(*p.vessel)
     guard = KeepoutGuard(p.guard) if p.guard else None
@@ -32,7 +34,9 @@ def compose(parameters: GuidanceParameters) -> Guidance:
     elif isinstance(p.mission, StandoffParameters):
         mission = StandoffOrbit(p.mission, p.tracking, own=own, target=target)
     else:
-        mission = DirectTracking(p.mission, p.tracking, own=own, target=target, guard=guard, altitude=p.altitude)
+        mission = DirectTracking(
+            p.mission, p.tracking, own=own, target=target, guard=guard, altitude=p.altitude
+        )
     return Guidance(
         own=own,
         target=target,
@@ -49,6 +53,11 @@ def compose(parameters: GuidanceParameters) -> Guidance:
 
 def _guarded_commands(guard: KeepoutGuard, p: GuidanceParameters) -> GuardedCommands:
     reckoning = SpeedReckoning(
-        speed=p.speed, bandwidth=p.airspeed_bandwidth, overshoot=p.airspeed_overshoot, time_step=p.tracking.time_step
+        speed=p.speed,
+        bandwidth=p.airspeed_bandwidth,
+        overshoot=p.airspeed_overshoot,
+        time_step=p.tracking.time_step,
     )
-    return GuardedCommands(guard, reckoning=reckoning, speed=p.speed, heading_rate_max=p.tracking.heading_rate_max)
+    return GuardedCommands(
+        guard, reckoning=reckoning, speed=p.speed, heading_rate_max=p.tracking.heading_rate_max
+    )

@@ -57,10 +57,22 @@ class Guidance:
     ) -> None:
         self.own, self.target, self.mission, self.monitor = own, target, mission, monitor
         self._sense, self._locate, self._plan = own.update, target.update, mission.plan
-        self._keep_out, self.guard, self.guarding = keep_out, keep_out.guard if keep_out is not None else None, False
-        self._pace, self._airspeed, self._limit = airspeed_law.pace, airspeed_law.airspeed, heading_rate_max
+        self._keep_out, self.guard, self.guarding = (
+            keep_out,
+            keep_out.guard if keep_out is not None else None,
+            False,
+        )
+        self._pace, self._airspeed, self._limit = (
+            airspeed_law.pace,
+            airspeed_law.airspeed,
+            heading_rate_max,
+        )
         self.plan_interval, self._until_plan = plan_interval, 0
-        self.heading_rate_command, self.airspeed_command, self.altitude_command = 0.0, speed, altitude
+        self.heading_rate_command, self.airspeed_command, self.altitude_command = (
+            0.0,
+            speed,
+            altitude,
+        )
 
     def step(self, time: float, measurement: Any) -> None:
         """Compute the commands from what is measured now, then move the reference on by one time step.
@@ -83,17 +95,25 @@ class Guidance:
             self._plan(time)
             self.altitude_command = mission.altitude
         monitor = self.monitor
-        if monitor is not None and monitor.check(measurement, self.airspeed_command, self.heading_rate_command):
+        if monitor is not None and monitor.check(
+            measurement, self.airspeed_command, self.heading_rate_command
+        ):
             mission.leave(monitor.fault)
         tracker, overriding = mission.tracker, mission.overriding
         course, north, east = own.course, own.north, own.east
         reference = tracker.reference
         ahead_of = reference.course
-        along = (reference.north - north) * math.cos(ahead_of) + (reference.east - east) * math.sin(ahead_of)
+        along = (reference.north - north) * math.cos(ahead_of) + (reference.east - east) * math.sin(
+            ahead_of
+        )
         last = tracker.heading_rate_command
         command = tracker.step(north, east, course, own.speed, own.heading_rate)
         leaving, held, keep_out = overriding and mission.leaving, False, self._keep_out
-        command, pace = (mission.command(last), mission.airspeed) if overriding else (command, self._pace(along))
+        command, pace = (
+            (mission.command(last), mission.airspeed)
+            if overriding
+            else (command, self._pace(along))
+        )
         if keep_out is not None:
             command, pace, held = keep_out.limit(command, pace, time, own, leaving=leaving)
             self.guarding = keep_out.guard.intervening
@@ -108,7 +128,9 @@ class Guidance:
             if keep_out is not None:
                 keep_out.overruled(turning)
         self.heading_rate_command = command
-        self.airspeed_command = pace if leaving or (overriding and not held) else self._airspeed(pace, own, held)
+        self.airspeed_command = (
+            pace if leaving or (overriding and not held) else self._airspeed(pace, own, held)
+        )
         if leaving:
             self.altitude_command = mission.altitude
 

@@ -4,7 +4,14 @@ from collections import deque
 from dataclasses import dataclass
 from typing import Generic, TypeVar
 
-from gnc.laws.steering_law import STILL_AIR, SteeringLaw, Surroundings, begun, call_error, within_limit
+from gnc.laws.steering_law import (
+    STILL_AIR,
+    SteeringLaw,
+    Surroundings,
+    begun,
+    call_error,
+    within_limit,
+)
 from gnc.reference.reference import Reference
 from gnc.unicycle import lag_ahead
 
@@ -39,7 +46,11 @@ class PlacedReference:
 
     def __init__(self, reference: Reference) -> None:
         self.north, self.east = reference.north, reference.east
-        self.course, self.heading_rate, self.speed = reference.course, reference.heading_rate, reference.speed
+        self.course, self.heading_rate, self.speed = (
+            reference.course,
+            reference.heading_rate,
+            reference.speed,
+        )
 
 
 AnyReference = TypeVar("AnyReference", bound=Reference)
@@ -71,7 +82,12 @@ class Tracker(Generic[AnyReference]):
         "reference", "saturated",
     )  # fmt: skip
 
-    def __init__(self, parameters: TrackingParameters, reference: AnyReference, surroundings: Surroundings = STILL_AIR) -> None:
+    def __init__(
+        self,
+        parameters: TrackingParameters,
+        reference: AnyReference,
+        surroundings: Surroundings = STILL_AIR,
+    ) -> None:
         law = begun(parameters.law, surroundings, parameters.time_step)
         self._law = type(parameters.law).__qualname__
         self._steer, self._limit = law.heading_rate, parameters.heading_rate_max
@@ -86,7 +102,9 @@ class Tracker(Generic[AnyReference]):
         self.heading_rate_demand = self.heading_rate_command = 0.0
         self.saturated = False
 
-    def step(self, north: float, east: float, course: float, speed: float, heading_rate: float) -> float:
+    def step(
+        self, north: float, east: float, course: float, speed: float, heading_rate: float
+    ) -> float:
         """Return the heading rate to command [rad/s], and move the reference on by one time step.
 
         Parameters
@@ -103,7 +121,9 @@ class Tracker(Generic[AnyReference]):
         reference, ahead, lag = self.reference, self.ahead, self._lag
         then_north, then_east, then_course = north, east, course
         if lag > 0.0:
-            then_north, then_east, then_course = lag_ahead(north, east, course, speed, heading_rate, self.heading_rate_command, lag)
+            then_north, then_east, then_course = lag_ahead(
+                north, east, course, speed, heading_rate, self.heading_rate_command, lag
+            )
         to_north, to_east, limit = ahead.north - then_north, ahead.east - then_east, self._limit
         try:
             demand = self._steer(ahead, to_north, to_east, then_course, speed)
@@ -116,13 +136,17 @@ class Tracker(Generic[AnyReference]):
         command = demand
         # Of an array of one number it is an array, too.
         if inside is not True:
-            demand, command = within_limit(demand, limit, self._law, (to_north, to_east, then_course, speed))
+            demand, command = within_limit(
+                demand, limit, self._law, (to_north, to_east, then_course, speed)
+            )
         self.heading_rate_demand, self.heading_rate_command = demand, command
         self.saturated = command != demand
         ahead.step()
         waiting = self._until_ahead
         waiting.append((ahead.north, ahead.east, ahead.course, ahead.heading_rate))
-        reference.north, reference.east, reference.course, reference.heading_rate = waiting.popleft()
+        reference.north, reference.east, reference.course, reference.heading_rate = (
+            waiting.popleft()
+        )
         return command
 
     def _move_ahead(self) -> None:

@@ -33,11 +33,22 @@ def unicycle_move(
     if abs(half_turn) > 1e-6:
         chord *= math.sin(half_turn) / half_turn
     middle = course + half_turn
-    return north + chord * math.cos(middle), east + chord * math.sin(middle), course + 2.0 * half_turn
+    return (
+        north + chord * math.cos(middle),
+        east + chord * math.sin(middle),
+        course + 2.0 * half_turn,
+    )
 
 
 def lagged_move(
-    north: float, east: float, course: float, heading_rate: float, speed: float, command: float, lag: float, duration: float
+    north: float,
+    east: float,
+    course: float,
+    heading_rate: float,
+    speed: float,
+    command: float,
+    lag: float,
+    duration: float,
 ) -> tuple[float, float, float, float]:
     """Return position [m], course [rad] and heading rate [rad/s] after ``duration`` [s] of following a commanded heading rate.
 
@@ -65,11 +76,22 @@ def lagged_move(
     decay = math.expm1(-duration / lag)
     distance = speed * piece
     turned = command * duration - gap * lag * decay
-    return north + distance * along, east + distance * across, course + turned, command + gap * (1.0 + decay)
+    return (
+        north + distance * along,
+        east + distance * across,
+        course + turned,
+        command + gap * (1.0 + decay),
+    )
 
 
 def lag_ahead(
-    north: float, east: float, course: float, speed: float, heading_rate: float, command: float, lag: float
+    north: float,
+    east: float,
+    course: float,
+    speed: float,
+    heading_rate: float,
+    command: float,
+    lag: float,
 ) -> tuple[float, float, float]:
     """Return position [m] and course [rad] after the lag, with a heading rate that goes from the measured value to the command.
 

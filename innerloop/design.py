@@ -25,27 +25,48 @@ _FLIES = {True: "flies", False: "-", None: "?"}
 
 def command(
     aircraft: Annotated[
-        str | None, typer.Argument(metavar="AIRCRAFT", help="The aircraft to design for, e.g. x8, c172x, DIR/NAME or FILE.py:NAME.")
+        str | None,
+        typer.Argument(
+            metavar="AIRCRAFT",
+            help="The aircraft to design for, e.g. x8, c172x, DIR/NAME or FILE.py:NAME.",
+        ),
     ] = None,
-    out: Annotated[Path | None, typer.Option(help="Directory for the design; default runs/design-AIRCRAFT.")] = None,
+    out: Annotated[
+        Path | None, typer.Option(help="Directory for the design; default runs/design-AIRCRAFT.")
+    ] = None,
     altitude: Annotated[
         float,
-        typer.Option(min=10.0, max=5000.0, help="Design altitude in metres; each altitude that was flown has a design of its own."),
+        typer.Option(
+            min=10.0,
+            max=5000.0,
+            help="Design altitude in metres; each altitude that was flown has a design of its own.",
+        ),
     ] = 100.0,
-    no_report: Annotated[bool, typer.Option("--no-report", help="Leave out report.html and report.pdf.")] = False,
+    no_report: Annotated[
+        bool, typer.Option("--no-report", help="Leave out report.html and report.pdf.")
+    ] = False,
     reversals: Annotated[
         int | None,
-        typer.Option(min=1, max=1_000_000, help="Repeat the search for the worst turn reversal with this many, e.g. 10000."),
+        typer.Option(
+            min=1,
+            max=1_000_000,
+            help="Repeat the search for the worst turn reversal with this many, e.g. 10000.",
+        ),
     ] = None,
     overrides: Annotated[
         list[str] | None,
         typer.Option(
-            "--set", metavar="report.KEY=VALUE", help="Title, author, organisation or logo of the reports; may be repeated."
+            "--set",
+            metavar="report.KEY=VALUE",
+            help="Title, author, organisation or logo of the reports; may be repeated.",
         ),
     ] = None,
     aircraft_dir: Annotated[
         Path | None,
-        typer.Option(metavar="DIR", help="Directory with JSBSim models of your own, DIR/NAME/NAME.xml, to take AIRCRAFT from."),
+        typer.Option(
+            metavar="DIR",
+            help="Directory with JSBSim models of your own, DIR/NAME/NAME.xml, to take AIRCRAFT from.",
+        ),
     ] = None,
     list_aircraft: Annotated[
         bool,
@@ -55,7 +76,11 @@ def command(
         ),
     ] = False,
     check: Annotated[
-        bool, typer.Option("--check", help="With --list: design every aircraft that was not designed before; takes minutes.")
+        bool,
+        typer.Option(
+            "--check",
+            help="With --list: design every aircraft that was not designed before; takes minutes.",
+        ),
     ] = False,
 ) -> None:
     """Design the autopilot of an aircraft: trim, poles, margins, step responses; a report, and a JSBSim root that flies it."""
@@ -65,10 +90,14 @@ def command(
 
     try:
         if check and not list_aircraft:
-            raise AircraftError("--check is for --list, and designs every aircraft listed; leave it out, or add --list")
+            raise AircraftError(
+                "--check is for --list, and designs every aircraft listed; leave it out, or add --list"
+            )
         if list_aircraft:
             if aircraft is not None:
-                raise AircraftError(f"aircraft '{aircraft}' is given beside --list, which lists all of them; leave out one of both")
+                raise AircraftError(
+                    f"aircraft '{aircraft}' is given beside --list, which lists all of them; leave out one of both"
+                )
             _list(altitude, aircraft_dir, check=check)
             return
         name = aircraft if aircraft_dir is None else folder_path(aircraft_dir, aircraft)
@@ -88,7 +117,9 @@ def _file_refusal(error: OSError, out: Path) -> str:
     path, written = Path(str(error.filename)).absolute(), out.absolute()
     if path.is_relative_to(written) or written.is_relative_to(path):
         return f"'{error.filename}' cannot be written: {error.strerror}; choose another --out"
-    return f"'{error.filename}' cannot be read: {error.strerror}; check the path and its permissions"
+    return (
+        f"'{error.filename}' cannot be read: {error.strerror}; check the path and its permissions"
+    )
 
 
 def _list(altitude: float, directory: Path | None, *, check: bool) -> None:
@@ -97,26 +128,53 @@ def _list(altitude: float, directory: Path | None, *, check: bool) -> None:
     from aircraft.fleet.folder import folder_names, folder_path
     from innerloop.designs.listing import discover, look_up
 
-    names = aircraft_names() if directory is None else [folder_path(directory, name) for name in folder_names(directory)]
+    names = (
+        aircraft_names()
+        if directory is None
+        else [folder_path(directory, name) for name in folder_names(directory)]
+    )
     width = max(18, 1 + max(map(len, names)))
     if check:
-        print("designing every aircraft that was not designed before: some minutes the first time", file=sys.stderr)
-    known = discover(names, altitude, os.cpu_count() or 1) if check else (look_up(name, altitude) for name in names)
+        print(
+            "designing every aircraft that was not designed before: some minutes the first time",
+            file=sys.stderr,
+        )
+    known = (
+        discover(names, altitude, os.cpu_count() or 1)
+        if check
+        else (look_up(name, altitude) for name in names)
+    )
     flying = waiting = 0
     try:
         for found in known:
             flying, waiting = flying + (found.flies is True), waiting + (found.flies is None)
             print(f"{_FLIES[found.flies]:6}{found.name:{width}}{found.text}", flush=True)
     except KeyboardInterrupt:
-        print("interrupted; finished designs are cached, and the next --list continues from there", file=sys.stderr)
+        print(
+            "interrupted; finished designs are cached, and the next --list continues from there",
+            file=sys.stderr,
+        )
         raise typer.Exit(INTERRUPTED) from None
     before = f"{waiting} {'was' if waiting == 1 else 'were'} not designed for it before"
-    more = f"; {before}: --list --check does so, which takes minutes, and says which can be flown" if waiting else ""
-    print(f"{flying} can be flown at {altitude:g} m (--altitude for another altitude){more}", file=sys.stderr)
+    more = (
+        f"; {before}: --list --check does so, which takes minutes, and says which can be flown"
+        if waiting
+        else ""
+    )
+    print(
+        f"{flying} can be flown at {altitude:g} m (--altitude for another altitude){more}",
+        file=sys.stderr,
+    )
 
 
 def _design(
-    aircraft: str, out: Path | None, altitude: float, reversals: int | None, overrides: list[str], *, no_report: bool
+    aircraft: str,
+    out: Path | None,
+    altitude: float,
+    reversals: int | None,
+    overrides: list[str],
+    *,
+    no_report: bool,
 ) -> None:
     from aircraft.fleet.find import find_spec
     from aircraft.simulation.user_check import check_user_aircraft
@@ -152,7 +210,10 @@ def _design(
         record = _with_repeated_search(found, root, reversals)
     write_json(out / DESIGN_RECORD, record, indent=None)
     command = command_line("innerloop.design", sys.argv)
-    write_json(out / MANIFEST, design_manifest(record, wall_time=time.monotonic() - started, command=command))
+    write_json(
+        out / MANIFEST,
+        design_manifest(record, wall_time=time.monotonic() - started, command=command),
+    )
     print_design(record)
     print(f"\ndesign: {out}\nJSBSim root with the autopilot: {root}")
     for path in () if no_report else build_reports(out, settings=overrides):
@@ -164,10 +225,15 @@ def _with_repeated_search(found: "Designed", root: Path, reversals: int) -> "Rec
     from innerloop.designs.long_search import repeat_search
 
     def report_progress(count: int, deviation: float) -> None:
-        print(f"{count} of {reversals} reversals, largest deviation {deviation:.2f} m", file=sys.stderr)
+        print(
+            f"{count} of {reversals} reversals, largest deviation {deviation:.2f} m",
+            file=sys.stderr,
+        )
 
     searched = repeat_search(found, root, reversals, done=report_progress)
-    return found.record | {"turn_reversal": found.record["turn_reversal"] | {"repeated_search": searched}}
+    return found.record | {
+        "turn_reversal": found.record["turn_reversal"] | {"repeated_search": searched}
+    }
 
 
 def _refuse_another_run(out: Path) -> None:

@@ -54,7 +54,11 @@ MASS_PERCENT = "% m/m"
 
 def limit_words(limit_percent: float) -> str:
     """Return a limit on the sulphur content [% m/m] as it is printed: with two decimals, or with as many as it has."""
-    return f"{limit_percent:.2f} %" if round(limit_percent, 2) == limit_percent else f"{limit_percent:g} %"
+    return (
+        f"{limit_percent:.2f} %"
+        if round(limit_percent, 2) == limit_percent
+        else f"{limit_percent:g} %"
+    )
 
 
 def fsc_factor(carbon_fraction: float = CARBON_FRACTION) -> float:
@@ -71,5 +75,7 @@ def fsc_factor(carbon_fraction: float = CARBON_FRACTION) -> float:
     MeasurementError : the fraction is not within 0 to 1
     """
     if not 0.0 < carbon_fraction <= 1.0:
-        raise MeasurementError(f"carbon fraction is {carbon_fraction:g}; a fuel has above 0 and at most 1, usually 0.85 to 0.875")
+        raise MeasurementError(
+            f"carbon fraction is {carbon_fraction:g}; a fuel has above 0 and at most 1, usually 0.85 to 0.875"
+        )
     return 0.1 * carbon_fraction * SULPHUR_MASS / _CARBON

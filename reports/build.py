@@ -59,11 +59,18 @@ def build_reports(
         tell_missing(name)
     with failure_named(f"the report of '{directory}' could not be drawn"):
         html = written(directory / REPORT_HTML, partial(write_html, report))
-        return [html, written(directory / REPORT_PDF, partial(write_pdf, report, all_flights=all_flights))]
+        return [
+            html,
+            written(directory / REPORT_PDF, partial(write_pdf, report, all_flights=all_flights)),
+        ]
 
 
 def export_run(
-    directory: Path, name: str, flight_id: str | None = None, *, tell_missing: Callable[[str], None] = lambda _: None
+    directory: Path,
+    name: str,
+    flight_id: str | None = None,
+    *,
+    tell_missing: Callable[[str], None] = lambda _: None,
 ) -> list[Path]:
     """Write a run by an exporter into its subdirectory ``export`` and return the paths.
 
@@ -86,19 +93,28 @@ def export_run(
     run, folder = _run_of(directory, flight_id), directory / EXPORT
     run_name = run.manifest.get("name")
     if not is_file_name(run_name):
-        raise ReportError(f"'{directory}' is that of a run called {run_name!r}, which is no name of a file; do not use this run")
+        raise ReportError(
+            f"'{directory}' is that of a run called {run_name!r}, which is no name of a file; do not use this run"
+        )
     if folder.is_symlink():
-        raise ReportError(f"'{folder}' is a link; exports are written into '{directory}' alone: remove it")
+        raise ReportError(
+            f"'{folder}' is a link; exports are written into '{directory}' alone: remove it"
+        )
     parts = {_stem(str(run_name), flight_id) if flight_id else str(run_name): run}
     if getattr(exporter, "one_flight", False) and (recorded := run.recorded()):
         parts = {_stem(str(run_name), flight): run.of_flight(flight) for flight in recorded}
     try:
         folder.mkdir(exist_ok=True)
     except OSError as error:
-        raise ReportError(f"'{folder}' cannot be written: {error.strerror}; check permissions and space") from None
+        raise ReportError(
+            f"'{folder}' cannot be written: {error.strerror}; check permissions and space"
+        ) from None
     # What fails in one of the user's own is no damage of the run.
     with failure_named(f"exporter '{name}'") if is_file_part(name) else damage_named(directory):
-        paths = [written(folder / f"{stem}{exporter.suffix}", partial(exporter.write, part)) for stem, part in parts.items()]
+        paths = [
+            written(folder / f"{stem}{exporter.suffix}", partial(exporter.write, part))
+            for stem, part in parts.items()
+        ]
     for file in sorted(run.unread) if flight_id else run.missing():
         tell_missing(file)
     return paths
@@ -107,7 +123,11 @@ def export_run(
 def _stem(run_name: str, flight_id: str) -> str:
     """Return what the file of a flight is called: RUN.FLIGHT, or FLIGHT where that begins with the run's name or is long."""
     both = f"{run_name}.{flight_id}"
-    return flight_id if flight_id.startswith(f"{run_name}_") or len(both.encode()) > NAME_BYTES_MAX else both
+    return (
+        flight_id
+        if flight_id.startswith(f"{run_name}_") or len(both.encode()) > NAME_BYTES_MAX
+        else both
+    )
 
 
 def made_exporter(name: str) -> "Exporter":
@@ -127,11 +147,15 @@ def made_exporter(name: str) -> "Exporter":
         exporter = part()
         suffix = getattr(exporter, "suffix", None)
         if not (isinstance(suffix, str) and suffix.startswith(".") and is_file_name(suffix)):
-            raise ReportError(f"exporter '{name}' has suffix = {suffix!r}; it needs one with a leading dot and no slash, as '.csv'")
+            raise ReportError(
+                f"exporter '{name}' has suffix = {suffix!r}; it needs one with a leading dot and no slash, as '.csv'"
+            )
     return exporter
 
 
-def stream_run(directory: Path, address: str, flight_id: str | None = None) -> tuple[str, int, float]:
+def stream_run(
+    directory: Path, address: str, flight_id: str | None = None
+) -> tuple[str, int, float]:
     """Send a flight of a run to ``udp://HOST:PORT`` in real time; return its name, the number of messages, its duration [s].
 
     Raises
@@ -147,7 +171,10 @@ def stream_run(directory: Path, address: str, flight_id: str | None = None) -> t
     with damage_named(directory):
         flight = next(recorded_flights(run))
         seconds = flight.time[-1] - flight.time[0]
-        print(f"streaming {flight.flight_id}, {seconds:.0f} s of flight, to {address}; Ctrl-C ends it", file=sys.stderr)
+        print(
+            f"streaming {flight.flight_id}, {seconds:.0f} s of flight, to {address}; Ctrl-C ends it",
+            file=sys.stderr,
+        )
         return stream_flight(flight, host)
 
 
@@ -161,7 +188,9 @@ def _run_of(directory: Path, flight_id: str | None) -> "RunData":
         return run
     if flight_id not in (recorded := run.recorded()):
         known = ", ".join(recorded[:_NAMED]) + (", ..." if len(recorded) > _NAMED else "")
-        raise ReportError(f"'{directory}' has no time history of a flight {flight_id[:80]!r}; it has those of {known or 'none'}")
+        raise ReportError(
+            f"'{directory}' has no time history of a flight {flight_id[:80]!r}; it has those of {known or 'none'}"
+        )
     return run.of_flight(flight_id)
 
 
@@ -185,25 +214,43 @@ def print_design(record: dict[str, Any]) -> None:
 
 
 def command(
-    directory: Annotated[Path, typer.Argument(metavar="RUN_DIR", help="A directory that plume-flight run or design wrote.")],
+    directory: Annotated[
+        Path,
+        typer.Argument(
+            metavar="RUN_DIR", help="A directory that plume-flight run or design wrote."
+        ),
+    ],
     export: Annotated[
         list[str] | None,
         typer.Option(
-            metavar="NAME,...", help="Write RUN_DIR/export/... by these exporters, or by FILE.py:NAME, instead of the reports."
+            metavar="NAME,...",
+            help="Write RUN_DIR/export/... by these exporters, or by FILE.py:NAME, instead of the reports.",
         ),
     ] = None,
-    flight: Annotated[str | None, typer.Option(metavar="ID", help="Export or stream this flight alone.")] = None,
+    flight: Annotated[
+        str | None, typer.Option(metavar="ID", help="Export or stream this flight alone.")
+    ] = None,
     stream: Annotated[
-        str | None, typer.Option(metavar="udp://HOST:PORT", help="Send a flight to a ground station in real time, as MAVLink.")
+        str | None,
+        typer.Option(
+            metavar="udp://HOST:PORT",
+            help="Send a flight to a ground station in real time, as MAVLink.",
+        ),
     ] = None,
     overrides: Annotated[
         list[str] | None,
         typer.Option(
-            "--set", metavar="report.KEY=VALUE", help="Title, author, organisation or logo of these reports; may be repeated."
+            "--set",
+            metavar="report.KEY=VALUE",
+            help="Title, author, organisation or logo of these reports; may be repeated.",
         ),
     ] = None,
     all_flights: Annotated[
-        bool, typer.Option("--all-flights", help="Print every flight that report.html shows, and not only a selection.")
+        bool,
+        typer.Option(
+            "--all-flights",
+            help="Print every flight that report.html shows, and not only a selection.",
+        ),
     ] = False,
 ) -> None:
     """Rebuild report.html and report.pdf of a run or of a design, without flying anything; or export a run.
@@ -216,9 +263,13 @@ def command(
     missing: dict[str, None] = {}
     try:
         if flight is not None and not (export or stream):
-            raise ReportError("--flight is of use beside --export or --stream; reports are of the whole run: leave it out")
+            raise ReportError(
+                "--flight is of use beside --export or --stream; reports are of the whole run: leave it out"
+            )
         if overrides and (export or stream):
-            raise ReportError("--set is of the reports, which --export and --stream do not write: leave it out")
+            raise ReportError(
+                "--set is of the reports, which --export and --stream do not write: leave it out"
+            )
         if export or stream:
             exporters = [name for names in export or () for name in names.split(",")]
             # Before any of them writes.
@@ -229,10 +280,15 @@ def command(
                     print(f"export: {path}")
             if stream:
                 sent, messages, seconds = stream_run(directory, stream, flight)
-                print(f"stream: {messages} messages of {sent}, {seconds:.0f} s of flight, to {stream}")
+                print(
+                    f"stream: {messages} messages of {sent}, {seconds:.0f} s of flight, to {stream}"
+                )
         else:
             for path in build_reports(
-                directory, all_flights=all_flights, settings=overrides or (), tell_missing=missing.setdefault
+                directory,
+                all_flights=all_flights,
+                settings=overrides or (),
+                tell_missing=missing.setdefault,
             ):
                 print(f"report: {path}")
     except (ReportError, PluginError) as error:

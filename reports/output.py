@@ -74,9 +74,14 @@ def write_report(run: RunData, path: Path, *, all_flights: bool = False) -> None
     from reports.render.html import write_html
     from reports.render.pdf import write_pdf
 
-    writers: dict[str, Callable[..., None]] = {".html": write_html, ".pdf": partial(write_pdf, all_flights=all_flights)}
+    writers: dict[str, Callable[..., None]] = {
+        ".html": write_html,
+        ".pdf": partial(write_pdf, all_flights=all_flights),
+    }
     if path.suffix not in writers:
-        raise ReportError(f"'{path.name}' ends in {path.suffix!r}; a report is written as {' or '.join(writers)}")
+        raise ReportError(
+            f"'{path.name}' ends in {path.suffix!r}; a report is written as {' or '.join(writers)}"
+        )
     with damage_named(run.path):
         report = content(run)
     with failure_named(f"the report of '{run.path}' could not be drawn"):
@@ -99,7 +104,9 @@ def write_flight(run: RunData, flight_id: str, path: Path) -> None:
     if not run.has_history(flight_id):
         raise _without_history(flight_id)
     exporters = _exporters()
-    if (suffix := next((suffix for suffix in exporters if path.name.endswith(suffix)), None)) is not None:
+    if (
+        suffix := next((suffix for suffix in exporters if path.name.endswith(suffix)), None)
+    ) is not None:
         write = exporters[suffix]().write
         with failure_named(f"flight '{flight_id}' could not be written as '{path.name}'"):
             written(path, lambda part: write(run.of_flight(flight_id), part))
@@ -108,7 +115,9 @@ def write_flight(run: RunData, flight_id: str, path: Path) -> None:
     if path.suffix not in writers:
         known = [*writers, *exporters]
         guess = did_you_mean(path.suffix, known) or ";"
-        raise ReportError(f"'{path.name}' ends in {path.suffix!r}{guess} formats of a flight are {', '.join(known)}")
+        raise ReportError(
+            f"'{path.name}' ends in {path.suffix!r}{guess} formats of a flight are {', '.join(known)}"
+        )
     source = run.path / time_history_path(flight_id)
     with failure_named(f"flight '{flight_id}' could not be written as '{path.name}'"):
         written(path, lambda part: writers[path.suffix](source, part))
@@ -133,7 +142,9 @@ def _as_arrow(source: Path, path: Path) -> None:
     import pyarrow.feather
     import pyarrow.parquet
 
-    pyarrow.feather.write_feather(pyarrow.parquet.read_table(source), path, compression="uncompressed")
+    pyarrow.feather.write_feather(
+        pyarrow.parquet.read_table(source), path, compression="uncompressed"
+    )
 
 
 def _as_csv(source: Path, path: Path) -> None:

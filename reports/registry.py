@@ -9,7 +9,16 @@ from common.run_layout import MANIFEST
 from reports.arena.content import arena_content
 from reports.convergence.content import convergence_content
 from reports.design.content import design_content
-from reports.document.blocks import FAILURES_MAX, Block, Content, Findings, Heading, Section, Text, Verdict
+from reports.document.blocks import (
+    FAILURES_MAX,
+    Block,
+    Content,
+    Findings,
+    Heading,
+    Section,
+    Text,
+    Verdict,
+)
 from reports.document.chart import Chart
 from reports.document.missing import missing_sections
 from reports.document.numbering import numbered
@@ -51,8 +60,12 @@ def content(run: RunData, settings: Mapping[str, str] | None = None) -> Content:
     ReportError : the manifest names a study that has no report, or is of another version; or the logo is no picture
     """
     study = run.manifest.get("study")
-    if not isinstance(study, str) or not (study in STUDIES or is_file_part(study) or study in announced("study")):
-        raise ReportError(f"'{run.path}': study is {study!r}, which has no report; those that have one: {', '.join(STUDIES)}")
+    if not isinstance(study, str) or not (
+        study in STUDIES or is_file_part(study) or study in announced("study")
+    ):
+        raise ReportError(
+            f"'{run.path}': study is {study!r}, which has no report; those that have one: {', '.join(STUDIES)}"
+        )
     # Studies of flights that others add have the report of any flights.
     made = STUDIES.get(study, flights_content)
     needed = FLIGHT_ENTRIES if made in (flights_content, paper_content, arena_content) else ()
@@ -88,7 +101,12 @@ def _description(words: str, changes: Sequence[str]) -> str:
 def _without(picture: Chart | None, section: Section) -> Section:
     """Return a section without the figure that page 1 shows large."""
     return replace(
-        section, blocks=[of for of in section.blocks if not (picture and isinstance(of, Chart) and of.name == picture.name)]
+        section,
+        blocks=[
+            of
+            for of in section.blocks
+            if not (picture and isinstance(of, Chart) and of.name == picture.name)
+        ],
     )
 
 
@@ -108,5 +126,8 @@ def refuse_other_version(run: RunData, needed: Sequence[str]) -> None:
 
 def _figures(verdict: Verdict) -> list[Block]:
     """Return every figure of a verdict, and the failures and remarks that page 1 has no room for."""
-    left: list[Block] = [Heading("More failures and remarks"), *map(Text, verdict.failures[FAILURES_MAX:])]
+    left: list[Block] = [
+        Heading("More failures and remarks"),
+        *map(Text, verdict.failures[FAILURES_MAX:]),
+    ]
     return [figure_table(verdict), *(left if len(left) > 1 else [])]

@@ -9,9 +9,29 @@ from types import ModuleType
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from scenarios.api import Flight, InputError, Run, Scenario, Statistics, fly, load, read_ais, run
+    from scenarios.api import (
+        Flight,
+        InputError,
+        Run,
+        Scenario,
+        Statistics,
+        fly,
+        load,
+        read_ais,
+        run,
+    )
 
-__all__ = ["Flight", "InputError", "Run", "Scenario", "Statistics", "fly", "load", "read_ais", "run"]
+__all__ = [
+    "Flight",
+    "InputError",
+    "Run",
+    "Scenario",
+    "Statistics",
+    "fly",
+    "load",
+    "read_ais",
+    "run",
+]
 
 
 class _Package(ModuleType):

@@ -75,7 +75,9 @@ class FlightWork:
         """Return the same work with its files in another directory."""
         if self.setup is None or self.setup.aircraft is None:
             return self
-        return replace(self, setup=replace(self.setup, aircraft=replace(self.setup.aircraft, model=model)))
+        return replace(
+            self, setup=replace(self.setup, aircraft=replace(self.setup.aircraft, model=model))
+        )
 
     @cached_property
     def _ends(self) -> list[int]:
@@ -107,7 +109,9 @@ class FlightWork:
             request = self.request(task)
             row |= _request_row(request)
             named = {key: row[key] for key in ("flight_id", "trial", "variant")}
-            tables[DRAWS] = [named | {"nu": row.get("nu")} | dict(task.labels) | _plain(request.inputs)]
+            tables[DRAWS] = [
+                named | {"nu": row.get("nu")} | dict(task.labels) | _plain(request.inputs)
+            ]
             if self.refusal and request.scenario.fidelity == "six_dof":
                 return self._result(task, row | unflown(Outcome.TRIM_FAILED, self.refusal), tables)
             plan = self.plan(request)
@@ -116,35 +120,58 @@ class FlightWork:
             instruments = payload_of(request, plan)
             read = [instrument for instrument in instruments if isinstance(instrument, Instrument)]
             vehicle = release(plan, self.setup_of(request), self.viewer)
-            record = fly(plan, vehicle, read, reader=reader_of(plan, instruments), every_step=task.every_step)
+            record = fly(
+                plan, vehicle, read, reader=reader_of(plan, instruments), every_step=task.every_step
+            )
             history = flight_history(plan, record)
             figures, found = flight_figures(plan, record)
             row |= figures | _never_flown(request, figures)
             # Before an instrument of a user's own may fail.
             row |= {"kept_out": kept_out(row)} if "keepout_violations" in row else {}
-            tables[CROSSINGS] = [named | {"nu": row.get("nu")} | crossing for crossing in crossing_rows(found)]
+            tables[CROSSINGS] = [
+                named | {"nu": row.get("nu")} | crossing for crossing in crossing_rows(found)
+            ]
             tables[INTERVENTIONS] = [named | stretch._asdict() for stretch in record.interventions]
             for name, instrument in zip(plan.payload, instruments, strict=True):
                 if isinstance(instrument, EvaluatedInstrument):
-                    evaluation = evaluated(name, instrument, record.column, _measured_from(request, record))
+                    evaluation = evaluated(
+                        name, instrument, record.column, _measured_from(request, record)
+                    )
                     # Each sample stands until the next, where every step is recorded.
-                    held = np.searchsorted(record.column("time_s"), history["time_s"], side="right") - 1
+                    held = (
+                        np.searchsorted(record.column("time_s"), history["time_s"], side="right")
+                        - 1
+                    )
                     history[list(instrument.COLUMNS)] = evaluation.columns[held]
                     row |= evaluation.figures
-                    tables |= {file: [named | of | named for of in rows] for file, rows in evaluation.tables.items()}
+                    tables |= {
+                        file: [named | of | named for of in rows]
+                        for file, rows in evaluation.tables.items()
+                    }
                     document = evaluation.document or document
-            if sniffer := next((instrument for instrument in instruments if isinstance(instrument, GasReader)), None):
+            if sniffer := next(
+                (instrument for instrument in instruments if isinstance(instrument, GasReader)),
+                None,
+            ):
                 noise = sniffer.spec.known("co2").noise
                 sampled = history[:: plan.log_interval] if task.every_step else history
-                row |= finding_figures(sampled, request.scenario.flight, noise=noise, enough=record.enough)
+                row |= finding_figures(
+                    sampled, request.scenario.flight, noise=noise, enough=record.enough
+                )
             tables |= self.more_tables(request, plan, record, row)
             failed = failed_criteria(row, request.scenario.criteria)
             row |= {"criteria_met": not failed, "message": "; ".join(failed)}
         except Exception as error:  # noqa: BLE001 - a flight that fails is a row with its reason, and the study goes on
             # After its flight an aircraft stays lost, whatever fails then, and what was flown is not infeasible.
-            flown = {"outcome": row["outcome"] if row["outcome"] in _GONE else Outcome.FAILED.value} if "outcome" in row else {}
+            flown = (
+                {"outcome": row["outcome"] if row["outcome"] in _GONE else Outcome.FAILED.value}
+                if "outcome" in row
+                else {}
+            )
             row |= failure(error) | flown
-        return self._result(task, row | {"wall_time_s": time.perf_counter() - began}, tables, history, document)
+        return self._result(
+            task, row | {"wall_time_s": time.perf_counter() - began}, tables, history, document
+        )
 
     def lost(self, task: Task, reason: str) -> Result:
         """Return the result of a flight whose process was lost."""
@@ -161,10 +188,20 @@ class FlightWork:
         InfeasibleError : it has no solution
         """
         return plan_flight(
-            request.scenario, flight_id=request.flight_id, seed=request.noise, setup=self.setup_of(request), spreads=self.spreads
+            request.scenario,
+            flight_id=request.flight_id,
+            seed=request.noise,
+            setup=self.setup_of(request),
+            spreads=self.spreads,
         )
 
-    def more_tables(self, request: FlightRequest, plan: FlightPlan, record: FlightRecord, row: Row) -> _Tables:  # noqa: ARG002
+    def more_tables(
+        self,
+        request: FlightRequest,  # noqa: ARG002
+        plan: FlightPlan,  # noqa: ARG002
+        record: FlightRecord,  # noqa: ARG002
+        row: Row,  # noqa: ARG002
+    ) -> _Tables:
         """Return rows of tables that a study of its own adds to a flight's row, by the file name of the table."""
         return {}
 
@@ -192,7 +229,9 @@ class FlightWork:
             task=task,
             items=int(row["variant"] == STUDY),
             tables={table: [row], **(tables or {})},
-            files=history_files(task, history, document, planned=self._ends[-1], kept=self.histories, row=row),
+            files=history_files(
+                task, history, document, planned=self._ends[-1], kept=self.histories, row=row
+            ),
         )
 
 
@@ -221,7 +260,9 @@ def _request_row(request: FlightRequest) -> Row:
 def _never_flown(request: FlightRequest, figures: Row) -> Row:
     """Return how many manoeuvres of the vessel begin after the end of the flight, of one that has any."""
     begins = [manoeuvre.at_s for manoeuvre in request.scenario.vessel.manoeuvres]
-    return {"manoeuvres_unflown": sum(at >= figures["duration_s"] for at in begins)} if begins else {}
+    return (
+        {"manoeuvres_unflown": sum(at >= figures["duration_s"] for at in begins)} if begins else {}
+    )
 
 
 def _measured_from(request: FlightRequest, record: FlightRecord) -> float:
@@ -240,16 +281,23 @@ def payload_of(request: FlightRequest, plan: FlightPlan) -> list[Instrument | Ev
     """
     given = request.scenario, plan.world, own_generator(request.noise, PAYLOAD)
     called_with = "the scenario, the world and a random generator"
-    instruments = [asked(f"payload '{name}'", "cannot be made", called_with, PAYLOADS.get(name), *given) for name in plan.payload]
+    instruments = [
+        asked(f"payload '{name}'", "cannot be made", called_with, PAYLOADS.get(name), *given)
+        for name in plan.payload
+    ]
     check_instruments(zip(plan.payload, instruments, strict=True))
     return instruments
 
 
-def reader_of(plan: FlightPlan, instruments: list[Instrument | EvaluatedInstrument]) -> GasReader | None:
+def reader_of(
+    plan: FlightPlan, instruments: list[Instrument | EvaluatedInstrument]
+) -> GasReader | None:
     """Return the instrument that is read in flight, of a flight that reads one."""
     if plan.sensing is None or not plan.sensing.reads_plume:
         return None
-    return next((instrument for instrument in instruments if isinstance(instrument, GasReader)), None)
+    return next(
+        (instrument for instrument in instruments if isinstance(instrument, GasReader)), None
+    )
 
 
 def _plain(values: Mapping[str, object]) -> Row:

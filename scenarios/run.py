@@ -28,35 +28,67 @@ def command(
     name: Annotated[
         str | None,
         typer.Argument(
-            metavar="NAME|FILE.toml|RUN/flights/ID", help="A scenario of the catalog, a scenario file, or a flight to replay."
+            metavar="NAME|FILE.toml|RUN/flights/ID",
+            help="A scenario of the catalog, a scenario file, or a flight to replay.",
         ),
     ] = None,
-    out: Annotated[Path | None, typer.Option(help="Run directory; default runs/NAME-DATE-TIME.")] = None,
-    jobs: Annotated[int | None, typer.Option(min=1, max=256, help="Number of processes; default one per core.")] = None,
-    seed: Annotated[int | None, typer.Option(min=0, help="Seed of the study, as --set seed=SEED.")] = None,
+    out: Annotated[
+        Path | None, typer.Option(help="Run directory; default runs/NAME-DATE-TIME.")
+    ] = None,
+    jobs: Annotated[
+        int | None, typer.Option(min=1, max=256, help="Number of processes; default one per core.")
+    ] = None,
+    seed: Annotated[
+        int | None, typer.Option(min=0, help="Seed of the study, as --set seed=SEED.")
+    ] = None,
     overrides: Annotated[
         list[str] | None,
-        typer.Option("--set", metavar="KEY=VALUE", help="Override a key, e.g. guidance.preview=false; may be repeated."),
+        typer.Option(
+            "--set",
+            metavar="KEY=VALUE",
+            help="Override a key, e.g. guidance.preview=false; may be repeated.",
+        ),
     ] = None,
     executor: Annotated[
-        Literal["local", "dask"], typer.Option(help="Processes of this machine, or a Dask cluster (needs the extra 'dask').")
+        Literal["local", "dask"],
+        typer.Option(help="Processes of this machine, or a Dask cluster (needs the extra 'dask')."),
     ] = "local",
     scheduler: Annotated[
         str | None,
-        typer.Option(metavar="tcp://HOST:PORT", help="Address of a running Dask scheduler; default a cluster on this machine."),
+        typer.Option(
+            metavar="tcp://HOST:PORT",
+            help="Address of a running Dask scheduler; default a cluster on this machine.",
+        ),
     ] = None,
-    time_limit: Annotated[float, typer.Option(help="Longest computing time of a flight, in seconds.")] = 600.0,
-    memory_limit: Annotated[float | None, typer.Option(help="Memory limit of a process, in GiB; default none.")] = None,
-    resume: Annotated[bool, typer.Option("--resume", help="Continue the unfinished run in --out.")] = False,
-    no_report: Annotated[bool, typer.Option("--no-report", help="Do not write report.html and report.pdf.")] = False,
+    time_limit: Annotated[
+        float, typer.Option(help="Longest computing time of a flight, in seconds.")
+    ] = 600.0,
+    memory_limit: Annotated[
+        float | None, typer.Option(help="Memory limit of a process, in GiB; default none.")
+    ] = None,
+    resume: Annotated[
+        bool, typer.Option("--resume", help="Continue the unfinished run in --out.")
+    ] = False,
+    no_report: Annotated[
+        bool, typer.Option("--no-report", help="Do not write report.html and report.pdf.")
+    ] = False,
     aircraft_dir: Annotated[
         Path | None,
-        typer.Option(metavar="DIR", help="Directory with JSBSim models of your own, DIR/NAME/NAME.xml, to choose from."),
+        typer.Option(
+            metavar="DIR",
+            help="Directory with JSBSim models of your own, DIR/NAME/NAME.xml, to choose from.",
+        ),
     ] = None,
     flightgear: Annotated[
-        str | None, typer.Option(metavar="HOST:PORT", help="Replay a flight in real time, shown by FlightGear at this address.")
+        str | None,
+        typer.Option(
+            metavar="HOST:PORT",
+            help="Replay a flight in real time, shown by FlightGear at this address.",
+        ),
     ] = None,
-    list_scenarios: Annotated[bool, typer.Option("--list", help="List the scenarios of the catalog and exit.")] = False,
+    list_scenarios: Annotated[
+        bool, typer.Option("--list", help="List the scenarios of the catalog and exit.")
+    ] = False,
 ) -> None:
     """Fly a scenario and write a report.
 
@@ -73,11 +105,26 @@ def command(
             status = _list()
         else:
             # A replay that is watched takes as long as the flight.
-            limits = Limits.given(time_limit if flightgear is None else _WATCHED_TIME_LIMIT, memory_limit)
-            executor_factory = ExecutorFactory(
-                jobs=jobs or os.cpu_count() or 1, executor=executor, scheduler=scheduler, limits=limits
+            limits = Limits.given(
+                time_limit if flightgear is None else _WATCHED_TIME_LIMIT, memory_limit
             )
-            status = _run(name, out, executor_factory, seed, overrides or [], resume, no_report, flightgear, aircraft_dir)
+            executor_factory = ExecutorFactory(
+                jobs=jobs or os.cpu_count() or 1,
+                executor=executor,
+                scheduler=scheduler,
+                limits=limits,
+            )
+            status = _run(
+                name,
+                out,
+                executor_factory,
+                seed,
+                overrides or [],
+                resume,
+                no_report,
+                flightgear,
+                aircraft_dir,
+            )
     except InputError as error:
         status = refuse(error)
     except KeyboardInterrupt:
@@ -119,7 +166,10 @@ def _run(
 
     replayed = is_flight(name)
     stem = flight_of(name) if replayed else Path(name).stem
-    directory = out or Path("runs") / f"{'replay-' if replayed else ''}{stem}-{datetime.now():%Y%m%d-%H%M%S}"
+    directory = (
+        out
+        or Path("runs") / f"{'replay-' if replayed else ''}{stem}-{datetime.now():%Y%m%d-%H%M%S}"
+    )
     if replayed and overrides:
         raise InputError(
             f"'{name}' is a flight, which is replayed unchanged; leave out --set and --seed, or fly its scenario instead"
@@ -142,7 +192,14 @@ def _run(
             from scenarios.studies.replay import Replay
 
             study = Replay(name, viewer, aircraft_dir=aircraft_dir)
-            result = fly_study(study, directory, executor_factory=executor_factory, resume=resume, progress=progress, command=given)
+            result = fly_study(
+                study,
+                directory,
+                executor_factory=executor_factory,
+                resume=resume,
+                progress=progress,
+                command=given,
+            )
         else:
             from scenarios.studies.registry import run_study
 
@@ -160,9 +217,19 @@ def _run(
         print(line)
     print(f"results: {result.directory}")
     if result.interrupted:
-        kept, left = f"{result.summary.done} of {result.planned} {result.what} are done and kept", result.summary.beside_left
-        beside = f"; of the comparisons {left} {'is' if left == 1 else 'are'} left to fly" if left else ""
-        print(f"interrupted; {kept}{beside}. Continue with: {_again(directory, out=out, resume=resume)}", file=sys.stderr)
+        kept, left = (
+            f"{result.summary.done} of {result.planned} {result.what} are done and kept",
+            result.summary.beside_left,
+        )
+        beside = (
+            f"; of the comparisons {left} {'is' if left == 1 else 'are'} left to fly"
+            if left
+            else ""
+        )
+        print(
+            f"interrupted; {kept}{beside}. Continue with: {_again(directory, out=out, resume=resume)}",
+            file=sys.stderr,
+        )
         return INTERRUPTED
     status = _report(directory, changed=result.changed, wanted=not no_report)
     return status or (MET if result.all_met else NOT_MET)
@@ -172,7 +239,11 @@ def _again(directory: Path, *, out: Path | None, resume: bool) -> str:
     """Return the command that continues an interrupted run: what was typed, with the run's directory and --resume."""
     from common.command_line import PROGRAM
 
-    typed = sys.argv[2:] if Path(sys.argv[0]).stem == PROGRAM and sys.argv[1:2] == ["run"] else sys.argv[1:]
+    typed = (
+        sys.argv[2:]
+        if Path(sys.argv[0]).stem == PROGRAM and sys.argv[1:2] == ["run"]
+        else sys.argv[1:]
+    )
     there = [] if out is not None else ["--out", str(directory)]
     return shlex.join([PROGRAM, "run", *typed, *there, *([] if resume else ["--resume"])])
 
@@ -186,7 +257,9 @@ def _viewer(address: str | None, *, replayed: bool) -> tuple[str, int] | None:
     if not replayed:
         raise InputError("--flightgear shows the replay of a flight; give RUN_DIR/flights/ID")
     host, _, port = address.rpartition(":")
-    if not (re.fullmatch(r"[A-Za-z0-9.\-]+", host) and port.isdecimal() and 0 < int(port) <= _PORT_MAX):
+    if not (
+        re.fullmatch(r"[A-Za-z0-9.\-]+", host) and port.isdecimal() and 0 < int(port) <= _PORT_MAX
+    ):
         raise InputError(f"--flightgear is '{address}'; give HOST:PORT, as in localhost:5550")
     return host, int(port)
 
@@ -211,9 +284,14 @@ def _report(directory: Path, *, changed: bool, wanted: bool) -> int:
         return refuse(error)
     except OSError as error:
         again = f"plume-flight report {directory}"
-        return refuse(f"the report cannot be written: {error.strerror}; fix that, then build the report with: {again}")
+        return refuse(
+            f"the report cannot be written: {error.strerror}; fix that, then build the report with: {again}"
+        )
     except KeyboardInterrupt:
-        print(f"report interrupted; build the report with: plume-flight report {directory}", file=sys.stderr)
+        print(
+            f"report interrupted; build the report with: plume-flight report {directory}",
+            file=sys.stderr,
+        )
         return INTERRUPTED
     return MET
 

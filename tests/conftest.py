@@ -76,7 +76,11 @@ def pytest_configure() -> None:
     os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
     sys.dont_write_bytecode = False
     # Some ten thousand files are written, synchronised and deleted: up to 5 ms each on a disk.
-    if "TMPDIR" not in os.environ and os.access(MEMORY, os.W_OK) and shutil.disk_usage(MEMORY).free > MEMORY_MIN:
+    if (
+        "TMPDIR" not in os.environ
+        and os.access(MEMORY, os.W_OK)
+        and shutil.disk_usage(MEMORY).free > MEMORY_MIN
+    ):
         os.environ["TMPDIR"] = tempfile.tempdir = str(MEMORY)
 
 
@@ -143,7 +147,9 @@ def x8_design(designs: Callable[..., Designed]) -> Design:
 
 
 @pytest.fixture(scope="session")
-def heavy_design(designs: Callable[..., Designed], tmp_path_factory: pytest.TempPathFactory) -> Designed:
+def heavy_design(
+    designs: Callable[..., Designed], tmp_path_factory: pytest.TempPathFactory
+) -> Designed:
     """The autopilot of the Cessna of docs/scripts/aircraft_directory.py."""
     script = Path(__file__).parents[1] / "docs" / "scripts" / "aircraft_directory.py"
     folder = runpy.run_path(str(script))["write_heavy_cessna"](tmp_path_factory.mktemp("fleet"))

@@ -44,6 +44,8 @@ def assert_refused(ended, *words):
     *before, last = ended.errors.splitlines()
     assert last.startswith("error: "), ended.errors
     # Beside it there is what the command was doing.
-    assert not [line for line in before if "error" in line.lower() or "Traceback" in line], ended.errors
+    assert not [line for line in before if "error" in line.lower() or "Traceback" in line], (
+        ended.errors
+    )
     for word in words:
         assert word in last

@@ -31,8 +31,13 @@ class StandingAlone:
     def __init__(self, room: str, *, allowed: set[str], barred: set[str] = frozenset()) -> None:
         project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
         # "control>=0.10.2" and the like; each is imported by the name it is installed by.
-        installed = {requirement.partition(">=")[0] for requirement in project["project"]["dependencies"]}
-        rooms = {name.rstrip("*") for name in project["tool"]["setuptools"]["packages"]["find"]["include"]}
+        installed = {
+            requirement.partition(">=")[0] for requirement in project["project"]["dependencies"]
+        }
+        rooms = {
+            name.rstrip("*")
+            for name in project["tool"]["setuptools"]["packages"]["find"]["include"]
+        }
         self._bar = _BAR.format(barred=sorted((installed | rooms | barred) - allowed - {room}))
         files = (path.relative_to(ROOT).with_suffix("") for path in (ROOT / room).rglob("*.py"))
         self.modules = sorted(".".join(file.parts).removesuffix(".__init__") for file in files)

@@ -39,14 +39,45 @@ FLIGHTS = 3
 
 NUMBERS = st.one_of(
     st.sampled_from(
-        [0, -1, 1, 2**31, 2**63, -(2**63) - 1, 10**30, 1e-300, 1e-9, 1e9, 1e300, -1e300, 5e-324, float("inf"), float("nan")]
+        [
+            0,
+            -1,
+            1,
+            2**31,
+            2**63,
+            -(2**63) - 1,
+            10**30,
+            1e-300,
+            1e-9,
+            1e9,
+            1e300,
+            -1e300,
+            5e-324,
+            float("inf"),
+            float("nan"),
+        ]
     ),
     st.integers(),
     st.floats(),
 )
 WORDS = st.one_of(
     st.sampled_from(
-        ["", ".", "..", "/", "../../x", "a\x00b", "=1+1", "<!--<script>", "none", "x8", "a" * 300, "x.py:X", "é", "\u2028"]
+        [
+            "",
+            ".",
+            "..",
+            "/",
+            "../../x",
+            "a\x00b",
+            "=1+1",
+            "<!--<script>",
+            "none",
+            "x8",
+            "a" * 300,
+            "x.py:X",
+            "é",
+            "\u2028",
+        ]
     ),
     st.text(max_size=8),
 )
@@ -61,12 +92,22 @@ def keys_of(document, before=""):
     """Return every dotted key of a scenario."""
     keys = []
     for key, value in document.items():
-        keys += [f"{before}{key}", *(keys_of(value, f"{before}{key}.") if isinstance(value, dict) else [])]
+        keys += [
+            f"{before}{key}",
+            *(keys_of(value, f"{before}{key}.") if isinstance(value, dict) else []),
+        ]
     return keys
 
 
 KEYS = st.one_of(
-    st.sampled_from([*keys_of(Scenario(title="all").model_dump(mode="json")), "sweep.nu", "sweep.wind.speed_mps", "draws.0.key"]),
+    st.sampled_from(
+        [
+            *keys_of(Scenario(title="all").model_dump(mode="json")),
+            "sweep.nu",
+            "sweep.wind.speed_mps",
+            "draws.0.key",
+        ]
+    ),
     WORDS,
 )
 OPTIONS = st.sampled_from(
@@ -117,13 +158,24 @@ def place(tmp_path_factory):
     with pytest.MonkeyPatch.context() as patch:
         patch.chdir(place)
         # In this process: what examples damage is not how flights are spread over processes.
-        patch.setattr("scenarios.engine.executors.LocalExecutor", lambda work, **_: InProcessExecutor(work))
-        assert run_command("scenarios.run", "short.toml", "--out", "whole", "--jobs", "1", "--no-report").status == 0
+        patch.setattr(
+            "scenarios.engine.executors.LocalExecutor", lambda work, **_: InProcessExecutor(work)
+        )
+        assert (
+            run_command(
+                "scenarios.run", "short.toml", "--out", "whole", "--jobs", "1", "--no-report"
+            ).status
+            == 0
+        )
         yield place
 
 
 def files_in(place):
-    return sorted(path.relative_to(place).as_posix() for path in place.rglob("*") if "run" not in path.relative_to(place).parts[:1])
+    return sorted(
+        path.relative_to(place).as_posix()
+        for path in place.rglob("*")
+        if "run" not in path.relative_to(place).parts[:1]
+    )
 
 
 def ended(place, module, *arguments):
@@ -134,7 +186,9 @@ def ended(place, module, *arguments):
     assert found.status in (0, 1, 2), (arguments, found)
     assert "Traceback" not in found.errors
     if found.status == BAD_INPUT:
-        *_, last = found.errors.splitlines()  # One line, also where a name has a line separator of Unicode's.
+        *_, last = (
+            found.errors.splitlines()
+        )  # One line, also where a name has a line separator of Unicode's.
         assert last.startswith("error: "), (arguments, found)
     assert files_in(place) == before, arguments
     return found
@@ -149,12 +203,20 @@ def fresh(place):
 @settings(max_examples=100 * DEPTH, derandomize=DEPTH == 1)
 def test_any_configuration_is_a_study_or_refused_in_a_line(place, pairs):
     with bounded(), contextlib.suppress(InputError):
-        scenario = load_study("short.toml", [f"{key}={json.dumps(value, ensure_ascii=False)}" for key, value in pairs])
-        if isinstance(scenario, Scenario) and scenario.fidelity == "kinematic" and scenario.aircraft == "x8":
+        scenario = load_study(
+            "short.toml", [f"{key}={json.dumps(value, ensure_ascii=False)}" for key, value in pairs]
+        )
+        if (
+            isinstance(scenario, Scenario)
+            and scenario.fidelity == "kinematic"
+            and scenario.aircraft == "x8"
+        ):
             study_of(scenario, "short")
 
 
-@given(st.one_of(st.binary(max_size=60), st.text(max_size=60).map(str.encode)), st.integers(0, 1000))
+@given(
+    st.one_of(st.binary(max_size=60), st.text(max_size=60).map(str.encode)), st.integers(0, 1000)
+)
 @settings(max_examples=60 * DEPTH, derandomize=DEPTH == 1)
 def test_any_scenario_file_is_a_study_or_refused_in_a_line(place, junk, at):
     whole = (place / "short.toml").read_bytes()
@@ -165,7 +227,10 @@ def test_any_scenario_file_is_a_study_or_refused_in_a_line(place, junk, at):
         load_study(str(path))
 
 
-@given(st.lists(st.tuples(OPTIONS, st.one_of(NUMBERS.map(str), WORDS)), min_size=1, max_size=3), st.booleans())
+@given(
+    st.lists(st.tuples(OPTIONS, st.one_of(NUMBERS.map(str), WORDS)), min_size=1, max_size=3),
+    st.booleans(),
+)
 @settings(max_examples=60 * DEPTH, derandomize=DEPTH == 1)
 def test_any_command_line_ends_with_a_documented_status(place, options, named):
     # Nothing is flown: a scenario that there is not is the last that is looked for.
@@ -203,7 +268,14 @@ def table(run):
     return pd.read_csv(run / "summary.csv").drop(columns="wall_time_s")
 
 
-RUN_FILES = ["manifest.json", "journal.sqlite", "journal.sqlite", "summary.csv", "draws.csv", "flights/short_00001.parquet"]
+RUN_FILES = [
+    "manifest.json",
+    "journal.sqlite",
+    "journal.sqlite",
+    "summary.csv",
+    "draws.csv",
+    "flights/short_00001.parquet",
+]
 
 
 @given(st.sampled_from(RUN_FILES), DAMAGES, st.integers(0, 10**6))
@@ -211,7 +283,17 @@ RUN_FILES = ["manifest.json", "journal.sqlite", "journal.sqlite", "summary.csv",
 def test_a_damaged_run_is_continued_to_the_same_rows_or_refused(place, name, how, at):
     run = fresh(place)
     damage(run / name, how, at)
-    found = ended(place, "scenarios.run", "short.toml", "--out", "run", "--resume", "--jobs", "1", "--no-report")
+    found = ended(
+        place,
+        "scenarios.run",
+        "short.toml",
+        "--out",
+        "run",
+        "--resume",
+        "--jobs",
+        "1",
+        "--no-report",
+    )
     if found.status != BAD_INPUT:
         # Nothing is believed that does not add up.
         assert found.status == 0, found
@@ -224,10 +306,22 @@ def test_a_flight_of_a_damaged_run_is_replayed_or_refused(place, name, how, at):
     original = fresh(place)
     damage(original / name, how, at)
     inside = original / "again"
-    found = ended(place, "scenarios.run", "run/flights/short_00001", "--out", inside, "--jobs", "1", "--no-report")
+    found = ended(
+        place,
+        "scenarios.run",
+        "run/flights/short_00001",
+        "--out",
+        inside,
+        "--jobs",
+        "1",
+        "--no-report",
+    )
     if found.status == 0:
         pd.testing.assert_frame_equal(
-            table(inside), table(place / "whole").iloc[[1]].reset_index(drop=True), check_exact=True, check_dtype=False
+            table(inside),
+            table(place / "whole").iloc[[1]].reset_index(drop=True),
+            check_exact=True,
+            check_dtype=False,
         )
 
 
@@ -252,4 +346,9 @@ def test_a_report_of_a_damaged_run_names_it_or_is_refused(place, name, how, at):
 
 def test_the_whole_run_is_as_it_was(place):
     assert Path("whole", "summary.csv").is_file()
-    assert ended(place, "scenarios.run", "short.toml", "--out", "whole", "--resume", "--no-report").status == 0
+    assert (
+        ended(
+            place, "scenarios.run", "short.toml", "--out", "whole", "--resume", "--no-report"
+        ).status
+        == 0
+    )

@@ -49,7 +49,9 @@ class Gust:
             if not (math.isfinite(value) and value > 0.0):
                 raise AircraftError(f"gust: {name} is {value} s; it must be finite and above 0")
         if not 0.0 < math.hypot(*self.velocity_ned) < math.inf:
-            raise AircraftError(f"gust: velocity_ned is {self.velocity_ned} m/s; it must be finite and not 0")
+            raise AircraftError(
+                f"gust: velocity_ned is {self.velocity_ned} m/s; it must be finite and not 0"
+            )
 
     @property
     def end(self) -> float:
@@ -105,7 +107,9 @@ def end_gust(fdm: Fdm) -> None:
 def _steps(fdm: Fdm, gusts: Sequence[Gust]) -> Iterator[None]:
     """Advance the aircraft by a time step whenever asked, for ever; let each of the gusts, in order, begin when it is due."""
     fdm.write("atmosphere/cosine-gust/frame", _LOCAL_FRAME)
-    profile = [fdm.writable_node(f"atmosphere/cosine-gust/{name}") for name in (*_PROFILE, *_DIRECTION)]
+    profile = [
+        fdm.writable_node(f"atmosphere/cosine-gust/{name}") for name in (*_PROFILE, *_DIRECTION)
+    ]
     start = fdm.writable_node("atmosphere/cosine-gust/start")
     run, step = fdm.run, 0
     for gust in gusts:

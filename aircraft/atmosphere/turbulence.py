@@ -50,7 +50,9 @@ class Turbulence:
                 f"turbulence: wind_at_20ft is {self.wind_at_20ft} m/s; it must be finite and above 0; leave turbulence out for none"
             )
         if self.severity not in range(1, 8):
-            raise AircraftError(f"turbulence: severity is {self.severity}; MIL-F-8785C has curves 1 to 7")
+            raise AircraftError(
+                f"turbulence: severity is {self.severity}; MIL-F-8785C has curves 1 to 7"
+            )
 
 
 TURBULENCE = {
@@ -98,7 +100,9 @@ def _height_ft(altitude: float) -> float:
     height = altitude / METRES_PER_FOOT
     if not height <= _ALTITUDE_MAX_FT:
         highest = _ALTITUDE_MAX_FT * METRES_PER_FOOT
-        raise AircraftError(f"low-altitude turbulence: altitude is {altitude:g} m; it holds up to {highest:g} m")
+        raise AircraftError(
+            f"low-altitude turbulence: altitude is {altitude:g} m; it holds up to {highest:g} m"
+        )
     return max(height, _ALTITUDE_MIN_FT)
 
 

@@ -37,7 +37,9 @@ class Weather:
 
     def __post_init__(self) -> None:
         if not 0 <= self.seed <= _SEED_MAX:
-            raise AircraftError(f"weather: seed is {self.seed}; JSBSim takes whole numbers from 0 to {_SEED_MAX}")
+            raise AircraftError(
+                f"weather: seed is {self.seed}; JSBSim takes whole numbers from 0 to {_SEED_MAX}"
+            )
 
 
 def begin_turbulence(fdm: Fdm, weather: Weather) -> None:
@@ -50,7 +52,9 @@ def begin_turbulence(fdm: Fdm, weather: Weather) -> None:
         return
     fdm.write("atmosphere/randomseed", weather.seed)
     fdm.write("atmosphere/turb-type", JSBSIM_TYPE)
-    fdm.write(f"{_MILSPEC}/windspeed_at_20ft_AGL-fps", weather.turbulence.wind_at_20ft / METRES_PER_FOOT)
+    fdm.write(
+        f"{_MILSPEC}/windspeed_at_20ft_AGL-fps", weather.turbulence.wind_at_20ft / METRES_PER_FOOT
+    )
     fdm.write(f"{_MILSPEC}/severity", weather.turbulence.severity)
 
 

@@ -44,11 +44,21 @@ class WindField:
     AircraftError : a value is not finite, or times or heights do not rise
     """
 
-    def __init__(self, velocity: npt.ArrayLike, times: Sequence[float] = (0.0,), heights: Sequence[float] = (10.0,)) -> None:
+    def __init__(
+        self,
+        velocity: npt.ArrayLike,
+        times: Sequence[float] = (0.0,),
+        heights: Sequence[float] = (10.0,),
+    ) -> None:
         self._velocity = np.asarray(velocity, dtype=np.float64).reshape(len(times), len(heights), 2)
-        self._times, self._heights = [float(t) for t in times], [math.log(max(float(z), _LOWEST)) for z in heights]
+        self._times, self._heights = (
+            [float(t) for t in times],
+            [math.log(max(float(z), _LOWEST)) for z in heights],
+        )
         if not np.isfinite(self._velocity).all():
-            raise AircraftError(f"weather: a wind of {self._velocity[~np.isfinite(self._velocity)][0]} m/s; it must be finite")
+            raise AircraftError(
+                f"weather: a wind of {self._velocity[~np.isfinite(self._velocity)][0]} m/s; it must be finite"
+            )
         for name, values in (("times", self._times), ("heights", self._heights)):
             if any(after <= before for before, after in itertools.pairwise(values)):
                 raise AircraftError(f"weather: {name} of the wind do not rise")
@@ -71,9 +81,12 @@ class WindField:
             return north, east
         i, after, share = _between(self._times, time)
         j, above, upper = _between(self._heights, math.log(max(height, _LOWEST)))
-        (low, high), (low_after, high_after) = ((rows[j], rows[above]) for rows in (self._rows[i], self._rows[after]))
+        (low, high), (low_after, high_after) = (
+            (rows[j], rows[above]) for rows in (self._rows[i], self._rows[after])
+        )
         north, east = (
-            (1.0 - share) * (low[k] + upper * (high[k] - low[k])) + share * (low_after[k] + upper * (high_after[k] - low_after[k]))
+            (1.0 - share) * (low[k] + upper * (high[k] - low[k]))
+            + share * (low_after[k] + upper * (high_after[k] - low_after[k]))
             for k in (0, 1)
         )
         return north, east
@@ -93,8 +106,14 @@ class WindField:
         if len(self._times) == 1:
             return 0.0
         times = _looked_at(self._times, 0.0, duration, interval)
-        inner = [math.exp(height) for height in self._heights if min(heights) < math.exp(height) < max(heights)]
-        return _largest_step(times, *self.at(times[:, None], np.array([*heights, *inner])), interval)
+        inner = [
+            math.exp(height)
+            for height in self._heights
+            if min(heights) < math.exp(height) < max(heights)
+        ]
+        return _largest_step(
+            times, *self.at(times[:, None], np.array([*heights, *inner])), interval
+        )
 
     def largest_shear(self, apart: float, lowest: float, highest: float, duration: float) -> float:
         """Return by how much the velocity of the air differs at most between two heights, at a time from 0 to a duration [m/s].
@@ -116,14 +135,22 @@ class WindField:
 
         It is the exact integral of ``at`` over time, at a constant height. Times and heights are broadcast together.
         """
-        north, east = (end - start for end, start in zip(self._moved(time, height), self._moved(0.0, height), strict=True))
+        north, east = (
+            end - start
+            for end, start in zip(self._moved(time, height), self._moved(0.0, height), strict=True)
+        )
         return north, east
 
     def _moved(self, time: npt.ArrayLike, height: npt.ArrayLike) -> tuple[Array, Array]:
         """Return the integral of the velocity from the first time of the grid on [m]."""
         times, time = np.array(self._times), np.asarray(time, dtype=np.float64)
         mean = 0.5 * (self._velocity[1:] + self._velocity[:-1])
-        nodes = np.concatenate([np.zeros((1, *self._velocity.shape[1:])), np.cumsum(np.diff(times)[:, None, None] * mean, axis=0)])
+        nodes = np.concatenate(
+            [
+                np.zeros((1, *self._velocity.shape[1:])),
+                np.cumsum(np.diff(times)[:, None, None] * mean, axis=0),
+            ]
+        )
         last = np.clip(np.searchsorted(times, time, side="right") - 1, 0, len(times) - 1)
         since = time - times[last]
         begin, now = self.at(times[last], height), self.at(time, height)
@@ -131,8 +158,12 @@ class WindField:
         north, east = (w + 0.5 * since * (b + n) for w, b, n in zip(whole, begin, now, strict=True))
         return north, east
 
-    def _interpolated(self, grid: Array, time: npt.ArrayLike, height: npt.ArrayLike) -> tuple[Array, Array]:
-        time, height = np.broadcast_arrays(np.asarray(time, dtype=np.float64), np.asarray(height, dtype=np.float64))
+    def _interpolated(
+        self, grid: Array, time: npt.ArrayLike, height: npt.ArrayLike
+    ) -> tuple[Array, Array]:
+        time, height = np.broadcast_arrays(
+            np.asarray(time, dtype=np.float64), np.asarray(height, dtype=np.float64)
+        )
         if len(self._times) == len(self._heights) == 1:
             return np.full(time.shape, grid[0, 0, 0]), np.full(time.shape, grid[0, 0, 1])
         i, after, share = _all_between(self._times, time)
@@ -152,7 +183,9 @@ CALM = constant_wind(0.0, 0.0)
 """No wind."""
 
 
-def over_the_sea(wind: Array, times: Sequence[float], *, roughness: float, height: float) -> WindField:
+def over_the_sea(
+    wind: Array, times: Sequence[float], *, roughness: float, height: float
+) -> WindField:
     """Return a wind with a logarithmic profile, V(z) = V(h) ln(z/z_0)/ln(h/z_0), neutral air over the sea.
 
     Parameters
@@ -172,7 +205,9 @@ def over_the_sea(wind: Array, times: Sequence[float], *, roughness: float, heigh
             " that height"
         )
     top = math.log(_PROFILE_TOP / roughness) / math.log(height / roughness)
-    return WindField(np.stack([np.zeros_like(wind), top * wind], axis=1), times, (roughness, _PROFILE_TOP))
+    return WindField(
+        np.stack([np.zeros_like(wind), top * wind], axis=1), times, (roughness, _PROFILE_TOP)
+    )
 
 
 def windy_run(fdm: Fdm, wind: WindField, run: Callable[[], object]) -> Callable[[], object]:
@@ -204,7 +239,13 @@ def windy_run(fdm: Fdm, wind: WindField, run: Callable[[], object]) -> Callable[
 def _looked_at(nodes: Sequence[float], first: float, last: float, apart: float) -> Array:
     """Return where a largest change within a distance begins or ends: between nodes it is steady, and at most as large."""
     inner = np.array([node for node in nodes if first < node < last])
-    return np.unique(np.clip([first, last, *inner, *(inner - apart), *(inner + apart), first + apart, last - apart], first, last))
+    return np.unique(
+        np.clip(
+            [first, last, *inner, *(inner - apart), *(inner + apart), first + apart, last - apart],
+            first,
+            last,
+        )
+    )
 
 
 def _largest_step(points: Array, north: Array, east: Array, apart: float) -> float:
@@ -228,7 +269,9 @@ def _between(points: list[float], value: float) -> tuple[int, int, float]:
     return i, i + 1, (value - points[i]) / (points[i + 1] - points[i])
 
 
-def _all_between(points: list[float], values: Array) -> tuple[npt.NDArray[np.intp], npt.NDArray[np.intp], Array]:
+def _all_between(
+    points: list[float], values: Array
+) -> tuple[npt.NDArray[np.intp], npt.NDArray[np.intp], Array]:
     """Return the points about each value, and how far it is from the first to the second [-]."""
     known = np.array(points)
     i = np.clip(np.searchsorted(known, values, side="right") - 1, 0, len(points) - 1)

@@ -38,7 +38,10 @@ def with_linearised_controls(fdm: Fdm, level: Trim) -> AircraftSpec:
     ------
     AircraftError : a surface has no effect
     """
-    inputs = tuple(_linearised(fdm, level, i) if i.name in AXES and not i.effectiveness else i for i in fdm.spec.inputs)
+    inputs = tuple(
+        _linearised(fdm, level, i) if i.name in AXES and not i.effectiveness else i
+        for i in fdm.spec.inputs
+    )
     return replace(fdm.spec, inputs=inputs)
 
 
@@ -47,15 +50,24 @@ def _linearised(fdm: Fdm, level: Trim, control_input: ControlInput) -> ControlIn
     moment = _moments(fdm, level, control_input.name, commands)
     span = float(np.ptp(moment))
     if not span > 0.0:
-        raise AircraftError(f"aircraft '{fdm.spec.name}' cannot be flown: its {control_input.name} has no effect")
-    line = moment[0] + (moment[-1] - moment[0]) * (commands - commands[0]) / (commands[-1] - commands[0])
+        raise AircraftError(
+            f"aircraft '{fdm.spec.name}' cannot be flown: its {control_input.name} has no effect"
+        )
+    line = moment[0] + (moment[-1] - moment[0]) * (commands - commands[0]) / (
+        commands[-1] - commands[0]
+    )
     if float(np.max(np.abs(moment - line))) < _NONLINEARITY_MAX * span:
         return control_input
     low, high = _travel(commands, moment)
     if _STEPS in (low, high):
-        raise AircraftError(f"aircraft '{fdm.spec.name}' cannot be flown: its {control_input.name} moves it one way only")
+        raise AircraftError(
+            f"aircraft '{fdm.spec.name}' cannot be flown: its {control_input.name} moves it one way only"
+        )
     effect = 2.0 * (moment - moment[_STEPS]) / (moment[high] - moment[low])
-    points = tuple((float(e), float(c)) for e, c in zip(effect[low : high + 1], commands[low : high + 1], strict=True))
+    points = tuple(
+        (float(e), float(c))
+        for e, c in zip(effect[low : high + 1], commands[low : high + 1], strict=True)
+    )
     return replace(control_input, lower=points[0][0], upper=points[-1][0], effectiveness=points)
 
 
@@ -65,7 +77,9 @@ def _commands(control_input: ControlInput) -> npt.NDArray[np.float64]:
     return np.concatenate([below, np.linspace(0.0, control_input.upper, _STEPS + 1)[1:]])
 
 
-def _moments(fdm: Fdm, level: Trim, name: str, commands: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
+def _moments(
+    fdm: Fdm, level: Trim, name: str, commands: npt.NDArray[np.float64]
+) -> npt.NDArray[np.float64]:
     """Return the angular acceleration about the surface's axis over its commands [rad/s^2]."""
     moments = []
     with fdm.frozen():

@@ -131,7 +131,10 @@ def first_trim(fdm: Fdm, altitude: float) -> Trim:
     """
     weight = fdm.read("inertia/weight-lbs") * NEWTONS_PER_POUND
     area = fdm.read("metrics/Sw-sqft") * METRES_PER_FOOT**2
-    for what, value, unit, key in (("weight", weight, "N", "emptywt"), ("wing area", area, "m²", "wingarea")):
+    for what, value, unit, key in (
+        ("weight", weight, "N", "emptywt"),
+        ("wing area", area, "m²", "wingarea"),
+    ):
         if not value > 0.0:
             raise AircraftError(
                 f"aircraft '{fdm.spec.name}': its {what} is {value:g} {unit}; it must be above 0: correct {key} in the model"
@@ -165,7 +168,10 @@ def _stall_airspeed(fdm: Fdm, level: Trim) -> tuple[float, tuple[str, ...]]:
         while alpha < _ALPHA_MAX:
             fdm.place(
                 RigidBodyState(
-                    altitude=level.altitude, roll=0.0, pitch=alpha, velocity_body=body_velocity(level.airspeed, alpha, 0.0)
+                    altitude=level.altitude,
+                    roll=0.0,
+                    pitch=alpha,
+                    velocity_body=body_velocity(level.airspeed, alpha, 0.0),
                 )
             )
             fdm.step(2)
@@ -173,7 +179,11 @@ def _stall_airspeed(fdm: Fdm, level: Trim) -> tuple[float, tuple[str, ...]]:
             if now < largest:
                 break
             largest, alpha = now, alpha + _LIFT_STEP
-    notes = () if alpha < _ALPHA_MAX else (f"lift still rises at {math.degrees(_ALPHA_MAX):.0f} deg, taken for the stall",)
+    notes = (
+        ()
+        if alpha < _ALPHA_MAX
+        else (f"lift still rises at {math.degrees(_ALPHA_MAX):.0f} deg, taken for the stall",)
+    )
     return level.airspeed * math.sqrt(weight / largest), notes
 
 
@@ -189,7 +199,9 @@ def _airspeeds(fdm: Fdm, level: Trim, stall: float, bank: float) -> tuple[list[f
         airspeed = slowest * (fastest / slowest) ** (i / _AIRSPEED_STEPS)
         near = level
         for turn in (0.0, steepest, -steepest):
-            found = search_trim(fdm, airspeed=airspeed, altitude=level.altitude, bank=turn, start=near)
+            found = search_trim(
+                fdm, airspeed=airspeed, altitude=level.altitude, bank=turn, start=near
+            )
             reason = _lacks(found, fdm.spec)
             if reason:
                 why = reason
@@ -212,7 +224,11 @@ def _lacks(t: Trim, spec: AircraftSpec) -> str:
     where = f"{t.airspeed:.0f} m/s and {math.degrees(t.roll):.0f} deg of bank"
     for name, value in t.inputs.items():
         travel = spec.input(name)
-        low, high = _THROTTLE_RANGE if name == "throttle" else (_SURFACE_FRACTION * travel.lower, _SURFACE_FRACTION * travel.upper)
+        low, high = (
+            _THROTTLE_RANGE
+            if name == "throttle"
+            else (_SURFACE_FRACTION * travel.lower, _SURFACE_FRACTION * travel.upper)
+        )
         if not low <= value <= high:
             return f"{where} take {value:.2f} of {name}; {low:g} to {high:g} leaves a reserve"
     if t.alpha > spec.alpha_max:

@@ -56,7 +56,9 @@ class Trim:
         """Return the largest remaining acceleration [m/s^2, rad/s^2]."""
         return max(abs(value) for value in self.residuals)
 
-    def state(self, latitude: float = 0.0, longitude: float = 0.0, yaw: float = 0.0) -> RigidBodyState:
+    def state(
+        self, latitude: float = 0.0, longitude: float = 0.0, yaw: float = 0.0
+    ) -> RigidBodyState:
         """Return the rigid-body state of this equilibrium at a place [rad] and yaw [rad]."""
         return RigidBodyState(
             latitude=latitude,
@@ -71,5 +73,7 @@ class Trim:
 
     def course_offset(self) -> float:
         """Return course minus yaw [rad]."""
-        ahead, right, _ = level(body_velocity(self.airspeed, self.alpha, self.beta), self.roll, self.pitch)
+        ahead, right, _ = level(
+            body_velocity(self.airspeed, self.alpha, self.beta), self.roll, self.pitch
+        )
         return math.atan2(right, ahead)

@@ -40,7 +40,11 @@ def flight_idle(fdm: Fdm, trim: Trim) -> float:
             fdm.settle(_SETTLED)
             decelerations.append(-fdm.acceleration_body()[0])
     most = int(np.argmax(decelerations))
-    return float(throttles[most]) if decelerations[most] > (1.0 + _GAIN_MIN) * decelerations[0] else throttle.lower
+    return (
+        float(throttles[most])
+        if decelerations[most] > (1.0 + _GAIN_MIN) * decelerations[0]
+        else throttle.lower
+    )
 
 
 def idling_at(spec: AircraftSpec, idle: float) -> AircraftSpec:

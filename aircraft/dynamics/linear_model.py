@@ -35,7 +35,9 @@ class LinearModel:
         """Return the eigenvalues of A [1/s]."""
         return np.linalg.eigvals(self.A).astype(np.complex128)
 
-    def pick(self, states: Sequence[str], inputs: Sequence[str], outputs: Sequence[str]) -> tuple[Matrix, Matrix, Matrix, Matrix]:
+    def pick(
+        self, states: Sequence[str], inputs: Sequence[str], outputs: Sequence[str]
+    ) -> tuple[Matrix, Matrix, Matrix, Matrix]:
         """Return A, B, C and D of the named states, inputs and outputs, all else at rest."""
         rows = [self.state_labels.index(name) for name in states]
         columns = [self.input_labels.index(name) for name in inputs]

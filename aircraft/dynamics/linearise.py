@@ -89,18 +89,40 @@ class _Differences:
         self._trim = trim
         self._driven_nodes = [fdm.node(s.position) for s in self._spec.driven_states]
         # Within a step JSBSim moves servos, then computes forces, then moves propellers.
-        self._moves_first = np.array([not s.position.startswith("propulsion/") for s in self._spec.driven_states])
+        self._moves_first = np.array(
+            [not s.position.startswith("propulsion/") for s in self._spec.driven_states]
+        )
         self._scales = np.array([s.scale for s in self._spec.driven_states])
-        self._body = np.array([trim.airspeed, trim.alpha, trim.beta, *trim.rates_body, trim.roll, trim.pitch, trim.altitude])
+        self._body = np.array(
+            [
+                trim.airspeed,
+                trim.alpha,
+                trim.beta,
+                *trim.rates_body,
+                trim.roll,
+                trim.pitch,
+                trim.altitude,
+            ]
+        )
         self._inputs = np.array([trim.inputs[i.name] for i in self._spec.inputs])
 
     def model(self) -> LinearModel:
-        n_body, n_driven, n_inputs = len(BODY_STATES), len(self._spec.driven_states), len(self._inputs)
+        n_body, n_driven, n_inputs = (
+            len(BODY_STATES),
+            len(self._spec.driven_states),
+            len(self._inputs),
+        )
         steps = {"airspeed": _AIRSPEED_STEP * self._trim.airspeed, "altitude": _ALTITUDE_STEP}
         body_steps = np.array([steps.get(name, _STEP) for name in BODY_STATES])
-        by_body = np.column_stack([self._difference(body=j, step=step) for j, step in enumerate(body_steps)])
-        by_input = np.column_stack([self._difference(control_input=j, step=_INPUT_STEP) for j in range(n_inputs)])
-        driver = [[i.name for i in self._spec.inputs].index(s.input) for s in self._spec.driven_states]
+        by_body = np.column_stack(
+            [self._difference(body=j, step=step) for j, step in enumerate(body_steps)]
+        )
+        by_input = np.column_stack(
+            [self._difference(control_input=j, step=_INPUT_STEP) for j in range(n_inputs)]
+        )
+        driver = [
+            [i.name for i in self._spec.inputs].index(s.input) for s in self._spec.driven_states
+        ]
         n_read = len(by_body) - n_driven
         driven_by_body, driven_by_input = by_body[n_read:], by_input[n_read:]
         at_once = np.column_stack([self._first_step(j) for j in range(n_inputs)])
@@ -128,7 +150,9 @@ class _Differences:
         for i, j in enumerate(driver):
             driven_forcing[i, j] = -poles[i] * driven_by_input[i, j]
         extras = np.hstack([read_by_body[n_body:], by_driven[n_body:]])
-        model = _Model(a=a, b=np.vstack([direct[:n_body], driven_forcing]), c=extras, d=direct[n_body:])
+        model = _Model(
+            a=a, b=np.vstack([direct[:n_body], driven_forcing]), c=extras, d=direct[n_body:]
+        )
         states = [*BODY_STATES, *(s.name for s in self._spec.driven_states)]
         for j, control_input in enumerate(self._spec.inputs):
             if j in driver:
@@ -139,7 +163,9 @@ class _Differences:
             # A smaller lag of less than a step is how JSBSim holds and averages an input, not a lag of the aircraft.
             second = product > max(_SECOND_ORDER * lag, self._fdm.time_step) * lag
             model = model.with_lag(j, lag, product if second else 0.0)
-            states += [f"{control_input.name}_effect", f"{control_input.name}_effect_rate"][: 1 + second]
+            states += [f"{control_input.name}_effect", f"{control_input.name}_effect_rate"][
+                : 1 + second
+            ]
         return LinearModel(
             A=model.a,
             B=model.b,
@@ -156,7 +182,10 @@ class _Differences:
         Behind two lags, the difference from the final value has the area T1 + T2 and the first moment T1^2 + T1 T2 +
         T2^2.
         """
-        name, step = self._spec.inputs[j].name, _LAG_STEP.get(self._spec.inputs[j].name, _INPUT_STEP)
+        name, step = (
+            self._spec.inputs[j].name,
+            _LAG_STEP.get(self._spec.inputs[j].name, _INPUT_STEP),
+        )
         inputs = self._inputs.copy()
         inputs[j] += step if inputs[j] + step <= self._spec.inputs[j].upper else -step
         self._hold(self._body, inputs)
@@ -165,7 +194,9 @@ class _Differences:
         whole = self._accelerations() - end
         size = float(whole @ whole)
         if size == 0.0:
-            raise AircraftError(f"aircraft '{self._spec.name}': input '{name}' has no effect; it cannot control the aircraft")
+            raise AircraftError(
+                f"aircraft '{self._spec.name}': input '{name}' has no effect; it cannot control the aircraft"
+            )
         self._fdm.command({name: float(inputs[j])})
         area, moment = 0.5, 0.0
         for i in range(1, _LAG_STEPS_MAX):
@@ -180,11 +211,15 @@ class _Differences:
     def _accelerations(self) -> npt.NDArray[np.float64]:
         return np.array([*self._fdm.acceleration_body(), *self._fdm.angular_acceleration()])
 
-    def _difference(self, *, body: int | None = None, control_input: int | None = None, step: float) -> npt.NDArray[np.float64]:
+    def _difference(
+        self, *, body: int | None = None, control_input: int | None = None, step: float
+    ) -> npt.NDArray[np.float64]:
         high, low = (self._read(body, control_input, sign * step) for sign in (1.0, -1.0))
         return (high - low) / (2.0 * step)
 
-    def _read(self, body: int | None, control_input: int | None, step: float) -> npt.NDArray[np.float64]:
+    def _read(
+        self, body: int | None, control_input: int | None, step: float
+    ) -> npt.NDArray[np.float64]:
         """Return rates of body states, extra outputs and driven states, one quantity moved and all settled."""
         point, inputs = self._body.copy(), self._inputs.copy()
         if body is not None:
@@ -199,7 +234,9 @@ class _Differences:
         reads = []
         for sign in (1.0, -1.0):
             self._hold(self._body, self._inputs)
-            self._fdm.command({self._spec.inputs[j].name: float(self._inputs[j]) + sign * _INPUT_STEP})
+            self._fdm.command(
+                {self._spec.inputs[j].name: float(self._inputs[j]) + sign * _INPUT_STEP}
+            )
             before = self._driven()
             self._fdm.step()
             acted = np.where(self._moves_first, self._driven(), before)
@@ -208,16 +245,29 @@ class _Differences:
 
     def _hold(self, point: npt.NDArray[np.float64], inputs: npt.NDArray[np.float64]) -> None:
         v, alpha, beta, p, q, r, roll, pitch, altitude = (float(x) for x in point)
-        self._fdm.command({i.name: float(u) for i, u in zip(self._spec.inputs, inputs, strict=True)})
+        self._fdm.command(
+            {i.name: float(u) for i, u in zip(self._spec.inputs, inputs, strict=True)}
+        )
         velocity = body_velocity(v, alpha, beta)
         self._fdm.place(
-            replace(self._trim.state(), altitude=altitude, roll=roll, pitch=pitch, velocity_body=velocity, rates_body=(p, q, r))
+            replace(
+                self._trim.state(),
+                altitude=altitude,
+                roll=roll,
+                pitch=pitch,
+                velocity_body=velocity,
+                rates_body=(p, q, r),
+            )
         )
         if not self._fdm.settle(_SETTLED):
-            raise AircraftError(f"aircraft '{self._spec.name}': servos and propeller do not settle near the trim; check its spec")
+            raise AircraftError(
+                f"aircraft '{self._spec.name}': servos and propeller do not settle near the trim; check its spec"
+            )
 
     def _driven(self) -> npt.NDArray[np.float64]:
-        return np.asarray(np.array([node.get_double_value() for node in self._driven_nodes]) * self._scales)
+        return np.asarray(
+            np.array([node.get_double_value() for node in self._driven_nodes]) * self._scales
+        )
 
     def _rates_and_extras(self, point: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
         v, alpha, beta, p, q, r, roll, pitch, _ = (float(x) for x in point)
@@ -230,8 +280,20 @@ class _Differences:
         roll_dot, pitch_dot, _ = euler_rates((p, q, r), roll, pitch)
         climb_rate = -level(velocity, roll, pitch)[2]
         # Against the earth the body's frame turns, which adds rates x velocity.
-        acceleration = (u_dot + q * w - r * side, side_dot + r * u - p * w, w_dot + p * side - q * u)
-        rates = [v_dot, alpha_dot, beta_dot, *self._fdm.angular_acceleration(), roll_dot, pitch_dot, climb_rate]
+        acceleration = (
+            u_dot + q * w - r * side,
+            side_dot + r * u - p * w,
+            w_dot + p * side - q * u,
+        )
+        rates = [
+            v_dot,
+            alpha_dot,
+            beta_dot,
+            *self._fdm.angular_acceleration(),
+            roll_dot,
+            pitch_dot,
+            climb_rate,
+        ]
         return np.array([*rates, course_rate(velocity, acceleration, roll, pitch), climb_rate])
 
     def _pole(self, i: int, j: int) -> float:
@@ -273,7 +335,10 @@ class _Model:
         """
         n, m = self.b.shape
         if product:
-            follow, driven = np.array([[0.0, 1.0], [-1.0 / product, -lag / product]]), np.array([[0.0], [1.0 / product]])
+            follow, driven = (
+                np.array([[0.0, 1.0], [-1.0 / product, -lag / product]]),
+                np.array([[0.0], [1.0 / product]]),
+            )
         else:
             follow, driven = np.array([[-1.0 / lag]]), np.array([[1.0 / lag]])
         order = len(follow)
@@ -281,7 +346,9 @@ class _Model:
         without = 1.0 - selected[0]
         padding = np.zeros((len(self.c), order - 1))
         return _Model(
-            a=np.block([[self.a, self.b[:, [j]], np.zeros((n, order - 1))], [np.zeros((order, n)), follow]]),
+            a=np.block(
+                [[self.a, self.b[:, [j]], np.zeros((n, order - 1))], [np.zeros((order, n)), follow]]
+            ),
             b=np.vstack([self.b * without, driven @ selected]),
             c=np.hstack([self.c, self.d[:, [j]], padding]),
             d=self.d * without,

@@ -18,7 +18,13 @@ from aircraft.spec_check import check_spec
 
 
 def trim(
-    fdm: Fdm, *, airspeed: float, altitude: float, bank: float = 0.0, climb_angle: float = 0.0, start: Trim | None = None
+    fdm: Fdm,
+    *,
+    airspeed: float,
+    altitude: float,
+    bank: float = 0.0,
+    climb_angle: float = 0.0,
+    start: Trim | None = None,
 ) -> Trim:
     """Find the equilibrium at ``airspeed`` [m/s] and ``altitude`` [m].
 
@@ -28,13 +34,17 @@ def trim(
     ------
     TrimError : the search does not converge, with its reason
     """
-    found = search_trim(fdm, airspeed=airspeed, altitude=altitude, bank=bank, climb_angle=climb_angle, start=start)
+    found = search_trim(
+        fdm, airspeed=airspeed, altitude=altitude, bank=bank, climb_angle=climb_angle, start=start
+    )
     if found.outcome is TrimOutcome.CONVERGED:
         return found
     where = f"{airspeed:g} m/s, {altitude:g} m, bank {math.degrees(bank):g} deg, climb {math.degrees(climb_angle):g} deg"
     held, remedy = " and ".join(found.limits), _remedy(fdm.spec)
     if found.residual < TOLERANCE and held:
-        raise TrimError(f"trim of '{fdm.spec.name}' at {where} did not converge: {held} is not enough; {remedy}")
+        raise TrimError(
+            f"trim of '{fdm.spec.name}' at {where} did not converge: {held} is not enough; {remedy}"
+        )
     raise TrimError(
         f"trim of '{fdm.spec.name}' at {where} did not converge: largest acceleration {found.residual:.2g}"
         f"{f' with {held}' if held else ''} against a limit of {TOLERANCE:g}; {remedy}"
@@ -47,7 +57,9 @@ def _remedy(spec: AircraftSpec) -> str:
     return f"choose a condition inside the flight envelope{or_else}; or correct the model"
 
 
-def level_trim(spec: AircraftSpec, airspeed: float, altitude: float, start: Trim | None = None) -> Trim:
+def level_trim(
+    spec: AircraftSpec, airspeed: float, altitude: float, start: Trim | None = None
+) -> Trim:
     """Return the straight and level equilibrium of the bare aircraft at ``airspeed`` [m/s] and ``altitude`` [m].
 
     Parameters
@@ -59,7 +71,13 @@ def level_trim(spec: AircraftSpec, airspeed: float, altitude: float, start: Trim
 
 
 def search_trim(
-    fdm: Fdm, *, airspeed: float, altitude: float, bank: float = 0.0, climb_angle: float = 0.0, start: Trim | None = None
+    fdm: Fdm,
+    *,
+    airspeed: float,
+    altitude: float,
+    bank: float = 0.0,
+    climb_angle: float = 0.0,
+    start: Trim | None = None,
 ) -> Trim:
     """Search for an equilibrium at ``airspeed`` [m/s] and ``altitude`` [m]; the outcome of the result says whether it
     is one.
@@ -80,14 +98,26 @@ def search_trim(
     AircraftError : the aircraft has other inputs than the autopilot flies with
     """
     if not (math.isfinite(airspeed) and airspeed > 0.0):
-        raise TrimError(f"trim of '{fdm.spec.name}': airspeed is {airspeed} m/s; it must be finite and above 0")
-    for name, value, unit in (("altitude", altitude, "m"), ("bank", bank, "rad"), ("climb angle", climb_angle, "rad")):
+        raise TrimError(
+            f"trim of '{fdm.spec.name}': airspeed is {airspeed} m/s; it must be finite and above 0"
+        )
+    for name, value, unit in (
+        ("altitude", altitude, "m"),
+        ("bank", bank, "rad"),
+        ("climb angle", climb_angle, "rad"),
+    ):
         if not math.isfinite(value):
-            raise TrimError(f"trim of '{fdm.spec.name}': {name} is {value} {unit}; it must be finite")
+            raise TrimError(
+                f"trim of '{fdm.spec.name}': {name} is {value} {unit}; it must be finite"
+            )
     if not abs(bank) < 0.5 * math.pi:
-        raise TrimError(f"trim of '{fdm.spec.name}': bank is {math.degrees(bank):g} deg; it must lie within -90 and 90 deg")
+        raise TrimError(
+            f"trim of '{fdm.spec.name}': bank is {math.degrees(bank):g} deg; it must lie within -90 and 90 deg"
+        )
     check_spec(fdm.spec)
-    problem = TrimProblem(fdm, airspeed=airspeed, altitude=altitude, bank=bank, climb_angle=climb_angle)
+    problem = TrimProblem(
+        fdm, airspeed=airspeed, altitude=altitude, bank=bank, climb_angle=climb_angle
+    )
     tried: list[Trim] = []
     with fdm.frozen():
         for i, guess in enumerate(problem.guesses(start)):

@@ -76,7 +76,9 @@ class TrimProblem:
     """Unknowns: angle of attack, sideslip, bank or yaw rate, control inputs. A rudder adds the condition of no
     sideslip."""
 
-    def __init__(self, fdm: Fdm, *, airspeed: float, altitude: float, bank: float, climb_angle: float) -> None:
+    def __init__(
+        self, fdm: Fdm, *, airspeed: float, altitude: float, bank: float, climb_angle: float
+    ) -> None:
         self._fdm = fdm
         self._airspeed = airspeed
         self._altitude = altitude
@@ -89,19 +91,27 @@ class TrimProblem:
         turn_max = _BANK_MAX if self._straight else _TURN_RATE_RATIO_MAX * abs(self._turn)
         self._lower = np.array([-_ALPHA_MAX, -_BETA_MAX, -turn_max] + [i.lower for i in inputs])
         self._upper = np.array([_ALPHA_MAX, _BETA_MAX, turn_max] + [i.upper for i in inputs])
-        self._scale = np.array([_SCALE, _SCALE, _SCALE if self._straight else abs(self._turn)] + [_SCALE] * len(inputs))
+        self._scale = np.array(
+            [_SCALE, _SCALE, _SCALE if self._straight else abs(self._turn)] + [_SCALE] * len(inputs)
+        )
 
     def guesses(self, start: Trim | None) -> list[npt.NDArray[np.float64]]:
         """Return the points from which to search: a known equilibrium nearby, then the default ones."""
         inputs = self._fdm.spec.inputs
         blank = [
-            np.array([_START_ALPHA, 0.0, self._turn] + [throttle if i.name == "throttle" else 0.0 for i in inputs])
+            np.array(
+                [_START_ALPHA, 0.0, self._turn]
+                + [throttle if i.name == "throttle" else 0.0 for i in inputs]
+            )
             for throttle in _START_THROTTLES
         ]
         if start is None:
             return blank
         third = start.roll if self._straight and start.yaw_rate == 0.0 else self._turn
-        return [np.array([start.alpha, start.beta, third] + [start.inputs[i.name] for i in inputs]), *blank]
+        return [
+            np.array([start.alpha, start.beta, third] + [start.inputs[i.name] for i in inputs]),
+            *blank,
+        ]
 
     def solve(self, guess: npt.NDArray[np.float64], *, run_up: bool) -> Trim:
         """Return the result of Powell's method from a guess; a solution beyond a limit is not an equilibrium."""
@@ -134,7 +144,10 @@ class TrimProblem:
 
     def _run_up(self, guess: npt.NDArray[np.float64]) -> None:
         """Settle at full throttle first: an earlier guess may have left a governed propeller windmilling."""
-        full = [self._upper[3 + k] if i.name == "throttle" else guess[3 + k] for k, i in enumerate(self._fdm.spec.inputs)]
+        full = [
+            self._upper[3 + k] if i.name == "throttle" else guess[3 + k]
+            for k, i in enumerate(self._fdm.spec.inputs)
+        ]
         self.residual(np.array([*guess[:3], *full]))
 
     def nearest(self, best: Trim) -> Trim:
@@ -210,17 +223,27 @@ class TrimProblem:
 
     def _limits(self, unknowns: npt.NDArray[np.float64], settled: bool) -> tuple[str, ...]:
         """Return the limits that the unknowns are at or beyond, in words."""
-        names = ["angle of attack", "sideslip", "bank" if self._straight else "yaw rate", *(i.name for i in self._fdm.spec.inputs)]
+        names = [
+            "angle of attack",
+            "sideslip",
+            "bank" if self._straight else "yaw rate",
+            *(i.name for i in self._fdm.spec.inputs),
+        ]
         near = _NEAR_LIMIT * self._scale
         at = [
             f"{name} at its {'lower' if value <= low + step else 'upper'} limit"
-            for name, value, low, high, step in zip(names, unknowns, self._lower, self._upper, near, strict=True)
+            for name, value, low, high, step in zip(
+                names, unknowns, self._lower, self._upper, near, strict=True
+            )
             if value <= low + step or value >= high - step
         ]
         return (*at, *(() if settled else ("forces that do not come to rest",)))
 
     def _inputs(self, unknowns: npt.NDArray[np.float64]) -> dict[str, float]:
-        return {i.name: float(value) for i, value in zip(self._fdm.spec.inputs, unknowns[3:], strict=True)}
+        return {
+            i.name: float(value)
+            for i, value in zip(self._fdm.spec.inputs, unknowns[3:], strict=True)
+        }
 
     def _state(self, unknowns: npt.NDArray[np.float64]) -> tuple[RigidBodyState, float]:
         alpha, beta, third = (float(value) for value in unknowns[:3])

@@ -41,6 +41,8 @@ def _registered(name: str) -> AircraftSpec:
     except PluginError as error:
         raise AircraftError(str(error)) from error
     if not isinstance(spec, AircraftSpec):
-        raise AircraftError(f"aircraft '{name}' is of type {type(spec).__name__}; it must be an AircraftSpec of aircraft/spec.py")
+        raise AircraftError(
+            f"aircraft '{name}' is of type {type(spec).__name__}; it must be an AircraftSpec of aircraft/spec.py"
+        )
     check_spec(spec)
     return spec

@@ -25,7 +25,9 @@ def folder_names(directory: Path) -> list[str]:
     AircraftError : there is no such directory, or no aircraft in it
     """
     if not directory.is_dir():
-        raise AircraftError(f"aircraft directory '{directory}': there is no such directory; check the path")
+        raise AircraftError(
+            f"aircraft directory '{directory}': there is no such directory; check the path"
+        )
     names = sorted(entry.name for entry in directory.iterdir() if entry.is_dir() and _models(entry))
     if not names and _models(directory):
         where = directory.absolute()
@@ -34,7 +36,9 @@ def folder_names(directory: Path) -> list[str]:
             f" in, '{where.parent}'"
         )
     if not names:
-        raise AircraftError(f"aircraft directory '{directory}' holds no aircraft; each needs a folder and a model, NAME/NAME.xml")
+        raise AircraftError(
+            f"aircraft directory '{directory}' holds no aircraft; each needs a folder and a model, NAME/NAME.xml"
+        )
     return names
 
 
@@ -46,14 +50,20 @@ def folder_path(directory: Path, name: str | None) -> str:
     AircraftError : there is no such directory, no such aircraft in it, or, without a name, more than one; the name is a path
     """
     if name is not None and is_path(name):
-        raise AircraftError(f"aircraft '{name}' is a path; leave out --aircraft-dir, or give the name of a folder in '{directory}'")
+        raise AircraftError(
+            f"aircraft '{name}' is a path; leave out --aircraft-dir, or give the name of a folder in '{directory}'"
+        )
     names = folder_names(directory)
     if name is None and len(names) > 1:
-        raise AircraftError(f"aircraft directory '{directory}' holds {len(names)} aircraft; name one of them: {', '.join(names)}")
+        raise AircraftError(
+            f"aircraft directory '{directory}' holds {len(names)} aircraft; name one of them: {', '.join(names)}"
+        )
     name = names[0] if name is None else name
     if name not in names:
         guess = did_you_mean(name, names) or ";"
-        raise AircraftError(f"aircraft directory '{directory}' holds no aircraft '{name}'{guess} it has {', '.join(names)}")
+        raise AircraftError(
+            f"aircraft directory '{directory}' holds no aircraft '{name}'{guess} it has {', '.join(names)}"
+        )
     return str(directory.absolute() / name)
 
 
@@ -71,13 +81,17 @@ def folder_spec(path: str) -> AircraftSpec:
     folder = Path(path).absolute()
     if not folder.is_dir():
         remedy = (
-            f"give its folder, '{Path(path).parent}'" if folder.is_file() else "check the path, or name another with --aircraft-dir"
+            f"give its folder, '{Path(path).parent}'"
+            if folder.is_file()
+            else "check the path, or name another with --aircraft-dir"
         )
         raise AircraftError(f"aircraft '{path}': there is no such directory; {remedy}")
     model = _model(folder)
     for name in (folder.name, model):
         if not NAME.fullmatch(name):
-            raise AircraftError(f"aircraft '{path}': '{name}' is no name of an aircraft; use letters, digits, '_', '-' and '.'")
+            raise AircraftError(
+                f"aircraft '{path}': '{name}' is no name of an aircraft; use letters, digits, '_', '-' and '.'"
+            )
     files = ModelFiles(model=model, folder=folder, roots=(folder.parent.parent, stock_root()))
     _check(files)
     settings = folder / f"{model}.toml"
@@ -106,10 +120,14 @@ def _is_model(path: Path) -> bool:
 def _model(folder: Path) -> str:
     found = _models(folder)
     if not found:
-        raise AircraftError(f"aircraft '{folder}' has no JSBSim model; put it there as {folder.name}.xml")
+        raise AircraftError(
+            f"aircraft '{folder}' has no JSBSim model; put it there as {folder.name}.xml"
+        )
     if len(found) > 1:
         listed = ", ".join(f"{name}.xml" for name in found)
-        raise AircraftError(f"aircraft '{folder}' has {len(found)} models, {listed}; call one of them {folder.name}.xml")
+        raise AircraftError(
+            f"aircraft '{folder}' has {len(found)} models, {listed}; call one of them {folder.name}.xml"
+        )
     return found[0]
 
 
@@ -124,16 +142,24 @@ def _check(files: ModelFiles) -> None:
         checked.add(path)
         config = read_xml(path).getroot()
         if path == files.file and config.tag != _MODEL:
-            raise AircraftError(f"{path}: its root element is <{config.tag}>; that of a JSBSim model is <{_MODEL}>")
-        sections = [element for element in config if path == files.file and element.tag not in _LEFT_OUT]
+            raise AircraftError(
+                f"{path}: its root element is <{config.tag}>; that of a JSBSim model is <{_MODEL}>"
+            )
+        sections = [
+            element for element in config if path == files.file and element.tag not in _LEFT_OUT
+        ]
         for element in config.iter():
             if file := element.get("file"):
                 _refuse_outside(path, element.tag, file)
                 found = files.find(element)
                 if found is None and (element.tag in SHARED or element in sections):
-                    shared = [root / SHARED[element.tag] for root in files.roots if element.tag in SHARED]
+                    shared = [
+                        root / SHARED[element.tag] for root in files.roots if element.tag in SHARED
+                    ]
                     places = ", ".join(f"'{place}'" for place in (files.folder, *shared))
-                    raise AircraftError(f"{path}: {element.tag} file '{file}' is not in {places}; put it there")
+                    raise AircraftError(
+                        f"{path}: {element.tag} file '{file}' is not in {places}; put it there"
+                    )
                 waiting += [found] if found else []
 
 
@@ -141,4 +167,6 @@ def _refuse_outside(path: Path, tag: str, file: str) -> None:
     """Refuse a file name that is absolute or has '..' in it."""
     for pure in (PurePosixPath(file), PureWindowsPath(file)):
         if pure.anchor or ".." in pure.parts:
-            raise AircraftError(f"{path}: {tag} file '{file}' leads out of the aircraft's folders; put it beside the model")
+            raise AircraftError(
+                f"{path}: {tag} file '{file}' leads out of the aircraft's folders; put it beside the model"
+            )

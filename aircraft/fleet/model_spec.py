@@ -21,7 +21,9 @@ _STAND_STILL = 20.0
 """Time that piston engines and their propellers need to stand still behind a held aircraft [s]."""
 
 
-def spec_of_model(files: ModelFiles, *, name: str, source: str, settings: ModelSettings | None = None) -> AircraftSpec:
+def spec_of_model(
+    files: ModelFiles, *, name: str, source: str, settings: ModelSettings | None = None
+) -> AircraftSpec:
     """Return the spec of an aircraft with engines and the usual controls.
 
     Parameters
@@ -39,8 +41,12 @@ def spec_of_model(files: ModelFiles, *, name: str, source: str, settings: ModelS
     try:
         config = read_model(files).getroot()
         engines = [_kind(engine, files) for engine in config.iterfind("propulsion/engine")]
-        thrusters = [_kind(thruster, files) for thruster in config.iterfind("propulsion/engine/thruster")]
-        lifting = any(_lifts(thruster) for thruster in config.iterfind("propulsion/engine/thruster"))
+        thrusters = [
+            _kind(thruster, files) for thruster in config.iterfind("propulsion/engine/thruster")
+        ]
+        lifting = any(
+            _lifts(thruster) for thruster in config.iterfind("propulsion/engine/thruster")
+        )
     except AircraftError as error:
         raise AircraftError(f"aircraft '{name}' cannot be flown: {error}") from None
     inputs = _inputs(len(engines), said)
@@ -52,7 +58,11 @@ def spec_of_model(files: ModelFiles, *, name: str, source: str, settings: ModelS
         "gear/gear-cmd-norm": 0.0,
         "gear/gear-pos-norm": 0.0,
         "propulsion/fuel_freeze": 1.0,
-        **{f"fcs/{lever}-cmd-norm{numbered(i)}": 1.0 for lever in ("mixture", "advance") for i in range(len(engines))},
+        **{
+            f"fcs/{lever}-cmd-norm{numbered(i)}": 1.0
+            for lever in ("mixture", "advance")
+            for i in range(len(engines))
+        },
     }
     return AircraftSpec(
         name=name,
@@ -65,7 +75,9 @@ def spec_of_model(files: ModelFiles, *, name: str, source: str, settings: ModelS
         envelope=None if said.envelope is None else said.envelope.envelope,
         configuration=tuple((usual | said.properties).items()),
         engine_flags=tuple(
-            f"propulsion/engine{numbered(i)}/set-running" for i, kind in enumerate(engines) if kind in _RUNNING_ENGINES
+            f"propulsion/engine{numbered(i)}/set-running"
+            for i, kind in enumerate(engines)
+            if kind in _RUNNING_ENGINES
         ),
         settle_time=_STAND_STILL if said.settle_time_s is None else said.settle_time_s,
         source=source,
@@ -91,14 +103,21 @@ def _kind(element: ET.Element, files: ModelFiles) -> str:
 def _inputs(engines: int, said: ModelSettings) -> tuple[ControlInput, ...]:
     """Return the control inputs, with the command properties that are said or else usual."""
     usual = {"throttle": throttle(engines), **{name: surface(name) for name in _SURFACES}}
-    given = {"throttle": said.throttle, "elevator": said.elevator, "aileron": said.aileron, "rudder": said.rudder}
+    given = {
+        "throttle": said.throttle,
+        "elevator": said.elevator,
+        "aileron": said.aileron,
+        "rudder": said.rudder,
+    }
     found = []
     for name in ("elevator", "aileron", "throttle", "rudder"):
         control, commands = usual[name], given[name]
         if commands is None:
             found.append(control)
         elif commands:
-            found.append(ControlInput(name=name, commands=commands, lower=control.lower, upper=control.upper))
+            found.append(
+                ControlInput(name=name, commands=commands, lower=control.lower, upper=control.upper)
+            )
     return tuple(found)
 
 
@@ -112,7 +131,9 @@ def _lifts(thruster: ET.Element) -> bool:
     return abs(math.radians(pitch) if unit == "DEG" else pitch) > math.pi / 4.0
 
 
-def _no_aeroplane(config: ET.Element, engines: list[str], thrusters: list[str], *, lifting: bool) -> str:
+def _no_aeroplane(
+    config: ET.Element, engines: list[str], thrusters: list[str], *, lifting: bool
+) -> str:
     """Return why this is no aeroplane with engines, or an empty text."""
     odd = [kind for kind in engines if kind not in (*_RUNNING_ENGINES, *_ELECTRIC)]
     reasons = (
@@ -126,11 +147,17 @@ def _no_aeroplane(config: ET.Element, engines: list[str], thrusters: list[str], 
     return next((reason for holds, reason in reasons if holds), "")
 
 
-def _deaf(inputs: tuple[ControlInput, ...], config: ET.Element, files: ModelFiles, *, of_user: bool) -> str:
+def _deaf(
+    inputs: tuple[ControlInput, ...], config: ET.Element, files: ModelFiles, *, of_user: bool
+) -> str:
     """Return which commands no control of the model takes, and what a user may say of it then; or an empty text."""
     text = _text(config, files)
     surfaces = [control for control in inputs if control.name in _SURFACES]
-    missing = [control.name for control in surfaces if any(command not in text for command in control.commands)]
+    missing = [
+        control.name
+        for control in surfaces
+        if any(command not in text for command in control.commands)
+    ]
     if not missing:
         return ""
     taken = [f'{name} = "PROPERTY"' for name in missing]
@@ -141,5 +168,10 @@ def _deaf(inputs: tuple[ControlInput, ...], config: ET.Element, files: ModelFile
 def _text(config: ET.Element, files: ModelFiles) -> str:
     """Return the text of the model and of the files beside it, and of the systems that it shares."""
     shared = [found for system in config.iterfind("system[@file]") if (found := files.find(system))]
-    beside = sorted(path for path in files.folder.rglob("*.xml") if path.is_file())  # a link may lead nowhere
-    return "".join(path.read_text(encoding="utf-8", errors="replace") for path in dict.fromkeys([*beside, *shared]))
+    beside = sorted(
+        path for path in files.folder.rglob("*.xml") if path.is_file()
+    )  # a link may lead nowhere
+    return "".join(
+        path.read_text(encoding="utf-8", errors="replace")
+        for path in dict.fromkeys([*beside, *shared])
+    )

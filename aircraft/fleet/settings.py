@@ -7,13 +7,23 @@ import tomllib
 from pathlib import Path
 from typing import Annotated, Any, Self
 
-from pydantic import BaseModel, ConfigDict, Field, ValidationError, ValidationInfo, field_validator, model_validator
+from pydantic import (
+    BaseModel,
+    ConfigDict,
+    Field,
+    ValidationError,
+    ValidationInfo,
+    field_validator,
+    model_validator,
+)
 
 from aircraft.errors import AircraftError
 from aircraft.spec import SETTLE_TIMES, Envelope
 from common.spelling import did_you_mean
 
-_Property = Annotated[str, Field(pattern=r"^[A-Za-z_][\w.\-]*(\[\d+\])?(/[A-Za-z_][\w.\-]*(\[\d+\])?)*$")]
+_Property = Annotated[
+    str, Field(pattern=r"^[A-Za-z_][\w.\-]*(\[\d+\])?(/[A-Za-z_][\w.\-]*(\[\d+\])?)*$")
+]
 _Commands = tuple[_Property, ...]
 
 _UNQUOTED = re.compile(r"^\s*([\w.\-\[\]]+(?:/[\w.\-\[\]]+)+)\s*=", re.MULTILINE)
@@ -107,10 +117,14 @@ def read_settings(path: Path) -> ModelSettings:
         return ModelSettings.model_validate(tomllib.loads(text))
     except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
         if bare := _UNQUOTED.search(text):
-            raise AircraftError(f'{path}: key {bare[1]} has a slash; write it in quotes, "{bare[1]}" = ...') from None
+            raise AircraftError(
+                f'{path}: key {bare[1]} has a slash; write it in quotes, "{bare[1]}" = ...'
+            ) from None
         raise AircraftError(f"{path}: not valid TOML: {error}; fix the file") from None
     except OSError as error:
-        raise AircraftError(f"{path}: cannot be read: {error.strerror}; check its permissions") from None
+        raise AircraftError(
+            f"{path}: cannot be read: {error.strerror}; check its permissions"
+        ) from None
     except ValidationError as error:
         raise AircraftError(f"{path}: {_explained(error)}") from None
 

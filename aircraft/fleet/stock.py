@@ -8,7 +8,10 @@ from aircraft.spec import AircraftSpec
 def stock_names() -> list[str]:
     """Return the names of JSBSim's own aircraft."""
     folder = stock_root() / "aircraft"
-    return sorted((entry.name for entry in folder.iterdir() if (entry / f"{entry.name}.xml").is_file()), key=str.lower)
+    return sorted(
+        (entry.name for entry in folder.iterdir() if (entry / f"{entry.name}.xml").is_file()),
+        key=str.lower,
+    )
 
 
 def stock_spec(name: str) -> AircraftSpec:

@@ -63,7 +63,9 @@ def failable_root(spec: AircraftSpec, root: Path, directory: Path) -> Path:
         for pattern in (_FAILED, _HELD):
             ET.SubElement(system, "property", value="0").text = pattern.format(name)
     system.append(channel)
-    before = next((i for i, element in enumerate(config) if element.tag == "flight_control"), len(config))
+    before = next(
+        (i for i, element in enumerate(config) if element.tag == "flight_control"), len(config)
+    )
     config.insert(before, system)
     document.write(model_file, encoding="utf-8", xml_declaration=True)
     return directory
@@ -71,21 +73,29 @@ def failable_root(spec: AircraftSpec, root: Path, directory: Path) -> Path:
 
 def _switch(actuator: Actuator, command: str, *, engine: bool) -> ET.Element:
     """Return a component that overwrites a command where its actuator has failed."""
-    switch = ET.Element("switch", name=f"fault/{command.replace('/', '-').replace('[', '-').replace(']', '')}")
+    switch = ET.Element(
+        "switch", name=f"fault/{command.replace('/', '-').replace('[', '-').replace(']', '')}"
+    )
     ET.SubElement(switch, "default", value=command)
     for name in (ENGINE, actuator.name) if engine else (actuator.name,):
-        ET.SubElement(switch, "test", value=_HELD.format(name)).text = f"{_FAILED.format(name)} gt 0.5"
+        ET.SubElement(
+            switch, "test", value=_HELD.format(name)
+        ).text = f"{_FAILED.format(name)} gt 0.5"
     ET.SubElement(switch, "output").text = command
     return switch
 
 
-def _insert_before_actuator(config: ET.Element, command: str, switch: ET.Element, spec: AircraftSpec) -> None:
+def _insert_before_actuator(
+    config: ET.Element, command: str, switch: ET.Element, spec: AircraftSpec
+) -> None:
     for parent in config.iter():
         for i, element in enumerate(parent):
             if element.tag == "actuator" and (element.findtext("input") or "").strip() == command:
                 parent.insert(i, switch)
                 return
-    raise AircraftError(f"aircraft '{spec.name}': no <actuator> of its model reads '{command}'; check its spec's actuators")
+    raise AircraftError(
+        f"aircraft '{spec.name}': no <actuator> of its model reads '{command}'; check its spec's actuators"
+    )
 
 
 class Faults:
@@ -116,7 +126,9 @@ class Faults:
         """
         names = fault_names(self._fdm.spec)
         if name not in names:
-            raise AircraftError(f"aircraft '{self._fdm.spec.name}' has no '{name}' to fail; it has {', '.join(names)}")
+            raise AircraftError(
+                f"aircraft '{self._fdm.spec.name}' has no '{name}' to fail; it has {', '.join(names)}"
+            )
         self._fdm.write(_FAILED.format(name), 1.0)
         self.failed.append(name)
         if name == ENGINE:

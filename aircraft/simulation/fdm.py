@@ -62,7 +62,9 @@ class Fdm(PropertyTree):
     AircraftError : the model's files are missing or JSBSim refuses them
     """
 
-    def __init__(self, spec: AircraftSpec, root: Path | None = None, time_step: float = TIME_STEP) -> None:
+    def __init__(
+        self, spec: AircraftSpec, root: Path | None = None, time_step: float = TIME_STEP
+    ) -> None:
         self.spec = spec
         self.time_step = time_step
         if root is None:
@@ -77,7 +79,11 @@ class Fdm(PropertyTree):
         self._initial = [self.writable_node(name) for name in INITIAL_STATE]
         self._wind = [self.writable_node(name) for name in WIND]
         self._accelerations = [
-            self.node(name) for name in (*component_names(ACCELERATION, "uvw"), *component_names(ANGULAR_ACCELERATION, "pqr"))
+            self.node(name)
+            for name in (
+                *component_names(ACCELERATION, "uvw"),
+                *component_names(ANGULAR_ACCELERATION, "pqr"),
+            )
         ]
         self._engines_run = self.cranked = False
         """Whether engines were started at all, and whether one of them had to be with its starter."""
@@ -88,7 +94,9 @@ class Fdm(PropertyTree):
         name, model = self.spec.name, self.spec.model
         model_file = root / "aircraft" / model / f"{model}.xml"
         if not model_file.is_file():
-            raise AircraftError(f"aircraft '{name}': no model file {model_file}; check the JSBSim root directory")
+            raise AircraftError(
+                f"aircraft '{name}': no model file {model_file}; check the JSBSim root directory"
+            )
         with silenced():
             jsbsim.FGJSBBase().debug_lvl = 0  # type: ignore[no-untyped-call]
             executive = jsbsim.FGFDMExec(str(root))
@@ -99,7 +107,9 @@ class Fdm(PropertyTree):
             except jsbsim.BaseError:
                 loaded = False
         if not loaded:
-            raise AircraftError(f"aircraft '{name}': JSBSim refused its model '{model}'; run JSBSim on it to see why")
+            raise AircraftError(
+                f"aircraft '{name}': JSBSim refused its model '{model}'; run JSBSim on it to see why"
+            )
         return executive
 
     def show(self, host: str, port: int) -> None:
@@ -113,7 +123,9 @@ class Fdm(PropertyTree):
             accepted = self._exec.set_output_directive(str(path))
             self._exec.enable_output()
         if not accepted:
-            raise AircraftError(f"JSBSim does not send to FlightGear at {host}:{port}; check the address")
+            raise AircraftError(
+                f"JSBSim does not send to FlightGear at {host}:{port}; check the address"
+            )
         self.run = paced(self._exec.run, self.time_step)
 
     def place(self, state: RigidBodyState, wind: tuple[float, float] | None = None) -> None:
@@ -147,9 +159,13 @@ class Fdm(PropertyTree):
                 placed = self._exec.run_ic()
         except jsbsim.BaseError as error:
             reason = " ".join(str(error).split(") ", 1)[-1].split())
-            raise AircraftError(f"aircraft '{self.spec.name}' does not run in JSBSim alone: {reason}") from None
+            raise AircraftError(
+                f"aircraft '{self.spec.name}' does not run in JSBSim alone: {reason}"
+            ) from None
         if not placed:
-            raise AircraftError(f"aircraft '{self.spec.name}': JSBSim refused the initial state {state}")
+            raise AircraftError(
+                f"aircraft '{self.spec.name}': JSBSim refused the initial state {state}"
+            )
         for name, value in self.spec.configuration:
             self.write(name, value)
         if wind:
@@ -222,7 +238,9 @@ class Fdm(PropertyTree):
             for name, value in before.items():
                 self.write(name, value)
 
-    def hold(self, state: RigidBodyState, steps: int, wind: tuple[float, float] | None = None) -> None:
+    def hold(
+        self, state: RigidBodyState, steps: int, wind: tuple[float, float] | None = None
+    ) -> None:
         """Place the aircraft and hold it for ``steps`` time steps, so that it is released in ``state`` with all else at rest.
 
         Parameters
@@ -257,7 +275,11 @@ class Fdm(PropertyTree):
         return self._comes_to_rest(tolerance, steps_max - _PATIENCE - hasty)
 
     def _comes_to_rest(self, tolerance: float, steps_max: int) -> bool:
-        run, reads, limit = self.run, [node.get_double_value for node in self._accelerations], _SETTLE_STRIDE * tolerance
+        run, reads, limit = (
+            self.run,
+            [node.get_double_value for node in self._accelerations],
+            _SETTLE_STRIDE * tolerance,
+        )
         before = [math.nan] * len(reads)
         for _ in range(0, steps_max, _SETTLE_STRIDE):
             for _ in range(_SETTLE_STRIDE):

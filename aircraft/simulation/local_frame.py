@@ -41,7 +41,9 @@ class EquatorFrame:
         """Return north and east [m] of a place [rad]."""
         squared = latitude * latitude
         return (
-            self.north_scale * latitude * (1.0 + _NORTH_BY_LATITUDE * squared + _NORTH_BY_LONGITUDE * longitude * longitude),
+            self.north_scale
+            * latitude
+            * (1.0 + _NORTH_BY_LATITUDE * squared + _NORTH_BY_LONGITUDE * longitude * longitude),
             self.east_scale * longitude * (1.0 - _EAST_BY_LATITUDE * squared),
         )
 

@@ -38,13 +38,17 @@ def copy_model(files: ModelFiles, directory: Path, *, play: bool = True) -> Path
         shutil.copytree(files.folder, target, dirs_exist_ok=True, ignore=_not_read)
     except shutil.Error as error:
         _, _, why = error.args[0][0]  # the first of them
-        raise AircraftError(f"model files of {files.folder} cannot be copied: {why}; check that file") from None
+        raise AircraftError(
+            f"model files of {files.folder} cannot be copied: {why}; check that file"
+        ) from None
     model_file = target / f"{files.model}.xml"
     document = read_model(files)
     config = document.getroot()
     at_rest = [*_take_out(config, files), *_of_another_program(config, files)]
     if at_rest:
-        before = next((i for i, element in enumerate(config) if element.tag == "flight_control"), len(config))
+        before = next(
+            (i for i, element in enumerate(config) if element.tag == "flight_control"), len(config)
+        )
         config.insert(before, _properties_at_rest(at_rest))
     _copy_referenced(config, files, directory)
     if not play:
@@ -65,7 +69,9 @@ def model_hash(files: ModelFiles) -> str:
     """
     with tempfile.TemporaryDirectory() as folder:
         copy_model(files, Path(folder))
-        return files_hash(Path(folder), sorted(path for path in Path(folder).rglob("*") if path.is_file()))
+        return files_hash(
+            Path(folder), sorted(path for path in Path(folder).rglob("*") if path.is_file())
+        )
 
 
 def _not_read(folder: str, names: list[str]) -> list[str]:
@@ -92,9 +98,19 @@ def _take_out(config: ET.Element, files: ModelFiles) -> list[str]:
 def _of_another_program(config: ET.Element, files: ModelFiles) -> list[str]:
     """Return the properties that the model reads from FlightGear's tree, such as ``/sim/model/pushback``: JSBSim alone
     does not have them."""
-    parts = [config, *(_content(element, files) for element in config.iter() if element.get("file"))]
-    words = (word.lstrip("-") for part in parts for element in part.iter() for word in (element.text or "").split())
-    return list(dict.fromkeys(word for word in words if re.fullmatch(r"/[A-Za-z_][\w.\-/\[\]]*", word)))
+    parts = [
+        config,
+        *(_content(element, files) for element in config.iter() if element.get("file")),
+    ]
+    words = (
+        word.lstrip("-")
+        for part in parts
+        for element in part.iter()
+        for word in (element.text or "").split()
+    )
+    return list(
+        dict.fromkeys(word for word in words if re.fullmatch(r"/[A-Za-z_][\w.\-/\[\]]*", word))
+    )
 
 
 def _is_autopilot(element: ET.Element) -> bool:
@@ -112,7 +128,11 @@ def _content(element: ET.Element, files: ModelFiles) -> ET.Element:
 
 def _properties(autopilot: ET.Element) -> list[str]:
     """Return every property that an autopilot declares or writes."""
-    names = [(element.text or "").strip() for element in autopilot.iter() if element.tag in ("property", "output")]
+    names = [
+        (element.text or "").strip()
+        for element in autopilot.iter()
+        if element.tag in ("property", "output")
+    ]
     for channel in autopilot.iter("channel"):
         for component in channel:
             name = component.get("name", "")
@@ -133,7 +153,9 @@ def _copy_referenced(config: ET.Element, files: ModelFiles, directory: Path) -> 
     for element in config.iter():
         if element.tag not in SHARED or not (found := files.find(element)):
             continue
-        if found.is_relative_to(files.folder) and not (SHARED[element.tag] == "engine" and found.parent == files.folder):
+        if found.is_relative_to(files.folder) and not (
+            SHARED[element.tag] == "engine" and found.parent == files.folder
+        ):
             continue
         folder = directory / SHARED[element.tag]
         folder.mkdir(parents=True, exist_ok=True)
@@ -151,7 +173,12 @@ def _take_out_play(path: Path) -> None:
 
 def _remove_play(config: ET.Element) -> bool:
     """Remove hysteresis and dead bands from every actuator; return whether there were any."""
-    found = [(actuator, part) for actuator in config.iter("actuator") for part in actuator if part.tag in _PLAY]
+    found = [
+        (actuator, part)
+        for actuator in config.iter("actuator")
+        for part in actuator
+        if part.tag in _PLAY
+    ]
     for actuator, part in found:
         actuator.remove(part)
     return bool(found)

@@ -73,7 +73,11 @@ def _change_aerodynamics(aerodynamics: ET.Element, by: Perturbation) -> None:
         _scale_deflections(aerodynamics, by.effectiveness)
 
 
-_CHANGES = {"mass_balance": _change_balance, "propulsion": _change_fuel, "aerodynamics": _change_aerodynamics}
+_CHANGES = {
+    "mass_balance": _change_balance,
+    "propulsion": _change_fuel,
+    "aerodynamics": _change_aerodynamics,
+}
 """What is changed in each section of a model; JSBSim reads the first of each."""
 
 

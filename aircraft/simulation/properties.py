@@ -13,7 +13,9 @@ EARTH_RATE = 7.292115e-5
 """Rotation rate of the earth, as in JSBSim's default planet [rad/s]."""
 
 INTEGRATORS = tuple(
-    f"simulation/integrator/{kind}/{motion}" for kind in ("rate", "position") for motion in ("rotational", "translational")
+    f"simulation/integrator/{kind}/{motion}"
+    for kind in ("rate", "position")
+    for motion in ("rotational", "translational")
 )
 """Properties that choose how the rigid body is integrated; 0 in all four holds it still."""
 

@@ -30,13 +30,19 @@ class PropertyTree:
         """Return the node of an existing property, for repeated access at the least cost."""
         node = self._find(name)
         if node is None:
-            raise UnknownPropertyError(f"aircraft '{self._aircraft}' has no JSBSim property '{name}'; check its spelling")
+            raise UnknownPropertyError(
+                f"aircraft '{self._aircraft}' has no JSBSim property '{name}'; check its spelling"
+            )
         return node
 
     def _find(self, name: str) -> jsbsim.FGPropertyNode | None:
         found = self._nodes.get(name)
         # An invalid name ends the whole process in JSBSim's property tree.
-        if found is None and _PROPERTY_NAME.fullmatch(name) and (found := self._properties.get_node(name)):
+        if (
+            found is None
+            and _PROPERTY_NAME.fullmatch(name)
+            and (found := self._properties.get_node(name))
+        ):
             self._nodes[name] = found
         return found
 
@@ -44,7 +50,9 @@ class PropertyTree:
         """Return the node of an existing property that takes writes."""
         node = self.node(name)
         if not node.get_attribute(jsbsim.Attribute.WRITE):
-            raise ReadOnlyPropertyError(f"JSBSim property '{name}' is read-only; a write to it would be ignored")
+            raise ReadOnlyPropertyError(
+                f"JSBSim property '{name}' is read-only; a write to it would be ignored"
+            )
         return node
 
     def read(self, name: str) -> float:

@@ -36,13 +36,19 @@ def body_velocity(airspeed: float, alpha: float, beta: float) -> tuple[float, fl
     )
 
 
-def level(vector: tuple[float, float, float], roll: float, pitch: float) -> tuple[float, float, float]:
+def level(
+    vector: tuple[float, float, float], roll: float, pitch: float
+) -> tuple[float, float, float]:
     """Turn a body vector into the frame that is level and shares the body's yaw: ahead, right, down."""
     x, y, z = vector
     sin_roll, cos_roll = math.sin(roll), math.cos(roll)
     sin_pitch, cos_pitch = math.sin(pitch), math.cos(pitch)
     lifted = y * sin_roll + z * cos_roll
-    return x * cos_pitch + lifted * sin_pitch, y * cos_roll - z * sin_roll, -x * sin_pitch + lifted * cos_pitch
+    return (
+        x * cos_pitch + lifted * sin_pitch,
+        y * cos_roll - z * sin_roll,
+        -x * sin_pitch + lifted * cos_pitch,
+    )
 
 
 def with_wind(state: RigidBodyState, wind: tuple[float, float]) -> RigidBodyState:
@@ -94,7 +100,9 @@ def course_rate(
     return (v_ahead * a_right - v_right * a_ahead) / (v_ahead * v_ahead + v_right * v_right)
 
 
-def euler_rates(rates_body: tuple[float, float, float], roll: float, pitch: float) -> tuple[float, float, float]:
+def euler_rates(
+    rates_body: tuple[float, float, float], roll: float, pitch: float
+) -> tuple[float, float, float]:
     """Return the rates of roll, pitch and yaw angle [rad/s] from body rates [rad/s]."""
     p, q, r = rates_body
     yaw_rate = (q * math.sin(roll) + r * math.cos(roll)) / math.cos(pitch)

@@ -50,7 +50,9 @@ def check_user_aircraft(spec: AircraftSpec) -> None:
             env=os.environ | {"PYTHONPATH": paths},
         )
     except subprocess.TimeoutExpired:
-        raise AircraftError(f"aircraft '{spec.name}': JSBSim did not run its model within {_TIME_MAX:g} s; correct it") from None
+        raise AircraftError(
+            f"aircraft '{spec.name}': JSBSim did not run its model within {_TIME_MAX:g} s; correct it"
+        ) from None
     if done.returncode == 0:
         return
     lines = done.stderr.decode(errors="replace").splitlines()
@@ -58,7 +60,9 @@ def check_user_aircraft(spec: AircraftSpec) -> None:
     if done.returncode == _REFUSED:
         raise AircraftError(said)
     if raised := _raised(lines):
-        raise AircraftError(f"aircraft '{spec.name}': its model does not run: {raised}; correct {spec.files.file}")
+        raise AircraftError(
+            f"aircraft '{spec.name}': its model does not run: {raised}; correct {spec.files.file}"
+        )
     reason = said.rpartition("what():")[2].strip() or f"exit status {done.returncode}"
     raise AircraftError(
         f"aircraft '{spec.name}': JSBSim ends the whole process with its model: {reason}; correct {spec.files.file}"
@@ -84,7 +88,10 @@ def _look(spec: AircraftSpec) -> None:
     with tempfile.TemporaryDirectory() as folder:
         copy_model(spec.files, Path(folder))
         fdm = Fdm(spec, Path(folder))
-    for name in (*(command for control in spec.inputs for command in control.commands), *(name for name, _ in spec.configuration)):
+    for name in (
+        *(command for control in spec.inputs for command in control.commands),
+        *(name for name, _ in spec.configuration),
+    ):
         fdm.writable_node(name)
     fdm.step(_STEPS)
 

@@ -57,7 +57,12 @@ def figures(flights: list[Flight], at: float = 180.0) -> dict[str, float]:
 
 
 def _hits(flights: list[Flight], after: float) -> float:
-    rows = [row[5] > HIT for flight in flights for row in flight.passes if row[0] > flight.estimator.found_at + after]
+    rows = [
+        row[5] > HIT
+        for flight in flights
+        for row in flight.passes
+        if row[0] > flight.estimator.found_at + after
+    ]
     return float(np.mean(rows))
 
 
@@ -68,7 +73,13 @@ def cost(spec: SnifferSpec) -> tuple[float, float]:
 
     class Timed(PlumeEstimator):
         def update(
-            self, along: float, across: float, altitude: float, reading: float, *, apparent_wind: float | None = None
+            self,
+            along: float,
+            across: float,
+            altitude: float,
+            reading: float,
+            *,
+            apparent_wind: float | None = None,
         ) -> bool:
             began = time.thread_time()
             done = super().update(along, across, altitude, reading, apparent_wind=apparent_wind)
@@ -92,10 +103,18 @@ def main() -> None:
     given = parser.parse_args()
     spec = sensor_preset(given.sensor)
     flights = [
-        fly(draw_case(seed), spec, SEARCHES[given.search], estimator=ESTIMATORS[given.estimator], knowing=given.knowing)
+        fly(
+            draw_case(seed),
+            spec,
+            SEARCHES[given.search],
+            estimator=ESTIMATORS[given.estimator],
+            knowing=given.knowing,
+        )
         for seed in range(given.first, given.first + given.cases)
     ]
-    print(f"{given.cases} cases, {given.sensor}, {given.search}, {given.estimator}{', knowing the axis' if given.knowing else ''}")
+    print(
+        f"{given.cases} cases, {given.sensor}, {given.search}, {given.estimator}{', knowing the axis' if given.knowing else ''}"
+    )
     for name, value in figures(flights).items():
         print(f"  {name:40s} {value:8.2f}")
     print("  a reading takes {:.1f} us, a pass {:.0f} us".format(*cost(spec)))

@@ -114,7 +114,9 @@ def prior_of(case: Case, sensor: GasSensor, distance: float) -> PlumePrior:
         highest=HIGHEST,
     )
     wind_speed = math.hypot(case.wind[0] + case.wind_error[0], case.wind[1] + case.wind_error[1])
-    return expected_plume(expected, distance=distance, apparent_wind=math.hypot(north, east), wind_speed=wind_speed)
+    return expected_plume(
+        expected, distance=distance, apparent_wind=math.hypot(north, east), wind_speed=wind_speed
+    )
 
 
 class Orbit:
@@ -125,7 +127,9 @@ class Orbit:
         self.pass_time = math.pi * swing / TURN_RATE
         count = round(2.0 * self.pass_time / _STEP)
         course = swing * np.cos(2.0 * math.pi * np.arange(count) / count)
-        along = np.cumsum(AIRSPEED * np.cos(course) - float(np.mean(AIRSPEED * np.cos(course)))) * _STEP
+        along = (
+            np.cumsum(AIRSPEED * np.cos(course) - float(np.mean(AIRSPEED * np.cos(course)))) * _STEP
+        )
         across = np.cumsum(AIRSPEED * np.sin(course)) * _STEP
         self._along, self._across = along - along.mean(), across - across.mean()
         self.distance = KEEP_OUT + float(np.abs(self._along).max())
@@ -166,24 +170,42 @@ def fly(
     for _ in range(round(duration / _CHUNK)):
         count = round(_CHUNK / _STEP)
         altitudes = altitude + np.clip(
-            demanded - altitude, -CLIMB_RATE * _STEP * np.arange(1, count + 1), CLIMB_RATE * _STEP * np.arange(1, count + 1)
+            demanded - altitude,
+            -CLIMB_RATE * _STEP * np.arange(1, count + 1),
+            CLIMB_RATE * _STEP * np.arange(1, count + 1),
         )
         offset += min(max(offset_demanded - offset, -2.0), 2.0)
         altitude = float(altitudes[-1])
-        times, along, across, readings, fraction = simulation.advance(altitudes, offset, knowing=knowing)
+        times, along, across, readings, fraction = simulation.advance(
+            altitudes, offset, knowing=knowing
+        )
         pass_peak = max(pass_peak, float(np.nanmax(fraction, initial=0.0)))
         done = False
         for i in range(0, count, 4):
             filtered.predict(4 * _STEP)
             reading = readings.get(i, math.nan)
-            done |= filtered.update(along[i], across[i], altitudes[i], reading, apparent_wind=simulation.believed)
+            done |= filtered.update(
+                along[i], across[i], altitudes[i], reading, apparent_wind=simulation.believed
+            )
         if done:
-            flight.passes.append((times[-1], altitude, filtered.height, filtered.height_deviation, true_height, pass_peak))
+            flight.passes.append(
+                (
+                    times[-1],
+                    altitude,
+                    filtered.height,
+                    filtered.height_deviation,
+                    true_height,
+                    pass_peak,
+                )
+            )
             flight.intervals.append(filtered.height_interval)
             flight.states.append(filtered.state)
             pass_peak = 0.0
             if not knowing:
-                demanded, offset_demanded = searcher.next_altitude(filtered, altitude, orbit.pass_time), filtered.offset
+                demanded, offset_demanded = (
+                    searcher.next_altitude(filtered, altitude, orbit.pass_time),
+                    filtered.offset,
+                )
     flight.spread = simulation.spread
     return flight
 
@@ -223,7 +245,9 @@ class _Simulation:
         _, _, height = self._plume.axis(0.0, np.array([distance / self.apparent]))
         return float(height[0])
 
-    def advance(self, altitudes: Array, offset: float, *, knowing: bool) -> tuple[Array, Array, Array, dict[int, float], Array]:
+    def advance(
+        self, altitudes: Array, offset: float, *, knowing: bool
+    ) -> tuple[Array, Array, Array, dict[int, float], Array]:
         """Return times, along and across as they are believed, readings by step, and the concentration over the centre's."""
         steps: Array = self._samples + np.arange(1.0, len(altitudes) + 1.0)
         self._samples += len(altitudes)
@@ -241,7 +265,9 @@ class _Simulation:
         air[:, _CO2] = 420.0 + 1e6 * self._rate * sample.dilution
         with np.errstate(invalid="ignore", divide="ignore"):
             fraction = sample.dilution / sample.axis_dilution
-        self.spread = float(np.nanmean(sample.sigma_z)) if np.isfinite(sample.sigma_z).any() else math.nan
+        self.spread = (
+            float(np.nanmean(sample.sigma_z)) if np.isfinite(sample.sigma_z).any() else math.nan
+        )
         read = self._sniffer.advance(air, _PRESSURE_PER_METRE * (altitudes - 50.0))
         # A reading belongs to the step at which it was taken.
         index = np.rint(read.time / _STEP).astype(int) - (int(steps[0]) - 1)

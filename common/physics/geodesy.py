@@ -33,20 +33,34 @@ class LocalFrame:
     """
 
     def __init__(self, latitude: float, longitude: float, altitude: float = 0.0) -> None:
-        self._up, self._north, self._east = (np.array([float(x) for x in axis]) for axis in _axes(latitude, longitude))
+        self._up, self._north, self._east = (
+            np.array([float(x) for x in axis]) for axis in _axes(latitude, longitude)
+        )
         self._origin = cartesian(np.float64(latitude), np.float64(longitude))
         w = 1.0 - ECCENTRICITY_SQUARED * math.sin(latitude) ** 2
         self._meridian_radius = EQUATORIAL_RADIUS * (1.0 - ECCENTRICITY_SQUARED) / w**1.5
         self._transverse_radius = EQUATORIAL_RADIUS / math.sqrt(w)
-        self._north_longer, self._east_longer = 1.0 + altitude / self._meridian_radius, 1.0 + altitude / self._transverse_radius
+        self._north_longer, self._east_longer = (
+            1.0 + altitude / self._meridian_radius,
+            1.0 + altitude / self._transverse_radius,
+        )
 
     def to_local(self, latitude: npt.ArrayLike, longitude: npt.ArrayLike) -> tuple[Array, Array]:
         """Return north and east [m] of places [rad]; the shape is that of the places."""
-        chord = cartesian(np.asarray(latitude, dtype=np.float64), np.asarray(longitude, dtype=np.float64)) - self._origin
+        chord = (
+            cartesian(
+                np.asarray(latitude, dtype=np.float64), np.asarray(longitude, dtype=np.float64)
+            )
+            - self._origin
+        )
         north, east = chord @ self._north, chord @ self._east
         level = np.hypot(north, east)
         radius = self._radius(north, level)
-        longer = np.where(level > 0.0, radius * np.arcsin(np.minimum(1.0, level / radius)) / np.where(level > 0.0, level, 1.0), 1.0)
+        longer = np.where(
+            level > 0.0,
+            radius * np.arcsin(np.minimum(1.0, level / radius)) / np.where(level > 0.0, level, 1.0),
+            1.0,
+        )
         return north * longer * self._north_longer, east * longer * self._east_longer
 
     def to_geodetic(self, north: npt.ArrayLike, east: npt.ArrayLike) -> tuple[Array, Array]:
@@ -58,7 +72,9 @@ class LocalFrame:
         angle = distance / radius
         shorter = np.sinc(angle / math.pi)
         down = 2.0 * radius * np.sin(0.5 * angle) ** 2
-        level = (to_north * shorter)[..., None] * self._north + (to_east * shorter)[..., None] * self._east
+        level = (to_north * shorter)[..., None] * self._north + (to_east * shorter)[
+            ..., None
+        ] * self._east
         return _geodetic(self._origin + level - down[..., None] * self._up)
 
     def true_north(self, latitude: npt.ArrayLike, longitude: npt.ArrayLike) -> Array:
@@ -66,7 +82,9 @@ class LocalFrame:
 
         Meridians converge: a course from true north at a place is that angle more in this frame.
         """
-        _, north, _ = _axes(np.asarray(latitude, dtype=np.float64), np.asarray(longitude, dtype=np.float64))
+        _, north, _ = _axes(
+            np.asarray(latitude, dtype=np.float64), np.asarray(longitude, dtype=np.float64)
+        )
         pointing = np.stack(np.broadcast_arrays(*north), axis=-1)
         angle: Array = np.arctan2(pointing @ self._east, pointing @ self._north)
         return angle
@@ -74,13 +92,20 @@ class LocalFrame:
     def _radius(self, north: Array, distance: Array) -> Array:
         """Return the radius of curvature at the origin in the direction of places [m] (Euler's theorem)."""
         share = np.where(distance > 0.0, north / np.where(distance > 0.0, distance, 1.0), 1.0) ** 2
-        radius: Array = 1.0 / (share / self._meridian_radius + (1.0 - share) / self._transverse_radius)
+        radius: Array = 1.0 / (
+            share / self._meridian_radius + (1.0 - share) / self._transverse_radius
+        )
         return radius
 
 
 def _axes(latitude: npt.ArrayLike, longitude: npt.ArrayLike) -> tuple[tuple[Array, ...], ...]:
     """Return unit vectors up, north and east at places [rad], in axes fixed to the earth."""
-    sin_lat, cos_lat, sin_lon, cos_lon = np.sin(latitude), np.cos(latitude), np.sin(longitude), np.cos(longitude)
+    sin_lat, cos_lat, sin_lon, cos_lon = (
+        np.sin(latitude),
+        np.cos(latitude),
+        np.sin(longitude),
+        np.cos(longitude),
+    )
     return (
         (cos_lat * cos_lon, cos_lat * sin_lon, sin_lat),
         (-sin_lat * cos_lon, -sin_lat * sin_lon, cos_lat),
@@ -93,7 +118,9 @@ def cartesian(latitude: Array | np.float64, longitude: Array | np.float64) -> Ar
     radius = EQUATORIAL_RADIUS / np.sqrt(1.0 - ECCENTRICITY_SQUARED * np.sin(latitude) ** 2)
     level = radius * np.cos(latitude)
     z = (1.0 - ECCENTRICITY_SQUARED) * radius * np.sin(latitude)
-    return np.stack(np.broadcast_arrays(level * np.cos(longitude), level * np.sin(longitude), z), axis=-1)
+    return np.stack(
+        np.broadcast_arrays(level * np.cos(longitude), level * np.sin(longitude), z), axis=-1
+    )
 
 
 def _geodetic(place: Array) -> tuple[Array, Array]:

@@ -40,7 +40,14 @@ class PatrolCounts:
     wrong_share_max: float
 
     @classmethod
-    def of(cls, rows: Sequence[Mapping[Any, Any]], *, planned: int, oracle_share_min: float, wrong_share_max: float) -> Self:
+    def of(
+        cls,
+        rows: Sequence[Mapping[Any, Any]],
+        *,
+        planned: int,
+        oracle_share_min: float,
+        wrong_share_max: float,
+    ) -> Self:
         """Return the sums over the rows of a summary; what a row does not know counts as 0."""
         return cls(
             planned=planned,
@@ -83,7 +90,9 @@ class PatrolCounts:
     @property
     def met(self) -> bool:
         """Whether every planned patrol held, and the verdicts are enough and right."""
-        return self.holds and self.done == self.planned and self.judged and self.enough and self.right
+        return (
+            self.holds and self.done == self.planned and self.judged and self.enough and self.right
+        )
 
     @property
     def per_hour(self) -> float:

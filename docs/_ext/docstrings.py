@@ -62,10 +62,14 @@ def _escaped(line: str) -> str:
     bullet = re.match(r"\s*\* ", line)
     start = bullet.end() if bullet else 0
     parts = _LITERAL.split(line[start:])
-    return line[:start] + "".join(part if i % 2 else _MARKUP.sub(r"\\\g<0>", part) for i, part in enumerate(parts))
+    return line[:start] + "".join(
+        part if i % 2 else _MARKUP.sub(r"\\\g<0>", part) for i, part in enumerate(parts)
+    )
 
 
-def _process(_app: "Sphinx", _what: str, _name: str, _obj: object, _options: object, lines: list[str]) -> None:
+def _process(
+    _app: "Sphinx", _what: str, _name: str, _obj: object, _options: object, lines: list[str]
+) -> None:
     lines[:] = as_text(lines)
 
 

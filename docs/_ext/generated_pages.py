@@ -19,7 +19,16 @@ FOLDER = "generated"
 def pages() -> dict[str, str]:
     """Return the texts of the files by their names."""
     modules = dict(module_pages())
-    contents = ["# Modules", "", "```{toctree}", ":maxdepth: 1", "", *(f"modules/{name}" for name in modules), "```", ""]
+    contents = [
+        "# Modules",
+        "",
+        "```{toctree}",
+        ":maxdepth: 1",
+        "",
+        *(f"modules/{name}" for name in modules),
+        "```",
+        "",
+    ]
     return {
         "keys.md": keys_page(),
         "columns.md": columns_page(),

@@ -27,7 +27,11 @@ def with_links(text: str, folder: Path, root: Path) -> str:
         target = (folder / found["target"]).resolve()
         if target.is_dir() and not target.is_relative_to(root):
             return found["text"]
-        page = PAGES.get(target.relative_to(root.parent).as_posix()) if target.is_relative_to(root.parent) else None
+        page = (
+            PAGES.get(target.relative_to(root.parent).as_posix())
+            if target.is_relative_to(root.parent)
+            else None
+        )
         return f"[{found['text']}](/{page})" if page else found[0]
 
     return _LINK.sub(link, text)

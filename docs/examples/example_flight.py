@@ -26,7 +26,9 @@ def main() -> None:
     across, astern = 55.0 * np.sin(swing), 220.0 + 18.0 * np.cos(2.0 * swing)
     height = 57.0 + np.interp(time, time[::50], generator.normal(0.0, 1.0, len(time[::50])))
     knots = np.arange(0.0, DURATION_S + INTERVAL_S, INTERVAL_S)
-    axis = [np.interp(time, knots, generator.normal(0.0, meander, len(knots))) for meander in MEANDER_M]
+    axis = [
+        np.interp(time, knots, generator.normal(0.0, meander, len(knots))) for meander in MEANDER_M
+    ]
     distance = np.hypot(across - axis[0], height - 57.0 - axis[1])
     co2 = AXIS_PPM * np.exp(-0.5 * (distance / WIDTH_M) ** 2)
     # NO and NO2 of an engine of tier II: 23 ppb of NOx per ppm of CO2, a tenth of it NO2.
@@ -37,10 +39,14 @@ def main() -> None:
     places = {"north_m": 6.0 * time - astern, "east_m": across, "height_m": height}
     table = {"time_s": readings.time}
     table |= {f"{gas}_{UNITS[gas]}": readings.values[:, i].round(1) for i, gas in enumerate(GASES)}
-    table |= {name: np.interp(readings.time, time, place).round(1) for name, place in places.items()}
+    table |= {
+        name: np.interp(readings.time, time, place).round(1) for name, place in places.items()
+    }
     for i, gas in ((0, "so2"), (1, "co2")):
         table[f"{gas}_true_{UNITS[gas]}"] = np.interp(readings.time, time, air[:, i]).round(2)
-    pd.DataFrame(table).to_csv(Path(__file__).parent / "example_flight.csv", index=False, lineterminator="\n")
+    pd.DataFrame(table).to_csv(
+        Path(__file__).parent / "example_flight.csv", index=False, lineterminator="\n"
+    )
 
 
 if __name__ == "__main__":

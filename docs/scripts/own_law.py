@@ -16,10 +16,19 @@ class Pursuit:
     def heading_rate(self, reference, to_north, to_east, course, speed):
         """Return the demanded heading rate [rad/s]."""
         lead = self.lead_s * reference.speed
-        sight = math.atan2(to_east + lead * math.sin(reference.course), to_north + lead * math.cos(reference.course))
+        sight = math.atan2(
+            to_east + lead * math.sin(reference.course),
+            to_north + lead * math.cos(reference.course),
+        )
         return self.gain * math.remainder(sight - course, math.tau) + reference.heading_rate
 
 
 if __name__ == "__main__":
-    sweep = run("sweep_nu", nu=[0.3, 0.6], law=Pursuit(gain=1.5), flight={"crossings": 6}, comparison={"variants": []})
+    sweep = run(
+        "sweep_nu",
+        nu=[0.3, 0.6],
+        law=Pursuit(gain=1.5),
+        flight={"crossings": 6},
+        comparison={"variants": []},
+    )
     print(sweep.summary[["nu", "criteria_met", "min_distance_m", "tracking_error_rms_m"]])

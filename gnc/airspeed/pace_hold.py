@@ -35,7 +35,9 @@ class SpeedHold(NamedTuple):
         return self.airspeed_min if airspeed < self.airspeed_min else airspeed
 
 
-def design_speed_hold(*, bandwidth: float, speed: float, look_ahead: float, airspeed_min: float, airspeed_max: float) -> SpeedHold:
+def design_speed_hold(
+    *, bandwidth: float, speed: float, look_ahead: float, airspeed_min: float, airspeed_max: float
+) -> SpeedHold:
     """Return the parameters for a vehicle and a look-ahead.
 
     The steering law takes out an error across the path at the rate V_r/R. At the same rate along it, an error dies out on a

@@ -9,7 +9,11 @@ from gnc.laws.delta import LookAhead
 
 
 def averaged_settling_time(
-    look_ahead: LookAhead, speed: float, references: TurningReferences, to_reference: npt.ArrayLike, distance: float
+    look_ahead: LookAhead,
+    speed: float,
+    references: TurningReferences,
+    to_reference: npt.ArrayLike,
+    distance: float,
 ) -> Array:
     """Return the time [s] after which d is down to ``distance``, shape (n,); 0 where it starts there, infinite on straight courses.
 
@@ -30,7 +34,9 @@ def averaged_settling_time(
     InfeasibleError : ``distance`` is not above 0
     """
     if not distance > 0.0:
-        raise InfeasibleError(f"distance is {distance:g} m; it must be above 0: exponential decay takes forever to 0")
+        raise InfeasibleError(
+            f"distance is {distance:g} m; it must be above 0: exponential decay takes forever to 0"
+        )
     north, east = np.asarray(to_reference, dtype=float)
     cos_m, sin_m = np.cos(references.mean_course), np.sin(references.mean_course)
     anisotropy = references.anisotropy
@@ -47,7 +53,9 @@ def averaged_settling_time(
     earlier = np.zeros_like(start)
     for _ in range(60):
         middle = 0.5 * (earlier + later)
-        above = parts[0] * np.exp(-rates[0] * middle) + parts[1] * np.exp(-rates[1] * middle) > target
+        above = (
+            parts[0] * np.exp(-rates[0] * middle) + parts[1] * np.exp(-rates[1] * middle) > target
+        )
         earlier, later = np.where(above, middle, earlier), np.where(above, later, middle)
     area = np.zeros_like(start)
     for part, rate in zip(parts, rates, strict=True):

@@ -52,7 +52,12 @@ class BoundedSteering:
 
 @functools.lru_cache(maxsize=64)
 def heading_rate_bound(
-    parameters: LookAhead, *, speed: float, reference_heading_rate_max: float, steering_max: float, tolerance: float = _TOLERANCE
+    parameters: LookAhead,
+    *,
+    speed: float,
+    reference_heading_rate_max: float,
+    steering_max: float,
+    tolerance: float = _TOLERANCE,
 ) -> float:
     """Return a heading rate [rad/s] that no command of the cascade law, equation (30), exceeds, whatever the state.
 
@@ -71,7 +76,11 @@ def heading_rate_bound(
     ------
     InfeasibleError : a quantity is out of range, or R so close to 1/(4 epsilon) that the bound is worthless
     """
-    _check_positive(speed=(speed, "m/s"), steering_max=(steering_max, "rad/s"), tolerance=(tolerance, "of the bound"))
+    _check_positive(
+        speed=(speed, "m/s"),
+        steering_max=(steering_max, "rad/s"),
+        tolerance=(tolerance, "of the bound"),
+    )
     _check_heading_rate(reference_heading_rate_max)
     sigma = _sigma(parameters)
     of_speed = speed / parameters.radius
@@ -83,7 +92,12 @@ def heading_rate_bound(
 
 
 def heading_rate_bound_least(
-    parameters: LookAhead, *, speed: float, reference_heading_rate_max: float, gain: float, steering_max: float
+    parameters: LookAhead,
+    *,
+    speed: float,
+    reference_heading_rate_max: float,
+    gain: float,
+    steering_max: float,
 ) -> float:
     """Return the largest command [rad/s] among states head on to the reference: no bound can be smaller. In closed form.
 
@@ -103,13 +117,29 @@ def heading_rate_bound_least(
     _check_heading_rate(reference_heading_rate_max)
     sigma = _sigma(parameters)
     ratio = reference_heading_rate_max * parameters.radius / speed
-    u = 2.0 * sigma * (1.0 + ratio) / (1.0 + math.sqrt(1.0 + 4.0 * sigma**2 * ratio * (1.0 + ratio)))
-    omega_rho = speed / parameters.radius * (1.0 + ratio * (1.0 + u * u)) / ((1.0 - u) ** 2 + 2.0 * (1.0 - sigma) * u)
+    u = (
+        2.0
+        * sigma
+        * (1.0 + ratio)
+        / (1.0 + math.sqrt(1.0 + 4.0 * sigma**2 * ratio * (1.0 + ratio)))
+    )
+    omega_rho = (
+        speed
+        / parameters.radius
+        * (1.0 + ratio * (1.0 + u * u))
+        / ((1.0 - u) ** 2 + 2.0 * (1.0 - sigma) * u)
+    )
     return min(gain * 0.5 * math.pi, steering_max) + omega_rho
 
 
 def convergence_time(
-    parameters: LookAhead, *, speed: float, distance_from: float, distance_to: float, gain: float, steering_max: float
+    parameters: LookAhead,
+    *,
+    speed: float,
+    distance_from: float,
+    distance_to: float,
+    gain: float,
+    steering_max: float,
 ) -> float:
     """Return the estimated time [s] in which the distance to the reference shrinks, from the worst course.
 
@@ -181,7 +211,12 @@ def fastest_within(
 
     def time(parameters: LookAhead, steering_max: float) -> float:
         return convergence_time(
-            parameters, speed=speed, distance_from=distance_from, distance_to=distance_to, gain=gain, steering_max=steering_max
+            parameters,
+            speed=speed,
+            distance_from=distance_from,
+            distance_to=distance_to,
+            gain=gain,
+            steering_max=steering_max,
         )
 
     def objective(fractions: _Array) -> float:
@@ -190,14 +225,19 @@ def fastest_within(
     start = min((np.array([a, b]) for a in _FRACTIONS for b in _FRACTIONS), key=objective)
     found = minimize(objective, start, method="Nelder-Mead", bounds=Bounds(0.01, 0.99), tol=1e-4)
     if not found.success:
-        raise InfeasibleError(f"the search for the fastest look-ahead did not converge: {found.message}; report these parameters")
+        raise InfeasibleError(
+            f"the search for the fastest look-ahead did not converge: {found.message}; report these parameters"
+        )
     parameters, steering_max = _design(found.x, task, _least_radius)
     return BoundedSteering(
         look_ahead=parameters,
         gain=gain,
         steering_max=steering_max,
         bound=heading_rate_bound(
-            parameters, speed=speed, reference_heading_rate_max=reference_heading_rate_max, steering_max=steering_max
+            parameters,
+            speed=speed,
+            reference_heading_rate_max=reference_heading_rate_max,
+            steering_max=steering_max,
         ),
         convergence_time=time(parameters, steering_max),
     )
@@ -228,22 +268,35 @@ def _design(fractions: _Array, task: _Task, least_radius: _LeastRadius) -> tuple
     room = task.limit - steering_max
     sigma = sigma_fraction * min(1.0 - turning / room, _SIGMA_MAX)
     # With epsilon = 1/(4 sigma^2 R) the time has a minimum over R, this over sigma: a shorter R would only raise epsilon.
-    quickest = math.sqrt((task.distance_from**2 - task.distance_to**2) / (8.0 * math.log(task.distance_from / task.distance_to)))
-    radius = max(least_radius(sigma, task.speed, turning, room), quickest / sigma, task.speed / (2.0 * turning))
+    quickest = math.sqrt(
+        (task.distance_from**2 - task.distance_to**2)
+        / (8.0 * math.log(task.distance_from / task.distance_to))
+    )
+    radius = max(
+        least_radius(sigma, task.speed, turning, room),
+        quickest / sigma,
+        task.speed / (2.0 * turning),
+    )
     return look_ahead(1.0 / (4.0 * sigma**2 * radius), radius), steering_max
 
 
-def _least_radius(sigma: float, speed: float, reference_heading_rate_max: float, room: float) -> float:
+def _least_radius(
+    sigma: float, speed: float, reference_heading_rate_max: float, room: float
+) -> float:
     """Return an R [m] with which |omega_rho| stays within ``room`` [rad/s], the least but for the tolerance."""
 
     def radius(speed_factor: _Array, turn_factor: _Array) -> _Array:
         left = room - reference_heading_rate_max * turn_factor
-        return np.divide(speed * speed_factor, left, out=np.full_like(left, np.inf), where=left > 0.0)
+        return np.divide(
+            speed * speed_factor, left, out=np.full_like(left, np.inf), where=left > 0.0
+        )
 
     return worst_case_over_positions(radius, sigma, _TOLERANCE)
 
 
-def _least_radius_head_on(sigma: float, speed: float, reference_heading_rate_max: float, room: float) -> float:
+def _least_radius_head_on(
+    sigma: float, speed: float, reference_heading_rate_max: float, room: float
+) -> float:
     """Return the least R [m] with which |omega_rho| stays within ``room`` [rad/s] head on to the reference. In closed form."""
     left = room - reference_heading_rate_max
     return speed * left / (left**2 - (sigma * room) ** 2)

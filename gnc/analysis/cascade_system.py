@@ -24,7 +24,11 @@ class DrivenState(NamedTuple):
 
 
 def driven_rates(
-    parameters: LookAhead, driven: DrivenState, phi: float, speed: float, reference_heading_rate: float
+    parameters: LookAhead,
+    driven: DrivenState,
+    phi: float,
+    speed: float,
+    reference_heading_rate: float,
 ) -> DrivenState:
     """Return the rates of the driven subsystem, whose input is phi: equation (31a), the first three lines of (21).
 
@@ -45,7 +49,9 @@ def driving_rate(phi: float, gain: float, rate_max: float) -> float:
     return -h(phi, gain, rate_max)
 
 
-def unforced_rates(parameters: LookAhead, driven: DrivenState, speed: float, reference_heading_rate: float) -> DrivenState:
+def unforced_rates(
+    parameters: LookAhead, driven: DrivenState, speed: float, reference_heading_rate: float
+) -> DrivenState:
     """Return the rates of the driven subsystem at phi = 0, written out: equation (32).
 
     Differs from the paper because its first line lacks the factor V_r that (21) has, and without which it is no speed.
@@ -81,13 +87,18 @@ def v_1_unforced_acceleration(driven: DrivenState, rates: DrivenState, speed: fl
     speed : V_r [m/s]
     """
     delta, rho, phi_r = driven
-    return -speed * ((rates.rho + rates.delta) * (1.0 - math.cos(phi_r)) + (rho + delta) * rates.phi_r * math.sin(phi_r))
+    return -speed * (
+        (rates.rho + rates.delta) * (1.0 - math.cos(phi_r))
+        + (rho + delta) * rates.phi_r * math.sin(phi_r)
+    )
 
 
 def v_1_rate_split(state: RelativeState, speed: float) -> float:
     """Return the rate of V_1 [m^2/s] along (21): equation (35), (23) gathered so that |phi| <= |phi_r| makes no term positive."""
     delta, rho, phi_r, phi = state
-    return -speed * (rho * (math.cos(phi) - math.cos(phi_r)) + delta * (1.0 - math.cos(phi - phi_r)))
+    return -speed * (
+        rho * (math.cos(phi) - math.cos(phi_r)) + delta * (1.0 - math.cos(phi - phi_r))
+    )
 
 
 def excursion_time(phi: float, gain: float, rate_max: float) -> float:
@@ -99,16 +110,22 @@ def excursion_time(phi: float, gain: float, rate_max: float) -> float:
     size = abs(phi)
     free = min(size, rate_max / gain)
     # Fourteen terms are exact to rounding up to pi.
-    entire_cosine = sum((-1.0) ** (k + 1) * free ** (2 * k) / (2 * k * math.factorial(2 * k)) for k in range(1, 15))
+    entire_cosine = sum(
+        (-1.0) ** (k + 1) * free ** (2 * k) / (2 * k * math.factorial(2 * k)) for k in range(1, 15)
+    )
     return entire_cosine / gain + (size - free - math.sin(size) + math.sin(free)) / rate_max
 
 
-def delta_bound(parameters: LookAhead, state: RelativeState, speed: float, gain: float, rate_max: float) -> float:
+def delta_bound(
+    parameters: LookAhead, state: RelativeState, speed: float, gain: float, rate_max: float
+) -> float:
     """Return what delta [m] cannot exceed under law (30), ever, and whatever the reference does: it bounds d through (15).
 
     Source: ``EQUATIONS.md``, "Why trajectories are bounded", from equation (35). Differs from the paper because its own argument,
     that d no longer rises from some time on, does not hold. Parameters as of ``driven_rates`` and ``h``.
     """
     rho_to_delta = 1.0 + 0.5 / math.sqrt(parameters.epsilon * parameters.radius)
-    exponent = 2.0 * parameters.epsilon * speed * rho_to_delta * excursion_time(state.phi, gain, rate_max)
+    exponent = (
+        2.0 * parameters.epsilon * speed * rho_to_delta * excursion_time(state.phi, gain, rate_max)
+    )
     return state.delta * math.exp(exponent)

@@ -2,11 +2,21 @@
 
 import math
 
-from gnc.laws.delta import LookAhead, RelativeState, distance_squared, distance_squared_rate, relative_velocity
+from gnc.laws.delta import (
+    LookAhead,
+    RelativeState,
+    distance_squared,
+    distance_squared_rate,
+    relative_velocity,
+)
 
 
 def state_rates(
-    parameters: LookAhead, state: RelativeState, speed: float, reference_heading_rate: float, heading_rate: float
+    parameters: LookAhead,
+    state: RelativeState,
+    speed: float,
+    reference_heading_rate: float,
+    heading_rate: float,
 ) -> RelativeState:
     """Return the rates of the four states: equation (21).
 
@@ -18,7 +28,9 @@ def state_rates(
     """
     rho_rate, omega_rho = relative_velocity(parameters, state, speed, speed, reference_heading_rate)
     delta_rate = parameters.epsilon * distance_squared_rate(state, speed, speed)
-    return RelativeState(delta_rate, rho_rate, reference_heading_rate - omega_rho, heading_rate - omega_rho)
+    return RelativeState(
+        delta_rate, rho_rate, reference_heading_rate - omega_rho, heading_rate - omega_rho
+    )
 
 
 def equilibrium(parameters: LookAhead) -> RelativeState:
@@ -34,7 +46,11 @@ def v_1(state: RelativeState) -> float:
 def v_1_rate(state: RelativeState, speed: float) -> float:
     """Return the rate of V_1 [m^2/s] along (21), whatever the control: equation (23)."""
     delta, rho, phi_r, phi = state
-    return speed * (-rho * (1.0 - math.cos(phi_r)) - delta * (1.0 - math.cos(phi_r - phi)) + rho * (1.0 - math.cos(phi)))
+    return speed * (
+        -rho * (1.0 - math.cos(phi_r))
+        - delta * (1.0 - math.cos(phi_r - phi))
+        + rho * (1.0 - math.cos(phi))
+    )
 
 
 def v_2(state: RelativeState, k_2: float) -> float:

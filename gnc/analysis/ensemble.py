@@ -11,7 +11,13 @@ import numpy.typing as npt
 
 from gnc.analysis.dormand_prince import dormand_prince_step
 from gnc.analysis.ensemble_motion import MOTIONS, Array, Motion, Steering, Vehicle
-from gnc.analysis.ensemble_result import DISTANCE_CONVERGED, PHI_CONVERGED, EnsembleResult, Outcome, Tolerances
+from gnc.analysis.ensemble_result import (
+    DISTANCE_CONVERGED,
+    PHI_CONVERGED,
+    EnsembleResult,
+    Outcome,
+    Tolerances,
+)
 from gnc.analysis.turning_reference import TurningReferences
 from gnc.errors import InfeasibleError
 
@@ -71,7 +77,9 @@ def fly_ensemble(
         raise InfeasibleError("a start's distance or course is not finite; give numbers")
     limit = np.broadcast_to(np.asarray(time_max, dtype=float), (count,))
     if places < 1:
-        raise InfeasibleError(f"places is {places}; it must be at least 1: 500 keep the processor busy")
+        raise InfeasibleError(
+            f"places is {places}; it must be at least 1: 500 keep the processor busy"
+        )
     if not (settling_band > 0.0 and (limit > 0.0).all() and np.isfinite(limit).all()):
         raise InfeasibleError(
             f"settling_band is {settling_band:g} m, time_max {limit.min():g} to {limit.max():g} s; both must be finite and above 0"
@@ -89,7 +97,13 @@ class _Flight:
     """The integration: ``_all`` holds every trajectory, as it starts or as it ended, ``_now`` those under way."""
 
     def __init__(
-        self, motion: Motion, state: Array, limit: Array, band: float, tolerances: Tolerances, observe: Observer | None
+        self,
+        motion: Motion,
+        state: Array,
+        limit: Array,
+        band: float,
+        tolerances: Tolerances,
+        observe: Observer | None,
     ) -> None:
         count = state.shape[1]
         self._band, self._tolerances, self._observe = band, tolerances, observe
@@ -132,13 +146,19 @@ class _Flight:
         now = self._now
         remaining = now.limit - now.time
         step = np.minimum(now.step, remaining)
-        state, rates, error = dormand_prince_step(self._motion.rates, now.time, now.state, now.rates, step)
+        state, rates, error = dormand_prince_step(
+            self._motion.rates, now.time, now.state, now.rates, step
+        )
         norm = self._error_norm(state, error)
         finite = np.isfinite(norm)
         accepted = norm <= 1.0
         # Error goes with the fifth power of the step.
-        factor = np.clip(_SAFETY * np.maximum(np.where(finite, norm, 1.0), 1e-8) ** -0.2, _SHRINK_MAX, _GROW_MAX)
-        now.step = np.minimum(step * np.where(accepted, factor, np.minimum(factor, 1.0)), self._tolerances.step_max)
+        factor = np.clip(
+            _SAFETY * np.maximum(np.where(finite, norm, 1.0), 1e-8) ** -0.2, _SHRINK_MAX, _GROW_MAX
+        )
+        now.step = np.minimum(
+            step * np.where(accepted, factor, np.minimum(factor, 1.0)), self._tolerances.step_max
+        )
         now.steps += 1.0
         # The last step ends at the limit itself, whatever the rounding of its sum.
         time = np.where(step < remaining, now.time + step, now.limit)
@@ -155,7 +175,9 @@ class _Flight:
         """Return the error against its tolerance; NaN where a state is not finite."""
         tolerances = self._tolerances
         # Sums, so that what is not finite in any is not finite in the norm.
-        norm: Array = np.sqrt(error[0] * error[0] + error[1] * error[1]) + 0.0 * (state[0] + state[1])
+        norm: Array = np.sqrt(error[0] * error[0] + error[1] * error[1]) + 0.0 * (
+            state[0] + state[1]
+        )
         offset = self._motion.offset_error(state, error)
         if offset is not None:
             norm += offset
@@ -174,11 +196,19 @@ class _Flight:
         now.last_outside = np.where(outside, now.time, now.last_outside)
         crossed = (before >= self._band) & ~outside
         if crossed.any():
-            fraction = (self._band - now.distance[crossed]) / (before[crossed] - now.distance[crossed])
+            fraction = (self._band - now.distance[crossed]) / (
+                before[crossed] - now.distance[crossed]
+            )
             now.last_outside[crossed] = now.time[crossed] - fraction * step[crossed]
         if self._observe is not None and accepted.any():
             phi = self._motion.phi(now.time, state)
-            self._observe(self.index[accepted], now.time[accepted], state[:, accepted], phi[accepted], command[accepted])
+            self._observe(
+                self.index[accepted],
+                now.time[accepted],
+                state[:, accepted],
+                phi[accepted],
+                command[accepted],
+            )
 
     def _retire(self, finite: npt.NDArray[np.bool_]) -> None:
         """Give the places of finished trajectories to the next ones."""
@@ -200,7 +230,10 @@ class _Flight:
             elif time_up[i]:
                 outcome, message = Outcome.TIME_UP, f"{end}: raise time_max"
             else:
-                outcome, message = Outcome.STEPS_UP, f"{end}, {now.steps[i]:.0f} steps: raise steps_max, or loosen tolerances"
+                outcome, message = (
+                    Outcome.STEPS_UP,
+                    f"{end}, {now.steps[i]:.0f} steps: raise steps_max, or loosen tolerances",
+                )
             self._outcome[self.index[i]], self._message[self.index[i]] = outcome, message
             self._phi[self.index[i]] = phi[i]
         self._all.put(self.index, now)
@@ -215,7 +248,9 @@ class _Flight:
         return EnsembleResult(
             outcome=tuple(self._outcome),
             message=tuple(self._message),
-            settling_time=np.where(end.distance < self._band, np.maximum(end.last_outside, 0.0), np.nan),
+            settling_time=np.where(
+                end.distance < self._band, np.maximum(end.last_outside, 0.0), np.nan
+            ),
             duration=end.time,
             distance=end.distance,
             distance_max=end.distance_max,
@@ -243,7 +278,9 @@ class _Fields:
 
     def take(self, index: npt.NDArray[np.int64]) -> "_Fields":
         """Return a copy of the trajectories of ``index``."""
-        return _Fields(**{field.name: getattr(self, field.name)[..., index] for field in fields(self)})
+        return _Fields(
+            **{field.name: getattr(self, field.name)[..., index] for field in fields(self)}
+        )
 
     def put(self, index: npt.NDArray[np.int64], other: "_Fields") -> None:
         """Write ``other`` over the trajectories of ``index``."""

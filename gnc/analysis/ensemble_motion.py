@@ -106,7 +106,9 @@ class Motion(ABC):
         epsilon, radius = self._vehicle.look_ahead
         delta = epsilon * (north * north + east * east) + radius
         z_north, z_east = north + delta * cos_r, east + delta * sin_r
-        return _View(cos_r, sin_r, delta, z_north, z_east, np.sqrt(z_north * z_north + z_east * z_east))
+        return _View(
+            cos_r, sin_r, delta, z_north, z_east, np.sqrt(z_north * z_north + z_east * z_east)
+        )
 
     def _position_rates(self, view: _View, cos_phi: Array, sin_phi: Array, out: Array) -> None:
         """Write the rates of d: velocity of the reference less V along z turned by phi."""
@@ -115,9 +117,13 @@ class Motion(ABC):
         out[0] = speed * view.cos_r - (along * view.z_north - across * view.z_east)
         out[1] = speed * view.sin_r - (along * view.z_east + across * view.z_north)
 
-    def _omega_rho(self, view: _View, state: Array, rates: Array, reference_heading_rate: Array) -> Array:
+    def _omega_rho(
+        self, view: _View, state: Array, rates: Array, reference_heading_rate: Array
+    ) -> Array:
         """Return the rate of the course of z [rad/s], equation (18), from z and its rate (17) in the inertial frame."""
-        delta_rate = 2.0 * self._vehicle.look_ahead.epsilon * (state[0] * rates[0] + state[1] * rates[1])
+        delta_rate = (
+            2.0 * self._vehicle.look_ahead.epsilon * (state[0] * rates[0] + state[1] * rates[1])
+        )
         swing = view.delta * reference_heading_rate
         north = rates[0] + delta_rate * view.cos_r - swing * view.sin_r
         east = rates[1] + delta_rate * view.sin_r + swing * view.cos_r
@@ -128,7 +134,9 @@ class Motion(ABC):
 def phi_of_courses(view: _View, course: Array) -> Array:
     """Return phi [rad], course against that of z, between -pi and pi."""
     cos_v, sin_v = np.cos(course), np.sin(course)
-    phi: Array = np.arctan2(view.z_north * sin_v - view.z_east * cos_v, view.z_north * cos_v + view.z_east * sin_v)
+    phi: Array = np.arctan2(
+        view.z_north * sin_v - view.z_east * cos_v, view.z_north * cos_v + view.z_east * sin_v
+    )
     return phi
 
 
@@ -174,8 +182,12 @@ class CascadeMotion(Motion):
     def command(self, time: Array, state: Array, rates: Array) -> Array:
         """Return the heading rate of equation (30) [rad/s]."""
         vehicle = self._vehicle
-        omega_rho = self._omega_rho(self._view(time, state), state, rates, self._references.heading_rate_at(time))
-        steering = np.clip(vehicle.gain * self.phi(time, state), -vehicle.steering_max, vehicle.steering_max)
+        omega_rho = self._omega_rho(
+            self._view(time, state), state, rates, self._references.heading_rate_at(time)
+        )
+        steering = np.clip(
+            vehicle.gain * self.phi(time, state), -vehicle.steering_max, vehicle.steering_max
+        )
         command: Array = omega_rho - steering
         return command
 
@@ -207,7 +219,9 @@ class LyapunovMotion(Motion):
         decay = np.exp(-state[2])
         sine = self._sine_0 * decay
         # cos^2 = cos_0^2 + sin_0^2 (1 - decay^2): no difference of nearly equal numbers towards phi = pi.
-        return sine, np.sqrt(self._cosine_0_squared + self._sine_0 * self._sine_0 * ((1.0 - decay) * (1.0 + decay)))
+        return sine, np.sqrt(
+            self._cosine_0_squared + self._sine_0 * self._sine_0 * ((1.0 - decay) * (1.0 + decay))
+        )
 
     def phi(self, time: Array, state: Array) -> Array:  # noqa: ARG002 - phi depends on the state alone
         """Return phi [rad]: equation (24) makes its rate -k_1 rho V tan(phi/2), here integrated."""
@@ -228,7 +242,9 @@ class LyapunovMotion(Motion):
         sine, cosine = self._half(state)
         view = self._view(time, state)
         omega_rho = self._omega_rho(view, state, rates, self._references.heading_rate_at(time))
-        command: Array = omega_rho - self._vehicle.k_1 * view.rho * self._vehicle.speed * sine / cosine
+        command: Array = (
+            omega_rho - self._vehicle.k_1 * view.rho * self._vehicle.speed * sine / cosine
+        )
         return command
 
     def offset_error(self, state: Array, error: Array) -> Array | None:
@@ -247,7 +263,9 @@ class CascadeCutMotion(Motion):
 
     def start(self, to_reference: Array, course: Array) -> Array:
         """Return the first state."""
-        return np.vstack([to_reference, phi_of_courses(self._view(np.zeros_like(course), to_reference), course)])
+        return np.vstack(
+            [to_reference, phi_of_courses(self._view(np.zeros_like(course), to_reference), course)]
+        )
 
     def take(self, which: npt.NDArray[Any]) -> Self:
         """Return the motion of an index or mask ``which``."""
@@ -279,8 +297,12 @@ class CascadeCutMotion(Motion):
         """Return what is commanded and omega_rho [rad/s]."""
         vehicle = self._vehicle
         omega_rho = self._omega_rho(view, state, rates, self._references.heading_rate_at(time))
-        steering = np.clip(vehicle.gain * wrapped(state[2]), -vehicle.steering_max, vehicle.steering_max)
-        return np.clip(omega_rho - steering, -vehicle.heading_rate_max, vehicle.heading_rate_max), omega_rho
+        steering = np.clip(
+            vehicle.gain * wrapped(state[2]), -vehicle.steering_max, vehicle.steering_max
+        )
+        return np.clip(
+            omega_rho - steering, -vehicle.heading_rate_max, vehicle.heading_rate_max
+        ), omega_rho
 
 
 MOTIONS: dict[Steering, type[Motion]] = {

@@ -53,11 +53,20 @@ class TurningReferences:
             ("phase", self.phase, shape),
         ):
             if values.shape != expected:
-                raise InfeasibleError(f"{name} of the references has shape {values.shape}; for these courses it is {expected}")
-        if not all(np.isfinite(values).all() for values in (self.course, self.rate, self.amplitude, self.frequency, self.phase)):
-            raise InfeasibleError("a reference's course, rate, amplitude, frequency or phase is not finite; give numbers")
+                raise InfeasibleError(
+                    f"{name} of the references has shape {values.shape}; for these courses it is {expected}"
+                )
+        if not all(
+            np.isfinite(values).all()
+            for values in (self.course, self.rate, self.amplitude, self.frequency, self.phase)
+        ):
+            raise InfeasibleError(
+                "a reference's course, rate, amplitude, frequency or phase is not finite; give numbers"
+            )
         if not (self.frequency > 0.0).all():
-            raise InfeasibleError(f"frequency of a reference is {self.frequency.min():g} rad/s; it must be above 0: leave it out")
+            raise InfeasibleError(
+                f"frequency of a reference is {self.frequency.min():g} rad/s; it must be above 0: leave it out"
+            )
         self.swing: Array = self.amplitude / self.frequency
         self.mean_course: Array = self.course + (self.swing * np.cos(self.phase)).sum(axis=0)
 
@@ -101,5 +110,7 @@ class TurningReferences:
         """Return omega_r [rad/s] at each reference's own ``time``, shape (n,) [s]."""
         if not len(self.amplitude):
             return self.rate
-        rate: Array = self.rate + (self.amplitude * np.sin(self.frequency * time + self.phase)).sum(axis=0)
+        rate: Array = self.rate + (self.amplitude * np.sin(self.frequency * time + self.phase)).sum(
+            axis=0
+        )
         return rate

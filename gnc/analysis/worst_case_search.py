@@ -87,7 +87,10 @@ def largest_heading_rate(
             return -float(commands(state, turn))
 
         refined = minimize(
-            negative, states[:, worst], method="Nelder-Mead", options={"xatol": 1e-9, "fatol": 1e-10, "maxiter": 2000}
+            negative,
+            states[:, worst],
+            method="Nelder-Mead",
+            options={"xatol": 1e-9, "fatol": 1e-10, "maxiter": 2000},
         )
         # Any state's command is a lower bound of the largest, so a refinement that has not converged still counts.
         largest = max(largest, -float(refined.fun))
@@ -120,7 +123,9 @@ def heading_rates(
     gain : slope of h(phi) [1/s]
     steering_max : largest |h(phi)| [rad/s]
     """
-    north, east, turn = (np.asarray(part, dtype=np.float64) for part in (north, east, reference_heading_rate))
+    north, east, turn = (
+        np.asarray(part, dtype=np.float64) for part in (north, east, reference_heading_rate)
+    )
     ahead_north, ahead_east = np.cos(reference_course), np.sin(reference_course)
     own_north, own_east = np.cos(course), np.sin(course)
     closing_north, closing_east = speed * (ahead_north - own_north), speed * (ahead_east - own_east)
@@ -130,7 +135,9 @@ def heading_rates(
     rate_north = closing_north + delta_rate * ahead_north - delta * turn * ahead_east
     rate_east = closing_east + delta_rate * ahead_east + delta * turn * ahead_north
     omega_rho = (z_north * rate_east - z_east * rate_north) / (z_north * z_north + z_east * z_east)
-    phi = np.arctan2(z_north * own_east - z_east * own_north, z_north * own_north + z_east * own_east)
+    phi = np.arctan2(
+        z_north * own_east - z_east * own_north, z_north * own_north + z_east * own_east
+    )
     return np.asarray(omega_rho - np.clip(gain * phi, -steering_max, steering_max))
 
 
@@ -138,12 +145,19 @@ def _random_states(parameters: LookAhead, samples: int, generator: np.random.Gen
     """Return log distance, direction of d against the reference's course, and the vehicle's course against it: three rows."""
     critical = 0.5 * math.log(parameters.radius / parameters.epsilon)
     gathered = generator.random(samples) < _GATHERED
-    near, anywhere = generator.normal(0.0, _GATHERED_SIGMA, samples), generator.uniform(*_LOG_DISTANCES, samples)
+    near, anywhere = (
+        generator.normal(0.0, _GATHERED_SIGMA, samples),
+        generator.uniform(*_LOG_DISTANCES, samples),
+    )
     log_distance = critical + np.where(gathered, near, anywhere)
     # Directions gather on half a turn at every scale.
-    nearly = 10.0 ** generator.uniform(*_LOG10_ANGLES, samples) * generator.choice([-1.0, 1.0], samples)
+    nearly = 10.0 ** generator.uniform(*_LOG10_ANGLES, samples) * generator.choice(
+        [-1.0, 1.0], samples
+    )
     direction = math.pi + np.where(gathered, nearly, generator.uniform(-math.pi, math.pi, samples))
     # Head on to the reference z points along its course, so that courses across z are courses across the reference's.
-    across = 0.5 * math.pi * generator.choice([-1.0, 1.0], samples) + generator.normal(0.0, _GATHERED_SIGMA, samples)
+    across = 0.5 * math.pi * generator.choice([-1.0, 1.0], samples) + generator.normal(
+        0.0, _GATHERED_SIGMA, samples
+    )
     course = np.where(gathered, across, generator.uniform(-math.pi, math.pi, samples))
     return np.stack([log_distance, direction, course])

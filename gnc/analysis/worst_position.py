@@ -12,21 +12,28 @@ _CELLS = 24
 """Cells a side to begin with."""
 
 
-def worst_case_over_positions(value: Callable[[_Array, _Array], _Array], sigma: float, tolerance: float) -> float:
+def worst_case_over_positions(
+    value: Callable[[_Array, _Array], _Array], sigma: float, tolerance: float
+) -> float:
     """Return an upper bound, at most ``tolerance`` high, of a value that rises with both factors, over all positions.
 
     Branch and bound: cells are quartered until none can hold a value above the largest met in the middle of a cell, but for the
     tolerance. That ends because the bounds of ``factors_at_most`` close in on ``factors`` as cells shrink.
     """
     edges = np.linspace(0.0, math.pi, _CELLS + 1)
-    low, high = (np.stack(np.meshgrid(ends, ends)).reshape(2, -1) for ends in (edges[:-1], edges[1:]))
+    low, high = (
+        np.stack(np.meshgrid(ends, ends)).reshape(2, -1) for ends in (edges[:-1], edges[1:])
+    )
     largest = 0.0
     while low.size:
         middle = 0.5 * (low + high)
         largest = max(largest, float(np.max(value(*factors(sigma, *middle)))))
         open_still = value(*factors_at_most(sigma, low, high)) > largest * (1.0 + 0.5 * tolerance)
         low, middle, high = low[:, open_still], middle[:, open_still], high[:, open_still]
-        corners = [(low[0], middle[0]), (middle[0], high[0])], [(low[1], middle[1]), (middle[1], high[1])]
+        corners = (
+            [(low[0], middle[0]), (middle[0], high[0])],
+            [(low[1], middle[1]), (middle[1], high[1])],
+        )
         quarters = [(*across, *along) for across in corners[0] for along in corners[1]]
         low = np.concatenate([np.stack([quarter[0], quarter[2]]) for quarter in quarters], axis=1)
         high = np.concatenate([np.stack([quarter[1], quarter[3]]) for quarter in quarters], axis=1)
@@ -63,7 +70,9 @@ def factors_at_most(sigma: float, low: _Array, high: _Array) -> tuple[_Array, _A
     # (1 - x)^2 + 2 x k rises with k and is a parabola in x whose vertex is 1 - k.
     nearest = np.clip(1.0 - k_1, x_1, x_2)
     rho_squared_1 = (1.0 - nearest) ** 2 + 2.0 * nearest * k_1
-    rho_squared_2 = np.maximum((1.0 - x_1) ** 2 + 2.0 * x_1 * k_2, (1.0 - x_2) ** 2 + 2.0 * x_2 * k_2)
+    rho_squared_2 = np.maximum(
+        (1.0 - x_1) ** 2 + 2.0 * x_1 * k_2, (1.0 - x_2) ** 2 + 2.0 * x_2 * k_2
+    )
     # sqrt(rho^2 - p)/rho^2 is the root of y - p y^2, y = 1/rho^2, a parabola whose vertex is 1/(2 p).
     p = (s_1 * sin_b_1) ** 2
     y = np.clip(1.0 / np.maximum(2.0 * p, 1e-300), 1.0 / rho_squared_2, 1.0 / rho_squared_1)

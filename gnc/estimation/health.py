@@ -54,15 +54,24 @@ class Health:
         "fault",
     )  # fmt: skip
 
-    def __init__(self, *, airspeed_error: float, heading_rate_error: float, lag: float, time_step: float) -> None:
+    def __init__(
+        self, *, airspeed_error: float, heading_rate_error: float, lag: float, time_step: float
+    ) -> None:
         self._airspeed_error, self._rate_error = airspeed_error, heading_rate_error
-        self._decay, self._servo_decay = math.exp(-time_step / PATIENCE), math.exp(-time_step / SERVO_PATIENCE)
+        self._decay, self._servo_decay = (
+            math.exp(-time_step / PATIENCE),
+            math.exp(-time_step / SERVO_PATIENCE),
+        )
         self._lag_decay = math.exp(-time_step / lag) if lag > 0.0 else 0.0
-        self._mean_lack = self._mean_gain = self._mean_error = self._mean_servo_error = self._expected = 0.0
+        self._mean_lack = self._mean_gain = self._mean_error = self._mean_servo_error = (
+            self._expected
+        ) = 0.0
         self._last_airspeed = 0.0
         self.fault = Fault.NONE
 
-    def check(self, lack: float, airspeed: float, heading_rate: float, command: float, servo_error: float) -> Fault:
+    def check(
+        self, lack: float, airspeed: float, heading_rate: float, command: float, servo_error: float
+    ) -> Fault:
         """Return the fault that has been detected, if any.
 
         Parameters
@@ -79,8 +88,12 @@ class Health:
         gained = airspeed - self._last_airspeed if self._last_airspeed else 0.0
         self._last_airspeed = airspeed
         self._mean_gain = decay * self._mean_gain + (1.0 - decay) * gained
-        self._mean_error = decay * self._mean_error + (1.0 - decay) * abs(heading_rate - self._expected)
-        self._mean_servo_error = servo_decay * self._mean_servo_error + (1.0 - servo_decay) * servo_error
+        self._mean_error = decay * self._mean_error + (1.0 - decay) * abs(
+            heading_rate - self._expected
+        )
+        self._mean_servo_error = (
+            servo_decay * self._mean_servo_error + (1.0 - servo_decay) * servo_error
+        )
         if self.fault is Fault.NONE:
             if self._mean_servo_error > STUCK:
                 self.fault = Fault.ACTUATOR_STUCK

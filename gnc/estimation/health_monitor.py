@@ -61,7 +61,9 @@ class HealthMonitor:
         self._speed, self._steps, self._commanded = p.speed, self._interval - 1, 0.0
         self.fault = Fault.NONE
 
-    def check(self, readings: Readings, airspeed_command: float, heading_rate_command: float) -> bool:
+    def check(
+        self, readings: Readings, airspeed_command: float, heading_rate_command: float
+    ) -> bool:
         """Return whether a fault is found now; called once per guidance step, with the last commands [m/s, rad/s]."""
         # The mean of the commands since the last check: of one that changes its sign at every step, single ones would all have
         # the same sign, and the vehicle would seem not to follow.

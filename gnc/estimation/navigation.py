@@ -84,7 +84,13 @@ class Navigation:
         self._until_measured = 0
         self._first_variance = 0.0
 
-    def update(self, position: tuple[float, float, float, float] | None, airspeed: float, heading: float, roll: float) -> None:
+    def update(
+        self,
+        position: tuple[float, float, float, float] | None,
+        airspeed: float,
+        heading: float,
+        roll: float,
+    ) -> None:
         """Take in what the sensors say now.
 
         Parameters

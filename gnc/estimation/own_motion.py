@@ -93,7 +93,9 @@ class TrueNavigation:
     )  # fmt: skip
 
     def __init__(self) -> None:
-        self.drift_north = self.drift_east = self.wind_north = self.wind_east = self.wind_error = self.lost = 0.0
+        self.drift_north = self.drift_east = self.wind_north = self.wind_east = self.wind_error = (
+            self.lost
+        ) = 0.0
         self.north = self.east = self.ground_north = self.ground_east = 0.0
         self.course = self.speed = self.heading_rate = 0.0
         self.air_ratio, self.airspeed = 1.0, math.nan
@@ -124,7 +126,9 @@ class EstimatedNavigation:
 
     def __init__(self, parameters: NavigationParameters) -> None:
         self._navigation = Navigation(parameters)
-        self.drift_north = self.drift_east = self.wind_north = self.wind_east = self.wind_error = self.lost = 0.0
+        self.drift_north = self.drift_east = self.wind_north = self.wind_east = self.wind_error = (
+            self.lost
+        ) = 0.0
         self.north = self.east = self.ground_north = self.ground_east = 0.0
         self.course = self.speed = self.heading_rate = self.airspeed = 0.0
         self.air_ratio = 1.0
@@ -136,12 +140,17 @@ class EstimatedNavigation:
         navigation.update(position, airspeed, heading, roll)
         wind = navigation.wind
         self.wind_north, self.wind_east = wind_north, wind_east = wind.north, wind.east
-        v_north, v_east = navigation.velocity_north - wind_north, navigation.velocity_east - wind_east
+        v_north, v_east = (
+            navigation.velocity_north - wind_north,
+            navigation.velocity_east - wind_east,
+        )
         self.course, self.speed = math.atan2(v_east, v_north), math.hypot(v_north, v_east)
         self.airspeed, self.lost, self.wind_error = airspeed, navigation.lost, navigation.wind_error
         self.ground_north, self.ground_east = north, east = navigation.north, navigation.east
         self.drift_north, self.drift_east = navigation.drift_north, navigation.drift_east
         self.north, self.east = north - self.drift_north, east - self.drift_east
         speed = self.speed
-        self.air_ratio = ratio = (airspeed if airspeed > _SPEED_MIN else _SPEED_MIN) / (speed if speed > _SPEED_MIN else _SPEED_MIN)
+        self.air_ratio = ratio = (airspeed if airspeed > _SPEED_MIN else _SPEED_MIN) / (
+            speed if speed > _SPEED_MIN else _SPEED_MIN
+        )
         self.heading_rate = heading_rate * ratio

@@ -129,7 +129,15 @@ def tube_by_speed(report: VesselReport, limits: VesselLimits, time: float) -> Tu
     by_acceleration, speed = tube(report, limits, time), limits.speed_max
     since_report = radius_by_speed(limits, time - report.time)
     if by_acceleration.radius <= since_report:
-        return Tube(time, by_acceleration.north, by_acceleration.east, 0.0, 0.0, by_acceleration.radius, speed)
+        return Tube(
+            time,
+            by_acceleration.north,
+            by_acceleration.east,
+            0.0,
+            0.0,
+            by_acceleration.radius,
+            speed,
+        )
     return Tube(time, report.north, report.east, 0.0, 0.0, since_report, speed)
 
 

@@ -45,7 +45,15 @@ class SteadyTarget:
     velocity_north, velocity_east : [m/s]
     """
 
-    __slots__ = ("acceleration_east", "acceleration_north", "east", "north", "tubes", "velocity_east", "velocity_north")
+    __slots__ = (
+        "acceleration_east",
+        "acceleration_north",
+        "east",
+        "north",
+        "tubes",
+        "velocity_east",
+        "velocity_north",
+    )
 
     def __init__(self, velocity_north: float, velocity_east: float) -> None:
         self.velocity_north, self.velocity_east = velocity_north, velocity_east
@@ -104,7 +112,9 @@ class ReportedTarget:
             vessel = self.vessel.at(time)
             self.north, self.east = vessel.north, vessel.east
             self.velocity_north, self.velocity_east = vessel.velocity_north, vessel.velocity_east
-            self.acceleration_north, self.acceleration_east = self._manoeuvre(vessel.acceleration_north, vessel.acceleration_east)
+            self.acceleration_north, self.acceleration_east = self._manoeuvre(
+                vessel.acceleration_north, vessel.acceleration_east
+            )
             self._gain_north = self._time_step * vessel.acceleration_north
             self._gain_east = self._time_step * vessel.acceleration_east
         else:

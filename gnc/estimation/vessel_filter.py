@@ -79,7 +79,16 @@ class VesselFilter:
     time : of the newest report, before the first one minus infinity [s]
     """
 
-    __slots__ = ("_acceleration_variance", "_covariance", "_east", "_memory", "_north", "_position", "_velocity", "time")
+    __slots__ = (
+        "_acceleration_variance",
+        "_covariance",
+        "_east",
+        "_memory",
+        "_north",
+        "_position",
+        "_velocity",
+        "time",
+    )
 
     def __init__(self, parameters: FilterParameters) -> None:
         self._position, self._velocity = parameters.position_sigma**2, parameters.velocity_sigma**2
@@ -102,10 +111,20 @@ class VesselFilter:
         if self.time == -math.inf:
             self._north = (report.north, report.velocity_north, 0.0)
             self._east = (report.east, report.velocity_east, 0.0)
-            self._covariance = (self._position, 0.0, 0.0, self._velocity, 0.0, self._acceleration_variance)
+            self._covariance = (
+                self._position,
+                0.0,
+                0.0,
+                self._velocity,
+                0.0,
+                self._acceleration_variance,
+            )
         else:
             ahead = report.time - self.time
-            self._north, self._east = self._predicted(self._north, ahead), self._predicted(self._east, ahead)
+            self._north, self._east = (
+                self._predicted(self._north, ahead),
+                self._predicted(self._east, ahead),
+            )
             self._covariance = self._predicted_covariance(ahead)
             self._correct(0, report.north, report.east, self._position)
             self._correct(1, report.velocity_north, report.velocity_east, self._velocity)
@@ -128,14 +147,22 @@ class VesselFilter:
     def _predicted(self, state: State, time: float) -> State:
         to_place, to_velocity, decay = self._transition(time)
         place, velocity, acceleration = state
-        return place + time * velocity + to_place * acceleration, velocity + to_velocity * acceleration, decay * acceleration
+        return (
+            place + time * velocity + to_place * acceleration,
+            velocity + to_velocity * acceleration,
+            decay * acceleration,
+        )
 
     def _predicted_covariance(self, time: float) -> Covariance:
         """Return the covariance after ``time``: F P F' + Q."""
         b, c, d = self._transition(time)
         p00, p01, p02, p11, p12, p22 = self._covariance
         q00, q01, q02, q11, q12, q22 = self._noise(time)
-        r00, r01, r02 = p00 + time * p01 + b * p02, p01 + time * p11 + b * p12, p02 + time * p12 + b * p22
+        r00, r01, r02 = (
+            p00 + time * p01 + b * p02,
+            p01 + time * p11 + b * p12,
+            p02 + time * p12 + b * p22,
+        )
         r11, r12 = p11 + c * p12, p12 + c * p22
         return (
             r00 + time * r01 + b * r02 + q00,
@@ -154,7 +181,14 @@ class VesselFilter:
         if t < 0.005 * m:
             # The closed forms cancel to nothing over short times; their leading terms are true to 0.5 %.
             q = 2.0 * scale / m
-            return q * t**5 / 20.0, q * t**4 / 8.0, q * t**3 / 6.0, q * t**3 / 3.0, q * t**2 / 2.0, q * t
+            return (
+                q * t**5 / 20.0,
+                q * t**4 / 8.0,
+                q * t**3 / 6.0,
+                q * t**3 / 3.0,
+                q * t**2 / 2.0,
+                q * t,
+            )
         x = t / m
         return (
             scale * m**4 * (1.0 - e * e + 2.0 * x + 2.0 * x**3 / 3.0 - 2.0 * x * x - 4.0 * x * e),
@@ -175,8 +209,16 @@ class VesselFilter:
         c0, c1, c2 = column
         k0, k1, k2 = c0 / total, c1 / total, c2 / total
         off_north, off_east = north - self._north[i], east - self._east[i]
-        self._north = (self._north[0] + k0 * off_north, self._north[1] + k1 * off_north, self._north[2] + k2 * off_north)
-        self._east = (self._east[0] + k0 * off_east, self._east[1] + k1 * off_east, self._east[2] + k2 * off_east)
+        self._north = (
+            self._north[0] + k0 * off_north,
+            self._north[1] + k1 * off_north,
+            self._north[2] + k2 * off_north,
+        )
+        self._east = (
+            self._east[0] + k0 * off_east,
+            self._east[1] + k1 * off_east,
+            self._east[2] + k2 * off_east,
+        )
         self._covariance = (
             p[0] - k0 * c0, p[1] - k0 * c1, p[2] - k0 * c2, p[3] - k1 * c1, p[4] - k1 * c2, p[5] - k2 * c2
         )  # fmt: skip

@@ -21,7 +21,17 @@ class WindFilter:
     north, east : estimated velocity of the air mass, where it blows to; 0 before anything is measured [m/s]
     """
 
-    __slots__ = ("_course_variance", "_drift_variance", "_measured", "_p_ee", "_p_ne", "_p_nn", "_speed_variance", "east", "north")
+    __slots__ = (
+        "_course_variance",
+        "_drift_variance",
+        "_measured",
+        "_p_ee",
+        "_p_ne",
+        "_p_nn",
+        "_speed_variance",
+        "east",
+        "north",
+    )
 
     def __init__(self, *, airspeed_sigma: float, course_sigma: float, drift: float) -> None:
         self._speed_variance = airspeed_sigma**2
@@ -37,7 +47,14 @@ class WindFilter:
         half = 0.5 * (self._p_nn - self._p_ee)
         return math.sqrt(0.5 * (self._p_nn + self._p_ee) + math.hypot(half, self._p_ne))
 
-    def update(self, airspeed: float, air_course: float, velocity_north: float, velocity_east: float, time_step: float) -> None:
+    def update(
+        self,
+        airspeed: float,
+        air_course: float,
+        velocity_north: float,
+        velocity_east: float,
+        time_step: float,
+    ) -> None:
         """Correct the estimate by one measurement.
 
         Parameters

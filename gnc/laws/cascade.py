@@ -29,7 +29,9 @@ class CascadeLaw(DeltaLaw):
     gain_per_s: float = 1.5
     steering_max_rad_s: float = 0.4
 
-    def heading_rate(self, reference: Reference, to_north: float, to_east: float, course: float, speed: float) -> float:
+    def heading_rate(
+        self, reference: Reference, to_north: float, to_east: float, course: float, speed: float
+    ) -> float:
         """Return the demanded heading rate [rad/s]; parameters are those of ``SteeringLaw``."""
         return cascade_heading_rate(
             self._look_ahead, to_north, to_east, course, speed,

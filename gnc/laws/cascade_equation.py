@@ -52,5 +52,7 @@ def cascade_heading_rate(
     gain, rate_max : as of ``cascade_law``
     """
     state = bare_state(look_ahead, to_north, to_east, reference_course, course)
-    _, omega_rho = relative_velocity(look_ahead, state, reference_speed, speed, reference_heading_rate)
+    _, omega_rho = relative_velocity(
+        look_ahead, state, reference_speed, speed, reference_heading_rate
+    )
     return cascade_law(state[3], omega_rho, gain, rate_max)

@@ -45,7 +45,9 @@ def look_ahead(epsilon: float, radius: float) -> LookAhead:
     InfeasibleError : R <= 1/(4 epsilon), where delta may be shorter than d and z may vanish
     """
     if not (math.isfinite(epsilon) and epsilon > 0.0):
-        raise InfeasibleError(f"look-ahead epsilon is {epsilon:g} 1/m; it must be finite and above 0")
+        raise InfeasibleError(
+            f"look-ahead epsilon is {epsilon:g} 1/m; it must be finite and above 0"
+        )
     if not (math.isfinite(radius) and radius > 1.0 / (4.0 * epsilon)):
         raise InfeasibleError(
             f"look-ahead R is {radius:g} m; it must exceed 1/(4 epsilon) = {1.0 / (4.0 * epsilon):g} m: raise R or epsilon"
@@ -59,7 +61,11 @@ def delta_length(parameters: LookAhead, distance_squared: float) -> float:
 
 
 def relative_state(
-    parameters: LookAhead, to_reference_north: float, to_reference_east: float, reference_course: float, course: float
+    parameters: LookAhead,
+    to_reference_north: float,
+    to_reference_east: float,
+    reference_course: float,
+    course: float,
 ) -> RelativeState:
     """Return the relative state: equations (14), (16) and (19).
 
@@ -69,22 +75,36 @@ def relative_state(
     to_reference_north, to_reference_east : d, from the vehicle to the reference [m]
     reference_course, course : chi_r and chi [rad]
     """
-    return RelativeState(*bare_state(parameters, to_reference_north, to_reference_east, reference_course, course))
+    return RelativeState(
+        *bare_state(parameters, to_reference_north, to_reference_east, reference_course, course)
+    )
 
 
 def bare_state(
-    parameters: LookAhead, to_reference_north: float, to_reference_east: float, reference_course: float, course: float
+    parameters: LookAhead,
+    to_reference_north: float,
+    to_reference_east: float,
+    reference_course: float,
+    course: float,
 ) -> tuple[float, float, float, float]:
     """Return delta, rho, phi_r and phi, the relative state without names: equations (14), (15), (16) and (19).
 
     Parameters are those of ``relative_state``. The guidance asks at every step, and the names cost as much as the numbers.
     """
     epsilon, radius = parameters
-    delta = epsilon * (to_reference_north * to_reference_north + to_reference_east * to_reference_east) + radius
+    delta = (
+        epsilon * (to_reference_north * to_reference_north + to_reference_east * to_reference_east)
+        + radius
+    )
     z_north = to_reference_north + delta * math.cos(reference_course)
     z_east = to_reference_east + delta * math.sin(reference_course)
     z_course = math.atan2(z_east, z_north)
-    return delta, math.hypot(z_north, z_east), wrap(reference_course - z_course), wrap(course - z_course)
+    return (
+        delta,
+        math.hypot(z_north, z_east),
+        wrap(reference_course - z_course),
+        wrap(course - z_course),
+    )
 
 
 def distance_squared(state: RelativeState) -> float:
@@ -125,6 +145,10 @@ def relative_velocity(
     along = reference_speed * cos_r - speed * math.cos(phi)
     across = reference_speed * sin_r - speed * math.sin(phi)
     # Equation (20) once more: calling distance_squared_rate would take every sine and cosine twice, at each step of the guidance.
-    delta_rate = parameters.epsilon * (2.0 * ((rho - delta * cos_r) * along - delta * sin_r * across))
+    delta_rate = parameters.epsilon * (
+        2.0 * ((rho - delta * cos_r) * along - delta * sin_r * across)
+    )
     swing = delta * reference_heading_rate
-    return along - swing * sin_r + delta_rate * cos_r, (across + swing * cos_r + delta_rate * sin_r) / rho
+    return along - swing * sin_r + delta_rate * cos_r, (
+        across + swing * cos_r + delta_rate * sin_r
+    ) / rho

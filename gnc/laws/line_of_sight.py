@@ -9,7 +9,9 @@ from gnc.numeric import wrap
 from gnc.reference.reference import Reference
 
 
-def line_of_sight_law(to_reference_north: float, to_reference_east: float, course: float, gain: float) -> float:
+def line_of_sight_law(
+    to_reference_north: float, to_reference_east: float, course: float, gain: float
+) -> float:
     """Return omega [rad/s] that turns the course to the line of sight, proportionally: the baseline of the paper's Sim. 2.
 
     Undefined on the reference itself, where it commands nothing; close by, the line of sight and so the command turn arbitrarily
@@ -41,6 +43,13 @@ class LineOfSightLaw:
     def __post_init__(self) -> None:
         check_parameters(self)
 
-    def heading_rate(self, reference: Reference, to_north: float, to_east: float, course: float, speed: float) -> float:  # noqa: ARG002
+    def heading_rate(
+        self,
+        reference: Reference,  # noqa: ARG002
+        to_north: float,
+        to_east: float,
+        course: float,
+        speed: float,  # noqa: ARG002
+    ) -> float:
         """Return the demanded heading rate [rad/s]; parameters are those of ``SteeringLaw``."""
         return line_of_sight_law(to_north, to_east, course, self.gain_per_s)

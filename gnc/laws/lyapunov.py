@@ -41,8 +41,12 @@ class LyapunovLaw(DeltaLaw):
     given: ClassVar[str] = "the reference itself, and its turn rate"
     lyapunov_gain_per_m2: float = 0.001
 
-    def heading_rate(self, reference: Reference, to_north: float, to_east: float, course: float, speed: float) -> float:
+    def heading_rate(
+        self, reference: Reference, to_north: float, to_east: float, course: float, speed: float
+    ) -> float:
         """Return the demanded heading rate [rad/s]; parameters are those of ``SteeringLaw``."""
         state = bare_state(self._look_ahead, to_north, to_east, reference.course, course)
-        _, omega_rho = relative_velocity(self._look_ahead, state, reference.speed, speed, reference.heading_rate)
+        _, omega_rho = relative_velocity(
+            self._look_ahead, state, reference.speed, speed, reference.heading_rate
+        )
         return lyapunov_law(RelativeState(*state), speed, omega_rho, self.lyapunov_gain_per_m2)

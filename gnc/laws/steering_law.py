@@ -35,7 +35,9 @@ class SteeringLaw(Protocol):
     ``given`` says in words what of the reference and of the air a law makes use of.
     """
 
-    def heading_rate(self, reference: Reference, to_north: float, to_east: float, course: float, speed: float) -> float:
+    def heading_rate(
+        self, reference: Reference, to_north: float, to_east: float, course: float, speed: float
+    ) -> float:
         """Return the demanded heading rate [rad/s], positive to the right, before any limit of the vehicle.
 
         Parameters
@@ -122,7 +124,9 @@ def begun(law: SteeringLaw, surroundings: Surroundings, time_step: float) -> Ste
 _MUST = "its method heading_rate(reference, to_north, to_east, course, speed) has to return a number [rad/s]"
 
 
-def within_limit(demand: Any, limit: float, law: str, given: Sequence[float]) -> tuple[float, float]:
+def within_limit(
+    demand: Any, limit: float, law: str, given: Sequence[float]
+) -> tuple[float, float]:
     """Return what a law demanded, as a plain number, and that kept within minus and plus ``limit`` [rad/s].
 
     Parameters
@@ -136,7 +140,9 @@ def within_limit(demand: Any, limit: float, law: str, given: Sequence[float]) ->
     ------
     LawError : it returned what is no number, asked with numbers
     """
-    if _is_number(demand) and (-limit <= demand <= limit or not math.isnan(demand) or not all(map(math.isfinite, given))):
+    if _is_number(demand) and (
+        -limit <= demand <= limit or not math.isnan(demand) or not all(map(math.isfinite, given))
+    ):
         # A number of NumPy's would have all that follows computed in its own precision, or be changed in place.
         return float(demand), float(limited(demand, limit))
     shown = repr(demand) if isinstance(demand, str) else " ".join(str(demand).split())
@@ -165,7 +171,9 @@ def call_error(law: str, error: TypeError, must: str = _MUST) -> Exception:
     return LawError(f"steering law '{law}' cannot be called ({error}): {must}")
 
 
-STEERING_LAWS: Registry[Callable[..., SteeringLaw]] = Registry("steering_law", folder="gnc.laws", methods=("heading_rate",))
+STEERING_LAWS: Registry[Callable[..., SteeringLaw]] = Registry(
+    "steering_law", folder="gnc.laws", methods=("heading_rate",)
+)
 """Steering laws by name; calling one with its parameters makes it."""
 
 steering_law = STEERING_LAWS.register
@@ -181,4 +189,6 @@ def check_parameters(law: Any) -> None:
     """
     for field in fields(law):
         if field.init and not (math.isfinite(value := getattr(law, field.name)) and value > 0.0):
-            raise ValueError(f"{field.name} is {value:g}; it must be finite and above 0; the default is {field.default:g}")
+            raise ValueError(
+                f"{field.name} is {value:g}; it must be finite and above 0; the default is {field.default:g}"
+            )

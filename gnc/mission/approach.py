@@ -71,7 +71,10 @@ class Approach:
     ) -> None:
         self._parameters, self._own, self._target = parameters, own, target
         self._limit, self._lag = heading_rate_max, lag
-        self._transit, self._quarter_turn = Transit(speed / heading_rate_max), 0.5 * math.pi / heading_rate_max
+        self._transit, self._quarter_turn = (
+            Transit(speed / heading_rate_max),
+            0.5 * math.pi / heading_rate_max,
+        )
         self._held, self._time_step, self._join_distance = 0.0, time_step, parameters.join_distance
 
     def course_ahead(self, last_command: float) -> float:
@@ -79,7 +82,15 @@ class Approach:
         own = self._own
         return own.course + 0.5 * self._lag * (own.heading_rate + last_command)
 
-    def command(self, centre_x: float, centre_y: float, last_command: float, *, additional_range: float, guarding: bool) -> float:
+    def command(
+        self,
+        centre_x: float,
+        centre_y: float,
+        last_command: float,
+        *,
+        additional_range: float,
+        guarding: bool,
+    ) -> float:
         """Return the heading rate that leads to the centre, round the vessel [rad/s].
 
         It turns to the nearer side. Where that leads through the course straight to the vessel, the keep-out guard may not let it
@@ -100,23 +111,40 @@ class Approach:
             y,
             centre_x,
             centre_y,
-            blocked_radius=min(p.blocked_radius + additional_range, _BLOCKED_WITHIN * math.hypot(centre_x, centre_y)),
+            blocked_radius=min(
+                p.blocked_radius + additional_range,
+                _BLOCKED_WITHIN * math.hypot(centre_x, centre_y),
+            ),
             round_radius=p.round_radius + additional_range,
             velocity_north=target.velocity_north - own.wind_north,
             velocity_east=target.velocity_east - own.wind_east,
             course=own.course,
             speed=own.speed,
         )
-        course, near = self.course_ahead(last_command), math.hypot(x, y) < p.round_radius + additional_range
+        course, near = (
+            self.course_ahead(last_command),
+            math.hypot(x, y) < p.round_radius + additional_range,
+        )
         turn = wrap(to - course)
         side = math.copysign(1.0, turn)
         to_vessel = side * wrap(math.atan2(-y, -x) - course)
-        self._held = self._held + guarding * self._time_step if near and 0.0 < to_vessel < abs(turn) else 0.0
+        self._held = (
+            self._held + guarding * self._time_step if near and 0.0 < to_vessel < abs(turn) else 0.0
+        )
         if self._held >= self._quarter_turn:
             turn = side * (to_vessel - 0.5 * math.pi)
         return limited(COURSE_GAIN * self._limit * turn, self._limit)
 
-    def joins(self, centre_x: float, centre_y: float, axis: float, *, error: float, tracking: bool, guarding: bool) -> bool:
+    def joins(
+        self,
+        centre_x: float,
+        centre_y: float,
+        axis: float,
+        *,
+        error: float,
+        tracking: bool,
+        guarding: bool,
+    ) -> bool:
         """Return whether to track the reference.
 
         Parameters
@@ -140,4 +168,6 @@ class Approach:
     def join_nearer(self) -> None:
         """Let tracking begin from half as far as before: the keep-out guard has just ended it, and would do so again."""
         p = self._parameters
-        self._join_distance = max(0.5 * self._join_distance, min(LOST_TRACK * p.tracked, p.join_distance))
+        self._join_distance = max(
+            0.5 * self._join_distance, min(LOST_TRACK * p.tracked, p.join_distance)
+        )

@@ -111,10 +111,15 @@ class DirectTracking:
         altitude: float,
     ) -> None:
         self.tracker: Tracker[Any] = Tracker(tracking, copy.copy(parameters.reference))
-        self.centre, self._axis = parameters.centre, math.atan2(parameters.centre.y, parameters.centre.x)
+        self.centre, self._axis = (
+            parameters.centre,
+            math.atan2(parameters.centre.y, parameters.centre.x),
+        )
         self._own, self._target, self._guard, self._tracking = own, target, guard, tracking
         self._joining, self._closing = parameters.joining, False
-        self._losable = parameters.joining is not None and parameters.joining.orbit.shape.joining_share < 1.0
+        self._losable = (
+            parameters.joining is not None and parameters.joining.orbit.shape.joining_share < 1.0
+        )
         self._approach: Approach | None = None
         self._standoff, self.airspeed, self.altitude = 0.0, parameters.reference.speed, altitude
         if self._joining is not None:
@@ -144,7 +149,9 @@ class DirectTracking:
         tracked = self._joining.approach.tracked
         if self.overriding:
             x, y = self._joined_at()
-            if self._approach.joins(x, y, self._axis, error=error, tracking=False, guarding=guarding):
+            if self._approach.joins(
+                x, y, self._axis, error=error, tracking=False, guarding=guarding
+            ):
                 self._join(self._joining.orbit)
         elif (guarding or (self._losable and not self._closing)) and error > LOST_TRACK * tracked:
             self.overriding, self._closing = True, False
@@ -168,7 +175,9 @@ class DirectTracking:
         """Return the heading rate that leads to where the orbit is joined, round the vessel [rad/s]; the law's without a way."""
         if self._approach is None:
             return self.tracker.heading_rate_command
-        return self._approach.command(*self._joined_at(), last_command, additional_range=0.0, guarding=self._guarding)
+        return self._approach.command(
+            *self._joined_at(), last_command, additional_range=0.0, guarding=self._guarding
+        )
 
     def leave(self, fault: Fault) -> None:
         """Refuse to leave: this mission has no departure, and is not given a monitor that could demand it.
@@ -177,7 +186,9 @@ class DirectTracking:
         ------
         ValueError : always
         """
-        raise ValueError(f"the vehicle has a fault, {fault.value}, and its mission has no departure; follow the plume instead")
+        raise ValueError(
+            f"the vehicle has a fault, {fault.value}, and its mission has no departure; follow the plume instead"
+        )
 
     @property
     def _guarding(self) -> bool:
@@ -186,11 +197,18 @@ class DirectTracking:
 
     def _joined_at(self) -> tuple[float, float]:
         """Return the centre of the orbit as it is joined, north and east of the vessel [m]."""
-        return self.centre.x + self._standoff * math.cos(self._axis), self.centre.y + self._standoff * math.sin(self._axis)
+        return self.centre.x + self._standoff * math.cos(
+            self._axis
+        ), self.centre.y + self._standoff * math.sin(self._axis)
 
     def _join(self, orbit: JoinedOrbit) -> None:
         """Track the orbit from where it is nearest."""
-        own, target, centre, last = self._own, self._target, self.centre, self.tracker.heading_rate_command
+        own, target, centre, last = (
+            self._own,
+            self._target,
+            self.centre,
+            self.tracker.heading_rate_command,
+        )
         reference = orbit.nearest(
             target.north + centre.x,
             target.east + centre.y,
@@ -200,7 +218,9 @@ class DirectTracking:
             turn_radius=own.speed / self._tracking.heading_rate_max,
         )
         time_step, rate = self._tracking.time_step, CLOSING_RATE * reference.speed
-        joined = ClosingReference(reference, axis=self._axis, standoff=self._standoff, rate=rate, time_step=time_step)
+        joined = ClosingReference(
+            reference, axis=self._axis, standoff=self._standoff, rate=rate, time_step=time_step
+        )
         self.tracker = Tracker(self._tracking, joined)
         self.tracker.heading_rate_command = last
         self.overriding, self._closing = False, True

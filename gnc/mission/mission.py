@@ -54,7 +54,9 @@ class Tracking(Protocol):
     def reference(self) -> Placed:
         """Reference point."""
 
-    def step(self, north: float, east: float, course: float, speed: float, heading_rate: float) -> float:
+    def step(
+        self, north: float, east: float, course: float, speed: float, heading_rate: float
+    ) -> float:
         """Return the heading rate to command [rad/s]; parameters are those of ``gnc.tracker.Tracker``."""
 
 

@@ -28,7 +28,15 @@ class Climb:
     gradient: float
     reach: float = math.inf
 
-    def step(self, altitude: float, demanded: float, speed: float, time_step: float, *, flown: float = math.nan) -> float:
+    def step(
+        self,
+        altitude: float,
+        demanded: float,
+        speed: float,
+        time_step: float,
+        *,
+        flown: float = math.nan,
+    ) -> float:
         """Return the altitude to command [m] a time step [s] later.
 
         Parameters
@@ -38,7 +46,9 @@ class Climb:
         time_step : [s]
         flown : altitude now, as far as that is known [m]
         """
-        following = altitude + time_step * limited((demanded - altitude) / self.time, self.gradient * speed)
+        following = altitude + time_step * limited(
+            (demanded - altitude) / self.time, self.gradient * speed
+        )
         return following if math.isnan(flown) else flown + limited(following - flown, self.reach)
 
 
@@ -119,7 +129,11 @@ class PredictedAxis:
     __slots__ = ("_height", "_true_axis", "bearing", "climb", "demanded", "flown", "mode")
 
     def __init__(self, parameters: PredictedPlume) -> None:
-        self._height, self.climb, self.demanded = parameters.height, parameters.climb, parameters.altitude
+        self._height, self.climb, self.demanded = (
+            parameters.height,
+            parameters.climb,
+            parameters.altitude,
+        )
         self._true_axis: tuple[float, float] | None = None
         self.bearing, self.flown, self.mode = 0.0, math.nan, Mode.TRACKING
 

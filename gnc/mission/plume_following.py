@@ -148,8 +148,16 @@ class PlumeFollowing:
         own, target, centre = self._own, self._target, self.centre
         if self.leaving or self.departing:
             x, y = own.ground_north - target.north, own.ground_east - target.east
-            return self._egress.command(x, y, self._approach.course_ahead(last_command), own.heading_rate)
-        return self._approach.command(centre.x, centre.y, last_command, additional_range=self._orbit_range, guarding=self._guarding)
+            return self._egress.command(
+                x, y, self._approach.course_ahead(last_command), own.heading_rate
+            )
+        return self._approach.command(
+            centre.x,
+            centre.y,
+            last_command,
+            additional_range=self._orbit_range,
+            guarding=self._guarding,
+        )
 
     def plan(self, time: float) -> None:
         """Move the centre, steer the reference, and decide what to do."""
@@ -170,7 +178,9 @@ class PlumeFollowing:
             self.mode = Mode.DEPARTING
             return
         axis = self.axis
-        self.altitude = axis.climb.step(self.altitude, axis.demanded, self._speed, self._plan_time, flown=axis.flown)
+        self.altitude = axis.climb.step(
+            self.altitude, axis.demanded, self._speed, self._plan_time, flown=axis.flown
+        )
         if own.lost > 0.0:
             self.mode = Mode.DEAD_RECKONING
         elif age > p.stale:
@@ -194,8 +204,14 @@ class PlumeFollowing:
         # Each disc in the direction of the plume, from where the vessel is taken to be.
         reach = min(
             tube.reach(p.reach_time)
-            + cos_a * (tube.north - target.north + p.reach_time * (tube.velocity_north - target.velocity_north))
-            + sin_a * (tube.east - target.east + p.reach_time * (tube.velocity_east - target.velocity_east))
+            + cos_a
+            * (
+                tube.north
+                - target.north
+                + p.reach_time * (tube.velocity_north - target.velocity_north)
+            )
+            + sin_a
+            * (tube.east - target.east + p.reach_time * (tube.velocity_east - target.velocity_east))
             for tube in target.tubes
         )
         drifted = (p.drift_rate + self._own.wind_error) * self._own.lost
@@ -204,7 +220,9 @@ class PlumeFollowing:
 
     def _move_centre(self) -> None:
         own, target = self._own, self._target
-        manoeuvre_range = MANOEUVRE_RANGE * math.hypot(target.acceleration_north, target.acceleration_east)
+        manoeuvre_range = MANOEUVRE_RANGE * math.hypot(
+            target.acceleration_north, target.acceleration_east
+        )
         self.centre.move(
             self._plan_time,
             vessel_north=target.velocity_north,
@@ -214,7 +232,9 @@ class PlumeFollowing:
             wind_north=own.wind_north,
             wind_east=own.wind_east,
             bearing=self.axis.bearing,
-            additional_range=self._orbit_range + (0.0 if self._closing_in else self._parameters.standoff) + manoeuvre_range,
+            additional_range=self._orbit_range
+            + (0.0 if self._closing_in else self._parameters.standoff)
+            + manoeuvre_range,
             additional_rate=self._orbit_rate,
         )
 
@@ -240,7 +260,9 @@ class PlumeFollowing:
         p, own, target, centre = self._parameters, self._own, self._target, self.centre
         lag = self._tracking_parameters.lag
         orbit_north, orbit_east = self._reference.centre()
-        off_north = target.north - own.drift_north + centre.x + lag * centre.velocity_north - orbit_north
+        off_north = (
+            target.north - own.drift_north + centre.x + lag * centre.velocity_north - orbit_north
+        )
         off_east = target.east - own.drift_east + centre.y + lag * centre.velocity_east - orbit_east
         self.centre_error = math.hypot(off_north, off_east)
         limit = self._tracking_parameters.heading_rate_max
@@ -254,7 +276,14 @@ class PlumeFollowing:
         to_east = self.tracker.reference.east + own.drift_east - own.ground_east
         error = math.hypot(to_north, to_east)
         self._tracking = self._approach.joins(
-            centre.x, centre.y, centre.axis, error=error, tracking=self._tracking, guarding=self._guarding
+            centre.x,
+            centre.y,
+            centre.axis,
+            error=error,
+            tracking=self._tracking,
+            guarding=self._guarding,
         )
-        self._closing_in = self._tracking and error < (LOST_TRACK if self._closing_in else 1.0) * tracked
+        self._closing_in = (
+            self._tracking and error < (LOST_TRACK if self._closing_in else 1.0) * tracked
+        )
         self._reference.spend(1.0 if self._closing_in else self._parameters.joining_share)

@@ -62,7 +62,9 @@ class HeightSearch:
 
     def __init__(self, *, lowest: float, highest: float, climb_rate: float) -> None:
         self._lowest, self._highest, self._climb_rate = lowest, highest, climb_rate
-        self._heights: Array = np.linspace(lowest, highest, max(2, 1 + math.ceil((highest - lowest) / _STEP)))
+        self._heights: Array = np.linspace(
+            lowest, highest, max(2, 1 + math.ceil((highest - lowest) / _STEP))
+        )
 
     def next_altitude(self, estimator: PlumeEstimator, altitude: float, pass_time: float) -> float:
         """Return how high to cross next [m]; arguments as of ``Search``."""
@@ -76,7 +78,10 @@ class HeightSearch:
         spread, meander = estimator.sigma_z, estimator.meander_z
         if deviation < _KNOWN * math.hypot(spread, meander):
             return clip(height, self._lowest, self._highest)
-        low, high = (clip(height + side * _REACH * deviation, self._lowest, self._highest) for side in (-1.0, 1.0))
+        low, high = (
+            clip(height + side * _REACH * deviation, self._lowest, self._highest)
+            for side in (-1.0, 1.0)
+        )
         altitudes = low + (high - low) * _PROBES
         off = np.hypot(estimator.expected_deviation(altitudes), meander)
         later = 2.0 * ndtr(math.sqrt(-2.0 * math.log(HIT)) * spread / off) - 1.0
@@ -89,7 +94,9 @@ class HeightSearch:
         steps = climb * np.arange(1, _HORIZON + 1)
         way = altitude + np.clip(self._heights[:, np.newaxis] - altitude, -steps, steps)
         step = self._heights[1] - self._heights[0]
-        index = np.clip(np.rint((way - self._lowest) / step).astype(np.intp), 0, len(self._heights) - 1)
+        index = np.clip(
+            np.rint((way - self._lowest) / step).astype(np.intp), 0, len(self._heights) - 1
+        )
         still = np.ones_like(missed)
         lost = np.zeros(len(self._heights))
         for k in range(_HORIZON):

@@ -12,7 +12,11 @@ from gnc.mission.plume_axis import Climb, Situation, apparent_wind
 from gnc.mission.plume_search import HeightSearch, LadderSearch, Search
 from gnc.numeric import clip
 
-_MODES = {PlumeState.SEARCHING: Mode.SEARCHING, PlumeState.FOUND: Mode.FOUND, PlumeState.LOST: Mode.LOST_AGAIN}
+_MODES = {
+    PlumeState.SEARCHING: Mode.SEARCHING,
+    PlumeState.FOUND: Mode.FOUND,
+    PlumeState.LOST: Mode.LOST_AGAIN,
+}
 
 _BEARING_TIME = 15.0
 """Time in which the centre of oscillation follows the bearing that is estimated [s]: it is swung round the vessel gently."""
@@ -99,13 +103,23 @@ class SearchedAxis:
     )  # fmt: skip
 
     def __init__(self, parameters: SearchedPlume) -> None:
-        self._parameters, self.climb, self.demanded = parameters, parameters.climb, parameters.altitude
+        self._parameters, self.climb, self.demanded = (
+            parameters,
+            parameters.climb,
+            parameters.altitude,
+        )
         self._estimator: PlumeEstimator | None = None
         self._search = parameters.search()
         self._situation: Situation | None = None
         self._places: list[Place] = []
         self._last_note = self._last_pass = self._decide_at = 0.0
-        self._pass_time, self._bearing, self.bearing, self.flown, self.mode = _PASS_TIME, 0.0, 0.0, math.nan, Mode.SEARCHING
+        self._pass_time, self._bearing, self.bearing, self.flown, self.mode = (
+            _PASS_TIME,
+            0.0,
+            0.0,
+            math.nan,
+            Mode.SEARCHING,
+        )
         self.estimate, self.sensor = PlumeEstimate(), SensorState.WORKING
 
     def measurable(self) -> float:
@@ -118,7 +132,9 @@ class SearchedAxis:
         if self._estimator is None or situation is None:
             return
         own, target = situation.own, situation.target
-        self._places.append((time, own.ground_north - target.north, own.ground_east - target.east, self.flown))
+        self._places.append(
+            (time, own.ground_north - target.north, own.ground_east - target.east, self.flown)
+        )
         for read_at, reading in readings:
             if read_at - self._last_note > _NOTED:
                 self._note(0.5 * (self._last_note + read_at), math.nan)
@@ -139,14 +155,22 @@ class SearchedAxis:
             # At the vehicle's height: nobody on board knows how it changes with height.
             blowing = math.hypot(situation.own.wind_north, situation.own.wind_east)
             distance = situation.centre.distance
-            prior = expected_plume(p.expected, distance=distance, apparent_wind=wind, wind_speed=blowing)
+            prior = expected_plume(
+                p.expected, distance=distance, apparent_wind=wind, wind_speed=blowing
+            )
             self._estimator = PlumeEstimator(prior)
             self._last_note = self._last_pass = time
             self._take_note(self._estimator)
             self._decide(self._estimator, self.demanded)
-        self.bearing += (self._bearing - self.bearing) * min(1.0, situation.plan_time / _BEARING_TIME)
+        self.bearing += (self._bearing - self.bearing) * min(
+            1.0, situation.plan_time / _BEARING_TIME
+        )
         self.sensor = self._estimator.sensor
-        self.mode = _MODES[self._estimator.state] if self.sensor is SensorState.WORKING else Mode.SENSOR_FAILED
+        self.mode = (
+            _MODES[self._estimator.state]
+            if self.sensor is SensorState.WORKING
+            else Mode.SENSOR_FAILED
+        )
 
     def _note(self, at: float, reading: float) -> None:
         """Give the estimator the position at a time [s], and the reading there [ppm]."""
@@ -184,7 +208,9 @@ def _seen_along(situation: Situation, north: float, east: float) -> tuple[float,
     """Return where a place north and east of the vessel is along the predicted axis and to the right of it [m]."""
     wind_north, wind_east = apparent_wind(situation.own, situation.target)
     speed = math.hypot(wind_north, wind_east) or 1.0
-    return (north * wind_north + east * wind_east) / speed, (east * wind_north - north * wind_east) / speed
+    return (north * wind_north + east * wind_east) / speed, (
+        east * wind_north - north * wind_east
+    ) / speed
 
 
 def _place_at(places: Sequence[Place], time: float) -> tuple[float, float, float]:
@@ -193,6 +219,12 @@ def _place_at(places: Sequence[Place], time: float) -> tuple[float, float, float
     while later > 0 and places[later - 1][0] >= time:
         later -= 1
     then, before = places[later], places[max(0, later - 1)]
-    share = clip((time - before[0]) / (then[0] - before[0]), 0.0, 1.0) if then[0] > before[0] else 1.0
+    share = (
+        clip((time - before[0]) / (then[0] - before[0]), 0.0, 1.0) if then[0] > before[0] else 1.0
+    )
     _, north, east, altitude = before
-    return north + share * (then[1] - north), east + share * (then[2] - east), altitude + share * (then[3] - altitude)
+    return (
+        north + share * (then[1] - north),
+        east + share * (then[2] - east),
+        altitude + share * (then[3] - altitude),
+    )

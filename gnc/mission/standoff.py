@@ -107,7 +107,13 @@ class CircleTracker:
         "heading_rate_demand", "radius", "reference", "saturated",
     )  # fmt: skip
 
-    def __init__(self, tracking: TrackingParameters, parameters: StandoffParameters, own: OwnMotion, target: TargetMotion) -> None:
+    def __init__(
+        self,
+        tracking: TrackingParameters,
+        parameters: StandoffParameters,
+        own: OwnMotion,
+        target: TargetMotion,
+    ) -> None:
         self._own, self._target, self._time_step = own, target, tracking.time_step
         self.radius = parameters.radius + STANDOFF * parameters.tracked
         self._surroundings = Surroundings(own)
@@ -118,7 +124,9 @@ class CircleTracker:
         self.heading_rate_demand = self.heading_rate_command = 0.0
         self.saturated = False
 
-    def step(self, north: float, east: float, course: float, speed: float, heading_rate: float) -> float:
+    def step(
+        self, north: float, east: float, course: float, speed: float, heading_rate: float
+    ) -> float:
         """Return the heading rate to command [rad/s]; parameters are those of ``gnc.tracker.Tracker``.
 
         Raises
@@ -130,22 +138,31 @@ class CircleTracker:
         if norm(drift) >= reference.speed:
             demand = COURSE_GAIN * self._limit * wrap(course_of(drift) - course)
         else:
-            self._surroundings.path_north, self._surroundings.path_east = target.velocity_north, target.velocity_east
+            self._surroundings.path_north, self._surroundings.path_east = (
+                target.velocity_north,
+                target.velocity_east,
+            )
             centre = target.north - own.drift_north, target.east - own.drift_east
 
             def placed(point: CirclePoint, time: float) -> tuple[float, float, float]:
-                vehicle = lag_ahead(north, east, course, speed, heading_rate, self.heading_rate_command, time)
+                vehicle = lag_ahead(
+                    north, east, course, speed, heading_rate, self.heading_rate_command, time
+                )
                 point.place(plus(centre, drift, time), drift, vehicle[:2], self.radius)
                 return vehicle
 
             then_north, then_east, then_course = placed(ahead, self._lag)
             try:
-                demand = self._steer(ahead, ahead.north - then_north, ahead.east - then_east, then_course, speed)
+                demand = self._steer(
+                    ahead, ahead.north - then_north, ahead.east - then_east, then_course, speed
+                )
             except TypeError as error:
                 raise call_error(self._law, error) from None
             # The reference is where it will be at the next step, as that of any tracker.
             placed(reference, self._time_step)
-        demand, command = within_limit(demand, self._limit, self._law, (ahead.north - north, ahead.east - east, course, speed))
+        demand, command = within_limit(
+            demand, self._limit, self._law, (ahead.north - north, ahead.east - east, course, speed)
+        )
         self.heading_rate_demand, self.heading_rate_command = demand, command
         self.saturated = command != demand
         return command
@@ -167,7 +184,12 @@ class StandoffOrbit:
     )  # fmt: skip
 
     def __init__(
-        self, parameters: StandoffParameters, tracking: TrackingParameters, *, own: OwnMotion, target: TargetMotion
+        self,
+        parameters: StandoffParameters,
+        tracking: TrackingParameters,
+        *,
+        own: OwnMotion,
+        target: TargetMotion,
     ) -> None:
         self._parameters, self._own, self._target, self._lag = parameters, own, target, tracking.lag
         self._plan_time = parameters.plan_interval * tracking.time_step
@@ -175,8 +197,16 @@ class StandoffOrbit:
         self._egress = Egress(tracking.heading_rate_max)
         self.tracker = CircleTracker(tracking, parameters, own, target)
         self.centre = SteadyCentre(0.0, 0.0, 0.0)
-        self.centre_error, self.leaving, self.started = self.tracker.radius - parameters.radius, False, False
-        self.airspeed, self.altitude, self.mode = parameters.speed, parameters.altitude, Mode.APPROACH
+        self.centre_error, self.leaving, self.started = (
+            self.tracker.radius - parameters.radius,
+            False,
+            False,
+        )
+        self.airspeed, self.altitude, self.mode = (
+            parameters.speed,
+            parameters.altitude,
+            Mode.APPROACH,
+        )
 
     @property
     def in_place(self) -> bool:
@@ -191,11 +221,17 @@ class StandoffOrbit:
     def plan(self, time: float) -> None:  # noqa: ARG002 - of the Protocol
         """Look whether the vessel can be circled, and whether the circle may close in."""
         p, own, target, tracker = self._parameters, self._own, self._target, self.tracker
-        off = math.hypot(own.ground_north - target.north, own.ground_east - target.east) - tracker.radius
+        off = (
+            math.hypot(own.ground_north - target.north, own.ground_east - target.east)
+            - tracker.radius
+        )
         if abs(off) < p.tracked and self.centre_error > 0.0:
             self.centre_error = max(0.0, self.centre_error - self._closing)
             tracker.radius = p.radius + self.centre_error
-        ratio = math.hypot(target.velocity_north - own.wind_north, target.velocity_east - own.wind_east) / p.speed
+        ratio = (
+            math.hypot(target.velocity_north - own.wind_north, target.velocity_east - own.wind_east)
+            / p.speed
+        )
         self.centre, self.started = SteadyCentre(0.0, 0.0, ratio), True
         if not self.leaving:
             self.mode = Mode.OUTRUN if ratio >= p.speed_ratio_max else Mode.TRACKING

@@ -67,14 +67,20 @@ class Transit:
             if distance > round_radius:
                 lean = math.asin(round_radius / distance)
             else:
-                lean = 0.5 * math.pi + _OUTWARD * min(1.0, (round_radius - distance) / self._turn_radius)
+                lean = 0.5 * math.pi + _OUTWARD * min(
+                    1.0, (round_radius - distance) / self._turn_radius
+                )
             if self.side == 0:
-                self.side = self._shorter_side(bearing, lean, math.atan2(target_y, target_x), course, round_radius)
+                self.side = self._shorter_side(
+                    bearing, lean, math.atan2(target_y, target_x), course, round_radius
+                )
             way = bearing + math.pi - self.side * lean
         across = velocity_east * math.cos(way) - velocity_north * math.sin(way)
         return way + math.asin(limited(across / speed, 1.0))
 
-    def _shorter_side(self, bearing: float, lean: float, target_bearing: float, course: float, radius: float) -> int:
+    def _shorter_side(
+        self, bearing: float, lean: float, target_bearing: float, course: float, radius: float
+    ) -> int:
         clockwise = (target_bearing - bearing) % (2.0 * math.pi)
         lengths = {}
         for side, angle in ((1, clockwise), (-1, 2.0 * math.pi - clockwise)):

@@ -38,7 +38,9 @@ class CirclingReference:
         "speed",
     )
 
-    def __init__(self, start: ReferenceStart, *, speed: float, heading_rate: float, time_step: float) -> None:
+    def __init__(
+        self, start: ReferenceStart, *, speed: float, heading_rate: float, time_step: float
+    ) -> None:
         self.speed, self.heading_rate = speed, heading_rate
         self.north, self.east, self.course = start.north, start.east, start.course
         self._course = start.course

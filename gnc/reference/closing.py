@@ -22,9 +22,29 @@ class ClosingReference:
     closing : whether it closes in
     """
 
-    __slots__ = ("_cos", "_sin", "_step", "closing", "course", "east", "heading_rate", "north", "reference", "speed", "standoff")
+    __slots__ = (
+        "_cos",
+        "_sin",
+        "_step",
+        "closing",
+        "course",
+        "east",
+        "heading_rate",
+        "north",
+        "reference",
+        "speed",
+        "standoff",
+    )
 
-    def __init__(self, reference: OscillatingPoint, *, axis: float, standoff: float, rate: float, time_step: float) -> None:
+    def __init__(
+        self,
+        reference: OscillatingPoint,
+        *,
+        axis: float,
+        standoff: float,
+        rate: float,
+        time_step: float,
+    ) -> None:
         self.reference, self.standoff, self.closing = reference, standoff, False
         self._cos, self._sin, self._step = math.cos(axis), math.sin(axis), rate * time_step
         self.speed = reference.speed

@@ -29,7 +29,9 @@ class JoinedOrbit:
     vessel_course: float
     time_step: float
 
-    def reference(self, phase: float, centre_north: float, centre_east: float, *, share: float = 1.0) -> OscillatingPoint:
+    def reference(
+        self, phase: float, centre_north: float, centre_east: float, *, share: float = 1.0
+    ) -> OscillatingPoint:
         """Return the reference at a phase [rad] of the orbit about a centre [m], and the part of its heading rate that it takes."""
         start = start_reference(
             self.orbit,
@@ -39,10 +41,19 @@ class JoinedOrbit:
             vessel_course=self.vessel_course,
             share=share,
         )
-        return OscillatingReference(self.orbit, start, phase=phase, time_step=self.time_step, share=share)
+        return OscillatingReference(
+            self.orbit, start, phase=phase, time_step=self.time_step, share=share
+        )
 
     def nearest(
-        self, centre_north: float, centre_east: float, *, north: float, east: float, course: float, turn_radius: float
+        self,
+        centre_north: float,
+        centre_east: float,
+        *,
+        north: float,
+        east: float,
+        course: float,
+        turn_radius: float,
     ) -> OscillatingPoint:
         """Return the reference of the orbit about a centre [m] that a vehicle reaches with the least effort, slowed down for it.
 
@@ -55,8 +66,13 @@ class JoinedOrbit:
 
         def cost(reference: OscillatingPoint) -> float:
             turn = math.remainder(reference.course - course, 2.0 * math.pi)
-            return math.hypot(reference.north - north, reference.east - east, _COURSE_COST * turn_radius * turn)
+            return math.hypot(
+                reference.north - north, reference.east - east, _COURSE_COST * turn_radius * turn
+            )
 
         phases = (2.0 * math.pi * i / _PHASES for i in range(_PHASES))
         share = self.shape.joining_share
-        return min((self.reference(phase, centre_north, centre_east, share=share) for phase in phases), key=cost)
+        return min(
+            (self.reference(phase, centre_north, centre_east, share=share) for phase in phases),
+            key=cost,
+        )

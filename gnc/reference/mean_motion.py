@@ -65,7 +65,9 @@ def mean_motion(
     return math.atan2(sin_m, cos_m) + turned, along / math.cos(turned) / speed
 
 
-def _ahead(centre: MovingCentre, north: float, east: float, speed: float) -> tuple[float, float, float, float]:
+def _ahead(
+    centre: MovingCentre, north: float, east: float, speed: float
+) -> tuple[float, float, float, float]:
     """Return the direction (north, east) in which an orbit goes on whose centre has some velocity [m/s].
 
     Also return the speed of whoever gives that direction, and that of the centre along it [m/s]. A centre that recedes faster than
@@ -94,4 +96,6 @@ def _followed(centre: MovingCentre, speed: float) -> tuple[float, float]:
     unsteady = centre.swing - centre.steady_swing
     followed = max(slow * slow, unsteady * unsteady / (unsteady * unsteady + (_SWING * speed) ** 2))
     left_out = (1.0 - followed) * unsteady
-    return centre.velocity_north + left_out * math.sin(centre.axis), centre.velocity_east - left_out * math.cos(centre.axis)
+    return centre.velocity_north + left_out * math.sin(
+        centre.axis
+    ), centre.velocity_east - left_out * math.cos(centre.axis)

@@ -97,7 +97,9 @@ class MovingCentre:
         self._parameters = parameters
         self._started = False
         self.axis = math.pi
-        self.distance = self.x = self.y = self.velocity_north = self.velocity_east = self.speed_ratio = 0.0
+        self.distance = self.x = self.y = self.velocity_north = self.velocity_east = (
+            self.speed_ratio
+        ) = 0.0
         self.receding = self.swing = self.steady_swing = self._mean_swing = 0.0
         self.plume_known = self.in_place = True
 
@@ -134,7 +136,9 @@ class MovingCentre:
             self.plume_known = through_air >= p.apparent_wind_min
             if self.plume_known:
                 demanded = math.atan2(-air_east, -air_north) + bearing
-                turn = (air_north * acceleration_east - air_east * acceleration_north) / through_air**2
+                turn = (
+                    air_north * acceleration_east - air_east * acceleration_north
+                ) / through_air**2
         else:
             over_ground = math.hypot(vessel_north, vessel_east)
             if over_ground >= p.apparent_wind_min:
@@ -150,9 +154,14 @@ class MovingCentre:
         fastest = _AXIS_SPEED_FRACTION * p.speed / self.distance
         turn = limited(turn + _AXIS_GAIN * p.heading_rate_max * wrap(demanded - self.axis), fastest)
         swing = turn * self.distance
-        swung_north, swung_east = air_north - swing * math.sin(self.axis), air_east + swing * math.cos(self.axis)
+        swung_north, swung_east = (
+            air_north - swing * math.sin(self.axis),
+            air_east + swing * math.cos(self.axis),
+        )
         target = self._target(swung_north, swung_east) + additional_range
-        fastest = _DISTANCE_SPEED_FRACTION * max(_EXCESS_SPEED_MIN, 1.0 - self.speed_ratio) * p.speed
+        fastest = (
+            _DISTANCE_SPEED_FRACTION * max(_EXCESS_SPEED_MIN, 1.0 - self.speed_ratio) * p.speed
+        )
         recede = limited(_DISTANCE_GAIN * p.heading_rate_max * (target - self.distance), fastest)
         if additional_rate > 0.0:
             along = air_north * math.cos(self.axis) + air_east * math.sin(self.axis)
@@ -166,7 +175,9 @@ class MovingCentre:
         cos_a, sin_a = math.cos(self.axis), math.sin(self.axis)
         self.x, self.y = self.distance * cos_a, self.distance * sin_a
         self.swing = turn * self.distance
-        self._mean_swing += (self.swing - self._mean_swing) * time_step / (time_step + _SWING_MEMORY)
+        self._mean_swing += (
+            (self.swing - self._mean_swing) * time_step / (time_step + _SWING_MEMORY)
+        )
         self.steady_swing = clip(self._mean_swing, min(self.swing, 0.0), max(self.swing, 0.0))
         self.velocity_north = air_north + recede * cos_a - turn * self.y
         self.velocity_east = air_east + recede * sin_a + turn * self.x
@@ -180,5 +191,7 @@ class MovingCentre:
         i = min(int(row), last - 1)
         along = p.along[i] + (row - i) * (p.along[i + 1] - p.along[i])
         across = p.across[i] + (row - i) * (p.across[i + 1] - p.across[i])
-        sideways = abs(velocity_east * math.cos(self.axis) - velocity_north * math.sin(self.axis)) / max(moving, _CENTRE_SPEED_MIN)
+        sideways = abs(
+            velocity_east * math.cos(self.axis) - velocity_north * math.sin(self.axis)
+        ) / max(moving, _CENTRE_SPEED_MIN)
         return p.distance_min + along + (across - along) * sideways

@@ -46,7 +46,9 @@ def offset(oscillation: Orbit, time: npt.ArrayLike) -> tuple[Array, Array]:
     ``time`` [s] counts from a passage through the centre with phi_0 = 0.
     """
     t = np.asarray(time, dtype=np.float64)
-    return oscillation.speed * (f_x(oscillation, t) - oscillation.nu * t), oscillation.speed * f_y(oscillation, t)
+    return oscillation.speed * (f_x(oscillation, t) - oscillation.nu * t), oscillation.speed * f_y(
+        oscillation, t
+    )
 
 
 def half_widths(oscillation: Orbit) -> tuple[float, float]:

@@ -6,7 +6,13 @@ from gnc.reference.reference import Orbit, ReferenceStart, with_state_of
 
 
 def start_reference(
-    oscillation: Orbit, *, phase: float, centre_north: float, centre_east: float, vessel_course: float, share: float = 1.0
+    oscillation: Orbit,
+    *,
+    phase: float,
+    centre_north: float,
+    centre_east: float,
+    vessel_course: float,
+    share: float = 1.0,
 ) -> ReferenceStart:
     """Return the start of a reference at phase phi_0 [rad] whose orbit is centred on a CO at ``centre_north``, ``centre_east`` [m].
 
@@ -15,7 +21,9 @@ def start_reference(
     centred on it. An orbit on which ``share`` of the heading rate is taken is as much larger, and meets the whole one at phase 0.
     """
     there, passage = oscillation.offset(phase / oscillation.omega_0), oscillation.offset(0.0)
-    along, right = (float(at) + (float(x) - float(at)) / share for x, at in zip(there, passage, strict=True))
+    along, right = (
+        float(at) + (float(x) - float(at)) / share for x, at in zip(there, passage, strict=True)
+    )
     sin_v, cos_v = math.sin(vessel_course), math.cos(vessel_course)
     return ReferenceStart(
         north=centre_north + along * cos_v - right * sin_v,
@@ -56,8 +64,20 @@ class OscillatingReference:
 
     __slots__ = _STATE
 
-    def __init__(self, oscillation: Orbit, start: ReferenceStart, *, phase: float, time_step: float, share: float = 1.0) -> None:
-        self._oscillation, self._swing, self._turn = oscillation, oscillation.course, oscillation.heading_rate
+    def __init__(
+        self,
+        oscillation: Orbit,
+        start: ReferenceStart,
+        *,
+        phase: float,
+        time_step: float,
+        share: float = 1.0,
+    ) -> None:
+        self._oscillation, self._swing, self._turn = (
+            oscillation,
+            oscillation.course,
+            oscillation.heading_rate,
+        )
         self._frequency = oscillation.omega_0
         self._omega_0 = share * self._frequency
         self.share = self._share_demand = share
@@ -76,7 +96,9 @@ class OscillatingReference:
     def __copy__(self) -> "OscillatingReference":
         """Return a copy, which a law may move ahead. Python cannot make one of what is compiled."""
         start = ReferenceStart(north=self.north, east=self.east, course=self.course)
-        other = OscillatingReference(self._oscillation, start, phase=self._phase, time_step=self._time_step)
+        other = OscillatingReference(
+            self._oscillation, start, phase=self._phase, time_step=self._time_step
+        )
         return with_state_of(self, other, _STATE)
 
     def __deepcopy__(self, _memo: object) -> "OscillatingReference":
@@ -85,7 +107,12 @@ class OscillatingReference:
 
     def step(self, vessel_heading_rate: float = 0.0) -> None:
         """Advance one time step while the vessel turns at ``vessel_heading_rate`` omega_V [rad/s]."""
-        steps, time_step, omega_0, distance = self._steps, self._time_step, self._omega_0, self._distance
+        steps, time_step, omega_0, distance = (
+            self._steps,
+            self._time_step,
+            self._omega_0,
+            self._distance,
+        )
         turn = vessel_heading_rate * time_step
         angle = omega_0 * (steps + 0.5) * time_step + self._phase
         middle = self._base + 0.5 * turn + self._swing(angle)

@@ -103,11 +103,19 @@ def design_oscillation(
     by_heading_rate = available / eta
     by_roll_rate = math.sqrt(STANDARD_GRAVITY * roll_rate_max / (speed * eta))
     limit = "heading rate" if by_heading_rate <= by_roll_rate else "roll rate"
-    return Oscillation(nu=nu, speed=speed, eta=eta, omega_0=min(by_heading_rate, by_roll_rate), limit=limit)
+    return Oscillation(
+        nu=nu, speed=speed, eta=eta, omega_0=min(by_heading_rate, by_roll_rate), limit=limit
+    )
 
 
 def available_heading_rate(
-    *, nu: float, speed: float, heading_rate_max: float, reserve: float, vessel_heading_rate: float, roll_rate_max: float
+    *,
+    nu: float,
+    speed: float,
+    heading_rate_max: float,
+    reserve: float,
+    vessel_heading_rate: float,
+    roll_rate_max: float,
 ) -> float:
     """Return what an oscillation may take of the heading rate, (1 - reserve) omega_max - |omega_V| [rad/s]: equation (8).
 
@@ -130,9 +138,13 @@ def available_heading_rate(
         ("roll_rate_max", roll_rate_max, "rad/s"),
     ):
         if not value > 0.0:
-            raise InfeasibleError(f"{name} is {value:g} {unit}; it must be above 0: give what the vehicle can fly")
+            raise InfeasibleError(
+                f"{name} is {value:g} {unit}; it must be above 0: give what the vehicle can fly"
+            )
     if not 0.0 <= reserve < 1.0:
-        raise InfeasibleError(f"reserve is {reserve:g} of omega_max; it must be at least 0 and below 1: a tenth is plenty")
+        raise InfeasibleError(
+            f"reserve is {reserve:g} of omega_max; it must be at least 0 and below 1: a tenth is plenty"
+        )
     if nu >= 1.0:
         raise InfeasibleError(
             f"speed ratio nu is {nu:g}; it must be below 1: at 1 the reference flies straight and never crosses the plume,"

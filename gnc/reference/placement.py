@@ -30,7 +30,11 @@ class PlumeAxis:
 def centre_of_oscillation(distance: float, axis: PlumeAxis) -> tuple[float, float, float]:
     """Return the CO at ``distance`` r_CO [m] on the axis: metres ahead of, right of and above the plume's origin. Equation (9)."""
     horizontal = distance * math.cos(axis.elevation)
-    return horizontal * math.cos(axis.heading), horizontal * math.sin(axis.heading), distance * math.sin(axis.elevation)
+    return (
+        horizontal * math.cos(axis.heading),
+        horizontal * math.sin(axis.heading),
+        distance * math.sin(axis.elevation),
+    )
 
 
 def reach(orbit: Orbit, axis: PlumeAxis) -> float:
@@ -60,7 +64,9 @@ def distance_exact(orbit: Orbit, axis: PlumeAxis, distance_min: float) -> float:
 
     def needed(time: npt.ArrayLike) -> npt.NDArray[np.float64]:
         along, across = orbit.offset(time)
-        towards = math.cos(axis.elevation) * (along * math.cos(axis.heading) + across * math.sin(axis.heading))
+        towards = math.cos(axis.elevation) * (
+            along * math.cos(axis.heading) + across * math.sin(axis.heading)
+        )
         inside = towards**2 - along**2 - across**2 + distance_min**2
         # Where the root is imaginary, the line through that point never enters the sphere.
         return np.where(inside >= 0.0, -towards + np.sqrt(np.maximum(inside, 0.0)), 0.0)
@@ -68,13 +74,17 @@ def distance_exact(orbit: Orbit, axis: PlumeAxis, distance_min: float) -> float:
     times = np.linspace(0.0, orbit.period, _ORBIT_POINTS)
     step = float(times[1])
     coarse = float(times[np.argmax(needed(times))])
-    fine = minimize_scalar(lambda t: -float(needed(t)), bounds=(coarse - step, coarse + step), method="bounded")
+    fine = minimize_scalar(
+        lambda t: -float(needed(t)), bounds=(coarse - step, coarse + step), method="bounded"
+    )
     return max(-float(fine.fun), 0.0)
 
 
 def _check(axis: PlumeAxis, distance_min: float) -> None:
     if not (math.isfinite(distance_min) and distance_min >= 0.0):
-        raise InfeasibleError(f"keep-out radius is {distance_min:g} m; it must be finite and at least 0")
+        raise InfeasibleError(
+            f"keep-out radius is {distance_min:g} m; it must be finite and at least 0"
+        )
     if not math.isfinite(axis.heading):
         raise InfeasibleError(f"plume heading is {axis.heading:g} rad; it must be finite")
     if not abs(axis.elevation) < 0.5 * math.pi:

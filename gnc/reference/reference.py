@@ -168,7 +168,14 @@ class ReferenceShape(Protocol):
         """
 
     def design(
-        self, *, nu: float, speed: float, heading_rate_max: float, reserve: float, vessel_heading_rate: float, roll_rate_max: float
+        self,
+        *,
+        nu: float,
+        speed: float,
+        heading_rate_max: float,
+        reserve: float,
+        vessel_heading_rate: float,
+        roll_rate_max: float,
     ) -> Orbit:
         """Return the fastest orbit that the vehicle can follow.
 

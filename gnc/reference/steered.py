@@ -132,10 +132,14 @@ class SteeredReference:
         middle_eta, middle_mean = eta + half * eta_rate, mean_course + half * mean_rate
         self.eta = eta = eta + dt * eta_rate
         self.mean_course = mean_course = mean_course + dt * mean_rate
-        self.omega_0 = omega_0 = swing.frequency(eta, self.share * self._available - abs(mean_rate) - abs(eta_rate))
+        self.omega_0 = omega_0 = swing.frequency(
+            eta, self.share * self._available - abs(mean_rate) - abs(eta_rate)
+        )
         middle = middle_mean + swing.course(middle_eta, phase + half * omega_0)
         self.phase = after = phase + dt * omega_0
-        if self.share != self._share_demand and math.floor(after / math.pi) != math.floor(phase / math.pi):
+        if self.share != self._share_demand and math.floor(after / math.pi) != math.floor(
+            phase / math.pi
+        ):
             self.share = self._share_demand
         phase = after
         self._cos_phase = math.cos(phase)
@@ -158,4 +162,6 @@ class SteeredReference:
         along, right = self._swing.offset(self.eta, self.phase)
         scale = self.speed / self.omega_0
         cos_m, sin_m = math.cos(self.mean_course), math.sin(self.mean_course)
-        return self.north - scale * (along * cos_m - right * sin_m), self.east - scale * (along * sin_m + right * cos_m)
+        return self.north - scale * (along * cos_m - right * sin_m), self.east - scale * (
+            along * sin_m + right * cos_m
+        )

@@ -59,7 +59,9 @@ class FreeCommands:
         """Return how little of a turn to a side commands may be if this one is given [rad/s]."""
         return max(min(side * command, self._rate) - _LESS * self._rate, -self._rate)
 
-    def begin(self, time: float, side: float, to_lose: float, command: float, last: float, change: float) -> None:
+    def begin(
+        self, time: float, side: float, to_lose: float, command: float, last: float, change: float
+    ) -> None:
         """Begin with what a look has found.
 
         Parameters
@@ -70,8 +72,16 @@ class FreeCommands:
         command, last : that was judged, and at the look before [rad/s]
         change : of all commands from the last on, over a full reversal, that is counted for the turn's deviation [-]
         """
-        self.steps, self._left, self._towards = max(0, int(time / self._time_step) - 1), to_lose, side * self._time_step
-        middle, half, least = 0.5 * (last + command), change * self._rate, self.least(side, command) if side else -self._rate
+        self.steps, self._left, self._towards = (
+            max(0, int(time / self._time_step) - 1),
+            to_lose,
+            side * self._time_step,
+        )
+        middle, half, least = (
+            0.5 * (last + command),
+            change * self._rate,
+            self.least(side, command) if side else -self._rate,
+        )
         self._lowest = max(middle - half, least if side > 0.0 else -self._rate)
         self._highest = min(middle + half, -least if side < 0.0 else self._rate)
 

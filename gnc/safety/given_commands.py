@@ -40,7 +40,15 @@ class GivenCommands:
         "_slow", "_time_step", "change", "last", "rates", "since", "under_way",
     )  # fmt: skip
 
-    def __init__(self, *, lag: float, delay: float, slow_lag: float, time_step: float, heading_rate_max: float) -> None:
+    def __init__(
+        self,
+        *,
+        lag: float,
+        delay: float,
+        slow_lag: float,
+        time_step: float,
+        heading_rate_max: float,
+    ) -> None:
         self._lag, self._time_step = lag, time_step
         # Commands count from when they act.
         self._slow = slow_lag - delay
@@ -58,7 +66,9 @@ class GivenCommands:
         if lag > 0.0:
             turned = time_step / -math.expm1(-time_step / lag)
             self._at_end = turned - lag
-            self._changing = time_step - self._first + turned * math.expm1((self._first - time_step) / lag)
+            self._changing = (
+                time_step - self._first + turned * math.expm1((self._first - time_step) / lag)
+            )
         self._lack, self._begun = 0.0, False
         self.under_way: deque[float] = deque(maxlen=count)
         self.since: list[float] = []
@@ -110,7 +120,11 @@ class GivenCommands:
     def _course_under_way(self) -> float:
         """Return by how much the commands under way turn the vehicle [rad]."""
         under_way = self.under_way
-        return self._time_step * sum(under_way) + (self._first - self._time_step) * under_way[0] if under_way else 0.0
+        return (
+            self._time_step * sum(under_way) + (self._first - self._time_step) * under_way[0]
+            if under_way
+            else 0.0
+        )
 
 
 def commands_under_way(delay: float, time_step: float) -> tuple[int, float]:

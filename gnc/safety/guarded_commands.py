@@ -31,11 +31,20 @@ class GuardedCommands:
 
     __slots__ = ("_quarter_turn", "_reckoning", "_speed", "_steady_until", "guard")
 
-    def __init__(self, guard: KeepoutGuard, *, reckoning: SpeedReckoning, speed: float, heading_rate_max: float) -> None:
+    def __init__(
+        self,
+        guard: KeepoutGuard,
+        *,
+        reckoning: SpeedReckoning,
+        speed: float,
+        heading_rate_max: float,
+    ) -> None:
         self.guard, self._reckoning, self._speed = guard, reckoning, speed
         self._quarter_turn, self._steady_until = 0.5 * math.pi / heading_rate_max, -math.inf
 
-    def limit(self, command: float, pace: float, time: float, own: OwnMotion, *, leaving: bool) -> tuple[float, float, bool]:
+    def limit(
+        self, command: float, pace: float, time: float, own: OwnMotion, *, leaving: bool
+    ) -> tuple[float, float, bool]:
         """Return heading rate [rad/s] and pace [m/s] to command, and whether the pace is held below the one demanded.
 
         Parameters
@@ -52,7 +61,9 @@ class GuardedCommands:
         slowest = reckoning.slowest(pace)
         slowest = speed if speed < slowest else slowest
         faster = pace > reckoning.highest + _UNASKED and not leaving
-        if faster and not guard.allows(command, time, own, speed if speed > fastest else fastest, slowest):
+        if faster and not guard.allows(
+            command, time, own, speed if speed > fastest else fastest, slowest
+        ):
             pace, held = reckoning.highest, True
             fastest = reckoning.fastest(pace)
             slowest = min(speed, reckoning.slowest(pace))

@@ -62,7 +62,11 @@ class KeepoutGuard:
     def __init__(self, parameters: GuardParameters) -> None:
         p = parameters
         self._radius, self._turn_speed, self._fallen = p.radius, p.turn_speed, p.slowest
-        self._rate, self._time_step, self._quarter_turn = p.heading_rate_max, p.time_step, 0.5 * math.pi / p.heading_rate_max
+        self._rate, self._time_step, self._quarter_turn = (
+            p.heading_rate_max,
+            p.time_step,
+            0.5 * math.pi / p.heading_rate_max,
+        )
         self._lag, self._until_acting = p.lag, p.delay
         self._given = GivenCommands(
             lag=p.lag,
@@ -96,7 +100,9 @@ class KeepoutGuard:
         self.intervening = self.lost = False
         self.interventions = 0
 
-    def limit(self, command: float, time: float, own: AirMotion, speed: float, slowest: float = math.inf) -> float:
+    def limit(
+        self, command: float, time: float, own: AirMotion, speed: float, slowest: float = math.inf
+    ) -> float:
         """Return the command, or as much of a turn away as is needed [rad/s].
 
         Parameters
@@ -116,11 +122,17 @@ class KeepoutGuard:
                 self.intervening = True
                 command = self._mix(command, situations)
         # At the largest bank a command comes in part where the vehicle flies faster.
-        self._note(command if own.speed <= self._turn_speed else limited(command, self._rate * self._turn_speed / own.speed))
+        self._note(
+            command
+            if own.speed <= self._turn_speed
+            else limited(command, self._rate * self._turn_speed / own.speed)
+        )
         self._note_rate(own.heading_rate)
         return command
 
-    def allows(self, command: float, time: float, own: AirMotion, speed: float, slowest: float = math.inf) -> bool:
+    def allows(
+        self, command: float, time: float, own: AirMotion, speed: float, slowest: float = math.inf
+    ) -> bool:
         """Return whether ``limit``, which is to be called next, lets the command pass if it is given the same parameters."""
         free, _ = self._look(command, time, own, speed, slowest)
         if free < 0.0:
@@ -134,23 +146,37 @@ class KeepoutGuard:
         self._free.replace(self._given.since[-1], command)
         self._given.since[-1] = command
 
-    def clearance(self, time: float, own: AirMotion, speed: float, enough: float = math.inf) -> float:
+    def clearance(
+        self, time: float, own: AirMotion, speed: float, enough: float = math.inf
+    ) -> float:
         """Return by how much the better turn away, begun now, or one that does by ``enough``, keeps off [m]; negative if none can.
 
         It is less what the path may come nearer within a step. Parameters are those of ``limit``. That no other commands do better
         is argued in docs/keepout_guard.md.
         """
-        best, within, to_come = -math.inf, self._within_step * speed, self._given.still_to_come(own.heading_rate)
+        best, within, to_come = (
+            -math.inf,
+            self._within_step * speed,
+            self._given.still_to_come(own.heading_rate),
+        )
         turn, since = self._prediction.turn_away, (self._given.change, self._until_acting)
         for tube in self.tubes:
             motions = self._when_acting(self._relative(tube, time, own, speed, speed, to_come))
-            for side in (nearer := nearer_side(motions[0][0], motions[0][1], motions[0][4]), -nearer):
-                best = max(best, min(turn(side, (*at[:2], at[4], at[6]), at, *since, best)[0] for at in motions))
+            for side in (
+                nearer := nearer_side(motions[0][0], motions[0][1], motions[0][4]),
+                -nearer,
+            ):
+                best = max(
+                    best,
+                    min(turn(side, (*at[:2], at[4], at[6]), at, *since, best)[0] for at in motions),
+                )
                 if best >= enough + within:
                     return best - within
         return best - within
 
-    def _look(self, command: float, time: float, own: AirMotion, speed: float, slowest: float) -> tuple[float, list[Situation]]:
+    def _look(
+        self, command: float, time: float, own: AirMotion, speed: float, slowest: float
+    ) -> tuple[float, list[Situation]]:
         """Return for how long [s] no command can spoil the turn away that follows this one, negative if no turn away keeps off.
 
         Then it is told of the situations, too: the motions relative to each disc when the command begins to act.
@@ -163,7 +189,10 @@ class KeepoutGuard:
             motions: tuple[Motion, ...] = ()
             if free <= 0.0:
                 motions = self._when_acting(motion)
-                (free, to_lose, change), side = self._free_by_turning_away(command, motions), self._side
+                (free, to_lose, change), side = (
+                    self._free_by_turning_away(command, motions),
+                    self._side,
+                )
             if free >= 0.0:
                 self._kept_off = tube
                 break
@@ -185,9 +214,15 @@ class KeepoutGuard:
         since = time - tube.time + self._quarter_turn
         north = own.ground_north - tube.north - tube.velocity_north * since
         east = own.ground_east - tube.east - tube.velocity_east * since
-        return math.hypot(north, east) - tube.radius - (tube.growth + 0.5 * tube.acceleration * since) * since
+        return (
+            math.hypot(north, east)
+            - tube.radius
+            - (tube.growth + 0.5 * tube.acceleration * since) * since
+        )
 
-    def _relative(self, tube: Tube, time: float, own: AirMotion, speed: float, slowest: float, to_come: float) -> Motion:
+    def _relative(
+        self, tube: Tube, time: float, own: AirMotion, speed: float, slowest: float, to_come: float
+    ) -> Motion:
         """Return the vehicle's motion relative to a disc, with all that is uncertain in the disc's radius and growth."""
         since, wrong, slowest = time - tube.time, own.wind_error, min(slowest, self._fallen)
         drifted = (self._drift_rate + wrong) * own.lost
@@ -199,7 +234,10 @@ class KeepoutGuard:
             own.course,
             speed,
             own.heading_rate,
-            self._radius + drifted + tube.radius + (tube.growth + 0.5 * tube.acceleration * since) * since,
+            self._radius
+            + drifted
+            + tube.radius
+            + (tube.growth + 0.5 * tube.acceleration * since) * since,
             self._speed_error + wrong + tube.growth + tube.acceleration * since,
             tube.acceleration,
             to_come,
@@ -226,21 +264,32 @@ class KeepoutGuard:
     def _free_by_turning_away(self, command: float, motions: tuple[Motion, ...]) -> Free:
         """Return what cannot spoil the turn away that follows this command; for a negative time if there is none."""
         floor = self._resolution * motions[0][5] / self._rate
-        for side in (nearer := nearer_side(*self._prediction.after(command, motions[0])[:3]), -nearer):
+        for side in (
+            nearer := nearer_side(*self._prediction.after(command, motions[0])[:3]),
+            -nearer,
+        ):
             slack, free = self._slack(side, command, motions, floor)
             if slack >= floor:
                 self._side = side
                 return free
         return -1.0, 0.0, 0.0
 
-    def _slack(self, side: float, command: float, motions: tuple[Motion, ...], floor: float) -> tuple[float, Free]:
+    def _slack(
+        self, side: float, command: float, motions: tuple[Motion, ...], floor: float
+    ) -> tuple[float, Free]:
         """Return slack [m] of a turn away after a command, and what cannot spoil it: the least of the motions."""
-        begun, change, prediction = self._until_acting + self._time_step, self._given.changed_by(command), self._prediction
+        begun, change, prediction = (
+            self._until_acting + self._time_step,
+            self._given.changed_by(command),
+            self._prediction,
+        )
         slack = free = to_lose = math.inf
         counted, against = 1.0, 0.5 - 0.5 * self._free.least(side, command) / self._rate
         for motion in motions:
             start = prediction.after(command, motion)
-            kept, kept_free, kept_lost, kept_counted = prediction.turn_away(side, start, motion, change, begun, floor, against)
+            kept, kept_free, kept_lost, kept_counted = prediction.turn_away(
+                side, start, motion, change, begun, floor, against
+            )
             # In this order what is not a number stays so.
             slack, free, to_lose = min(kept, slack), min(kept_free, free), min(kept_lost, to_lose)
             counted = min(counted, kept_counted)
@@ -282,7 +331,9 @@ class KeepoutGuard:
             return side * self._rate
         return limited(left / self._time_step, self._rate)
 
-    def _best_turn(self, situations: Sequence[Situation]) -> tuple[float, float, tuple[Motion, ...], Tube]:
+    def _best_turn(
+        self, situations: Sequence[Situation]
+    ) -> tuple[float, float, tuple[Motion, ...], Tube]:
         """Return slack [m], side, motions and disc of the turn away to fly: one that keeps off, or that to the side that was safe.
 
         That one is flown as long as declared errors explain what it lacks, and the better one if they do not.
@@ -294,7 +345,11 @@ class KeepoutGuard:
                 found.append((slack, side, motions, tube))
                 if self._side and slack >= 0.0:
                     return found[-1]
-        was_safe = max((entry for entry in found if entry[1] == self._side), key=lambda entry: entry[0], default=None)
+        was_safe = max(
+            (entry for entry in found if entry[1] == self._side),
+            key=lambda entry: entry[0],
+            default=None,
+        )
         if was_safe is not None and was_safe[0] >= -self._explains(was_safe[2][0]):
             return was_safe
         return max(found, key=lambda entry: entry[:2])

@@ -25,7 +25,9 @@ class SpeedReckoning:
 
     __slots__ = ("_crest", "_kept", "_overshoot", "_speed", "_trough", "highest", "lowest")
 
-    def __init__(self, *, speed: float, bandwidth: float, overshoot: float, time_step: float) -> None:
+    def __init__(
+        self, *, speed: float, bandwidth: float, overshoot: float, time_step: float
+    ) -> None:
         self._speed, self._overshoot = speed, overshoot
         self._kept = math.exp(-time_step * bandwidth / _LATE)
         self.highest = self.lowest = self._crest = self._trough = speed

@@ -113,7 +113,14 @@ class TurnPrediction:
         )
 
     def turn_away(
-        self, side: float, start: Start, motion: Motion, change: float, time: float, floor: float, against: float = 1.0
+        self,
+        side: float,
+        start: Start,
+        motion: Motion,
+        change: float,
+        time: float,
+        floor: float,
+        against: float = 1.0,
     ) -> tuple[float, float, float, float]:
         """Return by how much a full turn away keeps the radius [m], and what commands before it cannot change that.
 
@@ -135,22 +142,56 @@ class TurnPrediction:
         against : how far those commands may be against it, over a full reversal [-]
         """
         x, y, course, heading_rate = start
-        _, _, velocity_north, velocity_east, _, speed, _, fixed, error, acceleration, to_come, slowest = motion
+        (
+            _,
+            _,
+            velocity_north,
+            velocity_east,
+            _,
+            speed,
+            _,
+            fixed,
+            error,
+            acceleration,
+            to_come,
+            slowest,
+        ) = motion
         # What is to come counts where it is against the turn.
         heading_rate += side * min(0.0, side * to_come)
         duration, turned, mean, decay = self._interval
         chord, ahead, gained, won, stretch, way_speed = fast = self._flown(side, speed)
         slow = self._flown(side, slowest) if (uneven := slowest != speed) else fast
-        north, east, half, lag = velocity_north * duration, velocity_east * duration, 0.5 * acceleration, self._lag
+        north, east, half, lag = (
+            velocity_north * duration,
+            velocity_east * duration,
+            0.5 * acceleration,
+            self._lag,
+        )
         # The farther the vehicle has to roll into the turn, or rolled of late, the more it deviates; where it is now not yet.
-        fixed += (deviation := self._deviation * (counted := max(change, 0.5 - 0.5 * side * heading_rate / self._rate)))
+        fixed += (
+            deviation := self._deviation
+            * (counted := max(change, 0.5 - 0.5 * side * heading_rate / self._rate))
+        )
         slack = math.sqrt(x * x + y * y) - (allowed := fixed + (error + half * time) * time)
-        least, outward, slowed, now = slack + deviation, self._outward(side, start), False, (x, y, course, allowed, speed)
+        least, outward, slowed, now = (
+            slack + deviation,
+            self._outward(side, start),
+            False,
+            (x, y, course, allowed, speed),
+        )
         late, then = now, (x, y, course, 0.0)
         # A command against the turn enlarges the deviation by 1/lag of what that of such a change exceeds it by in each second.
         lost = 2.0 * speed * self._rate * against / _ROLLING
-        rolling = max(0.0, self._deviation * max(change, against) - deviation) / (lost * max(lag, self._hold[0]))
-        acting, gain, least_rate, rise, fade = time - self._delay, -1.0, math.inf, 0.0, self._hold[3] if time > self._delay else 1.0
+        rolling = max(0.0, self._deviation * max(change, against) - deviation) / (
+            lost * max(lag, self._hold[0])
+        )
+        acting, gain, least_rate, rise, fade = (
+            time - self._delay,
+            -1.0,
+            math.inf,
+            0.0,
+            self._hold[3] if time > self._delay else 1.0,
+        )
         for point in range(math.ceil(self._points_max * stretch)):
             if least < floor:
                 break
@@ -165,9 +206,20 @@ class TurnPrediction:
             course += turned * heading_rate + gained
             heading_rate = decay * heading_rate + won
             time, acting, fade = time + duration, acting + duration, fade * decay
-            last, before, before_outward, outward = slack, rise, outward, side * (y * cos_m - x * sin_m)
-            nearer = nearer_by_switch(side, (speed - slowest) * stretch / self._rate, then, x, y, course) if slowed else 0.0
-            slack = math.sqrt(x * x + y * y) - (allowed := fixed + (error + half * time) * time + nearer)
+            last, before, before_outward, outward = (
+                slack,
+                rise,
+                outward,
+                side * (y * cos_m - x * sin_m),
+            )
+            nearer = (
+                nearer_by_switch(side, (speed - slowest) * stretch / self._rate, then, x, y, course)
+                if slowed
+                else 0.0
+            )
+            slack = math.sqrt(x * x + y * y) - (
+                allowed := fixed + (error + half * time) * time + nearer
+            )
             earlier, late, now = late, now, (x, y, course, allowed, way_speed)
             rise = slack - last
             slack_rate = slack / (acting - lag * (1.0 - fade) + rolling)
@@ -176,21 +228,35 @@ class TurnPrediction:
                 if gain >= 0.0:
                     break
                 least = slack if slack < least else least
-                if before_outward >= 0.0 > outward and x * cos_m + y * sin_m > 0.0 and side * heading_rate > 0.0:
+                if (
+                    before_outward >= 0.0 > outward
+                    and x * cos_m + y * sin_m > 0.0
+                    and side * heading_rate > 0.0
+                ):
                     # It heads straight away, and still the disc gains on it: nothing does better, and so it flies straight on.
                     heading_rate = ahead = gained = won = outward = 0.0
                     uneven = False
                 continue
             if before < 0.0 or point == 0:
-                nearest = least_of_late(earlier, late, now, (velocity_north, velocity_east), duration, first=point == 0)
-                least, least_rate = min(least, nearest), min(least_rate, nearest / (acting - lag * (1.0 - fade) + rolling))
+                nearest = least_of_late(
+                    earlier, late, now, (velocity_north, velocity_east), duration, first=point == 0
+                )
+                least, least_rate = (
+                    min(least, nearest),
+                    min(least_rate, nearest / (acting - lag * (1.0 - fade) + rolling)),
+                )
             # Also if it came past straight away between two points: it would have stopped there.
             if side * heading_rate >= 0.0 and (outward >= 0.0 or before_outward >= 0.0):
                 # It is over. One point more may allow more time until the next prediction.
                 best, gain = gain, max(gain, min(least_rate, rise / duration))
                 if gain == best or outward < 0.0:
                     break
-        return least, min(max(gain, 0.0) / lost, self._until_beyond(side, start, motion)), max(gain, 0.0) / speed, counted
+        return (
+            least,
+            min(max(gain, 0.0) / lost, self._until_beyond(side, start, motion)),
+            max(gain, 0.0) / speed,
+            counted,
+        )
 
     def _flown(self, side: float, speed: float) -> tuple[float, float, float, float, float, float]:
         """Return what is flown between two points of a full turn.
@@ -203,7 +269,14 @@ class TurnPrediction:
         stretch = max(1.0, speed / self._turn_speed)
         turn = side * self._rate / stretch
         way = speed * duration * self._chord
-        return way, (0.5 * duration - mean) * turn, (duration - turned) * turn, (1.0 - decay) * turn, stretch, speed
+        return (
+            way,
+            (0.5 * duration - mean) * turn,
+            (duration - turned) * turn,
+            (1.0 - decay) * turn,
+            stretch,
+            speed,
+        )
 
     def _outward(self, side: float, start: Start) -> float:
         """Return how far outwards a turn leads [m]; 0 where it begins beyond straight away by no more than one that ends there."""

@@ -83,7 +83,11 @@ class Check:
         """Return the loops with too little margin; all of them if the closed loop is unstable."""
         gain, phase = self.required
         judged = [m for m in self.margins if m.loop != ALL_CONTROLS]
-        return tuple(m.loop for m in judged if not (self.stable and m.gain_db >= gain and m.phase_deg >= phase))
+        return tuple(
+            m.loop
+            for m in judged
+            if not (self.stable and m.gain_db >= gain and m.phase_deg >= phase)
+        )
 
     @property
     def met(self) -> bool:
@@ -104,11 +108,17 @@ class Check:
     def shortfall(self) -> float:
         """Return the smallest margin as a fraction of the required one; below 0 if unstable."""
         gain, phase = self.required
-        return min(self.worst_gain.gain_db / gain, self.worst_phase.phase_deg / phase) if self.stable else -1.0
+        return (
+            min(self.worst_gain.gain_db / gain, self.worst_phase.phase_deg / phase)
+            if self.stable
+            else -1.0
+        )
 
     def describe(self) -> str:
         """Return the least margins in words."""
-        where = f"at {self.airspeed:.1f} m/s and {math.degrees(self.bank):.0f} deg of bank, {self.case}"
+        where = (
+            f"at {self.airspeed:.1f} m/s and {math.degrees(self.bank):.0f} deg of bank, {self.case}"
+        )
         if not self.stable:
             return f"an unstable closed loop {where}"
         gain, phase = self.worst_gain, self.worst_phase

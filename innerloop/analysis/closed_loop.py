@@ -22,9 +22,14 @@ def closed_loop(aircraft: LinearModel, autopilot: LinearModel, delay: float) -> 
     controls = autopilot.output_labels
     others = [name for name in aircraft.input_labels if name not in controls]
     plant, law, one = _named(aircraft, "aircraft"), _named(autopilot, "autopilot"), pade(delay)
-    delays = [control.ss(one, inputs=[f"{name}_delayed_in"], outputs=[name], name=f"{name}_delay") for name in controls]
+    delays = [
+        control.ss(one, inputs=[f"{name}_delayed_in"], outputs=[name], name=f"{name}_delay")
+        for name in controls
+    ]
     connections: list[list[object]] = [
-        [f"autopilot.{name}", f"aircraft.{name}"] for name in autopilot.input_labels if name not in COMMANDS
+        [f"autopilot.{name}", f"aircraft.{name}"]
+        for name in autopilot.input_labels
+        if name not in COMMANDS
     ]
     for block, name in zip(delays, controls, strict=True):
         connections += [
@@ -34,8 +39,14 @@ def closed_loop(aircraft: LinearModel, autopilot: LinearModel, delay: float) -> 
     return control.interconnect(
         [plant, law, *delays],
         connections=connections,
-        inplist=[*(f"autopilot.{name}" for name in COMMANDS), *(f"aircraft.{name}" for name in others)],
-        outlist=[*(f"aircraft.{name}" for name in aircraft.output_labels), *(f"autopilot.{name}" for name in controls)],
+        inplist=[
+            *(f"autopilot.{name}" for name in COMMANDS),
+            *(f"aircraft.{name}" for name in others),
+        ],
+        outlist=[
+            *(f"aircraft.{name}" for name in aircraft.output_labels),
+            *(f"autopilot.{name}" for name in controls),
+        ],
         inputs=[*COMMANDS, *others],
         outputs=[*aircraft.output_labels, *(f"{name}_command" for name in controls)],
         warn_duplicate=False,
@@ -45,4 +56,12 @@ def closed_loop(aircraft: LinearModel, autopilot: LinearModel, delay: float) -> 
 
 def _named(model: LinearModel, name: str) -> control.StateSpace:
     """Return a linear model as python-control connects it, by its own name and those of its inputs and outputs."""
-    return control.ss(model.A, model.B, model.C, model.D, inputs=model.input_labels, outputs=model.output_labels, name=name)
+    return control.ss(
+        model.A,
+        model.B,
+        model.C,
+        model.D,
+        inputs=model.input_labels,
+        outputs=model.output_labels,
+        name=name,
+    )

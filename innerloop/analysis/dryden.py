@@ -15,7 +15,9 @@ from innerloop.analysis.gust_response import GUSTS
 from innerloop.analysis.gust_statistics import GustStatistics
 
 
-def dryden_filters(turbulence: GustStatistics, *, airspeed: float, span: float) -> control.StateSpace:
+def dryden_filters(
+    turbulence: GustStatistics, *, airspeed: float, span: float
+) -> control.StateSpace:
     """Return the filters from four white noises of intensity 1 (of u, v, w and p) to ``GUSTS``.
 
     The standard deviation of each output is that of the gust, so that the covariance is the Lyapunov equation's
@@ -34,8 +36,16 @@ def dryden_filters(turbulence: GustStatistics, *, airspeed: float, span: float) 
     u = _lag(turbulence.horizontal * math.sqrt(2.0 * along), along)
     v, w = _transverse(turbulence.horizontal, along), _transverse(turbulence.vertical, down)
     p = _lag(1.9 * turbulence.vertical / reach * math.sqrt(2.0 * rolling), rolling)
-    q, r = (control.tf([1.0 / airspeed, 0.0], [share * span / (math.pi * airspeed), 1.0]) for share in (4.0, 3.0))
-    blocks = [_named(u, "noise_u", "u"), _named(v, "noise_v", "v"), _named(w, "noise_w", "w"), _named(p, "noise_p", "p")]
+    q, r = (
+        control.tf([1.0 / airspeed, 0.0], [share * span / (math.pi * airspeed), 1.0])
+        for share in (4.0, 3.0)
+    )
+    blocks = [
+        _named(u, "noise_u", "u"),
+        _named(v, "noise_v", "v"),
+        _named(w, "noise_w", "w"),
+        _named(p, "noise_p", "p"),
+    ]
     blocks += [_named(q, "w", "q"), _named(r, "v", "r")]
     signals = [name for block in blocks for name in (*block.input_labels, *block.output_labels)]
     together = control.interconnect(

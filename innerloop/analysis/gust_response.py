@@ -93,7 +93,13 @@ def aircraft_in_gusts(model: LinearModel, trim: Trim, level_model: LinearModel) 
         A=model.A,
         B=np.hstack([model.B, by_air @ against]),
         C=np.vstack([model.C, speed, model.C[rate]]),
-        D=np.block([[model.D, reads], [np.zeros((1, len(model.input_labels) + len(GUSTS)))], [model.D[rate], course_rate]]),
+        D=np.block(
+            [
+                [model.D, reads],
+                [np.zeros((1, len(model.input_labels) + len(GUSTS)))],
+                [model.D[rate], course_rate],
+            ]
+        ),
         state_labels=states,
         input_labels=(*model.input_labels, *GUSTS),
         output_labels=(*outputs, *MOTION),

@@ -31,5 +31,8 @@ def low_altitude_turbulence(altitude: float, wind_at_20ft: float) -> GustStatist
     horizontal, _, vertical = intensities(altitude, wind_at_20ft)
     horizontal_length, _, vertical_length = scale_lengths(altitude)
     return GustStatistics(
-        horizontal=horizontal, vertical=vertical, horizontal_length=horizontal_length, vertical_length=vertical_length
+        horizontal=horizontal,
+        vertical=vertical,
+        horizontal_length=horizontal_length,
+        vertical_length=vertical_length,
     )

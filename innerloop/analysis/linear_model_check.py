@@ -23,7 +23,12 @@ OUTPUTS: dict[str, tuple[str, float]] = {
 }
 """States that are compared: JSBSim property and SI value of its unit."""
 
-_SHOWN = {"elevator": ("alpha", "q", "pitch"), "aileron": ("p", "roll"), "rudder": ("beta", "r"), "throttle": ("airspeed",)}
+_SHOWN = {
+    "elevator": ("alpha", "q", "pitch"),
+    "aileron": ("p", "roll"),
+    "rudder": ("beta", "r"),
+    "throttle": ("airspeed",),
+}
 """States that each control is meant to move: a relative error is of little use for a state that it hardly moves."""
 
 _DURATION = 6.0
@@ -62,7 +67,9 @@ def verify_model(fdm: Fdm, model: LinearModel, level: Trim) -> list[dict[str, An
             predicted = response.outputs[model.output_labels.index(output)]
             excursion = float(np.max(np.abs(flown[output])))
             error = float(np.max(np.abs(predicted - flown[output])))
-            records.append({"input": name, "output": output, "error": error / excursion if excursion else None})
+            records.append(
+                {"input": name, "output": output, "error": error / excursion if excursion else None}
+            )
     return records
 
 
@@ -86,5 +93,10 @@ def _flown(fdm: Fdm, level: Trim, name: str) -> tuple[Array, dict[str, Array]]:
         for command in commands:
             command(value)
         run()
-    values = {output: v * scale for (output, (_, scale)), v in zip(OUTPUTS.items(), np.array(read).T, strict=True)}
-    return fdm.time_step * np.arange(count, dtype=np.float64), {output: v - v[0] for output, v in values.items()}
+    values = {
+        output: v * scale
+        for (output, (_, scale)), v in zip(OUTPUTS.items(), np.array(read).T, strict=True)
+    }
+    return fdm.time_step * np.arange(count, dtype=np.float64), {
+        output: v - v[0] for output, v in values.items()
+    }

@@ -96,7 +96,10 @@ class Loops:
     @functools.cached_property
     def _closed(self) -> tuple[Complex, Complex]:
         """The sensitivity at the controls, with every loop closed, and that at each measurement."""
-        plant, law = self._plant * np.exp(-1j * self.frequencies * self._delay)[:, None, None], self._law
+        plant, law = (
+            self._plant * np.exp(-1j * self.frequencies * self._delay)[:, None, None],
+            self._law,
+        )
         sensitivity = np.linalg.inv(np.eye(len(self.controls)) + law @ plant)
         # At the measurements S = 1 - P (1 + K P)^-1 K; only its diagonal is needed.
         return sensitivity, 1.0 - np.einsum("fik,fki->fi", plant @ sensitivity, law)
@@ -120,14 +123,23 @@ class Loops:
         names = [BREAK_NAMES.get(name, name) for name in self.breaks]
         of_controls, of_measurements = self._closed
         measured = [self.measurements.index(name) for name in self.breaks[len(self.controls) :]]
-        sensitivities = np.vstack([np.diagonal(of_controls, axis1=1, axis2=2).T, of_measurements[:, measured].T])
+        sensitivities = np.vstack(
+            [np.diagonal(of_controls, axis1=1, axis2=2).T, of_measurements[:, measured].T]
+        )
         return loop_margins(names, 1.0 / sensitivities - 1.0, self.frequencies)
 
     def margin_at_all_controls(self) -> Margin:
         """Return the disk margins for independent changes in all controls at once."""
         gain_db, phase_deg = self._disk_at_all_controls()
         nan = math.nan
-        return Margin(loop=ALL_CONTROLS, gain_db=nan, phase_deg=nan, crossover=nan, disk_gain_db=gain_db, disk_phase_deg=phase_deg)
+        return Margin(
+            loop=ALL_CONTROLS,
+            gain_db=nan,
+            phase_deg=nan,
+            crossover=nan,
+            disk_gain_db=gain_db,
+            disk_phase_deg=phase_deg,
+        )
 
     @property
     def stable(self) -> bool:
@@ -140,7 +152,12 @@ class Loops:
         # Law, delays, aircraft, one after the other; the aircraft's outputs come back to the law.
         chain = _series(
             _delays(self._delay, len(self.controls)),
-            (plant.A, plant.B[:, self._columns], plant.C[self._rows], plant.D[np.ix_(self._rows, self._columns)]),
+            (
+                plant.A,
+                plant.B[:, self._columns],
+                plant.C[self._rows],
+                plant.D[np.ix_(self._rows, self._columns)],
+            ),
         )
         a, b, c, d = _series((law.A, law.B[:, self._reads], law.C, law.D[:, self._reads]), chain)
         return np.asarray(np.linalg.eigvals(a + b @ np.linalg.solve(np.eye(len(d)) - d, c)))
@@ -223,10 +240,15 @@ def loop_margins(names: Sequence[str], loops: Complex, frequencies: Array) -> li
     disks = np.min(2.0 * np.abs(1.0 + loops) / np.abs(1.0 - loops), axis=1)
     gains = _gains_at_half_turns(logs, phases)
     crossovers = _crossovers(logs, phases, frequencies)
-    return [_loop_margin(*of_loop) for of_loop in zip(names, gains, crossovers, disks.tolist(), strict=True)]
+    return [
+        _loop_margin(*of_loop)
+        for of_loop in zip(names, gains, crossovers, disks.tolist(), strict=True)
+    ]
 
 
-def _loop_margin(name: str, gains: list[float], crossovers: list[tuple[float, float]], disk: float) -> Margin:
+def _loop_margin(
+    name: str, gains: list[float], crossovers: list[tuple[float, float]], disk: float
+) -> Margin:
     """Return the margins of a loop.
 
     Parameters
@@ -240,7 +262,12 @@ def _loop_margin(name: str, gains: list[float], crossovers: list[tuple[float, fl
     return Margin(
         loop=name,
         gain_db=min((abs(20.0 * gain / math.log(10.0)) for gain in gains), default=math.inf),
-        phase_deg=math.degrees(min((abs(math.remainder(p - math.pi, 2.0 * math.pi)) for _, p in crossovers), default=math.inf)),
+        phase_deg=math.degrees(
+            min(
+                (abs(math.remainder(p - math.pi, 2.0 * math.pi)) for _, p in crossovers),
+                default=math.inf,
+            )
+        ),
         crossover=max((frequency for frequency, _ in crossovers), default=math.nan),
         disk_gain_db=disk_gain_db,
         disk_phase_deg=disk_phase_deg,
@@ -253,7 +280,12 @@ def _gains_at_half_turns(logs: Array, phases: Array) -> list[list[float]]:
     before, after = turns[:, :-1], turns[:, 1:]
     at = np.nonzero(before != after)
     passed = math.pi + 2.0 * math.pi * np.maximum(before[at], after[at])
-    ends = (phases[:, :-1][at] - passed, logs[:, :-1][at], phases[:, 1:][at] - passed, logs[:, 1:][at])
+    ends = (
+        phases[:, :-1][at] - passed,
+        logs[:, :-1][at],
+        phases[:, 1:][at] - passed,
+        logs[:, 1:][at],
+    )
     gains: list[list[float]] = [[] for _ in logs]
     for loop, *of_crossing in zip(at[0].tolist(), *(end.tolist() for end in ends), strict=True):
         gains[loop].append(_at_zero(*of_crossing))

@@ -85,14 +85,24 @@ def gravity_and_turning(trim: Trim, states: tuple[str, ...]) -> npt.NDArray[np.f
     Differences of the rigid body's own equations: gravity along the body's axes, and the axes' turning.
     """
     names = ("airspeed", "alpha", "beta", "p", "q", "r", "roll", "pitch")
-    point = np.array([trim.airspeed, trim.alpha, trim.beta, *trim.rates_body, trim.roll, trim.pitch])
+    point = np.array(
+        [trim.airspeed, trim.alpha, trim.beta, *trim.rates_body, trim.roll, trim.pitch]
+    )
 
     def rates(x: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
         v, alpha, beta, p, q, r, roll, pitch = x
-        along, side, down = math.cos(alpha) * math.cos(beta), math.sin(beta), math.sin(alpha) * math.cos(beta)
+        along, side, down = (
+            math.cos(alpha) * math.cos(beta),
+            math.sin(beta),
+            math.sin(alpha) * math.cos(beta),
+        )
         u, w = v * along, v * down
         g = STANDARD_GRAVITY
-        gravity = (-g * math.sin(pitch), g * math.sin(roll) * math.cos(pitch), g * math.cos(roll) * math.cos(pitch))
+        gravity = (
+            -g * math.sin(pitch),
+            g * math.sin(roll) * math.cos(pitch),
+            g * math.cos(roll) * math.cos(pitch),
+        )
         u_dot = gravity[0] - (q * w - r * v * side)
         side_dot = gravity[1] - (r * u - p * w)
         w_dot = gravity[2] - (p * v * side - q * u)
@@ -112,7 +122,11 @@ def _changed(by: Perturbation) -> Change:
     """Return the changes of a linear aircraft that are those of its model."""
     changes = [
         change(factor)
-        for change, factor in ((_effectiveness, by.effectiveness), (_mass, by.mass), (_inertia, by.inertia))
+        for change, factor in (
+            (_effectiveness, by.effectiveness),
+            (_mass, by.mass),
+            (_inertia, by.inertia),
+        )
         if factor != 1.0
     ]
 

@@ -38,7 +38,12 @@ def operating_points(schedule: Schedule) -> list[OperatingPoint]:
     """
     columns = [TRIM_BANKS.index(share) for share in GAIN_BANKS]
     at = {
-        (i, j): OperatingPoint(trim=row[columns[j]], bank=schedule.gain_banks[j], model=schedule.models[i][j], between=False)
+        (i, j): OperatingPoint(
+            trim=row[columns[j]],
+            bank=schedule.gain_banks[j],
+            model=schedule.models[i][j],
+            between=False,
+        )
         for i, row in enumerate(schedule.trims)
         for j in range(len(columns))
     }
@@ -49,8 +54,16 @@ def operating_points(schedule: Schedule) -> list[OperatingPoint]:
                 points += _middle(point, at[neighbour])
     last = len(columns) - 1
     for i, (row, edges) in enumerate(zip(schedule.trims, schedule.edges, strict=True)):
-        for j, trim, bank, model in zip((0, last), (row[0], row[-1]), (schedule.banks[0], schedule.banks[-1]), edges, strict=True):
-            points += _middle(at[i, j], OperatingPoint(trim=trim, bank=bank, model=model, between=True))
+        for j, trim, bank, model in zip(
+            (0, last),
+            (row[0], row[-1]),
+            (schedule.banks[0], schedule.banks[-1]),
+            edges,
+            strict=True,
+        ):
+            points += _middle(
+                at[i, j], OperatingPoint(trim=trim, bank=bank, model=model, between=True)
+            )
     return points
 
 
@@ -60,7 +73,10 @@ def _middle(first: OperatingPoint, second: OperatingPoint) -> list[OperatingPoin
 
     p, q = first.trim, second.trim
     trim = Trim(
-        **{name: mean(getattr(p, name), getattr(q, name)) for name in ("airspeed", "altitude", "climb_angle", "alpha", "beta")},
+        **{
+            name: mean(getattr(p, name), getattr(q, name))
+            for name in ("airspeed", "altitude", "climb_angle", "alpha", "beta")
+        },
         roll=mean(p.roll, q.roll),
         pitch=mean(p.pitch, q.pitch),
         rates_body=(
@@ -106,7 +122,9 @@ class ClosedPoint:
         if case not in self._of:
             as_modelled = self._of[NOMINAL]
             changed = change(self.point.model, self.point.trim)
-            self._of[case] = as_modelled if changed is self.point.model else as_modelled.with_aircraft(changed)
+            self._of[case] = (
+                as_modelled if changed is self.point.model else as_modelled.with_aircraft(changed)
+            )
         return self._of[case].with_delay(loop_delay(period, late))
 
     def check(self, case: str, period: int) -> Check:
@@ -134,7 +152,10 @@ def closed_loops(schedule: Schedule) -> ClosedLoops:
     But for their delay they are those of every ``period`` of the schedule.
     """
     law = ControlLaw(schedule)
-    return [ClosedPoint(p, Loops(p.model, linear_controller(law, p.trim), schedule.delay)) for p in operating_points(schedule)]
+    return [
+        ClosedPoint(p, Loops(p.model, linear_controller(law, p.trim), schedule.delay))
+        for p in operating_points(schedule)
+    ]
 
 
 def check_design(period: int, closed: ClosedLoops, *, changed: bool = True) -> list[Check]:
@@ -166,6 +187,8 @@ def with_all_controls(period: int, closed: ClosedLoops, checks: Sequence[Check])
         return next(of_grid).loops(NOMINAL, period).margin_at_all_controls()
 
     return [
-        replace(check, margins=(*check.margins, at_all_controls())) if check.case == NOMINAL and not check.between else check
+        replace(check, margins=(*check.margins, at_all_controls()))
+        if check.case == NOMINAL and not check.between
+        else check
         for check in checks
     ]

@@ -63,7 +63,9 @@ def designed(spec: AircraftSpec, altitude: float = 100.0) -> Designed:
         # What is used is what the next run reads, whether or not it was written.
         found = _restored(text)
     if found.refused is not None or found.made is None:
-        refused = found.refused or _Refused(message=f"aircraft '{spec.name}' has no design", is_margins=False)
+        refused = found.refused or _Refused(
+            message=f"aircraft '{spec.name}' has no design", is_margins=False
+        )
         raise (DesignError if refused.is_margins else AircraftError)(refused.message)
     return _at(spec, found.made)
 
@@ -119,9 +121,16 @@ def _design(spec: AircraftSpec, altitude: float) -> _Entry:
     try:
         design = design_autopilot(spec, altitude)
     except AircraftError as error:
-        return _Entry(refused=_Refused(message=str(error), is_margins=isinstance(error, DesignError)))
+        return _Entry(
+            refused=_Refused(message=str(error), is_margins=isinstance(error, DesignError))
+        )
     with tempfile.TemporaryDirectory() as folder:
-        return _Entry(made=Designed(design=design, record=design_record(design, write_root(design.schedule, Path(folder)))))
+        return _Entry(
+            made=Designed(
+                design=design,
+                record=design_record(design, write_root(design.schedule, Path(folder))),
+            )
+        )
 
 
 def cache_directory() -> Path | None:
@@ -162,7 +171,9 @@ def _store(key: str, text: str) -> None:
     with contextlib.suppress(OSError):
         directory.mkdir(parents=True, exist_ok=True)
         content = f"{_digest(text)}\n{text}"
-        write_whole(directory / f"{key}{SUFFIX}", lambda path: path.write_text(content, encoding="utf-8"))
+        write_whole(
+            directory / f"{key}{SUFFIX}", lambda path: path.write_text(content, encoding="utf-8")
+        )
 
 
 def _digest(text: str) -> str:

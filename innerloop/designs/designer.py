@@ -16,9 +16,21 @@ from innerloop.analysis.checks import ALL_CONTROLS, NOMINAL, Check
 from innerloop.analysis.robustness import ClosedLoops, check_design, closed_loops, with_all_controls
 from innerloop.designs.designed import Design, DesignError
 from innerloop.synthesis.rate import PERIODS
-from innerloop.synthesis.schedule import GAIN_BANKS, LEVEL, LEVEL_GAINS, TRIM_BANKS, Schedule, table_banks
+from innerloop.synthesis.schedule import (
+    GAIN_BANKS,
+    LEVEL,
+    LEVEL_GAINS,
+    TRIM_BANKS,
+    Schedule,
+    table_banks,
+)
 from innerloop.synthesis.servo_lqr import design_gains
-from innerloop.synthesis.weights import LoopBandwidths, control_weights, design_weights, reachable_bandwidths
+from innerloop.synthesis.weights import (
+    LoopBandwidths,
+    control_weights,
+    design_weights,
+    reachable_bandwidths,
+)
 
 _SLOWER = 0.8
 """Factor on the bandwidths of an axis with too little margin [-]."""
@@ -75,7 +87,11 @@ def design_autopilot(spec: AircraftSpec, altitude: float = 100.0) -> Design:
         short = [check for check in checks if not check.met]
         if not short:
             checks = with_all_controls(period, closed, checks)
-            return Design(schedule=replace(schedule, period=period), bandwidths=bandwidths, checks=tuple(checks))
+            return Design(
+                schedule=replace(schedule, period=period),
+                bandwidths=bandwidths,
+                checks=tuple(checks),
+            )
         bandwidths = _slowed(bandwidths, short)
     worst = min(short, key=lambda check: check.shortfall)
     gain, phase = worst.required
@@ -101,7 +117,10 @@ def linear_grid(spec: AircraftSpec, altitude: float) -> Grid:
     for airspeed in envelope.design_airspeeds:
         near = trim(fdm, airspeed=airspeed, altitude=altitude, start=near)
         row = tuple(
-            near if bank == 0.0 else trim(fdm, airspeed=airspeed, altitude=altitude, bank=bank, start=near) for bank in banks
+            near
+            if bank == 0.0
+            else trim(fdm, airspeed=airspeed, altitude=altitude, bank=bank, start=near)
+            for bank in banks
         )
         trims.append(row)
         models.append(tuple(linearise(fdm, row[TRIM_BANKS.index(share)]) for share in GAIN_BANKS))
@@ -109,7 +128,14 @@ def linear_grid(spec: AircraftSpec, altitude: float) -> Grid:
     if spec.envelope is not None:
         envelope = with_reserve_note(envelope, [t for row in trims for t in row], spec)
     spec = idling_at(spec, flight_idle(fdm, trims[len(trims) // 2][LEVEL]))
-    return Grid(spec=spec, envelope=envelope, altitude=altitude, trims=tuple(trims), models=tuple(models), edges=tuple(edges))
+    return Grid(
+        spec=spec,
+        envelope=envelope,
+        altitude=altitude,
+        trims=tuple(trims),
+        models=tuple(models),
+        edges=tuple(edges),
+    )
 
 
 def schedule_at(grid: Grid, bandwidths: LoopBandwidths) -> Schedule:
@@ -120,7 +146,12 @@ def schedule_at(grid: Grid, bandwidths: LoopBandwidths) -> Schedule:
     for row, models in zip(grid.trims, grid.models, strict=True):
         controls = control_weights(models[LEVEL_GAINS], bandwidths, weights)
         at = [row[TRIM_BANKS.index(share)] for share in GAIN_BANKS]
-        gains.append(tuple(design_gains(model, t, weights, controls) for model, t in zip(models, at, strict=True)))
+        gains.append(
+            tuple(
+                design_gains(model, t, weights, controls)
+                for model, t in zip(models, at, strict=True)
+            )
+        )
     return Schedule(
         spec=grid.spec,
         envelope=grid.envelope,
@@ -166,7 +197,9 @@ def _slowed(bandwidths: LoopBandwidths, short: Sequence[Check]) -> LoopBandwidth
     loops = {name for check in short for name in check.short_loops}
     lateral = any(name in _LATERAL_LOOPS for name in loops)
     airspeed = any(name in _AIRSPEED_LOOPS for name in loops)
-    longitudinal = bool(loops - set(_LATERAL_LOOPS) - set(_AIRSPEED_LOOPS)) or not (lateral or airspeed)
+    longitudinal = bool(loops - set(_LATERAL_LOOPS) - set(_AIRSPEED_LOOPS)) or not (
+        lateral or airspeed
+    )
     return bandwidths.scaled(
         lateral=_SLOWER if lateral else 1.0,
         longitudinal=_SLOWER if longitudinal else 1.0,

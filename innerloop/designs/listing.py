@@ -42,7 +42,9 @@ def look_up(name: str, altitude: float) -> Discovered:
         return examine(name, altitude)
     if known:
         return examine(name, altitude)
-    return Discovered(name=name, title=spec.title, flies=None, text=f"not designed before for {altitude:g} m")
+    return Discovered(
+        name=name, title=spec.title, flies=None, text=f"not designed before for {altitude:g} m"
+    )
 
 
 def discover(names: Sequence[str], altitude: float, jobs: int) -> Iterator[Discovered]:
@@ -73,11 +75,15 @@ def discover(names: Sequence[str], altitude: float, jobs: int) -> Iterator[Disco
 
 def _alone(name: str, altitude: float) -> Discovered:
     """Examine an aircraft in a process of its own, after another one broke the pool."""
-    with ProcessPoolExecutor(max_workers=1, mp_context=multiprocessing.get_context("spawn"), initializer=follow_parent) as pool:
+    with ProcessPoolExecutor(
+        max_workers=1, mp_context=multiprocessing.get_context("spawn"), initializer=follow_parent
+    ) as pool:
         try:
             return pool.submit(examine, name, altitude).result()
         except BrokenProcessPool:
-            return Discovered(name=name, title=name, flies=False, text="JSBSim ends the whole process with it")
+            return Discovered(
+                name=name, title=name, flies=False, text="JSBSim ends the whole process with it"
+            )
 
 
 def examine(name: str, altitude: float) -> Discovered:
@@ -90,7 +96,9 @@ def examine(name: str, altitude: float) -> Discovered:
     except AircraftError as error:
         return Discovered(name=name, title=title, flies=False, text=_reason(name, str(error)))
     except Exception as error:  # noqa: BLE001 - an unforeseen failure of one aircraft does not end the list
-        return Discovered(name=name, title=title, flies=False, text=f"{type(error).__name__}: {error}")
+        return Discovered(
+            name=name, title=title, flies=False, text=f"{type(error).__name__}: {error}"
+        )
     envelope = design.schedule.envelope
     nominal = [check for check in design.checks if check.case == NOMINAL]
     gain = min(check.worst_gain.gain_db for check in nominal)
@@ -105,6 +113,11 @@ def examine(name: str, altitude: float) -> Discovered:
 def _reason(name: str, message: str) -> str:
     """Return the reason alone: which aircraft it is stands beside it, one of a directory by its path."""
     called = f"aircraft '{Path(name).name}'"
-    for prefix in (f"{called} cannot be flown: ", f"{called} cannot fly the study: ", f"{called} ", f"{called}: "):
+    for prefix in (
+        f"{called} cannot be flown: ",
+        f"{called} cannot fly the study: ",
+        f"{called} ",
+        f"{called}: ",
+    ):
         message = message.removeprefix(prefix)
     return message

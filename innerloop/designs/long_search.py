@@ -66,12 +66,17 @@ def repeat_search(found: Designed, root: Path, reversals: int, *, done: Done) ->
         for seed, first in enumerate(range(0, reversals, PART), start=1)
     ]
     searches: list[ReversalSearch] = []
-    with ProcessPoolExecutor(min(_PROCESSES, os.cpu_count() or 1), initializer=follow_parent) as pool:
+    with ProcessPoolExecutor(
+        min(_PROCESSES, os.cpu_count() or 1), initializer=follow_parent
+    ) as pool:
         running: list[Future[ReversalSearch]] = [pool.submit(_search, part) for part in parts]
         try:
             for part in as_completed(running):
                 searches.append(part.result())
-                done(sum(search.reversals for search in searches), max(search.deviation for search in searches))
+                done(
+                    sum(search.reversals for search in searches),
+                    max(search.deviation for search in searches),
+                )
         except KeyboardInterrupt:
             pool.shutdown(cancel_futures=True)
             if not searches:
@@ -89,4 +94,12 @@ def repeat_search(found: Designed, root: Path, reversals: int, *, done: Done) ->
 
 def _search(part: _Part) -> ReversalSearch:
     aircraft = perturbed_aircraft(part.spec, part.root)
-    return search_reversals(aircraft, part.start, part.bank, part.response, part.slow_lag, reversals=part.reversals, seed=part.seed)
+    return search_reversals(
+        aircraft,
+        part.start,
+        part.bank,
+        part.response,
+        part.slow_lag,
+        reversals=part.reversals,
+        seed=part.seed,
+    )

@@ -18,9 +18,19 @@ from innerloop.analysis.margins import BREAK_NAMES, Loops
 from innerloop.analysis.perturbations import CASES
 from innerloop.designs.designed import Design, Record
 from innerloop.flight.autopiloted_aircraft import AutopilotedAircraft
-from innerloop.flight.perturbed_aircraft import aircraft_as_modelled, deviations_by_case, perturbed_aircraft
+from innerloop.flight.perturbed_aircraft import (
+    aircraft_as_modelled,
+    deviations_by_case,
+    perturbed_aircraft,
+)
 from innerloop.flight.reversal_search import reversals_of_a_design, search_reversals
-from innerloop.flight.step_responses import Response, flown_step, measure_lag, model_step, predicted_step
+from innerloop.flight.step_responses import (
+    Response,
+    flown_step,
+    measure_lag,
+    model_step,
+    predicted_step,
+)
 from innerloop.flight.turn_reversal import measure_turn_reversal
 from innerloop.law.control_law import ControlLaw
 from innerloop.law.linear_controller import linear_controller
@@ -66,21 +76,38 @@ def design_record(design: Design, root: Path) -> Record:
         "autopilot_rate_hz": 1.0 / (schedule.period * TIME_STEP),
         "model_frequency_rad_s": schedule.weights.model_frequency,
         "model_damping": schedule.weights.model_damping,
-        "trims": [_trim_record(t, bank) for row in schedule.trims for t, bank in zip(row, schedule.banks, strict=True)]
+        "trims": [
+            _trim_record(t, bank)
+            for row in schedule.trims
+            for t, bank in zip(row, schedule.banks, strict=True)
+        ]
         + _climbs(schedule),
         "poles": _poles(schedule),
-        "margins": [row for check in design.checks if check.case == NOMINAL for row in _margin_records(check)],
-        "robustness": [_robustness_record(check) for check in design.checks if check.case != NOMINAL],
+        "margins": [
+            row
+            for check in design.checks
+            if check.case == NOMINAL
+            for row in _margin_records(check)
+        ],
+        "robustness": [
+            _robustness_record(check) for check in design.checks if check.case != NOMINAL
+        ],
         "required": asdict(REQUIRED),
         "loops": _loops(schedule),
         "responses": _responses(schedule, aircraft),
-        "verification": verify_model(Fdm(schedule.spec), schedule.models[schedule.middle][LEVEL_GAINS], level),
+        "verification": verify_model(
+            Fdm(schedule.spec), schedule.models[schedule.middle][LEVEL_GAINS], level
+        ),
         "heading_rate_lag_s": slow_lag,
-        "turn_reversal": reversal_record(schedule.spec, root, level, schedule.envelope.bank, slow_lag),
+        "turn_reversal": reversal_record(
+            schedule.spec, root, level, schedule.envelope.bank, slow_lag
+        ),
     }
 
 
-def reversal_record(spec: AircraftSpec, root: Path, start: Trim, bank: float, slow_lag: float) -> Record:
+def reversal_record(
+    spec: AircraftSpec, root: Path, start: Trim, bank: float, slow_lag: float
+) -> Record:
     """Return how the heading rate follows a reversal of a turn at ``bank`` [rad], and the deviations that a search found.
 
     Parameters
@@ -93,7 +120,9 @@ def reversal_record(spec: AircraftSpec, root: Path, start: Trim, bank: float, sl
     aircraft = perturbed_aircraft(spec, root)
     response = measure_turn_reversal(aircraft[0], start, bank)
     count = reversals_of_a_design(bank, start.airspeed)
-    found = search_reversals(aircraft, start, bank, response, slow_lag, reversals=count, settled=True)
+    found = search_reversals(
+        aircraft, start, bank, response, slow_lag, reversals=count, settled=True
+    )
     return {
         "bank_deg": math.degrees(bank),
         "airspeed_mps": start.airspeed,
@@ -167,15 +196,29 @@ def _climbs(schedule: Schedule) -> list[Record]:
     """Return climbs and descents at the middle airspeed, as far as there are equilibria."""
     fdm, level = Fdm(schedule.spec), schedule.level(schedule.middle)
     found = [
-        search_trim(fdm, airspeed=level.airspeed, altitude=schedule.altitude, climb_angle=math.radians(angle), start=level)
+        search_trim(
+            fdm,
+            airspeed=level.airspeed,
+            altitude=schedule.altitude,
+            climb_angle=math.radians(angle),
+            start=level,
+        )
         for angle in _CLIMB_ANGLES_DEG
     ]
     return [_trim_record(t, 0.0) for t in found if t.outcome is TrimOutcome.CONVERGED]
 
 
 def _margin_records(check: Check) -> list[Record]:
-    point = {"airspeed_mps": check.airspeed, "bank_rad": check.bank, "between": check.between, "stable": check.stable}
-    return [point | {f.name: _finite(getattr(margin, f.name)) for f in fields(Margin)} for margin in check.margins]
+    point = {
+        "airspeed_mps": check.airspeed,
+        "bank_rad": check.bank,
+        "between": check.between,
+        "stable": check.stable,
+    }
+    return [
+        point | {f.name: _finite(getattr(margin, f.name)) for f in fields(Margin)}
+        for margin in check.margins
+    ]
 
 
 def _robustness_record(check: Check) -> Record:
@@ -221,7 +264,12 @@ def _pairs(poles: Any) -> list[list[float]]:
 def _loops(schedule: Schedule) -> list[Record]:
     level = schedule.level(schedule.middle)
     model = schedule.models[schedule.middle][LEVEL_GAINS]
-    loops = Loops(model, linear_controller(ControlLaw(schedule), level), schedule.delay, frequencies=_FREQUENCIES)
+    loops = Loops(
+        model,
+        linear_controller(ControlLaw(schedule), level),
+        schedule.delay,
+        frequencies=_FREQUENCIES,
+    )
     records = []
     for name in loops.breaks:
         response = loops.opened(name)
@@ -240,14 +288,20 @@ def _loops(schedule: Schedule) -> list[Record]:
 
 def _responses(schedule: Schedule, aircraft: AutopilotedAircraft) -> list[Record]:
     duration = _STEP_DURATION / schedule.weights.model_frequency
-    slow = _STEP_DURATION / min(schedule.weights.model_frequency, 2.0 / schedule.weights.anti_windup_rate)
+    slow = _STEP_DURATION / min(
+        schedule.weights.model_frequency, 2.0 / schedule.weights.anti_windup_rate
+    )
     level = schedule.level(schedule.middle)
     records = []
     for command, size in step_sizes(schedule).items():
         time = duration if command == "heading_rate" else slow
         if command == "heading_rate":
             records.append(_response_record("model", model_step(schedule, size, time)))
-        records.append(_response_record("predicted", predicted_step(schedule, schedule.middle, command, size, time)))
+        records.append(
+            _response_record(
+                "predicted", predicted_step(schedule, schedule.middle, command, size, time)
+            )
+        )
         records.append(_response_record("flown", flown_step(aircraft, level, command, size, time)))
     return records
 
@@ -266,12 +320,18 @@ def _response_record(kind: str, response: Response) -> Record:
             if name in response.channels and name != response.command
         },
         "time_s": response.time[::stride].round(6).tolist(),
-        "channels": {_CHANNEL_NAMES.get(name, name): values[::stride].tolist() for name, values in response.channels.items()},
+        "channels": {
+            _CHANNEL_NAMES.get(name, name): values[::stride].tolist()
+            for name, values in response.channels.items()
+        },
     }
 
 
 _UPSET = {"altitude": "m", "airspeed": "mps"}
 """Quantities that a step of another one should not move, and their units."""
 
-_CHANNEL_NAMES = {"beta": "sideslip", **{f"{name}_command": name for name in ("elevator", "aileron", "throttle")}}
+_CHANNEL_NAMES = {
+    "beta": "sideslip",
+    **{f"{name}_command": name for name in ("elevator", "aileron", "throttle")},
+}
 """Names of channels in reports, where they differ from those in the closed loop."""

@@ -47,11 +47,19 @@ def _plain(value: Any) -> Any:
         return {field.name: getattr(value, field.name) for field in dataclasses.fields(value)}
     if isinstance(value, np.ndarray):
         # Products of matrices are rounded by the order in which their numbers lie in memory.
-        order: Literal["C", "F"] = "F" if value.flags.f_contiguous and not value.flags.c_contiguous else "C"
+        order: Literal["C", "F"] = (
+            "F" if value.flags.f_contiguous and not value.flags.c_contiguous else "C"
+        )
         return {"shape": value.shape, "order": order, "values": value.ravel(order).tolist()}
     if isinstance(value, Mapping):
         return dict(value)
-    return value.value if isinstance(value, Enum) else value.item() if isinstance(value, np.generic) else str(value)
+    return (
+        value.value
+        if isinstance(value, Enum)
+        else value.item()
+        if isinstance(value, np.generic)
+        else str(value)
+    )
 
 
 @functools.cache
@@ -61,7 +69,11 @@ def _hints(kind: type) -> dict[str, Any]:
 
 def _restored(found: Any, kind: Any) -> Any:
     """Return a value of a type from what JSON has for it."""
-    if kind is Any or (type(found) is kind and kind in _AS_THEY_ARE) or (kind is float and type(found) is int):
+    if (
+        kind is Any
+        or (type(found) is kind and kind in _AS_THEY_ARE)
+        or (kind is float and type(found) is int)
+    ):
         return found
     arguments = typing.get_args(kind)
     if arguments:

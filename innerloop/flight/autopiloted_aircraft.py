@@ -51,12 +51,25 @@ class AutopilotedAircraft:
         self.run: Callable[[], object] = self.fdm.run
         self._faults = Faults(self.fdm) if failable else None
         self._weathered = False
-        self.command_airspeed: Callable[[float], object] = self.fdm.writable_node(AIRSPEED_COMMAND).set_double_value
-        self.command_altitude: Callable[[float], object] = self.fdm.writable_node(ALTITUDE_COMMAND).set_double_value
-        self.command_heading_rate: Callable[[float], object] = self.fdm.writable_node(HEADING_RATE_COMMAND).set_double_value
+        self.command_airspeed: Callable[[float], object] = self.fdm.writable_node(
+            AIRSPEED_COMMAND
+        ).set_double_value
+        self.command_altitude: Callable[[float], object] = self.fdm.writable_node(
+            ALTITUDE_COMMAND
+        ).set_double_value
+        self.command_heading_rate: Callable[[float], object] = self.fdm.writable_node(
+            HEADING_RATE_COMMAND
+        ).set_double_value
         self._period = round(self.fdm.read(PERIOD))
 
-    def release(self, state: RigidBodyState, *, airspeed: float, altitude: float, weather: Weather | None = None) -> None:
+    def release(
+        self,
+        state: RigidBodyState,
+        *,
+        airspeed: float,
+        altitude: float,
+        weather: Weather | None = None,
+    ) -> None:
         """Start a new flight from a straight and level equilibrium, commanded to stay in it.
 
         Parameters
@@ -105,5 +118,7 @@ class AutopilotedAircraft:
         AircraftError : there is no such part, or the aircraft was not made ``failable``
         """
         if self._faults is None:
-            raise AircraftError(f"aircraft '{self.fdm.spec.name}': '{name}' cannot fail; make it with failable=True")
+            raise AircraftError(
+                f"aircraft '{self.fdm.spec.name}': '{name}' cannot fail; make it with failable=True"
+            )
         self._faults.fail(name)

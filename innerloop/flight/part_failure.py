@@ -50,12 +50,19 @@ class PartFailure:
 
     def or_worse(self, other: "PartFailure") -> "PartFailure":
         """Return the larger of each figure."""
-        fall, deviation = max(self.airspeed_fall, other.airspeed_fall), max(self.glide_deviation, other.glide_deviation)
+        fall, deviation = (
+            max(self.airspeed_fall, other.airspeed_fall),
+            max(self.glide_deviation, other.glide_deviation),
+        )
         return PartFailure(airspeed_fall=fall, glide_deviation=deviation)
 
 
 def measure_part_failure(
-    aircraft: AutopilotedAircraft, start: Trim, bank: float, airspeed_min: float, gradient: float = 0.0
+    aircraft: AutopilotedAircraft,
+    start: Trim,
+    bank: float,
+    airspeed_min: float,
+    gradient: float = 0.0,
 ) -> PartFailure:
     """Return what it does to the aircraft when a part of it fails in a settled turn, or as it has begun to climb in one.
 
@@ -97,11 +104,22 @@ class _Turn:
     """
 
     def __init__(
-        self, aircraft: AutopilotedAircraft, start: Trim, side: float, bank: float, gradient: float, *, room: float = 0.0
+        self,
+        aircraft: AutopilotedAircraft,
+        start: Trim,
+        side: float,
+        bank: float,
+        gradient: float,
+        *,
+        room: float = 0.0,
     ) -> None:
         self.aircraft, self.rate = aircraft, side * heading_rate_for_bank(bank, start.airspeed)
         self.altitude, self._climb_rate = start.altitude + room, gradient * start.airspeed
-        aircraft.release(replace(start.state(), altitude=self.altitude), airspeed=start.airspeed, altitude=self.altitude)
+        aircraft.release(
+            replace(start.state(), altitude=self.altitude),
+            airspeed=start.airspeed,
+            altitude=self.altitude,
+        )
         aircraft.command_heading_rate(self.rate)
         self.half = round(math.pi / abs(self.rate) / TIME_STEP)
         for _ in range(self.half):
@@ -109,7 +127,10 @@ class _Turn:
 
     def flown(self, *, failing: bool = True) -> Iterator[float]:
         """Let it climb, its engine perhaps fail, and fly on as commanded; yield the airspeed before each time step then [m/s]."""
-        read, begun = self.aircraft.fdm.node(_AIRSPEED).get_double_value, round(_CLIMBED / TIME_STEP)
+        read, begun = (
+            self.aircraft.fdm.node(_AIRSPEED).get_double_value,
+            round(_CLIMBED / TIME_STEP),
+        )
         for step in itertools.count():
             if step % round(_STEP / TIME_STEP) == 0:
                 self.aircraft.command_altitude(self.altitude + self._climb_rate * step * TIME_STEP)
@@ -136,16 +157,22 @@ def _glide_deviation(turn: _Turn, glide: float, begins: float) -> float:
     glide : airspeed commanded in the glide [m/s]
     begins : airspeed at which it begins, after the engine has failed; infinite at once, with its power [m/s]
     """
-    for airspeed in itertools.islice(turn.flown(failing=math.isfinite(begins)), round(_FALLEN / TIME_STEP)):
+    for airspeed in itertools.islice(
+        turn.flown(failing=math.isfinite(begins)), round(_FALLEN / TIME_STEP)
+    ):
         if airspeed <= begins:
             break
     aircraft, velocities = turn.aircraft, list[tuple[float, float]]()
-    north, east = (aircraft.fdm.node(f"velocities/v-{side}-fps").get_double_value for side in ("north", "east"))
+    north, east = (
+        aircraft.fdm.node(f"velocities/v-{side}-fps").get_double_value for side in ("north", "east")
+    )
     aircraft.command_airspeed(glide)
     aircraft.command_altitude(turn.altitude - _ROOM)
     for _ in range(turn.half):
         velocities.append((north(), east()))
         aircraft.run()
     flown = METRES_PER_FOOT * np.array([complex(*each) for each in velocities])
-    commanded = np.abs(flown) * np.exp(1j * (np.angle(flown[0]) + turn.rate * TIME_STEP * np.arange(len(flown))))
+    commanded = np.abs(flown) * np.exp(
+        1j * (np.angle(flown[0]) + turn.rate * TIME_STEP * np.arange(len(flown)))
+    )
     return float(np.max(np.abs(np.cumsum(flown - commanded)))) * TIME_STEP

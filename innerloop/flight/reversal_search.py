@@ -157,7 +157,8 @@ def search_reversals(
         reversals=len(found),
         deviation=max(0.0, worst_of_all.deviation),
         deviations=tuple(
-            max((entry.deviation for entry in found if entry.which == which), default=-math.inf) for which in range(len(flights))
+            max((entry.deviation for entry in found if entry.which == which), default=-math.inf)
+            for which in range(len(flights))
         ),
         unguided=len(unguided),
         usual=max(0.0, float(np.quantile(unguided, 0.99, method="higher"))),
@@ -191,7 +192,11 @@ class _Found:
 
 def _rolls(late: float) -> list[_Before]:
     """Return turns to the other side and back; ``late`` is dead time and lag over 1/omega_max [-]."""
-    return [_Before(((1.0, _SETTLED), (-1.0, rolling * late), (1.0, back * late)), 1.0) for rolling in _ROLLING for back in _BACK]
+    return [
+        _Before(((1.0, _SETTLED), (-1.0, rolling * late), (1.0, back * late)), 1.0)
+        for rolling in _ROLLING
+        for back in _BACK
+    ]
 
 
 def _random(generator: np.random.Generator, *, full: bool) -> _Before:
@@ -200,7 +205,10 @@ def _random(generator: np.random.Generator, *, full: bool) -> _Before:
     if not full:
         shares[generator.integers(_BEFORE)] = generator.uniform(-1.0, 1.0)
     held = np.exp(generator.uniform(math.log(_HELD[0]), math.log(_HELD[1]), _BEFORE))
-    return _Before(tuple(zip(shares.tolist(), held.tolist(), strict=True)), float(generator.choice([-1.0, 1.0])))
+    return _Before(
+        tuple(zip(shares.tolist(), held.tolist(), strict=True)),
+        float(generator.choice([-1.0, 1.0])),
+    )
 
 
 def _changed(before: _Before, generator: np.random.Generator) -> _Before:
@@ -208,7 +216,12 @@ def _changed(before: _Before, generator: np.random.Generator) -> _Before:
     commands = []
     for share, held in before.commands:
         turn, longer = _CHANGE * generator.standard_normal(2)
-        commands.append((float(np.clip(share + turn, -1.0, 1.0)), float(np.clip(held * math.exp(longer), *_HELD))))
+        commands.append(
+            (
+                float(np.clip(share + turn, -1.0, 1.0)),
+                float(np.clip(held * math.exp(longer), *_HELD)),
+            )
+        )
     return _Before(tuple(commands), before.side)
 
 
@@ -218,7 +231,13 @@ class _Flight:
     With it, the largest difference of its altitude from that of its release [m].
     """
 
-    def __init__(self, aircraft: AutopilotedAircraft, start: Trim, response: TurnReversalResponse, slow_lag: float) -> None:
+    def __init__(
+        self,
+        aircraft: AutopilotedAircraft,
+        start: Trim,
+        response: TurnReversalResponse,
+        slow_lag: float,
+    ) -> None:
         aircraft.release(start.state(), airspeed=start.airspeed, altitude=start.altitude)
         self._aircraft, self._response, fdm = aircraft, response, aircraft.fdm
         self._slow, self._doubt = slow_lag - response.delay, SLOW_LAG_ERROR * slow_lag
@@ -241,17 +260,27 @@ class _Flight:
         """Return the path from here [m], shape (steps, 2), under a command that is held for ``duration`` [s]."""
         self._aircraft.command_heading_rate(heading_rate)
         steps = max(1, round(duration / TIME_STEP))
-        run, north, east, rate, height = self._aircraft.run, self._north, self._east, self._rate, self._height
+        run, north, east, rate, height = (
+            self._aircraft.run,
+            self._north,
+            self._east,
+            self._rate,
+            self._height,
+        )
         values = [north(), east(), rate(), height()]
         for _ in range(steps):
             run()
             values += north(), east(), rate(), height()
         flown = np.array(values).reshape(-1, 4)
-        self.altitude_error = max(self.altitude_error, METRES_PER_FOOT * float(np.abs(flown[:, 3] - self._held).max()))
+        self.altitude_error = max(
+            self.altitude_error, METRES_PER_FOOT * float(np.abs(flown[:, 3] - self._held).max())
+        )
         self._take_in(heading_rate, flown)
         return np.asarray(np.cumsum(flown[1:, :2], axis=0) * (TIME_STEP * METRES_PER_FOOT))
 
-    def predicted(self, turn: float, duration: float, speed: float, rate: float) -> tuple[Array, float]:
+    def predicted(
+        self, turn: float, duration: float, speed: float, rate: float
+    ) -> tuple[Array, float]:
         """Return the path [m], shape (steps, 2), of a vehicle of that response that is commanded to turn from here on.
 
         With it, by how much its heading rate changes from when the command acts, over a full reversal.
@@ -266,7 +295,9 @@ class _Flight:
         decay, side = math.exp(-TIME_STEP / lag), math.copysign(1.0, turn)
         rates: list[float] = []
         now = self._rate()
-        to_come = math.copysign(max(0.0, abs(self._lack) - self._doubt * abs(now)), self._lack) / lag
+        to_come = (
+            math.copysign(max(0.0, abs(self._lack) - self._doubt * abs(now)), self._lack) / lag
+        )
         for command in self.commands[-self._late :]:
             now = command + (now - command) * decay
             rates.append(now)
@@ -277,18 +308,26 @@ class _Flight:
             now = turn + (now - turn) * decay
             rates.append(now)
         courses = math.atan2(self._east(), self._north()) + np.cumsum(rates) * TIME_STEP
-        path = np.cumsum(np.column_stack([np.cos(courses), np.sin(courses)]), axis=0) * speed * TIME_STEP
+        path = (
+            np.cumsum(np.column_stack([np.cos(courses), np.sin(courses)]), axis=0)
+            * speed
+            * TIME_STEP
+        )
         return np.asarray(path), max(LEAST_CHANGE, self._change / (2.0 * rate), change)
 
     def _take_in(self, heading_rate: float, flown: Array) -> None:
         """Take in what was commanded and flown: the course that the aircraft has turned less than its response to the commands."""
         steps = len(flown) - 1
-        self._change = max(abs(heading_rate - self.commands[-1]), self._change) * self._fading**steps
+        self._change = (
+            max(abs(heading_rate - self.commands[-1]), self._change) * self._fading**steps
+        )
         self.commands = [*self.commands[-self._late :], *[heading_rate] * steps]
         acted = np.array(self.commands[:steps]) * TIME_STEP
         courses = np.unwrap(np.arctan2(flown[:, 1], flown[:, 0]))
         lacks = acted - np.diff(courses) - self._slow * np.diff(flown[:, 2])
-        self._lack = float(lfilter([1.0], [1.0, -self._kept], lacks, zi=[self._kept * self._lack])[0][-1])
+        self._lack = float(
+            lfilter([1.0], [1.0, -self._kept], lacks, zi=[self._kept * self._lack])[0][-1]
+        )
 
 
 def _deviation(flown: Array, predicted: Array, side: float) -> float:

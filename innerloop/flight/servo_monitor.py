@@ -33,15 +33,23 @@ class ServoMonitor:
     def __init__(self, fdm: Fdm, time_step: float) -> None:
         self._surfaces = []
         for actuator in fdm.spec.actuators:
-            control_input = next((i for i in fdm.spec.inputs if set(actuator.commands) <= set(i.commands)), None)
+            control_input = next(
+                (i for i in fdm.spec.inputs if set(actuator.commands) <= set(i.commands)), None
+            )
             if control_input is not None and control_input.name == "throttle":
                 continue
             feedback = actuator.feedback
             if feedback is None and control_input is not None:
-                feedback = Feedback(commanded=commanded_property(control_input), position=control_input.commands[0], travel=1.0)
+                feedback = Feedback(
+                    commanded=commanded_property(control_input),
+                    position=control_input.commands[0],
+                    travel=1.0,
+                )
             if feedback is None:
                 continue
-            command, position = (fdm.node(name).get_double_value for name in (feedback.commanded, feedback.position))
+            command, position = (
+                fdm.node(name).get_double_value for name in (feedback.commanded, feedback.position)
+            )
             recent: deque[float] = deque(maxlen=1 + round(_TRAVEL_TIME / time_step))
             self._surfaces.append((command, position, feedback.travel, recent))
 

@@ -66,12 +66,16 @@ class Response:
         return float(np.max(np.abs(self.channels[channel])))
 
 
-def predicted_step(schedule: Schedule, index: int, command: str, size: float, duration: float) -> Response:
+def predicted_step(
+    schedule: Schedule, index: int, command: str, size: float, duration: float
+) -> Response:
     """Return the linear design's response to a step of ``size`` [SI] at design airspeed ``index``."""
     autopilot = linear_controller(ControlLaw(schedule), schedule.level(index))
     loop = closed_loop(schedule.models[index][LEVEL_GAINS], autopilot, schedule.delay)
     time = np.arange(0.0, duration, TIME_STEP)
-    answer = control.step_response(loop, time, input=COMMANDS.index(f"{command}_command"), squeeze=False)
+    answer = control.step_response(
+        loop, time, input=COMMANDS.index(f"{command}_command"), squeeze=False
+    )
     labels = list(loop.output_labels)
     return Response(
         command=command,
@@ -87,10 +91,14 @@ def model_step(schedule: Schedule, size: float, duration: float) -> Response:
     time = np.arange(0.0, duration, TIME_STEP)
     model = control.tf([frequency**2], [1.0, 2.0 * damping * frequency, frequency**2])
     answer = control.step_response(model, time).outputs
-    return Response(command="heading_rate", size=size, time=time, channels={"heading_rate": size * answer})
+    return Response(
+        command="heading_rate", size=size, time=time, channels={"heading_rate": size * answer}
+    )
 
 
-def flown_step(aircraft: AutopilotedAircraft, start: Trim, command: str, size: float, duration: float) -> Response:
+def flown_step(
+    aircraft: AutopilotedAircraft, start: Trim, command: str, size: float, duration: float
+) -> Response:
     """Return the response in JSBSim to a step of ``size`` [SI] from the equilibrium ``start``."""
     aircraft.release(start.state(), airspeed=start.airspeed, altitude=start.altitude)
     if command == "airspeed":
@@ -101,7 +109,10 @@ def flown_step(aircraft: AutopilotedAircraft, start: Trim, command: str, size: f
         aircraft.command_heading_rate(size)
     time, values = _record(aircraft.fdm, duration)
     return Response(
-        command=command, size=size, time=time, channels={name: v - v[0] for name, v in zip(CHANNELS, values.T, strict=True)}
+        command=command,
+        size=size,
+        time=time,
+        channels={name: v - v[0] for name, v in zip(CHANNELS, values.T, strict=True)},
     )
 
 
@@ -136,4 +147,6 @@ def _record(fdm: Fdm, duration: float) -> tuple[Array, Array]:
     for _ in range(count):
         values.append([read() for read in reads])
         run()
-    return TIME_STEP * np.arange(count, dtype=np.float64), np.array(values) * [scale for _, scale in CHANNELS.values()]
+    return TIME_STEP * np.arange(count, dtype=np.float64), np.array(values) * [
+        scale for _, scale in CHANNELS.values()
+    ]

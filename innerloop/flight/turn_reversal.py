@@ -34,7 +34,9 @@ class TurnReversalResponse:
     lag: float
 
 
-def measure_turn_reversal(aircraft: AutopilotedAircraft, start: Trim, bank: float) -> TurnReversalResponse:
+def measure_turn_reversal(
+    aircraft: AutopilotedAircraft, start: Trim, bank: float
+) -> TurnReversalResponse:
     """Return the dead time and lag of a reversal from a settled turn at ``bank`` [rad] to the left to one to the
     right.
 
@@ -68,9 +70,9 @@ def measure_turn_reversal(aircraft: AutopilotedAircraft, start: Trim, bank: floa
     flown = np.cumsum(np.cumsum(behind)) * TIME_STEP**2
 
     def least_lead(half: float) -> float:
-        return float(np.min(displacement(time, TurnReversalResponse(delay=half, lag=half)) - flown)) + _LEAD_FRACTION * float(
-            flown[-1]
-        )
+        return float(
+            np.min(displacement(time, TurnReversalResponse(delay=half, lag=half)) - flown)
+        ) + _LEAD_FRACTION * float(flown[-1])
 
     shortest, longest = TIME_STEP, float(time[-1])
     if not least_lead(longest) >= 0.0:
@@ -78,7 +80,11 @@ def measure_turn_reversal(aircraft: AutopilotedAircraft, start: Trim, bank: floa
             f"{aircraft.fdm.spec.name} at {start.airspeed:g} m/s does not turn right within {longest:.1f} s of the command in a"
             f" left turn at {math.degrees(bank):.0f} deg of bank; lower the bank"
         )
-    half = shortest if least_lead(shortest) >= 0.0 else float(brentq(least_lead, shortest, longest, xtol=1e-4))
+    half = (
+        shortest
+        if least_lead(shortest) >= 0.0
+        else float(brentq(least_lead, shortest, longest, xtol=1e-4))
+    )
     return TurnReversalResponse(delay=half, lag=half)
 
 

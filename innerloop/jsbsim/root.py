@@ -24,7 +24,9 @@ def write_root(schedule: Schedule, directory: Path) -> Path:
     systems = directory / "systems"
     systems.mkdir(exist_ok=True)
     (systems / f"{system_name(spec)}.xml").write_text(system_xml(schedule), encoding="utf-8")
-    before = next((i for i, element in enumerate(root) if element.tag == "flight_control"), len(root))
+    before = next(
+        (i for i, element in enumerate(root) if element.tag == "flight_control"), len(root)
+    )
     root.insert(before, ET.Element("system", file=system_name(spec)))
     model.write(model_file, encoding="utf-8", xml_declaration=True)
     return directory

@@ -95,8 +95,18 @@ def demonstration(envelope: Envelope, start: Trim) -> tuple[Command, ...]:
         for time, name, value, note in (
             (5.0, HEADING_RATE_COMMAND, heading_rate, f"Turn right at {turn}."),
             (20.0, HEADING_RATE_COMMAND, 0.0, "Fly straight on."),
-            (25.0, ALTITUDE_COMMAND, start.altitude + altitude_step, f"Change altitude by {altitude_step:+.3g} m."),
-            (40.0, AIRSPEED_COMMAND, start.airspeed + airspeed_step, f"Change airspeed by {airspeed_step:+.3g} m/s."),
+            (
+                25.0,
+                ALTITUDE_COMMAND,
+                start.altitude + altitude_step,
+                f"Change altitude by {altitude_step:+.3g} m.",
+            ),
+            (
+                40.0,
+                AIRSPEED_COMMAND,
+                start.airspeed + airspeed_step,
+                f"Change airspeed by {airspeed_step:+.3g} m/s.",
+            ),
             (55.0, ALTITUDE_COMMAND, start.altitude, "Come back to the altitude of the start."),
             (55.0, AIRSPEED_COMMAND, start.airspeed, "Come back to the airspeed of the start."),
             (70.0, HEADING_RATE_COMMAND, -heading_rate, f"Turn left at {turn}."),
@@ -126,7 +136,9 @@ def write_script(schedule: Schedule, root: Path) -> Path:
     fdm = Fdm(spec, root)
     fdm.place(start.state())
     name = f"{spec.model}_autopilot"
-    (root / "aircraft" / spec.model / f"{name}_init.xml").write_text(_INITIALISATION.format(name=name), encoding="utf-8")
+    (root / "aircraft" / spec.model / f"{name}_init.xml").write_text(
+        _INITIALISATION.format(name=name), encoding="utf-8"
+    )
     held, preparations = _preparations(fdm, schedule.period)
     release = [*((integrator, fdm.read(integrator)) for integrator in INTEGRATORS), (RESET, 0.0)]
     events = [
@@ -146,7 +158,9 @@ def write_script(schedule: Schedule, root: Path) -> Path:
         rate=OUTPUT_RATE,
         before=_before(start, held * TIME_STEP),
         events="\n".join(events),
-        columns="\n".join(f'    <property caption="{column}">{column}</property>' for column in columns(fdm)),
+        columns="\n".join(
+            f'    <property caption="{column}">{column}</property>' for column in columns(fdm)
+        ),
     )
     script.write_text(text, encoding="utf-8")
     return script
@@ -160,11 +174,23 @@ def _preparations(fdm: Fdm, period: int) -> tuple[int, list[str]]:
     still = [(integrator, 0.0) for integrator in INTEGRATORS]
     cranking = CRANK if fdm.cranked else ()
     start = [*START_ENGINES, *cranking, *fdm.spec.configuration, *still]
-    events = [_event("Start the engines, and hold the body still while servos and engines settle.", -held, start)]
+    events = [
+        _event(
+            "Start the engines, and hold the body still while servos and engines settle.",
+            -held,
+            start,
+        )
+    ]
     if fdm.cranked:
         events.append(_event("Let the starter go.", -held + RUN_UP_STEPS, STOP_CRANKING))
     if run_up:
-        events.append(_event("Gear, fuel and levers again, as they are in flight.", -settle, fdm.spec.configuration))
+        events.append(
+            _event(
+                "Gear, fuel and levers again, as they are in flight.",
+                -settle,
+                fdm.spec.configuration,
+            )
+        )
     return held, events
 
 
@@ -176,7 +202,11 @@ def columns(fdm: Fdm) -> list[str]:
     ----------
     fdm : the aircraft under its autopilot
     """
-    names = [*_MOTION, *(command for i in fdm.spec.inputs for command in i.commands), *(s.position for s in fdm.spec.driven_states)]
+    names = [
+        *_MOTION,
+        *(command for i in fdm.spec.inputs for command in i.commands),
+        *(s.position for s in fdm.spec.driven_states),
+    ]
     for name in names:
         fdm.node(name)
     engine = 0
@@ -210,7 +240,9 @@ def _event(note: str, step: int, values: Sequence[tuple[str, float]]) -> str:
     JSBSim advances its clock before it looks at events, and adds up rounding in it: the half step is far from both
     neighbours.
     """
-    lines = "\n".join(f'      <set name="{name}" value="{float(value)!r}"/>' for name, value in values)
+    lines = "\n".join(
+        f'      <set name="{name}" value="{float(value)!r}"/>' for name, value in values
+    )
     condition = f"simulation/sim-time-sec ge {(step + 0.5) * TIME_STEP!r}"
     return _EVENT.format(note=note, condition=condition, time=step * TIME_STEP, sets=lines)
 

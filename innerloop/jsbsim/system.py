@@ -58,7 +58,11 @@ _ROLL = "attitude/phi-rad"
 
 def system_xml(schedule: Schedule) -> str:
     """Return the autopilot as a JSBSim ``<system>`` document."""
-    parts = {"Measurements": _measurements, "Airspeed and altitude": _longitudinal, "Heading rate": _lateral}
+    parts = {
+        "Measurements": _measurements,
+        "Airspeed and altitude": _longitudinal,
+        "Heading rate": _lateral,
+    }
     commands = "\n".join(
         f'<property value="{value:.9g}">{name}</property>'
         for name, value in (
@@ -72,8 +76,12 @@ def system_xml(schedule: Schedule) -> str:
         )
     )
     # The integrators of a channel that runs every few time steps integrate over as many.
-    body = "\n".join(channel(name, schedule.period, components(schedule)) for name, components in parts.items())
-    document = ET.fromstring(f'<system name="{system_name(schedule.spec)}">\n{commands}\n{body}\n</system>')
+    body = "\n".join(
+        channel(name, schedule.period, components(schedule)) for name, components in parts.items()
+    )
+    document = ET.fromstring(
+        f'<system name="{system_name(schedule.spec)}">\n{commands}\n{body}\n</system>'
+    )
     ET.indent(document)
     note = "<!-- Written by innerloop.jsbsim.system; design it again rather than editing. -->"
     return f'<?xml version="1.0"?>\n{note}\n{ET.tostring(document, encoding="unicode")}\n'
@@ -87,7 +95,9 @@ def _by_point(schedule: Schedule, gain: Callable[[Gains], float]) -> str:
 
 def _by_bank(schedule: Schedule, quantity: str, bank: str = _ROLL) -> str:
     """Turn compensation: a trim quantity over bank, by default the actual one, and commanded airspeed."""
-    return table_2d(bank, _SCHEDULE, schedule.banks, schedule.airspeeds, schedule.over_bank(quantity))
+    return table_2d(
+        bank, _SCHEDULE, schedule.banks, schedule.airspeeds, schedule.over_bank(quantity)
+    )
 
 
 def _commanded(control_input: ControlInput, demand: str) -> list[str]:
@@ -99,7 +109,11 @@ def _commanded(control_input: ControlInput, demand: str) -> list[str]:
     effects, commands = zip(*control_input.effectiveness, strict=True)
     return [
         function(name, value),
-        function(commanded_property(control_input), table_1d(name, effects, commands), control_input.commands),
+        function(
+            commanded_property(control_input),
+            table_1d(name, effects, commands),
+            control_input.commands,
+        ),
     ]
 
 
@@ -110,7 +124,9 @@ def _measurements(schedule: Schedule) -> list[str]:
     sin_pitch, cos_pitch = (operation(f, read("attitude/theta-rad")) for f in ("sin", "cos"))
 
     def ahead(x: str, y: str, z: str) -> str:
-        return total(times(x, cos_pitch), times(sin_pitch, total(times(y, sin_roll), times(z, cos_roll))))
+        return total(
+            times(x, cos_pitch), times(sin_pitch, total(times(y, sin_roll), times(z, cos_roll)))
+        )
 
     def right(y: str, z: str) -> str:
         return minus(times(y, cos_roll), times(z, sin_roll))
@@ -121,14 +137,20 @@ def _measurements(schedule: Schedule) -> list[str]:
     moment = minus(times(speed_ahead, right(*force[1:])), times(speed_right, ahead(*force)))
     inertia = times(
         read("inertia/mass-slugs"),
-        operation("max", total(times(speed_ahead, speed_ahead), times(speed_right, speed_right)), number(1.0)),
+        operation(
+            "max",
+            total(times(speed_ahead, speed_ahead), times(speed_right, speed_right)),
+            number(1.0),
+        ),
     )
     return [
         # At least 1 m/s: JSBSim runs the system once without a speed, and integrators keep what a division by zero
         # gives.
         function(_AIRSPEED, operation("max", times(read("velocities/vt-fps"), foot), number(1.0))),
         function(_CLIMB_RATE, times(read("velocities/h-dot-fps"), foot)),
-        function(_SCHEDULE, clipped(read(AIRSPEED_COMMAND), envelope.airspeed_min, envelope.airspeed_max)),
+        function(
+            _SCHEDULE, clipped(read(AIRSPEED_COMMAND), envelope.airspeed_min, envelope.airspeed_max)
+        ),
         function("autopilot/speed-ahead-fps", ahead(*velocity)),
         function("autopilot/speed-right-fps", right(*velocity[1:])),
         # Rate of the horizontal air-relative course, from accelerometers and attitude (state.course_rate).
@@ -143,18 +165,28 @@ def _longitudinal(schedule: Schedule) -> list[str]:
     parts = [
         function(airspeed_error, minus(read(_SCHEDULE), read(_AIRSPEED))),
         function(altitude_error, minus(read(ALTITUDE_COMMAND), altitude)),
-        function("autopilot/pitch-error-rad", minus(_by_bank(schedule, "pitch"), read("attitude/theta-rad"))),
-        function("autopilot/pitch-rate-error", minus(_by_bank(schedule, "q"), read("velocities/q-rad_sec"))),
+        function(
+            "autopilot/pitch-error-rad",
+            minus(_by_bank(schedule, "pitch"), read("attitude/theta-rad")),
+        ),
+        function(
+            "autopilot/pitch-rate-error",
+            minus(_by_bank(schedule, "q"), read("velocities/q-rad_sec")),
+        ),
     ]
     errors = dict(
         zip(
             LONGITUDINAL,
             (
-                clipped(read(airspeed_error), -weights.airspeed_error_max, weights.airspeed_error_max),
+                clipped(
+                    read(airspeed_error), -weights.airspeed_error_max, weights.airspeed_error_max
+                ),
                 times(number(-1.0), read(_CLIMB_RATE)),
                 read("autopilot/pitch-rate-error"),
                 read("autopilot/pitch-error-rad"),
-                clipped(read(altitude_error), -weights.altitude_error_max, weights.altitude_error_max),
+                clipped(
+                    read(altitude_error), -weights.altitude_error_max, weights.altitude_error_max
+                ),
             ),
             strict=True,
         )
@@ -168,7 +200,9 @@ def _longitudinal(schedule: Schedule) -> list[str]:
         times(errors["altitude"], operation("max", near, leaving)),
     )
     for row, name in ((0, "elevator"), (1, "throttle")):
-        unlimited, integral, growth = (f"autopilot/{name}-{part}" for part in ("unlimited", "integral", "integral-rate"))
+        unlimited, integral, growth = (
+            f"autopilot/{name}-{part}" for part in ("unlimited", "integral", "integral-rate")
+        )
         feedback = [
             times(_by_point(schedule, lambda g, at=(row, j): g.longitudinal[at]), errors[state])  # type: ignore[misc]
             for j, state in enumerate(LONGITUDINAL)
@@ -182,10 +216,16 @@ def _longitudinal(schedule: Schedule) -> list[str]:
                 growth,
                 total(
                     *(
-                        times(_by_point(schedule, lambda g, at=(row, j): g.longitudinal_integral[at]), error)  # type: ignore[misc]
+                        times(
+                            _by_point(schedule, lambda g, at=(row, j): g.longitudinal_integral[at]),  # type: ignore[misc]
+                            error,
+                        )
                         for j, error in enumerate(integrated)
                     ),
-                    times(number(weights.anti_windup_rate), minus(read(f"autopilot/{name}-command"), read(unlimited))),
+                    times(
+                        number(weights.anti_windup_rate),
+                        minus(read(f"autopilot/{name}-command"), read(unlimited)),
+                    ),
                 ),
             ),
             integrator(integral, growth, RESET),
@@ -224,7 +264,10 @@ def _lateral(schedule: Schedule) -> list[str]:
         integral = [read("autopilot/rudder-integral")] if name == "rudder" else []
         unlimited = f"autopilot/{name}-unlimited"
         parts += [
-            function(unlimited, total(_by_bank(schedule, name, BANK_COMMAND), *integral, *feedback, *ahead)),
+            function(
+                unlimited,
+                total(_by_bank(schedule, name, BANK_COMMAND), *integral, *feedback, *ahead),
+            ),
             *_commanded(schedule.spec.input(name), read(unlimited)),
         ]
     return parts + (_rudder_integral(schedule) if rudder else [])
@@ -249,7 +292,11 @@ def _heading_rate_model(schedule: Schedule) -> list[str]:
     turn_max = math.tan(schedule.envelope.bank_max) * STANDARD_GRAVITY
     limited = operation(
         "max",
-        operation("min", read(HEADING_RATE_COMMAND), operation("quotient", number(turn_max), read(_AIRSPEED))),
+        operation(
+            "min",
+            read(HEADING_RATE_COMMAND),
+            operation("quotient", number(turn_max), read(_AIRSPEED)),
+        ),
         operation("quotient", number(-turn_max), read(_AIRSPEED)),
     )
     return [
@@ -276,19 +323,37 @@ def _bank_command(schedule: Schedule) -> list[str]:
         number(1.0 / STANDARD_GRAVITY),
     )
     return [
-        function("autopilot/model-turn", times(read(_MODEL_RATE), read(_AIRSPEED), number(1.0 / STANDARD_GRAVITY))),
+        function(
+            "autopilot/model-turn",
+            times(read(_MODEL_RATE), read(_AIRSPEED), number(1.0 / STANDARD_GRAVITY)),
+        ),
         function(
             "autopilot/model-bank-rad",
-            table_2d("autopilot/model-turn", _SCHEDULE, list(turns), schedule.airspeeds, schedule.bank_for_turn(turns)),
+            table_2d(
+                "autopilot/model-turn",
+                _SCHEDULE,
+                list(turns),
+                schedule.airspeeds,
+                schedule.bank_for_turn(turns),
+            ),
         ),
         function(_BANK_RATE, rate_to_bank_rate),
-        function("autopilot/bank-unlimited-rad", total(read("autopilot/model-bank-rad"), read("autopilot/bank-integral"))),
+        function(
+            "autopilot/bank-unlimited-rad",
+            total(read("autopilot/model-bank-rad"), read("autopilot/bank-integral")),
+        ),
         function(BANK_COMMAND, clipped(read("autopilot/bank-unlimited-rad"), -bank_max, bank_max)),
         function(
             "autopilot/bank-integral-rate",
             total(
-                times(_by_point(schedule, lambda g: g.heading_integral), minus(read(_MODEL_RATE), read(HEADING_RATE))),
-                times(number(schedule.weights.anti_windup_rate), minus(read(BANK_COMMAND), read("autopilot/bank-unlimited-rad"))),
+                times(
+                    _by_point(schedule, lambda g: g.heading_integral),
+                    minus(read(_MODEL_RATE), read(HEADING_RATE)),
+                ),
+                times(
+                    number(schedule.weights.anti_windup_rate),
+                    minus(read(BANK_COMMAND), read("autopilot/bank-unlimited-rad")),
+                ),
             ),
         ),
         integrator("autopilot/bank-integral", "autopilot/bank-integral-rate", RESET),

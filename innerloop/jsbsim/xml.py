@@ -54,10 +54,15 @@ def table_1d(at: str, rows: Sequence[float], values: Sequence[float]) -> str:
     return f'<table><independentVar lookup="row">{at}</independentVar><tableData>\n{data}\n</tableData></table>'
 
 
-def table_2d(row_at: str, column_at: str, rows: Sequence[float], columns: Sequence[float], values: Array) -> str:
+def table_2d(
+    row_at: str, column_at: str, rows: Sequence[float], columns: Sequence[float], values: Array
+) -> str:
     """Return bilinear interpolation of ``values``, shape (rows, columns), constant past the edges."""
     head = " ".join(f"{column:.9g}" for column in columns)
-    body = "\n".join(f"{row:.9g} " + " ".join(f"{x:.9g}" for x in line) for row, line in zip(rows, values, strict=True))
+    body = "\n".join(
+        f"{row:.9g} " + " ".join(f"{x:.9g}" for x in line)
+        for row, line in zip(rows, values, strict=True)
+    )
     return (
         f'<table><independentVar lookup="row">{row_at}</independentVar>'
         f'<independentVar lookup="column">{column_at}</independentVar><tableData>\n{head}\n{body}\n</tableData></table>'

@@ -18,7 +18,14 @@ from innerloop.synthesis.schedule import Schedule
 COMMANDS = ("airspeed_command", "altitude_command", "heading_rate_command")
 """Commands [m/s, m, rad/s]."""
 
-STATES = ("elevator_integral", "throttle_integral", "bank_integral", "rudder_integral", "model_rate", "model_acceleration")
+STATES = (
+    "elevator_integral",
+    "throttle_integral",
+    "bank_integral",
+    "rudder_integral",
+    "model_rate",
+    "model_acceleration",
+)
 """States of the autopilot: integrals, and the reference model's heading rate and its rate [rad/s, rad/s^2]."""
 
 Array = npt.NDArray[np.float64]
@@ -40,8 +47,13 @@ class ControlLaw:
         self._quantities = ["pitch", "q", "r", *schedule.controls]
         tables = np.stack([schedule.over_bank(name) for name in self._quantities], axis=-1)
         self._over_bank = _table(schedule.banks, self._airspeeds, tables)
-        self._banks, self._gain_banks = (schedule.banks[0], schedule.banks[-1]), (schedule.gain_banks[0], schedule.gain_banks[-1])
-        stacked = np.stack([[gain_vector(g) for g in row] for row in schedule.gains]).transpose(1, 0, 2)
+        self._banks, self._gain_banks = (
+            (schedule.banks[0], schedule.banks[-1]),
+            (schedule.gain_banks[0], schedule.gain_banks[-1]),
+        )
+        stacked = np.stack([[gain_vector(g) for g in row] for row in schedule.gains]).transpose(
+            1, 0, 2
+        )
         self._gains = _table(schedule.gain_banks, self._airspeeds, stacked)
         self._slopes = bank_slopes(schedule)
         turns = schedule.turns()
@@ -50,7 +62,13 @@ class ControlLaw:
     def trim_tables(self, bank: float, airspeed: float) -> dict[str, float]:
         """Return the tabled trim quantities at a bank [rad] and commanded airspeed [m/s]."""
         low, high = self._banks
-        return dict(zip(self._quantities, self._over_bank(min(max(bank, low), high), airspeed).tolist(), strict=True))
+        return dict(
+            zip(
+                self._quantities,
+                self._over_bank(min(max(bank, low), high), airspeed).tolist(),
+                strict=True,
+            )
+        )
 
     def gains(self, bank: float, airspeed: float) -> Array:
         """Return the gains at a bank [rad] and commanded airspeed [m/s], as ``gain_vector`` orders them."""
@@ -68,7 +86,10 @@ class ControlLaw:
         return math.cos(bank) ** 2 * slope * measured_airspeed / STANDARD_GRAVITY
 
     def evaluate(
-        self, commands: Mapping[str, float], measured: Mapping[str, float], states: Mapping[str, float]
+        self,
+        commands: Mapping[str, float],
+        measured: Mapping[str, float],
+        states: Mapping[str, float],
     ) -> tuple[dict[str, float], dict[str, float]]:
         """Return the rates of ``STATES`` and the controls [-].
 
@@ -89,10 +110,14 @@ class ControlLaw:
         rates: dict[str, float] = {}
         controls: dict[str, float] = {}
         for row, name in enumerate(("elevator", "throttle")):
-            feedback = sum(gains.longitudinal[row, j] * errors[state] for j, state in enumerate(LONGITUDINAL))
+            feedback = sum(
+                gains.longitudinal[row, j] * errors[state] for j, state in enumerate(LONGITUDINAL)
+            )
             controls[name] = at_bank[name] + states[f"{name}_integral"] + float(feedback)
             integral = gains.longitudinal_integral[row]
-            rates[f"{name}_integral"] = float(integral[0] * errors["airspeed"] + integral[1] * errors["altitude"])
+            rates[f"{name}_integral"] = float(
+                integral[0] * errors["airspeed"] + integral[1] * errors["altitude"]
+            )
 
         frequency, damping = weights.model_frequency, weights.model_damping
         jerk = (
@@ -112,19 +137,28 @@ class ControlLaw:
         for row, name in enumerate(("aileron", "rudder")):
             if name not in self.schedule.controls:
                 continue
-            feedback = sum(gains.lateral[row, j] * lateral_errors[state] for j, state in enumerate(LATERAL))
-            ahead = slope * (gains.by_rate[row] * states["model_acceleration"] + gains.by_acceleration[row] * jerk)
+            feedback = sum(
+                gains.lateral[row, j] * lateral_errors[state] for j, state in enumerate(LATERAL)
+            )
+            ahead = slope * (
+                gains.by_rate[row] * states["model_acceleration"]
+                + gains.by_acceleration[row] * jerk
+            )
             controls[name] = at_command[name] + float(feedback) + float(ahead)
         if "rudder" in controls:
             controls["rudder"] += states["rudder_integral"]
-        rates["bank_integral"] = float(gains.heading_integral * (states["model_rate"] - measured["heading_rate"]))
+        rates["bank_integral"] = float(
+            gains.heading_integral * (states["model_rate"] - measured["heading_rate"])
+        )
         rates["rudder_integral"] = float(gains.sideslip_integral * measured.get("beta", 0.0))
         rates["model_rate"] = states["model_acceleration"]
         rates["model_acceleration"] = jerk
         return rates, controls
 
 
-def _table(rows: Sequence[float] | Array, columns: Array, values: Array) -> Callable[[float, float], Array]:
+def _table(
+    rows: Sequence[float] | Array, columns: Array, values: Array
+) -> Callable[[float, float], Array]:
     """Return the bilinear look-up of a table of vectors, extended past its edges.
 
     To linearise asks for the same point again and again, and moves it in few directions.
@@ -142,14 +176,21 @@ def _table(rows: Sequence[float] | Array, columns: Array, values: Array) -> Call
     return value
 
 
-def _scalar_table(rows: Sequence[float] | Array, columns: Array, values: Array) -> Callable[[float, float], float]:
+def _scalar_table(
+    rows: Sequence[float] | Array, columns: Array, values: Array
+) -> Callable[[float, float], float]:
     """Return the bilinear look-up of a table of numbers, extended past its edges."""
     at_row, at_column, table = _cells(rows), _cells(columns), values.tolist()
 
     def value(row: float, column: float) -> float:
         (i, y), (j, x) = at_row(row), at_column(column)
         low, high = table[i], table[i + 1]
-        return float(low[j] * (1.0 - y) * (1.0 - x) + low[j + 1] * (1.0 - y) * x + high[j] * y * (1.0 - x) + high[j + 1] * y * x)
+        return float(
+            low[j] * (1.0 - y) * (1.0 - x)
+            + low[j + 1] * (1.0 - y) * x
+            + high[j] * y * (1.0 - x)
+            + high[j + 1] * y * x
+        )
 
     return value
 

@@ -72,6 +72,8 @@ def operating_point(law: ControlLaw, trim: Trim) -> dict[str, float]:
     }
 
 
-def evaluate_at(law: ControlLaw, point: Mapping[str, float]) -> tuple[dict[str, float], dict[str, float]]:
+def evaluate_at(
+    law: ControlLaw, point: Mapping[str, float]
+) -> tuple[dict[str, float], dict[str, float]]:
     """Return the result of ``ControlLaw.evaluate`` at a point of commands, measurements and states by name."""
     return law.evaluate(point, point, point)

@@ -36,4 +36,6 @@ def state_lag(model: LinearModel, control_input: str) -> float:
     follow = model.A[np.ix_(driven, driven)]
     end = -np.linalg.solve(follow, model.B[driven, model.input_labels.index(control_input)])
     area = -np.linalg.solve(follow, end)
-    return max((float(a / e) for a, e in zip(area, end, strict=True) if abs(e) > _MOVES), default=0.0)
+    return max(
+        (float(a / e) for a, e in zip(area, end, strict=True) if abs(e) > _MOVES), default=0.0
+    )

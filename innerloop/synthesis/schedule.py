@@ -109,7 +109,9 @@ class Schedule:
         columns = []
         for airspeed, row in zip(self.airspeeds, self.trims, strict=True):
             turn = [airspeed * t.yaw_rate / STANDARD_GRAVITY for t in row]
-            columns.append(np.tan(_interpolate(turns, np.array(turn), np.array([t.roll for t in row]))))
+            columns.append(
+                np.tan(_interpolate(turns, np.array(turn), np.array([t.roll for t in row])))
+            )
         return np.arctan(np.array(columns).T)
 
     def turns(self) -> Array:

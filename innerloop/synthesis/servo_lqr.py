@@ -23,7 +23,9 @@ from innerloop.synthesis.quasi_static import quasi_static
 from innerloop.synthesis.weights import ControlWeights, DesignWeights
 
 
-def design_gains(model: LinearModel, trim: Trim, weights: DesignWeights, controls: ControlWeights) -> Gains:
+def design_gains(
+    model: LinearModel, trim: Trim, weights: DesignWeights, controls: ControlWeights
+) -> Gains:
     """Design the feedback for a linear model from ``aircraft.dynamics.linearise`` about ``trim``."""
     plant = quasi_static(model)
     longitudinal, longitudinal_integral = _longitudinal(plant, weights, controls)
@@ -54,16 +56,22 @@ def _servo(a: Matrix, b: Matrix, c: Matrix, d: Matrix, q: Matrix, r: Matrix) -> 
     return np.asarray(gain)
 
 
-def _longitudinal(plant: LinearModel, w: DesignWeights, controls: ControlWeights) -> tuple[Matrix, Matrix]:
+def _longitudinal(
+    plant: LinearModel, w: DesignWeights, controls: ControlWeights
+) -> tuple[Matrix, Matrix]:
     states = ("airspeed", "alpha", "q", "pitch", "altitude")
     a, b, c, d = plant.pick(states, ("elevator", "throttle"), ("airspeed", "altitude"))
-    q = _bryson(w.airspeed, 0.0, w.pitch_rate, w.pitch, w.altitude, w.airspeed_integral, w.altitude_integral)
+    q = _bryson(
+        w.airspeed, 0.0, w.pitch_rate, w.pitch, w.altitude, w.airspeed_integral, w.altitude_integral
+    )
     gain = _servo(a, b, c, d, q, _bryson(controls.elevator, controls.throttle))
     _, _, measured, _ = plant.pick(states, ("elevator",), LONGITUDINAL)
     return gain[:, :5] @ np.linalg.inv(measured), -gain[:, 5:]
 
 
-def _lateral(plant: LinearModel, w: DesignWeights, controls: ControlWeights) -> tuple[Matrix, float, float]:
+def _lateral(
+    plant: LinearModel, w: DesignWeights, controls: ControlWeights
+) -> tuple[Matrix, float, float]:
     """Return the gains from ``LATERAL``, and those from the integrals of heading-rate error and of sideslip."""
     states = ("beta", "p", "r", "roll")
     if not _has_rudder(plant):
@@ -87,7 +95,9 @@ def _feedforward(plant: LinearModel, trim: Trim) -> tuple[Matrix, Matrix]:
     The rudder cancels the yaw that rolling and aileron cause, and turns the nose with the turn: r grows by g
     cos(bank)/V times p.
     """
-    axes, inputs = (("p", "r"), ("aileron", "rudder")) if _has_rudder(plant) else (("p",), ("aileron",))
+    axes, inputs = (
+        (("p", "r"), ("aileron", "rudder")) if _has_rudder(plant) else (("p",), ("aileron",))
+    )
     a, b, _, _ = plant.pick(axes, inputs, ("p",))
     turning = np.array([0.0, STANDARD_GRAVITY * math.cos(trim.roll) / trim.airspeed])[: len(axes)]
     inverse = np.linalg.inv(b)

@@ -94,7 +94,9 @@ class LoopBandwidths:
     longitudinal: float
     airspeed: float
 
-    def scaled(self, *, lateral: float = 1.0, longitudinal: float = 1.0, airspeed: float = 1.0) -> "LoopBandwidths":
+    def scaled(
+        self, *, lateral: float = 1.0, longitudinal: float = 1.0, airspeed: float = 1.0
+    ) -> "LoopBandwidths":
         """Return the bandwidths times factors."""
         return LoopBandwidths(
             lateral=self.lateral * lateral,
@@ -181,7 +183,9 @@ def _reachable(model: LinearModel, bank: float) -> LoopBandwidths:
         _LIFT_FRACTION * abs(a("alpha", "alpha")),
     )
     return LoopBandwidths(
-        lateral=lateral, longitudinal=longitudinal, airspeed=_ENGINE_FRACTION / (state_lag(model, "throttle") + delay)
+        lateral=lateral,
+        longitudinal=longitudinal,
+        airspeed=_ENGINE_FRACTION / (state_lag(model, "throttle") + delay),
     )
 
 
@@ -214,7 +218,9 @@ def design_weights(bandwidths: LoopBandwidths, airspeed: float) -> DesignWeights
     )
 
 
-def control_weights(model: LinearModel, bandwidths: LoopBandwidths, weights: DesignWeights) -> ControlWeights:
+def control_weights(
+    model: LinearModel, bandwidths: LoopBandwidths, weights: DesignWeights
+) -> ControlWeights:
     """Return the controls at one airspeed that move their axis at its frequency, against its own damping."""
     plant = quasi_static(model)
 
@@ -227,8 +233,14 @@ def control_weights(model: LinearModel, bandwidths: LoopBandwidths, weights: Des
 
     rudder = math.nan
     if "rudder" in plant.input_labels:
-        stiffness = abs(float(plant.A[plant.state_labels.index("r"), plant.state_labels.index("beta")]))
-        rudder = weights.sideslip * min(effort("r", bandwidths.lateral), stiffness) / authority("r", "rudder")
+        stiffness = abs(
+            float(plant.A[plant.state_labels.index("r"), plant.state_labels.index("beta")])
+        )
+        rudder = (
+            weights.sideslip
+            * min(effort("r", bandwidths.lateral), stiffness)
+            / authority("r", "rudder")
+        )
     return ControlWeights(
         elevator=weights.pitch * effort("q", bandwidths.longitudinal) / authority("q", "elevator"),
         aileron=weights.roll * effort("p", bandwidths.lateral) / authority("p", "aileron"),

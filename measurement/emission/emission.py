@@ -97,8 +97,18 @@ def emission_of(
     check_air(air_temperature, AIR_PRESSURE)
     load = _load(ship, speed, power)
     energy_rate = load * ship.power_max / _KILOWATT_HOUR
-    fuel_rate = 1e-3 * _SFOC_G_KWH[ship.stroke][fuel.residual] * (0.455 * load**2 - 0.71 * load + 1.28) * energy_rate
-    nox = 1e-3 * _NOX_G_KWH[ship.stroke][fuel.residual][ship.nox_tier] * energy_rate / MOLAR_MASS["no2"]
+    fuel_rate = (
+        1e-3
+        * _SFOC_G_KWH[ship.stroke][fuel.residual]
+        * (0.455 * load**2 - 0.71 * load + 1.28)
+        * energy_rate
+    )
+    nox = (
+        1e-3
+        * _NOX_G_KWH[ship.stroke][fuel.residual][ship.nox_tier]
+        * energy_rate
+        / MOLAR_MASS["no2"]
+    )
     rates = (
         fuel_rate * fuel.so2_per_fuel,
         fuel_rate * fuel.co2_per_fuel / MOLAR_MASS["co2"],
@@ -134,7 +144,9 @@ def _load(ship: Ship, speed: float | None, power: float | None) -> float:
     """Share of the largest power [-]."""
     if (speed is None) == (power is None):
         given = "neither is" if speed is None else "both are"
-        raise MeasurementError(f"emission needs speed or power of {ship.name}, and {given} given; give one of them")
+        raise MeasurementError(
+            f"emission needs speed or power of {ship.name}, and {given} given; give one of them"
+        )
     if speed is not None:
         if not 0.0 <= speed <= ship.speed_max:
             raise MeasurementError(
@@ -142,7 +154,9 @@ def _load(ship: Ship, speed: float | None, power: float | None) -> float:
             )
         return max(_LOAD_MIN, (speed / ship.speed_max) ** 3)
     if power is None or not 0.0 < power <= ship.power_max:
-        raise MeasurementError(f"power of {ship.name} is {power or 0.0:g} W; it has above 0 to {ship.power_max:g}")
+        raise MeasurementError(
+            f"power of {ship.name} is {power or 0.0:g} W; it has above 0 to {ship.power_max:g}"
+        )
     return power / ship.power_max
 
 
@@ -158,6 +172,10 @@ def check_air(temperature: float, pressure: float) -> None:
     MeasurementError : one of them is out of its range
     """
     if not 220.0 <= temperature <= 330.0:
-        raise MeasurementError(f"air temperature is {temperature:g} K; give 220 to 330, 288.15 is 15 degC")
+        raise MeasurementError(
+            f"air temperature is {temperature:g} K; give 220 to 330, 288.15 is 15 degC"
+        )
     if not 5e4 <= pressure <= 1.1e5:
-        raise MeasurementError(f"air pressure is {pressure:g} Pa; give 5e4 to 1.1e5, 101325 is standard")
+        raise MeasurementError(
+            f"air pressure is {pressure:g} Pa; give 5e4 to 1.1e5, 101325 is standard"
+        )

@@ -70,7 +70,10 @@ def fuel_preset(name: str, sulphur_percent: float | None = None) -> Fuel:
     MeasurementError : the name is not known, or the content not within 0 to 5
     """
     fields = preset(_FILE, "fuel", name)
-    return Fuel(name=name, **fields if sulphur_percent is None else {**fields, "sulphur_percent": sulphur_percent})
+    return Fuel(
+        name=name,
+        **fields if sulphur_percent is None else {**fields, "sulphur_percent": sulphur_percent},
+    )
 
 
 def expected_fsc(fuel: Fuel) -> float:

@@ -67,14 +67,22 @@ class Ship:
         if self.stroke not in {2, 4}:
             raise MeasurementError(f"stroke of {self.name} is {self.stroke}; an engine has 2 or 4")
         if self.nox_tier not in {0, 1, 2, 3}:
-            raise MeasurementError(f"NOx tier of {self.name} is {self.nox_tier}; there are 0, 1, 2 and 3")
+            raise MeasurementError(
+                f"NOx tier of {self.name} is {self.nox_tier}; there are 0, 1, 2 and 3"
+            )
         for name in _POSITIVE:
             if not 0.0 < getattr(self, name) < math.inf:
-                raise MeasurementError(f"{name} of {self.name} is {getattr(self, name):g}; give a finite value above 0")
+                raise MeasurementError(
+                    f"{name} of {self.name} is {getattr(self, name):g}; give a finite value above 0"
+                )
         if not 100.0 <= self.exhaust_temperature_c <= 600.0:
-            raise MeasurementError(f"exhaust_temperature_c of {self.name} is {self.exhaust_temperature_c:g}; give 100 to 600")
+            raise MeasurementError(
+                f"exhaust_temperature_c of {self.name} is {self.exhaust_temperature_c:g}; give 100 to 600"
+            )
         if not 0.0 <= self.wake_spread <= 20.0:
-            raise MeasurementError(f"wake_spread of {self.name} is {self.wake_spread:g} m; give 0 to 20, usually 0 to 8")
+            raise MeasurementError(
+                f"wake_spread of {self.name} is {self.wake_spread:g} m; give 0 to 20, usually 0 to 8"
+            )
 
 
 def ship_preset(name: str) -> Ship:
@@ -89,7 +97,11 @@ def ship_preset(name: str) -> Ship:
 
 def ship_of(given: str | Mapping[str, Any]) -> Ship:
     """Return a ship by its name, or from a table; one without a title is called ``OWN``. Errors as of the two."""
-    return ship_preset(given) if isinstance(given, str) else read_ship(given, str(given.get("title", OWN)))
+    return (
+        ship_preset(given)
+        if isinstance(given, str)
+        else read_ship(given, str(given.get("title", OWN)))
+    )
 
 
 def read_ship(table: Mapping[str, Any], name: str) -> Ship:
@@ -99,10 +111,15 @@ def read_ship(table: Mapping[str, Any], name: str) -> Ship:
     ------
     MeasurementError : a key is not known or is missing, or a value is not of its kind or range
     """
-    where, numbers = f"ship '{name}'", [field.name for field in fields(Ship) if field.name not in _WORDS]
+    where, numbers = (
+        f"ship '{name}'",
+        [field.name for field in fields(Ship) if field.name not in _WORDS],
+    )
     known = ["title", *numbers]
     if unknown := [key for key in table if key not in known]:
-        raise MeasurementError(f"{where} has the key '{unknown[0]}'{guess(unknown[0], known)} it may have {', '.join(known)}")
+        raise MeasurementError(
+            f"{where} has the key '{unknown[0]}'{guess(unknown[0], known)} it may have {', '.join(known)}"
+        )
     if missing := [key for key in numbers if key not in table]:
         raise MeasurementError(f"{where} has no {missing[0]}; give all of {', '.join(numbers)}")
     values: dict[str, Any] = {key: number(table[key], key, where) for key in numbers}

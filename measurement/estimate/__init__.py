@@ -5,4 +5,12 @@ from measurement.estimate.over_time import over_time, time_to_verdict
 from measurement.estimate.result import Figures, FscEstimate
 from measurement.estimate.verdict import Verdict, judged
 
-__all__ = ["Figures", "FscEstimate", "Verdict", "estimate", "judged", "over_time", "time_to_verdict"]
+__all__ = [
+    "Figures",
+    "FscEstimate",
+    "Verdict",
+    "estimate",
+    "judged",
+    "over_time",
+    "time_to_verdict",
+]

@@ -10,7 +10,12 @@ from measurement.errors import MeasurementError
 from measurement.estimate.flight_log.analysis import analyse
 from measurement.estimate.flight_log.config import LogConfig, read_config
 from measurement.estimate.flight_log.csv_file import read_flight
-from measurement.estimate.flight_log.run_files import build_report, refuse_another_log, refuse_another_run, write_run
+from measurement.estimate.flight_log.run_files import (
+    build_report,
+    refuse_another_log,
+    refuse_another_run,
+    write_run,
+)
 from measurement.estimate.flight_log.words import lacking, summary, unused
 
 BAD_INPUT = 2
@@ -39,7 +44,12 @@ def main(arguments: list[str] | None = None) -> int:
         metavar="TOML",
         help="instrument, columns, limits; without it the instrument counts as unknown",
     )
-    parser.add_argument("--out", type=Path, metavar="DIR", help="directory of files and report; default runs/measurement_FLIGHT")
+    parser.add_argument(
+        "--out",
+        type=Path,
+        metavar="DIR",
+        help="directory of files and report; default runs/measurement_FLIGHT",
+    )
     parser.add_argument("--no-report", action="store_true", help="write no report")
     given = parser.parse_args(arguments)
     directory = given.out or Path("runs") / f"measurement_{given.flight.stem}"
@@ -52,11 +62,18 @@ def main(arguments: list[str] | None = None) -> int:
             refuse_another_log(directory, given.flight)
         with _naming(given.flight):
             analysis = analyse(
-                flight.readings, config.instrument, method=config.method, carbon=config.carbon, limits_percent=config.limits_percent
+                flight.readings,
+                config.instrument,
+                method=config.method,
+                carbon=config.carbon,
+                limits_percent=config.limits_percent,
             )
         write_run(directory, flight, analysis, given.flight, given.config, _command(arguments))
     except MeasurementError as error:
-        line = "".join(letter if letter.isprintable() else letter.encode("unicode_escape").decode() for letter in str(error))
+        line = "".join(
+            letter if letter.isprintable() else letter.encode("unicode_escape").decode()
+            for letter in str(error)
+        )
         print(f"error: {line}", file=sys.stderr)
         return BAD_INPUT
     more = (*lacking(flight, analysis), *unused(flight.readings, config.instrument))

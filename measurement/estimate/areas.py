@@ -80,22 +80,36 @@ def area_ratio(record: Record, instrument: SnifferSpec, passes: Sequence[Pass]) 
     times = np.array([found.centre_s for found in passes])
     interval = float(np.median(np.diff(times))) if len(times) > 1 else math.nan
     if co2 <= 0.0:
-        return Areas(ratio=math.nan, noise=math.nan, share=math.nan, separate=math.nan, interval_s=interval)
+        return Areas(
+            ratio=math.nan, noise=math.nan, share=math.nan, separate=math.nan, interval_s=interval
+        )
     ratio = sum(counted[gas][0] * areas[gas] for gas in gases) / co2
     variance = sum(
-        (counted[gas][0] - ratio * counted[gas][1]) ** 2 * _variance(weights[gas], instrument.known(gas), record.step)
+        (counted[gas][0] - ratio * counted[gas][1]) ** 2
+        * _variance(weights[gas], instrument.known(gas), record.step)
         for gas in gases
     )
-    remains = {gas: max(float(weights[gas] @ _puffs(record, instrument, passes, gas)) / co2, _SHARE_LEAST) for gas in gases}
+    remains = {
+        gas: max(float(weights[gas] @ _puffs(record, instrument, passes, gas)) / co2, _SHARE_LEAST)
+        for gas in gases
+    }
     separate = sum(counted[gas][0] * areas[gas] / remains[gas] for gas in gases) / co2
-    return Areas(ratio=ratio, noise=math.sqrt(variance) / co2, share=remains["so2"], separate=separate, interval_s=interval)
+    return Areas(
+        ratio=ratio,
+        noise=math.sqrt(variance) / co2,
+        share=remains["so2"],
+        separate=separate,
+        interval_s=interval,
+    )
 
 
 def _variance(weights: Array, channel: Channel, step: float) -> float:
     """Return the variance of a weighted sum of readings, by noise and by the drift of their zero."""
     # A step of the drift is in all readings that follow it.
     later = np.cumsum(weights[::-1])
-    return channel.noise**2 * float(weights @ weights) + channel.random_walk**2 * step * float(later @ later)
+    return channel.noise**2 * float(weights @ weights) + channel.random_walk**2 * step * float(
+        later @ later
+    )
 
 
 def _windows(record: Record, instrument: SnifferSpec, passes: Sequence[Pass]) -> dict[str, Array]:
@@ -109,11 +123,16 @@ def _windows(record: Record, instrument: SnifferSpec, passes: Sequence[Pass]) ->
     onsets = [*(found.start_s for found in passes[1:]), math.inf]
     ends = [min(found.end_s + tail, onset) for found, onset in zip(passes, onsets, strict=True)]
     # Where the one before is over, the window leads its pass; where not, it begins at the trough.
-    starts = [max(found.start_s - _LEAD, before) for found, before in zip(passes, [-math.inf, *ends[:-1]], strict=True)]
+    starts = [
+        max(found.start_s - _LEAD, before)
+        for found, before in zip(passes, [-math.inf, *ends[:-1]], strict=True)
+    ]
     windows, weights = tuple(zip(starts, ends, strict=True)), {}
     for gas in gases:
         late = instrument.known(gas).delay_s - instrument.known("co2").delay_s
-        weights[gas] = record.once(("areas", windows, late), partial(_all_windows, record, windows, late))
+        weights[gas] = record.once(
+            ("areas", windows, late), partial(_all_windows, record, windows, late)
+        )
     return weights
 
 
@@ -121,7 +140,10 @@ def _all_windows(record: Record, windows: Sequence[tuple[float, float]], late: f
     """Return the weights of samples in the areas over windows that are ``late`` [s]."""
     weights = np.zeros(len(record.time))
     for i, (start, end) in enumerate(windows):
-        free = (windows[i - 1][1] if i else -math.inf), (windows[i + 1][0] if i + 1 < len(windows) else math.inf)
+        free = (
+            (windows[i - 1][1] if i else -math.inf),
+            (windows[i + 1][0] if i + 1 < len(windows) else math.inf),
+        )
         _add_window(weights, record, (start + late, end + late), (free[0] + late, free[1] + late))
     return weights
 
@@ -133,17 +155,26 @@ def _puffs(record: Record, instrument: SnifferSpec, passes: Sequence[Pass], gas:
     between two samples a puff arrives.
     """
     channel, co2 = instrument.known(gas), instrument.known("co2")
-    arrivals = np.array([found.centre_s for found in passes]) - sum(co2.constants) + channel.delay_s - co2.delay_s
+    arrivals = (
+        np.array([found.centre_s for found in passes])
+        - sum(co2.constants)
+        + channel.delay_s
+        - co2.delay_s
+    )
     since = record.time[:, np.newaxis] - arrivals
     begin, end = (np.maximum(since + half, 0.0) for half in (-0.5 * record.step, 0.5 * record.step))
     doses = np.array([found.dose_ppm_s for found in passes])
     read = np.zeros(len(since))
     for weight, constant in parallel(channel.constants):
-        read += weight / record.step * ((np.exp(-begin / constant) - np.exp(-end / constant)) @ doses)
+        read += (
+            weight / record.step * ((np.exp(-begin / constant) - np.exp(-end / constant)) @ doses)
+        )
     return read
 
 
-def _add_window(weights: Array, record: Record, window: tuple[float, float], free: tuple[float, float]) -> None:
+def _add_window(
+    weights: Array, record: Record, window: tuple[float, float], free: tuple[float, float]
+) -> None:
     """Add to the samples' weights those of an area over a window and its background [s].
 
     The background is the straight line between the means of the samples before and after the window: of those within ``_BASE``, as

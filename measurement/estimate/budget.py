@@ -26,7 +26,9 @@ SULPHATE_SHARE = 0.0225
 _CORRECTING = ("no", "no2")
 
 
-def unmeasured(instrument: SnifferSpec, measured: tuple[str, ...], carbon: float) -> dict[str, tuple[float, float]]:
+def unmeasured(
+    instrument: SnifferSpec, measured: tuple[str, ...], carbon: float
+) -> dict[str, tuple[float, float]]:
     """Return what NO and NO2 that are not measured add to the result, and its standard deviation, by gas [% m/m]."""
     so2, found = instrument.known("so2"), {}
     for gas in _CORRECTING:
@@ -34,7 +36,9 @@ def unmeasured(instrument: SnifferSpec, measured: tuple[str, ...], carbon: float
         if gas not in measured and (share or deviation):
             ratio, ratio_deviation = EXPECTED_PPB_PER_PPM[gas]
             factor = fsc_factor(carbon)
-            spread = math.sqrt((share * ratio_deviation) ** 2 + deviation**2 * (ratio**2 + ratio_deviation**2))
+            spread = math.sqrt(
+                (share * ratio_deviation) ** 2 + deviation**2 * (ratio**2 + ratio_deviation**2)
+            )
             found[gas] = factor * share * ratio, factor * spread
     return found
 
@@ -54,7 +58,9 @@ class CommonErrors:
 
 
 def common_errors(
-    instrument: SnifferSpec, measured: tuple[str, ...], changes: Callable[[SnifferSpec], tuple[float, Array]]
+    instrument: SnifferSpec,
+    measured: tuple[str, ...],
+    changes: Callable[[SnifferSpec], tuple[float, Array]],
 ) -> CommonErrors:
     """Return what gains, responses, delays and cross-sensitivities do that are not known exactly.
 
@@ -80,16 +86,36 @@ def _moved(instrument: SnifferSpec, measured: tuple[str, ...]) -> Iterator[tuple
     for gas in measured:
         channel = instrument.known(gas)
         correcting = gas in _CORRECTING
-        if correcting and not any(instrument.known(main).cross.get(gas, 0.0) for main in ("so2", "co2")):
+        if correcting and not any(
+            instrument.known(main).cross.get(gas, 0.0) for main in ("so2", "co2")
+        ):
             continue
         name, response = (gas, gas) if correcting else ("calibration", "response")
         if channel.gain_sd:
-            yield name, instrument.with_channel(replace(channel, gain=channel.gain * (1.0 + channel.gain_sd)))
+            yield (
+                name,
+                instrument.with_channel(
+                    replace(channel, gain=channel.gain * (1.0 + channel.gain_sd))
+                ),
+            )
         for other, deviation in channel.cross_sd.items():
             if other in measured and deviation:
                 cross = {**channel.cross, other: channel.cross.get(other, 0.0) + deviation}
-                yield other if other in _CORRECTING else "calibration", instrument.with_channel(replace(channel, cross=cross))
+                yield (
+                    other if other in _CORRECTING else "calibration",
+                    instrument.with_channel(replace(channel, cross=cross)),
+                )
         if 0.0 < channel.t90_sd < math.inf:
-            yield response, instrument.with_channel(replace(channel, t90_s=channel.t90_s * (1.0 + channel.t90_sd)))
+            yield (
+                response,
+                instrument.with_channel(
+                    replace(channel, t90_s=channel.t90_s * (1.0 + channel.t90_sd))
+                ),
+            )
         if 0.0 < channel.delay_sd_s < math.inf:
-            yield response, instrument.with_channel(replace(channel, delay_s=channel.delay_s + channel.delay_sd_s))
+            yield (
+                response,
+                instrument.with_channel(
+                    replace(channel, delay_s=channel.delay_s + channel.delay_sd_s)
+                ),
+            )

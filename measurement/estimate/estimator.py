@@ -8,12 +8,25 @@ import numpy as np
 
 from measurement.errors import MeasurementError
 from measurement.estimate.areas import area_ratio
-from measurement.estimate.budget import CARBON_SD, SAMPLING_SD, SULPHATE_SHARE, common_errors, unmeasured
+from measurement.estimate.budget import (
+    CARBON_SD,
+    SAMPLING_SD,
+    SULPHATE_SHARE,
+    common_errors,
+    unmeasured,
+)
 from measurement.estimate.fit.alignment import DELAY_MOST, Alignment, align, stated, widened
 from measurement.estimate.fit.groups import grouped
 from measurement.estimate.fit.regression import fitted, regress
 from measurement.estimate.fit.signals import Ends, Signals, make_signals, samples_of, used_gases
-from measurement.estimate.passes import SNR_LEAST, Pass, co2_excesses, find_passes, read_coarsely, readings_noise
+from measurement.estimate.passes import (
+    SNR_LEAST,
+    Pass,
+    co2_excesses,
+    find_passes,
+    read_coarsely,
+    readings_noise,
+)
 from measurement.estimate.plausible import unlikely
 from measurement.estimate.quality import judged_quality, late, noise_alone, not_arrived, stranger
 from measurement.estimate.record import Record, checked_record
@@ -75,15 +88,25 @@ def estimate(
     strange = unlikely(record, readings, instrument)
     noise = readings_noise(record, instrument)
     instrument = replace(
-        instrument, channels=tuple(replace(channel, noise=noise.get(channel.gas, channel.noise)) for channel in instrument.channels)
+        instrument,
+        channels=tuple(
+            replace(channel, noise=noise.get(channel.gas, channel.noise))
+            for channel in instrument.channels
+        ),
     )
     passes = find_passes(record, instrument.known("co2"))
     problems = [*record.problems, *strange, *_too_little(record, instrument, passes, noise["co2"])]
     if not passes:
         ratio = _nothing(instrument)
     else:
-        ratio = _regressed(record, instrument) if method == "regression" else _areas(record, instrument, passes)
-    return _told(record, passes, ratio, method, carbon, tuple(limits_percent), [*problems, *ratio.problems])
+        ratio = (
+            _regressed(record, instrument)
+            if method == "regression"
+            else _areas(record, instrument, passes)
+        )
+    return _told(
+        record, passes, ratio, method, carbon, tuple(limits_percent), [*problems, *ratio.problems]
+    )
 
 
 def check_parameters(method: str, carbon: float, limits_percent: Sequence[float]) -> None:
@@ -96,12 +119,18 @@ def check_parameters(method: str, carbon: float, limits_percent: Sequence[float]
     if method not in ("regression", "areas"):
         raise MeasurementError(f"method is {method!r}; it must be 'regression' or 'areas'")
     if not CARBON_LEAST <= carbon <= CARBON_MOST:
-        raise MeasurementError(f"carbon is {carbon:g}; a fuel's mass share of carbon must be {CARBON_LEAST:g} to {CARBON_MOST:g}")
+        raise MeasurementError(
+            f"carbon is {carbon:g}; a fuel's mass share of carbon must be {CARBON_LEAST:g} to {CARBON_MOST:g}"
+        )
     if not limits_percent or not all(0.0 < limit <= 10.0 for limit in limits_percent):
-        raise MeasurementError(f"limits_percent is {list(limits_percent)}; give one or more numbers above 0, up to 10 % m/m")
+        raise MeasurementError(
+            f"limits_percent is {list(limits_percent)}; give one or more numbers above 0, up to 10 % m/m"
+        )
 
 
-def _too_little(record: Record, instrument: SnifferSpec, passes: Sequence[Pass], noise: float) -> list[str]:
+def _too_little(
+    record: Record, instrument: SnifferSpec, passes: Sequence[Pass], noise: float
+) -> list[str]:
     """Return why the record is too short or too coarse, or has no plume in it."""
     if not passes:
         if noise == 0.0:
@@ -111,15 +140,21 @@ def _too_little(record: Record, instrument: SnifferSpec, passes: Sequence[Pass],
     if coarse := read_coarsely(passes, record):
         return coarse
     width = max(found.end_s - found.start_s for found in passes)
-    response = instrument.known("so2").t90_s if math.isfinite(instrument.known("so2").t90_sd) else 0.0
+    response = (
+        instrument.known("so2").t90_s if math.isfinite(instrument.known("so2").t90_sd) else 0.0
+    )
     if record.duration < width + response:
-        return [f"the record lasts {record.duration:.0f} s; a pass and the response of SO2 take {width + response:.0f} s"]
+        return [
+            f"the record lasts {record.duration:.0f} s; a pass and the response of SO2 take {width + response:.0f} s"
+        ]
     return []
 
 
 def _nothing(instrument: SnifferSpec) -> _Ratio:
     """Return the ratio of a record without a pass."""
-    alignment = Alignment(instrument=instrument, slope_deviation=math.nan, t90_sd_s=math.nan, delay_sd_s=math.nan)
+    alignment = Alignment(
+        instrument=instrument, slope_deviation=math.nan, t90_sd_s=math.nan, delay_sd_s=math.nan
+    )
     return _Ratio(ratio=math.nan, noise=math.nan, misfit=math.nan, common={}, alignment=alignment)
 
 
@@ -128,7 +163,9 @@ def _regressed(record: Record, instrument: SnifferSpec) -> _Ratio:
     found = regress(make_signals(record, alignment.instrument))
 
     def aligned(moved: SnifferSpec, ends: Ends = (0, 0)) -> Signals:
-        return make_signals(record, align(record, moved, start=alignment.instrument).instrument, ends)
+        return make_signals(
+            record, align(record, moved, start=alignment.instrument).instrument, ends
+        )
 
     as_known, others = aligned(alignment.instrument), list[SnifferSpec]()
 
@@ -136,7 +173,11 @@ def _regressed(record: Record, instrument: SnifferSpec) -> _Ratio:
         # Both of the samples that both know.
         other = aligned(moved, as_known.ends)
         others.append(other.instrument)
-        same = as_known if other.ends == as_known.ends else make_signals(record, as_known.instrument, other.ends)
+        same = (
+            as_known
+            if other.ends == as_known.ends
+            else make_signals(record, as_known.instrument, other.ends)
+        )
         (slope, residual), (before, left) = fitted(other), fitted(same)
         if not math.isfinite(slope - before):
             # It may be anything.
@@ -144,14 +185,26 @@ def _regressed(record: Record, instrument: SnifferSpec) -> _Ratio:
         return slope - before, residual - left
 
     errors = common_errors(alignment.instrument, used_gases(record), changes)
-    common = {**errors.parts, "response": math.hypot(errors.parts.get("response", 0.0), alignment.slope_deviation)}
+    common = {
+        **errors.parts,
+        "response": math.hypot(errors.parts.get("response", 0.0), alignment.slope_deviation),
+    }
     strange = stranger(found.misfit, found.residual_energy, errors.residual_energy, as_known.count)
     problems = (*_out_of_time(record, instrument, found.misfit, as_known.count), *strange)
     alignment = widened(alignment, as_known.instrument, others)
-    return _Ratio(ratio=found.slope, noise=found.noise, misfit=found.misfit, common=common, alignment=alignment, problems=problems)
+    return _Ratio(
+        ratio=found.slope,
+        noise=found.noise,
+        misfit=found.misfit,
+        common=common,
+        alignment=alignment,
+        problems=problems,
+    )
 
 
-def _out_of_time(record: Record, instrument: SnifferSpec, misfit: float, samples: int) -> tuple[str, ...]:
+def _out_of_time(
+    record: Record, instrument: SnifferSpec, misfit: float, samples: int
+) -> tuple[str, ...]:
     """Return the problem of SO2 and CO2 that do not fit in time, as where two loggers have two clocks.
 
     Far from the true delay the slope is near 0 and changes little: an error that small steps of the delay do not show. So the
@@ -162,7 +215,9 @@ def _out_of_time(record: Record, instrument: SnifferSpec, misfit: float, samples
         return ()
     free = align(record, instrument.with_channel(replace(so2, delay_sd_s=math.inf)))
     # A clean fuel leaves what NO and NO2 were not corrected for, which may follow CO2 of another pass a little better than its own.
-    if not regress(make_signals(record, free.instrument)).misfit - 1.0 < (1.0 - EXPLAINED_LEAST) * (misfit - 1.0):
+    if not regress(make_signals(record, free.instrument)).misfit - 1.0 < (1.0 - EXPLAINED_LEAST) * (
+        misfit - 1.0
+    ):
         return ()
 
     def changes(moved: SnifferSpec) -> tuple[float, Array]:
@@ -229,7 +284,13 @@ def _told(
         read = [_read_after(record, found.end_s) for found in passes]
         problems += not_arrived(fsc, total, read, [found.dose_ppm_s for found in passes])
     signals = make_signals(record, instrument)
-    groups = grouped(signals, passes, ratio.ratio, misfit=ratio.misfit, response=ratio.common.get("response", 0.0))
+    groups = grouped(
+        signals,
+        passes,
+        ratio.ratio,
+        misfit=ratio.misfit,
+        response=ratio.common.get("response", 0.0),
+    )
     samples, so2_snr = samples_of(signals, ratio.ratio)
     snr = float(np.median([found.snr for found in passes])) if passes else 0.0
     quality, reasons = judged_quality(
@@ -240,7 +301,9 @@ def _told(
         deviation=total,
         agreement=groups.agreement,
         limit=min(limits),
-        responses_stated=all(instrument.known("so2").cross.get(gas) for gas in instrument.known("so2").cross_sd),
+        responses_stated=all(
+            instrument.known("so2").cross.get(gas) for gas in instrument.known("so2").cross_sd
+        ),
     )
     low, high = interval(fsc, total)
     return FscEstimate(
@@ -276,10 +339,14 @@ def _told(
 def _read_after(record: Record, end: float) -> float:
     """Return which share was read of the time after the end of a pass [s] in which its SO2 may come."""
     after = record.time - end
-    return min(1.0, np.count_nonzero((after > 0.0) & (after <= DELAY_MOST)) * record.step / DELAY_MOST)
+    return min(
+        1.0, np.count_nonzero((after > 0.0) & (after <= DELAY_MOST)) * record.step / DELAY_MOST
+    )
 
 
-def _figures(record: Record, passes: tuple[Pass, ...], instrument: SnifferSpec, snr: float, so2_snr: float) -> Figures:
+def _figures(
+    record: Record, passes: tuple[Pass, ...], instrument: SnifferSpec, snr: float, so2_snr: float
+) -> Figures:
     noise = instrument.known("co2").noise
     above = sum(int(np.sum(excess > SNR_LEAST * noise)) for excess in co2_excesses(record, noise))
     times = np.array([found.centre_s for found in passes])

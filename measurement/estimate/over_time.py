@@ -48,14 +48,18 @@ def over_time(
         until = int(np.searchsorted(readings.time, start + elapsed + 1e-6))
         part = Readings(readings.time[:until], readings.values[:until])
         try:
-            found = estimate(part, instrument, method=method, carbon=carbon, limits_percent=limits_percent)
+            found = estimate(
+                part, instrument, method=method, carbon=carbon, limits_percent=limits_percent
+            )
         except MeasurementError:
             found = None
         rows.append(_row(elapsed, found, limits_percent))
     return pd.DataFrame(rows, columns=list(_row(0.0, None, limits_percent)))
 
 
-def _row(elapsed: float, found: FscEstimate | None, limits: Sequence[float]) -> dict[str, float | str]:
+def _row(
+    elapsed: float, found: FscEstimate | None, limits: Sequence[float]
+) -> dict[str, float | str]:
     row: dict[str, float | str] = {"elapsed_s": elapsed}
     for name in ("fsc_percent", "noise_percent", "total_percent", "low_percent", "high_percent"):
         row[name] = math.nan if found is None else getattr(found, name)
@@ -63,7 +67,9 @@ def _row(elapsed: float, found: FscEstimate | None, limits: Sequence[float]) -> 
     row["passes"] = 0 if found is None else found.figures.passes
     for i, limit in enumerate(limits):
         row[f"verdict_{limit:g}"] = OPEN if found is None else found.verdicts[i].verdict
-        row[f"probability_above_{limit:g}"] = math.nan if found is None else found.verdicts[i].probability_above
+        row[f"probability_above_{limit:g}"] = (
+            math.nan if found is None else found.verdicts[i].probability_above
+        )
     return row
 
 

@@ -81,7 +81,10 @@ def readings_noise(record: Record, instrument: SnifferSpec) -> dict[str, float]:
 
 def read_coarsely(passes: Sequence[Pass], record: Record) -> list[str]:
     """Return why passes are read in too large steps of CO2, or too seldom, if they are."""
-    height, step = float(np.median([found.height_ppm for found in passes])), record.resolution["co2"]
+    height, step = (
+        float(np.median([found.height_ppm for found in passes])),
+        record.resolution["co2"],
+    )
     if height < _STEPS_LEAST * step:
         return [
             f"CO2 reads in steps of {step:g} ppm, and a pass is {height:.0f} ppm high (median); it must be {_STEPS_LEAST:g} steps:"
@@ -126,14 +129,20 @@ def find_passes(record: Record, channel: Channel) -> tuple[Pass, ...]:
 
     noise = channel.noise
     passes: list[Pass] = []
-    for time, values, excess in zip(record.times, record.values, co2_excesses(record, noise), strict=True):
+    for time, values, excess in zip(
+        record.times, record.values, co2_excesses(record, noise), strict=True
+    ):
         least = max(SNR_LEAST * noise, 1e-6 * float(np.abs(values["co2"]).max()))
-        peaks, _ = find_peaks(np.concatenate([[-math.inf], excess, [-math.inf]]), height=least, prominence=least)
+        peaks, _ = find_peaks(
+            np.concatenate([[-math.inf], excess, [-math.inf]]), height=least, prominence=least
+        )
         passes += _bounded(time, excess, peaks - 1, channel)
     return tuple(passes)
 
 
-def _bounded(time: Array, excess: Array, peaks: npt.NDArray[np.int64], channel: Channel) -> list[Pass]:
+def _bounded(
+    time: Array, excess: Array, peaks: npt.NDArray[np.int64], channel: Channel
+) -> list[Pass]:
     """Return the passes at these peaks, each between the troughs to its neighbours, where it is above the noise."""
     noise, memory = channel.noise, sum(channel.constants)
     inner = [int(a + np.argmin(excess[a : b + 1])) for a, b in itertools.pairwise(peaks)]
@@ -146,7 +155,10 @@ def _bounded(time: Array, excess: Array, peaks: npt.NDArray[np.int64], channel: 
         # The low quantile lies above the background where a plume is never far: then the troughs tell it better.
         level = min(0.0, 0.5 * float(excess[start] + excess[end]))
         weights = np.maximum(excess[inside], 0.0)
-        area = float(np.trapezoid(excess[inside] - level, time[inside]) + memory * (excess[end] - excess[start]))
+        area = float(
+            np.trapezoid(excess[inside] - level, time[inside])
+            + memory * (excess[end] - excess[start])
+        )
         passes.append(
             Pass(
                 time_s=float(time[peak]),

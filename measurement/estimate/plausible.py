@@ -34,9 +34,23 @@ _FALL_SIGMAS = 10.0
 def unlikely(record: Record, readings: Readings, instrument: SnifferSpec) -> list[str]:
     """Return what is wrong with readings of CO2, SO2, and the gases of the record that the SO2 channel responds to."""
     so2 = instrument.known("so2")
-    telling = ["so2", *(gas for gas in used_gases(record) if so2.cross.get(gas, 0.0) or so2.cross_sd.get(gas, 0.0))]
-    problems = [problem for gas in used_gases(record) for problem in _cut_off(readings, instrument.known(gas))]
-    problems += [*sticking(readings, instrument.known("co2")), *_spikes(record, readings, instrument.known("co2"))]
+    telling = [
+        "so2",
+        *(
+            gas
+            for gas in used_gases(record)
+            if so2.cross.get(gas, 0.0) or so2.cross_sd.get(gas, 0.0)
+        ),
+    ]
+    problems = [
+        problem
+        for gas in used_gases(record)
+        for problem in _cut_off(readings, instrument.known(gas))
+    ]
+    problems += [
+        *sticking(readings, instrument.known("co2")),
+        *_spikes(record, readings, instrument.known("co2")),
+    ]
     for channel in map(instrument.known, telling):
         problems += sticking(readings, channel) or quiet(record.scatter[channel.gas], channel)
     return problems or _exchanged(record, instrument)
@@ -56,8 +70,12 @@ def _cut_off(readings: Readings, channel: Channel) -> list[str]:
     name, unit = channel.gas.upper(), UNITS[channel.gas]
     if not step:
         return []
-    if most < channel.range_high - 0.5 * channel.resolution and (times := _heap((most - known) / step)):
-        return [f"{name} reads {most:g} {unit}, and never more, {times} times, and hardly ever just less: it is cut off"]
+    if most < channel.range_high - 0.5 * channel.resolution and (
+        times := _heap((most - known) / step)
+    ):
+        return [
+            f"{name} reads {most:g} {unit}, and never more, {times} times, and hardly ever just less: it is cut off"
+        ]
     # Clean air without noise that is seen reads the same, and least.
     if noise >= step and (times := _heap((known - least) / step)):
         return [
@@ -83,8 +101,12 @@ def _spikes(record: Record, readings: Readings, channel: Channel) -> list[str]:
     known = np.flatnonzero(np.isfinite(column))
     time, values, lowest = readings.time[known], column[known], float(np.min(column[known]))
     noise = np.fmax(channel.noise, record.scatter["co2"])
-    fastest = channel.constants[0] * max(_FASTEST, min(_FASTER, 1.0 - STRANGE_SIGMA * channel.t90_sd))
-    least = lowest + (values[:-1] - lowest) * np.exp(-np.diff(time) / fastest) - _FALL_SIGMAS * noise
+    fastest = channel.constants[0] * max(
+        _FASTEST, min(_FASTER, 1.0 - STRANGE_SIGMA * channel.t90_sd)
+    )
+    least = (
+        lowest + (values[:-1] - lowest) * np.exp(-np.diff(time) / fastest) - _FALL_SIGMAS * noise
+    )
     falls = np.flatnonzero(values[1:] < least)
     if not falls.size:
         return []
@@ -104,7 +126,10 @@ def _exchanged(record: Record, instrument: SnifferSpec) -> list[str]:
     if not {"no", "no2"} <= set(used_gases(record)):
         return []
     gains = {gas: instrument.known(gas).gain for gas in ("no", "no2")}
-    no, no2 = (float(np.ptp(np.quantile(record.of(gas), (_LOW, _HIGH)))) / gain for gas, gain in gains.items())
+    no, no2 = (
+        float(np.ptp(np.quantile(record.of(gas), (_LOW, _HIGH)))) / gain
+        for gas, gain in gains.items()
+    )
     # The squares of what noise and plume do add up.
     if no2**2 - (_SIGMAS * record.scatter["no2"] / gains["no2"]) ** 2 <= (no + OZONE_MOST) ** 2:
         return []

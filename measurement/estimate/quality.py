@@ -81,19 +81,31 @@ def judged_quality(
             " CO2; check its sign and its sensor"
         )
     elif math.isfinite(fsc) and fsc - NEGATIVE_SIGMA * deviation > FUEL_SULPHUR_MOST:
-        rejected.append(f"the result is {fsc:.1f} %, and no fuel has above {FUEL_SULPHUR_MOST:g} %: check the units of SO2 and CO2")
+        rejected.append(
+            f"the result is {fsc:.1f} %, and no fuel has above {FUEL_SULPHUR_MOST:g} %: check the units of SO2 and CO2"
+        )
     if rejected:
         return "C", tuple(rejected)
     reasons = []
     if snr < SNR_GOOD:
         reasons.append(f"CO2 signal to noise is {snr:.1f}; class A needs {SNR_GOOD:g}")
     if deviation > UNCERTAINTY_GOOD * limit:
-        why = "" if responses_stated else ", as the response of SO2 to NO and NO2 is not stated (cross)"
-        reasons.append(f"standard uncertainty is {deviation:.3f} %{why}; class A needs {UNCERTAINTY_GOOD * limit:.3f} %")
+        why = (
+            ""
+            if responses_stated
+            else ", as the response of SO2 to NO and NO2 is not stated (cross)"
+        )
+        reasons.append(
+            f"standard uncertainty is {deviation:.3f} %{why}; class A needs {UNCERTAINTY_GOOD * limit:.3f} %"
+        )
     if passes < PASSES_GOOD:
-        reasons.append(f"{passes} {'pass' if passes == 1 else 'passes'} through the plume; class A needs {PASSES_GOOD}")
+        reasons.append(
+            f"{passes} {'pass' if passes == 1 else 'passes'} through the plume; class A needs {PASSES_GOOD}"
+        )
     if math.isfinite(agreement) and agreement < AGREEMENT_LEAST:
-        reasons.append(f"passes differ more than their noise explains (p = {agreement:.1g}; class A needs {AGREEMENT_LEAST:g})")
+        reasons.append(
+            f"passes differ more than their noise explains (p = {agreement:.1g}; class A needs {AGREEMENT_LEAST:g})"
+        )
     return ("B" if reasons else "A"), tuple(reasons)
 
 
@@ -109,15 +121,25 @@ def quiet(scatter: float, channel: Channel) -> tuple[str, ...]:
     noise = channel.noise if stated else NOISE_USUAL
     if scatter >= QUIET_SHARE * noise or channel.resolution > noise:
         return ()
-    found = f"scatters by {scatter:.2g} ppb from reading to reading" if scatter > 0.0 else "reads the same throughout"
-    expected = f"its noise is {noise:g} ppb" if stated else f"the noise of such sensors is about {noise:g} ppb"
+    found = (
+        f"scatters by {scatter:.2g} ppb from reading to reading"
+        if scatter > 0.0
+        else "reads the same throughout"
+    )
+    expected = (
+        f"its noise is {noise:g} ppb"
+        if stated
+        else f"the noise of such sensors is about {noise:g} ppb"
+    )
     return (
         f"{channel.gas.upper()} {found}, and {expected}: it is in another unit (of ppm, give a [scale] of {channel.gas} = 1000.0),"
         " or its sensor is dead",
     )
 
 
-def stranger(misfit: float, residual_energy: float, instrument_energy: float, samples: int) -> tuple[str, ...]:
+def stranger(
+    misfit: float, residual_energy: float, instrument_energy: float, samples: int
+) -> tuple[str, ...]:
     """Return the problem of residuals that neither noise nor the instrument's stated uncertainty explain, if they are such.
 
     Parameters
@@ -143,7 +165,9 @@ def noise_alone(misfit: float, samples: int) -> bool:
     return misfit <= 1.0 + STRANGE_SIGMA * math.sqrt(2.0 / samples)
 
 
-def not_arrived(fsc: float, deviation: float, read: Sequence[float], doses: Sequence[float]) -> tuple[str, ...]:
+def not_arrived(
+    fsc: float, deviation: float, read: Sequence[float], doses: Sequence[float]
+) -> tuple[str, ...]:
     """Return the problem of SO2 whose delay is not stated, and which may not have arrived yet, if it may not.
 
     SO2 that stands out has. Without it most of the CO2 must be followed by readings for as long as any delay.
@@ -156,7 +180,9 @@ def not_arrived(fsc: float, deviation: float, read: Sequence[float], doses: Sequ
     """
     if not read or fsc > ARRIVED_SIGMA * deviation:
         return ()
-    if sum(share * dose for share, dose in zip(read, doses, strict=True)) >= ARRIVED_SHARE * sum(doses):
+    if sum(share * dose for share, dose in zip(read, doses, strict=True)) >= ARRIVED_SHARE * sum(
+        doses
+    ):
         return ()
     return (
         f"SO2 does not stand out, and may still come: its delay is not stated, and may be up to {DELAY_MOST:g} s; state it, or"

@@ -113,9 +113,14 @@ def checked_record(readings: Readings, instrument: SnifferSpec) -> Record:
     ------
     MeasurementError : no CO2 or SO2, too short, times that do not increase or are too far apart, or units that cannot be
     """
-    time, values = np.asarray(readings.time, dtype=np.float64), np.asarray(readings.values, dtype=np.float64)
+    time, values = (
+        np.asarray(readings.time, dtype=np.float64),
+        np.asarray(readings.values, dtype=np.float64),
+    )
     if time.ndim != 1 or values.shape != (len(time), len(GASES)):
-        raise MeasurementError(f"readings have shapes {time.shape} and {values.shape}; they must be (m,) and (m, {len(GASES)})")
+        raise MeasurementError(
+            f"readings have shapes {time.shape} and {values.shape}; they must be (m,) and (m, {len(GASES)})"
+        )
     if len(time) < SHORTEST:
         raise MeasurementError(
             f"the record has {len(time)} samples; it needs at least {SHORTEST}, and one whole crossing of the plume"
@@ -137,35 +142,64 @@ def checked_record(readings: Readings, instrument: SnifferSpec) -> Record:
         check_units(instrument.known(gas), column)
     problems = _problems(time, values, gases, instrument)
     known = np.isfinite(list(logged.values())).all(axis=0)
-    segments = [segment for segment in pieces(time, np.flatnonzero(known), step) if len(segment) >= SHORTEST]
+    segments = [
+        segment for segment in pieces(time, np.flatnonzero(known), step) if len(segment) >= SHORTEST
+    ]
     times, parts = [], []
     for segment in segments:
-        grid = time[segment[0]] + step * np.arange(math.floor((time[segment[-1]] - time[segment[0]]) / step + 1e-6) + 1)
+        grid = time[segment[0]] + step * np.arange(
+            math.floor((time[segment[-1]] - time[segment[0]]) / step + 1e-6) + 1
+        )
         # A grid of the record's own times is left as it is.
-        grid = time[segment] if len(grid) == len(segment) and np.allclose(grid, time[segment], rtol=0.0, atol=1e-3 * step) else grid
+        grid = (
+            time[segment]
+            if len(grid) == len(segment)
+            and np.allclose(grid, time[segment], rtol=0.0, atol=1e-3 * step)
+            else grid
+        )
         times.append(grid)
-        parts.append({gas: np.interp(grid, time[segment], column[segment]) for gas, column in logged.items()})
+        parts.append(
+            {gas: np.interp(grid, time[segment], column[segment]) for gas, column in logged.items()}
+        )
     if not times:
         *names, last = (gas.upper() for gas in gases)
         fewest = min(gases, key=lambda gas: int(np.isfinite(logged[gas]).sum()))
-        remedy = "" if fewest in ("so2", "co2") else f", or leave out the column of {fewest.upper()}, which has fewest"
+        remedy = (
+            ""
+            if fewest in ("so2", "co2")
+            else f", or leave out the column of {fewest.upper()}, which has fewest"
+        )
         every = f"no {SHORTEST} samples in a row have all of {', '.join(names)} and {last}"
         raise MeasurementError(f"{every}; give a record with fewer gaps{remedy}")
     # Samples that are interpolated lie on straight lines, and show no noise.
-    whole = [run for run in pieces(time, np.flatnonzero(known), step, _WHOLE) if len(run) > 2] or segments
+    whole = [
+        run for run in pieces(time, np.flatnonzero(known), step, _WHOLE) if len(run) > 2
+    ] or segments
     resolution = {gas: shown_step(column) for gas, column in logged.items()}
-    scatter = {gas: shown_scatter([column[run] for run in whole], resolution[gas]) for gas, column in logged.items()}
+    scatter = {
+        gas: shown_scatter([column[run] for run in whole], resolution[gas])
+        for gas, column in logged.items()
+    }
     return Record(step, tuple(times), tuple(parts), resolution, scatter, problems)
 
 
-def pieces(time: Array, rows: npt.NDArray[np.intp], step: float, periods: float = BRIDGED) -> list[npt.NDArray[np.intp]]:
+def pieces(
+    time: Array, rows: npt.NDArray[np.intp], step: float, periods: float = BRIDGED
+) -> list[npt.NDArray[np.intp]]:
     """Return the rows that have all readings, shape (n,), in pieces between gaps of so many periods of the log, ``step`` [s]."""
     return np.split(rows, np.flatnonzero(np.diff(time[rows]) > periods * step) + 1)
 
 
 def _used(values: Array, instrument: SnifferSpec) -> list[str]:
-    used = [gas for i, gas in enumerate(GASES) if instrument.channel(gas) and np.isfinite(values[:, i]).any()]
-    for gas, why in (("co2", "the fuel that it burnt is not known without"), ("so2", "there is nothing to estimate without")):
+    used = [
+        gas
+        for i, gas in enumerate(GASES)
+        if instrument.channel(gas) and np.isfinite(values[:, i]).any()
+    ]
+    for gas, why in (
+        ("co2", "the fuel that it burnt is not known without"),
+        ("so2", "there is nothing to estimate without"),
+    ):
         if gas not in used:
             raise MeasurementError(
                 f"the record has no {gas.upper()} readings, or '{instrument.name}' no such channel; {why} them: add them"
@@ -184,7 +218,9 @@ def check_increasing(time: Array, path: Path | None = None) -> None:
     if not late.size:
         return
     at = int(late[0])
-    where, row, what = ("", "", "record") if path is None else (f"'{path}': ", f" in row {at + 2}", "rows by time")
+    where, row, what = (
+        ("", "", "record") if path is None else (f"'{path}': ", f" in row {at + 2}", "rows by time")
+    )
     raise MeasurementError(
         f"{where}times do not increase: {time[at]:.15g} s{row} is followed by {time[at + 1]:.15g} s; sort the {what} and drop"
         " repeats, or, where the clock was set back, correct the times after it"
@@ -199,7 +235,11 @@ def check_units(channel: Channel, values: Array) -> None:
     MeasurementError : they are CO2 without its background, or no gas has them
     """
     gas, known = channel.gas, values[np.isfinite(values)]
-    middle, least, most = float(np.median(known)) / channel.gain, float(known.min()), float(known.max())
+    middle, least, most = (
+        float(np.median(known)) / channel.gain,
+        float(known.min()),
+        float(known.max()),
+    )
     if gas == "co2" and not CO2_LEAST <= middle <= CO2_MOST:
         raise MeasurementError(
             f"CO2 has a median of {middle:g} ppm; air has {CO2_LEAST:g} to {CO2_MOST:g} ppm: check the unit; keep the background"
@@ -253,24 +293,38 @@ def lowest_reading(gas: str, values: Array, instrument: SnifferSpec) -> float:
     return max(0.0, channel.gain * CO2_LEAST + floor) if gas == "co2" else floor
 
 
-def _problems(time: Array, values: Array, gases: list[str], instrument: SnifferSpec) -> tuple[str, ...]:
+def _problems(
+    time: Array, values: Array, gases: list[str], instrument: SnifferSpec
+) -> tuple[str, ...]:
     problems = []
     for gas in gases:
         channel, column = instrument.known(gas), values[:, GASES.index(gas)]
         name, unit = gas.upper(), UNITS[gas]
         missing = float(np.mean(~np.isfinite(column)))
         if missing > _MISSING_MAX:
-            problems.append(f"{100.0 * missing:.0f} % of {name} is missing; at most {100.0 * _MISSING_MAX:.0f} % may be")
-        full = float(np.mean(column >= channel.range_high - 0.5 * channel.resolution)) if math.isfinite(channel.range_high) else 0.0
+            problems.append(
+                f"{100.0 * missing:.0f} % of {name} is missing; at most {100.0 * _MISSING_MAX:.0f} % may be"
+            )
+        full = (
+            float(np.mean(column >= channel.range_high - 0.5 * channel.resolution))
+            if math.isfinite(channel.range_high)
+            else 0.0
+        )
         if full > _SATURATED_MAX:
-            problems.append(f"{name} is saturated at {channel.range_high:g} {unit} in {100.0 * full:.1f} % of the readings")
+            problems.append(
+                f"{name} is saturated at {channel.range_high:g} {unit} in {100.0 * full:.1f} % of the readings"
+            )
         floor = lowest_reading(gas, values, instrument)
         if (least := float(np.nanmin(column))) < floor:
-            problems.append(f"{name} reads {least:g} {unit}, which its noise and zero do not explain (from {floor:.0f} {unit})")
+            problems.append(
+                f"{name} reads {least:g} {unit}, which its noise and zero do not explain (from {floor:.0f} {unit})"
+            )
     gaps = np.diff(time)
     lost = float(np.sum(gaps[gaps > BRIDGED * np.median(gaps)])) / float(time[-1] - time[0])
     if lost > _MISSING_MAX:
-        problems.append(f"gaps make up {100.0 * lost:.0f} % of the record; at most {100.0 * _MISSING_MAX:.0f} % may be")
+        problems.append(
+            f"gaps make up {100.0 * lost:.0f} % of the record; at most {100.0 * _MISSING_MAX:.0f} % may be"
+        )
     return tuple(problems)
 
 
@@ -285,5 +339,9 @@ def _cross_floor(cross: Mapping[str, float], values: Array, instrument: SnifferS
             lowest += -share * max(0.0, float(np.nanmax(column)))
         elif share < 0.0 and gas in EXPECTED_PPB_PER_PPM:
             ratio, deviation = EXPECTED_PPB_PER_PPM[gas]
-            lowest += -share * (ratio + _NOX_SIGMA * deviation) * float(np.nanmax(co2) - max(0.0, np.nanmin(co2)))
+            lowest += (
+                -share
+                * (ratio + _NOX_SIGMA * deviation)
+                * float(np.nanmax(co2) - max(0.0, np.nanmin(co2)))
+            )
     return lowest

@@ -95,7 +95,11 @@ class FscEstimate:
 
     def record(self) -> dict[str, Any]:
         """Return everything but instrument and signals, for JSON: what is not a number is None."""
-        values = {name: value for name, value in vars(self).items() if name not in ("instrument", "signals")}
+        values = {
+            name: value
+            for name, value in vars(self).items()
+            if name not in ("instrument", "signals")
+        }
         values["figures"] = asdict(self.figures)
         values["verdicts"] = [asdict(verdict) for verdict in self.verdicts]
         values["passes"] = [asdict(found) for found in self.passes]

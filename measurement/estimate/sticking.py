@@ -46,10 +46,14 @@ def sticking(readings: Readings, channel: Channel) -> tuple[str, ...]:
     time, values = readings.time[known], column[known]
     # While it lives it may hardly ever move by a single step.
     step = shown_step(np.sort(values))
-    runs = [run for run in _equal(values, step) if _stuck(run, values, step, channel)] if step else []
+    runs = (
+        [run for run in _equal(values, step) if _stuck(run, values, step, channel)] if step else []
+    )
     runs = [run for run in runs if not _explained(run, time, values, step, readings, channel)]
     lengths = [float(time[run[-1]] - time[run[0]]) for run in runs]
-    if not runs or (max(lengths) <= channel.t90_s and sum(lengths) <= _SHARE_MOST * float(time[-1] - time[0])):
+    if not runs or (
+        max(lengths) <= channel.t90_s and sum(lengths) <= _SHARE_MOST * float(time[-1] - time[0])
+    ):
         return ()
     longest, unit = runs[int(np.argmax(lengths))], UNITS[channel.gas]
     within = f" within {step:.3g} {unit}" if np.ptp(values[longest]) > 0.0 else ""
@@ -105,14 +109,18 @@ def _repeats(values: Array) -> float:
     return float(np.median(np.diff(changes))) if len(changes) > 1 else 1.0
 
 
-def _explained(run: range, time: Array, values: Array, step: float, readings: Readings, channel: Channel) -> bool:
+def _explained(
+    run: range, time: Array, values: Array, step: float, readings: Readings, channel: Channel
+) -> bool:
     """Return whether a living sensor may read as this: at the end of its range, or in clean air."""
     if values[run[0]] >= channel.range_high - channel.resolution:
         return True
     if values[run[0]] != 0.0 and _too_many(run, values, step, _SMOOTHED * channel.noise):
         return False
     # A gas that arrives ends the clean air; faster sensors than this one show it before.
-    during = (readings.time >= time[run[0]]) & (readings.time <= time[run[-1]] - channel.t90_s - channel.delay_s)
+    during = (readings.time >= time[run[0]]) & (
+        readings.time <= time[run[-1]] - channel.t90_s - channel.delay_s
+    )
     others = [i for i, gas in enumerate(GASES) if gas != channel.gas]
     return not any(_rises(readings.values[:, i], during) for i in others)
 

@@ -72,7 +72,9 @@ def interval(fsc: float, deviation: float) -> tuple[float, float]:
     end with 5 % (ISO 11929-1, shortest coverage interval).
     """
     if not (math.isfinite(fsc) and deviation > 0.0):
-        return (math.nan, math.nan) if math.isnan(fsc + deviation) else (max(0.0, fsc), max(0.0, fsc))
+        return (
+            (math.nan, math.nan) if math.isnan(fsc + deviation) else (max(0.0, fsc), max(0.0, fsc))
+        )
     kept = float(ndtr(fsc / deviation))
     half = deviation * float(ndtri(0.5 + 0.5 * CONFIDENCE * kept))
     if fsc > half:

@@ -23,7 +23,13 @@ def probability(share: float) -> str:
     """Return a probability in percent, never as certain."""
     if math.isnan(share):
         return "not known"
-    return "more than 99.9 %" if share > 0.999 else "less than 0.1 %" if share < 0.001 else f"{100.0 * share:.1f} %"
+    return (
+        "more than 99.9 %"
+        if share > 0.999
+        else "less than 0.1 %"
+        if share < 0.001
+        else f"{100.0 * share:.1f} %"
+    )
 
 
 def content_words(fsc_percent: float, low_percent: float, high_percent: float) -> str:
@@ -33,13 +39,18 @@ def content_words(fsc_percent: float, low_percent: float, high_percent: float) -
     ----------
     fsc_percent, low_percent, high_percent : the estimate, and the interval that its verdict rests on [% m/m]
     """
-    content, interval = f"{fsc_percent:z.3f}", f"95 % interval {low_percent:z.3f} to {high_percent:z.3f} %"
+    content, interval = (
+        f"{fsc_percent:z.3f}",
+        f"95 % interval {low_percent:z.3f} to {high_percent:z.3f} %",
+    )
     if float(content) < 0.0:
         return f"{content} {MASS_PERCENT}, which is below 0; {interval}, given that no fuel has less than 0"
     return f"{content} {MASS_PERCENT}, {interval}"
 
 
-def verdict_words(verdict: str, limit_percent: float, probability_above: float, quality: Quality | str = "A") -> str:
+def verdict_words(
+    verdict: str, limit_percent: float, probability_above: float, quality: Quality | str = "A"
+) -> str:
     """Return a verdict with its limit and probability; for a record of quality C, that there is no verdict.
 
     Parameters
@@ -58,10 +69,21 @@ def verdict_words(verdict: str, limit_percent: float, probability_above: float, 
 
 def needed(probability_above: float) -> str:
     """Return what an open verdict needs to be none."""
-    return "the result is within the guard band" if probability_above > CONFIDENCE else "95 % or 5 % are needed"
+    return (
+        "the result is within the guard band"
+        if probability_above > CONFIDENCE
+        else "95 % or 5 % are needed"
+    )
 
 
-def next_step(quality: Quality | str, *, passes: int, undecided: bool, noise: float, errors: Mapping[str, float]) -> str:
+def next_step(
+    quality: Quality | str,
+    *,
+    passes: int,
+    undecided: bool,
+    noise: float,
+    errors: Mapping[str, float],
+) -> str:
     """Return what to do where a record has no verdict, or one that is open; no word of another.
 
     Parameters
@@ -83,9 +105,7 @@ def next_step(quality: Quality | str, *, passes: int, undecided: bool, noise: fl
     largest = max(errors, key=lambda name: errors[name], default="")
     if not largest or noise > errors[largest]:
         return "Next: measure more passes: most of the uncertainty is noise, which falls with them."
-    return (
-        f"Next: state this part of the uncertainty more narrowly, as by a calibration: {largest}. Further passes do not lower it."
-    )
+    return f"Next: state this part of the uncertainty more narrowly, as by a calibration: {largest}. Further passes do not lower it."
 
 
 def counted_verdicts(records: Iterable[tuple[str, str]]) -> str:
@@ -96,4 +116,8 @@ def counted_verdicts(records: Iterable[tuple[str, str]]) -> str:
     records : verdict and quality of each
     """
     called = [quality if quality == _WITHOUT else verdict for verdict, quality in records]
-    return ", ".join(f"{called.count(verdict):,} {words}" for verdict, words in _COUNTED.items() if verdict in called)
+    return ", ".join(
+        f"{called.count(verdict):,} {words}"
+        for verdict, words in _COUNTED.items()
+        if verdict in called
+    )

@@ -3,7 +3,13 @@
 import math
 from dataclasses import dataclass, field
 
-from measurement.emission.emission import AIR_PRESSURE, AIR_TEMPERATURE, GAS_CONSTANT, GRAVITY, check_air
+from measurement.emission.emission import (
+    AIR_PRESSURE,
+    AIR_TEMPERATURE,
+    GAS_CONSTANT,
+    GRAVITY,
+    check_air,
+)
 from measurement.errors import MeasurementError
 
 KARMAN = 0.4
@@ -56,11 +62,17 @@ class MarineAir:
     def __post_init__(self) -> None:
         check_air(self.temperature, self.pressure)
         if not 0.0 <= self.wind_speed <= _WIND_MAX:
-            raise MeasurementError(f"true wind is {self.wind_speed:g} m/s at 10 m; give 0 to {_WIND_MAX:g}")
+            raise MeasurementError(
+                f"true wind is {self.wind_speed:g} m/s at 10 m; give 0 to {_WIND_MAX:g}"
+            )
         if not 0.0 <= self.brunt_vaisala <= 0.1:
-            raise MeasurementError(f"stability N is {self.brunt_vaisala:g} 1/s; give 0 (neutral) to 0.1, usually below 0.03")
+            raise MeasurementError(
+                f"stability N is {self.brunt_vaisala:g} 1/s; give 0 (neutral) to 0.1, usually below 0.03"
+            )
         if not 0.005 <= self.charnock <= 0.05:
-            raise MeasurementError(f"Charnock's constant is {self.charnock:g}; give 0.005 to 0.05, over sea 0.011 to 0.018")
+            raise MeasurementError(
+                f"Charnock's constant is {self.charnock:g}; give 0.005 to 0.05, over sea 0.011 to 0.018"
+            )
         object.__setattr__(self, "friction_velocity", self._friction_velocity())
 
     @property

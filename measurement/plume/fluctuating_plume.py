@@ -123,13 +123,22 @@ class FluctuatingPlume:
         path_end = self._parcels.path_end
         self._across = self._up = None
         if settings.meander and not settings.mean:
-            self._across = Meander(0.0, path_end, settings.meander_length_across * source_height, np.random.default_rng(across))
-            self._up = Meander(0.0, path_end, settings.meander_length_up * source_height, np.random.default_rng(up))
+            self._across = Meander(
+                0.0,
+                path_end,
+                settings.meander_length_across * source_height,
+                np.random.default_rng(across),
+            )
+            self._up = Meander(
+                0.0, path_end, settings.meander_length_up * source_height, np.random.default_rng(up)
+            )
         self._structure = None
         if settings.structure_intensity > 0.0 and not settings.mean:
             length = settings.structure_length
             along = length * self._table.typical_spread
-            self._structure = Structure(settings.structure_intensity, along, length, np.random.default_rng(within))
+            self._structure = Structure(
+                settings.structure_intensity, along, length, np.random.default_rng(within)
+            )
 
     @property
     def wind_min(self) -> float:
@@ -182,12 +191,16 @@ class FluctuatingPlume:
 
     def _chunk(self, time: Array, north: Array, east: Array, up: Array) -> Array:
         """Fields of the sample, in their order, shape (fields, m)."""
-        parcels = self._parcels.nearest(north, east, float(time.min()) - self._age_max, float(time.max()))
+        parcels = self._parcels.nearest(
+            north, east, float(time.min()) - self._age_max, float(time.max())
+        )
         age = time[parcels.place] - parcels.emitted
         alive = (age >= 0.0) & (age <= self._age_max)
         parcels = parcels if alive.all() else parcels.of(alive)
         time, up, place = time[parcels.place], up[parcels.place], parcels.place
-        values, distance = self._concentration(parcels, time - parcels.emitted, self._parcels.path(time), up)
+        values, distance = self._concentration(
+            parcels, time - parcels.emitted, self._parcels.path(time), up
+        )
         result = np.full((len(values), len(north)), np.nan)
         total = np.bincount(place, values[0], len(north))
         if len(place) > np.count_nonzero(np.bincount(place)):
@@ -198,7 +211,9 @@ class FluctuatingPlume:
         result[0] = total
         return result
 
-    def _concentration(self, parcels: Nearest, age: Array, passed: Array, up: Array) -> tuple[Array, Array]:
+    def _concentration(
+        self, parcels: Nearest, age: Array, passed: Array, up: Array
+    ) -> tuple[Array, Array]:
         """Fields of the sample for pairs of a place and a parcel, and the distance to the parcel's centre in spreads."""
         height, sigma_y, sigma_z, meander_y, meander_z = self._table.at(parcels.wind, age)
         centre, centre_height = np.zeros(len(age)), height
@@ -208,30 +223,53 @@ class FluctuatingPlume:
             centre_height = np.abs(height + meander_z * self._up.at(parcels.path))
         off_y = (parcels.across - centre) / sigma_y
         off_z = (up - centre_height) / sigma_z
-        inner = np.maximum(_FOLD, 1.0 - parcels.curvature * parcels.across) * np.maximum(_FOLD, 1.0 - parcels.curvature * centre)
-        middle = 1.0 / (2.0 * math.pi * self._molar_density * parcels.wind * np.sqrt(inner) * sigma_y * sigma_z)
+        inner = np.maximum(_FOLD, 1.0 - parcels.curvature * parcels.across) * np.maximum(
+            _FOLD, 1.0 - parcels.curvature * centre
+        )
+        middle = 1.0 / (
+            2.0 * math.pi * self._molar_density * parcels.wind * np.sqrt(inner) * sigma_y * sigma_z
+        )
         square = off_y**2 + off_z**2
         image = np.exp(-2.0 * up * centre_height / sigma_z**2)
         dilution = middle * np.exp(-0.5 * square) * (1.0 + image)
         if self._structure is not None:
             inside = np.flatnonzero(square < _EDGE**2)
-            dilution[inside] *= self._structure.factor(parcels.path[inside], off_y[inside], off_z[inside])
+            dilution[inside] *= self._structure.factor(
+                parcels.path[inside], off_y[inside], off_z[inside]
+            )
         axis = middle * (1.0 + np.exp(-2.0 * (centre_height / sigma_z) ** 2))
-        sample = (dilution, axis, age, passed - parcels.path, parcels.across, height, centre, centre_height, sigma_y, sigma_z)
+        sample = (
+            dilution,
+            axis,
+            age,
+            passed - parcels.path,
+            parcels.across,
+            height,
+            centre,
+            centre_height,
+            sigma_y,
+            sigma_z,
+        )
         return np.stack(sample), square
 
     def _check(self, time: Array, north: Array, east: Array, up: Array) -> None:
         if not (time.ndim == 1 and time.shape == north.shape == east.shape == up.shape):
             shapes = ", ".join(str(values.shape) for values in (time, north, east, up))
-            raise MeasurementError(f"time, north, east and up have shapes {shapes}; give four of one length")
+            raise MeasurementError(
+                f"time, north, east and up have shapes {shapes}; give four of one length"
+            )
         if not all(np.isfinite(values).all() for values in (time, north, east, up)):
-            raise MeasurementError("times or places in the plume are missing or infinite; remove or fill them")
+            raise MeasurementError(
+                "times or places in the plume are missing or infinite; remove or fill them"
+            )
         self._check_times(time)
         if time.size and up.min() < 0.0:
             raise MeasurementError(f"height above the sea is {up.min():g} m; give 0 or more")
 
     def _check_times(self, time: Array) -> None:
-        if time.size and not (time.min() >= self._parcels.start and time.max() <= self._parcels.end):
+        if time.size and not (
+            time.min() >= self._parcels.start and time.max() <= self._parcels.end
+        ):
             raise MeasurementError(
                 f"time in the plume is {time.min():g} to {time.max():g} s; the ship's track has {self._parcels.start:g} to "
                 f"{self._parcels.end:g}: extend the track"

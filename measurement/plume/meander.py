@@ -25,7 +25,9 @@ class Meander:
     generator : source of its randomness
     """
 
-    def __init__(self, start: float, end: float, integral_scale: float, generator: np.random.Generator) -> None:
+    def __init__(
+        self, start: float, end: float, integral_scale: float, generator: np.random.Generator
+    ) -> None:
         length = 0.5 * integral_scale
         self._start = start
         self._step = length / _STEPS
@@ -35,7 +37,13 @@ class Meander:
         rise = np.diff(value)
         # Rows of the cubics' coefficients, from the constant on.
         self._cubics = np.stack(
-            [value[:-1], slope[:-1], 3.0 * rise - 2.0 * slope[:-1] - slope[1:], slope[:-1] + slope[1:] - 2.0 * rise], axis=-1
+            [
+                value[:-1],
+                slope[:-1],
+                3.0 * rise - 2.0 * slope[:-1] - slope[1:],
+                slope[:-1] + slope[1:] - 2.0 * rise,
+            ],
+            axis=-1,
         )
 
     def at(self, path: Array) -> Array:
@@ -56,7 +64,9 @@ def _states(count: int, step: float, generator: np.random.Generator) -> tuple[Ar
     decay = math.exp(-step)
     stationary = np.array([[1.0, 1.0], [1.0, 2.0]])
     transition = decay * np.array([[1.0, step], [0.0, 1.0]])
-    noise = np.linalg.cholesky(stationary - transition @ stationary @ transition.T) @ generator.standard_normal((2, count))
+    noise = np.linalg.cholesky(
+        stationary - transition @ stationary @ transition.T
+    ) @ generator.standard_normal((2, count))
     noise[:, 0] = np.linalg.cholesky(stationary) @ generator.standard_normal(2)
     total = _filtered(noise[1], decay)
     noise[0, 1:] += decay * step * total[:-1]
@@ -66,4 +76,6 @@ def _states(count: int, step: float, generator: np.random.Generator) -> tuple[Ar
 
 def _filtered(noise: Array, decay: float) -> Array:
     """First-order recursion x_k = decay x_(k-1) + noise_k; scipy.signal takes a second to import."""
-    return np.fromiter(accumulate(noise.tolist(), lambda state, kick: decay * state + kick), np.float64, len(noise))
+    return np.fromiter(
+        accumulate(noise.tolist(), lambda state, kick: decay * state + kick), np.float64, len(noise)
+    )

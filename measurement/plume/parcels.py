@@ -85,7 +85,9 @@ class Parcels:
         path = np.concatenate([[0.0], np.cumsum(passed)])
         # Rows of the cubics' coefficients of north, east and path, from the constant on.
         self._rows = (
-            np.concatenate([curve, _cubics(path, self._step * speed)[:, np.newaxis]], axis=1).transpose(2, 1, 0).reshape(count, 12)
+            np.concatenate([curve, _cubics(path, self._step * speed)[:, np.newaxis]], axis=1)
+            .transpose(2, 1, 0)
+            .reshape(count, 12)
         )
         ends = _blocks(np.unwrap(np.arctan2(-velocities[1], -velocities[0])))
         self._ends = nodes[ends]
@@ -116,7 +118,10 @@ class Parcels:
         """
         first = max(0, int(np.searchsorted(self._ends, oldest, side="right")) - 1)
         last = min(len(self._ends) - 1, int(np.searchsorted(self._ends, newest)))
-        along = [north * self._axes[0, k] + east * self._axes[1, k] - self._offsets[k] for k in range(first, last + 1)]
+        along = [
+            north * self._axes[0, k] + east * self._axes[1, k] - self._offsets[k]
+            for k in range(first, last + 1)
+        ]
         places, brackets, guesses = [], [], []
         for k, (before, after) in enumerate(pairwise(along), start=first):
             inside = np.flatnonzero((before < 0.0) & (after >= 0.0))
@@ -127,9 +132,17 @@ class Parcels:
         if not places:
             return Nearest(np.empty(0, dtype=np.intp), *np.empty((5, 0)))
         place = np.concatenate(places)
-        return self._refined(place, north[place], east[place], np.concatenate(guesses), np.concatenate(brackets, axis=1))
+        return self._refined(
+            place,
+            north[place],
+            east[place],
+            np.concatenate(guesses),
+            np.concatenate(brackets, axis=1),
+        )
 
-    def _refined(self, place: Indices, north: Array, east: Array, emitted: Array, bracket: Array) -> Nearest:
+    def _refined(
+        self, place: Indices, north: Array, east: Array, emitted: Array, bracket: Array
+    ) -> Nearest:
         """Newton's method on the place's component along the parcel's axis, kept within brackets that shrink with every round."""
         found = np.empty((5, len(place)))
         left: Indices | slice = slice(None)
@@ -176,10 +189,14 @@ def _check_track(time: Array, north: Array, east: Array) -> None:
             "give three of one length, 2 or more"
         )
     if not (np.isfinite(time).all() and np.isfinite(north).all() and np.isfinite(east).all()):
-        raise MeasurementError("ship's track has values that are missing or infinite; remove or fill them")
+        raise MeasurementError(
+            "ship's track has values that are missing or infinite; remove or fill them"
+        )
     if not (np.diff(time) > 0.0).all():
         first = int(np.argmax(np.diff(time) <= 0.0))
-        raise MeasurementError(f"times of the ship's track do not increase after {time[first]:g} s; sort them and remove doubles")
+        raise MeasurementError(
+            f"times of the ship's track do not increase after {time[first]:g} s; sort them and remove doubles"
+        )
 
 
 def _cubics(values: Array, slopes: Array) -> Array:

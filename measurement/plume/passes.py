@@ -28,4 +28,6 @@ def passes(across: Array) -> Iterator[slice]:
     middle = (change[:-1] + change[1:]) // 2 + 1
     begins = [max(0, 2 * change[0] - middle[0]) if len(middle) else 0, *middle]
     ends = [*middle, min(len(across), 2 * change[-1] - middle[-1]) if len(middle) else len(across)]
-    yield from (slice(int(begin), int(end)) for begin, end in zip(begins, ends, strict=True) if end > begin)
+    yield from (
+        slice(int(begin), int(end)) for begin, end in zip(begins, ends, strict=True) if end > begin
+    )

@@ -49,5 +49,7 @@ def downwash(emission: Emission, wind: Array) -> Array:
 
     Source: AERMOD, routine HSPRIM. The wake of the superstructure, which is not in it, is in the initial spread.
     """
-    result: Array = 2.0 * emission.stack_diameter * np.maximum(0.0, 1.5 - emission.exhaust_speed / wind)
+    result: Array = (
+        2.0 * emission.stack_diameter * np.maximum(0.0, 1.5 - emission.exhaust_speed / wind)
+    )
     return result

@@ -47,7 +47,12 @@ class Spreads:
 
 
 def spreads(
-    emission: Emission, air: MarineAir, source_height: float, wind: Array, age_max: float, settings: PlumeSettings
+    emission: Emission,
+    air: MarineAir,
+    source_height: float,
+    wind: Array,
+    age_max: float,
+    settings: PlumeSettings,
 ) -> Spreads:
     """Return axis and spreads at ages 0, 0.1, ... [s], from the turbulence of the true wind and the time in the apparent one.
 
@@ -89,7 +94,10 @@ def _spreads(
     stack = np.maximum(0.0, source_height - settings.downwash * downwash(emission, column))
     final = stack + rise(emission, column, np.array(_FINAL), air.brunt_vaisala)
     absolute = np.stack([_across(air, final, age), _up(air, final, age)])
-    start = emission.stack_diameter**2 / 8.0 * np.maximum(emission.exhaust_speed / column, 1.0) + emission.wake_spread**2
+    start = (
+        emission.stack_diameter**2 / 8.0 * np.maximum(emission.exhaust_speed / column, 1.0)
+        + emission.wake_spread**2
+    )
     source = start + (_BUOYANT * climb) ** 2
     dissipation = air.dissipation(settings.dissipation_height * source_height)
     turbulent = _turbulent(step, source, absolute, dissipation, air.sigma_w, settings.richardson)
@@ -116,7 +124,14 @@ def _up(air: MarineAir, height: Array, age: Array) -> Array:
     return result
 
 
-def _turbulent(interval: float, source: Array, absolute: Array, dissipation: float, sigma_w: float, richardson: float) -> Array:
+def _turbulent(
+    interval: float,
+    source: Array,
+    absolute: Array,
+    dissipation: float,
+    sigma_w: float,
+    richardson: float,
+) -> Array:
     """sigma_t^2 [m2], of the shape of ``absolute``, by Euler's rule; the time of the ballistic term is the step's middle."""
     others = source.T[:, np.newaxis, :].copy()
     growth = np.diff(absolute, axis=-1).transpose(2, 0, 1)

@@ -47,7 +47,9 @@ class SpreadTable:
         grid = np.array([0.5 * (low + high)]) if steady else np.geomspace(low, high, count)
         self._first, self._step = math.log(grid[0]), math.log(high / low) / max(1, count - 1)
         of = spreads(emission, air, source_height, grid, age_max, settings)
-        table = np.stack([of.height, of.relative_y, of.relative_z, of.meander_y, of.meander_z], axis=-1)
+        table = np.stack(
+            [of.height, of.relative_y, of.relative_z, of.meander_y, of.meander_z], axis=-1
+        )
         if settings.mean:
             table[..., 1:3] = np.hypot(table[..., 1:3], table[..., 3:])
         if settings.mean or not settings.meander:
@@ -55,8 +57,12 @@ class SpreadTable:
         self._ages = table.shape[1] - 1
         self._winds = count
         # Values at an age of the table, and what they grow by until the next.
-        self._rows = np.concatenate([table[:, :-1], np.diff(table, axis=1)], axis=-1).reshape(-1, 2 * _COLUMNS)
-        self.typical_spread = float(of.relative_y[count // 2, min(self._ages, round(_TYPICAL_AGE / STEP))])
+        self._rows = np.concatenate([table[:, :-1], np.diff(table, axis=1)], axis=-1).reshape(
+            -1, 2 * _COLUMNS
+        )
+        self.typical_spread = float(
+            of.relative_y[count // 2, min(self._ages, round(_TYPICAL_AGE / STEP))]
+        )
 
     def at(self, wind: Array, age: Array) -> Array:
         """Return height, sigma_ry, sigma_rz, sigma_my and sigma_mz [m], shape (5, n), linear in age and in the wind's logarithm.

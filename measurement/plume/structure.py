@@ -29,7 +29,13 @@ class Structure:
     generator : source of its randomness
     """
 
-    def __init__(self, intensity: float, length_along: float, length_across: float, generator: np.random.Generator) -> None:
+    def __init__(
+        self,
+        intensity: float,
+        length_along: float,
+        length_across: float,
+        generator: np.random.Generator,
+    ) -> None:
         self._deviation = math.sqrt(math.log1p(intensity**2))
         scale = np.array([length_along, length_across, length_across])
         # In turns per metre and per spread, a column for each direction.

@@ -5,4 +5,12 @@ from measurement.sniffer.presets import sensor_of, sensor_preset, sensor_presets
 from measurement.sniffer.sniffer import Readings, Sniffer
 from measurement.sniffer.spec import SnifferSpec
 
-__all__ = ["Channel", "Readings", "Sniffer", "SnifferSpec", "sensor_of", "sensor_preset", "sensor_presets"]
+__all__ = [
+    "Channel",
+    "Readings",
+    "Sniffer",
+    "SnifferSpec",
+    "sensor_of",
+    "sensor_preset",
+    "sensor_presets",
+]

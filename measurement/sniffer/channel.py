@@ -61,16 +61,34 @@ class Channel:
         if self.gas not in GASES:
             raise MeasurementError(f"gas is {self.gas!r}; it must be one of {', '.join(GASES)}")
         time_constants(self.t90_s, self.second_pole)
-        for name in ("t90_sd", "delay_s", "delay_sd_s", "random_walk", "resolution", "gain_sd", "zero_sd"):
+        for name in (
+            "t90_sd",
+            "delay_s",
+            "delay_sd_s",
+            "random_walk",
+            "resolution",
+            "gain_sd",
+            "zero_sd",
+        ):
             value = getattr(self, name)
             estimated = self.gas == "so2" and name in ("t90_sd", "delay_sd_s")
             if not value >= 0.0 or (math.isinf(value) and not estimated):
-                only = "; t90 and delay of SO2 alone can be estimated from a record" if math.isinf(value) else ""
-                raise MeasurementError(f"{name} of {self.gas} is {value:g}; it must be 0 or more and finite{only}")
+                only = (
+                    "; t90 and delay of SO2 alone can be estimated from a record"
+                    if math.isinf(value)
+                    else ""
+                )
+                raise MeasurementError(
+                    f"{name} of {self.gas} is {value:g}; it must be 0 or more and finite{only}"
+                )
         if self.noise < 0.0 or math.isinf(self.noise):
-            raise MeasurementError(f"noise of {self.gas} is {self.noise:g} {UNITS[self.gas]}; it must be 0 or more")
+            raise MeasurementError(
+                f"noise of {self.gas} is {self.noise:g} {UNITS[self.gas]}; it must be 0 or more"
+            )
         if not 0.1 <= self.gain <= 10.0:
-            raise MeasurementError(f"gain of {self.gas} is {self.gain:g}; it must be 0.1 to 10: calibrate the channel")
+            raise MeasurementError(
+                f"gain of {self.gas} is {self.gain:g}; it must be 0.1 to 10: calibrate the channel"
+            )
         if not self.range_low < self.range_high:
             raise MeasurementError(
                 f"range of {self.gas} is {self.range_low:g} to {self.range_high:g}; its end must lie above its start"
@@ -85,7 +103,9 @@ class Channel:
     def _check_cross(self, name: str) -> None:
         for gas, value in getattr(self, name).items():
             if gas not in GASES or gas == self.gas:
-                raise MeasurementError(f"{name} of {self.gas} names {gas!r}; it must be another of {', '.join(GASES)}")
+                raise MeasurementError(
+                    f"{name} of {self.gas} names {gas!r}; it must be another of {', '.join(GASES)}"
+                )
             if not abs(value) <= 10.0 or (name == "cross_sd" and value < 0.0):
                 raise MeasurementError(
                     f"{name} of {self.gas} to {gas} is {value:g}; it must be at most 10, and a deviation 0 or more"

@@ -25,7 +25,9 @@ def time_constants(t90: float, second_pole: float) -> tuple[float, ...]:
     MeasurementError : ``t90`` is not positive, or ``second_pole`` is not in 0 to ``SECOND_POLE_MAX``
     """
     if not 0.0 < t90 < math.inf:
-        raise MeasurementError(f"t90 is {t90:g} s; it must be positive: give the time to 90 % of a step")
+        raise MeasurementError(
+            f"t90 is {t90:g} s; it must be positive: give the time to 90 % of a step"
+        )
     if not 0.0 <= second_pole <= SECOND_POLE_MAX:
         raise MeasurementError(
             f"second_pole is {second_pole:g}; it must be 0 to {SECOND_POLE_MAX:g}: give the smaller time constant over the larger"
@@ -36,7 +38,12 @@ def time_constants(t90: float, second_pole: float) -> tuple[float, ...]:
 
     # With the first time constant 1, the step response is 1 - (e^-t - r e^(-t/r)) / (1 - r).
     reached = brentq(
-        lambda t: 0.1 - (math.exp(-t) - second_pole * math.exp(-t / second_pole)) / (1.0 - second_pole), 1.0, 6.0, xtol=1e-14
+        lambda t: (
+            0.1 - (math.exp(-t) - second_pole * math.exp(-t / second_pole)) / (1.0 - second_pole)
+        ),
+        1.0,
+        6.0,
+        xtol=1e-14,
     )
     return (t90 / float(reached), second_pole * t90 / float(reached))
 
@@ -67,7 +74,9 @@ def _weights_of_step(step: float, constant: float) -> tuple[float, float, float]
     return float(a), float(old), float(new)
 
 
-def lag(signal: Array, step: float, constant: float, before: tuple[float, float] | None = None) -> Array:
+def lag(
+    signal: Array, step: float, constant: float, before: tuple[float, float] | None = None
+) -> Array:
     """Return the output of a first-order lag at every sample of its input.
 
     Parameters
@@ -84,5 +93,7 @@ def lag(signal: Array, step: float, constant: float, before: tuple[float, float]
         return signal.copy()
     # The state of the transposed direct form is what the past adds to the next output.
     state = (1.0 - new) * signal[0] if before is None else a * before[0] + old * before[1]
-    filtered, _ = lfilter([new, old], [1.0, -a], signal, axis=0, zi=np.reshape(state, (1, *signal.shape[1:])))
+    filtered, _ = lfilter(
+        [new, old], [1.0, -a], signal, axis=0, zi=np.reshape(state, (1, *signal.shape[1:]))
+    )
     return np.asarray(filtered, dtype=np.float64)

@@ -42,7 +42,9 @@ class Sniffer:
     time_step : between the samples of the air [s]
     """
 
-    def __init__(self, spec: SnifferSpec, *, generator: np.random.Generator, time_step: float) -> None:
+    def __init__(
+        self, spec: SnifferSpec, *, generator: np.random.Generator, time_step: float
+    ) -> None:
         if not 0.0 < time_step <= 1.0 / spec.rate_hz + 1e-9:
             raise MeasurementError(
                 f"time step is {time_step:g} s; it must be positive and at most the {1.0 / spec.rate_hz:g} s between readings of"
@@ -69,22 +71,34 @@ class Sniffer:
         MeasurementError : a value is not a number, or the shapes do not agree
         """
         air = np.asarray(concentrations, dtype=np.float64)
-        pressure = np.zeros(len(air)) if pressure_error_hpa is None else np.asarray(pressure_error_hpa, dtype=np.float64)
+        pressure = (
+            np.zeros(len(air))
+            if pressure_error_hpa is None
+            else np.asarray(pressure_error_hpa, dtype=np.float64)
+        )
         if air.ndim != 2 or air.shape[1] != len(GASES) or pressure.shape != air.shape[:1]:
             raise MeasurementError(
                 f"concentrations have shape {air.shape}, pressure {pressure.shape}; they must be (n, 4) and (n,)"
             )
         if not (np.isfinite(air).all() and np.isfinite(pressure).all()):
-            raise MeasurementError("a concentration or a pressure error is not finite; give the air at every sample")
+            raise MeasurementError(
+                "a concentration or a pressure error is not finite; give the air at every sample"
+            )
         self._samples += len(air)
         last = self._samples - 1
-        end = math.floor(round(last / self._steps_per_reading, _DIGITS)) + 1 if len(air) else self._read
+        end = (
+            math.floor(round(last / self._steps_per_reading, _DIGITS)) + 1
+            if len(air)
+            else self._read
+        )
         numbers = np.arange(self._read, max(end, self._read))
         self._read += len(numbers)
         values = np.full((len(numbers), len(GASES)), np.nan)
         noise = self._generator.standard_normal((len(numbers), len(self._states), 2))
         for i, state in enumerate(self._states):
-            clean = state.advance(air, pressure, np.asarray(numbers * self._steps_per_reading, dtype=np.float64))
+            clean = state.advance(
+                air, pressure, np.asarray(numbers * self._steps_per_reading, dtype=np.float64)
+            )
             values[:, GASES.index(state.channel.gas)] = self._dressed(i, clean, noise[:, i])
         return Readings(numbers / self._spec.rate_hz, values)
 
@@ -127,7 +141,9 @@ class _ChannelState:
             self._outputs = [self._input.copy() for _ in self._lags]
             self._start = -self._kept
         self._outputs = [
-            np.concatenate([old, lag(new, self._step, constant, (old[-1], self._input[-1]))]) if len(new) else old
+            np.concatenate([old, lag(new, self._step, constant, (old[-1], self._input[-1]))])
+            if len(new)
+            else old
             for old, (_, constant) in zip(self._outputs, self._lags, strict=True)
         ]
         self._input = np.concatenate([self._input, new])

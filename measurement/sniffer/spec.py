@@ -35,10 +35,14 @@ class SnifferSpec:
 
     def __post_init__(self) -> None:
         if not 0.01 <= self.rate_hz <= 1000.0:
-            raise MeasurementError(f"rate of '{self.name}' is {self.rate_hz:g} Hz; it must be 0.01 to 1000")
+            raise MeasurementError(
+                f"rate of '{self.name}' is {self.rate_hz:g} Hz; it must be 0.01 to 1000"
+            )
         gases = [channel.gas for channel in self.channels]
         if not gases or len(set(gases)) < len(gases):
-            raise MeasurementError(f"channels of '{self.name}' are {gases}; it must have one, and one per gas at most")
+            raise MeasurementError(
+                f"channels of '{self.name}' are {gases}; it must have one, and one per gas at most"
+            )
 
     def channel(self, gas: str) -> Channel | None:
         """Return the channel of a gas, or none."""
@@ -56,7 +60,9 @@ class SnifferSpec:
         """
         channel = self.channel(gas)
         if channel is None:
-            raise MeasurementError(f"'{self.name}' has no {gas.upper()} channel; it has {', '.join(self.gases)}")
+            raise MeasurementError(
+                f"'{self.name}' has no {gas.upper()} channel; it has {', '.join(self.gases)}"
+            )
         return channel
 
     @property
@@ -66,7 +72,10 @@ class SnifferSpec:
 
     def with_channel(self, channel: Channel) -> "SnifferSpec":
         """Return the sniffer with the channel of the same gas replaced."""
-        return replace(self, channels=tuple(channel if channel.gas == old.gas else old for old in self.channels))
+        return replace(
+            self,
+            channels=tuple(channel if channel.gas == old.gas else old for old in self.channels),
+        )
 
     def check_known(self) -> None:
         """Refuse a sniffer that cannot be flown.
@@ -77,7 +86,9 @@ class SnifferSpec:
         """
         for of in self.channels:
             if not math.isfinite(of.t90_sd + of.delay_sd_s + of.noise):
-                raise MeasurementError(f"t90, delay or noise of {of.gas} is not known; give its t90_s, delay_s and noise to fly it")
+                raise MeasurementError(
+                    f"t90, delay or noise of {of.gas} is not known; give its t90_s, delay_s and noise to fly it"
+                )
 
     def drawn(self, generator: np.random.Generator) -> "SnifferSpec":
         """Return the instrument of one flight: each property sampled within its standard deviation, and then known exactly.
@@ -87,12 +98,17 @@ class SnifferSpec:
         MeasurementError : a property has an infinite standard deviation, from which nothing can be sampled
         """
         self.check_known()
-        return replace(self, channels=tuple(_drawn(channel, generator) for channel in self.channels))
+        return replace(
+            self, channels=tuple(_drawn(channel, generator) for channel in self.channels)
+        )
 
 
 def _drawn(channel: Channel, generator: np.random.Generator) -> Channel:
     t90, delay, gain, zero = generator.standard_normal(4)
-    cross = {gas: channel.cross.get(gas, 0.0) + sd * float(generator.standard_normal()) for gas, sd in _deviations(channel).items()}
+    cross = {
+        gas: channel.cross.get(gas, 0.0) + sd * float(generator.standard_normal())
+        for gas, sd in _deviations(channel).items()
+    }
     return replace(
         channel,
         t90_s=channel.t90_s * max(1.0 + channel.t90_sd * t90, _SHORTEST),
@@ -109,4 +125,8 @@ def _drawn(channel: Channel, generator: np.random.Generator) -> Channel:
 
 
 def _deviations(channel: Channel) -> Mapping[str, float]:
-    return {gas: channel.cross_sd.get(gas, 0.0) for gas in GASES if gas in channel.cross or gas in channel.cross_sd}
+    return {
+        gas: channel.cross_sd.get(gas, 0.0)
+        for gas in GASES
+        if gas in channel.cross or gas in channel.cross_sd
+    }

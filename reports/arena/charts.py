@@ -55,28 +55,41 @@ def effort_charts(arena: Arena) -> list[Chart]:
     each = Chart(
         name="efforts",
         caption="The same for each condition.",
-        panels=[_effort_panel(arena, entrants, condition, (3.0 * _WORD[0], 2.0 * _WORD[1])) for condition in arena.conditions],
+        panels=[
+            _effort_panel(arena, entrants, condition, (3.0 * _WORD[0], 2.0 * _WORD[1]))
+            for condition in arena.conditions
+        ],
         columns=3,
         panel_height=0.34,
     )
     return [together, each]
 
 
-def _effort_panel(arena: Arena, entrants: Sequence[Entrant], condition: str, word: tuple[float, float]) -> Panel:
+def _effort_panel(
+    arena: Arena, entrants: Sequence[Entrant], condition: str, word: tuple[float, float]
+) -> Panel:
     """Return a mark a law; of those that are nearer to each other than ``word``, over the panel's sizes, numbers are together."""
     efforts = {entrant.name: arena.of(EFFORT, entrant, condition).mean for entrant in entrants}
-    errors = {entrant.name: math.log10(max(arena.of(ERROR, entrant, condition).mean, 1e-3)) for entrant in entrants}
+    errors = {
+        entrant.name: math.log10(max(arena.of(ERROR, entrant, condition).mean, 1e-3))
+        for entrant in entrants
+    }
     lines, notes = [], []
     for label, colour, style in _FAMILIES:
         members = [entrant for entrant in entrants if _family(entrant) == label]
-        x, y = (np.array([values[entrant.name] for entrant in members]) for values in (efforts, errors))
+        x, y = (
+            np.array([values[entrant.name] for entrant in members]) for values in (efforts, errors)
+        )
         if members:
             lines.append(Line(x=x, y=y, label=label, colour=colour, style=style))
     known = [value for value in errors.values() if math.isfinite(value)] or [0.0]
     low, high = math.floor(min(known) - 0.1), math.ceil(max(known) + 0.1)
     reach = [value for value in efforts.values() if math.isfinite(value)] or [0.0]
     span = max(reach) - min(reach) or 0.1
-    marks = {entrant.number: (efforts[entrant.name] / (1.16 * span), errors[entrant.name] / (high - low)) for entrant in entrants}
+    marks = {
+        entrant.number: (efforts[entrant.name] / (1.16 * span), errors[entrant.name] / (high - low))
+        for entrant in entrants
+    }
     for numbers, (x_mark, y_mark) in clusters(marks, word):
         text = ", ".join(map(str, numbers))
         off, width, height = _OFF * word[0], _LETTER * word[0] * len(text), (high - low) * y_mark
@@ -109,7 +122,8 @@ def clusters(
     word : width and height of a number, as the places
     """
     left = sorted(
-        (number for number, place in marks.items() if all(map(math.isfinite, place))), key=lambda number: marks[number][1]
+        (number for number, place in marks.items() if all(map(math.isfinite, place))),
+        key=lambda number: marks[number][1],
     )
     while left:
         cluster = [left.pop(0)]
@@ -127,7 +141,11 @@ def _near(one: tuple[float, float], other: tuple[float, float], word: tuple[floa
 
 def _title(condition: str) -> str:
     """Return the name of a condition in words."""
-    return "All conditions" if condition == ALL else condition[:1].upper() + condition[1:].replace("_", " ")
+    return (
+        "All conditions"
+        if condition == ALL
+        else condition[:1].upper() + condition[1:].replace("_", " ")
+    )
 
 
 def _family(entrant: Entrant) -> str:
@@ -147,7 +165,11 @@ def crossing_chart(arena: Arena) -> Chart:
         _merit_panel(arena, entrants, CROSSINGS, condition, reach=reach, named=i == 0)
         for i, condition in enumerate(arena.conditions)
     ]
-    limit = " The dashed line is the most that any path allows at these speed ratios." if arena.limits else ""
+    limit = (
+        " The dashed line is the most that any path allows at these speed ratios."
+        if arena.limits
+        else ""
+    )
     return Chart(
         name="crossings",
         caption=f"Plume crossings per minute over the end of the flights; a mark is a law's mean{_interval_words(arena)}.{limit}",
@@ -178,10 +200,21 @@ def worth_chart(arena: Arena) -> Chart:
     )
 
 
-def _merit_panel(arena: Arena, entrants: Sequence[Entrant], figure: Figure, condition: str, *, reach: float, named: bool) -> Panel:
+def _merit_panel(
+    arena: Arena,
+    entrants: Sequence[Entrant],
+    figure: Figure,
+    condition: str,
+    *,
+    reach: float,
+    named: bool,
+) -> Panel:
     rows = {entrant.name: float(len(entrants) - 1 - i) for i, entrant in enumerate(entrants)}
     lines: list[Line] = []
-    for tracking, label, colour in ((True, "tracks the oscillating reference", "blue"), (False, "circles the vessel", "orange")):
+    for tracking, label, colour in (
+        (True, "tracks the oscillating reference", "blue"),
+        (False, "circles the vessel", "orange"),
+    ):
         members = [entrant for entrant in entrants if entrant.tracks == tracking]
         found = [arena.of(figure, entrant, condition) for entrant in members]
         x = np.array([value for of in found for value in (of.low, of.high, math.nan)])
@@ -190,12 +223,29 @@ def _merit_panel(arena: Arena, entrants: Sequence[Entrant], figure: Figure, cond
             places = np.array([rows[entrant.name] for entrant in members])
             lines += [
                 Line(x=x, y=y, label="", colour=colour),
-                Line(x=np.array([of.mean for of in found]), y=places, label=label, colour=colour, style="points"),
+                Line(
+                    x=np.array([of.mean for of in found]),
+                    y=places,
+                    label=label,
+                    colour=colour,
+                    style="points",
+                ),
             ]
     ends = np.array([-0.7, len(entrants) - 0.3])
     if figure is CROSSINGS and (most := arena.limits.get(condition)) is not None:
-        lines.append(Line(x=np.array([most, most]), y=ends, label="limit of any path", colour=Meaning.LIMIT, style="dash"))
-    names = [(rows[entrant.name], f"{entrant.title} {entrant.number}" if named else "") for entrant in entrants]
+        lines.append(
+            Line(
+                x=np.array([most, most]),
+                y=ends,
+                label="limit of any path",
+                colour=Meaning.LIMIT,
+                style="dash",
+            )
+        )
+    names = [
+        (rows[entrant.name], f"{entrant.title} {entrant.number}" if named else "")
+        for entrant in entrants
+    ]
     return Panel(
         x_label=figure.title,
         y_label="Law" if named else "",
@@ -209,15 +259,25 @@ def _merit_panel(arena: Arena, entrants: Sequence[Entrant], figure: Figure, cond
 
 def _most(arena: Arena, figure: Figure, conditions: Iterable[str]) -> float:
     """Return the largest value of a figure that is drawn."""
-    found = [arena.of(figure, entrant, condition) for condition in conditions for entrant in arena.entrants]
+    found = [
+        arena.of(figure, entrant, condition)
+        for condition in conditions
+        for entrant in arena.entrants
+    ]
     # A mean of too few flights has no interval.
-    return max((value for of in found for value in (of.mean, of.high) if math.isfinite(value)), default=0.0)
+    return max(
+        (value for of in found for value in (of.mean, of.high) if math.isfinite(value)), default=0.0
+    )
 
 
 def track_charts(arena: Arena, *, tracking: bool) -> list[Chart]:
     """Return the end of the first flight of each law in the first condition, seen from the vessel with its plume up the page."""
     ranked = arena.ranked(ERROR, arena.in_task(tracking=tracking))
-    panels = [panel for entrant in ranked if (panel := _track_panel(arena, entrant, tracking=tracking)) is not None]
+    panels = [
+        panel
+        for entrant in ranked
+        if (panel := _track_panel(arena, entrant, tracking=tracking)) is not None
+    ]
     first = next(iter(arena.conditions.values()), "")
     what = "The oscillating reference tracked" if tracking else "The vessel circled"
     caption = (
@@ -252,13 +312,22 @@ def _track_panel(arena: Arena, entrant: Entrant, *, tracking: bool) -> Panel | N
         Line(x=reference[0], y=reference[1], label="reference", colour=Meaning.ASKED, style="thin"),
     ]
     # The same part of the plume for every law, however far from it one is.
-    middle, half = (1.3 * about.radius, 0.8 * about.radius) if tracking else (0.0, 1.6 * about.radius)
-    return ship_panel(about, lines, title=f"{entrant.number} {entrant.title}", shown=[_square(middle, half)])
+    middle, half = (
+        (1.3 * about.radius, 0.8 * about.radius) if tracking else (0.0, 1.6 * about.radius)
+    )
+    return ship_panel(
+        about, lines, title=f"{entrant.number} {entrant.title}", shown=[_square(middle, half)]
+    )
 
 
 def _square(middle: float, half: float) -> Line:
     """Return what a panel has to show: a square about a place on the plume's axis."""
-    return Line(x=np.array([-half, half]), y=np.array([middle - half, middle + half]), label="", colour=Meaning.PLUME)
+    return Line(
+        x=np.array([-half, half]),
+        y=np.array([middle - half, middle + half]),
+        label="",
+        colour=Meaning.PLUME,
+    )
 
 
 def _interval_words(arena: Arena) -> str:

@@ -3,7 +3,14 @@
 from reports.arena.charts import crossing_chart, effort_charts, track_charts, worth_chart
 from reports.arena.data import Arena, Entrant, read_arena
 from reports.arena.figures import CROSSINGS, ERROR, PLUME_TIME, SULPHUR, Figure
-from reports.arena.tables import by_condition_table, condition_table, given_table, plume_table, refused_table, tracking_table
+from reports.arena.tables import (
+    by_condition_table,
+    condition_table,
+    given_table,
+    plume_table,
+    refused_table,
+    tracking_table,
+)
 from reports.design.section import innerloop_section
 from reports.document.blocks import Block, Card, Findings, Heading, Section, Text, Verdict
 from reports.document.tables import outcome, parameter_table
@@ -73,12 +80,19 @@ def arena_content(run: RunData) -> Findings:
         _section("tracking", "Tracking the oscillating reference", "Tracking", _tracking(arena)),
         _section("standoff", "Circling the vessel", "Circling", _standoff(arena)),
         _section("plume", "Measuring the plume", "Plume", _plume(arena)),
-        _section("given", "What each law was given", "Given", [Text(_GIVEN), given_table(arena), *_refused(arena)]),
+        _section(
+            "given",
+            "What each law was given",
+            "Given",
+            [Text(_GIVEN), given_table(arena), *_refused(arena)],
+        ),
         *([innerloop_section(run.innerloop)] if run.innerloop else []),
         _section("parameters", "Parameters", "Parameters", [parameter_table(run)]),
     ]
     both = len(arena.entrants) - len({entrant.law for entrant in arena.entrants})
-    laws = f"{len(arena.entrants) - both} steering laws" + f", {both} of them in both tasks" * (both > 0)
+    laws = f"{len(arena.entrants) - both} steering laws" + f", {both} of them in both tasks" * (
+        both > 0
+    )
     often = {1: "once", 2: "twice"}.get(arena.flights, f"{arena.flights} times")
     flown = (
         f"{laws}, each flown {often} in each of {len(arena.conditions)} conditions:"
@@ -130,7 +144,10 @@ def _plume(arena: Arena) -> list[Block]:
         *(
             block
             for figure in by_condition
-            for block in (Heading(f"{figure.title}, by condition"), by_condition_table(arena, figure))
+            for block in (
+                Heading(f"{figure.title}, by condition"),
+                by_condition_table(arena, figure),
+            )
         ),
     ]
 
@@ -145,11 +162,19 @@ def _verdict(arena: Arena) -> Verdict:
     rows, flown = arena.run.summary, flights_flown(arena.run.summary)
     planned = int(arena.run.manifest["flights_planned"])
     violations, gone = count(violated(flown)), count(lost(rows))
-    best = [(task, first) for task in (True, False) if (first := arena.best(ERROR, arena.in_task(tracking=task)))]
+    best = [
+        (task, first)
+        for task in (True, False)
+        if (first := arena.best(ERROR, arena.in_task(tracking=task)))
+    ]
     failures = _unflown(arena)
     if violations:
-        laws = [entrant.title for entrant in arena.entrants if total(entrant.rows, "keepout_violations")]
-        failures.append(f"keep-out violations in {violations} of {len(flown)} flights: of {', '.join(laws)}")
+        laws = [
+            entrant.title for entrant in arena.entrants if total(entrant.rows, "keepout_violations")
+        ]
+        failures.append(
+            f"keep-out violations in {violations} of {len(flown)} flights: of {', '.join(laws)}"
+        )
     if gone:
         laws = [entrant.title for entrant in arena.entrants if lost(entrant.rows).any()]
         failures.append(f"{gone} flights lost the aircraft: of {', '.join(laws)}")
@@ -169,11 +194,19 @@ def _verdict(arena: Arena) -> Verdict:
             for figure in (CROSSINGS, SULPHUR)
             if (first := arena.best(figure, arena.entrants))
         ),
-        Card("Keep-out violations", f"{total(flown, 'keepout_violations'):,}", "0", len(flown) > 0 and not violations),
+        Card(
+            "Keep-out violations",
+            f"{total(flown, 'keepout_violations'):,}",
+            "0",
+            len(flown) > 0 and not violations,
+        ),
         Card("Aircraft lost", f"{gone:,}", "0", len(flown) > 0 and not gone),
         Card("Flights flown", f"{len(flown):,} of {planned:,}", "all", len(flown) == planned),
         Card("Laws in a task", f"{len(arena.entrants)}"),
-        Card("Conditions, and flights of each law in each", f"{len(arena.conditions)} × {arena.flights}"),
+        Card(
+            "Conditions, and flights of each law in each",
+            f"{len(arena.conditions)} × {arena.flights}",
+        ),
     ]
     return Verdict(
         holds=len(flown) > 0 and not violations and not gone,
@@ -190,7 +223,11 @@ def _headline(arena: Arena, best: list[tuple[bool, Entrant]]) -> str:
     found, leads = dict(best), "is best" if arena.flights > 1 else "has the least error"
     words = [
         f"{'tracking' if task else 'circling'}: "
-        + (f"{found[task].title} {leads}, {_mean(arena, found[task], ERROR)} m rms" if task in found else _NONE_BEST)
+        + (
+            f"{found[task].title} {leads}, {_mean(arena, found[task], ERROR)} m rms"
+            if task in found
+            else _NONE_BEST
+        )
         for task in (True, False)
         if arena.in_task(tracking=task)
     ]
@@ -207,8 +244,14 @@ def _unflown(arena: Arena) -> list[str]:
             compared = arena.of(ERROR, entrant, arena.together).whole
             apart = "" if compared or len(lacking) == len(rows) else ", and it is not compared"
             reasons = list(dict.fromkeys(outcome(row) for _, row in lacking.iterrows()))
-            more = f"; and for {len(reasons) - 1} other reason{'s' * (len(reasons) > 2)}" if len(reasons) > 1 else ""
-            lines.append(f"{entrant.title}: {len(lacking)} of {len(rows)} flights could not be flown{apart}: {reasons[0]}{more}")
+            more = (
+                f"; and for {len(reasons) - 1} other reason{'s' * (len(reasons) > 2)}"
+                if len(reasons) > 1
+                else ""
+            )
+            lines.append(
+                f"{entrant.title}: {len(lacking)} of {len(rows)} flights could not be flown{apart}: {reasons[0]}{more}"
+            )
     return lines
 
 
@@ -230,7 +273,10 @@ def _best_of(arena: Arena, first: Entrant, figure: Figure) -> str:
     """Return the law with the best mean, and how many others have the same, as it is written."""
     mean = _mean(arena, first, figure)
     same = sum(
-        of is not first and arena.of(figure, of, arena.together).whole and _mean(arena, of, figure) == mean for of in arena.entrants
+        of is not first
+        and arena.of(figure, of, arena.together).whole
+        and _mean(arena, of, figure) == mean
+        for of in arena.entrants
     )
     return f"{first.title} and {same} more" if same else first.title
 

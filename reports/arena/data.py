@@ -70,7 +70,11 @@ class Entrant:
     def title(self) -> str:
         """Return the name of the law in words."""
         name = self.law.rpartition(":")[2].replace("_", " ")
-        return name if self.task == TRACKING or "orbit" in name or "loiter" in name or name == "lgvf" else f"{name} (circle)"
+        return (
+            name
+            if self.task == TRACKING or "orbit" in name or "loiter" in name or name == "lgvf"
+            else f"{name} (circle)"
+        )
 
     @property
     def tracks(self) -> bool:
@@ -113,7 +117,10 @@ class Arena:
 
     def has(self, figure: Figure) -> bool:
         """Return whether any law has a figure: those of the exhaust need a sniffer."""
-        return any(not math.isnan(self.of(figure, entrant, self.together).mean) for entrant in self.entrants)
+        return any(
+            not math.isnan(self.of(figure, entrant, self.together).mean)
+            for entrant in self.entrants
+        )
 
     @property
     def together(self) -> str:
@@ -129,13 +136,24 @@ class Arena:
 
         def place(entrant: Entrant) -> tuple[bool, bool, float]:
             found = self.of(figure, entrant, self.together)
-            return math.isnan(found.mean), not found.whole, -found.mean if figure.greater_first else found.mean
+            return (
+                math.isnan(found.mean),
+                not found.whole,
+                -found.mean if figure.greater_first else found.mean,
+            )
 
         return sorted(entrants, key=place)
 
     def best(self, figure: Figure, entrants: Iterable[Entrant]) -> Entrant | None:
         """Return the entrant with the best mean of a figure over all conditions, of those that are compared; none without one."""
-        return next((first for first in self.ranked(figure, entrants)[:1] if self.of(figure, first, self.together).whole), None)
+        return next(
+            (
+                first
+                for first in self.ranked(figure, entrants)[:1]
+                if self.of(figure, first, self.together).whole
+            ),
+            None,
+        )
 
     def flights_of(self, condition: str) -> int:
         """Return how many flights of each entrant a mean is of, where all were flown."""
@@ -161,7 +179,12 @@ def read_arena(run: RunData) -> Arena | None:
             tuned=entry["tuned"],
             cost_default=float(entry.get("cost_default_m", math.nan)),
             cost_tuned=float(entry.get("cost_tuned_m", math.nan)),
-            rows=rows[[_of_case(str(flight), str(trial), entry["name"], fidelity) for flight, trial in _named(rows)]],
+            rows=rows[
+                [
+                    _of_case(str(flight), str(trial), entry["name"], fidelity)
+                    for flight, trial in _named(rows)
+                ]
+            ],
         )
         for i, entry in enumerate(record["entrants"], start=1)
     ]
@@ -172,7 +195,10 @@ def read_arena(run: RunData) -> Arena | None:
         flights=int(record["flights"]),
         refused=record["refused"],
         limits=record["limits"],
-        _estimates={(entry["figure"], entry["condition"], entry["entrant"]): _estimate(entry) for entry in record["estimates"]},
+        _estimates={
+            (entry["figure"], entry["condition"], entry["entrant"]): _estimate(entry)
+            for entry in record["estimates"]
+        },
     )
 
 
@@ -187,5 +213,15 @@ def _of_case(flight: str, trial: str, case: str, fidelity: str) -> bool:
 
 
 def _estimate(entry: dict[str, Any]) -> Estimate:
-    mean, low, high = (math.nan if entry[key] is None else float(entry[key]) for key in ("mean", "low", "high"))
-    return Estimate(mean, low, high, best=entry["best"], as_good=entry["as_good"], whole=entry["whole"], flights=entry["flights"])
+    mean, low, high = (
+        math.nan if entry[key] is None else float(entry[key]) for key in ("mean", "low", "high")
+    )
+    return Estimate(
+        mean,
+        low,
+        high,
+        best=entry["best"],
+        as_good=entry["as_good"],
+        whole=entry["whole"],
+        flights=entry["flights"],
+    )

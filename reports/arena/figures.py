@@ -58,8 +58,12 @@ ERROR = Figure(name="error_rms_m", title="Error rms [m]", pattern="{:.2f}")
 EFFORT = Figure(name="effort_rms_rad_s", title="Effort rms [rad/s]", pattern="{:.3f}")
 EXCESS = Figure(name="excess_rms_rad_s", title="Excess effort [rad/s]", pattern="{:.3f}")
 CUT = Figure(name="saturated_share", title="Cut commands [%]", pattern="{:.1f}", shown=_percent)
-CROSSINGS = Figure(name="crossings_per_minute", title="Crossings [1/min]", pattern="{:.2f}", greater_first=True)
-PLUME_TIME = Figure(name="plume_s_per_minute", title="In the plume [s/min]", pattern="{:.2f}", greater_first=True)
+CROSSINGS = Figure(
+    name="crossings_per_minute", title="Crossings [1/min]", pattern="{:.2f}", greater_first=True
+)
+PLUME_TIME = Figure(
+    name="plume_s_per_minute", title="In the plume [s/min]", pattern="{:.2f}", greater_first=True
+)
 SULPHUR = Figure(
     name="sulphur_information_per_minute",
     title=f"Sulphur error of a minute [{MASS_PERCENT}]",

@@ -64,7 +64,9 @@ def _beside(paths: list[Path]) -> Path:
     """Return the directory beside the first run that is named by all of them, of which no other runs have the same."""
     names = [path.name[:_NAME_MAX] for path in paths]
     if any(path != paths[0].parent / name for path, name in zip(paths, names, strict=True)):
-        names.append(hashlib.sha256(b"\n".join(map(os.fsencode, paths))).hexdigest()[:_HASH_LETTERS])
+        names.append(
+            hashlib.sha256(b"\n".join(map(os.fsencode, paths))).hexdigest()[:_HASH_LETTERS]
+        )
     return paths[0].parent / "-".join(["compare", *names])
 
 
@@ -78,11 +80,15 @@ def _make(directory: Path) -> None:
     from reports.errors import ReportError
 
     if (directory / MANIFEST).exists():
-        raise ReportError(f"--out '{directory}' is the directory of a run; name another one for the comparison")
+        raise ReportError(
+            f"--out '{directory}' is the directory of a run; name another one for the comparison"
+        )
     try:
         directory.mkdir(parents=True, exist_ok=True)
     except OSError as error:
-        raise ReportError(f"'{directory}' cannot be made: {error.strerror}; name another directory by --out") from None
+        raise ReportError(
+            f"'{directory}' cannot be made: {error.strerror}; name another directory by --out"
+        ) from None
 
 
 def _print(runs: "Sequence[Run]", compared: "Sequence[Compared]") -> None:
@@ -96,21 +102,37 @@ def _print(runs: "Sequence[Run]", compared: "Sequence[Compared]") -> None:
     keys = configuration_table(runs)
     for run in runs:
         console.print(f"{run.title}, {run.state}", markup=False, highlight=False)
-    for title, table in (("Keys that differ", keys), ("Figures of all flights", side_by_side(runs))):
+    for title, table in (
+        ("Keys that differ", keys),
+        ("Figures of all flights", side_by_side(runs)),
+    ):
         if table is not None:
             console.print()
             console.print(console_table(title, table))
     for of in compared:
-        console.print(f"\n{of.pairs.other.letter}: {' '.join(pairing_sentences(of.pairs))}", markup=False, highlight=False)
+        console.print(
+            f"\n{of.pairs.other.letter}: {' '.join(pairing_sentences(of.pairs))}",
+            markup=False,
+            highlight=False,
+        )
         if of.differing and (differences := difference_table(of.pairs, of.found)).rows:
             console.print(console_table("Differences of the flights of each pair", differences))
     console.print(f"\n{headline(compared)}", markup=False, highlight=False)
 
 
 def command(
-    runs: Annotated[list[Path], typer.Argument(metavar="RUN_DIR", help="Directories that plume-flight run wrote, two or more.")],
+    runs: Annotated[
+        list[Path],
+        typer.Argument(
+            metavar="RUN_DIR", help="Directories that plume-flight run wrote, two or more."
+        ),
+    ],
     out: Annotated[
-        Path | None, typer.Option(metavar="DIR", help="Where to write; compare-RUN_A-RUN_B... beside the first run if not given.")
+        Path | None,
+        typer.Option(
+            metavar="DIR",
+            help="Where to write; compare-RUN_A-RUN_B... beside the first run if not given.",
+        ),
     ] = None,
 ) -> None:
     """Compare runs with the first one: configuration, figures, and the flights that they have in common.

@@ -31,18 +31,27 @@ def pair_charts(pairs: Pairs, found: dict[str, Difference]) -> list[Chart]:
     shown = [difference for difference in known if len(difference.known) >= _PAIRS_MIN]
     groups, over = _groups(pairs), _inputs(pairs)
     panels = [
-        (_scatter(difference, groups, pairs), _changes(difference, *over, groups) if over else _ranked(difference, groups))
+        (
+            _scatter(difference, groups, pairs),
+            _changes(difference, *over, groups) if over else _ranked(difference, groups),
+        )
         for difference in shown
     ]
     caption = (
         f"Each marker is a pair of flights: {pairs.first.title} to the right, {pairs.other.title} upwards; on the dashed line"
         f" both are equal. Then the differences {pairs.other.letter} − {pairs.first.letter}, "
-        + ("over what was swept." if over else "in rising order: where the markers pass 50 % is their median.")
+        + (
+            "over what was swept."
+            if over
+            else "in rising order: where the markers pass 50 % is their median."
+        )
     )
     return [
         Chart(
             name=f"pairs{pairs.other.letter}-{i + 1}",
-            caption=caption if i == 0 else f"Pairs of flights by {_listed(shown[i : i + _FIGURES_MAX])}, and the differences.",
+            caption=caption
+            if i == 0
+            else f"Pairs of flights by {_listed(shown[i : i + _FIGURES_MAX])}, and the differences.",
             panels=[panel for row in panels[i : i + _FIGURES_MAX] for panel in row],
             columns=2,
             panel_height=0.27,
@@ -68,7 +77,10 @@ def _groups(pairs: Pairs) -> list[Group]:
 
 def _marks(x: Array, y: Array, groups: list[Group]) -> list[Line]:
     """Return markers as ``points`` does; those of flights met in one run alone are told apart in grey, too."""
-    return [replace(line, style="diamonds") if line.label.endswith(" alone") else line for line in points(x, y, groups)]
+    return [
+        replace(line, style="diamonds") if line.label.endswith(" alone") else line
+        for line in points(x, y, groups)
+    ]
 
 
 def _scatter(difference: Difference, groups: list[Group], pairs: Pairs) -> Panel:
@@ -100,7 +112,13 @@ def _inputs(pairs: Pairs) -> tuple[Array, str] | None:
 
 
 def _changes(difference: Difference, x: Array, x_label: str, groups: list[Group]) -> Panel:
-    zero = Line(x=np.array(around(x) or (0.0, 1.0)), y=np.zeros(2), label="no difference", colour="black", style="dash")
+    zero = Line(
+        x=np.array(around(x) or (0.0, 1.0)),
+        y=np.zeros(2),
+        label="no difference",
+        colour="black",
+        style="dash",
+    )
     return Panel(
         title="Difference",
         x_label=x_label,
@@ -116,7 +134,9 @@ def _ranked(difference: Difference, groups: list[Group]) -> Panel:
     share = np.full(len(change), np.nan)
     order = np.argsort(change)[: len(difference.known)]
     share[order] = 100.0 * (np.arange(len(order)) + 0.5) / len(order)
-    zero = Line(x=np.zeros(2), y=np.array([0.0, 100.0]), label="no difference", colour="black", style="dash")
+    zero = Line(
+        x=np.zeros(2), y=np.array([0.0, 100.0]), label="no difference", colour="black", style="dash"
+    )
     return Panel(
         title="Difference",
         x_label=f"Difference [{difference.figure.unit}]",

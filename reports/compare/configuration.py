@@ -52,8 +52,14 @@ def trials_apart(runs: Sequence[Run]) -> list[str]:
     if _single(runs):
         return []
     shared = set.intersection(*({trial.key for trial in run.trials} for run in runs))
-    found = {run.title: [trial.key for trial in run.trials if trial.key not in shared] for run in runs}
-    return [f"Not in every run are, of {title}, the trials {', '.join(names)}." for title, names in found.items() if names]
+    found = {
+        run.title: [trial.key for trial in run.trials if trial.key not in shared] for run in runs
+    }
+    return [
+        f"Not in every run are, of {title}, the trials {', '.join(names)}."
+        for title, names in found.items()
+        if names
+    ]
 
 
 def _single(runs: Sequence[Run]) -> bool:
@@ -69,9 +75,15 @@ def _differing(runs: Sequence[Run]) -> dict[tuple[str, Values], list[str]]:
         if all(name in of for of in trials):
             configured = [_settings(of[name]) for of in trials]
             # A key of a part that is not set is no key of the configuration.
-            defaults = [{parameter["key"]: parameter["value"] for parameter in of[name].parameters()} for of in trials]
+            defaults = [
+                {parameter["key"]: parameter["value"] for parameter in of[name].parameters()}
+                for of in trials
+            ]
             for key in dict.fromkeys(key for settings in configured for key in settings):
-                given = [of.get(key, default.get(key, NOT_A_KEY)) for of, default in zip(configured, defaults, strict=True)]
+                given = [
+                    of.get(key, default.get(key, NOT_A_KEY))
+                    for of, default in zip(configured, defaults, strict=True)
+                ]
                 if any(value != given[0] for value in given[1:]):
                     found.setdefault((key, _in_words(key, given)), []).append(name)
     return found
@@ -86,8 +98,15 @@ def _settings(trial: Trial) -> dict[str, Any]:
 
 def _named(value: Any) -> Any:
     """Return nested settings in which lists of named tables are mappings by their names."""
-    if isinstance(value, list) and value and all(isinstance(entry, Mapping) and "name" in entry for entry in value):
-        return {str(entry["name"]): _named({key: of for key, of in entry.items() if key != "name"}) for entry in value}
+    if (
+        isinstance(value, list)
+        and value
+        and all(isinstance(entry, Mapping) and "name" in entry for entry in value)
+    ):
+        return {
+            str(entry["name"]): _named({key: of for key, of in entry.items() if key != "name"})
+            for entry in value
+        }
     return {key: _named(of) for key, of in value.items()} if isinstance(value, Mapping) else value
 
 
@@ -106,7 +125,11 @@ def _whole(value: Any, key: str) -> str:
 
 
 def _brief(value: Any, key: str) -> str:
-    if isinstance(value, list) and len(value) > _LONG and all(isinstance(entry, int | float) for entry in value):
+    if (
+        isinstance(value, list)
+        and len(value) > _LONG
+        and all(isinstance(entry, int | float) for entry in value)
+    ):
         return f"{len(value)} values, {min(value):g} to {max(value):g}"
     return _whole(value, key)
 
@@ -117,7 +140,10 @@ def _meanings(runs: Sequence[Run]) -> dict[str, tuple[str, str]]:
         str(parameter["key"]): (str(parameter["meaning"]), str(parameter["unit"]))
         for run in runs
         for trial in run.trials
-        for parameter in (*trial.parameters(), *run.manifest.get("unused_parameters", {}).get(trial.key, []))
+        for parameter in (
+            *trial.parameters(),
+            *run.manifest.get("unused_parameters", {}).get(trial.key, []),
+        )
     }
 
 
@@ -125,17 +151,31 @@ def software_table(runs: Sequence[Run]) -> Table:
     """Return what each run is and what flew it; what differs from the first run is in bold."""
     rows = [
         ["Scenario", *(f"{run.manifest['name']}: {run.manifest['title']}" for run in runs)],
-        ["State", *(f"{run.state}, {len(run.data.summary):,} of {run.manifest['flights_planned']:,} flights" for run in runs)],
+        [
+            "State",
+            *(
+                f"{run.state}, {len(run.data.summary):,} of {run.manifest['flights_planned']:,} flights"
+                for run in runs
+            ),
+        ],
         ["Overrides", *(", ".join(run.manifest["overrides"]) or "none" for run in runs)],
         ["Configuration hash", *(str(run.manifest["config_hash"]) for run in runs)],
         ["Source revision", *(str(run.manifest["git_revision"]) for run in runs)],
-        ["Hash of the source", *(str(run.manifest["fingerprint"].get("source", "unknown")) for run in runs)],
+        [
+            "Hash of the source",
+            *(str(run.manifest["fingerprint"].get("source", "unknown")) for run in runs),
+        ],
         ["Python", *(f"{run.manifest['python']} on {run.manifest['platform']}" for run in runs)],
         *_packages(runs),
         *_files(runs),
         ["Autopilot’s design", *_designs(runs)],
     ]
-    bold = [(i, k) for i, row in enumerate(rows) for k in range(2, len(row)) if row[k] not in (row[1], _SAME)]
+    bold = [
+        (i, k)
+        for i, row in enumerate(rows)
+        for k in range(2, len(row))
+        if row[k] not in (row[1], _SAME)
+    ]
     return Table(
         head=["", *(run.title for run in runs)],
         rows=rows,
@@ -152,16 +192,29 @@ def _packages(runs: Sequence[Run]) -> list[list[str]]:
     versions = [dict(run.manifest["packages"]) for run in runs]
     names = dict.fromkeys(name for of in versions for name in of)
     differing = [name for name in names if len({of.get(name) for of in versions}) > 1]
-    rows = [[f"Version of {name}", *(str(of.get(name, "not recorded")) for of in versions)] for name in differing]
+    rows = [
+        [f"Version of {name}", *(str(of.get(name, "not recorded")) for of in versions)]
+        for name in differing
+    ]
     same = [f"{name} {versions[0][name]}" for name in names if name not in differing]
-    return [*rows, ["Other packages" if rows else "Packages", ", ".join(same), *(_SAME for _ in runs[1:])]] if same else rows
+    return (
+        [
+            *rows,
+            ["Other packages" if rows else "Packages", ", ".join(same), *(_SAME for _ in runs[1:])],
+        ]
+        if same
+        else rows
+    )
 
 
 def _files(runs: Sequence[Run]) -> list[list[str]]:
     """Return a row for each file of the user that some run takes a part or a vessel's track from."""
     used = [run.manifest.get("plugins", {}) | run.manifest.get("vessel_files", {}) for run in runs]
     # Without their directories, which are those of a machine.
-    named = [{name.replace("\\", "/").rpartition("/")[2]: known for name, known in of.items()} for of in used]
+    named = [
+        {name.replace("\\", "/").rpartition("/")[2]: known for name, known in of.items()}
+        for of in used
+    ]
     names = sorted({name for of in named for name in of})
     return [[f"File {name}", *(_file(of.get(name)) for of in named)] for name in names]
 
@@ -185,9 +238,15 @@ def _designs(runs: Sequence[Run]) -> list[str]:
         elif design == first:
             words.append(_SAME)
         else:
-            parts = [key.replace("_", " ") for key in dict.fromkeys([*first, *design]) if first.get(key) != design.get(key)]
+            parts = [
+                key.replace("_", " ")
+                for key in dict.fromkeys([*first, *design])
+                if first.get(key) != design.get(key)
+            ]
             more = f" and {len(parts) - _NAMED_MAX} more" if len(parts) > _NAMED_MAX else ""
-            words.append(f"{design['title']}, {_hash(design)}: differs in {', '.join(parts[:_NAMED_MAX])}{more}")
+            words.append(
+                f"{design['title']}, {_hash(design)}: differs in {', '.join(parts[:_NAMED_MAX])}{more}"
+            )
     return words
 
 

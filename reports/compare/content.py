@@ -8,7 +8,14 @@ from reports.compare.configuration import configuration_table, software_table, t
 from reports.compare.figures import PAIRS_MIN, Difference, differences
 from reports.compare.pairs import SPEED_RATIO, Pairs, paired
 from reports.compare.runs import Run
-from reports.compare.tables import LISTED_MAX, changed, changed_table, difference_table, side_by_side, signed
+from reports.compare.tables import (
+    LISTED_MAX,
+    changed,
+    changed_table,
+    difference_table,
+    side_by_side,
+    signed,
+)
 from reports.compare.tracks import most_changed
 from reports.document.blocks import Block, Card, Content, Heading, Section, Text, Verdict
 from reports.document.chart import Chart
@@ -19,7 +26,13 @@ from reports.run.letterhead import letterhead
 TIME_OF_COMPUTING = "wall_time_s"
 """The column of a summary that differs between any two runs."""
 
-_CARDS = ("fsc_percent", "clearance_m", "tracking_error_rms_m", "crossing_interval_error", "settling_time_s")
+_CARDS = (
+    "fsc_percent",
+    "clearance_m",
+    "tracking_error_rms_m",
+    "crossing_interval_error",
+    "settling_time_s",
+)
 _CARDS_MAX = 3
 """Figures at the head of the report on two runs: the first of those that the flights have."""
 
@@ -70,14 +83,31 @@ def comparison_content(runs: Sequence[Run], compared: Sequence[Compared]) -> Con
     tracks = [most_changed(of.pairs, of.found) if of.differing else None for of in compared]
     # Page 1 has the tracks of the first pair of runs.
     sections = [
-        Section(anchor="changed", title="What differs in the configuration", nav_title="Configuration", blocks=configuration),
-        Section(anchor="figures", title="Figures side by side", nav_title="Figures", blocks=_figures(runs)),
-        *(_pair_section(of, chart) for of, chart in zip(compared, [None, *tracks[1:]], strict=True)),
+        Section(
+            anchor="changed",
+            title="What differs in the configuration",
+            nav_title="Configuration",
+            blocks=configuration,
+        ),
+        Section(
+            anchor="figures",
+            title="Figures side by side",
+            nav_title="Figures",
+            blocks=_figures(runs),
+        ),
+        *(
+            _pair_section(of, chart)
+            for of, chart in zip(compared, [None, *tracks[1:]], strict=True)
+        ),
         Section(anchor="provenance", title="Provenance", blocks=[software_table(runs)]),
     ]
     described = "; ".join(f"{run.title} ({run.manifest['title']}, {run.state})" for run in runs)
     picture, sections = numbered(tracks[0], sections)
-    names = " and ".join(run.name for run in runs) if len(runs) == 2 else f"{runs[0].name} and {len(runs) - 1} others"
+    names = (
+        " and ".join(run.name for run in runs)
+        if len(runs) == 2
+        else f"{runs[0].name} and {len(runs) - 1} others"
+    )
     return Content(
         title=f"Comparison of {len(runs)} runs",
         letterhead=replace(letterhead(runs[0].data, {}), run=names, done=f"{runs[0].letter} flown"),
@@ -118,38 +148,79 @@ def _pair_section(compared: Compared, tracks: Chart | None) -> Section:
         if table is not None:
             number = count(changed(pairs))
             first = f", of which the first {LISTED_MAX} are listed" if number > LISTED_MAX else ""
-            blocks += [Heading(f"Flights that met, kept out or completed in one run alone: {number:,}{first}"), table]
+            blocks += [
+                Heading(
+                    f"Flights that met, kept out or completed in one run alone: {number:,}{first}"
+                ),
+                table,
+            ]
         blocks += pair_charts(pairs, compared.found)
         blocks += [tracks] if tracks is not None else []
     else:
-        blocks.append(Text(f"No figure of these flights differs between {pairs.first.letter} and {letter}."))
+        blocks.append(
+            Text(f"No figure of these flights differs between {pairs.first.letter} and {letter}.")
+        )
     title = f"Flight by flight: {letter} against {pairs.first.letter}"
-    return Section(anchor=f"flights{letter.lower()}", title=title, nav_title=f"{letter} − {pairs.first.letter}", blocks=blocks)
+    return Section(
+        anchor=f"flights{letter.lower()}",
+        title=title,
+        nav_title=f"{letter} − {pairs.first.letter}",
+        blocks=blocks,
+    )
 
 
 def pairing_sentences(pairs: Pairs) -> list[str]:
     """Return how many flights are paired, how many have no partner, and whether what was sampled agrees."""
     first, other = pairs.first, pairs.other
-    sentences = [f"{len(pairs):,} flight{'s are' if len(pairs) > 1 else ' is'} paired: the same point or case, number and seed."]
+    sentences = [
+        f"{len(pairs):,} flight{'s are' if len(pairs) > 1 else ' is'} paired: the same point or case, number and seed."
+    ]
     if any(pairs.alone):
-        alone = " and ".join(f"{of:,} of {run.letter}" for of, run in zip(pairs.alone, (first, other), strict=True) if of)
-        same = f"; {pairs.same_name:,} of them have the same name in both runs, but another seed" if pairs.same_name else ""
+        alone = " and ".join(
+            f"{of:,} of {run.letter}"
+            for of, run in zip(pairs.alone, (first, other), strict=True)
+            if of
+        )
+        same = (
+            f"; {pairs.same_name:,} of them have the same name in both runs, but another seed"
+            if pairs.same_name
+            else ""
+        )
         sentences.append(f"Without a partner are {alone}{same}.")
     differing = pairs.differing_inputs()
     if ratios := differing.pop(SPEED_RATIO, 0):
-        sentences.append(f"The speed ratio ν, which follows from the speeds of vessel, UAV and air, differs in {ratios:,}.")
+        sentences.append(
+            f"The speed ratio ν, which follows from the speeds of vessel, UAV and air, differs in {ratios:,}."
+        )
     if differing:
-        keys = ", ".join(f"{key} in {number:,}" for key, number in list(differing.items())[:_NAMED_MAX])
-        more = f" and {len(differing) - _NAMED_MAX} more keys" if len(differing) > _NAMED_MAX else ""
-        sentences.append(f"The flights of a pair differ in what was swept or sampled: {keys}{more}.")
+        keys = ", ".join(
+            f"{key} in {number:,}" for key, number in list(differing.items())[:_NAMED_MAX]
+        )
+        more = (
+            f" and {len(differing) - _NAMED_MAX} more keys" if len(differing) > _NAMED_MAX else ""
+        )
+        sentences.append(
+            f"The flights of a pair differ in what was swept or sampled: {keys}{more}."
+        )
     return sentences
 
 
 def _difference_sentences(compared: Compared) -> str:
     trials = {trial.key: trial for trial in compared.pairs.first.trials}
-    at_random = all(trials[str(name)].sampled_at_random for name in dict.fromkeys(compared.pairs.before["trial"]))
-    others = "" if at_random else " These flights are no random sample: it says how far they agree, not what others would show."
-    same = [of.figure.name.lower() for name, of in compared.found.items() if of.is_none and name != "keepout_violations"]
+    at_random = all(
+        trials[str(name)].sampled_at_random
+        for name in dict.fromkeys(compared.pairs.before["trial"])
+    )
+    others = (
+        ""
+        if at_random
+        else " These flights are no random sample: it says how far they agree, not what others would show."
+    )
+    same = [
+        of.figure.name.lower()
+        for name, of in compared.found.items()
+        if of.is_none and name != "keepout_violations"
+    ]
     equal = f" The same in every pair that has them: {'; '.join(same)}." if same else ""
     samples = len(set(compared.pairs.samples.tolist()))
     shared = (
@@ -173,7 +244,9 @@ def _verdict(runs: Sequence[Run], compared: Sequence[Compared]) -> Verdict:
         holds=not unsafe,
         complete=worse == 0 and all(run.state == "complete" for run in runs),
         headline=headline(compared),
-        detail=" ".join(f"{of.pairs.other.title}: {' '.join(pairing_sentences(of.pairs))}" for of in compared),
+        detail=" ".join(
+            f"{of.pairs.other.title}: {' '.join(pairing_sentences(of.pairs))}" for of in compared
+        ),
         failures=[line for of in compared for line in _lines(of)],
         figures=[card for of in compared for card in _cards(of, alone=len(compared) == 1)],
         judges=False,
@@ -190,12 +263,20 @@ def headline(compared: Sequence[Compared]) -> str:
     turns = zip(*(_turned(of.pairs) for of in compared), strict=True)
     worse, better, rest = (sum(count(mask) for mask in masks) for masks in turns)
     s = "s" * (rest == 1)
-    others = f"; {rest:,} that met in neither run no longer keep{s} out or complete{s} the mission" if rest else ""
+    others = (
+        f"; {rest:,} that met in neither run no longer keep{s} out or complete{s} the mission"
+        if rest
+        else ""
+    )
     if called := sum(count(of.pairs.other_verdict) for of in compared):
         others += f"; the verdict on the fuel is another in {called:,}"
     if not worse and not better:
         return f"No flight changed between met and not met in {what}{others or '; figures differ'}"
-    turned = [f"{n:,} {words}{'s' * (n == 1)}" for n, words in ((worse, "no longer meet"), (better, "newly meet")) if n]
+    turned = [
+        f"{n:,} {words}{'s' * (n == 1)}"
+        for n, words in ((worse, "no longer meet"), (better, "newly meet"))
+        if n
+    ]
     return f"Of {what}, {' and '.join(turned)} the criteria{others}"
 
 
@@ -217,13 +298,24 @@ def _lines(compared: Compared) -> list[str]:
         return [f"{other}: no figure differs from {first}"]
     lines = []
     if new := _new(pairs):
-        what = "violate the keep-out area or lose the aircraft" if new > 1 else "violates the keep-out area or loses the aircraft"
+        what = (
+            "violate the keep-out area or lose the aircraft"
+            if new > 1
+            else "violates the keep-out area or loses the aircraft"
+        )
         lines.append(f"{other}: {new:,} flight{'s' * (new > 1)} {what}, and not in {first}")
-    turned = [*((words, mask, first) for words, mask in pairs.in_first_alone.items()), ("met", pairs.newly_met, other)]
+    turned = [
+        *((words, mask, first) for words, mask in pairs.in_first_alone.items()),
+        ("met", pairs.newly_met, other),
+    ]
     for words, mask, where in turned:
         if count(mask):
-            lines.append(f"{other}: {count(mask):,} of {len(pairs):,} paired flights {words} in {where} alone")
-    lines += [f"{run.letter}: the run is {run.state}" for run in (pairs.other,) if run.state != "complete"]
+            lines.append(
+                f"{other}: {count(mask):,} of {len(pairs):,} paired flights {words} in {where} alone"
+            )
+    lines += [
+        f"{run.letter}: the run is {run.state}" for run in (pairs.other,) if run.state != "complete"
+    ]
     return lines
 
 
@@ -232,13 +324,20 @@ def _cards(compared: Compared, *, alone: bool) -> list[Card]:
     first, other = pairs.first.letter, pairs.other.letter
     cards = [
         Card(f"Flights paired, {other} with {first}", f"{len(pairs):,}"),
-        Card(f"Met in {first} alone, in {other} alone", f"{count(pairs.no_longer_met):,}, {count(pairs.newly_met):,}"),
+        Card(
+            f"Met in {first} alone, in {other} alone",
+            f"{count(pairs.no_longer_met):,}, {count(pairs.newly_met):,}",
+        ),
     ]
     violations = [f"{total(rows, 'keepout_violations'):,}" for rows in (pairs.before, pairs.after)]
-    cards.append(Card(f"Keep-out violations of paired flights in {first}, in {other}", ", ".join(violations)))
+    cards.append(
+        Card(f"Keep-out violations of paired flights in {first}, in {other}", ", ".join(violations))
+    )
     if not alone:
         return cards
-    for difference in [compared.found[name] for name in _CARDS if name in compared.found][:_CARDS_MAX]:
+    for difference in [compared.found[name] for name in _CARDS if name in compared.found][
+        :_CARDS_MAX
+    ]:
         figure = difference.figure
         value = f"{signed(difference.median, figure.digits)} {figure.unit}"
         cards.append(Card(f"{figure.name}: median of {other} − {first}", value))

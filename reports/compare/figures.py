@@ -42,28 +42,49 @@ def _off_fuel(rows: pd.DataFrame) -> Array:
 
 
 def _of(name: str, words: str, unit: str, digits: int) -> Measure:
-    return Measure(figure=Figure(name=words, unit=unit, digits=digits), values=partial(column, name=name))
+    return Measure(
+        figure=Figure(name=words, unit=unit, digits=digits), values=partial(column, name=name)
+    )
 
 
 MEASURES: Mapping[str, Measure] = {
-    "min_distance_m": Measure(figure=FIGURES["min_distance_m"], values=partial(column, name="min_distance_m")),
+    "min_distance_m": Measure(
+        figure=FIGURES["min_distance_m"], values=partial(column, name="min_distance_m")
+    ),
     "clearance_m": Measure(figure=FIGURES["clearance_m"], values=clearance),
     "keepout_violations": _of("keepout_violations", "Keep-out violations", "-", 0),
     "crossing_interval_mean_s": _of("crossing_interval_mean_s", "Mean crossing interval", "s", 3),
-    "crossing_interval_error": Measure(figure=FIGURES["crossing_interval_error"], values=_off_interval),
-    "crossing_distance_mean_m": _of("crossing_distance_mean_m", "Mean distance of the crossings", "m", 1),
+    "crossing_interval_error": Measure(
+        figure=FIGURES["crossing_interval_error"], values=_off_interval
+    ),
+    "crossing_distance_mean_m": _of(
+        "crossing_distance_mean_m", "Mean distance of the crossings", "m", 1
+    ),
     "crossing_count": _of("crossing_count", "Plume crossings after settling", "-", 0),
-    "tracking_error_rms_m": Measure(figure=FIGURES["tracking_error_rms_m"], values=partial(column, name="tracking_error_rms_m")),
-    "settling_time_s": Measure(figure=FIGURES["settling_time_s"], values=partial(column, name="settling_time_s")),
-    "airspeed_error_rms_mps": _of("airspeed_error_rms_mps", "Airspeed error, rms after settling", "m/s", 3),
-    "altitude_error_max_m": _of("altitude_error_max_m", "Altitude error, largest after settling", "m", 2),
+    "tracking_error_rms_m": Measure(
+        figure=FIGURES["tracking_error_rms_m"], values=partial(column, name="tracking_error_rms_m")
+    ),
+    "settling_time_s": Measure(
+        figure=FIGURES["settling_time_s"], values=partial(column, name="settling_time_s")
+    ),
+    "airspeed_error_rms_mps": _of(
+        "airspeed_error_rms_mps", "Airspeed error, rms after settling", "m/s", 3
+    ),
+    "altitude_error_max_m": _of(
+        "altitude_error_max_m", "Altitude error, largest after settling", "m", 2
+    ),
     "bank_max_deg": _of("bank_max_deg", "Largest bank", "deg", 1),
     "guard_interventions": _of("guard_interventions", "Interventions of the guard", "-", 0),
     "guard_time_s": _of("guard_time_s", "Time guarded", "s", 1),
     "duration_s": _of("duration_s", "Flight time", "s", 1),
     "fsc_percent": _of("fsc_percent", "Sulphur content found", MASS_PERCENT, 4),
-    "fsc_error_percent": Measure(figure=Figure(name="Error of the sulphur content", unit=MASS_PERCENT, digits=4), values=_off_fuel),
-    "fsc_uncertainty_percent": _of("fsc_uncertainty_percent", "Uncertainty of the sulphur content, 1σ", MASS_PERCENT, 4),
+    "fsc_error_percent": Measure(
+        figure=Figure(name="Error of the sulphur content", unit=MASS_PERCENT, digits=4),
+        values=_off_fuel,
+    ),
+    "fsc_uncertainty_percent": _of(
+        "fsc_uncertainty_percent", "Uncertainty of the sulphur content, 1σ", MASS_PERCENT, 4
+    ),
 }
 """By the names of the columns of ``differences.csv``, in the order they are shown."""
 
@@ -114,10 +135,14 @@ def differences(pairs: Pairs) -> dict[str, Difference]:
     """Return how each figure differs that both flights of some pair have, and that is not 0 in all of them."""
     found = {}
     for name, measure in MEASURES.items():
-        before, after = (measure.figure.scale * measure.values(rows) for rows in (pairs.before, pairs.after))
+        before, after = (
+            measure.figure.scale * measure.values(rows) for rows in (pairs.before, pairs.after)
+        )
         change = after - before
         known = np.isfinite(change)
-        if known.any() and np.any(before[known] != 0.0) | np.any(after[known] != 0.0) | (name == "keepout_violations"):
+        if known.any() and np.any(before[known] != 0.0) | np.any(after[known] != 0.0) | (
+            name == "keepout_violations"
+        ):
             means = pd.Series(change[known]).groupby(pairs.samples[known]).mean()
             samples = np.asarray(means, dtype=np.float64)
             # The exact interval of order statistics: for any distribution, however few flights and many ties.

@@ -57,7 +57,10 @@ class Pairs:
         """Flights whose fuel is called otherwise."""
         if not all("sulphur_verdict" in rows for rows in (self.before, self.after)):
             return np.zeros(len(self), dtype=np.bool_)
-        before, after = (rows["sulphur_verdict"].fillna("").to_numpy(dtype=str) for rows in (self.before, self.after))
+        before, after = (
+            rows["sulphur_verdict"].fillna("").to_numpy(dtype=str)
+            for rows in (self.before, self.after)
+        )
         differs: Mask = before != after
         return differs
 
@@ -106,8 +109,13 @@ class Pairs:
         """
         tables = [run.data.draws.set_index("flight_id") for run in (self.first, self.other)]
         shared = [name for name in tables[0] if name in tables[1] and name not in _NAMING]
-        before, after = (table.reindex(rows["flight_id"]) for table, rows in zip(tables, (self.before, self.after), strict=True))
-        counts = {str(name): int(np.count_nonzero(_differs(before[name], after[name]))) for name in shared}
+        before, after = (
+            table.reindex(rows["flight_id"])
+            for table, rows in zip(tables, (self.before, self.after), strict=True)
+        )
+        counts = {
+            str(name): int(np.count_nonzero(_differs(before[name], after[name]))) for name in shared
+        }
         return {name: count for name, count in counts.items() if count}
 
     def differing_figures(self, *, apart: Sequence[str] = ()) -> list[str]:
@@ -116,7 +124,9 @@ class Pairs:
         return [
             str(name)
             for name in columns
-            if name not in self.before or name not in self.after or np.any(_differs(self.before[name], self.after[name]))
+            if name not in self.before
+            or name not in self.after
+            or np.any(_differs(self.before[name], self.after[name]))
         ]
 
 
@@ -134,7 +144,10 @@ def paired(first: Run, other: Run) -> Pairs:
     for keys in (["trial", "name", "seed"], ["name", "seed"], ["trial", "name"]):
         matched = _matched(left[0], left[1], keys)
         found.append(matched[["place_x", "place_y"]])
-        left = [table[~table["place"].isin(matched[place])] for table, place in zip(left, ("place_x", "place_y"), strict=True)]
+        left = [
+            table[~table["place"].isin(matched[place])]
+            for table, place in zip(left, ("place_x", "place_y"), strict=True)
+        ]
     places = pd.concat(found).sort_values("place_x")
     same = len(set(left[0]["name"]) & set(left[1]["name"]))
     if not len(places):
@@ -145,7 +158,8 @@ def paired(first: Run, other: Run) -> Pairs:
         )
         raise ReportError(f"{one} and {two} have no flight in common: {what}")
     before, after = (
-        table.iloc[places[place]].reset_index(drop=True) for table, place in zip(rows, ("place_x", "place_y"), strict=True)
+        table.iloc[places[place]].reset_index(drop=True)
+        for table, place in zip(rows, ("place_x", "place_y"), strict=True)
     )
     return Pairs(first=first, other=other, before=before, after=after, same_name=same)
 
@@ -171,14 +185,25 @@ def _identities(rows: pd.DataFrame) -> pd.DataFrame:
     named = zip(rows["flight_id"].astype(str), rows["trial"].astype(str), strict=True)
     names = [flight.removeprefix(f"{trial}_") for flight, trial in named]
     places = np.arange(len(rows))
-    return pd.DataFrame({"trial": rows["trial"].astype(str), "name": names, "seed": rows["seed"].astype(float), "place": places})
+    return pd.DataFrame(
+        {
+            "trial": rows["trial"].astype(str),
+            "name": names,
+            "seed": rows["seed"].astype(float),
+            "place": places,
+        }
+    )
 
 
 def _matched(one: pd.DataFrame, two: pd.DataFrame, keys: list[str]) -> pd.DataFrame:
     """Return the flights of both that agree in ``keys``, where no other flight of the same run does."""
     by_seed = "seed" in keys
     tables = [table[table["seed"].notna()] if by_seed else table for table in (one, two)]
-    found = tables[0].drop_duplicates(keys, keep=False).merge(tables[1].drop_duplicates(keys, keep=False), on=keys)
+    found = (
+        tables[0]
+        .drop_duplicates(keys, keep=False)
+        .merge(tables[1].drop_duplicates(keys, keep=False), on=keys)
+    )
     return found if by_seed else found[found["seed_x"].isna() | found["seed_y"].isna()]
 
 

@@ -77,7 +77,9 @@ def read_runs(paths: Sequence[Path]) -> list[Run]:
     ReportError : there are too few or too many, one is named twice, or one is none with flights of this version that has ended
     """
     if not 2 <= len(paths) <= RUNS_MAX:
-        raise ReportError(f"{len(paths)} run{'s' if len(paths) != 1 else ''} given; 2 to {RUNS_MAX} can be compared: name so many")
+        raise ReportError(
+            f"{len(paths)} run{'s' if len(paths) != 1 else ''} given; 2 to {RUNS_MAX} can be compared: name so many"
+        )
     resolved = [path.resolve() for path in paths]
     for i, path in enumerate(resolved):
         if path in resolved[:i]:

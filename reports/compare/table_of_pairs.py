@@ -20,14 +20,26 @@ def write_differences(compared: Sequence[Compared], path: Path) -> None:
     with path.open("w", encoding="utf-8", newline="") as file:
         writer = csv.writer(file, lineterminator="\n")
         writer.writerow([*_NAMES, *columns])
-        writer.writerows([cell(value) for value in row] for of in compared for row in _rows(of, names))
+        writer.writerows(
+            [cell(value) for value in row] for of in compared for row in _rows(of, names)
+        )
 
 
 def _rows(compared: Compared, names: Sequence[str]) -> Iterator[list[object]]:
     pairs = compared.pairs
     was_met, is_met = met(pairs.before), met(pairs.after)
-    for i, (flight, trial, seed) in enumerate(zip(pairs.names, pairs.before["trial"], pairs.before["seed"], strict=True)):
-        row: list[object] = [pairs.other.letter, pairs.other.name, flight, str(trial), seed, bool(was_met[i]), bool(is_met[i])]
+    for i, (flight, trial, seed) in enumerate(
+        zip(pairs.names, pairs.before["trial"], pairs.before["seed"], strict=True)
+    ):
+        row: list[object] = [
+            pairs.other.letter,
+            pairs.other.name,
+            flight,
+            str(trial),
+            seed,
+            bool(was_met[i]),
+            bool(is_met[i]),
+        ]
         for name in names:
             difference = compared.found.get(name)
             values = (difference.before, difference.after, difference.change) if difference else ()

@@ -14,7 +14,17 @@ from reports.document.axes import mark_text
 from reports.document.blocks import Table
 from reports.document.tables import ending, number
 from reports.monte_carlo.names import Figure
-from reports.run.columns import Array, Mask, column, completed, count, kept_out, lost, met, was_flown
+from reports.run.columns import (
+    Array,
+    Mask,
+    column,
+    completed,
+    count,
+    kept_out,
+    lost,
+    met,
+    was_flown,
+)
 
 LISTED_MAX = 40
 """Flights that are listed one by one."""
@@ -64,11 +74,26 @@ def side_by_side(runs: Sequence[Run]) -> Table:
     tables = [run.data.summary for run in runs]
     sizes = [len(rows) for rows in tables]
     alike = [size == sizes[0] for size in sizes[1:]]
-    rows = [["Flights", *(f"{size:,}" for size in sizes), *(signed(size - sizes[0], 0) for size in sizes[1:])]]
+    rows = [
+        [
+            "Flights",
+            *(f"{size:,}" for size in sizes),
+            *(signed(size - sizes[0], 0) for size in sizes[1:]),
+        ]
+    ]
     for words, chosen in _COUNTS.items():
         counts = [count(chosen(table)) for table in tables]
-        changes = [signed(found - counts[0], 0) if same else "–" for found, same in zip(counts[1:], alike, strict=True)]
-        rows.append([words, *(f"{found:,} of {size:,}" for found, size in zip(counts, sizes, strict=True)), *changes])
+        changes = [
+            signed(found - counts[0], 0) if same else "–"
+            for found, same in zip(counts[1:], alike, strict=True)
+        ]
+        rows.append(
+            [
+                words,
+                *(f"{found:,} of {size:,}" for found, size in zip(counts, sizes, strict=True)),
+                *changes,
+            ]
+        )
     for whole in _WHOLE:
         figure = MEASURES[whole.measure].figure
         known = [_known(whole, table) for table in tables]
@@ -80,7 +105,13 @@ def side_by_side(runs: Sequence[Run]) -> Table:
                 _change(value, values[0], digits) if same and len(of) == len(known[0]) else "–"
                 for value, of, same in zip(values[1:], known[1:], alike, strict=True)
             ]
-            rows.append([f"{whole.words}{unit}", *(number(value, _pattern(digits)) for value in values), *changes])
+            rows.append(
+                [
+                    f"{whole.words}{unit}",
+                    *(number(value, _pattern(digits)) for value in values),
+                    *changes,
+                ]
+            )
     letters = [run.letter for run in runs]
     return Table(
         head=["", *letters, *(f"{letter} − {letters[0]}" for letter in letters[1:])],
@@ -128,10 +159,14 @@ def _pattern(digits: int, sign: str = "") -> str:
 def difference_table(pairs: Pairs, found: dict[str, Difference]) -> Table:
     """Return how figures differ between the flights of a pair, of those that do: median, its interval, least and greatest."""
     rows, bold = [], []
-    for i, difference in enumerate(of for name, of in found.items() if name == "keepout_violations" or not of.is_none):
+    for i, difference in enumerate(
+        of for name, of in found.items() if name == "keepout_violations" or not of.is_none
+    ):
         figure, known = difference.figure, difference.known
         both = np.isfinite(difference.change)
-        medians = [float(np.median(values[both])) for values in (difference.before, difference.after)]
+        medians = [
+            float(np.median(values[both])) for values in (difference.before, difference.after)
+        ]
         digits = _digits(figure, medians)
         interval = (
             f"{signed(difference.low, digits)} to {signed(difference.high, digits)}"
@@ -166,7 +201,10 @@ def _in_one_alone(pairs: Pairs, i: int) -> str:
     """Return what a flight is in one run alone: where it is met there, nothing else."""
     found = [
         f"{words} in {run.letter} alone"
-        for run, states in ((pairs.first, pairs.in_first_alone), (pairs.other, pairs.in_other_alone))
+        for run, states in (
+            (pairs.first, pairs.in_first_alone),
+            (pairs.other, pairs.in_other_alone),
+        )
         for words, mask in states.items()
         if mask[i]
     ]

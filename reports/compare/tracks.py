@@ -60,13 +60,19 @@ def most_changed(pairs: Pairs, found: dict[str, Difference]) -> Chart | None:
     if not size[place] > 0.0:
         return None
     figure = found[list(changes)[int(np.argmax(table[:, place]))]]
-    return _chart(pairs, place, _state(pairs, place) if turned[place] else _change(pairs, place, figure))
+    return _chart(
+        pairs, place, _state(pairs, place) if turned[place] else _change(pairs, place, figure)
+    )
 
 
 def _relative(difference: Difference) -> Array:
     """Return how large each difference is over the median in the first run; 0 where it is not known [-]."""
     typical = float(np.nanmedian(np.abs(difference.before)))
-    size: Array = np.nan_to_num(np.abs(difference.change)) / typical if typical > 0.0 else np.zeros(len(difference.before))
+    size: Array = (
+        np.nan_to_num(np.abs(difference.change)) / typical
+        if typical > 0.0
+        else np.zeros(len(difference.before))
+    )
     return size
 
 
@@ -77,27 +83,44 @@ def _state(pairs: Pairs, place: int) -> str:
 
 def _change(pairs: Pairs, place: int, difference: Difference) -> str:
     figure = difference.figure
-    before, after = (f"{values[place]:.{figure.digits}f} {figure.unit}" for values in (difference.before, difference.after))
+    before, after = (
+        f"{values[place]:.{figure.digits}f} {figure.unit}"
+        for values in (difference.before, difference.after)
+    )
     return f"{figure.name}: {before} in {pairs.first.letter}, {after} in {pairs.other.letter}"
 
 
 def _chart(pairs: Pairs, place: int, why: str) -> Chart | None:
     flown: list[_Flight] = []
-    for run, rows, colour in zip((pairs.first, pairs.other), (pairs.before, pairs.after), _COLOURS, strict=True):
+    for run, rows, colour in zip(
+        (pairs.first, pairs.other), (pairs.before, pairs.after), _COLOURS, strict=True
+    ):
         row = rows.iloc[place]
         history = run.data.history(str(row["flight_id"]))
         if history is None or len(history) < 2:
             return None
-        flown.append(_Flight(run=run, row=row, history=thinned(history, flight_points(history)), colour=colour))
+        flown.append(
+            _Flight(
+                run=run, row=row, history=thinned(history, flight_points(history)), colour=colour
+            )
+        )
     vessel = all(np.isfinite(column(flight.history, "vessel_north_m")).any() for flight in flown)
     about = _about(flown[0]) if vessel else None
     distances = [_distances(flown)] if about else []
-    panels = [_whole(flown, about), _settled(flown, about), *distances] if about else [_over_the_ground(flown)]
+    panels = (
+        [_whole(flown, about), _settled(flown, about), *distances]
+        if about
+        else [_over_the_ground(flown)]
+    )
     return Chart(
         name=f"changed{pairs.other.letter}",
         caption=f"The flight that differs most, {pairs.names[place]}: {why}.{floor_words(flight.history for flight in flown)}"
         + cut_words(distances)
-        + (f" {ship_words(about)} Ship, filled area, plume, wind and north are as in {pairs.first.letter}." if about else ""),
+        + (
+            f" {ship_words(about)} Ship, filled area, plume, wind and north are as in {pairs.first.letter}."
+            if about
+            else ""
+        ),
         panels=[in_kilometres(panel) for panel in (*panels, _errors(flown))],
         columns=2,
         panel_height=0.42,
@@ -141,7 +164,10 @@ def _whole(flown: list[_Flight], about: Surroundings) -> Panel:
     lines = [flight.curve(*about_the_plume(flight.history)) for flight in flown]
     if (other := flown[1]).radius != about.radius:
         x, y = circle(other.radius)
-        lines.insert(0, Line(x=x, y=y, label=f"r_min of {other.run.letter}", colour=other.colour, style="dash"))
+        lines.insert(
+            0,
+            Line(x=x, y=y, label=f"r_min of {other.run.letter}", colour=other.colour, style="dash"),
+        )
     return ship_panel(about, lines, title="Whole flight", aspect=_ASPECT)
 
 
@@ -151,15 +177,26 @@ def _settled(flown: list[_Flight], about: Surroundings) -> Panel:
     tracks = []
     for flight, begin in zip(flown, settled, strict=True):
         time = flight.history["time_s"]
-        late = flight.history[time >= (begin if math.isfinite(begin) else 0.5 * float(time.iloc[-1]))]
+        late = flight.history[
+            time >= (begin if math.isfinite(begin) else 0.5 * float(time.iloc[-1]))
+        ]
         tracks.append(flight.curve(*about_the_plume(late)))
-    title = "Each once settled" if all(map(math.isfinite, settled)) else "Each once settled, or its second half"
+    title = (
+        "Each once settled"
+        if all(map(math.isfinite, settled))
+        else "Each once settled, or its second half"
+    )
     return ship_panel(about, tracks, title=title, shown=tracks, aspect=_ASPECT)
 
 
 def _over_the_ground(flown: list[_Flight]) -> Panel:
-    lines = [flight.curve(column(flight.history, "east_m"), column(flight.history, "north_m")) for flight in flown]
-    return Panel(x_label="East [m]", y_label="North [m]", title="Over the ground", equal=True, lines=lines)
+    lines = [
+        flight.curve(column(flight.history, "east_m"), column(flight.history, "north_m"))
+        for flight in flown
+    ]
+    return Panel(
+        x_label="East [m]", y_label="North [m]", title="Over the ground", equal=True, lines=lines
+    )
 
 
 def _distances(flown: list[_Flight]) -> Panel:
@@ -170,16 +207,30 @@ def _distances(flown: list[_Flight]) -> Panel:
     end = max(float(flight.history["time_s"].iloc[-1]) for flight in flown)
     limits: dict[float, tuple[str, str]] = {radii[0]: ("keep-out area, r_min", Meaning.LIMIT)}
     if radii[0] != radii[1]:
-        limits = {flight.radius: (f"r_min of {flight.run.letter}", flight.colour) for flight in flown}
+        limits = {
+            flight.radius: (f"r_min of {flight.run.letter}", flight.colour) for flight in flown
+        }
     levels = [
-        Line(x=np.array([0.0, end]), y=np.array([level, level]), label=label, colour=colour, style="dash")
+        Line(
+            x=np.array([0.0, end]),
+            y=np.array([level, level]),
+            label=label,
+            colour=colour,
+            style="dash",
+        )
         for level, (label, colour) in limits.items()
     ]
     return Panel(
         x_label="Time [s]",
         y_label="Distance [m]",
         title="Distance from the keep-out area’s centre",
-        lines=[*levels, *(flight.over_time(distance) for flight, distance in zip(flown, distances, strict=True))],
+        lines=[
+            *levels,
+            *(
+                flight.over_time(distance)
+                for flight, distance in zip(flown, distances, strict=True)
+            ),
+        ],
         y_range=(min(0.95 * min(radii), nearest - 2.0), max(_FAR * max(radii), 1.1 * late)),
     )
 

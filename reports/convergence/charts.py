@@ -34,7 +34,9 @@ def settling_charts(data: ConvergenceData) -> list[Chart]:
     return [_cumulative(data, laws), _over_distance(data, laws), *_over_predicted(data, laws)]
 
 
-def history_chart(data: ConvergenceData, name: str, caption: str, *, converged: bool) -> Chart | None:
+def history_chart(
+    data: ConvergenceData, name: str, caption: str, *, converged: bool
+) -> Chart | None:
     """Return distances over time, of some of the trajectories that were kept: of those that converged, or of those that did not."""
     lines = {law.name: _histories(data, law, converged=converged) for law in data.laws}
     limits = _around([line.y for drawn in lines.values() for line in drawn])
@@ -52,7 +54,9 @@ def history_chart(data: ConvergenceData, name: str, caption: str, *, converged: 
     ]
     if not panels:
         return None
-    return Chart(name=name, caption=caption, panels=panels, columns=len(panels), panel_height=PANEL_HEIGHT)
+    return Chart(
+        name=name, caption=caption, panels=panels, columns=len(panels), panel_height=PANEL_HEIGHT
+    )
 
 
 def _histories(data: ConvergenceData, law: Law, *, converged: bool) -> list[Line]:
@@ -67,7 +71,15 @@ def _histories(data: ConvergenceData, law: Law, *, converged: bool) -> list[Line
             known = finite.iloc[_thinned(len(finite), HISTORY_POINTS)]
             distance = np.maximum(_column(known, "distance_m"), DISTANCE_SHOWN_MIN_M)
             name, colour, style = REFERENCES[str(row["reference"])]
-            lines.append(Line(x=_column(known, "time_s"), y=distance, label=f"{name} reference", colour=colour, style=style))
+            lines.append(
+                Line(
+                    x=_column(known, "time_s"),
+                    y=distance,
+                    label=f"{name} reference",
+                    colour=colour,
+                    style=style,
+                )
+            )
     return [line for line in lines if len(line.x)]
 
 
@@ -89,7 +101,9 @@ def _times(rows: pd.DataFrame) -> Array:
 def _over_predicted(data: ConvergenceData, laws: Sequence[Law]) -> list[Chart]:
     def ratio(rows: pd.DataFrame) -> Array:
         known = predicted(rows)
-        ratios: Array = _column(known, "settling_time_s") / _column(known, "settling_time_predicted_s")
+        ratios: Array = _column(known, "settling_time_s") / _column(
+            known, "settling_time_predicted_s"
+        )
         return np.maximum(ratios, RATIO_SHOWN_MIN)
 
     panels = _curves(data, laws, ratio, "Measured over predicted [-]", "Trajectories [%]")
@@ -108,7 +122,11 @@ def _over_predicted(data: ConvergenceData, laws: Sequence[Law]) -> list[Chart]:
 
 
 def _curves(
-    data: ConvergenceData, laws: Sequence[Law], values: Callable[[pd.DataFrame], Array], x_label: str, y_label: str
+    data: ConvergenceData,
+    laws: Sequence[Law],
+    values: Callable[[pd.DataFrame], Array],
+    x_label: str,
+    y_label: str,
 ) -> list[Panel]:
     """Return a panel per law with a cumulative curve per kind of reference, over logarithmic abscissae alike."""
     lines = {law.name: _law_curves(data, law, values) for law in laws}
@@ -128,13 +146,17 @@ def _curves(
     ]
 
 
-def _law_curves(data: ConvergenceData, law: Law, values: Callable[[pd.DataFrame], Array]) -> list[Line]:
+def _law_curves(
+    data: ConvergenceData, law: Law, values: Callable[[pd.DataFrame], Array]
+) -> list[Line]:
     lines = []
     for reference in data.references:
         name, colour, style = REFERENCES[reference]
         x, fraction = cumulative(values(data.of(law, reference)))
         if len(x):
-            lines.append(Line(x=x, y=100.0 * fraction, label=f"{name} reference", colour=colour, style=style))
+            lines.append(
+                Line(x=x, y=100.0 * fraction, label=f"{name} reference", colour=colour, style=style)
+            )
     return lines
 
 
@@ -166,7 +188,9 @@ def _distance_panel(data: ConvergenceData, law: Law) -> Panel:
     settled = data.of(law).dropna(subset=["settling_time_s"])
     farthest = float(data.rows["start_distance_m"].max())
     count = min(max(len(settled) // BIN_TRAJECTORIES, 2), DISTANCE_BINS)
-    number = np.minimum(_column(settled, "start_distance_m") * count / farthest, count - 1.0).astype(int)
+    number = np.minimum(
+        _column(settled, "start_distance_m") * count / farthest, count - 1.0
+    ).astype(int)
     bins = np.unique(number)
 
     def line(name: str, fraction: float, label: str, colour: str, style: Style) -> Line:

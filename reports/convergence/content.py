@@ -17,9 +17,24 @@ def convergence_content(run: RunData) -> Findings:
     data = read_convergence(run)
     sections = [
         Section(anchor="question", title="What was asked", blocks=_question(data)),
-        Section(anchor="settling", title="How soon they settle", nav_title="Settling", blocks=_settling(data)),
-        Section(anchor="samples", title="Sample trajectories", nav_title="Samples", blocks=_samples(data)),
-        Section(anchor="counterexamples", title="What did not converge", nav_title="Counter-examples", blocks=_failed(data)),
+        Section(
+            anchor="settling",
+            title="How soon they settle",
+            nav_title="Settling",
+            blocks=_settling(data),
+        ),
+        Section(
+            anchor="samples",
+            title="Sample trajectories",
+            nav_title="Samples",
+            blocks=_samples(data),
+        ),
+        Section(
+            anchor="counterexamples",
+            title="What did not converge",
+            nav_title="Counter-examples",
+            blocks=_failed(data),
+        ),
         Section(anchor="parameters", title="Parameters", blocks=[parameter_table(run)]),
     ]
     pictures = settling_charts(data) if len(data.rows) else []
@@ -45,8 +60,13 @@ def _question(data: ConvergenceData) -> list[Block]:
     if not len(rows):
         return []
     states = rows.drop_duplicates("trajectory")
-    counts = (f"{(states['reference'] == reference).sum():,} are {REFERENCES[reference][0]}" for reference in data.references)
-    distance, phi = (data.run.manifest[key] for key in ("converged_distance_m", "converged_phi_rad"))
+    counts = (
+        f"{(states['reference'] == reference).sum():,} are {REFERENCES[reference][0]}"
+        for reference in data.references
+    )
+    distance, phi = (
+        data.run.manifest[key] for key in ("converged_distance_m", "converged_phi_rad")
+    )
     band = data.run.manifest["config"]["ensemble"]["settling_band_m"]
     return [
         Heading("Sampled initial states"),
@@ -113,14 +133,23 @@ def _failed(data: ConvergenceData) -> list[Block]:
     caption = f"Distance to the reference over time, of up to {HISTORIES_PER_LAW} trajectories per law that did not converge."
     chart = history_chart(data, "counterexamples", caption, converged=False)
     blocks: list[Block] = [chart] if chart else []
-    if _all_on_tight_circles(pd.concat([failed(data.of(law)) for law in data.laws if not law.proven] or [data.rows[:0]]), data):
+    if _all_on_tight_circles(
+        pd.concat([failed(data.of(law)) for law in data.laws if not law.proven] or [data.rows[:0]]),
+        data,
+    ):
         blocks.insert(0, Text(_LIMIT_CYCLE))
     for law in data.laws:
         count = len(failed(data.of(law)))
         if count:
-            some = f"; the first {FAILED_ROWS} of {count:,}, all are in {COUNTEREXAMPLES}" if count > FAILED_ROWS else ""
+            some = (
+                f"; the first {FAILED_ROWS} of {count:,}, all are in {COUNTEREXAMPLES}"
+                if count > FAILED_ROWS
+                else ""
+            )
             blocks += [
-                Heading(f"{law.name}{'' if law.proven else ', of which the theory says nothing'}{some}"),
+                Heading(
+                    f"{law.name}{'' if law.proven else ', of which the theory says nothing'}{some}"
+                ),
                 failed_table(data, law),
             ]
     return blocks

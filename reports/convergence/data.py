@@ -82,7 +82,9 @@ class ConvergenceData:
         """Trajectories under the laws that the theory is about, once the run is complete."""
         config = self.run.manifest["config"]
         proven = [law.key for law in LAWS if law.proven]
-        return int(config["ensemble"]["trajectories"]) * sum(law in proven for law in config["guidance"]["laws"])
+        return int(config["ensemble"]["trajectories"]) * sum(
+            law in proven for law in config["guidance"]["laws"]
+        )
 
 
 def read_convergence(run: RunData) -> ConvergenceData:
@@ -96,10 +98,15 @@ def read_convergence(run: RunData) -> ConvergenceData:
     for column, known in (("law", [law.key for law in LAWS]), ("reference", list(REFERENCES))):
         unknown = set(rows[column]) - set(known)
         if unknown:
-            raise ValueError(f"{column} is {', '.join(map(str, unknown))}; known are {', '.join(known)}")
+            raise ValueError(
+                f"{column} is {', '.join(map(str, unknown))}; known are {', '.join(known)}"
+            )
     lost = rows["outcome"] == _LOST
     rows = rows[~lost]
-    names = (re.fullmatch(r"(\w+)_(\d+)", path.stem) for path in (run.path / TRAJECTORIES).glob(f"*{HISTORY_SUFFIX}"))
+    names = (
+        re.fullmatch(r"(\w+)_(\d+)", path.stem)
+        for path in (run.path / TRAJECTORIES).glob(f"*{HISTORY_SUFFIX}")
+    )
     return ConvergenceData(
         run=run,
         rows=rows,

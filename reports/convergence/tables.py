@@ -56,8 +56,17 @@ def failed_table(data: ConvergenceData, law: Law) -> Table:
         ]
         for _, row in failed(data.of(law)).head(FAILED_ROWS).iterrows()
     ]
-    head = ["Trajectory", "Reference", "Start distance [m]", "Start course [rad]", "Start φ [rad]", "Outcome"]
-    return Table(head=head, rows=rows, widths=[1.0, 1.6, 1.0, 1.0, 1.0, 5.4], left_columns=2, breakable=True)
+    head = [
+        "Trajectory",
+        "Reference",
+        "Start distance [m]",
+        "Start course [rad]",
+        "Start φ [rad]",
+        "Outcome",
+    ]
+    return Table(
+        head=head, rows=rows, widths=[1.0, 1.6, 1.0, 1.0, 1.0, 5.4], left_columns=2, breakable=True
+    )
 
 
 def reason(row: "pd.Series[Any]") -> str:

@@ -66,7 +66,11 @@ def _law(data: ConvergenceData, key: str) -> Law:
 def _detail(data: ConvergenceData) -> str:
     proven = [law.name.lower() for law in data.laws if law.proven]
     states = data.rows["trajectory"].nunique()
-    detail = f"{states:,} random initial states, each flown with {' and '.join(proven)}." if proven else ""
+    detail = (
+        f"{states:,} random initial states, each flown with {' and '.join(proven)}."
+        if proven
+        else ""
+    )
     for law in data.laws:
         if not law.proven:
             rows = data.of(law)
@@ -82,11 +86,22 @@ def _figures(data: ConvergenceData) -> list[Card]:
     for law in data.laws:
         rows = data.of(law)
         share = percentage(len(rows) - len(failed(rows)), len(rows))
-        limit, met = ("100 %", len(rows) > 0 and not len(failed(rows))) if law.proven else ("", None)
+        limit, met = (
+            ("100 %", len(rows) > 0 and not len(failed(rows))) if law.proven else ("", None)
+        )
         fractions.append(Card(f"{law.name}: converged", share, limit, met))
-        slowest.append(Card(f"{law.name}: slowest to settle", number(rows["settling_time_s"].max(), "{:,.0f} s")))
+        slowest.append(
+            Card(
+                f"{law.name}: slowest to settle", number(rows["settling_time_s"].max(), "{:,.0f} s")
+            )
+        )
     farthest = Card("Farthest start", number(data.rows["start_distance_m"].max(), "{:,.0f} m"))
-    return [*fractions, farthest, *slowest, _predicted(data.proven() if data.planned else data.rows)]
+    return [
+        *fractions,
+        farthest,
+        *slowest,
+        _predicted(data.proven() if data.planned else data.rows),
+    ]
 
 
 def _predicted(rows: pd.DataFrame) -> Card:

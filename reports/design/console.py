@@ -2,8 +2,22 @@
 
 from rich.markup import escape
 
-from reports.design.data import Record, at_middle, complete, excess_overshoot, reversal_sentences, speed
-from reports.design.tables import extreme_trims, pole_table, robustness_table, step_table, trim_table, worst_margin_table
+from reports.design.data import (
+    Record,
+    at_middle,
+    complete,
+    excess_overshoot,
+    reversal_sentences,
+    speed,
+)
+from reports.design.tables import (
+    extreme_trims,
+    pole_table,
+    robustness_table,
+    step_table,
+    trim_table,
+    worst_margin_table,
+)
 from reports.design.verdict import design_verdict
 from reports.document.blocks import Table
 from reports.document.console import console_table, wide_console
@@ -17,13 +31,19 @@ def print_summary(record: Record) -> None:
     tables = [
         ("Equilibria", trim_table(design, extreme_trims(design))),
         ("Poles of the grid", pole_table(design)),
-        (f"Poles at {speed(design['design_airspeed_mps'])} in level flight [1/s]", _poles(at_middle(design, design["poles"])[0])),
+        (
+            f"Poles at {speed(design['design_airspeed_mps'])} in level flight [1/s]",
+            _poles(at_middle(design, design["poles"])[0]),
+        ),
         (
             "Margins, the worst of grid and points between, with servos, engine and computing delay; of all controls at once"
             " nothing is required",
             worst_margin_table(design),
         ),
-        (f"Margins when perturbed, the worst of loops, grid and points between; required are {asked}", robustness_table(design)),
+        (
+            f"Margins when perturbed, the worst of loops, grid and points between; required are {asked}",
+            robustness_table(design),
+        ),
         ("Step responses", step_table(design)),
     ]
     console = wide_console()
@@ -34,9 +54,13 @@ def print_summary(record: Record) -> None:
         console.print()
         console.print(console_table(heading, table))
     console.print(f"\nThe autopilot computes {design['autopilot_rate_hz']:.3g} times a second.")
-    console.print(f"The heading rate lags its command by {record['heading_rate_lag_s']:.3f} s in simulated flight.")
+    console.print(
+        f"The heading rate lags its command by {record['heading_rate_lag_s']:.3f} s in simulated flight."
+    )
     console.print(reversal_sentences(design), markup=False, highlight=False)
-    console.print(f"A heading-rate step overshoots its reference model by {100.0 * excess_overshoot(design):.1f} %.")
+    console.print(
+        f"A heading-rate step overshoots its reference model by {100.0 * excess_overshoot(design):.1f} %."
+    )
     verdict = design_verdict(design)
     for line in (verdict.headline, *verdict.failures):
         console.print(line, markup=False, highlight=False)
@@ -44,7 +68,10 @@ def print_summary(record: Record) -> None:
 
 def _poles(poles: Record) -> Table:
     names = {"open_loop": "aircraft", "closed_loop": "under the autopilot"}
-    rows = [[name, "  ".join(_pole(*p) for p in poles[kind] if p[1] >= 0.0)] for kind, name in names.items()]
+    rows = [
+        [name, "  ".join(_pole(*p) for p in poles[kind] if p[1] >= 0.0)]
+        for kind, name in names.items()
+    ]
     return Table(head=["", ""], rows=rows, widths=[1.0, 4.0], left_columns=2)
 
 

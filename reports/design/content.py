@@ -34,7 +34,9 @@ def design_content(run: RunData) -> Findings:
     ReportError : the directory holds no design record
     """
     if run.innerloop is None:
-        raise ReportError(f"'{run.path}' holds no design record that can be read ({DESIGN_RECORD}); run plume-flight design again")
+        raise ReportError(
+            f"'{run.path}' holds no design record that can be read ({DESIGN_RECORD}); run plume-flight design again"
+        )
     design = complete(run.innerloop)
     sections = [
         _margins(design),
@@ -54,7 +56,9 @@ def design_content(run: RunData) -> Findings:
         f"The autopilot of the {design['title']} was designed for {speed_range(design)}, and its step responses were flown in"
         " JSBSim."
     )
-    return Findings(flown=flown, verdict=design_verdict(design), picture=first_chart(design), sections=sections)
+    return Findings(
+        flown=flown, verdict=design_verdict(design), picture=first_chart(design), sections=sections
+    )
 
 
 def _margins(design: Record) -> Section:
@@ -67,7 +71,9 @@ def _margins(design: Record) -> Section:
         ),
         worst_margin_table(design),
         *margin_charts(design),
-        Heading(f"Perturbed or with more delay, worst of loops, grid and points between; required are {asked}"),
+        Heading(
+            f"Perturbed or with more delay, worst of loops, grid and points between; required are {asked}"
+        ),
         robustness_table(design),
         Text(
             "Control effectiveness is that of surfaces and throttle here; the perturbed aircraft that the search over reversals"
@@ -79,10 +85,16 @@ def _margins(design: Record) -> Section:
 
 def _equilibria(design: Record) -> Section:
     envelope = design["envelope"]
-    blocks: list[Block] = [envelope_table(envelope), *(Text(note) for note in envelope["notes"]), *trim_charts(design)]
+    blocks: list[Block] = [
+        envelope_table(envelope),
+        *(Text(note) for note in envelope["notes"]),
+        *trim_charts(design),
+    ]
     shown = extreme_trims(design)
     climbs = any(climbing(t) for t in shown)
-    title = "Level flight and the largest banks" + (", and the steepest climb and descent" if climbs else "")
+    title = "Level flight and the largest banks" + (
+        ", and the steepest climb and descent" if climbs else ""
+    )
     blocks += [Heading(title), trim_table(design, shown)]
     residuals = [float(t["residual"]) for t in design["trims"] if t.get("residual") is not None]
     if residuals:
@@ -103,7 +115,12 @@ def _verification(design: Record) -> Section:
         " with a throttle step of 0.05, as a turbine spools at a steady rate, and here the throttle moves by 0.01."
     )
     blocks: list[Block] = [Text(text), verification_table(design)]
-    return Section(anchor="linearisation", title="Is the linear model right?", nav_title="Linear model", blocks=blocks)
+    return Section(
+        anchor="linearisation",
+        title="Is the linear model right?",
+        nav_title="Linear model",
+        blocks=blocks,
+    )
 
 
 def _weights(design: Record) -> Section:
@@ -114,7 +131,12 @@ def _weights(design: Record) -> Section:
         " follows, the largest errors of altitude and airspeed that the autopilot acts on, the rate at which integrals come back to"
         " what controls can give (anti-windup), and how often the autopilot computes."
     )
-    return Section(anchor="weights", title="Weights of the design", nav_title="Weights", blocks=[Text(text), weight_table(design)])
+    return Section(
+        anchor="weights",
+        title="Weights of the design",
+        nav_title="Weights",
+        blocks=[Text(text), weight_table(design)],
+    )
 
 
 def _elsewhere(root: Path) -> Section:
@@ -132,7 +154,11 @@ def _elsewhere(root: Path) -> Section:
     if not named:
         return Section(anchor="elsewhere", title="Fly it elsewhere", blocks=[])
     files = "; ".join(f"{what}, {path}" for what, path in named)
-    blocks: list[Block] = [Text(f"The directory “model” beside this report is a JSBSim root: {files}. It needs nothing else.")]
+    blocks: list[Block] = [
+        Text(
+            f"The directory “model” beside this report is a JSBSim root: {files}. It needs nothing else."
+        )
+    ]
     scripts = [path for what, path in named if what == "a script"]
     if scripts:
         commands = "; ".join(f"JSBSim --root=model --script={path}" for path in scripts)

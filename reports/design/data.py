@@ -28,7 +28,10 @@ def complete(record: Record) -> Record:
 
     A row that says of itself that its loop is not stable has no margins, whatever distance to the critical point was measured.
     """
-    return {**record, **{name: [_judged(row) for row in record[name]] for name in ("margins", "robustness")}}
+    return {
+        **record,
+        **{name: [_judged(row) for row in record[name]] for name in ("margins", "robustness")},
+    }
 
 
 def _judged(row: Record) -> Record:
@@ -63,7 +66,11 @@ def speed(airspeed: float) -> str:
 def speed_range(design: Record) -> str:
     """Return the airspeeds that a design is for."""
     airspeeds = [row["airspeed_mps"] for row in design["margins"]]
-    return f"{round(min(airspeeds), 1):g} to {speed(max(airspeeds))}" if min(airspeeds) < max(airspeeds) else speed(airspeeds[0])
+    return (
+        f"{round(min(airspeeds), 1):g} to {speed(max(airspeeds))}"
+        if min(airspeeds) < max(airspeeds)
+        else speed(airspeeds[0])
+    )
 
 
 def where(row: Record) -> str:
@@ -89,7 +96,11 @@ def loops_of(rows: Iterable[Record]) -> list[str]:
 
 def worst(rows: Iterable[Record], key: str) -> Record | None:
     """Return the row whose ``key`` is least, or none where no row has a value; a margin without a value is unlimited."""
-    return min((row for row in rows if row.get(key) is not None), key=lambda row: float(row[key]), default=None)
+    return min(
+        (row for row in rows if row.get(key) is not None),
+        key=lambda row: float(row[key]),
+        default=None,
+    )
 
 
 def short_of(rows: Iterable[Record], key: str, required: float) -> list[Record]:
@@ -108,7 +119,11 @@ def down(value: float | None) -> str:
 def at_middle(record: Record, rows: Iterable[Record]) -> list[Record]:
     """Return the rows at the design airspeed in level flight."""
     airspeed = record["design_airspeed_mps"]
-    return [row for row in rows if _same(row["airspeed_mps"], airspeed) and not (bank_deg(row) or climbing(row))]
+    return [
+        row
+        for row in rows
+        if _same(row["airspeed_mps"], airspeed) and not (bank_deg(row) or climbing(row))
+    ]
 
 
 def _same(airspeed: float, other: float) -> bool:
@@ -118,7 +133,10 @@ def _same(airspeed: float, other: float) -> bool:
 
 def grid_trims(record: Record) -> list[Record]:
     """Return the equilibria that neither climb nor descend, ordered by bank and airspeed."""
-    return sorted((t for t in record["trims"] if not climbing(t)), key=lambda t: (bank_deg(t), t["airspeed_mps"]))
+    return sorted(
+        (t for t in record["trims"] if not climbing(t)),
+        key=lambda t: (bank_deg(t), t["airspeed_mps"]),
+    )
 
 
 def climb_trims(record: Record) -> list[Record]:
@@ -137,7 +155,9 @@ def responses_of(record: Record, command: str) -> list[Record]:
 
 def excess_overshoot(record: Record) -> float:
     """Return how far a flown heading-rate step goes past its reference model, as a fraction of the step."""
-    overshoot = {row["kind"]: float(row["overshoot"]) for row in responses_of(record, "heading_rate")}
+    overshoot = {
+        row["kind"]: float(row["overshoot"]) for row in responses_of(record, "heading_rate")
+    }
     return max(0.0, overshoot["flown"] - overshoot["model"])
 
 

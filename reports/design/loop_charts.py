@@ -49,7 +49,10 @@ def disk_region(gain_margin_db: float) -> tuple[Array, Array]:
 def _bode(design: Record) -> Chart:
     groups = [
         ("Opened at a control", [loop for loop in design["loops"] if loop["loop"] in CONTROLS]),
-        ("Opened at a measurement", [loop for loop in design["loops"] if loop["loop"] not in CONTROLS]),
+        (
+            "Opened at a measurement",
+            [loop for loop in design["loops"] if loop["loop"] not in CONTROLS],
+        ),
     ]
     groups = [group for group in groups if group[1]]
     panels = [
@@ -59,7 +62,8 @@ def _bode(design: Record) -> Chart:
     return Chart(
         name="bode",
         caption=f"Open loops at {speed(design['design_airspeed_mps'])} in level flight, one opened at a time and all others closed,"
-        " with servos, engine and computing delay. Dotted: gain 1 and −180 deg." + cut_words(panels),
+        " with servos, engine and computing delay. Dotted: gain 1 and −180 deg."
+        + cut_words(panels),
         panels=panels,
         columns=len(groups),
         share_x=True,
@@ -71,10 +75,20 @@ def _bode_panel(loops: Sequence[Record], title: str, key: str) -> Panel:
     gain = key == "gain_db"
     frequency = np.array(loops[0]["frequency_rad_s"])
     limits = (float(frequency[0]), float(frequency[-1]))
-    lines = [_curve(loop, np.array(loop["frequency_rad_s"]), np.array(loop[key]) if gain else turned(loop)) for loop in loops]
+    lines = [
+        _curve(
+            loop, np.array(loop["frequency_rad_s"]), np.array(loop[key]) if gain else turned(loop)
+        )
+        for loop in loops
+    ]
     level = 0.0 if gain else _CRITICAL
-    lines.append(Line(x=np.array(limits), y=np.array([level, level]), label="", colour="black", style="dot"))
-    lowest, highest = min(float(line.y.min()) for line in lines), max(float(line.y.max()) for line in lines)
+    lines.append(
+        Line(x=np.array(limits), y=np.array([level, level]), label="", colour="black", style="dot")
+    )
+    lowest, highest = (
+        min(float(line.y.min()) for line in lines),
+        max(float(line.y.max()) for line in lines),
+    )
     return Panel(
         x_label="Frequency [rad/s]",
         y_label="Gain [dB]" if gain else "Phase [deg]",
@@ -92,9 +106,15 @@ def _curve(loop: Record, x: Array, y: Array) -> Line:
 
 
 def _nichols(design: Record) -> Chart:
-    disks = {row["loop"]: row["disk_gain_db"] for row in at_middle(design, design["margins"]) if not row["between"]}
+    disks = {
+        row["loop"]: row["disk_gain_db"]
+        for row in at_middle(design, design["margins"])
+        if not row["between"]
+    }
     gain, phase = design["required"]["gain_db"], design["required"]["phase_deg"]
-    panels = [_nichols_panel(loop, disks.get(loop["loop"]), gain, phase) for loop in design["loops"]]
+    panels = [
+        _nichols_panel(loop, disks.get(loop["loop"]), gain, phase) for loop in design["loops"]
+    ]
     return Chart(
         name="nichols",
         caption="The same loops in Nichols' plane. Each has to pass the critical point (gain 1, −180 deg) outside the tinted"
@@ -107,11 +127,16 @@ def _nichols(design: Record) -> Chart:
     )
 
 
-def _nichols_panel(loop: Record, disk_gain_db: float | None, gain_db: float, phase_deg: float) -> Panel:
+def _nichols_panel(
+    loop: Record, disk_gain_db: float | None, gain_db: float, phase_deg: float
+) -> Panel:
     gain, phase = np.array(loop["gain_db"]), turned(loop)
     shown = (gain >= _NICHOLS_GAIN[0]) & (gain <= _NICHOLS_GAIN[1])
     reach = phase[shown] if shown.any() else phase
-    x_range = (max(min(float(reach.min()) - 15.0, -270.0), -600.0), min(max(float(reach.max()) + 15.0, -80.0), 240.0))
+    x_range = (
+        max(min(float(reach.min()) - 15.0, -270.0), -600.0),
+        min(max(float(reach.max()) + 15.0, -80.0), 240.0),
+    )
     lines: list[Line] = []
     for critical in (_CRITICAL - 360.0, _CRITICAL, _CRITICAL + 360.0):
         if x_range[0] < critical + phase_deg and critical - phase_deg < x_range[1]:
@@ -127,13 +152,36 @@ def _nichols_panel(loop: Record, disk_gain_db: float | None, gain_db: float, pha
     )
 
 
-def _regions(critical: float, disk_gain_db: float | None, gain_db: float, phase_deg: float) -> list[Line]:
+def _regions(
+    critical: float, disk_gain_db: float | None, gain_db: float, phase_deg: float
+) -> list[Line]:
     """Return what a loop has to stay out of, what it does stay out of, and the critical point in both."""
-    corners = np.array([(-phase_deg, 0.0), (0.0, gain_db), (phase_deg, 0.0), (0.0, -gain_db), (-phase_deg, 0.0)])
+    corners = np.array(
+        [(-phase_deg, 0.0), (0.0, gain_db), (phase_deg, 0.0), (0.0, -gain_db), (-phase_deg, 0.0)]
+    )
     label = f"excluded: {gain_db:g} dB, {phase_deg:g} deg"
-    lines = [Line(x=critical + corners[:, 0], y=corners[:, 1], label=label, colour=Meaning.LIMIT, fill=True)]
+    lines = [
+        Line(
+            x=critical + corners[:, 0],
+            y=corners[:, 1],
+            label=label,
+            colour=Meaning.LIMIT,
+            fill=True,
+        )
+    ]
     if disk_gain_db is not None:
         phase, gain = disk_region(disk_gain_db)
-        lines.append(Line(x=phase - _CRITICAL + critical, y=gain, label="its disk margin", colour="orange", style="dash"))
+        lines.append(
+            Line(
+                x=phase - _CRITICAL + critical,
+                y=gain,
+                label="its disk margin",
+                colour="orange",
+                style="dash",
+            )
+        )
     point = np.array([critical])
-    return [*lines, Line(x=point, y=np.zeros(1), label="critical point", colour="black", style="points")]
+    return [
+        *lines,
+        Line(x=point, y=np.zeros(1), label="critical point", colour="black", style="points"),
+    ]

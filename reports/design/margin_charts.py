@@ -30,8 +30,15 @@ def margin_charts(design: Record) -> list[Chart]:
         _Margin(key="disk_phase_deg", label="Disk phase [deg]", required=None, ceiling=90.0),
     ]
     classical = [
-        _Margin(key="gain_db", label="Gain margin [dB]", required=required["gain_db"], ceiling=40.0),
-        _Margin(key="phase_deg", label="Phase margin [deg]", required=required["phase_deg"], ceiling=120.0),
+        _Margin(
+            key="gain_db", label="Gain margin [dB]", required=required["gain_db"], ceiling=40.0
+        ),
+        _Margin(
+            key="phase_deg",
+            label="Phase margin [deg]",
+            required=required["phase_deg"],
+            ceiling=120.0,
+        ),
     ]
     return [
         _chart(
@@ -63,18 +70,35 @@ def _chart(design: Record, name: str, margins: Sequence[_Margin], caption: str) 
             " Diamonds, and rings of dashed and dotted loops: at points between those of the grid and at the largest bank, for"
             " which nothing was designed."
         )
-    return Chart(name=name, caption=caption + cut_words(panels), panels=panels, columns=2, panel_height=0.24)
+    return Chart(
+        name=name, caption=caption + cut_words(panels), panels=panels, columns=2, panel_height=0.24
+    )
 
 
 def _panel(rows: Sequence[Record], margin: _Margin, *, over_bank: bool) -> Panel:
     at = np.array(sorted({_abscissa(row, over_bank=over_bank) for row in rows}))
     lines = []
     if margin.required is not None:
-        lines.append(Line(x=at, y=constant(at, margin.required), label="required", colour=Meaning.LIMIT, style="dash"))
+        lines.append(
+            Line(
+                x=at,
+                y=constant(at, margin.required),
+                label="required",
+                colour=Meaning.LIMIT,
+                style="dash",
+            )
+        )
     for loop in loops_of(rows):
         own = [row for row in rows if row["loop"] == loop]
-        lines += _curve([row for row in own if not row["between"]], margin.key, over_bank=over_bank, between=False)
-        lines += _curve([row for row in own if row["between"]], margin.key, over_bank=over_bank, between=True)
+        lines += _curve(
+            [row for row in own if not row["between"]],
+            margin.key,
+            over_bank=over_bank,
+            between=False,
+        )
+        lines += _curve(
+            [row for row in own if row["between"]], margin.key, over_bank=over_bank, between=True
+        )
     largest = max((float(line.y.max()) for line in lines), default=margin.ceiling)
     return Panel(
         x_label="Bank [deg]" if over_bank else "Airspeed [m/s]",
@@ -89,7 +113,9 @@ def _curve(rows: Sequence[Record], key: str, *, over_bank: bool, between: bool) 
     groups: dict[float, list[Record]] = {}
     for row in rows:
         groups.setdefault(_abscissa(row, over_bank=over_bank), []).append(row)
-    least = {at: found[key] for at in sorted(groups) if (found := worst(groups[at], key)) is not None}
+    least = {
+        at: found[key] for at in sorted(groups) if (found := worst(groups[at], key)) is not None
+    }
     if not least:
         return []
     colour, style = LOOP_STYLES.get(rows[0]["loop"], OTHER_LOOP)

@@ -37,7 +37,9 @@ _KINDS = (("open_loop", "Aircraft"), ("closed_loop", "Under the autopilot"))
 
 def _reach(design: Record) -> float:
     """Return the distance from the origin of the farthest pole that is shown."""
-    sizes = [math.hypot(*pole) for poles in design["poles"] for kind, _ in _KINDS for pole in poles[kind]]
+    sizes = [
+        math.hypot(*pole) for poles in design["poles"] for kind, _ in _KINDS for pole in poles[kind]
+    ]
     return max((size for size in sizes if size < FAST), default=FAST)
 
 
@@ -46,7 +48,12 @@ def _panel(design: Record, kind: str, title: str, reach: float) -> Panel:
     lines, notes = _rays(x_range, y_range, reach)
     airspeeds = sorted({float(poles["airspeed_mps"]) for poles in design["poles"]})
     for i, airspeed in enumerate(airspeeds):
-        points = _points([poles for poles in design["poles"] if poles["airspeed_mps"] == airspeed], kind, x_range, y_range)
+        points = _points(
+            [poles for poles in design["poles"] if poles["airspeed_mps"] == airspeed],
+            kind,
+            x_range,
+            y_range,
+        )
         lines.append(
             Line(
                 x=points[:, 0],
@@ -80,19 +87,44 @@ def _points(
     return np.array(inside or [[math.nan, math.nan]])
 
 
-def _rays(x_range: tuple[float, float], y_range: tuple[float, float], reach: float) -> tuple[list[Line], list[Note]]:
+def _rays(
+    x_range: tuple[float, float], y_range: tuple[float, float], reach: float
+) -> tuple[list[Line], list[Note]]:
     """Return the rays of equal damping with their figures, and the limit of stability."""
-    lines = [Line(x=np.zeros(2), y=np.array([0.0, y_range[1]]), label="limit of stability", colour="black", style="dash")]
+    lines = [
+        Line(
+            x=np.zeros(2),
+            y=np.array([0.0, y_range[1]]),
+            label="limit of stability",
+            colour="black",
+            style="dash",
+        )
+    ]
     notes = []
     for ratio in _DAMPING_RATIOS:
         direction = np.array([-ratio, math.sqrt(1.0 - ratio**2)])
         # To the nearer edge of the panel, and the figure a little before it.
         length = min(x_range[0] / direction[0], y_range[1] / direction[1])
         end = length * direction
-        lines.append(Line(x=np.array([0.0, end[0]]), y=np.array([0.0, end[1]]), label="equal damping", colour="grey", style="dot"))
+        lines.append(
+            Line(
+                x=np.array([0.0, end[0]]),
+                y=np.array([0.0, end[1]]),
+                label="equal damping",
+                colour="grey",
+                style="dot",
+            )
+        )
         at = 0.88 * end
         # To the left of a ray to the upper edge, where the limit of stability is not, and to the right of one to the left edge.
         upper = bool(end[0] > x_range[0])
         place = at + (-1.0 if upper else 1.0) * reach * np.array([0.03, 0.04])
-        notes.append(Note(x=float(place[0]), y=float(place[1]), text=f"ζ = {ratio:g}", align="right" if upper else "left"))
+        notes.append(
+            Note(
+                x=float(place[0]),
+                y=float(place[1]),
+                text=f"ζ = {ratio:g}",
+                align="right" if upper else "left",
+            )
+        )
     return lines, notes

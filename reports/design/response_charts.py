@@ -52,7 +52,9 @@ def first_chart(design: Record) -> Chart | None:
     """Return what page 1 shows: a turn, and steps of airspeed and altitude; None of a design without step responses."""
     steps = [(responses_of(design, command), channel, title) for command, channel, title in _FIRST]
     panels = [
-        _panel(design, responses, channel, title=title) for responses, channel, title in steps if _present([channel], responses)
+        _panel(design, responses, channel, title=title)
+        for responses, channel, title in steps
+        if _present([channel], responses)
     ]
     if not panels:
         return None
@@ -65,7 +67,11 @@ def first_chart(design: Record) -> Chart | None:
 
 def _turn(design: Record) -> Chart:
     responses = responses_of(design, "heading_rate")
-    model = " Dotted: the reference model that it is to follow." if "model" in {row["kind"] for row in responses} else ""
+    model = (
+        " Dotted: the reference model that it is to follow."
+        if "model" in {row["kind"] for row in responses}
+        else ""
+    )
     return Chart(
         name="turnresponse",
         caption=f"A step of the heading-rate command by {_size(responses)} rad/s from level flight at"
@@ -95,7 +101,11 @@ def _climb(design: Record) -> Chart:
 
 
 def _present(channels: Sequence[str], responses: Sequence[Record]) -> list[str]:
-    return [channel for channel in channels if any(channel in response["channels"] for response in responses)]
+    return [
+        channel
+        for channel in channels
+        if any(channel in response["channels"] for response in responses)
+    ]
 
 
 def _size(responses: Sequence[Record]) -> str:
@@ -103,7 +113,9 @@ def _size(responses: Sequence[Record]) -> str:
 
 
 def _panel(design: Record, responses: Sequence[Record], channel: str, title: str = "") -> Panel:
-    axis, scale = (control_axis(design, channel), 1.0) if channel in CONTROLS else _CHANNELS[channel]
+    axis, scale = (
+        (control_axis(design, channel), 1.0) if channel in CONTROLS else _CHANNELS[channel]
+    )
     lines = []
     for response in responses:
         if channel in response["channels"]:

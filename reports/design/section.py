@@ -12,7 +12,10 @@ def innerloop_section(record: Record) -> Section:
     design = complete(record)
     flown = float(design["envelope"]["bank_deg"])
     bank = min({bank_deg(t) for t in design["trims"]}, key=lambda known: abs(known - flown))
-    trims = sorted((t for t in grid_trims(design) if bank_deg(t) in (0.0, bank)), key=lambda t: float(t["airspeed_mps"]))
+    trims = sorted(
+        (t for t in grid_trims(design) if bank_deg(t) in (0.0, bank)),
+        key=lambda t: float(t["airspeed_mps"]),
+    )
     return Section(
         anchor="innerloop",
         title="Autopilot",
@@ -33,7 +36,10 @@ def _margin_table(design: Record) -> Table:
     rows = [
         [
             m["loop"].replace("_", " "),
-            *("–" if m["loop"] == "all controls" and m[key] is None else down(m[key]) for key in ("gain_db", "phase_deg")),
+            *(
+                "–" if m["loop"] == "all controls" and m[key] is None else down(m[key])
+                for key in ("gain_db", "phase_deg")
+            ),
             number(m["crossover"], "{:.2f}"),
             down(m["disk_gain_db"]),
             down(m["disk_phase_deg"]),
@@ -41,5 +47,12 @@ def _margin_table(design: Record) -> Table:
         for m in at_middle(design, design["margins"])
         if not m["between"]
     ]
-    head = ["Loop opened at", "Gain [dB]", "Phase [deg]", "Crossover [rad/s]", "Disk gain [dB]", "Disk phase [deg]"]
+    head = [
+        "Loop opened at",
+        "Gain [dB]",
+        "Phase [deg]",
+        "Crossover [rad/s]",
+        "Disk gain [dB]",
+        "Disk phase [deg]",
+    ]
     return Table(head=head, rows=rows, widths=[1.6, 1.0, 1.0, 1.2, 1.1, 1.2])

@@ -4,7 +4,16 @@ from typing import Any
 
 import numpy as np
 
-from reports.design.data import FAST, Record, at_middle, bank_deg, loop_name, loops_of, responses_of, speed
+from reports.design.data import (
+    FAST,
+    Record,
+    at_middle,
+    bank_deg,
+    loop_name,
+    loops_of,
+    responses_of,
+    speed,
+)
 from reports.design.loop_charts import turned
 from reports.design.loop_styles import LOOP_STYLES, OTHER_LOOP
 from reports.design.response_charts import RESPONSE_STYLES
@@ -24,19 +33,37 @@ def step_charts(design: Record) -> list[Chart]:
     charts: list[Chart] = []
     for command, (own_label, title) in _COMMANDS.items():
         panels = []
-        for channel in (command, *(name for name in ("airspeed", "altitude", "roll") if name != command))[:3]:
-            label = own_label if channel == command else _COMMANDS.get(channel, ("Bank [deg]", ""))[0]
+        for channel in (
+            command,
+            *(name for name in ("airspeed", "altitude", "roll") if name != command),
+        )[:3]:
+            label = (
+                own_label if channel == command else _COMMANDS.get(channel, ("Bank [deg]", ""))[0]
+            )
             scale = np.degrees(1.0) if channel == "roll" else 1.0
             lines = []
             for response in responses_of(design, command):
                 if channel in response["channels"]:
                     kind, colour, style = RESPONSE_STYLES[response["kind"]]
-                    x, y = np.array(response["time_s"]), scale * np.array(response["channels"][channel])
+                    x, y = (
+                        np.array(response["time_s"]),
+                        scale * np.array(response["channels"][channel]),
+                    )
                     lines.append(Line(x=x, y=y, label=kind, colour=colour, style=style))
             panels.append(Panel(x_label="Time [s]", y_label=label, lines=lines))
-        caption = f"A step of the {title} from level flight, and what else moves: deviations from trim."
+        caption = (
+            f"A step of the {title} from level flight, and what else moves: deviations from trim."
+        )
         told = " The linear design's prediction, and what JSBSim flies." if not charts else ""
-        charts.append(Chart(name=f"step{len(charts) + 1}", caption=caption + told, panels=panels, columns=3, panel_height=0.25))
+        charts.append(
+            Chart(
+                name=f"step{len(charts) + 1}",
+                caption=caption + told,
+                panels=panels,
+                columns=3,
+                panel_height=0.25,
+            )
+        )
     return charts
 
 
@@ -54,13 +81,22 @@ def _margins(design: Record) -> list[Chart]:
         for loop in loops_of(level):
             rows = [m for m in level if m["loop"] == loop and m[name] is not None]
             if rows:
-                x, y = np.array([m["airspeed_mps"] for m in rows]), np.array([m[name] for m in rows])
+                x, y = (
+                    np.array([m["airspeed_mps"] for m in rows]),
+                    np.array([m[name] for m in rows]),
+                )
                 colour, style = LOOP_STYLES.get(loop, OTHER_LOOP)
                 lines.append(Line(x=x, y=y, label=loop_name(rows[0]), colour=colour, style=style))
         if limit is not None:
             x = np.array(design["airspeeds_mps"])
-            lines.append(Line(x=x, y=constant(x, limit), label="required", colour=Meaning.LIMIT, style="dash"))
-        return Panel(x_label="Design airspeed [m/s]", y_label=label, lines=lines, y_range=(0.0, top))
+            lines.append(
+                Line(
+                    x=x, y=constant(x, limit), label="required", colour=Meaning.LIMIT, style="dash"
+                )
+            )
+        return Panel(
+            x_label="Design airspeed [m/s]", y_label=label, lines=lines, y_range=(0.0, top)
+        )
 
     kinds = (
         (
@@ -79,7 +115,15 @@ def _margins(design: Record) -> list[Chart]:
             panel(f"{prefix}{key}", label, None if prefix else required[key], top)
             for key, (label, top) in (("gain_db", gain), ("phase_deg", phase))
         ]
-        charts.append(Chart(name=f"level{name}", caption=caption + cut_words(panels), panels=panels, columns=2, panel_height=0.3))
+        charts.append(
+            Chart(
+                name=f"level{name}",
+                caption=caption + cut_words(panels),
+                panels=panels,
+                columns=2,
+                panel_height=0.3,
+            )
+        )
     return charts
 
 
@@ -88,14 +132,33 @@ def _loops(design: Record) -> Chart:
     for loop in design["loops"]:
         x = np.array(loop["frequency_rad_s"])
         colour, style = LOOP_STYLES.get(loop["loop"], OTHER_LOOP)
-        gain.append(Line(x=x, y=np.array(loop["gain_db"]), label=loop_name(loop), colour=colour, style=style))
+        gain.append(
+            Line(
+                x=x, y=np.array(loop["gain_db"]), label=loop_name(loop), colour=colour, style=style
+            )
+        )
         phase.append(Line(x=x, y=turned(loop), label=loop_name(loop), colour=colour, style=style))
     x = np.array(design["loops"][0]["frequency_rad_s"])
     limits = (float(x[0]), float(x[-1]))
-    gain.append(Line(x=np.array(limits), y=np.zeros(2), label="crossover", colour="black", style="dot"))
+    gain.append(
+        Line(x=np.array(limits), y=np.zeros(2), label="crossover", colour="black", style="dot")
+    )
     panels = [
-        Panel(x_label="Frequency [rad/s]", y_label="Gain [dB]", lines=gain, log_x=True, x_range=limits, y_range=(-60.0, 60.0)),
-        Panel(x_label="Frequency [rad/s]", y_label="Phase [deg]", lines=phase, log_x=True, x_range=limits),
+        Panel(
+            x_label="Frequency [rad/s]",
+            y_label="Gain [dB]",
+            lines=gain,
+            log_x=True,
+            x_range=limits,
+            y_range=(-60.0, 60.0),
+        ),
+        Panel(
+            x_label="Frequency [rad/s]",
+            y_label="Phase [deg]",
+            lines=phase,
+            log_x=True,
+            x_range=limits,
+        ),
     ]
     return Chart(
         name="loops",

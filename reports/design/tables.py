@@ -42,7 +42,16 @@ def worst_margin_table(design: Record) -> Table:
                 where(disk) if disk else "",
             ]
         )
-    head = ["Loop opened at", "Gain [dB]", "at", "Phase [deg]", "at", "Disk gain [dB]", "Disk phase [deg]", "at"]
+    head = [
+        "Loop opened at",
+        "Gain [dB]",
+        "at",
+        "Phase [deg]",
+        "at",
+        "Disk gain [dB]",
+        "Disk phase [deg]",
+        "at",
+    ]
     return Table(head=head, rows=rows, widths=[1.15, 0.85, 1.35, 0.95, 1.35, 1.1, 1.1, 1.35])
 
 
@@ -62,14 +71,25 @@ def robustness_table(design: Record) -> Table:
         short = short_of(own, "gain_db", required["perturbed_gain_db"]) + short_of(
             own, "phase_deg", required["perturbed_phase_deg"]
         )
-        rows.append([case_name(own[0]), *_perturbed(gain, "gain"), *_perturbed(phase, "phase"), "no" if short else "yes"])
+        rows.append(
+            [
+                case_name(own[0]),
+                *_perturbed(gain, "gain"),
+                *_perturbed(phase, "phase"),
+                "no" if short else "yes",
+            ]
+        )
     head = ["Perturbation", "Gain [dB]", "of", "at", "Phase [deg]", "of", "at", "Met"]
     return Table(head=head, rows=rows, widths=[1.8, 0.75, 0.9, 1.15, 0.95, 0.9, 1.15, 0.4])
 
 
 def _perturbed(row: Record | None, name: str) -> list[str]:
     key = "gain_db" if name == "gain" else "phase_deg"
-    return [down(row[key]), str(row[f"{name}_loop"]).replace("_", " "), where(row)] if row else ["∞", "", ""]
+    return (
+        [down(row[key]), str(row[f"{name}_loop"]).replace("_", " "), where(row)]
+        if row
+        else ["∞", "", ""]
+    )
 
 
 def extreme_trims(design: Record) -> list[Record]:
@@ -86,7 +106,10 @@ def trim_table(design: Record, chosen: Sequence[Record]) -> Table:
     """Return a table of equilibria, with the columns that all of them have."""
     columns = _trim_columns(design, chosen)
     limits = any(t.get("limits") for t in chosen)
-    rows = [[_cell(t, *column) for column in columns] + ["; ".join(t.get("limits", []))] * limits for t in chosen]
+    rows = [
+        [_cell(t, *column) for column in columns] + ["; ".join(t.get("limits", []))] * limits
+        for t in chosen
+    ]
     return Table(
         head=[title for title, _, _ in columns] + ["At a limit"] * limits,
         rows=rows,
@@ -107,7 +130,10 @@ def _trim_columns(design: Record, trims: Sequence[Record]) -> list[tuple[str, st
         ("β [deg]", "sideslip_rad", degrees),
         ("θ [deg]", "pitch_rad", degrees),
         ("Yaw rate [rad/s]", "yaw_rate_rad_s", 1.0),
-        *((_control_head(design, name), name, 1.0) for name in ("elevator", "aileron", "rudder", "throttle")),
+        *(
+            (_control_head(design, name), name, 1.0)
+            for name in ("elevator", "aileron", "rudder", "throttle")
+        ),
     ]
     if not any(climbing(t) for t in trims):
         columns = [column for column in columns if column[1] != "climb_angle_rad"]
@@ -129,7 +155,11 @@ def pole_table(design: Record) -> Table:
     """Return the slowest and the least damped pole, with and without the autopilot, and where they are."""
     rows = []
     for kind, name in (("open_loop", "aircraft"), ("closed_loop", "under the autopilot")):
-        poles = [(point, (float(pole[0]), float(pole[1]))) for point in design["poles"] for pole in point[kind]]
+        poles = [
+            (point, (float(pole[0]), float(pole[1])))
+            for point in design["poles"]
+            for pole in point[kind]
+        ]
         slowest = max(poles, key=lambda item: item[1][0])
         swinging = [item for item in poles if item[1][1] > 0.0]
         least = min(swinging, key=lambda item: damping(item[1]), default=None)
@@ -159,13 +189,29 @@ def step_table(design: Record) -> Table:
             "reference model" if response["kind"] == "model" else str(response["kind"]),
             number(response["rise_time_s"], "{:.2f}"),
             f"{100 * response['overshoot']:.1f}",
-            *(_moved(response, channel) for channel in ("altitude_largest_m", "airspeed_largest_mps")),
+            *(
+                _moved(response, channel)
+                for channel in ("altitude_largest_m", "airspeed_largest_mps")
+            ),
         ]
         for command in dict.fromkeys(response["command"] for response in design["responses"])
         for response in responses_of(design, command)
     ]
-    head = ["Step [rad/s, m/s, m]", "", "Rise 10–90 % [s]", "Overshoot [%]", "Altitude moves [m]", "Airspeed moves [m/s]"]
-    return Table(caption="What the steps show.", head=head, rows=rows, widths=[1.4, 1.1, 1.2, 1.0, 1.25, 1.5], left_columns=2)
+    head = [
+        "Step [rad/s, m/s, m]",
+        "",
+        "Rise 10–90 % [s]",
+        "Overshoot [%]",
+        "Altitude moves [m]",
+        "Airspeed moves [m/s]",
+    ]
+    return Table(
+        caption="What the steps show.",
+        head=head,
+        rows=rows,
+        widths=[1.4, 1.1, 1.2, 1.0, 1.25, 1.5],
+        left_columns=2,
+    )
 
 
 def _moved(response: Record, key: str) -> str:
@@ -178,10 +224,19 @@ def verification_table(design: Record) -> Table:
     outputs = list(dict.fromkeys(row["output"] for row in design["verification"]))
     errors = {(row["input"], row["output"]): row["error"] for row in design["verification"]}
     inputs = list(dict.fromkeys(row["input"] for row in design["verification"]))
-    rows = [[_words(name), *(number(_percent(errors.get((name, output))), "{:.2f}") for output in outputs)] for name in inputs]
+    rows = [
+        [
+            _words(name),
+            *(number(_percent(errors.get((name, output))), "{:.2f}") for output in outputs),
+        ]
+        for name in inputs
+    ]
     head = ["Input", *(f"{_words(output)} [%]" for output in outputs)]
     return Table(
-        caption="Error of the linear model, by input and output.", head=head, rows=rows, widths=[1.3] + [1.0] * len(outputs)
+        caption="Error of the linear model, by input and output.",
+        head=head,
+        rows=rows,
+        widths=[1.3] + [1.0] * len(outputs),
     )
 
 
@@ -212,7 +267,10 @@ def weight_table(design: Record) -> Table:
         ]
     pairs.append(["autopilot: computations a second [Hz]", f"{design['autopilot_rate_hz']:.3g}"])
     half = -(-len(pairs) // 2)
-    rows = [[*left, *(pairs[half + i] if half + i < len(pairs) else ["", ""])] for i, left in enumerate(pairs[:half])]
+    rows = [
+        [*left, *(pairs[half + i] if half + i < len(pairs) else ["", ""])]
+        for i, left in enumerate(pairs[:half])
+    ]
     return Table(
         caption="Acceptable deviations, from which the gains follow; the heading-rate model, limits of errors, and rates.",
         head=["Quantity", "Value", "Quantity", "Value"],
@@ -231,7 +289,10 @@ def envelope_table(envelope: Record) -> Table:
     """Return where the aircraft may be flown, and where the study flies it."""
     stall = envelope["stall_airspeed_mps"]
     rows = [
-        ["Airspeed that may be commanded", f"{round(envelope['airspeed_min_mps'], 1):g} to {speed(envelope['airspeed_max_mps'])}"],
+        [
+            "Airspeed that may be commanded",
+            f"{round(envelope['airspeed_min_mps'], 1):g} to {speed(envelope['airspeed_max_mps'])}",
+        ],
         ["Airspeed of the study", speed(envelope["airspeed_mps"])],
         ["Stall", "not known" if stall is None else f"{stall:.1f} m/s"],
         ["Largest bank commanded", f"{envelope['bank_max_deg']:g}°"],

@@ -6,7 +6,15 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from reports.design.data import Record, bank_deg, climb_trims, control_axis, grid_trims, is_effect, speed
+from reports.design.data import (
+    Record,
+    bank_deg,
+    climb_trims,
+    control_axis,
+    grid_trims,
+    is_effect,
+    speed,
+)
 from reports.document.chart import Chart, Line, Panel, Style
 from reports.document.palette import Meaning, series_colour
 from reports.document.tables import minus
@@ -50,15 +58,31 @@ def _control(design: Record, name: str) -> _Quantity:
 def trim_charts(design: Record) -> list[Chart]:
     """Return the equilibria of straight climbs and descents where the record has some, and the trim map."""
     climbs = climb_trims(design)
-    return [*([_climb_chart(design, climbs)] if len({t["climb_angle_rad"] for t in climbs}) > 1 else []), trim_map(design)]
+    return [
+        *(
+            [_climb_chart(design, climbs)]
+            if len({t["climb_angle_rad"] for t in climbs}) > 1
+            else []
+        ),
+        trim_map(design),
+    ]
 
 
 def trim_map(design: Record) -> Chart:
     """Return the equilibria over airspeed, a curve for each bank."""
     trims = grid_trims(design)
-    elevator, throttle, aileron, rudder = (_control(design, name) for name in ("elevator", "throttle", "aileron", "rudder"))
+    elevator, throttle, aileron, rudder = (
+        _control(design, name) for name in ("elevator", "throttle", "aileron", "rudder")
+    )
     # Without a rudder its place goes to the yaw rate, so that no panel is empty.
-    quantities = (_ALPHA, elevator, throttle, aileron, rudder if rudder.key in trims[0] else _YAW_RATE, _SIDESLIP)
+    quantities = (
+        _ALPHA,
+        elevator,
+        throttle,
+        aileron,
+        rudder if rudder.key in trims[0] else _YAW_RATE,
+        _SIDESLIP,
+    )
     caption = (
         "Equilibria over airspeed, a curve per bank; to the left dashed, to the right solid. Upright lines: the limits of the"
         " commanded airspeed, and the stall where it is near."
@@ -84,10 +108,16 @@ def _map_panel(design: Record, trims: Sequence[Record], quantity: _Quantity) -> 
         rows = [t for t in trims if bank_deg(t) == bank]
         style: Style = "solid" if bank >= 0.0 else "dash"
         label = minus(f"bank {bank:+g}°") if bank else "level"
-        lines.append(_line(rows, "airspeed_mps", quantity, label, series_colour(sizes.index(abs(bank))), style))
+        lines.append(
+            _line(
+                rows, "airspeed_mps", quantity, label, series_colour(sizes.index(abs(bank))), style
+            )
+        )
     at_limit = [t for t in trims if t.get("limits")]
     if at_limit:
-        lines.append(_line(at_limit, "airspeed_mps", quantity, "at a limit", Meaning.LIMIT, "diamonds"))
+        lines.append(
+            _line(at_limit, "airspeed_mps", quantity, "at a limit", Meaning.LIMIT, "diamonds")
+        )
     y_range = _limits_of(lines, quantity)
     airspeeds = [float(t["airspeed_mps"]) for t in trims]
     lines += _limit_lines(quantity, y_range, (min(airspeeds), max(airspeeds)))
@@ -95,10 +125,18 @@ def _map_panel(design: Record, trims: Sequence[Record], quantity: _Quantity) -> 
     x = np.concatenate([line.x for line in lines])
     room = 0.03 * float(x.max() - x.min())
     x_range = (float(x.min()) - room, float(x.max()) + room)
-    return Panel(x_label="Airspeed [m/s]", y_label=quantity.label, lines=lines, x_range=x_range, y_range=y_range)
+    return Panel(
+        x_label="Airspeed [m/s]",
+        y_label=quantity.label,
+        lines=lines,
+        x_range=x_range,
+        y_range=y_range,
+    )
 
 
-def _line(rows: Sequence[Record], over: str, quantity: _Quantity, label: str, colour: str, style: Style) -> Line:
+def _line(
+    rows: Sequence[Record], over: str, quantity: _Quantity, label: str, colour: str, style: Style
+) -> Line:
     x = np.array([float(row[over]) for row in rows])
     y = quantity.scale * np.array([float(row[quantity.key]) for row in rows])
     return Line(x=x, y=y, label=label, colour=colour, style=style)
@@ -117,13 +155,20 @@ def _limits_of(lines: Sequence[Line], quantity: _Quantity) -> tuple[float, float
     return lowest - room, highest + room
 
 
-def _limit_lines(quantity: _Quantity, y_range: tuple[float, float], x_range: tuple[float, float]) -> list[Line]:
+def _limit_lines(
+    quantity: _Quantity, y_range: tuple[float, float], x_range: tuple[float, float]
+) -> list[Line]:
     shown = [limit for limit in quantity.limits if y_range[0] < limit[0] < y_range[1]]
     ends = np.array(x_range)
-    return [Line(x=ends, y=np.array([at, at]), label=label, colour=Meaning.LIMIT, style=_STYLES[label]) for at, label in shown]
+    return [
+        Line(x=ends, y=np.array([at, at]), label=label, colour=Meaning.LIMIT, style=_STYLES[label])
+        for at, label in shown
+    ]
 
 
-def _envelope_lines(envelope: Record, y_range: tuple[float, float], x_range: tuple[float, float]) -> list[Line]:
+def _envelope_lines(
+    envelope: Record, y_range: tuple[float, float], x_range: tuple[float, float]
+) -> list[Line]:
     marks: list[tuple[float | None, str, Style]] = [
         (envelope["airspeed_min_mps"], "envelope", "solid"),
         (envelope["airspeed_max_mps"], "envelope", "solid"),
@@ -145,15 +190,22 @@ def _climb_chart(design: Record, climbs: Sequence[Record]) -> Chart:
         lines = [_line(trims, "climb_deg", quantity, "equilibria", "blue", "solid")]
         at_limit = [t for t in trims if t.get("limits")]
         if at_limit:
-            lines.append(_line(at_limit, "climb_deg", quantity, "at a limit", Meaning.LIMIT, "diamonds"))
+            lines.append(
+                _line(at_limit, "climb_deg", quantity, "at a limit", Meaning.LIMIT, "diamonds")
+            )
         y_range = _limits_of(lines, quantity)
         lines += _limit_lines(quantity, y_range, (trims[0]["climb_deg"], trims[-1]["climb_deg"]))
-        return Panel(x_label="Climb angle [deg]", y_label=quantity.label, lines=lines, y_range=y_range)
+        return Panel(
+            x_label="Climb angle [deg]", y_label=quantity.label, lines=lines, y_range=y_range
+        )
 
     return Chart(
         name="climbs",
         caption=f"Straight climbs and descents at {speed(design['design_airspeed_mps'])}.",
-        panels=[panel(quantity) for quantity in (_ALPHA, _control(design, "elevator"), _control(design, "throttle"))],
+        panels=[
+            panel(quantity)
+            for quantity in (_ALPHA, _control(design, "elevator"), _control(design, "throttle"))
+        ],
         columns=3,
         panel_height=0.28,
     )

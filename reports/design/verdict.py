@@ -36,7 +36,9 @@ def design_verdict(design: Record) -> Verdict:
         less = f"{required['perturbed_gain_db']:g} dB and {required['perturbed_phase_deg']:g}°"
         headline = f"Every loop has {asked} everywhere, but is short of {less} under a perturbation"
     else:
-        headline = f"Every loop has at least {asked} of margin at every point of the grid and between"
+        headline = (
+            f"Every loop has at least {asked} of margin at every point of the grid and between"
+        )
     return Verdict(
         holds=not unstable,
         complete=not (nominal or perturbed),
@@ -49,7 +51,11 @@ def design_verdict(design: Record) -> Verdict:
 
 def _unstable(design: Record) -> list[str]:
     """Return the points at which the aircraft as modelled is unstable, by its poles or by what its margins say."""
-    poles = [point for point in design["poles"] if max(pole[0] for pole in point["closed_loop"]) > _UNSTABLE]
+    poles = [
+        point
+        for point in design["poles"]
+        if max(pole[0] for pole in point["closed_loop"]) > _UNSTABLE
+    ]
     return _points([*poles, *(row for row in design["margins"] if not row["stable"])])
 
 
@@ -107,9 +113,13 @@ def _detail(design: Record) -> str:
     grid = _points([row for row in design["margins"] if not row["between"]])
     between = _points([row for row in design["margins"] if row["between"]])
     banks = {bank_deg(row) for row in design["margins"]}
-    detail = f"Margins were computed at {len(grid)} points of the grid over airspeed" + (" and bank" if len(banks) > 1 else "")
+    detail = f"Margins were computed at {len(grid)} points of the grid over airspeed" + (
+        " and bank" if len(banks) > 1 else ""
+    )
     detail += (
-        f" and at {len(between)} points between them and at the largest bank, for which nothing was designed." if between else "."
+        f" and at {len(between)} points between them and at the largest bank, for which nothing was designed."
+        if between
+        else "."
     )
     perturbed = {row["case"] for row in design["robustness"] if not row["periods_late"]}
     late = dict.fromkeys(case_name(row) for row in design["robustness"] if row["periods_late"])
@@ -126,21 +136,34 @@ def _figures(design: Record) -> list[Card]:
     figures = [
         _margin_figure("Worst gain margin", margins, "gain_db", "dB", required["gain_db"]),
         _margin_figure("Worst phase margin", margins, "phase_deg", "°", required["phase_deg"]),
-        _margin_figure("Worst gain margin", robustness, "gain_db", "dB", required["perturbed_gain_db"]),
-        _margin_figure("Worst phase margin", robustness, "phase_deg", "°", required["perturbed_phase_deg"]),
+        _margin_figure(
+            "Worst gain margin", robustness, "gain_db", "dB", required["perturbed_gain_db"]
+        ),
+        _margin_figure(
+            "Worst phase margin", robustness, "phase_deg", "°", required["perturbed_phase_deg"]
+        ),
     ]
     together = worst((row for row in margins if row["loop"] == TOGETHER), "disk_gain_db")
     if together is not None:
         value = f"{down(together['disk_gain_db'])} dB, {down(together['disk_phase_deg'])}°"
         figures.append(Card(f"Disk margin, all controls: {where(together)}", value))
-    figures.append(Card("Heading-rate overshoot beyond the model's", f"{100.0 * excess_overshoot(design):.1f} %"))
+    figures.append(
+        Card(
+            "Heading-rate overshoot beyond the model's", f"{100.0 * excess_overshoot(design):.1f} %"
+        )
+    )
     figures.append(Card("Flown heading rate lags by", f"{design['heading_rate_lag_s']:.2f} s"))
     # An input that moves nothing has no error to speak of; the table shows it.
     errors = [row for row in design["verification"] if row["error"] is not None]
     if errors:
         largest = max(errors, key=lambda row: float(row["error"]))
         moved = f"{largest['output'].replace('_', ' ')} by {largest['input']}"
-        figures.append(Card(f"Linear model against small motions, worst: {moved}", f"{100.0 * largest['error']:.1f} %"))
+        figures.append(
+            Card(
+                f"Linear model against small motions, worst: {moved}",
+                f"{100.0 * largest['error']:.1f} %",
+            )
+        )
     return figures
 
 
@@ -151,6 +174,13 @@ def _margin_figure(name: str, rows: Sequence[Record], key: str, unit: str, requi
         name += f", {case_name(row)}" if row else ", perturbed"
     if row is None:
         return Card(name, "unlimited", f"≥ {required:g}{space}{unit}", met=True)
-    loop = str(row.get("loop") or row["gain_loop" if key == "gain_db" else "phase_loop"]).replace("_", " ")
+    loop = str(row.get("loop") or row["gain_loop" if key == "gain_db" else "phase_loop"]).replace(
+        "_", " "
+    )
     met = not short_of(rows, key, required)
-    return Card(f"{name}: {loop}, {where(row)}", f"{down(row[key])}{space}{unit}", f"≥ {required:g}{space}{unit}", met)
+    return Card(
+        f"{name}: {loop}, {where(row)}",
+        f"{down(row[key])}{space}{unit}",
+        f"≥ {required:g}{space}{unit}",
+        met,
+    )

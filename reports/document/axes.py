@@ -68,11 +68,15 @@ def with_one_abscissa(chart: Chart) -> Chart:
         if len(known) and not panel.log_x:
             low, high = limits.get(panel.x_label, (math.inf, -math.inf))
             limits[panel.x_label] = min(low, float(known.min())), max(high, float(known.max()))
-    panels = [replace(panel, x_range=panel.x_range or limits.get(panel.x_label)) for panel in chart.panels]
+    panels = [
+        replace(panel, x_range=panel.x_range or limits.get(panel.x_label)) for panel in chart.panels
+    ]
     return replace(chart, panels=panels)
 
 
-def log_axis(limits: tuple[float, float] | None, curves: Sequence[Array]) -> tuple[tuple[float, float], list[float]]:
+def log_axis(
+    limits: tuple[float, float] | None, curves: Sequence[Array]
+) -> tuple[tuple[float, float], list[float]]:
     """Return limits of a logarithmic axis, by its curves if none are given, and the values at which it is marked.
 
     Marks are powers of ten where there are three of them at least, and figures in between where there are not.
@@ -85,8 +89,12 @@ def log_axis(limits: tuple[float, float] | None, curves: Sequence[Array]) -> tup
     decades = range(math.floor(math.log10(limits[0]) + 1e-9), math.ceil(math.log10(limits[1])) + 1)
     marks: list[float] = []
     for mantissas in _MANTISSAS:
-        every = (mantissa * 10.0**decade for decade, mantissa in itertools.product(decades, mantissas))
-        marks = [mark for mark in every if limits[0] * (1.0 - 1e-9) <= mark <= limits[1] * (1.0 + 1e-9)]
+        every = (
+            mantissa * 10.0**decade for decade, mantissa in itertools.product(decades, mantissas)
+        )
+        marks = [
+            mark for mark in every if limits[0] * (1.0 - 1e-9) <= mark <= limits[1] * (1.0 + 1e-9)
+        ]
         if len(marks) >= _MARKS_MIN:
             break
     return limits, marks[:: -(-len(marks) // _MARKS_MAX) or 1]
@@ -94,7 +102,9 @@ def log_axis(limits: tuple[float, float] | None, curves: Sequence[Array]) -> tup
 
 def about_values(curves: Sequence[Array]) -> tuple[float, float] | None:
     """Return limits of a linear axis whose values are the same or nearly so, so that its marks have few digits; none for others."""
-    known = np.concatenate([np.asarray(curve, dtype=np.float64) for curve in curves] or [np.empty(0)])
+    known = np.concatenate(
+        [np.asarray(curve, dtype=np.float64) for curve in curves] or [np.empty(0)]
+    )
     known = known[np.isfinite(known)]
     largest = float(np.max(np.abs(known), initial=0.0))
     if not len(known) or float(np.ptp(known)) >= _TINY * largest:
@@ -134,7 +144,11 @@ def cut_words(panels: Sequence[Panel]) -> str:
         quantity, _, unit = panel.y_label.partition(" [")
         for beyond, limit, side in ((known > high, high, "above"), (known < low, low, "below")):
             if np.any(beyond):
-                cut[f"{quantity.lower()} {side} {limit:g} {unit.removesuffix(']')}".replace("-", "−")] = None
+                cut[
+                    f"{quantity.lower()} {side} {limit:g} {unit.removesuffix(']')}".replace(
+                        "-", "−"
+                    )
+                ] = None
     return f" Beyond the scale: {', '.join(cut)}." if cut else ""
 
 

@@ -218,13 +218,19 @@ class Verdict:
     @property
     def cards(self) -> list[Card]:
         """Return the figures of page 1: six, four or as few as there are; five would leave a gap."""
-        return self.figures[: CARDS_MAX if len(self.figures) >= CARDS_MAX else min(len(self.figures), 4)]
+        return self.figures[
+            : CARDS_MAX if len(self.figures) >= CARDS_MAX else min(len(self.figures), 4)
+        ]
 
     @property
     def first_failures(self) -> list[str]:
         """Return the failures that page 1 has room for, and how many there are more."""
         more = len(self.failures) - FAILURES_MAX
-        return self.failures if more <= 0 else [*self.failures[:FAILURES_MAX], f"and {more:,} more, under “Key figures”"]
+        return (
+            self.failures
+            if more <= 0
+            else [*self.failures[:FAILURES_MAX], f"and {more:,} more, under “Key figures”"]
+        )
 
 
 class Fact(NamedTuple):

@@ -9,7 +9,9 @@ import numpy as np
 from reports.document.palette import FILL_OPACITY
 from reports.run.columns import Array
 
-Style = Literal["solid", "thin", "broad", "dash", "dot", "points", "dots", "diamonds", "ring", "square", "cross"]
+Style = Literal[
+    "solid", "thin", "broad", "dash", "dot", "points", "dots", "diamonds", "ring", "square", "cross"
+]
 """Lines: thin ones over a track, broad ones below it. Marks: small dots, a ring where something begins, a square where it ends."""
 
 VARIANT_STYLES: tuple[Style, ...] = ("dash", "dot", "solid")
@@ -171,7 +173,12 @@ class Chart:
     @property
     def scale(self) -> tuple[float, float] | None:
         """Ends of the colour scale, or None without values."""
-        values = [line.values[np.isfinite(line.values)] for panel in self.panels for line in panel.lines if line.values is not None]
+        values = [
+            line.values[np.isfinite(line.values)]
+            for panel in self.panels
+            for line in panel.lines
+            if line.values is not None
+        ]
         known = np.concatenate(values) if values else np.empty(0)
         return (float(known.min()), float(known.max())) if len(known) else None
 

@@ -49,7 +49,10 @@ _LISTED_MAX = 30
 
 def _remedy(run: RunData) -> str:
     study = str(run.manifest.get("study", ""))
-    commands = {"measurement": "plume-flight estimate makes them", "design": "plume-flight design makes them"}
+    commands = {
+        "measurement": "plume-flight estimate makes them",
+        "design": "plume-flight design makes them",
+    }
     return commands.get(study, "plume-flight run with --resume makes them")
 
 
@@ -60,7 +63,11 @@ def missing_sections(run: RunData) -> list[Section]:
         return []
     more = len(names) - _LISTED_MAX
     rows = [
-        [name, "cannot be read" if name in run.unread else "is gone", _SHOWN.get(name, _SHOWN.get(name.split("/")[0], "nothing"))]
+        [
+            name,
+            "cannot be read" if name in run.unread else "is gone",
+            _SHOWN.get(name, _SHOWN.get(name.split("/")[0], "nothing")),
+        ]
         for name in names[:_LISTED_MAX]
     ]
     text = f"{len(names)} {'files' if len(names) > 1 else 'file'} of this directory cannot be shown; {_remedy(run)} again."
@@ -72,5 +79,9 @@ def missing_sections(run: RunData) -> list[Section]:
         prose=True,
         left_columns=3,
     )
-    blocks: list[Block] = [Text(text), table, *([Text(f"{more} more are missing.")] if more > 0 else [])]
+    blocks: list[Block] = [
+        Text(text),
+        table,
+        *([Text(f"{more} more are missing.")] if more > 0 else []),
+    ]
     return [Section(anchor="missing", title="Missing files", nav_title="Missing", blocks=blocks)]

@@ -11,7 +11,9 @@ PICTURE_HEIGHT = 0.7
 """Height of the panels of page 1's picture, over its width: what a printed page has room for below the figures [-]."""
 
 
-def numbered(picture: Chart | None, sections: Iterable[Section]) -> tuple[Chart | None, list[Section]]:
+def numbered(
+    picture: Chart | None, sections: Iterable[Section]
+) -> tuple[Chart | None, list[Section]]:
     """Return the picture of page 1 and sections with their figures and tables numbered in reading order.
 
     A table without a caption takes that of the heading right before it, which then is no heading any more, or else the last
@@ -25,7 +27,9 @@ def numbered(picture: Chart | None, sections: Iterable[Section]) -> tuple[Chart 
             panel_height=(PICTURE_HEIGHT - picture.last_height) / picture.rows,
             number=f"Figure {next(figures)}",
         )
-    return picture, [replace(section, blocks=_numbered(section, figures, tables)) for section in sections]
+    return picture, [
+        replace(section, blocks=_numbered(section, figures, tables)) for section in sections
+    ]
 
 
 def _numbered(section: Section, figures: "count[int]", tables: "count[int]") -> list[Block]:
@@ -37,7 +41,9 @@ def _numbered(section: Section, figures: "count[int]", tables: "count[int]") -> 
         elif isinstance(block, Table):
             if not block.caption and blocks and isinstance(blocks[-1], Heading):
                 blocks.pop()
-            blocks.append(replace(block, number=f"Table {next(tables)}", caption=block.caption or title))
+            blocks.append(
+                replace(block, number=f"Table {next(tables)}", caption=block.caption or title)
+            )
         else:
             title = block.text if isinstance(block, Heading) else title
             blocks.append(block)
@@ -46,4 +52,6 @@ def _numbered(section: Section, figures: "count[int]", tables: "count[int]") -> 
 
 def figures_in(picture: Chart | None, sections: Iterable[Section]) -> int:
     """Return how many figures have numbers."""
-    return bool(picture) + sum(isinstance(block, Chart) for section in sections for block in section.blocks)
+    return bool(picture) + sum(
+        isinstance(block, Chart) for section in sections for block in section.blocks
+    )

@@ -50,7 +50,10 @@ def classes(values: Array, bounds: Sequence[float], what: str, unit: str) -> lis
         f"above {bounds[-1]:g} {unit}",
     ]
     place = np.where(np.isfinite(values), np.searchsorted(bounds, values, side="right"), -1)
-    return [(place == i, name, colour) for i, (name, colour) in enumerate(zip(names, CLASS_COLOURS, strict=True))]
+    return [
+        (place == i, name, colour)
+        for i, (name, colour) in enumerate(zip(names, CLASS_COLOURS, strict=True))
+    ]
 
 
 def quartiles(values: Array, step: float) -> list[float]:
@@ -72,7 +75,9 @@ def points(x: Array, y: Array, groups: Sequence[Group]) -> list[Line]:
     ]
 
 
-def capped(x: Array, y: Array, groups: Sequence[Group], limit: float, unit: str = "", what: str = "") -> tuple[list[Line], float]:
+def capped(
+    x: Array, y: Array, groups: Sequence[Group], limit: float, unit: str = "", what: str = ""
+) -> tuple[list[Line], float]:
     """Return markers as ``points`` does, those far above all others on the upper edge with their values, and where that is.
 
     Panels of several figures share a legend, in which ``what`` tells whose values these are.
@@ -81,25 +86,45 @@ def capped(x: Array, y: Array, groups: Sequence[Group], limit: float, unit: str 
     least = 0.0 if math.isnan(limit) else limit
     highest = _SPARE * max([*known, least]) or 1.0
     # Where most are 0, as the time of a guard that seldom intervenes, the median says nothing.
-    typical = 2.0 * float(np.median(known)) or float(np.quantile(known, 0.95)) if len(known) else 0.0
+    typical = (
+        2.0 * float(np.median(known)) or float(np.quantile(known, 0.95)) if len(known) else 0.0
+    )
     top = min(_OUTLIERS * max(typical, least) or highest, highest)
     beyond = y > top
     lines = points(np.where(beyond, np.nan, x), y, groups)
     if beyond.any():
         edge = np.full(int(np.count_nonzero(beyond)), 0.97 * top)
-        lines.append(Line(x=x[beyond], y=edge, label=beyond_label(y[beyond], unit, what), colour="black", style="diamonds"))
+        lines.append(
+            Line(
+                x=x[beyond],
+                y=edge,
+                label=beyond_label(y[beyond], unit, what),
+                colour="black",
+                style="diamonds",
+            )
+        )
     return lines, top
 
 
 def beyond_label(values: Array, unit: str, what: str = "") -> str:
     """Return what the legend says of values that a panel has no room for: each of a few, else how far they reach."""
-    shown = ", ".join(map(limit, np.sort(values))) if len(values) <= _NAMED else f"up to {limit(float(np.max(values)))}"
+    shown = (
+        ", ".join(map(limit, np.sort(values)))
+        if len(values) <= _NAMED
+        else f"up to {limit(float(np.max(values)))}"
+    )
     return f"{what} beyond the panel: {shown} {unit}".strip()
 
 
 def level(x: Array, value: float, label: str, colour: str = Meaning.LIMIT) -> Line:
     """Return a dashed line across a panel whose abscissae are ``x``."""
-    return Line(x=np.array(around(x) or (0.0, 1.0)), y=np.array([value, value]), label=label, colour=colour, style="dash")
+    return Line(
+        x=np.array(around(x) or (0.0, 1.0)),
+        y=np.array([value, value]),
+        label=label,
+        colour=colour,
+        style="dash",
+    )
 
 
 def around(x: Array) -> tuple[float, float] | None:
@@ -140,9 +165,24 @@ def histogram(
         lines.append(Line(x=np.repeat(edges, 2), y=outline, label=label, colour=colour, fill=True))
     for value, label in upright:
         mark = np.array([value, value])
-        lines.append(Line(x=mark, y=np.array([0.0, 1.05 * most]), label=label, colour=upright_colour, style="dash"))
+        lines.append(
+            Line(
+                x=mark,
+                y=np.array([0.0, 1.05 * most]),
+                label=label,
+                colour=upright_colour,
+                style="dash",
+            )
+        )
     x_range, y_range = around(np.append(edges, marked)), (0.0, 1.08 * most)
-    return Panel(x_label=x_label, y_label="Flights", lines=lines, x_range=x_range, y_range=y_range, y_whole=True)
+    return Panel(
+        x_label=x_label,
+        y_label="Flights",
+        lines=lines,
+        x_range=x_range,
+        y_range=y_range,
+        y_whole=True,
+    )
 
 
 def strips(
@@ -173,7 +213,8 @@ def strips(
     lines = points(values, place, groups)
     reach = np.array([-0.6, len(rows) - 0.4])
     lines += [
-        Line(x=np.array([value, value]), y=reach, label=label, colour=Meaning.LIMIT, style="dash") for value, label in upright
+        Line(x=np.array([value, value]), y=reach, label=label, colour=Meaning.LIMIT, style="dash")
+        for value, label in upright
     ]
     names = [(len(rows) - 1.0 - i, row if named else "") for i, row in enumerate(rows)]
     return Panel(

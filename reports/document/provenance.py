@@ -12,7 +12,9 @@ _SHORTENED = ": the first 16 digits of the SHA-256"
 
 def provenance_section(run: RunData, head: Letterhead) -> Section:
     """Return the last section of a report."""
-    rows = [row for rows in (_made(run, head), _vehicle(run), _hashes(run), _host(run)) for row in rows]
+    rows = [
+        row for rows in (_made(run, head), _vehicle(run), _hashes(run), _host(run)) for row in rows
+    ]
     caption = "How the run was made; with the same source, input and seed it can be made again."
     table = pairs_table(rows, caption=caption, breakable=True, print_size_pt=8.0)
     return Section(anchor="provenance", title="Provenance", blocks=[table])
@@ -25,7 +27,10 @@ def _made(run: RunData, head: Letterhead) -> list[list[str]]:
     rows = [
         [of, f"{manifest['name']}: {manifest['title']}"],
         ["Command", manifest.get("command") or "not recorded: a program made the run"],
-        ["Changed for this run", ", ".join(map(without_folders, manifest["overrides"])) or "nothing"],
+        [
+            "Changed for this run",
+            ", ".join(map(without_folders, manifest["overrides"])) or "nothing",
+        ],
         ["Analysed" if study == "measurement" else "Began", head.when],
         ["State", manifest["state"]],
     ]
@@ -42,14 +47,28 @@ def _hashes(run: RunData) -> list[list[str]]:
     seed = manifest["config"].get("seed")
     rows = [["Source revision", manifest["git_revision"]]]
     if source := manifest.get("fingerprint", {}).get("source"):
-        rows.append(["Hash of the source", f"{source}, of the program's files and presets{_SHORTENED}"])
+        rows.append(
+            ["Hash of the source", f"{source}, of the program's files and presets{_SHORTENED}"]
+        )
     if measured:
         files = {"log": (manifest["source"], manifest["source_hash"])}
-        files |= {"configuration": (manifest["settings"], manifest["settings_hash"])} if manifest["settings"] else {}
-        rows += [[f"SHA-256 of the {what}", f"{digest}, of the file {name}"] for what, (name, digest) in files.items()]
+        files |= (
+            {"configuration": (manifest["settings"], manifest["settings_hash"])}
+            if manifest["settings"]
+            else {}
+        )
+        rows += [
+            [f"SHA-256 of the {what}", f"{digest}, of the file {name}"]
+            for what, (name, digest) in files.items()
+        ]
     # A design is made without chance, and of no more than its title says.
     elif manifest.get("study") != "design":
-        rows.append(["Hash of the scenario", f"{manifest['config_hash']}, of its keys and files{_SHORTENED}"])
+        rows.append(
+            [
+                "Hash of the scenario",
+                f"{manifest['config_hash']}, of its keys and files{_SHORTENED}",
+            ]
+        )
         rows.append(["Seed", "each trial's own" if seed is None else str(seed)])
     if logo := manifest.get("report", {}).get("logo_sha256"):
         rows.append(["Hash of the logo", f"{logo[:16]}, of the file{_SHORTENED}"])
@@ -61,7 +80,10 @@ def _vehicle(run: RunData) -> list[list[str]]:
     rows = []
     if run.innerloop:
         rows.append(["Aircraft", f"{run.innerloop['title']}. {run.innerloop['source']}"])
-    elif config.get("fidelity", "six_dof") == "six_dof" and run.manifest.get("study") != "measurement":
+    elif (
+        config.get("fidelity", "six_dof") == "six_dof"
+        and run.manifest.get("study") != "measurement"
+    ):
         rows.append(["Aircraft", str(config.get("aircraft", "unknown"))])
     if config.get("fidelity") in ("kinematic", "both"):
         words = "Equation (1) of the paper: it has the commanded speed at once, and is steered by its heading rate."
@@ -75,6 +97,9 @@ def _host(run: RunData) -> list[list[str]]:
     return [
         ["Host", manifest["platform"] + (f", {cores} cores" if cores else "")],
         ["Python", manifest["python"]],
-        ["Packages", ", ".join(f"{name} {version}" for name, version in manifest["packages"].items())],
+        [
+            "Packages",
+            ", ".join(f"{name} {version}" for name, version in manifest["packages"].items()),
+        ],
         ["Format of the run", str(manifest["format"])],
     ]

@@ -22,7 +22,11 @@ _POINTS = 500
 
 def seen(panels: Sequence[Panel]) -> list[str]:
     """Return which of ship, keep-out area and plume are large enough on any of some maps to be seen there."""
-    return [what for what in (SHIP, AREA, PLUME) if any(_large(line, of) for of in panels for line in of.lines if _is(line, what))]
+    return [
+        what
+        for what in (SHIP, AREA, PLUME)
+        if any(_large(line, of) for of in panels for line in of.lines if _is(line, what))
+    ]
 
 
 def _is(line: Line, what: str) -> bool:
@@ -35,9 +39,14 @@ def _large(line: Line, panel: Panel) -> bool:
     # Between its points, too: an axis has two.
     at, every = np.arange(len(line.x)), np.linspace(0.0, len(line.x) - 1.0, _POINTS)
     x, y = np.interp(every, at, line.x), np.interp(every, at, line.y)
-    (left, right), (bottom, top) = panel.x_range or (x.min(), x.max()), panel.y_range or (y.min(), y.max())
+    (left, right), (bottom, top) = (
+        panel.x_range or (x.min(), x.max()),
+        panel.y_range or (y.min(), y.max()),
+    )
     inside = (left <= x) & (x <= right) & (bottom <= y) & (y <= top)
-    return bool(inside.any() and max(np.ptp(x[inside]), np.ptp(y[inside])) >= _SEEN * (right - left))
+    return bool(
+        inside.any() and max(np.ptp(x[inside]), np.ptp(y[inside])) >= _SEEN * (right - left)
+    )
 
 
 def ship_lines(about: Surroundings, up: float, x: float = 0.0, y: float = 0.0) -> list[Line]:
@@ -45,8 +54,12 @@ def ship_lines(about: Surroundings, up: float, x: float = 0.0, y: float = 0.0) -
     right, along = circle(about.radius)
     plume = about.plume
     return [
-        Line(x=x + right, y=y + along, label="keep-out area, r_min", colour=Meaning.LIMIT, fill=True),
-        *plume_lines(plume.distance, plume.half_width if plume.smoke else None, about.axis - up, x, y),
+        Line(
+            x=x + right, y=y + along, label="keep-out area, r_min", colour=Meaning.LIMIT, fill=True
+        ),
+        *plume_lines(
+            plume.distance, plume.half_width if plume.smoke else None, about.axis - up, x, y
+        ),
         hull_line(about.hull, about.heading - up, x, y),
     ]
 
@@ -70,9 +83,17 @@ def ship_panel(
     shown, aspect : as of ``map_marks.on_map``
     """
     every = [*ship_lines(about, about.axis), *lines]
-    panel = Panel(x_label="Right of the plume's axis [m]", y_label="Along it [m]", title=title, lines=every, notes=notes)
+    panel = Panel(
+        x_label="Right of the plume's axis [m]",
+        y_label="Along it [m]",
+        title=title,
+        lines=every,
+        notes=notes,
+    )
     speed, towards = about.wind
-    return on_map(panel, north=-about.axis, wind=(speed, towards - about.axis), shown=shown, aspect=aspect)
+    return on_map(
+        panel, north=-about.axis, wind=(speed, towards - about.axis), shown=shown, aspect=aspect
+    )
 
 
 def ship_words(*about: Surroundings, panels: Sequence[Panel] | None = None) -> str:
@@ -86,9 +107,16 @@ def ship_words(*about: Surroundings, panels: Sequence[Panel] | None = None) -> s
     shown = (SHIP, AREA, PLUME) if panels is None else seen(panels)
     shapes = " or ".join(dict.fromkeys(of.shape for of in about))
     hulls = "; or ".join(hull_words(hull) for hull in dict.fromkeys(of.hull for of in about))
-    smoke, changing = PLUME in shown and any(of.plume.smoke for of in about), any(of.changing for of in about)
-    width = " Its width is two standard deviations of the mean smoke to either side." if smoke else ""
-    told = "; ".join([f"the keep-out {shapes} is about her funnel"] * (AREA in shown) + [hulls] * (SHIP in shown))
+    smoke, changing = (
+        PLUME in shown and any(of.plume.smoke for of in about),
+        any(of.changing for of in about),
+    )
+    width = (
+        " Its width is two standard deviations of the mean smoke to either side." if smoke else ""
+    )
+    told = "; ".join(
+        [f"the keep-out {shapes} is about her funnel"] * (AREA in shown) + [hulls] * (SHIP in shown)
+    )
     still = "Ship, north and wind are" if SHIP in shown else "North and wind are"
     moved = f" {still} as they were at the closest approach." if changing else ""
     return (

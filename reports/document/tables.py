@@ -14,16 +14,25 @@ from reports.run.columns import Array
 from reports.run.run_data import RunData
 
 
-def pairs_table(rows: list[list[str]], *, widths: tuple[float, float] = (1.0, 4.0), **others: Any) -> Table:
+def pairs_table(
+    rows: list[list[str]], *, widths: tuple[float, float] = (1.0, 4.0), **others: Any
+) -> Table:
     """Return a table without a head, of what things are called and what they are; parameters as of ``Table``."""
-    return Table(head=["", ""], rows=rows, widths=list(widths), left_columns=2, prose=True, **others)
+    return Table(
+        head=["", ""], rows=rows, widths=list(widths), left_columns=2, prose=True, **others
+    )
 
 
 def parameter_table(run: RunData, sampled: Mapping[str, str] | None = None) -> Table:
     """Return every parameter of the run with its unit and meaning, and of those that are ``sampled`` how, by their keys."""
     known = sampled or {}
     rows = [
-        [p["key"], known.get(p["key"]) or parameter_value(p["value"], p["key"]), p["unit"], in_symbols(p["meaning"])]
+        [
+            p["key"],
+            known.get(p["key"]) or parameter_value(p["value"], p["key"]),
+            p["unit"],
+            in_symbols(p["meaning"]),
+        ]
         for p in run.manifest["parameters"]
     ]
     return Table(
@@ -81,9 +90,16 @@ def approach(distance: float, radius: float, sign: str = "") -> str:
     """
     if not math.isfinite(distance):
         return "–"
-    down = (f"{math.floor(distance * 10.0**places) / 10.0**places:{sign}.{places}f}" for places in (1, 2, 3))
+    down = (
+        f"{math.floor(distance * 10.0**places) / 10.0**places:{sign}.{places}f}"
+        for places in (1, 2, 3)
+    )
     texts = (f"{distance:{sign}.1f}", *down)
-    shown = (text for text in texts if (float(text) >= float(f"{radius:g}")) == (distance >= radius) and text != "-0.0")
+    shown = (
+        text
+        for text in texts
+        if (float(text) >= float(f"{radius:g}")) == (distance >= radius) and text != "-0.0"
+    )
     return minus(next(shown, f"{distance:{sign}.6f}"))
 
 
@@ -91,7 +107,9 @@ def beside_limit(value: float, bound: float, digits: int = 3) -> str:
     """Return a figure to as many digits as show it on that side of its bound on which it lies; no exponent."""
     for places in range(digits, 12):
         text = f"{float(f'{value:.{places}g}'):.{max(places, 6)}g}"
-        if (float(text) > bound, float(text) < bound) == (value > bound, value < bound) or float(text) == value:
+        if (float(text) > bound, float(text) < bound) == (value > bound, value < bound) or float(
+            text
+        ) == value:
             break
     return minus(text)
 
@@ -131,7 +149,12 @@ def span(values: Array, pattern: str) -> str:
     return ends[0] if ends[0] == ends[1] else " to ".join(ends)
 
 
-_SYMBOLS = {r"\bpi/omega_0\b": "π/ω₀", r"\bomega_0\b": "ω₀", r"\bomega_max\b": "ω_max", r"\bnu (?=is |= )": "ν "}
+_SYMBOLS = {
+    r"\bpi/omega_0\b": "π/ω₀",
+    r"\bomega_0\b": "ω₀",
+    r"\bomega_max\b": "ω_max",
+    r"\bnu (?=is |= )": "ν ",
+}
 """How documents and messages, which are plain, write symbols; and how figures and tables do."""
 
 
@@ -157,7 +180,9 @@ _ADVICE = ": allow more time"
 def ending(row: "pd.Series[Any]") -> str:
     """Return how a flight ended: every criterion that it failed, or why it was not completed, without the advice that follows."""
     words = outcome(row)
-    return words if row["outcome"] == "completed" else re.split(f";|{_ADVICE}", words, maxsplit=1)[0]
+    return (
+        words if row["outcome"] == "completed" else re.split(f";|{_ADVICE}", words, maxsplit=1)[0]
+    )
 
 
 def parameter_value(value: Any, key: str = "") -> str:
@@ -169,7 +194,13 @@ def parameter_value(value: Any, key: str = "") -> str:
         return between.join(_entry_in_words(entry) for entry in value) or "none"
     if isinstance(value, Mapping):
         return ", ".join(f"{name} = {_in_braces(of, name)}" for name, of in value.items()) or "none"
-    return "not set" if value is None else f"{value:g}" if isinstance(value, float) else without_folders(str(value)) or "none"
+    return (
+        "not set"
+        if value is None
+        else f"{value:g}"
+        if isinstance(value, float)
+        else without_folders(str(value)) or "none"
+    )
 
 
 def _in_braces(value: Any, key: str) -> str:

@@ -33,7 +33,9 @@ class Acmi:
             lines.append(f"#{flight.time[i]:.3f}")
             named = ",Type=Air+FixedWing,Name=UAV,Color=Orange" if i == 0 else ""
             angles = f"{flight.roll[i]:.2f}|{flight.pitch[i]:.2f}|{flight.heading[i]:.2f}"
-            lines.append(f"{_UAV},T={_place(flight.uav, i)}|{angles}{named},TAS={flight.airspeed[i]:.2f}")
+            lines.append(
+                f"{_UAV},T={_place(flight.uav, i)}|{angles}{named},TAS={flight.airspeed[i]:.2f}"
+            )
             if flight.vessel is not None:
                 lines.append(_vessel_line(flight, flight.vessel, i))
         # A byte order mark, as the format asks for.
@@ -41,7 +43,11 @@ class Acmi:
 
 
 def _vessel_line(flight: GeographicFlight, vessel: Body, i: int) -> str:
-    named = f",Type=Sea+Watercraft,Name=Vessel,Color=Blue,EngagementRange={flight.keepout_radius:g}" if i == 0 else ""
+    named = (
+        f",Type=Sea+Watercraft,Name=Vessel,Color=Blue,EngagementRange={flight.keepout_radius:g}"
+        if i == 0
+        else ""
+    )
     return f"{_VESSEL},T={_place(vessel, i)}|0|0|{flight.vessel_heading[i]:.2f}{named}"
 
 

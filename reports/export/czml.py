@@ -28,7 +28,12 @@ class Czml:
         """Write one flight."""
         flight = next(recorded_flights(run))
         while_flown = f"{flight.utc(0)}/{flight.utc(-1)}"
-        clock = {"interval": while_flown, "currentTime": flight.epoch, "multiplier": 1, "range": "LOOP_STOP"}
+        clock = {
+            "interval": while_flown,
+            "currentTime": flight.epoch,
+            "multiplier": 1,
+            "range": "LOOP_STOP",
+        }
         packets: list[dict[str, Any]] = [
             {"id": "document", "name": flight.flight_id, "version": "1.0", "clock": clock},
             _moving(flight, "uav", "UAV", flight.uav, flight.uav.altitude.tolist(), while_flown)
@@ -37,7 +42,14 @@ class Czml:
         ]
         if flight.vessel is not None:
             height = [flight.source_height] * len(flight.time)
-            vessel = _moving(flight, "vessel", "Vessel", flight.vessel, flight.vessel.altitude.tolist(), while_flown)
+            vessel = _moving(
+                flight,
+                "vessel",
+                "Vessel",
+                flight.vessel,
+                flight.vessel.altitude.tolist(),
+                while_flown,
+            )
             keepout = {
                 "semiMajorAxis": flight.keepout_radius,
                 "semiMinorAxis": flight.keepout_radius,
@@ -49,18 +61,41 @@ class Czml:
                 | {"ellipse": keepout | {"material": _solid(_KEEPOUT_COLOUR)}},
             ]
             if flight.plume_end is not None:
-                line = {"positions": {"references": ["funnel#position", "plume_end#position"]}, "width": 4, "arcType": "NONE"}
-                end = _moving(flight, "plume_end", "Plume", flight.plume_end, flight.plume_end.altitude.tolist(), while_flown)
+                line = {
+                    "positions": {"references": ["funnel#position", "plume_end#position"]},
+                    "width": 4,
+                    "arcType": "NONE",
+                }
+                end = _moving(
+                    flight,
+                    "plume_end",
+                    "Plume",
+                    flight.plume_end,
+                    flight.plume_end.altitude.tolist(),
+                    while_flown,
+                )
                 packets.append(end | {"polyline": line | {"material": _solid(_PLUME_COLOUR)}})
         path.write_text(json.dumps(packets, allow_nan=False), encoding="utf-8")
 
 
 def _moving(
-    flight: GeographicFlight, identity: str, name: str, body: Body, heights: list[float], while_flown: str
+    flight: GeographicFlight,
+    identity: str,
+    name: str,
+    body: Body,
+    heights: list[float],
+    while_flown: str,
 ) -> dict[str, Any]:
     samples: list[float] = []
-    for time, longitude, latitude, height in zip(flight.time, body.longitude, body.latitude, heights, strict=True):
-        samples += [round(float(time), 3), round(float(longitude), 8), round(float(latitude), 8), round(float(height), 3)]
+    for time, longitude, latitude, height in zip(
+        flight.time, body.longitude, body.latitude, heights, strict=True
+    ):
+        samples += [
+            round(float(time), 3),
+            round(float(longitude), 8),
+            round(float(latitude), 8),
+            round(float(height), 3),
+        ]
     position = {
         "epoch": flight.epoch,
         "cartographicDegrees": samples,

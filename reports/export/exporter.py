@@ -43,7 +43,11 @@ def need_packages(exporter: str, *packages: str) -> None:
     """
     if any(importlib.util.find_spec(package) is None for package in packages):
         needed = f"the package{'s' * (len(packages) > 1)} {' and '.join(packages)}"
-        raise ReportError(f"{exporter} needs {needed}; install the extra: {install_words('export')}")
+        raise ReportError(
+            f"{exporter} needs {needed}; install the extra: {install_words('export')}"
+        )
 
 
-EXPORTERS: Registry[type[Exporter]] = Registry("exporter", folder="reports.export", methods=("write",))
+EXPORTERS: Registry[type[Exporter]] = Registry(
+    "exporter", folder="reports.export", methods=("write",)
+)

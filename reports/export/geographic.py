@@ -115,16 +115,26 @@ class GeographicFlight:
 
     def every(self, seconds: float) -> list[int]:
         """Return the numbers of samples that are some time [s] apart, the first and the last among them."""
-        step = max(1, round(seconds / max(1e-9, float(np.median(np.diff(self.time))) if len(self.time) > 1 else seconds)))
+        step = max(
+            1,
+            round(
+                seconds
+                / max(1e-9, float(np.median(np.diff(self.time))) if len(self.time) > 1 else seconds)
+            ),
+        )
         return sorted({*range(0, len(self.time), step), len(self.time) - 1})
 
     def keepout_ring(self, i: int) -> list[tuple[float, float]]:
         """Return longitude and latitude [deg] of a circle about the vessel at a sample, closed and counter-clockwise."""
         if self.vessel is None:
             return []
-        frame = LocalFrame(math.radians(self.vessel.latitude[i]), math.radians(self.vessel.longitude[i]))
+        frame = LocalFrame(
+            math.radians(self.vessel.latitude[i]), math.radians(self.vessel.longitude[i])
+        )
         angle = np.linspace(0.0, -2.0 * math.pi, _RING_POINTS + 1)
-        latitude, longitude = frame.to_geodetic(self.keepout_radius * np.cos(angle), self.keepout_radius * np.sin(angle))
+        latitude, longitude = frame.to_geodetic(
+            self.keepout_radius * np.cos(angle), self.keepout_radius * np.sin(angle)
+        )
         # In one piece, also where it lies over the date line.
         centre = float(self.vessel.longitude[i])
         around = centre + (np.degrees(longitude) - centre + 180.0) % 360.0 - 180.0
@@ -145,24 +155,35 @@ def recorded_flights(run: RunData) -> Iterator[GeographicFlight]:
             found = True
             yield _flight(run, row, history)
     if not found:
-        raise ReportError(f"'{run.path}' has no time histories of flights, which tracks are made of")
+        raise ReportError(
+            f"'{run.path}' has no time histories of flights, which tracks are made of"
+        )
 
 
 def _flight(run: RunData, row: dict[str, object], history: pd.DataFrame) -> GeographicFlight:
     def of(name: str, default: float = 0.0) -> Array:
-        return np.nan_to_num(column(history, name), nan=default) if name in history else np.full(len(history), default)
+        return (
+            np.nan_to_num(column(history, name), nan=default)
+            if name in history
+            else np.full(len(history), default)
+        )
 
     def known(name: str, default: float) -> float:
         value = row.get(name)
         return float(value) if isinstance(value, int | float) and math.isfinite(value) else default
 
     flight_id = str(row["flight_id"])
-    latitude, longitude = known("place_latitude_deg", math.nan), known("place_longitude_deg", math.nan)
+    latitude, longitude = (
+        known("place_latitude_deg", math.nan),
+        known("place_longitude_deg", math.nan),
+    )
     placed = math.isfinite(latitude) and math.isfinite(longitude)
     commanded, altitude = of("altitude_command_m"), of("altitude_m")
     if not placed:
         latitude, longitude = NO_PLACE
-    frame = LocalFrame(math.radians(latitude), math.radians(longitude), float(commanded[0] or altitude[0]))
+    frame = LocalFrame(
+        math.radians(latitude), math.radians(longitude), float(commanded[0] or altitude[0])
+    )
     north, east = of("north_m"), of("east_m")
     uav = _body(frame, north, east, altitude, of("velocity_north_mps"), of("velocity_east_mps"))
     turned = np.degrees(frame.true_north(np.radians(uav.latitude), np.radians(uav.longitude)))
@@ -176,12 +197,22 @@ def _flight(run: RunData, row: dict[str, object], history: pd.DataFrame) -> Geog
         moving = of("vessel_velocity_north_mps"), of("vessel_velocity_east_mps")
         vessel = _body(frame, v_north, v_east, np.zeros(len(history)), *moving)
         bow = vessel_heading(history, float(config.get("vessel", {}).get("course_deg") or 0.0))
-        bow = (np.degrees(bow - frame.true_north(np.radians(vessel.latitude), np.radians(vessel.longitude)))) % 360.0
+        bow = (
+            np.degrees(
+                bow - frame.true_north(np.radians(vessel.latitude), np.radians(vessel.longitude))
+            )
+        ) % 360.0
         if np.isfinite(axis).all():
             up = math.radians(known("plume_elevation_deg", 0.0))
             level = PLUME_LENGTH * math.cos(up)
             end_altitude = np.full(len(history), funnel + PLUME_LENGTH * math.sin(up))
-            plume_end = _body(frame, v_north + level * np.cos(axis), v_east + level * np.sin(axis), end_altitude, *moving)
+            plume_end = _body(
+                frame,
+                v_north + level * np.cos(axis),
+                v_east + level * np.sin(axis),
+                end_altitude,
+                *moving,
+            )
     return GeographicFlight(
         flight_id=flight_id,
         placed=placed,
@@ -194,7 +225,11 @@ def _flight(run: RunData, row: dict[str, object], history: pd.DataFrame) -> Geog
         airspeed=of("airspeed_mps"),
         climb_rate=of("climb_rate_mps"),
         throttle=of("throttle"),
-        readings={name: column(history, name) for name in READINGS if name in history and history[name].notna().any()},
+        readings={
+            name: column(history, name)
+            for name in READINGS
+            if name in history and history[name].notna().any()
+        },
         vessel=vessel,
         vessel_heading=bow,
         plume_end=plume_end,
@@ -204,7 +239,9 @@ def _flight(run: RunData, row: dict[str, object], history: pd.DataFrame) -> Geog
     )
 
 
-def _body(frame: LocalFrame, north: Array, east: Array, altitude: Array, v_north: Array, v_east: Array) -> Body:
+def _body(
+    frame: LocalFrame, north: Array, east: Array, altitude: Array, v_north: Array, v_east: Array
+) -> Body:
     """Return a body from what it is in a local frame [m, m/s]."""
     latitude, longitude = frame.to_geodetic(north, east)
     turned = frame.true_north(latitude, longitude)

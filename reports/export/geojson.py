@@ -27,30 +27,46 @@ class GeoJson:
     def write(self, run: RunData, path: Path) -> None:
         """Write all flights that have a time history."""
         features = [feature for flight in recorded_flights(run) for feature in _features(flight)]
-        path.write_text(json.dumps({"type": "FeatureCollection", "features": features}, allow_nan=False), encoding="utf-8")
+        path.write_text(
+            json.dumps({"type": "FeatureCollection", "features": features}, allow_nan=False),
+            encoding="utf-8",
+        )
 
 
 def _features(flight: GeographicFlight) -> list[dict[str, Any]]:
-    about = {"flight_id": flight.flight_id, "start_utc": flight.utc(0), "end_utc": flight.utc(len(flight.time) - 1)}
+    about = {
+        "flight_id": flight.flight_id,
+        "start_utc": flight.utc(0),
+        "end_utc": flight.utc(len(flight.time) - 1),
+    }
     times = {"times_s": np.round(flight.time, 3).tolist()}
     features = [_feature(_track(flight.uav), about | {"what": "uav"} | times | _readings(flight))]
     if flight.vessel is not None:
         features.append(_feature(_track(flight.vessel), about | {"what": "vessel"} | times))
-        ring = [[longitude, latitude] for longitude, latitude in flight.keepout_ring(len(flight.time) - 1)]
+        ring = [
+            [longitude, latitude]
+            for longitude, latitude in flight.keepout_ring(len(flight.time) - 1)
+        ]
         keepout = {"what": "keepout_at_end", "radius_m": flight.keepout_radius}
         features.append(_feature(_area(ring), about | keepout))
     for crossing in flight.crossings.to_dict("records"):
         at = float(crossing["time_s"])
         if flight.time[0] <= at <= flight.time[-1]:
             point = {"type": "Point", "coordinates": _at(flight, at)}
-            distance = {"distance_m": round(float(crossing["distance_m"]), 2), "time_s": round(at, 3)}
+            distance = {
+                "distance_m": round(float(crossing["distance_m"]), 2),
+                "time_s": round(at, 3),
+            }
             features.append(_feature(point, about | {"what": "crossing"} | distance))
     return features
 
 
 def _readings(flight: GeographicFlight) -> dict[str, list[float | None]]:
     """Return what the sniffer read at each of the times, by the name of the gas and its unit."""
-    return {name: [round(x, 3) if np.isfinite(x) else None for x in of.tolist()] for name, of in flight.readings.items()}
+    return {
+        name: [round(x, 3) if np.isfinite(x) else None for x in of.tolist()]
+        for name, of in flight.readings.items()
+    }
 
 
 def _feature(geometry: dict[str, Any], properties: dict[str, Any]) -> dict[str, Any]:
@@ -61,7 +77,8 @@ def _at(flight: GeographicFlight, time: float) -> Position:
     """Return the UAV's place at a time [s], between samples."""
     unwrapped = np.unwrap(flight.uav.longitude, period=360.0)
     longitude, latitude, altitude = (
-        float(np.interp(time, flight.time, values)) for values in (unwrapped, flight.uav.latitude, flight.uav.altitude)
+        float(np.interp(time, flight.time, values))
+        for values in (unwrapped, flight.uav.latitude, flight.uav.altitude)
     )
     return _rounded([[(longitude + 180.0) % 360.0 - 180.0, latitude, altitude]])[0]
 
@@ -70,7 +87,9 @@ def _track(body: Body) -> dict[str, Any]:
     """Return a line, several where it goes over the date line, or a point where there is one place alone."""
     parts: list[list[Position]] = [[]]
     before: Position | None = None
-    for longitude, latitude, altitude in zip(body.longitude, body.latitude, body.altitude, strict=True):
+    for longitude, latitude, altitude in zip(
+        body.longitude, body.latitude, body.altitude, strict=True
+    ):
         here = [float(longitude), float(latitude), float(altitude)]
         if before is not None and abs(here[0] - before[0]) > 180.0:
             edge = 180.0 if before[0] > 0.0 else -180.0

@@ -60,28 +60,47 @@ def _folder(flight: GeographicFlight, *, shown: bool) -> ET.Element:
     _text(folder, "name", flight.flight_id)
     _text(folder, "visibility", "1" if shown else "0")
     if not flight.placed:
-        _text(folder, "description", "No place is given for this flight: it is shown at latitude and longitude 0.")
-    angles = [f"{h:.2f} {p:.2f} {r:.2f}" for h, p, r in zip(flight.heading, flight.pitch, flight.roll, strict=True)]
+        _text(
+            folder,
+            "description",
+            "No place is given for this flight: it is shown at latitude and longitude 0.",
+        )
+    angles = [
+        f"{h:.2f} {p:.2f} {r:.2f}"
+        for h, p, r in zip(flight.heading, flight.pitch, flight.roll, strict=True)
+    ]
     uav = _track(flight, "UAV", "uav", flight.uav, angles)
     if flight.readings:
         _append_readings(uav, flight)
     folder.append(uav)
     if flight.vessel is not None:
         # A ship is flat on the sea.
-        folder.append(_track(flight, "Vessel", "vessel", flight.vessel, [f"{bow:.2f} 0 0" for bow in flight.vessel_heading]))
+        folder.append(
+            _track(
+                flight,
+                "Vessel",
+                "vessel",
+                flight.vessel,
+                [f"{bow:.2f} 0 0" for bow in flight.vessel_heading],
+            )
+        )
         for i, until in _whiles(flight):
             folder.append(_plume(flight, i, until))
             folder.append(_keepout(flight, i, until))
     return folder
 
 
-def _track(flight: GeographicFlight, name: str, style: str, body: Body, angles: list[str]) -> ET.Element:
+def _track(
+    flight: GeographicFlight, name: str, style: str, body: Body, angles: list[str]
+) -> ET.Element:
     placemark = _placemark(name, style)
     track = ET.SubElement(placemark, _gx("Track"))
     _text(track, "altitudeMode", "absolute")
     for i in range(len(flight.time)):
         _text(track, "when", flight.utc(i))
-    for longitude, latitude, altitude in zip(body.longitude, body.latitude, body.altitude, strict=True):
+    for longitude, latitude, altitude in zip(
+        body.longitude, body.latitude, body.altitude, strict=True
+    ):
         ET.SubElement(track, _gx("coord")).text = f"{longitude:.8f} {latitude:.8f} {altitude:.3f}"
     for angle in angles:
         ET.SubElement(track, _gx("angles")).text = angle
@@ -93,7 +112,11 @@ def _schema(read: set[str]) -> ET.Element:
     schema = ET.Element(_kml("Schema"), id=_READINGS, name=_READINGS)
     for name, label in READINGS.items():
         if name in read:
-            _text(ET.SubElement(schema, _gx("SimpleArrayField"), name=name, type="float"), "displayName", label)
+            _text(
+                ET.SubElement(schema, _gx("SimpleArrayField"), name=name, type="float"),
+                "displayName",
+                label,
+            )
     return schema
 
 
@@ -102,7 +125,9 @@ def _append_readings(placemark: ET.Element, flight: GeographicFlight) -> None:
     track = placemark.find(_gx("Track"))
     if track is None:
         return
-    data = ET.SubElement(ET.SubElement(track, _kml("ExtendedData")), _kml("SchemaData"), schemaUrl=f"#{_READINGS}")
+    data = ET.SubElement(
+        ET.SubElement(track, _kml("ExtendedData")), _kml("SchemaData"), schemaUrl=f"#{_READINGS}"
+    )
     for name, values in flight.readings.items():
         array = ET.SubElement(data, _gx("SimpleArrayData"), name=name)
         for value in values.tolist():
@@ -126,7 +151,10 @@ def _keepout(flight: GeographicFlight, i: int, until: int) -> ET.Element:
     polygon = ET.SubElement(placemark, _kml("Polygon"))
     _text(polygon, "altitudeMode", "absolute")
     ring = ET.SubElement(ET.SubElement(polygon, _kml("outerBoundaryIs")), _kml("LinearRing"))
-    corners = [f"{longitude:.8f},{latitude:.8f},{flight.source_height:.3f}" for longitude, latitude in flight.keepout_ring(i)]
+    corners = [
+        f"{longitude:.8f},{latitude:.8f},{flight.source_height:.3f}"
+        for longitude, latitude in flight.keepout_ring(i)
+    ]
     _text(ring, "coordinates", " ".join(corners))
     return placemark
 
@@ -138,7 +166,9 @@ def _whiles(flight: GeographicFlight) -> Iterator[tuple[int, int]]:
     yield from pairwise(shown)
 
 
-def _placemark(name: str, style: str, flight: GeographicFlight | None = None, i: int = 0, until: int = 0) -> ET.Element:
+def _placemark(
+    name: str, style: str, flight: GeographicFlight | None = None, i: int = 0, until: int = 0
+) -> ET.Element:
     placemark = ET.Element(_kml("Placemark"))
     _text(placemark, "name", name)
     if flight is not None:
@@ -149,7 +179,9 @@ def _placemark(name: str, style: str, flight: GeographicFlight | None = None, i:
     return placemark
 
 
-def _style(document: ET.Element, name: str, *, line: str, width: str, fill: str | None = None) -> None:
+def _style(
+    document: ET.Element, name: str, *, line: str, width: str, fill: str | None = None
+) -> None:
     style = ET.SubElement(document, _kml("Style"), id=name)
     drawn = ET.SubElement(style, _kml("LineStyle"))
     _text(drawn, "color", line)

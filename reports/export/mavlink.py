@@ -52,7 +52,9 @@ class Packer:
         # Zeros at the end are not sent, but for the first byte.
         payload = struct.pack(fields, *values)
         payload = payload[:1] + payload[1:].rstrip(b"\0")
-        head = struct.pack("<BBBBBB", len(payload), 0, 0, self._sequence, _SYSTEM, _COMPONENT) + number.to_bytes(3, "little")
+        head = struct.pack(
+            "<BBBBBB", len(payload), 0, 0, self._sequence, _SYSTEM, _COMPONENT
+        ) + number.to_bytes(3, "little")
         self._sequence = (self._sequence + 1) % 256
         body = head + payload
         return bytes([_MAGIC]) + body + struct.pack("<H", _checksum(body + bytes([seed])))
@@ -64,8 +66,14 @@ def messages(flight: GeographicFlight) -> Iterator[tuple[float, bytes]]:
     for i, time in enumerate(flight.time.tolist()):
         if time >= due - 1e-6:
             due = time + _SLOW
-            yield time, packer.pack("HEARTBEAT", 0, _FIXED_WING, _NO_AUTOPILOT, _ARMED, _ACTIVE, _VERSION)
-            yield time, packer.pack("SYSTEM_TIME", round(1e6 * (flight.start + time)), _milliseconds(time))
+            yield (
+                time,
+                packer.pack("HEARTBEAT", 0, _FIXED_WING, _NO_AUTOPILOT, _ARMED, _ACTIVE, _VERSION),
+            )
+            yield (
+                time,
+                packer.pack("SYSTEM_TIME", round(1e6 * (flight.start + time)), _milliseconds(time)),
+            )
             if flight.vessel is not None:
                 bow = _centidegrees(flight.vessel_heading[i])
                 yield time, _ais(packer, flight.vessel, i, bow)
@@ -75,8 +83,12 @@ def messages(flight: GeographicFlight) -> Iterator[tuple[float, bytes]]:
 
 def _of_sample(packer: Packer, flight: GeographicFlight, i: int, time: float) -> Iterator[bytes]:
     uav = flight.uav
-    roll, pitch, yaw = (math.radians(float(angle[i])) for angle in (flight.roll, flight.pitch, flight.heading))
-    yield packer.pack("ATTITUDE", _milliseconds(time), roll, pitch, math.remainder(yaw, math.tau), 0.0, 0.0, 0.0)
+    roll, pitch, yaw = (
+        math.radians(float(angle[i])) for angle in (flight.roll, flight.pitch, flight.heading)
+    )
+    yield packer.pack(
+        "ATTITUDE", _milliseconds(time), roll, pitch, math.remainder(yaw, math.tau), 0.0, 0.0, 0.0
+    )
     height, heading = round(1e3 * float(uav.altitude[i])), _centidegrees(flight.heading[i])
     yield packer.pack(
         "GLOBAL_POSITION_INT", _milliseconds(time), *_place(uav, i), height, height,
@@ -92,7 +104,23 @@ def _ais(packer: Packer, vessel: Body, i: int, bow: int) -> bytes:
     course, speed = _centidegrees(vessel.course[i]), float(vessel.speed[i])
     valid = _AIS_VALID | _VALID_COG if speed >= _AT_REST else _AIS_VALID
     return packer.pack(
-        "AIS_VESSEL", _MMSI, *_place(vessel, i), course, bow, _centi(speed), 0, 0, 0, valid, 0, 0, _CARGO, 0, 0, b"", b"VESSEL"
+        "AIS_VESSEL",
+        _MMSI,
+        *_place(vessel, i),
+        course,
+        bow,
+        _centi(speed),
+        0,
+        0,
+        0,
+        valid,
+        0,
+        0,
+        _CARGO,
+        0,
+        0,
+        b"",
+        b"VESSEL",
     )
 
 
@@ -100,7 +128,19 @@ def _adsb(packer: Packer, vessel: Body, i: int, bow: int) -> bytes:
     """Return the vessel once more, for ground stations that show no AIS."""
     speed = _centi(vessel.speed[i])
     return packer.pack(
-        "ADSB_VEHICLE", 1, *_place(vessel, i), 0, bow, speed, 0, _ADSB_VALID, 0, _GEOMETRIC, b"VESSEL", _SURFACE_VEHICLE, 0
+        "ADSB_VEHICLE",
+        1,
+        *_place(vessel, i),
+        0,
+        bow,
+        speed,
+        0,
+        _ADSB_VALID,
+        0,
+        _GEOMETRIC,
+        b"VESSEL",
+        _SURFACE_VEHICLE,
+        0,
     )
 
 

@@ -11,7 +11,11 @@ from reports.run.run_data import RunData
 
 _NUMBER, _TEXT = {"type": "number"}, {"type": "string"}
 
-_TIME = {"type": "object", "title": "time", "properties": {"sec": {"type": "integer"}, "nsec": {"type": "integer"}}}
+_TIME = {
+    "type": "object",
+    "title": "time",
+    "properties": {"sec": {"type": "integer"}, "nsec": {"type": "integer"}},
+}
 
 _SCHEMAS: dict[str, dict[str, Any]] = {
     "foxglove.LocationFix": {
@@ -60,10 +64,14 @@ class Mcap:
         with path.open("wb") as file:
             writer = Writer(file)
             writer.start()
-            channels = {topic: self._channel(writer, topic, schema) for topic, schema in _TOPICS.items()}
+            channels = {
+                topic: self._channel(writer, topic, schema) for topic, schema in _TOPICS.items()
+            }
             for i, time in enumerate(flight.time.tolist()):
                 nanoseconds = round(1e9 * (flight.start + time))
-                said = _messages(flight, i, nanoseconds) | (_drawings(flight, i) if i in drawn else {})
+                said = _messages(flight, i, nanoseconds) | (
+                    _drawings(flight, i) if i in drawn else {}
+                )
                 for topic, message in said.items():
                     writer.add_message(
                         channel_id=channels[topic],
@@ -75,9 +83,13 @@ class Mcap:
 
     @staticmethod
     def _channel(writer: Any, topic: str, schema: str) -> int:
-        fields = json.dumps({"type": "object", "title": schema, "properties": _SCHEMAS[schema]}).encode()
+        fields = json.dumps(
+            {"type": "object", "title": schema, "properties": _SCHEMAS[schema]}
+        ).encode()
         identity = writer.register_schema(name=schema, encoding="jsonschema", data=fields)
-        channel: int = writer.register_channel(topic=topic, message_encoding="json", schema_id=identity)
+        channel: int = writer.register_channel(
+            topic=topic, message_encoding="json", schema_id=identity
+        )
         return channel
 
 
@@ -113,16 +125,30 @@ def _drawings(flight: GeographicFlight, i: int) -> dict[str, dict[str, Any]]:
     ring = [[longitude, latitude] for longitude, latitude in flight.keepout_ring(i)]
     geometries: list[dict[str, Any]] = [{"type": "Polygon", "coordinates": [ring]}]
     if flight.plume_end is not None:
-        ends = [[float(body.longitude[i]), float(body.latitude[i])] for body in (flight.vessel, flight.plume_end)]
+        ends = [
+            [float(body.longitude[i]), float(body.latitude[i])]
+            for body in (flight.vessel, flight.plume_end)
+        ]
         geometries.append({"type": "LineString", "coordinates": ends})
-    features = [{"type": "Feature", "properties": {}, "geometry": geometry} for geometry in geometries]
+    features = [
+        {"type": "Feature", "properties": {}, "geometry": geometry} for geometry in geometries
+    ]
     return {"/plume": {"geojson": json.dumps({"type": "FeatureCollection", "features": features})}}
 
 
 def _quaternion(flight: GeographicFlight, i: int) -> dict[str, float]:
     """Return the turn from axes east, north, up to axes forward, left, up of the aircraft."""
-    yaw, pitch, roll = (0.5 * math.radians(a) for a in (90.0 - flight.heading[i], -flight.pitch[i], flight.roll[i]))
-    cy, sy, cp, sp, cr, sr = math.cos(yaw), math.sin(yaw), math.cos(pitch), math.sin(pitch), math.cos(roll), math.sin(roll)
+    yaw, pitch, roll = (
+        0.5 * math.radians(a) for a in (90.0 - flight.heading[i], -flight.pitch[i], flight.roll[i])
+    )
+    cy, sy, cp, sp, cr, sr = (
+        math.cos(yaw),
+        math.sin(yaw),
+        math.cos(pitch),
+        math.sin(pitch),
+        math.cos(roll),
+        math.sin(roll),
+    )
     return {
         "x": sr * cp * cy - cr * sp * sy,
         "y": cr * sp * cy + sr * cp * sy,

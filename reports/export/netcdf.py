@@ -49,7 +49,11 @@ class NetCdf:
         flights = list(recorded_flights(run))
         names = np.array([flight.flight_id.encode() for flight in flights])
         variables: dict[str, Any] = {
-            "trajectory": ("trajectory", names, {"cf_role": "trajectory_id", "long_name": "flight"}),
+            "trajectory": (
+                "trajectory",
+                names,
+                {"cf_role": "trajectory_id", "long_name": "flight"},
+            ),
             "row_size": (
                 "trajectory",
                 np.array([len(flight.time) for flight in flights], dtype=np.int32),
@@ -61,13 +65,22 @@ class NetCdf:
             if np.isfinite(values).any():
                 variables[name] = ("obs", values, attributes)
         data = xarray.Dataset(variables, attrs=_about(run)).set_coords([*_COORDINATES])
-        encoding: dict[str, dict[str, Any]] = {name: {"_FillValue": None} for name in (*_COORDINATES, "row_size")}
-        encoding |= {name: {"_FillValue": -9999.0} for name in variables if name in _OBSERVED and name not in _COORDINATES}
+        encoding: dict[str, dict[str, Any]] = {
+            name: {"_FillValue": None} for name in (*_COORDINATES, "row_size")
+        }
+        encoding |= {
+            name: {"_FillValue": -9999.0}
+            for name in variables
+            if name in _OBSERVED and name not in _COORDINATES
+        }
         data.to_netcdf(path, engine="h5netcdf", encoding=encoding)
 
 
 def _about(run: RunData) -> dict[str, str]:
-    begun, command = run.manifest.get("begun_utc", "time not recorded"), run.manifest.get("command") or "a program made the run"
+    begun, command = (
+        run.manifest.get("begun_utc", "time not recorded"),
+        run.manifest.get("command") or "a program made the run",
+    )
     return {
         "Conventions": "CF-1.8",
         "featureType": "trajectory",

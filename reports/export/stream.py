@@ -22,7 +22,9 @@ def stream_address(text: str) -> tuple[str, int]:
     """
     found = _ADDRESS.fullmatch(text)
     if found is None or not 0 < int(found[2]) <= _PORT_MAX:
-        raise ReportError(f"--stream is '{text}'; give udp://HOST:PORT, as in udp://127.0.0.1:14550")
+        raise ReportError(
+            f"--stream is '{text}'; give udp://HOST:PORT, as in udp://127.0.0.1:14550"
+        )
     return found[1], int(found[2])
 
 

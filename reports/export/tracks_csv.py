@@ -25,10 +25,16 @@ class TracksCsv:
         """Write one flight after the other, with a single head."""
         recorded = run.recorded()
         if not recorded:
-            raise ReportError(f"'{run.path}' has no time histories of flights, which tracks are made of")
+            raise ReportError(
+                f"'{run.path}' has no time histories of flights, which tracks are made of"
+            )
         with path.open("w", encoding="utf-8", newline="") as file:
             for number, flight_id in enumerate(recorded):
                 history = run.history(flight_id)
-                rows = pd.DataFrame(columns=list(COLUMNS)) if history is None else history.reindex(columns=list(COLUMNS))
+                rows = (
+                    pd.DataFrame(columns=list(COLUMNS))
+                    if history is None
+                    else history.reindex(columns=list(COLUMNS))
+                )
                 rows.insert(0, "flight_id", str(cell(flight_id)))
                 rows.to_csv(file, index=False, header=number == 0, float_format="%.3f")

@@ -22,7 +22,9 @@ def height_chart(view: SearchView, name: str) -> Chart:
     """Return the height of the plume's axis as it was believed and as it was, and the altitude that was flown."""
     step = max(1, -(-len(view.time) // _POINTS_MAX))
     rows = view.history.iloc[::step]
-    time, height, deviation = (column(rows, of) for of in ("time_s", ESTIMATED, "axis_height_deviation_m"))
+    time, height, deviation = (
+        column(rows, of) for of in ("time_s", ESTIMATED, "axis_height_deviation_m")
+    )
     known = np.isfinite(height)
     time, height, reach = time[known], height[known], COVERAGE * deviation[known]
     lines = [
@@ -33,7 +35,9 @@ def height_chart(view: SearchView, name: str) -> Chart:
         Line(x=view.time[view.crossings], y=view.axis_height[view.crossings], label="plume's mean axis, where it was crossed",
              colour=Meaning.PLUME, style="diamonds"),
     ]  # fmt: skip
-    panel = Panel(x_label="Time [s]", y_label="Height above the sea [m]", lines=lines, bands=view.modes())
+    panel = Panel(
+        x_label="Time [s]", y_label="Height above the sea [m]", lines=lines, bands=view.modes()
+    )
     caption = (
         "Height of the plume's axis as it was believed after each pass, with its 95 % interval, and as it was; the altitude that"
         " was flown. Tinted: what the guidance was doing; untinted it had found the plume, was on its way to the orbit, or was in a"
@@ -49,11 +53,20 @@ def section_chart(view: SearchView, name: str) -> Chart | None:
         return None
     reach = _REACH * true[2]
     right, height, co2 = view.readings()
-    near = np.flatnonzero(np.abs(right - true[0]) <= reach)[:: max(1, -(-len(right) // _READINGS_MAX))]
+    near = np.flatnonzero(np.abs(right - true[0]) <= reach)[
+        :: max(1, -(-len(right) // _READINGS_MAX))
+    ]
     # Those with the plume in them lie over the others.
     shown = near[np.argsort(co2[near], kind="stable")]
     lines = [
-        Line(x=right[shown], y=height[shown], label="", colour=Meaning.FLOWN, style="points", values=co2[shown]),
+        Line(
+            x=right[shown],
+            y=height[shown],
+            label="",
+            colour=Meaning.FLOWN,
+            style="points",
+            values=co2[shown],
+        ),
         *_outline(true, "plume, ±σ", Meaning.PLUME, dashed=False),
         *_outline(believed, "believed, ±σ", "black", dashed=True),
     ]
@@ -68,7 +81,13 @@ def section_chart(view: SearchView, name: str) -> Chart | None:
         " earlier by the sensor's delay and mean lag. Ellipses: the mean axis where it was crossed last and the spread of the plume"
         " at one moment, and what was believed of both at the end."
     )
-    return Chart(name=f"search-section-{name}", caption=caption, panels=[panel], panel_height=0.46, scale_label="CO2 read [ppm]")
+    return Chart(
+        name=f"search-section-{name}",
+        caption=caption,
+        panels=[panel],
+        panel_height=0.46,
+        scale_label="CO2 read [ppm]",
+    )
 
 
 def _outline(ellipse: Ellipse, label: str, colour: str, *, dashed: bool) -> list[Line]:
@@ -76,6 +95,12 @@ def _outline(ellipse: Ellipse, label: str, colour: str, *, dashed: bool) -> list
     x, y, across, up = ellipse
     cos_a, sin_a = circle(1.0)
     return [
-        Line(x=x + across * cos_a, y=y + up * sin_a, label=label, colour=colour, style="dash" if dashed else "solid"),
+        Line(
+            x=x + across * cos_a,
+            y=y + up * sin_a,
+            label=label,
+            colour=colour,
+            style="dash" if dashed else "solid",
+        ),
         Line(x=np.array([x]), y=np.array([y]), label="", colour=colour, style="cross"),
     ]

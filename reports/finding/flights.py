@@ -31,7 +31,9 @@ def finding_sections(run: RunData, trials: list[Trial], name: Name) -> list[Sect
     single = [block for trial in found for block in _single(run, trial, name)]
     sections = [
         Section(anchor="finding", title="Search for the plume", nav_title="Search", blocks=whole),
-        Section(anchor="searches", title="Searches one by one", nav_title="Searches", blocks=single),
+        Section(
+            anchor="searches", title="Searches one by one", nav_title="Searches", blocks=single
+        ),
     ]
     return [section for section in sections if section.blocks]
 
@@ -84,18 +86,33 @@ def _picked(run: RunData, rows: pd.DataFrame) -> list[tuple["pd.Series[Any]", st
     # The median of all flights: among those with a time history is every one that failed.
     typical, median = recorded_at(errors, recorded, (len(errors) - 1) // 2)
     worst = int(np.argmax(np.where(recorded, errors, -1.0)))
-    picked = [(judged.iloc[typical], f"{'' if median else 'nearest to '}the median error of the height after 3 minutes")]
-    return picked + ([(judged.iloc[worst], "the largest error of the height after 3 minutes")] if worst != typical else [])
+    picked = [
+        (
+            judged.iloc[typical],
+            f"{'' if median else 'nearest to '}the median error of the height after 3 minutes",
+        )
+    ]
+    return picked + (
+        [(judged.iloc[worst], "the largest error of the height after 3 minutes")]
+        if worst != typical
+        else []
+    )
 
 
 def _told(row: "pd.Series[Any]") -> str:
     """Return when the plume was found and what was believed of it, in words."""
     time, error = float(row.get("time_to_find_s", np.nan)), float(row.get(_LATE, np.nan))
-    words = [f"Found {time:.0f} s after the orbit was reached" if np.isfinite(time) else "The plume was not found"]
+    words = [
+        f"Found {time:.0f} s after the orbit was reached"
+        if np.isfinite(time)
+        else "The plume was not found"
+    ]
     if np.isfinite(error):
         believed = f"believed {abs(error):.1f} m too {'high' if error > 0.0 else 'low'}"
         sure = f"± {COVERAGE * row['axis_height_deviation_3min_m']:.1f} m (95 %)"
-        words.append(f"after 3 minutes its height of {row['axis_height_3min_m']:.1f} m was {believed}, {sure}")
+        words.append(
+            f"after 3 minutes its height of {row['axis_height_3min_m']:.1f} m was {believed}, {sure}"
+        )
     if np.isfinite(hits := float(row.get("hit_rate_found", np.nan))):
         words.append(f"{100.0 * hits:.0f} % of the passes since then hit it")
     enough = row.get("enough")

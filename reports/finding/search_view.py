@@ -44,7 +44,10 @@ class SearchView:
         self.history = history.iloc[int(np.argmax(np.isfinite(column(history, ESTIMATED)))) :]
         self.time = column(self.history, "time_s")
         across = column(self.history, "plume_across_m")
-        self.crossings = np.array([at.start + int(np.nanargmin(np.abs(across[at]))) for at in passes(across)], dtype=np.intp)
+        self.crossings = np.array(
+            [at.start + int(np.nanargmin(np.abs(across[at]))) for at in passes(across)],
+            dtype=np.intp,
+        )
 
     @property
     def axis_height(self) -> Array:
@@ -57,7 +60,12 @@ class SearchView:
         starts = np.concatenate([[0], np.flatnonzero(np.diff(number)) + 1])
         ends = np.append(starts[1:], len(number) - 1)
         return [
-            Band(start=float(self.time[start]), end=float(self.time[end]), label=name, colour=_MODES[name])
+            Band(
+                start=float(self.time[start]),
+                end=float(self.time[end]),
+                label=name,
+                colour=_MODES[name],
+            )
             for start, end in zip(starts, ends, strict=True)
             if (name := str(names[number[start]])) in _MODES
         ]
@@ -70,7 +78,10 @@ class SearchView:
         right, _ = about_the_plume(self.history)
         taken = self.time - self._delay()
         known = taken >= self.time[0]
-        places = (np.interp(taken[known], self.time, of) for of in (right, column(self.history, "altitude_m")))
+        places = (
+            np.interp(taken[known], self.time, of)
+            for of in (right, column(self.history, "altitude_m"))
+        )
         across, height = places
         return across, height, column(self.history, "co2_reading_ppm")[known]
 
@@ -82,8 +93,16 @@ class SearchView:
         right, along = about_the_plume(self.history)
         shape = self._about().plume
         distance = math.hypot(right[last], along[last])
-        across, up = (float(np.interp(distance, shape.distance, of)) for of in (shape.spread_across, shape.spread_up))
-        return float(right[last] - column(self.history, "plume_across_m")[last]), float(self.axis_height[last]), across, up
+        across, up = (
+            float(np.interp(distance, shape.distance, of))
+            for of in (shape.spread_across, shape.spread_up)
+        )
+        return (
+            float(right[last] - column(self.history, "plume_across_m")[last]),
+            float(self.axis_height[last]),
+            across,
+            up,
+        )
 
     def estimated_plume(self) -> Ellipse | None:
         """Return what was believed after the last pass; none of a flight without a pass.
@@ -93,7 +112,10 @@ class SearchView:
         if not len(self.crossings):
             return None
         rows = self.history.iloc[[-1]]
-        estimate = (float(column(rows, f"axis_{of}_estimated_m")[0]) for of in ("offset", "height", "spread_across", "spread"))
+        estimate = (
+            float(column(rows, f"axis_{of}_estimated_m")[0])
+            for of in ("offset", "height", "spread_across", "spread")
+        )
         offset, height, across, up = estimate
         _, along = about_the_plume(self.history)
         expected = math.atan2(*(
@@ -108,7 +130,9 @@ class SearchView:
     def _delay(self) -> float:
         """Return how much later the sensor reads than its air was taken in [s]; 0 of one that is not known."""
         try:
-            channel = sensor_of(self._config.get("payload", {}).get("sensor") or str(self._row.get("sensor"))).channel("co2")
+            channel = sensor_of(
+                self._config.get("payload", {}).get("sensor") or str(self._row.get("sensor"))
+            ).channel("co2")
         except MeasurementError:
             return 0.0
         return channel.delay_s + channel.t90_s / math.log(10.0) if channel is not None else 0.0

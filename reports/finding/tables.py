@@ -51,7 +51,9 @@ def height_table(variants: list[Variant]) -> Table | None:
     """Return how well the height of the axis was known after 3 minutes; none where no flight has an estimate then."""
     rows = []
     for variant in variants:
-        error, deviation = (column(variant.rows, f"axis_height_{of}_3min_m") for of in ("error", "deviation"))
+        error, deviation = (
+            column(variant.rows, f"axis_height_{of}_3min_m") for of in ("error", "deviation")
+        )
         known = np.isfinite(error) & np.isfinite(deviation)
         if not known.any():
             continue
@@ -69,7 +71,15 @@ def height_table(variants: list[Variant]) -> Table | None:
     return (
         Table(
             caption="Height of the axis after 3 minutes on the orbit: error, and how often the stated 95 % interval held it.",
-            head=["Variant", "Flights", "Bias [m]", "Error, rms [m]", "Stated 1σ, median [m]", "Covered", "Interval of that"],
+            head=[
+                "Variant",
+                "Flights",
+                "Bias [m]",
+                "Error, rms [m]",
+                "Stated 1σ, median [m]",
+                "Covered",
+                "Interval of that",
+            ],
             rows=rows,
             widths=[1.5, 0.7, 0.8, 1.0, 1.2, 0.8, 1.4],
         )

@@ -43,7 +43,15 @@ def finding_charts(trial: Trial, variants: list[Variant]) -> list[Chart]:
         told = ["Time to find the plume."] if times is not None else []
         told += [_ERROR_TOLD] if error is not None else []
         name = f"{trial.name}-search-errors"
-        charts.append(Chart(name=name, caption=" ".join(told), panels=known, columns=len(known), panel_height=0.38))
+        charts.append(
+            Chart(
+                name=name,
+                caption=" ".join(told),
+                panels=known,
+                columns=len(known),
+                panel_height=0.38,
+            )
+        )
     return charts
 
 
@@ -56,7 +64,15 @@ def _found_panel(variants: list[Variant]) -> Panel:
         found = int(np.count_nonzero(within))
         share = np.linspace(0.0, found / len(times), found + 1)
         x = np.concatenate([[0.0], np.repeat(times[within], 2), [FOUND_WITHIN]])
-        lines.append(Line(x=x, y=np.repeat(share, 2), label=variant.name, colour=variant.colour, style=variant.style))
+        lines.append(
+            Line(
+                x=x,
+                y=np.repeat(share, 2),
+                label=variant.name,
+                colour=variant.colour,
+                style=variant.style,
+            )
+        )
     return Panel(
         x_label="Time since the orbit was reached [s]",
         y_label="Plume found [-]",
@@ -72,11 +88,22 @@ def _hits_panel(trial: Trial, variants: list[Variant]) -> Panel | None:
         times, hits = hits_over_time(trial, variant.rows)
         if len(times):
             middle = _STRETCH * (np.floor(times / _STRETCH) + 0.5)
-            shares = pd.DataFrame({"middle": middle, "hit": hits}).groupby("middle", as_index=False).mean()
+            shares = (
+                pd.DataFrame({"middle": middle, "hit": hits})
+                .groupby("middle", as_index=False)
+                .mean()
+            )
             x, y = column(shares, "middle"), column(shares, "hit")
-            lines.append(Line(x=x, y=y, label=variant.name, colour=variant.colour, style=variant.style))
+            lines.append(
+                Line(x=x, y=y, label=variant.name, colour=variant.colour, style=variant.style)
+            )
     return (
-        Panel(x_label="Time since the orbit was reached [s]", y_label="Passes that hit [-]", lines=lines, y_range=(0.0, 1.03))
+        Panel(
+            x_label="Time since the orbit was reached [s]",
+            y_label="Passes that hit [-]",
+            lines=lines,
+            y_range=(0.0, 1.03),
+        )
         if lines
         else None
     )
@@ -91,7 +118,10 @@ def hits_over_time(trial: Trial, rows: pd.DataFrame) -> tuple[Array, Array]:
         if history is None:
             continue
         orbit = history[history["time_s"] >= float(row["orbit_at_s"])]
-        time, fraction = column(orbit, "time_s") - float(row["orbit_at_s"]), column(orbit, "plume_fraction")
+        time, fraction = (
+            column(orbit, "time_s") - float(row["orbit_at_s"]),
+            column(orbit, "plume_fraction"),
+        )
         for at in passes(column(orbit, "plume_across_m")):
             times.append(float(time[(at.start + at.stop) // 2 if at.stop < len(time) else -1]))
             hits.append(float(np.max(fraction[at]) > HIT))
@@ -100,21 +130,40 @@ def hits_over_time(trial: Trial, rows: pd.DataFrame) -> tuple[Array, Array]:
 
 def _times_panel(variant: Variant) -> Panel | None:
     times = variant.times
-    return histogram([(times[np.isfinite(times)], variant.name, variant.colour)], "Time to find the plume [s]")
+    return histogram(
+        [(times[np.isfinite(times)], variant.name, variant.colour)], "Time to find the plume [s]"
+    )
 
 
 def _error_panel(variants: list[Variant]) -> Panel | None:
     lines, most = [], 0.0
     for variant in variants:
-        error, deviation = (column(variant.rows, f"axis_height_{of}_3min_m") for of in ("error", "deviation"))
+        error, deviation = (
+            column(variant.rows, f"axis_height_{of}_3min_m") for of in ("error", "deviation")
+        )
         known = np.isfinite(error) & np.isfinite(deviation)
         if known.any():
-            lines.append(Line(x=deviation[known], y=error[known], label=variant.name, colour=variant.colour, style=variant.marker))
+            lines.append(
+                Line(
+                    x=deviation[known],
+                    y=error[known],
+                    label=variant.name,
+                    colour=variant.colour,
+                    style=variant.marker,
+                )
+            )
             most = max(most, 1.05 * float(np.max(deviation[known])))
     ends = np.array([0.0, most])
-    interval = [Line(x=ends, y=side * COVERAGE * ends, label="95 % interval", colour="black", style="dash") for side in (1.0, -1.0)]
+    interval = [
+        Line(x=ends, y=side * COVERAGE * ends, label="95 % interval", colour="black", style="dash")
+        for side in (1.0, -1.0)
+    ]
     return (
-        Panel(x_label="Stated standard deviation [m]", y_label="Height believed minus true [m]", lines=[*lines, *interval])
+        Panel(
+            x_label="Stated standard deviation [m]",
+            y_label="Height believed minus true [m]",
+            lines=[*lines, *interval],
+        )
         if lines
         else None
     )

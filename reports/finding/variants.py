@@ -44,7 +44,9 @@ class Variant:
         """Return a figure over that of the same case in another variant, of the cases that both have; at least a pair each."""
         mine, theirs = (of.rows.set_index(study_flight(of.rows))[name] for of in (self, other))
         pairs = pd.concat([mine, theirs], axis=1, join="inner").dropna()
-        ratio: Array = pairs.iloc[:, 0].to_numpy(dtype=np.float64) / pairs.iloc[:, 1].to_numpy(dtype=np.float64)
+        ratio: Array = pairs.iloc[:, 0].to_numpy(dtype=np.float64) / pairs.iloc[:, 1].to_numpy(
+            dtype=np.float64
+        )
         return ratio
 
 

@@ -15,7 +15,9 @@ def violation_bound(run: RunData, trials: list[Trial]) -> tuple[float, float] | 
     flown, or not be measured to its end, as a violation, as that one does.
     """
     if run.statistics is not None:
-        return _telling(run.statistics["violation"]["pessimistic"]["upper"], run.statistics["confidence"])
+        return _telling(
+            run.statistics["violation"]["pessimistic"]["upper"], run.statistics["confidence"]
+        )
     return _bound(trials) if sampled(trials) else None
 
 
@@ -25,7 +27,9 @@ def counted_as_violations(rows: pd.DataFrame) -> str:
     unknown = unknown[~kept_out(unknown) & ~violated(unknown)]
     unflown = count(~was_flown(unknown))
     kinds = {"not flown": unflown, "not observed to their end": len(unknown) - unflown}
-    told = (f"{number:,} flight{'s' * (number > 1)} {kind}" for kind, number in kinds.items() if number)
+    told = (
+        f"{number:,} flight{'s' * (number > 1)} {kind}" for kind, number in kinds.items() if number
+    )
     each = "keep-out violations" if len(unknown) > 1 else "a keep-out violation"
     return f" The bound counts {' and '.join(told)} as {each}." if len(unknown) else ""
 
@@ -44,7 +48,9 @@ def sampled(trials: list[Trial]) -> bool:
 def _bound(trials: list[Trial]) -> tuple[float, float] | None:
     beside = [_beside(trial.rows) for trial in trials]
     # Flights that share what is random count as one, and each violation as one of another sample.
-    samples = sum(len(rows) // trial.flights_per_sample for trial, rows in zip(trials, beside, strict=True))
+    samples = sum(
+        len(rows) // trial.flights_per_sample for trial, rows in zip(trials, beside, strict=True)
+    )
     violating = min(samples, sum(count(~kept_out(rows)) for rows in beside))
     flown = any(len(beside_vessel(trial.rows)) for trial in trials)
     return _telling(upper_bound(violating, samples), CONFIDENCE) if flown else None

@@ -14,7 +14,16 @@ from reports.document.palette import VARIANTS, Meaning
 from reports.document.tables import number
 from reports.flights.names import flight_name
 from reports.flights.trials.tables import flight_table
-from reports.run.columns import clearance, column, flights_flown, largest, least, met, study_flight, total
+from reports.run.columns import (
+    clearance,
+    column,
+    flights_flown,
+    largest,
+    least,
+    met,
+    study_flight,
+    total,
+)
 from reports.run.run_data import RunData
 from reports.run.time_history import tracking_error
 from reports.run.trials import AS_IN_THE_STUDY, Trial
@@ -42,24 +51,38 @@ def comparison_section(run: RunData, trials: list[Trial]) -> Section:
     """Return the section on the comparisons of a run, or one without blocks if it has none."""
     blocks: list[Block] = []
     for trial in trials:
-        compared = run.comparison[run.comparison["trial"] == trial.key] if len(run.comparison) else run.comparison
+        compared = (
+            run.comparison[run.comparison["trial"] == trial.key]
+            if len(run.comparison)
+            else run.comparison
+        )
         if len(compared):
             pairs = _pairs(trial.rows, compared)
             chart = _chart(trial, pairs)
             blocks += [*([chart] if chart else []), _table(trial, pairs)]
-    text = Text("The same flights, from the same starts, with parts changed. They have no part in the verdict.")
+    text = Text(
+        "The same flights, from the same starts, with parts changed. They have no part in the verdict."
+    )
     return Section(
-        anchor="comparison", title="What each part is worth", nav_title="Comparison", blocks=[text, *blocks] if blocks else []
+        anchor="comparison",
+        title="What each part is worth",
+        nav_title="Comparison",
+        blocks=[text, *blocks] if blocks else [],
     )
 
 
 def _pairs(rows: pd.DataFrame, compared: pd.DataFrame) -> pd.DataFrame:
     """Return compared flights and those of the study; ``base`` is the name of the study's flight of each pair."""
     bases = study_flight(compared)
-    names = [str(variant).replace("_", " ").replace("keepout", "keep-out") for variant in compared["variant"]]
+    names = [
+        str(variant).replace("_", " ").replace("keepout", "keep-out")
+        for variant in compared["variant"]
+    ]
     study = rows[rows["flight_id"].isin(bases)]
     study = study.assign(base=study["flight_id"], variant=AS_IN_THE_STUDY)
-    return pd.concat([study, compared.assign(base=bases, variant=names)]).sort_values("base", kind="stable")
+    return pd.concat([study, compared.assign(base=bases, variant=names)]).sort_values(
+        "base", kind="stable"
+    )
 
 
 def _chart(trial: Trial, pairs: pd.DataFrame) -> Chart | None:
@@ -68,9 +91,12 @@ def _chart(trial: Trial, pairs: pd.DataFrame) -> Chart | None:
     turn = 1.0 / float(pairs["heading_rate_limit_rad_s"].max())
     shown = float(f"{_SHOWN_TURNS * turn:.2g}")
     band = _SHOWN_BANDS * float(trial.setting("flight.settling_band_m"))
-    variants = [variant for variant in dict.fromkeys(pairs["variant"]) if variant != AS_IN_THE_STUDY]
+    variants = [
+        variant for variant in dict.fromkeys(pairs["variant"]) if variant != AS_IN_THE_STUDY
+    ]
     looks: dict[str, tuple[str, Style]] = {
-        variant: (VARIANTS[i % len(VARIANTS)], VARIANT_STYLES[i % len(VARIANT_STYLES)]) for i, variant in enumerate(variants)
+        variant: (VARIANTS[i % len(VARIANTS)], VARIANT_STYLES[i % len(VARIANT_STYLES)])
+        for i, variant in enumerate(variants)
     }
     looks[AS_IN_THE_STUDY] = (Meaning.FLOWN, "solid")
     panels: list[Panel] = []
@@ -80,12 +106,19 @@ def _chart(trial: Trial, pairs: pd.DataFrame) -> Chart | None:
         first = flights.iloc[0].copy()
         first["flight_id"] = first["base"]
         # The study's own flight lies over the others.
-        ordered = flights.sort_values("variant", key=lambda names: names == AS_IN_THE_STUDY, kind="stable")
-        drawn = [(row, _error_line(trial.run, row, looks[row["variant"]], shown)) for _, row in ordered.iterrows()]
+        ordered = flights.sort_values(
+            "variant", key=lambda names: names == AS_IN_THE_STUDY, kind="stable"
+        )
+        drawn = [
+            (row, _error_line(trial.run, row, looks[row["variant"]], shown))
+            for _, row in ordered.iterrows()
+        ]
         lines = [line for _, found in drawn for line in found]
         if lines and len(panels) < _FLIGHTS_MAX:
             for row in (row for row, found in drawn if not found):
-                without.setdefault((str(row["variant"]), _why(row)), []).append(flight_name(trial, first))
+                without.setdefault((str(row["variant"]), _why(row)), []).append(
+                    flight_name(trial, first)
+                )
             panels.append(
                 Panel(
                     x_label="Time since settling [s]",
@@ -100,7 +133,13 @@ def _chart(trial: Trial, pairs: pd.DataFrame) -> Chart | None:
         f" {_shown_words(pairs, shown)}.{_missing(without, len(panels))}{cut_words(panels)}"
     )
     name = f"{trial.name}-comparison"
-    return Chart(name=name, caption=caption, panels=panels, panel_height=min(0.34, _HEIGHT / len(panels))) if panels else None
+    return (
+        Chart(
+            name=name, caption=caption, panels=panels, panel_height=min(0.34, _HEIGHT / len(panels))
+        )
+        if panels
+        else None
+    )
 
 
 def _shown_words(pairs: pd.DataFrame, shown: float) -> str:
@@ -111,7 +150,12 @@ def _shown_words(pairs: pd.DataFrame, shown: float) -> str:
 
 def _fitted(panels: Sequence[Panel], duration: float, band: float) -> list[Panel]:
     """Return panels with the same axes: as long as the longest line, and as high as the largest error, up to the limits."""
-    x, y = (np.concatenate([getattr(line, axis) for panel in panels for line in panel.lines] or [np.empty(0)]) for axis in "xy")
+    x, y = (
+        np.concatenate(
+            [getattr(line, axis) for panel in panels for line in panel.lines] or [np.empty(0)]
+        )
+        for axis in "xy"
+    )
     x, y = x[np.isfinite(x)], y[np.isfinite(y)]
     end = float(x.max(initial=0.0)) or duration
     height = min(band, max(_ROOM * float(y.max(initial=0.0)), _LEAST_BANDS * band))
@@ -121,7 +165,11 @@ def _fitted(panels: Sequence[Panel], duration: float, band: float) -> list[Panel
 def _why(row: "pd.Series[Any]") -> str:
     """Return why a flight has no curve: it never settled, or else has no time history."""
     ended = str(row["outcome"]).replace("_", " ")
-    return ended.replace("not settled", "never settled") if pd.isna(row["settling_time_s"]) else "no time history"
+    return (
+        ended.replace("not settled", "never settled")
+        if pd.isna(row["settling_time_s"])
+        else "no time history"
+    )
 
 
 def _missing(without: Mapping[tuple[str, str], Sequence[str]], panels: int) -> str:
@@ -133,7 +181,9 @@ def _missing(without: Mapping[tuple[str, str], Sequence[str]], panels: int) -> s
     return f" Without a curve: {'; '.join(told)}." if told else ""
 
 
-def _error_line(run: RunData, row: "pd.Series[Any]", look: tuple[str, Style], duration: float) -> list[Line]:
+def _error_line(
+    run: RunData, row: "pd.Series[Any]", look: tuple[str, Style], duration: float
+) -> list[Line]:
     history = run.history(str(row["flight_id"]))
     if history is None or pd.isna(row["settling_time_s"]):
         return []
@@ -141,13 +191,24 @@ def _error_line(run: RunData, row: "pd.Series[Any]", look: tuple[str, Style], du
     time = settled["time_s"].to_numpy() - float(row["settling_time_s"])
     shown = time <= duration
     colour, style = look
-    return [Line(x=time[shown], y=tracking_error(settled)[shown], label=str(row["variant"]), colour=colour, style=style)]
+    return [
+        Line(
+            x=time[shown],
+            y=tracking_error(settled)[shown],
+            label=str(row["variant"]),
+            colour=colour,
+            style=style,
+        )
+    ]
 
 
 def _table(trial: Trial, pairs: pd.DataFrame) -> Table:
     """Return a row per flight; if they are too many, one per variant."""
     if len(pairs) <= _ROWS_MAX:
-        names = {base: flight_name(trial, row) for base, row in trial.rows.set_index("flight_id", drop=False).iterrows()}
+        names = {
+            base: flight_name(trial, row)
+            for base, row in trial.rows.set_index("flight_id", drop=False).iterrows()
+        }
         return flight_table(
             pairs,
             "Variant, flight",

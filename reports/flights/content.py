@@ -17,7 +17,13 @@ from reports.flights.selection import flight_section
 from reports.flights.trials.charts import trial_charts
 from reports.flights.trials.crossing_gaps import gap_lines
 from reports.flights.trials.failures import tracking_lines
-from reports.flights.trials.tables import criteria_table, failed_blocks, fault_table, flight_table, trial_table
+from reports.flights.trials.tables import (
+    criteria_table,
+    failed_blocks,
+    fault_table,
+    flight_table,
+    trial_table,
+)
 from reports.flights.verdict import flight_verdict
 from reports.measurement.facts import flown_facts
 from reports.measurement.flights import sulphur_sections
@@ -47,7 +53,12 @@ def flights_content(run: RunData) -> Findings:
         _overview(trials),
         *(_trial(trial, only=len(trials) == 1) for trial in trials if len(trial.rows)),
         comparison_section(run, trials),
-        Section(anchor="failed", title="Flights that failed a criterion", nav_title="Failed", blocks=failed_blocks(trials)),
+        Section(
+            anchor="failed",
+            title="Flights that failed a criterion",
+            nav_title="Failed",
+            blocks=failed_blocks(trials),
+        ),
         flight_section(trials),
         *([innerloop_section(run.innerloop)] if run.innerloop else []),
         Section(anchor="parameters", title="Parameters", blocks=parameter_blocks(run, trials)),
@@ -78,7 +89,9 @@ def _overview(trials: list[Trial]) -> Section:
         " out, completed, and met every other criterion. Kept out: known to have kept out to its end. Distances are from the"
         " keep-out sphere's centre, or horizontal where the keep-out area is a cylinder."
     )
-    return Section(anchor="trials", title="Trials", blocks=[Text(meaning), trial_table(trials), criteria])
+    return Section(
+        anchor="trials", title="Trials", blocks=[Text(meaning), trial_table(trials), criteria]
+    )
 
 
 def _trial(trial: Trial, *, only: bool) -> Section:
@@ -87,11 +100,32 @@ def _trial(trial: Trial, *, only: bool) -> Section:
         table.append(fault_table(trial))
     if trial.swept or (only and len(trial.rows) <= _LISTED_MAX):
         head, name = swept_column(trial) if trial.swept else ("Flight", partial(flight_name, trial))
-        caption = " ".join(["The flights, a row each, with their outcome.", *tracking_lines(trial), *gap_lines(trial)])
-        table.append(flight_table(trial.rows, head, name, caption=caption, flown_ratio=flown_elsewhere(trial)))
+        caption = " ".join(
+            [
+                "The flights, a row each, with their outcome.",
+                *tracking_lines(trial),
+                *gap_lines(trial),
+            ]
+        )
+        table.append(
+            flight_table(
+                trial.rows, head, name, caption=caption, flown_ratio=flown_elsewhere(trial)
+            )
+        )
     # The head of the report says what an only trial is.
     text: list[Block] = [] if only else [Text(str(trial.config["description"]))]
-    title = trial.title if not only else "Over the speed ratio" if list(trial.swept) == ["nu"] else "Flights"
+    title = (
+        trial.title
+        if not only
+        else "Over the speed ratio"
+        if list(trial.swept) == ["nu"]
+        else "Flights"
+    )
     charts = trial_charts(trial)
     blocks = [*text, *charts, *table] if trial.swept else [*text, *table, *charts]
-    return Section(anchor=trial.name, title=title, nav_title="Speed ratio" if title.startswith("Over") else "", blocks=blocks)
+    return Section(
+        anchor=trial.name,
+        title=title,
+        nav_title="Speed ratio" if title.startswith("Over") else "",
+        blocks=blocks,
+    )

@@ -9,7 +9,16 @@ import numpy as np
 import pandas as pd
 
 from reports.document.tables import beside_limit, limit
-from reports.run.columns import Array, Mask, column, completed, count, interval_error, largest, was_flown
+from reports.run.columns import (
+    Array,
+    Mask,
+    column,
+    completed,
+    count,
+    interval_error,
+    largest,
+    was_flown,
+)
 from reports.run.trials import Trial
 
 
@@ -89,8 +98,12 @@ _AFTER_SETTLING = ("tracking_error_rms_m", "airspeed_error_rms_mps", "altitude_e
 """Criteria on what is measured after settling: they are judged where ``criteria.settles`` is true, and nowhere else."""
 
 _BETWEEN = {
-    "crossing_interval_s": _Measure(what="Mean crossing interval", values=_column("crossing_interval_mean_s"), unit="s"),
-    "crossing_distance_m": _Measure(what="Mean crossing distance", values=_column("crossing_distance_mean_m"), unit="m"),
+    "crossing_interval_s": _Measure(
+        what="Mean crossing interval", values=_column("crossing_interval_mean_s"), unit="s"
+    ),
+    "crossing_distance_m": _Measure(
+        what="Mean crossing distance", values=_column("crossing_distance_mean_m"), unit="m"
+    ),
 }
 """Criteria that a figure lies between two limits."""
 
@@ -108,16 +121,27 @@ _BESIDE_VESSEL = (
 _SCALED = ", scaled to the aircraft"
 """What is said of a limit that is not the default, and that the scenario does not set."""
 
-_OUTSIDE = _Measure(what="Time outside the altitudes of the scenario", values=_column("altitude_outside_s"), unit="s")
+_OUTSIDE = _Measure(
+    what="Time outside the altitudes of the scenario",
+    values=_column("altitude_outside_s"),
+    unit="s",
+)
 """Of the criterion that altitudes are kept: it has no limit of its own."""
 
 
 def criteria_of(trial: Trial) -> list[Criterion]:
     """Return the criteria of a trial beside the keep-out area: to complete its mission, and those of its configuration."""
     listed = {key: value for key, value in trial.criteria.items() if value not in (None, False, [])}
-    others = {"required", "settles", *(() if trial.criteria.get("settles", True) else _AFTER_SETTLING)}
+    others = {
+        "required",
+        "settles",
+        *(() if trial.criteria.get("settles", True) else _AFTER_SETTLING),
+    }
     others |= set(_BESIDE_VESSEL if _circles(trial) else ())
-    return [_mission(trial), *(_criterion(trial, key, value) for key, value in listed.items() if key not in others)]
+    return [
+        _mission(trial),
+        *(_criterion(trial, key, value) for key, value in listed.items() if key not in others),
+    ]
 
 
 def switched_off(trials: Sequence[Trial]) -> list[tuple[str, str]]:
@@ -125,20 +149,31 @@ def switched_off(trials: Sequence[Trial]) -> list[tuple[str, str]]:
 
     Without the tracking error, which is a figure of its own whether or not it is limited.
     """
-    judged = {"tracking_error_rms_m", *(criterion.key for trial in trials for criterion in criteria_of(trial))}
-    by_default = {str(of["key"]) for trial in trials for of in trial.parameters() if of.get("default")}
+    judged = {
+        "tracking_error_rms_m",
+        *(criterion.key for trial in trials for criterion in criteria_of(trial)),
+    }
+    by_default = {
+        str(of["key"]) for trial in trials for of in trial.parameters() if of.get("default")
+    }
     figures = []
     for key, measure in _MEASURES.items():
         worst = largest(np.concatenate([measure.values(trial.rows) for trial in trials]))
         if key not in judged and f"criteria.{key}" in by_default and worst is not None:
-            figures.append((f"{measure.what}, worst", f"{limit(measure.scale * worst)} {measure.unit}"))
+            figures.append(
+                (f"{measure.what}, worst", f"{limit(measure.scale * worst)} {measure.unit}")
+            )
     return figures
 
 
 def _criterion(trial: Trial, key: str, value: Any) -> Criterion:
     if key in _MEASURES:
         found = _figure(_judged(trial.rows, key), key, float(value), _MEASURES[key])
-        return replace(found, limit=f"{found.limit}{_SCALED}") if trial.is_scaled(f"criteria.{key}") else found
+        return (
+            replace(found, limit=f"{found.limit}{_SCALED}")
+            if trial.is_scaled(f"criteria.{key}")
+            else found
+        )
     if key in _BETWEEN:
         return _between(trial, key, value, _BETWEEN[key])
     if key == "modes_at_end":
@@ -150,7 +185,11 @@ def _criterion(trial: Trial, key: str, value: Any) -> Criterion:
 
 def _judged(rows: pd.DataFrame, key: str) -> pd.DataFrame:
     """Return the flights that a criterion is about: a vessel that ends no manoeuvre gives nothing to resume after."""
-    return rows[rows["manoeuvre_end_s"].notna()] if key == "resumes_within_periods" and "manoeuvre_end_s" in rows else rows
+    return (
+        rows[rows["manoeuvre_end_s"].notna()]
+        if key == "resumes_within_periods" and "manoeuvre_end_s" in rows
+        else rows
+    )
 
 
 def _between(trial: Trial, key: str, limits: Sequence[float], measure: _Measure) -> Criterion:
@@ -160,19 +199,26 @@ def _between(trial: Trial, key: str, limits: Sequence[float], measure: _Measure)
         key=key,
         what=measure.what,
         limit=f"{low:g} to {high:g} {measure.unit}",
-        worst=f"{_ends(measured, low, high)} {measure.unit}" if np.isfinite(measured).any() else "none measured",
+        worst=f"{_ends(measured, low, high)} {measure.unit}"
+        if np.isfinite(measured).any()
+        else "none measured",
         **_failed(~((low <= measured) & (measured <= high)), trial.rows),
     )
 
 
 def _ends(measured: Array, low: float, high: float) -> str:
     """Return the least and the largest figure, each on the side of its limit on which it lies."""
-    ends = [beside_limit(float(end), bound, 4) for end, bound in ((np.nanmin(measured), low), (np.nanmax(measured), high))]
+    ends = [
+        beside_limit(float(end), bound, 4)
+        for end, bound in ((np.nanmin(measured), low), (np.nanmax(measured), high))
+    ]
     return ends[0] if ends[0] == ends[1] else " to ".join(ends)
 
 
 def _demand(trial: Trial, key: str) -> Criterion:
-    demand, most = (column(trial.rows, f"heading_rate_{name}_rad_s") for name in ("demand_max", "limit"))
+    demand, most = (
+        column(trial.rows, f"heading_rate_{name}_rad_s") for name in ("demand_max", "limit")
+    )
     within = key == "law_within_heading_rate_max"
     met = demand <= most * (1.0 + _ROUNDING) if within else demand > most
     known = (demand / most)[np.isfinite(demand / most)]
@@ -196,7 +242,11 @@ def _figure(rows: pd.DataFrame, key: str, value: float, measure: _Measure) -> Cr
     bound = measure.scale * value
     shown = _rounded(measure.scale * worst, bound) if len(known) else worst
     # What is met may be written as the limit; what is not may not.
-    words = f"{beside_limit(shown, bound) if shown > bound else limit(shown)} {measure.unit}" if len(known) else "none measured"
+    words = (
+        f"{beside_limit(shown, bound) if shown > bound else limit(shown)} {measure.unit}"
+        if len(known)
+        else "none measured"
+    )
     return Criterion(
         key=key,
         what=measure.what,

@@ -10,7 +10,16 @@ from reports.document.chart import Chart
 from reports.document.tables import approach, vehicle_flown
 from reports.flights.names import told_name
 from reports.flights.tracks import track_picture
-from reports.run.columns import Array, Mask, beside_vessel, clearance, column, radii_differ, recorded_at, total
+from reports.run.columns import (
+    Array,
+    Mask,
+    beside_vessel,
+    clearance,
+    column,
+    radii_differ,
+    recorded_at,
+    total,
+)
 from reports.run.flight_config import flight_configs, wind_changes
 from reports.run.run_data import RunData
 from reports.run.trials import Trial
@@ -41,7 +50,9 @@ def flights_in_words(run: RunData, flown: pd.DataFrame) -> str:
     levels = levels[levels != "none"]
     changes = any(map(wind_changes, flight_configs(run, flown)))
     air = (
-        f"wind of {_range(wind)} m/s{' at the start' * changes}" if changes or np.nanmax(wind, initial=0.0) > CALM else "still air"
+        f"wind of {_range(wind)} m/s{' at the start' * changes}"
+        if changes or np.nanmax(wind, initial=0.0) > CALM
+        else "still air"
     )
     some = f", in {len(levels):,} of them," * (len(levels) < len(flown))
     gusty = f" and{some} {' or '.join(map(str, levels.unique()))} turbulence" if len(levels) else ""
@@ -81,13 +92,22 @@ def closest_and_typical(trials: Sequence[Trial]) -> Chart | None:
     typical, median = recorded_at(distances, recorded, len(distances) // 2)
     flights = [(trial, rows, i) for trial, rows in flown for i in range(len(rows))]
     shown, names = [], {}
-    for what, place in {"Closest": closest, **({"Typical": typical} if typical != closest else {})}.items():
+    for what, place in {
+        "Closest": closest,
+        **({"Typical": typical} if typical != closest else {}),
+    }.items():
         trial, rows, i = flights[place]
         row = rows.iloc[i]
         names[what] = told_name(trial, row)
         distance, radius = float(row["min_distance_m"]), float(row["keepout_radius_m"])
         shown.append(
-            (trial, row, f"{approach(distance - radius, 0.0)} m beyond r_min" if beyond else f"{approach(distance, radius)} m")
+            (
+                trial,
+                row,
+                f"{approach(distance - radius, 0.0)} m beyond r_min"
+                if beyond
+                else f"{approach(distance, radius)} m",
+            )
         )
     # Longer names would touch above the panels; a flight that is alone has none there.
     long = len(shown) == 1 or any(len(name) > _NAME_MAX for name in names.values())
@@ -95,24 +115,40 @@ def closest_and_typical(trials: Sequence[Trial]) -> Chart | None:
         (trial, row, f"{what}: {distance}" if long else f"{what}: {name}, {distance}")
         for (trial, row, distance), (what, name) in zip(shown, names.items(), strict=True)
     ]
-    told = _told(recorded, names if long else dict.fromkeys(names, ""), median=median, beyond=beyond)
+    told = _told(
+        recorded, names if long else dict.fromkeys(names, ""), median=median, beyond=beyond
+    )
     return track_picture(shown, told=told * (len(flights) > 1))
 
 
 def _first_recorded(trials: Sequence[Trial]) -> Chart | None:
     """Return the track of the first flight that has a time history, or None."""
-    found = ((trial, row) for trial in trials for _, row in trial.flown.iterrows() if trial.run.has_history(str(row["flight_id"])))
+    found = (
+        (trial, row)
+        for trial in trials
+        for _, row in trial.flown.iterrows()
+        if trial.run.has_history(str(row["flight_id"]))
+    )
     trial, row = next(found, (None, None))
     if trial is None or row is None:
         return None
     several = sum(len(of.flown) for of in trials) > 1
-    return track_picture([(trial, row, "")], told=f" {told_name(trial, row)}, the first with a time history." * several)
+    return track_picture(
+        [(trial, row, "")],
+        told=f" {told_name(trial, row)}, the first with a time history." * several,
+    )
 
 
 def _told(recorded: Mask, names: Mapping[str, str], *, median: bool, beyond: bool) -> str:
     """Return which flights are shown, with those names that are not empty, whether the typical one is the median, and of what."""
     of = "" if recorded.all() else " of those with a time history"
     what = "least distance beyond its own r_min" if beyond else "closest approach"
-    near = f"the one whose {what} is the median" if median else "of these the one nearest to the median of all flights"
+    near = (
+        f"the one whose {what} is the median"
+        if median
+        else "of these the one nearest to the median of all flights"
+    )
     meanings = {"Closest": f"the flight with the {what}{of}", "Typical": near}
-    return "".join(f" {what}: {f'{name}, ' if name else ''}{meanings[what]}." for what, name in names.items())
+    return "".join(
+        f" {what}: {f'{name}, ' if name else ''}{meanings[what]}." for what, name in names.items()
+    )

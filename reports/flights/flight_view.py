@@ -60,7 +60,9 @@ class FlightView:
         self.time = column(self.samples, "time_s")
         self.ends = self.time[[0, -1]]
         self.radius = float(row["keepout_radius_m"])
-        self.crossings = self.at_times(trial.run.crossings_of(str(row["flight_id"]))["time_s"].to_numpy(dtype=np.float64))
+        self.crossings = self.at_times(
+            trial.run.crossings_of(str(row["flight_id"]))["time_s"].to_numpy(dtype=np.float64)
+        )
 
     @property
     def settled_at(self) -> float:
@@ -75,10 +77,22 @@ class FlightView:
     def at_times(self, times: Array) -> pd.DataFrame:
         """Return where everything was at some times [s], between samples."""
         whole = self.whole
-        known = [name for name in map(str, whole) if name.endswith(("north_m", "east_m", "plume_axis_rad", "altitude_m"))]
+        known = [
+            name
+            for name in map(str, whole)
+            if name.endswith(("north_m", "east_m", "plume_axis_rad", "altitude_m"))
+        ]
         # The axis may pass from pi to -pi between two samples.
-        curves = {name: np.unwrap(column(whole, name)) if name.endswith("_rad") else column(whole, name) for name in known}
-        return pd.DataFrame({"time_s": times, **{n: np.interp(times, column(whole, "time_s"), c) for n, c in curves.items()}})
+        curves = {
+            name: np.unwrap(column(whole, name)) if name.endswith("_rad") else column(whole, name)
+            for name in known
+        }
+        return pd.DataFrame(
+            {
+                "time_s": times,
+                **{n: np.interp(times, column(whole, "time_s"), c) for n, c in curves.items()},
+            }
+        )
 
     def since(self, time: float) -> "FlightView | None":
         """Return the flight from a time [s] on; None where fewer than two samples are left."""
@@ -86,16 +100,28 @@ class FlightView:
         if len(history) < 2:
             return None
         late = FlightView(self.trial, self.row, history)
-        late.crossings, late.closest = (rows[rows["time_s"] >= time] for rows in (self.crossings, self.closest))
+        late.crossings, late.closest = (
+            rows[rows["time_s"] >= time] for rows in (self.crossings, self.closest)
+        )
         return late
 
     def marks(self, place: Place, *, far: bool = False) -> list[Line]:
         """Return the crossings and the closest approach, where ``place`` has them, or has them from far away."""
         # Many diamonds would hide the track.
-        style: Style = "dots" if len(self.crossings) > (_DIAMONDS_FAR if far else _DIAMONDS_MAX) else "diamonds"
-        marks: list[tuple[pd.DataFrame, str, str, Style]] = [(self.crossings, "crossing", Meaning.CROSSING, style)]
+        style: Style = (
+            "dots"
+            if len(self.crossings) > (_DIAMONDS_FAR if far else _DIAMONDS_MAX)
+            else "diamonds"
+        )
+        marks: list[tuple[pd.DataFrame, str, str, Style]] = [
+            (self.crossings, "crossing", Meaning.CROSSING, style)
+        ]
         marks += [(self.closest, "closest approach", Meaning.LIMIT, "cross")] if self.vessel else []
-        return [self.line(place, samples, label, colour, style) for samples, label, colour, style in marks if len(samples)]
+        return [
+            self.line(place, samples, label, colour, style)
+            for samples, label, colour, style in marks
+            if len(samples)
+        ]
 
     def ends_of(self, place: Place) -> list[Line]:
         """Return where it began and ended."""
@@ -107,34 +133,64 @@ class FlightView:
     def guarded(self, place: Place) -> list[Line]:
         """Return the stretches in which the guard changed commands, to be drawn below the track."""
         lines = []
-        for held, label, colour in ((True, GUARD, Meaning.GUARD), (False, GUARD_LOST, Meaning.GUARD_LOST)):
-            stretches = [(start, end) for start, end, found in guard_stretches(self.whole) if found is held]
-            step = max(1, math.ceil(sum(end - start + 1 for start, end in stretches) / _GUARDED_MAX))
+        for held, label, colour in (
+            (True, GUARD, Meaning.GUARD),
+            (False, GUARD_LOST, Meaning.GUARD_LOST),
+        ):
+            stretches = [
+                (start, end) for start, end, found in guard_stretches(self.whole) if found is held
+            ]
+            step = max(
+                1, math.ceil(sum(end - start + 1 for start, end in stretches) / _GUARDED_MAX)
+            )
             x: list[Array] = []
             y: list[Array] = []
             for start, end in stretches:
                 # From sample to sample, so that a single one has a length; a gap follows.
-                part = place(self.whole.iloc[[*range(max(0, start - 1), end, step), min(end, len(self.whole) - 1)]])
+                part = place(
+                    self.whole.iloc[
+                        [*range(max(0, start - 1), end, step), min(end, len(self.whole) - 1)]
+                    ]
+                )
                 x, y = [*x, part[0], np.array([np.nan])], [*y, part[1], np.array([np.nan])]
             if x:
-                lines.append(Line(x=np.concatenate(x), y=np.concatenate(y), label=label, colour=colour, style="broad"))
+                lines.append(
+                    Line(
+                        x=np.concatenate(x),
+                        y=np.concatenate(y),
+                        label=label,
+                        colour=colour,
+                        style="broad",
+                    )
+                )
         return lines
 
     def bands(self) -> list[Band]:
         """Return the same stretches of time."""
         time = column(self.whole, "time_s")
         least, bands = _NARROWEST * float(self.ends[1]), []
-        for held, label, colour in ((True, GUARD, Meaning.GUARD), (False, GUARD_LOST, Meaning.GUARD_LOST)):
+        for held, label, colour in (
+            (True, GUARD, Meaning.GUARD),
+            (False, GUARD_LOST, Meaning.GUARD_LOST),
+        ):
             times = [
-                (float(time[start]), max(float(time[min(end, len(time) - 1)]), float(time[start]) + least))
+                (
+                    float(time[start]),
+                    max(float(time[min(end, len(time) - 1)]), float(time[start]) + least),
+                )
                 for start, end, found in guard_stretches(self.whole)
                 if found is held
             ]
-            bands += [Band(start=start, end=end, label=label, colour=colour) for start, end in _joined(times)]
+            bands += [
+                Band(start=start, end=end, label=label, colour=colour)
+                for start, end in _joined(times)
+            ]
         return bands
 
     @staticmethod
-    def line(place: Place, samples: pd.DataFrame, label: str, colour: str, style: Style = "solid") -> Line:
+    def line(
+        place: Place, samples: pd.DataFrame, label: str, colour: str, style: Style = "solid"
+    ) -> Line:
         """Return samples where ``place`` has them."""
         x, y = place(samples)
         return Line(x=x, y=y, label=label, colour=colour, style=style)
@@ -148,7 +204,9 @@ def flight_view(trial: Trial, row: "pd.Series[Any]") -> FlightView | None:
 
 def _joined(times: list[tuple[float, float]]) -> list[tuple[float, float]]:
     """Return ``_BANDS_MAX`` stretches of time at most, of which the shortest gaps are closed."""
-    gaps = sorted((after[0] - before[1] for before, after in itertools.pairwise(times)), reverse=True)
+    gaps = sorted(
+        (after[0] - before[1] for before, after in itertools.pairwise(times)), reverse=True
+    )
     closed = gaps[_BANDS_MAX - 1] if len(gaps) >= _BANDS_MAX else 0.0
     joined: list[tuple[float, float]] = []
     for start, end in times:

@@ -38,7 +38,9 @@ def flight_name(trial: Trial, row: "pd.Series[Any]") -> str:
     first, *others = (_swept(trial, key, value) for key, value in values.items())
     words = [first, *(words[0].lower() + words[1:] for words in others)]
     # Of several flights at the same values each has its number.
-    return ", ".join([*words, *([f"flight {int(counted[1])}"] if counted and _repeated(trial) else [])])
+    return ", ".join(
+        [*words, *([f"flight {int(counted[1])}"] if counted and _repeated(trial) else [])]
+    )
 
 
 def told_name(trial: Trial, row: "pd.Series[Any]") -> str:
@@ -62,7 +64,10 @@ def swept_column(trial: Trial) -> tuple[str, Callable[["pd.Series[Any]"], str]]:
 
 def swept_words(trial: Trial) -> dict[str, list[str]]:
     """Return the values in each flown flight of every key that was swept over words, without the folders of files."""
-    return {key: [_value(key, value).replace("_", " ") for value in of] for key, of in _words(trial).items()}
+    return {
+        key: [_value(key, value).replace("_", " ") for value in of]
+        for key, of in _words(trial).items()
+    }
 
 
 def words_together(trial: Trial) -> list[str]:
@@ -71,14 +76,19 @@ def words_together(trial: Trial) -> list[str]:
     Of words that change nothing in the flights, as of sensors that only listen, markers would cover each other: they are left out.
     """
     words = {key: of for key, of in _words(trial).items() if changes_flights(trial, key)}
-    called = [[_swept(trial, key, value).replace("_", " ") for value in of] for key, of in words.items()]
+    called = [
+        [_swept(trial, key, value).replace("_", " ") for value in of] for key, of in words.items()
+    ]
     return [", ".join(each) for each in zip(*called, strict=True)]
 
 
 def changes_flights(trial: Trial, key: str) -> bool:
     """Return whether flights that differ in a key that was swept, and in no other, differ in how near they came."""
     ids = trial.flown["flight_id"]
-    values = {of: trial.input(_SPEED_RATIO if of == "nu" else of).reindex(ids).astype(str).tolist() for of in trial.swept}
+    values = {
+        of: trial.input(_SPEED_RATIO if of == "nu" else of).reindex(ids).astype(str).tolist()
+        for of in trial.swept
+    }
     others = [of for of in trial.swept if of != key]
     found = pd.DataFrame(values).assign(nearest=column(trial.flown, "min_distance_m"))
     alike = found.groupby(others) if others else found.groupby(lambda _: 0)
@@ -91,7 +101,9 @@ def flown_elsewhere(trial: Trial) -> bool:
     if "nu" not in trial.swept:
         return False
     swept = trial.input(_SPEED_RATIO).reindex(trial.flown["flight_id"])
-    return bool(np.any(np.abs(column(trial.flown, "nu") - swept.to_numpy(dtype=np.float64)) > _SAME_RATIO))
+    return bool(
+        np.any(np.abs(column(trial.flown, "nu") - swept.to_numpy(dtype=np.float64)) > _SAME_RATIO)
+    )
 
 
 def _repeated(trial: Trial) -> bool:
@@ -105,14 +117,22 @@ def _values(trial: Trial, row: "pd.Series[Any]") -> dict[str, Any]:
     if not (trial.rows["flight_id"] == flight_id).any():
         # A comparison's flight has the values of the study's own that it is compared with.
         return {}
-    values = {key: trial.input(_SPEED_RATIO if key == "nu" else key)[flight_id] for key in trial.swept}
-    return {} if any(_is_number(value) and math.isnan(value) for value in values.values()) else values
+    values = {
+        key: trial.input(_SPEED_RATIO if key == "nu" else key)[flight_id] for key in trial.swept
+    }
+    return (
+        {} if any(_is_number(value) and math.isnan(value) for value in values.values()) else values
+    )
 
 
 def _words(trial: Trial) -> "dict[str, pd.Series[Any]]":
     """Return the values in each flown flight of every key that was swept over words."""
     values = {key: trial.input(key).reindex(trial.flown["flight_id"]) for key in trial.swept}
-    return {key: of for key, of in values.items() if not pd.api.types.is_numeric_dtype(of) or pd.api.types.is_bool_dtype(of)}
+    return {
+        key: of
+        for key, of in values.items()
+        if not pd.api.types.is_numeric_dtype(of) or pd.api.types.is_bool_dtype(of)
+    }
 
 
 def _swept(trial: Trial, key: str, value: Any) -> str:
@@ -121,12 +141,21 @@ def _swept(trial: Trial, key: str, value: Any) -> str:
     if key == "nu":
         return f"ν = {words}"
     # Of words some say nothing by themselves, nor does one that another key of the sweep has too.
-    return f"{input_name(key)} {words}" if _is_number(value) or words in _BARE or _shared(trial, key, words) else words
+    return (
+        f"{input_name(key)} {words}"
+        if _is_number(value) or words in _BARE or _shared(trial, key, words)
+        else words
+    )
 
 
 def _shared(trial: Trial, key: str, words: str) -> bool:
     """Return whether another key is swept over these words, too."""
-    return any(words == _value(of, value) for of, values in trial.swept.items() if of not in (key, "nu") for value in values)
+    return any(
+        words == _value(of, value)
+        for of, values in trial.swept.items()
+        if of not in (key, "nu")
+        for value in values
+    )
 
 
 def _value(key: str, value: Any, among: tuple[float, ...] = ()) -> str:
@@ -149,7 +178,10 @@ def _numbers(trial: Trial, key: str) -> tuple[float, ...]:
 def _digits(values: tuple[float, ...], kind: str, least: int) -> int:
     """Return how many digits tell numbers apart, ``least`` of them at least: after the point ("f"), or significant ones ("g")."""
     counts = range(least, _DIGITS_MAX)
-    return next((n for n in counts if len({f"{value:.{n}{kind}}" for value in values}) == len(values)), _DIGITS_MAX)
+    return next(
+        (n for n in counts if len({f"{value:.{n}{kind}}" for value in values}) == len(values)),
+        _DIGITS_MAX,
+    )
 
 
 def _is_number(value: Any) -> bool:
@@ -185,7 +217,11 @@ def _one_manoeuvre(manoeuvre: dict[str, Any]) -> str:
     parts = []
     turn, speed = float(manoeuvre.get("turn_deg", 0.0)), manoeuvre.get("speed_mps")
     if turn:
-        rate = f" at {float(manoeuvre['turn_rate_deg_s']):g}°/s" if "turn_rate_deg_s" in manoeuvre else ""
+        rate = (
+            f" at {float(manoeuvre['turn_rate_deg_s']):g}°/s"
+            if "turn_rate_deg_s" in manoeuvre
+            else ""
+        )
         parts.append(f"{abs(turn):g}° to {'starboard' if turn > 0.0 else 'port'}{rate}")
     if speed is not None:
         parts.append("stops" if speed == 0.0 else f"to {float(speed):g} m/s")

@@ -37,18 +37,33 @@ def parameter_blocks(run: RunData, trials: list[Trial]) -> list[Block]:
             ),
         ]
     if len(trials) == 1:
-        return [*blocks, Heading("Every parameter"), _table(_rows(trials[0], every=True) + _derived(run, trials[0]))]
+        return [
+            *blocks,
+            Heading("Every parameter"),
+            _table(_rows(trials[0], every=True) + _derived(run, trials[0])),
+        ]
     for trial in trials:
         blocks += [Heading(trial.title), _table(_rows(trial, every=False))]
-    defaults = [[p["key"], "", _default(p), p["unit"], p["meaning"]] for p in trials[0].parameters()] if trials else []
-    return [*blocks, Heading("Every other parameter, with its default"), _table(defaults)] if trials else []
+    defaults = (
+        [[p["key"], "", _default(p), p["unit"], p["meaning"]] for p in trials[0].parameters()]
+        if trials
+        else []
+    )
+    return (
+        [*blocks, Heading("Every other parameter, with its default"), _table(defaults)]
+        if trials
+        else []
+    )
 
 
 def _table(rows: list[list[str]]) -> Table:
     shown = [i for i in range(len(_HEAD)) if i in (0, 4) or any(row[i] for row in rows)]
     return Table(
         head=[_HEAD[i] for i in shown],
-        rows=[[in_symbols(row[i]) if _HEAD[i].startswith("Meaning") else row[i] for i in shown] for row in rows],
+        rows=[
+            [in_symbols(row[i]) if _HEAD[i].startswith("Meaning") else row[i] for i in shown]
+            for row in rows
+        ],
         widths=[_WIDTHS[i] for i in shown],
         left_columns=len(shown),
         prose=True,
@@ -59,19 +74,46 @@ def _table(rows: list[list[str]]) -> Table:
 def _rows(trial: Trial, *, every: bool) -> list[list[str]]:
     """Return what a trial sweeps and samples, and every parameter or those that differ from their defaults."""
     listed = {parameter["key"]: parameter for parameter in trial.parameters()}
-    rows = [["flights, seed", f"{trial.planned}, {trial.config['seed']}", "", "", "Number of flights; seed of all random numbers"]]
+    rows = [
+        [
+            "flights, seed",
+            f"{trial.planned}, {trial.config['seed']}",
+            "",
+            "",
+            "Number of flights; seed of all random numbers",
+        ]
+    ]
     low, high = trial.setting("speed_ratio") or (0.0, _ANY_RATIO)
     if high < _ANY_RATIO and (trial.varies("wind") or trial.varies("vessel")):
-        rows.append(["speed_ratio", f"{low:g} to {high:g}", "", "", "Samples with another speed ratio ν are sampled again"])
+        rows.append(
+            [
+                "speed_ratio",
+                f"{low:g} to {high:g}",
+                "",
+                "",
+                "Samples with another speed ratio ν are sampled again",
+            ]
+        )
     inputs = {key: f"swept: {parameter_value(values)}" for key, values in trial.swept.items()}
-    inputs |= {sample["key"]: distribution(sample, trial.setting("study", "flights")) for sample in trial.sampled}
+    inputs |= {
+        sample["key"]: distribution(sample, trial.setting("study", "flights"))
+        for sample in trial.sampled
+    }
     for key, words in inputs.items():
-        about = listed.get(key, {"meaning": _meaning(key), "unit": input_unit(key).replace("-", "")})
+        about = listed.get(
+            key, {"meaning": _meaning(key), "unit": input_unit(key).replace("-", "")}
+        )
         rows.append([key, words, _default(about), about.get("unit", ""), about["meaning"]])
     # A table of the user's own has its keys in the rows below.
     tables = {key for key in listed if any(of.startswith(f"{key}.") for of in listed)}
     return rows + [
-        [key, _OWN if key in tables else value_in_words(p["value"], key), _default(p), p["unit"], p["meaning"]]
+        [
+            key,
+            _OWN if key in tables else value_in_words(p["value"], key),
+            _default(p),
+            p["unit"],
+            p["meaning"],
+        ]
         for key, p in listed.items()
         if key not in inputs and (every or "default" not in p or p["value"] != p["default"])
     ]
@@ -80,7 +122,9 @@ def _rows(trial: Trial, *, every: bool) -> list[list[str]]:
 def _meaning(key: str) -> str:
     """Return the meaning of an input that is no key of its own: the speed ratio, or of an entry of a list."""
     if entry := re.fullmatch(r"vessel\.manoeuvres\.(\d+)\.(\w+)", key):
-        return f"Of the vessel's manoeuvre number {int(entry[1]) + 1}: {input_name(entry[2]).lower()}"
+        return (
+            f"Of the vessel's manoeuvre number {int(entry[1]) + 1}: {input_name(entry[2]).lower()}"
+        )
     return "Speed ratio ν of the vessel and the UAV" if key == "nu" else ""
 
 
@@ -94,23 +138,36 @@ def distribution(sample: dict[str, Any], study: str) -> str:
         if sample["weights"] is None:
             return f"{'one' if study == 'falsify' else 'in turn one'} of: {'; '.join(choices)}"
         whole = sum(sample["weights"])
-        return "; ".join(f"{100.0 * w / whole:.0f} % {choice}" for w, choice in zip(sample["weights"], choices, strict=True))
+        return "; ".join(
+            f"{100.0 * w / whole:.0f} % {choice}"
+            for w, choice in zip(sample["weights"], choices, strict=True)
+        )
     if sample["normal"] is not None:
         mean, sigma = sample["normal"]
         words = f"normal, mean {mean:g}, deviation {sigma:g}"
     else:
         shape, scale = sample["weibull"]
         words = f"Weibull, shape {shape:g}, scale {scale:g}"
-    return f"{words}, from {sample['within'][0]:g} to {sample['within'][1]:g}" if sample["within"] else words
+    return (
+        f"{words}, from {sample['within'][0]:g} to {sample['within'][1]:g}"
+        if sample["within"]
+        else words
+    )
 
 
 def _default(parameter: Parameters) -> str:
-    return value_in_words(parameter["default"], str(parameter["key"])) if "default" in parameter else ""
+    return (
+        value_in_words(parameter["default"], str(parameter["key"]))
+        if "default" in parameter
+        else ""
+    )
 
 
 def value_in_words(value: Any, key: str = "") -> str:
     """Return a value in words; a list of sections can only be manoeuvres."""
-    if isinstance(value, list) and (isinstance(value[0], dict) if value else key.endswith("manoeuvres")):
+    if isinstance(value, list) and (
+        isinstance(value[0], dict) if value else key.endswith("manoeuvres")
+    ):
         return manoeuvre_name(value)
     return parameter_value(value, key)
 
@@ -125,9 +182,18 @@ def _derived(run: RunData, trial: Trial) -> list[list[str]]:
             ("ε as searched", "epsilon_per_m", "{:.5f}", "1/m", where),
             ("R as searched", "look_ahead_m", "{:.1f}", "m", where),
             ("steering_max as searched", "steering_max_rad_s", "{:.4f}", "rad/s", where),
-            ("bound on the heading-rate demand", "heading_rate_bound_rad_s", "{:.5f}", "rad/s", where),
+            (
+                "bound on the heading-rate demand",
+                "heading_rate_bound_rad_s",
+                "{:.5f}",
+                "rad/s",
+                where,
+            ),
         ]
-    rows = [[name, span(column(trial.rows, key), pattern), "", unit, meaning] for name, key, pattern, unit, meaning in derived]
+    rows = [
+        [name, span(column(trial.rows, key), pattern), "", unit, meaning]
+        for name, key, pattern, unit, meaning in derived
+    ]
     if run.manifest.get("guidance_lag_s") is not None:
         meaning = (
             "Lag of the heading rate behind its command (measured of an aircraft, given of a kinematic vehicle) and half a step of"

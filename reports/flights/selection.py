@@ -15,7 +15,15 @@ from reports.flights.flight_view import flight_view
 from reports.flights.names import flown_elsewhere, told_name
 from reports.flights.single_flight import flight_charts
 from reports.replay.flight_scene import flight_scene
-from reports.run.columns import beside_vessel, clearance, column, met, radii_differ, recorded_at, violated
+from reports.run.columns import (
+    beside_vessel,
+    clearance,
+    column,
+    met,
+    radii_differ,
+    recorded_at,
+    violated,
+)
 from reports.run.flight_config import wind_changes
 from reports.run.trials import Trial
 
@@ -29,7 +37,10 @@ _VIOLATION, _FAILED = "deepest keep-out violation", "did not meet every criterio
 
 _CLOSEST, _MEDIAN = "closest approach", "median of closest approaches"
 
-_LEAST_BEYOND, _MEDIAN_BEYOND = "least distance beyond its own r_min", "median of least distances beyond r_min"
+_LEAST_BEYOND, _MEDIAN_BEYOND = (
+    "least distance beyond its own r_min",
+    "median of least distances beyond r_min",
+)
 """The same of flights with different r_min."""
 
 _BY_CLEARANCE = "; where r_min differs, by the distance beyond each flight's own"
@@ -43,7 +54,10 @@ def flight_section(trials: list[Trial]) -> Section:
     picked = picked_flights(trials)
     if swept and len(trials[0].rows) > 1:
         telling = {str(row["flight_id"]): why for _, row, why in picked}
-        flights = [_of_sweep(trials[0], row, telling.get(str(row["flight_id"]), "")) for _, row in trials[0].rows.iterrows()]
+        flights = [
+            _of_sweep(trials[0], row, telling.get(str(row["flight_id"]), ""))
+            for _, row in trials[0].rows.iterrows()
+        ]
         text = (
             f"report.html shows every flight of the sweep, report.pdf {len(telling)} of them, by what each shows:"
             f" {', '.join(telling.values())}. With the option --all-flights, plume-flight report prints them all."
@@ -61,7 +75,12 @@ def flight_section(trials: list[Trial]) -> Section:
             else _only(trials)
         )
     blocks: list[Block] = [Text(text), FlightPicker(flights=flights)]
-    return Section(anchor="flights", title="Single flights", nav_title="Single flights", blocks=blocks if flights else [])
+    return Section(
+        anchor="flights",
+        title="Single flights",
+        nav_title="Single flights",
+        blocks=blocks if flights else [],
+    )
 
 
 def _only(trials: list[Trial]) -> str:
@@ -82,17 +101,28 @@ def _of_sweep(trial: Trial, row: "pd.Series[Any]", why: str) -> FlightContent:
 def _content(trial: Trial, row: "pd.Series[Any]", state: str) -> FlightContent:
     name = told_name(trial, row)
     speed = "{:.1f} m/s" + " at the start" * wind_changes(trial.flight_config(row))
-    nearest = approach(float(row.get("min_distance_m", math.nan)), float(row.get("keepout_radius_m", math.nan)))
-    known = [("", "min_distance_m", f"{nearest} m"), ("ν = ", "nu", "{:.2f}"), ("wind ", "wind_speed_mps", speed)]
+    nearest = approach(
+        float(row.get("min_distance_m", math.nan)), float(row.get("keepout_radius_m", math.nan))
+    )
+    known = [
+        ("", "min_distance_m", f"{nearest} m"),
+        ("ν = ", "nu", "{:.2f}"),
+        ("wind ", "wind_speed_mps", speed),
+    ]
     given = {key.replace("wind.speed_mps", "wind_speed_mps") for key in trial.swept}
     if flown_elsewhere(trial):
         known[1], given = ("flown at ν = ", "nu", "{:.2f}"), given - {"nu"}
     flown = not pd.isna(row.get("duration_s"))
     if float(row.get("wind_speed_mps") or 0.0) < CALM:
         given = given | {"wind_speed_mps"}
-    shown = [item for item in known if flown and item[1] not in given and not pd.isna(row.get(item[1]))]
+    shown = [
+        item for item in known if flown and item[1] not in given and not pd.isna(row.get(item[1]))
+    ]
     # A name, its figure and its unit stay on one line.
-    world = ", ".join(f"{words}{number(row[key], pattern)}".replace(" ", "\N{NO-BREAK SPACE}") for words, key, pattern in shown)
+    world = ", ".join(
+        f"{words}{number(row[key], pattern)}".replace(" ", "\N{NO-BREAK SPACE}")
+        for words, key, pattern in shown
+    )
     # Page 1 shows the tracks of a run's only flight.
     alone = len(trial.run.summary) == len(trial.flown) == 1
     view = flight_view(trial, row)
@@ -100,7 +130,9 @@ def _content(trial: Trial, row: "pd.Series[Any]", state: str) -> FlightContent:
         flight_id=str(row["flight_id"]),
         label=f"{name} · {state.split(':', maxsplit=1)[0]}",
         # What to do about a flight that could not be flown the verdict says.
-        title=f"{name}: {state}{f' ({world})' if world else ''}" if flown else f"{name}: not flown, {ending(row)}",
+        title=f"{name}: {state}{f' ({world})' if world else ''}"
+        if flown
+        else f"{name}: not flown, {ending(row)}",
         charts=flight_charts(view)[int(alone) :],
         scene=flight_scene(trial, row, view.whole) if view else None,
     )
@@ -117,7 +149,9 @@ def picked_flights(trials: list[Trial]) -> list[tuple[Trial, "pd.Series[Any]", s
     """
     candidates = [list(_candidates(trial)) for trial in trials]
     deep = max((len(flights) for flights in candidates), default=0)
-    turns = [(i, k) for k in range(deep) for i, flights in enumerate(candidates) if k < len(flights)]
+    turns = [
+        (i, k) for k in range(deep) for i, flights in enumerate(candidates) if k < len(flights)
+    ]
     chosen = sorted(turns[:PICKED_MAX])
     return [(trials[i], *candidates[i][k]) for i, k in chosen]
 

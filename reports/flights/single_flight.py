@@ -14,7 +14,13 @@ from reports.flights.tracks import track_chart
 from reports.flights.trials.crossing_gaps import crossing_gap, gap_words
 from reports.run.columns import NOTICEABLE, Array, column
 from reports.run.flight_config import keepout_shape, source_height
-from reports.run.time_history import ERROR_MIN, floor_words, shown_distances, tracking_error, true_wind
+from reports.run.time_history import (
+    ERROR_MIN,
+    floor_words,
+    shown_distances,
+    tracking_error,
+    true_wind,
+)
 from reports.run.trials import measured_from
 
 _HIDDEN = 0.2
@@ -50,7 +56,11 @@ class _Histories:
             self._bank_panel, self._airspeed_panel, self._altitude_panel, self._mode_panel,
         ]  # fmt: skip
         trial, bands = self._view.trial, self._view.bands()
-        panels = [replace(in_kilometres(panel), bands=bands) for panel in (make() for make in makers) if panel is not None]
+        panels = [
+            replace(in_kilometres(panel), bands=bands)
+            for panel in (make() for make in makers)
+            if panel is not None
+        ]
         columns = 2 if len(panels) <= _TWO_COLUMNS else 3
         small = floor_words([self._view.samples])
         vessel = _VESSEL_WORDS * any(panel.y_label == _VESSEL_ERROR for panel in panels)
@@ -58,7 +68,11 @@ class _Histories:
             name="histories",
             caption=f"{flight_name(trial, self._view.row)}: time histories.{self._distance_words()}{small}{vessel}"
             f"{self._gap_words()} Dashed in the panel of the heading rate: ω_max."
-            + (f" Rate and bank: the range of the values within each {_WITHIN_S:g} s." if self._long else "")
+            + (
+                f" Rate and bank: the range of the values within each {_WITHIN_S:g} s."
+                if self._long
+                else ""
+            )
             + (" Tinted: the keep-out guard changed commands." if bands else ""),
             panels=panels,
             columns=columns,
@@ -70,7 +84,9 @@ class _Histories:
     def _long(self) -> bool:
         return bool(self._view.ends[1] - self._view.ends[0] > _LONG_S)
 
-    def _line(self, y: Array, label: str = "flown", colour: str = Meaning.FLOWN, style: Style = "solid") -> Line:
+    def _line(
+        self, y: Array, label: str = "flown", colour: str = Meaning.FLOWN, style: Style = "solid"
+    ) -> Line:
         return Line(x=self._view.time, y=y, label=label, colour=colour, style=style)
 
     def _command(self, y: Array) -> Line:
@@ -80,20 +96,37 @@ class _Histories:
         return column(self._view.samples, name)
 
     def _level(self, value: float, label: str, colour: str, style: Style = "dash") -> Line:
-        return Line(x=self._view.ends, y=np.array([value, value]), label=label, colour=colour, style=style)
+        return Line(
+            x=self._view.ends, y=np.array([value, value]), label=label, colour=colour, style=style
+        )
 
     def _distance_panel(self) -> Panel | None:
         if not self._view.vessel:
             return None
         low, high = self._distance_range()
-        upright = {"fault": self._view.row.get("fault_time_s"), "manoeuvre ends": self._view.row.get("manoeuvre_end_s")}
+        upright = {
+            "fault": self._view.row.get("fault_time_s"),
+            "manoeuvre ends": self._view.row.get("manoeuvre_end_s"),
+        }
         marks = [
-            Line(x=np.array([time, time]), y=np.array([low, high]), label=label, colour="black", style="dot")
+            Line(
+                x=np.array([time, time]),
+                y=np.array([low, high]),
+                label=label,
+                colour="black",
+                style="dot",
+            )
             for label, time in upright.items()
             if time is not None and 0.0 < time <= self._view.ends[1]
         ]
-        lines = [self._line(self._view.distance), self._level(self._view.radius, "limit", Meaning.LIMIT), *marks]
-        lines += self._view.marks(lambda samples: (column(samples, "time_s"), self._view.distance_of(samples)))
+        lines = [
+            self._line(self._view.distance),
+            self._level(self._view.radius, "limit", Meaning.LIMIT),
+            *marks,
+        ]
+        lines += self._view.marks(
+            lambda samples: (column(samples, "time_s"), self._view.distance_of(samples))
+        )
         return Panel(x_label=_TIME, y_label="Distance [m]", lines=lines, y_range=(low, high))
 
     def _distance_words(self) -> str:
@@ -107,7 +140,11 @@ class _Histories:
     def _gap_words(self) -> str:
         """Return how long the flight did not cross the plume though it had settled; nothing where that was not long."""
         gap = crossing_gap(self._view.trial, self._view.row)
-        return f" No crossing for {gap_words(gap)}, before the vessel's last manoeuvre had ended." if gap else ""
+        return (
+            f" No crossing for {gap_words(gap)}, before the vessel's last manoeuvre had ended."
+            if gap
+            else ""
+        )
 
     def _distance_range(self) -> tuple[float, float]:
         """Return the least and the largest distance that are shown [m]."""
@@ -117,7 +154,13 @@ class _Histories:
     def _tracking_panel(self) -> Panel:
         error = np.maximum(tracking_error(self._view.samples), ERROR_MIN)
         top = 10.0 ** max(1, math.ceil(math.log10(float(error.max()))))
-        return Panel(x_label=_TIME, y_label="Tracking error [m]", lines=[self._line(error)], log_y=True, y_range=(ERROR_MIN, top))
+        return Panel(
+            x_label=_TIME,
+            y_label="Tracking error [m]",
+            lines=[self._line(error)],
+            log_y=True,
+            y_range=(ERROR_MIN, top),
+        )
 
     def _wind_panel(self) -> Panel | None:
         north, east = self._column("wind_north_mps"), self._column("wind_east_mps")
@@ -134,7 +177,10 @@ class _Histories:
 
     def _vessel_panel(self) -> Panel | None:
         """Return how far the vessel is from where it is taken to be, or nothing if it is known exactly."""
-        north, east = (self._column(f"vessel_seen_{axis}_m") - self._column(f"vessel_{axis}_m") for axis in ("north", "east"))
+        north, east = (
+            self._column(f"vessel_seen_{axis}_m") - self._column(f"vessel_{axis}_m")
+            for axis in ("north", "east")
+        )
         error = np.hypot(north, east)
         if not np.nanmax(error, initial=0.0) > NOTICEABLE:
             return None
@@ -159,20 +205,39 @@ class _Histories:
         edges = np.append(time[starts], time[-1])
         x, low, high = np.repeat(edges, 2)[1:-1], np.repeat(least, 2), np.repeat(most, 2)
         outline = np.concatenate([x, x[::-1]]), np.concatenate([high, low[::-1]])
-        return [Line(x=outline[0], y=outline[1], label=label, colour=colour, style="thin", fill=label == "flown", opacity=_TINT)]
+        return [
+            Line(
+                x=outline[0],
+                y=outline[1],
+                label=label,
+                colour=colour,
+                style="thin",
+                fill=label == "flown",
+                opacity=_TINT,
+            )
+        ]
 
     def _bank_panel(self) -> Panel:
-        return Panel(x_label=_TIME, y_label="Bank [deg]", lines=self._fast("roll_rad", "flown", Meaning.FLOWN, math.degrees(1.0)))
+        return Panel(
+            x_label=_TIME,
+            y_label="Bank [deg]",
+            lines=self._fast("roll_rad", "flown", Meaning.FLOWN, math.degrees(1.0)),
+        )
 
     def _airspeed_panel(self) -> Panel:
-        lines = [self._command(self._column("airspeed_command_mps")), self._line(self._column("airspeed_mps"))]
+        lines = [
+            self._command(self._column("airspeed_command_mps")),
+            self._line(self._column("airspeed_mps")),
+        ]
         return Panel(x_label=_TIME, y_label="Airspeed [m/s]", lines=lines)
 
     def _altitude_panel(self) -> Panel:
         """Return the altitude, with that of the funnel and, over a rising plume, of the centre of oscillation."""
         row, funnel = self._view.row, source_height(self._view.config)
         levels = {"funnel": (funnel, Meaning.SHIP)}
-        rise = float(row.get("r_co_m", 0.0)) * math.sin(math.radians(float(row.get("plume_elevation_deg", 0.0))))
+        rise = float(row.get("r_co_m", 0.0)) * math.sin(
+            math.radians(float(row.get("plume_elevation_deg", 0.0)))
+        )
         if rise > 0.0:
             levels["centre of oscillation"] = (funnel + rise, Meaning.PLUME)
         altitude, highest = self._column("altitude_m"), max(height for height, _ in levels.values())
@@ -182,8 +247,16 @@ class _Histories:
             for label, (height, colour) in levels.items()
             if np.nanquantile(np.abs(altitude - height), 0.95) > _HIDDEN
         ]
-        y_range = min(funnel - 1.0, float(altitude.min()) - 0.2), max(highest + 1.0, float(altitude.max()) + 0.2)
-        return Panel(x_label=_TIME, y_label="Height [m]", lines=[*lines, self._line(altitude)], y_range=y_range)
+        y_range = (
+            min(funnel - 1.0, float(altitude.min()) - 0.2),
+            max(highest + 1.0, float(altitude.max()) + 0.2),
+        )
+        return Panel(
+            x_label=_TIME,
+            y_label="Height [m]",
+            lines=[*lines, self._line(altitude)],
+            y_range=y_range,
+        )
 
     def _mode_panel(self) -> Panel | None:
         """Return the modes that occur, a row each, by name if the run has names; None for a flight in one mode."""
@@ -202,5 +275,8 @@ class _Histories:
             y_label="Mode",
             lines=[Line(x=times, y=rows, label="flown", colour=Meaning.FLOWN)],
             y_range=(-0.5, len(occurring) - 0.5),
-            y_names=[(float(i), names[int(m)] if m < len(names) else f"mode {m:g}") for i, m in enumerate(occurring)],
+            y_names=[
+                (float(i), names[int(m)] if m < len(names) else f"mode {m:g}")
+                for i, m in enumerate(occurring)
+            ],
         )

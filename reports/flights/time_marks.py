@@ -40,7 +40,9 @@ class _Word(NamedTuple):
     align: Literal["left", "center", "right"]
 
 
-def marks_beside(x: Array, y: Array, words: Sequence[str], drawn: Sequence[Line], size: float) -> tuple[list[Line], list[Note]]:
+def marks_beside(
+    x: Array, y: Array, words: Sequence[str], drawn: Sequence[Line], size: float
+) -> tuple[list[Line], list[Note]]:
     """Return marks, each with its word to a side or a corner of it, where the fewest curves are.
 
     Parameters
@@ -54,21 +56,32 @@ def marks_beside(x: Array, y: Array, words: Sequence[str], drawn: Sequence[Line]
     notes: list[Note] = []
     taken: list[_Word] = []
     # Beyond all curves the figure may end, and cut a word off.
-    points = np.concatenate([np.empty((0, 2)), *(np.column_stack([line.x, line.y]) for line in drawn)])
+    points = np.concatenate(
+        [np.empty((0, 2)), *(np.column_stack([line.x, line.y]) for line in drawn)]
+    )
     points = points[np.isfinite(points).all(axis=1)]
     corners = (points.min(axis=0), points.max(axis=0)) if len(points) else None
     for i, text in enumerate(words):
-        free = [word for word in _places(float(x[i]), float(y[i]), text, size) if not any(_touch(word, of) for of in taken)]
+        free = [
+            word
+            for word in _places(float(x[i]), float(y[i]), text, size)
+            if not any(_touch(word, of) for of in taken)
+        ]
         passes = {word: sum(_passes(line, word) for line in drawn) for word in free}
         if bearable := [word for word in free if passes[word] <= _PASSES_MAX]:
-            word = min(bearable, key=lambda word: (corners is None or not _within(word, *corners), passes[word]))
+            word = min(
+                bearable,
+                key=lambda word: (corners is None or not _within(word, *corners), passes[word]),
+            )
             taken.append(word)
             kept.append(i)
             notes.append(Note(x=word.at, y=word.middle[1], text=text, align=word.align))
     return _dots(x[kept], y[kept]), notes
 
 
-def marks_in_a_row(x: Array, y: Array, words: Sequence[str], height: float, length: float) -> tuple[list[Line], list[Note]]:
+def marks_in_a_row(
+    x: Array, y: Array, words: Sequence[str], height: float, length: float
+) -> tuple[list[Line], list[Note]]:
     """Return marks along a track that goes across the page, and their words at a height above it, as many as there is room for.
 
     A line leads from a mark to its word.
@@ -80,7 +93,9 @@ def marks_in_a_row(x: Array, y: Array, words: Sequence[str], height: float, leng
             notes.append(Note(x=right, y=height, text=text))
             # From far above its mark a word could be that of any.
             leads = np.array([above, height - _UNDER * length])
-            lines.append(Line(x=np.full(2, right), y=leads, label="", colour=Meaning.SHIP, style="thin"))
+            lines.append(
+                Line(x=np.full(2, right), y=leads, label="", colour=Meaning.SHIP, style="thin")
+            )
     return lines, notes
 
 
@@ -103,7 +118,9 @@ def _places(x: float, y: float, text: str, size: float) -> Iterable[_Word]:
 
 def _within(word: _Word, least: Array, most: Array) -> bool:
     """Return whether a word stands between two corners, shape (2,) each."""
-    inside = (least <= np.subtract(word.middle, word.half)) & (np.add(word.middle, word.half) <= most)
+    inside = (least <= np.subtract(word.middle, word.half)) & (
+        np.add(word.middle, word.half) <= most
+    )
     return bool(inside.all())
 
 
@@ -114,7 +131,9 @@ def _touch(one: _Word, other: _Word) -> bool:
 def _passes(line: Line, word: _Word) -> int:
     """Return how often a curve goes through a word."""
     x, y = _filled(line)
-    inside = (np.abs(x - word.middle[0]) < word.half[0]) & (np.abs(y - word.middle[1]) < word.half[1])
+    inside = (np.abs(x - word.middle[0]) < word.half[0]) & (
+        np.abs(y - word.middle[1]) < word.half[1]
+    )
     return int(np.count_nonzero(inside[1:] & ~inside[:-1])) + int(inside[:1].any())
 
 

@@ -64,7 +64,9 @@ def track_chart(view: FlightView) -> Chart:
     return _Tracks(view).chart()
 
 
-def track_picture(shown: Sequence[tuple[Trial, "pd.Series[Any]", str]], told: str = "") -> Chart | None:
+def track_picture(
+    shown: Sequence[tuple[Trial, "pd.Series[Any]", str]], told: str = ""
+) -> Chart | None:
     """Return a large picture of flights side by side, each about its ship; all tracks of a flight that is alone.
 
     Parameters
@@ -76,7 +78,11 @@ def track_picture(shown: Sequence[tuple[Trial, "pd.Series[Any]", str]], told: st
     -------
     The figure, or None if no flight has a time history.
     """
-    found = [(_Tracks(view), title) for trial, row, title in shown if (view := flight_view(trial, row)) is not None]
+    found = [
+        (_Tracks(view), title)
+        for trial, row, title in shown
+        if (view := flight_view(trial, row)) is not None
+    ]
     if not found:
         return None
     if len(found) == 1:
@@ -84,7 +90,9 @@ def track_picture(shown: Sequence[tuple[Trial, "pd.Series[Any]", str]], told: st
         return replace(chart, name=_PICTURE, caption=chart.caption + told)
     panels = [tracks.picture(title) for tracks, title in found]
     words = _words([tracks.about for tracks, _ in found], panels)
-    return Chart(name=_PICTURE, caption=words + told, panels=panels, columns=len(panels), panel_height=0.42)
+    return Chart(
+        name=_PICTURE, caption=words + told, panels=panels, columns=len(panels), panel_height=0.42
+    )
 
 
 class _Tracks:
@@ -94,16 +102,26 @@ class _Tracks:
         self.view = view
         nearest = int(view.whole.index.get_indexer(view.closest.index)[0])
         # What stands still in a panel is as it was at the closest approach.
-        self.about = surroundings(view.config, view.row, view.whole, nearest) if view.vessel else None
+        self.about = (
+            surroundings(view.config, view.row, view.whole, nearest) if view.vessel else None
+        )
         self._step = next((s for s in _STEPS if view.ends[1] / s <= _MARKS_MAX), _STEPS[-1])
 
     def chart(self, aspect: float = _BESIDE) -> Chart:
         """Return where it went; of two panels beside each other each has an aspect."""
         about = self.about
         if about is None:
-            return Chart(name="tracks", caption=_words([about], []), panels=[in_kilometres(self.ground())], panel_height=0.42)
+            return Chart(
+                name="tracks",
+                caption=_words([about], []),
+                panels=[in_kilometres(self.ground())],
+                panel_height=0.42,
+            )
         near, (ground, height) = self._near(about, aspect), self._below()
-        panels = [self._whole(about, "The whole flight", aspect if near else _WIDE), *([near] if near else [])]
+        panels = [
+            self._whole(about, "The whole flight", aspect if near else _WIDE),
+            *([near] if near else []),
+        ]
         return Chart(
             name="tracks",
             caption=_words([about], panels) + (_ground_words(ground) if ground else ""),
@@ -115,7 +133,9 @@ class _Tracks:
 
     def picture(self, title: str) -> Panel:
         """Return the whole flight in one panel."""
-        return in_kilometres(self.ground(title) if self.about is None else self._whole(self.about, title, _UPRIGHT))
+        return in_kilometres(
+            self.ground(title) if self.about is None else self._whole(self.about, title, _UPRIGHT)
+        )
 
     def _whole(self, about: Surroundings, title: str, aspect: float) -> Panel:
         """Return the whole flight, seen from the ship with her plume up the page."""
@@ -130,7 +150,9 @@ class _Tracks:
         ship = ship_lines(about, about.axis)
         marked, notes = self._times(about_the_plume, [*ship, *lines], until=view.settled_at)
         lines += marked
-        return ship_panel(about, lines, title=title, notes=notes, shown=[*ship, *lines], aspect=aspect)
+        return ship_panel(
+            about, lines, title=title, notes=notes, shown=[*ship, *lines], aspect=aspect
+        )
 
     def _near(self, about: Surroundings, aspect: float) -> Panel | None:
         """Return the last of the flight from near; None where it never settled, or where the whole is no larger."""
@@ -142,7 +164,10 @@ class _Tracks:
             return None
         track = late.line(about_the_plume, late.whole, "flown", Meaning.FLOWN)
         reference = self._reference(about_the_plume, late.whole)
-        size, whole = (max(float(np.ptp(x)), float(np.ptp(y))) for x, y in ((track.x, track.y), about_the_plume(view.samples)))
+        size, whole = (
+            max(float(np.ptp(x)), float(np.ptp(y)))
+            for x, y in ((track.x, track.y), about_the_plume(view.samples))
+        )
         if size > _NEARER * max(whole, 2.0 * view.radius):
             return None
         lines = [*late.guarded(about_the_plume), track, reference, *late.marks(about_the_plume)]
@@ -168,13 +193,17 @@ class _Tracks:
         up = way or 0.0
 
         def place(samples: pd.DataFrame, prefix: str = "") -> tuple[Array, Array]:
-            return turned(column(samples, f"{prefix}north_m"), column(samples, f"{prefix}east_m"), up)
+            return turned(
+                column(samples, f"{prefix}north_m"), column(samples, f"{prefix}east_m"), up
+            )
 
         lines: list[Line] = []
         if about is not None:
             (x, y), track = place(view.closest, "vessel_"), place(view.samples, "vessel_")
             lines += ship_lines(about, up, float(x[0]), float(y[0]))
-            lines.append(Line(x=track[0], y=track[1], label=_WAY, colour=Meaning.SHIP, style="thin"))
+            lines.append(
+                Line(x=track[0], y=track[1], label=_WAY, colour=Meaning.SHIP, style="thin")
+            )
         lines += [
             *view.guarded(place),
             view.line(place, view.samples, "flown", Meaning.FLOWN),
@@ -182,24 +211,42 @@ class _Tracks:
             *view.marks(place, far=self._goes_far()),
             *view.ends_of(place),
         ]
-        marked, notes = self._times(place, lines, until=float(view.ends[1]), in_a_row=way is not None)
-        labels = ("East [m]", "North [m]") if way is None else ("Along the ship's way [m]", "To port [m]")
-        panel = Panel(x_label=labels[0], y_label=labels[1], title=title, lines=[*lines, *marked], notes=notes)
+        marked, notes = self._times(
+            place, lines, until=float(view.ends[1]), in_a_row=way is not None
+        )
+        labels = (
+            ("East [m]", "North [m]")
+            if way is None
+            else ("Along the ship's way [m]", "To port [m]")
+        )
+        panel = Panel(
+            x_label=labels[0], y_label=labels[1], title=title, lines=[*lines, *marked], notes=notes
+        )
         wind = None if about is None else (about.wind[0], about.wind[1] - up)
         if way is None:
-            wide, high = np.ptp(np.array([place(view.samples), place(view.samples, "vessel_" if view.vessel else "")]), axis=(0, 2))
+            wide, high = np.ptp(
+                np.array(
+                    [place(view.samples), place(view.samples, "vessel_" if view.vessel else "")]
+                ),
+                axis=(0, 2),
+            )
             flat = float(np.clip(wide / max(high, 1.0), _BESIDE, _WIDE))
         return on_map(panel, north=-up, wind=wind, aspect=flat)
 
     def _ship(self) -> Array:
         """Return where the ship was, north and east, shape (n, 2) [m]."""
-        return np.column_stack([column(self.view.samples, f"vessel_{axis}_m") for axis in ("north", "east")])
+        return np.column_stack(
+            [column(self.view.samples, f"vessel_{axis}_m") for axis in ("north", "east")]
+        )
 
     def _goes_far(self) -> bool:
         """Return whether there is a ship that goes farther than the track about her is wide."""
         if not self.view.vessel:
             return False
-        (north, east), size = np.ptp(self._ship(), axis=0), np.nanmax(np.hypot(*about_the_plume(self.view.samples)))
+        (north, east), size = (
+            np.ptp(self._ship(), axis=0),
+            np.nanmax(np.hypot(*about_the_plume(self.view.samples))),
+        )
         return bool(np.hypot(north, east) >= _AWAY * size)
 
     def _way(self) -> float | None:
@@ -207,7 +254,9 @@ class _Tracks:
         if not self._goes_far():
             return None
         places = self._ship()
-        legs = np.diff(places[np.linspace(0, len(places) - 1, min(_LEGS + 1, len(places))).astype(int)], axis=0)
+        legs = np.diff(
+            places[np.linspace(0, len(places) - 1, min(_LEGS + 1, len(places))).astype(int)], axis=0
+        )
         legs = legs[np.hypot(*legs.T) > 0.0]
         if float(np.ptp(np.unwrap(np.arctan2(legs[:, 1], legs[:, 0])))) > _TURNED:
             return None
@@ -220,7 +269,9 @@ class _Tracks:
         x, y = place(_reference_of(samples))
         return Line(x=x, y=y, label="reference", colour=Meaning.ASKED, style="thin")
 
-    def _times(self, place: Place, drawn: Sequence[Line], *, until: float, in_a_row: bool = False) -> tuple[list[Line], list[Note]]:
+    def _times(
+        self, place: Place, drawn: Sequence[Line], *, until: float, in_a_row: bool = False
+    ) -> tuple[list[Line], list[Note]]:
         """Return marks at round times up to some [s]: beside a track among what is drawn, or in a row above all of it."""
         times = np.arange(self._step, until - 0.3 * self._step, self._step)
         (x, y), flown = place(self.view.at_times(times)), place(self.view.samples)
@@ -243,7 +294,11 @@ def _ground_words(panel: Panel) -> str:
     """Return what a map over the ground shows below those about the ship."""
     still = seen([panel])
     names = f"{', '.join(still[:-1])} and {still[-1]}" if len(still) > 1 else "".join(still)
-    shown = f", with {names} as {'they were' if len(still) > 1 else 'it was'} at the closest approach" if still else ""
+    shown = (
+        f", with {names} as {'they were' if len(still) > 1 else 'it was'} at the closest approach"
+        if still
+        else ""
+    )
     return f" Below, over the ground{shown}."
 
 

@@ -15,7 +15,12 @@ from reports.flights.first_page import simulated
 from reports.flights.names import told_name
 from reports.flights.trials.crossing_gaps import gap_lines
 from reports.flights.trials.failures import failure_lines, noteworthy, tracking_lines
-from reports.measurement.flights import sulphur_above, sulphur_below, sulphur_cards, sulphur_headline
+from reports.measurement.flights import (
+    sulphur_above,
+    sulphur_below,
+    sulphur_cards,
+    sulphur_headline,
+)
 from reports.monte_carlo.subset import plain_bound_in_words, subset_headline
 from reports.run.columns import (
     beside_vessel,
@@ -43,7 +48,9 @@ ROUNDING = 1e-9
 _ALLOWED = "not required of every flight"
 """What is said of an outcome where some flights are required to keep out, and no more."""
 
-_COMMAND, _DEMAND = (f"Heading rate {what}, largest, as a ratio to ω_max" for what in ("commanded", "demanded"))
+_COMMAND, _DEMAND = (
+    f"Heading rate {what}, largest, as a ratio to ω_max" for what in ("commanded", "demanded")
+)
 """Names of figures."""
 
 _ERROR = "Tracking error, rms after settling"
@@ -65,8 +72,14 @@ def flight_verdict(run: RunData, trials: list[Trial]) -> Verdict:
     """
     rows, flown = run.summary, flights_flown(run.summary)
     planned = int(run.manifest["flights_planned"])
-    kept = len(flown) > 0 and total(flown, "keepout_violations") == 0 and not np.any(lost(rows) & ~passed(rows))
-    headlines = [words for words in (sulphur_headline(run), _headline(run, trials, flown, planned)) if words]
+    kept = (
+        len(flown) > 0
+        and total(flown, "keepout_violations") == 0
+        and not np.any(lost(rows) & ~passed(rows))
+    )
+    headlines = [
+        words for words in (sulphur_headline(run), _headline(run, trials, flown, planned)) if words
+    ]
     return Verdict(
         holds=kept and not sulphur_above(run),
         complete=count(met(rows)) == planned and sulphur_below(run),
@@ -79,7 +92,11 @@ def flight_verdict(run: RunData, trials: list[Trial]) -> Verdict:
             *(line for trial in trials for line in gap_lines(trial, only=len(trials) == 1)),
             *noteworthy(flown),
         ],
-        figures=[*sulphur_cards(run), *_bound_figure(run, trials), *_figures(trials, flown, planned)],
+        figures=[
+            *sulphur_cards(run),
+            *_bound_figure(run, trials),
+            *_figures(trials, flown, planned),
+        ],
     )
 
 
@@ -119,7 +136,11 @@ def _keeping_out(run: RunData, trials: list[Trial], flown: pd.DataFrame) -> str:
         return f"{subset_headline(led)}; {inside:,} of its {flights} ({simulated(beside)}) violated the keep-out area"
     if violations := total(flown, "keepout_violations"):
         return f"Keep-out violations in {inside:,} of {flights}, {violations:,} in all"
-    shown = f": at most {percent(bound[0])} of such flights violate the area, at {percent(bound[1])} confidence" if bound else ""
+    shown = (
+        f": at most {percent(bound[0])} of such flights violate the area, at {percent(bound[1])} confidence"
+        if bound
+        else ""
+    )
     return f"No keep-out violation in {flights} ({simulated(beside)}){shown}{f', and {alone:,} without a vessel' if alone else ''}"
 
 
@@ -129,7 +150,11 @@ def _flights(rows: pd.DataFrame) -> str:
 
 def _subset(run: RunData) -> "dict[str, Any] | None":
     """Return the statistics of a study by subset simulation; None of any other run."""
-    return run.statistics if run.statistics is not None and run.statistics.get("method") == "subset" else None
+    return (
+        run.statistics
+        if run.statistics is not None and run.statistics.get("method") == "subset"
+        else None
+    )
 
 
 def _detail(run: RunData, trials: list[Trial], flown: pd.DataFrame, planned: int) -> str:
@@ -154,9 +179,13 @@ def _detail(run: RunData, trials: list[Trial], flown: pd.DataFrame, planned: int
         )
     elif len(beside) and (run.statistics is not None or sampled(trials)):
         few = "A single flight sets" if len(beside) == 1 else "So few flights set"
-        sentences.append(f"{few} no bound on the probability of a keep-out violation that is worth stating.")
+        sentences.append(
+            f"{few} no bound on the probability of a keep-out violation that is worth stating."
+        )
     elif len(beside):
-        sentences.append("No bound on a probability follows from these flights: they are no random sample.")
+        sentences.append(
+            "No bound on a probability follows from these flights: they are no random sample."
+        )
     if "required" in rows and (rows["required"] == "keep_out").any():
         alone = rows[rows["required"] == "keep_out"]
         are = "flight is" if len(alone) == 1 else "flights are"
@@ -165,7 +194,9 @@ def _detail(run: RunData, trials: list[Trial], flown: pd.DataFrame, planned: int
             f" {count(completed(alone)):,} completed. For the exit status, it is enough that these kept out."
         )
     if run.manifest.get("state") != "complete":
-        sentences.append(f"The run is {run.manifest.get('state', 'unfinished')}; continue it with --resume.")
+        sentences.append(
+            f"The run is {run.manifest.get('state', 'unfinished')}; continue it with --resume."
+        )
     return " ".join(sentences)
 
 
@@ -211,24 +242,54 @@ def _figures(trials: list[Trial], flown: pd.DataFrame, planned: int) -> list[Car
     beside = beside_vessel(flown)
     limits = column(flown, "heading_rate_limit_rad_s")
     command = largest(column(flown, "heading_rate_command_max_rad_s") / limits)
-    guarded, unable = count(column(flown, "guard_interventions") > 0.0), count(column(flown, "guard_lost_s") > 0.0)
+    guarded, unable = (
+        count(column(flown, "guard_interventions") > 0.0),
+        count(column(flown, "guard_lost_s") > 0.0),
+    )
     crossings, violations = total(flown, "crossing_count"), total(flown, "keepout_violations")
     done, kept, gone = count(completed(flown)), count(kept_out(flown)), count(lost(flown))
     # Of some flights it may be required to keep out, and no more.
     allowed = (_ALLOWED,) if np.any(passed(flown) & ~met(flown)) else ()
-    worst = [_worst([criterion for trial in trials for criterion in criteria_of(trial)], key) for key in MEASURED]
+    worst = [
+        _worst([criterion for trial in trials for criterion in criteria_of(trial)], key)
+        for key in MEASURED
+    ]
     figures = [
-        *([Card("Keep-out violations", f"{violations:,}", "0", violations == 0)] if len(beside) else []),
+        *(
+            [Card("Keep-out violations", f"{violations:,}", "0", violations == 0)]
+            if len(beside)
+            else []
+        ),
         *([_closest_figure(trials, beside)] if len(beside) else []),
-        Card("Missions completed", f"{done:,} of {planned:,}", *(allowed or ("all", done == planned))),
+        Card(
+            "Missions completed", f"{done:,} of {planned:,}", *(allowed or ("all", done == planned))
+        ),
         *(figure for figure in worst if figure),
-        Card(f"Flights flown, {simulated(flown)}", f"{len(flown):,} of {planned:,}", "all", len(flown) == planned),
-        *([Card("Flights that kept out", f"{kept:,} of {len(beside):,}", "all", kept == len(beside))] if len(beside) else []),
+        Card(
+            f"Flights flown, {simulated(flown)}",
+            f"{len(flown):,} of {planned:,}",
+            "all",
+            len(flown) == planned,
+        ),
+        *(
+            [
+                Card(
+                    "Flights that kept out",
+                    f"{kept:,} of {len(beside):,}",
+                    "all",
+                    kept == len(beside),
+                )
+            ]
+            if len(beside)
+            else []
+        ),
         Card("Aircraft lost", f"{gone:,}", *(allowed or ("0", gone == 0))),
         *([Card("Plume crossings after settling", f"{crossings:,}")] if crossings else []),
         *(Card(name, worst) for name, worst in switched_off(trials)),
         *_tracking(flown, told=any(of and _tells_of_all(of.name, len(flown)) for of in worst)),
-        Card(_COMMAND, "none") if command is None else Card(_COMMAND, f"{command:.3f}", "≤ 1", command <= 1.0 + ROUNDING),
+        Card(_COMMAND, "none")
+        if command is None
+        else Card(_COMMAND, f"{command:.3f}", "≤ 1", command <= 1.0 + ROUNDING),
     ]
     if any(trial.setting("guidance.tuning") == "bounded" for trial in trials):
         demand = largest(column(flown, "heading_rate_demand_max_rad_s") / limits)
@@ -237,19 +298,33 @@ def _figures(trials: list[Trial], flown: pd.DataFrame, planned: int) -> list[Car
             words = f"≤ {bound:.4f} in any state"
             figures.append(Card(_DEMAND, f"{demand:.3f}", words, demand <= bound + ROUNDING))
     if guarded:
-        figures.append(Card("Flights in which the guard intervened", f"{guarded:,} of {len(flown):,}"))
+        figures.append(
+            Card("Flights in which the guard intervened", f"{guarded:,} of {len(flown):,}")
+        )
     if unable:
-        figures.append(Card("Flights in which the guard could not hold its own radius for a while", f"{unable:,}"))
+        figures.append(
+            Card(
+                "Flights in which the guard could not hold its own radius for a while",
+                f"{unable:,}",
+            )
+        )
     return figures
 
 
 def _closest_figure(trials: list[Trial], beside: pd.DataFrame) -> Card:
     nearest, shapes = _nearest(beside), {trial.shape for trial in trials}
-    name = f"Closest approach, {trials[0].measured_from}" if len(shapes) == 1 and shapes <= set(SHAPES) else "Closest approach"
+    name = (
+        f"Closest approach, {trials[0].measured_from}"
+        if len(shapes) == 1 and shapes <= set(SHAPES)
+        else "Closest approach"
+    )
     distance, radius = float(nearest["min_distance_m"]), float(nearest["keepout_radius_m"])
     if radii_differ(beside):
         return Card(
-            "Closest approach, beyond the flight's own r_min", f"{approach(distance - radius, 0.0)} m", "≥ 0 m", distance >= radius
+            "Closest approach, beyond the flight's own r_min",
+            f"{approach(distance - radius, 0.0)} m",
+            "≥ 0 m",
+            distance >= radius,
         )
     return Card(name, f"{approach(distance, radius)} m", f"≥ {radius:g} m", distance >= radius)
 
@@ -278,15 +353,23 @@ def _tracking(flown: pd.DataFrame, *, told: bool) -> list[Card]:
 
 def _worst(criteria: list[Criterion], key: str) -> Card | None:
     """Return the worst figure of a criterion among all trials: the largest fraction of its trial's limit."""
-    known = [criterion for criterion in criteria if criterion.key == key and not math.isnan(criterion.fraction)]
+    known = [
+        criterion
+        for criterion in criteria
+        if criterion.key == key and not math.isnan(criterion.fraction)
+    ]
     if not known:
         return None
     worst = max(known, key=lambda criterion: criterion.fraction)
     failed = sum(criterion.flown_failed for criterion in criteria if criterion.key == key)
-    missing = [criterion.missing for criterion in criteria if criterion.key == key and criterion.missing]
+    missing = [
+        criterion.missing for criterion in criteria if criterion.key == key and criterion.missing
+    ]
     # Flights that were flown and have no figure fail the criterion; of those that were not another tile tells.
     without = f" ({'; '.join(missing)})" if missing and worst.fraction <= 1.0 else ""
     # The tracking error of every trial is a figure of its own, which may be larger where nothing limits it.
-    everywhere = sum(criterion.key == key for criterion in criteria) == sum(criterion.key == "mission" for criterion in criteria)
+    everywhere = sum(criterion.key == key for criterion in criteria) == sum(
+        criterion.key == "mission" for criterion in criteria
+    )
     of = "" if everywhere else _LIMITED
     return Card(f"{worst.what}, worst{of}{without}", worst.worst, worst.limit, not failed)

@@ -9,7 +9,16 @@ from reports.document.chart import Chart, Line, Note, Panel
 from reports.document.map_marks import on_map
 from reports.document.palette import Meaning
 from reports.document.panels import around, level
-from reports.measurement.data import SINCE, Record, after_gap, errors, finite, in_parts, over_time, value
+from reports.measurement.data import (
+    SINCE,
+    Record,
+    after_gap,
+    errors,
+    finite,
+    in_parts,
+    over_time,
+    value,
+)
 from reports.run.columns import Array, column
 from reports.run.time_history import thinned
 
@@ -47,16 +56,27 @@ def over_time_chart(record: Record, since: str = SINCE) -> Chart | None:
     table = over_time(record)
     if len(table) < 2:
         return None
-    time, low, high, found = (column(table, name) for name in ("elapsed_s", "low_percent", "high_percent", "fsc_percent"))
+    time, low, high, found = (
+        column(table, name) for name in ("elapsed_s", "low_percent", "high_percent", "fsc_percent")
+    )
     limits = [float(verdict["limit_percent"]) for verdict in record["estimate"]["verdicts"]]
     around_it = np.concatenate([time, time[::-1]])
     lines = [
         Line(
-            x=around_it, y=np.concatenate([low, high[::-1]]), label="95 % interval", colour=Meaning.FLOWN, style="thin", fill=True
+            x=around_it,
+            y=np.concatenate([low, high[::-1]]),
+            label="95 % interval",
+            colour=Meaning.FLOWN,
+            style="thin",
+            fill=True,
         ),
         Line(x=time, y=found, label="estimate", colour=Meaning.FLOWN),
     ]
-    top = 1.25 * max(float(np.max(found)), float(high[-1]), *(limit for limit in limits if limit < 2.0 * float(high[-1])))
+    top = 1.25 * max(
+        float(np.max(found)),
+        float(high[-1]),
+        *(limit for limit in limits if limit < 2.0 * float(high[-1])),
+    )
     told = [limit for limit in limits if limit < top]
     lines += [level(time, limit, "limit", Meaning.LIMIT) for limit in told]
     # The legend would have the same dashes for each.
@@ -74,7 +94,12 @@ def over_time_chart(record: Record, since: str = SINCE) -> Chart | None:
     # An estimate may be below 0, though its interval is cut there.
     y_range = (1.25 * min(0.0, float(np.min(found))), top)
     panel = Panel(
-        x_label=f"Time since {since} [s]", y_label=_FSC, lines=lines, notes=notes, y_range=y_range, x_range=(0.0, float(time[-1]))
+        x_label=f"Time since {since} [s]",
+        y_label=_FSC,
+        lines=lines,
+        notes=notes,
+        y_range=y_range,
+        x_range=(0.0, float(time[-1])),
     )
     caption = "Fuel sulphur content from all readings up to a time, with its 95 % interval."
     return Chart(name="fsc-over-time", caption=caption, panels=[panel], panel_height=0.21)
@@ -91,7 +116,15 @@ def budget_chart(record: Record) -> Chart | None:
         row = float(len(parts) - 1 - i)
         edges = np.array([-1.0, -1.0, 1.0, 1.0, -1.0]) * 0.5 * _BAR + row
         label, colour = _BARS.get(name, ("common errors: do not fall", "blue"))
-        lines.append(Line(x=np.array([0.0, size, size, 0.0, 0.0]), y=edges, label=label, colour=colour, fill=True))
+        lines.append(
+            Line(
+                x=np.array([0.0, size, size, 0.0, 0.0]),
+                y=edges,
+                label=label,
+                colour=colour,
+                fill=True,
+            )
+        )
         notes.append(Note(x=size, y=row, text=f"  {size:.4f}", align="left"))
     widest = max(size for _, size in parts)
     panel = Panel(
@@ -104,7 +137,10 @@ def budget_chart(record: Record) -> Chart | None:
         y_names=[(float(len(parts) - 1 - i), name) for i, (name, _) in enumerate(parts)],
     )
     return Chart(
-        name="budget", caption="Parts of the standard uncertainty, 1σ; they add in squares.", panels=[panel], panel_height=0.26
+        name="budget",
+        caption="Parts of the standard uncertainty, 1σ; they add in squares.",
+        panels=[panel],
+        panel_height=0.26,
     )
 
 
@@ -124,7 +160,12 @@ def channels_chart(samples: pd.DataFrame, x_label: str = _TIME) -> Chart:
     if nox:
         panels.append(Panel(x_label=x_label, y_label="NOx [ppb]", lines=nox))
     equal = [
-        Line(x=time, y=column(rows, "so2_excess_ppb"), label="SO2, corrected and equalised", colour="orange"),
+        Line(
+            x=time,
+            y=column(rows, "so2_excess_ppb"),
+            label="SO2, corrected and equalised",
+            colour="orange",
+        ),
         Line(x=time, y=column(rows, "fit_ppb"), label="what CO2 explains", colour="black"),
     ]
     panels.append(Panel(x_label=x_label, y_label="ΔSO2 [ppb]", lines=equal))
@@ -134,7 +175,9 @@ def channels_chart(samples: pd.DataFrame, x_label: str = _TIME) -> Chart:
     )
     if not np.isfinite(column(rows, "co2_ppm")).all():
         caption += " Lines end where the log has no readings, and where a channel of another delay has none yet or no more."
-    return Chart(name="channels", caption=caption, panels=panels, columns=2, share_x=True, panel_height=0.125)
+    return Chart(
+        name="channels", caption=caption, panels=panels, columns=2, share_x=True, panel_height=0.125
+    )
 
 
 def _readings(rows: pd.DataFrame, time: Array, gas: str, unit: str) -> list[Line]:
@@ -154,27 +197,40 @@ def regression_chart(samples: pd.DataFrame, record: Record) -> Chart | None:
         return None
     ends = np.array([float(np.nanmin(co2)), float(np.nanmax(co2))])
     # Beside the background the mean of both is 0, wherever they are shown from.
-    middle_co2, middle_so2 = (float(np.nanmean(column(samples, name))) for name in ("co2_excess_ppm", "so2_excess_ppb"))
+    middle_co2, middle_so2 = (
+        float(np.nanmean(column(samples, name))) for name in ("co2_excess_ppm", "so2_excess_ppb")
+    )
     scatter = Panel(
         x_label="CO2 excess [ppm]",
         y_label="SO2 excess [ppb]",
         title="Samples at one response",
         lines=[
             Line(x=co2, y=so2, label="sample", colour="blue", style="points"),
-            Line(x=ends, y=middle_so2 + slope * (ends - middle_co2), label=f"slope {slope:.3f} ppb/ppm", colour="black"),
+            Line(
+                x=ends,
+                y=middle_so2 + slope * (ends - middle_co2),
+                label=f"slope {slope:.3f} ppb/ppm",
+                colour="black",
+            ),
         ],
     )
     panels = [scatter, *_groups(record)]
     factor = fsc_factor(float(record.get("carbon") or CARBON_FRACTION))
     assumed = value(found, "assumed_percent")
-    corrected = f", and {assumed:+.3f} % for NO and NO2 that the log does not have" if abs(assumed) >= ASSUMED_LEAST else ""
+    corrected = (
+        f", and {assumed:+.3f} % for NO and NO2 that the log does not have"
+        if abs(assumed) >= ASSUMED_LEAST
+        else ""
+    )
     caption = (
         "SO2 over CO2 without background, at the response of the slowest channel; the sulphur content by regression is"
         f" {factor:.4f} times the slope{corrected}."
         + " Groups of passes: neighbouring ones together, with their noise, 1σ."
         * (len(panels) > 1)
     )
-    return Chart(name="regression", caption=caption, panels=panels, columns=len(panels), panel_height=0.21)
+    return Chart(
+        name="regression", caption=caption, panels=panels, columns=len(panels), panel_height=0.21
+    )
 
 
 def _by_regression(record: Record) -> Record:
@@ -185,40 +241,81 @@ def _by_regression(record: Record) -> Record:
 
 def _groups(record: Record) -> list[Panel]:
     found = _by_regression(record)
-    percent, deviation = (np.array(found.get(name) or [], dtype=np.float64) for name in ("pass_percent", "pass_deviation_percent"))
+    percent, deviation = (
+        np.array(found.get(name) or [], dtype=np.float64)
+        for name in ("pass_percent", "pass_deviation_percent")
+    )
     if len(percent) < 2:
         return []
     number = np.arange(1.0, len(percent) + 1.0)
     lines = [
-        Line(x=number, y=percent, label="group of passes", colour="blue", style="points", error=deviation),
+        Line(
+            x=number,
+            y=percent,
+            label="group of passes",
+            colour="blue",
+            style="points",
+            error=deviation,
+        ),
         level(number, value(found, "fsc_percent"), "all passes", "black"),
     ]
     return [
-        Panel(x_label="Group of passes", y_label=_FSC, title="Groups of passes", lines=lines, x_range=around(number), x_whole=True)
+        Panel(
+            x_label="Group of passes",
+            y_label=_FSC,
+            title="Groups of passes",
+            lines=lines,
+            x_range=around(number),
+            x_whole=True,
+        )
     ]
 
 
 def logged_track_chart(samples: pd.DataFrame) -> Chart | None:
     """Return the CO2 reading along the track in plan, and in height over distance; None where the place is not known."""
     rows = _dense(samples)
-    north, east, height, co2 = (column(rows, name) for name in ("north_m", "east_m", "height_m", "co2_ppm"))
+    north, east, height, co2 = (
+        column(rows, name) for name in ("north_m", "east_m", "height_m", "co2_ppm")
+    )
     panels = []
     if finite(north, east):
         lines = _coloured(east, north, co2)
-        sides = sorted((float(np.nanmax(north) - np.nanmin(north)), float(np.nanmax(east) - np.nanmin(east))))
+        sides = sorted(
+            (float(np.nanmax(north) - np.nanmin(north)), float(np.nanmax(east) - np.nanmin(east)))
+        )
         plan = Panel(x_label="East [m]", y_label="North [m]", title="In plan", lines=lines)
         # A long and narrow track is not drawn to one scale, and is no map.
-        panels.append(in_kilometres(on_map(plan, north=0.0, aspect=_ASPECT) if sides[1] < _LONG * sides[0] else plan))
+        panels.append(
+            in_kilometres(
+                on_map(plan, north=0.0, aspect=_ASPECT) if sides[1] < _LONG * sides[0] else plan
+            )
+        )
         distance = np.concatenate([[0.0], np.nancumsum(np.hypot(np.diff(north), np.diff(east)))])
         if finite(height):
             lines = _coloured(distance, height, co2)
-            panels.append(in_kilometres(Panel(x_label="Distance flown [m]", y_label="Height [m]", title="In height", lines=lines)))
+            panels.append(
+                in_kilometres(
+                    Panel(
+                        x_label="Distance flown [m]",
+                        y_label="Height [m]",
+                        title="In height",
+                        lines=lines,
+                    )
+                )
+            )
     if not panels:
         return None
     caption = "CO2 reading by the colour of the track. The reading is late by the delay and the response of its channel."
     if len(rows) < POINTS_MAX:
         caption += " Where the log has no readings, no track is drawn."
-    return Chart(name="track", caption=caption, panels=panels, columns=len(panels), panel_height=0.22, scale_label="CO2 [ppm]")
+    return Chart(
+        name="track",
+        caption=caption,
+        panels=panels,
+        columns=len(panels),
+        panel_height=0.22,
+        scale_label="CO2 [ppm]",
+    )
 
 
 def _dense(samples: pd.DataFrame) -> pd.DataFrame:

@@ -4,7 +4,13 @@ from collections.abc import Sequence
 
 from reports.document.blocks import Block, Findings, Section
 from reports.document.chart import Chart
-from reports.measurement.charts import budget_chart, channels_chart, logged_track_chart, over_time_chart, regression_chart
+from reports.measurement.charts import (
+    budget_chart,
+    channels_chart,
+    logged_track_chart,
+    over_time_chart,
+    regression_chart,
+)
 from reports.measurement.data import read_estimate, read_samples
 from reports.measurement.facts import logged_facts
 from reports.measurement.instrument_tables import assumption_table, instrument_table
@@ -17,9 +23,15 @@ def measurement_content(run: RunData) -> Findings:
     """Return the findings of a measured flight."""
     record, samples = read_estimate(run), read_samples(run)
     shown = (
-        [] if samples is None else _there(regression_chart(samples, record), logged_track_chart(samples), channels_chart(samples))
+        []
+        if samples is None
+        else _there(
+            regression_chart(samples, record), logged_track_chart(samples), channels_chart(samples)
+        )
     )
-    result = _there(result_table(record), over_time_chart(record), over_time_table(record), budget_chart(record))
+    result = _there(
+        result_table(record), over_time_chart(record), over_time_table(record), budget_chart(record)
+    )
     sections = [
         Section(anchor="result", title="Result", blocks=result),
         Section(anchor="signals", title="Signals", blocks=shown),
@@ -33,10 +45,17 @@ def measurement_content(run: RunData) -> Findings:
     ]
     figures = record["estimate"]["figures"]
     flown = f"A flight of {figures['duration_s']:.0f} s with {figures['passes']} passes through the plume."
-    pictures = _there(over_time_chart(record), *([] if samples is None else _there(regression_chart(samples, record))))
+    pictures = _there(
+        over_time_chart(record),
+        *([] if samples is None else _there(regression_chart(samples, record))),
+    )
     picture = next((chart for chart in pictures if isinstance(chart, Chart)), None)
     return Findings(
-        flown=flown, verdict=measurement_verdict(record), picture=picture, sections=sections, facts=logged_facts(run, record)
+        flown=flown,
+        verdict=measurement_verdict(record),
+        picture=picture,
+        sections=sections,
+        facts=logged_facts(run, record),
     )
 
 

@@ -37,7 +37,9 @@ def read_estimate(run: RunData) -> Record:
     try:
         record = json.loads((run.path / ESTIMATE).read_text(encoding="utf-8"))
     except (OSError, ValueError, RecursionError) as error:
-        raise ReportError(f"'{run.path}': {ESTIMATE} cannot be read: {error}; measure the flight again") from None
+        raise ReportError(
+            f"'{run.path}': {ESTIMATE} cannot be read: {error}; measure the flight again"
+        ) from None
     if not (isinstance(record, dict) and isinstance(record.get("estimate"), dict)):
         raise ReportError(f"'{run.path}': {ESTIMATE} holds no estimate; measure the flight again")
     return record
@@ -71,7 +73,11 @@ def errors(record: Record) -> list[tuple[str, float]]:
     """Return the parts of the uncertainty by their words, the largest first, noise among them [% m/m]."""
     found = record["estimate"]
     parts = {"noise": value(found, "noise_percent"), **found["common_percent"]}
-    named = [(WORDS.get(name, name), float(part)) for name, part in parts.items() if part is not None and np.isfinite(part)]
+    named = [
+        (WORDS.get(name, name), float(part))
+        for name, part in parts.items()
+        if part is not None and np.isfinite(part)
+    ]
     return sorted(named, key=lambda item: -item[1])
 
 
@@ -98,7 +104,9 @@ def measured_minutes(run: RunData, rows: pd.DataFrame) -> Array:
     duration = column(rows, "duration_s")
     windows = [config.get("flight", {}).get("measured_s") for config in flight_configs(run, rows)]
     window = np.array([np.nan if seconds is None else float(seconds) for seconds in windows])
-    measured = np.where(np.isnan(window), duration - column(rows, "settling_time_s"), np.fmin(window, duration))
+    measured = np.where(
+        np.isnan(window), duration - column(rows, "settling_time_s"), np.fmin(window, duration)
+    )
     minutes: Array = measured / 60.0
     return minutes
 
@@ -106,13 +114,19 @@ def measured_minutes(run: RunData, rows: pd.DataFrame) -> Array:
 def after_gap(samples: pd.DataFrame) -> Mask:
     """Return which samples follow a gap of the log: they are farther than others from the one before."""
     steps = np.diff(column(samples, "time_s"))
-    return np.concatenate([[False], steps > _APART * np.median(steps)]) if len(steps) else np.zeros(len(samples), dtype=np.bool_)
+    return (
+        np.concatenate([[False], steps > _APART * np.median(steps)])
+        if len(steps)
+        else np.zeros(len(samples), dtype=np.bool_)
+    )
 
 
 def in_parts(samples: pd.DataFrame) -> pd.DataFrame:
     """Return samples with an empty row in each gap of the log, where a line through them ends."""
     order = np.arange(len(samples), dtype=np.float64)
-    return samples.set_axis(order).reindex(np.sort(np.concatenate([order, order[after_gap(samples)] - 0.5])))
+    return samples.set_axis(order).reindex(
+        np.sort(np.concatenate([order, order[after_gap(samples)] - 0.5]))
+    )
 
 
 def finite(*columns: Array) -> bool:

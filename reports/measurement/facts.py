@@ -36,8 +36,14 @@ def logged_facts(run: RunData, record: Record) -> list[Fact]:
         Fact("Place", _place_words(flight)),
         Fact("Ship", _ship_words(details)),
         *operator,
-        Fact("Instrument", f"{record['instrument']['title']}; its figures are in “Instrument and assumptions”"),
-        Fact("Log", f"{manifest['source']}, {flight['readings']:,} rows, SHA-256 {manifest['source_hash']}"),
+        Fact(
+            "Instrument",
+            f"{record['instrument']['title']}; its figures are in “Instrument and assumptions”",
+        ),
+        Fact(
+            "Log",
+            f"{manifest['source']}, {flight['readings']:,} rows, SHA-256 {manifest['source_hash']}",
+        ),
         *(Fact(*told) for told in Gaps(**record["gaps"]).told.items()),
         Fact("Program", f"{version}, source revision {manifest['git_revision']}"),
     ]
@@ -65,7 +71,9 @@ def _place_words(flight: dict[str, Any]) -> str:
 
 
 def _ship_words(details: dict[str, Any]) -> str:
-    numbers = [f"{name.upper()} {details[name]}" for name in ("imo", "mmsi") if details[name] is not None]
+    numbers = [
+        f"{name.upper()} {details[name]}" for name in ("imo", "mmsi") if details[name] is not None
+    ]
     named = ", ".join(part for part in (details["vessel"], *numbers) if part)
     return named + _CONFIGURED if named else "not named in the configuration"
 
@@ -89,10 +97,18 @@ def _sensor_words(name: str) -> str:
 
 def _places(rows: pd.DataFrame) -> str:
     """Return where the ship was at time 0."""
-    known = pd.DataFrame({name: column(rows, f"place_{name}_deg") for name in ("latitude", "longitude")}).dropna().drop_duplicates()
+    known = (
+        pd.DataFrame(
+            {name: column(rows, f"place_{name}_deg") for name in ("latitude", "longitude")}
+        )
+        .dropna()
+        .drop_duplicates()
+    )
     if not len(known):
         return ""
-    words = [position_words(latitude, longitude) for latitude, longitude in known.itertuples(index=False)]
+    words = [
+        position_words(latitude, longitude) for latitude, longitude in known.itertuples(index=False)
+    ]
     more = f", and {len(words) - 1:,} more" if len(words) > 1 else ""
     return f"{words[0]}{more} (the ship at time 0, by the scenario)"
 

@@ -20,7 +20,10 @@ _METHODS = {"fsc": "regression", "areas_fsc": "areas"}
 _POINTS_MAX = 4000
 """Points of a track at most."""
 
-_AXES = {"crossing_interval_mean_s": "Crossing interval [s]", "crossing_distance_mean_m": "Crossing distance [m]"}
+_AXES = {
+    "crossing_interval_mean_s": "Crossing interval [s]",
+    "crossing_distance_mean_m": "Crossing distance [m]",
+}
 
 _BARS_MAX = 60
 """Flights of a sensor up to which their 95 % intervals are drawn as error bars."""
@@ -45,17 +48,36 @@ def error_chart(rows: pd.DataFrame) -> Chart:
     for prefix, title in _METHODS.items():
         lines, limits = [], _positive(rows, prefix) if wide else None
         for number, (sensor, group) in enumerate(rows.groupby("sensor")):
-            shown, colour = _side_by_side(column(group, "fsc_expected_percent")), series_colour(number)
-            found, low, high = (column(group, f"{prefix}_{end}percent") for end in ("", "low_", "high_"))
+            shown, colour = (
+                _side_by_side(column(group, "fsc_expected_percent")),
+                series_colour(number),
+            )
+            found, low, high = (
+                column(group, f"{prefix}_{end}percent") for end in ("", "low_", "high_")
+            )
             # What lies below a logarithmic scale, as all that is not above 0, stands at its lower edge.
             cut = found < limits[0] if limits else np.zeros(len(group), dtype=bool)
             found = np.where(cut, _EDGE * limits[0] if limits else found, found)
-            error = np.maximum([found - low, high - found], 0.0) if len(group) <= _BARS_MAX else None
-            parts: dict[Style, tuple[str, Mask]] = {"points": (str(sensor), ~cut), "diamonds": (f"{sensor}, below the scale", cut)}
+            error = (
+                np.maximum([found - low, high - found], 0.0) if len(group) <= _BARS_MAX else None
+            )
+            parts: dict[Style, tuple[str, Mask]] = {
+                "points": (str(sensor), ~cut),
+                "diamonds": (f"{sensor}, below the scale", cut),
+            }
             for style, (label, which) in parts.items():
                 bars = None if error is None else error[:, which]
                 if which.any():
-                    lines.append(Line(x=shown[which], y=found[which], label=label, colour=colour, style=style, error=bars))
+                    lines.append(
+                        Line(
+                            x=shown[which],
+                            y=found[which],
+                            label=label,
+                            colour=colour,
+                            style=style,
+                            error=bars,
+                        )
+                    )
             below[title] += int(np.count_nonzero(cut))
         lines.append(Line(x=ends, y=ends, label="perfect", colour="black", style="dash"))
         panels.append(
@@ -75,7 +97,9 @@ def error_chart(rows: pd.DataFrame) -> Chart:
 
 def _positive(rows: pd.DataFrame, prefix: str) -> tuple[float, float]:
     expected, found = rows["fsc_expected_percent"], column(rows, f"{prefix}_percent")
-    return 0.2 * float(expected.min()), 1.5 * max(float(expected.max()), *found[np.isfinite(found)].tolist(), 0.0)
+    return 0.2 * float(expected.min()), 1.5 * max(
+        float(expected.max()), *found[np.isfinite(found)].tolist(), 0.0
+    )
 
 
 def _side_by_side(expected: Array) -> Array:
@@ -91,7 +115,11 @@ def _side_by_side(expected: Array) -> Array:
 def operating_curve(statistics: Record) -> Chart | None:
     """Return the share of ships called above the limit over their fuel's sulphur; none of few fuels, or of few flights of each."""
     entries = pd.DataFrame(statistics["operating_curve"])
-    if not len(entries) or entries["fsc_fuel_percent"].nunique() < _FUELS_MIN or entries["flights"].median() < _OF_EACH_MIN:
+    if (
+        not len(entries)
+        or entries["fsc_fuel_percent"].nunique() < _FUELS_MIN
+        or entries["flights"].median() < _OF_EACH_MIN
+    ):
         return None
     lines, limits = [], sorted(set(column(entries, "limit_percent").tolist()))
     for number, ((sensor, limit), group) in enumerate(entries.groupby(["sensor", "limit_percent"])):
@@ -100,13 +128,38 @@ def operating_curve(statistics: Record) -> Chart | None:
         bounds = np.array(group["above_interval"].tolist(), dtype=np.float64)
         around = np.concatenate([bounds[:, 0], bounds[::-1, 1]])
         lines += [
-            Line(x=np.concatenate([fuel, fuel[::-1]]), y=around, label="", colour=series_colour(number), fill=True),
-            Line(x=fuel, y=column(group, "above"), label=f"{called}, at the end", colour=series_colour(number)),
-            Line(x=fuel, y=column(group, "above_2min"), label=f"{called}, after 2 min", colour=series_colour(number), style="dot"),
+            Line(
+                x=np.concatenate([fuel, fuel[::-1]]),
+                y=around,
+                label="",
+                colour=series_colour(number),
+                fill=True,
+            ),
+            Line(
+                x=fuel,
+                y=column(group, "above"),
+                label=f"{called}, at the end",
+                colour=series_colour(number),
+            ),
+            Line(
+                x=fuel,
+                y=column(group, "above_2min"),
+                label=f"{called}, after 2 min",
+                colour=series_colour(number),
+                style="dot",
+            ),
         ]
     fuels = column(entries, "fsc_fuel_percent")
     for limit in limits:
-        lines.append(Line(x=np.array([limit, limit]), y=np.array([0.0, 1.0]), label="limit", colour=Meaning.LIMIT, style="dash"))
+        lines.append(
+            Line(
+                x=np.array([limit, limit]),
+                y=np.array([0.0, 1.0]),
+                label="limit",
+                colour=Meaning.LIMIT,
+                style="dash",
+            )
+        )
     lines.append(level(np.array([fuels.min(), fuels.max()]), 0.05, "5 %", "grey"))
     panel = Panel(
         x_label=f"Sulphur in the fuel [{MASS_PERCENT}]",
@@ -115,7 +168,9 @@ def operating_curve(statistics: Record) -> Chart | None:
         log_x=bool(fuels.min() > 0.0),
         y_range=(0.0, 1.0),
     )
-    caption = "Operating curve: the share of ships that are called above the limit, with its intervals."
+    caption = (
+        "Operating curve: the share of ships that are called above the limit, with its intervals."
+    )
     return Chart(name="operating-curve", caption=caption, panels=[panel], panel_height=0.4)
 
 
@@ -124,12 +179,24 @@ def trajectory_chart(run: RunData, rows: pd.DataFrame) -> Chart | None:
     if not {"guidance.bank_deg", "keepout.radius_m"} & set(map(str, run.draws)):
         return None
     interval, distance = "crossing_interval_mean_s", "crossing_distance_mean_m"
-    kept = ["sensor", interval, distance, "fsc_expected_percent", *(f"{of}_percent" for of in _METHODS)]
-    noise = {of: column(rows, f"{of}_noise_percent") * np.sqrt(measured_minutes(run, rows)) for of in _METHODS}
+    kept = [
+        "sensor",
+        interval,
+        distance,
+        "fsc_expected_percent",
+        *(f"{of}_percent" for of in _METHODS),
+    ]
+    noise = {
+        of: column(rows, f"{of}_noise_percent") * np.sqrt(measured_minutes(run, rows))
+        for of in _METHODS
+    }
     rows = pd.concat([rows[kept], pd.DataFrame(noise, index=rows.index)], axis=1)
     minute = f"1σ in a minute [{MASS_PERCENT}]"
     panels = [
-        *(_scattered(rows, interval, of, minute, f"Noise, {method}") for of, method in _METHODS.items()),
+        *(
+            _scattered(rows, interval, of, minute, f"Noise, {method}")
+            for of, method in _METHODS.items()
+        ),
         _scattered(rows, distance, "fsc", minute, "Noise over distance, regression"),
         _shares(rows, interval),
     ]
@@ -137,12 +204,20 @@ def trajectory_chart(run: RunData, rows: pd.DataFrame) -> Chart | None:
         "What a trajectory is worth to a sensor: the standard deviation by noise that a minute of crossings leaves, over their"
         " interval and their distance; and the share of the truth that each method reads."
     )
-    return Chart(name="sulphur-trajectory", caption=caption, panels=panels, columns=2, panel_height=0.36)
+    return Chart(
+        name="sulphur-trajectory", caption=caption, panels=panels, columns=2, panel_height=0.36
+    )
 
 
 def _scattered(rows: pd.DataFrame, x: str, y: str, y_label: str, title: str) -> Panel:
     lines = [
-        Line(x=column(group, x), y=column(group, y), label=str(sensor), colour=series_colour(number), style="points")
+        Line(
+            x=column(group, x),
+            y=column(group, y),
+            label=str(sensor),
+            colour=series_colour(number),
+            style="points",
+        )
         for number, (sensor, group) in enumerate(rows.groupby("sensor"))
     ]
     return Panel(x_label=_AXES[x], y_label=y_label, title=title, lines=lines, log_y=True)
@@ -162,7 +237,9 @@ def _shares(rows: pd.DataFrame, x: str) -> Panel:
         for number, (sensor, group) in enumerate(rows.groupby("sensor"))
         for of, method in _METHODS.items()
     ]
-    return Panel(x_label=_AXES[x], y_label="Measured over true [-]", title="Share of the truth", lines=lines)
+    return Panel(
+        x_label=_AXES[x], y_label="Measured over true [-]", title="Share of the truth", lines=lines
+    )
 
 
 def sulphur_track_chart(history: pd.DataFrame, about: Surroundings) -> Chart:
@@ -189,11 +266,23 @@ def sulphur_track_chart(history: pd.DataFrame, about: Surroundings) -> Chart:
             x_label="Distance from the ship [m]",
             y_label="Height [m]",
             title="In height",
-            lines=[Line(x=distance, y=height, label="", colour=Meaning.FLOWN, style="points", values=co2), axis],
+            lines=[
+                Line(
+                    x=distance, y=height, label="", colour=Meaning.FLOWN, style="points", values=co2
+                ),
+                axis,
+            ],
         ),
     ]
     caption = (
         "The true CO2 concentration, as the colour of the track; in height with the plume's mean axis where it was crossed."
         f" {ship_words(about, panels=panels)}"
     )
-    return Chart(name="sulphur-track", caption=caption, panels=panels, columns=2, panel_height=0.4, scale_label="CO2 [ppm]")
+    return Chart(
+        name="sulphur-track",
+        caption=caption,
+        panels=panels,
+        columns=2,
+        panel_height=0.4,
+        scale_label="CO2 [ppm]",
+    )

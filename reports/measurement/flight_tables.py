@@ -18,7 +18,9 @@ _BEST = 3
 
 def interval_words(row: "pd.Series[Any]") -> str:
     """Return the ends of the 95 % interval of a flight's sulphur content [% m/m]."""
-    return f"{number(row['fsc_low_percent'], '{:.3f}')} to {number(row['fsc_high_percent'], '{:.3f}')}"
+    return (
+        f"{number(row['fsc_low_percent'], '{:.3f}')} to {number(row['fsc_high_percent'], '{:.3f}')}"
+    )
 
 
 def flight_table(rows: pd.DataFrame, name: Name) -> Table:
@@ -120,7 +122,10 @@ def calls_table(statistics: Record) -> Table:
 def hit_table(rows: pd.DataFrame) -> Table:
     """Return figures of the passes: over all flights, median and the tenth that is worst on either side."""
     named = {
-        "plume_axis_crossings": ("Crossings of the plume's mean axis, with smoke or without", "{:.0f}"),
+        "plume_axis_crossings": (
+            "Crossings of the plume's mean axis, with smoke or without",
+            "{:.0f}",
+        ),
         "smoke_passes": ("Of these with smoke", "{:.0f}"),
         "hit_rate": ("Share of these that hit the plume, peak above 0.6 of its axis [-]", "{:.2f}"),
         "axis_height_error_rms_m": ("Height off the plume's axis, rms [m]", "{:.1f}"),
@@ -132,7 +137,11 @@ def hit_table(rows: pd.DataFrame) -> Table:
     return Table(
         head=["Figure", "Lowest tenth", "Median", "Highest tenth", "Flights"],
         rows=[
-            [title, *(number(rows[name].quantile(q), pattern) for q in (0.1, 0.5, 0.9)), f"{rows[name].notna().sum():,}"]
+            [
+                title,
+                *(number(rows[name].quantile(q), pattern) for q in (0.1, 0.5, 0.9)),
+                f"{rows[name].notna().sum():,}",
+            ]
             for name, (title, pattern) in named.items()
             if name in rows
         ],
@@ -147,7 +156,15 @@ def best_table(run: RunData, rows: pd.DataFrame) -> Table:
     best = pd.concat([group.head(_BEST) for _, group in ranked.groupby("sensor")])
     return Table(
         caption="Trajectories that leave the least noise after a minute, by sensor, and what each method reads on them.",
-        head=["Sensor", "ν", "Interval [s]", "Distance [m]", f"1σ in a minute [{MASS_PERCENT}]", "Regression reads", "Areas read"],
+        head=[
+            "Sensor",
+            "ν",
+            "Interval [s]",
+            "Distance [m]",
+            f"1σ in a minute [{MASS_PERCENT}]",
+            "Regression reads",
+            "Areas read",
+        ],
         rows=[
             [
                 str(row["sensor"]),

@@ -11,10 +11,27 @@ from measurement.gases import MASS_PERCENT
 from reports.document.blocks import Block, Card, Heading, Section, Text
 from reports.document.chart import Chart
 from reports.document.tables import number
-from reports.measurement.charts import budget_chart, channels_chart, over_time_chart, regression_chart
+from reports.measurement.charts import (
+    budget_chart,
+    channels_chart,
+    over_time_chart,
+    regression_chart,
+)
 from reports.measurement.data import Record
-from reports.measurement.flight_charts import error_chart, operating_curve, sulphur_track_chart, trajectory_chart
-from reports.measurement.flight_tables import accuracy_table, best_table, calls_table, flight_table, hit_table, interval_words
+from reports.measurement.flight_charts import (
+    error_chart,
+    operating_curve,
+    sulphur_track_chart,
+    trajectory_chart,
+)
+from reports.measurement.flight_tables import (
+    accuracy_table,
+    best_table,
+    calls_table,
+    flight_table,
+    hit_table,
+    interval_words,
+)
 from reports.measurement.tables import over_time_table, result_table
 from reports.measurement.verdict import CONTENT_NAME, INTERVAL_NAME, fuel_card
 from reports.run.columns import column, flights_flown
@@ -36,7 +53,9 @@ def sulphur_sections(run: RunData, name: Name) -> list[Section]:
     shown = _flight(run, measured, name)
     if shown is not None and len(measured) == 1:
         return [shown]
-    whole = Section(anchor="sulphur", title="Fuel sulphur content", blocks=_blocks(run, measured, name))
+    whole = Section(
+        anchor="sulphur", title="Fuel sulphur content", blocks=_blocks(run, measured, name)
+    )
     return [whole, shown] if shown is not None else [whole]
 
 
@@ -59,7 +78,10 @@ def sulphur_cards(run: RunData) -> list[Card]:
         ]
     bias, inside = _bias_and_coverage(measured)
     return [
-        Card("Bias of the sulphur content, mean of flights", number(bias, f"{{:+.4f}} {MASS_PERCENT}")),
+        Card(
+            "Bias of the sulphur content, mean of flights",
+            number(bias, f"{{:+.4f}} {MASS_PERCENT}"),
+        ),
         Card("Flights whose 95 % interval holds what a perfect instrument reads", percent(inside)),
     ]
 
@@ -78,7 +100,9 @@ def sulphur_below(run: RunData) -> bool:
     if "fsc_percent" not in run.summary:
         return True
     measured = _measured(run)
-    return len(measured) > 1 or (len(measured) == 1 and measured.iloc[0]["sulphur_verdict"] == "below")
+    return len(measured) > 1 or (
+        len(measured) == 1 and measured.iloc[0]["sulphur_verdict"] == "below"
+    )
 
 
 def sulphur_headline(run: RunData) -> str:
@@ -93,7 +117,9 @@ def sulphur_headline(run: RunData) -> str:
     if len(measured) == 1:
         row = measured.iloc[0]
         return f"Fuel sulphur {_content(row)}: {_verdict_words(row)}"
-    called_so = counted_verdicts(zip(measured["sulphur_verdict"], measured["sulphur_quality"], strict=True))
+    called_so = counted_verdicts(
+        zip(measured["sulphur_verdict"], measured["sulphur_quality"], strict=True)
+    )
     bias, inside = _bias_and_coverage(measured)
     of = "" if len(measured) == len(sniffed) else f" of {len(sniffed):,}"
     return (
@@ -107,13 +133,17 @@ def _flights(count: int) -> str:
 
 
 def _content(row: "pd.Series[Any]") -> str:
-    return content_words(float(row["fsc_percent"]), float(row["fsc_low_percent"]), float(row["fsc_high_percent"]))
+    return content_words(
+        float(row["fsc_percent"]), float(row["fsc_low_percent"]), float(row["fsc_high_percent"])
+    )
 
 
 def _bias_and_coverage(measured: pd.DataFrame) -> tuple[float, float]:
     """Return the mean error [% m/m], and the fraction of flights whose stated interval holds what a perfect instrument reads."""
     expected, found = (column(measured, name) for name in ("fsc_expected_percent", "fsc_percent"))
-    inside = (column(measured, "fsc_low_percent") <= expected) & (expected <= column(measured, "fsc_high_percent"))
+    inside = (column(measured, "fsc_low_percent") <= expected) & (
+        expected <= column(measured, "fsc_high_percent")
+    )
     return float(np.mean(found - expected)), float(np.mean(inside))
 
 
@@ -128,7 +158,11 @@ def _blocks(run: RunData, measured: pd.DataFrame, name: Name) -> list[Block]:
     if len(measured) < _FEW or statistics is None:
         return [flight_table(measured, name)]
     trajectories = trajectory_chart(run, measured)
-    designed: list[Block] = [] if trajectories is None else [Heading("Trajectories"), trajectories, best_table(run, measured)]
+    designed: list[Block] = (
+        []
+        if trajectories is None
+        else [Heading("Trajectories"), trajectories, best_table(run, measured)]
+    )
     curve = operating_curve(statistics)
     return [
         Text(
@@ -197,7 +231,11 @@ def _told(row: "pd.Series[Any]") -> str:
     verdict = f"The fuel's sulphur content is {_content(row)}: {_verdict_words(row)}."
     return (
         f"{verdict} Quality {row['sulphur_quality']}"
-        + (f": {row['sulphur_reason']}." if row["sulphur_reason"] and pd.notna(row["sulphur_reason"]) else ".")
+        + (
+            f": {row['sulphur_reason']}."
+            if row["sulphur_reason"] and pd.notna(row["sulphur_reason"])
+            else "."
+        )
         + f" The fuel's own content is {row['fsc_fuel_percent']:.3f} %, of which a perfect instrument reads"
         f" {row['fsc_expected_percent']:.3f} %."
     )
@@ -214,5 +252,8 @@ def _samples(record: Record, history: pd.DataFrame) -> pd.DataFrame:
         "co2_true_ppm": "co2_ppm",
         "so2_true_ppb": "so2_ppb",
     }
-    known = {name: np.interp(time, column(history, "time_s"), column(history, of)) for name, of in names.items()}
+    known = {
+        name: np.interp(time, column(history, "time_s"), column(history, of))
+        for name, of in names.items()
+    }
     return samples.assign(**known)

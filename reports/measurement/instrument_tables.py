@@ -21,27 +21,68 @@ _FOUND = "from the record"
 
 def instrument_table(record: Record) -> Table:
     """Return every property of the instrument, a column per channel."""
-    instrument, columns, given = record["instrument"], record["flight"]["columns"], record["flight"]["stated"]
+    instrument, columns, given = (
+        record["instrument"],
+        record["flight"]["columns"],
+        record["flight"]["stated"],
+    )
     stated, used = instrument["stated"], instrument["used"]
     gases = [gas for gas in GASES if gas in stated]
 
     def row(name: str, cell: Callable[[_Channel, _Channel], str], *keys: str) -> list[str]:
-        return [name, *(_marked(cell(stated[gas], used[gas]), keys, given and given[gas]) for gas in gases)]
+        return [
+            name,
+            *(_marked(cell(stated[gas], used[gas]), keys, given and given[gas]) for gas in gases),
+        ]
 
-    others = [other for other in GASES if any(other in stated[gas]["cross"] | stated[gas]["cross_sd"] for gas in gases)]
+    others = [
+        other
+        for other in GASES
+        if any(other in stated[gas]["cross"] | stated[gas]["cross_sd"] for gas in gases)
+    ]
     rows = [
         ["Column of the log", *(columns.get(gas, "none: not measured") for gas in gases)],
         row("Response time t90 ± 1σ [s]", _t90(record["estimate"]), "t90_s", "t90_sd"),
-        row("Second time constant over the first [-]", lambda of, _: _plain(of["second_pole"]), "second_pole"),
+        row(
+            "Second time constant over the first [-]",
+            lambda of, _: _plain(of["second_pole"]),
+            "second_pole",
+        ),
         row("Delay ± 1σ [s]", _delay(record["estimate"]), "delay_s", "delay_sd_s"),
         row("Noise of a reading, 1σ", _noise, "noise"),
-        row("Drift of the zero after 1 s, 1σ", lambda of, _: _plain(of["random_walk"]), "random_walk"),
+        row(
+            "Drift of the zero after 1 s, 1σ",
+            lambda of, _: _plain(of["random_walk"]),
+            "random_walk",
+        ),
         row("Resolution", lambda of, _: _plain(of["resolution"]), "resolution"),
         row("Range", _range, "range_high", "range_low"),
-        row("Calibration: gain ± 1σ [-]", lambda of, _: _with_deviation(of["gain"], of["gain_sd"]), "gain", "gain_sd"),
-        row("Calibration: zero ± 1σ", lambda of, _: _with_deviation(of["zero"], of["zero_sd"]), "zero", "zero_sd"),
-        *(row(f"Response to {gas.upper()} ± 1σ [per {UNITS[gas]}]", _response(gas), "cross", "cross_sd") for gas in others),
-        row("Effect of pressure, not corrected [1/hPa]", lambda of, _: _plain(of["pressure_effect"]), "pressure_effect"),
+        row(
+            "Calibration: gain ± 1σ [-]",
+            lambda of, _: _with_deviation(of["gain"], of["gain_sd"]),
+            "gain",
+            "gain_sd",
+        ),
+        row(
+            "Calibration: zero ± 1σ",
+            lambda of, _: _with_deviation(of["zero"], of["zero_sd"]),
+            "zero",
+            "zero_sd",
+        ),
+        *(
+            row(
+                f"Response to {gas.upper()} ± 1σ [per {UNITS[gas]}]",
+                _response(gas),
+                "cross",
+                "cross_sd",
+            )
+            for gas in others
+        ),
+        row(
+            "Effect of pressure, not corrected [1/hPa]",
+            lambda of, _: _plain(of["pressure_effect"]),
+            "pressure_effect",
+        ),
     ]
     estimated = f" “{_FOUND.capitalize()}”: not stated, and estimated; its 1σ is without what lies between readings."
     found = estimated if any(_FOUND in cell for row in rows for cell in row) else ""
@@ -73,7 +114,11 @@ def _plain(value: float | None) -> str:
 
 
 def _with_deviation(value: float, deviation: float) -> str:
-    return f"{number(value, '{:g}')} ± {number(deviation, '{:g}')}" if deviation else f"{number(value, '{:g}')}, exact"
+    return (
+        f"{number(value, '{:g}')} ± {number(deviation, '{:g}')}"
+        if deviation
+        else f"{number(value, '{:g}')}, exact"
+    )
 
 
 def _t90(found: Record) -> Callable[[_Channel, _Channel], str]:
@@ -100,7 +145,11 @@ def _delay(found: Record) -> Callable[[_Channel, _Channel], str]:
 
 def _noise(stated: _Channel, used: _Channel) -> str:
     if stated["noise"] is None:
-        return f"{number(used['noise'], '{:.2g}')}, {_FOUND}" if used["noise"] is not None else "not stated"
+        return (
+            f"{number(used['noise'], '{:.2g}')}, {_FOUND}"
+            if used["noise"] is not None
+            else "not stated"
+        )
     return number(stated["noise"], "{:g}")
 
 
@@ -123,10 +172,20 @@ def assumption_table(run: RunData, record: Record) -> Table:
     """Return how the log was read, and the thresholds and assumptions of the analysis."""
     flight, found, carbon = record["flight"], record["estimate"], float(record["carbon"])
     settings = run.manifest.get("settings")
-    factors = ", ".join(f"{gas.upper()} times {factor:g}" for gas, factor in flight["scale"].items()) or "none: units as above"
-    missing = ", ".join(number(code, "{:g}") for code in flight["missing"]) or "none but empty cells"
-    limits = ", ".join(limit_words(float(verdict["limit_percent"])) for verdict in found["verdicts"])
-    source = record["instrument"]["source"] or "as the configuration states them, but for those that are marked as assumed"
+    factors = (
+        ", ".join(f"{gas.upper()} times {factor:g}" for gas, factor in flight["scale"].items())
+        or "none: units as above"
+    )
+    missing = (
+        ", ".join(number(code, "{:g}") for code in flight["missing"]) or "none but empty cells"
+    )
+    limits = ", ".join(
+        limit_words(float(verdict["limit_percent"])) for verdict in found["verdicts"]
+    )
+    source = (
+        record["instrument"]["source"]
+        or "as the configuration states them, but for those that are marked as assumed"
+    )
     rows = [
         ["Configuration", f"{settings}, SHA-256 {run.manifest['settings_hash']}" if settings else "none was given"],
         ["Columns of time and place", _columns(flight["columns"])],
@@ -169,7 +228,11 @@ def _unmeasured(record: Record) -> str:
         elif measured and responds:
             told.append(f"{gas.upper()} is measured, and SO2 corrected for it")
         elif measured:
-            told.append(f"{gas.upper()} is measured, but SO2 not corrected for it, as its response is not stated")
+            told.append(
+                f"{gas.upper()} is measured, but SO2 not corrected for it, as its response is not stated"
+            )
         else:
-            told.append(f"{gas.upper()} is not measured: taken as {ratio:g} ± {deviation:g} ppb per ppm of CO2 (1σ)")
+            told.append(
+                f"{gas.upper()} is not measured: taken as {ratio:g} ± {deviation:g} ppb per ppm of CO2 (1σ)"
+            )
     return "; ".join(told)

@@ -59,7 +59,10 @@ def over_time_table(record: Record, since: str = SINCE) -> Table | None:
             number(row["fsc_percent"], _PERCENT),
             number(row["total_percent"], _PERCENT),
             str(row["quality"]),
-            *("none" if row["quality"] == "C" else f"{row[f'verdict_{limit}']}" for limit in limits),
+            *(
+                "none" if row["quality"] == "C" else f"{row[f'verdict_{limit}']}"
+                for limit in limits
+            ),
         ]
         for row in table.to_dict("records")
     ]
@@ -75,24 +78,50 @@ def over_time_table(record: Record, since: str = SINCE) -> Table | None:
         f"Result after each time since {since}. A pass is a peak of CO2 of {SNR_LEAST:g} times its noise: where smoke"
         " meanders, not every crossing of the plume's axis meets it. With quality C there is no verdict."
     )
-    return Table(caption=caption, head=head, rows=rows, widths=[0.8, 0.8, 1.3, 1.6, 0.8, *(1.0 for _ in limits)])
+    return Table(
+        caption=caption,
+        head=head,
+        rows=rows,
+        widths=[0.8, 0.8, 1.3, 1.6, 0.8, *(1.0 for _ in limits)],
+    )
 
 
 def record_table(record: Record) -> Table:
     """Return what the record holds, and the response of SO2 as it was taken."""
     found, figures = record["estimate"], record["estimate"]["figures"]
-    t90 = f"{number(found['so2_t90_s'], '{:.1f}')} ± {number(found['so2_t90_sd_s'], '{:.1f} s')} (1σ)"
+    t90 = (
+        f"{number(found['so2_t90_s'], '{:.1f}')} ± {number(found['so2_t90_sd_s'], '{:.1f} s')} (1σ)"
+    )
     delay = f"{number(found['delay_s'], '{:.2f}')} ± {number(found['delay_sd_s'], '{:.2f} s')} (1σ)"
-    dose, agreement = number(figures["dose_ppm_s"], "{:.0f} ppm s"), number(found["agreement"], "{:.2g}")
+    dose, agreement = (
+        number(figures["dose_ppm_s"], "{:.0f} ppm s"),
+        number(found["agreement"], "{:.2g}"),
+    )
     gaps = Gaps(**record["gaps"])
     rows = [
         ["Missing readings", gaps.missing_words],
         ["Gaps", gaps.gap_words],
-        ["Passes", f"{figures['passes']}, every {number(figures['interval_s'], '{:.1f} s')}; agreement p = {agreement}"],
-        ["In the plume", f"{figures['seconds_in_plume']:.0f} s of {figures['duration_s']:.0f} s; CO2 dose of a pass {dose}"],
-        ["Signal to noise", f"CO2 peaks {number(figures['co2_snr'], '{:.0f}')}, SO2 {number(figures['so2_snr'], '{:.1f}')}"],
+        [
+            "Passes",
+            f"{figures['passes']}, every {number(figures['interval_s'], '{:.1f} s')}; agreement p = {agreement}",
+        ],
+        [
+            "In the plume",
+            f"{figures['seconds_in_plume']:.0f} s of {figures['duration_s']:.0f} s; CO2 dose of a pass {dose}",
+        ],
+        [
+            "Signal to noise",
+            f"CO2 peaks {number(figures['co2_snr'], '{:.0f}')}, SO2 {number(figures['so2_snr'], '{:.1f}')}",
+        ],
         ["Residuals over stated noise", number(found["misfit"], "{:.1f} (mean square)")],
         ["SO2 channel", f"t90 {t90}; {delay} after CO2"],
-        ["Sulphate, not corrected", f"{number(found['sulphate_percent'], '{:.4f} %')}: sulphur that does not leave as SO2"],
+        [
+            "Sulphate, not corrected",
+            f"{number(found['sulphate_percent'], '{:.4f} %')}: sulphur that does not leave as SO2",
+        ],
     ]
-    return pairs_table(rows, widths=(1.0, 3.0), caption="What the record holds, and the response of SO2 as it was taken.")
+    return pairs_table(
+        rows,
+        widths=(1.0, 3.0),
+        caption="What the record holds, and the response of SO2 as it was taken.",
+    )

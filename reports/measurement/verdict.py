@@ -20,7 +20,11 @@ def measurement_verdict(record: Record) -> Verdict:
     first = verdicts[0]
     reasons = [str(reason) for reason in found["quality_reasons"]]
     known = _known(found)
-    others = [f"{sentence(other, found['quality'], known=True)}." for other in verdicts[1:]] if known else []
+    others = (
+        [f"{sentence(other, found['quality'], known=True)}." for other in verdicts[1:]]
+        if known
+        else []
+    )
     return Verdict(
         holds=first["verdict"] != "above",
         complete=first["verdict"] == "below",
@@ -56,7 +60,9 @@ def _result(record: Record) -> str:
     if not _known(found):
         return "No fuel sulphur content can be given."
     passes = "1 pass" if figures["passes"] == 1 else f"{figures['passes']} passes"
-    content = content_words(value(found, "fsc_percent"), value(found, "low_percent"), value(found, "high_percent"))
+    content = content_words(
+        value(found, "fsc_percent"), value(found, "low_percent"), value(found, "high_percent")
+    )
     return f"Fuel sulphur content {content}, from {passes} in {figures['duration_s']:.0f} s. Quality {found['quality']}."
 
 
@@ -80,11 +86,20 @@ def fuel_card(limit_percent: float, side: str, probability_above: float, quality
     if quality == "C":
         return Card(name, "no verdict: quality C")
     told = _short(probability_above)
-    return UndecidedCard(name, told, limit) if side == OPEN else FuelCard(name, told, limit, side == BELOW)
+    return (
+        UndecidedCard(name, told, limit)
+        if side == OPEN
+        else FuelCard(name, told, limit, side == BELOW)
+    )
 
 
 def _chance(verdict: Record, quality: str) -> Card:
-    return fuel_card(float(verdict["limit_percent"]), verdict["verdict"], value(verdict, "probability_above"), quality)
+    return fuel_card(
+        float(verdict["limit_percent"]),
+        verdict["verdict"],
+        value(verdict, "probability_above"),
+        quality,
+    )
 
 
 def _figures(record: Record) -> list[Card]:
@@ -92,16 +107,26 @@ def _figures(record: Record) -> list[Card]:
     chances = [_chance(verdict, found["quality"]) for verdict in found["verdicts"]]
     without = "none: quality C" if found["quality"] == "C" else "not reached"
     times = [
-        Card(f"Time to a verdict on {limit_words(float(limit))}", without if seconds is None else f"{float(seconds):.0f} s")
+        Card(
+            f"Time to a verdict on {limit_words(float(limit))}",
+            without if seconds is None else f"{float(seconds):.0f} s",
+        )
         for limit, seconds in record["time_to_verdict_s"].items()
     ]
     true = record.get("true_percent")
     return [
-        Card(CONTENT_NAME, number(found["fsc_percent"] if _known(found) else None, f"{{:.3f}} {MASS_PERCENT}")),
+        Card(
+            CONTENT_NAME,
+            number(found["fsc_percent"] if _known(found) else None, f"{{:.3f}} {MASS_PERCENT}"),
+        ),
         Card(INTERVAL_NAME, _interval(found) if _known(found) else "–"),
         *chances,
         Card("Quality", str(found["quality"])),
         *times,
-        *([] if true is None else [Card("A perfect instrument reads", number(true, f"{{:.3f}} {MASS_PERCENT}"))]),
+        *(
+            []
+            if true is None
+            else [Card("A perfect instrument reads", number(true, f"{{:.3f}} {MASS_PERCENT}"))]
+        ),
         Card("CO2 signal to noise", number(found["figures"]["co2_snr"], "{:.0f}")),
     ]

@@ -25,9 +25,24 @@ def monte_carlo_sections(run: RunData) -> list[Section]:
     if statistics.get("method") == "subset":
         return subset_sections(statistics, documented_units(run.manifest))
     return [
-        Section(anchor="study", title="Probability of a keep-out violation", nav_title="Probability", blocks=_shown(statistics)),
-        Section(anchor="spread", title="Distributions", nav_title="Distributions", blocks=_spread(run, statistics)),
-        Section(anchor="drivers", title="Sensitivity", nav_title="Sensitivity", blocks=_drivers(run, statistics)),
+        Section(
+            anchor="study",
+            title="Probability of a keep-out violation",
+            nav_title="Probability",
+            blocks=_shown(statistics),
+        ),
+        Section(
+            anchor="spread",
+            title="Distributions",
+            nav_title="Distributions",
+            blocks=_spread(run, statistics),
+        ),
+        Section(
+            anchor="drivers",
+            title="Sensitivity",
+            nav_title="Sensitivity",
+            blocks=_drivers(run, statistics),
+        ),
     ]
 
 
@@ -48,7 +63,11 @@ def bound_in_words(statistics: dict[str, Any]) -> str:
     if not measured["flights"]:
         return "No flight was measured, so that no bound on the probability of a keep-out violation is known."
     flights = f"{measured['flights']:,} flight{'s' * (measured['flights'] != 1)}"
-    rare = f", about one flight in {round(1.0 / measured['upper']):,}" if measured["upper"] < _RARE else ""
+    rare = (
+        f", about one flight in {round(1.0 / measured['upper']):,}"
+        if measured["upper"] < _RARE
+        else ""
+    )
     words = (
         f"{measured['events']:,} of {flights} violated the keep-out area. With {confidence} confidence a flight of this study does"
         f" so with a probability of at most {percent(measured['upper'])}{rare} (one-sided bound of Clopper and Pearson)."
@@ -71,14 +90,22 @@ def bound_in_words(statistics: dict[str, Any]) -> str:
 
 def _spread(run: RunData, statistics: dict[str, Any]) -> list[Block]:
     several = radii_differ(run.summary)
-    where = "beyond each flight's own r_min" if several else measured_from(shape_words(run.summary) or "sphere")
+    where = (
+        "beyond each flight's own r_min"
+        if several
+        else measured_from(shape_words(run.summary) or "sphere")
+    )
     text = (
         f"Quantiles of the flights' figures. The interval in brackets contains the quantile of all such flights with"
         f" {percent(statistics['interval_confidence'])} confidence, whatever the distribution (from order statistics); a dash where"
         " there are too few flights for that side. Keep-out figures count from a flight's first second, the others from settling."
         f" Distances are {where}."
     )
-    return [Text(text), quantile_table(statistics, several_radii=several), *spread_charts(run, statistics)]
+    return [
+        Text(text),
+        quantile_table(statistics, several_radii=several),
+        *spread_charts(run, statistics),
+    ]
 
 
 def _drivers(run: RunData, statistics: dict[str, Any]) -> list[Block]:
@@ -92,7 +119,11 @@ def _drivers(run: RunData, statistics: dict[str, Any]) -> list[Block]:
     )
     return [
         # Of indices that there are: nobody needs to know how to read others.
-        *([Text(text)] if any(found["inputs"] for found in statistics["sensitivity"].values()) else []),
+        *(
+            [Text(text)]
+            if any(found["inputs"] for found in statistics["sensitivity"].values())
+            else []
+        ),
         *(Text(line) for line in left_out_rows(statistics["sensitivity"])),
         *driver_charts(statistics),
         *scatter_charts(run, statistics),

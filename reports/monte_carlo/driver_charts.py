@@ -10,7 +10,14 @@ import pandas as pd
 from reports.document.chart import Chart, Line, Panel
 from reports.document.palette import Meaning
 from reports.document.panels import Group, beyond_label, capped, level, strips
-from reports.monte_carlo.names import CLEARANCE, FIGURES, Units, documented_units, input_label, input_name
+from reports.monte_carlo.names import (
+    CLEARANCE,
+    FIGURES,
+    Units,
+    documented_units,
+    input_label,
+    input_name,
+)
 from reports.run.columns import Array, beside_vessel, clearance, violated
 from reports.run.run_data import RunData
 
@@ -29,7 +36,9 @@ SCATTERED = 4
 
 def driver_charts(statistics: dict[str, Any]) -> list[Chart]:
     """Return bars of the sensitivity indices of each figure that has any, the largest delta first."""
-    return [_bars(key, found) for key, found in statistics["sensitivity"].items() if found["inputs"]]
+    return [
+        _bars(key, found) for key, found in statistics["sensitivity"].items() if found["inputs"]
+    ]
 
 
 def not_shown(more: int, measure: str) -> str:
@@ -50,22 +59,41 @@ def _bars(key: str, found: dict[str, Any]) -> Chart:
         name=f"drivers-{key.replace('_', '')}",
         caption=f"{FIGURES[key].name}: {found['flights']:,} flights{of}." + not_shown(more, "δ"),
         panels=[
-            _index_panel(inputs, "delta", found["delta_floor"], "Borgonovo's δ [-]", names, FIGURES[key].name),
-            _index_panel(inputs, "first_order", found["first_order_floor"], "First-order index S₁ [-]", [""] * len(names), ""),
+            _index_panel(
+                inputs, "delta", found["delta_floor"], "Borgonovo's δ [-]", names, FIGURES[key].name
+            ),
+            _index_panel(
+                inputs,
+                "first_order",
+                found["first_order_floor"],
+                "First-order index S₁ [-]",
+                [""] * len(names),
+                "",
+            ),
         ],
         columns=2,
         panel_height=0.12 + 0.025 * len(inputs),
     )
 
 
-def _index_panel(inputs: list[dict[str, Any]], name: str, floor: float, x_label: str, names: list[str], title: str) -> Panel:
+def _index_panel(
+    inputs: list[dict[str, Any]],
+    name: str,
+    floor: float,
+    x_label: str,
+    names: list[str],
+    title: str,
+) -> Panel:
     value = np.array([index[name] for index in inputs])
     error = np.array([index[f"{name}_error"] for index in inputs])
     place = np.arange(len(inputs))[::-1].astype(np.float64)
     above = value - error > floor
     lines = [
         bar_line(value[mask], place[mask], label, colour)
-        for mask, label, colour in ((above, "above the noise floor", "blue"), (~above, "not above it", "grey"))
+        for mask, label, colour in (
+            (above, "above the noise floor", "blue"),
+            (~above, "not above it", "grey"),
+        )
         if mask.any()
     ]
     ends = np.column_stack([value - error, value + error, np.full(len(value), np.nan)]).ravel()
@@ -95,21 +123,40 @@ def bar_line(values: Array, places: Array, label: str, colour: str) -> Line:
 
 def scatter_charts(run: RunData, statistics: dict[str, Any]) -> list[Chart]:
     """Return the clearance over the inputs that drive it the most, words apart from figures; none if no input is known to."""
-    keys = [index["key"] for index in statistics["sensitivity"]["clearance_m"]["inputs"][:SCATTERED]]
+    keys = [
+        index["key"] for index in statistics["sensitivity"]["clearance_m"]["inputs"][:SCATTERED]
+    ]
     measured = beside_vessel(run.summary)
     shown = measured.iloc[thinned(clearance(measured))]
     sampled = run.draws.set_index("flight_id").reindex(shown["flight_id"])
     near, inside = clearance(shown), violated(shown)
-    groups = [(~inside, "flight", Meaning.FLOWN), (inside, "flight with a keep-out violation", Meaning.LIMIT)]
+    groups = [
+        (~inside, "flight", Meaning.FLOWN),
+        (inside, "flight with a keep-out violation", Meaning.LIMIT),
+    ]
     caption = "Closest approach of each flight beyond r_min, over the inputs with the largest δ."
     if len(shown) < len(measured):
         caption += f" {len(shown):,} of {len(measured):,} flights are shown, the {NEAREST} nearest among them."
     units = documented_units(run.manifest)
-    figures = [_scatter(sampled[key], near, groups, units) for key in keys if pd.api.types.is_numeric_dtype(sampled[key])]
+    figures = [
+        _scatter(sampled[key], near, groups, units)
+        for key in keys
+        if pd.api.types.is_numeric_dtype(sampled[key])
+    ]
     # Words beside an axis are wide: below each other, not beside, these panels have room for them.
-    words = [_strips(sampled[key], near, groups) for key in keys if not pd.api.types.is_numeric_dtype(sampled[key])]
+    words = [
+        _strips(sampled[key], near, groups)
+        for key in keys
+        if not pd.api.types.is_numeric_dtype(sampled[key])
+    ]
     charts = [
-        Chart(name="over-figures", caption=caption, panels=figures, columns=min(2, len(figures)), panel_height=0.36),
+        Chart(
+            name="over-figures",
+            caption=caption,
+            panels=figures,
+            columns=min(2, len(figures)),
+            panel_height=0.36,
+        ),
         Chart(name="over-words", caption=caption, panels=words, panel_height=0.3),
     ]
     return [chart for chart in charts if chart.panels]
@@ -121,7 +168,12 @@ def _scatter(values: "pd.Series[Any]", near: Array, groups: Sequence[Group], uni
     bottom = min(0.0, float(near.min()))
     lines.append(level(x, 0.0, "r_min"))
     y_range = (bottom - 0.05 * (top - bottom), top)
-    return Panel(x_label=input_label(str(values.name), units), y_label=CLEARANCE, lines=lines, y_range=y_range)
+    return Panel(
+        x_label=input_label(str(values.name), units),
+        y_label=CLEARANCE,
+        lines=lines,
+        y_range=y_range,
+    )
 
 
 def _strips(values: "pd.Series[Any]", near: Array, groups: Sequence[Group]) -> Panel:
@@ -133,7 +185,9 @@ def _strips(values: "pd.Series[Any]", near: Array, groups: Sequence[Group]) -> P
         *([(beyond, beyond_label(near[beyond], "m"), "black")] if beyond.any() else []),
     ]
     words, label = [str(value).replace("_", " ") for value in values], input_name(str(values.name))
-    return strips(np.minimum(near, top), words, CLEARANCE, label, shown, [(0.0, "r_min")], named=True)
+    return strips(
+        np.minimum(near, top), words, CLEARANCE, label, shown, [(0.0, "r_min")], named=True
+    )
 
 
 def thinned(near: Array) -> npt.NDArray[np.int64]:
@@ -149,6 +203,10 @@ def thinned(near: Array) -> npt.NDArray[np.int64]:
     """
     order = np.argsort(near, kind="stable")
     others = np.sort(order[NEAREST:])
-    places = np.linspace(0.0, len(others) - 1.0, min(len(others), SCATTER_MAX - NEAREST)).round().astype(np.int64)
+    places = (
+        np.linspace(0.0, len(others) - 1.0, min(len(others), SCATTER_MAX - NEAREST))
+        .round()
+        .astype(np.int64)
+    )
     chosen: npt.NDArray[np.int64] = np.sort(np.concatenate([order[:NEAREST], others[places]]))
     return chosen

@@ -96,9 +96,17 @@ def _in_words(config: dict[str, Any], search: dict[str, Any], flights: pd.DataFr
     # Of points within what is declared some may have no flight: they cannot be planned, or their process was lost.
     within = sum(of["flights"] for name, of in search["methods"].items() if name != _CONFIRMATION)
     unmeasured = within - len(searched)
-    left_out = f"; {unmeasured:,} more {'was' if unmeasured == 1 else 'were'} not flown or not measured" if unmeasured > 0 else ""
+    left_out = (
+        f"; {unmeasured:,} more {'was' if unmeasured == 1 else 'were'} not flown or not measured"
+        if unmeasured > 0
+        else ""
+    )
     if (beyond := search["proposed"] - within) > 0:
-        points = "point was not flown, as it lies" if beyond == 1 else "points were not flown, as they lie"
+        points = (
+            "point was not flown, as it lies"
+            if beyond == 1
+            else "points were not flown, as they lie"
+        )
         left_out += f"; {beyond:,} more {points} beyond what the scenario declares"
     return (
         f"A search over {len(config['draws'])} inputs within their declared ranges by {methods}: {budget}, {len(searched):,}"
@@ -124,8 +132,16 @@ def _about_worst(config: dict[str, Any], search: dict[str, Any]) -> str:
         else ""
     )
     violations = [entry["flight_id"] for entry in search["violations"]]
-    more = f" and {len(violations) - _LISTED_MAX:,} more, which the manifest lists" if len(violations) > _LISTED_MAX else ""
-    listed = f" Violations, the worst first: {', '.join(violations[:_LISTED_MAX])}{more}." if violations else ""
+    more = (
+        f" and {len(violations) - _LISTED_MAX:,} more, which the manifest lists"
+        if len(violations) > _LISTED_MAX
+        else ""
+    )
+    listed = (
+        f" Violations, the worst first: {', '.join(violations[:_LISTED_MAX])}{more}."
+        if violations
+        else ""
+    )
     return (
         f"The {len(worst)} closest flights that differ from one another; they are in the directory worst/, as scenario files that"
         f" replay them identically.{repeats}{listed}"
@@ -144,7 +160,15 @@ def search_chart(flights: pd.DataFrame) -> Chart:
         points = shown & (flights["search_method"] == name).to_numpy()
         label = method_name(name) or "a flight"
         style = _MARKS[i % len(_MARKS)]
-        lines.append(Line(x=number[points], y=distance[points], label=label, colour=series_colour(i), style=style))
+        lines.append(
+            Line(
+                x=number[points],
+                y=distance[points],
+                label=label,
+                colour=series_colour(i),
+                style=style,
+            )
+        )
     lines += [
         Line(x=number, y=np.minimum.accumulate(distance), label="closest so far", colour="grey"),
         Line(x=number[[0, -1]], y=np.zeros(2), label="r_min", colour=Meaning.LIMIT, style="dash"),
@@ -174,7 +198,13 @@ def method_table(flights: pd.DataFrame) -> Table:
         least = f"{float(np.min(clearance(own))):.1f}"
         rows.append([method_name(name) or "any", f"{len(own):,}", f"{len(inside):,}", first, least])
     head = ["Method", "Flights", "Violations", "First violation", "Closest beyond r_min [m]"]
-    return Table(caption="What each method has found.", head=head, rows=rows, widths=[1.6, 0.8, 0.8, 1.4, 1.4], left_columns=1)
+    return Table(
+        caption="What each method has found.",
+        head=head,
+        rows=rows,
+        widths=[1.6, 0.8, 0.8, 1.4, 1.4],
+        left_columns=1,
+    )
 
 
 def worst_table(flights: pd.DataFrame, worst: list[dict[str, Any]]) -> Table:

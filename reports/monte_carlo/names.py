@@ -51,7 +51,9 @@ class Figure:
 FIGURES = {
     "clearance_m": Figure(name="Distance kept beyond r_min", unit="m", digits=1),
     "min_distance_m": Figure(name="Closest approach", unit="m", digits=1),
-    "crossing_interval_error": Figure(name="Mean crossing interval off π/ω₀", unit="%", digits=2, scale=100.0),
+    "crossing_interval_error": Figure(
+        name="Mean crossing interval off π/ω₀", unit="%", digits=2, scale=100.0
+    ),
     "crossing_distance_min_m": Figure(name="Nearest crossing", unit="m", digits=1),
     "crossing_clearance_m": Figure(name="Nearest crossing, beyond r_min", unit="m", digits=1),
     "tracking_error_rms_m": Figure(name="Tracking error, rms after settling", unit="m", digits=2),
@@ -83,7 +85,9 @@ def documented_units(manifest: Mapping[str, Any]) -> Units:
 
 def input_unit(key: str, units: Units = MappingProxyType({})) -> str:
     """Return the unit of an input: the documented one, or that which its key names; an entry of a list has no other."""
-    return units.get(key) or next((unit for suffix, unit in _UNITS.items() if key.endswith(suffix)), "-")
+    return units.get(key) or next(
+        (unit for suffix, unit in _UNITS.items() if key.endswith(suffix)), "-"
+    )
 
 
 def input_label(key: str, units: Units = MappingProxyType({})) -> str:

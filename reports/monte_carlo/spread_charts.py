@@ -28,7 +28,9 @@ def spread_charts(run: RunData, statistics: dict[str, Any]) -> list[Chart]:
     """Return how the clearance and the other figures of the flights are spread."""
     rows = run.summary
     near = clearance(rows)
-    counted_near = histogram([(_within(near, lowest=0.0), "flights", Meaning.FLOWN)], CLEARANCE, [(0.0, "r_min")])
+    counted_near = histogram(
+        [(_within(near, lowest=0.0), "flights", Meaning.FLOWN)], CLEARANCE, [(0.0, "r_min")]
+    )
     if counted_near is None:
         return []
     kept = Chart(
@@ -47,7 +49,10 @@ def spread_charts(run: RunData, statistics: dict[str, Any]) -> list[Chart]:
         **_crossing(rows),
         "settling_time_s": column(rows, "settling_time_s"),
     }
-    counted = [_counted(key, figure, statistics["figures"][key]["quantiles"]) for key, figure in values.items()]
+    counted = [
+        _counted(key, figure, statistics["figures"][key]["quantiles"])
+        for key, figure in values.items()
+    ]
     panels = [panel for panel in counted if panel is not None]
     others = Chart(
         name="spread",
@@ -77,9 +82,16 @@ def _counted(key: str, values: Array, quantiles: list[dict[str, Any]]) -> Panel 
     figure = FIGURES[key]
     label = "quantiles 5 %, 50 %, 95 %"
     marks = [
-        (figure.scale * q["value"], label) for q in quantiles if q["probability"] in (0.05, 0.5, 0.95) and q["value"] is not None
+        (figure.scale * q["value"], label)
+        for q in quantiles
+        if q["probability"] in (0.05, 0.5, 0.95) and q["value"] is not None
     ]
-    return histogram([(figure.scale * _within(values), "flights", Meaning.FLOWN)], figure.label, marks, upright_colour="black")
+    return histogram(
+        [(figure.scale * _within(values), "flights", Meaning.FLOWN)],
+        figure.label,
+        marks,
+        upright_colour="black",
+    )
 
 
 def _tail(near: Array, statistics: dict[str, Any]) -> Panel:
@@ -88,7 +100,13 @@ def _tail(near: Array, statistics: dict[str, Any]) -> Panel:
     quantiles = [q for q in every if q["probability"] <= 0.5 and None not in (q["low"], q["high"])]
     gap = np.nan
     ends = np.array([end for q in quantiles for end in (q["low"], q["high"], gap)])
-    heights = np.array([height for q in quantiles for height in (100.0 * q["probability"], 100.0 * q["probability"], gap)])
+    heights = np.array(
+        [
+            height
+            for q in quantiles
+            for height in (100.0 * q["probability"], 100.0 * q["probability"], gap)
+        ]
+    )
     least = 100.0 * float(fraction[0])
     far = float(np.quantile(near[np.isfinite(near)], _NEARER))
     nearest = min(0.0, float(x[0]))
@@ -98,7 +116,13 @@ def _tail(near: Array, statistics: dict[str, Any]) -> Panel:
         lines=[
             Line(x=x, y=100.0 * fraction, label="flights", colour=Meaning.FLOWN),
             Line(x=ends, y=heights, label="interval of a quantile", colour="black"),
-            Line(x=np.zeros(2), y=np.array([0.7 * least, 100.0]), label="r_min", colour=Meaning.LIMIT, style="dash"),
+            Line(
+                x=np.zeros(2),
+                y=np.array([0.7 * least, 100.0]),
+                label="r_min",
+                colour=Meaning.LIMIT,
+                style="dash",
+            ),
         ],
         log_y=True,
         x_range=(nearest - 0.04 * (far - nearest), far),

@@ -28,8 +28,18 @@ def subset_sections(statistics: Record, units: Units) -> list[Section]:
                 ending_table(statistics),
             ],
         ),
-        Section(anchor="levels", title="Levels of the subset simulations", nav_title="Levels", blocks=_levels(statistics)),
-        Section(anchor="drivers", title=_near(statistics), nav_title="Inputs", blocks=_inputs(statistics, units)),
+        Section(
+            anchor="levels",
+            title="Levels of the subset simulations",
+            nav_title="Levels",
+            blocks=_levels(statistics),
+        ),
+        Section(
+            anchor="drivers",
+            title=_near(statistics),
+            nav_title="Inputs",
+            blocks=_inputs(statistics, units),
+        ),
     ]
 
 
@@ -61,19 +71,26 @@ def probability_in_words(statistics: Record) -> str:
             f" {confidence} confidence {percent(found['low'])} to {percent(found['high'])}, and at most {percent(found['upper'])}."
             f" {repeats} independent subset simulations estimate it"
         )
-        words += "." if reached == repeats else f"; {repeats - reached} of them reached no violation."
+        words += (
+            "." if reached == repeats else f"; {repeats - reached} of them reached no violation."
+        )
         words += (
             " The interval is that of the mean of a log-normal distribution (Cox, with Student's t), from the scatter of the"
             " simulations, or from the correlation within their chains (Au and Beck), whichever is larger."
         )
     else:
-        nearest = _range([simulation["levels"][-1]["nearest_m"] for simulation in statistics["simulations"]], "{:.1f}")
+        nearest = _range(
+            [simulation["levels"][-1]["nearest_m"] for simulation in statistics["simulations"]],
+            "{:.1f}",
+        )
         words = (
             f"None of {repeats} independent subset simulations reached a keep-out violation. With {confidence} confidence its"
             f" probability in a flight is at most {percent(found['upper'])}, if chains find the way to it. Their nearest flights"
             f" stayed {nearest} m beyond r_min; the more these differ, the less the chains have seen."
         )
-    if outside := sum(simulation["levels"][0]["outside"] for simulation in statistics["simulations"]):
+    if outside := sum(
+        simulation["levels"][0]["outside"] for simulation in statistics["simulations"]
+    ):
         words += f" For the first levels {outside:,} points outside of the declared speed ratios were sampled again."
     if unknown := found["first_levels_unknown"]:
         words += (
@@ -92,7 +109,14 @@ def _probability_table(statistics: Record) -> Table:
     level = percent(statistics["confidence"])
     return Table(
         caption="The probability of a keep-out violation, by subset simulation and by its first levels alone.",
-        head=["By", "Flights", "Violations", "Probability", f"Two-sided at {level}", f"At most, one-sided at {level}"],
+        head=[
+            "By",
+            "Flights",
+            "Violations",
+            "Probability",
+            f"Two-sided at {level}",
+            f"At most, one-sided at {level}",
+        ],
         rows=[
             [
                 f"{found['repeats']} subset simulations",
@@ -125,7 +149,10 @@ def _levels(statistics: Record) -> list[Block]:
         " shown."
     )
     deepest = max(len(simulation["levels"]) for simulation in simulations)
-    rows = [_level_row(i, [s["levels"][i] for s in simulations if len(s["levels"]) > i]) for i in range(deepest)]
+    rows = [
+        _level_row(i, [s["levels"][i] for s in simulations if len(s["levels"]) > i])
+        for i in range(deepest)
+    ]
     head = [
         "Level", "Simulations", "Within r_min plus [m]", "Nearest flight beyond r_min [m]", "Flights", "Fraction that passed",
         "Inputs", "Noise", "Seed",
@@ -149,7 +176,8 @@ def _level_row(number: int, levels: list[Record]) -> list[str]:
         "any" if number == 0 else _range([level["below_m"] for level in levels], "{:.1f}"),
         _range([level["nearest_m"] for level in levels], "{:.1f}"),
         f"{sum(level['flights'] for level in levels):,}",
-        _range([100.0 * level["probability"] for level in levels], "{:.3g}") + "\N{NO-BREAK SPACE}%",
+        _range([100.0 * level["probability"] for level in levels], "{:.3g}")
+        + "\N{NO-BREAK SPACE}%",
         _accepted(levels, "accepted", "moved"),
         _accepted(levels, "blended_accepted", "blended"),
         _accepted(levels, "renewed_accepted", "renewed"),
@@ -172,9 +200,13 @@ def _accepted(levels: list[Record], accepted: str, tried: str) -> str:
 def _warnings(simulations: list[Record]) -> list[str]:
     lines = []
     if stalled := sum(simulation["stalled"] for simulation in simulations):
-        lines.append(f"{stalled} of {len(simulations)} simulations ended early: all flights of a level were equally near.")
+        lines.append(
+            f"{stalled} of {len(simulations)} simulations ended early: all flights of a level were equally near."
+        )
     last = [simulation["levels"][-1] for simulation in simulations]
-    tried, accepted = (sum(level[name] for level in last) for name in ("renewed", "renewed_accepted"))
+    tried, accepted = (
+        sum(level[name] for level in last) for name in ("renewed", "renewed_accepted")
+    )
     if tried and accepted < FEW_RENEWALS * tried:
         lines.append(
             f"Only {percent(accepted / tried)} of the renewals of the seed were accepted in the last levels: the turbulence's seed"
@@ -185,7 +217,11 @@ def _warnings(simulations: list[Record]) -> list[str]:
 
 
 def _near(statistics: Record) -> str:
-    return "Inputs of flights with a violation" if statistics["violation"]["reached"] else "Inputs of the nearest flights"
+    return (
+        "Inputs of flights with a violation"
+        if statistics["violation"]["reached"]
+        else "Inputs of the nearest flights"
+    )
 
 
 def _inputs(statistics: Record, units: Units) -> list[Block]:
@@ -195,12 +231,20 @@ def _inputs(statistics: Record, units: Units) -> list[Block]:
         " of the two cumulative distributions (Kolmogorov), 0 for an input that does not matter, 1 for one that decides alone. The"
         f" noise floor, {statistics['noise_floor']:.2f}, is the largest distance of some inputs without any effect that moved too."
     )
-    return [Text(text), *distance_chart(statistics), input_table(statistics, units), *input_charts(statistics, units)]
+    return [
+        Text(text),
+        *distance_chart(statistics),
+        input_table(statistics, units),
+        *input_charts(statistics, units),
+    ]
 
 
 def input_table(statistics: Record, units: Units) -> Table:
     """Return the inputs with their distances, and how their values differ."""
-    rows = [[_named(entry, units), f"{entry['distance']:.2f}", *_values(entry)] for entry in statistics["inputs"]]
+    rows = [
+        [_named(entry, units), f"{entry['distance']:.2f}", *_values(entry)]
+        for entry in statistics["inputs"]
+    ]
     return Table(
         caption="Inputs by how much their values near a violation differ from the others.",
         head=["Input", "Distance [-]", "As declared", "Near the event"],
@@ -217,9 +261,14 @@ def _named(entry: Record, units: Units) -> str:
 
 def _values(entry: Record) -> tuple[str, str]:
     if entry["edges"]:
-        return number(entry["median"], "median {:.3g}"), number(entry["median_near"], "median {:.3g}")
+        return number(entry["median"], "median {:.3g}"), number(
+            entry["median_near"], "median {:.3g}"
+        )
     shares = [
-        ", ".join(f"{name.replace('_', ' ')} {percent(share)}" for name, share in zip(entry["names"], entry[which], strict=True))
+        ", ".join(
+            f"{name.replace('_', ' ')} {percent(share)}"
+            for name, share in zip(entry["names"], entry[which], strict=True)
+        )
         for which in ("declared", "near")
     ]
     return shares[0], shares[1]

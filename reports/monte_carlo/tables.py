@@ -14,7 +14,10 @@ Record = dict[str, Any]
 def violation_table(statistics: Record) -> Table:
     """Return how many flights violated the keep-out area, and the interval of that probability."""
     level = percent(statistics["interval_confidence"])
-    counted = [("Flights with a measurement", "measured"), ("All, those of unknown end counted as violations", "pessimistic")]
+    counted = [
+        ("Flights with a measurement", "measured"),
+        ("All, those of unknown end counted as violations", "pessimistic"),
+    ]
     return Table(
         caption="Flights that violated the keep-out area, and the interval of that probability.",
         head=[
@@ -48,25 +51,36 @@ def ending_table(statistics: Record) -> Table:
     rows = [
         ["Outcomes", _counted(statistics["outcomes"])],
         ["Modes at the end", _counted(statistics["modes_at_end"])],
-        *([f"Of unknown end: {outcome.replace('_', ' ')}", _flights(found)] for outcome, found in unknown.items()),
+        *(
+            [f"Of unknown end: {outcome.replace('_', ' ')}", _flights(found)]
+            for outcome, found in unknown.items()
+        ),
     ]
     return pairs_table(rows)
 
 
 def _counted(counts: dict[str, int]) -> str:
-    return ", ".join(f"{count:,} {word.replace('_', ' ')}" for word, count in counts.items()) or "none"
+    return (
+        ", ".join(f"{count:,} {word.replace('_', ' ')}" for word, count in counts.items()) or "none"
+    )
 
 
 def _flights(found: Record) -> str:
     more = found["flights"] - len(found["flight_ids"])
-    return f"{found['flights']:,}: {', '.join(found['flight_ids'])}" + (f" and {more:,} more, in {SUMMARY}" if more else "")
+    return f"{found['flights']:,}: {', '.join(found['flight_ids'])}" + (
+        f" and {more:,} more, in {SUMMARY}" if more else ""
+    )
 
 
 def quantile_table(statistics: Record, *, several_radii: bool) -> Table:
     """Return quantiles of each figure, each with its interval; distances are beyond r_min where the flights have several."""
     without = FROM_THE_CENTRE if several_radii else ("crossing_clearance_m",)
-    figures = {figure: statistics["figures"][key] for key, figure in FIGURES.items() if key not in without}
-    every = sorted({quantile["probability"] for figure in figures.values() for quantile in figure["quantiles"]})
+    figures = {
+        figure: statistics["figures"][key] for key, figure in FIGURES.items() if key not in without
+    }
+    every = sorted(
+        {quantile["probability"] for figure in figures.values() for quantile in figure["quantiles"]}
+    )
     rows = []
     for figure, found in figures.items():
         quantiles = {quantile["probability"]: quantile for quantile in found["quantiles"]}
@@ -99,6 +113,14 @@ def left_out_rows(sensitivity: Record) -> list[str]:
             reason = str(found["message"]).rpartition("; ")[2]
             flights = f"{found['flights']:,} flight{'s' * (found['flights'] != 1)}"
             without.setdefault(reason, []).append(f"{FIGURES[key].name} ({flights})")
-    lines = [f"No sensitivity indices of {'; '.join(names)}: {reason}." for reason, names in without.items()]
-    reasons = {(key, why) for found in sensitivity.values() if not found["message"] for key, why in found["left_out"].items()}
+    lines = [
+        f"No sensitivity indices of {'; '.join(names)}: {reason}."
+        for reason, names in without.items()
+    ]
+    reasons = {
+        (key, why)
+        for found in sensitivity.values()
+        if not found["message"]
+        for key, why in found["left_out"].items()
+    }
     return [*lines, *(f"{input_name(key)} has no index: {why}." for key, why in sorted(reasons))]

@@ -20,8 +20,16 @@ def bounds_section(record: dict[str, Any]) -> Section:
             _tightness_table(record["flown"]),
             Heading("What a guarantee costs"),
             Text(_COST),
-            *([Text(_COST_FOR.format(**record["guaranteed_for"]))] if record["guaranteed_for"] else []),
-            *([_cost_chart(record["guaranteed"])] if any("bound_rad_s" in row for row in record["guaranteed"]) else []),
+            *(
+                [Text(_COST_FOR.format(**record["guaranteed_for"]))]
+                if record["guaranteed_for"]
+                else []
+            ),
+            *(
+                [_cost_chart(record["guaranteed"])]
+                if any("bound_rad_s" in row for row in record["guaranteed"])
+                else []
+            ),
             _cost_table(record["guaranteed"]),
         ],
     )
@@ -88,7 +96,9 @@ def _cost_table(rows: list[dict[str, Any]]) -> Table:
             number(row.get("look_ahead_m"), "{:.0f}"),
             number(row.get("steering_max_rad_s"), "{:.4f}"),
             number(row.get("bound_rad_s"), "{:.4f}"),
-            number(row.get("convergence_time_s"), "{:.0f}") if "bound_rad_s" in row else "no such parameters",
+            number(row.get("convergence_time_s"), "{:.0f}")
+            if "bound_rad_s" in row
+            else "no such parameters",
         ]
         for row in rows
     ]
@@ -116,12 +126,26 @@ def _cost_chart(rows: list[dict[str, Any]]) -> Chart:
             Panel(
                 x_label=x_label,
                 y_label="Estimated time to settle [s]",
-                lines=[Line(x=reserve, y=np.array([row["convergence_time_s"] for row in kept]), label="", colour="black")],
+                lines=[
+                    Line(
+                        x=reserve,
+                        y=np.array([row["convergence_time_s"] for row in kept]),
+                        label="",
+                        colour="black",
+                    )
+                ],
             ),
             Panel(
                 x_label=x_label,
                 y_label="Crossing interval [s]",
-                lines=[Line(x=reserve, y=np.array([row["crossing_interval_s"] for row in kept]), label="", colour="black")],
+                lines=[
+                    Line(
+                        x=reserve,
+                        y=np.array([row["crossing_interval_s"] for row in kept]),
+                        label="",
+                        colour="black",
+                    )
+                ],
             ),
         ],
         columns=2,

@@ -77,7 +77,9 @@ def sim_3_charts(run: RunData) -> list[Chart]:
         flown = flights["sim3"]
         times = run.crossings_of(str(flown.row["flight_id"]))["time_s"].to_numpy(dtype=np.float64)
         times = times[times <= flown.time[-1]]
-        east, north = (np.interp(times, flown.time, flown.column(name)) for name in ("east_m", "north_m"))
+        east, north = (
+            np.interp(times, flown.time, flown.column(name)) for name in ("east_m", "north_m")
+        )
         about = surroundings(flight_config(run, flown.row), flown.row, flown.history)
         place = (float(flown.column(name)[-1]) for name in ("vessel_east_m", "vessel_north_m"))
         return [
@@ -92,8 +94,14 @@ def sim_3_charts(run: RunData) -> list[Chart]:
         flown = flights["sim3"]
         crossings = run.crossings_of(str(flown.row["flight_id"]))
         config = flight_config(run, flown.row)
-        times, distance = crossings["time_s"].to_numpy(dtype=np.float64), keepout_distance(flown.history, config)
-        crossed = column(crossings, "distance_m" if keepout_shape(config) == "sphere" else "horizontal_distance_m")
+        times, distance = (
+            crossings["time_s"].to_numpy(dtype=np.float64),
+            keepout_distance(flown.history, config),
+        )
+        crossed = column(
+            crossings,
+            "distance_m" if keepout_shape(config) == "sphere" else "horizontal_distance_m",
+        )
         return [
             _level(flown.time, float(flown.row["keepout_radius_m"]), "r_min"),
             Line(x=flown.time, y=distance, label="flown", colour=Meaning.FLOWN),
@@ -144,17 +152,28 @@ def _side_by_side(
 
     With an ``aspect``, width over height, they are maps.
     """
-    found = {fidelity: {case: find_flight(run, f"{case}_{fidelity}") for case in cases} for fidelity in VEHICLES}
-    pairs = {fidelity: {c: f for c, f in flights.items() if f is not None} for fidelity, flights in found.items()}
+    found = {
+        fidelity: {case: find_flight(run, f"{case}_{fidelity}") for case in cases}
+        for fidelity in VEHICLES
+    }
+    pairs = {
+        fidelity: {c: f for c, f in flights.items() if f is not None}
+        for fidelity, flights in found.items()
+    }
     pairs = {fidelity: flights for fidelity, flights in pairs.items() if len(flights) == len(cases)}
-    settled = [float(f.row["settling_time_s"]) for flights in pairs.values() for f in flights.values()]
+    settled = [
+        float(f.row["settling_time_s"]) for flights in pairs.values() for f in flights.values()
+    ]
     until = max((time for time in settled if not math.isnan(time)), default=math.inf) + shown_after
     drawn = {
-        vehicle_name(run, key): lines({c: flown.until(until) for c, flown in flights.items()}) for key, flights in pairs.items()
+        vehicle_name(run, key): lines({c: flown.until(until) for c, flown in flights.items()})
+        for key, flights in pairs.items()
     }
     every = [line for curves in drawn.values() for line in curves]
     panels = [
-        Panel(x_label=labels[0], y_label=labels[1], title=title[0].upper() + title[1:], lines=curves)
+        Panel(
+            x_label=labels[0], y_label=labels[1], title=title[0].upper() + title[1:], lines=curves
+        )
         for title, curves in drawn.items()
     ]
     if aspect:
@@ -162,14 +181,21 @@ def _side_by_side(
     elif drawn:
         x_range, y_range = _common_ranges(every)
         panels = [replace(panel, x_range=x_range, y_range=y_range) for panel in panels]
-    return Chart(name=name, caption=caption, panels=panels, columns=columns, panel_height=panel_height)
+    return Chart(
+        name=name, caption=caption, panels=panels, columns=columns, panel_height=panel_height
+    )
 
 
 def _common_ranges(lines: list[Line]) -> tuple[tuple[float, float], tuple[float, float]]:
     """Return ranges that hold every curve, so that panels side by side compare at a glance."""
-    x, y = (np.concatenate(curves) for curves in zip(*((line.x, line.y) for line in lines), strict=True))
+    x, y = (
+        np.concatenate(curves) for curves in zip(*((line.x, line.y) for line in lines), strict=True)
+    )
     across, up = 0.02 * float(np.ptp(x)), 0.05 * float(np.ptp(y))
-    return (float(np.min(x)) - across, float(np.max(x)) + across), (float(np.min(y)) - up, float(np.max(y)) + up)
+    return (float(np.min(x)) - across, float(np.max(x)) + across), (
+        float(np.min(y)) - up,
+        float(np.max(y)) + up,
+    )
 
 
 def _figure_3(flights: dict[str, Flown]) -> list[Line]:
@@ -203,13 +229,22 @@ def _coincidence_marks(flown: Flown, curve: Array) -> list[Line]:
         (~saddle, "φ_r = φ ≠ 0, a peak or trough of d", "black"),
     )
     return [
-        Line(x=times[which], y=np.interp(times[which], flown.time, curve), label=label, colour=colour, style="diamonds")
+        Line(
+            x=times[which],
+            y=np.interp(times[which], flown.time, curve),
+            label=label,
+            colour=colour,
+            style="diamonds",
+        )
         for which, label, colour in marks
         if which.any()
     ]
 
 
-_UAVS = {"sim2_los": ("UAV 1, line of sight", "plum"), "sim2_delta": ("UAV 2, δ formulation", Meaning.FLOWN)}
+_UAVS = {
+    "sim2_los": ("UAV 1, line of sight", "plum"),
+    "sim2_delta": ("UAV 2, δ formulation", Meaning.FLOWN),
+}
 
 
 def _figure_6(flights: dict[str, Flown]) -> list[Line]:
@@ -220,7 +255,12 @@ def _figure_6(flights: dict[str, Flown]) -> list[Line]:
 
 def _figure_7(flights: dict[str, Flown]) -> list[Line]:
     commands = [
-        Line(x=flown.time, y=flown.column("heading_rate_demand_rad_s"), label=_UAVS[case][0], colour=_UAVS[case][1])
+        Line(
+            x=flown.time,
+            y=flown.column("heading_rate_demand_rad_s"),
+            label=_UAVS[case][0],
+            colour=_UAVS[case][1],
+        )
         for case, flown in flights.items()
     ]
     first = next(iter(flights.values()))
@@ -229,12 +269,23 @@ def _figure_7(flights: dict[str, Flown]) -> list[Line]:
 
 
 def _distances(flights: dict[str, Flown]) -> list[Line]:
-    return [Line(x=flown.time, y=flown.distance, label=_UAVS[case][0], colour=_UAVS[case][1]) for case, flown in flights.items()]
+    return [
+        Line(x=flown.time, y=flown.distance, label=_UAVS[case][0], colour=_UAVS[case][1])
+        for case, flown in flights.items()
+    ]
 
 
-def _path(flown: Flown, prefix: str, label: str, colour: str = Meaning.FLOWN, style: Style = "solid") -> Line:
+def _path(
+    flown: Flown, prefix: str, label: str, colour: str = Meaning.FLOWN, style: Style = "solid"
+) -> Line:
     """Return where the UAV, or what a prefix names, went over the ground."""
-    return Line(x=flown.column(f"{prefix}east_m"), y=flown.column(f"{prefix}north_m"), label=label, colour=colour, style=style)
+    return Line(
+        x=flown.column(f"{prefix}east_m"),
+        y=flown.column(f"{prefix}north_m"),
+        label=label,
+        colour=colour,
+        style=style,
+    )
 
 
 def _reference(flown: Flown) -> Line:
@@ -257,4 +308,6 @@ def _crossings(x: Array, y: Array) -> Line:
 
 
 def _level(time: Array, value: float, label: str, colour: str = Meaning.LIMIT) -> Line:
-    return Line(x=time[[0, -1]], y=np.array([value, value]), label=label, colour=colour, style="dash")
+    return Line(
+        x=time[[0, -1]], y=np.array([value, value]), label=label, colour=colour, style="dash"
+    )

@@ -35,7 +35,11 @@ class Check:
 
 def rows_by_id(run: RunData) -> dict[str, "pd.Series[Any]"]:
     """Return the row of every flight, those of comparisons among them."""
-    return {str(row["flight_id"]): row for frame in (run.summary, run.comparison) for _, row in frame.iterrows()}
+    return {
+        str(row["flight_id"]): row
+        for frame in (run.summary, run.comparison)
+        for _, row in frame.iterrows()
+    }
 
 
 def vehicles(run: RunData) -> list[str]:
@@ -69,7 +73,14 @@ def paper_checks(run: RunData) -> list[Check]:
                 )
             )
     violations = sum(value("sim3", fidelity, "keepout_violations") for fidelity in vehicles(run))
-    checks.append(Check("Sim. 3, keep-out violations", number(violations, "{:.0f}"), "0", _met(violations, violations == 0)))
+    checks.append(
+        Check(
+            "Sim. 3, keep-out violations",
+            number(violations, "{:.0f}"),
+            "0",
+            _met(violations, violations == 0),
+        )
+    )
     for case, name in (("sim1", "Sim. 1"), ("sim2_delta", "Sim. 2")):
         if "kinematic" in vehicles(run):
             end = value(case, "kinematic", "tracking_error_end_m")
@@ -83,13 +94,28 @@ def paper_checks(run: RunData) -> list[Check]:
                 )
             )
     for case, name, within in (("sim2_delta", "δ law", True), ("sim2_los", "line of sight", False)):
-        demand = [value(case, fidelity, "heading_rate_demand_max_rad_s") for fidelity in vehicles(run)]
+        demand = [
+            value(case, fidelity, "heading_rate_demand_max_rad_s") for fidelity in vehicles(run)
+        ]
         limit = value(case, vehicles(run)[0], "heading_rate_limit_rad_s")
         # The δ law at its largest, the line of sight at its smallest: each vehicle has to show it.
-        worst = sum(demand) if any(math.isnan(w) for w in demand) else max(demand) if within else min(demand)
+        worst = (
+            sum(demand)
+            if any(math.isnan(w) for w in demand)
+            else max(demand)
+            if within
+            else min(demand)
+        )
         holds = worst <= limit if within else worst > limit
         required = f"{'≤' if within else '>'} ω_max = {number(limit, '{:g}')} rad/s"
-        checks.append(Check(f"Sim. 2, demand of the {name}", number(worst, "{:.3f} rad/s"), required, _met(worst, holds)))
+        checks.append(
+            Check(
+                f"Sim. 2, demand of the {name}",
+                number(worst, "{:.3f} rad/s"),
+                required,
+                _met(worst, holds),
+            )
+        )
     return checks
 
 
@@ -127,9 +153,16 @@ def paper_verdict(run: RunData) -> Verdict:
         detail=detail,
         failures=[
             *(f"{check.name}: {check.value}, required {check.required}" for check in wrong),
-            *(f"{row['flight_id']}: {str(row['outcome']).replace('_', ' ')}, {row['message']}" for _, row in failed.iterrows()),
+            *(
+                f"{row['flight_id']}: {str(row['outcome']).replace('_', ' ')}, {row['message']}"
+                for _, row in failed.iterrows()
+            ),
         ],
-        figures=[Card(check.name, check.value, check.required, check.met) for check in checks if check.met is not None],
+        figures=[
+            Card(check.name, check.value, check.required, check.met)
+            for check in checks
+            if check.met is not None
+        ],
     )
 
 

@@ -9,7 +9,15 @@ import pandas as pd
 
 from common.run_layout import BOUNDS
 from reports.design.section import innerloop_section
-from reports.document.blocks import Findings, FlightContent, FlightPicker, Heading, Section, Table, Text
+from reports.document.blocks import (
+    Findings,
+    FlightContent,
+    FlightPicker,
+    Heading,
+    Section,
+    Table,
+    Text,
+)
 from reports.document.chart import Chart
 from reports.document.tables import approach, kinematic, length, number, outcome, parameter_table
 from reports.flights.flight_view import flight_view
@@ -17,7 +25,13 @@ from reports.flights.single_flight import flight_charts
 from reports.flights.tracks import track_picture
 from reports.paper.bounds import bounds_section
 from reports.paper.charts import sim_1_charts, sim_2_charts, sim_3_charts
-from reports.paper.checks import DISTANCE_PRINTED, INTERVAL_PRINTED, paper_verdict, rows_by_id, vehicles
+from reports.paper.checks import (
+    DISTANCE_PRINTED,
+    INTERVAL_PRINTED,
+    paper_verdict,
+    rows_by_id,
+    vehicles,
+)
 from reports.paper.flown import VEHICLES, find_flight, vehicle_name
 from reports.replay.flight_scene import flight_scene
 from reports.run.run_data import RunData
@@ -52,21 +66,34 @@ def paper_content(run: RunData) -> Findings:
             ],
         ),
     ]  # fmt: skip
-    return Findings(flown=_flown(run), verdict=paper_verdict(run), picture=_picture(run), sections=sections)
+    return Findings(
+        flown=_flown(run), verdict=paper_verdict(run), picture=_picture(run), sections=sections
+    )
 
 
 def _flown(run: RunData) -> str:
     names = {"kinematic": f"the kinematic vehicle, {kinematic(run)}"}
-    flown = ", and of ".join(names.get(fidelity, "the aircraft in six degrees of freedom") for fidelity in vehicles(run))
+    flown = ", and of ".join(
+        names.get(fidelity, "the aircraft in six degrees of freedom") for fidelity in vehicles(run)
+    )
     return f"Simulations 1 to 3 of the paper: {len(run.summary)} flights of {flown}."
 
 
 def _picture(run: RunData) -> Chart | None:
     """Return Simulation 3 on each vehicle, or the first figure that there is."""
     (trial,) = read_trials(run)
-    rows = {fidelity: row for fidelity in VEHICLES if (row := rows_by_id(run).get(f"sim3_{fidelity}")) is not None}
-    shown = [(trial, row, f"Simulation 3: {vehicle_name(run, fidelity)}") for fidelity, row in rows.items()]
-    charts = (chart for figures in (sim_1_charts, sim_2_charts) for chart in figures(run) if chart.panels)
+    rows = {
+        fidelity: row
+        for fidelity in VEHICLES
+        if (row := rows_by_id(run).get(f"sim3_{fidelity}")) is not None
+    }
+    shown = [
+        (trial, row, f"Simulation 3: {vehicle_name(run, fidelity)}")
+        for fidelity, row in rows.items()
+    ]
+    charts = (
+        chart for figures in (sim_1_charts, sim_2_charts) for chart in figures(run) if chart.panels
+    )
     return track_picture(shown) or next(charts, None)
 
 
@@ -105,7 +132,12 @@ _SIMULATIONS = (
 
 def _detail(picker: FlightPicker) -> Section:
     text = Text("The flights beside a vessel, drawn as those of any other study.")
-    return Section(anchor="flights", title="Single flights", nav_title="Flights", blocks=[text, picker] if picker.flights else [])
+    return Section(
+        anchor="flights",
+        title="Single flights",
+        nav_title="Flights",
+        blocks=[text, picker] if picker.flights else [],
+    )
 
 
 def _flight_table(run: RunData) -> Table:
@@ -143,7 +175,9 @@ def _number_table(run: RunData) -> Table:
         return ["–" if row is None or pd.isna(row[key]) else show(row) for row in found]
 
     def against(key: str, printed: float, pattern: str) -> Callable[["pd.Series[Any]"], str]:
-        return lambda row: f"{number(row[key], pattern)} ({number(100.0 * (float(row[key]) / printed - 1.0), '{:+.2f} %')})"
+        return lambda row: (
+            f"{number(row[key], pattern)} ({number(100.0 * (float(row[key]) / printed - 1.0), '{:+.2f} %')})"
+        )
 
     def omega(row: "pd.Series[Any]") -> str:
         demand, limit = float(row[_DEMAND]), float(row["heading_rate_limit_rad_s"])
@@ -158,7 +192,11 @@ def _number_table(run: RunData) -> Table:
     def falls(row: "pd.Series[Any]") -> str:
         return _rise_once_inside(run, str(row["flight_id"]))
 
-    interval, distance, closest = "crossing_interval_mean_s", "crossing_distance_mean_m", "min_distance_m"
+    interval, distance, closest = (
+        "crossing_interval_mean_s",
+        "crossing_distance_mean_m",
+        "min_distance_m",
+    )
     radius = f"{float(run.manifest['config']['keepout']['radius_m']):g} m"
     table = [
         ["Sim. 3", "smoke plume measurements every", "9.5 s",
@@ -209,15 +247,22 @@ def _case_table(run: RunData) -> Table:
     def words(values: dict[str, Any]) -> str:
         return ", ".join(f"{key} = {json.dumps(value)}" for key, value in values.items())
 
-    rows = [[case["name"], words(case["set"]), words(case["set_kinematic"])] for case in run.manifest["config"]["cases"]]
+    rows = [
+        [case["name"], words(case["set"]), words(case["set_kinematic"])]
+        for case in run.manifest["config"]["cases"]
+    ]
     head = ["Simulation", "Both vehicles", "Kinematic vehicle besides"]
-    return Table(head=head, rows=rows, widths=[0.9, 3.4, 1.8], left_columns=3, prose=True, breakable=True)
+    return Table(
+        head=head, rows=rows, widths=[0.9, 3.4, 1.8], left_columns=3, prose=True, breakable=True
+    )
 
 
 def _flights(run: RunData) -> FlightPicker:
     """Return the flights with a vessel whose world is the run's own, which their figures are drawn in."""
     elsewhere = {
-        case["name"] for case in run.manifest["config"]["cases"] if _is_elsewhere({**case["set"], **case["set_kinematic"]})
+        case["name"]
+        for case in run.manifest["config"]["cases"]
+        if _is_elsewhere({**case["set"], **case["set_kinematic"]})
     }
     (trial,) = read_trials(run)
     flights = []
@@ -242,4 +287,6 @@ def _flights(run: RunData) -> FlightPicker:
 
 def _is_elsewhere(values: dict[str, Any]) -> bool:
     """Return whether a case sets anything of the world that the figures of a flight are drawn in."""
-    return any(key.startswith(("vessel", "plume", "keepout", "guidance.airspeed_mps")) for key in values)
+    return any(
+        key.startswith(("vessel", "plume", "keepout", "guidance.airspeed_mps")) for key in values
+    )

@@ -44,13 +44,19 @@ class Flown:
 
 def vehicle_name(run: RunData, fidelity: str) -> str:
     """Return what the vehicle of a fidelity is called."""
-    return f"kinematic vehicle, {kinematic(run)}" if fidelity == "kinematic" else "aircraft, six degrees of freedom"
+    return (
+        f"kinematic vehicle, {kinematic(run)}"
+        if fidelity == "kinematic"
+        else "aircraft, six degrees of freedom"
+    )
 
 
 def find_flight(run: RunData, flight_id: str) -> Flown | None:
     """Return a flight of the study or of its comparisons, or none if it has no record."""
     history = run.history(flight_id)
-    rows = pd.concat([frame[frame["flight_id"] == flight_id] for frame in (run.summary, run.comparison)])
+    rows = pd.concat(
+        [frame[frame["flight_id"] == flight_id] for frame in (run.summary, run.comparison)]
+    )
     if history is None or len(history) < 2 or not len(rows):
         return None
     return Flown(rows.iloc[0], history)

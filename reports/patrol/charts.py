@@ -10,7 +10,13 @@ from reports.document.palette import Meaning
 from reports.patrol.data import Patrol, Patrols
 from reports.run.columns import column
 
-_PHASES = {"transit": "blue", "approach": "orange", "searching": "sky", "measuring": "green", "leaving": "grey"}
+_PHASES = {
+    "transit": "blue",
+    "approach": "orange",
+    "searching": "sky",
+    "measuring": "green",
+    "leaving": "grey",
+}
 """What the UAV does, in its order, and the colour of it."""
 
 _MINUTE = 60.0
@@ -38,7 +44,10 @@ def patrol_chart(patrol: Patrol) -> Chart:
 def time_lines(patrols: Patrols) -> Chart:
     """Return the time lines of all patrols, a row each."""
     count = len(patrols.patrols)
-    numbered = [rows.assign(row=count - i) for i, rows in enumerate(patrol.phases for patrol in patrols.patrols)]
+    numbered = [
+        rows.assign(row=count - i)
+        for i, rows in enumerate(patrol.phases for patrol in patrols.patrols)
+    ]
     panel = Panel(
         x_label="Time since the start of the patrol [min]",
         y_label="Patrol",
@@ -47,7 +56,9 @@ def time_lines(patrols: Patrols) -> Chart:
         y_names=[(float(count - i), str(i)) for i in range(count)],
     )
     caption = "What the UAV did when, a row for each patrol."
-    return Chart(name="time_lines", caption=caption, panels=[panel], panel_height=0.12 + 0.035 * count)
+    return Chart(
+        name="time_lines", caption=caption, panels=[panel], panel_height=0.12 + 0.035 * count
+    )
 
 
 def _map(patrol: Patrol) -> Panel:
@@ -61,7 +72,10 @@ def _map(patrol: Patrol) -> Panel:
         starts.append(Line(x=east[:1], y=north[:1], label=label, colour=Meaning.SHIP, style=style))
     flown = [Line(x=np.zeros(1), y=np.zeros(1), label="start", colour=Meaning.FLOWN, style="ring")]
     for _, leg in patrol.phases.iterrows():
-        x, y = (np.array([leg[f"from_{axis}_m"], leg[f"to_{axis}_m"]], dtype=np.float64) for axis in ("east", "north"))
+        x, y = (
+            np.array([leg[f"from_{axis}_m"], leg[f"to_{axis}_m"]], dtype=np.float64)
+            for axis in ("east", "north")
+        )
         flown.append(Line(x=x, y=y, label="flown", colour=Meaning.FLOWN))
     measured = patrol.phases[patrol.phases["phase"] == "measuring"]
     x, y = column(measured, "to_east_m"), column(measured, "to_north_m")
@@ -73,7 +87,9 @@ def _map(patrol: Patrol) -> Panel:
         Note(x=float(line.x[0]), y=float(line.y[0]) + room, text=str(number))
         for number, line in zip(patrol.ships["ship"], starts, strict=True)
     ]
-    panel = Panel(x_label="East [m]", y_label="North [m]", title="Map", lines=[*ships, *shown], notes=notes)
+    panel = Panel(
+        x_label="East [m]", y_label="North [m]", title="Map", lines=[*ships, *shown], notes=notes
+    )
     return on_map(panel, north=0.0, wind=patrol.wind, shown=shown)
 
 
@@ -103,7 +119,10 @@ def _bars(phases: pd.DataFrame) -> list[Line]:
     for phase, colour in _PHASES.items():
         rows = phases[phases["phase"] == phase]
         gap = np.full(len(rows), np.nan)
-        time = np.column_stack([column(rows, "begins_s"), column(rows, "ends_s"), gap]).ravel() / _MINUTE
+        time = (
+            np.column_stack([column(rows, "begins_s"), column(rows, "ends_s"), gap]).ravel()
+            / _MINUTE
+        )
         row = np.column_stack([column(rows, "row"), column(rows, "row"), gap]).ravel()
         lines.append(Line(x=time, y=row, label=phase, colour=colour, style="broad"))
     return lines

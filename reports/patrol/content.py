@@ -35,26 +35,44 @@ def patrol_content(run: RunData) -> Findings:
             anchor="patrols",
             title="Patrols and the oracle",
             nav_title="Patrols",
-            blocks=[Text(_ORACLE), oracle_table(patrols), *([time_lines(patrols)] if len(flown) > 1 else [])],
+            blocks=[
+                Text(_ORACLE),
+                oracle_table(patrols),
+                *([time_lines(patrols)] if len(flown) > 1 else []),
+            ],
         ),
         Section(
             anchor="ships",
             title="Ships",
-            blocks=[block for i, chart, table in charts for block in (Heading(f"Patrol {i}"), chart, table)],
+            blocks=[
+                block
+                for i, chart, table in charts
+                for block in (Heading(f"Patrol {i}"), chart, table)
+            ],
         ),
         *([innerloop_section(run.innerloop)] if run.innerloop else []),
-        Section(anchor="parameters", title="Parameters", blocks=[parameter_table(run, _sampled(run))]),
+        Section(
+            anchor="parameters", title="Parameters", blocks=[parameter_table(run, _sampled(run))]
+        ),
     ]
     patrols_flown = f"{len(patrols.patrols)} patrol{'s' * (len(patrols.patrols) != 1)}"
     counts = patrols.counts
     served = f"{counts.served} of {counts.ships} ships were served."
     words = f"{patrols_flown} of {vehicle_flown(run)}, {counts.hours:.1f} h in all: {served}"
-    return Findings(flown=words, verdict=_verdict(patrols), picture=charts[0][1] if charts else None, sections=sections)
+    return Findings(
+        flown=words,
+        verdict=_verdict(patrols),
+        picture=charts[0][1] if charts else None,
+        sections=sections,
+    )
 
 
 def _sampled(run: RunData) -> dict[str, str]:
     """Return how each key is sampled that is, for every patrol or for every ship."""
-    return {sample["key"]: distribution(sample, "patrol") for sample in run.manifest["config"].get("draws", [])}
+    return {
+        sample["key"]: distribution(sample, "patrol")
+        for sample in run.manifest["config"].get("draws", [])
+    }
 
 
 def _verdict(patrols: Patrols) -> Verdict:
@@ -66,7 +84,9 @@ def _verdict(patrols: Patrols) -> Verdict:
         headline=_headline(counts),
         detail=f"{counts.served} of {counts.ships} ships were served in {counts.hours:.1f} h, {counts.per_hour:.1f} an hour;"
         f" {violations} keep-out violation{'s' * (violations != 1)}.",
-        failures=[f"{row['flight_id']}: {row['message']}" for _, row in rows.iterrows() if row["message"]],
+        failures=[
+            f"{row['flight_id']}: {row['message']}" for _, row in rows.iterrows() if row["message"]
+        ],
         figures=_figures(patrols, counts),
     )
 
@@ -74,15 +94,24 @@ def _verdict(patrols: Patrols) -> Verdict:
 def _figures(patrols: Patrols, counts: PatrolCounts) -> list[Card]:
     """Return what the verdict rests on. What nothing was flown or judged for has no criterion: nothing would meet it."""
     served, verdicts, oracle = counts.served, counts.verdicts, counts.oracle
-    least, most = f"≥ {100.0 * counts.oracle_share_min:g} %", f"≤ {100.0 * counts.wrong_share_max:g} %"
+    least, most = (
+        f"≥ {100.0 * counts.oracle_share_min:g} %",
+        f"≤ {100.0 * counts.wrong_share_max:g} %",
+    )
     return [
         Card(
             "Correct verdicts, over the oracle's",
             f"{counts.correct} of {oracle}",
             *((least, counts.enough) if oracle else ()),
         ),
-        Card("Wrong verdicts", f"{counts.wrong} of {verdicts}", *((most, counts.right) if verdicts else ())),
-        Card("Keep-out violations", f"{counts.violations}", "0", served > 0 and not counts.violations),
+        Card(
+            "Wrong verdicts",
+            f"{counts.wrong} of {verdicts}",
+            *((most, counts.right) if verdicts else ()),
+        ),
+        Card(
+            "Keep-out violations", f"{counts.violations}", "0", served > 0 and not counts.violations
+        ),
         Card("Ships served", f"{served} of {counts.ships}", "≥ 1", served > 0),
         _closest(patrols, "a ship that was served", "min_distance_m"),
         _closest(patrols, "any other ship", "others_distance_min_m"),
@@ -116,4 +145,8 @@ def _closest(patrols: Patrols, ship: str, figure: str) -> Card:
 
 def _least(distances: Array) -> str:
     """Return the least of some distances [m], of those that are known, rounded down: none is shown larger than it was."""
-    return f"{math.floor(10.0 * np.nanmin(distances)) / 10.0:.1f} m" if np.isfinite(distances).any() else "–"
+    return (
+        f"{math.floor(10.0 * np.nanmin(distances)) / 10.0:.1f} m"
+        if np.isfinite(distances).any()
+        else "–"
+    )

@@ -46,7 +46,9 @@ class Patrol:
         ends = float(ship["ended_s"]) if pd.notna(ship["ended_s"]) else self.duration
         course, time = math.radians(float(ship["vessel_course_deg"])), np.array([0.0, ends])
         way = float(ship["vessel_speed_mps"]) * time
-        return float(ship["north_m"]) + way * math.cos(course), float(ship["east_m"]) + way * math.sin(course)
+        return float(ship["north_m"]) + way * math.cos(course), float(
+            ship["east_m"]
+        ) + way * math.sin(course)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -15,7 +15,10 @@ def oracle_table(patrols: Patrols) -> Table:
     rows = []
     for i, patrol in enumerate(patrols.patrols):
         row = patrol.row
-        counts = [number(row.get(name), "{:.0f}") for name in ("ships", "served", "correct", "wrong", "open", "oracle_verdicts")]
+        counts = [
+            number(row.get(name), "{:.0f}")
+            for name in ("ships", "served", "correct", "wrong", "open", "oracle_verdicts")
+        ]
         transit, duration = (row.get(name, float("nan")) for name in ("transit_s", "duration_s"))
         rows.append(
             [

@@ -33,7 +33,11 @@ _LONG = 16
 def write_html(report: Content, path: Path) -> None:
     """Write the report to ``path``; it opens from disk without a network."""
     environment = Environment(
-        loader=PackageLoader("reports.render"), autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True
+        loader=PackageLoader("reports.render"),
+        autoescape=True,
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
     )
     page = environment.get_template("report.html.j2").render(
         report=report,
@@ -56,7 +60,10 @@ def write_html(report: Content, path: Path) -> None:
 def _breakable(words: str) -> Markup:
     """Return words of which long keys may go on over the next line after a point or a stroke, and hashes after any 16 digits."""
     keys = re.compile(rf"\S{{{_LONG},}}")
-    text = keys.sub(lambda key: re.sub(r"([_.])(?=[a-z])|([0-9a-f]{16})(?=[0-9a-f])", r"\1\2<wbr>", key[0]), str(escape(words)))
+    text = keys.sub(
+        lambda key: re.sub(r"([_.])(?=[a-z])|([0-9a-f]{16})(?=[0-9a-f])", r"\1\2<wbr>", key[0]),
+        str(escape(words)),
+    )
     return Markup(text)
 
 
@@ -67,7 +74,11 @@ def _is_figures(cell: str) -> bool:
 
 def _panels(picture: Chart) -> list[Chart]:
     """Return a chart for each panel of page 1's picture: beside each other in a wide window, below each other in a narrow one."""
-    height = picture.panel_height if picture.columns == 1 else (_PANEL_HEIGHT - picture.last_height) / picture.rows
+    height = (
+        picture.panel_height
+        if picture.columns == 1
+        else (_PANEL_HEIGHT - picture.last_height) / picture.rows
+    )
     return [
         replace(
             picture,
@@ -87,8 +98,14 @@ def _flights(picker: FlightPicker) -> tuple[str, str]:
     Time is that of every history of a flight.
     """
     curves: dict[str, int] = {}
-    figures = {flight.flight_id: [draw(chart) | {"caption": chart.caption} for chart in flight.charts] for flight in picker.flights}
-    for trace, axis in product((trace for drawn in figures.values() for figure in drawn for trace in figure["data"]), ("x", "y")):
+    figures = {
+        flight.flight_id: [draw(chart) | {"caption": chart.caption} for chart in flight.charts]
+        for flight in picker.flights
+    }
+    for trace, axis in product(
+        (trace for drawn in figures.values() for figure in drawn for trace in figure["data"]),
+        ("x", "y"),
+    ):
         if trace[axis]:
             trace[axis] = curves.setdefault(trace[axis]["bdata"], len(curves))
     return for_script(figures), for_script(list(curves))

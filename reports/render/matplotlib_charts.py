@@ -63,9 +63,21 @@ _LINE_STYLES: dict[str, dict[str, Any]] = {
     "points": {"linestyle": "none", "marker": "o", "markersize": 3.6},
     "dots": {"linestyle": "none", "marker": "o", "markersize": 1.8},
     "diamonds": {"linestyle": "none", "marker": "D", "markersize": 3.2},
-    "ring": {"linestyle": "none", "marker": "o", "markersize": 6.0, "markerfacecolor": "none", "markeredgewidth": 1.2},
+    "ring": {
+        "linestyle": "none",
+        "marker": "o",
+        "markersize": 6.0,
+        "markerfacecolor": "none",
+        "markeredgewidth": 1.2,
+    },
     "square": {"linestyle": "none", "marker": "s", "markersize": 4.6},
-    "cross": {"linestyle": "none", "marker": "X", "markersize": 6.0, "markeredgecolor": "white", "markeredgewidth": 0.5},
+    "cross": {
+        "linestyle": "none",
+        "marker": "X",
+        "markersize": 6.0,
+        "markeredgecolor": "white",
+        "markeredgewidth": 0.5,
+    },
 }
 
 
@@ -75,12 +87,21 @@ Limits = tuple[float, float] | None
 def draw(*charts: Chart) -> Figure:
     """Return a chart as a matplotlib figure; of several, each below the one before."""
     with rc_context(_STYLE):
-        heights = [WIDTH_INCHES * chart.height + 0.35 + _LEGEND_ROW * _legend_rows(chart) for chart in charts]
+        heights = [
+            WIDTH_INCHES * chart.height + 0.35 + _LEGEND_ROW * _legend_rows(chart)
+            for chart in charts
+        ]
         figure = Figure(figsize=(WIDTH_INCHES, sum(heights)), layout="constrained")
-        parts = [figure] if len(charts) == 1 else figure.subfigures(len(charts), squeeze=False, height_ratios=heights).flat
+        parts = (
+            [figure]
+            if len(charts) == 1
+            else figure.subfigures(len(charts), squeeze=False, height_ratios=heights).flat
+        )
         for part, chart in zip(parts, charts, strict=True):
             _draw_on(part, chart)
-        if any(panel.equal for chart in charts for panel in chart.panels) and (layout := figure.get_layout_engine()):
+        if any(panel.equal for chart in charts for panel in chart.panels) and (
+            layout := figure.get_layout_engine()
+        ):
             # Room for labels is found where the last layout has put the panels: a map that becomes higher by it has them cut off.
             layout.execute(figure)
         return figure
@@ -105,13 +126,21 @@ def _draw_on(figure: Figure | SubFigure, chart: Chart) -> None:
         figure.colorbar(shaded, ax=axes, label=chart.scale_label, shrink=0.85, pad=0.015)
     if len(handles) > 1:
         columns = _legend_columns(list(handles))
-        figure.legend(list(handles.values()), list(handles), loc="outside upper center", ncols=columns, fontsize=7.5)
+        figure.legend(
+            list(handles.values()),
+            list(handles),
+            loc="outside upper center",
+            ncols=columns,
+            fontsize=7.5,
+        )
 
 
 def _axes(figure: Figure | SubFigure, chart: Chart) -> list[Any]:
     """Return the axes of the panels in their order, and those that no panel needs."""
     if not chart.last_height:
-        axes = figure.subplots(chart.rows, chart.columns, squeeze=False, sharex="col" if chart.share_x else "none")
+        axes = figure.subplots(
+            chart.rows, chart.columns, squeeze=False, sharex="col" if chart.share_x else "none"
+        )
         return list(axes.flat)
     ratios = [*([chart.panel_height] * chart.rows), chart.last_height]
     grid = figure.add_gridspec(chart.rows + 1, chart.columns, height_ratios=ratios)
@@ -150,7 +179,9 @@ def _draw_line(ax: Any, line: Line) -> Any:
     if line.fill:
         ax.fill(line.x, line.y, color=colour, alpha=line.opacity, linewidth=0.0, zorder=_DEPTH)
     if line.error is not None:
-        return ax.errorbar(line.x, line.y, yerr=line.error, color=colour, capsize=2, elinewidth=0.8, **style)
+        return ax.errorbar(
+            line.x, line.y, yerr=line.error, color=colour, capsize=2, elinewidth=0.8, **style
+        )
     return ax.plot(line.x, line.y, color=colour, rasterized=len(line.x) > 4000, **style)[0]
 
 
@@ -170,17 +201,43 @@ def _label(ax: Any, chart: Chart, index: int) -> None:
     names = max((len(name) for shown in chart.panels for _, name in shown.y_names), default=0)
     wide = chart.is_wide(index)
     width = WIDTH_INCHES / (1 if wide else chart.columns) - _MARKS - _LETTER * names / chart.columns
-    height = WIDTH_INCHES * (chart.last_height if wide else chart.panel_height) - _MARKS / (chart.rows if chart.share_x else 1)
+    height = WIDTH_INCHES * (chart.last_height if wide else chart.panel_height) - _MARKS / (
+        chart.rows if chart.share_x else 1
+    )
     if index + chart.columns >= len(chart.panels) or not chart.share_x:
         ax.set_xlabel("\n".join(wrapped(panel.x_label, width / _LETTER)))
     ax.set_ylabel("\n".join(wrapped(panel.y_label, height / _LETTER)))
 
 
 def _dress(ax: Any, panel: Panel) -> None:
-    x_range = _mark(ax, "x", [line.x for line in panel.lines], panel.x_range, log=panel.log_x, whole=panel.x_whole)
-    y_range = _mark(ax, "y", [line.y for line in panel.lines], panel.y_range, log=panel.log_y, whole=panel.y_whole)
+    x_range = _mark(
+        ax,
+        "x",
+        [line.x for line in panel.lines],
+        panel.x_range,
+        log=panel.log_x,
+        whole=panel.x_whole,
+    )
+    y_range = _mark(
+        ax,
+        "y",
+        [line.y for line in panel.lines],
+        panel.y_range,
+        log=panel.log_y,
+        whole=panel.y_whole,
+    )
     for note in panel.notes:
-        ax.text(note.x, note.y, note.text, color=INK, fontsize=7.0, ha=note.align, va="center", clip_on=True, path_effects=_HALO)
+        ax.text(
+            note.x,
+            note.y,
+            note.text,
+            color=INK,
+            fontsize=7.0,
+            ha=note.align,
+            va="center",
+            clip_on=True,
+            path_effects=_HALO,
+        )
     if panel.y_names:
         ax.set_yticks([value for value, _ in panel.y_names], [name for _, name in panel.y_names])
     if x_range:
@@ -191,7 +248,9 @@ def _dress(ax: Any, panel: Panel) -> None:
         ax.set_aspect("equal", adjustable="box" if panel.x_range and panel.y_range else "datalim")
 
 
-def _mark(ax: Any, name: str, curves: list[Array], limits: Limits, *, log: bool, whole: bool) -> Limits:
+def _mark(
+    ax: Any, name: str, curves: list[Array], limits: Limits, *, log: bool, whole: bool
+) -> Limits:
     """Set scale and marks of an axis, "x" or "y", and return its limits."""
     axis = ax.xaxis if name == "x" else ax.yaxis
     if log:

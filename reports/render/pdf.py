@@ -10,7 +10,15 @@ from typing import Any
 
 import typst
 
-from reports.document.blocks import Block, Card, Content, FlightContent, FlightPicker, Section, Table
+from reports.document.blocks import (
+    Block,
+    Card,
+    Content,
+    FlightContent,
+    FlightPicker,
+    Section,
+    Table,
+)
 from reports.document.chart import Chart
 from reports.document.numbering import figures_in
 from reports.render.figure_files import write_figures
@@ -31,7 +39,9 @@ def write_pdf(report: Content, path: Path, *, all_flights: bool = False) -> None
     """Write the report to ``path``, with ``all_flights`` or with those that are printed."""
     with tempfile.TemporaryDirectory() as folder:
         directory = Path(folder)
-        (directory / "report.typ").write_text(TEMPLATE.read_text(encoding="utf-8"), encoding="utf-8")
+        (directory / "report.typ").write_text(
+            TEMPLATE.read_text(encoding="utf-8"), encoding="utf-8"
+        )
         figures: Figures = {}
         data = _data(report, directory, figures, all_flights=all_flights)
         write_figures(figures, directory)
@@ -41,11 +51,18 @@ def write_pdf(report: Content, path: Path, *, all_flights: bool = False) -> None
 
 def _data(report: Content, directory: Path, figures: Figures, *, all_flights: bool) -> Data:
     """Return what is typeset; its charts are added to ``figures``, and its logo is written."""
-    pickers = [block for section in report.sections for block in section.blocks if isinstance(block, FlightPicker)]
+    pickers = [
+        block
+        for section in report.sections
+        for block in section.blocks
+        if isinstance(block, FlightPicker)
+    ]
     sections = [_section(section, figures) for section in _in_print(report.sections)]
     # Flights have pages of their own before parameters and provenance, and their figures the numbers after all others.
     numbers = count(figures_in(report.picture, report.sections) + 1)
-    flights = [flight for picker in pickers for flight in picker.flights if all_flights or flight.printed]
+    flights = [
+        flight for picker in pickers for flight in picker.flights if all_flights or flight.printed
+    ]
     head, verdict = report.letterhead, report.verdict
     if head.logo:
         (directory / f"logo{head.logo.suffix}").write_bytes(head.logo.content)
@@ -76,18 +93,30 @@ def _data(report: Content, directory: Path, figures: Figures, *, all_flights: bo
 
 def _in_print(sections: Sequence[Section]) -> list[Section]:
     """Return the sections with that of single flights right before the flights, which are printed before the last two."""
-    of_flights = [any(isinstance(block, FlightPicker) for block in section.blocks) for section in sections]
-    flights, others = ([s for s, of in zip(sections, of_flights, strict=True) if of is which] for which in (True, False))
+    of_flights = [
+        any(isinstance(block, FlightPicker) for block in section.blocks) for section in sections
+    ]
+    flights, others = (
+        [s for s, of in zip(sections, of_flights, strict=True) if of is which]
+        for which in (True, False)
+    )
     return [*others[:-_AFTER_FLIGHTS], *flights, *others[-_AFTER_FLIGHTS:]]
 
 
 def _card(card: Card, *, judges: bool) -> Data:
-    return {"name": card.name, "value": unbroken(card.value), "tone": card.tone, "judgement": card.judgement if judges else ""}
+    return {
+        "name": card.name,
+        "value": unbroken(card.value),
+        "tone": card.tone,
+        "judgement": card.judgement if judges else "",
+    }
 
 
 def _section(section: Section, figures: Figures) -> Data:
     """Return a section without its picker, whose flights have pages of their own."""
-    blocks = [_block(block, figures) for block in section.blocks if not isinstance(block, FlightPicker)]
+    blocks = [
+        _block(block, figures) for block in section.blocks if not isinstance(block, FlightPicker)
+    ]
     return {"title": section.title, "blocks": blocks}
 
 
@@ -100,7 +129,9 @@ def _block(block: Block, figures: Figures) -> Data:
 
 def _flight(flight: FlightContent, figures: Figures, numbers: Iterator[int]) -> Data:
     charts = [replace(chart, number=f"Figure {next(numbers)}") for chart in flight.charts]
-    images = [{"kind": "Chart", **_image(chart, figures, f"{flight.flight_id}-")} for chart in charts]
+    images = [
+        {"kind": "Chart", **_image(chart, figures, f"{flight.flight_id}-")} for chart in charts
+    ]
     return {"title": flight.title, "charts": images}
 
 

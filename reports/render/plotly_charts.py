@@ -20,9 +20,15 @@ _MODES: dict[str, dict[str, Any]] = {
     "points": {"mode": "markers", "marker": {"size": 7}},
     "dots": {"mode": "markers", "marker": {"size": 4}},
     "diamonds": {"mode": "markers", "marker": {"size": 7, "symbol": "diamond"}},
-    "ring": {"mode": "markers", "marker": {"size": 11, "symbol": "circle-open", "line": {"width": 2}}},
+    "ring": {
+        "mode": "markers",
+        "marker": {"size": 11, "symbol": "circle-open", "line": {"width": 2}},
+    },
     "square": {"mode": "markers", "marker": {"size": 9, "symbol": "square"}},
-    "cross": {"mode": "markers", "marker": {"size": 11, "symbol": "x", "line": {"width": 1, "color": "#fff"}}},
+    "cross": {
+        "mode": "markers",
+        "marker": {"size": 11, "symbol": "x", "line": {"width": 1, "color": "#fff"}},
+    },
 }
 
 Data = dict[str, Any]
@@ -35,7 +41,10 @@ def draw(chart: Chart) -> Data:
     for i, panel in enumerate(chart.panels):
         number = str(i + 1) if i else ""
         for line in panel.lines:
-            trace = _trace(line, show=line.label not in seen) | {"xaxis": f"x{number}", "yaxis": f"y{number}"}
+            trace = _trace(line, show=line.label not in seen) | {
+                "xaxis": f"x{number}",
+                "yaxis": f"y{number}",
+            }
             if line.values is not None and scale:
                 trace |= _shade(line.values, scale, "" if shaded else chart.scale_label)
                 shaded = True
@@ -45,11 +54,20 @@ def draw(chart: Chart) -> Data:
 
 
 def _trace(line: Line, *, show: bool) -> Data:
-    style = {key: dict(value) if isinstance(value, Mapping) else value for key, value in _MODES[line.style].items()}
+    style = {
+        key: dict(value) if isinstance(value, Mapping) else value
+        for key, value in _MODES[line.style].items()
+    }
     style["line" if "line" in style else "marker"]["color"] = COLOURS[line.colour]
     if line.error is not None:
         below, above = map(_numbers, np.broadcast_to(line.error, (2, len(line.x))))
-        style["error_y"] = {"type": "data", "symmetric": False, "array": above, "arrayminus": below, "thickness": 1}
+        style["error_y"] = {
+            "type": "data",
+            "symmetric": False,
+            "array": above,
+            "arrayminus": below,
+            "thickness": 1,
+        }
     if line.fill:
         style |= {"fill": "toself", "fillcolor": _tint(COLOURS[line.colour], line.opacity)}
     names = {"name": line.label, "legendgroup": line.label, "showlegend": show}
@@ -60,7 +78,10 @@ def _numbers(values: Array) -> Data | list[float]:
     """Return numbers as Plotly reads them fastest, in single precision: a picture needs no more."""
     if not len(values):
         return []
-    return {"dtype": "f4", "bdata": base64.b64encode(np.asarray(values, dtype="<f4").tobytes()).decode("ascii")}
+    return {
+        "dtype": "f4",
+        "bdata": base64.b64encode(np.asarray(values, dtype="<f4").tobytes()).decode("ascii"),
+    }
 
 
 def _shade(values: Array, scale: tuple[float, float], label: str) -> Data:

@@ -73,7 +73,9 @@ def layout(chart: Chart) -> Data:
         x, y = _axes(panel, number, place.room(i), show_x=last or not chart.share_x)
         if chart.share_x and not last:
             # The lowest panel of the column, which need not be in the last row.
-            x["matches"] = f"x{i + chart.columns * ((len(chart.panels) - 1 - i) // chart.columns) + 1}"
+            x["matches"] = (
+                f"x{i + chart.columns * ((len(chart.panels) - 1 - i) // chart.columns) + 1}"
+            )
         x["domain"], y["domain"] = place.domains(i)
         found |= {f"xaxis{number}": x, f"yaxis{number}": y}
     return found | {
@@ -91,10 +93,18 @@ def narrow(chart: Chart) -> Data:
     columns = 1 if chart.columns <= _ONE_BY_ONE else 2
     height = chart.panel_height * chart.columns / columns
     maps = [_upright(panel) for panel in chart.panels if panel.equal]
-    height = max(height, min(_UPRIGHT, _MAP * max(maps))) if maps else min(height, max(chart.panel_height, _HIGHEST))
+    height = (
+        max(height, min(_UPRIGHT, _MAP * max(maps)))
+        if maps
+        else min(height, max(chart.panel_height, _HIGHEST))
+    )
     chart = replace(chart, columns=columns, panel_height=height)
     place = _Place(chart, NARROW_WIDTH, below_labels=True)
-    found: Data = {"height": place.height, "margin": {"t": place.top, "l": 60, "r": 10}, "legend": {"y": place.legend}}
+    found: Data = {
+        "height": place.height,
+        "margin": {"t": place.top, "l": 60, "r": 10},
+        "legend": {"y": place.legend},
+    }
     if any(panel.title or panel.notes for panel in chart.panels):
         found["annotations"] = _words(chart, place)
     named = chart.panels[0]
@@ -104,10 +114,16 @@ def narrow(chart: Chart) -> Data:
         if panel.y_names and columns == 1:
             # Names that a panel shared with the one to its left.
             named = panel if any(name for _, name in panel.y_names) else named
-            ordinate |= {"ticktext": [name for _, name in named.y_names], "title": {"text": named.y_label, "standoff": 8}}
+            ordinate |= {
+                "ticktext": [name for _, name in named.y_names],
+                "title": {"text": named.y_label, "standoff": 8},
+            }
         elif len(lines := wrapped(panel.y_label, place.room(i)[1])) > 1:
             ordinate |= {"title": {"text": "<br>".join(lines), "standoff": 8}}
-        found |= {f"xaxis{_number(i)}": {"domain": x, "showticklabels": True}, f"yaxis{_number(i)}": ordinate}
+        found |= {
+            f"xaxis{_number(i)}": {"domain": x, "showticklabels": True},
+            f"yaxis{_number(i)}": ordinate,
+        }
     return found
 
 
@@ -116,18 +132,29 @@ class _Place:
 
     def __init__(self, chart: Chart, width: int, *, below_labels: bool = False) -> None:
         self._chart = chart
-        names = [name for i, panel in enumerate(chart.panels) if i % chart.columns for _, name in panel.y_names]
+        names = [
+            name
+            for i, panel in enumerate(chart.panels)
+            if i % chart.columns
+            for _, name in panel.y_names
+        ]
         named = _TITLED + _CHARACTER * max(map(len, names)) if any(names) else 0.0
         self._beside = max(_BESIDE, named / (width - _MARGINS))
         self._titled = any(panel.title for panel in chart.panels)
-        self._gap = _BELOW_LABELS + _TITLE * self._titled if below_labels or not chart.share_x else _BELOW
+        self._gap = (
+            _BELOW_LABELS + _TITLE * self._titled if below_labels or not chart.share_x else _BELOW
+        )
         rows = chart.rows + bool(chart.last_height)
         self._inner = round(width * chart.height) + (rows - 1) * (self._gap if below_labels else 0)
         first = [name for panel in chart.panels[:: chart.columns] for _, name in panel.y_names]
         self._width = width - _MARGINS - _CHARACTER * max(map(len, first), default=0)
         # Plotly has the legend as wide as the panels, which names of an ordinate leave less room.
-        self.top = _BAR + _LEGEND_ROW * _legend_rows(chart.labels, self._width) + _TITLE * self._titled + 6
-        lines = max(len(wrapped(panel.x_label, self.room(i)[0])) for i, panel in enumerate(chart.panels))
+        self.top = (
+            _BAR + _LEGEND_ROW * _legend_rows(chart.labels, self._width) + _TITLE * self._titled + 6
+        )
+        lines = max(
+            len(wrapped(panel.x_label, self.room(i)[0])) for i, panel in enumerate(chart.panels)
+        )
         self.bottom = _BOTTOM + _LABEL_LINE * (lines - 1)
         self.height = self._inner + self.top + self.bottom
         self.legend = 1.0 + (_TITLE * self._titled + 6) / self._inner
@@ -135,7 +162,9 @@ class _Place:
     def room(self, index: int) -> tuple[float, float]:
         """Return how many letters of a label fit along the width and the height of a panel."""
         across, up = self.domains(index)
-        return self._width * (across[1] - across[0]) / _LETTER, self._inner * (up[1] - up[0]) / _LETTER
+        return self._width * (across[1] - across[0]) / _LETTER, self._inner * (
+            up[1] - up[0]
+        ) / _LETTER
 
     def domains(self, index: int) -> tuple[list[float], list[float]]:
         """Return where a panel lies, from left to right and from bottom to top, in shares of the room for all of them."""
@@ -146,7 +175,10 @@ class _Place:
         share = (1.0 - gap * (rows - 1)) / chart.height
         if chart.is_wide(index):
             return [0.0, 1.0], [0.0, share * chart.last_height]
-        width, height = (1.0 - self._beside * (chart.columns - 1)) / chart.columns, share * chart.panel_height
+        width, height = (
+            (1.0 - self._beside * (chart.columns - 1)) / chart.columns,
+            share * chart.panel_height,
+        )
         left, top = column * (width + self._beside), 1.0 - row * (height + gap)
         return [left, min(1.0, left + width)], [max(0.0, top - height), top]
 
@@ -169,9 +201,13 @@ def _legend_rows(labels: Sequence[str], width: float) -> int:
     return rows
 
 
-def _axes(panel: Panel, number: str, room: tuple[float, float], *, show_x: bool) -> tuple[Data, Data]:
+def _axes(
+    panel: Panel, number: str, room: tuple[float, float], *, show_x: bool
+) -> tuple[Data, Data]:
     """Return abscissa and ordinate of a panel, given how many letters there is room for along each."""
-    x_label, y_label = ("<br>".join(wrapped(*of)) for of in zip((panel.x_label, panel.y_label), room, strict=True))
+    x_label, y_label = (
+        "<br>".join(wrapped(*of)) for of in zip((panel.x_label, panel.y_label), room, strict=True)
+    )
     x: Data = {"anchor": f"y{number}", "showticklabels": show_x}
     if show_x:
         x["title"] = {"text": x_label, "standoff": 6}
@@ -186,15 +222,28 @@ def _axes(panel: Panel, number: str, room: tuple[float, float], *, show_x: bool)
     x |= _marks([line.x for line in panel.lines], x_range, log=panel.log_x, whole=panel.x_whole)
     y |= _marks([line.y for line in panel.lines], y_range, log=panel.log_y, whole=panel.y_whole)
     if panel.y_names:
-        y |= {"tickvals": [value for value, _ in panel.y_names], "ticktext": [name for _, name in panel.y_names]}
+        y |= {
+            "tickvals": [value for value, _ in panel.y_names],
+            "ticktext": [name for _, name in panel.y_names],
+        }
     return x, y
 
 
-def _marks(curves: Sequence[np.ndarray[Any, Any]], limits: tuple[float, float] | None, *, log: bool, whole: bool) -> Data:
+def _marks(
+    curves: Sequence[np.ndarray[Any, Any]],
+    limits: tuple[float, float] | None,
+    *,
+    log: bool,
+    whole: bool,
+) -> Data:
     """Return type, limits and marks of an axis."""
     if log:
         limits, marks = log_axis(limits, curves)
-        axis: Data = {"type": "log", "tickvals": marks, "ticktext": [mark_text(mark) for mark in marks]}
+        axis: Data = {
+            "type": "log",
+            "tickvals": marks,
+            "ticktext": [mark_text(mark) for mark in marks],
+        }
         return axis | {"range": [math.log10(limit) for limit in limits]}
     # Plotly would write 20k and 50µ, before a unit that has a prefix of its own.
     axis, limits = {"exponentformat": "none"}, limits or about_values(curves)
@@ -211,12 +260,33 @@ def _words(chart: Chart, place: _Place) -> list[Data]:
     for i, panel in enumerate(chart.panels):
         across, up = place.domains(i)
         if panel.title:
-            at = {"x": sum(across) / 2.0, "y": up[1], "xref": "paper", "yref": "paper", "xanchor": "center", "yanchor": "bottom"}
+            at = {
+                "x": sum(across) / 2.0,
+                "y": up[1],
+                "xref": "paper",
+                "yref": "paper",
+                "xanchor": "center",
+                "yanchor": "bottom",
+            }
             font = {"size": _SMALL_TITLE_SIZE if chart.crowded else _TITLE_SIZE}
             words.append({"text": panel.title, "font": font, "showarrow": False, **at})
         for note in panel.notes:
-            at = {"x": note.x, "y": note.y, "xref": f"x{_number(i)}", "yref": f"y{_number(i)}", "xanchor": note.align}
-            words.append({"text": note.text, "font": {"size": 11, "color": INK}, "bgcolor": _HALO, "showarrow": False, **at})
+            at = {
+                "x": note.x,
+                "y": note.y,
+                "xref": f"x{_number(i)}",
+                "yref": f"y{_number(i)}",
+                "xanchor": note.align,
+            }
+            words.append(
+                {
+                    "text": note.text,
+                    "font": {"size": 11, "color": INK},
+                    "bgcolor": _HALO,
+                    "showarrow": False,
+                    **at,
+                }
+            )
     return words
 
 
@@ -233,8 +303,20 @@ def _bands(chart: Chart) -> list[Data]:
     seen: set[str] = set()
     for i, panel in enumerate(chart.panels):
         for band in panel.bands:
-            place = {"xref": f"x{_number(i)}", "yref": f"y{_number(i)} domain", "x0": band.start, "x1": band.end, "y0": 0, "y1": 1}
-            look = {"fillcolor": COLOURS[band.colour], "opacity": BAND_OPACITY, "line": {"width": 0}, "layer": "below"}
+            place = {
+                "xref": f"x{_number(i)}",
+                "yref": f"y{_number(i)} domain",
+                "x0": band.start,
+                "x1": band.end,
+                "y0": 0,
+                "y1": 1,
+            }
+            look = {
+                "fillcolor": COLOURS[band.colour],
+                "opacity": BAND_OPACITY,
+                "line": {"width": 0},
+                "layer": "below",
+            }
             legend = {"name": band.label, "showlegend": True} if band.label not in seen else {}
             seen.add(band.label)
             shapes.append({"type": "rect", **place, **look, **legend})
@@ -243,9 +325,13 @@ def _bands(chart: Chart) -> list[Data]:
 
 def _equal_ranges(panel: Panel) -> tuple[tuple[float, float], tuple[float, float]]:
     """Return ranges that hold every curve with a little to spare, and are not much narrower one way than the other."""
-    x, y = (np.concatenate(curves) for curves in zip(*((line.x, line.y) for line in panel.lines), strict=True))
+    x, y = (
+        np.concatenate(curves)
+        for curves in zip(*((line.x, line.y) for line in panel.lines), strict=True)
+    )
     (x_middle, x_half), (y_middle, y_half) = (
-        (float(np.nanmin(v) + np.nanmax(v)) / 2.0, 0.54 * float(np.nanmax(v) - np.nanmin(v))) for v in (x, y)
+        (float(np.nanmin(v) + np.nanmax(v)) / 2.0, 0.54 * float(np.nanmax(v) - np.nanmin(v)))
+        for v in (x, y)
     )
     x_half, y_half = max(x_half, 0.4 * y_half), max(y_half, 0.4 * x_half)
     return (x_middle - x_half, x_middle + x_half), (y_middle - y_half, y_middle + y_half)

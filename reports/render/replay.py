@@ -21,7 +21,8 @@ THREE = Path(__file__).parent / "bundle" / "three.min.js"
 """Library that draws in three dimensions; ``bundle/README.md`` says where it comes from."""
 
 SCRIPTS = tuple(
-    Path(__file__).parent / "player" / f"{name}.js" for name in ("flight", "shapes", "world", "camera", "plot", "replay")
+    Path(__file__).parent / "player" / f"{name}.js"
+    for name in ("flight", "shapes", "world", "camera", "plot", "replay")
 )
 """What draws the replay with it, in the order in which the page reads them."""
 
@@ -80,7 +81,9 @@ def scripts() -> str:
 
 def data(picker: FlightPicker) -> str:
     """Return what the scripts of the replay read: the scenes of the flights that have one, and their colours."""
-    scenes = {flight.flight_id: draw_scene(flight.scene) for flight in picker.flights if flight.scene}
+    scenes = {
+        flight.flight_id: draw_scene(flight.scene) for flight in picker.flights if flight.scene
+    }
     return for_script({"flights": scenes, "colours": colours()})
 
 
@@ -93,11 +96,18 @@ def draw_scene(scene: Scene) -> Data:
         "start": scene.start,
         "interval": scene.interval,
         "samples": len(scene.columns["north"]),
-        "columns": {name: packed_column(values, _ANGLE if name in _ANGLES else _PLACE) for name, values in scene.columns.items()},
+        "columns": {
+            name: packed_column(values, _ANGLE if name in _ANGLES else _PLACE)
+            for name, values in scene.columns.items()
+        },
         "guard": [list(stretch) for stretch in scene.guard],
         "crossings": np.round(scene.crossings, 2).tolist(),
         "distances": [round(end, 2) for end in scene.distances],
-        "keepout": {"radius": scene.keepout_radius, "shape": scene.keepout_shape, "height": scene.source_height},
+        "keepout": {
+            "radius": scene.keepout_radius,
+            "shape": scene.keepout_shape,
+            "height": scene.source_height,
+        },
         "hull": _hull(scene.hull),
         "plumes": [[time, _sections(plume)] for time, plume in scene.plumes],
     }
@@ -138,5 +148,7 @@ def _packed(numbers: npt.NDArray[np.int64]) -> bytes:
     count = 1 + np.sum([unsigned >> (7 * k) > 0 for k in range(1, 9)], axis=0)
     place = np.arange(count.sum()) - np.repeat(np.cumsum(count) - count, count)
     more = place < np.repeat(count, count) - 1
-    packed: npt.NDArray[np.uint8] = ((np.repeat(unsigned, count) >> (7 * place)) & 127 | more * 128).astype(np.uint8)
+    packed: npt.NDArray[np.uint8] = (
+        (np.repeat(unsigned, count) >> (7 * place)) & 127 | more * 128
+    ).astype(np.uint8)
     return packed.tobytes()

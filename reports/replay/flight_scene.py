@@ -31,7 +31,10 @@ def flight_scene(trial: Trial, row: "pd.Series[Any]", history: pd.DataFrame | No
     if history is None or len(history) < 2 or not np.isfinite(row["keepout_radius_m"]):
         return None
     recorded = column(history, "time_s")
-    if not all(np.isfinite(known).all() for known in (recorded, column(history, "vessel_north_m"), column(history, "north_m"))):
+    if not all(
+        np.isfinite(known).all()
+        for known in (recorded, column(history, "vessel_north_m"), column(history, "north_m"))
+    ):
         return None
     interval = max(INTERVAL, float(np.median(np.diff(recorded))))
     # Never more than the history has, whatever its times are.
@@ -59,7 +62,11 @@ def flight_scene(trial: Trial, row: "pd.Series[Any]", history: pd.DataFrame | No
         for prefix in ("", "reference_")
         for axis in ("north", "east")
     }
-    config, altitude, radius = trial.flight_config(row), at_times(column(history, "altitude_m")), float(row["keepout_radius_m"])
+    config, altitude, radius = (
+        trial.flight_config(row),
+        at_times(column(history, "altitude_m")),
+        float(row["keepout_radius_m"]),
+    )
     up = 0.0 if keepout_shape(config) == "cylinder" else altitude - source_height(config)
     distance = np.hypot(np.hypot(places["north"], places["east"]), up)
     return Scene(
@@ -71,16 +78,23 @@ def flight_scene(trial: Trial, row: "pd.Series[Any]", history: pd.DataFrame | No
             "altitude": altitude,
             # A kinematic vehicle has neither heading nor pitch.
             "heading": angle("heading_rad", column(history, "course_rad")),
-            "pitch": angle("pitch_rad", np.arctan2(column(history, "climb_rate_mps"), column(history, "airspeed_mps"))),
+            "pitch": angle(
+                "pitch_rad",
+                np.arctan2(column(history, "climb_rate_mps"), column(history, "airspeed_mps")),
+            ),
             "roll": at_times(column(history, "roll_rad"), angles=True),
-            "vessel_heading": at_times(vessel_heading(history, float(config.get("vessel", {}).get("course_deg", 0.0)))),
+            "vessel_heading": at_times(
+                vessel_heading(history, float(config.get("vessel", {}).get("course_deg", 0.0)))
+            ),
             "plume_axis": at_times(column(history, "plume_axis_rad"), angles=True),
         },
         guard=[
             (float(recorded[first]), float(recorded[min(after, len(recorded) - 1)]), held)
             for first, after, held in guard_stretches(history)
         ],
-        crossings=column(trial.run.crossings_of(str(row["flight_id"])).dropna(subset="time_s"), "time_s"),
+        crossings=column(
+            trial.run.crossings_of(str(row["flight_id"])).dropna(subset="time_s"), "time_s"
+        ),
         distances=shown_distances(distance, time >= float(row["settling_time_s"]), radius),
         keepout_radius=radius,
         keepout_shape=keepout_shape(config),
@@ -90,7 +104,9 @@ def flight_scene(trial: Trial, row: "pd.Series[Any]", history: pd.DataFrame | No
     )
 
 
-def _plumes(config: Config, row: "pd.Series[Any]", history: pd.DataFrame) -> list[tuple[float, PlumeShape]]:
+def _plumes(
+    config: Config, row: "pd.Series[Any]", history: pd.DataFrame
+) -> list[tuple[float, PlumeShape]]:
     """Return the plume's shapes in the course of a flight, each with the time from which it has it [s]."""
     time = column(history, "time_s")
     north, east = (column(history, f"vessel_velocity_{axis}_mps") for axis in ("north", "east"))

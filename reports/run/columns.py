@@ -37,7 +37,9 @@ def least(values: Array) -> float | None:
 def study_flight(rows: pd.DataFrame) -> "pd.Series[str]":
     """Return the name of the study's flight of each row: of a comparison's flight the one that it is beside, else its own."""
     own = rows["flight_id"].astype(str)
-    return rows["beside"].where(rows["beside"].notna(), own).astype(str) if "beside" in rows else own
+    return (
+        rows["beside"].where(rows["beside"].notna(), own).astype(str) if "beside" in rows else own
+    )
 
 
 def was_flown(rows: pd.DataFrame) -> Mask:
@@ -91,14 +93,24 @@ def met(rows: pd.DataFrame) -> Mask:
 
 def kept_out(rows: pd.DataFrame) -> Mask:
     """Return which flights are known to have kept out of the keep-out area to their end."""
-    return rows["kept_out"].to_numpy(dtype=np.bool_) if "kept_out" in rows else np.zeros(len(rows), dtype=np.bool_)
+    return (
+        rows["kept_out"].to_numpy(dtype=np.bool_)
+        if "kept_out" in rows
+        else np.zeros(len(rows), dtype=np.bool_)
+    )
 
 
 def passed(rows: pd.DataFrame) -> Mask:
     """Return which flights did what exit status 0 requires of them."""
-    alone = (rows["required"] == "keep_out").to_numpy(dtype=np.bool_) if "required" in rows else np.zeros(len(rows), dtype=np.bool_)
+    alone = (
+        (rows["required"] == "keep_out").to_numpy(dtype=np.bool_)
+        if "required" in rows
+        else np.zeros(len(rows), dtype=np.bool_)
+    )
     # What failed after its flight, as an instrument may, has kept out, but does not count as done.
-    return np.where(alone, kept_out(rows) & (rows["outcome"] != "failed").to_numpy(dtype=np.bool_), met(rows))
+    return np.where(
+        alone, kept_out(rows) & (rows["outcome"] != "failed").to_numpy(dtype=np.bool_), met(rows)
+    )
 
 
 def recorded_at(values: Array, recorded: Mask, rank: int) -> tuple[int, bool]:
@@ -111,7 +123,11 @@ def recorded_at(values: Array, recorded: Mask, rank: int) -> tuple[int, bool]:
     rank : from 0 for the least value
     """
     place = int(np.argsort(values, kind="stable")[rank])
-    nearest = place if recorded[place] else int(np.argmin(np.where(recorded, np.abs(values - values[place]), np.inf)))
+    nearest = (
+        place
+        if recorded[place]
+        else int(np.argmin(np.where(recorded, np.abs(values - values[place]), np.inf)))
+    )
     return nearest, bool(values[nearest] == values[place])
 
 
@@ -122,5 +138,8 @@ def count(mask: Mask) -> int:
 
 def interval_error(rows: pd.DataFrame) -> Array:
     """Return the mean crossing interval's relative difference from pi/omega_0 [-]."""
-    ratio: Array = column(rows, "crossing_interval_mean_s") / column(rows, "crossing_interval_predicted_s") - 1.0
+    ratio: Array = (
+        column(rows, "crossing_interval_mean_s") / column(rows, "crossing_interval_predicted_s")
+        - 1.0
+    )
     return ratio

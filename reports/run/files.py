@@ -21,14 +21,18 @@ def refuse_running(directory: Path) -> None:
     if not is_file(journal):
         return
     try:
-        with closing(sqlite3.connect(f"{journal.as_uri()}?mode=ro", uri=True, timeout=0.0)) as database:
+        with closing(
+            sqlite3.connect(f"{journal.as_uri()}?mode=ro", uri=True, timeout=0.0)
+        ) as database:
             # Otherwise SQLite would leave an index beside the journal of a program that was killed.
             database.execute("PRAGMA locking_mode = EXCLUSIVE")
             database.execute("SELECT 1 FROM sqlite_master")
     except sqlite3.Error as error:
         # Any other error is no lock: reports do not read the journal.
         if getattr(error, "sqlite_errorcode", None) == sqlite3.SQLITE_BUSY:
-            raise ReportError(f"another program is writing to '{directory}'; wait until it has ended") from None
+            raise ReportError(
+                f"another program is writing to '{directory}'; wait until it has ended"
+            ) from None
 
 
 @contextmanager
@@ -62,7 +66,14 @@ def failure_named(what: str) -> Iterator[None]:
         yield
     except ReportError:
         raise
-    except (LookupError, TypeError, ValueError, AttributeError, ArithmeticError, RuntimeError) as error:
+    except (
+        LookupError,
+        TypeError,
+        ValueError,
+        AttributeError,
+        ArithmeticError,
+        RuntimeError,
+    ) as error:
         reason = next(iter(str(error).splitlines()), "") or "no reason given"
         raise ReportError(f"{what}: {type(error).__name__}: {reason}") from error
 
@@ -78,14 +89,20 @@ def written(path: Path, write: Callable[[Path], object]) -> Path:
     def whole(part: Path) -> None:
         write(part)
         if not part.exists():
-            raise ReportError(f"'{path}': what was to write it wrote no file; an exporter writes to the path that it is given")
+            raise ReportError(
+                f"'{path}': what was to write it wrote no file; an exporter writes to the path that it is given"
+            )
 
     try:
         if not path.parent.is_dir():
-            raise ReportError(f"'{path}' cannot be written: there is no directory '{path.parent}'; make it, or give another path")
+            raise ReportError(
+                f"'{path}' cannot be written: there is no directory '{path.parent}'; make it, or give another path"
+            )
         write_whole(path, whole)
     except OSError as error:
         # An error of a library may have no number, and so no text of its own.
         reason = error.strerror or next(iter(str(error).splitlines()), "")
-        raise ReportError(f"'{path}' cannot be written: {reason}; check permissions and space") from None
+        raise ReportError(
+            f"'{path}' cannot be written: {reason}; check permissions and space"
+        ) from None
     return path

@@ -60,15 +60,25 @@ def _by_flight(draws: pd.DataFrame) -> dict[str, Row]:
     return {str(row["flight_id"]): row for row in draws.to_dict("records")}
 
 
-def _own_config(run: RunData, row: Row, drawn: Mapping[str, Row], trial: Config | None = None) -> Config:
+def _own_config(
+    run: RunData, row: Row, drawn: Mapping[str, Row], trial: Config | None = None
+) -> Config:
     config = run.manifest.get("trials", {}).get(row.get("trial"), {}) if trial is None else trial
     # Beside keys the table has names.
-    cells = {str(key): value for key, value in drawn.get(str(row["flight_id"]), {}).items() if "." in str(key) or key in config}
+    cells = {
+        str(key): value
+        for key, value in drawn.get(str(row["flight_id"]), {}).items()
+        if "." in str(key) or key in config
+    }
     inputs = {key: _input(value) for key, value in cells.items() if _known(value)}
     sampled = {str(draw["key"]) for draw in config.get("draws") or []}
     of_case, of_comparison = _of_case(config, row), _of_comparison(config, row)
     # A comparison changes what was swept; what is random is sampled in its flights, too, but for keys that it or a case sets.
-    values = of_case | {key: value for key, value in inputs.items() if key not in sampled} | of_comparison
+    values = (
+        of_case
+        | {key: value for key, value in inputs.items() if key not in sampled}
+        | of_comparison
+    )
     values |= {
         key: value
         for key, value in inputs.items()
@@ -89,10 +99,17 @@ def _of_comparison(config: Config, row: Row) -> dict[str, Any]:
 
 def _of_case(config: Config, row: Row) -> dict[str, Any]:
     """Return what the case of a flight sets; nothing of a flight that is of none."""
-    named = _NUMBERED.sub("", str(row["flight_id"])).removeprefix(f"{row.get('trial')}_").removesuffix(f"_{row.get('variant')}")
+    named = (
+        _NUMBERED.sub("", str(row["flight_id"]))
+        .removeprefix(f"{row.get('trial')}_")
+        .removesuffix(f"_{row.get('variant')}")
+    )
     for case in config.get("cases") or []:
         if named in (case["name"], f"{case['name']}_{row.get('fidelity')}"):
-            return {**case["set"], **(case.get("set_kinematic") or {} if row.get("fidelity") == "kinematic" else {})}
+            return {
+                **case["set"],
+                **(case.get("set_kinematic") or {} if row.get("fidelity") == "kinematic" else {}),
+            }
     return {}
 
 

@@ -75,7 +75,9 @@ def letterhead(run: RunData, settings: Mapping[str, str]) -> Letterhead:
     ------
     ReportError : the logo of ``settings`` is no picture
     """
-    texts = {key: str(run.manifest.get("report", {}).get(key) or "") for key in REPORT_SETTINGS} | dict(settings)
+    texts = {
+        key: str(run.manifest.get("report", {}).get(key) or "") for key in REPORT_SETTINGS
+    } | dict(settings)
     logo = None
     if settings.get("logo"):
         logo = _logo(Path(settings["logo"]))
@@ -93,7 +95,11 @@ def letterhead(run: RunData, settings: Mapping[str, str]) -> Letterhead:
 
 def title(run: RunData, settings: Mapping[str, str]) -> str:
     """Return the title of a run's report: that of ``settings``, the one that the run was given, or the scenario's."""
-    return settings.get("title") or run.manifest.get("report", {}).get("title") or str(run.manifest["title"])
+    return (
+        settings.get("title")
+        or run.manifest.get("report", {}).get("title")
+        or str(run.manifest["title"])
+    )
 
 
 def _own_logo(run: RunData, name: str) -> Picture | None:

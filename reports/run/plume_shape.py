@@ -53,7 +53,9 @@ class PlumeShape:
     smoke: bool
 
 
-def plume_shape(config: Config, *, speed: float, wind: float, apparent_wind: float, length: float) -> PlumeShape:
+def plume_shape(
+    config: Config, *, speed: float, wind: float, apparent_wind: float, length: float
+) -> PlumeShape:
     """Return the shape of a flight's plume: of smoke its mean over time, of an axis without smoke a thin tube.
 
     Parameters
@@ -64,7 +66,11 @@ def plume_shape(config: Config, *, speed: float, wind: float, apparent_wind: flo
     length : along the sea [m]
     """
     distance = np.linspace(0.0, length, _SECTIONS)
-    if config["plume"].get("model") == "fluctuating" and config.get("emission", {}).get("ship") and apparent_wind >= _WIND_MIN:
+    if (
+        config["plume"].get("model") == "fluctuating"
+        and config.get("emission", {}).get("ship")
+        and apparent_wind >= _WIND_MIN
+    ):
         try:
             return _smoke(config, distance, speed=speed, wind=wind, apparent_wind=apparent_wind)
         except MeasurementError:
@@ -74,23 +80,40 @@ def plume_shape(config: Config, *, speed: float, wind: float, apparent_wind: flo
     height, width = source_height(config) + climb * distance, np.full(_SECTIONS, LINE_HALF_WIDTH)
     own = width / SPREADS
     return PlumeShape(
-        distance=distance, height=height, half_width=width, half_height=width, spread_across=own, spread_up=own, smoke=False
+        distance=distance,
+        height=height,
+        half_width=width,
+        half_height=width,
+        spread_across=own,
+        spread_up=own,
+        smoke=False,
     )
 
 
-def _smoke(config: Config, distance: Array, *, speed: float, wind: float, apparent_wind: float) -> PlumeShape:
+def _smoke(
+    config: Config, distance: Array, *, speed: float, wind: float, apparent_wind: float
+) -> PlumeShape:
     """Return axis and spreads of the exhaust about the axis, with the meander of its centre."""
     plume, emitted, air = config["plume"], config["emission"], config["wind"]
-    settings = PlumeSettings(**{f.name: plume[f.name] for f in fields(PlumeSettings) if f.name in plume})
+    settings = PlumeSettings(
+        **{f.name: plume[f.name] for f in fields(PlumeSettings) if f.name in plume}
+    )
     ship, fuel = ship_of(emitted["ship"]), fuel_preset(emitted["fuel"], emitted["sulphur_percent"])
     load, temperature = emitted["load"], air["temperature_c"] + _ZERO_CELSIUS
     moving = {"speed": speed} if load is None else {"power": load * ship.power_max}
     emission = emission_of(ship, fuel, **moving, air_temperature=temperature)
-    marine = MarineAir(wind_speed=wind, temperature=temperature, brunt_vaisala=air["stability_per_s"])
+    marine = MarineAir(
+        wind_speed=wind, temperature=temperature, brunt_vaisala=air["stability_per_s"]
+    )
     age = distance / apparent_wind
-    table = spreads(emission, marine, source_height(config), np.array([apparent_wind]), float(age[-1]), settings)
+    table = spreads(
+        emission, marine, source_height(config), np.array([apparent_wind]), float(age[-1]), settings
+    )
     ages = STEP * np.arange(table.height.shape[1])
-    across, up = np.hypot(table.relative_y[0], table.meander_y[0]), np.hypot(table.relative_z[0], table.meander_z[0])
+    across, up = (
+        np.hypot(table.relative_y[0], table.meander_y[0]),
+        np.hypot(table.relative_z[0], table.meander_z[0]),
+    )
     return PlumeShape(
         distance=distance,
         height=np.interp(age, ages, table.height[0]),

@@ -68,7 +68,11 @@ class RunData:
 
     def evaluation(self, flight_id: str) -> dict[str, Any] | None:
         """Return what an instrument made of a flight, or None if there is nothing that can be read."""
-        return _record(self.path / evaluation_path(flight_id), self.unread) if is_file_name(flight_id) else None
+        return (
+            _record(self.path / evaluation_path(flight_id), self.unread)
+            if is_file_name(flight_id)
+            else None
+        )
 
     @property
     def sulphur(self) -> dict[str, Any] | None:
@@ -81,7 +85,9 @@ class RunData:
 
     def with_history(self, rows: pd.DataFrame) -> Mask:
         """Return which flights have a time history, given their rows."""
-        return np.array([self.has_history(str(flight_id)) for flight_id in rows["flight_id"]], dtype=np.bool_)
+        return np.array(
+            [self.has_history(str(flight_id)) for flight_id in rows["flight_id"]], dtype=np.bool_
+        )
 
     def recorded(self) -> list[str]:
         """Return the names of the flights that have a time history, those of the study before those of its comparisons."""
@@ -91,7 +97,11 @@ class RunData:
         """Return the rows of the flights that have a time history, those of the study before those of its comparisons."""
         # The rows of trajectories of a study of convergence name no flights.
         tables = [rows for rows in (self.summary, self.comparison) if "flight_id" in rows]
-        rows = [{str(key): value for key, value in row.items()} for table in tables for row in table.to_dict("records")]
+        rows = [
+            {str(key): value for key, value in row.items()}
+            for table in tables
+            for row in table.to_dict("records")
+        ]
         return [row for row in rows if self.has_history(str(row["flight_id"]))]
 
     def of_flight(self, flight_id: str) -> "RunData":
@@ -145,17 +155,29 @@ def read_run(path: Path) -> RunData:
     try:
         manifest = json.loads((path / MANIFEST).read_text(encoding="utf-8"))
     except FileNotFoundError:
-        raise ReportError(f"'{path}' holds no run (no {MANIFEST}); give the directory that plume-flight run named") from None
+        raise ReportError(
+            f"'{path}' holds no run (no {MANIFEST}); give the directory that plume-flight run named"
+        ) from None
     except (ValueError, OSError, RecursionError) as error:
-        raise ReportError(f"'{path}': {MANIFEST} cannot be read: {error}; run the scenario again") from None
+        raise ReportError(
+            f"'{path}': {MANIFEST} cannot be read: {error}; run the scenario again"
+        ) from None
     if not (isinstance(manifest, dict) and isinstance(manifest.get("config"), dict)):
-        raise ReportError(f"'{path}': {MANIFEST} is not that of a run; run the scenario again in another --out")
+        raise ReportError(
+            f"'{path}': {MANIFEST} is not that of a run; run the scenario again in another --out"
+        )
     if "trials" in manifest and not (isinstance(manifest["trials"], dict) and manifest["trials"]):
-        raise ReportError(f"'{path}': {MANIFEST} names no trials, whose flights these are; run the scenario again in another --out")
+        raise ReportError(
+            f"'{path}': {MANIFEST} names no trials, whose flights these are; run the scenario again in another --out"
+        )
     if (version := manifest.get("format")) != FORMAT:
-        raise ReportError(f"'{path}' is a run of format {version!r}, and this version reads {FORMAT}; use the version that made it")
+        raise ReportError(
+            f"'{path}' is a run of format {version!r}, and this version reads {FORMAT}; use the version that made it"
+        )
     if manifest.get("study") not in WITHOUT_SUMMARY and not (path / SUMMARY).is_file():
-        raise ReportError(f"'{path}' holds nothing finished (no {SUMMARY}); continue the run with --resume")
+        raise ReportError(
+            f"'{path}' holds nothing finished (no {SUMMARY}); continue the run with --resume"
+        )
     unread: set[str] = set()
     return RunData(
         path=path,
@@ -173,9 +195,15 @@ def read_run(path: Path) -> RunData:
 def _whole(summary: pd.DataFrame, path: Path, manifest: dict[str, Any]) -> pd.DataFrame:
     """Return the summary, unless it has fewer rows than the run had outcomes when it ended."""
     outcomes = manifest.get("outcomes")
-    ended = sum(count for count in outcomes.values() if isinstance(count, int)) if isinstance(outcomes, dict) else 0
+    ended = (
+        sum(count for count in outcomes.values() if isinstance(count, int))
+        if isinstance(outcomes, dict)
+        else 0
+    )
     if len(summary) < ended:
-        raise ReportError(f"'{path}' has {len(summary):,} rows; by {MANIFEST} the run ended with {ended:,}: {REMEDY}")
+        raise ReportError(
+            f"'{path}' has {len(summary):,} rows; by {MANIFEST} the run ended with {ended:,}: {REMEDY}"
+        )
     return summary
 
 

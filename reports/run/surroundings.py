@@ -51,7 +51,9 @@ class Surroundings:
     changing: bool
 
 
-def surroundings(config: Config, row: "pd.Series[Any]", history: pd.DataFrame, at: int = -1) -> Surroundings:
+def surroundings(
+    config: Config, row: "pd.Series[Any]", history: pd.DataFrame, at: int = -1
+) -> Surroundings:
     """Return what was about the aircraft at the sample ``at`` of a flight with a ship.
 
     Parameters
@@ -66,7 +68,9 @@ def surroundings(config: Config, row: "pd.Series[Any]", history: pd.DataFrame, a
     heading = vessel_heading(history, float(config.get("vessel", {}).get("course_deg", 0.0)))
     axis = column(history, "plume_axis_rad")
     radius = float(row["keepout_radius_m"])
-    north, east = (float(column(history, f"vessel_velocity_{name}_mps")[at]) for name in ("north", "east"))
+    north, east = (
+        float(column(history, f"vessel_velocity_{name}_mps")[at]) for name in ("north", "east")
+    )
     apparent = math.hypot(wind_north[at] - north, wind_east[at] - east)
     reach = _BEYOND * float(np.nanmax(np.hypot(*about_the_plume(history))))
     length = min(max(reach, _SHORTEST * radius), _LONGEST * radius)
@@ -74,7 +78,13 @@ def surroundings(config: Config, row: "pd.Series[Any]", history: pd.DataFrame, a
         hull=hull_of(config),
         heading=float(heading[at]),
         axis=float(axis[at]),
-        plume=plume_shape(config, speed=math.hypot(north, east), wind=wind[0], apparent_wind=apparent, length=length),
+        plume=plume_shape(
+            config,
+            speed=math.hypot(north, east),
+            wind=wind[0],
+            apparent_wind=apparent,
+            length=length,
+        ),
         radius=radius,
         shape=keepout_shape(config),
         wind=wind,

@@ -37,11 +37,15 @@ def read_table(path: Path, columns: list[str] | None = None) -> pd.DataFrame:
             head = file.readline()
         if words := other_separator(head):
             raise ReportError(f"'{path}' {words}; or {REMEDY}")
-        frame = pd.read_csv(path, keep_default_na=False, na_values=[""], dtype=dict.fromkeys(_NAMES, str))
+        frame = pd.read_csv(
+            path, keep_default_na=False, na_values=[""], dtype=dict.fromkeys(_NAMES, str)
+        )
     except ReportError:
         raise
     except (ValueError, OSError) as error:
-        raise ReportError(f"'{path}' cannot be read: {str(error).splitlines()[0]}; {REMEDY}") from None
+        raise ReportError(
+            f"'{path}' cannot be read: {str(error).splitlines()[0]}; {REMEDY}"
+        ) from None
     if _last_row(path) < len(frame.columns):
         raise ReportError(f"the last line of '{path}' is cut off; {REMEDY}")
     # Few tables hold a mark, and to look for one in each cell takes a quarter of the time. Columns of nothing are of numbers.
@@ -53,7 +57,9 @@ def read_table(path: Path, columns: list[str] | None = None) -> pd.DataFrame:
         if name in frame:
             cells = pd.Series([str(value) for value in frame[name]], frame.index, dtype=str)
             if len(others := cells[~cells.isin(_TRUTH)]):
-                raise ReportError(f"'{path}' has {others.iloc[0]!r} in {name}; it must be True or False: {REMEDY}")
+                raise ReportError(
+                    f"'{path}' has {others.iloc[0]!r} in {name}; it must be True or False: {REMEDY}"
+                )
             frame[name] = cells == "True"
     for name in ("message", "outcome"):
         if name in frame:

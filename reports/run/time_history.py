@@ -32,7 +32,10 @@ _TURNING = 1.0
 
 def tracking_error(history: pd.DataFrame) -> Array:
     """Return the distance to the reference at every sample [m]."""
-    north, east = (column(history, f"reference_{axis}") - column(history, axis) for axis in ("north_m", "east_m"))
+    north, east = (
+        column(history, f"reference_{axis}") - column(history, axis)
+        for axis in ("north_m", "east_m")
+    )
     error: Array = np.hypot(north, east)
     return error
 
@@ -53,7 +56,10 @@ def keepout_distance(history: pd.DataFrame, config: Config) -> Array:
     history : of the flight
     config : of the flight itself
     """
-    north, east = (column(history, f"{axis}_m") - column(history, f"vessel_{axis}_m") for axis in ("north", "east"))
+    north, east = (
+        column(history, f"{axis}_m") - column(history, f"vessel_{axis}_m")
+        for axis in ("north", "east")
+    )
     level = keepout_shape(config) == "cylinder"
     up = np.zeros(len(history)) if level else column(history, "altitude_m") - source_height(config)
     distance: Array = np.sqrt(north**2 + east**2 + up**2)
@@ -78,7 +84,10 @@ def shown_distances(distance: Array, since_settling: Mask, radius: float) -> tup
 
 def about_the_plume(history: pd.DataFrame, prefix: str = "") -> tuple[Array, Array]:
     """Return metres right of and along the plume's axis, seen from the vessel, of the UAV or what a prefix names."""
-    north, east = (column(history, f"{prefix}{axis}_m") - column(history, f"vessel_{axis}_m") for axis in ("north", "east"))
+    north, east = (
+        column(history, f"{prefix}{axis}_m") - column(history, f"vessel_{axis}_m")
+        for axis in ("north", "east")
+    )
     return turned(north, east, column(history, "plume_axis_rad"))
 
 
@@ -90,7 +99,9 @@ def turned(north: Array, east: Array, up: Array | float) -> tuple[Array, Array]:
 def flight_points(history: pd.DataFrame) -> int:
     """Return how many samples curves of a flight show at most: more of a long one, that its turns do not become corners."""
     time = column(history, "time_s")
-    return round(min(max(_FLIGHT_POINTS, (float(time[-1]) - float(time[0])) / _TURNING), _LONG_POINTS))
+    return round(
+        min(max(_FLIGHT_POINTS, (float(time[-1]) - float(time[0])) / _TURNING), _LONG_POINTS)
+    )
 
 
 def thinned(history: pd.DataFrame, points_max: int) -> pd.DataFrame:
@@ -123,9 +134,14 @@ def true_wind(history: pd.DataFrame, row: Row) -> tuple[Array, Array]:
     history : of the flight
     row : of the flight in the summary
     """
-    speed, origin = (float(np.nan_to_num(row.get(name, 0.0))) for name in ("wind_speed_mps", "wind_from_deg"))
+    speed, origin = (
+        float(np.nan_to_num(row.get(name, 0.0))) for name in ("wind_speed_mps", "wind_from_deg")
+    )
     recorded = (column(history, f"true_wind_{axis}_mps") for axis in ("north", "east"))
-    north, east = (np.where(np.isfinite(of), of, begun) for of, begun in zip(recorded, wind_velocity(speed, origin), strict=True))
+    north, east = (
+        np.where(np.isfinite(of), of, begun)
+        for of, begun in zip(recorded, wind_velocity(speed, origin), strict=True)
+    )
     return north, east
 
 
@@ -135,4 +151,6 @@ def guard_stretches(history: pd.DataFrame) -> list[tuple[int, int, bool]]:
     starts = np.concatenate([[0], np.flatnonzero(np.diff(state)) + 1])
     ends = np.append(starts[1:], len(state))
     stretches = zip(starts.tolist(), ends.tolist(), strict=True)
-    return [(start, end, bool(state[start] < _LOST)) for start, end in stretches if state[start] > 0.0]
+    return [
+        (start, end, bool(state[start] < _LOST)) for start, end in stretches if state[start] > 0.0
+    ]

@@ -115,7 +115,9 @@ class Trial:
         """Return speed ratios, by their name, and what theory says of a figure; None where flights differ in more than nu."""
         curves = self.run.manifest.get("theory", {}).get(self.key, {})
         # In wind the speed ratio through the air is not the one that is swept.
-        over_ground = column(self.flown, "vessel_speed_mps") / float(self.setting("guidance.airspeed_mps"))
+        over_ground = column(self.flown, "vessel_speed_mps") / float(
+            self.setting("guidance.airspeed_mps")
+        )
         if key not in curves or not np.allclose(column(self.flown, "nu"), over_ground):
             return None
         return np.array(curves[over]), np.array(curves[key])
@@ -134,13 +136,17 @@ class Trial:
     def is_scaled(self, key: str) -> bool:
         """Return whether the value of a key is its default scaled to the aircraft, and not the default itself."""
         keys = self.run.manifest.get("scaled_parameters", {}).get(self.key, [])
-        return key in keys and any(of["value"] != of["default"] for of in self.parameters() if of["key"] == key)
+        return key in keys and any(
+            of["value"] != of["default"] for of in self.parameters() if of["key"] == key
+        )
 
     @property
     def swept(self) -> dict[str, list[Any]]:
         """Return the values of every key that the trial sweeps, in their order."""
         sweep = self.setting("sweep", {})
-        return {key: list(values) for key, values in leaves(sweep).items() if isinstance(values, list)}
+        return {
+            key: list(values) for key, values in leaves(sweep).items() if isinstance(values, list)
+        }
 
     @property
     def sampled(self) -> list[dict[str, Any]]:
@@ -153,7 +159,9 @@ class Trial:
         if key in draws:
             return draws.set_index("flight_id")[key].reindex(self.rows["flight_id"])
         if key not in self.rows:
-            raise ReportError(f"'{self.run.path / DRAWS}' is gone or has no column '{key}', which flights differ in; {REMEDY}")
+            raise ReportError(
+                f"'{self.run.path / DRAWS}' is gone or has no column '{key}', which flights differ in; {REMEDY}"
+            )
         return self.rows[key].set_axis(self.rows["flight_id"])
 
     def varies(self, key: str) -> bool:
@@ -164,13 +172,19 @@ class Trial:
     @property
     def kind(self) -> Kind:
         """What it is about, by what it holds and its criteria; its name says nothing."""
-        turbulent = self.setting("turbulence.level", "none") != "none" or self.setting("turbulence.gusts", 0) > 0
+        turbulent = (
+            self.setting("turbulence.level", "none") != "none"
+            or self.setting("turbulence.gusts", 0) > 0
+        )
         calm = not (turbulent or self.varies("turbulence"))
         kinds = {
             Kind.SWEEP: bool(self.swept),
             Kind.FAULTS: self.setting("fault.kind", "none") != "none" or self.varies("fault.kind"),
-            Kind.MANOEUVRES: calm and (bool(self.setting("vessel.manoeuvres", [])) or self.varies("vessel.manoeuvres")),
-            Kind.APPROACH: calm and self.criteria.get("settles", False) and not self.criteria.get("crossing_interval_error"),
+            Kind.MANOEUVRES: calm
+            and (bool(self.setting("vessel.manoeuvres", [])) or self.varies("vessel.manoeuvres")),
+            Kind.APPROACH: calm
+            and self.criteria.get("settles", False)
+            and not self.criteria.get("crossing_interval_error"),
         }
         return next((kind for kind, holds in kinds.items() if holds), Kind.GENERAL)
 
@@ -190,7 +204,11 @@ def leaves(tree: Mapping[str, Any], before: str = "") -> dict[str, Any]:
     """Return the values of nested mappings by their dotted keys."""
     found: dict[str, Any] = {}
     for key, value in tree.items():
-        found |= leaves(value, f"{before}{key}.") if isinstance(value, Mapping) else {f"{before}{key}": value}
+        found |= (
+            leaves(value, f"{before}{key}.")
+            if isinstance(value, Mapping)
+            else {f"{before}{key}": value}
+        )
     return found
 
 
@@ -202,6 +220,12 @@ def read_trials(run: RunData) -> list[Trial]:
     KeyError : the manifest names no trials
     """
     return [
-        Trial(run=run, key=key, name=f"trial{i}", config=config, rows=run.summary[run.summary["trial"] == key])
+        Trial(
+            run=run,
+            key=key,
+            name=f"trial{i}",
+            config=config,
+            rows=run.summary[run.summary["trial"] == key],
+        )
         for i, (key, config) in enumerate(run.manifest["trials"].items(), start=1)
     ]

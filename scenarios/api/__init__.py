@@ -7,4 +7,14 @@ from scenarios.api.statistics import Statistics
 from scenarios.errors import InputError
 from scenarios.world.ais import read_ais
 
-__all__ = ["Flight", "InputError", "Run", "Scenario", "Statistics", "fly", "load", "read_ais", "run"]
+__all__ = [
+    "Flight",
+    "InputError",
+    "Run",
+    "Scenario",
+    "Statistics",
+    "fly",
+    "load",
+    "read_ais",
+    "run",
+]

@@ -57,13 +57,21 @@ def fly(
     from scenarios.studies.single_flight import SingleFlight
 
     loaded = load(scenario).set(**keys)
-    with lent(loaded.parts), _directory(out) as (directory, keeping), _shown(progress=progress) as show:
+    with (
+        lent(loaded.parts),
+        _directory(out) as (directory, keeping),
+        _shown(progress=progress) as show,
+    ):
         study = flights_of(loaded)
         name = flight_id or _only_flight(study, loaded)
         single = SingleFlight.of(study, name)
         if single is None:
-            raise InputError(f"'{loaded.name}' has no flight '{name}'; its flights are {_names(study)}{_meant(name, study)}")
-        result = fly_study(single, directory, executor_factory=InProcessExecutor, resume=False, progress=show)
+            raise InputError(
+                f"'{loaded.name}' has no flight '{name}'; its flights are {_names(study)}{_meant(name, study)}"
+            )
+        result = fly_study(
+            single, directory, executor_factory=InProcessExecutor, resume=False, progress=show
+        )
         return _finished(result, keeping).flights[name]
 
 
@@ -96,7 +104,9 @@ def run(
     from scenarios.studies.registry import run_study
 
     if jobs is not None and not (isinstance(jobs, Integral) and jobs >= 1):
-        raise InputError(f"jobs is {jobs!r}; it is a number of processes: give a whole number, 1 or more")
+        raise InputError(
+            f"jobs is {jobs!r}; it is a number of processes: give a whole number, 1 or more"
+        )
     loaded = load(scenario).set(**keys)
     check_picklable(loaded.parts)
     processes = ExecutorFactory(jobs=jobs or os.cpu_count() or 1)
@@ -104,9 +114,18 @@ def run(
     def executor(work: "Work") -> "Executor":
         return processes(LentWork(work, loaded.parts) if loaded.parts else work)
 
-    with lent(loaded.parts), _directory(out) as (directory, keeping), _shown(progress=progress) as show:
+    with (
+        lent(loaded.parts),
+        _directory(out) as (directory, keeping),
+        _shown(progress=progress) as show,
+    ):
         result = run_study(
-            loaded.config, loaded.name, directory, executor_factory=executor, progress=show, overrides=loaded.changes
+            loaded.config,
+            loaded.name,
+            directory,
+            executor_factory=executor,
+            progress=show,
+            overrides=loaded.changes,
         )
         return _finished(result, keeping)
 
@@ -141,14 +160,31 @@ def _only_flight(study: "FlightStudy", loaded: Scenario) -> str:
 
 def _names(study: "FlightStudy") -> str:
     """Return the names of the first and the last flight, comparisons apart."""
-    first, *_, last = [(experiment, number) for experiment in study.experiments.values() for number in (0, experiment.counted - 1)]
-    return " to ".join(dict.fromkeys(experiment.named(number)[0] for experiment, number in (first, last)))
+    first, *_, last = [
+        (experiment, number)
+        for experiment in study.experiments.values()
+        for number in (0, experiment.counted - 1)
+    ]
+    return " to ".join(
+        dict.fromkeys(experiment.named(number)[0] for experiment, number in (first, last))
+    )
 
 
 def _meant(name: str, study: "FlightStudy") -> str:
     """Return the name of the flight that was meant, of so few that they are looked through at once."""
-    experiments = [experiment for experiment in study.experiments.values() if experiment.flights <= _LOOKED_THROUGH]
-    return did_you_mean(name, (experiment.named(number)[0] for experiment in experiments for number in range(experiment.flights)))
+    experiments = [
+        experiment
+        for experiment in study.experiments.values()
+        if experiment.flights <= _LOOKED_THROUGH
+    ]
+    return did_you_mean(
+        name,
+        (
+            experiment.named(number)[0]
+            for experiment in experiments
+            for number in range(experiment.flights)
+        ),
+    )
 
 
 Keeping = Callable[[object], None]
@@ -182,7 +218,9 @@ def _refuse_taken(directory: Path) -> None:
     try:
         RunDirectory(directory).refuse_taken()
     except InputError as error:
-        raise InputError(f"out: {str(error).partition(';')[0]}; give the path of a directory that is new or empty") from None
+        raise InputError(
+            f"out: {str(error).partition(';')[0]}; give the path of a directory that is new or empty"
+        ) from None
 
 
 @contextmanager

@@ -14,7 +14,9 @@ _DPI = 90
 
 def table(rows: Iterable[Sequence[object]]) -> str:
     """Return rows as a table of HTML; whatever stands in a cell is text."""
-    body = "".join(f"<tr>{''.join(f'<td>{html.escape(str(cell))}</td>' for cell in row)}</tr>" for row in rows)
+    body = "".join(
+        f"<tr>{''.join(f'<td>{html.escape(str(cell))}</td>' for cell in row)}</tr>" for row in rows
+    )
     return f"<table>{body}</table>"
 
 

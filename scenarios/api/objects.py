@@ -152,8 +152,14 @@ class _Namer:
             if below in _LAWS and is_dataclass(value) and not isinstance(value, type):
                 made[name] = self.part(below, type(value))
                 section = name.rpartition(".")[0]
-                keys = {of.name: f"{section}.{of.name}" if section else of.name for of in fields(value) if of.init}
-                made |= {of_law: self.value(of_law, getattr(value, of)) for of, of_law in keys.items()}
+                keys = {
+                    of.name: f"{section}.{of.name}" if section else of.name
+                    for of in fields(value)
+                    if of.init
+                }
+                made |= {
+                    of_law: self.value(of_law, getattr(value, of)) for of, of_law in keys.items()
+                }
             elif below == "vessel.track" and isinstance(value, AisReports):
                 made[name] = str(value.path)
                 made[f"{name.removesuffix('track')}mmsi"] = value.mmsi
@@ -196,7 +202,9 @@ class _Namer:
                 " the class: its fields, each with a default, are keys of [guidance]"
             )
         else:
-            raise InputError(f"{key} is an object of class {type(part).__name__}; give the class itself: each flight makes its own")
+            raise InputError(
+                f"{key} is an object of class {type(part).__name__}; give the class itself: each flight makes its own"
+            )
         if key != "aircraft" and not name.isidentifier():
             raise InputError(f"{key} is {name}, which has no name; define it by class or def")
         try:
@@ -204,7 +212,9 @@ class _Namer:
         except PluginError as error:
             raise InputError(f"{key}: {error}") from None
         if key == "aircraft" and name in stock_names():
-            raise InputError(f"aircraft is an object called '{name}', as one of JSBSim's own is; rename yours")
+            raise InputError(
+                f"aircraft is an object called '{name}', as one of JSBSim's own is; rename yours"
+            )
         given = Lent(key, name, Copies(part) if made and key in _COPIED else part)
         if self.found.setdefault((registry.kind, name), given).part != given.part:
             raise InputError(f"{key}: two objects are called '{name}'; give each a name of its own")
@@ -240,5 +250,7 @@ def _registry(key: str) -> Registry[Any]:
         **dict.fromkeys(_LAWS, STEERING_LAWS),
     }
     if key not in registries:
-        raise InputError(f"{key} is an object; it takes a number, a word or a list: objects are for {', '.join(registries)}")
+        raise InputError(
+            f"{key} is an object; it takes a number, a word or a list: objects are for {', '.join(registries)}"
+        )
     return registries[key]

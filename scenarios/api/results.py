@@ -24,7 +24,9 @@ if TYPE_CHECKING:
 _SHOWN = 12
 """Flights that a notebook shows at most."""
 
-_UNMEASURED = [outcome.value for outcome in (Outcome.INFEASIBLE, Outcome.TRIM_FAILED, Outcome.FAILED)]
+_UNMEASURED = [
+    outcome.value for outcome in (Outcome.INFEASIBLE, Outcome.TRIM_FAILED, Outcome.FAILED)
+]
 """How flights end of which nothing is measured."""
 
 
@@ -90,7 +92,9 @@ class Run:
         """Return what a Monte Carlo study shows and how sure that is, or None of any other study."""
         return None if self._data.statistics is None else statistics_of(self._data.statistics)
 
-    def report(self, path: str | os.PathLike[str] | None = None, *, all_flights: bool = False) -> str:
+    def report(
+        self, path: str | os.PathLike[str] | None = None, *, all_flights: bool = False
+    ) -> str:
         """Return the report as the text of an HTML page; with a path write it, as HTML or PDF by the suffix, and return the path.
 
         Parameters
@@ -120,11 +124,15 @@ class Run:
     def _repr_html_(self) -> str:
         """Return the result and the first flights as tables, for a notebook."""
         columns = [
-            name for name in ("flight_id", "outcome", "criteria_met", "min_distance_m", "crossing_count") if name in self.summary
+            name
+            for name in ("flight_id", "outcome", "criteria_met", "min_distance_m", "crossing_count")
+            if name in self.summary
         ]
         rows = self.summary[columns].head(_SHOWN).itertuples(index=False)
         more = len(self.summary) - _SHOWN
-        text = "".join(f"<p>{html.escape(line)}</p>" for line in (self.manifest["title"], *self.lines))
+        text = "".join(
+            f"<p>{html.escape(line)}</p>" for line in (self.manifest["title"], *self.lines)
+        )
         return f"{text}{table([columns, *rows])}{f'<p>and {more} more</p>' if more > 0 else ''}"
 
 
@@ -153,7 +161,9 @@ class Flight:
                 row = found.iloc[0].rename(self.flight_id)
                 row.attrs = dict(_with_units(found).attrs)
                 return row
-        raise InputError(f"the run in '{self.run.directory}' has no flight '{self.flight_id}'; its summary lists them")
+        raise InputError(
+            f"the run in '{self.run.directory}' has no flight '{self.flight_id}'; its summary lists them"
+        )
 
     @functools.cached_property
     def history(self) -> "pd.DataFrame":
@@ -168,7 +178,9 @@ class Flight:
 
         history = self.run._data.history(self.flight_id)
         if history is None:
-            raise InputError(f"flight '{self.flight_id}' has no time history; raise histories, or fly it alone, with fly")
+            raise InputError(
+                f"flight '{self.flight_id}' has no time history; raise histories, or fly it alone, with fly"
+            )
         meanings = MEANINGS | INSTRUMENT_MEANINGS
         history.attrs["meanings"] = {name: meanings[name] for name in history if name in meanings}
         return _with_units(history)
@@ -193,7 +205,9 @@ class Flight:
         """Return why it is not met, a sentence each; none if it is."""
         message = str(self.row["message"])
         # That of a flight that ended before anything was measured is one sentence, with its remedy.
-        return tuple(filter(None, [message] if self.row["outcome"] in _UNMEASURED else message.split("; ")))
+        return tuple(
+            filter(None, [message] if self.row["outcome"] in _UNMEASURED else message.split("; "))
+        )
 
     def plot(self) -> "Figure":
         """Return its track and its time histories as a figure of matplotlib.
@@ -234,13 +248,28 @@ class Flight:
         from reports.output import flight_figure
 
         units = self.row.attrs["units"]
-        shown = ("outcome", "message", "nu", "min_distance_m", "settling_time_s", "crossing_count", "tracking_error_rms_m")
-        rows = [(name, _cell(self.row[name], units.get(name, "1"))) for name in shown if name in self.row]
+        shown = (
+            "outcome",
+            "message",
+            "nu",
+            "min_distance_m",
+            "settling_time_s",
+            "crossing_count",
+            "tracking_error_rms_m",
+        )
+        rows = [
+            (name, _cell(self.row[name], units.get(name, "1")))
+            for name in shown
+            if name in self.row
+        ]
         text = f"<p>{html.escape(repr(self))}</p>{table(rows)}"
         data = self.run._data
         if not data.has_history(self.flight_id):
             return text
-        return text + picture(flight_figure(data, self.flight_id, tracks_alone=True), f"Track of flight {self.flight_id}")
+        return text + picture(
+            flight_figure(data, self.flight_id, tracks_alone=True),
+            f"Track of flight {self.flight_id}",
+        )
 
 
 def _cell(value: object, unit: str) -> object:

@@ -16,7 +16,12 @@ from scenarios.schema.overrides import Document, as_toml
 Given = str | os.PathLike[str] | Mapping[str, Any]
 """What a scenario is loaded from: a name of the catalog, the path of a TOML file, or what such a file holds."""
 
-_SHORT = {"law": "guidance.law", "shape": "reference.shape", "track": "vessel.track", "plume": "plume.model"}
+_SHORT = {
+    "law": "guidance.law",
+    "shape": "reference.shape",
+    "track": "vessel.track",
+    "plume": "plume.model",
+}
 """Words for parts that are given as objects or by name, and the keys that they stand for."""
 
 
@@ -68,7 +73,11 @@ class Scenario:
             dotted = self._of_nu(nu) | dotted
         values, parts = named(dotted)
         # A part that is given again, as from a cell that was run again, takes the place of the one before.
-        kept = [given for given in self.parts if (given.key, given.name) not in {(new.key, new.name) for new in parts}]
+        kept = [
+            given
+            for given in self.parts
+            if (given.key, given.name) not in {(new.key, new.name) for new in parts}
+        ]
         changes = [_change(key, value) for key, value in values.items()]
         return replace(self, changes=(*self.changes, *changes), parts=(*kept, *parts))
 

@@ -86,7 +86,11 @@ class Statistics:
             if math.isclose(quantile.probability, probability):
                 return quantile
         given = ", ".join(f"{quantile.probability:g}" for quantile in known)
-        there = f"it has those of {given}" if known else f"figures are {', '.join(self.quantiles) or 'none'}"
+        there = (
+            f"it has those of {given}"
+            if known
+            else f"figures are {', '.join(self.quantiles) or 'none'}"
+        )
         raise InputError(f"statistics have no quantile {probability:g} of '{figure}'; {there}")
 
 
@@ -111,7 +115,12 @@ def statistics_of(content: Mapping[str, Any]) -> Statistics:
         violation_at_most=_number(violation["pessimistic"]["upper"]),
         quantiles={
             name: tuple(
-                Quantile(**{key: _number(quantile[key]) for key in ("probability", "value", "low", "high")})
+                Quantile(
+                    **{
+                        key: _number(quantile[key])
+                        for key in ("probability", "value", "low", "high")
+                    }
+                )
                 for quantile in figure["quantiles"]
             )
             for name, figure in content.get("figures", {}).items()

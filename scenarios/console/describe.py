@@ -6,7 +6,12 @@ from collections.abc import Iterator
 from itertools import groupby
 
 from scenarios.errors import InputError
-from scenarios.schema.documented import DocumentedSection, documented_keys, documented_sections, similar_key
+from scenarios.schema.documented import (
+    DocumentedSection,
+    documented_keys,
+    documented_sections,
+    similar_key,
+)
 from scenarios.schema.documented_parts import PART_SECTIONS, DocumentedKey, documented_part_keys
 from scenarios.schema.overrides import as_toml
 from scenarios.schema.sections.convergence import ConvergenceScenario
@@ -45,9 +50,22 @@ def described(name: str | None = None) -> list[str]:
     if table := next((table for table in tables if plain.startswith(f"{table}.")), None):
         note = f"{name} is a key of the table that {table} may be; docs/howto/measuring.md lists its keys, with their units."
         return [*_wrapped("", note), *described(table)]
-    keys = [key for key in documented_keys() if key.key.replace(".0", "") == plain or (plain == "nu" and key.key == "sweep")]
+    keys = [
+        key
+        for key in documented_keys()
+        if key.key.replace(".0", "") == plain or (plain == "nu" and key.key == "sweep")
+    ]
     kinds = (documented_sections(), documented_sections(ConvergenceScenario))
-    sections = next(filter(None, ([of for of in each if of.name and of.name.replace(".0", "") == plain] for each in kinds)), [])
+    sections = next(
+        filter(
+            None,
+            (
+                [of for of in each if of.name and of.name.replace(".0", "") == plain]
+                for each in kinds
+            ),
+        ),
+        [],
+    )
     if not keys and not sections:
         guess = similar_key(plain)
         remedy = f"did you mean '{guess}'?" if guess else "plume-flight describe lists the sections"
@@ -66,11 +84,16 @@ def value_text(value: object) -> str:
 def _all_sections() -> Iterator[str]:
     yield "Sections of a scenario file, and how many keys each has; plume-flight describe SECTION lists them:"
     for section in documented_sections():
-        yield from _wrapped(f"{section.name.replace('.0', '') or _TOP:<21} {len(section.keys):>3}  ", _meaning(section))
+        yield from _wrapped(
+            f"{section.name.replace('.0', '') or _TOP:<21} {len(section.keys):>3}  ",
+            _meaning(section),
+        )
 
 
 def _meaning(section: DocumentedSection) -> str:
-    return section.meaning if section.name else "Keys outside of any section, at the top of the file."
+    return (
+        section.meaning if section.name else "Keys outside of any section, at the top of the file."
+    )
 
 
 def _section(section: DocumentedSection) -> Iterator[str]:
@@ -83,7 +106,11 @@ def _section(section: DocumentedSection) -> Iterator[str]:
 def _entry(key: DocumentedKey) -> list[str]:
     default = "required" if key.required else value_text(key.default)
     # A criterion that is off has no number that a unit could follow.
-    unit = f" {key.unit}" if key.unit not in ("", "-") and not (key.default is None or key.default is False) else ""
+    unit = (
+        f" {key.unit}"
+        if key.unit not in ("", "-") and not (key.default is None or key.default is False)
+        else ""
+    )
     return _wrapped(f"  {key.key.rpartition('.')[2]:<28} {default}{unit}  ", key.meaning)
 
 
@@ -113,4 +140,9 @@ def _key(key: DocumentedKey) -> Iterator[str]:
 
 
 def _wrapped(before: str, text: str) -> list[str]:
-    return textwrap.wrap(f"{before}{text}", _WIDTH, subsequent_indent=" " * min(len(before), 32), drop_whitespace=True) or [before]
+    return textwrap.wrap(
+        f"{before}{text}",
+        _WIDTH,
+        subsequent_indent=" " * min(len(before), 32),
+        drop_whitespace=True,
+    ) or [before]

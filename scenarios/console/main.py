@@ -14,36 +14,63 @@ from common.command_line import PROGRAM, refuse, run_command
 
 
 def export(
-    directory: Annotated[Path, typer.Argument(metavar="RUN_DIR", help="A directory that plume-flight run wrote.")],
+    directory: Annotated[
+        Path, typer.Argument(metavar="RUN_DIR", help="A directory that plume-flight run wrote.")
+    ],
     to: Annotated[
         list[str] | None,
         typer.Option(
-            metavar="NAME,...", help="Formats: kmz, acmi, czml, mcap, netcdf, tlog, geojson, tracks_csv, or FILE.py:NAME."
+            metavar="NAME,...",
+            help="Formats: kmz, acmi, czml, mcap, netcdf, tlog, geojson, tracks_csv, or FILE.py:NAME.",
         ),
     ] = None,
-    flight: Annotated[str | None, typer.Option(metavar="ID", help="Export or stream this flight alone.")] = None,
+    flight: Annotated[
+        str | None, typer.Option(metavar="ID", help="Export or stream this flight alone.")
+    ] = None,
     stream: Annotated[
-        str | None, typer.Option(metavar="udp://HOST:PORT", help="Send a flight to a ground station in real time, as MAVLink.")
+        str | None,
+        typer.Option(
+            metavar="udp://HOST:PORT",
+            help="Send a flight to a ground station in real time, as MAVLink.",
+        ),
     ] = None,
 ) -> None:
     """Write the flights of a run in other formats, into RUN_DIR/export, or send one in real time."""
     from reports.build import command
 
     if not (to or stream):
-        raise typer.Exit(refuse("nothing to export; give --to NAME,..., as in --to kmz, or --stream udp://HOST:PORT"))
+        raise typer.Exit(
+            refuse(
+                "nothing to export; give --to NAME,..., as in --to kmz, or --stream udp://HOST:PORT"
+            )
+        )
     command(directory, export=to, flight=flight, stream=stream)
 
 
 def estimate(
-    flight: Annotated[Path, typer.Argument(metavar="FLIGHT.csv", help="Log with time_s, so2_ppb, co2_ppm, and optional columns.")],
+    flight: Annotated[
+        Path,
+        typer.Argument(
+            metavar="FLIGHT.csv", help="Log with time_s, so2_ppb, co2_ppm, and optional columns."
+        ),
+    ],
     config: Annotated[
         Path | None,
-        typer.Option(metavar="FILE.toml", help="Instrument, columns, limits; default an unknown instrument."),
+        typer.Option(
+            metavar="FILE.toml", help="Instrument, columns, limits; default an unknown instrument."
+        ),
     ] = None,
     out: Annotated[
-        Path | None, typer.Option(metavar="DIR", help="Directory of files and report.", show_default="runs/measurement_FLIGHT")
+        Path | None,
+        typer.Option(
+            metavar="DIR",
+            help="Directory of files and report.",
+            show_default="runs/measurement_FLIGHT",
+        ),
     ] = None,
-    no_report: Annotated[bool, typer.Option("--no-report", help="Do not write report.html and report.pdf.")] = False,
+    no_report: Annotated[
+        bool, typer.Option("--no-report", help="Do not write report.html and report.pdf.")
+    ] = False,
 ) -> None:
     """Estimate the sulphur content of a ship's fuel from the log of a flight through her plume, and judge it."""
     from measurement.estimate.__main__ import main as estimate_logged
@@ -51,13 +78,18 @@ def estimate(
     options = [("--config", config), ("--out", out)]
     given = [word for name, value in options if value is not None for word in (name, str(value))]
     # A name that begins with a dash is no option.
-    raise typer.Exit(estimate_logged([*given, *(["--no-report"] if no_report else []), "--", str(flight)]))
+    raise typer.Exit(
+        estimate_logged([*given, *(["--no-report"] if no_report else []), "--", str(flight)])
+    )
 
 
 def describe(
     key: Annotated[
         str | None,
-        typer.Argument(metavar="KEY|SECTION", help="Such as wind.speed_mps or wind; lists the sections if left out."),
+        typer.Argument(
+            metavar="KEY|SECTION",
+            help="Such as wind.speed_mps or wind; lists the sections if left out.",
+        ),
     ] = None,
 ) -> None:
     """Say what a key of the scenario file means, its unit, range and default, and the studies that take it."""
@@ -72,9 +104,15 @@ def describe(
 
 
 def new(
-    file: Annotated[Path, typer.Argument(metavar="FILE.toml", help="The file to write; an existing file is not overwritten.")],
+    file: Annotated[
+        Path,
+        typer.Argument(
+            metavar="FILE.toml", help="The file to write; an existing file is not overwritten."
+        ),
+    ],
     source: Annotated[
-        str, typer.Option("--from", metavar="NAME|FILE.toml", help="The scenario that it is made from.")
+        str,
+        typer.Option("--from", metavar="NAME|FILE.toml", help="The scenario that it is made from."),
     ] = "sweep_nu",
 ) -> None:
     """Write a scenario file with every key, its meaning, unit, range and default, and with the values of another scenario.
@@ -97,7 +135,13 @@ def commands() -> dict[str, Callable[..., None]]:
     from reports.build import command as report
     from scenarios.run import command as run
 
-    found: dict[str, Callable[..., None]] = {"run": run, "design": design, "estimate": estimate, "report": report, "export": export}
+    found: dict[str, Callable[..., None]] = {
+        "run": run,
+        "design": design,
+        "estimate": estimate,
+        "report": report,
+        "export": export,
+    }
     if importlib.util.find_spec("reports.compare"):
         found["compare"] = importlib.import_module("reports.compare.__main__").command
     return {**found, "describe": describe, "new": new}

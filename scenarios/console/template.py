@@ -46,12 +46,16 @@ def write_template(path: Path, name: str) -> None:
         with path.open("x", encoding="utf-8", newline="\n") as file:
             file.write(text)
     except FileExistsError:
-        raise InputError(f"'{path}' is there already, and is not overwritten; choose another name") from None
+        raise InputError(
+            f"'{path}' is there already, and is not overwritten; choose another name"
+        ) from None
     except OSError as error:
         # What a full disk has left of it would be in the way of the next try.
         with contextlib.suppress(OSError):
             path.unlink(missing_ok=True)
-        raise InputError(f"'{path}' cannot be written: {error.strerror}; choose another path") from None
+        raise InputError(
+            f"'{path}' cannot be written: {error.strerror}; choose another path"
+        ) from None
 
 
 def template(name: str, file: str) -> str:
@@ -68,7 +72,13 @@ def template(name: str, file: str) -> str:
     sections = {section.name: section for section in documented_sections(type(config))}
     lines = [*_comment(_HEAD.format(name=name, file=file)), ""]
     if document.get("study") in OPERATIONAL_STUDIES:
-        lines += [*_comment(f"No base: without this line it would extend {OPERATIONAL}, as its study does."), "extends = false", ""]
+        lines += [
+            *_comment(
+                f"No base: without this line it would extend {OPERATIONAL}, as its study does."
+            ),
+            "extends = false",
+            "",
+        ]
     for section in sections.values():
         if not section.listed:
             lines += _section(section, document, config, sections)
@@ -86,12 +96,21 @@ def _at_swept_ratios(document: Document, config: Scenario) -> tuple[Document, Sc
 
 
 def _section(
-    section: DocumentedSection, document: Document, config: BaseModel, sections: Mapping[str, DocumentedSection]
+    section: DocumentedSection,
+    document: Document,
+    config: BaseModel,
+    sections: Mapping[str, DocumentedSection],
 ) -> Iterator[str]:
     values: Any = document.get(section.name, {}) if section.name else document
     # A list in place of the section, as of instruments, stands for its first key.
-    values = values if isinstance(values, Mapping) else {section.keys[0].key.rpartition(".")[2]: values}
-    lists = [of for of in sections.values() if of.listed and of.name.rpartition(".0")[0].rpartition(".")[0] == section.name]
+    values = (
+        values if isinstance(values, Mapping) else {section.keys[0].key.rpartition(".")[2]: values}
+    )
+    lists = [
+        of
+        for of in sections.values()
+        if of.listed and of.name.rpartition(".0")[0].rpartition(".")[0] == section.name
+    ]
     if section.name:
         yield from ("", f"[{section.name}]", *_comment(section.meaning), "")
     for key in section.keys:
@@ -100,13 +119,18 @@ def _section(
     for of in lists:
         yield from _list(of, values, config)
     yield from _of_parts(section, values, config)
-    if not section.name and (sweep := next((key for key in section.keys if key.key == "sweep"), None)):
+    if not section.name and (
+        sweep := next((key for key in section.keys if key.key == "sweep"), None)
+    ):
         yield from _sweep(sweep, values)
 
 
 def _sweep(key: DocumentedKey, values: Mapping[str, Any]) -> Iterator[str]:
     yield from ("", "[sweep]", *_comment(key.meaning), '# "wind.speed_mps" = [0.0, 5.0]')
-    yield from (f"{as_toml(str(name))} = {as_toml(value)}" for name, value in values.get("sweep", {}).items())
+    yield from (
+        f"{as_toml(str(name))} = {as_toml(value)}"
+        for name, value in values.get("sweep", {}).items()
+    )
 
 
 def _key(key: DocumentedKey, values: Mapping[str, Any], config: BaseModel) -> Iterator[str]:
@@ -115,7 +139,10 @@ def _key(key: DocumentedKey, values: Mapping[str, Any], config: BaseModel) -> It
     unit = f" [{key.unit}]" if key.unit not in ("", DIMENSIONLESS) else ""
     yield from _comment(f"{key.meaning} ({key.range}{unit}; {default})")
     if name not in values:
-        yield from (f"# {name} = {'' if key.default is None else as_toml(key.default)}".rstrip(), "")
+        yield from (
+            f"# {name} = {'' if key.default is None else as_toml(key.default)}".rstrip(),
+            "",
+        )
     elif isinstance(config, Scenario) and unused(config, key.key):
         # It comes from a scenario that this one extends, which may hold more than acts here.
         yield from (f"# {name} = {as_toml(values[name])}", "")
@@ -123,7 +150,9 @@ def _key(key: DocumentedKey, values: Mapping[str, Any], config: BaseModel) -> It
         yield from (f"{name} = {as_toml(values[name])}", "")
 
 
-def _list(section: DocumentedSection, values: Mapping[str, Any], config: BaseModel) -> Iterator[str]:
+def _list(
+    section: DocumentedSection, values: Mapping[str, Any], config: BaseModel
+) -> Iterator[str]:
     """Yield a list of tables, an entry on each line."""
     whole = section.name.removesuffix(".0")
     name = whole.rpartition(".")[2]
@@ -131,7 +160,9 @@ def _list(section: DocumentedSection, values: Mapping[str, Any], config: BaseMod
     for key in section.keys:
         default = "has to be given" if key.required else f"default {value_text(key.default)}"
         unit = f" [{key.unit}]" if key.unit not in ("", DIMENSIONLESS) else ""
-        yield from _comment(f"{key.key.rpartition('.')[2]}: {key.meaning} ({key.range}{unit}; {default})", "#   ")
+        yield from _comment(
+            f"{key.key.rpartition('.')[2]}: {key.meaning} ({key.range}{unit}; {default})", "#   "
+        )
     entries = values.get(name, ())
     if not entries:
         yield from (f"# {name} = []", "")
@@ -140,15 +171,24 @@ def _list(section: DocumentedSection, values: Mapping[str, Any], config: BaseMod
         unused(config, whole) or (whole == "comparison.variants" and not compares(config))
     )
     before = "" if flown else "# "
-    yield from (f"{before}{name} = [", *(f"{before}  {as_toml(entry)}," for entry in entries), f"{before}]", "")
+    yield from (
+        f"{before}{name} = [",
+        *(f"{before}  {as_toml(entry)}," for entry in entries),
+        f"{before}]",
+        "",
+    )
 
 
-def _of_parts(section: DocumentedSection, values: Mapping[str, Any], config: BaseModel) -> Iterator[str]:
+def _of_parts(
+    section: DocumentedSection, values: Mapping[str, Any], config: BaseModel
+) -> Iterator[str]:
     """Yield the keys of the parts that a section names, beside those of the schema."""
     known = {key.key.rpartition(".")[2] for key in section.keys}
     part = getattr(config, section.name, None) if section.name else None
     own = getattr(part, "law_keys", None) or getattr(part, "part_keys", {})
-    documented = {key.key: key for key in documented_part_keys() if key.key.rpartition(".")[0] == section.name}
+    documented = {
+        key.key: key for key in documented_part_keys() if key.key.rpartition(".")[0] == section.name
+    }
     defaults = {key.key.rpartition(".")[2]: key.default for key in documented.values()} | dict(own)
     for name, default in defaults.items():
         if name in known:
@@ -163,4 +203,6 @@ def _of_parts(section: DocumentedSection, values: Mapping[str, Any], config: Bas
 
 def _comment(text: str, before: str = "# ") -> Iterator[str]:
     for paragraph in text.rstrip().split("\n"):
-        yield from textwrap.wrap(paragraph, _WIDTH - len(before), initial_indent=before, subsequent_indent=before) or ["#"]
+        yield from textwrap.wrap(
+            paragraph, _WIDTH - len(before), initial_indent=before, subsequent_indent=before
+        ) or ["#"]

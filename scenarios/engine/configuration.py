@@ -22,7 +22,10 @@ def changed_keys(before: Mapping[str, Any], now: Mapping[str, Any]) -> str:
         return ""
     then, today = dict(_values(before)), dict(_values(json.loads(json.dumps(now))))
     keys = [key for key in dict.fromkeys([*today, *then]) if then.get(key) != today.get(key)]
-    named = [f"{key} was {_shown(then.get(key))}, and is {_shown(today.get(key))} now" for key in keys[:_NAMED]]
+    named = [
+        f"{key} was {_shown(then.get(key))}, and is {_shown(today.get(key))} now"
+        for key in keys[:_NAMED]
+    ]
     more = [f"and {len(keys) - _NAMED} more"] if len(keys) > _NAMED else []
     return "; ".join([*named, *more])
 
@@ -34,7 +37,11 @@ def _values(manifest: Mapping[str, Any]) -> Iterator[tuple[str, object]]:
     # A list of trials says nothing of the keys that they have.
     if isinstance(config, dict) and config.get("study") == "trials" and isinstance(of_trials, dict):
         for trial, listed in of_trials.items():
-            yield from ((f"{of['key']} of {trial}", of.get("value")) for of in listed if isinstance(of, dict) and "key" in of)
+            yield from (
+                (f"{of['key']} of {trial}", of.get("value"))
+                for of in listed
+                if isinstance(of, dict) and "key" in of
+            )
     yield from _flat(manifest.get("plugins"), "the hash of ")
 
 

@@ -76,7 +76,9 @@ class DaskExecutor:
                 silence_logs=logging.CRITICAL,
             )
         try:
-            self._client = distributed.Client(self._cluster or self._scheduler, timeout=CONNECT_TIMEOUT)
+            self._client = distributed.Client(
+                self._cluster or self._scheduler, timeout=CONNECT_TIMEOUT
+            )
         except (OSError, TimeoutError, ValueError) as error:
             raise InputError(
                 f"--scheduler {self._scheduler} does not answer ({type(error).__name__}); check that it is running there"
@@ -85,9 +87,13 @@ class DaskExecutor:
             self._client.wait_for_workers(1, timeout=CONNECT_TIMEOUT)
         except TimeoutError:
             self.__exit__(TimeoutError, None, None)
-            raise InputError(f"--scheduler {self._scheduler} has no worker; start some with 'dask worker ADDRESS'") from None
+            raise InputError(
+                f"--scheduler {self._scheduler} has no worker; start some with 'dask worker ADDRESS'"
+            ) from None
         self._check_code()
-        self._client.register_plugin(_WorkPlugin(self._name, self._work, self._limits.time), name=self._name)
+        self._client.register_plugin(
+            _WorkPlugin(self._name, self._work, self._limits.time), name=self._name
+        )
         return self
 
     def _check_code(self) -> None:
@@ -95,7 +101,9 @@ class DaskExecutor:
         for worker, theirs in self._client.run(fingerprint, on_error="return").items():
             if isinstance(theirs, BaseException):
                 self.__exit__(InputError, None, None)
-                raise InputError(f"Dask worker {worker} cannot run this program ({theirs}); install it there, in the same version")
+                raise InputError(
+                    f"Dask worker {worker} cannot run this program ({theirs}); install it there, in the same version"
+                )
             if differing := differences(theirs):
                 self.__exit__(InputError, None, None)
                 name = differing[0]
@@ -104,7 +112,12 @@ class DaskExecutor:
                     " install the same version there"
                 )
 
-    def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None) -> None:
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
         """Disconnect from the cluster, and end it if it was started here."""
         if kind is None:
             self._client.unregister_worker_plugin(self._name)
@@ -138,7 +151,9 @@ class DaskExecutor:
                 task = running.pop(future)
                 if future.status == "finished":
                     results.append(found)
-                elif task.number in attempted or isinstance(future.exception(), distributed.KilledWorker):
+                elif task.number in attempted or isinstance(
+                    future.exception(), distributed.KilledWorker
+                ):
                     results.append(self._work.lost(task, _reason(future.exception())))
                 else:
                     attempted.add(task.number)
@@ -177,7 +192,9 @@ class _WorkPlugin(distributed.WorkerPlugin):
         self._content = pickle.dumps(work)
         root = work.model
         files = sorted(path for path in root.rglob("*") if path.is_file()) if root else []
-        self._files = {str(path.relative_to(root)): path.read_bytes() for path in files} if root else None
+        self._files = (
+            {str(path.relative_to(root)): path.read_bytes() for path in files} if root else None
+        )
         self._time_limit = time_limit
 
     def setup(self, worker: Any) -> None:

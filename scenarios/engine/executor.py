@@ -19,7 +19,12 @@ class Executor(Protocol):
     def __enter__(self) -> Self:
         """Start."""
 
-    def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None) -> None:
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
         """End every process; after an error at once."""
 
     def fly(self, tasks: Iterable[Task]) -> Iterator[Result]:

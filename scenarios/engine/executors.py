@@ -36,9 +36,13 @@ class ExecutorFactory:
 
     def __post_init__(self) -> None:
         if self.scheduler is not None and self.executor != DASK:
-            raise InputError(f"--scheduler is {self.scheduler} with --executor {self.executor}; add --executor dask")
+            raise InputError(
+                f"--scheduler is {self.scheduler} with --executor {self.executor}; add --executor dask"
+            )
         if self.executor == DASK and find_spec("distributed") is None:
-            raise InputError(f"--executor is dask, which is not installed; install the extra: {install_words('dask')}")
+            raise InputError(
+                f"--executor is dask, which is not installed; install the extra: {install_words('dask')}"
+            )
 
     def __call__(self, work: Work) -> Executor:
         """Return an executor for some work."""

@@ -23,13 +23,24 @@ _CATALOG = "scenarios/catalog/"
 def fingerprint() -> dict[str, str]:
     """Return the versions of Python and of the packages that results depend on, and a hash of the project's source."""
     versions = {package: importlib.metadata.version(package) for package in _PACKAGES}
-    return {"python": platform.python_version(), **versions, "source": source_hash(Path(__file__).parents[2])}
+    return {
+        "python": platform.python_version(),
+        **versions,
+        "source": source_hash(Path(__file__).parents[2]),
+    }
 
 
 def source_hash(project: Path) -> str:
     """Return a hash of the files of a project that results depend on, by their paths in it and their contents."""
-    found = (path for package in SOURCE for path in sorted((project / package).rglob("*.*")) if path.suffix in _SUFFIXES)
-    counted = (path for path in found if not path.relative_to(project).as_posix().startswith(_CATALOG))
+    found = (
+        path
+        for package in SOURCE
+        for path in sorted((project / package).rglob("*.*"))
+        if path.suffix in _SUFFIXES
+    )
+    counted = (
+        path for path in found if not path.relative_to(project).as_posix().startswith(_CATALOG)
+    )
     return files_hash(project, counted)[:16]
 
 

@@ -22,7 +22,12 @@ class InProcessExecutor:
         """Do nothing: there is no process to start."""
         return self
 
-    def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None) -> None:
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
         """Do nothing: there is no process to end."""
 
     def fly(self, tasks: Iterable[Task]) -> Iterator[Result]:

@@ -89,12 +89,20 @@ class Journal:
 
     def _check(self) -> None:
         """Raise an InputError if a result is not as it was added."""
-        columns = tuple(name for _, name, *_ in self._database.execute("PRAGMA table_info(results)"))
+        columns = tuple(
+            name for _, name, *_ in self._database.execute("PRAGMA table_info(results)")
+        )
         if columns != _COLUMNS:
-            raise InputError(f"'{self._path}' is not a journal of this version; start a new run in another --out")
-        for *fields, checksum in self._database.execute(f"SELECT {', '.join(_COLUMNS)} FROM results"):
+            raise InputError(
+                f"'{self._path}' is not a journal of this version; start a new run in another --out"
+            )
+        for *fields, checksum in self._database.execute(
+            f"SELECT {', '.join(_COLUMNS)} FROM results"
+        ):
             if checksum != _checksum(*fields) or not _is_tables(fields[-1]):
-                raise damaged(self._path, f": the result of task {fields[0]} does not agree with its checksum")
+                raise damaged(
+                    self._path, f": the result of task {fields[0]} does not agree with its checksum"
+                )
 
     def close(self) -> None:
         """Close the file."""
@@ -109,7 +117,10 @@ class Journal:
             int(result.lost),
             json.dumps(result.tables, default=plain_number),
         )
-        self._database.execute("INSERT OR REPLACE INTO results VALUES (?, ?, ?, ?, ?, ?)", (*fields, _checksum(*fields)))
+        self._database.execute(
+            "INSERT OR REPLACE INTO results VALUES (?, ?, ?, ?, ?, ?)",
+            (*fields, _checksum(*fields)),
+        )
 
     def is_empty(self) -> bool:
         """Return whether it has no results."""
@@ -117,24 +128,41 @@ class Journal:
 
     def done(self) -> set[int]:
         """Return the numbers of the tasks that are done; tasks whose process was lost are not."""
-        return {number for (number,) in self._database.execute("SELECT number FROM results WHERE NOT lost")}
+        return {
+            number
+            for (number,) in self._database.execute("SELECT number FROM results WHERE NOT lost")
+        }
 
     def task(self, number: int) -> Task:
         """Return the task of a result."""
-        ((point,),) = self._database.execute("SELECT point FROM results WHERE number = ?", (number,))
+        ((point,),) = self._database.execute(
+            "SELECT point FROM results WHERE number = ?", (number,)
+        )
         return Task(number=number, point=tuple(json.loads(point)))
 
     def items(self) -> int:
         """Return the number of items that are done."""
-        return int(self._database.execute("SELECT COALESCE(SUM(items), 0) FROM results WHERE NOT lost").fetchone()[0])
+        return int(
+            self._database.execute(
+                "SELECT COALESCE(SUM(items), 0) FROM results WHERE NOT lost"
+            ).fetchone()[0]
+        )
 
     def without_items(self) -> int:
         """Return the number of results that are done and count no item."""
-        return int(self._database.execute("SELECT COUNT(*) FROM results WHERE NOT lost AND items = 0").fetchone()[0])
+        return int(
+            self._database.execute(
+                "SELECT COUNT(*) FROM results WHERE NOT lost AND items = 0"
+            ).fetchone()[0]
+        )
 
-    def numbered(self, table: str, *, first: int = 0, below: int = _LARGEST) -> Iterator[tuple[int, Row]]:
+    def numbered(
+        self, table: str, *, first: int = 0, below: int = _LARGEST
+    ) -> Iterator[tuple[int, Row]]:
         """Yield task number and row of a table, by ascending task number from ``first`` to below ``below``."""
-        query = "SELECT number, tables FROM results WHERE number >= ? AND number < ? ORDER BY number"
+        query = (
+            "SELECT number, tables FROM results WHERE number >= ? AND number < ? ORDER BY number"
+        )
         found = self._database.execute(query, (first, below))
         for number, text in found:
             for row in json.loads(text).get(table, ()):
@@ -158,7 +186,10 @@ def _opened(path: Path, *, writing: bool) -> sqlite3.Connection:
     """Return a connection to a journal, which no other program can open while it is writing."""
     try:
         database = sqlite3.connect(
-            path if writing else f"{path.absolute().as_uri()}?immutable=1", uri=not writing, isolation_level=None, timeout=0.0
+            path if writing else f"{path.absolute().as_uri()}?immutable=1",
+            uri=not writing,
+            isolation_level=None,
+            timeout=0.0,
         )
     except sqlite3.Error as error:
         raise InputError(f"'{path}' cannot be opened: {error}; choose another --out") from None
@@ -184,14 +215,21 @@ def is_full(error: sqlite3.DatabaseError) -> bool:
 
 def is_damaged(error: sqlite3.DatabaseError) -> bool:
     """Return whether the file is damaged, or not a journal."""
-    return _code(error) in (sqlite3.SQLITE_CORRUPT, sqlite3.SQLITE_NOTADB, sqlite3.SQLITE_ERROR, sqlite3.SQLITE_MISMATCH)
+    return _code(error) in (
+        sqlite3.SQLITE_CORRUPT,
+        sqlite3.SQLITE_NOTADB,
+        sqlite3.SQLITE_ERROR,
+        sqlite3.SQLITE_MISMATCH,
+    )
 
 
 def unusable(path: Path, error: sqlite3.DatabaseError, *, then: str = CONTINUE) -> InputError:
     """Return the error to raise for a journal that SQLite cannot use; ``then`` is what to do once it can."""
     if is_damaged(error):
         return damaged(path)
-    return InputError(f"'{path}' cannot be used: {error}; make the file and its directory writable, then {then}")
+    return InputError(
+        f"'{path}' cannot be used: {error}; make the file and its directory writable, then {then}"
+    )
 
 
 def damaged(path: Path, what: str = "") -> InputError:
@@ -215,5 +253,6 @@ def _is_tables(text: object) -> bool:
     except (ValueError, RecursionError):
         return False
     return isinstance(tables, dict) and all(
-        isinstance(rows, list) and all(isinstance(row, dict) for row in rows) for rows in tables.values()
+        isinstance(rows, list) and all(isinstance(row, dict) for row in rows)
+        for rows in tables.values()
     )

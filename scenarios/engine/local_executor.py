@@ -56,7 +56,12 @@ class LocalExecutor:
             )
         return self
 
-    def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None) -> None:
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
         """End every process; after an error kill it."""
         for worker in self._workers:
             worker.end(at_once=kind is not None)
@@ -66,8 +71,13 @@ class LocalExecutor:
         """Yield the result of every task as it arrives; a task whose process is lost is tried once more."""
         waiting = iter(tasks)
         while self._dispatch(waiting):
-            ready = wait([worker.connection for worker in self._workers if worker.tasks], timeout=self._time_to_deadline())
-            due = [w for w in self._workers if w.connection in ready or w.is_overdue(self._limits.time)]
+            ready = wait(
+                [worker.connection for worker in self._workers if worker.tasks],
+                timeout=self._time_to_deadline(),
+            )
+            due = [
+                w for w in self._workers if w.connection in ready or w.is_overdue(self._limits.time)
+            ]
             for worker in due:
                 if worker.connection in ready:
                     answer = worker.receive()
@@ -96,7 +106,9 @@ class LocalExecutor:
 
     def _time_to_deadline(self) -> float:
         """Return the time until the next running task exceeds the time limit [s]."""
-        deadline = min(worker.task_started + self._limits.time for worker in self._workers if worker.tasks)
+        deadline = min(
+            worker.task_started + self._limits.time for worker in self._workers if worker.tasks
+        )
         return max(0.0, deadline - time.monotonic())
 
     def _handle_lost_worker(self, worker: "WorkerProcess", reason: str) -> Iterator[Result]:
@@ -110,7 +122,9 @@ class LocalExecutor:
         if self._attempts[current.number] < MAX_ATTEMPTS:
             self._retries.append(current)
         else:
-            yield self._work.lost(current, f"{MAX_ATTEMPTS} processes that flew it were lost; the last one {reason}")
+            yield self._work.lost(
+                current, f"{MAX_ATTEMPTS} processes that flew it were lost; the last one {reason}"
+            )
 
 
 class WorkerProcess:
@@ -183,11 +197,15 @@ def _exit_reason(code: int | None) -> str:
     if code < 0:
         # Of real-time signals only the first and the last have a name.
         name = signal.Signals(-code).name if -code in list(signal.Signals) else f"signal {-code}"
-        return f"was ended by {name}" + (", possibly for lack of memory" if name == "SIGKILL" else "")
+        return f"was ended by {name}" + (
+            ", possibly for lack of memory" if name == "SIGKILL" else ""
+        )
     return f"ended with status {code}"
 
 
-def _serve(connection: Connection, inherited: Sequence[Connection], work: Work, memory: int | None) -> None:
+def _serve(
+    connection: Connection, inherited: Sequence[Connection], work: Work, memory: int | None
+) -> None:
     """Do tasks in a process until the pipe is closed."""
     follow_parent()
     for other in inherited:

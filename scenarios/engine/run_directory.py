@@ -32,7 +32,9 @@ if TYPE_CHECKING:
     import pandas as pd
 
 
-_BEGUN = re.compile(rf"{re.escape(JOURNAL)}(-.*)?|\.probe-[0-9a-f]*\.part|\.{re.escape(MANIFEST)}\.\d+\.part")
+_BEGUN = re.compile(
+    rf"{re.escape(JOURNAL)}(-.*)?|\.probe-[0-9a-f]*\.part|\.{re.escape(MANIFEST)}\.\d+\.part"
+)
 """Files of a run that was killed before it had a manifest."""
 
 _PARQUET_END = b"PAR1"
@@ -64,7 +66,13 @@ class RunDirectory:
         self.model = path / MODEL
         self.gone: list[str] = []
 
-    def open(self, config_hash: str, *, resume: bool, manifest: Callable[[], Mapping[str, Any]] | None = None) -> dict[str, Any]:
+    def open(
+        self,
+        config_hash: str,
+        *,
+        resume: bool,
+        manifest: Callable[[], Mapping[str, Any]] | None = None,
+    ) -> dict[str, Any]:
         """Open the directory and return the manifest of the run that is resumed, empty for a new one.
 
         Parameters
@@ -108,18 +116,26 @@ class RunDirectory:
                     f"output directory '{self.path}' holds another run; choose another --out, or continue it with --resume"
                 )
             if self.path.is_dir() and any(self.path.iterdir()) and not self._is_begun():
-                raise InputError(f"output directory '{self.path}' is not empty; choose another --out")
+                raise InputError(
+                    f"output directory '{self.path}' is not empty; choose another --out"
+                )
         except OSError as error:
             raise self._unwritable(error) from None
 
-    def _open_existing(self, config_hash: str, ours: Callable[[], Mapping[str, Any]] | None) -> dict[str, Any]:
+    def _open_existing(
+        self, config_hash: str, ours: Callable[[], Mapping[str, Any]] | None
+    ) -> dict[str, Any]:
         if not self.manifest.is_file():
-            raise InputError(f"'{self.path}' holds no run to resume; leave out --resume to start one")
+            raise InputError(
+                f"'{self.path}' holds no run to resume; leave out --resume to start one"
+            )
         try:
             manifest = dict(json.loads(self.manifest.read_text(encoding="utf-8")))
             found, theirs = manifest["config_hash"], dict(manifest.get("fingerprint", {}))
         except (ValueError, KeyError, TypeError, OSError, RecursionError):
-            raise InputError(f"'{self.manifest}' cannot be read; start a new run in another --out") from None
+            raise InputError(
+                f"'{self.manifest}' cannot be read; start a new run in another --out"
+            ) from None
         if found != config_hash:
             keys = changed_keys(manifest, ours()) if ours else ""
             raise InputError(
@@ -151,7 +167,11 @@ class RunDirectory:
 
     def files(self) -> list[str]:
         """Return the files of the run by their paths in the directory, without journal, manifest, reports and exports."""
-        names = (path.relative_to(self.path).as_posix() for path in self.path.rglob("*") if path.is_file())
+        names = (
+            path.relative_to(self.path).as_posix()
+            for path in self.path.rglob("*")
+            if path.is_file()
+        )
         apart = (JOURNAL, MANIFEST, REPORT_HTML, REPORT_PDF, f"{EXPORT}/", ".")
         return sorted(name for name in names if not name.startswith(apart))
 
@@ -164,7 +184,9 @@ class RunDirectory:
     def _unwritable(self, error: OSError) -> InputError:
         shown = str(self.path)
         shown = shown if len(shown) <= _SHOWN else f"{shown[:_SHOWN]}..."
-        return InputError(f"output directory '{shown}' cannot be written: {error.strerror}; choose another --out")
+        return InputError(
+            f"output directory '{shown}' cannot be written: {error.strerror}; choose another --out"
+        )
 
     def _inside(self, name: str) -> Path:
         """Return the path of a file of the run, after making the directory that it is in.
@@ -175,7 +197,9 @@ class RunDirectory:
         """
         path = self.path / name
         if not path.parent.resolve().is_relative_to(self.path.resolve()):
-            raise InputError(f"file {name!r} would be written outside of '{self.path}'; do not use this run")
+            raise InputError(
+                f"file {name!r} would be written outside of '{self.path}'; do not use this run"
+            )
         path.parent.mkdir(parents=True, exist_ok=True)
         return path
 

@@ -146,7 +146,9 @@ def fly_study(
         journal = Journal(run.journal)
         try:
             if not before and not journal.is_empty():
-                raise InputError(f"'{run.path}' has results without a {run.manifest.name}; choose another --out")
+                raise InputError(
+                    f"'{run.path}' has results without a {run.manifest.name}; choose another --out"
+                )
             run.sweep()
             return _Execution(study, run, journal, before, progress, command).fly(executor_factory)
         finally:
@@ -174,9 +176,21 @@ class _Execution:
     """
 
     def __init__(
-        self, study: Study, run: RunDirectory, journal: Journal, before: Mapping[str, Any], progress: Progress, command: str
+        self,
+        study: Study,
+        run: RunDirectory,
+        journal: Journal,
+        before: Mapping[str, Any],
+        progress: Progress,
+        command: str,
     ) -> None:
-        self._study, self._run, self._journal, self._before, self._progress = study, run, journal, before, progress
+        self._study, self._run, self._journal, self._before, self._progress = (
+            study,
+            run,
+            journal,
+            before,
+            progress,
+        )
         # A run that is resumed is as old as its first flight, and has taken as long as all of its sessions.
         began = before.get("begun_utc") or f"{datetime.now(UTC):%Y-%m-%dT%H:%M:%SZ}"
         first = {"command": before.get("command") or command, "begun_utc": began}
@@ -219,7 +233,10 @@ class _Execution:
         elif self._before.get("report") != self._manifest.get("report"):
             # Nothing was flown, but the reports are to say something else of themselves.
             changed = True
-            report = {"report": self._manifest.get("report"), FILES: sorted({*run.files(), *run.gone})}
+            report = {
+                "report": self._manifest.get("report"),
+                FILES: sorted({*run.files(), *run.gone}),
+            }
             run.write_json(run.manifest, {**self._before, **report})
         return RunResult(
             directory=run.path,
@@ -245,7 +262,11 @@ class _Execution:
         return not self._begun and self._before.get("state") == _COMPLETE and not self._run.gone
 
     def _executing(self, executor: Executor) -> Fly:
-        before, done, beside = self._journal.done(), self._journal.items(), self._journal.without_items()
+        before, done, beside = (
+            self._journal.done(),
+            self._journal.items(),
+            self._journal.without_items(),
+        )
 
         def report() -> None:
             # What tunes a law before its flights is neither an item nor beside them.
@@ -274,7 +295,9 @@ class _Execution:
         return fly
 
 
-def write_tables(run: RunDirectory, journal: Journal, tables: Mapping[str, tuple[str, ...]]) -> None:
+def write_tables(
+    run: RunDirectory, journal: Journal, tables: Mapping[str, tuple[str, ...]]
+) -> None:
     """Write tables from the journal into the run directory; ``tables`` gives the columns of each file."""
     for name, columns in tables.items():
 
@@ -287,10 +310,18 @@ def write_tables(run: RunDirectory, journal: Journal, tables: Mapping[str, tuple
 
 def _explained(error: OSError | sqlite3.DatabaseError, run: RunDirectory) -> InputError:
     """Return the error to raise for an error of the disk or of the journal."""
-    full = error.errno in (errno.ENOSPC, errno.EDQUOT) if isinstance(error, OSError) else is_full(error)
+    full = (
+        error.errno in (errno.ENOSPC, errno.EDQUOT)
+        if isinstance(error, OSError)
+        else is_full(error)
+    )
     if full:
-        return InputError(f"the disk of '{run.path}' is full; finished results are kept: free some space and {CONTINUE}")
+        return InputError(
+            f"the disk of '{run.path}' is full; finished results are kept: free some space and {CONTINUE}"
+        )
     if isinstance(error, OSError):
         where = error.filename or run.path
-        return InputError(f"'{where}' cannot be used: {error.strerror or error}; fix that, then {CONTINUE}")
+        return InputError(
+            f"'{where}' cannot be used: {error.strerror or error}; fix that, then {CONTINUE}"
+        )
     return unusable(run.journal, error)

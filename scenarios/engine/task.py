@@ -118,4 +118,6 @@ class Limits:
 def _check(name: str, value: float, unit: str, limits: tuple[float, float]) -> None:
     # Neither comparison holds for what is not a number.
     if not limits[0] <= value <= limits[1]:
-        raise InputError(f"{name} is {value:g} {unit}; it must lie between {limits[0]:g} and {limits[1]:g} {unit}")
+        raise InputError(
+            f"{name} is {value:g} {unit}; it must lie between {limits[0]:g} and {limits[1]:g} {unit}"
+        )

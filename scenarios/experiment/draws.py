@@ -80,7 +80,11 @@ def sampled_flight(
         flight = with_values(scenario, kept)
         judged = flight if beside is None else beside(values)
         if has_speed_ratio(judged):
-            own = int(sequence.generate_state(1)[0]) if flight.flight_seed is None else flight.flight_seed
+            own = (
+                int(sequence.generate_state(1)[0])
+                if flight.flight_seed is None
+                else flight.flight_seed
+            )
             noise = Noise.at(of_noise) if of_noise and flight.flight_seed is None else Noise(own)
             return SampledFlight(scenario=flight, noise=noise, values=kept)
     (low, high), (least, most) = judged.speed_ratio, speed_ratios(judged)
@@ -114,7 +118,9 @@ def value_at(draw: DrawConfig, share: float) -> object:
         return low + (high - low) * share
     if draw.choice is not None:
         weights = np.cumsum(draw.weights or [1.0] * len(draw.choice))
-        return draw.choice[int(np.searchsorted(weights, min(share, _ALMOST_ALL) * weights[-1], side="right"))]
+        return draw.choice[
+            int(np.searchsorted(weights, min(share, _ALMOST_ALL) * weights[-1], side="right"))
+        ]
     low, high = (_share_below(draw, limit) for limit in draw.within) if draw.within else (0.0, 1.0)
     # A distribution without an end has no value at it.
     share = min(max(low + (high - low) * share, 1.0 - _ALMOST_ALL), _ALMOST_ALL)
@@ -141,7 +147,9 @@ def _share_below(draw: DrawConfig, limit: float) -> float:
     return -math.expm1(-((max(limit, 0.0) / scale) ** shape))
 
 
-def _tried(draws: Sequence[DrawConfig], generator: np.random.Generator, number: int, point: Sequence[float]) -> Iterator[Values]:
+def _tried(
+    draws: Sequence[DrawConfig], generator: np.random.Generator, number: int, point: Sequence[float]
+) -> Iterator[Values]:
     """Yield what to try for a flight, one after the other."""
     if point:
         yield values_at(draws, point)
@@ -166,14 +174,19 @@ def check_draws(trial: str, scenario: Scenario, given: Collection[str] = ()) -> 
     InputError : as of ``sampled_flight``
     """
     for draw in scenario.draws:
-        if draw.within is not None and not _share_below(draw, draw.within[0]) < _share_below(draw, draw.within[1]):
+        if draw.within is not None and not _share_below(draw, draw.within[0]) < _share_below(
+            draw, draw.within[1]
+        ):
             raise InputError(
                 f"draw of '{draw.key}' has within {list(draw.within)}, which holds nothing of its distribution; widen it"
             )
     for number in range(max((len(draw.choice or ()) for draw in scenario.draws), default=0) or 1):
         for end in (0.0, 1.0):
             values = {
-                draw.key: draw.choice[number % len(draw.choice)] if draw.choice else value_at(draw, end) for draw in scenario.draws
+                draw.key: draw.choice[number % len(draw.choice)]
+                if draw.choice
+                else value_at(draw, end)
+                for draw in scenario.draws
             }
             with_values(scenario, not_displaced(values, given))
     sampled_flight(trial, scenario, 0, given=given)

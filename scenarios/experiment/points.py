@@ -53,10 +53,13 @@ def points_of(scenario: Scenario) -> list[Point]:
     for variant in comparison.variants:
         try:
             points += [
-                _varied(point, variant.name, variant.set, comparison.flights, beside=i) for i, point in _compared(scenario, points)
+                _varied(point, variant.name, variant.set, comparison.flights, beside=i)
+                for i, point in _compared(scenario, points)
             ]
         except InputError as error:
-            raise InputError(f"comparison '{variant.name}': {error}; or fly no comparisons (comparison.variants=[])") from None
+            raise InputError(
+                f"comparison '{variant.name}': {error}; or fly no comparisons (comparison.variants=[])"
+            ) from None
     return points
 
 
@@ -67,10 +70,19 @@ def _grid(scenario: Scenario) -> Iterator[Point]:
         for values in itertools.product(*map(without_repetitions, sweep.values())):
             at = dict(zip(sweep, values, strict=True))
             nu = scenario.sweep.nu[list(sweep["nu"]).index(at["nu"])] if "nu" in at else None
-            labels = [_label(names[key], value) for key, value in at.items()] + ([vehicle] if scenario.fidelity == "both" else [])
+            labels = [_label(names[key], value) for key, value in at.items()] + (
+                [vehicle] if scenario.fidelity == "both" else []
+            )
             inputs = {swept_key(key): value for key, value in at.items()}
             changed = with_values(scenario, inputs | {"fidelity": vehicle})
-            yield Point(label="_".join(labels), variant=STUDY, scenario=changed, nu=nu, inputs=inputs, flights=scenario.flights)
+            yield Point(
+                label="_".join(labels),
+                variant=STUDY,
+                scenario=changed,
+                nu=nu,
+                inputs=inputs,
+                flights=scenario.flights,
+            )
 
 
 def without_repetitions(values: Sequence[object]) -> list[object]:
@@ -98,11 +110,15 @@ def _values_of(case: CaseConfig, vehicle: str) -> Values:
     """Return what a case sets in flights of a vehicle."""
     values = case.set | (case.set_kinematic if vehicle == "kinematic" else {})
     if "fidelity" in values:
-        raise InputError(f"case '{case.name}' sets fidelity; set it for the whole scenario, or to 'both'")
+        raise InputError(
+            f"case '{case.name}' sets fidelity; set it for the whole scenario, or to 'both'"
+        )
     if "sweep.nu" in values:
         ratios = values.pop("sweep.nu")
         if not isinstance(ratios, list | tuple) or len(ratios) != 1:
-            raise InputError(f"case '{case.name}' has sweep.nu = {ratios!r}; give it one speed ratio, as in [0.5]")
+            raise InputError(
+                f"case '{case.name}' has sweep.nu = {ratios!r}; give it one speed ratio, as in [0.5]"
+            )
         values["vessel.speed_ratio"] = ratios[0]
     return values
 
@@ -121,7 +137,11 @@ def _vehicles(scenario: Scenario) -> tuple[str, ...]:
 def _compared(scenario: Scenario, points: list[Point]) -> list[tuple[int, Point]]:
     """Return the study's points at which variants are flown, each with its number."""
     ratios = scenario.comparison.nu
-    return [(i, point) for i, point in enumerate(points) if point.variant == STUDY and (not ratios or point.nu in ratios)]
+    return [
+        (i, point)
+        for i, point in enumerate(points)
+        if point.variant == STUDY and (not ratios or point.nu in ratios)
+    ]
 
 
 def _varied(point: Point, name: str, values: Values, flights: int | None, *, beside: int) -> Point:
@@ -140,12 +160,19 @@ def _varied(point: Point, name: str, values: Values, flights: int | None, *, bes
 def _names_of(keys: Iterable[str]) -> dict[str, str]:
     """Return what swept keys are called in the names of flights: by their last part, or by as many as tell them apart."""
     parts = {key: key.split(".") for key in keys}
-    return {key: "_".join(own[-_parts_apart(own, [of for of in parts.values() if of is not own]) :]) for key, own in parts.items()}
+    return {
+        key: "_".join(own[-_parts_apart(own, [of for of in parts.values() if of is not own]) :])
+        for key, own in parts.items()
+    }
 
 
 def _parts_apart(own: list[str], others: list[list[str]]) -> int:
     """Return how many of the last parts of a key tell it apart from others; the first of them is not the number of an entry."""
-    apart = (n for n in range(1, len(own)) if own[-n:] not in [of[-n:] for of in others] and not own[-n].isdecimal())
+    apart = (
+        n
+        for n in range(1, len(own))
+        if own[-n:] not in [of[-n:] for of in others] and not own[-n].isdecimal()
+    )
     return next(apart, len(own))
 
 
@@ -156,5 +183,9 @@ def _label(name: str, value: object) -> str:
         value = value.rpartition(":")[2]
     if isinstance(value, Mapping):
         value = value.get("title", value)
-    text = f"{value:g}" if isinstance(value, int | float) and not isinstance(value, bool) else str(value)
+    text = (
+        f"{value:g}"
+        if isinstance(value, int | float) and not isinstance(value, bool)
+        else str(value)
+    )
     return f"{name}_{''.join(c if c.isalnum() or c in '.-' else '_' for c in text)}"[:60]

@@ -25,7 +25,11 @@ def is_random_sample(scenario: Scenario) -> bool:
         return False
     # What is drawn of these tells no two flights apart either.
     draws = [draw for draw in scenario.draws if scenario.finds or not draw.key.startswith(_READ)]
-    in_turn = {draw.key: without_repetitions(draw.choice) for draw in draws if draw.choice is not None and draw.weights is None}
+    in_turn = {
+        draw.key: without_repetitions(draw.choice)
+        for draw in draws
+        if draw.choice is not None and draw.weights is None
+    }
     if any(draw.key not in in_turn and _varies(draw) for draw in draws):
         return True
     listed = {*scenario.sweep.root, *in_turn}
@@ -44,10 +48,18 @@ def flights_per_sample(scenario: Scenario) -> int:
     there are no random variables, of which all points have the same sample.
     """
     sweep = scenario.sweep.root
-    apart = "flight_seed" if "flight_seed" in sweep else "nu" if "nu" in sweep and scenario.flights == 1 else None
+    apart = (
+        "flight_seed"
+        if "flight_seed" in sweep
+        else "nu"
+        if "nu" in sweep and scenario.flights == 1
+        else None
+    )
     if scenario.draws:
         apart = None
-    points = math.prod(len(without_repetitions(values)) for key, values in sweep.items() if key != apart)
+    points = math.prod(
+        len(without_repetitions(values)) for key, values in sweep.items() if key != apart
+    )
     return points * (2 if scenario.fidelity == "both" else 1)
 
 
@@ -70,6 +82,10 @@ def _depends_on_seed(scenario: Scenario, listed: Collection[str]) -> bool:
     placed = given("place_m") or (given("range_m") and given("aspect_deg"))
     if not (placed and given("course_deg")):
         return True
-    shaken = scenario.fidelity == "six_dof" and not scenario.turbulence.calm and not varies("turbulence.")
+    shaken = (
+        scenario.fidelity == "six_dof"
+        and not scenario.turbulence.calm
+        and not varies("turbulence.")
+    )
     errs = scenario.sensors != SensorsConfig() and not varies("sensors.")
     return shaken or errs or not (scenario.reports.exact or varies("reports."))

@@ -78,7 +78,8 @@ class Experiment:
         self.points = points_of(scenario)
         labels = Counter(point.label for point in self.points)
         self.points = [
-            replace(point, label=f"{point.label}_{i}") if labels[point.label] > 1 else point for i, point in enumerate(self.points)
+            replace(point, label=f"{point.label}_{i}") if labels[point.label] > 1 else point
+            for i, point in enumerate(self.points)
         ]
 
     @cached_property
@@ -125,7 +126,9 @@ class Experiment:
         """Return the number of a flight among those of its point."""
         return self._point(number)[1]
 
-    def request(self, number: int, at: Sequence[float] = (), *, seed: int | None = None) -> FlightRequest:
+    def request(
+        self, number: int, at: Sequence[float] = (), *, seed: int | None = None
+    ) -> FlightRequest:
         """Return a flight.
 
         Parameters
@@ -145,11 +148,20 @@ class Experiment:
             scenario, noise, inputs = sampled.scenario, sampled.noise, point.inputs | sampled.values
         else:
             scenario, inputs = point.scenario, point.inputs
-            noise = Noise(self._seed(point, index) if scenario.flight_seed is None else scenario.flight_seed)
+            noise = Noise(
+                self._seed(point, index) if scenario.flight_seed is None else scenario.flight_seed
+            )
         if seed is not None and seed != noise.seed:
             noise = Noise(seed)
             inputs = inputs | ({"flight_seed": seed} if "flight_seed" in inputs else {})
-        return FlightRequest(flight_id=flight_id, trial=self.name, variant=variant, scenario=scenario, noise=noise, inputs=inputs)
+        return FlightRequest(
+            flight_id=flight_id,
+            trial=self.name,
+            variant=variant,
+            scenario=scenario,
+            noise=noise,
+            inputs=inputs,
+        )
 
     def settings(self) -> Iterator[Scenario]:
         """Yield every kind of flight, as far as autopilot and margins depend on it: by points and by choices."""
@@ -157,7 +169,9 @@ class Experiment:
             choices = [
                 [(draw.key, value) for value in draw.choice]
                 for draw in point.scenario.draws
-                if draw.choice is not None and draw.key.startswith(_PLANNED_FOR) and not displaced(draw.key, point.given)
+                if draw.choice is not None
+                and draw.key.startswith(_PLANNED_FOR)
+                and not displaced(draw.key, point.given)
             ]
             for chosen in itertools.product(*choices):
                 yield with_values(point.scenario, dict(chosen)) if chosen else point.scenario
@@ -171,7 +185,11 @@ class Experiment:
         """
         yield from self.settings()
         for point in self.points:
-            draws = [d for d in point.scenario.draws if d.key in _MEASURED_FOR and not displaced(d.key, point.given)]
+            draws = [
+                d
+                for d in point.scenario.draws
+                if d.key in _MEASURED_FOR and not displaced(d.key, point.given)
+            ]
             if unlimited := [draw.key for draw in draws if draw.largest is None]:
                 raise InputError(
                     f"'{unlimited[0]}' is sampled from a distribution without an upper limit, for which the aircraft would have to"
@@ -193,7 +211,9 @@ class Experiment:
         def beside(values: Values) -> Scenario:
             return with_values(study.scenario, not_displaced(values, study.given))
 
-        return sampled_flight(self.name, point.scenario, index, at, given=point.given, beside=beside)
+        return sampled_flight(
+            self.name, point.scenario, index, at, given=point.given, beside=beside
+        )
 
     def _seed(self, point: Point, index: int) -> int:
         """Return the seed of a flight, which depends on nu alone where it is swept: variants start alike."""

@@ -20,7 +20,12 @@ class Points:
     """
 
     def __init__(self, sampling: str, *, dimension: int, flights: int, seed: int) -> None:
-        self._sampling, self._dimension, self._flights, self._seed = sampling, dimension, flights, seed
+        self._sampling, self._dimension, self._flights, self._seed = (
+            sampling,
+            dimension,
+            flights,
+            seed,
+        )
         self._block = functools.lru_cache(maxsize=4)(self._made)
 
     def at(self, number: int) -> tuple[float, ...]:
@@ -36,7 +41,9 @@ class Points:
         from scipy.stats import qmc
 
         if self._sampling == "latin_hypercube":
-            design: np.ndarray = qmc.LatinHypercube(self._dimension, rng=self._seed).random(self._flights)
+            design: np.ndarray = qmc.LatinHypercube(self._dimension, rng=self._seed).random(
+                self._flights
+            )
         else:
             sequence = qmc.Sobol(self._dimension, scramble=True, rng=self._seed)
             if block:

@@ -15,11 +15,15 @@ def scenario_file(request: FlightRequest, *, title: str) -> bytes:
 
     document = request.scenario.model_dump(mode="json", exclude_none=True)
     # The margin is planned for every fault that the experiment may bring, also for those that this flight does not have.
-    document["fault"]["declared"] = sorted(request.scenario.declared_faults - {request.scenario.fault.kind})
+    document["fault"]["declared"] = sorted(
+        request.scenario.declared_faults - {request.scenario.fault.kind}
+    )
     alone = request.scenario.model_copy(update={"draws": (), "sweep": SweepConfig()})
     for section, values in document.items():
         if isinstance(values, dict):
-            document[section] = {key: value for key, value in values.items() if not unused(alone, f"{section}.{key}")}
+            document[section] = {
+                key: value for key, value in values.items() if not unused(alone, f"{section}.{key}")
+            }
     for experiment in (
         "method",
         "sampling",

@@ -23,7 +23,9 @@ def search_space(scenario: Scenario) -> Space:
 def _coordinate(draw: DrawConfig) -> Coordinate:
     if draw.choice is not None:
         weights = np.cumsum([0.0, *(draw.weights or [1.0] * len(draw.choice))])
-        return Coordinate(choices=tuple((weights / weights[-1]).tolist()), noise=draw.key == "flight_seed")
+        return Coordinate(
+            choices=tuple((weights / weights[-1]).tolist()), noise=draw.key == "flight_seed"
+        )
     low, high = draw.uniform or (0.0, 0.0)
     return Coordinate(
         time_range=draw.uniform if draw.key.endswith("at_s") and low < high else None,

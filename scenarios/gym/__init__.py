@@ -11,7 +11,10 @@ try:
 except ModuleNotFoundError as error:
     if (error.name or "").partition(".")[0] != "gymnasium":
         raise
-    raise ImportError(f"scenarios.gym needs gymnasium; install the extra: {install_words('gym')}", name="gymnasium") from None
+    raise ImportError(
+        f"scenarios.gym needs gymnasium; install the extra: {install_words('gym')}",
+        name="gymnasium",
+    ) from None
 
 ENVIRONMENT = "PlumeCrossing-v0"
 

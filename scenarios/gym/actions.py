@@ -26,10 +26,17 @@ def action_box(work: FlightWork) -> "spaces.Box[np.float64]":
     """
     guidances = [setting.guidance for setting in _settings(work)]
     if not all(guidance.command_limit for guidance in guidances):
-        raise InputError("guidance.command_limit is false; an environment needs a limit of the heading rate")
+        raise InputError(
+            "guidance.command_limit is false; an environment needs a limit of the heading rate"
+        )
     turn = max(map(omega_max, guidances))
-    setups = [work.setup_of(work.request(Task(number=number))) for number in _first_of_each_point(work)]
-    slowest, fastest = min(setup.airspeed_min for setup in setups), max(setup.airspeed_max for setup in setups)
+    setups = [
+        work.setup_of(work.request(Task(number=number))) for number in _first_of_each_point(work)
+    ]
+    slowest, fastest = (
+        min(setup.airspeed_min for setup in setups),
+        max(setup.airspeed_max for setup in setups),
+    )
     return spaces.Box(np.array([-turn, slowest]), np.array([turn, fastest]), dtype=np.float64)
 
 
@@ -43,9 +50,17 @@ def _settings(work: FlightWork) -> Iterator[Scenario]:
     """Yield scenarios among which every flight's guidance is, or has its largest and least heading rates."""
     for experiment in work.experiments:
         for setting in experiment.settings():
-            ranges = [draw for draw in setting.draws if draw.choice is None and draw.key.startswith("guidance.")]
+            ranges = [
+                draw
+                for draw in setting.draws
+                if draw.choice is None and draw.key.startswith("guidance.")
+            ]
             for end in (0.0, 1.0):
-                yield with_values(setting, {draw.key: value_at(draw, end) for draw in ranges}) if ranges else setting
+                yield (
+                    with_values(setting, {draw.key: value_at(draw, end) for draw in ranges})
+                    if ranges
+                    else setting
+                )
 
 
 def _first_of_each_point(work: FlightWork) -> Iterator[int]:

@@ -104,10 +104,18 @@ class PlumeCrossing(gymnasium.Env[Array, Array]):
 
     metadata = {"render_modes": []}  # noqa: RUF012 - as gymnasium has it
 
-    def __init__(self, scenario: Given = "sweep_nu", *, keys: dict[str, object] | None = None, render_mode: None = None) -> None:
+    def __init__(
+        self,
+        scenario: Given = "sweep_nu",
+        *,
+        keys: dict[str, object] | None = None,
+        render_mode: None = None,
+    ) -> None:
         loaded = load(scenario).set(**keys or {})
         if loaded.parts:
-            raise InputError("an environment takes parts by name or by FILE.py:NAME, not as objects")
+            raise InputError(
+                "an environment takes parts by name or by FILE.py:NAME, not as objects"
+            )
         self._study = flights_of(loaded)
         directory = Path(tempfile.mkdtemp(prefix="plume-flight-gym-"))
         weakref.finalize(self, shutil.rmtree, directory, ignore_errors=True)
@@ -135,10 +143,14 @@ class PlumeCrossing(gymnasium.Env[Array, Array]):
         InputError : it is still under way, or was ended by a violation
         """
         if self._episode.record is None:
-            raise InputError("the episode has no record: it is under way, or a keep-out violation ended it; fly one to its end")
+            raise InputError(
+                "the episode has no record: it is under way, or a keep-out violation ended it; fly one to its end"
+            )
         return self._episode.record
 
-    def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[Array, dict[str, Any]]:
+    def reset(
+        self, *, seed: int | None = None, options: dict[str, Any] | None = None
+    ) -> tuple[Array, dict[str, Any]]:
         """Begin a flight.
 
         Parameters
@@ -154,7 +166,9 @@ class PlumeCrossing(gymnasium.Env[Array, Array]):
         """
         super().reset(seed=seed)
         if unknown := [str(key) for key in options or {} if key != _FLIGHT_ID]:
-            raise InputError(f"unknown option '{unknown[0]}' of reset; the only one is '{_FLIGHT_ID}', the name of a flight")
+            raise InputError(
+                f"unknown option '{unknown[0]}' of reset; the only one is '{_FLIGHT_ID}', the name of a flight"
+            )
         name = (options or {}).get(_FLIGHT_ID)
         if name is None:
             self._episode = self._begun_at_random()
@@ -162,7 +176,9 @@ class PlumeCrossing(gymnasium.Env[Array, Array]):
             self._aircraft.clear()
             self._episode = self._begun(self._work.request(self._study.task(self._numbers[name])))
         else:
-            raise InputError(f"the scenario has no flight '{name}'; its flights are {', '.join(self._numbers)}")
+            raise InputError(
+                f"the scenario has no flight '{name}'; its flights are {', '.join(self._numbers)}"
+            )
         return self._episode.observer.observe(0.0), self._info()
 
     def step(self, action: Array) -> tuple[Array, SupportsFloat, bool, bool, dict[str, Any]]:
@@ -171,7 +187,9 @@ class PlumeCrossing(gymnasium.Env[Array, Array]):
         if episode.over:
             raise InputError("the episode is over; reset the environment")
         if np.shape(action) != episode.low.shape or not np.isfinite(action).all():
-            raise InputError(f"the action is {action}; give heading rate [rad/s] and airspeed [m/s], both finite")
+            raise InputError(
+                f"the action is {action}; give heading rate [rad/s] and airspeed [m/s], both finite"
+            )
         heading_rate, airspeed = np.clip(action, episode.low, episode.high).tolist()
         if (heading_rate, airspeed) != episode.commands:
             episode.loop.guidance.overruled(heading_rate, airspeed)
@@ -183,11 +201,17 @@ class PlumeCrossing(gymnasium.Env[Array, Array]):
             record = record_of(over)
             lost = record.outcome in (Outcome.DIVERGED, Outcome.AIRCRAFT_LOST)
             # A flight without a number of crossings completes when its time is up.
-            truncated = not lost and (episode.time_is_up or record.outcome in (Outcome.NOT_SETTLED, Outcome.INCOMPLETE))
+            truncated = not lost and (
+                episode.time_is_up or record.outcome in (Outcome.NOT_SETTLED, Outcome.INCOMPLETE)
+            )
             episode.record, episode.over = record, True
         observed = episode.observer.observe(episode.time)
         entered = episode.inside
-        reward = episode.reward.update(episode.observer.along, episode.observer.across) + LOST * lost + VIOLATION * entered
+        reward = (
+            episode.reward.update(episode.observer.along, episode.observer.across)
+            + LOST * lost
+            + VIOLATION * entered
+        )
         truncated = truncated and not entered
         terminated = (episode.over or entered) and not truncated
         episode.over = terminated or truncated
@@ -237,7 +261,9 @@ class PlumeCrossing(gymnasium.Env[Array, Array]):
             may_fail = failable(plan)
             if may_fail not in self._aircraft:
                 aircraft = setup.aircraft
-                self._aircraft[may_fail] = AutopilotedAircraft(aircraft.spec, aircraft.model, failable=may_fail)
+                self._aircraft[may_fail] = AutopilotedAircraft(
+                    aircraft.spec, aircraft.model, failable=may_fail
+                )
             flown = self._aircraft[may_fail]
         instruments = payload_of(request, plan)
         read = [instrument for instrument in instruments if isinstance(instrument, Instrument)]
@@ -246,7 +272,9 @@ class PlumeCrossing(gymnasium.Env[Array, Array]):
         steps = loop.steps()
         commands = next(steps)
         low, high = limits_of(plan, setup)
-        return _Episode(loop, steps, commands, Observer(loop), CrossingReward(plan.keepout_radius), low, high)
+        return _Episode(
+            loop, steps, commands, Observer(loop), CrossingReward(plan.keepout_radius), low, high
+        )
 
     def _info(self) -> dict[str, Any]:
         episode = self._episode

@@ -14,19 +14,43 @@ _DISTANCE, _SPEED, _RATE = 1e5, 500.0, 10.0
 """Bounds beyond which observations are cut [m, m/s, rad/s]; no flight comes near them."""
 
 MEANINGS: dict[str, tuple[str, str, float]] = {
-    "along_m": ("distance from the vessel along the plume, positive astern in still air", "m", _DISTANCE),
-    "across_m": ("distance from the plume's axis, positive to the right of its course", "m", _DISTANCE),
-    "clearance_m": ("distance from the vessel less the keep-out radius, horizontal", "m", _DISTANCE),
+    "along_m": (
+        "distance from the vessel along the plume, positive astern in still air",
+        "m",
+        _DISTANCE,
+    ),
+    "across_m": (
+        "distance from the plume's axis, positive to the right of its course",
+        "m",
+        _DISTANCE,
+    ),
+    "clearance_m": (
+        "distance from the vessel less the keep-out radius, horizontal",
+        "m",
+        _DISTANCE,
+    ),
     "velocity_along_mps": ("velocity over the ground along the plume", "m/s", _SPEED),
     "velocity_across_mps": ("velocity over the ground to the right of the plume", "m/s", _SPEED),
     "heading_rate_rad_s": ("rate of the course through the air", "rad/s", _RATE),
     "vessel_along_mps": ("velocity of the vessel along the plume", "m/s", _SPEED),
     "vessel_across_mps": ("velocity of the vessel to the right of the plume", "m/s", _SPEED),
-    "wind_along_mps": ("velocity of the air along the plume, as the guidance estimates it", "m/s", _SPEED),
-    "wind_across_mps": ("velocity of the air to the right of the plume, as the guidance estimates it", "m/s", _SPEED),
+    "wind_along_mps": (
+        "velocity of the air along the plume, as the guidance estimates it",
+        "m/s",
+        _SPEED,
+    ),
+    "wind_across_mps": (
+        "velocity of the air to the right of the plume, as the guidance estimates it",
+        "m/s",
+        _SPEED,
+    ),
     "reference_along_m": ("distance to the reference along the plume", "m", _DISTANCE),
     "reference_across_m": ("distance to the reference to the right of the plume", "m", _DISTANCE),
-    "reference_cos": ("cosine of the reference's course through the air, from the plume's", "1", 1.0),
+    "reference_cos": (
+        "cosine of the reference's course through the air, from the plume's",
+        "1",
+        1.0,
+    ),
     "reference_sin": ("sine of the reference's course through the air, from the plume's", "1", 1.0),
     "elapsed": ("time since the start over the longest that the flight may last", "1", 1.0),
 }
@@ -77,7 +101,9 @@ class Observer:
         own, reference, course = guidance.own, (0.0, 0.0), axis
         if guidance.mission.started:
             tracked = guidance.mission.tracker.reference
-            reference = turned(tracked.north + own.drift_north - north, tracked.east + own.drift_east - east)
+            reference = turned(
+                tracked.north + own.drift_north - north, tracked.east + own.drift_east - east
+            )
             course = tracked.course
         values = (
             self.along, self.across, self.distance - plan.keepout_radius, *turned(v_north, v_east), heading_rate,

@@ -32,7 +32,9 @@ FIGURES = (
 )  # fmt: skip
 """Columns of the summary."""
 
-TABLES = {SULPHUR_TABLE: ("elapsed_s", *_SHOWN, "quality", "passes", "verdict", "probability_above")}
+TABLES = {
+    SULPHUR_TABLE: ("elapsed_s", *_SHOWN, "quality", "passes", "verdict", "probability_above")
+}
 """Columns of the table over time."""
 
 
@@ -51,7 +53,9 @@ class FuelEstimate:
     document: Mapping[str, Any] | None = None
 
 
-def fuel_estimate(readings: Readings, instrument: SnifferSpec, *, limit: float, expected: float) -> FuelEstimate:
+def fuel_estimate(
+    readings: Readings, instrument: SnifferSpec, *, limit: float, expected: float
+) -> FuelEstimate:
     """Return what readings say of the fuel, by regression and by areas.
 
     Parameters
@@ -68,7 +72,9 @@ def fuel_estimate(readings: Readings, instrument: SnifferSpec, *, limit: float, 
     try:
         found = analyse(readings, instrument, limits_percent=(limit,), points=_points(readings))
     except MeasurementError as error:
-        return FuelEstimate(figures={"sulphur_quality": "C", "sulphur_reason": str(error), "sulphur_verdict": OPEN})
+        return FuelEstimate(
+            figures={"sulphur_quality": "C", "sulphur_reason": str(error), "sulphur_verdict": OPEN}
+        )
     by, verdict = found.estimate, found.estimate.verdicts[0]
     figures = _figures(by, "fsc")
     if found.other:
@@ -89,14 +95,20 @@ def fuel_estimate(readings: Readings, instrument: SnifferSpec, *, limit: float, 
     signals = {str(name): np.round(values, 4).tolist() for name, values in by.signals.items()}
     return FuelEstimate(
         figures=figures,
-        over_time=[{str(name): value for name, value in row.items()} for row in named.to_dict("records")],
+        over_time=[
+            {str(name): value for name, value in row.items()} for row in named.to_dict("records")
+        ],
         document=found.record(expected) | {"signals": signals},
     )
 
 
 def _points(readings: Readings) -> int:
     """Return at how many even times the estimate is made anew."""
-    return max(1, round(float(readings.time[-1] - readings.time[0]) / _INTERVAL)) if len(readings) else 0
+    return (
+        max(1, round(float(readings.time[-1] - readings.time[0]) / _INTERVAL))
+        if len(readings)
+        else 0
+    )
 
 
 def _verdict_after(table: "pd.DataFrame", elapsed: float, name: str) -> str:

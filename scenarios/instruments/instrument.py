@@ -99,7 +99,9 @@ class GasReader(Protocol):
     def limit_percent(self) -> float:
         """Limit of the verdict [% m/m]."""
 
-    def follow(self, time: float, motion: Motion, sample: tuple[float, ...], /) -> Sequence[tuple[float, float]]:
+    def follow(
+        self, time: float, motion: Motion, sample: tuple[float, ...], /
+    ) -> Sequence[tuple[float, float]]:
         """Return times [s] and CO2 [ppm] of the readings that have come; called for each row of the flight's record.
 
         Parameters are those of ``Instrument.read``.
@@ -128,5 +130,7 @@ def evaluated_instruments(scenarios: Iterable[Scenario]) -> list[Any]:
     ------
     PluginError : there is no such instrument
     """
-    found = {name: part for scenario in scenarios for name, part in scenario.payload.parts().items()}
+    found = {
+        name: part for scenario in scenarios for name, part in scenario.payload.parts().items()
+    }
     return [part for part in found.values() if hasattr(part, "evaluate")]

@@ -24,10 +24,14 @@ PASS_FIGURES = (
 def fraction_of_axis(plume: PlumeSample) -> Array:
     """Return the concentration over that in the centre of the plume's cross-section; 0 where there is no plume."""
     inside = plume.axis_dilution > 0.0
-    return np.divide(plume.dilution, plume.axis_dilution, out=np.zeros_like(plume.dilution), where=inside)
+    return np.divide(
+        plume.dilution, plume.axis_dilution, out=np.zeros_like(plume.dilution), where=inside
+    )
 
 
-def pass_figures(across: Array, above: Array, fraction: Array, excess_co2: Array, *, time_step: float) -> dict[str, float]:
+def pass_figures(
+    across: Array, above: Array, fraction: Array, excess_co2: Array, *, time_step: float
+) -> dict[str, float]:
     """Return figures of the passes of a flight.
 
     A change of sides of the plume's mean axis, seen from above, is a crossing, with smoke there or without: the UAV may be above or

@@ -18,7 +18,13 @@ from measurement.gases import GASES, UNITS
 from measurement.sniffer.presets import sensor_of, sensor_presets
 from measurement.sniffer.sniffer import Readings, Sniffer
 from measurement.sniffer.spec import SnifferSpec
-from scenarios.instruments.air_samples import PLACE_COLUMNS, RATE_COLUMNS, TIME_STEP, AirSampler, AirSamples
+from scenarios.instruments.air_samples import (
+    PLACE_COLUMNS,
+    RATE_COLUMNS,
+    TIME_STEP,
+    AirSampler,
+    AirSamples,
+)
 from scenarios.instruments.fuel_estimate import FIGURES, TABLES, fuel_estimate
 from scenarios.instruments.instrument import Evaluation, payload
 from scenarios.instruments.plume_passes import PASS_FIGURES, fraction_of_axis, pass_figures
@@ -51,7 +57,9 @@ def _choices() -> tuple[str, ...]:
 
 def _name_or_table(given: Any) -> Any:
     if not isinstance(given, str | Mapping):
-        raise MeasurementError("give the name of a preset, or a table with a table per gas in channels")
+        raise MeasurementError(
+            "give the name of a preset, or a table with a table per gas in channels"
+        )
     return given
 
 
@@ -79,7 +87,9 @@ class SnifferSettings:
         if isinstance(self.sensor, str):
             if self.sensor not in (known := flown_presets()):
                 guess = did_you_mean(self.sensor, known) or ";"
-                raise MeasurementError(f"sensor is {self.sensor!r}{guess} there are {', '.join(known)}")
+                raise MeasurementError(
+                    f"sensor is {self.sensor!r}{guess} there are {', '.join(known)}"
+                )
         else:
             try:
                 self.spec.check_known()
@@ -95,7 +105,9 @@ class SnifferSettings:
                 f"limit_percent is {self.limit_percent:g}; give above 0 to 5 % m/m, as 0.1 in an emission control area"
             )
         if not 0.0 <= self.dynamic_pressure_fraction <= 1.0:
-            raise MeasurementError(f"dynamic_pressure_fraction is {self.dynamic_pressure_fraction:g}; give 0 to 1")
+            raise MeasurementError(
+                f"dynamic_pressure_fraction is {self.dynamic_pressure_fraction:g}; give 0 to 1"
+            )
 
     @property
     def spec(self) -> SnifferSpec:
@@ -120,16 +132,26 @@ class SnifferOnBoard:
 
     def __init__(self, scenario: Scenario, world: World, generator: np.random.Generator) -> None:
         if world.exhaust is None:
-            raise InfeasibleError("payload.instruments has a sniffer, and there is no exhaust: set emission.ship")
-        self._exhaust, self._settings, self._fault = world.exhaust, scenario.payload.settings(type(self)), world.fault
+            raise InfeasibleError(
+                "payload.instruments has a sniffer, and there is no exhaust: set emission.ship"
+            )
+        self._exhaust, self._settings, self._fault = (
+            world.exhaust,
+            scenario.payload.settings(type(self)),
+            world.fault,
+        )
         self.spec: SnifferSpec = self._settings.spec
         actual = self.spec if self._settings.exact else self.spec.drawn(generator)
         self._sniffer = Sniffer(actual, generator=generator, time_step=TIME_STEP)
-        self._sampler = AirSampler(self._exhaust, dynamic_pressure_fraction=self._settings.dynamic_pressure_fraction)
+        self._sampler = AirSampler(
+            self._exhaust, dynamic_pressure_fraction=self._settings.dynamic_pressure_fraction
+        )
         self._air: list[AirSamples] = []
         self._read: list[Readings] = []
         ends = {channel.gas: channel.range_high for channel in actual.channels}
-        self._full, self._stuck = (np.array([value.get(gas, np.nan) for gas in GASES]) for value in (ends, {}))
+        self._full, self._stuck = (
+            np.array([value.get(gas, np.nan) for gas in GASES]) for value in (ends, {})
+        )
         # What is known of the flight since the air was last sampled: time, place, rates and airspeed.
         self._path: list[tuple[float, ...]] = []
         self._count = 0
@@ -146,7 +168,9 @@ class SnifferOnBoard:
         late = read.time >= since
         return Readings(read.time[late], read.values[late])
 
-    def follow(self, time: float, motion: Motion, sample: tuple[float, ...]) -> Sequence[tuple[float, float]]:
+    def follow(
+        self, time: float, motion: Motion, sample: tuple[float, ...]
+    ) -> Sequence[tuple[float, float]]:
         """Return the times [s] and the CO2 [ppm] of the readings that have come; called for each row of the flight's record.
 
         Parameters are those of ``scenarios.instruments.instrument.Instrument.read``.
@@ -187,18 +211,27 @@ class SnifferOnBoard:
         time = column("time_s")
         left = time >= self._path[0][0] if self._path else np.ones(len(time), bool)
         if np.count_nonzero(left) > 1:
-            place, rate = (np.column_stack([column(name)[left] for name in names]) for names in (PLACE_COLUMNS, RATE_COLUMNS))
+            place, rate = (
+                np.column_stack([column(name)[left] for name in names])
+                for names in (PLACE_COLUMNS, RATE_COLUMNS)
+            )
             self._advance(time[left], place, rate, column("airspeed_mps")[left])
         samples, readings = AirSamples.joined(self._air), _joined(self._read)
         at, air, above, plume = samples.time, samples.air, samples.above, samples.plume
         held = np.clip(np.searchsorted(readings.time, time, side="right") - 1, 0, len(readings) - 1)
         fraction = fraction_of_axis(plume)
         along = [np.interp(time, at, values) for values in (*air.T, plume.across, above, fraction)]
-        columns = np.column_stack([*along[: len(GASES)], readings.values[held], *along[len(GASES) :]])
+        columns = np.column_stack(
+            [*along[: len(GASES)], readings.values[held], *along[len(GASES) :]]
+        )
         if not since < at[-1]:
             return Evaluation(columns=columns)
         flown = at >= since
-        limit, fuel, expected = self._settings.limit_percent, self._exhaust.fuel, expected_fsc(self._exhaust.fuel)
+        limit, fuel, expected = (
+            self._settings.limit_percent,
+            self._exhaust.fuel,
+            expected_fsc(self._exhaust.fuel),
+        )
         known = fuel_estimate(self.readings(since), self.spec, limit=limit, expected=expected)
         figures = {
             "sensor": self.spec.name,
@@ -207,7 +240,9 @@ class SnifferOnBoard:
             "sulphur_limit_percent": limit,
         }
         excess = air[:, CO2] - self._sampler.background[CO2]
-        passed = pass_figures(plume.across[flown], above[flown], fraction[flown], excess[flown], time_step=TIME_STEP)
+        passed = pass_figures(
+            plume.across[flown], above[flown], fraction[flown], excess[flown], time_step=TIME_STEP
+        )
         return Evaluation(
             columns=columns,
             figures=figures | passed | known.figures,
@@ -219,5 +254,12 @@ class SnifferOnBoard:
 def _joined(parts: list[Readings]) -> Readings:
     """Return readings that follow each other as one, and keep them so."""
     if len(parts) > 1:
-        parts[:] = [Readings(*(np.concatenate([getattr(part, name) for part in parts]) for name in ("time", "values")))]
+        parts[:] = [
+            Readings(
+                *(
+                    np.concatenate([getattr(part, name) for part in parts])
+                    for name in ("time", "values")
+                )
+            )
+        ]
     return parts[0] if parts else Readings(np.empty(0), np.empty((0, len(GASES))))

@@ -26,7 +26,14 @@ _TURNED = (("gust_along", "gust_right"), ("gust_p", "gust_q"))
 Array = npt.NDArray[np.float64]
 
 
-def gusts_on_orbit(turbulence: GustStatistics, oscillation: Orbit, frequencies: Array, *, airspeed: float, span: float) -> Array:
+def gusts_on_orbit(
+    turbulence: GustStatistics,
+    oscillation: Orbit,
+    frequencies: Array,
+    *,
+    airspeed: float,
+    span: float,
+) -> Array:
     """Return the power spectral densities of ``GUSTS`` in the axes of the path, shape (frequencies, 6), averaged over the orbit.
 
     The variance is the integral over positive frequencies over pi. Components are taken as independent: those that the course turns
@@ -39,12 +46,19 @@ def gusts_on_orbit(turbulence: GustStatistics, oscillation: Orbit, frequencies: 
     frequencies : [rad/s], above 0
     """
     weights = tuple(oscillation.sidebands(_SIDEBANDS).tolist())
-    return _on_orbit(turbulence, airspeed, span, oscillation.omega_0, weights, tuple(frequencies.tolist()))
+    return _on_orbit(
+        turbulence, airspeed, span, oscillation.omega_0, weights, tuple(frequencies.tolist())
+    )
 
 
 @functools.lru_cache(maxsize=64)
 def _on_orbit(
-    turbulence: GustStatistics, airspeed: float, span: float, omega_0: float, weights: tuple[float, ...], at: tuple[float, ...]
+    turbulence: GustStatistics,
+    airspeed: float,
+    span: float,
+    omega_0: float,
+    weights: tuple[float, ...],
+    at: tuple[float, ...],
 ) -> Array:
     """Return what ``gusts_on_orbit`` does; kept, for trials in the same turbulence ask for the same."""
     filters, frequencies = _filters(turbulence, airspeed=airspeed, span=span), np.array(at)
@@ -52,7 +66,9 @@ def _on_orbit(
     shifted = [_spectra(filters, np.abs(frequencies - n * omega_0)) for n in _SIDEBANDS]
     for pair in _TURNED:
         columns = [GUSTS.index(name) for name in pair]
-        mean = sum(weight * s[:, columns].mean(axis=1) for weight, s in zip(weights, shifted, strict=True))
+        mean = sum(
+            weight * s[:, columns].mean(axis=1) for weight, s in zip(weights, shifted, strict=True)
+        )
         spectra[:, columns] = np.asarray(mean)[:, None]
     spectra.flags.writeable = False
     return spectra

@@ -83,7 +83,9 @@ def _deviations(scenario: Scenario) -> float:
     reported = SECONDS_PER_HOUR / flight.duration_max_s
     if not reports.exact:
         reported += SECONDS_PER_HOUR / mean_interval(reports.interval_s)
-    wandering = SECONDS_PER_HOUR / NAVIGATION_TIME if scenario.sensors.position_sigma_m > 0.0 else 0.0
+    wandering = (
+        SECONDS_PER_HOUR / NAVIGATION_TIME if scenario.sensors.position_sigma_m > 0.0 else 0.0
+    )
     k = 1.0
     for _ in range(_ROUNDS):
         chances = reported * (1.0 + k * math.sqrt(math.pi / 8.0)) + wandering * k * k
@@ -91,7 +93,9 @@ def _deviations(scenario: Scenario) -> float:
     return k
 
 
-def widest_tube(limits: VesselLimits, reports: VesselReportsConfig, *, plan_period: float, noise: float = 0.0) -> Tube:
+def widest_tube(
+    limits: VesselLimits, reports: VesselReportsConfig, *, plan_period: float, noise: float = 0.0
+) -> Tube:
     """Return the disc about a vessel whose newest report is as old as it becomes where none is missing, centre in the origin.
 
     It is as much larger as discs reach farther because reports scatter (``scenarios.margin.report_scatter``), or, about a vessel
@@ -118,7 +122,11 @@ def widest_tube(limits: VesselLimits, reports: VesselReportsConfig, *, plan_peri
     return oldest._replace(radius=oldest.radius + allowance)
 
 
-def tracking_level(scenario: Scenario, spreads: SpreadTable | None, nu: float) -> tuple[float, float]:
+def tracking_level(
+    scenario: Scenario, spreads: SpreadTable | None, nu: float
+) -> tuple[float, float]:
     """Return the standard deviation of the tracking error towards the vessel, and what it exceeds as rarely as allowed [m]."""
     spread = spreads.at(nu) if spreads else CALM_AIR_SPREAD
-    return spread.radial, planned_margin(spread, touches_per_hour=scenario.following.touches_per_hour)
+    return spread.radial, planned_margin(
+        spread, touches_per_hour=scenario.following.touches_per_hour
+    )

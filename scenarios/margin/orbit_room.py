@@ -26,7 +26,9 @@ _FAR = 3.0
 """Distance at which clearances are found first, over the radius to be kept [-]."""
 
 
-def orbit_distance(guard: GuardParameters, vessel: Tube, orbit: Orbit, direction: tuple[float, float] = ASTERN) -> float:
+def orbit_distance(
+    guard: GuardParameters, vessel: Tube, orbit: Orbit, direction: tuple[float, float] = ASTERN
+) -> float:
     """Return the smallest distance of an orbit from the vessel for which a turn away is always left to the guard [m].
 
     It is that of its centre less its half-width along.
@@ -44,7 +46,10 @@ def orbit_distance(guard: GuardParameters, vessel: Tube, orbit: Orbit, direction
     piece = 1e-3 * orbit.period
     places = [orbit.offset(time + i * piece) for i in range(3)]
     mean = orbit.nu * orbit.speed
-    courses = [np.arctan2((y1 - y0) / piece, (x1 - x0) / piece + mean) for (x0, y0), (x1, y1) in itertools.pairwise(places)]
+    courses = [
+        np.arctan2((y1 - y0) / piece, (x1 - x0) / piece + mean)
+        for (x0, y0), (x1, y1) in itertools.pairwise(places)
+    ]
     rates = (courses[1] - courses[0]) / piece
     along, _ = orbit.half_widths()
     points = np.column_stack([*places[0], courses[0], rates]).tolist()
@@ -80,7 +85,12 @@ def circle_distance(guard: GuardParameters, vessel: Tube, speed: float, drift: f
             place = radius * float(np.cos(bearing)), radius * float(np.sin(bearing))
             point.place((0.0, 0.0), (drift, 0.0), place, radius)
             found.append(
-                KnownMotion(ground_north=place[0], ground_east=place[1], course=point.course, heading_rate=point.heading_rate)
+                KnownMotion(
+                    ground_north=place[0],
+                    ground_east=place[1],
+                    course=point.course,
+                    heading_rate=point.heading_rate,
+                )
             )
         return found
 
@@ -88,11 +98,17 @@ def circle_distance(guard: GuardParameters, vessel: Tube, speed: float, drift: f
 
 
 def _distance(
-    guard: GuardParameters, vessel: Tube, motions: Callable[[float], list[KnownMotion]], speed: float, drift: float
+    guard: GuardParameters,
+    vessel: Tube,
+    motions: Callable[[float], list[KnownMotion]],
+    speed: float,
+    drift: float,
 ) -> float:
     """Return the distance at which the nearest of the motions that belong to it leaves the guard nothing to do [m]."""
     keeping = KeepoutGuard(guard)
-    keeping.tubes = (vessel._replace(time=0.0, north=0.0, east=0.0, velocity_north=drift, velocity_east=0.0),)
+    keeping.tubes = (
+        vessel._replace(time=0.0, north=0.0, east=0.0, velocity_north=drift, velocity_east=0.0),
+    )
     distance = _FAR * (guard.radius + vessel.radius)
     for _ in range(2):
         # Clearances change as the distance does, but for the curvature of a disc: what is found is up to 0.3 m too large.

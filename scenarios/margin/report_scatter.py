@@ -52,10 +52,16 @@ def scatter_allowance(
     shape = (max(_LEAST, round(_HOURS * SECONDS_PER_HOUR / mean)), KEPT)
     late = plan_period + generator.uniform(0.0, latency, (shape[0], 1))
     age = limits.horizon + late + np.cumsum(generator.uniform(*intervals, shape), axis=1)
-    off = limits.position_sigma * generator.standard_normal(shape) + limits.velocity_sigma * age * generator.standard_normal(shape)
+    off = limits.position_sigma * generator.standard_normal(
+        shape
+    ) + limits.velocity_sigma * age * generator.standard_normal(shape)
     taken = _filter_sigma(known, mean) * generator.standard_normal(shape[0])
     reaches = np.min(radius_after(limits, age) + off, axis=1) - taken
-    return max(0.0, float(np.quantile(reaches, max(0.0, 1.0 - GUARDED_PER_HOUR * mean / SECONDS_PER_HOUR))) - planned)
+    return max(
+        0.0,
+        float(np.quantile(reaches, max(0.0, 1.0 - GUARDED_PER_HOUR * mean / SECONDS_PER_HOUR)))
+        - planned,
+    )
 
 
 def mean_interval(intervals: tuple[float, float]) -> float:

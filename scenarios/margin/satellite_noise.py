@@ -63,17 +63,26 @@ def position_scatter(
     airspeed_bandwidth : of the airspeed behind its command [rad/s]
     noise_time : time constant T of the noise [s]
     """
-    loops = [_loop(tracking, hold, turn, speed, lag, airspeed_bandwidth, noise_time) for turn in turns]
+    loops = [
+        _loop(tracking, hold, turn, speed, lag, airspeed_bandwidth, noise_time) for turn in turns
+    ]
     return max(map(_seen, loops))
 
 
 def _loop(
-    tracking: TrackingParameters, hold: SpeedHold, turn: float, speed: float, lag: float, bandwidth: float, noise_time: float
+    tracking: TrackingParameters,
+    hold: SpeedHold,
+    turn: float,
+    speed: float,
+    lag: float,
+    bandwidth: float,
+    noise_time: float,
 ) -> Array:
     gains = dict(zip(STEERED_BY, steering_gains(tracking, turn, speed).tolist(), strict=True))
     # A command that depends on the last one has gone where it leads to.
     along, right, course, faster, rate = (
-        gains[name] / (1.0 - gains["last"]) for name in ("along", "right", "course", "speed", "heading_rate")
+        gains[name] / (1.0 - gains["last"])
+        for name in ("along", "right", "course", "speed", "heading_rate")
     )
     faster += gains["airspeed"] / (1.0 - gains["last"])
     loop = np.zeros((7, 7))
@@ -81,7 +90,11 @@ def _loop(
     loop[_RIGHT, [_ALONG, _COURSE]] = -turn, -speed
     loop[_COURSE, _TURN] = 1.0
     loop[_TURN] = np.array([along, right, course, rate - 1.0, faster, -along, -right]) / lag
-    loop[_FASTER, [_ALONG, _NOISE_ALONG, _FASTER]] = bandwidth * hold.gain, -bandwidth * hold.gain, -bandwidth
+    loop[_FASTER, [_ALONG, _NOISE_ALONG, _FASTER]] = (
+        bandwidth * hold.gain,
+        -bandwidth * hold.gain,
+        -bandwidth,
+    )
     loop[_NOISE_ALONG, [_NOISE_ALONG, _NOISE_RIGHT]] = -1.0 / noise_time, turn
     loop[_NOISE_RIGHT, [_NOISE_ALONG, _NOISE_RIGHT]] = -turn, -1.0 / noise_time
     return loop
@@ -92,7 +105,9 @@ def _seen(loop: Array) -> float:
     if np.linalg.eigvals(loop).real.max() >= 0.0:
         return 1.0
     kicks = np.zeros((7, 7))
-    kicks[_NOISE_ALONG, _NOISE_ALONG] = kicks[_NOISE_RIGHT, _NOISE_RIGHT] = -2.0 * loop[_NOISE_ALONG, _NOISE_ALONG]
+    kicks[_NOISE_ALONG, _NOISE_ALONG] = kicks[_NOISE_RIGHT, _NOISE_RIGHT] = (
+        -2.0 * loop[_NOISE_ALONG, _NOISE_ALONG]
+    )
     covariance = solve_continuous_lyapunov(loop, -kicks)
     seen = np.zeros((2, 7))
     seen[[0, 1], [_ALONG, _RIGHT]], seen[[0, 1], [_NOISE_ALONG, _NOISE_RIGHT]] = 1.0, -1.0

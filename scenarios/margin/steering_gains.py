@@ -34,12 +34,18 @@ def steering_gains(guidance: TrackingParameters, turn: float, speed: float) -> A
     parameters = replace(guidance, heading_rate_max=np.inf)
     start = ReferenceStart(north=0.0, east=0.0, course=0.0)
 
-    def command(along: float, right: float, course: float, over: float, air: float, rate: float, last: float) -> float:
-        reference = CirclingReference(start, speed=speed, heading_rate=turn, time_step=guidance.time_step)
+    def command(
+        along: float, right: float, course: float, over: float, air: float, rate: float, last: float
+    ) -> float:
+        reference = CirclingReference(
+            start, speed=speed, heading_rate=turn, time_step=guidance.time_step
+        )
         steered = Tracker(parameters, reference)
         steered.heading_rate_command = turn + last
         faster, airspeed = speed + over, speed + air
-        turned = steered.step(-along, -right, course, faster, air_turn(turn + rate, speed=airspeed, airspeed=faster))
+        turned = steered.step(
+            -along, -right, course, faster, air_turn(turn + rate, speed=airspeed, airspeed=faster)
+        )
         return air_turn(turned, speed=faster, airspeed=airspeed)
 
     steps = _STEP * np.eye(len(STEERED_BY))

@@ -26,7 +26,13 @@ Complex = npt.NDArray[np.complex128]
 
 
 def tracking_response(
-    schedule: Schedule, index: int, bank_index: int, guidance: TrackingParameters, hold: SpeedHold, speed: float, frequencies: Array
+    schedule: Schedule,
+    index: int,
+    bank_index: int,
+    guidance: TrackingParameters,
+    hold: SpeedHold,
+    speed: float,
+    frequencies: Array,
 ) -> Complex:
     """Return the response of ``RESPONSES`` to ``GUSTS`` over frequency, shape (frequencies, 3, 6).
 
@@ -40,26 +46,43 @@ def tracking_response(
     """
     loop = gust_loop(schedule, index, bank_index)
     labels = list(loop.output_labels)
-    whole = np.moveaxis(loop(1j * frequencies, squeeze=False), -1, 0)[:, [labels.index(name) for name in _READ]]
+    whole = np.moveaxis(loop(1j * frequencies, squeeze=False), -1, 0)[
+        :, [labels.index(name) for name in _READ]
+    ]
     gusts = whole[:, :, len(COMMANDS) :]
-    commands = whole[:, :, [COMMANDS.index("airspeed_command"), COMMANDS.index("heading_rate_command")]]
+    commands = whole[
+        :, :, [COMMANDS.index("airspeed_command"), COMMANDS.index("heading_rate_command")]
+    ]
     turn = schedule.gain_trim(index, bank_index).yaw_rate
     steering = dict(zip(STEERED_BY, steering_gains(guidance, turn, speed), strict=True))
     s = 1j * frequencies
-    hold_of_step = np.exp(-0.5 * s * guidance.time_step) * np.sinc(0.5 * frequencies * guidance.time_step / np.pi)
+    hold_of_step = np.exp(-0.5 * s * guidance.time_step) * np.sinc(
+        0.5 * frequencies * guidance.time_step / np.pi
+    )
 
     # Four equations for the error along and right and for the commanded airspeed and turn: left @ unknowns = right @ gusts.
     held, per_course = hold_of_step[:, None], (speed / s)[:, None]
-    left, right = np.zeros((len(s), 4, 4), dtype=complex), np.zeros((len(s), 4, len(GUSTS)), dtype=complex)
+    left, right = (
+        np.zeros((len(s), 4, 4), dtype=complex),
+        np.zeros((len(s), 4, len(GUSTS)), dtype=complex),
+    )
     left[:, 0, 0], left[:, 0, 1] = s, -turn
     left[:, 0, 2:], right[:, 0] = commands[:, 1], -gusts[:, 1]
     left[:, 1, 0], left[:, 1, 1] = turn, s
     left[:, 1, 2:], right[:, 1] = per_course * commands[:, 0], -per_course * gusts[:, 0]
     left[:, 2, 0] = -hold_of_step * hold.gain
-    left[:, 2, 2:], right[:, 2] = -held * (commands[:, 2] - commands[:, 1]), held * (gusts[:, 2] - gusts[:, 1])
+    left[:, 2, 2:], right[:, 2] = (
+        -held * (commands[:, 2] - commands[:, 1]),
+        held * (gusts[:, 2] - gusts[:, 1]),
+    )
     left[:, 2, 2] += 1.0
-    read = np.column_stack([steering["course"] / s, *(np.full(len(s), steering[name]) for name in _READ[1:])])
-    left[:, 3, 0], left[:, 3, 1] = -hold_of_step * steering["along"], -hold_of_step * steering["right"]
+    read = np.column_stack(
+        [steering["course"] / s, *(np.full(len(s), steering[name]) for name in _READ[1:])]
+    )
+    left[:, 3, 0], left[:, 3, 1] = (
+        -hold_of_step * steering["along"],
+        -hold_of_step * steering["right"],
+    )
     left[:, 3, 2:] = -held * np.einsum("fi,fij->fj", read, commands)
     left[:, 3, 3] += 1.0 - steering["last"] * np.exp(-s * guidance.time_step)
     right[:, 3] = held * np.einsum("fi,fij->fj", read, gusts)

@@ -74,10 +74,20 @@ class SpreadTable:
 
     def at(self, nu: float) -> Spread:
         """Return the spread at the nearest speed ratio."""
-        return min(zip(self.speed_ratios, self.spreads, strict=True), key=lambda entry: abs(entry[0] - nu))[1]
+        return min(
+            zip(self.speed_ratios, self.spreads, strict=True), key=lambda entry: abs(entry[0] - nu)
+        )[1]
 
 
-CALM_AIR_SPREAD = Spread(along=0.0, across=0.0, radial=0.0, radial_rate=0.0, airspeed=0.0, airspeed_rate=0.0, airspeed_limit=1.0)
+CALM_AIR_SPREAD = Spread(
+    along=0.0,
+    across=0.0,
+    radial=0.0,
+    radial_rate=0.0,
+    airspeed=0.0,
+    airspeed_rate=0.0,
+    airspeed_limit=1.0,
+)
 """The spread in air that does not move."""
 
 
@@ -105,17 +115,29 @@ def tracking_spreads(
     (speed,) = {oscillation.speed for oscillation in oscillations}
     index = int(np.argmin(np.abs(np.array(schedule.airspeeds) - speed)))
     banks = range(len(schedule.gain_banks))
-    responses = [tracking_response(schedule, index, j, guidance, hold, speed, FREQUENCIES) for j in banks]
+    responses = [
+        tracking_response(schedule, index, j, guidance, hold, speed, FREQUENCIES) for j in banks
+    ]
     steps = [schedule.gain_trim(index, j).yaw_rate for j in banks]
     room = min(speed - hold.airspeed_min, hold.airspeed_max - speed)
-    gusts = [gusts_on_orbit(turbulence, oscillation, FREQUENCIES, airspeed=speed, span=span) for oscillation in oscillations]
+    gusts = [
+        gusts_on_orbit(turbulence, oscillation, FREQUENCIES, airspeed=speed, span=span)
+        for oscillation in oscillations
+    ]
     return tuple(
         _spread(oscillation, met, responses, steps, RESPONSES.index("pace"), room)
         for oscillation, met in zip(oscillations, gusts, strict=True)
     )
 
 
-def _spread(oscillation: Orbit, gusts: Array, responses: list[Complex], steps: list[float], airspeed: int, room: float) -> Spread:
+def _spread(
+    oscillation: Orbit,
+    gusts: Array,
+    responses: list[Complex],
+    steps: list[float],
+    airspeed: int,
+    room: float,
+) -> Spread:
     """Return the spread on an orbit.
 
     Parameters
@@ -131,9 +153,13 @@ def _spread(oscillation: Orbit, gusts: Array, responses: list[Complex], steps: l
 
     phases = 2.0 * math.pi * (np.arange(_ORBIT_POINTS) + 0.5) / _ORBIT_POINTS
     turns = np.array([-oscillation.heading_rate(phase) for phase in phases.tolist()])
-    mean, mean_rate = (_over_turns(turns, steps, matrices).mean(axis=0) for matrices in (now, rates))
+    mean, mean_rate = (
+        _over_turns(turns, steps, matrices).mean(axis=0) for matrices in (now, rates)
+    )
     steep = np.array([-oscillation.amplitude, oscillation.amplitude])
-    largest, fastest = (np.linalg.eigvalsh(_over_turns(steep, steps, m)[:, :2, :2]).max() for m in (now, rates))
+    largest, fastest = (
+        np.linalg.eigvalsh(_over_turns(steep, steps, m)[:, :2, :2]).max() for m in (now, rates)
+    )
     return Spread(
         along=math.sqrt(mean[0, 0]),
         across=math.sqrt(mean[1, 1]),
@@ -157,7 +183,9 @@ def planned_margin(spread: Spread, *, touches_per_hour: float) -> float:
     ------
     ValueError : ``touches_per_hour`` is not above 0, or the spread has a deviation and never varies
     """
-    return level_crossed(spread.radial, spread.radial_rate, touches_per_hour) + beyond_limits(spread, touches_per_hour)
+    return level_crossed(spread.radial, spread.radial_rate, touches_per_hour) + beyond_limits(
+        spread, touches_per_hour
+    )
 
 
 def level_crossed(sigma: float, sigma_rate: float, per_hour: float) -> float:
@@ -175,11 +203,15 @@ def level_crossed(sigma: float, sigma_rate: float, per_hour: float) -> float:
     ValueError : ``per_hour`` is not above 0, or the process has a deviation and never varies
     """
     if not per_hour > 0.0:
-        raise ValueError(f"crossings per hour are {per_hour:g}; no margin is large enough for none: allow some, such as 0.001")
+        raise ValueError(
+            f"crossings per hour are {per_hour:g}; no margin is large enough for none: allow some, such as 0.001"
+        )
     if sigma == 0.0:
         return 0.0
     if not sigma_rate > 0.0:
-        raise ValueError(f"the rate of an error of {sigma:g} m has a deviation of {sigma_rate:g} m/s; it must vary: give above 0")
+        raise ValueError(
+            f"the rate of an error of {sigma:g} m has a deviation of {sigma_rate:g} m/s; it must vary: give above 0"
+        )
     mean_per_hour = SECONDS_PER_HOUR * sigma_rate / (2.0 * math.pi * sigma)
     return sigma * math.sqrt(2.0 * math.log(max(1.0, mean_per_hour / per_hour)))
 

@@ -20,5 +20,7 @@ def bezier_points(time: Array, value: Array, rate: Array) -> Array:
     """
     third = np.diff(time) / 3.0
     first, last = value[..., :-1], value[..., 1:]
-    points: Array = np.stack([first, first + third * rate[..., :-1], last - third * rate[..., 1:], last])
+    points: Array = np.stack(
+        [first, first + third * rate[..., :-1], last - third * rate[..., 1:], last]
+    )
     return points

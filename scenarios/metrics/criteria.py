@@ -39,7 +39,10 @@ def kept_out(row: Row) -> bool:
 
 def _keeps_out(row: Row) -> Check:
     count = row["keepout_violations"]
-    return count == 0, f"{count} keep-out violation{'s' * (count != 1)}, the deepest by {row['keepout_depth_m']:.2f} m"
+    return (
+        count == 0,
+        f"{count} keep-out violation{'s' * (count != 1)}, the deepest by {row['keepout_depth_m']:.2f} m",
+    )
 
 
 def _tracking_checks(row: Row, criteria: CriteriaConfig) -> list[Check]:
@@ -49,7 +52,12 @@ def _tracking_checks(row: Row, criteria: CriteriaConfig) -> list[Check]:
         since = row["duration_s"] - row["settling_time_s"]
         for name, key, limit, unit in (
             ("rms tracking error", "tracking_error_rms_m", criteria.tracking_error_rms_m, "m"),
-            ("rms airspeed error", "airspeed_error_rms_mps", criteria.airspeed_error_rms_mps, "m/s"),
+            (
+                "rms airspeed error",
+                "airspeed_error_rms_mps",
+                criteria.airspeed_error_rms_mps,
+                "m/s",
+            ),
             ("largest altitude error", "altitude_error_max_m", criteria.altitude_error_max_m, "m"),
         ):
             # One that settled with its last sample has none of these figures, and shows nothing.
@@ -58,7 +66,14 @@ def _tracking_checks(row: Row, criteria: CriteriaConfig) -> list[Check]:
                 # A flight is settled while errors still die out: in a short one they count for more.
                 checks.append((met, f"{message}, in the {since:.0f} s since it settled"))
     if criteria.tracking_error_end_m:
-        checks.append(_at_most("tracking error at the end", row["tracking_error_end_m"], criteria.tracking_error_end_m, "m"))
+        checks.append(
+            _at_most(
+                "tracking error at the end",
+                row["tracking_error_end_m"],
+                criteria.tracking_error_end_m,
+                "m",
+            )
+        )
     return checks
 
 
@@ -66,12 +81,27 @@ def _command_checks(row: Row, criteria: CriteriaConfig) -> list[Check]:
     largest, demand = row["heading_rate_limit_rad_s"], row["heading_rate_demand_max_rad_s"]
     checks = []
     if criteria.law_beyond_heading_rate_max:
-        checks.append((demand > largest, f"the law asked for {demand:.4f} rad/s, within omega_max = {largest:.4f}"))
+        checks.append(
+            (
+                demand > largest,
+                f"the law asked for {demand:.4f} rad/s, within omega_max = {largest:.4f}",
+            )
+        )
     else:
         command = row["heading_rate_command_max_rad_s"]
-        checks.append((command <= largest * _ROUNDING, f"commanded {command:.4f} rad/s, above omega_max = {largest:.4f}"))
+        checks.append(
+            (
+                command <= largest * _ROUNDING,
+                f"commanded {command:.4f} rad/s, above omega_max = {largest:.4f}",
+            )
+        )
     if criteria.law_within_heading_rate_max:
-        checks.append((demand <= largest * _ROUNDING, f"the law asked for {demand:.4f} rad/s, above omega_max = {largest:.4f}"))
+        checks.append(
+            (
+                demand <= largest * _ROUNDING,
+                f"the law asked for {demand:.4f} rad/s, above omega_max = {largest:.4f}",
+            )
+        )
     return checks
 
 
@@ -79,9 +109,14 @@ def _crossing_checks(row: Row, criteria: CriteriaConfig) -> list[Check]:
     checks = []
     if "crossing_clearance_min_m" in row:
         clearance, radius = row["crossing_clearance_min_m"], row["keepout_radius_m"]
-        checks.append((clearance >= 0.0, f"crossed at {radius + clearance:.2f} m, inside {radius:g} m"))
+        checks.append(
+            (clearance >= 0.0, f"crossed at {radius + clearance:.2f} m, inside {radius:g} m")
+        )
     if criteria.crossing_interval_error:
-        interval, predicted = row.get("crossing_interval_mean_s", math.nan), row["crossing_interval_predicted_s"]
+        interval, predicted = (
+            row.get("crossing_interval_mean_s", math.nan),
+            row["crossing_interval_predicted_s"],
+        )
         error = interval / predicted - 1.0
         found = (
             f"mean crossing interval {interval:.3f} s, {100.0 * abs(error):.1f} % {'longer' if error > 0.0 else 'shorter'} than the"
@@ -108,10 +143,19 @@ def _mission_checks(row: Row, criteria: CriteriaConfig) -> list[Check]:
         message = f"crossings resumed {periods:.2f} periods after the last manoeuvre"
         checks.append((periods <= criteria.resumes_within_periods, message))
     if criteria.time_to_find_s:
-        checks.append(_at_most("time to find the plume", row.get("time_to_find_s", math.nan), criteria.time_to_find_s, "s"))
+        checks.append(
+            _at_most(
+                "time to find the plume",
+                row.get("time_to_find_s", math.nan),
+                criteria.time_to_find_s,
+                "s",
+            )
+        )
     if criteria.within_altitudes:
         outside = row.get("altitude_outside_s", math.nan)
-        checks.append((outside == 0.0, f"{outside:.1f} s outside of flight.altitude_min_m and altitude_max_m"))
+        checks.append(
+            (outside == 0.0, f"{outside:.1f} s outside of flight.altitude_min_m and altitude_max_m")
+        )
     if criteria.modes_at_end:
         checks.append((row["mode_at_end"] in criteria.modes_at_end, f"ended {row['mode_at_end']}"))
     return checks

@@ -87,12 +87,16 @@ def _roots(time: Array, across: Array, rate: Array) -> Array:
     """
     side, coefficients = CubicHermiteSpline(time, across, rate), bezier_points(time, across, rate)
     rounding = _ROUNDING * np.abs(coefficients).max(axis=0)
-    pieces = np.flatnonzero((coefficients.min(axis=0) <= rounding) & (coefficients.max(axis=0) >= -rounding))
+    pieces = np.flatnonzero(
+        (coefficients.min(axis=0) <= rounding) & (coefficients.max(axis=0) >= -rounding)
+    )
     found = [np.empty(0)]
     # Pieces that follow each other go together: a root at the sample between two is one.
     for run in np.split(pieces, np.flatnonzero(np.diff(pieces) > 1) + 1):
         if len(run):
-            part = PPoly.construct_fast(side.c[:, run[0] : run[-1] + 1], side.x[run[0] : run[-1] + 2])
+            part = PPoly.construct_fast(
+                side.c[:, run[0] : run[-1] + 1], side.x[run[0] : run[-1] + 2]
+            )
             found.append(part.roots(extrapolate=False))
     moments = np.concatenate(found)
     return moments[np.isfinite(moments)]

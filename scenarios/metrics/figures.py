@@ -26,7 +26,9 @@ def plan_row(plan: FlightPlan) -> Row:
     law = plan.guidance.tracking.law
     row: Row = {
         "heading_rate_limit_rad_s": plan.heading_rate_max,
-        "heading_rate_bound_rad_s": plan.steering.bound if math.isfinite(plan.steering.bound) else math.nan,
+        "heading_rate_bound_rad_s": plan.steering.bound
+        if math.isfinite(plan.steering.bound)
+        else math.nan,
         "epsilon_per_m": plan.steering.look_ahead.epsilon,
         "look_ahead_m": plan.steering.look_ahead.radius,
         "steering_max_rad_s": getattr(law, "steering_max_rad_s", plan.steering.steering_max),
@@ -43,7 +45,9 @@ def plan_row(plan: FlightPlan) -> Row:
         "plume_heading_deg": math.degrees(axis - world.vessel.course(0.0)) % 360.0,
         "plume_elevation_deg": math.degrees(world.elevation),
         "start_distance_m": math.hypot(start.north, start.east),
-        "start_aspect_deg": math.degrees(math.remainder(math.atan2(start.east, start.north) - axis, 2.0 * math.pi)),
+        "start_aspect_deg": math.degrees(
+            math.remainder(math.atan2(start.east, start.north) - axis, 2.0 * math.pi)
+        ),
         "fault_time_s": world.fault.begins if world.fault.kind != "none" else math.nan,
         "eta": plan.oscillation.eta,
         "omega_0_rad_s": plan.oscillation.omega_0,
@@ -64,7 +68,10 @@ def plan_row(plan: FlightPlan) -> Row:
         }
     row |= _place_row(world.place)
     if plan.margin is not None:
-        row |= {"keepout_margin_m": plan.margin.total, "spread_predicted_m": plan.margin.tracking_sigma}
+        row |= {
+            "keepout_margin_m": plan.margin.total,
+            "spread_predicted_m": plan.margin.tracking_sigma,
+        }
     return row
 
 
@@ -72,7 +79,10 @@ def _place_row(place: Place) -> Row:
     """Return where and when the flight began, as far as that is known."""
     row: Row = {}
     if math.isfinite(place.latitude):
-        row |= {"place_latitude_deg": math.degrees(place.latitude), "place_longitude_deg": math.degrees(place.longitude)}
+        row |= {
+            "place_latitude_deg": math.degrees(place.latitude),
+            "place_longitude_deg": math.degrees(place.longitude),
+        }
     if math.isfinite(place.utc):
         row["start_utc"] = utc_text(place.utc)
     return row
@@ -105,7 +115,9 @@ def flight_figures(plan: FlightPlan, record: FlightRecord) -> tuple[Row, list[Cr
         "heading_rate_demand_max_rad_s": record.heading_rate_demand_max,
         "heading_rate_command_max_rad_s": record.heading_rate_command_max,
         "heading_rate_flown_max_rad_s": float(np.max(np.abs(column("heading_rate_rad_s")))),
-        "speed_max_mps": float(np.max(np.hypot(column("velocity_north_mps"), column("velocity_east_mps")))),
+        "speed_max_mps": float(
+            np.max(np.hypot(column("velocity_north_mps"), column("velocity_east_mps")))
+        ),
         "airspeed_min_mps": float(np.min(airspeed)),
         "airspeed_max_mps": float(np.max(airspeed)),
         "altitude_min_m": float(np.min(altitude)),
@@ -137,7 +149,10 @@ def in_vessel_frame(record: FlightRecord, source_height: float) -> tuple[Array, 
     """Return position and velocity from the plume's origin, each shape (n, 3): north, east, up [m, m/s]."""
     column = record.column
     position = [column(f"{axis}_m") - column(f"vessel_{axis}_m") for axis in ("north", "east")]
-    velocity = [column(f"velocity_{axis}_mps") - column(f"vessel_velocity_{axis}_mps") for axis in ("north", "east")]
+    velocity = [
+        column(f"velocity_{axis}_mps") - column(f"vessel_velocity_{axis}_mps")
+        for axis in ("north", "east")
+    ]
     return (
         np.column_stack([*position, column("altitude_m") - source_height]),
         np.column_stack([*velocity, column("climb_rate_mps")]),
@@ -150,12 +165,16 @@ def _modes(record: FlightRecord) -> list[str]:
     return [names[int(number)] for number in dict.fromkeys(record.column("mode").tolist())]
 
 
-def _tracking_figures(plan: FlightPlan, record: FlightRecord, beside: Mask, to_reference: Array) -> Row:
+def _tracking_figures(
+    plan: FlightPlan, record: FlightRecord, beside: Mask, to_reference: Array
+) -> Row:
     """Measure what a settled flight does until it leaves, with a vessel or without."""
     column = record.column
     airspeed_error = (column("airspeed_mps") - column("airspeed_command_mps"))[beside]
     altitude_error = (column("altitude_m") - column("altitude_command_m"))[beside]
-    heading_rate_error = (column("heading_rate_rad_s") - column("reference_heading_rate_rad_s"))[beside]
+    heading_rate_error = (column("heading_rate_rad_s") - column("reference_heading_rate_rad_s"))[
+        beside
+    ]
     return {
         "tracking_error_rms_m": rms(to_reference),
         "tracking_error_max_m": float(np.max(to_reference)),
@@ -168,7 +187,9 @@ def _tracking_figures(plan: FlightPlan, record: FlightRecord, beside: Mask, to_r
     }
 
 
-def _keepout_figures(plan: FlightPlan, record: FlightRecord, position: Array, velocity: Array) -> Row:
+def _keepout_figures(
+    plan: FlightPlan, record: FlightRecord, position: Array, velocity: Array
+) -> Row:
     """Measure the keep-out area and its guard over the whole flight."""
     time = record.column("time_s")
     keepout = keepout_figures(time, position, velocity, plan.keepout_radius, plan.keepout_shape)
@@ -194,14 +215,20 @@ def _keepout_figures(plan: FlightPlan, record: FlightRecord, position: Array, ve
 def _vessel_error(record: FlightRecord) -> Array:
     """Return how far the vessel is from where the guidance takes it to be [m]."""
     column = record.column
-    return np.hypot(*(column(f"vessel_seen_{axis}_m") - column(f"vessel_{axis}_m") for axis in ("north", "east")))
+    return np.hypot(
+        *(
+            column(f"vessel_seen_{axis}_m") - column(f"vessel_{axis}_m")
+            for axis in ("north", "east")
+        )
+    )
 
 
 def _spread(record: FlightRecord, beside: Mask, position: Array) -> float:
     """Return the standard deviation of the tracking error towards the vessel, of a settled flight until it leaves [m]."""
     north, east = position[beside, 0], position[beside, 1]
     to_north, to_east = (
-        record.column(f"reference_{axis}_m")[beside] - record.column(f"{axis}_m")[beside] for axis in ("north", "east")
+        record.column(f"reference_{axis}_m")[beside] - record.column(f"{axis}_m")[beside]
+        for axis in ("north", "east")
     )
     return float(np.std((to_north * north + to_east * east) / np.hypot(north, east)))
 
@@ -216,21 +243,32 @@ def _estimation_figures(plan: FlightPlan, record: FlightRecord, settled: Mask) -
     row: Row = {
         "vessel_error_rms_m": rms(_vessel_error(record)[settled]),
         "centre_error_rms_m": rms(column("centre_error_m")),
-        "guard_after_settling_s": plan.log_interval * plan.time_step * float(np.count_nonzero(column("guard") > 0.0)),
+        "guard_after_settling_s": plan.log_interval
+        * plan.time_step
+        * float(np.count_nonzero(column("guard") > 0.0)),
     }
     if weather is not None:
         north, east = weather.wind.at(column("time_s"), column("altitude_m"))
-        row["wind_error_rms_mps"] = rms(np.hypot(column("wind_north_mps") - north, column("wind_east_mps") - east))
+        row["wind_error_rms_mps"] = rms(
+            np.hypot(column("wind_north_mps") - north, column("wind_east_mps") - east)
+        )
     return row
 
 
-def crossings_of(plan: FlightPlan, record: FlightRecord, settled: Mask, position: Array, velocity: Array) -> list[Crossing]:
+def crossings_of(
+    plan: FlightPlan, record: FlightRecord, settled: Mask, position: Array, velocity: Array
+) -> list[Crossing]:
     """Find crossings of an axis that may turn, in the frame that turns with it."""
-    time, axis = record.column("time_s")[settled], np.unwrap(record.column("plume_axis_rad")[settled])
+    time, axis = (
+        record.column("time_s")[settled],
+        np.unwrap(record.column("plume_axis_rad")[settled]),
+    )
     position, velocity = position[settled], velocity[settled]
     elevation = plan.world.elevation if plan.world else 0.0
     if axis[0] == axis[-1] and not np.any(axis - axis[0]):
-        return find_crossings(time, position, velocity, (math.cos(axis[0]), math.sin(axis[0])), elevation)
+        return find_crossings(
+            time, position, velocity, (math.cos(axis[0]), math.sin(axis[0])), elevation
+        )
     rate = np.gradient(axis, time)
     cos_a, sin_a = np.cos(axis), np.sin(axis)
     along = cos_a * position[:, 0] + sin_a * position[:, 1]
@@ -256,19 +294,28 @@ def _crossing_figures(plan: FlightPlan, record: FlightRecord, crossings: list[Cr
             "crossing_distance_mean_m": float(np.mean(distances)),
             "crossing_distance_min_m": min(distances),
             "crossing_clearance_min_m": min(to_centre) - plan.keepout_radius,
-            "crossing_angle_mean_deg": math.degrees(float(np.mean([crossing.angle for crossing in crossings]))),
+            "crossing_angle_mean_deg": math.degrees(
+                float(np.mean([crossing.angle for crossing in crossings]))
+            ),
         }
     if len(crossings) > 1:
         intervals = np.diff([crossing.time for crossing in crossings])
-        row |= {"crossing_interval_mean_s": float(np.mean(intervals)), "crossing_interval_std_s": float(np.std(intervals))}
+        row |= {
+            "crossing_interval_mean_s": float(np.mean(intervals)),
+            "crossing_interval_std_s": float(np.std(intervals)),
+        }
         wind = plan.apparent_wind
         if wind is not None and wind.greatest > wind.least:
-            row["crossing_interval_predicted_s"] = _predicted_interval(plan, record, crossings[0].time, crossings[-1].time)
+            row["crossing_interval_predicted_s"] = _predicted_interval(
+                plan, record, crossings[0].time, crossings[-1].time
+            )
     manoeuvres_end = plan.world.vessel.manoeuvres_end if plan.world else math.nan
     after = [crossing.time for crossing in crossings if crossing.time >= manoeuvres_end]
     if after:
         row["resume_time_s"] = after[0] - manoeuvres_end
-        row["resume_periods"] = row["resume_time_s"] / plan.period(float(record.column("speed_ratio")[-1]))
+        row["resume_periods"] = row["resume_time_s"] / plan.period(
+            float(record.column("speed_ratio")[-1])
+        )
     return row
 
 
@@ -281,11 +328,16 @@ def _predicted_interval(plan: FlightPlan, record: FlightRecord, first: float, la
     time = np.linspace(first, last, max(2, math.ceil(last - first)))
     wind = (plan.world.weather.wind if plan.world else CALM).at(time, plan.source_height)
     through_air = [
-        np.interp(time, record.column("time_s"), record.column(f"vessel_velocity_{axis}_mps")) - of_air
+        np.interp(time, record.column("time_s"), record.column(f"vessel_velocity_{axis}_mps"))
+        - of_air
         for axis, of_air in zip(("north", "east"), wind, strict=True)
     ]
     ratio = np.hypot(*through_air) / plan.guidance.speed
     steps = np.linspace(0.0, plan.speed_ratio_max, len(plan.periods))
-    per_period = plan.oscillation.period / plan.oscillation.crossing_interval if plan.oscillation else math.nan
+    per_period = (
+        plan.oscillation.period / plan.oscillation.crossing_interval
+        if plan.oscillation
+        else math.nan
+    )
     crossing_rate = per_period / np.interp(ratio, steps, plan.periods)
     return float((last - first) / np.trapezoid(crossing_rate, time))

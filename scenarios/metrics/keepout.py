@@ -32,7 +32,9 @@ class KeepoutFigures:
     distance_min: float
 
 
-def keepout_figures(time: Array, position: Array, velocity: Array, radius: float, shape: Shape = "sphere") -> KeepoutFigures:
+def keepout_figures(
+    time: Array, position: Array, velocity: Array, radius: float, shape: Shape = "sphere"
+) -> KeepoutFigures:
     """Measure a path against a sphere about the origin, or a cylinder of any height about the vertical through it.
 
     Between samples the path is the cubic through their positions and velocities, and so is its closest approach: at 10 Hz and 45
@@ -47,7 +49,9 @@ def keepout_figures(time: Array, position: Array, velocity: Array, radius: float
     radius : of the sphere or the cylinder [m]
     shape : which of them
     """
-    squared = _squared_distance(time, *(values[:, : 2 if shape == "cylinder" else 3] for values in (position, velocity)))
+    squared = _squared_distance(
+        time, *(values[:, : 2 if shape == "cylinder" else 3] for values in (position, velocity))
+    )
     distance_min = math.sqrt(_least(squared))
     step, excess = np.diff(time), squared - radius**2
     # Where all coefficients have one sign, so has the polynomial.
@@ -64,7 +68,8 @@ def keepout_figures(time: Array, position: Array, velocity: Array, radius: float
         first[i], last[i] = shown[0], shown[-1]
         violations += int(np.count_nonzero(shown[1:] & ~shown[:-1]))
     return KeepoutFigures(
-        violations=violations + int(np.count_nonzero(first & ~np.concatenate([[False], last[:-1]]))),
+        violations=violations
+        + int(np.count_nonzero(first & ~np.concatenate([[False], last[:-1]]))),
         time_inside=float(np.sum(fraction * step)),
         depth=max(0.0, radius - distance_min),
         distance_min=distance_min,
@@ -83,7 +88,9 @@ def _squared_distance(time: Array, position: Array, velocity: Array) -> Array:
     """
     # A row for each component: to sum three numbers in each of a thousand rows takes longer than to add three rows.
     points = bezier_points(time, np.ascontiguousarray(position.T), np.ascontiguousarray(velocity.T))
-    products = {(i, j): np.sum(points[i] * points[j], axis=0) for i in range(4) for j in range(i, 4)}
+    products = {
+        (i, j): np.sum(points[i] * points[j], axis=0) for i in range(4) for j in range(i, 4)
+    }
     squared = np.zeros((7, len(time) - 1))
     for i in range(4):
         for j in range(4):
@@ -119,5 +126,8 @@ def _roots(coefficients: Array) -> list[float]:
 def _value(coefficients: Array, at: Array) -> Array:
     """Return the values of a polynomial with these Bernstein coefficients."""
     degree = len(coefficients) - 1
-    terms = [math.comb(degree, k) * at**k * (1.0 - at) ** (degree - k) * coefficients[k] for k in range(degree + 1)]
+    terms = [
+        math.comb(degree, k) * at**k * (1.0 - at) ** (degree - k) * coefficients[k]
+        for k in range(degree + 1)
+    ]
     return np.asarray(np.sum(terms, axis=0))

@@ -5,7 +5,16 @@ Units are the ends of the names. "Settled" is said of the flight from its settli
 
 from collections.abc import Mapping
 
-from common.run_layout import COMPARISON, CROSSINGS, DRAWS, INTERVENTIONS, SULPHUR_TABLE, SUMMARY, TUNING_TABLE, WINDOW_TABLE
+from common.run_layout import (
+    COMPARISON,
+    CROSSINGS,
+    DRAWS,
+    INTERVENTIONS,
+    SULPHUR_TABLE,
+    SUMMARY,
+    TUNING_TABLE,
+    WINDOW_TABLE,
+)
 
 _OF_FLIGHT = {
     "flight_id": "name of the flight",
@@ -14,7 +23,10 @@ _OF_FLIGHT = {
 }
 """Of several tables."""
 
-_OF_POINT = {**_OF_FLIGHT, "nu": "speed ratio through the air at the start: the vessel's speed over the UAV's"}
+_OF_POINT = {
+    **_OF_FLIGHT,
+    "nu": "speed ratio through the air at the start: the vessel's speed over the UAV's",
+}
 
 _PLANNED = {
     "beside": "flight of the study with the same start and air, if this one is of a comparison; else empty",

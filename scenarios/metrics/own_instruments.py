@@ -52,12 +52,21 @@ def check_instruments(named: Iterable[tuple[str, Any]]) -> None:
         _fill(who, "figure", _names(who, "FIGURES", figures_of(instrument)), figures)
         given = tables_of(instrument)
         if not isinstance(given, Mapping):
-            raise InputError(f"payload: TABLES of {who} is {given!r}; give the names of the columns of each file, by the file")
+            raise InputError(
+                f"payload: TABLES of {who} is {given!r}; give the names of the columns of each file, by the file"
+            )
         _fill(who, "table", _names(who, "TABLES", tuple(given)), tables)
         for file, of in given.items():
             if not is_file_name(file) or not file.endswith(".csv"):
-                raise InputError(f"payload: TABLES of {who} has '{file}'; give a file's name that ends in .csv, without a folder")
-            _fill(who, "column", _names(who, f"TABLES of '{file}'", of), dict.fromkeys(FLIGHT_COLUMNS, _RUN))
+                raise InputError(
+                    f"payload: TABLES of {who} has '{file}'; give a file's name that ends in .csv, without a folder"
+                )
+            _fill(
+                who,
+                "column",
+                _names(who, f"TABLES of '{file}'", of),
+                dict.fromkeys(FLIGHT_COLUMNS, _RUN),
+            )
 
 
 def _is_of_each_object(kind: type) -> bool:
@@ -70,7 +79,9 @@ def _is_of_each_object(kind: type) -> bool:
 def _names(who: str, what: str, given: Any) -> tuple[str, ...]:
     """Return names that an instrument declares."""
     if isinstance(given, str):
-        raise InputError(f"payload: {what} of {who} is the text {given!r}; give a tuple of names, as in ({given!r},)")
+        raise InputError(
+            f"payload: {what} of {who} is the text {given!r}; give a tuple of names, as in ({given!r},)"
+        )
     given = tuple(given) if isinstance(given, Collection) else given
     if not isinstance(given, tuple) or not all(isinstance(name, str) and name for name in given):
         raise InputError(f"payload: {what} of {who} is {given!r}; give a tuple of names")
@@ -88,7 +99,9 @@ def _fill(who: str, what: str, names: Iterable[str], filled: dict[str, str]) -> 
         filled[name] = who
 
 
-def evaluated(name: str, instrument: EvaluatedInstrument, column: Callable[[str], Array], since: float) -> Evaluation:
+def evaluated(
+    name: str, instrument: EvaluatedInstrument, column: Callable[[str], Array], since: float
+) -> Evaluation:
     """Return what an instrument makes of a flight, with nothing that it does not declare.
 
     Parameters
@@ -101,16 +114,25 @@ def evaluated(name: str, instrument: EvaluatedInstrument, column: Callable[[str]
     PluginError : it failed, or returned something else
     """
     part = f"payload '{name}'"
-    found = asked(part, "failed in evaluate()", "column and since", instrument.evaluate, column, since)
+    found = asked(
+        part, "failed in evaluate()", "column and since", instrument.evaluate, column, since
+    )
     if not isinstance(found, Evaluation):
-        refuse_answer(part, "evaluate()", found, "an Evaluation of scenarios.instruments.instrument")
+        refuse_answer(
+            part, "evaluate()", found, "an Evaluation of scenarios.instruments.instrument"
+        )
     try:
         np.asarray(found.columns, dtype=np.float64)
     except (TypeError, ValueError):
         refuse_answer(part, "evaluate()", found.columns, "columns of numbers")
     for figure, value in found.figures.items():
         if not isinstance(value, _FIGURE):
-            refuse_answer(part, f"figure '{figure}' of evaluate()", value, "a number, a truth value, text or None")
+            refuse_answer(
+                part,
+                f"figure '{figure}' of evaluate()",
+                value,
+                "a number, a truth value, text or None",
+            )
     demanded = (len(column("time_s")), len(instrument.COLUMNS))
     if np.shape(found.columns) != demanded:
         raise PluginError(
@@ -122,5 +144,7 @@ def evaluated(name: str, instrument: EvaluatedInstrument, column: Callable[[str]
         ("table", "TABLES", tables_of(instrument), found.tables),
     ):
         if other := [key for key in given if key not in declared]:
-            raise PluginError(f"{part}: evaluate() returned the {what} '{other[0]}', which {where} does not name; add it there")
+            raise PluginError(
+                f"{part}: evaluate() returned the {what} '{other[0]}', which {where} does not name; add it there"
+            )
     return found

@@ -23,24 +23,37 @@ def flight_history(plan: FlightPlan, record: FlightRecord) -> pd.DataFrame:
     def column(name: str) -> Array:
         return record.every_step[:, numbers[name]]
 
-    to_north, to_east = (column(f"reference_{axis}_m") - column(f"{axis}_m") for axis in ("north", "east"))
-    through_air = [column(f"velocity_{axis}_mps") - column(f"wind_{axis}_mps") for axis in ("north", "east")]
+    to_north, to_east = (
+        column(f"reference_{axis}_m") - column(f"{axis}_m") for axis in ("north", "east")
+    )
+    through_air = [
+        column(f"velocity_{axis}_mps") - column(f"wind_{axis}_mps") for axis in ("north", "east")
+    ]
     course = np.arctan2(through_air[1], through_air[0])
-    states: tuple[Array, ...] = relative_states(plan.steering.look_ahead, to_north, to_east, column("reference_course_rad"), course)
+    states: tuple[Array, ...] = relative_states(
+        plan.steering.look_ahead, to_north, to_east, column("reference_course_rad"), course
+    )
     names = (*record.columns, *RELATIVE_COLUMNS)
     wind = plan.world.weather.wind if plan.world else CALM
     if wind != CALM:
-        names, states = (*names, *WIND_COLUMNS), (*states, *wind.at(column("time_s"), column("altitude_m")))
+        names, states = (
+            (*names, *WIND_COLUMNS),
+            (*states, *wind.at(column("time_s"), column("altitude_m"))),
+        )
     # One table at once: to add columns to one takes five times as long.
     history = pd.DataFrame(np.column_stack([record.every_step, *states]), columns=list(names))
     place = plan.world.place if plan.world else None
     if place is not None and math.isfinite(place.latitude):
         # Metres are counted at the altitude that the flight is flown at.
         frame = LocalFrame(place.latitude, place.longitude, plan.altitude)
-        found = (np.degrees(angle) for angle in frame.to_geodetic(column("north_m"), column("east_m")))
+        found = (
+            np.degrees(angle) for angle in frame.to_geodetic(column("north_m"), column("east_m"))
+        )
         history = history.assign(**dict(zip(PLACE_COLUMNS, found, strict=False)))
     if place is not None and math.isfinite(place.utc):
-        history["time_utc"] = pd.to_datetime(np.round(1e3 * (place.utc + column("time_s"))), unit="ms", utc=True)
+        history["time_utc"] = pd.to_datetime(
+            np.round(1e3 * (place.utc + column("time_s"))), unit="ms", utc=True
+        )
     return history
 
 
@@ -49,6 +62,14 @@ def relative_states(
 ) -> tuple[Array, Array, Array, Array]:
     """Return delta, rho [m], phi_r and phi [rad] of many samples at once; parameters as of ``gnc.laws.delta.relative_state``."""
     delta = look_ahead.epsilon * (to_north**2 + to_east**2) + look_ahead.radius
-    z_north, z_east = to_north + delta * np.cos(reference_course), to_east + delta * np.sin(reference_course)
+    z_north, z_east = (
+        to_north + delta * np.cos(reference_course),
+        to_east + delta * np.sin(reference_course),
+    )
     z_course = np.arctan2(z_east, z_north)
-    return delta, np.hypot(z_north, z_east), wrapped(reference_course - z_course), wrapped(course - z_course)
+    return (
+        delta,
+        np.hypot(z_north, z_east),
+        wrapped(reference_course - z_course),
+        wrapped(course - z_course),
+    )

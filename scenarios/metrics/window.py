@@ -35,7 +35,10 @@ def window_figures(plan: FlightPlan, record: FlightRecord, *, window: float) -> 
     error, command, reference, wind_north, wind_east, vessel_north, vessel_east = (
         values[last]
         for values in (
-            np.hypot(column("reference_north_m") - column("north_m"), column("reference_east_m") - column("east_m")),
+            np.hypot(
+                column("reference_north_m") - column("north_m"),
+                column("reference_east_m") - column("east_m"),
+            ),
             column("heading_rate_command_rad_s"),
             column("reference_heading_rate_rad_s"),
             column("wind_north_mps"),
@@ -58,10 +61,15 @@ def window_figures(plan: FlightPlan, record: FlightRecord, *, window: float) -> 
         "guard_share": float(np.mean(column("guard")[last] > 0.0)),
         "crossings_per_minute": len(crossings) / minutes,
         "window_distance_min_m": float(np.min(np.linalg.norm(position[last], axis=1))),
-        "speed_ratio_mean": float(np.mean(np.hypot(vessel_north - wind_north, vessel_east - wind_east))) / plan.guidance.speed,
+        "speed_ratio_mean": float(
+            np.mean(np.hypot(vessel_north - wind_north, vessel_east - wind_east))
+        )
+        / plan.guidance.speed,
     }
     if crossings:
-        row["crossing_distance_mean_m"] = float(np.mean([crossing.distance for crossing in crossings]))
+        row["crossing_distance_mean_m"] = float(
+            np.mean([crossing.distance for crossing in crossings])
+        )
     return row
 
 
@@ -77,9 +85,19 @@ def measured_figures(row: Row, *, window: float) -> Row:
     """
     if "seconds_in_plume_s" not in row:
         return {}
-    minutes, noise = min(window, row["duration_s"]) / _SECONDS_PER_MINUTE, float(row.get("fsc_noise_percent", math.nan))
-    admitted = row["sulphur_quality"] != "C" and noise >= 0.0 and row["outcome"] != Outcome.AIRCRAFT_LOST.value
+    minutes, noise = (
+        min(window, row["duration_s"]) / _SECONDS_PER_MINUTE,
+        float(row.get("fsc_noise_percent", math.nan)),
+    )
+    admitted = (
+        row["sulphur_quality"] != "C"
+        and noise >= 0.0
+        and row["outcome"] != Outcome.AIRCRAFT_LOST.value
+    )
     information = 0.0
     if admitted:
         information = 1.0 / (noise**2 * minutes) if noise else math.nan
-    return {"plume_s_per_minute": row["seconds_in_plume_s"] / minutes, "sulphur_information_per_minute": information}
+    return {
+        "plume_s_per_minute": row["seconds_in_plume_s"] / minutes,
+        "sulphur_information_per_minute": information,
+    }

@@ -33,7 +33,8 @@ def steering_law(guidance: GuidanceConfig, **searched: float) -> SteeringLaw:
     given = guidance.model_extra or {}
     law: Any = STEERING_LAWS.get(guidance.law)
     values = {
-        name: searched.get(name, getattr(guidance, name, given.get(name, default))) for name, default in guidance.law_keys.items()
+        name: searched.get(name, getattr(guidance, name, given.get(name, default)))
+        for name, default in guidance.law_keys.items()
     }
     try:
         made: SteeringLaw = law(**values)
@@ -48,7 +49,9 @@ def given_steering(guidance: GuidanceConfig) -> Steering:
     return Steering(look_ahead=parameters, steering_max=guidance.steering_max_rad_s, bound=math.inf)
 
 
-def plan_steering(scenario: Scenario, heading_rate_max: float, reference_heading_rate: float) -> Steering:
+def plan_steering(
+    scenario: Scenario, heading_rate_max: float, reference_heading_rate: float
+) -> Steering:
     """Return the steering of a flight.
 
     Parameters
@@ -64,7 +67,9 @@ def plan_steering(scenario: Scenario, heading_rate_max: float, reference_heading
     g, speed = scenario.guidance, largest_speed(scenario)
     if g.tuning == "bounded":
         found = search_steering(scenario, heading_rate_max, reference_heading_rate)
-        return Steering(look_ahead=found.look_ahead, steering_max=found.steering_max, bound=found.bound)
+        return Steering(
+            look_ahead=found.look_ahead, steering_max=found.steering_max, bound=found.bound
+        )
     given = given_steering(g)
     if g.law != "cascade":
         return given
@@ -77,7 +82,9 @@ def plan_steering(scenario: Scenario, heading_rate_max: float, reference_heading
     return replace(given, bound=bound)
 
 
-def search_steering(scenario: Scenario, heading_rate_max: float, reference_heading_rate: float) -> BoundedSteering:
+def search_steering(
+    scenario: Scenario, heading_rate_max: float, reference_heading_rate: float
+) -> BoundedSteering:
     """Return the steering that converges fastest from the farthest start, while no state asks for more than omega_max.
 
     Parameters and errors are those of ``plan_steering``.

@@ -50,10 +50,17 @@ def check_declared(scenario: Scenario, vessel: VesselTruth) -> None:
     if not scenario.guidance.keepout_guard:
         return
     # A steady vessel does at any time what she does at first.
-    f, duration = scenario.following, 0.0 if type(vessel) is SteadyVessel else scenario.flight.duration_max_s
+    f, duration = (
+        scenario.following,
+        0.0 if type(vessel) is SteadyVessel else scenario.flight.duration_max_s,
+    )
     acceleration, speed = largest_acceleration(vessel, duration), largest_speed(vessel, duration)
     other = "fly another time of its file (place.utc)" if isinstance(vessel, AisVessel) else ""
-    scripted = "vessel.manoeuvres" if isinstance(vessel, ManoeuvringVessel) else f"vessel.track '{scenario.vessel.track}'"
+    scripted = (
+        "vessel.manoeuvres"
+        if isinstance(vessel, ManoeuvringVessel)
+        else f"vessel.track '{scenario.vessel.track}'"
+    )
     if acceleration > f.vessel_acceleration_mps2:
         raise InfeasibleError(
             f"the vessel accelerates by {_at_least(acceleration)} m/s2, changes of speed and course together; declared are at most"
@@ -100,18 +107,38 @@ def _check_reports(vessel: AisVessel, limits: VesselLimits, duration: float) -> 
             continue
         begins = int(np.searchsorted(times, report.time))
         age = np.concatenate([[max(0.0, -report.time)], times[begins:] - report.time])
-        way = np.vstack([vessel.motion(max(0.0, report.time))[:2], places[begins:]]) - (report.north, report.east)
-        velocity, allowed = np.array([report.velocity_north, report.velocity_east]), radius_after(limits, age)
+        way = np.vstack([vessel.motion(max(0.0, report.time))[:2], places[begins:]]) - (
+            report.north,
+            report.east,
+        )
+        velocity, allowed = (
+            np.array([report.velocity_north, report.velocity_east]),
+            radius_after(limits, age),
+        )
         drifted = "reports.velocity_sigma_mps and following.vessel_acceleration_mps2"
         _check_within(vessel, report, age, way - age[:, None] * velocity, allowed, drifted)
         if limits.speed_max < math.inf:
             by_speed = radius_by_speed(limits, age)
             # The guard keeps off it only where it is the smaller one. Nothing else checks the speed before the start.
             by_speed[by_speed >= allowed] = math.inf
-            _check_within(vessel, report, age, way, by_speed, f"following.vessel_speed_max_mps = {limits.speed_max:g}")
+            _check_within(
+                vessel,
+                report,
+                age,
+                way,
+                by_speed,
+                f"following.vessel_speed_max_mps = {limits.speed_max:g}",
+            )
 
 
-def _check_within(vessel: AisVessel, report: VesselReport, age: Array, off_centre: Array, allowed: Array, declared: str) -> None:
+def _check_within(
+    vessel: AisVessel,
+    report: VesselReport,
+    age: Array,
+    off_centre: Array,
+    allowed: Array,
+    declared: str,
+) -> None:
     """Raise an InfeasibleError where the track leaves a report's disc.
 
     Parameters
@@ -139,9 +166,14 @@ def _within_for_good(report: VesselReport, vessel: AisVessel, limits: VesselLimi
     e_p + e_v s <= k hypot(sigma_p, sigma_v s).
     """
     north, east, velocity_north, velocity_east = vessel.motion(report.time)
-    place, velocity = limits.deviations * limits.position_sigma, limits.deviations * limits.velocity_sigma
+    place, velocity = (
+        limits.deviations * limits.position_sigma,
+        limits.deviations * limits.velocity_sigma,
+    )
     if not (place > 0.0 and velocity > 0.0):
         return False
     wrong_place = math.hypot(report.north - north, report.east - east)
-    wrong_velocity = math.hypot(report.velocity_north - velocity_north, report.velocity_east - velocity_east)
+    wrong_velocity = math.hypot(
+        report.velocity_north - velocity_north, report.velocity_east - velocity_east
+    )
     return math.hypot(wrong_place / place, wrong_velocity / velocity) <= 1.0

@@ -12,11 +12,21 @@ from gnc.mission.standoff import StandoffParameters
 from gnc.parameters import GuidanceParameters, ReportedVessel
 from gnc.reference.reference import Orbit, PeriodicPath
 from gnc.safety.guard_parameters import GuardParameters
-from scenarios.margin.keepout_margin import KeepoutMargin, filter_parameters, tracking_level, vessel_limits, widest_tube
+from scenarios.margin.keepout_margin import (
+    KeepoutMargin,
+    filter_parameters,
+    tracking_level,
+    vessel_limits,
+    widest_tube,
+)
 from scenarios.margin.orbit_room import circle_distance, orbit_distance
 from scenarios.margin.tracking_spread import SpreadTable
 from scenarios.planning.air.dead_reckoning import drift_rate
-from scenarios.planning.air.estimated_wind import first_wind_error, navigation_parameters, wind_change
+from scenarios.planning.air.estimated_wind import (
+    first_wind_error,
+    navigation_parameters,
+    wind_change,
+)
 from scenarios.planning.air.flown_heights import check_not_outrun
 from scenarios.planning.bounded_steering import given_steering
 from scenarios.planning.declared_vessel import check_vessel
@@ -64,7 +74,11 @@ Spreads = Callable[[Scenario], SpreadTable | None]
 
 
 def following_flight(
-    scenario: Scenario, flight_id: str, noise: Noise, setup: VehicleSetup, spreads: SpreadTable | None
+    scenario: Scenario,
+    flight_id: str,
+    noise: Noise,
+    setup: VehicleSetup,
+    spreads: SpreadTable | None,
 ) -> FlightPlan:
     """Return a flight that follows a plume.
 
@@ -91,7 +105,9 @@ def following_flight(
         radius,
         turbulence=level,
         wind_change=wind_change(scenario, air, setup.altitude_error),
-        drift_rate=drift_rate(scenario, air, turn_time(scenario, setup.reversal), setup.altitude_error),
+        drift_rate=drift_rate(
+            scenario, air, turn_time(scenario, setup.reversal), setup.altitude_error
+        ),
     )
     oscillation = oscillation_at(g, scenario.reference, nu)
     nearer = satellite_noise(scenario, setup, oscillation.amplitude)
@@ -99,7 +115,9 @@ def following_flight(
     nearest = _nearest(scenario, guarded, widest, oscillation)
     farthest = max(radius + f.margin_min_m, nearest) + level
     reach = widest.reach(turn_time(scenario, setup.reversal))
-    margin = KeepoutMargin(tracking_sigma=sigma, total=farthest - radius, guard=guarded.allowance, reach=reach)
+    margin = KeepoutMargin(
+        tracking_sigma=sigma, total=farthest - radius, guard=guarded.allowance, reach=reach
+    )
     mission: FollowingParameters | StandoffParameters
     orbit: PeriodicPath
     if scenario.stands_off:
@@ -113,16 +131,27 @@ def following_flight(
         periods, mission = _following(scenario, setup, margin, vessel, further, guarded.drift_rate)
         climbed_to = nearest + further
     check_not_outrun(scenario, vessel, air, climbed_to)
-    start = sampled_start(scenario.start, generators.world, course=vessel.course(0.0), axis=plume.axis(0.0))
+    start = sampled_start(
+        scenario.start, generators.world, course=vessel.course(0.0), axis=plume.axis(0.0)
+    )
     fault = sampled_fault(scenario.fault, generators.world)
     weather = sampled_weather(scenario, air, generators.world)
     covered = flight.duration_max_s + TRACK_MARGIN
-    exhaust = exhaust_of(scenario, vessel, plume, weather.wind, duration=covered, generator=own_generator(noise, EXHAUST))
+    exhaust = exhaust_of(
+        scenario,
+        vessel,
+        plume,
+        weather.wind,
+        duration=covered,
+        generator=own_generator(noise, EXHAUST),
+    )
     outage = (fault.begins, fault.ends) if fault.kind == VESSEL_DATA else no_outage()
     received = None
     if not scenario.vessel_known:
         duration = flight.duration_max_s
-        received = received_reports(scenario.reports, vessel, duration=duration, outage=outage, generator=generators.reports)
+        received = received_reports(
+            scenario.reports, vessel, duration=duration, outage=outage, generator=generators.reports
+        )
     guard = guarded if g.keepout_guard else None
     # What the guard knows at the start: a report of a file may be minutes old by then, and any may be wrong.
     known = ReachableSet(limits)
@@ -158,7 +187,12 @@ def following_flight(
         ),
         sensing=Sensing(
             received=received,
-            errors=SensorErrors(scenario.sensors, steps=steps, time_step=1.0 / g.rate_hz, generator=generators.sensors),
+            errors=SensorErrors(
+                scenario.sensors,
+                steps=steps,
+                time_step=1.0 / g.rate_hz,
+                generator=generators.sensors,
+            ),
             reads_plume=f.plume == "estimated" or flight.until == "verdict",
             knows_axis=f.plume == "told",
         ),
@@ -177,12 +211,19 @@ def _nearest(scenario: Scenario, guard: GuardParameters, widest: Tube, oscillati
 
 
 def _following(
-    scenario: Scenario, setup: VehicleSetup, margin: KeepoutMargin, vessel: VesselTruth, further: float, drifting: float
+    scenario: Scenario,
+    setup: VehicleSetup,
+    margin: KeepoutMargin,
+    vessel: VesselTruth,
+    further: float,
+    drifting: float,
 ) -> tuple[tuple[float, ...], FollowingParameters]:
     """Return the periods of the orbit over nu [s], and how the plume is followed, ``further`` off [m] and ``drifting`` [m/s]."""
     # Before its orbits: a shape that cannot be steered says so, whatever else it cannot do beside a fast vessel.
     swing = swing_of(scenario.guidance, scenario.reference)
-    periods, widths = orbits(scenario.guidance, scenario.reference, scenario.following.speed_ratio_max)
+    periods, widths = orbits(
+        scenario.guidance, scenario.reference, scenario.following.speed_ratio_max
+    )
     return periods, following_parameters(
         scenario,
         setup,
@@ -209,7 +250,9 @@ def _guidance(
         speed=g.airspeed_mps,
         altitude=scenario.altitude,
         tracking=tracking,
-        airspeed_law=PaceHold(speed=g.airspeed_mps, hold=hold, turn_speed=setup.turning_airspeed(omega_max(g))),
+        airspeed_law=PaceHold(
+            speed=g.airspeed_mps, hold=hold, turn_speed=setup.turning_airspeed(omega_max(g))
+        ),
         airspeed_bandwidth=setup.airspeed_bandwidth,
         airspeed_overshoot=setup.airspeed_overshoot,
         navigation=navigation_parameters(scenario, setup),
@@ -244,7 +287,11 @@ def _check_plume(scenario: Scenario, wind: ApparentWind) -> None:
         )
     if scenario.plume_by_wind and wind.at_start < f.apparent_wind_min_mps:
         # Exhaust trails with the wind, whatever direction the plume is given.
-        given = ", or the plume a direction (plume.direction=given)" if scenario.emission.ship is None else ""
+        given = (
+            ", or the plume a direction (plume.direction=given)"
+            if scenario.emission.ship is None
+            else ""
+        )
         raise InfeasibleError(
             f"the apparent wind is {wind.at_start:.2f} m/s; below {f.apparent_wind_min_mps:g} m/s the plume has no direction:"
             f" give wind or vessel another speed{given}"

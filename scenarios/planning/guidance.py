@@ -86,13 +86,17 @@ def controlled_heading_rate(guidance: GuidanceConfig) -> float:
     return max(omega_max(guidance), heading_rate_for_bank(CONTROLLED_BANK, guidance.airspeed_mps))
 
 
-def tracking_parameters(scenario: Scenario, setup: VehicleSetup, steering: Steering | None = None) -> TrackingParameters:
+def tracking_parameters(
+    scenario: Scenario, setup: VehicleSetup, steering: Steering | None = None
+) -> TrackingParameters:
     """Return how a scenario's reference is tracked; with the steering that is given unless another one was found."""
     g, time_step = scenario.guidance, 1.0 / scenario.guidance.rate_hz
     epsilon, radius = (steering or given_steering(g)).look_ahead
     steering_max = steering.steering_max if steering else g.steering_max_rad_s
     return TrackingParameters(
-        law=steering_law(g, epsilon_per_m=epsilon, look_ahead_m=radius, steering_max_rad_s=steering_max),
+        law=steering_law(
+            g, epsilon_per_m=epsilon, look_ahead_m=radius, steering_max_rad_s=steering_max
+        ),
         heading_rate_max=omega_max(g) if g.command_limit else math.inf,
         time_step=time_step,
         # Commands are held for a step: half of it is lag.
@@ -125,7 +129,11 @@ def guard_parameters(
     """
     f, air = scenario.following, scenario.turbulence
     wander = math.sqrt(-2.0 * math.expm1(-turn_time(scenario, setup.reversal) / NAVIGATION_TIME))
-    speed_error = max(f.speed_error_mps, velocity_error(scenario, drift_rate)) + air.gust_speed_mps + wind_change
+    speed_error = (
+        max(f.speed_error_mps, velocity_error(scenario, drift_rate))
+        + air.gust_speed_mps
+        + wind_change
+    )
     failure = part_failure(scenario, setup)
     allowance = turbulence + (failure.glide_deviation if failure else 0.0)
     return GuardParameters(
@@ -140,7 +148,9 @@ def guard_parameters(
         speed_error=speed_error if scenario.follows else 0.0,
         drift_rate=drift_rate,
         allowance=allowance,
-        wander=NOISE_DEVIATIONS * scenario.sensors.position_sigma_m * wander if scenario.follows else 0.0,
+        wander=NOISE_DEVIATIONS * scenario.sensors.position_sigma_m * wander
+        if scenario.follows
+        else 0.0,
         turn_speed=setup.turning_airspeed(omega_max(scenario.guidance)),
         slowest=slowest_without_thrust(scenario, setup),
     )
@@ -168,8 +178,14 @@ def satellite_noise(scenario: Scenario, setup: VehicleSetup, fastest: float) -> 
             airspeed_bandwidth=setup.airspeed_bandwidth,
             noise_time=NAVIGATION_TIME,
         )
-    quarter = 0.5 * math.pi / omega_max(scenario.guidance) + setup.reversal.delay + setup.reversal.lag
-    return noise_allowance(share * noise.position_sigma_m, quarter * noise.velocity_sigma_mps, time_step=tracking.time_step)
+    quarter = (
+        0.5 * math.pi / omega_max(scenario.guidance) + setup.reversal.delay + setup.reversal.lag
+    )
+    return noise_allowance(
+        share * noise.position_sigma_m,
+        quarter * noise.velocity_sigma_mps,
+        time_step=tracking.time_step,
+    )
 
 
 def speed_hold(scenario: Scenario, setup: VehicleSetup) -> SpeedHold:
@@ -183,7 +199,9 @@ def speed_hold(scenario: Scenario, setup: VehicleSetup) -> SpeedHold:
     )
 
 
-def approach_parameters(scenario: Scenario, setup: VehicleSetup, radius: float) -> ApproachParameters:
+def approach_parameters(
+    scenario: Scenario, setup: VehicleSetup, radius: float
+) -> ApproachParameters:
     """Return the way to the centre of oscillation, round a keep-out area of some radius [m]."""
     g, f, fastest = scenario.guidance, scenario.following, omega_max(scenario.guidance)
     airspeed = g.airspeed_mps + TRANSIT_FRACTION * (setup.airspeed_max - g.airspeed_mps)

@@ -18,7 +18,9 @@ _PATH_ERROR_MAX = 0.05
 
 def omega_max(guidance: GuidanceConfig) -> float:
     """Return omega_max, the largest heading rate that the guidance may command [rad/s]."""
-    return guidance.heading_rate_max_rad_s or heading_rate_for_bank(math.radians(guidance.bank_deg), guidance.airspeed_mps)
+    return guidance.heading_rate_max_rad_s or heading_rate_for_bank(
+        math.radians(guidance.bank_deg), guidance.airspeed_mps
+    )
 
 
 def plan_interval(guidance: GuidanceConfig) -> int:
@@ -73,11 +75,26 @@ def check_recorded(scenario: Scenario) -> None:
     An aircraft has to roll first: at 5 Hz and 60 degrees of bank even a reversal at once would be seen to 4.2 cm.
     """
     g, rate = scenario.guidance, scenario.flight.log_rate_hz
-    if scenario.fidelity != "kinematic" or scenario.circles or (error := path_error_max(scenario, rate)) <= _PATH_ERROR_MAX:
+    if (
+        scenario.fidelity != "kinematic"
+        or scenario.circles
+        or (error := path_error_max(scenario, rate)) <= _PATH_ERROR_MAX
+    ):
         return
     steps = range(round(g.rate_hz / rate) - 1, 0, -1)
-    enough = next((g.rate_hz / n for n in steps if path_error_max(scenario, g.rate_hz / n) <= _PATH_ERROR_MAX), None)
-    remedy = "record and guide more often (guidance.rate_hz)" if enough is None else f"set it to {enough:g}"
+    enough = next(
+        (
+            g.rate_hz / n
+            for n in steps
+            if path_error_max(scenario, g.rate_hz / n) <= _PATH_ERROR_MAX
+        ),
+        None,
+    )
+    remedy = (
+        "record and guide more often (guidance.rate_hz)"
+        if enough is None
+        else f"set it to {enough:g}"
+    )
     raise InfeasibleError(
         f"flight.log_rate_hz is {rate:g} Hz; at {omega_max(g):.3g} rad/s and {g.airspeed_mps:.4g} m/s the path between two samples,"
         f" and with it keep-out figures, may be wrong by {error:.2g} m, and the limit is {_PATH_ERROR_MAX:g} m: {remedy}, or lower"

@@ -11,7 +11,12 @@ from scenarios.world.vessel import check_manoeuvres
 
 
 def plan_flight(
-    scenario: Scenario, *, flight_id: str, seed: int | Noise, setup: VehicleSetup, spreads: Spreads = lambda _: None
+    scenario: Scenario,
+    *,
+    flight_id: str,
+    seed: int | Noise,
+    setup: VehicleSetup,
+    spreads: Spreads = lambda _: None,
 ) -> FlightPlan:
     """Resolve one flight.
 

@@ -77,9 +77,16 @@ def oscillation_at(guidance: GuidanceConfig, reference: ReferenceConfig, nu: flo
     if isinstance(shape, Plain):
         for name in _OF_ORBIT:
             if not hasattr(orbit, name):
-                refuse_answer(part, f"design() at nu = {nu:.4g}", orbit, f"an orbit, with finite {', '.join(_OF_ORBIT)}")
+                refuse_answer(
+                    part,
+                    f"design() at nu = {nu:.4g}",
+                    orbit,
+                    f"an orbit, with finite {', '.join(_OF_ORBIT)}",
+                )
             if not is_number(found := getattr(orbit, name)):
-                refuse_answer(part, f"{name} of design() at nu = {nu:.4g}", found, "a finite number")
+                refuse_answer(
+                    part, f"{name} of design() at nu = {nu:.4g}", found, "a finite number"
+                )
     steps = orbit.crossing_interval * guidance.rate_hz
     if steps < STEPS_MIN:
         raise InfeasibleError(
@@ -108,7 +115,9 @@ def swing_of(guidance: GuidanceConfig, reference: ReferenceConfig) -> Swing:
         heading_rate=(1.0 - guidance.reserve) * omega_max(guidance),
         roll_rate_max=math.radians(guidance.roll_rate_max_deg_s),
     )
-    if isinstance(shape, Plain) and not all(callable(getattr(swing, name, None)) for name in _OF_SWING):
+    if isinstance(shape, Plain) and not all(
+        callable(getattr(swing, name, None)) for name in _OF_SWING
+    ):
         refuse_answer(part, "swing()", swing, f"courses, with the methods {', '.join(_OF_SWING)}")
     return swing
 
@@ -126,7 +135,9 @@ def orbits(
     return tuple(o.period for o in oscillations), tuple(o.half_widths() for o in oscillations)
 
 
-def distance_kept(guidance: GuidanceConfig, keepout: KeepoutConfig, orbit: Orbit, axis: PlumeAxis) -> float:
+def distance_kept(
+    guidance: GuidanceConfig, keepout: KeepoutConfig, orbit: Orbit, axis: PlumeAxis
+) -> float:
     """Return r_CO [m], at which an orbit keeps the tracking allowance from the keep-out area."""
     rule = distance_by_paper if guidance.placement == "paper" else distance_exact
     distance_min = keepout.radius_m + guidance.tracking_allowance_m
@@ -157,4 +168,6 @@ def circle(scenario: Scenario) -> CirclingReference:
             f" {least:.1f} m: widen the circle or raise omega_max"
         )
     start = ReferenceStart(north=0.0, east=0.0, course=0.0)
-    return CirclingReference(start, speed=speed, heading_rate=speed / radius, time_step=1.0 / scenario.guidance.rate_hz)
+    return CirclingReference(
+        start, speed=speed, heading_rate=speed / radius, time_step=1.0 / scenario.guidance.rate_hz
+    )

@@ -76,19 +76,26 @@ def scaled(scenario: Scenario, envelope: Envelope) -> Scenario:
     values = {key: value for key, value in flown.items() if not _is_set(scenario, key)}
     for key in scaled_keys(scenario):
         default, factor = _default(scenario, key), _SCALED[key](unit)
-        values[key] = tuple(x * factor for x in default) if isinstance(default, tuple) else default * factor
+        values[key] = (
+            tuple(x * factor for x in default) if isinstance(default, tuple) else default * factor
+        )
     return with_values(scenario, values)
 
 
 def scaled_keys(scenario: Scenario) -> list[str]:
     """Return the keys that ``scaled`` scales: those that the scenario does not set itself, of those with a length or a time."""
-    return [key for key in _SCALED if _default(scenario, key) is not None and not _is_set(scenario, key)]
+    return [
+        key for key in _SCALED if _default(scenario, key) is not None and not _is_set(scenario, key)
+    ]
 
 
 def scaled_law_defaults(envelope: Envelope) -> dict[str, float]:
     """Return the defaults of the project's own steering laws by their dotted keys, in SI units, scaled to an aircraft."""
     unit, defaults = units(envelope), GuidanceConfig()
-    return {f"guidance.{name}": getattr(defaults, name) * _SCALED[f"guidance.{name}"](unit) for name, _, _ in LAW_KEYS}
+    return {
+        f"guidance.{name}": getattr(defaults, name) * _SCALED[f"guidance.{name}"](unit)
+        for name, _, _ in LAW_KEYS
+    }
 
 
 def units(envelope: Envelope) -> ScaleFactors:

@@ -62,7 +62,9 @@ class PredictedSpreads:
         return self.tables[key]
 
 
-def predicted_spreads(scenarios: Iterable[Scenario], found: Designed | None, setup: VehicleSetup | None) -> PredictedSpreads:
+def predicted_spreads(
+    scenarios: Iterable[Scenario], found: Designed | None, setup: VehicleSetup | None
+) -> PredictedSpreads:
     """Return the predicted spread of each of some scenarios that has turbulence; of none without an aircraft."""
     if found is None or setup is None:
         return PredictedSpreads()
@@ -83,7 +85,11 @@ def predicted_spreads(scenarios: Iterable[Scenario], found: Designed | None, set
 
 def _key(scenario: Scenario, defaults: Mapping[str, float]) -> Key:
     planned = _planned_for(scenario, defaults)
-    return scenario.turbulence.level, planned.guidance.model_dump_json(), planned.reference.model_dump_json()
+    return (
+        scenario.turbulence.level,
+        planned.guidance.model_dump_json(),
+        planned.reference.model_dump_json(),
+    )
 
 
 def _planned_for(scenario: Scenario, defaults: Mapping[str, float]) -> Scenario:
@@ -92,16 +98,31 @@ def _planned_for(scenario: Scenario, defaults: Mapping[str, float]) -> Scenario:
     if law is None:
         return scenario
     # The mission has no part in the prediction, and not every law has every mission.
-    return with_values(scenario, {"guidance.law": law, **defaults, "guidance.mission": "follow", "following.margin_law": None})
+    return with_values(
+        scenario,
+        {
+            "guidance.law": law,
+            **defaults,
+            "guidance.mission": "follow",
+            "following.margin_law": None,
+        },
+    )
 
 
 def _spread_table(scenario: Scenario, found: Designed, setup: VehicleSetup) -> SpreadTable:
     schedule = found.design.schedule
-    air = low_altitude_turbulence(scenario.altitude, TURBULENCE[scenario.turbulence.level].wind_at_20ft)
-    tracking, hold, span = tracking_parameters(scenario, setup), speed_hold(scenario, setup), _wing_span(schedule.spec)
+    air = low_altitude_turbulence(
+        scenario.altitude, TURBULENCE[scenario.turbulence.level].wind_at_20ft
+    )
+    tracking, hold, span = (
+        tracking_parameters(scenario, setup),
+        speed_hold(scenario, setup),
+        _wing_span(schedule.spec),
+    )
     orbits = dict(_orbits(scenario))
     return SpreadTable(
-        speed_ratios=tuple(orbits), spreads=tracking_spreads(schedule, air, [*orbits.values()], tracking, hold, span=span)
+        speed_ratios=tuple(orbits),
+        spreads=tracking_spreads(schedule, air, [*orbits.values()], tracking, hold, span=span),
     )
 
 

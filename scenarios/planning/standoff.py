@@ -51,7 +51,10 @@ class VesselCircle:
 
     def periods(self, speed_ratio_max: float) -> tuple[float, ...]:
         """Return the periods at equal steps of nu from 0 to ``speed_ratio_max`` [s]."""
-        return tuple(replace(self, nu=nu).period for nu in np.linspace(0.0, speed_ratio_max, RATIO_STEPS + 1).tolist())
+        return tuple(
+            replace(self, nu=nu).period
+            for nu in np.linspace(0.0, speed_ratio_max, RATIO_STEPS + 1).tolist()
+        )
 
     @property
     def crossing_interval(self) -> float:
@@ -72,8 +75,14 @@ class VesselCircle:
         """Return where the reference is from the vessel, along its course and to its right [m], from right ahead on."""
         bearing = np.linspace(0.0, 2.0 * np.pi, _POINTS + 1)
         tangent = bearing + 0.5 * np.pi
-        slowness = self.radius / self.speed / (np.sqrt(1.0 - (self.nu * np.sin(tangent)) ** 2) - self.nu * np.cos(tangent))
-        moment = np.concatenate([[0.0], np.cumsum(0.5 * (slowness[1:] + slowness[:-1]) * np.diff(bearing))])
+        slowness = (
+            self.radius
+            / self.speed
+            / (np.sqrt(1.0 - (self.nu * np.sin(tangent)) ** 2) - self.nu * np.cos(tangent))
+        )
+        moment = np.concatenate(
+            [[0.0], np.cumsum(0.5 * (slowness[1:] + slowness[:-1]) * np.diff(bearing))]
+        )
         at = np.interp(np.mod(np.asarray(time), moment[-1]), moment, bearing)
         return self.radius * np.cos(at), self.radius * np.sin(at)
 
@@ -89,7 +98,11 @@ def vessel_circle(scenario: Scenario, nu: float, least: float) -> VesselCircle:
     ------
     InfeasibleError : the circle is tighter than omega_max allows
     """
-    circle = VesselCircle(nu=nu, speed=scenario.guidance.airspeed_mps, radius=scenario.reference.standoff_radius_m or least)
+    circle = VesselCircle(
+        nu=nu,
+        speed=scenario.guidance.airspeed_mps,
+        radius=scenario.reference.standoff_radius_m or least,
+    )
     fastest = omega_max(scenario.guidance)
     if circle.amplitude > fastest:
         smallest = max(least, circle.radius * circle.amplitude / fastest)
@@ -100,7 +113,9 @@ def vessel_circle(scenario: Scenario, nu: float, least: float) -> VesselCircle:
     return circle
 
 
-def standoff_parameters(scenario: Scenario, setup: VehicleSetup, radius: float, height: AxisHeight) -> StandoffParameters:
+def standoff_parameters(
+    scenario: Scenario, setup: VehicleSetup, radius: float, height: AxisHeight
+) -> StandoffParameters:
     """Return how a vessel is circled at a radius [m], at the height of the plume's axis there."""
     g = scenario.guidance
     return StandoffParameters(

@@ -16,7 +16,9 @@ from scenarios.schema.sections.flight import StartConfig
 from scenarios.world.vessel import VesselTruth
 
 
-def sampled_start(start: StartConfig, generator: np.random.Generator, *, course: float, axis: float) -> Start:
+def sampled_start(
+    start: StartConfig, generator: np.random.Generator, *, course: float, axis: float
+) -> Start:
     """Return a start: given, or sampled about the plume's axis.
 
     What is given is sampled all the same, so that nothing else of the flight depends on what is.
@@ -40,7 +42,9 @@ def sampled_start(start: StartConfig, generator: np.random.Generator, *, course:
     if start.range_m is not None:
         distance = start.range_m
     bearing = axis + (aspect if start.aspect_deg is None else math.radians(start.aspect_deg))
-    return Start(north=distance * math.cos(bearing), east=distance * math.sin(bearing), course=flown)
+    return Start(
+        north=distance * math.cos(bearing), east=distance * math.sin(bearing), course=flown
+    )
 
 
 def placed(ahead: float, right: float, course: float) -> tuple[float, float]:
@@ -49,7 +53,9 @@ def placed(ahead: float, right: float, course: float) -> tuple[float, float]:
     return ahead * cos_c - right * sin_c, ahead * sin_c + right * cos_c
 
 
-def first_reports(vessel: VesselTruth, received: list[tuple[float, VesselReport]] | None) -> list[VesselReport]:
+def first_reports(
+    vessel: VesselTruth, received: list[tuple[float, VesselReport]] | None
+) -> list[VesselReport]:
     """Return the reports that the flight begins with; of a vessel that is known exactly, her motion."""
     if received is None:
         return [VesselReport(0.0, *vessel.motion(0.0))]
@@ -82,7 +88,9 @@ def check_start(
     """
     if guard is None:
         return
-    fastest = max(math.hypot(tube.velocity_north - wind[0], tube.velocity_east - wind[1]) for tube in vessel)
+    fastest = max(
+        math.hypot(tube.velocity_north - wind[0], tube.velocity_east - wind[1]) for tube in vessel
+    )
     away = airspeed * math.cos(min(math.pi, guard.heading_rate_max * guard.lag))
     if away <= fastest:
         raise InfeasibleError(

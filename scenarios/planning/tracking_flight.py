@@ -23,7 +23,9 @@ from scenarios.world.weather import STILL_AIR
 from scenarios.world.world import World, place_of, plume_of, vessel_of
 
 
-def circling_flight(scenario: Scenario, flight_id: str, noise: Noise, setup: VehicleSetup) -> FlightPlan:
+def circling_flight(
+    scenario: Scenario, flight_id: str, noise: Noise, setup: VehicleSetup
+) -> FlightPlan:
     """Return a flight that tracks a circle, without a vessel.
 
     Raises
@@ -36,14 +38,18 @@ def circling_flight(scenario: Scenario, flight_id: str, noise: Noise, setup: Veh
     return FlightPlan.of(
         scenario,
         flight_id,
-        guidance=_guidance(scenario, setup, steering, DirectParameters(reference=reference), altitude=altitude),
+        guidance=_guidance(
+            scenario, setup, steering, DirectParameters(reference=reference), altitude=altitude
+        ),
         steering=steering,
         start=sampled_start(scenario.start, start_generator(noise), course=0.0, axis=math.pi),
         period=2.0 * math.pi / reference.heading_rate,
     )
 
 
-def tracking_flight(scenario: Scenario, flight_id: str, noise: Noise, setup: VehicleSetup) -> FlightPlan:
+def tracking_flight(
+    scenario: Scenario, flight_id: str, noise: Noise, setup: VehicleSetup
+) -> FlightPlan:
     """Return a flight beside a steady vessel that is known exactly, in still air.
 
     Raises
@@ -56,29 +62,44 @@ def tracking_flight(scenario: Scenario, flight_id: str, noise: Noise, setup: Veh
     course, (_, _, v_north, v_east) = vessel.course(0.0), vessel.motion(0.0)
     nu = scenario.nu_over_ground
     oscillation = oscillation_at(g, scenario.reference, nu)
-    axis = PlumeAxis(heading=math.radians(scenario.plume.heading_deg), elevation=math.radians(scenario.plume.elevation_deg))
+    axis = PlumeAxis(
+        heading=math.radians(scenario.plume.heading_deg),
+        elevation=math.radians(scenario.plume.elevation_deg),
+    )
     distance = distance_kept(g, scenario.keepout, oscillation, axis)
     ahead, right, above = centre_of_oscillation(distance, axis)
     steering = plan_steering(scenario, omega_max(g), oscillation.amplitude)
-    start = sampled_start(scenario.start, start_generator(noise), course=course, axis=plume.axis(0.0))
+    start = sampled_start(
+        scenario.start, start_generator(noise), course=course, axis=plume.axis(0.0)
+    )
     guard = None
     # The disc that the keep-out area cuts out at the height of the flight, or lower if the aircraft sinks in a turn.
     lowest = max(0.0, abs(above) - setup.altitude_error)
-    disc = radius if scenario.keepout.shape == "cylinder" else math.sqrt(max(0.0, radius**2 - lowest**2))
+    disc = (
+        radius
+        if scenario.keepout.shape == "cylinder"
+        else math.sqrt(max(0.0, radius**2 - lowest**2))
+    )
     if g.keepout_guard and disc > 0.0:
         guard = guard_parameters(scenario, setup, disc)
         known = Tube(0.0, 0.0, 0.0, v_north, v_east)
         # The guard must leave the orbit alone, and what the UAV may stray from it: an orbit that lies nearer moves off.
         nearest = math.hypot(ahead, right) - oscillation.half_widths()[0] - g.tracking_allowance_m
-        needed = orbit_distance(guard, known, oscillation, (math.cos(axis.heading), math.sin(axis.heading)))
+        needed = orbit_distance(
+            guard, known, oscillation, (math.cos(axis.heading), math.sin(axis.heading))
+        )
         distance += max(0.0, needed - nearest) / math.cos(axis.elevation)
         ahead, right, above = centre_of_oscillation(distance, axis)
-        check_start(start, guard, (known,), wind=(0.0, 0.0), airspeed=g.airspeed_mps, keepout_radius=radius)
+        check_start(
+            start, guard, (known,), wind=(0.0, 0.0), airspeed=g.airspeed_mps, keepout_radius=radius
+        )
     orbit = joined_orbit(scenario, oscillation, course)
     joining = None
     if g.approach:
         approach = approach_parameters(scenario, setup, disc)
-        joining = Joining(approach=approach, orbit=orbit, plan_interval=plan_interval(scenario.guidance))
+        joining = Joining(
+            approach=approach, orbit=orbit, plan_interval=plan_interval(scenario.guidance)
+        )
     mission = DirectParameters(
         reference=orbit.reference(math.radians(g.phase_deg), *placed(ahead, right, course)),
         centre=SteadyCentre(*placed(ahead, right, course), nu),

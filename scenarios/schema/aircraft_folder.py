@@ -33,7 +33,10 @@ def aircraft_from(directory: Path, name: str, overrides: Sequence[str]) -> list[
     if demanded is None and (usual := load_document(name, overrides).get(KEY)) in _names(directory):
         demanded = str(usual)
     path = folder_of(directory, demanded)
-    return [*(override for override, (key, _) in zip(overrides, keys, strict=True) if key != KEY), f"{KEY}={json.dumps(path)}"]
+    return [
+        *(override for override, (key, _) in zip(overrides, keys, strict=True) if key != KEY),
+        f"{KEY}={json.dumps(path)}",
+    ]
 
 
 def folder_of(directory: Path, name: str | None) -> str:

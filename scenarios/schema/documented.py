@@ -49,7 +49,11 @@ class DocumentedSection:
     keys: tuple[DocumentedKey, ...]
 
 
-_REFUSING = {"sweep": (*ONE_POINT, "paper"), "cases": tuple(ONE_POINT), "comparison": tuple(ONE_POINT)}
+_REFUSING = {
+    "sweep": (*ONE_POINT, "paper"),
+    "cases": tuple(ONE_POINT),
+    "comparison": tuple(ONE_POINT),
+}
 """Studies that refuse a section of several points; ``paper`` has cases, beside which there is no sweep."""
 
 
@@ -62,9 +66,14 @@ def documented_sections(kind: type[BaseModel] = Scenario) -> tuple[DocumentedSec
 
 def documented_keys() -> list[DocumentedKey]:
     """Return every key of every kind of scenario file, in the order of the files, and then those that parts bring."""
-    of_schemas = [key for kind, _ in _KINDS for section in documented_sections(kind) for key in section.keys]
+    of_schemas = [
+        key for kind, _ in _KINDS for section in documented_sections(kind) for key in section.keys
+    ]
     # What a part brings needs the part, and perhaps more.
-    of_parts = [replace(key, conditions=(*key.conditions, *_conditions(key.key, FLIGHT_STUDIES))) for key in documented_part_keys()]
+    of_parts = [
+        replace(key, conditions=(*key.conditions, *_conditions(key.key, FLIGHT_STUDIES)))
+        for key in documented_part_keys()
+    ]
     return [*of_schemas, *of_parts]
 
 
@@ -93,7 +102,15 @@ def _sections(
         elif issubclass(model, RootModel):
             own.append(_free_table(key, model, studies))
         else:
-            below.append(_sections(model, f"{key}.0" if is_listed else key, model.__doc__ or "", studies, listed=is_listed))
+            below.append(
+                _sections(
+                    model,
+                    f"{key}.0" if is_listed else key,
+                    model.__doc__ or "",
+                    studies,
+                    listed=is_listed,
+                )
+            )
     yield DocumentedSection(name=name, meaning=line(meaning), listed=listed, keys=tuple(own))
     for sections in below:
         yield from sections
@@ -107,7 +124,9 @@ def _documented(key: str, field: FieldInfo, studies: tuple[str, ...]) -> Documen
         meaning=meaning,
         unit=unit if _is_number(field.annotation) else "",
         range=_range(field.annotation, tuple(field.metadata)),
-        default=None if required else to_jsonable_python(field.get_default(call_default_factory=True)),
+        default=None
+        if required
+        else to_jsonable_python(field.get_default(call_default_factory=True)),
         required=required,
         studies=_studies(key, studies),
         conditions=_conditions(key, studies),
@@ -137,27 +156,41 @@ def _studies(key: str, studies: tuple[str, ...]) -> tuple[str, ...]:
     rules = [
         rule
         for rule in RULES
-        if named_by(key, rule.keys) and any(rule.acts(scenario) for scenarios in plain.values() for scenario in scenarios)
+        if named_by(key, rule.keys)
+        and any(rule.acts(scenario) for scenarios in plain.values() for scenario in scenarios)
     ]
-    return tuple(study for study in studies if any(all(rule.acts(scenario) for rule in rules) for scenario in plain[study]))
+    return tuple(
+        study
+        for study in studies
+        if any(all(rule.acts(scenario) for rule in rules) for scenario in plain[study])
+    )
 
 
 @functools.cache
 def _plain_scenarios(study: str) -> tuple[Scenario, ...]:
     """Return scenarios of a study without anything else, by both methods: a key may be of one of them alone."""
     plain = Scenario(title=study, draws=(DrawConfig(key="wind.speed_mps", uniform=(0.0, 1.0)),))
-    return tuple(plain.model_copy(update={"study": study, "method": method}) for method in ("plain", "subset"))
+    return tuple(
+        plain.model_copy(update={"study": study, "method": method})
+        for method in ("plain", "subset")
+    )
 
 
 def _conditions(key: str, studies: tuple[str, ...]) -> tuple[str, ...]:
     if studies != FLIGHT_STUDIES:
         return ()
     # What a message says of the scenario at hand is not said of every one.
-    return tuple(dict.fromkeys(re.sub("; here [^:]*", "", rule.user) for rule in RULES if named_by(key, rule.keys)))
+    return tuple(
+        dict.fromkeys(
+            re.sub("; here [^:]*", "", rule.user) for rule in RULES if named_by(key, rule.keys)
+        )
+    )
 
 
 def _is_number(annotation: Any) -> bool:
-    return annotation in (int, float) or any(_is_number(part) for part in typing.get_args(annotation))
+    return annotation in (int, float) or any(
+        _is_number(part) for part in typing.get_args(annotation)
+    )
 
 
 def _range(annotation: Any, metadata: tuple[Any, ...] = ()) -> str:
@@ -172,7 +205,11 @@ def _range(annotation: Any, metadata: tuple[Any, ...] = ()) -> str:
         several = "a list" if parts[-1] is Ellipsis else f"{len(parts)} values"
         return f"{several}, {'each ' if len(each) == 1 else ''}{'; '.join(each)}"
     if parts and origin is not dict:
-        named = ("a table" if typing.get_origin(part) is dict else _range(part, metadata) for part in parts if part is not NoneType)
+        named = (
+            "a table" if typing.get_origin(part) is dict else _range(part, metadata)
+            for part in parts
+            if part is not NoneType
+        )
         return " or ".join(dict.fromkeys(named))
     names = {
         dict: "keys with dots and their values",
@@ -185,18 +222,32 @@ def _range(annotation: Any, metadata: tuple[Any, ...] = ()) -> str:
 
 def _constraints(metadata: tuple[Any, ...]) -> tuple[Any, ...]:
     """Return the constraints in the metadata of an annotated type, which may be wrapped in a field."""
-    return tuple(inner for outer in metadata for inner in (outer.metadata if isinstance(outer, FieldInfo) else (outer,)))
+    return tuple(
+        inner
+        for outer in metadata
+        for inner in (outer.metadata if isinstance(outer, FieldInfo) else (outer,))
+    )
 
 
 def _limits(annotation: Any, metadata: tuple[Any, ...]) -> str:
     """Return the limits of a number in words."""
     limits = {
-        name: getattr(of, name) for of in metadata for name in ("ge", "gt", "le", "lt") if getattr(of, name, None) is not None
+        name: getattr(of, name)
+        for of in metadata
+        for name in ("ge", "gt", "le", "lt")
+        if getattr(of, name, None) is not None
     }
     kind = {int: "a whole number", float: "a number"}.get(annotation, "any value")
     words = {"ge": "from", "gt": "above", "le": "to", "lt": "below"}
     return " ".join(
-        (kind, *(f"{words[name]} {limits[name]:{',' if annotation is int else ',g'}}" for name in words if name in limits))
+        (
+            kind,
+            *(
+                f"{words[name]} {limits[name]:{',' if annotation is int else ',g'}}"
+                for name in words
+                if name in limits
+            ),
+        )
     )
 
 

@@ -86,7 +86,11 @@ def _part_key(key: str, of: "Field[Any]", described: str) -> DocumentedKey:
     number = type(of.default) in (int, float)
     ranges: dict[type[Any], str] = {bool: "true or false", str: "text"}
     choices = of.metadata["choices"]() if "choices" in of.metadata else ()
-    limits = "a number from {:g} to {:g}".format(*of.metadata["limits"]) if "limits" in of.metadata else "a number"
+    limits = (
+        "a number from {:g} to {:g}".format(*of.metadata["limits"])
+        if "limits" in of.metadata
+        else "a number"
+    )
     return DocumentedKey(
         key=key,
         meaning=_sentence(meaning),
@@ -101,7 +105,10 @@ def _part_key(key: str, of: "Field[Any]", described: str) -> DocumentedKey:
 def described_fields(made: type[Any]) -> dict[str, tuple[str, str]]:
     """Return meaning and unit of each field of a dataclass, by its docstring; the unit of a number without one is empty."""
     told = {name: split_unit(described) for name, described in _described(made).items()}
-    return {name: (_sentence(meaning), "" if unit == DIMENSIONLESS else unit) for name, (meaning, unit) in told.items()}
+    return {
+        name: (_sentence(meaning), "" if unit == DIMENSIONLESS else unit)
+        for name, (meaning, unit) in told.items()
+    }
 
 
 def _sentence(text: str) -> str:

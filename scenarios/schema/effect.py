@@ -21,7 +21,9 @@ _OF_LAW = ("guidance.law", "guidance.tuning")
 """Keys of which it is looked at what they are set to; others count as making what depends on them act."""
 
 
-def refuse_unused(scenario: Scenario, given: Iterable[str], *, overridden: Scenario | None = None) -> None:
+def refuse_unused(
+    scenario: Scenario, given: Iterable[str], *, overridden: Scenario | None = None
+) -> None:
     """Refuse keys that no part of a scenario's flights uses, those among them that are swept or sampled.
 
     Parameters
@@ -48,7 +50,9 @@ def refuse_unused(scenario: Scenario, given: Iterable[str], *, overridden: Scena
             )
     for section, key in _varied_by(scenario, given):
         if key == "fidelity":
-            raise InputError("key 'fidelity' has no effect in sweep; leave it out there, and set fidelity to 'both'")
+            raise InputError(
+                "key 'fidelity' has no effect in sweep; leave it out there, and set fidelity to 'both'"
+            )
         # What is said of an unknown key comes when it is set.
         if _is_known(key) and (user := unused(scenario, key)):
             raise InputError(f"key '{key}' in {section} has no effect here: it is used by {user}")
@@ -57,7 +61,14 @@ def refuse_unused(scenario: Scenario, given: Iterable[str], *, overridden: Scena
 def _put_aside_by(scenario: Scenario, key: str) -> str | None:
     """Return the swept or sampled key that puts a dotted key aside in every flight: one above it, or one in its place."""
     varied = (*scenario.sweep.root, *(draw.key for draw in scenario.draws))
-    return next((other for other in varied if key.startswith(f"{other}.") or other in _DISPLACED_BY.get(key, ())), None)
+    return next(
+        (
+            other
+            for other in varied
+            if key.startswith(f"{other}.") or other in _DISPLACED_BY.get(key, ())
+        ),
+        None,
+    )
 
 
 def unused(scenario: Scenario, key: str) -> str:
@@ -78,7 +89,9 @@ def _acts_in_some(rule: Rule, scenario: Scenario, depends: tuple[str, ...]) -> b
             continue
         if not all(key in _OF_LAW and isinstance(value, str) for key, value in other.items()):
             return True
-        guidance = scenario.guidance.model_copy(update={key.partition(".")[2]: value for key, value in other.items()})
+        guidance = scenario.guidance.model_copy(
+            update={key.partition(".")[2]: value for key, value in other.items()}
+        )
         try:
             acts = rule.acts(scenario.model_copy(update={"guidance": guidance}))
         except PluginError:
@@ -116,7 +129,9 @@ def _varied_by(scenario: Scenario, given: Iterable[str]) -> Iterator[tuple[str, 
     for key in scenario.sweep.root:
         if "sweep" in names or f"sweep.{key}" in names:
             yield "sweep", key
-    if any(name == "draws" or (name.startswith("draws.") and name.endswith(".key")) for name in names):
+    if any(
+        name == "draws" or (name.startswith("draws.") and name.endswith(".key")) for name in names
+    ):
         yield from (("draws", draw.key) for draw in scenario.draws)
 
 

@@ -31,7 +31,9 @@ class Rule:
 
 
 _TRACKS = "the mission that tracks the paper's reference; here the reference is steered: set guidance.mission to 'track'"
-_FOLLOWS = "the mission that follows the vessel with a steered reference: set guidance.mission to 'follow'"
+_FOLLOWS = (
+    "the mission that follows the vessel with a steered reference: set guidance.mission to 'follow'"
+)
 _VESSEL = "an oscillation beside a vessel; here reference.path is 'circle'"
 OPERATIONAL = (*UNSTEADY, "plume.direction")
 """Keys from which the mission follows where guidance.mission is not given."""
@@ -55,7 +57,10 @@ def _trims(scenario: Scenario) -> bool:
 
 def _smoke(key: str) -> Test:
     """Return whether the project's smoke has a setting, or another plume model has whatever a key of that name means there."""
-    return lambda s: bool(s.plume.model != "fluctuating" or (s.plume.model_extra or {}).get(key, getattr(PlumeSettings, key)))
+    return lambda s: bool(
+        s.plume.model != "fluctuating"
+        or (s.plume.model_extra or {}).get(key, getattr(PlumeSettings, key))
+    )
 
 
 def _law(*laws: str) -> Test:
@@ -89,7 +94,10 @@ A steered reference is kept pace with by the look-ahead, whatever the law (``gnc
 
 def _also_of_own_laws(key: str, used: Test) -> Test:
     """Return whether one of the project's laws uses a key, or one that is added has a field of its name."""
-    return lambda s: used(s) or (not _law("cascade", "lyapunov", "line_of_sight")(s) and key in s.guidance.law_keys)
+    return lambda s: (
+        used(s)
+        or (not _law("cascade", "lyapunov", "line_of_sight")(s) and key in s.guidance.law_keys)
+    )
 
 
 RULES = (

@@ -13,7 +13,12 @@ from scenarios.schema.sections.world import SOURCE_HEIGHT_MIN
 DESIGNED_FOR = ("aircraft", "guidance.airspeed_mps", "flight.altitude_m")
 """Keys for which the autopilot is worked out once for a run: they cannot be sampled or swept."""
 
-_DESIGN_HEIGHT = ("plume.source_height_m", "emission.ship", "flight.altitude_min_m", "flight.altitude_max_m")
+_DESIGN_HEIGHT = (
+    "plume.source_height_m",
+    "emission.ship",
+    "flight.altitude_min_m",
+    "flight.altitude_max_m",
+)
 """The same where the altitude at the start follows from them: without ``flight.altitude_m``, and the second without the first."""
 
 
@@ -25,7 +30,17 @@ ONE_POINT = {
 """Studies of one point, and why."""
 
 
-_WITHOUT_EFFECT = ("criteria.", "statistics.", "search.", "subset.", "arena.", "patrol.", "comparison.", "sweep.", "cases.")
+_WITHOUT_EFFECT = (
+    "criteria.",
+    "statistics.",
+    "search.",
+    "subset.",
+    "arena.",
+    "patrol.",
+    "comparison.",
+    "sweep.",
+    "cases.",
+)
 """Sections on which no flight depends: to sweep or sample them would count the same flights several times."""
 
 
@@ -86,7 +101,10 @@ def check_mission(scenario: ScenarioKeys) -> None:
     if scenario.guidance.mission == "track" and (keys := unsteady(scenario)):
         raise ValueError(f"key '{keys[0]}' has no effect here: it is used by {FOLLOWING}")
     if scenario.stands_off and scenario.finds:
-        needs = {"following.plume": (scenario.following.plume, "predicted"), "flight.until": (scenario.flight.until, "flown")}
+        needs = {
+            "following.plume": (scenario.following.plume, "predicted"),
+            "flight.until": (scenario.flight.until, "flown"),
+        }
         needs = {key: values for key, values in needs.items() if values[0] != values[1]}
         given = " and ".join(f"{key} '{value}'" for key, (value, _) in needs.items())
         remedy = " and ".join(f"{key} to '{other}'" for key, (_, other) in needs.items())
@@ -101,9 +119,15 @@ def check_source(scenario: ScenarioKeys) -> None:
     if scenario.emission.ship is None:
         return
     height = scenario.source_height
-    given = "stack_height of emission.ship" if scenario.plume.source_height_m is None else "plume.source_height_m"
+    given = (
+        "stack_height of emission.ship"
+        if scenario.plume.source_height_m is None
+        else "plume.source_height_m"
+    )
     if height < SOURCE_HEIGHT_MIN:
-        raise ValueError(f"{given} is {height:g} m; a plume begins at {SOURCE_HEIGHT_MIN:g} m at least: set plume.source_height_m")
+        raise ValueError(
+            f"{given} is {height:g} m; a plume begins at {SOURCE_HEIGHT_MIN:g} m at least: set plume.source_height_m"
+        )
     if scenario.plume.model == "fluctuating" and height > SOURCE_HEIGHT_MAX:
         raise ValueError(
             f"{given} is {height:g} m beside emission.ship; exhaust of plume.model 'fluctuating' leaves a funnel at"
@@ -114,7 +138,11 @@ def check_source(scenario: ScenarioKeys) -> None:
 def check_start_altitude(scenario: ScenarioKeys) -> None:
     """Refuse a start below or above the altitudes at which exhaust is crossed: it was flown outside of them until it got there."""
     flight, altitude = scenario.flight, scenario.flight.altitude_m
-    if scenario.emission.ship is None or altitude is None or flight.altitude_min_m <= altitude <= flight.altitude_max_m:
+    if (
+        scenario.emission.ship is None
+        or altitude is None
+        or flight.altitude_min_m <= altitude <= flight.altitude_max_m
+    ):
         return
     side, limit = "above", "raise flight.altitude_max_m"
     if altitude < flight.altitude_min_m:
@@ -128,19 +156,25 @@ def check_start_altitude(scenario: ScenarioKeys) -> None:
 def check_one_point(scenario: ScenarioKeys) -> None:
     """Refuse several points in a study of one."""
     if scenario.several_points and (why := ONE_POINT.get(scenario.study)):
-        raise ValueError(f"study is '{scenario.study}' beside a sweep, cases, a comparison or two vehicles; {why}: remove them")
+        raise ValueError(
+            f"study is '{scenario.study}' beside a sweep, cases, a comparison or two vehicles; {why}: remove them"
+        )
 
 
 def check_tables(scenario: ScenarioKeys) -> None:
     """Refuse comparisons that have the name of flights that count, and tables that set what no flight depends on."""
-    apart = [of.name for of in scenario.comparison.variants] + [case.name for case in scenario.cases if case.comparison]
+    apart = [of.name for of in scenario.comparison.variants] + [
+        case.name for case in scenario.cases if case.comparison
+    ]
     if STUDY in apart:
         raise ValueError(
             f"a comparison is called '{STUDY}', as flights that count are, and would count as they do; give it another name"
         )
     if twice := next((name for name in apart if apart.count(name) > 1), None):
         count = apart.count(twice)
-        raise ValueError(f"{count} comparisons are called '{twice}', and would count as one; give each a name of its own")
+        raise ValueError(
+            f"{count} comparisons are called '{twice}', and would count as one; give each a name of its own"
+        )
     for kind, name, keys in _tables_of(scenario):
         for key in keys:
             if _is_of_run(scenario, key) and not f"{key}.".startswith(_SET_IN[kind]):
@@ -152,7 +186,9 @@ def check_tables(scenario: ScenarioKeys) -> None:
 
 def _is_of_run(scenario: ScenarioKeys, key: str) -> bool:
     """Return whether a key is outside of sections, or of a section on which no flight depends."""
-    outside = key in type(scenario).model_fields and not isinstance(getattr(scenario, key), BaseModel)
+    outside = key in type(scenario).model_fields and not isinstance(
+        getattr(scenario, key), BaseModel
+    )
     return outside or f"{key}.".startswith(_WITHOUT_EFFECT)
 
 
@@ -166,7 +202,9 @@ def _tables_of(scenario: ScenarioKeys) -> Iterator[tuple[str, str, Collection[st
 def check_subset(scenario: ScenarioKeys) -> None:
     """Refuse subset simulation of what is not one probability."""
     if not scenario.draws:
-        raise ValueError("method is 'subset' and draws is empty; give the random variables, or set method to 'plain'")
+        raise ValueError(
+            "method is 'subset' and draws is empty; give the random variables, or set method to 'plain'"
+        )
     if scenario.several_points:
         raise ValueError(
             "method is 'subset' beside a sweep, cases, a comparison or two vehicles; it estimates one probability: give each"
@@ -197,16 +235,24 @@ def check_draws(scenario: ScenarioKeys) -> None:
         if keys.count(key) > 1:
             raise ValueError(f"draws has '{key}' {keys.count(key)} times; give a key once")
         if "." not in key and key != "flight_seed":
-            raise ValueError(f"draws has '{key}', the same for all flights; give keys of sections, as in wind.speed_mps")
+            raise ValueError(
+                f"draws has '{key}', the same for all flights; give keys of sections, as in wind.speed_mps"
+            )
         _check_varied("draws", key, known=type(scenario).model_fields)
         if key in map(swept_key, scenario.sweep.root):
             raise ValueError(f"'{key}' is in sweep and in draws; give it in one of them")
     if {"nu", swept_key("nu")} <= scenario.sweep.root.keys():
-        raise ValueError("sweep has 'nu' and 'vessel.speed_ratio', which are the same; give one of them")
+        raise ValueError(
+            "sweep has 'nu' and 'vessel.speed_ratio', which are the same; give one of them"
+        )
     for key in [*keys, *scenario.sweep.root]:
         if any(at_or_below(key, of) for of in DESIGNED_FOR):
             raise ValueError(f"'{key}' {_DESIGNED_ONCE} it: give each value a run of its own")
-        if key.startswith(_DESIGN_HEIGHT) and scenario.flight.altitude_m is None and not _height_given(scenario, key):
+        if (
+            key.startswith(_DESIGN_HEIGHT)
+            and scenario.flight.altitude_m is None
+            and not _height_given(scenario, key)
+        ):
             raise ValueError(
                 f"'{key}' {_DESIGNED_ONCE} the altitude at the start, which is the height of the funnel here: give"
                 " flight.altitude_m, or each value a run of its own"
@@ -243,7 +289,11 @@ def _check_varied(section: str, key: str, known: Collection[str]) -> None:
             " flight_seed instead, or set flights to the number of flights"
         )
     of_draws = section == "draws" and key.startswith("draws.")
-    if of_draws or key.startswith(_WITHOUT_EFFECT) or (key in known and key not in _SWEPT_BESIDE_SECTIONS):
+    if (
+        of_draws
+        or key.startswith(_WITHOUT_EFFECT)
+        or (key in known and key not in _SWEPT_BESIDE_SECTIONS)
+    ):
         raise ValueError(
             f"{section} has '{key}', which sets nothing of a flight: the same flights would be flown and counted for each value;"
             " take keys that flights depend on, as wind.speed_mps, and give each value of this one a run of its own"

@@ -62,7 +62,11 @@ def suggestion(kind: type[BaseModel], key: str) -> str:
     known = [name.split(".") for name in known_keys(kind)]
     siblings = [name[-1] for name in known if name[:-1] == section]
     # A key without its section, such as speed_mps, is likelier than another key that is spelt similarly.
-    found = [".".join(name) for name in known if name[-1] == last and "0" not in name] if not parents else []
+    found = (
+        [".".join(name) for name in known if name[-1] == last and "0" not in name]
+        if not parents
+        else []
+    )
     if not found and (close := nearest(last, siblings)):
         found = [".".join([*parents, close])]
     if found:
@@ -82,7 +86,9 @@ def explanation(error: ValidationError, kind: type[BaseModel]) -> str:
     entries = error.errors()
     key, more = key_of(entries[0]), len({key_of(entry) for entry in entries}) - 1
     # A criterion may be false: that it is not judged.
-    switch = any(key_of(entry) == key and entry["msg"] == "Input should be False" for entry in entries[1:])
+    switch = any(
+        key_of(entry) == key and entry["msg"] == "Input should be False" for entry in entries[1:]
+    )
     others = f" (and {more} more key{'s' * (more > 1)})" if more else ""
     return f"{_explained(key, entries[0], kind)}{', or false' if switch else ''}{others}"
 
@@ -132,7 +138,11 @@ def _own_words(key: str, text: str, section: object) -> str:
 def _of_field(kind: type[BaseModel], key: str) -> dict[str, Any]:
     """Return unit and default of a dotted key, as far as the schema has it."""
     field = _field(kind, key.split("."))
-    return {"unit": split_unit(line(field.description or ""))[1], "default": field.default} if field else {}
+    return (
+        {"unit": split_unit(line(field.description or ""))[1], "default": field.default}
+        if field
+        else {}
+    )
 
 
 def _field(kind: type[BaseModel], parts: Sequence[str]) -> FieldInfo | None:
@@ -155,12 +165,24 @@ def _list_example(kind: type[BaseModel], key: str, value: object) -> str:
     """
     parts = key.split(".")
     if entry := entry_model(kind, parts):
-        needed = {name: example_value(field) for name, field in entry.model_fields.items() if field.is_required()}
+        needed = {
+            name: example_value(field)
+            for name, field in entry.model_fields.items()
+            if field.is_required()
+        }
         return f"[{{ {', '.join(f'{name} = {json.dumps(of)}' for name, of in needed.items())} }}]"
     field = _field(kind, parts)
-    lists = [of for of in _with_members(field.annotation) if typing.get_origin(of) is tuple] if field else []
+    lists = (
+        [of for of in _with_members(field.annotation) if typing.get_origin(of) is tuple]
+        if field
+        else []
+    )
     members = typing.get_args(lists[0]) if lists else ()
-    if any(of is str or typing.get_origin(of) is typing.Literal for member in members for of in _with_members(member)):
+    if any(
+        of is str or typing.get_origin(of) is typing.Literal
+        for member in members
+        for of in _with_members(member)
+    ):
         return json.dumps([value if isinstance(value, str) and value else "name"])
     number = isinstance(value, int | float) and not isinstance(value, bool)
     if members and Ellipsis not in members:
@@ -176,7 +198,11 @@ def _with_members(annotation: Any) -> list[Any]:
 def split_unit(description: str) -> tuple[str, str]:
     """Split "Meaning [unit]; more." into the meaning and the unit; empty without one."""
     found = re.search(r"\s*\[([^\]]+)\]", description)
-    return (description, "") if found is None else (description[: found.start()] + description[found.end() :], found[1])
+    return (
+        (description, "")
+        if found is None
+        else (description[: found.start()] + description[found.end() :], found[1])
+    )
 
 
 def line(text: str) -> str:
@@ -201,7 +227,13 @@ def example_value(field: FieldInfo) -> object:
     """Return a value that a required key of an entry may have: only to show how it is written."""
     if field.examples:
         return field.examples[0]
-    return {} if typing.get_origin(field.annotation) is dict else "name" if field.annotation is str else 100
+    return (
+        {}
+        if typing.get_origin(field.annotation) is dict
+        else "name"
+        if field.annotation is str
+        else 100
+    )
 
 
 def models_in(annotation: Any) -> Iterator[tuple[type[BaseModel], bool]]:

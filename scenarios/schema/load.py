@@ -17,7 +17,16 @@ from common.spelling import did_you_mean
 from scenarios.errors import InputError
 from scenarios.schema.effect import refuse_unused
 from scenarios.schema.keys import explanation, key_of
-from scenarios.schema.overrides import Document, apply_override, as_toml, given_keys, merged, parse_override, set_value, tabled
+from scenarios.schema.overrides import (
+    Document,
+    apply_override,
+    as_toml,
+    given_keys,
+    merged,
+    parse_override,
+    set_value,
+    tabled,
+)
 from scenarios.schema.parts import refuse_missing, with_absolute_files
 from scenarios.schema.scenario import Scenario
 from scenarios.schema.sections.convergence import ConvergenceScenario
@@ -65,7 +74,9 @@ def is_flight(name: str) -> bool:
     return path.parent.name == FLIGHTS and is_file(path.parents[1] / MANIFEST)
 
 
-def load_study(name: str | Document, overrides: Sequence[str] = (), *, refusing: bool = True) -> AnyStudy:
+def load_study(
+    name: str | Document, overrides: Sequence[str] = (), *, refusing: bool = True
+) -> AnyStudy:
     """Read a study by catalog name or file path, or take it from a document.
 
     Parameters
@@ -90,7 +101,9 @@ def load_study(name: str | Document, overrides: Sequence[str] = (), *, refusing:
         # Keys of the file have to act in what the file alone says: an override may well put one of them aside.
         own, whole = _given(name)
         refuse_unused(alone := checked(whole, Scenario), given_keys(own))
-        refuse_unused(scenario, {parse_override(override)[0] for override in overrides}, overridden=alone)
+        refuse_unused(
+            scenario, {parse_override(override)[0] for override in overrides}, overridden=alone
+        )
     read_logo(scenario.report)
     return scenario
 
@@ -139,7 +152,9 @@ def load_document(name: str | Document, overrides: Sequence[str] = ()) -> Docume
 def _refuse_unknown(sections: set[str]) -> None:
     """Refuse what is neither a key of a list of trials nor one of its trials."""
     for section in sorted(sections - {*Scenario.model_fields, "nu"}):
-        guess = did_you_mean(section, TrialList.model_fields) or did_you_mean(section, Scenario.model_fields)
+        guess = did_you_mean(section, TrialList.model_fields) or did_you_mean(
+            section, Scenario.model_fields
+        )
         known = f"; known are {', '.join(TrialList.model_fields)}, and the keys of each trial's scenario"
         raise InputError(f"unknown key '{section}'{guess or known}")
 
@@ -174,10 +189,14 @@ def scenario_path(name: str, folder: Path | None = None, *, extended: bool = Fal
         return path
     if is_file((path.parent if path.name == FLIGHTS else path) / MANIFEST):
         run = Path(name).parent if path.name == FLIGHTS else Path(name)
-        raise InputError(f"'{run}' is a run, not a scenario; to replay one of its flights, give {run / FLIGHTS}/ID")
+        raise InputError(
+            f"'{run}' is a run, not a scenario; to replay one of its flights, give {run / FLIGHTS}/ID"
+        )
     guess = did_you_mean(Path(name).stem if name.endswith(".toml") else name, known)
     what = f"no scenario file '{name}'" if name.endswith(".toml") else f"unknown scenario '{name}'"
-    raise InputError(f"{what}{guess or ';'} give the path of a TOML file or one of: {', '.join(known)}")
+    raise InputError(
+        f"{what}{guess or ';'} give the path of a TOML file or one of: {', '.join(known)}"
+    )
 
 
 def _given(scenario: str | Document) -> tuple[Document, Document]:
@@ -193,9 +212,15 @@ def _read(path: Path, extended_by: tuple[Path, ...] = ()) -> Document:
     """Return the document in a file, with that of the scenario that it extends."""
     if path.resolve() in [other.resolve() for other in extended_by]:
         circle = " -> ".join(other.name for other in (*extended_by, path))
-        raise InputError(f"{extended_by[-1]}: extends goes in a circle: {circle}; remove one of them")
+        raise InputError(
+            f"{extended_by[-1]}: extends goes in a circle: {circle}; remove one of them"
+        )
     document, base = _own(path)
-    return document if base is None else merged(_base(base, path.parent, path, (*extended_by, path)), document)
+    return (
+        document
+        if base is None
+        else merged(_base(base, path.parent, path, (*extended_by, path)), document)
+    )
 
 
 def _base(base: str, folder: Path, where: object, extended_by: tuple[Path, ...]) -> Document:
@@ -205,7 +230,9 @@ def _base(base: str, folder: Path, where: object, extended_by: tuple[Path, ...])
     except InputError as error:
         raise InputError(f"{where}: extends: {error}") from None
     # What a description says of one scenario is not so of another that changes its keys.
-    return tabled({key: value for key, value in _read(path, extended_by).items() if key != "description"})
+    return tabled(
+        {key: value for key, value in _read(path, extended_by).items() if key != "description"}
+    )
 
 
 def _own(path: Path) -> tuple[Document, str | None]:
@@ -216,7 +243,9 @@ def _own(path: Path) -> tuple[Document, str | None]:
     except ValueError as error:
         raise InputError(f"{path}: not valid TOML: {error}; fix the file") from None
     except OSError as error:
-        raise InputError(f"{path}: cannot be read: {error.strerror}; check the path and its permissions") from None
+        raise InputError(
+            f"{path}: cannot be read: {error.strerror}; check the path and its permissions"
+        ) from None
     return _resolved(given, path.parent, path)
 
 
@@ -230,7 +259,9 @@ def _resolved(given: Document, folder: Path, where: object) -> tuple[Document, s
     if isinstance(study, str):
         document["study"] = FORMER_WORDS.get(study, study)
     if not (base is None or base is False or isinstance(base, str)):
-        raise InputError(f"{where}: extends is {base!r}; give one catalog name or one path of a TOML file, or false for no base")
+        raise InputError(
+            f"{where}: extends is {base!r}; give one catalog name or one path of a TOML file, or false for no base"
+        )
     return document, None if base is False else base
 
 
@@ -251,7 +282,9 @@ def _kind(document: Document) -> type[Any]:
         raise InputError(f"study is {study!r}; it must be one of {', '.join(KINDS)}")
     if study in KINDS or is_file_part(study) or study in announced("study"):
         return KINDS.get(study, Scenario)
-    raise InputError(f"study is {study!r}{did_you_mean(study, KINDS) or ';'} it must be one of {', '.join(KINDS)}, or FILE.py:NAME")
+    raise InputError(
+        f"study is {study!r}{did_you_mean(study, KINDS) or ';'} it must be one of {', '.join(KINDS)}, or FILE.py:NAME"
+    )
 
 
 def checked(document: Mapping[str, Any], kind: type[Study]) -> Study:
@@ -267,14 +300,21 @@ def checked(document: Mapping[str, Any], kind: type[Study]) -> Study:
 def sweeps_speed_ratio(document: Mapping[str, Any]) -> bool:
     """Return whether a document sets the speed ratio in its sweep or in its cases."""
     cases = [case.get("set") for case in document.get("cases", ()) if isinstance(case, dict)]
-    return any(isinstance(of, dict) and ({"nu", "sweep.nu"} & of.keys()) for of in (document.get("sweep"), *cases))
+    return any(
+        isinstance(of, dict) and ({"nu", "sweep.nu"} & of.keys())
+        for of in (document.get("sweep"), *cases)
+    )
 
 
 def _unknown_nu(document: Mapping[str, Any], nu: object) -> str:
     """Return what to say of ``nu``, which is no key: the one that sets the speed ratio here."""
     if isinstance(nu, list):
         return f"unknown key 'nu'; did you mean 'sweep.nu={as_toml(nu)}'?"
-    key = f"sweep.nu=[{as_toml(nu)}]" if sweeps_speed_ratio(document) else f"vessel.speed_ratio={as_toml(nu)}"
+    key = (
+        f"sweep.nu=[{as_toml(nu)}]"
+        if sweeps_speed_ratio(document)
+        else f"vessel.speed_ratio={as_toml(nu)}"
+    )
     return f"unknown key 'nu'; did you mean '{key}'?"
 
 
@@ -283,14 +323,20 @@ def with_values(scenario: Scenario, values: Mapping[str, object]) -> Scenario:
     if not values:
         return scenario
     if own := [key for key in values if key.partition(".")[0] == "report"]:
-        raise InputError(f"'{own[0]}' varies from flight to flight; a report is of all flights: set it once, for the scenario")
+        raise InputError(
+            f"'{own[0]}' varies from flight to flight; a report is of all flights: set it once, for the scenario"
+        )
     document = scenario.model_dump()
     if "guidance.law" in values:
         # Keys that only the other law has, such as those of a steering law that is added, go with it.
         for key in scenario.guidance.keys_lost_with(values["guidance.law"]):
             del document["guidance"][key]
     for name in ("plume", "payload"):
-        changed = {key.partition(".")[2]: value for key, value in values.items() if key.startswith(f"{name}.")}
+        changed = {
+            key.partition(".")[2]: value
+            for key, value in values.items()
+            if key.startswith(f"{name}.")
+        }
         for key in getattr(scenario, name).keys_lost_with(changed):
             del document[name][key]
     for key, value in values.items():

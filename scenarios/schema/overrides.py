@@ -28,7 +28,9 @@ def parse_override(override: str) -> tuple[str, object]:
     """
     key, equals, text = override.partition("=")
     if not equals or not key.strip():
-        raise InputError(f"--set '{override}' is not of the form key=value, e.g. --set guidance.preview=false")
+        raise InputError(
+            f"--set '{override}' is not of the form key=value, e.g. --set guidance.preview=false"
+        )
     try:
         document = tomllib.loads(f"value = {text}")
     except tomllib.TOMLDecodeError as error:
@@ -38,7 +40,9 @@ def parse_override(override: str) -> tuple[str, object]:
             ) from None
         value = text
     except RecursionError:
-        raise InputError(f"--set {key.strip()}: value {text.strip()[:20]}... has too many brackets within each other") from None
+        raise InputError(
+            f"--set {key.strip()}: value {text.strip()[:20]}... has too many brackets within each other"
+        ) from None
     except ValueError:
         # Python reads no whole number of more than some thousand digits.
         raise InputError(
@@ -51,7 +55,9 @@ def parse_override(override: str) -> tuple[str, object]:
                 f"--set {key.strip()}: a line break, and {next(iter(document))!r} after it; give each key a --set of its own"
             )
     if key.strip() == "extends":
-        raise InputError(f"--set '{override}': extends stands in a scenario file; name the scenario to fly instead")
+        raise InputError(
+            f"--set '{override}': extends stands in a scenario file; name the scenario to fly instead"
+        )
     return key.strip(), value
 
 
@@ -72,7 +78,12 @@ def apply_override(document: Document, key: str, value: object, kind: type[BaseM
     """
     given = document.get("cases")
     cases = [case for case in given if isinstance(case, dict)] if isinstance(given, list) else []
-    tables = [case[name] for case in cases for name in ("set", "set_kinematic") if isinstance(case.get(name), dict)]
+    tables = [
+        case[name]
+        for case in cases
+        for name in ("set", "set_kinematic")
+        if isinstance(case.get(name), dict)
+    ]
     setting = [values for values in tables if key in values]
     if setting and key.startswith("sweep."):
         # Cases have a speed ratio each, and no sweep beside them.
@@ -81,13 +92,19 @@ def apply_override(document: Document, key: str, value: object, kind: type[BaseM
         return
     set_value(document, key, value, kind)
     for values in tables:
-        for name in [name for name in values if displaced(swept_key(name.removeprefix("sweep.")), [key])]:
+        for name in [
+            name for name in values if displaced(swept_key(name.removeprefix("sweep.")), [key])
+        ]:
             del values[name]
     if isinstance(swept := document.get("sweep"), dict):
         document["sweep"] = _without(swept, lambda name: _ends_sweep(key, swept_key(name)))
     draws = document.get("draws", [])
     if key != "draws" and isinstance(draws, list):
-        document["draws"] = [draw for draw in draws if not (isinstance(draw, dict) and _gives_way(str(draw.get("key")), key))]
+        document["draws"] = [
+            draw
+            for draw in draws
+            if not (isinstance(draw, dict) and _gives_way(str(draw.get("key")), key))
+        ]
         if not draws and "draws" in document:
             del document["draws"]
 
@@ -137,7 +154,11 @@ def set_value(document: Document, dotted: str, value: object, kind: type[BaseMod
             child = section[key]
         else:
             key = name
-            if parts[depth + 1].isdecimal() and not section.get(name) and entry_model(kind, parts[: depth + 1]):
+            if (
+                parts[depth + 1].isdecimal()
+                and not section.get(name)
+                and entry_model(kind, parts[: depth + 1])
+            ):
                 section[name] = []
             child = section.setdefault(name, {})
         if isinstance(child, tuple):
@@ -145,11 +166,17 @@ def set_value(document: Document, dotted: str, value: object, kind: type[BaseMod
         if not isinstance(child, dict | list):
             raise InputError(f"unknown key '{dotted}'; '{name}' is a value, not a section")
         section = child
-    last: Any = _index(section, parts, len(parts) - 1, value, kind) if isinstance(section, list) else parts[-1]
+    last: Any = (
+        _index(section, parts, len(parts) - 1, value, kind)
+        if isinstance(section, list)
+        else parts[-1]
+    )
     section[last] = value
 
 
-def _index(entries: list[Any], parts: list[str], depth: int, value: object, kind: type[BaseModel]) -> int:
+def _index(
+    entries: list[Any], parts: list[str], depth: int, value: object, kind: type[BaseModel]
+) -> int:
     """Return the index that a part of a dotted key names.
 
     Raises
@@ -163,11 +190,19 @@ def _index(entries: list[Any], parts: list[str], depth: int, value: object, kind
     model = entry_model(kind, parents)
     if entries or model is None:
         entry = "entry" if len(entries) == 1 else "entries"
-        raise InputError(f"{message}has {len(entries)} {entry}, numbered from 0, and '{name}' is not one of them")
+        raise InputError(
+            f"{message}has {len(entries)} {entry}, numbered from 0, and '{name}' is not one of them"
+        )
     given = {".".join(parts[depth + 1 :]): value} if depth + 1 < len(parts) else {}
-    needed = {key: example_value(field) for key, field in model.model_fields.items() if field.is_required() and key not in given}
+    needed = {
+        key: example_value(field)
+        for key, field in model.model_fields.items()
+        if field.is_required() and key not in given
+    }
     items = ", ".join(f"{key}={as_toml(item)}" for key, item in (needed | given).items())
-    raise InputError(f"{message}has no entries; add one with --set '{'.'.join(parents)}=[{{{items}}}]'")
+    raise InputError(
+        f"{message}has no entries; add one with --set '{'.'.join(parents)}=[{{{items}}}]'"
+    )
 
 
 def as_toml(value: object) -> str:
@@ -189,7 +224,9 @@ def as_toml(value: object) -> str:
         return f"[{', '.join(map(as_toml, value))}]"
     if isinstance(value, Mapping):
         return f"{{{', '.join(f'{_toml_key(str(key))}={as_toml(item)}' for key, item in value.items())}}}"
-    raise InputError(f"value is {value!r}; a scenario has numbers, words, truth values, times, lists and tables alone")
+    raise InputError(
+        f"value is {value!r}; a scenario has numbers, words, truth values, times, lists and tables alone"
+    )
 
 
 def _toml_key(key: str) -> str:
@@ -202,7 +239,9 @@ def merged(base: Mapping[str, Any], own: Mapping[str, Any]) -> Document:
     result = dict(base)
     for key, value in own.items():
         below = result.get(key)
-        result[key] = merged(below, value) if isinstance(below, dict) and isinstance(value, dict) else value
+        result[key] = (
+            merged(below, value) if isinstance(below, dict) and isinstance(value, dict) else value
+        )
     return result
 
 

@@ -43,7 +43,12 @@ def part_names(scenario: Scenario) -> Iterator[tuple[str, str]]:
         "search.methods": scenario.search.methods,
         "payload.instruments": scenario.payload.instruments,
     }
-    drawn = [(draw.key, choice) for draw in scenario.draws if draw.key in named for choice in draw.choice or ()]
+    drawn = [
+        (draw.key, choice)
+        for draw in scenario.draws
+        if draw.key in named
+        for choice in draw.choice or ()
+    ]
     for key, value in [*named.items(), *drawn]:
         if isinstance(value, list | tuple):
             yield from ((key, str(name)) for name in value)
@@ -72,15 +77,24 @@ def with_absolute_files(value: Any, folder: Path, key: str = "") -> Any:
         for name in value:
             if not isinstance(name, str):
                 where, kind = f"'{key}'" if key else "the scenario", type(name).__name__
-                raise InputError(f"{where} has the key {name!r}, a value of {kind}; keys are words in text")
+                raise InputError(
+                    f"{where} has the key {name!r}, a value of {kind}; keys are words in text"
+                )
         # A random variable has its key beside its choices.
         named = str(value.get("key", ""))
-        return {name: with_absolute_files(below, folder, named if name == "choice" else name) for name, below in value.items()}
+        return {
+            name: with_absolute_files(below, folder, named if name == "choice" else name)
+            for name, below in value.items()
+        }
     if isinstance(value, list):
         return [with_absolute_files(below, folder, key) for below in value]
-    if isinstance(value, str) and ((value and last == _PICTURE) or (key == _TRIALS and value.endswith(".toml"))):
+    if isinstance(value, str) and (
+        (value and last == _PICTURE) or (key == _TRIALS and value.endswith(".toml"))
+    ):
         return os.path.normpath(folder.absolute() / value)
-    if isinstance(value, str) and (is_file_part(value) or (last in _DATA and is_data_file(value)) or names_folder(last, value)):
+    if isinstance(value, str) and (
+        is_file_part(value) or (last in _DATA and is_data_file(value)) or names_folder(last, value)
+    ):
         return os.path.normpath(folder.absolute() / value)
     return value
 
@@ -99,8 +113,15 @@ def refuse_missing(key: str, value: Any, absolute: Any) -> None:
     """
     given, found = (of if isinstance(of, list) else [of] for of in (value, absolute))
     for name, path in zip(given, found, strict=True):
-        if isinstance(path, str) and path != name and is_file_part(path) and not is_file(file_of(path)):
-            raise InputError(f"{key}: {file_of(path)}: there is no such file; check the path, relative to the current directory")
+        if (
+            isinstance(path, str)
+            and path != name
+            and is_file_part(path)
+            and not is_file(file_of(path))
+        ):
+            raise InputError(
+                f"{key}: {file_of(path)}: there is no such file; check the path, relative to the current directory"
+            )
 
 
 def names_folder(key: str, name: str) -> bool:

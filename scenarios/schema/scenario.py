@@ -28,10 +28,17 @@ class Scenario(ScenarioKeys):
                 " set reference.path to 'oscillation', or put it into a case of its own"
             )
         if self.circles and self.criteria.required == "keep_out":
-            raise ValueError("criteria.required is 'keep_out', and a circle has no area to keep out of; set it to 'criteria'")
+            raise ValueError(
+                "criteria.required is 'keep_out', and a circle has no area to keep out of; set it to 'criteria'"
+            )
         if self.fidelity == "six_dof" and not self.guidance.command_limit:
-            raise ValueError("guidance.command_limit is false; an aircraft cannot turn so fast: set fidelity to 'kinematic'")
-        if not (self.guidance.command_limit or self.follows or self.circles) and self.guidance.approach:
+            raise ValueError(
+                "guidance.command_limit is false; an aircraft cannot turn so fast: set fidelity to 'kinematic'"
+            )
+        if (
+            not (self.guidance.command_limit or self.follows or self.circles)
+            and self.guidance.approach
+        ):
             raise ValueError(
                 "guidance.command_limit is false and guidance.approach true; the way to the orbit has turns at the limit:"
                 " set guidance.approach to false"
@@ -51,7 +58,9 @@ class Scenario(ScenarioKeys):
     @model_validator(mode="after")
     def _law_has_the_task(self) -> "Scenario":
         law = self.guidance.law
-        if not self.circles and (reason := law_refusal(law, ON_CIRCLE if self.stands_off else ON_OSCILLATION)):
+        if not self.circles and (
+            reason := law_refusal(law, ON_CIRCLE if self.stands_off else ON_OSCILLATION)
+        ):
             raise ValueError(f"guidance.law is '{law}': {reason}")
         return self
 
@@ -59,7 +68,11 @@ class Scenario(ScenarioKeys):
     def _starts_outside(self) -> "Scenario":
         radius, start = self.keepout.radius_m, self.start
         # A default distance is scaled to the aircraft later, and checked then.
-        to_be_scaled = start.range_m is None and "distance_m" not in start.model_fields_set and self.aircraft != DEFAULT_AIRCRAFT
+        to_be_scaled = (
+            start.range_m is None
+            and "distance_m" not in start.model_fields_set
+            and self.aircraft != DEFAULT_AIRCRAFT
+        )
         if self.circles:
             return self
         if start.place_m is not None:
@@ -72,7 +85,9 @@ class Scenario(ScenarioKeys):
         else:
             nearest, where = start.distance_m[0], "start.distance_m begins at"
         if nearest <= radius:
-            raise ValueError(f"{where} {nearest:g} m; it must exceed keepout.radius_m, {radius:g} m")
+            raise ValueError(
+                f"{where} {nearest:g} m; it must exceed keepout.radius_m, {radius:g} m"
+            )
         return self
 
     @model_validator(mode="after")
@@ -99,7 +114,11 @@ class Scenario(ScenarioKeys):
 
     @model_validator(mode="after")
     def _track_has_its_own_speed(self) -> "Scenario":
-        given = [key for key in ("nu", "vessel.speed_ratio", "vessel.speed_mps") if key in self.sweep.root]
+        given = [
+            key
+            for key in ("nu", "vessel.speed_ratio", "vessel.speed_mps")
+            if key in self.sweep.root
+        ]
         if self.vessel.from_file and given:
             raise ValueError(
                 f"sweep has {given[0]} beside vessel.track, a file that the vessel's speed comes from; leave one of them out"
@@ -112,11 +131,17 @@ class Scenario(ScenarioKeys):
         if len(set(names)) < len(names):
             raise ValueError(f"cases are named {', '.join(names)}; give each a name of its own")
         if self.cases and self.sweep.root:
-            raise ValueError(f"sweep has {', '.join(self.sweep.root)} beside {len(names)} cases; give one of the two")
+            raise ValueError(
+                f"sweep has {', '.join(self.sweep.root)} beside {len(names)} cases; give one of the two"
+            )
         if (points := math.prod(map(len, self.sweep.root.values()))) > POINTS_MAX:
-            raise ValueError(f"sweep has {points} points; the most is {POINTS_MAX}: give fewer values, or sample keys at random")
+            raise ValueError(
+                f"sweep has {points} points; the most is {POINTS_MAX}: give fewer values, or sample keys at random"
+            )
         if self.study == "paper" and not self.cases:
-            raise ValueError("study is 'paper' without cases; give it cases, or set study to 'flights'")
+            raise ValueError(
+                "study is 'paper' without cases; give it cases, or set study to 'flights'"
+            )
         return self
 
     @model_validator(mode="after")

@@ -113,7 +113,11 @@ class ScenarioKeys(Section):
         """Return whether the mission follows what it estimates: where that says so, or air or vessel are not steady and known."""
         if self.guidance.mission is not None:
             return self.guidance.mission != "track"
-        return bool(self.unsteady_keys) or self.plume.model != "straight" or self.plume.direction == "apparent_wind"
+        return (
+            bool(self.unsteady_keys)
+            or self.plume.model != "straight"
+            or self.plume.direction == "apparent_wind"
+        )
 
     @property
     def unsteady_keys(self) -> tuple[str, ...]:
@@ -159,19 +163,27 @@ class ScenarioKeys(Section):
         flight, height = self.flight, self.source_height
         if flight.altitude_m is not None:
             return flight.altitude_m
-        return height if self.emission.ship is None else flight.altitude_beside(height, self.turbulence.level)
+        return (
+            height
+            if self.emission.ship is None
+            else flight.altitude_beside(height, self.turbulence.level)
+        )
 
     @property
     def declared_faults(self) -> frozenset[str]:
         """Return the kinds of faults that its flights may have, and those that they declare beside."""
-        drawn = [value for draw in self.draws if draw.key == "fault.kind" for value in draw.choice or ()]
+        drawn = [
+            value for draw in self.draws if draw.key == "fault.kind" for value in draw.choice or ()
+        ]
         varied = [*map(str, drawn), *map(str, self.sweep.root.get("fault.kind", ()))]
         return frozenset({self.fault.kind, *self.fault.declared, *varied} - {"none"})
 
     @property
     def plume_by_wind(self) -> bool:
         """Return whether the plume trails behind the vessel's motion through the air."""
-        return self.plume.direction == "apparent_wind" or (self.plume.direction is None and self.follows)
+        return self.plume.direction == "apparent_wind" or (
+            self.plume.direction is None and self.follows
+        )
 
     @property
     def vessel_speed(self) -> float:
@@ -189,4 +201,7 @@ class ScenarioKeys(Section):
     def several_points(self) -> bool:
         """Return whether its experiment has points that differ otherwise than at random: by a sweep, cases, a comparison or two
         vehicles."""
-        return bool(self.sweep.root or self.cases or self.comparison.variants) or self.fidelity == "both"
+        return (
+            bool(self.sweep.root or self.cases or self.comparison.variants)
+            or self.fidelity == "both"
+        )

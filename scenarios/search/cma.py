@@ -29,7 +29,9 @@ class CovarianceMatrixAdaptation:
     space, settings, generator : as of ``SEARCH_METHODS``
     """
 
-    def __init__(self, space: Space, settings: SearchSettings, generator: np.random.Generator) -> None:
+    def __init__(
+        self, space: Space, settings: SearchSettings, generator: np.random.Generator
+    ) -> None:
         self._space, self._generator = space, generator
         self._free = list(space.continuous)
         self._size = 4 + int(3.0 * math.log(max(len(self._free), 1)))
@@ -42,7 +44,9 @@ class CovarianceMatrixAdaptation:
     @property
     def exhausted(self) -> bool:
         """Return whether every search has ended, or there is nothing that it could search."""
-        return len(self._free) < _LEAST_COORDINATES or (self._strategy is None and self._starts.exhausted)
+        return len(self._free) < _LEAST_COORDINATES or (
+            self._strategy is None and self._starts.exhausted
+        )
 
     def ask(self, found: Found, room: int) -> Array:
         """Return a sample of its distribution."""
@@ -68,7 +72,9 @@ class CovarianceMatrixAdaptation:
             "seed": math.nan,
             "verbose": -9,
         }
-        self._strategy = cma.CMAEvolutionStrategy(self._start[self._free].tolist(), _FIRST_STEP, options)
+        self._strategy = cma.CMAEvolutionStrategy(
+            self._start[self._free].tolist(), _FIRST_STEP, options
+        )
 
     def tell(self, clearances: Array) -> None:
         """Move and shape the distribution; begin anew after a violation, or where it is narrow or nothing gets better."""

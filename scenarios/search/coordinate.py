@@ -29,7 +29,11 @@ class Coordinate:
     @property
     def values(self) -> tuple[float, ...]:
         """Return a coordinate of each choice that has any weight, in the middle of its interval."""
-        return tuple(0.5 * (low + high) for low, high in zip(self.choices, self.choices[1:], strict=False) if high > low)
+        return tuple(
+            0.5 * (low + high)
+            for low, high in zip(self.choices, self.choices[1:], strict=False)
+            if high > low
+        )
 
     def difference(self, one: float, other: float) -> float:
         """Return how much two values differ, from 0 to 1: of a choice, wholly or not at all; of noise, not at all."""

@@ -24,14 +24,18 @@ class Corners:
 
     exhausted = False
 
-    def __init__(self, space: Space, settings: SearchSettings, generator: np.random.Generator) -> None:
+    def __init__(
+        self, space: Space, settings: SearchSettings, generator: np.random.Generator
+    ) -> None:
         self._space, self._population, self._generator = space, settings.population, generator
         self._decks: dict[int, list[float]] = {i: [] for i in space.chosen}
         self._with_ends = np.array([of.has_ends for of in space.coordinates])
 
     def ask(self, _found: Found, room: int) -> Array:
         """Return as many corners as a turn has."""
-        return np.array([self._corner() for _ in range(min(room, self._population))]).reshape(-1, self._space.dimension)
+        return np.array([self._corner() for _ in range(min(room, self._population))]).reshape(
+            -1, self._space.dimension
+        )
 
     def tell(self, _clearances: Array) -> None:
         """Learn nothing: no corner depends on another."""
@@ -47,7 +51,11 @@ class Corners:
         point[at_end] = generator.integers(2, size=int(at_end.sum()))
         for i, value in choices.items():
             point[i] = value
-        return self._space.at_one_time(point, generator) if generator.random() < _AT_ONE_TIME else point
+        return (
+            self._space.at_one_time(point, generator)
+            if generator.random() < _AT_ONE_TIME
+            else point
+        )
 
     def _next_choice(self, i: int) -> float:
         """Return the next choice of a coordinate: each comes once before any comes again."""

@@ -21,7 +21,9 @@ class DifferentialEvolution:
     space, settings, generator : as of ``SEARCH_METHODS``
     """
 
-    def __init__(self, space: Space, settings: SearchSettings, generator: np.random.Generator) -> None:
+    def __init__(
+        self, space: Space, settings: SearchSettings, generator: np.random.Generator
+    ) -> None:
         self._space, self._settings, self._generator = space, settings, generator
         self._points, self._clearances = self._first(), np.full(settings.population, math.inf)
         self._proposed, self._begun, self._stale, self._restarts = self._points, False, 0, 0
@@ -34,7 +36,12 @@ class DifferentialEvolution:
         population = self._settings.population
         sequence = qmc.Sobol(self._space.dimension, scramble=True, rng=self._generator)
         first: Array = sequence.random(1 << math.ceil(math.log2(population)))[:population]
-        return np.array([self._space.random(self._generator, 1)[0] if self._space.beyond(point) else point for point in first])
+        return np.array(
+            [
+                self._space.random(self._generator, 1)[0] if self._space.beyond(point) else point
+                for point in first
+            ]
+        )
 
     def ask(self, _found: Found, room: int) -> Array:
         """Return the next generation."""

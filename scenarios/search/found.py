@@ -39,7 +39,11 @@ class Found:
         ----------
         apart_from : points that it must not be like either
         """
-        violating = [point for point, clearance in zip(self._points, self._clearances, strict=True) if clearance < 0.0]
+        violating = [
+            point
+            for point, clearance in zip(self._points, self._clearances, strict=True)
+            if clearance < 0.0
+        ]
         for i in self._order():
             if self._clearances[i] >= 0.0 and not any(
                 self._space.alike(self._points[i], other) for other in (*apart_from, *violating)

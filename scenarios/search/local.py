@@ -37,7 +37,9 @@ class LocalClimb:
     space, settings, generator : as of ``SEARCH_METHODS``
     """
 
-    def __init__(self, space: Space, settings: SearchSettings, generator: np.random.Generator) -> None:
+    def __init__(
+        self, space: Space, settings: SearchSettings, generator: np.random.Generator
+    ) -> None:
         self._space, self._generator = space, generator
         self._starts = Starts(space, settings.restarts, generator)
         self._best: Array | None = None
@@ -74,7 +76,11 @@ class LocalClimb:
                 point[i] = step % 1.0 if of.circle else min(max(step, 0.0), 1.0)
             elif generator.random() < _CHOSEN_ANEW / _MOVED:
                 point[i] = generator.choice(of.values)
-        return self._space.at_one_time(point, generator) if generator.random() < _AT_ONE_TIME else point
+        return (
+            self._space.at_one_time(point, generator)
+            if generator.random() < _AT_ONE_TIME
+            else point
+        )
 
     def tell(self, clearances: Array) -> None:
         """Go to the best of them if it is better; end the climb at a violation, or where steps have become short."""

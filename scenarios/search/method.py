@@ -52,7 +52,9 @@ class SearchMethod(Protocol):
         """Take the clearances of the points of the last batch, shape (n,), in their order [m]."""
 
 
-SEARCH_METHODS: Registry[Callable[..., Any]] = Registry("search_method", folder="scenarios.search", methods=("ask", "tell"))
+SEARCH_METHODS: Registry[Callable[..., Any]] = Registry(
+    "search_method", folder="scenarios.search", methods=("ask", "tell")
+)
 """Search methods by name. Each is called with the space, the settings and a random generator, and returns a ``SearchMethod``."""
 
 search_method = SEARCH_METHODS.register

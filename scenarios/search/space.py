@@ -52,7 +52,9 @@ class Space:
     @cached_property
     def time_pairs(self) -> tuple[tuple[int, int], ...]:
         """Return the pairs of coordinates that are times whose ranges overlap."""
-        times = [(i, of.time_range) for i, of in enumerate(self.coordinates) if of.time_range is not None]
+        times = [
+            (i, of.time_range) for i, of in enumerate(self.coordinates) if of.time_range is not None
+        ]
         return tuple(
             (i, j)
             for k, (i, one) in enumerate(times)
@@ -62,7 +64,9 @@ class Space:
 
     def random(self, generator: np.random.Generator, number: int) -> Array:
         """Return random points within the declared ranges, shape (number, dimension)."""
-        return np.array([self.tried(lambda: generator.random(self.dimension)) for _ in range(number)])
+        return np.array(
+            [self.tried(lambda: generator.random(self.dimension)) for _ in range(number)]
+        )
 
     def tried(self, propose: Callable[[], Array]) -> Array:
         """Return the first of some proposals that lies within the declared ranges; after many, the last."""
@@ -78,7 +82,9 @@ class Space:
         if not self.time_pairs:
             return point
         pair = self.time_pairs[int(generator.integers(len(self.time_pairs)))]
-        (low, high), (other_low, other_high) = (self.coordinates[i].time_range or (0.0, 1.0) for i in pair)
+        (low, high), (other_low, other_high) = (
+            self.coordinates[i].time_range or (0.0, 1.0) for i in pair
+        )
         time = generator.uniform(max(low, other_low), min(high, other_high))
         moved = point.copy()
         for i, (begins, ends) in zip(pair, ((low, high), (other_low, other_high)), strict=True):

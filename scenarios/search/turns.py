@@ -17,7 +17,9 @@ _ROUNDING = 1e-9
 """By how much a coordinate may lie outside of the unit cube [-]."""
 
 
-def methods_named(names: tuple[str, ...], space: Space, settings: SearchSettings, seed: int) -> dict[str, SearchMethod]:
+def methods_named(
+    names: tuple[str, ...], space: Space, settings: SearchSettings, seed: int
+) -> dict[str, SearchMethod]:
     """Return search methods by name, each with a random generator of its own.
 
     Raises
@@ -64,7 +66,10 @@ def search_in_turns(
         name = left.pop(0)
         budgets[name] += population
         turn += 1
-        while len(points := _asked(name, methods[name], found, budgets[name], space.dimension)) and within_time():
+        while (
+            len(points := _asked(name, methods[name], found, budgets[name], space.dimension))
+            and within_time()
+        ):
             clearances = attempt(name, points)
             budgets[name] -= len(points)
             found.add(points, clearances)

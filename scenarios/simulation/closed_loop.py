@@ -52,13 +52,20 @@ class ClosedLoop:
         self.plan, self.vehicle, self._every_step = plan, vehicle, every_step
         self.guidance = guidance = compose(plan.guidance)
         self.settling = Settling(
-            band=plan.settling_band, period=plan.settling_period, crossings=plan.crossings, after=plan.after_settling
+            band=plan.settling_band,
+            period=plan.settling_period,
+            crossings=plan.crossings,
+            after=plan.after_settling,
         )
         axis = axis_of(guidance)
         beliefs = (PlumeBelief(axis),) if isinstance(axis, SearchedAxis) else ()
-        self._recorder = Recorder(guidance, vehicle, plan.world, (*payload, *beliefs), self.settling)
+        self._recorder = Recorder(
+            guidance, vehicle, plan.world, (*payload, *beliefs), self.settling
+        )
         self._sensing = _sensing(plan, vehicle, guidance, reader)
-        self.ending = Ending(plan, vehicle, guidance, self.settling, _judge(plan, guidance, reader, self.settling))
+        self.ending = Ending(
+            plan, vehicle, guidance, self.settling, _judge(plan, guidance, reader, self.settling)
+        )
 
     def steps(self) -> Generator[Commands, Commands, FlightRecord]:
         """Fly: yield at each step what the guidance commands, take what is to be flown for it, and return the record at the end.
@@ -67,9 +74,20 @@ class ClosedLoop:
         its time is up; when it has left with a verdict; on the water; or out of control.
         """
         # Names of their own: this is the innermost loop of every flight.
-        plan, guidance, sensing, recorder, ending = self.plan, self.guidance, self._sensing, self._recorder, self.ending
+        plan, guidance, sensing, recorder, ending = (
+            self.plan,
+            self.guidance,
+            self._sensing,
+            self._recorder,
+            self.ending,
+        )
         mission, target, guard = guidance.mission, guidance.target, guidance.guard
-        guide, motion_of, advance, reference_of = guidance.step, self.vehicle.motion, self.vehicle.advance, recorder.reference
+        guide, motion_of, advance, reference_of = (
+            guidance.step,
+            self.vehicle.motion,
+            self.vehicle.advance,
+            recorder.reference,
+        )
         time_step, log_interval = plan.time_step, plan.log_interval
         record_interval = 1 if self._every_step else log_interval
         demand_max = command_max = airspeed_error = 0.0
@@ -94,10 +112,18 @@ class ClosedLoop:
                 command_max = abs(command)
             saturated += tracker.saturated
             if guidance.guarding and guard is not None:
-                guarding.append((step, math.hypot(motion[0] - target.north, motion[1] - target.east), guard.lost))
+                guarding.append(
+                    (
+                        step,
+                        math.hypot(motion[0] - target.north, motion[1] - target.east),
+                        guard.lost,
+                    )
+                )
             if recorded:
                 sampled = step % log_interval == 0
-                sample, complete = recorder.record(time, motion, reference or reference_of() or (math.nan,) * 4, judged=sampled)
+                sample, complete = recorder.record(
+                    time, motion, reference or reference_of() or (math.nan,) * 4, judged=sampled
+                )
                 if sampled and ending.reached(time, motion, sample, complete=complete):
                     break
             command, airspeed = yield command, guidance.airspeed_command
@@ -153,18 +179,26 @@ def record_of(over: StopIteration) -> FlightRecord:
     return record
 
 
-def _sensing(plan: FlightPlan, vehicle: Vehicle, guidance: Guidance, reader: GasReader | None) -> OnboardSensing | None:
+def _sensing(
+    plan: FlightPlan, vehicle: Vehicle, guidance: Guidance, reader: GasReader | None
+) -> OnboardSensing | None:
     """Return the sensing of a flight; none where everything is known exactly."""
     sensing, world, axis = plan.sensing, plan.world, axis_of(guidance)
     if sensing is None or world is None:
         return None
     readings = None
     if axis is not None and (reader is not None or sensing.knows_axis):
-        readings = PlumeReadings(reader, world, vehicle, axis, interval=plan.log_interval, knows_axis=sensing.knows_axis)
-    return OnboardSensing(sensing, world, vehicle, guidance, altitude=plan.altitude, readings=readings)
+        readings = PlumeReadings(
+            reader, world, vehicle, axis, interval=plan.log_interval, knows_axis=sensing.knows_axis
+        )
+    return OnboardSensing(
+        sensing, world, vehicle, guidance, altitude=plan.altitude, readings=readings
+    )
 
 
-def _judge(plan: FlightPlan, guidance: Guidance, reader: GasReader | None, settling: Settling) -> Judge | None:
+def _judge(
+    plan: FlightPlan, guidance: Guidance, reader: GasReader | None, settling: Settling
+) -> Judge | None:
     """Return what ends a flight when it has enough, of one that is to."""
     mission = guidance.mission
     if not plan.until_verdict or reader is None or not isinstance(mission, PlumeFollowing):

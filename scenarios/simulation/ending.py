@@ -41,26 +41,55 @@ class Ending:
     outcome, message : in a word, and why in a sentence; nothing to say where it completed
     """
 
-    def __init__(self, plan: FlightPlan, vehicle: Vehicle, guidance: Guidance, settling: Settling, judge: Judge | None) -> None:
-        self._plan, self._vehicle, self._guidance, self._settling, self._judge = plan, vehicle, guidance, settling, judge
-        self._ditched, self._fault, self._end, self.guarded, self.saturated = False, "", 0.0, False, 0.0
+    def __init__(
+        self,
+        plan: FlightPlan,
+        vehicle: Vehicle,
+        guidance: Guidance,
+        settling: Settling,
+        judge: Judge | None,
+    ) -> None:
+        self._plan, self._vehicle, self._guidance, self._settling, self._judge = (
+            plan,
+            vehicle,
+            guidance,
+            settling,
+            judge,
+        )
+        self._ditched, self._fault, self._end, self.guarded, self.saturated = (
+            False,
+            "",
+            0.0,
+            False,
+            0.0,
+        )
 
-    def reached(self, time: float, motion: Motion, sample: tuple[float, ...], *, complete: bool) -> bool:
+    def reached(
+        self, time: float, motion: Motion, sample: tuple[float, ...], *, complete: bool
+    ) -> bool:
         """Return whether the flight is over at a sample; ``complete`` says whether it has all crossings that are asked for."""
         monitor, self._end = self._guidance.monitor, time
-        self._ditched = monitor is not None and monitor.fault is not Fault.NONE and sample[0] < _ON_THE_WATER
+        self._ditched = (
+            monitor is not None and monitor.fault is not Fault.NONE and sample[0] < _ON_THE_WATER
+        )
         self._fault = "" if self._ditched else self._vehicle.fault(sample)
         over = complete
         if self._judge is not None:
             target = self._guidance.target
-            over = self._judge.over(time, math.hypot(motion[0] - target.north, motion[1] - target.east))
+            over = self._judge.over(
+                time, math.hypot(motion[0] - target.north, motion[1] - target.east)
+            )
             over = over or (complete and self._judge.enough is None)
         return bool(self._fault) or self._ditched or over
 
     @property
     def enough(self) -> str:
         """Return why the flight left before its time, or nothing."""
-        return self._judge.enough.value if self._judge is not None and self._judge.enough is not None else ""
+        return (
+            self._judge.enough.value
+            if self._judge is not None and self._judge.enough is not None
+            else ""
+        )
 
     @property
     def mode(self) -> str:
@@ -83,7 +112,9 @@ class Ending:
             return Outcome.NOT_SETTLED
         flown = self._settling.crossings >= max(1, self._plan.crossings) and not self._missing
         # One that has flown all that it is to fly is over, whatever its guidance is about to do.
-        given_up = not self._plan.crossings and self._plan.after_settling == math.inf and mode in _GIVEN_UP
+        given_up = (
+            not self._plan.crossings and self._plan.after_settling == math.inf and mode in _GIVEN_UP
+        )
         return Outcome.COMPLETED if flown and not given_up else Outcome.INCOMPLETE
 
     @property
@@ -99,7 +130,11 @@ class Ending:
             case Outcome.DIVERGED:
                 return f"{self._fault} at {self._end:.1f} s"
             case Outcome.AIRCRAFT_LOST:
-                what = "came down on the sea" if self._ditched else f"was still {self.mode} towards the sea"
+                what = (
+                    "came down on the sea"
+                    if self._ditched
+                    else f"was still {self.mode} towards the sea"
+                )
                 return f"it {what} at {self._end:.1f} s, {self._crossings()}{self._after_fault()}"
             case Outcome.NOT_SETTLED | Outcome.INCOMPLETE:
                 return self._shortfall()
@@ -114,7 +149,11 @@ class Ending:
     def _after_fault(self) -> str:
         """Return which fault of the scenario had begun, or nothing."""
         fault = self._plan.world.fault if self._plan.world else None
-        return f", after the fault '{fault.kind}' at {fault.begins:.1f} s" if fault and fault.begins <= self._end else ""
+        return (
+            f", after the fault '{fault.kind}' at {fault.begins:.1f} s"
+            if fault and fault.begins <= self._end
+            else ""
+        )
 
     def _shortfall(self) -> str:
         settling, plan, mode = self._settling, self._plan, self._guidance.mission.mode

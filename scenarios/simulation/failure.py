@@ -28,7 +28,9 @@ def failure(error: Exception | SystemExit) -> Row:
     if not isinstance(error, AircraftError | InputError | LawError | PluginError):
         frames = traceback.extract_tb(error.__traceback__)
         # Methods of dataclasses are made from text, and have no file: what called them has.
-        where = next((frame for frame in reversed(frames) if not frame.filename.startswith("<")), frames[-1])
+        where = next(
+            (frame for frame in reversed(frames) if not frame.filename.startswith("<")), frames[-1]
+        )
         message = f"{type(error).__name__}: {error} ({Path(where.filename).name}:{where.lineno})"
     return unflown(Outcome.FAILED, message)
 

@@ -21,7 +21,9 @@ class Intervention(NamedTuple):
     lost: bool
 
 
-def interventions(guarding: Sequence[tuple[int, float, bool]], time_step: float) -> list[Intervention]:
+def interventions(
+    guarding: Sequence[tuple[int, float, bool]], time_step: float
+) -> list[Intervention]:
     """Return the stretches.
 
     Parameters

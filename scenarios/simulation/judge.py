@@ -50,7 +50,17 @@ class Judge:
     left_at : when it began to [s]
     """
 
-    __slots__ = ("_last", "_left_from", "_mission", "_next", "_reader", "_same", "_settling", "enough", "left_at")
+    __slots__ = (
+        "_last",
+        "_left_from",
+        "_mission",
+        "_next",
+        "_reader",
+        "_same",
+        "_settling",
+        "enough",
+        "left_at",
+    )
 
     def __init__(self, reader: GasReader, mission: PlumeFollowing, settling: Settling) -> None:
         self._reader, self._mission, self._settling = reader, mission, settling
@@ -66,9 +76,7 @@ class Judge:
         believed = ""
         if isinstance(axis, SearchedAxis) and not math.isnan(axis.estimate.height):
             found = axis.estimate
-            believed = (
-                f"; the plume's axis was taken to be {found.height:.0f} m high, with a deviation of {found.height_deviation:.0f} m"
-            )
+            believed = f"; the plume's axis was taken to be {found.height:.0f} m high, with a deviation of {found.height_deviation:.0f} m"
         return f"{self.enough.value if self.enough else ''}: it left at {self.left_at:.0f} s without a verdict{believed}"
 
     def over(self, time: float, distance: float) -> bool:
@@ -93,13 +101,19 @@ class Judge:
             if axis.sensor is not SensorState.WORKING:
                 return Enough.SENSOR
             # Off its orbit a flight detects nothing, wherever the plume is.
-            if self._mission.in_place and axis.mode is not Mode.FOUND and axis.measurable() < _MEASURABLE:
+            if (
+                self._mission.in_place
+                and axis.mode is not Mode.FOUND
+                and axis.measurable() < _MEASURABLE
+            ):
                 return Enough.OUT_OF_REACH
         if math.isnan(self._settling.at):
             return None
         limit = self._reader.limit_percent
         try:
-            found = estimate(self._reader.readings(self._settling.at), self._reader.spec, limits_percent=(limit,))
+            found = estimate(
+                self._reader.readings(self._settling.at), self._reader.spec, limits_percent=(limit,)
+            )
         except MeasurementError:
             return None
         verdict = found.verdicts[0].verdict

@@ -44,10 +44,19 @@ class OnboardSensing:
         readings: PlumeReadings | None = None,
     ) -> None:
         if not isinstance(guidance.target, ReportedTarget):
-            raise TypeError("the guidance knows its target exactly, and has no use for reports; give it a filter")
+            raise TypeError(
+                "the guidance knows its target exactly, and has no use for reports; give it a filter"
+            )
         self._fault, self._vessel = world.fault, world.vessel
-        self._read_with_errors, self._air_data, self._servo_error = sensing.errors.read, vehicle.air_data, vehicle.servo_error
-        self._exact, self._received = sensing.received is None, list(reversed(sensing.received or []))
+        self._read_with_errors, self._air_data, self._servo_error = (
+            sensing.errors.read,
+            vehicle.air_data,
+            vehicle.servo_error,
+        )
+        self._exact, self._received = (
+            sensing.received is None,
+            list(reversed(sensing.received or [])),
+        )
         self._vehicle, self._guidance, self._readings = vehicle, guidance, readings
         self._report = guidance.target.report
         self._altitude, self._held, self.failing = altitude, False, world.fault.of_aircraft()
@@ -71,7 +80,9 @@ class OnboardSensing:
             self._vehicle.fail(fault.kind)
         # It begins with a place that is known, too: dead reckoning goes on from one.
         satellites = not self._satellites_fail or step == 0 or not fault.lasts(SATELLITES, time)
-        position, measured, measured_heading = self._read_with_errors(step, motion, airspeed, heading, satellites=satellites)
+        position, measured, measured_heading = self._read_with_errors(
+            step, motion, airspeed, heading, satellites=satellites
+        )
         self.airspeed_error = measured - airspeed
         return position, measured, measured_heading, roll, motion[4], self._servo_error()
 

@@ -32,7 +32,14 @@ class PlumeReadings:
     __slots__ = ("_axis", "_interval", "_knows_axis", "_reader", "_vehicle", "_world")
 
     def __init__(
-        self, reader: GasReader | None, world: World, vehicle: Vehicle, axis: PlumeAxis, *, interval: int, knows_axis: bool
+        self,
+        reader: GasReader | None,
+        world: World,
+        vehicle: Vehicle,
+        axis: PlumeAxis,
+        *,
+        interval: int,
+        knows_axis: bool,
     ) -> None:
         self._reader, self._world, self._vehicle, self._axis = reader, world, vehicle, axis
         self._interval, self._knows_axis = interval, knows_axis

@@ -76,7 +76,11 @@ WIND_COLUMNS = ("true_wind_north_mps", "true_wind_east_mps")
 PLACE_COLUMNS = ("latitude_deg", "longitude_deg", "time_utc")
 """Where and when on earth, of flights of which that is known: they follow from the others, too."""
 
-COLUMNS = tuple(column for column in MEANINGS if column not in (*RELATIVE_COLUMNS, *WIND_COLUMNS, *PLACE_COLUMNS))
+COLUMNS = tuple(
+    column
+    for column in MEANINGS
+    if column not in (*RELATIVE_COLUMNS, *WIND_COLUMNS, *PLACE_COLUMNS)
+)
 """Columns of a flight's record."""
 
 
@@ -122,7 +126,9 @@ class FlightRecord:
         ValueError : it has no such column
         """
         if name not in self.columns:
-            raise ValueError(f"the flight's record has no column '{name}'{did_you_mean(name, self.columns)}")
+            raise ValueError(
+                f"the flight's record has no column '{name}'{did_you_mean(name, self.columns)}"
+            )
         return self.history[:, self.columns.index(name)]
 
 

@@ -40,7 +40,12 @@ class Recorder:
     )  # fmt: skip
 
     def __init__(
-        self, guidance: Guidance, vehicle: Vehicle, world: World | None, payload: Sequence[Instrument], settling: Settling
+        self,
+        guidance: Guidance,
+        vehicle: Vehicle,
+        world: World | None,
+        payload: Sequence[Instrument],
+        settling: Settling,
     ) -> None:
         self._guidance, self._own, self._target = guidance, guidance.own, guidance.target
         self._mission, self._guard = guidance.mission, guidance.guard
@@ -49,7 +54,9 @@ class Recorder:
         # A track, plume or instrument of a user's own may answer in other numbers than Python's, and in other rows than tuples.
         self._vessel_at: Callable[[float], Any] = world.vessel.motion if world else _no_vessel
         self._axis_at: Callable[[float], Any] = world.plume.axis if world else _no_axis
-        self.columns = COLUMNS + tuple(column for instrument in instruments for column in instrument.COLUMNS)
+        self.columns = COLUMNS + tuple(
+            column for instrument in instruments for column in instrument.COLUMNS
+        )
         # As bytes: tuples would be numbers by the hundred thousand for Python to look after, and slow to make an array of.
         self._rows, self._pack = list[bytes](), struct.Struct(f"{len(self.columns)}d").pack
 
@@ -60,7 +67,9 @@ class Recorder:
         reference = self._mission.tracker.reference
         return reference.north, reference.east, reference.course, reference.heading_rate
 
-    def record(self, time: float, motion: Motion, reference: Place, *, judged: bool) -> tuple[tuple[float, ...], bool]:
+    def record(
+        self, time: float, motion: Motion, reference: Place, *, judged: bool
+    ) -> tuple[tuple[float, ...], bool]:
         """Keep a row; return the vehicle's sample, and whether the flight has all its crossings, by ``judged`` samples.
 
         Parameters
@@ -69,7 +78,13 @@ class Recorder:
         motion : of the vehicle, true
         reference : as the guidance had it when it computed its commands
         """
-        guidance, own, target, mission, guard = self._guidance, self._own, self._target, self._mission, self._guard
+        guidance, own, target, mission, guard = (
+            self._guidance,
+            self._own,
+            self._target,
+            self._mission,
+            self._guard,
+        )
         tracker, centre, centre_error = mission.tracker, mission.centre, mission.centre_error
         own_north, own_east, v_north, v_east, _ = motion
         north, east, course, heading_rate = reference
@@ -102,20 +117,40 @@ class Recorder:
         return np.frombuffer(b"".join(self._rows)).reshape(-1, len(self.columns))
 
 
-def _read_all(payload: Sequence[Any], time: float, motion: Motion, sample: tuple[float, ...]) -> list[Any]:
+def _read_all(
+    payload: Sequence[Any], time: float, motion: Motion, sample: tuple[float, ...]
+) -> list[Any]:
     """Return what instruments read, one after the other."""
     return [value for instrument in payload for value in instrument.read(time, motion, sample)]
 
 
-def _read_first(payload: Sequence[Any], time: float, motion: Motion, sample: tuple[float, ...]) -> list[Any]:
+def _read_first(
+    payload: Sequence[Any], time: float, motion: Motion, sample: tuple[float, ...]
+) -> list[Any]:
     """Return what instruments read first; an error says which of them reads what is of no use."""
     values: list[Any] = []
     for instrument in payload:
-        part, count = f"payload: instrument of class {type(instrument).__qualname__}", len(instrument.COLUMNS)
-        read = asked(part, "failed in read()", "time, motion and sample", instrument.read, time, motion, sample)
+        part, count = (
+            f"payload: instrument of class {type(instrument).__qualname__}",
+            len(instrument.COLUMNS),
+        )
+        read = asked(
+            part,
+            "failed in read()",
+            "time, motion and sample",
+            instrument.read,
+            time,
+            motion,
+            sample,
+        )
         read = read if isinstance(read, str) or not isinstance(read, Iterable) else tuple(read)
         if not are_numbers(read, count, finite=False):
-            refuse_answer(part, "read()", read, f"a tuple of {count} number{'s' * (count != 1)}, one for each of its COLUMNS")
+            refuse_answer(
+                part,
+                "read()",
+                read,
+                f"a tuple of {count} number{'s' * (count != 1)}, one for each of its COLUMNS",
+            )
         values.extend(read)
     return values
 

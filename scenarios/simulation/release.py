@@ -31,14 +31,23 @@ def release(
     flown : an aircraft that has flown before, to be used again; a fresh one if not given
     """
     start, world = plan.start, plan.world
-    where = {"north": start.north, "east": start.east, "altitude": plan.altitude, "course": start.course}
+    where = {
+        "north": start.north,
+        "east": start.east,
+        "altitude": plan.altitude,
+        "course": start.course,
+    }
     aircraft = setup.aircraft
     if aircraft is None:
         wind = world.weather.wind if world else CALM
-        return KinematicVehicle(**where, speed=plan.guidance.speed, time_step=plan.time_step, lag=setup.lag, wind=wind)
+        return KinematicVehicle(
+            **where, speed=plan.guidance.speed, time_step=plan.time_step, lag=setup.lag, wind=wind
+        )
     flown = flown or AutopilotedAircraft(aircraft.spec, aircraft.model, failable=failable(plan))
     if viewer is not None:
         flown.fdm.show(*viewer)
     # Still air needs no weather of its own.
     weather = world.weather if world and plan.sensing else None
-    return JsbsimVehicle(flown, aircraft.start, aircraft.envelope, **where, time_step=plan.time_step, weather=weather)
+    return JsbsimVehicle(
+        flown, aircraft.start, aircraft.envelope, **where, time_step=plan.time_step, weather=weather
+    )

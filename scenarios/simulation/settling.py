@@ -45,14 +45,29 @@ class Settling:
         "tracked",
     )
 
-    def __init__(self, *, band: float, period: float, crossings: int, after: float = math.inf) -> None:
-        self._band, self.centre_band, self._period, self._demanded = band, _CENTRE_BANDS * band, period, crossings
+    def __init__(
+        self, *, band: float, period: float, crossings: int, after: float = math.inf
+    ) -> None:
+        self._band, self.centre_band, self._period, self._demanded = (
+            band,
+            _CENTRE_BANDS * band,
+            period,
+            crossings,
+        )
         self._after = after
         self._since, self._side, self._complete, self._open = math.inf, 0.0, False, True
         self._near_since = math.inf
         self.at, self.crossings, self.tracked, self.centre_error = math.nan, 0, 0.0, math.inf
 
-    def update(self, time: float, tracking_error: float, centre_error: float, x: float, y: float, axis: float) -> bool:
+    def update(
+        self,
+        time: float,
+        tracking_error: float,
+        centre_error: float,
+        x: float,
+        y: float,
+        axis: float,
+    ) -> bool:
         """Take note of a sample; return whether the flight had flown all that it is to fly by the last one.
 
         Parameters
@@ -67,7 +82,9 @@ class Settling:
         cos_a, sin_a = math.cos(axis), math.sin(axis)
         before, self._side = self._side, cos_a * y - sin_a * x
         if self._open:
-            self._near_since = min(self._near_since, time) if tracking_error < self._band else math.inf
+            self._near_since = (
+                min(self._near_since, time) if tracking_error < self._band else math.inf
+            )
             self.tracked = max(self.tracked, time - self._near_since)
         if self._open and (tracking_error >= self._band or centre_error >= self.centre_band):
             self._since, self.crossings = math.inf, 0

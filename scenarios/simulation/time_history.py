@@ -62,7 +62,13 @@ def keeps_history(task: Task, *, planned: int, kept: int, row: Row) -> bool:
 
 
 def history_files(
-    task: Task, history: pd.DataFrame | None, document: Mapping[str, Any] | None, *, planned: int, kept: int, row: Row
+    task: Task,
+    history: pd.DataFrame | None,
+    document: Mapping[str, Any] | None,
+    *,
+    planned: int,
+    kept: int,
+    row: Row,
 ) -> dict[str, bytes]:
     """Return the time history of a flight as a Parquet file, by its path, if there is one and it is kept; and the document.
 
@@ -83,9 +89,13 @@ def history_files(
 def as_parquet(history: pd.DataFrame) -> bytes:
     """Return a time history as a Parquet file; unit and meaning of each column are in the metadata of its field."""
     # In this thread: to begin others takes longer than to convert so few columns, and other flights have the other cores.
-    table, meanings = pa.Table.from_pandas(history, preserve_index=False, nthreads=1), MEANINGS | INSTRUMENT_MEANINGS
+    table, meanings = (
+        pa.Table.from_pandas(history, preserve_index=False, nthreads=1),
+        MEANINGS | INSTRUMENT_MEANINGS,
+    )
     described = [
-        field.with_metadata({"unit": unit_of(field.name), "meaning": meanings.get(field.name, "")}) for field in table.schema
+        field.with_metadata({"unit": unit_of(field.name), "meaning": meanings.get(field.name, "")})
+        for field in table.schema
     ]
     buffer = io.BytesIO()
     pq.write_table(table.cast(pa.schema(described, metadata=table.schema.metadata)), buffer)

@@ -48,7 +48,13 @@ Json = dict[str, Any]
 
 
 def study_statistics(
-    rows: pd.DataFrame, inputs: pd.DataFrame, *, confidence: float, seed: int, look_number: int | None = None, per_sample: int = 1
+    rows: pd.DataFrame,
+    inputs: pd.DataFrame,
+    *,
+    confidence: float,
+    seed: int,
+    look_number: int | None = None,
+    per_sample: int = 1,
 ) -> Json:
     """Return the content of ``statistics.json``; values that are not a number become None.
 
@@ -79,9 +85,15 @@ def study_statistics(
             "measured": share(found.events, found.measured, level, per_sample=per_sample),
             "pessimistic": pessimistic_share(found, level, per_sample=per_sample),
         },
-        "figures": {name: _figure(values, level, apart=per_sample == 1) for name, values in figures.items()},
+        "figures": {
+            name: _figure(values, level, apart=per_sample == 1) for name, values in figures.items()
+        },
         "sensitivity": {
-            name: asdict(sensitivity_indices(drawn, figures[name], confidence=confidence, seed=seed, samples=samples))
+            name: asdict(
+                sensitivity_indices(
+                    drawn, figures[name], confidence=confidence, seed=seed, samples=samples
+                )
+            )
             for name in DRIVEN
         },
     }
@@ -112,7 +124,9 @@ def study_figures(rows: pd.DataFrame) -> dict[str, Array]:
     return {
         "min_distance_m": column("min_distance_m"),
         "clearance_m": column("min_distance_m") - column("keepout_radius_m"),
-        "crossing_interval_error": column("crossing_interval_mean_s") / column("crossing_interval_predicted_s") - 1.0,
+        "crossing_interval_error": column("crossing_interval_mean_s")
+        / column("crossing_interval_predicted_s")
+        - 1.0,
         "crossing_distance_min_m": column("crossing_distance_min_m"),
         "crossing_clearance_m": column("crossing_clearance_min_m"),
         "tracking_error_rms_m": column("tracking_error_rms_m"),
@@ -123,7 +137,8 @@ def study_figures(rows: pd.DataFrame) -> dict[str, Array]:
 def named(found: Violations) -> Json:
     """Return the flights of unknown end by their outcome."""
     return {
-        outcome: {"flights": len(flights), "flight_ids": flights[:NAMED_MAX]} for outcome, flights in sorted(found.unknown.items())
+        outcome: {"flights": len(flights), "flight_ids": flights[:NAMED_MAX]}
+        for outcome, flights in sorted(found.unknown.items())
     }
 
 
@@ -155,10 +170,19 @@ def _figure(values: Array, level: float, *, apart: bool) -> Json:
     known = values[np.isfinite(values)]
     quantiles = []
     for probability in sorted((*PROBABILITIES, *EXTREMES)):
-        interval = quantile_interval(known, probability, level) if apart else Interval(math.nan, math.nan)
+        interval = (
+            quantile_interval(known, probability, level) if apart else Interval(math.nan, math.nan)
+        )
         if probability in PROBABILITIES or math.isfinite(interval.width):
             value = float(np.quantile(known, probability)) if len(known) else math.nan
-            quantiles.append({"probability": probability, "value": value, "low": interval.low, "high": interval.high})
+            quantiles.append(
+                {
+                    "probability": probability,
+                    "value": value,
+                    "low": interval.low,
+                    "high": interval.high,
+                }
+            )
     return {"known": len(known), "missing": len(values) - len(known), "quantiles": quantiles}
 
 

@@ -54,7 +54,13 @@ class Estimate:
 
 
 def paired_estimates(
-    values: Array, strata: npt.ArrayLike, *, greater_is_better: bool, resamples: int, confidence: float, seed: int
+    values: Array,
+    strata: npt.ArrayLike,
+    *,
+    greater_is_better: bool,
+    resamples: int,
+    confidence: float,
+    seed: int,
 ) -> list[Estimate]:
     """Return an estimate for each entrant.
 
@@ -89,7 +95,13 @@ def paired_estimates(
         if not np.any(values[i] < 0.0):
             # Of errors and counts, which deviations that are made larger would lead below 0.
             low = max(low, 0.0)
-        behind = (0.0, 0.0) if i == best else _interval(sampled[i] - sampled[best], tail) if whole[i] else (np.nan, np.nan)
+        behind = (
+            (0.0, 0.0)
+            if i == best
+            else _interval(sampled[i] - sampled[best], tail)
+            if whole[i]
+            else (np.nan, np.nan)
+        )
         found.append(
             Estimate(
                 mean=float(mean),
@@ -117,7 +129,9 @@ def _scattered(row: Array, strata: npt.NDArray[Any], confidence: float) -> Array
         count = int(np.count_nonzero(within))
         if count > 1:
             mean = row[within].mean()
-            scattered[within] = mean + (row[within] - mean) * math.sqrt(count / (count - 1.0)) * wider
+            scattered[within] = (
+                mean + (row[within] - mean) * math.sqrt(count / (count - 1.0)) * wider
+            )
     return scattered
 
 
@@ -128,7 +142,9 @@ def _wider(freedom: int, level: float) -> float:
     return float(stdtrit(freedom, level) / ndtri(level))
 
 
-def _may_be_best(worth: Array, sampled: Array, freedom: int, confidence: float) -> npt.NDArray[np.bool_]:
+def _may_be_best(
+    worth: Array, sampled: Array, freedom: int, confidence: float
+) -> npt.NDArray[np.bool_]:
     """Return which entrants may be the best, with their worth, shape (n,), and its resamples, shape (n, resamples).
 
     Those that are not compared, whose worth is not a number, may not; ``freedom`` is the number of degrees of it, of all strata.
@@ -151,7 +167,9 @@ def _may_be_best(worth: Array, sampled: Array, freedom: int, confidence: float) 
             ahead = leads[~still] / deviations[~still]
             largest = (scatter[~still] / deviations[~still, np.newaxis]).max(axis=0)
             # Few flights make the tails of the largest of many leads heavier than those of one.
-            wider = _wider(freedom, confidence ** (1.0 / int(np.count_nonzero(~still)))) / _wider(freedom, 0.5 + 0.5 * confidence)
+            wider = _wider(freedom, confidence ** (1.0 / int(np.count_nonzero(~still)))) / _wider(
+                freedom, 0.5 + 0.5 * confidence
+            )
             found[i] = bool(ahead.max() <= wider * np.quantile(largest, confidence))
     return found
 

@@ -85,7 +85,12 @@ class Sensitivity:
 
 
 def sensitivity_indices(
-    inputs: pd.DataFrame, figure: Array, *, confidence: float, seed: int, samples: Indices | None = None
+    inputs: pd.DataFrame,
+    figure: Array,
+    *,
+    confidence: float,
+    seed: int,
+    samples: Indices | None = None,
 ) -> Sensitivity:
     """Estimate the sensitivity of a figure to the inputs.
 
@@ -108,11 +113,20 @@ def sensitivity_indices(
     message = _reason_for_no_indices(figure[chosen], codes)
     if not message:
         of, distinct = pd.factorize(chosen if samples is None else samples[chosen])
-        resamples = [_resampled(of, generator.integers(len(distinct), size=len(distinct))) for _ in range(RESAMPLES)]
+        resamples = [
+            _resampled(of, generator.integers(len(distinct), size=len(distinct)))
+            for _ in range(RESAMPLES)
+        ]
         without_effect = [generator.random(len(distinct))[of] for _ in range(DUMMIES)]
         try:
-            found = [_indices(key, values, figure[chosen], resamples, confidence) for key, values in codes.items()]
-            dummies = [_indices("", values, figure[chosen], resamples, confidence) for values in without_effect]
+            found = [
+                _indices(key, values, figure[chosen], resamples, confidence)
+                for key, values in codes.items()
+            ]
+            dummies = [
+                _indices("", values, figure[chosen], resamples, confidence)
+                for values in without_effect
+            ]
         except np.linalg.LinAlgError:
             found, message = [], "too few flights differ in this figure for a density of it"
     return Sensitivity(
@@ -156,7 +170,9 @@ def _coded(values: "pd.Series[float]") -> Array:
     return np.asarray(coded, dtype=np.float64)
 
 
-def _indices(key: str, values: Array, figure: Array, resamples: Sequence[Indices], confidence: float) -> InputIndices:
+def _indices(
+    key: str, values: Array, figure: Array, resamples: Sequence[Indices], confidence: float
+) -> InputIndices:
     """Return the indices of one input, delta corrected for its bootstrap bias (Plischke et al., eq. 30)."""
     from scipy.special import ndtri
 
@@ -190,14 +206,18 @@ def _estimated(values: Array, figure: Array) -> tuple[float, float]:
     with warnings.catch_warnings():
         # SALib warns of classes with a single figure, such as a rare category; they add nothing to delta.
         warnings.simplefilter("ignore")
-        return float(calc_delta(figure, grid, values, bounds)), float(sobol_first(figure, values, bounds))
+        return float(calc_delta(figure, grid, values, bounds)), float(
+            sobol_first(figure, values, bounds)
+        )
 
 
 def _class_bounds(values: Array) -> Array:
     """Return the number of flights below each class of an input, and of all flights: one class per value if there are
     few values, else classes of equal size, as many as SALib uses."""
     count = len(values)
-    classes = min(math.ceil(count ** (2.0 / (7.0 + math.tanh((1500.0 - count) / 500.0)))), _CLASSES_MAX)
+    classes = min(
+        math.ceil(count ** (2.0 / (7.0 + math.tanh((1500.0 - count) / 500.0)))), _CLASSES_MAX
+    )
     _, of_each = np.unique(values, return_counts=True)
     if len(of_each) <= classes:
         return np.concatenate([[0.0], np.cumsum(of_each)])

@@ -79,14 +79,18 @@ def tight_enough(
     ValueError : neither interval is demanded
     """
     if violation_upper is None and distance_quantile_width_m is None:
-        raise ValueError("no interval is demanded; give violation_upper or distance_quantile_width_m")
+        raise ValueError(
+            "no interval is demanded; give violation_upper or distance_quantile_width_m"
+        )
     level = confidence_at(look_number, confidence)
     if violation_upper is not None:
         found = count_violations(rows)
         if upper_bound(found.events_at_most, found.flights, level) > violation_upper:
             return False
     if distance_quantile_width_m is not None:
-        distances = pd.to_numeric(rows["min_distance_m"], errors="coerce").to_numpy(dtype=np.float64)
+        distances = pd.to_numeric(rows["min_distance_m"], errors="coerce").to_numpy(
+            dtype=np.float64
+        )
         interval = quantile_interval(distances[np.isfinite(distances)], distance_quantile, level)
         # If a limit is missing the width is not a number, and this comparison is false.
         return interval.width <= distance_quantile_width_m

@@ -79,7 +79,9 @@ class InputShift:
     near: tuple[float, ...]
 
 
-def rare_probability(simulations: Sequence[Simulation], confidence: float, *, value: float = 0.0) -> RareProbability:
+def rare_probability(
+    simulations: Sequence[Simulation], confidence: float, *, value: float = 0.0
+) -> RareProbability:
     """Return the probability of values below ``value``, by all simulations together.
 
     Parameters
@@ -92,8 +94,15 @@ def rare_probability(simulations: Sequence[Simulation], confidence: float, *, va
     estimates, reached = found[:, 0], found[:, 0] > 0.0
     two_sided, one_sided = 0.5 + 0.5 * confidence, confidence
     first = [simulation.levels[0] for simulation in simulations]
-    if reached.any() and all(value > level.threshold or len(of.levels) == 1 for level, of in zip(first, simulations, strict=True)):
-        return _of_plain_samples(np.concatenate([level.values for level in first]) < value, int(reached.sum()), confidence)
+    if reached.any() and all(
+        value > level.threshold or len(of.levels) == 1
+        for level, of in zip(first, simulations, strict=True)
+    ):
+        return _of_plain_samples(
+            np.concatenate([level.values for level in first]) < value,
+            int(reached.sum()),
+            confidence,
+        )
     if reached.all():
         centre, deviation = _log_mean(estimates, found[:, 1])
         t = _t_quantile(two_sided, len(estimates)) * deviation
@@ -104,13 +113,21 @@ def rare_probability(simulations: Sequence[Simulation], confidence: float, *, va
             upper=_at_most_one(centre + _t_quantile(one_sided, len(estimates)) * deviation),
             reached=len(estimates),
         )
-    high, upper = (_left_open(simulations, estimates, found[:, 1], level) for level in (two_sided, one_sided))
+    high, upper = (
+        _left_open(simulations, estimates, found[:, 1], level) for level in (two_sided, one_sided)
+    )
     return RareProbability(
-        estimate=float(estimates.mean()), low=0.0, high=high, upper=upper, reached=int(np.count_nonzero(reached))
+        estimate=float(estimates.mean()),
+        low=0.0,
+        high=high,
+        upper=upper,
+        reached=int(np.count_nonzero(reached)),
     )
 
 
-def _of_plain_samples(event: npt.NDArray[np.bool_], reached: int, confidence: float) -> RareProbability:
+def _of_plain_samples(
+    event: npt.NDArray[np.bool_], reached: int, confidence: float
+) -> RareProbability:
     """Return a probability that is not rare: first levels are plain samples, of which there is an exact interval."""
     events, trials = int(np.count_nonzero(event)), len(event)
     interval = clopper_pearson(events, trials, confidence)
@@ -123,7 +140,9 @@ def _of_plain_samples(event: npt.NDArray[np.bool_], reached: int, confidence: fl
     )
 
 
-def _left_open(simulations: Sequence[Simulation], estimates: Array, variations: Array, confidence: float) -> float:
+def _left_open(
+    simulations: Sequence[Simulation], estimates: Array, variations: Array, confidence: float
+) -> float:
     """Return an upper bound where some simulations have not reached the event.
 
     What may go wrong is shared equally between the probability of the last levels and the fraction of these.
@@ -134,14 +153,25 @@ def _left_open(simulations: Sequence[Simulation], estimates: Array, variations: 
         common = max(simulation.levels[-1].below for simulation in simulations)
         if math.isinf(common):
             # A simulation has a plain sample alone; all together have at least these.
-            return upper_bound(0, sum(len(simulation.levels[0].values) for simulation in simulations), confidence)
+            return upper_bound(
+                0, sum(len(simulation.levels[0].values) for simulation in simulations), confidence
+            )
         # The next number above it: states at the threshold belong to it.
-        levels, within = np.array([simulation.below(math.nextafter(common, math.inf)) for simulation in simulations]).T
+        levels, within = np.array(
+            [simulation.below(math.nextafter(common, math.inf)) for simulation in simulations]
+        ).T
         factor = upper_bound(0, sum(chains), half)
     else:
-        open_levels = [simulation.reached * upper_bound(0, n, half) for simulation, n in zip(simulations, chains, strict=True)]
+        open_levels = [
+            simulation.reached * upper_bound(0, n, half)
+            for simulation, n in zip(simulations, chains, strict=True)
+        ]
         levels = np.where(estimates > 0.0, estimates, open_levels)
-        within = np.where(estimates > 0.0, variations, [simulation.reached_variation for simulation in simulations])
+        within = np.where(
+            estimates > 0.0,
+            variations,
+            [simulation.reached_variation for simulation in simulations],
+        )
         factor = 1.0
     centre, deviation = _log_mean(levels, within)
     return _at_most_one(math.log(factor) + centre + _t_quantile(half, len(levels)) * deviation)
@@ -157,14 +187,18 @@ def _log_mean(estimates: Array, variations: Array) -> tuple[float, float]:
     count, logarithms = len(estimates), np.log(estimates)
     between = float(np.var(logarithms, ddof=1))
     variance = max(between, math.log1p(float(np.mean(variations**2))))
-    return float(np.mean(logarithms)) + 0.5 * between, math.sqrt(variance / count + variance**2 / (2.0 * (count - 1)))
+    return float(np.mean(logarithms)) + 0.5 * between, math.sqrt(
+        variance / count + variance**2 / (2.0 * (count - 1))
+    )
 
 
 def _t_quantile(probability: float, count: int) -> float:
     return float(stdtrit(count - 1, probability))
 
 
-def curve(simulations: Sequence[Simulation], confidence: float) -> list[tuple[float, RareProbability]]:
+def curve(
+    simulations: Sequence[Simulation], confidence: float
+) -> list[tuple[float, RareProbability]]:
     """Return the probability of values below each of some thresholds, from the lowest that all simulations have reached."""
     lowest = max(float(simulation.levels[-1].values.min()) for simulation in simulations)
     first = np.concatenate([simulation.levels[0].values for simulation in simulations])
@@ -172,19 +206,34 @@ def curve(simulations: Sequence[Simulation], confidence: float) -> list[tuple[fl
     if not len(known) or not math.isfinite(lowest):
         return []
     highest = float(np.quantile(known, 0.9))
-    values = np.unique(np.append(np.linspace(lowest, highest, CURVE_POINTS), 0.0 if lowest < 0.0 < highest else lowest))
-    found = [(float(value), rare_probability(simulations, confidence, value=float(value))) for value in values]
-    return [(value, probability) for value, probability in found if probability.reached == len(simulations)]
+    values = np.unique(
+        np.append(
+            np.linspace(lowest, highest, CURVE_POINTS), 0.0 if lowest < 0.0 < highest else lowest
+        )
+    )
+    found = [
+        (float(value), rare_probability(simulations, confidence, value=float(value)))
+        for value in values
+    ]
+    return [
+        (value, probability)
+        for value, probability in found
+        if probability.reached == len(simulations)
+    ]
 
 
 def near_event(simulations: Sequence[Simulation]) -> list[tuple[Simulation, Indices]]:
     """Return of each simulation the indices of what its last level has below 0, or of all of it, if no simulation has any."""
     inside = [np.flatnonzero(simulation.levels[-1].values < 0.0) for simulation in simulations]
     every = [np.arange(len(simulation.levels[-1].values)) for simulation in simulations]
-    return list(zip(simulations, inside if any(len(chosen) for chosen in inside) else every, strict=True))
+    return list(
+        zip(simulations, inside if any(len(chosen) for chosen in inside) else every, strict=True)
+    )
 
 
-def input_shifts(declared: pd.DataFrame, near: pd.DataFrame, at: tuple[Array, Array]) -> list[InputShift]:
+def input_shifts(
+    declared: pd.DataFrame, near: pd.DataFrame, at: tuple[Array, Array]
+) -> list[InputShift]:
     """Return how the inputs near the event differ from those that are declared, the largest distance first.
 
     Parameters
@@ -193,7 +242,8 @@ def input_shifts(declared: pd.DataFrame, near: pd.DataFrame, at: tuple[Array, Ar
     at : the same in the unit cube, shapes (n, inputs)
     """
     shifts = [
-        _shift(str(key), declared[key], near[key], distance(at[0][:, i], at[1][:, i])) for i, key in enumerate(declared.columns)
+        _shift(str(key), declared[key], near[key], distance(at[0][:, i], at[1][:, i]))
+        for i, key in enumerate(declared.columns)
     ]
     return sorted(shifts, key=lambda shift: -shift.distance)
 
@@ -201,22 +251,34 @@ def input_shifts(declared: pd.DataFrame, near: pd.DataFrame, at: tuple[Array, Ar
 def noise_floor(simulations: Sequence[Simulation]) -> float:
     """Return the largest distance of what has no effect at all: that of the dummies, which move with the same chains."""
     first = np.concatenate([simulation.levels[0].dummies for simulation in simulations])
-    last = np.concatenate([simulation.levels[-1].dummies[chosen] for simulation, chosen in near_event(simulations)])
+    last = np.concatenate(
+        [simulation.levels[-1].dummies[chosen] for simulation, chosen in near_event(simulations)]
+    )
     return max(distance(first[:, i], last[:, i]) for i in range(first.shape[1]))
 
 
 def distance(one: Array, other: Array) -> float:
     """Return the largest difference of two cumulative distributions, of Kolmogorov and Smirnov [-]."""
     every = np.sort(np.concatenate([one, other]))
-    shares = [np.searchsorted(np.sort(values), every, side="right") / len(values) for values in (one, other)]
+    shares = [
+        np.searchsorted(np.sort(values), every, side="right") / len(values)
+        for values in (one, other)
+    ]
     return float(np.max(np.abs(shares[0] - shares[1])))
 
 
-def _shift(key: str, declared: "pd.Series[float]", near: "pd.Series[float]", found: float) -> InputShift:
+def _shift(
+    key: str, declared: "pd.Series[float]", near: "pd.Series[float]", found: float
+) -> InputShift:
     if pd.api.types.is_numeric_dtype(declared):
-        both = np.concatenate([declared.to_numpy(dtype=np.float64), near.to_numpy(dtype=np.float64)])
+        both = np.concatenate(
+            [declared.to_numpy(dtype=np.float64), near.to_numpy(dtype=np.float64)]
+        )
         edges = np.histogram_bin_edges(both, bins=BINS)
-        shares = [tuple((np.histogram(values, edges)[0] / len(values)).tolist()) for values in (declared, near)]
+        shares = [
+            tuple((np.histogram(values, edges)[0] / len(values)).tolist())
+            for values in (declared, near)
+        ]
         medians = (float(declared.median()), float(near.median()))
         return InputShift(
             key=key, distance=found, median=medians[0], median_near=medians[1], edges=tuple(edges.tolist()), names=(),
@@ -226,5 +288,12 @@ def _shift(key: str, declared: "pd.Series[float]", near: "pd.Series[float]", fou
     names = tuple(dict.fromkeys([*sorted(words[0].unique()), *words[1].unique()]))
     counted = [tuple(float((values == name).mean()) for name in names) for values in words]
     return InputShift(
-        key=key, distance=found, median=None, median_near=None, edges=(), names=names, declared=counted[0], near=counted[1]
+        key=key,
+        distance=found,
+        median=None,
+        median_near=None,
+        edges=(),
+        names=names,
+        declared=counted[0],
+        near=counted[1],
     )

@@ -103,7 +103,9 @@ class Simulation:
         for level in self.levels:
             if value > level.threshold or level is self.levels[-1]:
                 event = level.values < value
-                return reached * float(np.mean(event)), math.hypot(math.sqrt(squares), variation(event, level.chains))
+                return reached * float(np.mean(event)), math.hypot(
+                    math.sqrt(squares), variation(event, level.chains)
+                )
             reached *= level.probability
             squares += level.variation**2
         raise ValueError("a simulation has one level at least")
@@ -131,5 +133,9 @@ def variation(event: Mask, chains: Indices) -> float:
         together = chain[lag:] == chain[:-lag]
         if every and together.any():
             # Twice the covariance at this lag, by the number of pairs that have it.
-            factor += 2.0 * float(np.sum(centred[lag:][together] * centred[:-lag][together])) / (count * every)
+            factor += (
+                2.0
+                * float(np.sum(centred[lag:][together] * centred[:-lag][together]))
+                / (count * every)
+            )
     return math.sqrt((1.0 - share) / (share * count) * max(factor, 1.0))

@@ -85,7 +85,11 @@ class _States:
     values: Array
 
     def at(self, chosen: Indices) -> "_States":
-        return _States(normal=self.normal[chosen], noise=[self.noise[i] for i in chosen], values=self.values[chosen])
+        return _States(
+            normal=self.normal[chosen],
+            noise=[self.noise[i] for i in chosen],
+            values=self.values[chosen],
+        )
 
     @staticmethod
     def joined(parts: "list[_States]") -> "_States":
@@ -158,7 +162,9 @@ class SubsetSimulation:
             seeds = states.at(np.flatnonzero(passed))
             states, chains = yield from self._grown(seeds, threshold, scales, generator, counts)
 
-    def _first(self, generator: np.random.Generator, counts: Counts) -> Generator[list[Point], Array, _States]:
+    def _first(
+        self, generator: np.random.Generator, counts: Counts
+    ) -> Generator[list[Point], Array, _States]:
         """Have a plain random sample evaluated."""
         found: list[Array] = []
         while len(found) < self.flights:
@@ -176,7 +182,12 @@ class SubsetSimulation:
         return _States(normal=normal, noise=noise, values=values)
 
     def _grown(
-        self, seeds: _States, threshold: float, scales: _Scales, generator: np.random.Generator, counts: Counts
+        self,
+        seeds: _States,
+        threshold: float,
+        scales: _Scales,
+        generator: np.random.Generator,
+        counts: Counts,
     ) -> Generator[list[Point], Array, tuple[_States, Indices]]:
         """Grow a chain from each seed, all in step, until they are as many states as a level has; return these and their chains."""
         # In random order: the chains that get one state more than others are not always those of the same seeds.
@@ -191,7 +202,10 @@ class SubsetSimulation:
             states = yield from self._moved(states, threshold, scales, spread, generator, counts)
             moved, accepted = counts.moved - before.moved, counts.accepted - before.accepted
             scales.inputs = _adapted(scales.inputs, moved, accepted, wave)
-            moved, accepted = counts.blended - before.blended, counts.blended_accepted - before.blended_accepted
+            moved, accepted = (
+                counts.blended - before.blended,
+                counts.blended_accepted - before.blended_accepted,
+            )
             scales.blend = _adapted(scales.blend, moved, accepted, wave)
             parts.append(states)
             missing -= len(states.values)
@@ -199,14 +213,26 @@ class SubsetSimulation:
         return _States.joined(parts), chains
 
     def _moved(
-        self, states: _States, threshold: float, scales: _Scales, spread: Array, generator: np.random.Generator, counts: Counts
+        self,
+        states: _States,
+        threshold: float,
+        scales: _Scales,
+        spread: Array,
+        generator: np.random.Generator,
+        counts: Counts,
     ) -> Generator[list[Point], Array, _States]:
         """Propose a move of each chain; return the states after it."""
         count = len(states.values)
         kind = generator.random(count) if self.noise else np.ones(count)
-        renewed, blended, moved = kind < RENEWALS, (kind >= RENEWALS) & (kind < RENEWALS + BLENDS), kind >= RENEWALS + BLENDS
+        renewed, blended, moved = (
+            kind < RENEWALS,
+            (kind >= RENEWALS) & (kind < RENEWALS + BLENDS),
+            kind >= RENEWALS + BLENDS,
+        )
         steps = np.minimum(1.0, scales.inputs * spread)
-        proposed = np.sqrt(1.0 - steps**2) * states.normal + steps * generator.standard_normal(states.normal.shape)
+        proposed = np.sqrt(1.0 - steps**2) * states.normal + steps * generator.standard_normal(
+            states.normal.shape
+        )
         normal = np.where(moved[:, None], proposed, states.normal)
         noise = states.noise
         if self.noise:
@@ -218,9 +244,13 @@ class SubsetSimulation:
                 elif blended[i]:
                     noise[i] = _blended(noise[i], seed, step)
         inputs = self._inputs(normal)
-        known = np.array([new and not self.seeded(at) for new, at in zip(renewed, inputs, strict=True)])
+        known = np.array(
+            [new and not self.seeded(at) for new, at in zip(renewed, inputs, strict=True)]
+        )
         renewed &= ~known
-        asked = np.flatnonzero(renewed | blended | (moved & np.array([self.allowed(at) for at in inputs])))
+        asked = np.flatnonzero(
+            renewed | blended | (moved & np.array([self.allowed(at) for at in inputs]))
+        )
         values = np.where(known, states.values, math.inf)
         if len(asked):
             values[asked] = yield self._points(normal[asked], [noise[i] for i in asked])
@@ -235,7 +265,10 @@ class SubsetSimulation:
         counts.renewed_accepted += int(np.count_nonzero(accepted & renewed))
         return _States(
             normal=np.where(accepted[:, None], normal, states.normal),
-            noise=[new if better else old for new, old, better in zip(noise, states.noise, accepted, strict=True)],
+            noise=[
+                new if better else old
+                for new, old, better in zip(noise, states.noise, accepted, strict=True)
+            ],
             values=np.where(accepted, values, states.values),
         )
 
@@ -244,7 +277,10 @@ class SubsetSimulation:
         return inputs
 
     def _points(self, normal: Array, noise: Sequence[Point]) -> list[Point]:
-        return [(*at, *of_noise) for at, of_noise in zip(self._inputs(normal).tolist(), noise, strict=True)]
+        return [
+            (*at, *of_noise)
+            for at, of_noise in zip(self._inputs(normal).tolist(), noise, strict=True)
+        ]
 
 
 def _threshold(values: Array, passing: int) -> float:
@@ -269,7 +305,13 @@ def _adapted(scale: float, moved: int, accepted: int, wave: int) -> float:
     """Return the scale of steps after a wave of them."""
     if not moved:
         return scale
-    return float(np.clip(scale * math.exp((accepted / moved - ACCEPTANCE) / math.sqrt(wave)), SCALE_MIN, SCALE_MAX))
+    return float(
+        np.clip(
+            scale * math.exp((accepted / moved - ACCEPTANCE) / math.sqrt(wave)),
+            SCALE_MIN,
+            SCALE_MAX,
+        )
+    )
 
 
 def _blended(noise: Point, seed: float, step: float) -> Point:

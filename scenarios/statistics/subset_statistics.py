@@ -8,13 +8,23 @@ import pandas as pd
 
 from common.intervals import upper_bound
 from scenarios.statistics.estimates import Json, counted, named, share, without_nan
-from scenarios.statistics.subset_estimates import InputShift, RareProbability, curve, noise_floor, rare_probability
+from scenarios.statistics.subset_estimates import (
+    InputShift,
+    RareProbability,
+    curve,
+    noise_floor,
+    rare_probability,
+)
 from scenarios.statistics.subset_levels import Level, Simulation
 from scenarios.statistics.violations import count_violations
 
 
 def subset_statistics(
-    rows: pd.DataFrame, simulations: Sequence[Simulation], shifts: Sequence[InputShift], *, confidence: float
+    rows: pd.DataFrame,
+    simulations: Sequence[Simulation],
+    shifts: Sequence[InputShift],
+    *,
+    confidence: float,
 ) -> Json:
     """Return the content of ``statistics.json``; values that are not a number become None.
 
@@ -29,7 +39,9 @@ def subset_statistics(
     shifts : of the inputs
     confidence : of each interval, between 0 and 1
     """
-    plain = count_violations(rows.head(sum(len(simulation.levels[0].values) for simulation in simulations)))
+    plain = count_violations(
+        rows.head(sum(len(simulation.levels[0].values) for simulation in simulations))
+    )
     every = count_violations(rows)
     found = rare_probability(simulations, confidence)
     content: Json = without_nan(
@@ -44,13 +56,22 @@ def subset_statistics(
                 "repeats": len(simulations),
                 "events": every.events,
                 "pessimistic": {
-                    "upper": pessimistic_upper(simulations, found, plain.events_at_most - plain.events, plain.flights, confidence)
+                    "upper": pessimistic_upper(
+                        simulations,
+                        found,
+                        plain.events_at_most - plain.events,
+                        plain.flights,
+                        confidence,
+                    )
                 },
                 "first_levels": share(plain.events, plain.measured, confidence),
                 "first_levels_unknown": plain.events_at_most - plain.events,
             },
             "simulations": [_simulation(simulation) for simulation in simulations],
-            "curve": [{"clearance_m": value, **asdict(point)} for value, point in curve(simulations, confidence)],
+            "curve": [
+                {"clearance_m": value, **asdict(point)}
+                for value, point in curve(simulations, confidence)
+            ],
             "inputs": [asdict(shift) for shift in shifts],
             "noise_floor": noise_floor(simulations),
         }
@@ -59,7 +80,11 @@ def subset_statistics(
 
 
 def pessimistic_upper(
-    simulations: Sequence[Simulation], found: RareProbability, unknown: int, flights: int, confidence: float
+    simulations: Sequence[Simulation],
+    found: RareProbability,
+    unknown: int,
+    flights: int,
+    confidence: float,
 ) -> float:
     """Return the bound if flights of unknown end were violations; what may go wrong is shared equally between the two."""
     if not unknown:

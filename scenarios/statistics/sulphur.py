@@ -44,7 +44,9 @@ def sulphur_statistics(rows: pd.DataFrame, *, confidence: float) -> Json:
     rows = rows.reset_index(drop=True)
     return {
         "confidence": confidence,
-        "accuracy": [_accuracy(group, confidence) | named for named, group in _accuracy_groups(rows)],
+        "accuracy": [
+            _accuracy(group, confidence) | named for named, group in _accuracy_groups(rows)
+        ],
         "operating_curve": [
             _calls(group, confidence) | {"sensor": str(group["sensor"].iloc[0])}
             for _, group in rows.dropna(subset="fsc_fuel_percent").groupby(_CALLED_BY)
@@ -57,14 +59,27 @@ def _accuracy_groups(rows: pd.DataFrame) -> Iterator[tuple[Json, pd.DataFrame]]:
     for sensor, of_sensor in rows.groupby("sensor"):
         for method, prefix in METHODS.items():
             figures = {f"{prefix}_{of}percent": f"{of}percent" for of in _FIGURES}
-            known = [name for name in ("fsc_fuel_percent", "fsc_expected_percent", *figures) if name in of_sensor]
+            known = [
+                name
+                for name in ("fsc_fuel_percent", "fsc_expected_percent", *figures)
+                if name in of_sensor
+            ]
             # A flight without a result, or without its uncertainty, says nothing of either.
-            named = of_sensor[known].rename(columns=figures).astype(np.float64).dropna().join(of_sensor["seed"])
+            named = (
+                of_sensor[known]
+                .rename(columns=figures)
+                .astype(np.float64)
+                .dropna()
+                .join(of_sensor["seed"])
+            )
             if len(named):
                 yield {"sensor": str(sensor), "method": method, "fsc_fuel_percent": None}, named
             for _, group in named.groupby("fsc_fuel_percent"):
                 if 1 < len(group) < len(named):
-                    yield {"sensor": str(sensor), "method": method, "fsc_fuel_percent": _fuel(group)}, group
+                    yield (
+                        {"sensor": str(sensor), "method": method, "fsc_fuel_percent": _fuel(group)},
+                        group,
+                    )
 
 
 def _accuracy(flights: pd.DataFrame, confidence: float) -> Json:
@@ -77,14 +92,22 @@ def _accuracy(flights: pd.DataFrame, confidence: float) -> Json:
         "flights": n,
         "bias_percent": float(np.mean(error)),
         "bias_relative": _share(error, expected),
-        "bias_standard_error_percent": float(np.std(errors, ddof=1) / np.sqrt(len(errors))) if len(errors) > 1 else None,
+        "bias_standard_error_percent": float(np.std(errors, ddof=1) / np.sqrt(len(errors)))
+        if len(errors) > 1
+        else None,
         "spread_percent": float(np.std(error, ddof=1)) if n > 1 else None,
-        "stated_percent": float(np.sqrt(np.mean(flights["uncertainty_percent"].to_numpy(dtype=np.float64) ** 2))),
-        "stated_noise_percent": float(np.sqrt(np.mean(flights["noise_percent"].to_numpy(dtype=np.float64) ** 2))),
+        "stated_percent": float(
+            np.sqrt(np.mean(flights["uncertainty_percent"].to_numpy(dtype=np.float64) ** 2))
+        ),
+        "stated_noise_percent": float(
+            np.sqrt(np.mean(flights["noise_percent"].to_numpy(dtype=np.float64) ** 2))
+        ),
         "coverage": float(inside.mean()),
         "coverage_interval": _interval(inside, flights, confidence),
         "share_read": _share(found, expected),
-        "share_predicted": _share(found, flights["separate_percent"].to_numpy()) if "separate_percent" in flights else 1.0,
+        "share_predicted": _share(found, flights["separate_percent"].to_numpy())
+        if "separate_percent" in flights
+        else 1.0,
     }
 
 
@@ -114,7 +137,12 @@ def _calls(flights: pd.DataFrame, confidence: float) -> Json:
         called[f"{name}_interval"] = _interval(above, flights, confidence)
     open_share = float((flights["sulphur_verdict"] == "open").mean())
     limit = float(flights["sulphur_limit_percent"].iloc[0])
-    return {"flights": len(flights), "fsc_fuel_percent": _fuel(flights), "limit_percent": limit, "open": open_share} | called
+    return {
+        "flights": len(flights),
+        "fsc_fuel_percent": _fuel(flights),
+        "limit_percent": limit,
+        "open": open_share,
+    } | called
 
 
 def _fuel(flights: pd.DataFrame) -> float:

@@ -39,12 +39,19 @@ def count_violations(rows: pd.DataFrame) -> Violations:
     ----------
     rows : a row per flight with ``flight_id``, ``outcome``, ``min_distance_m`` and ``keepout_violations``
     """
-    measured = np.isfinite(pd.to_numeric(rows["min_distance_m"], errors="coerce").to_numpy(dtype=np.float64))
-    entered = measured & (pd.to_numeric(rows["keepout_violations"], errors="coerce").to_numpy(dtype=np.float64) > 0.0)
+    measured = np.isfinite(
+        pd.to_numeric(rows["min_distance_m"], errors="coerce").to_numpy(dtype=np.float64)
+    )
+    entered = measured & (
+        pd.to_numeric(rows["keepout_violations"], errors="coerce").to_numpy(dtype=np.float64) > 0.0
+    )
     lost = rows[~entered & (~measured | (rows["outcome"] == Outcome.DIVERGED.value).to_numpy())]
     return Violations(
         flights=len(rows),
         measured=int(np.count_nonzero(measured)),
         events=int(np.count_nonzero(entered)),
-        unknown={str(outcome): [str(i) for i in members["flight_id"]] for outcome, members in lost.groupby("outcome")},
+        unknown={
+            str(outcome): [str(i) for i in members["flight_id"]]
+            for outcome, members in lost.groupby("outcome")
+        },
     )

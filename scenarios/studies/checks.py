@@ -192,7 +192,9 @@ def _check_fault(scenario: Scenario) -> None:
     for kind in sorted(kinds - known):
         guess = did_you_mean(kind, known)
         key = "fault.declared has" if kind in scenario.fault.declared else "fault.kind is"
-        raise InputError(f"{key} '{kind}'{guess or ';'} what can fail is {', '.join(sorted(known))}")
+        raise InputError(
+            f"{key} '{kind}'{guess or ';'} what can fail is {', '.join(sorted(known))}"
+        )
 
 
 def _check_vessel(scenario: Scenario) -> None:
@@ -216,7 +218,9 @@ def _vessel_known(scenario: Scenario) -> bool:
 def _check_parts(scenario: Scenario) -> None:
     sampled = any(draw.key.startswith("emission.") for draw in scenario.draws)
     if "sniffer" in scenario.payload.instruments and scenario.emission.ship is None and not sampled:
-        raise InputError("payload.instruments has a sniffer, and there is no exhaust: set emission.ship, or leave the sniffer out")
+        raise InputError(
+            "payload.instruments has a sniffer, and there is no exhaust: set emission.ship, or leave the sniffer out"
+        )
     for key, name in part_names(scenario):
         try:
             if key in PART_REGISTRIES and not is_data_file(name):
@@ -224,8 +228,14 @@ def _check_parts(scenario: Scenario) -> None:
         except PluginError as error:
             raise InputError(f"{key}: {error}") from None
     # What another callable makes is checked before its flight.
-    check_instruments((name, part) for name, part in scenario.payload.parts().items() if isinstance(part, type))
-    if scenario.emission.ship is None or sampled or any(draw.key == "plume.model" for draw in scenario.draws):
+    check_instruments(
+        (name, part) for name, part in scenario.payload.parts().items() if isinstance(part, type)
+    )
+    if (
+        scenario.emission.ship is None
+        or sampled
+        or any(draw.key == "plume.model" for draw in scenario.draws)
+    ):
         return
     model = PLUME_MODELS.get(scenario.plume.model)
     # Of what another callable makes it shows in planning.

@@ -13,7 +13,11 @@ from scenarios.studies.flight_study import FlightStudy
 
 def clearance(row: Row, *, unmeasured: float) -> float:
     """Return how far from the keep-out area a flight stayed at its closest, or ``unmeasured`` if that is not known [m]."""
-    return float(row["min_distance_m"] - row["keepout_radius_m"]) if "min_distance_m" in row else unmeasured
+    return (
+        float(row["min_distance_m"] - row["keepout_radius_m"])
+        if "min_distance_m" in row
+        else unmeasured
+    )
 
 
 class ChosenFlightsStudy(FlightStudy):
@@ -34,10 +38,20 @@ class ChosenFlightsStudy(FlightStudy):
     chooses_flights = True
 
     def __init__(
-        self, scenario: Scenario, name: str, trials: Mapping[str, Scenario], *, numbers: int, overrides: Sequence[str] = ()
+        self,
+        scenario: Scenario,
+        name: str,
+        trials: Mapping[str, Scenario],
+        *,
+        numbers: int,
+        overrides: Sequence[str] = (),
     ) -> None:
-        numbered = {trial: of.model_copy(update={"flights": numbers}) for trial, of in trials.items()}
-        super().__init__(scenario.model_copy(update={"flights": numbers}), name, numbered, overrides=overrides)
+        numbered = {
+            trial: of.model_copy(update={"flights": numbers}) for trial, of in trials.items()
+        }
+        super().__init__(
+            scenario.model_copy(update={"flights": numbers}), name, numbered, overrides=overrides
+        )
         ((self._trial, self._scenario),) = self.trials.items()
         self._tasks: list[Task] = []
 
@@ -51,7 +65,9 @@ class ChosenFlightsStudy(FlightStudy):
         They were chosen by these. So a lost one among these is tried again only as long as there are none: otherwise a run that
         is resumed would choose others.
         """
-        return next(journal.numbered(SUMMARY, first=len(self._tasks), below=below), None) is not None
+        return (
+            next(journal.numbered(SUMMARY, first=len(self._tasks), below=below), None) is not None
+        )
 
     def postprocess(self, run: RunDirectory, journal: Journal, progress: Progress) -> None:
         """Write nothing: flights that follow from others are not a sample that shows how well sulphur is measured."""

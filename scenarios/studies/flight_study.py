@@ -86,14 +86,29 @@ class FlightStudy:
     """Whether what is flown depends on what was flown before, so that no flight can be flown without the others."""
 
     def __init__(
-        self, scenario: Scenario | TrialList, name: str, trials: Mapping[str, Scenario], *, overrides: Sequence[str] = ()
+        self,
+        scenario: Scenario | TrialList,
+        name: str,
+        trials: Mapping[str, Scenario],
+        *,
+        overrides: Sequence[str] = (),
     ) -> None:
         first = next(iter(trials.values()))
         spec = spec_of(first)
-        for point in (point for trial, of in trials.items() for point in Experiment(trial, of, alone=len(trials) == 1).points):
+        for point in (
+            point
+            for trial, of in trials.items()
+            for point in Experiment(trial, of, alone=len(trials) == 1).points
+        ):
             check_without_design(point.scenario)
         self._design, self._refusal = design_of(spec, first.altitude) if spec else (None, "")
-        envelope = self._design.design.schedule.envelope if self._design else spec.envelope if spec else None
+        envelope = (
+            self._design.design.schedule.envelope
+            if self._design
+            else spec.envelope
+            if spec
+            else None
+        )
         as_read = trials if envelope is not None else {}
         if envelope is not None:
             trials = {trial: scaled(of, envelope) for trial, of in trials.items()}
@@ -101,14 +116,29 @@ class FlightStudy:
             # What the manifest says of it is what is flown.
             scenario = trials[name]
         self.trials = self.expanded(trials)
-        self.experiments = {trial: Experiment(trial, of, alone=len(self.trials) == 1) for trial, of in self.trials.items()}
-        check_flights(self.experiments.values(), self._design.design.schedule.envelope if self._design else None)
+        self.experiments = {
+            trial: Experiment(trial, of, alone=len(self.trials) == 1)
+            for trial, of in self.trials.items()
+        }
+        check_flights(
+            self.experiments.values(),
+            self._design.design.schedule.envelope if self._design else None,
+        )
         self.histories, self._report = scenario.histories, scenario.report
         self.flights = {trial: experiment.counted for trial, experiment in self.experiments.items()}
-        keys = dict.fromkeys(key for experiment in self.experiments.values() for key in experiment.keys)
-        points = [point.scenario for experiment in self.experiments.values() for point in experiment.points]
+        keys = dict.fromkeys(
+            key for experiment in self.experiments.values() for key in experiment.keys
+        )
+        points = [
+            point.scenario
+            for experiment in self.experiments.values()
+            for point in experiment.points
+        ]
         instruments = evaluated_instruments(points)
-        figures = (*SUMMARY_COLUMNS, *dict.fromkeys(name for instrument in instruments for name in figures_of(instrument)))
+        figures = (
+            *SUMMARY_COLUMNS,
+            *dict.fromkeys(name for instrument in instruments for name in figures_of(instrument)),
+        )
         if any(point.finds for point in points):
             figures += FINDING_FIGURES
         self.tables = {
@@ -118,21 +148,29 @@ class FlightStudy:
             DRAWS: (*INPUT_COLUMNS, *keys),
         }
         for instrument in instruments:
-            self.tables |= {file: (*FLIGHT_COLUMNS, *columns) for file, columns in tables_of(instrument).items()}
+            self.tables |= {
+                file: (*FLIGHT_COLUMNS, *columns) for file, columns in tables_of(instrument).items()
+            }
         if self._numbers > self.planned:
             self.tables[COMPARISON] = figures
         self.plugins = plugins(points)
         self.vessel_files = vessel_files(points)
-        self.config_hash = config_hash(scenario, *self.trials.values(), files=self.plugins, names=list(self.trials))
+        self.config_hash = config_hash(
+            scenario, *self.trials.values(), files=self.plugins, names=list(self.trials)
+        )
         self._manifest = initial_manifest(scenario, name, overrides) | {
             # A list of trials does not change with what it lists.
             "config_hash": self.config_hash,
             "modes": [mode.value for mode in Mode],
             "trial_parameters": {trial: parameters(of) for trial, of in self.trials.items()},
-            "unused_parameters": {trial: unused_parameters(of) for trial, of in self.trials.items()},
+            "unused_parameters": {
+                trial: unused_parameters(of) for trial, of in self.trials.items()
+            },
             "scaled_parameters": {trial: scaled_keys(of) for trial, of in as_read.items()},
             "sampled_at_random": self._sampled_at_random(),
-            "flights_per_sample": {trial: flights_per_sample(of) for trial, of in self.trials.items()},
+            "flights_per_sample": {
+                trial: flights_per_sample(of) for trial, of in self.trials.items()
+            },
             "theory": {trial: theory_over_speed_ratio(of) for trial, of in self.trials.items()},
             "plugins": self.plugins,
             "vessel_files": {
@@ -152,7 +190,9 @@ class FlightStudy:
 
     def name_by_trial(self) -> None:
         """Have the names of flights begin with that of their trial, as those of a run of several trials do."""
-        self.experiments = {trial: Experiment(trial, of, alone=False) for trial, of in self.trials.items()}
+        self.experiments = {
+            trial: Experiment(trial, of, alone=False) for trial, of in self.trials.items()
+        }
 
     def _sampled_at_random(self) -> dict[str, bool]:
         """Return of which trials flights are a random sample, from which a bound on a probability follows."""
@@ -166,7 +206,9 @@ class FlightStudy:
     @property
     def beside(self) -> int:
         """Number of flights of comparisons."""
-        return sum(experiment.flights - experiment.counted for experiment in self.experiments.values())
+        return sum(
+            experiment.flights - experiment.counted for experiment in self.experiments.values()
+        )
 
     @property
     def _numbers(self) -> int:
@@ -193,15 +235,26 @@ class FlightStudy:
         # Of a trial that has been scaled to the aircraft: its airspeed is where flights start.
         first = next(iter(self.trials.values()))
         flown = self._design if first.fidelity != "kinematic" else None
-        settings = [setting for experiment in self.experiments.values() for setting in experiment.steepest()]
-        steepest = max(bank_for_heading_rate(omega_max(s.guidance), s.guidance.airspeed_mps) for s in [first, *settings])
+        settings = [
+            setting for experiment in self.experiments.values() for setting in experiment.steepest()
+        ]
+        steepest = max(
+            bank_for_heading_rate(omega_max(s.guidance), s.guidance.airspeed_mps)
+            for s in [first, *settings]
+        )
         try:
-            setup = aircraft_setup(flown, first, run, bank=steepest, settings=settings) if flown else None
+            setup = (
+                aircraft_setup(flown, first, run, bank=steepest, settings=settings)
+                if flown
+                else None
+            )
             with plugins_explained("the keep-out margin cannot be predicted", settings):
                 spreads = predicted_spreads(settings, flown, setup)
         except AircraftError as error:
             raise InputError(f"{first.aircraft}: {error}") from None
-        self._manifest["guidance_lag_s"] = (setup or kinematic_setup(first)).lag + 0.5 / first.guidance.rate_hz
+        self._manifest["guidance_lag_s"] = (
+            setup or kinematic_setup(first)
+        ).lag + 0.5 / first.guidance.rate_hz
         return FlightWork(
             experiments=tuple(self.experiments.values()),
             histories=self.histories,
@@ -246,7 +299,9 @@ class FlightStudy:
         if gone:
             tables = (SUMMARY, COMPARISON)
             found = ((number, row) for table in tables for number, row in journal.numbered(table))
-            missing |= {number for number, row in found if time_history_path(row["flight_id"]) in gone}
+            missing |= {
+                number for number, row in found if time_history_path(row["flight_id"]) in gone
+            }
         return [replace(self.task(number), recorded=True) for number in sorted(missing)]
 
     def task(self, number: int) -> Task:
@@ -256,7 +311,9 @@ class FlightStudy:
     def postprocess(self, run: RunDirectory, journal: Journal, _progress: Progress) -> None:
         """Write ``sulphur.json`` where flights had a sniffer; everything else is in the tables."""
         if SULPHUR_TABLE in self.tables:
-            rows = frame((row for row in journal.rows(SUMMARY) if "sulphur_verdict" in row), SULPHUR_COLUMNS)
+            rows = frame(
+                (row for row in journal.rows(SUMMARY) if "sulphur_verdict" in row), SULPHUR_COLUMNS
+            )
             run.write_json(run.path / SULPHUR, sulphur_statistics(rows, confidence=CONFIDENCE))
 
     def export(self, run: RunDirectory, journal: Journal) -> None:
@@ -270,27 +327,54 @@ class FlightStudy:
     def summary(self, journal: Journal) -> StudySummary:
         """Return the result so far."""
         whole = FlightCounts(planned=self.planned)
-        trial_counts = {trial: FlightCounts(planned=flights) for trial, flights in self.flights.items()}
+        trial_counts = {
+            trial: FlightCounts(planned=flights) for trial, flights in self.flights.items()
+        }
         for row in journal.rows(SUMMARY):
             whole.add(row)
             trial_counts[row["trial"]].add(row)
-        lines = [*(reports.described() for reports in self.vessel_files.values()), f"flights: {whole.line()}"]
+        lines = [
+            *(reports.described() for reports in self.vessel_files.values()),
+            f"flights: {whole.line()}",
+        ]
         if len(trial_counts) > 1:
             lines += [f"  {trial}: {counts.line()}" for trial, counts in trial_counts.items()]
         lines += [*self._comparison_lines(journal), *whole.sulphur_lines()]
         if whole.flown > whole.without_area and all(self._sampled_at_random().values()):
-            samples = sum(of.beside // flights_per_sample(self.trials[trial]) for trial, of in trial_counts.items())
+            samples = sum(
+                of.beside // flights_per_sample(self.trials[trial])
+                for trial, of in trial_counts.items()
+            )
             lines.append(self.bound_line(whole, samples, journal))
         left = self.beside - sum(1 for _ in journal.rows(COMPARISON)) if self.beside else 0
         lines += [whole.exit_line(left=left), *whole.not_met_lines("    "), *whole.warnings()]
-        manifest = whole.manifest() | self._sizes() | {"guidance_lag_s": self._manifest.get("guidance_lag_s")}
-        return StudySummary(done=whole.done, met=whole.passed == whole.planned, lines=lines, manifest=manifest, beside_left=left)
+        manifest = (
+            whole.manifest()
+            | self._sizes()
+            | {"guidance_lag_s": self._manifest.get("guidance_lag_s")}
+        )
+        return StudySummary(
+            done=whole.done,
+            met=whole.passed == whole.planned,
+            lines=lines,
+            manifest=manifest,
+            beside_left=left,
+        )
 
     def _comparison_lines(self, journal: Journal) -> list[str]:
         """Return a line for each comparison: its flights, which do not count."""
-        variants = (point for experiment in self.experiments.values() for point in experiment.points if point.variant != STUDY)
+        variants = (
+            point
+            for experiment in self.experiments.values()
+            for point in experiment.points
+            if point.variant != STUDY
+        )
         planned = Counter[str]()
         for point in variants:
             planned[point.variant] += point.flights
-        left_out = [nu for of in self.trials.values() if of.comparison.variants for nu in of.comparison.nu] if not planned else []
+        left_out = (
+            [nu for of in self.trials.values() if of.comparison.variants for nu in of.comparison.nu]
+            if not planned
+            else []
+        )
         return comparison_lines(planned, journal.rows(COMPARISON) if planned else (), left_out)

@@ -21,7 +21,12 @@ from measurement.sniffer.spec import SnifferSpec
 from scenarios.engine.fingerprint import fingerprint
 from scenarios.engine.run_directory import RunDirectory
 from scenarios.errors import InputError
-from scenarios.schema.documented_parts import DIMENSIONLESS, DocumentedKey, described_fields, documented_part_keys
+from scenarios.schema.documented_parts import (
+    DIMENSIONLESS,
+    DocumentedKey,
+    described_fields,
+    documented_part_keys,
+)
 from scenarios.schema.effect import differing, unused
 from scenarios.schema.keys import line, split_unit
 from scenarios.schema.load import AnyStudy
@@ -91,7 +96,9 @@ def plugins(scenarios: Iterable[Scenario]) -> dict[str, str]:
     InputError : a file or an aircraft cannot be read
     """
     found = {}
-    for key, name in dict.fromkeys(named for scenario in scenarios for named in part_names(scenario)):
+    for key, name in dict.fromkeys(
+        named for scenario in scenarios for named in part_names(scenario)
+    ):
         try:
             if names_folder(key, name):
                 found[name] = model_hash(find_spec(name).files)[:_HASH_LENGTH]
@@ -115,7 +122,9 @@ def refuse_changed(then: Mapping[str, str], now: Mapping[str, str]) -> None:
     """
     for name, digest in now.items():
         if then.get(name) != digest:
-            raise InputError(f"'{file_of(name)}' has changed since the run; use it as it was then, or start a new run")
+            raise InputError(
+                f"'{file_of(name)}' has changed since the run; use it as it was then, or start a new run"
+            )
 
 
 def vessel_files(scenarios: Iterable[Scenario]) -> dict[str, AisReports]:
@@ -124,10 +133,15 @@ def vessel_files(scenarios: Iterable[Scenario]) -> dict[str, AisReports]:
     return {f"{v.source.path} {v.source.mmsi}": v.source for v in found if isinstance(v, AisVessel)}
 
 
-def config_hash(*scenarios: BaseModel, files: Mapping[str, str] | None = None, names: Sequence[str] = ()) -> str:
+def config_hash(
+    *scenarios: BaseModel, files: Mapping[str, str] | None = None, names: Sequence[str] = ()
+) -> str:
     """Return a hash of scenarios, of their names where seeds depend on them, and of the files that they take parts from."""
     documents: list[object] = [flown_config(scenario) for scenario in scenarios]
-    text = "\n".join(json.dumps(document, sort_keys=True) for document in [*documents, *([files] if files else []), *names])
+    text = "\n".join(
+        json.dumps(document, sort_keys=True)
+        for document in [*documents, *([files] if files else []), *names]
+    )
     return hashlib.sha256(text.encode()).hexdigest()[:16]
 
 
@@ -140,7 +154,11 @@ def parameters(scenario: BaseModel) -> list[dict[str, Any]]:
 
 def unused_parameters(scenario: BaseModel) -> list[dict[str, Any]]:
     """Return the same of the keys that do not act though they have not their defaults: an aircraft's, to which they are scaled."""
-    return [of for of in _of_sections(scenario) if _is_unused(scenario, of) and of["value"] != of.get("default")]
+    return [
+        of
+        for of in _of_sections(scenario)
+        if _is_unused(scenario, of) and of["value"] != of.get("default")
+    ]
 
 
 def _is_unused(scenario: BaseModel, parameter: Mapping[str, Any]) -> bool:
@@ -164,7 +182,9 @@ def _of_sections(scenario: BaseModel) -> list[dict[str, Any]]:
                 "meaning": meaning,
             }
             if not field.is_required():
-                parameter["default"] = to_jsonable_python(field.get_default(call_default_factory=True))
+                parameter["default"] = to_jsonable_python(
+                    field.get_default(call_default_factory=True)
+                )
             listed.append(parameter)
         listed += _of_parts(section_name, section)
     return listed
@@ -175,13 +195,23 @@ def _varied_of_parts(scenario: BaseModel, listed: Collection[str]) -> list[dict[
     if not isinstance(scenario, Scenario):
         return []
     varied = dict.fromkeys([*scenario.sweep.root, *(draw.key for draw in scenario.draws)])
-    found = (known[0] for key in varied if key != "nu" and key not in listed and (known := _documented(key)))
-    brought = [{"key": of.key, "value": of.default, "default": of.default, **_about(of)} for of in found]
+    found = (
+        known[0]
+        for key in varied
+        if key != "nu" and key not in listed and (known := _documented(key))
+    )
+    brought = [
+        {"key": of.key, "value": of.default, "default": of.default, **_about(of)} for of in found
+    ]
     for law in dict.fromkeys(
-        values["guidance.law"] for values in differing(scenario) if isinstance(values.get("guidance.law"), str)
+        values["guidance.law"]
+        for values in differing(scenario)
+        if isinstance(values.get("guidance.law"), str)
     ):
         of_law = _of_parts("guidance", scenario.guidance.model_copy(update={"law": law}))
-        brought += [of for of in of_law if of["key"] not in {*listed, *(known["key"] for known in brought)}]
+        brought += [
+            of for of in of_law if of["key"] not in {*listed, *(known["key"] for known in brought)}
+        ]
     return brought
 
 
@@ -191,13 +221,23 @@ def _of_parts(name: str, section: BaseModel) -> list[dict[str, Any]]:
     if isinstance(section, PartSection):
         brought = section.part_keys
     elif isinstance(section, GuidanceConfig):
-        brought = {key: default for key, default in section.law_keys.items() if key not in type(section).model_fields}
+        brought = {
+            key: default
+            for key, default in section.law_keys.items()
+            if key not in type(section).model_fields
+        }
     given, found = section.model_extra or {}, []
     for key, default in brought.items():
         known = _documented(f"{name}.{key}")
         # Parts may have keys of the same name.
-        about = _about(next((of for of in known if of.default == default), known[0])) if known else _OF_ONE_OF_A_USERS_OWN
-        value, plain = (to_jsonable_python(of, fallback=repr) for of in (given.get(key, default), default))
+        about = (
+            _about(next((of for of in known if of.default == default), known[0]))
+            if known
+            else _OF_ONE_OF_A_USERS_OWN
+        )
+        value, plain = (
+            to_jsonable_python(of, fallback=repr) for of in (given.get(key, default), default)
+        )
         found.append({"key": f"{name}.{key}", "value": value, "default": plain, **about})
     return found
 
@@ -207,17 +247,26 @@ def _of_own_table(parameter: Mapping[str, Any]) -> Iterator[dict[str, Any]]:
     key, table = str(parameter["key"]), parameter["value"]
     if key not in _OWN_TABLES or not isinstance(table, Mapping):
         return
-    yield from _fields(key, {name: value for name, value in table.items() if name != "channels"}, _OWN_TABLES[key])
+    yield from _fields(
+        key, {name: value for name, value in table.items() if name != "channels"}, _OWN_TABLES[key]
+    )
     for gas, channel in table.get("channels", {}).items():
         yield from _fields(f"{key}.channels.{gas}", channel, Channel, UNITS[gas])
 
 
-def _fields(key: str, table: Mapping[str, Any], made: type[Any], gas_unit: str = "") -> Iterator[dict[str, Any]]:
+def _fields(
+    key: str, table: Mapping[str, Any], made: type[Any], gas_unit: str = ""
+) -> Iterator[dict[str, Any]]:
     """Yield the keys of a table, which are fields of a class; ``gas_unit`` is what its docstring calls "unit"."""
     known = described_fields(made)
     for name, value in table.items():
         meaning, unit = known[name]
-        yield {"key": f"{key}.{name}", "value": value, "unit": unit.replace("unit", gas_unit), "meaning": meaning}
+        yield {
+            "key": f"{key}.{name}",
+            "value": value,
+            "unit": unit.replace("unit", gas_unit),
+            "meaning": meaning,
+        }
 
 
 _OWN_TABLES: dict[str, type[Any]] = {"emission.ship": Ship, "payload.sensor": SnifferSpec}

@@ -32,7 +32,10 @@ RESERVE_MAX_PERCENT, RESERVE_STEP_PERCENT = 60, 5
 RESERVES = (
     0.0,
     float(GuidanceConfig.model_fields["reserve"].default),
-    *(percent / 100 for percent in range(RESERVE_STEP_PERCENT, RESERVE_MAX_PERCENT + 1, RESERVE_STEP_PERCENT)),
+    *(
+        percent / 100
+        for percent in range(RESERVE_STEP_PERCENT, RESERVE_MAX_PERCENT + 1, RESERVE_STEP_PERCENT)
+    ),
 )
 """Fractions of omega_max that the reference leaves unused: none, as in the paper, the default, and a grid [-]."""
 
@@ -65,7 +68,9 @@ def bounds_record(requests: list[FlightRequest], seed: int) -> dict[str, Any]:
             "distance_to_m": last.flight.settling_band_m,
         },
         "flown": _flown(requests, np.random.default_rng(seed)),
-        "guaranteed": [_guaranteed(missions[-1], reserve) for reserve in RESERVES] if missions else [],
+        "guaranteed": [_guaranteed(missions[-1], reserve) for reserve in RESERVES]
+        if missions
+        else [],
     }
 
 
@@ -74,13 +79,20 @@ def _flown(requests: list[FlightRequest], generator: np.random.Generator) -> lis
     for request in requests:
         settings = request.scenario
         try:
-            plan = plan_flight(settings, flight_id=request.flight_id, seed=request.seed, setup=kinematic_setup(settings))
+            plan = plan_flight(
+                settings,
+                flight_id=request.flight_id,
+                seed=request.seed,
+                setup=kinematic_setup(settings),
+            )
         except InfeasibleError:
             continue
         if not math.isfinite(plan.steering.bound):
             continue
         steering, gain, speed = plan.steering, settings.guidance.gain_per_s, largest_speed(settings)
-        turn = plan.oscillation.amplitude if plan.oscillation else abs(circle(settings).heading_rate)
+        turn = (
+            plan.oscillation.amplitude if plan.oscillation else abs(circle(settings).heading_rate)
+        )
         key = (speed, turn, *steering.look_ahead, gain, steering.steering_max)
         if key in rows:
             rows[key]["flights"].append(request.flight_id)
@@ -113,7 +125,9 @@ def _guaranteed(request: FlightRequest, reserve: float) -> Row:
     row: Row = {"nu": request.scenario.nu_over_ground, "reserve": reserve}
     try:
         scenario = with_values(request.scenario, {"guidance.reserve": reserve})
-        oscillation = oscillation_at(scenario.guidance, scenario.reference, request.scenario.nu_over_ground)
+        oscillation = oscillation_at(
+            scenario.guidance, scenario.reference, request.scenario.nu_over_ground
+        )
         row["crossing_interval_s"] = oscillation.crossing_interval
         found = search_steering(scenario, omega_max(scenario.guidance), oscillation.amplitude)
     except InfeasibleError as error:

@@ -87,4 +87,11 @@ def run_study(
     factory = executor_factory or ExecutorFactory()
     own = [scenario] if isinstance(scenario, Scenario) and is_file_part(scenario.study) else []
     with plugins_explained(f"study '{scenario.study}'", own) if own else nullcontext():
-        return fly_study(study, directory, executor_factory=factory, resume=resume, progress=progress, command=command)
+        return fly_study(
+            study,
+            directory,
+            executor_factory=factory,
+            resume=resume,
+            progress=progress,
+            command=command,
+        )

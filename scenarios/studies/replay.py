@@ -46,24 +46,36 @@ class Replay(SingleFlight):
     InputError : there is no such flight, or the run cannot be read
     """
 
-    def __init__(self, name: str, viewer: tuple[str, int] | None = None, *, aircraft_dir: Path | None = None) -> None:
+    def __init__(
+        self, name: str, viewer: tuple[str, int] | None = None, *, aircraft_dir: Path | None = None
+    ) -> None:
         self._viewer = viewer
         self._flight_id = flight_of(name)
         self._from = Path(name).parents[1]
         manifest = self._manifest()
         if "replayed" in manifest:
-            raise InputError(f"'{self._from}' is the run of a replay; give the flight as RUN_DIR/flights/ID of its original run")
+            raise InputError(
+                f"'{self._from}' is the run of a replay; give the flight as RUN_DIR/flights/ID of its original run"
+            )
         self._task, self._table, self._row = self._found()
         if "trial" not in self._row:
-            raise InputError(f"'{self._from}' is a study of {manifest.get('study')}; {_ONLY_FLIGHTS}")
+            raise InputError(
+                f"'{self._from}' is a study of {manifest.get('study')}; {_ONLY_FLIGHTS}"
+            )
         if viewer and self._row.get("fidelity") != "six_dof":
-            raise InputError(f"--flightgear shows aircraft in six degrees of freedom; '{self._flight_id}' is a kinematic flight")
+            raise InputError(
+                f"--flightgear shows aircraft in six degrees of freedom; '{self._flight_id}' is a kinematic flight"
+            )
         try:
-            study = self._restored(self._moved(manifest, aircraft_dir) if aircraft_dir else manifest)
+            study = self._restored(
+                self._moved(manifest, aircraft_dir) if aircraft_dir else manifest
+            )
         except (LookupError, TypeError, AttributeError, ValueError) as error:
             if isinstance(error, InputError):
                 raise
-            raise InputError(f"'{self._from}': {MANIFEST} is not that of a run ({type(error).__name__}: {error})") from None
+            raise InputError(
+                f"'{self._from}': {MANIFEST} is not that of a run ({type(error).__name__}: {error})"
+            ) from None
         self._original_fingerprint = manifest.get("fingerprint", {})
         task, trial = replace(self._task, every_step=True), self._row["trial"]
         super().__init__(study, task, flight_id=self._flight_id, trial=trial, table=self._table)
@@ -73,7 +85,9 @@ class Replay(SingleFlight):
             manifest = json.loads((self._from / MANIFEST).read_text(encoding="utf-8"))
             return dict(manifest)
         except (ValueError, TypeError, OSError, RecursionError) as error:
-            raise InputError(f"'{self._from}': {MANIFEST} cannot be read: {error}; give the directory of a run") from None
+            raise InputError(
+                f"'{self._from}': {MANIFEST} cannot be read: {error}; give the directory of a run"
+            ) from None
 
     def _found(self) -> tuple[Task, str, Row]:
         """Return the task of the flight, the table that has its row, and the row."""
@@ -90,18 +104,24 @@ class Replay(SingleFlight):
                         return journal.task(number), table, row
         finally:
             journal.close()
-        raise InputError(f"'{self._from}' has no flight '{self._flight_id}'; its {SUMMARY} lists them")
+        raise InputError(
+            f"'{self._from}' has no flight '{self._flight_id}'; its {SUMMARY} lists them"
+        )
 
     def _moved(self, manifest: dict[str, Any], directory: Path) -> dict[str, Any]:
         """Return the manifest with the aircraft of its flights where it is now, in ``directory``; the row says so, too."""
         then = str(manifest["trials"][self._row["trial"]]["aircraft"])
         if not names_folder("aircraft", then):
-            raise InputError(f"'{self._from}' flew the aircraft '{then}', which is of no directory; leave out --aircraft-dir")
+            raise InputError(
+                f"'{self._from}' flew the aircraft '{then}', which is of no directory; leave out --aircraft-dir"
+            )
         now = folder_of(directory, Path(then).name)
         if self._row.get("aircraft") == then:
             self._row = {**self._row, "aircraft": now}
         trials = {name: config | {"aircraft": now} for name, config in manifest["trials"].items()}
-        plugins = {now if name == then else name: digest for name, digest in manifest["plugins"].items()}
+        plugins = {
+            now if name == then else name: digest for name, digest in manifest["plugins"].items()
+        }
         return manifest | {"trials": trials, "plugins": plugins}
 
     def _restored(self, manifest: dict[str, Any]) -> Study:
@@ -110,15 +130,22 @@ class Replay(SingleFlight):
         The trial comes from the manifest, scaled to its aircraft, and not from the catalog, which may have changed.
         """
         if "study" not in manifest:
-            raise InputError(f"'{self._from}': manifest.json is not that of a run; give the directory of a complete run")
+            raise InputError(
+                f"'{self._from}': manifest.json is not that of a run; give the directory of a complete run"
+            )
         if "trials" not in manifest:
             raise InputError(f"'{self._from}' is a study of {manifest['study']}; {_ONLY_FLIGHTS}")
         trial, task, trials = self._row["trial"], self._task, manifest["trials"]
         for name in (trial, *trials):
             # It becomes part of the names of files.
             if not is_file_name(name) or name not in trials:
-                raise InputError(f"'{self._from}' names a trial {name!r}, which cannot be the name of a trial; do not use this run")
-        scenarios = {name: checked({**config, "study": "flights"}, Scenario) for name, config in trials.items()}
+                raise InputError(
+                    f"'{self._from}' names a trial {name!r}, which cannot be the name of a trial; do not use this run"
+                )
+        scenarios = {
+            name: checked({**config, "study": "flights"}, Scenario)
+            for name, config in trials.items()
+        }
         flown = Experiment(trial, scenarios[trial]).points
         refuse_changed(manifest.get("plugins", {}), plugins(point.scenario for point in flown))
         study = study_of(scenarios[trial], trial)
@@ -129,24 +156,35 @@ class Replay(SingleFlight):
         # Of a flight that the study gave a seed of its own, the row has it.
         self._task = Task(number=task.number - before, point=task.point, seed=self._row.get("seed"))
         if not 0 <= self._task.number < flights[trial]:
-            raise InputError(f"'{self._from}': flight '{self._flight_id}' has number {task.number}; '{trial}' has no such flight")
+            raise InputError(
+                f"'{self._from}': flight '{self._flight_id}' has number {task.number}; '{trial}' has no such flight"
+            )
         return study
 
     def initial_manifest(self) -> dict[str, Any]:
         """Return the manifest as written before the flight."""
         manifest = super().initial_manifest()
-        return manifest | {"title": f"{manifest['title']}: replay of {self._flight_id}", "replayed": self._flight_id}
+        return manifest | {
+            "title": f"{manifest['title']}: replay of {self._flight_id}",
+            "replayed": self._flight_id,
+        }
 
     def work(self, run: RunDirectory) -> Work:
         """Return the work of the original study, shown where that is asked for."""
         work = super().work(run)
-        return replace(work, viewer=self._viewer) if self._viewer and isinstance(work, FlightWork) else work
+        return (
+            replace(work, viewer=self._viewer)
+            if self._viewer and isinstance(work, FlightWork)
+            else work
+        )
 
     def summary(self, journal: Journal) -> StudySummary:
         """Return whether the row is identical to that of the original flight."""
         rows = list(journal.rows(self._table))
         if not rows:
-            return StudySummary(done=0, met=False, lines=["not flown"], manifest={"identical": False})
+            return StudySummary(
+                done=0, met=False, lines=["not flown"], manifest={"identical": False}
+            )
         differing = [
             name for name in dict.fromkeys([*self._row, *rows[0]])
             if name not in NOT_COMPARED and json.dumps(self._row.get(name)) != json.dumps(rows[0].get(name))
@@ -154,13 +192,25 @@ class Replay(SingleFlight):
         message = rows[0].get("message", "")
         lines = [f"{self._flight_id}: {rows[0]['outcome']}{f': {message}' if message else ''}"]
         if not differing:
-            lines.append(f"identical to the flight in {self._from}: every value of its row agrees to the last bit")
+            lines.append(
+                f"identical to the flight in {self._from}: every value of its row agrees to the last bit"
+            )
         else:
-            changes = ", ".join(f"{name} {self._row.get(name)} -> {rows[0].get(name)}" for name in differing[:3])
-            lines.append(f"differs from the flight in {self._from} in {len(differing)} values: {changes}; {self._reason()}")
-        return StudySummary(done=1, met=not differing, lines=lines, manifest={"identical": not differing})
+            changes = ", ".join(
+                f"{name} {self._row.get(name)} -> {rows[0].get(name)}" for name in differing[:3]
+            )
+            lines.append(
+                f"differs from the flight in {self._from} in {len(differing)} values: {changes}; {self._reason()}"
+            )
+        return StudySummary(
+            done=1, met=not differing, lines=lines, manifest={"identical": not differing}
+        )
 
     def _reason(self) -> str:
         """Return a possible reason."""
         changed = differences(self._original_fingerprint)
-        return f"the original was flown with a different {', '.join(changed)}" if changed else "software and source are unchanged"
+        return (
+            f"the original was flown with a different {', '.join(changed)}"
+            if changed
+            else "software and source are unchanged"
+        )

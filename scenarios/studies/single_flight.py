@@ -30,7 +30,13 @@ class SingleFlight:
     planned, beside = 1, 0
 
     def __init__(self, study: Study, task: Task, *, flight_id: str, trial: str, table: str) -> None:
-        self._study, self._task, self._flight_id, self._trial, self._table = study, task, flight_id, trial, table
+        self._study, self._task, self._flight_id, self._trial, self._table = (
+            study,
+            task,
+            flight_id,
+            trial,
+            table,
+        )
         self.config_hash = f"{study.config_hash} {flight_id}"
 
     @classmethod
@@ -49,7 +55,11 @@ class SingleFlight:
     def initial_manifest(self) -> dict[str, Any]:
         """Return the manifest as written before the flight."""
         # A flight that was chosen is no random sample.
-        one = {"trial_flights": {self._trial: 1}, "flights_planned": 1, "sampled_at_random": {self._trial: False}}
+        one = {
+            "trial_flights": {self._trial: 1},
+            "flights_planned": 1,
+            "sampled_at_random": {self._trial: False},
+        }
         return self._study.initial_manifest() | one | {"config_hash": self.config_hash}
 
     def work(self, run: RunDirectory) -> Work:

@@ -17,7 +17,10 @@ from scenarios.world.faults import OF_SNIFFER
 NOT_MET_SHOWN = 20
 """Flights that did not meet every criterion, or reasons why they measured nothing, that are named on the console, at most."""
 
-_MEASURED_FROM = {"sphere": "from the centre of the keep-out sphere", "cylinder": "horizontally, from the axis of the cylinder"}
+_MEASURED_FROM = {
+    "sphere": "from the centre of the keep-out sphere",
+    "cylinder": "horizontally, from the axis of the cylinder",
+}
 """What distances are measured from, by the shape of the keep-out area."""
 
 
@@ -85,7 +88,9 @@ class FlightCounts:
         self.done += 1
         self.flown += "duration_s" in row
         self.kept_out += kept_out
-        self.without_area += row["outcome"] == Outcome.COMPLETED.value and "keepout_violations" not in row
+        self.without_area += (
+            row["outcome"] == Outcome.COMPLETED.value and "keepout_violations" not in row
+        )
         self.outcomes[row["outcome"]] += 1
         self.required[required] += 1
         # What failed after its flight, as an instrument may, has kept out, but does not count as done.
@@ -133,8 +138,12 @@ class FlightCounts:
         counts = f"{self.planned} planned, {self.flown} flown, {self.completed} completed, {self.met} met every criterion{lost}"
         if math.isinf(self.nearest):
             return counts
-        beside = f"{self.flown - self.without_area}{' beside a vessel' if self.without_area else ''}"
-        violations = f"{self.keepout_violations} keep-out violation{'s' * (self.keepout_violations != 1)}"
+        beside = (
+            f"{self.flown - self.without_area}{' beside a vessel' if self.without_area else ''}"
+        )
+        violations = (
+            f"{self.keepout_violations} keep-out violation{'s' * (self.keepout_violations != 1)}"
+        )
         kept = f"{self.kept_out} of {beside} kept out, {violations}"
         about = f" ({_MEASURED_FROM[next(iter(self.shapes))]})" if len(self.shapes) == 1 else ""
         return f"{counts}; {kept}, closest approach {self.nearest:.1f} m{about}"
@@ -161,7 +170,10 @@ class FlightCounts:
             of = f"{flights} of {self.done}" if flights < self.done else flights
             return [f"fuel sulphur of {of} flights: {counted_verdicts(self.verdicts.elements())}"]
         words = verdict_words(
-            row["sulphur_verdict"], row["sulphur_limit_percent"], row["probability_above"], row["sulphur_quality"]
+            row["sulphur_verdict"],
+            row["sulphur_limit_percent"],
+            row["probability_above"],
+            row["sulphur_quality"],
         )
         low, high = row["fsc_low_percent"], row["fsc_high_percent"]
         return [f"fuel sulphur {content_words(row['fsc_percent'], low, high)}: {words}"]
@@ -177,9 +189,25 @@ class FlightCounts:
         """
         not_kept = self.beside - self.kept_out
         upper = upper_bound(min(not_kept, samples), samples)
-        return self.violation_line(self.violating, not_kept - self.violating, self.beside, upper, CONFIDENCE, samples=samples)
+        return self.violation_line(
+            self.violating,
+            not_kept - self.violating,
+            self.beside,
+            upper,
+            CONFIDENCE,
+            samples=samples,
+        )
 
-    def violation_line(self, violating: int, unknown: int, flights: int, upper: float, confidence: float, *, samples: int) -> str:
+    def violation_line(
+        self,
+        violating: int,
+        unknown: int,
+        flights: int,
+        upper: float,
+        confidence: float,
+        *,
+        samples: int,
+    ) -> str:
         """Return what is known of keep-out violations, and the bound on their probability if that says anything.
 
         Parameters
@@ -190,10 +218,22 @@ class FlightCounts:
         samples : number of flights that differ in what is random
         """
         hours = self.duration / SECONDS_PER_HOUR
-        known = f"in {violating} of {flights} flights" if violating else f"none known in {flights} flight{'s' * (flights != 1)}"
-        more = f", unknown in {unknown}, which count{'s' * (unknown == 1)} as violated" if unknown else ""
+        known = (
+            f"in {violating} of {flights} flights"
+            if violating
+            else f"none known in {flights} flight{'s' * (flights != 1)}"
+        )
+        more = (
+            f", unknown in {unknown}, which count{'s' * (unknown == 1)} as violated"
+            if unknown
+            else ""
+        )
         line = f"keep-out violations: {known} ({hours:.3g} h simulated){more}"
-        line += f"; they share {samples} random sample{'s' * (samples != 1)}" if samples < flights else ""
+        line += (
+            f"; they share {samples} random sample{'s' * (samples != 1)}"
+            if samples < flights
+            else ""
+        )
         if upper > TELLING:
             return f"{line}; too few{'' if samples < flights else ' flights'} to bound their probability"
         bound, sure = (percent(p).replace("\N{NO-BREAK SPACE}", " ") for p in (upper, confidence))
@@ -235,7 +275,10 @@ class FlightCounts:
 
     def not_met_lines(self, indent: str) -> list[str]:
         """Return a line for each of the first flights that did not meet every criterion, and one for the rest."""
-        lines = [f"{indent}{row['flight_id']}: {row['outcome']}: {row['message']}" for row in self.not_met]
+        lines = [
+            f"{indent}{row['flight_id']}: {row['outcome']}: {row['message']}"
+            for row in self.not_met
+        ]
         more = self.done - self.met - len(self.not_met)
         return [*lines, f"{indent}and {more} more, see {SUMMARY}"] if more else lines
 
@@ -249,7 +292,9 @@ class FlightCounts:
         }
 
 
-def comparison_lines(planned: Mapping[str, int], rows: Iterable[Row], left_out: Sequence[float]) -> list[str]:
+def comparison_lines(
+    planned: Mapping[str, int], rows: Iterable[Row], left_out: Sequence[float]
+) -> list[str]:
     """Return a line for each comparison: its flights, which do not count.
 
     Parameters
@@ -259,8 +304,12 @@ def comparison_lines(planned: Mapping[str, int], rows: Iterable[Row], left_out: 
     left_out : speed ratios of comparisons at none of which the study has a flight, or none
     """
     if left_out:
-        return [f"  comparisons: none flown, as no flight is at a speed ratio of comparison.nu, {list(left_out)}"]
+        return [
+            f"  comparisons: none flown, as no flight is at a speed ratio of comparison.nu, {list(left_out)}"
+        ]
     counts = {variant: FlightCounts(planned=flights) for variant, flights in planned.items()}
     for row in rows:
         counts[row["variant"]].add(row)
-    return [f"  comparison {variant}, not counted above: {of.line()}" for variant, of in counts.items()]
+    return [
+        f"  comparison {variant}, not counted above: {of.line()}" for variant, of in counts.items()
+    ]

@@ -39,9 +39,13 @@ def _trials(study: TrialList) -> dict[str, Scenario]:
     for listed in study.trials:
         trial = load_study(listed, [*study.set, *seed], refusing=False)
         if not isinstance(trial, Scenario) or trial.study != "flights":
-            raise InputError(f"trials: '{listed}' is a study of {trial.study}; list scenarios of flights")
+            raise InputError(
+                f"trials: '{listed}' is a study of {trial.study}; list scenarios of flights"
+            )
         if Path(listed).stem in trials:
-            raise InputError(f"trials: two are called '{Path(listed).stem}'; list each once, and give files names of their own")
+            raise InputError(
+                f"trials: two are called '{Path(listed).stem}'; list each once, and give files names of their own"
+            )
         # Of 100 flights 0.07 are 7, and not the eighth that rounding would add.
         flights = math.ceil(study.share * trial.flights * (1.0 - _ROUNDING))
         trials[Path(listed).stem] = trial.model_copy(update={"flights": flights})

@@ -59,7 +59,9 @@ class JsbsimVehicle:
     ) -> None:
         frame = EquatorFrame(altitude)
         latitude, longitude = frame.to_geodetic(north, east)
-        state = replace(start.state(latitude, longitude, course - start.course_offset()), altitude=altitude)
+        state = replace(
+            start.state(latitude, longitude, course - start.course_offset()), altitude=altitude
+        )
         aircraft.release(state, airspeed=start.airspeed, altitude=altitude, weather=weather)
         telemetry = Telemetry(aircraft.fdm, frame)
         self.motion = telemetry.motion
@@ -70,12 +72,17 @@ class JsbsimVehicle:
         self.hold_elevator = aircraft.hold_elevator
         self._command_airspeed = aircraft.command_airspeed
         self._command_heading_rate = aircraft.command_heading_rate
-        self._airspeed_limits = (_AIRSPEED_LIMITS[0] * envelope.airspeed_min, _AIRSPEED_LIMITS[1] * envelope.airspeed_max)
+        self._airspeed_limits = (
+            _AIRSPEED_LIMITS[0] * envelope.airspeed_min,
+            _AIRSPEED_LIMITS[1] * envelope.airspeed_max,
+        )
         self._run = aircraft.run
         runs = round(time_step / aircraft.fdm.time_step)
         looks = runs // _WATCH_INTERVAL if time_step > _WATCH_STEP else 1
         ends = [runs * look // looks for look in range(looks + 1)]
-        *self._runs_watched, self._runs = [range(begin, end) for begin, end in itertools.pairwise(ends)]
+        *self._runs_watched, self._runs = [
+            range(begin, end) for begin, end in itertools.pairwise(ends)
+        ]
         servos = ServoMonitor(aircraft.fdm, time_step / looks)
         self._watch, self.servo_error = servos.watch, servos.error
 

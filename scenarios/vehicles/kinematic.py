@@ -71,7 +71,14 @@ class KinematicVehicle:
         self._speed = airspeed
         if self._lag > 0.0:
             self._north, self._east, self._course, self._heading_rate = lagged_move(
-                self._north, self._east, self._course, self._heading_rate, airspeed, heading_rate, self._lag, self._time_step
+                self._north,
+                self._east,
+                self._course,
+                self._heading_rate,
+                airspeed,
+                heading_rate,
+                self._lag,
+                self._time_step,
             )
         else:
             self._north, self._east, self._course = unicycle_move(
@@ -97,8 +104,14 @@ class KinematicVehicle:
 
     def fail(self, name: str) -> None:
         """Raise InputError: equation (1) has no parts."""
-        raise InputError(f"'{name}' cannot fail in a kinematic flight, which has no parts; fly it with fidelity six_dof")
+        raise InputError(
+            f"'{name}' cannot fail in a kinematic flight, which has no parts; fly it with fidelity six_dof"
+        )
 
     def fault(self, sample: tuple[float, ...]) -> str:
         """Return nothing, unless the guidance commanded what is not a number: equation (1) is never out of control."""
-        return "" if math.isfinite(sample[2] + self._north + self._east) else "the motion is not a number"
+        return (
+            ""
+            if math.isfinite(sample[2] + self._north + self._east)
+            else "the motion is not a number"
+        )

@@ -29,7 +29,14 @@ class SensorErrors:
     airspeed_bias : of this flight [m/s]
     """
 
-    def __init__(self, sensors: SensorsConfig, *, steps: int, time_step: float, generator: np.random.Generator) -> None:
+    def __init__(
+        self,
+        sensors: SensorsConfig,
+        *,
+        steps: int,
+        time_step: float,
+        generator: np.random.Generator,
+    ) -> None:
         self.airspeed_bias = float(generator.uniform(-1.0, 1.0)) * sensors.airspeed_bias_mps
         heading_bias = math.radians(float(generator.uniform(-1.0, 1.0)) * sensors.heading_bias_deg)
         white = generator.standard_normal((6, steps))
@@ -51,7 +58,13 @@ class SensorErrors:
         self._errors: list[float] = np.column_stack(errors).ravel().tolist()
 
     def read(
-        self, step: int, motion: tuple[float, float, float, float, float], airspeed: float, heading: float, *, satellites: bool
+        self,
+        step: int,
+        motion: tuple[float, float, float, float, float],
+        airspeed: float,
+        heading: float,
+        *,
+        satellites: bool,
     ) -> Reading:
         """Return what is read at a step.
 
@@ -63,5 +76,9 @@ class SensorErrors:
         satellites : whether satellite navigation works
         """
         north, east, v_north, v_east, air, turned = self._errors[6 * step : 6 * step + 6]
-        position = (motion[0] + north, motion[1] + east, motion[2] + v_north, motion[3] + v_east) if satellites else None
+        position = (
+            (motion[0] + north, motion[1] + east, motion[2] + v_north, motion[3] + v_east)
+            if satellites
+            else None
+        )
         return position, airspeed + air, heading + turned

@@ -46,14 +46,21 @@ class Telemetry:
         self._sideslip = fdm.node("aero/beta-rad").get_double_value
         moved = {control.name for control in fdm.spec.inputs}
         self._controls = tuple(
-            fdm.node(CONTROL_COMMAND.format(name)).get_double_value if name in moved else _nothing for name in _CONTROLS
+            fdm.node(CONTROL_COMMAND.format(name)).get_double_value if name in moved else _nothing
+            for name in _CONTROLS
         )
 
     def motion(self) -> tuple[float, float, float, float, float]:
         """Return north, east [m], north and east velocity over the ground [m/s] and heading rate against the air [rad/s]."""
         # To unpack two names takes a third of the time of a star in a tuple, in each step of every flight.
         north, east = self._to_local(self._latitude(), self._longitude())
-        return north, east, self._north() * METRES_PER_FOOT, self._east() * METRES_PER_FOOT, self._heading_rate()
+        return (
+            north,
+            east,
+            self._north() * METRES_PER_FOOT,
+            self._east() * METRES_PER_FOOT,
+            self._heading_rate(),
+        )
 
     def air_data(self) -> tuple[float, float, float]:
         """Return true airspeed with turbulence and gusts [m/s], heading from 0 to 2 pi, and roll [rad]."""

@@ -99,7 +99,11 @@ class VehicleSetup:
         if not self.turn_airspeeds:
             return math.inf
         # At one bank the time of a full turn is proportional to the airspeed, but for what the angle of attack changes.
-        return float(np.interp(1.0 / heading_rate, [1.0 / turn for turn in self.turn_rates], self.turn_airspeeds))
+        return float(
+            np.interp(
+                1.0 / heading_rate, [1.0 / turn for turn in self.turn_rates], self.turn_airspeeds
+            )
+        )
 
 
 def spec_of(scenario: Scenario) -> AircraftSpec | None:
@@ -142,7 +146,12 @@ def kinematic_setup(scenario: Scenario) -> VehicleSetup:
 
 
 def aircraft_setup(
-    found: Designed, scenario: Scenario, run: RunDirectory, *, settings: Sequence[Scenario], bank: float = 0.0
+    found: Designed,
+    scenario: Scenario,
+    run: RunDirectory,
+    *,
+    settings: Sequence[Scenario],
+    bank: float = 0.0,
 ) -> VehicleSetup:
     """Return what flights of the aircraft need; write its autopilot into the run directory.
 
@@ -158,20 +167,31 @@ def aircraft_setup(
     with tempfile.TemporaryDirectory() as folder:
         write_tree(write_root(schedule, Path(folder)), run.model)
     run.write_text(run.innerloop, found.record_text)
-    start = level_trim(schedule.spec, scenario.guidance.airspeed_mps, scenario.altitude, schedule.level(schedule.middle))
+    start = level_trim(
+        schedule.spec,
+        scenario.guidance.airspeed_mps,
+        scenario.altitude,
+        schedule.level(schedule.middle),
+    )
     turns = schedule.trims[schedule.middle]
     reversal, slow_lag = found.record["turn_reversal"], float(found.record["heading_rate_lag_s"])
     slower_or_faster = abs(start.airspeed / reversal["airspeed_mps"] - 1.0)
     if bank > schedule.envelope.bank + _SAME_BANK or slower_or_faster > _SAME_AIRSPEED:
         from innerloop.designs.record import reversal_record  # needs python-control
 
-        reversal = reversal_record(schedule.spec, run.model, start, max(bank, schedule.envelope.bank), slow_lag)
+        reversal = reversal_record(
+            schedule.spec, run.model, start, max(bank, schedule.envelope.bank), slow_lag
+        )
     level, climbing, parts = None, None, fault_names(schedule.spec)
     if failing := [setting for setting in settings if setting.declared_faults.intersection(parts)]:
         failable = AutopilotedAircraft(schedule.spec, run.model, failable=True)
-        gradient, turn = max(setting.following.climb_gradient for setting in failing), max(bank, schedule.envelope.bank)
+        gradient, turn = (
+            max(setting.following.climb_gradient for setting in failing),
+            max(bank, schedule.envelope.bank),
+        )
         level, climbing = (
-            measure_part_failure(failable, start, turn, schedule.envelope.airspeed_min, each) for each in (0.0, gradient)
+            measure_part_failure(failable, start, turn, schedule.envelope.airspeed_min, each)
+            for each in (0.0, gradient)
         )
         climbing = climbing.or_worse(level)
     return VehicleSetup(
@@ -194,7 +214,9 @@ def aircraft_setup(
         turn_rates=_slower_turns(schedule),
         crab_banks=tuple(turn.roll for turn in turns),
         crab_offsets=tuple(turn.course_offset() for turn in turns),
-        aircraft=Aircraft(spec=schedule.spec, envelope=schedule.envelope, start=start, model=run.model),
+        aircraft=Aircraft(
+            spec=schedule.spec, envelope=schedule.envelope, start=start, model=run.model
+        ),
     )
 
 
@@ -202,6 +224,15 @@ def _slower_turns(schedule: Schedule) -> tuple[float, ...]:
     """Return the heading rate of the slower of both turns at the autopilot's largest bank, at each airspeed [rad/s]."""
     tangent = math.tan(schedule.envelope.bank_max)
     return tuple(
-        min(abs(float(np.interp(side * tangent, np.tan([t.roll for t in row]), [t.yaw_rate for t in row]))) for side in (-1.0, 1.0))
+        min(
+            abs(
+                float(
+                    np.interp(
+                        side * tangent, np.tan([t.roll for t in row]), [t.yaw_rate for t in row]
+                    )
+                )
+            )
+            for side in (-1.0, 1.0)
+        )
         for row in schedule.trims
     )

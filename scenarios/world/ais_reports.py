@@ -53,7 +53,11 @@ def received_reports(
 
 
 def _received_from_file(
-    reports: VesselReportsConfig, vessel: AisVessel, *, outage: tuple[float, float], generator: np.random.Generator
+    reports: VesselReportsConfig,
+    vessel: AisVessel,
+    *,
+    outage: tuple[float, float],
+    generator: np.random.Generator,
 ) -> list[tuple[float, VesselReport]]:
     """Return the file's own reports as they are received: late or missing where the scenario says so, but for those before."""
     received = []

@@ -99,7 +99,9 @@ def emission(scenario: Scenario, *, speed: float, load: float | None = None) -> 
     air_temperature = scenario.wind.temperature_c + _ZERO_CELSIUS
     if load is None:
         return emission_of(ship, fuel_of(scenario), speed=speed, air_temperature=air_temperature)
-    return emission_of(ship, fuel_of(scenario), power=load * ship.power_max, air_temperature=air_temperature)
+    return emission_of(
+        ship, fuel_of(scenario), power=load * ship.power_max, air_temperature=air_temperature
+    )
 
 
 def _called(scenario: Scenario) -> str:
@@ -116,7 +118,13 @@ def without_smoke(scenario: Scenario) -> str:
 
 
 def exhaust_of(
-    scenario: Scenario, vessel: VesselTruth, plume: Plume, wind: WindField, *, duration: float, generator: np.random.Generator
+    scenario: Scenario,
+    vessel: VesselTruth,
+    plume: Plume,
+    wind: WindField,
+    *,
+    duration: float,
+    generator: np.random.Generator,
 ) -> Exhaust | None:
     """Return the exhaust of a vessel that has any, in some wind, over a duration [s]. It is that of her speed at the start.
 

@@ -49,5 +49,7 @@ NO_FAULT = TimedFault(kind="none", begins=math.inf, ends=math.inf)
 def sampled_fault(fault: FaultConfig, generator: np.random.Generator) -> TimedFault:
     """Return the flight's fault, at its time."""
     begins = float(generator.uniform(*fault.at_s))
-    lasts = {VESSEL_DATA: fault.vessel_data_s, SATELLITES: fault.satellite_navigation_s}.get(fault.kind, math.inf)
+    lasts = {VESSEL_DATA: fault.vessel_data_s, SATELLITES: fault.satellite_navigation_s}.get(
+        fault.kind, math.inf
+    )
     return TimedFault(kind=fault.kind, begins=begins, ends=begins + lasts)

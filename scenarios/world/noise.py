@@ -39,7 +39,12 @@ class Noise:
     def at(cls, coordinates: Sequence[float]) -> "Noise":
         """Return noise from numbers in a row: the seed, then seed and weight of each part of the blend."""
         seed, *parts = coordinates
-        return cls(int(seed), tuple((int(part), weight) for part, weight in zip(parts[::2], parts[1::2], strict=True)))
+        return cls(
+            int(seed),
+            tuple(
+                (int(part), weight) for part, weight in zip(parts[::2], parts[1::2], strict=True)
+            ),
+        )
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -65,11 +70,18 @@ def streams(noise: Noise) -> Streams:
     must not change all that comes after it.
     """
     if not noise.blend:
-        world, others = (np.random.default_rng(s) for s in np.random.SeedSequence(noise.seed).spawn(2))
+        world, others = (
+            np.random.default_rng(s) for s in np.random.SeedSequence(noise.seed).spawn(2)
+        )
         return Streams(world=world, reports=others, sensors=others)
-    spawned = [np.random.SeedSequence(seed).spawn(_STREAMS) for seed in (noise.seed, *(seed for seed, _ in noise.blend))]
+    spawned = [
+        np.random.SeedSequence(seed).spawn(_STREAMS)
+        for seed in (noise.seed, *(seed for seed, _ in noise.blend))
+    ]
     weights = [weight for _, weight in noise.blend]
-    world, reports, sensors = (BlendedGenerator(base, parts, weights) for base, *parts in zip(*spawned, strict=True))
+    world, reports, sensors = (
+        BlendedGenerator(base, parts, weights) for base, *parts in zip(*spawned, strict=True)
+    )
     return Streams(world=world, reports=reports, sensors=sensors)
 
 
@@ -92,7 +104,12 @@ class BlendedGenerator(np.random.Generator):
     parts, weights : of the blend
     """
 
-    def __init__(self, base: np.random.SeedSequence, parts: Sequence[np.random.SeedSequence], weights: Sequence[float]) -> None:
+    def __init__(
+        self,
+        base: np.random.SeedSequence,
+        parts: Sequence[np.random.SeedSequence],
+        weights: Sequence[float],
+    ) -> None:
         super().__init__(np.random.PCG64(base))
         self._parts = [np.random.default_rng(part) for part in parts]
         self._weights = list(weights)

@@ -17,7 +17,15 @@ from scenarios.errors import InputError
 
 Answer = TypeVar("Answer")
 
-_TOLD = (AircraftError, InfeasibleError, InputError, LawError, MeasurementError, MemoryError, PluginError)
+_TOLD = (
+    AircraftError,
+    InfeasibleError,
+    InputError,
+    LawError,
+    MeasurementError,
+    MemoryError,
+    PluginError,
+)
 """Errors that say themselves what is wrong, or do not come from the part."""
 
 _OTHERS = ("<", plain.__file__)
@@ -32,7 +40,14 @@ def is_own(part: object) -> bool:
     return not type(part).__module__.startswith(("scenarios.", "gnc."))
 
 
-def asked(part: str, doing: str, called_with: str, method: Callable[..., Answer], *given: Any, **named: Any) -> Answer:
+def asked(
+    part: str,
+    doing: str,
+    called_with: str,
+    method: Callable[..., Answer],
+    *given: Any,
+    **named: Any,
+) -> Answer:
     """Return what a part answers.
 
     Parameters
@@ -52,10 +67,20 @@ def asked(part: str, doing: str, called_with: str, method: Callable[..., Answer]
         raise
     except Exception as error:
         # The first frame is this function's: without another one the call itself has failed.
-        frames = [frame for frame in traceback.extract_tb(error.__traceback__)[1:] if not frame.filename.startswith(_OTHERS)]
+        frames = [
+            frame
+            for frame in traceback.extract_tb(error.__traceback__)[1:]
+            if not frame.filename.startswith(_OTHERS)
+        ]
         own = [frame for frame in frames if frame.filename == _file_of(method)] or frames
-        where = f" ({Path(own[-1].filename).name}:{own[-1].lineno})" if frames else f"; it is called with {called_with}"
-        raise PluginError(one_line(f"{part} {doing}: {type(error).__name__}: {error}{where}")) from error
+        where = (
+            f" ({Path(own[-1].filename).name}:{own[-1].lineno})"
+            if frames
+            else f"; it is called with {called_with}"
+        )
+        raise PluginError(
+            one_line(f"{part} {doing}: {type(error).__name__}: {error}{where}")
+        ) from error
 
 
 def _file_of(method: Callable[..., object]) -> str | None:

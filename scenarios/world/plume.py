@@ -43,21 +43,35 @@ class StraightPlume:
 
     __slots__ = ("_axis", "_steady")
 
-    def __init__(self, plume: PlumeConfig, vessel: VesselTruth, wind: WindField, duration: float, *, by_wind: bool) -> None:
+    def __init__(
+        self,
+        plume: PlumeConfig,
+        vessel: VesselTruth,
+        wind: WindField,
+        duration: float,
+        *,
+        by_wind: bool,
+    ) -> None:
         heading = math.radians(plume.heading_deg)
         self._axis: list[float] = []
         self._steady: float | None = None
         if isinstance(vessel, SteadyVessel) and (wind.constant or not by_wind):
             _, _, v_north, v_east = vessel.motion(0.0)
             wind_north, wind_east = wind.now(0.0, plume.source_height)
-            self._steady = math.atan2(wind_east - v_east, wind_north - v_north) if by_wind else vessel.course(0.0) + heading
+            self._steady = (
+                math.atan2(wind_east - v_east, wind_north - v_north)
+                if by_wind
+                else vessel.course(0.0) + heading
+            )
             return
         velocity, course = sampled(vessel, duration)
         axis = course + heading
         if by_wind:
             blowing = wind.at(track_times(duration)[: len(velocity)], plume.source_height)
             through_air = velocity - np.column_stack(blowing)
-            axis = np.unwrap(np.arctan2(-through_air[:, 1], -through_air[:, 0])[_last_moving(through_air)])
+            axis = np.unwrap(
+                np.arctan2(-through_air[:, 1], -through_air[:, 0])[_last_moving(through_air)]
+            )
         self._axis = axis.tolist()
 
     def axis(self, time: float) -> float:

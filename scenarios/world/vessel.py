@@ -100,7 +100,9 @@ class TabledVessel:
         step, last = int(time / TRACK_STEP), self._last
         step = step if step < last else last
         at = _COLUMNS * step
-        north, east, v_north, v_east, _, _, _, v_north_after, v_east_after = self._flat[at : at + _COLUMNS + 4]
+        north, east, v_north, v_east, _, _, _, v_north_after, v_east_after = self._flat[
+            at : at + _COLUMNS + 4
+        ]
         since = time - step * TRACK_STEP
         half = 0.5 * since * since / TRACK_STEP
         fraction = since / TRACK_STEP
@@ -151,7 +153,9 @@ def manoeuvre_ends(vessel: VesselConfig, speed: float) -> list[float]:
     for m in vessel.manoeuvres:
         change = 0.0 if m.speed_mps is None else m.speed_mps - speed
         speed += change
-        ends.append(m.at_s + max(abs(m.turn_deg) / m.turn_rate_deg_s, abs(change) / m.acceleration_mps2))
+        ends.append(
+            m.at_s + max(abs(m.turn_deg) / m.turn_rate_deg_s, abs(change) / m.acceleration_mps2)
+        )
     return ends
 
 
@@ -163,7 +167,9 @@ def check_manoeuvres(vessel: VesselConfig, speed: float) -> None:
     InfeasibleError : a manoeuvre begins before an earlier one has ended
     """
     end = -math.inf
-    for i, (m, until) in enumerate(zip(vessel.manoeuvres, manoeuvre_ends(vessel, speed), strict=True)):
+    for i, (m, until) in enumerate(
+        zip(vessel.manoeuvres, manoeuvre_ends(vessel, speed), strict=True)
+    ):
         if m.at_s < end - TRACK_STEP:
             raise InfeasibleError(
                 f"vessel.manoeuvres.{i} begins at {m.at_s:g} s, before an earlier one has ended, at {end:g} s; let it begin later,"
@@ -198,7 +204,9 @@ def largest_inconsistency(vessel: VesselTruth, duration: float) -> float:
 
 def track_times(duration: float) -> Array:
     """Return the times at which a track is tabled [s], somewhat beyond ``duration``."""
-    return np.asarray(TRACK_STEP * np.arange(math.ceil(duration / TRACK_STEP) + 3), dtype=np.float64)
+    return np.asarray(
+        TRACK_STEP * np.arange(math.ceil(duration / TRACK_STEP) + 3), dtype=np.float64
+    )
 
 
 def _integral(velocity: Array) -> Array:
@@ -213,4 +221,6 @@ def sampled(vessel: VesselTruth, duration: float) -> tuple[Array, Array]:
     if isinstance(vessel, TabledVessel):
         return vessel.samples
     times = track_times(duration).tolist()
-    return np.array([vessel.motion(time)[2:] for time in times]), np.array([vessel.course(time) for time in times])
+    return np.array([vessel.motion(time)[2:] for time in times]), np.array(
+        [vessel.course(time) for time in times]
+    )

@@ -38,7 +38,9 @@ def wind_of(scenario: Scenario, place: Place) -> WindField:
         return tabled_wind(wind, place, scenario.flight.duration_max_s)
     if wind.roughness_m is None or not wind.blows:
         return constant_wind(*wind_ned(wind))
-    return over_the_sea(np.array([wind_ned(wind)]), [0.0], roughness=wind.roughness_m, height=wind.height_m)
+    return over_the_sea(
+        np.array([wind_ned(wind)]), [0.0], roughness=wind.roughness_m, height=wind.height_m
+    )
 
 
 def sampled_weather(scenario: Scenario, wind: WindField, generator: np.random.Generator) -> Weather:

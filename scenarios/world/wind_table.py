@@ -78,8 +78,12 @@ def tabled_wind(config: WindConfig, place: Place, duration: float) -> WindField:
     if config.roughness_m is None:
         return WindField(found.velocity, times, found.heights or (10.0,))
     if found.heights:
-        raise InputError(f"wind.roughness_m is given beside heights in {name}; leave one of them out")
-    return over_the_sea(found.velocity[:, 0], times, roughness=config.roughness_m, height=config.height_m)
+        raise InputError(
+            f"wind.roughness_m is given beside heights in {name}; leave one of them out"
+        )
+    return over_the_sea(
+        found.velocity[:, 0], times, roughness=config.roughness_m, height=config.height_m
+    )
 
 
 def first_time(table: str, place: Place) -> float:
@@ -98,16 +102,22 @@ def _read(table: str, place: Place) -> TabledWind:
     try:
         stamp = path.stat().st_mtime_ns, path.stat().st_size
     except OSError as error:
-        raise InputError(f"wind.table: {path}: cannot be read: {error.strerror}; check the path") from None
+        raise InputError(
+            f"wind.table: {path}: cannot be read: {error.strerror}; check the path"
+        ) from None
     if path.suffix.lower() != ".nc":
         return _read_table(path, stamp)
     if not math.isfinite(place.latitude):
-        raise InputError(f"wind.table: {path} has winds of many places; say which: place.latitude_deg, place.longitude_deg")
+        raise InputError(
+            f"wind.table: {path} has winds of many places; say which: place.latitude_deg, place.longitude_deg"
+        )
     return _read_netcdf(path, stamp, math.degrees(place.latitude), math.degrees(place.longitude))
 
 
 @lru_cache(maxsize=8)
-def _read_netcdf(path: Path, _stamp: tuple[int, int], latitude_deg: float, longitude_deg: float) -> TabledWind:
+def _read_netcdf(
+    path: Path, _stamp: tuple[int, int], latitude_deg: float, longitude_deg: float
+) -> TabledWind:
     times, heights, velocity = read_netcdf(path, latitude_deg, longitude_deg)
     return TabledWind(times=times, heights=heights, velocity=velocity)
 
@@ -118,20 +128,33 @@ def _read_table(path: Path, _stamp: tuple[int, int]) -> TabledWind:
         with path.open(encoding="utf-8-sig", newline="") as file:
             return _on_grid(path, list(_rows(path, csv.reader(file))))
     except OSError as error:
-        raise InputError(f"wind.table: {path}: cannot be read: {error.strerror}; check the path") from None
+        raise InputError(
+            f"wind.table: {path}: cannot be read: {error.strerror}; check the path"
+        ) from None
     except (UnicodeDecodeError, csv.Error) as error:
-        raise InputError(f"wind.table: {path}: not a table as text ({error}); save it in UTF-8") from None
+        raise InputError(
+            f"wind.table: {path}: not a table as text ({error}); save it in UTF-8"
+        ) from None
 
 
-def _rows(path: Path, cells: Iterator[list[str]]) -> Iterator[tuple[int, float, float, float, float]]:
+def _rows(
+    path: Path, cells: Iterator[list[str]]
+) -> Iterator[tuple[int, float, float, float, float]]:
     """Yield line, time [s], height [m], and where the wind blows to, north and east [m/s]; not a number for what has no column."""
     lines = enumerate(cells, start=1)
     first, heads = next(
-        ((line, [head.strip().lower() for head in row]) for line, row in lines if any(map(str.strip, row))), (0, [])
+        (
+            (line, [head.strip().lower() for head in row])
+            for line, row in lines
+            if any(map(str.strip, row))
+        ),
+        (0, []),
     )
     if not heads:
         columns = ",".join(COLUMNS[:1] + COLUMNS[2:])
-        raise InputError(f"wind.table: {path}: the file is empty; give a table with the columns {columns}")
+        raise InputError(
+            f"wind.table: {path}: the file is empty; give a table with the columns {columns}"
+        )
     if words := other_separator(",".join(heads)):
         raise InputError(f"wind.table: {path} {words}")
     if not set(COLUMNS[2:]) <= set(heads) or not set(COLUMNS[:2]) & set(heads):
@@ -141,7 +164,9 @@ def _rows(path: Path, cells: Iterator[list[str]]) -> Iterator[tuple[int, float, 
         raise InputError(f"wind.table: {path}, line {first}: the header is {','.join(heads)[:80]!r}; it must be {','.join(COLUMNS)}"
                          f", of which time_utc or height_m may be missing: {remedy}")  # fmt: skip
     if twice := [column for column in COLUMNS if heads.count(column) > 1]:
-        raise InputError(f"wind.table: {path}, line {first}: the header has '{twice[0]}' twice; leave one of the columns out")
+        raise InputError(
+            f"wind.table: {path}, line {first}: the header has '{twice[0]}' twice; leave one of the columns out"
+        )
     for line, row in lines:
         if not any(cell.strip() for cell in row):
             continue
@@ -156,7 +181,11 @@ def _rows(path: Path, cells: Iterator[list[str]]) -> Iterator[tuple[int, float, 
                 " correct it"
             ) from None
         height, speed, direction = (number_of(named.get(column)) for column in COLUMNS[1:])
-        good = 0.0 <= speed <= _SPEED_MAX and abs(direction) <= 360.0 and ("height_m" not in heads or 0.0 < height <= 20e3)
+        good = (
+            0.0 <= speed <= _SPEED_MAX
+            and abs(direction) <= 360.0
+            and ("height_m" not in heads or 0.0 < height <= 20e3)
+        )
         if not good:
             raise InputError(
                 f"wind.table: {path}, line {line}: {','.join(row)[:80]!r}; speeds go from 0 to {_SPEED_MAX:g} m/s, directions"
@@ -188,10 +217,14 @@ def _on_grid(path: Path, rows: list[tuple[int, float, float, float, float]]) -> 
     for line, time, height, north, east in rows:
         key = time if timed else 0.0
         if key < before:
-            raise InputError(f"wind.table: {path}, line {line}: {utc_text(time)} is before the line above; sort the table by time")
+            raise InputError(
+                f"wind.table: {path}, line {line}: {utc_text(time)} is before the line above; sort the table by time"
+            )
         layers = at.setdefault(key, {})
         if (layer := height if layered else 0.0) in layers:
-            raise InputError(f"wind.table: {path}, line {line}: the time and height of a line above once more; delete one of them")
+            raise InputError(
+                f"wind.table: {path}, line {line}: the time and height of a line above once more; delete one of them"
+            )
         layers[layer], before = (north, east), key
     heights = tuple(sorted(next(iter(at.values()))))
     for time, layers in at.items():

@@ -73,12 +73,26 @@ def vessel_of(scenario: Scenario) -> VesselTruth:
     config, duration = scenario.vessel, scenario.flight.duration_max_s
     if config.from_file:
         altitude = scenario.source_height
-        return ais_vessel(config, altitude=altitude, utc=scenario.place.utc, duration=duration, margin=TRACK_MARGIN)
+        return ais_vessel(
+            config,
+            altitude=altitude,
+            utc=scenario.place.utc,
+            duration=duration,
+            margin=TRACK_MARGIN,
+        )
     if config.track == "manoeuvres" and not config.manoeuvres:
         return SteadyVessel(scenario.vessel_speed, math.radians(config.course_deg))
     part, made = f"vessel.track '{config.track}'", VESSEL_TRACKS.get(config.track)
     called_with = "the [vessel] section, the speed [m/s] and the duration [s]"
-    track: VesselTruth = asked(part, "cannot be made", called_with, made, config, scenario.vessel_speed, duration + TRACK_MARGIN)
+    track: VesselTruth = asked(
+        part,
+        "cannot be made",
+        called_with,
+        made,
+        config,
+        scenario.vessel_speed,
+        duration + TRACK_MARGIN,
+    )
     if is_own(track):
         _check_track(part, track, duration)
     return track
@@ -93,15 +107,30 @@ def _check_track(part: str, track: VesselTruth, duration: float) -> None:
     for time in np.arange(0.0, duration, _LOOK_STEP).tolist():
         motion = asked(part, f"failed in motion({time:g})", "the time [s]", track.motion, time)
         if not are_numbers(motion, 4):
-            refuse_answer(part, f"motion({time:g})", motion, "four finite numbers: north, east [m] and their rates [m/s]")
+            refuse_answer(
+                part,
+                f"motion({time:g})",
+                motion,
+                "four finite numbers: north, east [m] and their rates [m/s]",
+            )
         course = asked(part, f"failed in course({time:g})", "the time [s]", track.course, time)
         if not is_number(course):
-            refuse_answer(part, f"course({time:g})", course, "a finite number: the course, clockwise from north [rad]")
+            refuse_answer(
+                part,
+                f"course({time:g})",
+                course,
+                "a finite number: the course, clockwise from north [rad]",
+            )
         north, east, v_north, v_east = map(float, motion)
         if time == 0.0 and math.hypot(north, east) > _ORIGIN_MAX:
-            raise PluginError(f"{part} begins at {north:g} m north and {east:g} m east; let it begin at the origin: motion(0)")
+            raise PluginError(
+                f"{part} begins at {north:g} m north and {east:g} m east; let it begin at the origin: motion(0)"
+            )
         flown = math.atan2(v_east, v_north)
-        if math.hypot(v_north, v_east) > _AT_REST and abs(math.remainder(course - flown, math.tau)) > _COURSE_MAX:
+        if (
+            math.hypot(v_north, v_east) > _AT_REST
+            and abs(math.remainder(course - flown, math.tau)) > _COURSE_MAX
+        ):
             raise PluginError(
                 f"{part}: course({time:g}) is {course:.4g} rad, and the velocity of motion({time:g}) points to {flown:.4g} rad; let"
                 f" them agree to {_COURSE_MAX:.2g} rad, clockwise from north"
@@ -130,17 +159,28 @@ def plume_of(scenario: Scenario, vessel: VesselTruth) -> Plume:
     ------
     PluginError : there is no such plume model, or it cannot be made, or its axis is of no use
     """
-    part, called_with = f"plume.model '{scenario.plume.model}'", "plume, vessel, wind, duration, by_wind=..."
+    part, called_with = (
+        f"plume.model '{scenario.plume.model}'",
+        "plume, vessel, wind, duration, by_wind=...",
+    )
     model = PLUME_MODELS.get(scenario.plume.model)
     duration = scenario.flight.duration_max_s + TRACK_MARGIN
     section = scenario.plume.model_copy(update={"source_height_m": scenario.source_height})
-    given, by_wind = (section, vessel, mean_wind(scenario, vessel), duration), scenario.plume_by_wind
+    given, by_wind = (
+        (section, vessel, mean_wind(scenario, vessel), duration),
+        scenario.plume_by_wind,
+    )
     plume: Plume = asked(part, "cannot be made", called_with, model, *given, by_wind=by_wind)
     if is_own(plume):
         for time in np.arange(0.0, duration, _LOOK_STEP).tolist():
             axis = asked(part, f"failed in axis({time:g})", "the time [s]", plume.axis, time)
             if not is_number(axis):
-                refuse_answer(part, f"axis({time:g})", axis, "a finite number: the course along which the plume trails [rad]")
+                refuse_answer(
+                    part,
+                    f"axis({time:g})",
+                    axis,
+                    "a finite number: the course along which the plume trails [rad]",
+                )
     return plume
 
 
@@ -165,7 +205,9 @@ def apparent_wind(scenario: Scenario, vessel: VesselTruth) -> ApparentWind:
     return past
 
 
-def winds_past(vessel: VesselTruth, wind: WindField, heights: Sequence[float], duration: float) -> list[ApparentWind]:
+def winds_past(
+    vessel: VesselTruth, wind: WindField, heights: Sequence[float], duration: float
+) -> list[ApparentWind]:
     """Return how fast a vessel moves through the air at each of some heights [m], over a duration [s]."""
     if isinstance(vessel, SteadyVessel) and wind.constant:
         _, _, v_north, v_east = vessel.motion(0.0)
@@ -174,9 +216,13 @@ def winds_past(vessel: VesselTruth, wind: WindField, heights: Sequence[float], d
         return [ApparentWind(at_start=steady, least=steady, greatest=steady)] * len(heights)
     velocity, _ = sampled(vessel, duration)
     times = track_times(duration)[: len(velocity)]
-    return [_over_the_track(velocity - np.column_stack(wind.at(times, height))) for height in heights]
+    return [
+        _over_the_track(velocity - np.column_stack(wind.at(times, height))) for height in heights
+    ]
 
 
 def _over_the_track(through_air: npt.NDArray[np.float64]) -> ApparentWind:
     speeds = np.hypot(through_air[:, 0], through_air[:, 1])
-    return ApparentWind(at_start=float(speeds[0]), least=float(speeds.min()), greatest=float(speeds.max()))
+    return ApparentWind(
+        at_start=float(speeds[0]), least=float(speeds.min()), greatest=float(speeds.max())
+    )

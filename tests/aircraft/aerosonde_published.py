@@ -24,7 +24,13 @@ CL_0, CL_A, CL_Q, CL_DE = 0.23, 5.61, 7.95, 0.13
 CD_P, CD_Q, CD_DE = 0.043, 0.0, 0.0135
 CM_0, CM_A, CM_Q, CM_DE = 0.0135, -2.74, -38.21, -0.99
 CY_B, CY_P, CY_R, CY_DA, CY_DR = -0.98, 0.0, 0.0, 0.075, 0.19
-CR_B, CR_P, CR_R, CR_DA, CR_DR = -0.13, -0.51, 0.25, 0.17, 0.0024  # rolling moment, "C_ell" in the source
+CR_B, CR_P, CR_R, CR_DA, CR_DR = (
+    -0.13,
+    -0.51,
+    0.25,
+    0.17,
+    0.0024,
+)  # rolling moment, "C_ell" in the source
 CN_B, CN_P, CN_R, CN_DA, CN_DR = 0.073, 0.069, -0.095, -0.011, -0.069
 STALL_BLEND, STALL_ALPHA = 50.0, 0.47  # 1/rad, rad
 
@@ -43,7 +49,9 @@ SURFACES = ("elevator", "aileron", "rudder")
 FLOWN_STATES = (*STATES, *SURFACES, "propeller_speed")
 """With deflections [rad] and propeller speed [rad/s]."""
 
-FULL_DEFLECTION = 0.7854  # rad for a command of 1: the 45 degrees that the authors' autopilot goes to
+FULL_DEFLECTION = (
+    0.7854  # rad for a command of 1: the 45 degrees that the authors' autopilot goes to
+)
 
 
 @dataclass(frozen=True)
@@ -67,7 +75,10 @@ class Lags:
 
 def lift_coefficient(alpha: float) -> float:
     """Equation 4.9 with the blend of 4.10."""
-    rise, fall = math.exp(-STALL_BLEND * (alpha - STALL_ALPHA)), math.exp(STALL_BLEND * (alpha + STALL_ALPHA))
+    rise, fall = (
+        math.exp(-STALL_BLEND * (alpha - STALL_ALPHA)),
+        math.exp(STALL_BLEND * (alpha + STALL_ALPHA)),
+    )
     sigma = (1.0 + rise + fall) / ((1.0 + rise) * (1.0 + fall))
     flat_plate = 2.0 * math.copysign(1.0, alpha) * math.sin(alpha) ** 2 * math.cos(alpha)
     return (1.0 - sigma) * (CL_0 + CL_A * alpha) + sigma * flat_plate
@@ -83,7 +94,10 @@ def aero(velocity, rates, surfaces, density, parasitic=CD_P):
     u, v, w = velocity
     airspeed = math.sqrt(u * u + v * v + w * w)
     alpha, beta = math.atan2(w, u), math.asin(v / airspeed)
-    p_hat, q_hat, r_hat = (rate * length / (2.0 * airspeed) for rate, length in zip(rates, (SPAN, CHORD, SPAN), strict=True))
+    p_hat, q_hat, r_hat = (
+        rate * length / (2.0 * airspeed)
+        for rate, length in zip(rates, (SPAN, CHORD, SPAN), strict=True)
+    )
     elevator, aileron, rudder = surfaces
     lift = lift_coefficient(alpha) + CL_Q * q_hat + CL_DE * elevator
     drag = drag_coefficient(alpha, parasitic) + CD_Q * q_hat + CD_DE * elevator
@@ -93,7 +107,9 @@ def aero(velocity, rates, surfaces, density, parasitic=CD_P):
     yaw = CN_B * beta + CN_P * p_hat + CN_R * r_hat + CN_DA * aileron + CN_DR * rudder
     sin_alpha, cos_alpha = math.sin(alpha), math.cos(alpha)
     unit = 0.5 * density * airspeed**2 * WING_AREA
-    force = unit * np.array([lift * sin_alpha - drag * cos_alpha, side, -lift * cos_alpha - drag * sin_alpha])
+    force = unit * np.array(
+        [lift * sin_alpha - drag * cos_alpha, side, -lift * cos_alpha - drag * sin_alpha]
+    )
     return force, unit * np.array([SPAN * roll, CHORD * pitch, SPAN * yaw])
 
 
@@ -113,14 +129,22 @@ def propeller_torque(speed: float, propeller_speed: float, density: float) -> fl
 
 def motor_torque(throttle: float, propeller_speed: float) -> float:
     """Torque on the shaft [N m] by the three constants of the motor."""
-    return MOTOR_KQ * ((BATTERY * throttle - MOTOR_KQ * propeller_speed) / MOTOR_RESISTANCE - MOTOR_NO_LOAD)
+    return MOTOR_KQ * (
+        (BATTERY * throttle - MOTOR_KQ * propeller_speed) / MOTOR_RESISTANCE - MOTOR_NO_LOAD
+    )
 
 
 def settled_propeller_speed(throttle: float, speed: float, density: float) -> float:
     """Speed [rad/s] at which motor and air balance: the positive root of the supplement's quadratic."""
     a = density * PROPELLER_DIAMETER**5 * CQ_0 / (2.0 * math.pi) ** 2
-    b = density * PROPELLER_DIAMETER**4 * CQ_1 * speed / (2.0 * math.pi) + MOTOR_KQ**2 / MOTOR_RESISTANCE
-    c = density * PROPELLER_DIAMETER**3 * CQ_2 * speed**2 - MOTOR_KQ * BATTERY * throttle / MOTOR_RESISTANCE
+    b = (
+        density * PROPELLER_DIAMETER**4 * CQ_1 * speed / (2.0 * math.pi)
+        + MOTOR_KQ**2 / MOTOR_RESISTANCE
+    )
+    c = (
+        density * PROPELLER_DIAMETER**3 * CQ_2 * speed**2
+        - MOTOR_KQ * BATTERY * throttle / MOTOR_RESISTANCE
+    )
     c += MOTOR_KQ * MOTOR_NO_LOAD
     return (-b + math.sqrt(b * b - 4.0 * a * c)) / (2.0 * a)
 
@@ -179,15 +203,24 @@ def trim_level(airspeed: float, altitude: float, world: World, parasitic: float 
         density = world.density(altitude)
         speed = settled_propeller_speed(throttle, state[0], density)
         torque = np.array([-propeller_torque(state[0], speed, density), 0.0, 0.0])
-        rates = state_rates(state, surfaces, thrust(state[0], speed, density), torque, world, parasitic)
+        rates = state_rates(
+            state, surfaces, thrust(state[0], speed, density), torque, world, parasitic
+        )
         return [*rates[:3], *rates[6:9]]
 
     found = root(residual, [0.05, 0.0, -0.1, 0.0, 0.0, 0.7], options={"xtol": 1e-12})
     left = np.abs(residual(found.x)).max()
     if left > 1e-9:
-        raise RuntimeError(f"no equilibrium at {airspeed} m/s: {left} m/s^2 or rad/s^2 are left; {found.message}")
+        raise RuntimeError(
+            f"no equilibrium at {airspeed} m/s: {left} m/s^2 or rad/s^2 are left; {found.message}"
+        )
     state, surfaces, throttle = unpack(found.x)
-    return state, surfaces, throttle, settled_propeller_speed(throttle, state[0], world.density(altitude))
+    return (
+        state,
+        surfaces,
+        throttle,
+        settled_propeller_speed(throttle, state[0], world.density(altitude)),
+    )
 
 
 def flown_rates(y, commands, world: World, lags: Lags):
@@ -205,7 +238,13 @@ def flown_rates(y, commands, world: World, lags: Lags):
     if lags.rotor_inertia == 0.0:
         speed = settled_propeller_speed(throttle, float(body[0]), density)
         moment = np.array([-propeller_torque(float(body[0]), speed, density), 0.0, 0.0])
-        return np.concatenate([state_rates(body, surfaces, thrust(float(body[0]), speed, density), moment, world), servos, [0.0]])
+        return np.concatenate(
+            [
+                state_rates(body, surfaces, thrust(float(body[0]), speed, density), moment, world),
+                servos,
+                [0.0],
+            ]
+        )
     shaft = motor_torque(throttle, propeller)
     momentum = lags.rotor_inertia * propeller
     moment = np.array([-shaft, -r * momentum, q * momentum])

@@ -13,15 +13,29 @@ import numpy as np
 
 MASS = 3.364  # kg
 WING_AREA, SPAN, CHORD = 0.75, 2.1, 0.35714  # m^2, m, m
-ELEVON_FULL = 0.5236  # rad of symmetric (elevator) or antisymmetric (aileron) elevon for a command of 1
-JX, JY, JZ, JXZ = 0.335, 0.140, 0.400, -0.029  # kg m^2; Jxz is the integral of x z dm, forward-right-down
-INERTIA = np.array([[JX, 0.0, -JXZ], [0.0, JY, 0.0], [-JXZ, 0.0, JZ]])  # products of inertia enter negated
+ELEVON_FULL = (
+    0.5236  # rad of symmetric (elevator) or antisymmetric (aileron) elevon for a command of 1
+)
+JX, JY, JZ, JXZ = (
+    0.335,
+    0.140,
+    0.400,
+    -0.029,
+)  # kg m^2; Jxz is the integral of x z dm, forward-right-down
+INERTIA = np.array(
+    [[JX, 0.0, -JXZ], [0.0, JY, 0.0], [-JXZ, 0.0, JZ]]
+)  # products of inertia enter negated
 
 CL_0, CL_A, CL_Q, CL_DE = 0.08674, 4.0203, 3.87, 0.27807
 CD_0, CD_A, CD_AA, CD_B, CD_BB, CD_DEDE = 0.01970, 0.07909, 1.05547, -0.00584, 0.14781, 0.06335
 CM_0, CM_A, CM_Q, CM_DE = 0.02275, -0.4629, -1.3012, -0.2292
 CY_B, CY_P, CY_R, CY_DA = -0.22387, -0.13736, 0.08387, 0.04328
-CR_B, CR_P, CR_R, CR_DA = -0.08490, -0.40420, 0.05552, 0.12019  # rolling moment, "C_l" in the source
+CR_B, CR_P, CR_R, CR_DA = (
+    -0.08490,
+    -0.40420,
+    0.05552,
+    0.12019,
+)  # rolling moment, "C_l" in the source
 CN_B, CN_P, CN_R, CN_DA = 0.0283, 0.004366, -0.0720, -0.00339
 
 PROPELLER_DIAMETER = 14.0 * 0.0254  # m
@@ -62,7 +76,9 @@ def aero_force(air: Air, density: float) -> np.ndarray:
     lift, drag = lift_coefficient(air), drag_coefficient(air)
     side = CY_B * air.beta + CY_P * p_hat + CY_R * r_hat + CY_DA * air.aileron
     sin_alpha, cos_alpha = math.sin(air.alpha), math.cos(air.alpha)
-    coefficients = np.array([lift * sin_alpha - drag * cos_alpha, side, -lift * cos_alpha - drag * sin_alpha])
+    coefficients = np.array(
+        [lift * sin_alpha - drag * cos_alpha, side, -lift * cos_alpha - drag * sin_alpha]
+    )
     return 0.5 * density * air.airspeed**2 * WING_AREA * coefficients
 
 
@@ -73,7 +89,13 @@ def aero_moment(air: Air, density: float) -> np.ndarray:
     roll = CR_B * air.beta + CR_P * p_hat + CR_R * r_hat + CR_DA * air.aileron
     pitch = CM_0 + CM_A * air.alpha + CM_Q * q_hat + CM_DE * air.elevator
     yaw = CN_B * air.beta + CN_P * p_hat + CN_R * r_hat + CN_DA * air.aileron
-    return 0.5 * density * air.airspeed**2 * WING_AREA * np.array([SPAN * roll, CHORD * pitch, SPAN * yaw])
+    return (
+        0.5
+        * density
+        * air.airspeed**2
+        * WING_AREA
+        * np.array([SPAN * roll, CHORD * pitch, SPAN * yaw])
+    )
 
 
 def thrust_coefficient(advance_ratio: float) -> float:
@@ -89,13 +111,23 @@ def torque_coefficient(advance_ratio: float) -> float:
 def thrust(speed_ahead: float, propeller_speed: float, density: float) -> float:
     """Thrust [N] at a speed along the shaft [m/s] and a propeller speed [rad/s]."""
     n = propeller_speed / (2.0 * math.pi)
-    return density * n**2 * PROPELLER_DIAMETER**4 * thrust_coefficient(speed_ahead / (n * PROPELLER_DIAMETER))
+    return (
+        density
+        * n**2
+        * PROPELLER_DIAMETER**4
+        * thrust_coefficient(speed_ahead / (n * PROPELLER_DIAMETER))
+    )
 
 
 def propeller_torque(speed_ahead: float, propeller_speed: float, density: float) -> float:
     """Torque that the air takes [N m]."""
     n = propeller_speed / (2.0 * math.pi)
-    return density * n**2 * PROPELLER_DIAMETER**5 * torque_coefficient(speed_ahead / (n * PROPELLER_DIAMETER))
+    return (
+        density
+        * n**2
+        * PROPELLER_DIAMETER**5
+        * torque_coefficient(speed_ahead / (n * PROPELLER_DIAMETER))
+    )
 
 
 def motor_torque(throttle: float, propeller_speed: float) -> float:
@@ -133,34 +165,60 @@ def state_rates(state: np.ndarray, throttle: float) -> np.ndarray:
 
     The propeller turns clockwise seen from behind, so the airframe feels minus the motor's torque in roll and minus omega x H.
     """
-    airspeed, alpha, beta, p, q, r, roll, pitch, altitude, elevator, aileron, propeller = (float(x) for x in state)
+    airspeed, alpha, beta, p, q, r, roll, pitch, altitude, elevator, aileron, propeller = (
+        float(x) for x in state
+    )
     density = standard_density(altitude)
-    air = Air(airspeed=airspeed, alpha=alpha, beta=beta, p=p, q=q, r=r, elevator=elevator, aileron=aileron)
+    air = Air(
+        airspeed=airspeed, alpha=alpha, beta=beta, p=p, q=q, r=r, elevator=elevator, aileron=aileron
+    )
     ahead = np.array([1.0, 0.0, 0.0])
-    velocity = airspeed * np.array([math.cos(alpha) * math.cos(beta), math.sin(beta), math.sin(alpha) * math.cos(beta)])
+    velocity = airspeed * np.array(
+        [math.cos(alpha) * math.cos(beta), math.sin(beta), math.sin(alpha) * math.cos(beta)]
+    )
     rates = np.array([p, q, r])
 
-    specific_force = (aero_force(air, density) + thrust(float(velocity[0]), propeller, density) * ahead) / MASS
+    specific_force = (
+        aero_force(air, density) + thrust(float(velocity[0]), propeller, density) * ahead
+    ) / MASS
     to_body = body_from_ned(roll, pitch)
     acceleration = specific_force + to_body @ np.array([0.0, 0.0, equatorial_gravity(altitude)])
     body_acceleration = acceleration - np.cross(rates, velocity)
     airspeed_rate = float(velocity @ body_acceleration) / airspeed
-    alpha_rate = (velocity[0] * body_acceleration[2] - velocity[2] * body_acceleration[0]) / (velocity[0] ** 2 + velocity[2] ** 2)
-    beta_rate = (body_acceleration[1] - airspeed_rate * math.sin(beta)) / (airspeed * math.cos(beta))
+    alpha_rate = (velocity[0] * body_acceleration[2] - velocity[2] * body_acceleration[0]) / (
+        velocity[0] ** 2 + velocity[2] ** 2
+    )
+    beta_rate = (body_acceleration[1] - airspeed_rate * math.sin(beta)) / (
+        airspeed * math.cos(beta)
+    )
 
     shaft = motor_torque(throttle, propeller)
-    moment = aero_moment(air, density) - shaft * ahead - np.cross(rates, PROPELLER_INERTIA * propeller * ahead)
+    moment = (
+        aero_moment(air, density)
+        - shaft * ahead
+        - np.cross(rates, PROPELLER_INERTIA * propeller * ahead)
+    )
     angular_acceleration = np.linalg.solve(INERTIA, moment - np.cross(rates, INERTIA @ rates))
-    propeller_rate = (shaft - propeller_torque(float(velocity[0]), propeller, density)) / PROPELLER_INERTIA
+    propeller_rate = (
+        shaft - propeller_torque(float(velocity[0]), propeller, density)
+    ) / PROPELLER_INERTIA
 
     roll_rate = p + math.tan(pitch) * (q * math.sin(roll) + r * math.cos(roll))
     pitch_rate = q * math.cos(roll) - r * math.sin(roll)
     velocity_ned, acceleration_ned = to_body.T @ velocity, to_body.T @ acceleration
-    course_rate = (velocity_ned[0] * acceleration_ned[1] - velocity_ned[1] * acceleration_ned[0]) / (
-        velocity_ned[:2] @ velocity_ned[:2]
-    )
+    course_rate = (
+        velocity_ned[0] * acceleration_ned[1] - velocity_ned[1] * acceleration_ned[0]
+    ) / (velocity_ned[:2] @ velocity_ned[:2])
     climb_rate = -velocity_ned[2]
-    motion = [airspeed_rate, alpha_rate, beta_rate, *angular_acceleration, roll_rate, pitch_rate, climb_rate]
+    motion = [
+        airspeed_rate,
+        alpha_rate,
+        beta_rate,
+        *angular_acceleration,
+        roll_rate,
+        pitch_rate,
+        climb_rate,
+    ]
     return np.array([*motion, propeller_rate, course_rate, climb_rate])
 
 

@@ -30,7 +30,9 @@ run_command(command, "program")
 @pytest.mark.parametrize(("stream", "other"), [("stdout", "stderr"), ("stderr", "stdout")])
 def test_a_command_whose_reader_is_gone_ends_without_a_word(stream, other, long):
     program = PROGRAM.format(stream=stream, other=other, long=long)
-    with subprocess.Popen([sys.executable, "-c", program], stdout=subprocess.PIPE, stderr=subprocess.PIPE) as running:
+    with subprocess.Popen(
+        [sys.executable, "-c", program], stdout=subprocess.PIPE, stderr=subprocess.PIPE
+    ) as running:
         getattr(running, stream).close()
         said = getattr(running, other).read()
     assert said == b""
@@ -59,9 +61,15 @@ def test_help_has_no_types_beside_arguments_and_flags(monkeypatch, capsys):
 @pytest.mark.parametrize(
     ("given", "told"),
     [
-        (["--jobs", "0"], "error: --jobs is 0; it must be greater than or equal to 1; see program --help\n"),
+        (
+            ["--jobs", "0"],
+            "error: --jobs is 0; it must be greater than or equal to 1; see program --help\n",
+        ),
         (["--jobs=two"], "error: --jobs is two; it must be a valid integer; see program --help\n"),
-        (["--job", "2"], "error: No such option: --job (Possible options: --jobs); see program --help\n"),
+        (
+            ["--job", "2"],
+            "error: No such option: --job (Possible options: --jobs); see program --help\n",
+        ),
     ],
 )
 def test_an_option_that_is_out_of_range_is_told_with_its_value(given, told, monkeypatch, capsys):

@@ -10,7 +10,15 @@ from common.files import json_text
 
 def test_numbers_of_numpys_are_written_as_numbers():
     # A shape or a plume of a user's own may answer in them.
-    text = json_text({"speed": np.float32(0.5), "count": np.int64(3), "whole": np.bool_(True), "array": np.array(1.5)}, indent=1)
+    text = json_text(
+        {
+            "speed": np.float32(0.5),
+            "count": np.int64(3),
+            "whole": np.bool_(True),
+            "array": np.array(1.5),
+        },
+        indent=1,
+    )
     assert json.loads(text) == {"speed": 0.5, "count": 3, "whole": True, "array": 1.5}
 
 

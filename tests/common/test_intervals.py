@@ -6,7 +6,13 @@ import numpy as np
 import pytest
 from scipy.stats import binom
 
-from common.intervals import Interval, clopper_pearson, quantile_interval, shared_interval, upper_bound
+from common.intervals import (
+    Interval,
+    clopper_pearson,
+    quantile_interval,
+    shared_interval,
+    upper_bound,
+)
 
 
 def test_no_event_in_ten_thousand_bounds_the_probability_by_the_root_of_what_confidence_leaves():
@@ -78,7 +84,9 @@ def test_quantiles_of_a_skewed_distribution_are_held_as_often_as_stated():
         held += interval.low <= true <= interval.high
     # Order statistics come in steps, so that the interval holds for more than 0.9: P(5 <= B <= 15) of B(200, 0.05), 0.93. Three
     # standard deviations of a share of 2000.
-    assert held / samples == pytest.approx(binom.cdf(15, 200, 0.05) - binom.cdf(4, 200, 0.05), abs=3 * math.sqrt(0.07 / samples))
+    assert held / samples == pytest.approx(
+        binom.cdf(15, 200, 0.05) - binom.cdf(4, 200, 0.05), abs=3 * math.sqrt(0.07 / samples)
+    )
 
 
 @pytest.mark.parametrize(
@@ -87,7 +95,10 @@ def test_quantiles_of_a_skewed_distribution_are_held_as_often_as_stated():
         (lambda: upper_bound(3, 2, 0.95), "events are 3 of 2 trials; there can be 0 to 2"),
         (lambda: upper_bound(-1, 2, 0.95), "events are -1 of 2 trials"),
         (lambda: clopper_pearson(1, 2, 1.0), "must be between 0 and 1, such as 0.95"),
-        (lambda: quantile_interval(np.ones(3), 1.0, 0.95), "probability is 1; quantiles are of probabilities between 0 and 1"),
+        (
+            lambda: quantile_interval(np.ones(3), 1.0, 0.95),
+            "probability is 1; quantiles are of probabilities between 0 and 1",
+        ),
         (lambda: quantile_interval(np.ones(3), 0.5, 95.0), "confidence is 95"),
     ],
 )

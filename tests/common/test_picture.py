@@ -18,9 +18,15 @@ def drawn(kind):
 
 @pytest.mark.parametrize(
     ("content", "media_type", "suffix"),
-    [(drawn("PNG"), "image/png", ".png"), (drawn("JPEG"), "image/jpeg", ".jpg"), (SVG, "image/svg+xml", ".svg")],
+    [
+        (drawn("PNG"), "image/png", ".png"),
+        (drawn("JPEG"), "image/jpeg", ".jpg"),
+        (SVG, "image/svg+xml", ".svg"),
+    ],
 )
-def test_the_content_says_what_kind_of_picture_a_file_is_and_its_name_does_not(content, media_type, suffix, tmp_path):
+def test_the_content_says_what_kind_of_picture_a_file_is_and_its_name_does_not(
+    content, media_type, suffix, tmp_path
+):
     path = tmp_path / "logo.dat"
     path.write_bytes(content)
     picture = read_picture(path)
@@ -39,11 +45,16 @@ def test_the_content_says_what_kind_of_picture_a_file_is_and_its_name_does_not(c
         (b"<svg/>", "is not a picture"),
         (b'<?xml version="1.0" encoding="none-such"?>' + SVG, "is not a picture"),
         (SVG.replace(b'width="4" height="2"><', b'width="0" height="0"><'), "is not a picture"),
-        (SVG.replace(b"<rect", b'<image href="https://example.org/a.png"/><rect'), "is not a picture"),
+        (
+            SVG.replace(b"<rect", b'<image href="https://example.org/a.png"/><rect'),
+            "is not a picture",
+        ),
         (SVG + b" " * BYTES_MAX, "has 1.0 MB; at most 1 MB: give a smaller picture"),
     ],
 )
-def test_what_is_no_picture_is_refused_in_one_line_that_names_the_file_alone(content, said, tmp_path):
+def test_what_is_no_picture_is_refused_in_one_line_that_names_the_file_alone(
+    content, said, tmp_path
+):
     path = tmp_path / "logo.png"
     path.write_bytes(content)
     with pytest.raises(PictureError) as refused:
@@ -54,5 +65,8 @@ def test_what_is_no_picture_is_refused_in_one_line_that_names_the_file_alone(con
 
 
 def test_a_file_that_is_gone_is_refused(tmp_path):
-    with pytest.raises(PictureError, match=r"'gone\.png' cannot be read \(No such file or directory\); give a PNG, JPEG or SVG"):
+    with pytest.raises(
+        PictureError,
+        match=r"'gone\.png' cannot be read \(No such file or directory\); give a PNG, JPEG or SVG",
+    ):
         read_picture(tmp_path / "gone.png")

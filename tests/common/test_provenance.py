@@ -14,16 +14,26 @@ from common.provenance import command_line, provenance
         (["--set", 'payload=["/home/a/b.py:X","c.py:Y"]'], '--set \'payload=["b.py:X","c.py:Y"]\''),
         (["C:\\Users\\somebody\\mine.toml", "~/runs/flights/nu_0.50"], "mine.toml nu_0.50"),
         (["runs/sweep/flights/nu_0.50"], "runs/sweep/flights/nu_0.50"),
-        (["--scheduler", "tcp://host:8786", "--flightgear=host:5550"], "--scheduler HOST:PORT --flightgear=HOST:PORT"),
+        (
+            ["--scheduler", "tcp://host:8786", "--flightgear=host:5550"],
+            "--scheduler HOST:PORT --flightgear=HOST:PORT",
+        ),
     ],
 )
 def test_a_command_line_names_no_host_and_no_folder_of_a_machine(arguments, shown):
-    assert command_line("scenarios.run", ["scenarios/run.py", *arguments]) == f"python -m scenarios.run {shown}"
+    assert (
+        command_line("scenarios.run", ["scenarios/run.py", *arguments])
+        == f"python -m scenarios.run {shown}"
+    )
 
 
-@pytest.mark.parametrize("program", ["plume-flight", "/usr/local/bin/plume-flight", "plume-flight.exe"])
+@pytest.mark.parametrize(
+    "program", ["plume-flight", "/usr/local/bin/plume-flight", "plume-flight.exe"]
+)
 def test_a_command_line_is_the_one_that_was_typed(program):
-    assert command_line("scenarios.run", [program, "run", "sweep_nu"]) == "plume-flight run sweep_nu"
+    assert (
+        command_line("scenarios.run", [program, "run", "sweep_nu"]) == "plume-flight run sweep_nu"
+    )
 
 
 def test_a_host_is_described_by_its_kind():

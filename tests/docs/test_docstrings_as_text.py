@@ -29,7 +29,10 @@ def test_a_description_that_goes_on_stays_with_its_entry():
     text = as_text(inspect.getdoc(SteeringLaw.heading_rate).splitlines())
     first = text.index("   ``reference``")
     assert text[first + 1].startswith("      the point to track; its ``course`` [rad]")
-    assert text[first + 2] == "      its position may be given for another frame than ``to_north`` and ``to_east``"
+    assert (
+        text[first + 2]
+        == "      its position may be given for another frame than ``to_north`` and ``to_east``"
+    )
 
 
 def test_a_section_ends_at_an_empty_line():
@@ -42,7 +45,9 @@ def test_a_section_without_entries_is_text():
 
 
 def test_characters_of_markup_are_escaped_but_in_literals_and_bullets():
-    assert as_text(["* x_ is |a|*b, and ``x_*`` is code"]) == [r"* x\_ is \|a\|\*b, and ``x_*`` is code"]
+    assert as_text(["* x_ is |a|*b, and ``x_*`` is code"]) == [
+        r"* x\_ is \|a\|\*b, and ``x_*`` is code"
+    ]
 
 
 def test_names_with_underscores_are_left_as_they_are():
@@ -61,7 +66,15 @@ def test_every_docstring_of_the_project_names_its_parameters_so():
         # As they are written: to parse the files takes a second.
         for docstring in re.findall(r'"""(.*?)"""', source, re.DOTALL):
             text = inspect.cleandoc(docstring)
-            for section in re.findall(r"^(?:Parameters|Attributes|Raises)\n-+\n(.*?)(?:\n\n|\Z)", text, re.MULTILINE | re.DOTALL):
+            for section in re.findall(
+                r"^(?:Parameters|Attributes|Raises)\n-+\n(.*?)(?:\n\n|\Z)",
+                text,
+                re.MULTILINE | re.DOTALL,
+            ):
                 lines = as_text(["Parameters", "----------", *section.splitlines()])
-                strange += [f"{path.relative_to(root)}: {line}" for line in lines[2:] if re.match(r" {3}(?!``| )\S", line)]
+                strange += [
+                    f"{path.relative_to(root)}: {line}"
+                    for line in lines[2:]
+                    if re.match(r" {3}(?!``| )\S", line)
+                ]
     assert strange == []

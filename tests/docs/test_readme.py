@@ -16,20 +16,34 @@ from scenarios.schema.load import load_study
 ROOT = Path(__file__).parents[2]
 PAGES = ("README.md", "CONTRIBUTING.md")
 DOCS = [
-    path.relative_to(ROOT).as_posix() for path in (ROOT / "docs").rglob("*.md") if not {"generated", "_build"} & set(path.parts)
+    path.relative_to(ROOT).as_posix()
+    for path in (ROOT / "docs").rglob("*.md")
+    if not {"generated", "_build"} & set(path.parts)
 ]
 YOURS = re.compile(r"\.py:|mine\.toml|fleet|RUN_DIR|runs/|wind\.csv")
 """What a command names that the reader has, and a clone does not."""
 
 
 def _lines(page: str) -> list[str]:
-    blocks = re.findall(r"^```[a-z]*\n(.*?)^```$", (ROOT / page).read_text("utf-8"), re.MULTILINE | re.DOTALL)
+    blocks = re.findall(
+        r"^```[a-z]*\n(.*?)^```$", (ROOT / page).read_text("utf-8"), re.MULTILINE | re.DOTALL
+    )
     joined = (block.replace("\\\n", " ") for block in blocks)
-    return [line.split(" #")[0].strip() for block in joined for line in block.splitlines() if line.strip()]
+    return [
+        line.split(" #")[0].strip()
+        for block in joined
+        for line in block.splitlines()
+        if line.strip()
+    ]
 
 
 def _commands(word: str, pages: Iterable[str] = PAGES) -> list[list[str]]:
-    called = (shlex.split(line) for page in pages for line in _lines(page) if line.startswith((".venv", "plume-flight")))
+    called = (
+        shlex.split(line)
+        for page in pages
+        for line in _lines(page)
+        if line.startswith((".venv", "plume-flight"))
+    )
     return [words[2:] for words in called if words[0].endswith("plume-flight") and words[1] == word]
 
 
@@ -53,7 +67,11 @@ def test_every_make_target_exists(page):
 def test_every_link_and_picture_exists(page):
     text = (ROOT / page).read_text("utf-8")
     places = [*re.findall(r"\]\(([^)#]+)[^)]*\)", text), *re.findall(r'src="([^"]+)"', text)]
-    assert [place for place in places if not place.startswith("https://") and not (ROOT / place).exists()] == []
+    assert [
+        place
+        for place in places
+        if not place.startswith("https://") and not (ROOT / place).exists()
+    ] == []
 
 
 @pytest.mark.parametrize("arguments", _commands("run"), ids=" ".join)
@@ -64,7 +82,11 @@ def test_every_scenario_and_key_of_the_readme_is_taken(arguments):
 
 
 def test_every_scenario_and_key_of_the_documentation_is_taken():
-    flown = [arguments for arguments in _commands("run", DOCS) if arguments and not YOURS.search(" ".join(arguments))]
+    flown = [
+        arguments
+        for arguments in _commands("run", DOCS)
+        if arguments and not YOURS.search(" ".join(arguments))
+    ]
     assert len(flown) > 20
     for arguments in flown:
         overrides = [word for flag, word in pairwise(arguments) if flag == "--set"]
@@ -74,7 +96,9 @@ def test_every_scenario_and_key_of_the_documentation_is_taken():
 def test_the_pages_write_commands_in_one_form():
     """``python -m`` is named beside ``plume-flight`` where the table of both is."""
     both = re.compile(r"python -m (scenarios\.run|innerloop\.design|reports\.)")
-    assert [page for page in DOCS if both.search((ROOT / page).read_text("utf-8"))] == ["docs/reference/api.md"]
+    assert [page for page in DOCS if both.search((ROOT / page).read_text("utf-8"))] == [
+        "docs/reference/api.md"
+    ]
 
 
 @pytest.mark.parametrize("word", sorted(commands()))

@@ -36,16 +36,27 @@ def test_every_column_that_is_written_has_a_meaning():
 
 def test_every_table_that_a_run_may_have_is_on_the_page():
     titles = " ".join(tables())
-    files = {name for name in vars(run_layout).values() if isinstance(name, str) and name.endswith(".csv")}
+    files = {
+        name
+        for name in vars(run_layout).values()
+        if isinstance(name, str) and name.endswith(".csv")
+    }
     assert len(files) > 9
-    assert [name for name in sorted(files | {*MEANINGS, *PATROL_MEANINGS}) if name not in titles] == []
+    assert [
+        name for name in sorted(files | {*MEANINGS, *PATROL_MEANINGS}) if name not in titles
+    ] == []
 
 
 def test_no_meaning_is_of_a_column_that_nothing_writes():
     written = {name for names, _ in tables().values() for name in names}
     said = {
         name
-        for meanings in (*MEANINGS.values(), *PATROL_MEANINGS.values(), CONVERGENCE_MEANINGS, INSTRUMENT_MEANINGS)
+        for meanings in (
+            *MEANINGS.values(),
+            *PATROL_MEANINGS.values(),
+            CONVERGENCE_MEANINGS,
+            INSTRUMENT_MEANINGS,
+        )
         for name in meanings
     }
     assert said <= written
@@ -60,7 +71,10 @@ def test_the_samples_of_a_logged_flight_have_the_columns_that_are_said():
 
 def test_columns_stand_with_their_units():
     rows = set(columns_page().splitlines())
-    assert "| `heading_rate_limit_rad_s` | rad/s | omega\\_max, to which commands are limited |" in rows
+    assert (
+        "| `heading_rate_limit_rad_s` | rad/s | omega\\_max, to which commands are limited |"
+        in rows
+    )
     counted = "crossings of the straight axis along the apparent wind, seen from above, settled, with smoke or without"
     assert f"| `crossing_count` |  | {counted} |" in rows
 
@@ -68,7 +82,13 @@ def test_columns_stand_with_their_units():
 def test_every_command_and_every_option_is_on_its_page():
     page = commands_page()
     assert re.findall(r"^## (\w+)$", page, re.MULTILINE) == list(commands())
-    for option in ("--set KEY=VALUE", "--resume", "--no-report", "--to NAME,...", "--from NAME|FILE.toml"):
+    for option in (
+        "--set KEY=VALUE",
+        "--resume",
+        "--no-report",
+        "--to NAME,...",
+        "--from NAME|FILE.toml",
+    ):
         assert f"`{option}`".replace("|", r"\|") in page
 
 
@@ -81,7 +101,9 @@ def test_the_page_of_a_module_names_its_modules():
 def test_the_sketch_has_the_orbit_closed_about_the_centre():
     """Equations (2) to (6): the reference comes back to the centre of oscillation after a period."""
     points = re.search(r'class="orbit" points="([^"]+)"', frames_svg())[1].split()
-    start, middle, end = (tuple(map(float, points[i].split(","))) for i in (0, len(points) // 2, -1))
+    start, middle, end = (
+        tuple(map(float, points[i].split(","))) for i in (0, len(points) // 2, -1)
+    )
     # A tenth of a pixel is the rounding of the picture; each of two numbers has half of it.
     for place in (middle, end):
         assert max(abs(a - b) for a, b in zip(start, place, strict=True)) < 0.11

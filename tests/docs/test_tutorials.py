@@ -10,7 +10,12 @@ import pytest
 TUTORIALS = Path(__file__).parents[2] / "docs" / "tutorials"
 
 PRINTED = {
-    "first_flight": ("nu_0.50 met", "min_distance_m", "steepest bank", "did you mean 'wind.from_deg'?"),
+    "first_flight": (
+        "nu_0.50 met",
+        "min_distance_m",
+        "steepest bank",
+        "did you mean 'wind.from_deg'?",
+    ),
     "own_law": ("met\n", "less lead"),
     "ship_from_ais": ("411 of 417 rows", "keep-out violations: 0", "flight.kmz"),
     "measure_a_plume": ("of them with smoke", "fuel sulphur content", "limit 0.1 %: "),
@@ -24,9 +29,13 @@ def test_every_tutorial_is_tested():
 @pytest.mark.parametrize("name", PRINTED)
 def test_the_cells_of_a_tutorial_run(name, designs, tmp_path, monkeypatch, capsys):
     # At whatever altitude, with the autopilot that other tests have: to design another takes seconds.
-    monkeypatch.setattr("scenarios.studies.flight_study.design_of", lambda spec, _: (designs(spec.name), ""))
+    monkeypatch.setattr(
+        "scenarios.studies.flight_study.design_of", lambda spec, _: (designs(spec.name), "")
+    )
     cells = re.findall(
-        r"^```\{code-cell\}[^\n]*\n(.*?)^```$", (TUTORIALS / f"{name}.md").read_text("utf-8"), re.MULTILINE | re.DOTALL
+        r"^```\{code-cell\}[^\n]*\n(.*?)^```$",
+        (TUTORIALS / f"{name}.md").read_text("utf-8"),
+        re.MULTILINE | re.DOTALL,
     )
     script = tmp_path / "cells.py"
     script.write_text("\n".join(cells), encoding="utf-8")

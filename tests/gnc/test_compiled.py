@@ -18,7 +18,10 @@ def packages(tmp_path):
     """Copies of the packages, and a module that stands for what was compiled of them."""
     for name in ("common", "gnc", "scenarios"):
         shutil.copytree(ROOT / name, tmp_path / name, ignore=shutil.ignore_patterns("__pycache__"))
-    found = asked(tmp_path, "from gnc.compiled import FOLDER, sources_hash; print(FOLDER); print(sources_hash())")
+    found = asked(
+        tmp_path,
+        "from gnc.compiled import FOLDER, sources_hash; print(FOLDER); print(sources_hash())",
+    )
     folder, sources = found.splitlines()
     Path(folder).mkdir(parents=True)
     (Path(folder) / "health.py").touch()
@@ -31,7 +34,12 @@ def asked(packages, code, **environment):
     """Return what a program prints, in a process of its own."""
     kept = {name: value for name, value in os.environ.items() if name != "PLUME_FLIGHT_SOURCES"}
     run = subprocess.run(
-        [sys.executable, "-c", code], cwd=packages, env={**kept, **environment}, capture_output=True, text=True, check=False
+        [sys.executable, "-c", code],
+        cwd=packages,
+        env={**kept, **environment},
+        capture_output=True,
+        text=True,
+        check=False,
     )
     assert run.returncode == 0, run.stderr
     return run.stdout.strip()
@@ -50,7 +58,13 @@ def test_what_was_compiled_is_run_unless_sources_are_asked_for(packages):
 
 
 @pytest.mark.parametrize(
-    "edited", ["gnc/estimation/health.py", "gnc/guidance.py", "common/physics/units.py", "scenarios/simulation/record.py"]
+    "edited",
+    [
+        "gnc/estimation/health.py",
+        "gnc/guidance.py",
+        "common/physics/units.py",
+        "scenarios/simulation/record.py",
+    ],
 )
 def test_once_a_source_is_edited_the_sources_are_run(packages, edited):
     path = packages / edited

@@ -37,20 +37,47 @@ from gnc.reference.orbit import half_widths
 from gnc.reference.shapes.sinusoid import Sinusoid
 from gnc.safety.guard_parameters import GuardParameters
 
-GUARD = GuardParameters(radius=200.0, heading_rate_max=HEADING_RATE_MAX, lag=0.4, delay=0.0, slow_lag=0.4, time_step=TIME_STEP)
-APPROACH = ApproachParameters(blocked_radius=203.0, round_radius=230.0, join_distance=150.0, tracked=12.0, airspeed=SPEED + 2.0)
+GUARD = GuardParameters(
+    radius=200.0,
+    heading_rate_max=HEADING_RATE_MAX,
+    lag=0.4,
+    delay=0.0,
+    slow_lag=0.4,
+    time_step=TIME_STEP,
+)
+APPROACH = ApproachParameters(
+    blocked_radius=203.0,
+    round_radius=230.0,
+    join_distance=150.0,
+    tracked=12.0,
+    airspeed=SPEED + 2.0,
+)
 PLAN_INTERVAL = 10
 FILTER = FilterParameters(position_sigma=5.0, velocity_sigma=0.15, acceleration=0.02, memory=40.0)
-LIMITS = VesselLimits(acceleration=0.25, speed_max=15.0, position_sigma=5.0, velocity_sigma=0.15, deviations=5.0, horizon=9.0)
+LIMITS = VesselLimits(
+    acceleration=0.25,
+    speed_max=15.0,
+    position_sigma=5.0,
+    velocity_sigma=0.15,
+    deviations=5.0,
+    horizon=9.0,
+)
 
 
 def paper(**how):
-    return paper_parameters(make_reference(paper_oscillation(0.5), centre=(-214.0, 0.0)), vessel=(0.5 * SPEED, 0.0), **how)
+    return paper_parameters(
+        make_reference(paper_oscillation(0.5), centre=(-214.0, 0.0)),
+        vessel=(0.5 * SPEED, 0.0),
+        **how,
+    )
 
 
 def following(*, guard=GUARD, climb=0.0):
     """Return the guidance of a flight that follows a plume by sensors and reports."""
-    widths = [half_widths(paper_oscillation(nu, roll_rate_max=math.radians(40.0))) for nu in np.linspace(0.0, 0.97, 49)]
+    widths = [
+        half_widths(paper_oscillation(nu, roll_rate_max=math.radians(40.0)))
+        for nu in np.linspace(0.0, 0.97, 49)
+    ]
     centre = CentreParameters(
         distance_min=203.0,
         speed_ratio_max=0.97,
@@ -65,7 +92,9 @@ def following(*, guard=GUARD, climb=0.0):
     mission = FollowingParameters(
         centre=centre,
         reference_heading_rate=0.985 * HEADING_RATE_MAX,
-        swing=Sinusoid().swing(speed=SPEED, heading_rate=0.985 * HEADING_RATE_MAX, roll_rate_max=math.radians(40.0)),
+        swing=Sinusoid().swing(
+            speed=SPEED, heading_rate=0.985 * HEADING_RATE_MAX, roll_rate_max=math.radians(40.0)
+        ),
         joining_share=1.0,
         speed_ratio_max=0.97,
         approach=APPROACH,
@@ -107,14 +136,25 @@ def reported(parameters, *, speed=8.0):
 
 def readings(north, east, *, course=0.0, airspeed=SPEED, servo_error=0.0):
     """Return what exact sensors say in still air."""
-    return (north, east, SPEED * math.cos(course), SPEED * math.sin(course)), airspeed, course, 0.0, 0.0, servo_error
+    return (
+        (north, east, SPEED * math.cos(course), SPEED * math.sin(course)),
+        airspeed,
+        course,
+        0.0,
+        0.0,
+        servo_error,
+    )
 
 
 def test_the_papers_guidance_has_no_parts_that_have_nothing_to_do():
     guidance = compose(paper())
     assert guidance.monitor is None
     assert guidance.guard is None
-    assert (type(guidance.own), type(guidance.target), type(guidance.mission)) == (TrueNavigation, SteadyTarget, DirectTracking)
+    assert (type(guidance.own), type(guidance.target), type(guidance.mission)) == (
+        TrueNavigation,
+        SteadyTarget,
+        DirectTracking,
+    )
     # No estimator among what they keep.
     assert not hasattr(guidance.own, "_navigation")
     assert not hasattr(guidance.target, "vessel")
@@ -149,7 +189,10 @@ def test_no_command_exceeds_its_bound_in_gusts_from_behind():
     # It was in the way, and the guidance goes on from what is flown.
     assert guidance.own.air_ratio < 0.9
     assert abs(guidance.heading_rate_command) == HEADING_RATE_MAX
-    assert guidance.mission.tracker.heading_rate_command == guidance.heading_rate_command * guidance.own.air_ratio
+    assert (
+        guidance.mission.tracker.heading_rate_command
+        == guidance.heading_rate_command * guidance.own.air_ratio
+    )
 
 
 def test_flights_share_nothing():
@@ -167,7 +210,9 @@ def test_the_mission_plans_every_few_steps_and_the_papers_once(monkeypatch):
     asked = []
     for mission in (PlumeFollowing, DirectTracking):
         plan = mission.plan
-        monkeypatch.setattr(mission, "plan", lambda self, time, plan=plan: (asked.append(time), plan(self, time)))
+        monkeypatch.setattr(
+            mission, "plan", lambda self, time, plan=plan: (asked.append(time), plan(self, time))
+        )
     for guidance, plans in ((reported(following()), 3), (compose(paper()), 1)):
         asked.clear()
         measurement = readings(-300.0, 0.0) if plans > 1 else motion(-300.0, 0.0, 0.0)
@@ -205,8 +250,13 @@ def test_a_turn_away_is_flown_in_full_in_gusts_from_ahead():
     turns = []
     for step in range(200):
         airspeed = SPEED if step % PLAN_INTERVAL == 0 else 1.2 * SPEED
-        guidance.step(step * TIME_STEP, readings(-300.0 + SPEED * step * TIME_STEP, 0.0, airspeed=airspeed))
+        guidance.step(
+            step * TIME_STEP, readings(-300.0 + SPEED * step * TIME_STEP, 0.0, airspeed=airspeed)
+        )
         if guidance.guarding and guidance.own.air_ratio > 1.1:
             turns.append(abs(guidance.heading_rate_command))
-            assert guidance.mission.tracker.heading_rate_command == guidance.heading_rate_command * guidance.own.air_ratio
+            assert (
+                guidance.mission.tracker.heading_rate_command
+                == guidance.heading_rate_command * guidance.own.air_ratio
+            )
     assert max(turns) == HEADING_RATE_MAX

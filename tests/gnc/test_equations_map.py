@@ -16,10 +16,16 @@ DIFFERENCES, _, AFTER = AFTER.partition("## Errors in the printed text")
 ERRORS, _, _ = AFTER.partition("## Why trajectories are bounded")
 ROWS = {
     int(cells[0].strip("()")): cells[1:]
-    for cells in ([cell.strip() for cell in line.strip("|").split("|")] for line in EQUATIONS.splitlines() if line.startswith("|"))
+    for cells in (
+        [cell.strip() for cell in line.strip("|").split("|")]
+        for line in EQUATIONS.splitlines()
+        if line.startswith("|")
+    )
     if len(cells) == 4 and re.fullmatch(r"\(\d+\)", cells[0])
 }
-FUNCTIONS = sorted({name for cells in ROWS.values() for name in re.findall(r"`(gnc[\w.]+)`", cells[1])})
+FUNCTIONS = sorted(
+    {name for cells in ROWS.values() for name in re.findall(r"`(gnc[\w.]+)`", cells[1])}
+)
 TEST = re.compile(r"`([^`]+::[^`]+)`")
 TESTS = sorted(set(TEST.findall(MAP)))
 
@@ -54,7 +60,12 @@ def docstrings():
 def names_used(file, function):
     """Return the names that a test uses, and those that the helpers use which it uses, in its file and in gnc_cases.py."""
     trees = [tree_of("tests/gnc/cases/gnc_cases.py"), tree_of(file)]
-    bodies = {node.name: node for tree in trees for node in tree.body if isinstance(node, ast.FunctionDef | ast.ClassDef)}
+    bodies = {
+        node.name: node
+        for tree in trees
+        for node in tree.body
+        if isinstance(node, ast.FunctionDef | ast.ClassDef)
+    }
     bodies |= {
         target.id: node
         for tree in trees
@@ -66,7 +77,9 @@ def names_used(file, function):
     used, waiting = set(), [function]
     while waiting:
         nodes = list(ast.walk(bodies[waiting.pop()]))
-        fresh = {node.id for node in nodes if isinstance(node, ast.Name)} | {n.attr for n in nodes if isinstance(n, ast.Attribute)}
+        fresh = {node.id for node in nodes if isinstance(node, ast.Name)} | {
+            n.attr for n in nodes if isinstance(n, ast.Attribute)
+        }
         waiting += [name for name in fresh - used if name in bodies]
         used |= fresh
     return used
@@ -103,11 +116,15 @@ def test_each_named_function_exists_and_cites_its_equations(name):
 @pytest.mark.parametrize("test", TESTS)
 def test_each_named_test_exists(test):
     file, _, function = test.partition("::")
-    assert function in {node.name for node in tree_of(file).body if isinstance(node, ast.FunctionDef)}
+    assert function in {
+        node.name for node in tree_of(file).body if isinstance(node, ast.FunctionDef)
+    }
 
 
 def test_every_equation_cited_in_gnc_is_in_the_map():
-    cited = {(file, int(number)) for file, text in docstrings() for number in CITATION.findall(text)}
+    cited = {
+        (file, int(number)) for file, text in docstrings() for number in CITATION.findall(text)
+    }
     assert {(file, number) for file, number in cited if number not in ROWS} == set()
     # The search does find citations: of all equations that have a function, which are all but the proof steps.
     assert {number for _, number in cited} >= set(ROWS) - {28, 29}
@@ -116,7 +133,10 @@ def test_every_equation_cited_in_gnc_is_in_the_map():
 def test_every_place_where_gnc_says_that_it_differs_is_in_the_list_of_differences():
     for path in sorted((ROOT / "gnc").rglob("*.py")):
         for node in ast.walk(tree_of(path)):
-            if isinstance(node, ast.ClassDef | ast.FunctionDef) and "differs " in (ast.get_docstring(node) or "").lower():
+            if (
+                isinstance(node, ast.ClassDef | ast.FunctionDef)
+                and "differs " in (ast.get_docstring(node) or "").lower()
+            ):
                 assert f"`{module_of(path)}.{node.name}`" in DIFFERENCES
 
 

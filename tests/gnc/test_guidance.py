@@ -2,7 +2,17 @@ import math
 
 import numpy as np
 import pytest
-from gnc_cases import HEADING_RATE_MAX, SPEED, TIME_STEP, examples, fly, make_guidance, make_reference, motion, paper_oscillation
+from gnc_cases import (
+    HEADING_RATE_MAX,
+    SPEED,
+    TIME_STEP,
+    examples,
+    fly,
+    make_guidance,
+    make_reference,
+    motion,
+    paper_oscillation,
+)
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -14,7 +24,14 @@ from gnc.reference.placement import PlumeAxis, distance_by_paper
 from gnc.safety.guard_parameters import GuardParameters
 
 # 0.75 of the tracking allowance of 1 m about its 200 m (scenarios/planning/tracking_flight.py). These vehicles answer at once.
-GUARD = GuardParameters(radius=200.75, heading_rate_max=HEADING_RATE_MAX, lag=0.0, delay=0.0, slow_lag=0.0, time_step=TIME_STEP)
+GUARD = GuardParameters(
+    radius=200.75,
+    heading_rate_max=HEADING_RATE_MAX,
+    lag=0.0,
+    delay=0.0,
+    slow_lag=0.0,
+    time_step=TIME_STEP,
+)
 
 
 class RecordingGuard:
@@ -31,7 +48,14 @@ class RecordingGuard:
 
     def limit(self, _, time, own, speed, slowest):
         self.slowest.append(slowest)
-        motion = own.ground_north, own.ground_east, own.wind_north, own.wind_east, own.course, own.heading_rate
+        motion = (
+            own.ground_north,
+            own.ground_east,
+            own.wind_north,
+            own.wind_east,
+            own.course,
+            own.heading_rate,
+        )
         self.asked.append((time, *motion, speed))
         return self.answer
 
@@ -42,7 +66,12 @@ class OnItsWay:
     overriding, leaving = True, False
 
     def __init__(self, mission, airspeed):
-        self.tracker, self.altitude, self.airspeed, self.plan = mission.tracker, mission.altitude, airspeed, mission.plan
+        self.tracker, self.altitude, self.airspeed, self.plan = (
+            mission.tracker,
+            mission.altitude,
+            airspeed,
+            mission.plan,
+        )
         self.told = []
 
     def command(self, last_command):
@@ -65,7 +94,9 @@ def about_a_vessel(nu, *, guard):
     """Return the guidance of a flight behind a vessel that goes north from the origin, as the paper places it about 200 m."""
     oscillation = paper_oscillation(nu, reserve=0.015)
     centre = (-distance_by_paper(oscillation, PlumeAxis(heading=math.pi), 201.0), 0.0)
-    return make_guidance(make_reference(oscillation, centre=centre), vessel=(nu * SPEED, 0.0), guard=guard)
+    return make_guidance(
+        make_reference(oscillation, centre=centre), vessel=(nu * SPEED, 0.0), guard=guard
+    )
 
 
 @examples(200)
@@ -74,14 +105,22 @@ def about_a_vessel(nu, *, guard):
     lag=st.sampled_from([0.0, 0.4]),
     guard=st.sampled_from([None, GUARD]),
     motions=st.lists(
-        st.tuples(st.floats(-1e4, 1e4), st.floats(-1e4, 1e4), st.floats(-10.0, 10.0), st.floats(0.1, 60.0), st.floats(-2.0, 2.0)),
+        st.tuples(
+            st.floats(-1e4, 1e4),
+            st.floats(-1e4, 1e4),
+            st.floats(-10.0, 10.0),
+            st.floats(0.1, 60.0),
+            st.floats(-2.0, 2.0),
+        ),
         min_size=1,
         max_size=4,
     ),
 )
 def test_no_command_exceeds_its_bound_whatever_the_state(law, lag, guard, motions):
     reference = make_reference(paper_oscillation(0.5), centre=(-214.0, 0.0))
-    guidance = make_guidance(reference, law=law, lag=lag, airspeed_gain=0.15, guard=guard, vessel=(0.5 * SPEED, 0.0))
+    guidance = make_guidance(
+        reference, law=law, lag=lag, airspeed_gain=0.15, guard=guard, vessel=(0.5 * SPEED, 0.0)
+    )
     for now in motions:
         guidance.step(0.0, motion(*now))
         assert abs(guidance.heading_rate_command) <= HEADING_RATE_MAX
@@ -98,12 +137,17 @@ def test_no_command_exceeds_its_bound_whatever_the_state(law, lag, guard, motion
     ],
 )
 @pytest.mark.parametrize("lag", [0.0, 0.4])
-def test_the_airspeed_is_trimmed_by_the_along_track_error_within_its_limit(along, right, expected, lag):
+def test_the_airspeed_is_trimmed_by_the_along_track_error_within_its_limit(
+    along, right, expected, lag
+):
     # The error now, whatever the lag of the heading rate.
     reference = make_reference(paper_oscillation(0.5), centre=(100.0, 50.0), vessel_course=0.8)
     guidance = make_guidance(reference, airspeed_gain=0.15, lag=lag)
     cos, sin = math.cos(reference.course), math.sin(reference.course)
-    north, east = reference.north + along * cos - right * sin, reference.east + along * sin + right * cos
+    north, east = (
+        reference.north + along * cos - right * sin,
+        reference.east + along * sin + right * cos,
+    )
     guidance.step(0.0, motion(north, east, reference.course))
     # Rounding of 100 m.
     assert guidance.airspeed_command == pytest.approx(expected, abs=1e-12)
@@ -123,7 +167,9 @@ def test_the_guard_is_asked_about_the_motion_now_and_gets_a_disc_without_width(g
     guidance = guarded_by(RecordingGuard(0.0), lag=lag, vessel=(3.0, -2.0))
     guidance.step(5.0, motion(-300.0, 20.0, 0.7, SPEED + 0.5, 0.1))
     # Course and speed come back from the velocities: roundings.
-    assert guidance.guard.asked[0] == pytest.approx((5.0, -300.0, 20.0, 0.0, 0.0, 0.7, 0.1, SPEED + 0.5), rel=1e-14)
+    assert guidance.guard.asked[0] == pytest.approx(
+        (5.0, -300.0, 20.0, 0.0, 0.0, 0.7, 0.1, SPEED + 0.5), rel=1e-14
+    )
     # From the origin at time 0, and known exactly for good.
     assert guidance.guard.tubes == (Tube(0.0, 0.0, 0.0, 3.0, -2.0, 0.0, 0.0, 0.0),)
 
@@ -161,13 +207,21 @@ def test_on_the_way_it_flies_faster_only_where_the_guard_allows_that(guarded_by,
 
 
 @pytest.mark.parametrize(
-    ("intervening", "allowed", "airspeed"), [(True, True, SPEED), (False, False, SPEED), (False, True, SPEED + 1.0)]
+    ("intervening", "allowed", "airspeed"),
+    [(True, True, SPEED), (False, False, SPEED), (False, True, SPEED + 1.0)],
 )
-def test_it_catches_up_only_where_the_guard_allows_that_and_does_not_intervene(guarded_by, intervening, allowed, airspeed):
-    guidance = guarded_by(RecordingGuard(0.0, intervening=intervening, allowed=allowed), airspeed_gain=0.15)
+def test_it_catches_up_only_where_the_guard_allows_that_and_does_not_intervene(
+    guarded_by, intervening, allowed, airspeed
+):
+    guidance = guarded_by(
+        RecordingGuard(0.0, intervening=intervening, allowed=allowed), airspeed_gain=0.15
+    )
     # Far behind the reference: trimmed by all of 1 m/s.
     reference = guidance.mission.tracker.reference
-    behind = (reference.north - 60.0 * math.cos(reference.course), reference.east - 60.0 * math.sin(reference.course))
+    behind = (
+        reference.north - 60.0 * math.cos(reference.course),
+        reference.east - 60.0 * math.sin(reference.course),
+    )
     guidance.step(0.0, motion(*behind, reference.course))
     assert (guidance.airspeed_command, guidance.guarding) == (airspeed, intervening)
 
@@ -180,7 +234,10 @@ def test_it_catches_up_once_the_guard_has_been_free_for_a_quarter_of_a_turn(guar
     commanded = []
     for step in range(1, 100):
         reference = guidance.mission.tracker.reference
-        behind = (reference.north - 60.0 * math.cos(reference.course), reference.east - 60.0 * math.sin(reference.course))
+        behind = (
+            reference.north - 60.0 * math.cos(reference.course),
+            reference.east - 60.0 * math.sin(reference.course),
+        )
         guidance.step(step * TIME_STEP, motion(*behind, reference.course))
         commanded.append(guidance.airspeed_command)
     waiting = math.ceil(0.5 * math.pi / HEADING_RATE_MAX / TIME_STEP) - 1
@@ -191,7 +248,10 @@ def test_it_catches_up_once_the_guard_has_been_free_for_a_quarter_of_a_turn(guar
 def test_from_ahead_of_the_vessel_only_the_guard_keeps_the_vehicle_out(nu):
     # paper-notes, care 13: nothing in the law avoids the keep-out area, and from ahead of the vessel the way leads through it.
     unguarded, guarded = (
-        np.min(fly(about_a_vessel(nu, guard=guard), (600.0, 30.0, math.pi), duration=400.0).to_vessel) for guard in (None, GUARD)
+        np.min(
+            fly(about_a_vessel(nu, guard=guard), (600.0, 30.0, math.pi), duration=400.0).to_vessel
+        )
+        for guard in (None, GUARD)
     )
     # Straight through: measured, 2 to 14 m.
     assert unguarded < 50.0
@@ -204,8 +264,15 @@ def test_from_ahead_of_the_vessel_only_the_guard_keeps_the_vehicle_out(nu):
 def test_from_astern_a_guarded_vehicle_settles_and_keeps_out(nu, seed):
     # Starts as in scenarios/schema/sections/flight.py: 400 to 800 m away, within 30 degrees of astern, on any course.
     generator = np.random.default_rng(seed)
-    distance, bearing = generator.uniform(400.0, 800.0), math.pi + generator.uniform(-math.pi / 6.0, math.pi / 6.0)
-    start = (distance * math.cos(bearing), distance * math.sin(bearing), generator.uniform(-math.pi, math.pi))
+    distance, bearing = (
+        generator.uniform(400.0, 800.0),
+        math.pi + generator.uniform(-math.pi / 6.0, math.pi / 6.0),
+    )
+    start = (
+        distance * math.cos(bearing),
+        distance * math.sin(bearing),
+        generator.uniform(-math.pi, math.pi),
+    )
     flight = fly(about_a_vessel(nu, guard=GUARD), start, duration=400.0)
     # Orbit and guard both keep more than the keep-out area's 200 m: 201 and 200.75 m.
     assert np.min(flight.to_vessel) >= 200.75

@@ -17,9 +17,13 @@ def test_the_bar_keeps_out_what_gnc_must_not_know(name):
 
 
 def test_every_module_of_gnc_imports_and_its_tests_are_collected_with_numpy_scipy_and_what_all_rooms_share():
-    assert {"gnc.laws.cascade", "gnc.laws.lyapunov", "gnc.laws.delta", "gnc.tracker", "gnc.reference.oscillating"} <= set(
-        GNC.modules
-    )
+    assert {
+        "gnc.laws.cascade",
+        "gnc.laws.lyapunov",
+        "gnc.laws.delta",
+        "gnc.tracker",
+        "gnc.reference.oscillating",
+    } <= set(GNC.modules)
     imports = "".join(f"import {module}\n" for module in GNC.modules)
     # What tests/conftest.py imports counts, too.
     options = ["--collect-only", "--assert=plain", "-p", "no:cacheprovider", "tests/gnc"]
@@ -31,5 +35,14 @@ def test_every_module_of_gnc_imports_and_its_tests_are_collected_with_numpy_scip
 def test_no_test_of_gnc_asks_for_an_aircraft():
     # The fixtures of tests/conftest.py import theirs only when they are used.
     for path in (ROOT / "tests" / "gnc").rglob("test_*.py"):
-        functions = [node for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))) if isinstance(node, ast.FunctionDef)]
-        assert not {argument.arg for node in functions for argument in node.args.args if argument.arg.startswith("x8_")}
+        functions = [
+            node
+            for node in ast.walk(ast.parse(path.read_text(encoding="utf-8")))
+            if isinstance(node, ast.FunctionDef)
+        ]
+        assert not {
+            argument.arg
+            for node in functions
+            for argument in node.args.args
+            if argument.arg.startswith("x8_")
+        }

@@ -24,7 +24,11 @@ from gnc.laws.line_of_sight import LineOfSightLaw, line_of_sight_law
 from gnc.laws.lyapunov import LyapunovLaw, lyapunov_law
 from gnc.tracker import Tracker
 
-LAWS = pytest.mark.parametrize("law", [CascadeLaw(), LyapunovLaw(), LineOfSightLaw()], ids=["cascade", "lyapunov", "line_of_sight"])
+LAWS = pytest.mark.parametrize(
+    "law",
+    [CascadeLaw(), LyapunovLaw(), LineOfSightLaw()],
+    ids=["cascade", "lyapunov", "line_of_sight"],
+)
 
 
 def law_command(law, reference, north, east, course, speed):
@@ -48,14 +52,22 @@ def law_command(law, reference, north, east, course, speed):
     speed=st.floats(15.0, 25.0),
     heading_rate=st.floats(-1.0, 1.0),
 )
-def test_without_lag_the_command_is_the_law_now_whatever_the_measured_heading_rate(law, north, east, course, speed, heading_rate):
-    tracker = Tracker(tracking_parameters(law=law), make_reference(paper_oscillation(0.5), phase=0.4))
+def test_without_lag_the_command_is_the_law_now_whatever_the_measured_heading_rate(
+    law, north, east, course, speed, heading_rate
+):
+    tracker = Tracker(
+        tracking_parameters(law=law), make_reference(paper_oscillation(0.5), phase=0.4)
+    )
     # The reference as it is before the step moves it on.
     demand = law_command(law, tracker.reference, north, east, course, speed)
     command = tracker.step(north, east, course, speed, heading_rate)
     # The same arithmetic.
     assert tracker.heading_rate_demand == demand
-    assert command == tracker.heading_rate_command == min(max(demand, -HEADING_RATE_MAX), HEADING_RATE_MAX)
+    assert (
+        command
+        == tracker.heading_rate_command
+        == min(max(demand, -HEADING_RATE_MAX), HEADING_RATE_MAX)
+    )
     assert tracker.saturated == (abs(demand) > HEADING_RATE_MAX)
 
 
@@ -89,7 +101,9 @@ def test_with_lag_the_command_is_the_law_as_it_will_stand_then(heading_rate):
 def test_preview_makes_up_for_a_vehicle_that_answers_late(nu, law, delay):
     errors = []
     for lag in (0.0, delay):
-        guidance = make_guidance(make_reference(paper_oscillation(nu, reserve=0.1)), law=law, lag=lag)
+        guidance = make_guidance(
+            make_reference(paper_oscillation(nu, reserve=0.1)), law=law, lag=lag
+        )
         flight = fly(guidance, (-60.0, 40.0, 0.5), duration=120.0, delay=delay)
         errors.append(float(np.sqrt(np.mean(flight.distance[-1000:] ** 2))))
     without, with_preview = errors
@@ -107,7 +121,9 @@ def test_mirrored_flights_are_commanded_mirrored(law, delay):
     flights = []
     # The mirror image of the course eta cos(omega_0 t + phi_0) is that with phi_0 + pi.
     for side, phase in ((1.0, 0.4), (-1.0, 0.4 + math.pi)):
-        reference = make_reference(oscillation, phase=phase, centre=(-214.0, side * 10.0), vessel_course=side * 0.2)
+        reference = make_reference(
+            oscillation, phase=phase, centre=(-214.0, side * 10.0), vessel_course=side * 0.2
+        )
         guidance = make_guidance(reference, law=law, lag=delay, airspeed_gain=0.15)
         flights.append(fly(guidance, (350.0, side * 60.0, side * 3.0), duration=90.0, delay=delay))
     one, other = flights
@@ -122,7 +138,9 @@ def test_mirrored_flights_are_commanded_mirrored(law, delay):
 @pytest.mark.parametrize("nu", [0.0, 0.5, 0.8])
 @pytest.mark.parametrize("law", [CascadeLaw(), LyapunovLaw()], ids=["cascade", "lyapunov"])
 def test_a_kinematic_vehicle_settles_on_the_reference_at_20_hertz(nu, law):
-    guidance = make_guidance(make_reference(paper_oscillation(nu, reserve=0.1), centre=(-214.0, 0.0)), law=law)
+    guidance = make_guidance(
+        make_reference(paper_oscillation(nu, reserve=0.1), centre=(-214.0, 0.0)), law=law
+    )
     flight = fly(guidance, (-300.0, 60.0, 2.0), duration=200.0)
     # Held over a step of 0.05 s, the command is 0.025 s late; that leaves up to 0.6 m, measured at nu = 0.8 under the Lyapunov law.
     assert np.max(flight.distance[-1000:]) < 0.8
@@ -131,7 +149,9 @@ def test_a_kinematic_vehicle_settles_on_the_reference_at_20_hertz(nu, law):
 
 @pytest.mark.parametrize("lag", [0.0, 0.4])
 def test_the_reference_shown_is_the_one_now_also_with_preview(lag):
-    alone = make_reference(paper_oscillation(0.3), phase=0.7, centre=(-214.0, 5.0), vessel_course=0.3)
+    alone = make_reference(
+        paper_oscillation(0.3), phase=0.7, centre=(-214.0, 5.0), vessel_course=0.3
+    )
     tracker = Tracker(tracking_parameters(lag=lag), copy.copy(alone))
     for _ in range(100):
         shown = tracker.reference

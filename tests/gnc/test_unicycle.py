@@ -19,7 +19,9 @@ durations = st.floats(0.0, 60.0)
 def test_the_vehicle_moves_along_its_course_at_its_speed(speed, course, heading_rate):
     north_rate, east_rate, course_rate = unicycle_rates(speed, course, heading_rate)
     # Below equation (1): the nonholonomic constraint. Tolerances are roundings of numbers up to 40.
-    assert north_rate * math.sin(course) - east_rate * math.cos(course) == pytest.approx(0.0, abs=1e-13)
+    assert north_rate * math.sin(course) - east_rate * math.cos(course) == pytest.approx(
+        0.0, abs=1e-13
+    )
     assert math.hypot(north_rate, east_rate) == pytest.approx(speed, rel=1e-14)
     assert north_rate * math.cos(course) + east_rate * math.sin(course) > 0.0
     assert course_rate == heading_rate
@@ -35,10 +37,16 @@ def test_courses_are_clockwise_from_north():
 def test_a_move_equals_the_integral_of_the_rates(heading_rate):
     course, speed, duration = 2.5, 19.42, 30.0
     solution = solve_ivp(
-        lambda _, state: unicycle_rates(speed, state[2], heading_rate), (0.0, duration), [5.0, -7.0, course], rtol=1e-10, atol=1e-10
+        lambda _, state: unicycle_rates(speed, state[2], heading_rate),
+        (0.0, duration),
+        [5.0, -7.0, course],
+        rtol=1e-10,
+        atol=1e-10,
     )
     # Integration tolerance 1e-10 of 583 m, over some dozens of steps.
-    assert unicycle_move(5.0, -7.0, course, speed, heading_rate, duration) == pytest.approx(solution.y[:, -1], rel=0.0, abs=1e-5)
+    assert unicycle_move(5.0, -7.0, course, speed, heading_rate, duration) == pytest.approx(
+        solution.y[:, -1], rel=0.0, abs=1e-5
+    )
 
 
 @examples(200)
@@ -47,12 +55,16 @@ def test_two_moves_make_one(course, speed, heading_rate, first, second):
     halfway = unicycle_move(0.0, 0.0, course, speed, heading_rate, first)
     end = unicycle_move(*halfway, speed, heading_rate, second)
     # The straight-line limit below 1e-6 rad errs by 1e-12/6 of at most 4,800 m; roundings are smaller.
-    assert end == pytest.approx(unicycle_move(0.0, 0.0, course, speed, heading_rate, first + second), rel=0.0, abs=1e-8)
+    assert end == pytest.approx(
+        unicycle_move(0.0, 0.0, course, speed, heading_rate, first + second), rel=0.0, abs=1e-8
+    )
 
 
 def test_half_a_turn_ends_a_diameter_away_on_the_side_of_the_turn():
     # Radius v/omega, from equation (1) with constant omega: 20/0.25 = 80 m; to the right, east of a northbound vehicle.
-    assert unicycle_move(0.0, 0.0, 0.0, 20.0, 0.25, math.pi / 0.25) == pytest.approx((0.0, 160.0, math.pi), abs=1e-12)
+    assert unicycle_move(0.0, 0.0, 0.0, 20.0, 0.25, math.pi / 0.25) == pytest.approx(
+        (0.0, 160.0, math.pi), abs=1e-12
+    )
 
 
 def test_the_straight_line_is_the_limit_of_the_arc():
@@ -69,12 +81,18 @@ def test_a_lagged_move_equals_the_integral_of_a_first_order_lag(lag, step):
     north, east, course, rate, command, speed = 5.0, -7.0, 2.5, -0.4, 0.5, 19.42
 
     def rates(_, state):
-        return [*unicycle_rates(speed, state[2], state[3])[:2], state[3], (command - state[3]) / lag]
+        return [
+            *unicycle_rates(speed, state[2], state[3])[:2],
+            state[3],
+            (command - state[3]) / lag,
+        ]
 
     state = (north, east, course, rate)
     for _ in range(round(2.0 / step)):
         state = lagged_move(*state, speed, command, lag, step)
-    solution = solve_ivp(rates, (0.0, 2.0), [north, east, course, rate], rtol=1e-12, atol=1e-12, method="LSODA")
+    solution = solve_ivp(
+        rates, (0.0, 2.0), [north, east, course, rate], rtol=1e-12, atol=1e-12, method="LSODA"
+    )
     # Quadrature over pieces of half a lag or 0.1 s errs by some 1e-7 m in the first lag, where the rate changes most; course and
     # rate are in closed form, integration 1e-12 a step.
     assert state[:2] == pytest.approx(solution.y[:2, -1], rel=0.0, abs=5e-7)
@@ -83,8 +101,12 @@ def test_a_lagged_move_equals_the_integral_of_a_first_order_lag(lag, step):
 
 @examples(100)
 @given(course=courses, heading_rate=heading_rates, speed=speeds, duration=st.floats(0.001, 0.05))
-def test_a_lagged_move_at_its_commanded_rate_is_a_move_without_lag(course, heading_rate, speed, duration):
+def test_a_lagged_move_at_its_commanded_rate_is_a_move_without_lag(
+    course, heading_rate, speed, duration
+):
     # Nothing to lag behind. Quadrature of 1e-9 m, as above.
     moved = lagged_move(1.0, 2.0, course, heading_rate, speed, heading_rate, 0.3, duration)
-    assert moved[:3] == pytest.approx(unicycle_move(1.0, 2.0, course, speed, heading_rate, duration), rel=0.0, abs=1e-9)
+    assert moved[:3] == pytest.approx(
+        unicycle_move(1.0, 2.0, course, speed, heading_rate, duration), rel=0.0, abs=1e-9
+    )
     assert moved[3] == heading_rate

@@ -31,7 +31,9 @@ def fly(aircraft, start, duration, commands=()):
     nodes = [(aircraft.fdm.node(name), scale) for name, scale in CHANNELS.values()]
     due = {}
     for time, command, value in commands:
-        due.setdefault(round(time / TIME_STEP), []).append((getattr(aircraft, f"command_{command}"), value))
+        due.setdefault(round(time / TIME_STEP), []).append(
+            (getattr(aircraft, f"command_{command}"), value)
+        )
     log = np.empty((round(duration / TIME_STEP), len(nodes)))
     for i in range(len(log)):
         for setter, value in due.get(i, ()):

@@ -12,24 +12,42 @@ PADE_ORDER = 4
 def delays(names, delay):
     """One delay for each control."""
     rational = control.ss(control.tf(*control.pade(delay, PADE_ORDER)))
-    return [control.ss(rational, inputs=[f"{n}_asked"], outputs=[n], name=f"{n}_delay") for n in names]
+    return [
+        control.ss(rational, inputs=[f"{n}_asked"], outputs=[n], name=f"{n}_delay") for n in names
+    ]
 
 
 def named(model, name):
     """A linear model as python-control connects it."""
-    return control.ss(model.A, model.B, model.C, model.D, inputs=model.input_labels, outputs=model.output_labels, name=name)
+    return control.ss(
+        model.A,
+        model.B,
+        model.C,
+        model.D,
+        inputs=model.input_labels,
+        outputs=model.output_labels,
+        name=name,
+    )
 
 
 def opened(aircraft, autopilot, delay, name):
     """The loop opened at a control or a measurement, closed elsewhere, for negative feedback."""
     controls = list(autopilot.output_labels)
     plant, law = named(aircraft, "aircraft"), named(autopilot, "law")
-    wires = [[f"law.{m}", f"aircraft.{m}"] for m in autopilot.input_labels if m not in COMMANDS and m != name]
+    wires = [
+        [f"law.{m}", f"aircraft.{m}"]
+        for m in autopilot.input_labels
+        if m not in COMMANDS and m != name
+    ]
     for c in controls:
         wires.append([f"aircraft.{c}", f"{c}_delay.{c}"])
         if c != name:
             wires.append([f"{c}_delay.{c}_asked", f"law.{c}"])
-    into, out = (f"{name}_delay.{name}_asked", f"law.{name}") if name in controls else (f"law.{name}", f"aircraft.{name}")
+    into, out = (
+        (f"{name}_delay.{name}_asked", f"law.{name}")
+        if name in controls
+        else (f"law.{name}", f"aircraft.{name}")
+    )
     loop = control.interconnect(
         [plant, law, *delays(controls, delay)],
         connections=wires,

@@ -14,8 +14,12 @@ HEIGHT = ("--altitude", 60.0)
 
 
 @pytest.mark.usefixtures("sketched")
-def test_the_command_leaves_a_directory_that_can_be_reported_on_again_and_may_repeat_the_search_over_reversals(tmp_path):
-    ended = run_command("innerloop.design", "x8", *HEIGHT, "--out", tmp_path / "x8", "--reversals", 3)
+def test_the_command_leaves_a_directory_that_can_be_reported_on_again_and_may_repeat_the_search_over_reversals(
+    tmp_path,
+):
+    ended = run_command(
+        "innerloop.design", "x8", *HEIGHT, "--out", tmp_path / "x8", "--reversals", 3
+    )
     assert ended.status == 0, ended.errors
     assert {"manifest.json", "innerloop.json", "report.html", "report.pdf", "model"} <= {
         p.name for p in (tmp_path / "x8").iterdir()
@@ -24,7 +28,9 @@ def test_the_command_leaves_a_directory_that_can_be_reported_on_again_and_may_re
     assert (manifest["study"], manifest["name"]) == ("design", "x8")
     assert manifest["packages"]["jsbsim"]
     assert content(read_run(tmp_path / "x8")).verdict.headline in ended.out
-    own = json.loads((tmp_path / "x8" / "innerloop.json").read_text(encoding="utf-8"))["turn_reversal"]
+    own = json.loads((tmp_path / "x8" / "innerloop.json").read_text(encoding="utf-8"))[
+        "turn_reversal"
+    ]
     found = own["repeated_search"]
     assert found["reversals"] == 3
     assert found["deviation_max_m"] > 0.0
@@ -34,12 +40,16 @@ def test_the_command_leaves_a_directory_that_can_be_reported_on_again_and_may_re
     assert own["reversals"] == 164
     assert f"3 of 3 reversals, largest deviation {found['deviation_max_m']:.2f} m" in ended.errors
     assert f"{found['deviation_max_m']:.2f} m nearer" in " ".join(ended.out.split())
-    assert f"{found['deviation_max_m']:.2f} m nearer" in (tmp_path / "x8" / "report.html").read_text(encoding="utf-8")
+    assert f"{found['deviation_max_m']:.2f} m nearer" in (
+        tmp_path / "x8" / "report.html"
+    ).read_text(encoding="utf-8")
 
 
 @pytest.mark.parametrize("reversals", ["0", "-5", "many", "2000000"])
 def test_a_number_of_reversals_that_cannot_be_flown_is_refused(tmp_path, reversals):
-    refused = run_command("innerloop.design", "x8", "--out", tmp_path / "x8", "--reversals", reversals)
+    refused = run_command(
+        "innerloop.design", "x8", "--out", tmp_path / "x8", "--reversals", reversals
+    )
     assert refused.status == 2
     assert "--reversals" in refused.errors
     assert not (tmp_path / "x8").exists()
@@ -62,14 +72,21 @@ def test_a_design_made_anew_leaves_no_report_of_the_older_one(tmp_path, designs)
         (out / name).write_text("of the older one", encoding="utf-8")
     assert run_command("innerloop.design", "x8", *HEIGHT, "--out", out, "--no-report").status == 0
     # What somebody else put there stays.
-    assert {path.name for path in out.iterdir()} == {"manifest.json", "innerloop.json", "model", "notes.txt"}
+    assert {path.name for path in out.iterdir()} == {
+        "manifest.json",
+        "innerloop.json",
+        "model",
+        "notes.txt",
+    }
 
 
 def test_a_design_made_anew_leaves_no_model_of_the_older_one(tmp_path, designs):
     designs("x8")
     out = tmp_path / "out"
     for _ in range(2):
-        assert run_command("innerloop.design", "x8", *HEIGHT, "--out", out, "--no-report").status == 0
+        assert (
+            run_command("innerloop.design", "x8", *HEIGHT, "--out", out, "--no-report").status == 0
+        )
         files = {path.name for path in (out / "model").rglob("*")}
         assert {"x8.xml", "x8_autopilot.xml"} <= files
         assert "aerosonde_autopilot.xml" not in files
@@ -77,7 +94,9 @@ def test_a_design_made_anew_leaves_no_model_of_the_older_one(tmp_path, designs):
 
 
 def test_a_logo_that_is_no_picture_is_refused_before_anything_is_designed(tmp_path):
-    ended = run_command("innerloop.design", "x8", "--out", tmp_path / "x8", "--set", "report.logo=gone.png")
+    ended = run_command(
+        "innerloop.design", "x8", "--out", tmp_path / "x8", "--set", "report.logo=gone.png"
+    )
     assert ended.status == 2
     assert ended.errors.startswith("error: report.logo: 'gone.png' cannot be read")
     assert not (tmp_path / "x8").exists()
@@ -85,7 +104,9 @@ def test_a_logo_that_is_no_picture_is_refused_before_anything_is_designed(tmp_pa
 
 def test_a_list_of_a_directory_has_of_each_aircraft_the_reason_alone(tmp_path):
     (tmp_path / "wing").mkdir()
-    (tmp_path / "wing" / "wing.xml").write_text('<fdm_config name="wing"><propulsion/></fdm_config>', encoding="utf-8")
+    (tmp_path / "wing" / "wing.xml").write_text(
+        '<fdm_config name="wing"><propulsion/></fdm_config>', encoding="utf-8"
+    )
     listed = run_command("innerloop.design", "--aircraft-dir", tmp_path, "--list")
     assert listed.out.split(maxsplit=2) == ["-", str(tmp_path / "wing"), "it has no engine\n"]
 
@@ -93,15 +114,23 @@ def test_a_list_of_a_directory_has_of_each_aircraft_the_reason_alone(tmp_path):
 def test_a_list_is_not_that_of_one_aircraft():
     refused = run_command("innerloop.design", "x8", "--list")
     assert (refused.status, refused.out) == (2, "")
-    assert refused.errors == "error: aircraft 'x8' is given beside --list, which lists all of them; leave out one of both\n"
+    assert (
+        refused.errors
+        == "error: aircraft 'x8' is given beside --list, which lists all of them; leave out one of both\n"
+    )
 
 
 def test_a_file_that_cannot_be_read_is_not_one_that_cannot_be_written(tmp_path):
     long = "a" * 300
     read = run_command("innerloop.design", f"{long}/wing")
-    assert read.errors.endswith(f"{long}/wing' cannot be read: File name too long; check the path and its permissions\n")
+    assert read.errors.endswith(
+        f"{long}/wing' cannot be read: File name too long; check the path and its permissions\n"
+    )
     written = run_command("innerloop.design", "x8", "--out", tmp_path / long)
-    assert f"{long}/manifest.json' cannot be written: File name too long; choose another --out" in written.errors
+    assert (
+        f"{long}/manifest.json' cannot be written: File name too long; choose another --out"
+        in written.errors
+    )
     (tmp_path / "file").touch()
     below = run_command("innerloop.design", "x8", "--out", tmp_path / "file" / "a" / "b")
     assert "cannot be written: Not a directory; choose another --out" in below.errors

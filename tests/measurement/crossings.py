@@ -27,14 +27,27 @@ def plain_sniffer(so2_t90=20.0, co2_t90=4.0, *, so2_noise=0.0, co2_noise=0.0, ra
     )
 
 
-def crossings(fsc_percent, *, duration=300.0, step=0.1, interval=9.5, width=0.6, peak=200.0, meander=0.6, seed=0, first=12.0):
+def crossings(
+    fsc_percent,
+    *,
+    duration=300.0,
+    step=0.1,
+    interval=9.5,
+    width=0.6,
+    peak=200.0,
+    meander=0.6,
+    seed=0,
+    first=12.0,
+):
     """Return the air of passes every ``interval``: Gaussians of CO2 whose height and time vary with ``meander``."""
     generator = np.random.default_rng(seed)
     time = np.arange(0.0, duration + step / 2.0, step)
     co2 = np.zeros(len(time))
     for middle in np.arange(first, duration, interval):
         height = peak * np.exp(-((meander * generator.normal()) ** 2))
-        co2 += height * np.exp(-0.5 * ((time - middle - 0.6 * meander * generator.normal()) / width) ** 2)
+        co2 += height * np.exp(
+            -0.5 * ((time - middle - 0.6 * meander * generator.normal()) / width) ** 2
+        )
     return BACKGROUND + co2[:, np.newaxis] * np.array([fsc_percent / fsc_factor(), 1.0, *NOX])
 
 

@@ -5,4 +5,6 @@ from measurement.estimate.__main__ import main
 
 def run(logged, *more, config=True):
     with_config = ["--config", str(logged.parent / "instrument.toml")] if config else []
-    return main([str(logged), "--out", str(logged.parent / "out"), "--no-report", *with_config, *more])
+    return main(
+        [str(logged), "--out", str(logged.parent / "out"), "--no-report", *with_config, *more]
+    )

@@ -51,7 +51,9 @@ def turning(speed, wind, wind_to, *, rate=0.02, turn=np.pi, until=250.0):
     time = np.arange(-350.0, until + 0.25, 0.5)
     phase = np.clip(rate * time / (1.5 * turn), 0.0, 1.0)
     course = turn * (phase - np.sin(2.0 * np.pi * phase) / (2.0 * np.pi))
-    velocity = speed * np.array([np.cos(course), np.sin(course)]) - wind * np.array([[np.cos(wind_to)], [np.sin(wind_to)]])
+    velocity = speed * np.array([np.cos(course), np.sin(course)]) - wind * np.array(
+        [[np.cos(wind_to)], [np.sin(wind_to)]]
+    )
     moved = 0.5 * np.diff(time) * (velocity[:, 1:] + velocity[:, :-1])
     north, east = np.concatenate([np.zeros((2, 1)), np.cumsum(moved, axis=1)], axis=1)
     return time, north, east
@@ -64,12 +66,25 @@ def puffs(track, true_wind, when, places, *, interval=0.1, **settings):
     """
     chosen = PlumeSettings(**settings)
     parcels = Parcels(*track, chosen.parcel_interval)
-    table = SpreadTable(EMISSION, air(true_wind), HEIGHT, (parcels.wind_min, parcels.wind_max), chosen.age_max, chosen)
+    table = SpreadTable(
+        EMISSION,
+        air(true_wind),
+        HEIGHT,
+        (parcels.wind_min, parcels.wind_max),
+        chosen.age_max,
+        chosen,
+    )
     emitted = np.arange(max(parcels.start, when - chosen.age_max), when, interval) + 0.5 * interval
     north, east, wind = parcels.at(emitted)
     height, spread, spread_up, *_ = table.at(wind, when - emitted)
     square = (places[0][:, None] - north) ** 2 + (places[1][:, None] - east) ** 2
     up = places[2][:, None]
-    column = np.exp(-((up - height) ** 2) / (2.0 * spread_up**2)) + np.exp(-((up + height) ** 2) / (2.0 * spread_up**2))
-    each = np.exp(-square / (2.0 * spread**2)) * column / ((2.0 * np.pi) ** 1.5 * spread**2 * spread_up)
+    column = np.exp(-((up - height) ** 2) / (2.0 * spread_up**2)) + np.exp(
+        -((up + height) ** 2) / (2.0 * spread_up**2)
+    )
+    each = (
+        np.exp(-square / (2.0 * spread**2))
+        * column
+        / ((2.0 * np.pi) ** 1.5 * spread**2 * spread_up)
+    )
     return interval * each.sum(axis=1) / air(true_wind).molar_density

@@ -45,22 +45,37 @@ def put(array, index, value):
         ),
         (lambda r: put(r.values, (slice(None), 1), r.values[:, 1] * 1000.0), "check the unit"),
         (lambda r: put(r.values, 5, 1e9), r"SO2 reaches 1e\+09 ppb"),
-        (lambda r: put(r.values, (5, 0), -9999999.0), r"SO2 reaches -1e\+07 ppb; at most 1e\+06 ppb of either sign can be"),
+        (
+            lambda r: put(r.values, (5, 0), -9999999.0),
+            r"SO2 reaches -1e\+07 ppb; at most 1e\+06 ppb of either sign can be",
+        ),
         (
             lambda r: Readings(1714560000.5 + np.repeat(r.time[::2], 2)[:100], r.values[:100]),
             "1714560000.5 s is followed by 1714560000.5 s",
         ),
-        (lambda r: put(r.time, 7, r.time[6]), "times do not increase: 6 s is followed by 6 s; sort the record"),
+        (
+            lambda r: put(r.time, 7, r.time[6]),
+            "times do not increase: 6 s is followed by 6 s; sort the record",
+        ),
         (lambda r: put(r.time, slice(None), r.time[::-1].copy()), "times do not increase"),
         (lambda r: put(r.time, 7, np.nan), "time of sample 7 is not a number"),
         (
             lambda r: put(r.time, slice(None), 1000.0 * r.time),
             r"samples are 1000 s apart \(median\); they must be 0.001 to 30 s apart: check that time is in seconds",
         ),
-        (lambda r: put(r.time, slice(None), r.time / 3600.0), r"samples are 0.000277778 s apart \(median\)"),
-        (lambda r: Readings(r.time[:5], r.values[:5]), "the record has 5 samples; it needs at least 8"),
+        (
+            lambda r: put(r.time, slice(None), r.time / 3600.0),
+            r"samples are 0.000277778 s apart \(median\)",
+        ),
+        (
+            lambda r: Readings(r.time[:5], r.values[:5]),
+            "the record has 5 samples; it needs at least 8",
+        ),
         (lambda r: Readings(r.time[:0], r.values[:0]), "the record has 0 samples"),
-        (lambda r: Readings(r.time, r.values[:, :2]), r"readings have shapes \(121,\) and \(121, 2\)"),
+        (
+            lambda r: Readings(r.time, r.values[:, :2]),
+            r"readings have shapes \(121,\) and \(121, 2\)",
+        ),
     ],
 )
 def test_records_that_cannot_be_are_refused_in_one_line(change, message):
@@ -102,11 +117,18 @@ def test_clean_air_in_whole_numbers_has_no_verdict(sigma):
 def test_the_noise_of_whole_numbers_is_that_before_rounding_and_of_rounding():
     generator, time = np.random.default_rng(1), np.arange(20_000.0)
     for sigma in (0.7, 1.0, 2.0):
-        readings = Readings(time, np.round(np.array([50.0, 420.0, 0.0, 0.0]) + sigma * generator.normal(size=(len(time), 4))))
+        readings = Readings(
+            time,
+            np.round(
+                np.array([50.0, 420.0, 0.0, 0.0]) + sigma * generator.normal(size=(len(time), 4))
+            ),
+        )
         spec = sensor_preset("unspecified")
         # Rounding to 1 adds a variance of 1/12. What is rounded is less normal the coarser it is: 7 % at 0.7.
         expected = math.hypot(sigma, 1.0 / math.sqrt(12.0))
-        assert readings_noise(checked_record(readings, spec), spec)["co2"] == pytest.approx(expected, rel=0.1)
+        assert readings_noise(checked_record(readings, spec), spec)["co2"] == pytest.approx(
+            expected, rel=0.1
+        )
 
 
 def test_a_single_pass_that_the_record_cuts_off_is_reported_as_that():
@@ -114,38 +136,55 @@ def test_a_single_pass_that_the_record_cuts_off_is_reported_as_that():
     readings = read(spec, crossings(0.25, duration=100.0, interval=200.0, first=80.0, meander=0.0))
     found = estimate(readings, spec, method="areas")
     assert found.figures.passes == 1
-    assert "the record ends before an SO2 channel with a t90 of 20 s has read the pass" in " ".join(found.quality_reasons)
+    assert "the record ends before an SO2 channel with a t90 of 20 s has read the pass" in " ".join(
+        found.quality_reasons
+    )
     assert "nan" not in " ".join(found.quality_reasons)
 
 
 def test_a_gas_with_next_to_no_readings_is_named_as_what_to_leave_out():
     readings, spec = flight("electrochemical", 0.25, 1)
     readings.values[3:, 3] = math.nan
-    assert outcome(readings, spec).endswith("give a record with fewer gaps, or leave out the column of NO2, which has fewest")
+    assert outcome(readings, spec).endswith(
+        "give a record with fewer gaps, or leave out the column of NO2, which has fewest"
+    )
 
 
 def test_a_plume_below_the_detection_limit_is_none():
     spec = sensor_preset("electrochemical")
-    assert_no_verdict(estimate(read(spec, crossings(0.25, peak=4.0)), spec), "no pass through a plume")
+    assert_no_verdict(
+        estimate(read(spec, crossings(0.25, peak=4.0)), spec), "no pass through a plume"
+    )
 
 
 def test_a_record_shorter_than_a_crossing_and_its_response_has_no_verdict():
     readings, spec = flight("electrochemical", 0.5, 1)
     short = Readings(readings.time[8:24], readings.values[8:24])
-    assert_no_verdict(estimate(short, spec), "the record lasts 15 s; a pass and the response of SO2 take")
+    assert_no_verdict(
+        estimate(short, spec), "the record lasts 15 s; a pass and the response of SO2 take"
+    )
 
 
 @pytest.mark.parametrize(
     ("change", "reason"),
     [
-        (lambda r: put(r.values, (slice(40, 60), 0), 20000.0), "SO2 is saturated at 20000 ppb in 6.6 % of the readings"),
-        (lambda r: put(r.values, 50, [-400.0, 420.0, 0.0, 0.0]), "SO2 reads -400 ppb, which its noise and zero do not explain"),
+        (
+            lambda r: put(r.values, (slice(40, 60), 0), 20000.0),
+            "SO2 is saturated at 20000 ppb in 6.6 % of the readings",
+        ),
+        (
+            lambda r: put(r.values, 50, [-400.0, 420.0, 0.0, 0.0]),
+            "SO2 reads -400 ppb, which its noise and zero do not explain",
+        ),
         (lambda r: put(r.values, (50, 1), -3.0), "CO2 reads -3 ppm"),
         (
             lambda r: put(r.values, (slice(50, 70), 1), 2.0 + 0.1 * np.arange(20)),
             "CO2 reads 2 ppm, which its noise and zero do not explain (from 208 ppm)",
         ),
-        (lambda r: put(r.values, (slice(50, 90), 2), np.nan), "13 % of NO is missing; at most 10 % may be"),
+        (
+            lambda r: put(r.values, (slice(50, 90), 2), np.nan),
+            "13 % of NO is missing; at most 10 % may be",
+        ),
     ],
 )
 def test_readings_that_a_sensor_cannot_have_leave_no_verdict(change, reason):
@@ -153,16 +192,22 @@ def test_readings_that_a_sensor_cannot_have_leave_no_verdict(change, reason):
     assert_no_verdict(estimate(with_change(readings, change), spec), reason)
 
 
-@pytest.mark.parametrize(("name", "noise"), [("electrochemical", "its noise is 2.5 ppb"), ("unspecified", "is about 1 ppb")])
+@pytest.mark.parametrize(
+    ("name", "noise"),
+    [("electrochemical", "its noise is 2.5 ppb"), ("unspecified", "is about 1 ppb")],
+)
 @pytest.mark.parametrize("fsc", [0.001, 0.25])
 def test_so2_in_ppm_has_no_verdict(name, noise, fsc):
     readings, _ = flight("electrochemical", fsc, 1)
     # As in a log: rounded to a tenth of a ppb.
-    in_ppm = with_change(readings, lambda r: put(r.values, (slice(None), 0), r.values[:, 0].round(1) / 1000.0))
+    in_ppm = with_change(
+        readings, lambda r: put(r.values, (slice(None), 0), r.values[:, 0].round(1) / 1000.0)
+    )
     found = estimate(in_ppm, sensor_preset(name))
     assert_no_verdict(found, noise)
-    assert "it is in another unit (of ppm, give a [scale] of so2 = 1000.0), or its sensor is dead" in " ".join(
-        found.quality_reasons
+    assert (
+        "it is in another unit (of ppm, give a [scale] of so2 = 1000.0), or its sensor is dead"
+        in " ".join(found.quality_reasons)
     )
 
 
@@ -178,7 +223,9 @@ def test_an_so2_sensor_that_is_dead_has_no_verdict(name):
 def test_a_clean_ship_with_ordinary_noise_is_no_dead_sensor(analyst, decimals):
     # The quietest preset has 0.3 ppb, which rounding to whole numbers does not hide.
     readings, spec = flight("laser" if analyst == "unspecified" else analyst, 0.001, 1)
-    rounded = with_change(readings, lambda r: put(r.values, (slice(None), 0), r.values[:, 0].round(decimals)))
+    rounded = with_change(
+        readings, lambda r: put(r.values, (slice(None), 0), r.values[:, 0].round(decimals))
+    )
     found = estimate(rounded, spec if analyst != "unspecified" else sensor_preset("unspecified"))
     assert "another unit" not in " ".join(found.quality_reasons)
     # Whole numbers misfit the 0.3 ppb that are stated of the laser, which is another matter.
@@ -195,14 +242,19 @@ def test_rounding_that_is_known_to_be_coarse_is_no_dead_sensor():
 def test_a_record_that_is_mostly_gap_has_no_verdict():
     readings, spec = flight("electrochemical", 0.5, 1)
     rows = (readings.time < 60.0) | (readings.time > 200.0)
-    assert_no_verdict(estimate(Readings(readings.time[rows], readings.values[rows]), spec), "gaps make up 47 % of the record")
+    assert_no_verdict(
+        estimate(Readings(readings.time[rows], readings.values[rows]), spec),
+        "gaps make up 47 % of the record",
+    )
 
 
 def test_a_gap_longer_than_the_pieces_of_the_background_leaves_no_verdict():
     # A knot of the background every 120 s: within a gap of 600 s some have no sample.
     readings, spec = flight("electrochemical", 0.5, 1)
     time = readings.time + np.where(readings.time < 150.0, 0.0, 600.0)
-    assert_no_verdict(estimate(Readings(time, readings.values), spec), "gaps make up 67 % of the record")
+    assert_no_verdict(
+        estimate(Readings(time, readings.values), spec), "gaps make up 67 % of the record"
+    )
 
 
 @pytest.mark.parametrize(
@@ -238,7 +290,9 @@ def test_random_records_give_an_estimate_or_a_line():
     for _ in range(40):
         length = int(generator.integers(0, 60))
         time = np.cumsum(generator.exponential(1.0, length))
-        values = generator.normal(0.0, 10.0 ** generator.uniform(-2, 4), (length, 4)) + np.array([0.0, 420.0, 0.0, 0.0])
+        values = generator.normal(0.0, 10.0 ** generator.uniform(-2, 4), (length, 4)) + np.array(
+            [0.0, 420.0, 0.0, 0.0]
+        )
         values[generator.random(values.shape) < 0.05] = np.nan
         found = outcome(Readings(time, values), spec)
         # Of noise nothing is known.

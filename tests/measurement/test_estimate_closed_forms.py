@@ -74,12 +74,17 @@ def test_other_gases_add_what_the_closed_form_says(method):
     actual = plain_sniffer(5.0, 5.0, cross={"no": 0.015, "no2": -0.16})
     readings = read(actual, crossings(0.25))
     found = estimate(readings, plain_sniffer(5.0, 5.0), method=method)
-    assert found.fsc_percent - 0.25 == pytest.approx(fsc_factor() * (0.015 * 20.7 - 0.16 * 2.3), abs=1e-6)
+    assert found.fsc_percent - 0.25 == pytest.approx(
+        fsc_factor() * (0.015 * 20.7 - 0.16 * 2.3), abs=1e-6
+    )
 
 
 def test_other_gases_are_corrected_where_they_are_measured():
     spec = plain_sniffer(20.0, 4.0, rate_hz=10.0, cross={"no": 0.015, "no2": -1.6})
-    no, no2 = (type(spec.known("so2"))(gas=gas, t90_s=t90, noise=0.0) for gas, t90 in (("no", 30.0), ("no2", 10.0)))
+    no, no2 = (
+        type(spec.known("so2"))(gas=gas, t90_s=t90, noise=0.0)
+        for gas, t90 in (("no", 30.0), ("no2", 10.0))
+    )
     spec = type(spec)(name="x", title="x", rate_hz=10.0, channels=(*spec.channels, no, no2))
     found = estimate(read(spec, crossings(0.25)), spec)
     # Sampling of the CO2 channel at 10 Hz: (step/tau)^2/12 = 3e-4.
@@ -92,7 +97,9 @@ def slopes_of_one_pass(actual, *believed):
     puff[500] = 3000.0
     readings = read(actual, puff[:, np.newaxis] * np.array([0.25 / fsc_factor(), 1.0, 0.0, 0.0]))
     values = {"so2": readings.values[:, 0], "co2": readings.values[:, 1]}
-    record = Record(step=0.1, times=(readings.time,), values=(values,), resolution={}, scatter={}, problems=())
+    record = Record(
+        step=0.1, times=(readings.time,), values=(values,), resolution={}, scatter={}, problems=()
+    )
     nothing = np.zeros((len(readings), 1))
     return [fitted(replace(make_signals(record, spec), basis=nothing))[0] for spec in believed]
 
@@ -119,7 +126,9 @@ def test_areas_of_overlapping_passes_read_what_is_predicted():
     spec = plain_sniffer(20.0, 4.0)
     for seed in range(5):
         record = checked_record(read(spec, crossings(0.25, seed=seed)), spec)
-        found = area_ratio(record, spec, find_passes(record, changed(spec, "co2", noise=1.0).known("co2")))
+        found = area_ratio(
+            record, spec, find_passes(record, changed(spec, "co2", noise=1.0).known("co2"))
+        )
         assert found.share == pytest.approx(fsc_factor() * found.ratio / 0.25, rel=0.03)
         assert fsc_factor() * found.separate == pytest.approx(0.25, rel=0.03)
         assert 0.2 < found.share < 0.5
@@ -127,10 +136,14 @@ def test_areas_of_overlapping_passes_read_what_is_predicted():
 
 @pytest.mark.parametrize("preset", ["laser", "fast"])
 @pytest.mark.parametrize("duration", [60.0, 180.0])
-def test_areas_of_separate_passes_are_whole_wherever_between_two_samples_they_come(preset, duration):
+def test_areas_of_separate_passes_are_whole_wherever_between_two_samples_they_come(
+    preset, duration
+):
     spec = sensor_preset(preset)
     for phase in np.linspace(0.0, 1.0 / spec.rate_hz, 5):
-        air = crossings(0.2, duration=duration, step=0.02, interval=60.0, meander=0.0, first=30.0 + phase)
+        air = crossings(
+            0.2, duration=duration, step=0.02, interval=60.0, meander=0.0, first=30.0 + phase
+        )
         record = checked_record(read(spec, air, step=0.02), spec)
         found = area_ratio(record, spec, find_passes(record, spec.known("co2")))
         # 0.79 to 1.25, as long as what is read of a puff was taken at single moments.
@@ -141,7 +154,11 @@ def test_areas_of_separate_passes_are_whole_wherever_between_two_samples_they_co
 def test_areas_and_doses_do_not_depend_on_the_gains(interval):
     results = []
     for so2, co2 in ((1.0, 1.0), (1.3, 1.0), (0.8, 1.0), (1.0, 1.5)):
-        spec = changed(changed(plain_sniffer(20.0, 4.0, so2_noise=1.0, co2_noise=1.0), "so2", gain=so2), "co2", gain=co2)
+        spec = changed(
+            changed(plain_sniffer(20.0, 4.0, so2_noise=1.0, co2_noise=1.0), "so2", gain=so2),
+            "co2",
+            gain=co2,
+        )
         # A reading's noise is that of its sensor, and counts for less where the gain is larger.
         found = estimate(read(spec, crossings(0.25, interval=interval)), spec, method="areas")
         results.append((found.fsc_percent, found.overlap_percent, found.figures.dose_ppm_s))
@@ -164,7 +181,9 @@ def test_the_overlap_is_what_areas_would_read_more_of_separate_passes():
         record = checked_record(readings, spec)
         areas = area_ratio(record, spec, find_passes(record, spec.known("co2")))
         found = estimate(readings, spec, method="areas")
-        assert found.fsc_percent + found.overlap_percent == pytest.approx(fsc_factor() * areas.separate, rel=1e-6)
+        assert found.fsc_percent + found.overlap_percent == pytest.approx(
+            fsc_factor() * areas.separate, rel=1e-6
+        )
         # SO2 answers more slowly than CO2, and overlaps more.
         assert 0.0 < found.overlap_percent < 0.01 * found.fsc_percent
 
@@ -172,7 +191,9 @@ def test_the_overlap_is_what_areas_would_read_more_of_separate_passes():
 def test_areas_of_separate_passes_are_unbiased():
     # 2.8 t90 between passes for -1 % (section 0, item 3).
     spec = plain_sniffer(20.0, 4.0)
-    found = estimate(read(spec, crossings(0.25, interval=75.0, duration=450.0)), spec, method="areas")
+    found = estimate(
+        read(spec, crossings(0.25, interval=75.0, duration=450.0)), spec, method="areas"
+    )
     assert found.fsc_percent == pytest.approx(0.25, rel=0.015)
     assert found.quality != "C"
     crossed = estimate(read(spec, crossings(0.25)), spec, method="areas")
@@ -185,7 +206,9 @@ def test_areas_of_separate_passes_are_unbiased():
 def test_gaps_in_a_plume_leave_a_delayed_channel_nothing_that_was_not_read(delay, estimated):
     # Gaps of 4 s beside the passes, once a minute: a delay of 10 s gave 0.39 % of 0.25, with a standard uncertainty of 0.02.
     spec = plain_sniffer(5.0, 3.0, so2_noise=0.5, co2_noise=0.5, delay_s=delay)
-    readings = read(spec, crossings(0.25, duration=450.0, interval=30.0, meander=0.0, width=2.0), seed=1)
+    readings = read(
+        spec, crossings(0.25, duration=450.0, interval=30.0, meander=0.0, width=2.0), seed=1
+    )
     kept = ~((readings.time % 60.0 > 40.0) & (readings.time % 60.0 < 45.0))
     if estimated:
         spec = changed(spec, "so2", t90_sd=math.inf, delay_sd_s=math.inf)
@@ -196,7 +219,9 @@ def test_gaps_in_a_plume_leave_a_delayed_channel_nothing_that_was_not_read(delay
 
 def test_a_record_that_begins_in_a_pass_is_read_from_when_all_channels_read_it():
     spec = plain_sniffer(15.0, 3.0, so2_noise=1.0, co2_noise=0.5, delay_s=10.0)
-    readings = read(spec, crossings(0.25, duration=200.0, interval=30.0, meander=0.0, width=2.0), seed=1)
+    readings = read(
+        spec, crossings(0.25, duration=200.0, interval=30.0, meander=0.0, width=2.0), seed=1
+    )
     # From the top of a pass on, which comes to the SO2 ten seconds later: 0.203 % in place of 0.25.
     found = estimate(Readings(readings.time[13:], readings.values[13:]), spec)
     assert found.fsc_percent == pytest.approx(0.25, rel=0.02)
@@ -209,7 +234,10 @@ def test_an_uneven_record_is_the_same_wherever_its_times_begin():
     # A row each second, of which a fifth is half a second late. Since 1970 they passed for even ones.
     rows = 10 * np.arange(300)
     rows[1:-1] += 5 * (np.random.default_rng(3).random(298) < 0.2)
-    found, other = (estimate(Readings(readings.time[rows] + origin, readings.values[rows]), spec) for origin in (0.0, 1.78e9))
+    found, other = (
+        estimate(Readings(readings.time[rows] + origin, readings.values[rows]), spec)
+        for origin in (0.0, 1.78e9)
+    )
     assert other.fsc_percent == pytest.approx(found.fsc_percent, rel=1e-5)
     assert other.misfit == pytest.approx(found.misfit, rel=1e-3)
     assert found.misfit < 1.5

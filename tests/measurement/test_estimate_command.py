@@ -20,13 +20,18 @@ BRIEFLY = pytest.mark.usefixtures("briefly")
 def test_a_flight_is_estimated_printed_and_written(logged, capsys):
     assert run(logged) == 0
     printed = capsys.readouterr().out
-    assert re.search(r"fuel sulphur content 0\.\d{3} % m/m, 95 % interval 0\.\d{3} to 0\.\d{3} %\n", printed)
+    assert re.search(
+        r"fuel sulphur content 0\.\d{3} % m/m, 95 % interval 0\.\d{3} to 0\.\d{3} %\n", printed
+    )
     assert "standard uncertainty (1 sigma) 0." in printed
     assert "+-" not in printed
     assert "above the limit of 0.10 %; probability above it: more than 99.9 %" in printed
     assert "below the limit of 0.50 %" in printed
     out = logged.parent / "out"
-    manifest, record = (json.loads((out / name).read_text(encoding="utf-8")) for name in ("manifest.json", "estimate.json"))
+    manifest, record = (
+        json.loads((out / name).read_text(encoding="utf-8"))
+        for name in ("manifest.json", "estimate.json")
+    )
     assert manifest["study"] == "measurement"
     found = record["estimate"]
     assert found["low_percent"] < 0.3 < found["high_percent"]
@@ -35,8 +40,20 @@ def test_a_flight_is_estimated_printed_and_written(logged, capsys):
     assert record["other"]["method"] == "areas"
     samples = pd.read_csv(out / "samples.csv")
     assert len(samples) == 301
-    assert {"co2_excess_ppm", "so2_excess_ppb", "fit_ppb", "residual_ppb", "north_m", "height_m", "so2_true_ppb"} <= set(samples)
-    assert sorted(path.name for path in out.iterdir()) == ["estimate.json", "manifest.json", "samples.csv"]
+    assert {
+        "co2_excess_ppm",
+        "so2_excess_ppb",
+        "fit_ppb",
+        "residual_ppb",
+        "north_m",
+        "height_m",
+        "so2_true_ppb",
+    } <= set(samples)
+    assert sorted(path.name for path in out.iterdir()) == [
+        "estimate.json",
+        "manifest.json",
+        "samples.csv",
+    ]
 
 
 @BRIEFLY
@@ -44,7 +61,19 @@ def test_readings_that_no_channel_uses_are_said(logged, capsys):
     own = "[instrument.channels.so2]\ncross = { no = 0.015, no2 = -0.16 }\n[instrument.channels.co2]\n[instrument.channels.no2]\n"
     config = logged.parent / "own.toml"
     config.write_text(own, encoding="utf-8")
-    assert main([str(logged), "--config", str(config), "--out", str(logged.parent / "out"), "--no-report"]) == 0
+    assert (
+        main(
+            [
+                str(logged),
+                "--config",
+                str(config),
+                "--out",
+                str(logged.parent / "out"),
+                "--no-report",
+            ]
+        )
+        == 0
+    )
     printed = capsys.readouterr().out
     assert "NO is not used to correct SO2" in printed
     assert "add a table channels.no\n" in printed
@@ -74,9 +103,25 @@ def test_columns_units_and_places_are_mapped(logged, capsys):
         encoding="utf-8",
     )
     assert run(logged) == 0
-    expected = json.loads((logged.parent / "out" / "estimate.json").read_text(encoding="utf-8"))["estimate"]
-    assert main([str(other), "--config", str(config), "--out", str(logged.parent / "mapped"), "--no-report"]) == 0
-    found = json.loads((logged.parent / "mapped" / "estimate.json").read_text(encoding="utf-8"))["estimate"]
+    expected = json.loads((logged.parent / "out" / "estimate.json").read_text(encoding="utf-8"))[
+        "estimate"
+    ]
+    assert (
+        main(
+            [
+                str(other),
+                "--config",
+                str(config),
+                "--out",
+                str(logged.parent / "mapped"),
+                "--no-report",
+            ]
+        )
+        == 0
+    )
+    found = json.loads((logged.parent / "mapped" / "estimate.json").read_text(encoding="utf-8"))[
+        "estimate"
+    ]
     assert found["fsc_percent"] == pytest.approx(expected["fsc_percent"], rel=1e-9)
     samples = pd.read_csv(logged.parent / "mapped" / "samples.csv")
     # A degree is kept to 1e-16 of itself and the file to six digits.
@@ -104,7 +149,9 @@ def test_rows_may_end_in_a_comma(logged):
     config = LogConfig()
     expected = read_flight(logged, config)
     lines = logged.read_text(encoding="utf-8").splitlines()
-    logged.write_text("\n".join([lines[0], *(f"{line}," for line in lines[1:])]) + "\n", encoding="utf-8")
+    logged.write_text(
+        "\n".join([lines[0], *(f"{line}," for line in lines[1:])]) + "\n", encoding="utf-8"
+    )
     found = read_flight(logged, config)
     np.testing.assert_array_equal(found.readings.time, expected.readings.time)
     np.testing.assert_array_equal(found.readings.values, expected.readings.values)
@@ -114,7 +161,8 @@ def test_a_compressed_log_is_read(logged):
     compressed = logged.with_name("flight.csv.gz")
     pd.read_csv(logged).to_csv(compressed, index=False)
     np.testing.assert_array_equal(
-        read_flight(compressed, LogConfig()).readings.values, read_flight(logged, LogConfig()).readings.values
+        read_flight(compressed, LogConfig()).readings.values,
+        read_flight(logged, LogConfig()).readings.values,
     )
 
 
@@ -145,25 +193,49 @@ def test_a_latitude_beyond_the_pole_is_refused_with_its_row(logged, capsys):
     [
         ("instrument = 'nose'", "instrument.toml': instrument is 'nose'; there are alphasense_a4"),
         ("instrument = 3", "instrument is 3; give the name of a preset"),
-        ("instrument = 'laserr'", "instrument is 'laserr'; did you mean 'laser'? there are alphasense_a4"),
-        ("limit_percent = 0.1", "has the key 'limit_percent'; did you mean 'limits_percent'? it may have carbon"),
+        (
+            "instrument = 'laserr'",
+            "instrument is 'laserr'; did you mean 'laser'? there are alphasense_a4",
+        ),
+        (
+            "limit_percent = 0.1",
+            "has the key 'limit_percent'; did you mean 'limits_percent'? it may have carbon",
+        ),
         ("zone = 1", "has the key 'zone'; it may have carbon"),
         ("carbon = 'much'", "carbon is 'much'"),
-        ("carbon = 87", "instrument.toml': carbon is 87; a fuel's mass share of carbon must be 0.5 to 0.95"),
-        ("limits_percent = [-1]", "instrument.toml': limits_percent is [-1]; give one or more numbers above 0, up to 10 % m/m"),
+        (
+            "carbon = 87",
+            "instrument.toml': carbon is 87; a fuel's mass share of carbon must be 0.5 to 0.95",
+        ),
+        (
+            "limits_percent = [-1]",
+            "instrument.toml': limits_percent is [-1]; give one or more numbers above 0, up to 10 % m/m",
+        ),
         ("limits_percent = []", "limits_percent is []"),
-        ("limits_percent = [0.5, 0.1, 0.1]", "limits_percent is [0.5, 0.1, 0.1]; give each limit once"),
+        (
+            "limits_percent = [0.5, 0.1, 0.1]",
+            "limits_percent is [0.5, 0.1, 0.1]; give each limit once",
+        ),
         (
             "[instrument.channels.so2]\ngain = 0.03",
             "instrument.toml': channel 'so2' of instrument 'instrument': gain of so2 is 0.03",
         ),
-        ("[instrument.channels.so2]\nt90_s = -3", "instrument.toml': channel 'so2' of instrument 'instrument': t90 is -3 s"),
-        ("[instrument.channels.so2]\nt90 = 3", "has the key 't90'; did you mean 't90_s'? it may have"),
+        (
+            "[instrument.channels.so2]\nt90_s = -3",
+            "instrument.toml': channel 'so2' of instrument 'instrument': t90 is -3 s",
+        ),
+        (
+            "[instrument.channels.so2]\nt90 = 3",
+            "has the key 't90'; did you mean 't90_s'? it may have",
+        ),
         ("method = 'magic'", "method is 'magic'"),
         ("limits_percent = 0.1", "limits_percent is 0.1; give a list"),
         ("[columns]\nso3 = 'x'", "[columns] has the key 'so3'"),
         ("[columns]\nso2 = 3", "columns.so2 is 3; give a name"),
-        ("[columns]\nso2 = 'co2_ppm'", "[columns] has the column 'co2_ppm' for so2 and for co2; name another one for either"),
+        (
+            "[columns]\nso2 = 'co2_ppm'",
+            "[columns] has the column 'co2_ppm' for so2 and for co2; name another one for either",
+        ),
         ("[columns]\nso2 = 'SO2'", "has no SO2 column 'SO2', but 'time_s', 'so2_ppb'"),
         ("[columns]\ntime = 'when'", "has no time column 'when'"),
         ("[columns]\nno = 'NOx'", "has no NO column 'NOx'"),
@@ -190,21 +262,48 @@ def test_configurations_with_mistakes_are_refused_in_one_line(logged, capsys, co
         ("", "is empty; it needs a head line and a row per reading"),
         ("time_s,so2_ppb\n1,2\n", "has no CO2 column 'co2_ppm', but 'time_s', 'so2_ppb'"),
         ("time_s,so2_ppb,co2_ppm\n", "has a head line and 0 readings; it needs a row per reading"),
-        ("time_s,so2_ppb,so2_ppb ,co2_ppm\n1,2,2,420\n", "has the column 'so2_ppb' twice; rename or remove one of them"),
+        (
+            "time_s,so2_ppb,so2_ppb ,co2_ppm\n1,2,2,420\n",
+            "has the column 'so2_ppb' twice; rename or remove one of them",
+        ),
         ("time_s,so2_ppb,co2_ppm\n1,2,420\n2,inf,420\n", "column 'so2_ppb' is infinite in row 3"),
-        ("time_s,so2_ppb,co2_ppm\n1,two,420\n", "column 'so2_ppb' has 'two' in row 2; it must hold numbers"),
+        (
+            "time_s,so2_ppb,co2_ppm\n1,two,420\n",
+            "column 'so2_ppb' has 'two' in row 2; it must hold numbers",
+        ),
         ("time_s,so2_ppb,co2_ppm\nsoon,2,420\n", "time 'soon' in column 'time_s' cannot be read"),
-        ("time_s,so2_ppb,co2_ppm\n1,2,420\n", "flight.csv': the record has 1 samples; it needs at least 8"),
-        ("time_s,so2_ppb,co2_ppm\n" + "".join(f"{t},2,4\n" for t in range(99)), "CO2 has a median of 4 ppm"),
-        ("time_s,so2_ppb,co2_ppm\n" + "".join(f"{t},2,420,7\n" for t in range(9)), "more values than its head line has names"),
+        (
+            "time_s,so2_ppb,co2_ppm\n1,2,420\n",
+            "flight.csv': the record has 1 samples; it needs at least 8",
+        ),
+        (
+            "time_s,so2_ppb,co2_ppm\n" + "".join(f"{t},2,4\n" for t in range(99)),
+            "CO2 has a median of 4 ppm",
+        ),
+        (
+            "time_s,so2_ppb,co2_ppm\n" + "".join(f"{t},2,420,7\n" for t in range(9)),
+            "more values than its head line has names",
+        ),
         (
             "time_s,so2_ppb,co2_ppm\n" + "".join(f"{t},2,420\n" for t in (1, 2, 48, 39, 50)),
             "flight.csv': times do not increase: 48 s in row 4 is followed by 39 s; sort the rows by time and drop repeats",
         ),
-        ("time_s;so2_ppb;co2_ppm\n1.0;2.0;420.0\n", "is separated by semicolons; separate its columns by commas, and write"),
-        ("time_s;so2_ppb;co2_ppm\n1,0;2,0;420,0\n", "is separated by semicolons; separate its columns by commas, and write"),
-        ("time_s\tso2_ppb\tco2_ppm\n1\t2\t420\n", "is separated by tabs; separate its columns by commas"),
-        ('time_s,so2_ppb,co2_ppm\n1,"2,5",420\n', "column 'so2_ppb' has '2,5' in row 2; it must hold numbers"),
+        (
+            "time_s;so2_ppb;co2_ppm\n1.0;2.0;420.0\n",
+            "is separated by semicolons; separate its columns by commas, and write",
+        ),
+        (
+            "time_s;so2_ppb;co2_ppm\n1,0;2,0;420,0\n",
+            "is separated by semicolons; separate its columns by commas, and write",
+        ),
+        (
+            "time_s\tso2_ppb\tco2_ppm\n1\t2\t420\n",
+            "is separated by tabs; separate its columns by commas",
+        ),
+        (
+            'time_s,so2_ppb,co2_ppm\n1,"2,5",420\n',
+            "column 'so2_ppb' has '2,5' in row 2; it must hold numbers",
+        ),
         ("\x00\x01\x02", "error: "),
     ],
 )
@@ -221,7 +320,10 @@ def test_files_with_mistakes_are_refused_in_one_line(logged, capsys, content, me
 def test_a_file_in_utf_16_is_to_be_saved_in_utf_8(logged, capsys):
     logged.write_text("time_s,so2_ppb,co2_ppm\n1,2,420\n", encoding="utf-16")
     assert run(logged) == 2
-    assert capsys.readouterr().err == f"error: '{logged}' is not text in UTF-8; save it as CSV in UTF-8\n"
+    assert (
+        capsys.readouterr().err
+        == f"error: '{logged}' is not text in UTF-8; save it as CSV in UTF-8\n"
+    )
 
 
 def test_co2_without_its_background_is_reported_as_that(logged, capsys):
@@ -230,7 +332,9 @@ def test_co2_without_its_background_is_reported_as_that(logged, capsys):
     table.to_csv(logged, index=False)
     assert table["co2_ppm"].min() < 0.0
     assert run(logged) == 2
-    assert "air has 250 to 50000 ppm: check the unit; keep the background" in capsys.readouterr().err
+    assert (
+        "air has 250 to 50000 ppm: check the unit; keep the background" in capsys.readouterr().err
+    )
 
 
 def with_value(logged, column, row, value):
@@ -243,7 +347,11 @@ MISSING = pytest.mark.parametrize(
     ("column", "value", "told"),
     [
         ("so2_ppb", -9999.0, "SO2 is -9999 ppb in row 102; noise, zero and other gases explain -"),
-        ("co2_ppm", -999.0, "CO2 is -999 ppm in row 102; air, noise, zero and other gases explain 2"),
+        (
+            "co2_ppm",
+            -999.0,
+            "CO2 is -999 ppm in row 102; air, noise, zero and other gases explain 2",
+        ),
         ("no_ppb", -9999.0, "NO is -9999 ppb in row 102"),
     ],
 )
@@ -264,12 +372,16 @@ def test_a_code_for_a_missing_reading_is_refused(logged, capsys, column, value, 
 @MISSING
 def test_a_code_for_a_missing_reading_that_is_named_is_an_empty_cell(logged, column, value, told):
     with_value(logged, column, 100, value)
-    (logged.parent / "instrument.toml").write_text(f'instrument = "electrochemical"\nmissing = [{value}]\n', encoding="utf-8")
+    (logged.parent / "instrument.toml").write_text(
+        f'instrument = "electrochemical"\nmissing = [{value}]\n', encoding="utf-8"
+    )
     assert run(logged) == 0
     named = json.loads((logged.parent / "out" / "estimate.json").read_text(encoding="utf-8"))
     with_value(logged, column, 100, np.nan)
     assert run(logged) == 0
-    assert json.loads((logged.parent / "out" / "estimate.json").read_text(encoding="utf-8")) == named
+    assert (
+        json.loads((logged.parent / "out" / "estimate.json").read_text(encoding="utf-8")) == named
+    )
     assert named["estimate"]["quality"] != "C"
 
 
@@ -285,9 +397,17 @@ def test_readings_of_the_wrong_sign_that_no_noise_explains_are_refused(logged, c
 def test_an_unfiltered_cell_may_read_below_zero_for_no2_that_is_not_measured(logged):
     # 1.6 of NO2: far below the noise, and what such a cell truly reads in a plume.
     readings, _ = flight("alphasense_b4", 0.1, 4)
-    table = pd.DataFrame({"time_s": readings.time, "so2_ppb": readings.values[:, 0], "co2_ppm": readings.values[:, 1]})
+    table = pd.DataFrame(
+        {
+            "time_s": readings.time,
+            "so2_ppb": readings.values[:, 0],
+            "co2_ppm": readings.values[:, 1],
+        }
+    )
     table.to_csv(logged, index=False)
-    (logged.parent / "instrument.toml").write_text('instrument = "alphasense_b4"\n', encoding="utf-8")
+    (logged.parent / "instrument.toml").write_text(
+        'instrument = "alphasense_b4"\n', encoding="utf-8"
+    )
     assert table["so2_ppb"].min() < -50.0
     assert run(logged) == 0
 
@@ -296,5 +416,7 @@ def test_files_that_are_not_there_are_refused(tmp_path, capsys):
     assert main([str(tmp_path / "none.csv"), "--no-report"]) == 2
     assert "cannot be read" in capsys.readouterr().err
     (tmp_path / "a.csv").write_text("time_s,so2_ppb,co2_ppm\n", encoding="utf-8")
-    assert main([str(tmp_path / "a.csv"), "--config", str(tmp_path / "none.toml"), "--no-report"]) == 2
+    assert (
+        main([str(tmp_path / "a.csv"), "--config", str(tmp_path / "none.toml"), "--no-report"]) == 2
+    )
     assert "give a TOML file" in capsys.readouterr().err

@@ -30,8 +30,13 @@ def with_no(delay, **so2):
 
 def test_where_the_background_explains_all_that_is_known_there_is_no_result():
     # Of parts of 32 s a channel that is 32 s late leaves less than the background takes up: 0 % was found, "below", quality A.
-    spec = sniffer_of(Channel(gas="so2", t90_s=4.0, noise=0.5), Channel(gas="co2", t90_s=3.0, noise=0.5, delay_s=32.0))
-    readings = read(spec, crossings(0.25, duration=600.0, interval=34.0, meander=0.0, width=2.0), seed=1)
+    spec = sniffer_of(
+        Channel(gas="so2", t90_s=4.0, noise=0.5),
+        Channel(gas="co2", t90_s=3.0, noise=0.5, delay_s=32.0),
+    )
+    readings = read(
+        spec, crossings(0.25, duration=600.0, interval=34.0, meander=0.0, width=2.0), seed=1
+    )
     found = estimate(parts(readings, 34.0, 31.5), spec)
     assert math.isnan(found.fsc_percent)
     assert found.quality == "C"
@@ -40,7 +45,11 @@ def test_where_the_background_explains_all_that_is_known_there_is_no_result():
 @pytest.mark.parametrize("delay", [3.0, 9.0, 15.0])
 def test_a_beginning_that_is_shorter_than_the_delay_has_an_estimate_or_none(delay):
     spec = plain_sniffer(3.0, 2.0, so2_noise=1.0, co2_noise=0.5, delay_s=delay)
-    readings = read(spec, crossings(0.25, duration=60.0, interval=12.0, meander=0.3, width=1.0, first=4.0), seed=2)
+    readings = read(
+        spec,
+        crossings(0.25, duration=60.0, interval=12.0, meander=0.3, width=1.0, first=4.0),
+        seed=2,
+    )
     unknown = changed(spec, "so2", t90_sd=math.inf, delay_sd_s=math.inf)
     assert len(over_time(readings, unknown, elapsed_s=(8, 9, 10, 11, 12, 14, 16, 20, 30))) == 9
 
@@ -77,17 +86,30 @@ def test_of_passes_that_not_all_channels_read_the_others_are_compared():
     # Of a clean fuel nothing arrives: half of the CO2 must be older than any delay.
     (0.0, 3.0, ["open", "open", "open", "below"]),
 ])  # fmt: skip
-def test_without_a_stated_delay_no_fuel_is_below_a_limit_before_its_so2_can_have_arrived(fsc, delay, verdicts):
+def test_without_a_stated_delay_no_fuel_is_below_a_limit_before_its_so2_can_have_arrived(
+    fsc, delay, verdicts
+):
     spec = plain_sniffer(3.0, 2.0, so2_noise=1.0, co2_noise=0.5, delay_s=delay)
-    readings = read(spec, crossings(fsc, duration=90.0, interval=12.0, meander=0.3, width=1.0, first=4.0), seed=0)
+    readings = read(
+        spec,
+        crossings(fsc, duration=90.0, interval=12.0, meander=0.3, width=1.0, first=4.0),
+        seed=0,
+    )
     unknown = changed(spec, "so2", t90_sd=math.inf, delay_sd_s=math.inf)
-    assert over_time(readings, unknown, elapsed_s=(15, 20, 25, 90))["verdict_0.1"].tolist() == verdicts
+    assert (
+        over_time(readings, unknown, elapsed_s=(15, 20, 25, 90))["verdict_0.1"].tolist() == verdicts
+    )
 
 
 def test_so2_that_may_still_come_is_named_with_what_to_do():
     spec = plain_sniffer(3.0, 2.0, so2_noise=1.0, co2_noise=0.5, delay_s=25.0)
     unknown = changed(spec, "so2", t90_sd=math.inf, delay_sd_s=math.inf)
-    found = estimate(read(spec, crossings(0.25, duration=20.0, interval=12.0, meander=0.3, width=1.0, first=4.0)), unknown)
+    found = estimate(
+        read(
+            spec, crossings(0.25, duration=20.0, interval=12.0, meander=0.3, width=1.0, first=4.0)
+        ),
+        unknown,
+    )
     assert found.quality_reasons == (
         "SO2 does not stand out, and may still come: its delay is not stated, and may be up to 30 s; state it, or record longer"
         " after the passes",

@@ -30,7 +30,8 @@ def later(readings, gas, seconds):
 
 
 @pytest.mark.parametrize(
-    ("preset", "fsc", "seconds"), [("electrochemical", 0.25, 3.0), ("electrochemical", 0.25, -3.0), ("fast", 0.1, 1.5)]
+    ("preset", "fsc", "seconds"),
+    [("electrochemical", 0.25, 3.0), ("electrochemical", 0.25, -3.0), ("fast", 0.1, 1.5)],
 )
 def test_columns_of_two_clocks_have_no_verdict(preset, fsc, seconds):
     # Near half of the 9.5 s between passes the slope is near 0, and a small step of the delay changes nothing: with the deviation
@@ -52,7 +53,9 @@ def test_a_clean_fuel_is_not_taken_for_one_of_another_clock(preset):
         assert "SO2 fits CO2 best" not in reasons(*flight(preset, 0.0, seed, duration=150.0))
 
 
-@pytest.mark.parametrize(("gas", "most", "name"), [(1, 480.0, "CO2 reads 480 ppm"), (0, 20.0, "SO2 reads 20 ppb")])
+@pytest.mark.parametrize(
+    ("gas", "most", "name"), [(1, 480.0, "CO2 reads 480 ppm"), (0, 20.0, "SO2 reads 20 ppb")]
+)
 def test_readings_that_are_cut_off_below_the_stated_range_have_no_verdict(gas, most, name):
     readings, spec = flight("electrochemical", 0.25, 1)
     values = readings.values.copy()
@@ -76,7 +79,9 @@ def test_whole_flights_rounded_to_any_step_are_not_cut_off(decimals):
     for seed in range(4):
         readings, spec = flight("electrochemical", 0.25, seed)
         for analyst in (spec, sensor_preset("unspecified")):
-            assert "cut off" not in reasons(Readings(readings.time, readings.values.round(decimals)), analyst)
+            assert "cut off" not in reasons(
+                Readings(readings.time, readings.values.round(decimals)), analyst
+            )
 
 
 @pytest.mark.parametrize(("column", "gas"), [(2, "NO"), (3, "NO2")])
@@ -88,7 +93,9 @@ def test_no_and_no2_in_ppm_have_no_verdict(column, gas):
     assert f"{gas} scatters by" in told
     assert f"give a [scale] of {gas.lower()} = 1000.0" in told
     # A sniffer that is known to respond to neither needs neither.
-    deaf = spec.with_channel(read_spec({"channels": {"so2": {"t90_s": 20.0, "cross": {}}}}, "deaf").known("so2"))
+    deaf = spec.with_channel(
+        read_spec({"channels": {"so2": {"t90_s": 20.0, "cross": {}}}}, "deaf").known("so2")
+    )
     assert "scatters" not in reasons(Readings(readings.time, values), deaf)
 
 
@@ -114,9 +121,15 @@ def test_the_same_air_by_channels_of_other_gains_is_judged_alike(preset, method)
     for gas in spec.gases:
         gain, channel = gains[gas], spec.known(gas)
         values[:, GASES.index(gas)] *= gain
-        fields = {name: gain * getattr(channel, name) for name in ("noise", "zero", "zero_sd", "random_walk", "resolution")}
+        fields = {
+            name: gain * getattr(channel, name)
+            for name in ("noise", "zero", "zero_sd", "random_walk", "resolution")
+        }
         other = changed(other, gas, gain=gain, range_high=gain * channel.range_high, **fields)
-    found, same = estimate(readings, spec, method=method), estimate(Readings(readings.time, values), other, method=method)
+    found, same = (
+        estimate(readings, spec, method=method),
+        estimate(Readings(readings.time, values), other, method=method),
+    )
     assert same.quality == found.quality
     assert same.quality_reasons == found.quality_reasons
     for name in ("fsc_percent", "total_percent", "overlap_percent"):
@@ -158,8 +171,13 @@ def test_the_stated_noise_of_areas_includes_the_drift_of_the_zero():
     spec = plain_sniffer(so2_noise=1.0, co2_noise=1.0, random_walk=0.5)
     air = crossings(0.25, duration=480.0, step=1.0, width=1.5, interval=150.0)
     passes = find_passes(checked_record(read(spec, air, step=1.0), spec), spec.known("co2"))
-    found = [area_ratio(checked_record(read(spec, air, seed=seed, step=1.0), spec), spec, passes) for seed in range(200)]
-    assert np.std([one.ratio for one in found]) == pytest.approx(math.sqrt(np.mean([one.noise**2 for one in found])), rel=0.1)
+    found = [
+        area_ratio(checked_record(read(spec, air, seed=seed, step=1.0), spec), spec, passes)
+        for seed in range(200)
+    ]
+    assert np.std([one.ratio for one in found]) == pytest.approx(
+        math.sqrt(np.mean([one.noise**2 for one in found])), rel=0.1
+    )
 
 
 @pytest.mark.parametrize("each", [3, 5, 7])
@@ -174,9 +192,13 @@ def test_a_log_with_rows_missing_here_and_there_has_no_dead_sensor(each):
 
 def test_noise_is_shown_by_readings_and_not_by_what_is_interpolated():
     generator = np.random.default_rng(0)
-    values = np.array([50.0, 420.0, 100.0, 20.0]) + np.array([2.5, 1.0, 7.0, 7.0]) * generator.normal(size=(20_000, 4))
+    values = np.array([50.0, 420.0, 100.0, 20.0]) + np.array(
+        [2.5, 1.0, 7.0, 7.0]
+    ) * generator.normal(size=(20_000, 4))
     rows = generator.uniform(size=len(values)) > 0.15
-    scatter = checked_record(Readings(np.flatnonzero(rows).astype(float), values[rows]), sensor_preset("unspecified")).scatter
+    scatter = checked_record(
+        Readings(np.flatnonzero(rows).astype(float), values[rows]), sensor_preset("unspecified")
+    ).scatter
     # A tenth of 12,000 second differences, neighbours of which share readings: good to 4 % (1 sigma).
     assert scatter == pytest.approx({"so2": 2.5, "co2": 1.0, "no": 7.0, "no2": 7.0}, rel=0.1)
 
@@ -192,7 +214,9 @@ def test_co2_in_steps_larger_than_its_noise_has_no_lower_content():
     # Rounding to 20 ppm is noise of 5.8 ppm; taken for the 1 ppm that are stated it lowered the content by 5 % in the mean of six.
     spec, found = plain_sniffer(so2_noise=2.5, co2_noise=1.0), []
     for seed in range(6):
-        estimated = estimate(in_steps(read(spec, crossings(0.25, seed=seed), seed=seed), 1, 20.0), spec)
+        estimated = estimate(
+            in_steps(read(spec, crossings(0.25, seed=seed), seed=seed), 1, 20.0), spec
+        )
         assert estimated.quality in "AB"
         assert estimated.figures.co2_snr < 20.0
         found.append(estimated.fsc_percent)
@@ -232,7 +256,9 @@ def test_a_spike_of_co2_has_no_verdict_also_where_so2_is_noisy(spike):
     assert reasons(readings, spec) == ""
     readings.values[70, 1] = spike
     assert f"CO2 falls from {spike:.1f} to" in reasons(readings, spec)
-    assert "in 1 s at 70 s, faster than a t90 of 4 s allows: leave spikes empty" in reasons(readings, spec)
+    assert "in 1 s at 70 s, faster than a t90 of 4 s allows: leave spikes empty" in reasons(
+        readings, spec
+    )
 
 
 @pytest.mark.parametrize("preset", ["electrochemical", "fast", "laser"])
@@ -242,7 +268,9 @@ def test_sensors_that_follow_a_plume_have_no_spikes(preset, analyst):
     readings, spec = flight(preset, 0.25, 3)
     uneven = np.random.default_rng(0).uniform(-0.3, 0.3, len(readings)) / spec.rate_hz
     for time in (readings.time, readings.time + uneven):
-        found = reasons(Readings(time, readings.values), spec if analyst == "itself" else sensor_preset(analyst))
+        found = reasons(
+            Readings(time, readings.values), spec if analyst == "itself" else sensor_preset(analyst)
+        )
         assert "falls" not in found
 
 
@@ -254,4 +282,7 @@ def test_passes_that_are_read_too_seldom_have_no_verdict():
     found = estimate(seldom, spec)
     assert found.quality == "C"
     told = "; ".join(found.quality_reasons)
-    assert "a pass lasts 8 s (median) in the readings of CO2, and there is one every 4 s; it must last 4 times as long" in told
+    assert (
+        "a pass lasts 8 s (median) in the readings of CO2, and there is one every 4 s; it must last 4 times as long"
+        in told
+    )

@@ -75,9 +75,10 @@ def test_a_logger_that_is_faster_than_the_sensors_is_no_stuck_sensor(analyst):
     assert STUCK not in told(Readings(time, held), sensor_preset(analyst))
     held[2000:, 0] = held[2000, 0]
     # Where no noise is stated, readings that are held show none either.
-    assert ("SO2 reads the same for 60 s from 40 s on" in told(Readings(time, held), sensor_preset(analyst))) == (
-        analyst == "electrochemical"
-    )
+    assert (
+        "SO2 reads the same for 60 s from 40 s on"
+        in told(Readings(time, held), sensor_preset(analyst))
+    ) == (analyst == "electrochemical")
 
 
 def late_plume(fsc):
@@ -106,7 +107,9 @@ def test_a_sensor_that_cuts_off_what_is_below_zero_is_none_that_sticks():
     assert STUCK not in told(Readings(readings.time, values), spec)
 
 
-@pytest.mark.parametrize("preset", ["electrochemical", "fast", "laser", "alphasense_a4", "alphasense_b4"])
+@pytest.mark.parametrize(
+    "preset", ["electrochemical", "fast", "laser", "alphasense_a4", "alphasense_b4"]
+)
 @pytest.mark.parametrize("fsc", [0.0, 0.25, 2.7])
 def test_flights_of_living_sensors_stick_in_no_step(preset, fsc):
     readings, spec = flight(preset, fsc, 3)

@@ -24,7 +24,10 @@ REPEATS = 200
 
 def repeated(spec, air, estimator):
     """Return slopes and stated deviations of the same flight with other noise."""
-    found = [estimator(checked_record(read(spec, air, seed=seed, step=1.0 / spec.rate_hz), spec)) for seed in range(REPEATS)]
+    found = [
+        estimator(checked_record(read(spec, air, seed=seed, step=1.0 / spec.rate_hz), spec))
+        for seed in range(REPEATS)
+    ]
     return np.array([slope for slope, _ in found]), np.array([noise for _, noise in found])
 
 
@@ -57,7 +60,11 @@ def test_the_stated_noise_of_the_regression_is_its_scatter(spec):
 
 def test_noise_in_co2_does_not_attenuate_the_slope():
     air = crossings(0.25, duration=120.0, step=1.0, width=1.5, peak=60.0)
-    clean = regress(make_signals(checked_record(read(plain_sniffer(), air, step=1.0), plain_sniffer()), plain_sniffer())).slope
+    clean = regress(
+        make_signals(
+            checked_record(read(plain_sniffer(), air, step=1.0), plain_sniffer()), plain_sniffer()
+        )
+    ).slope
     spec = plain_sniffer(co2_noise=4.0)
     slopes, _ = repeated(spec, air, lambda record: (regress(make_signals(record, spec)).slope, 0.0))
     signals = make_signals(checked_record(read(spec, air, step=1.0), spec), spec)
@@ -99,7 +106,9 @@ def test_regression_halves_the_noise_of_areas():
     # 0.3 to 0.65 of the areas' noise (section 4.3); passes 75 s apart, as areas need them.
     spec = plain_sniffer(so2_noise=2.5, co2_noise=1.0)
     readings = read(spec, crossings(0.1, interval=75.0, duration=450.0))
-    by_regression, by_areas = (estimate(readings, spec, method=method) for method in ("regression", "areas"))
+    by_regression, by_areas = (
+        estimate(readings, spec, method=method) for method in ("regression", "areas")
+    )
     assert 0.3 < by_regression.noise_percent / by_areas.noise_percent < 0.7
 
 
@@ -109,7 +118,9 @@ def test_noise_falls_with_the_root_of_passes_and_common_errors_do_not():
     long = estimate(readings, spec)
     assert long.noise_percent / short.noise_percent == pytest.approx(0.5, abs=0.12)
     for name in ("no2", "calibration"):
-        assert long.common_percent[name] == pytest.approx(short.common_percent[name], rel=0.35), name
+        assert long.common_percent[name] == pytest.approx(short.common_percent[name], rel=0.35), (
+            name
+        )
 
 
 @pytest.mark.parametrize(("preset", "largest"), [("electrochemical", 0.03), ("fast", 0.012)])
@@ -119,7 +130,9 @@ def test_stated_intervals_cover_and_are_as_narrow_as_asked(preset, largest):
     found = [estimate(readings, spec) for readings, spec in flights]
     assert sum(e.low_percent <= 0.1 <= e.high_percent for e in found) >= 34
     assert np.std([e.fsc_percent for e in found]) < largest
-    assert np.mean([e.fsc_percent for e in found]) == pytest.approx(0.1, abs=0.005 + 3.0 * largest / math.sqrt(40))
+    assert np.mean([e.fsc_percent for e in found]) == pytest.approx(
+        0.1, abs=0.005 + 3.0 * largest / math.sqrt(40)
+    )
     # A simulation that states less than 0.01 % of an electrochemical sniffer misses an error (section 4.7).
     assert preset != "electrochemical" or min(e.total_percent for e in found) > 0.01
 
@@ -143,9 +156,21 @@ def test_response_and_delay_are_found_without_bias_where_other_gases_correct_so2
     spec = sensor_preset("electrochemical")
     for gas in GASES:
         cross = dict.fromkeys(spec.known(gas).cross_sd, 0.0)
-        spec = changed(spec, gas, t90_sd=0.0, delay_sd_s=0.0, gain_sd=0.0, zero_sd=0.0, random_walk=0.0, cross_sd=cross)
+        spec = changed(
+            spec,
+            gas,
+            t90_sd=0.0,
+            delay_sd_s=0.0,
+            gain_sd=0.0,
+            zero_sd=0.0,
+            random_walk=0.0,
+            cross_sd=cross,
+        )
     unknown = changed(spec, "so2", t90_sd=math.inf, delay_sd_s=math.inf)
-    found = [estimate(read(spec, crossings(0.2, seed=seed + 9999), seed=seed), unknown) for seed in range(12)]
+    found = [
+        estimate(read(spec, crossings(0.2, seed=seed + 9999), seed=seed), unknown)
+        for seed in range(12)
+    ]
     assert np.mean([each.so2_t90_s for each in found]) == pytest.approx(20.0, abs=1.0)
     assert np.mean([each.delay_s for each in found]) == pytest.approx(0.0, abs=0.06)
     assert np.mean([each.fsc_percent for each in found]) == pytest.approx(0.2, abs=0.007)
@@ -157,13 +182,17 @@ def test_a_delay_before_co2_is_found_too():
     record = checked_record(read(actual, crossings(0.5)), unknown)
     assert align(record, unknown).delay_sd_s < 0.1
     fitted = align(record, unknown).instrument
-    assert fitted.known("so2").delay_s - fitted.known("co2").delay_s == pytest.approx(-2.5, abs=0.15)
+    assert fitted.known("so2").delay_s - fitted.known("co2").delay_s == pytest.approx(
+        -2.5, abs=0.15
+    )
 
 
 @pytest.mark.parametrize("late", [0.0, 0.5])
 def test_readings_that_are_far_apart_have_an_interval_that_holds_what_lies_between(late):
     # Every second, 4.6 time constants of CO2 apart: up to 7.7 % too much, on which averaging over passes has no effect.
-    exact = replace(plain_sniffer(5.0, 0.5, so2_noise=0.01, co2_noise=0.01, delay_s=late), rate_hz=1.0)
+    exact = replace(
+        plain_sniffer(5.0, 0.5, so2_noise=0.01, co2_noise=0.01, delay_s=late), rate_hz=1.0
+    )
     for seed in range(4):
         found = estimate(read(exact, crossings(0.2, step=0.05, seed=seed), step=0.05), exact)
         assert found.low_percent < 0.2 < found.high_percent
@@ -175,7 +204,9 @@ def test_gases_that_are_not_measured_widen_the_interval():
     blind = Readings(readings.time, np.where(np.arange(4) < 2, readings.values, np.nan))
     seen, unseen = estimate(readings, spec), estimate(blind, spec)
     # 0.015 of 18 +- 7.5 ppb/ppm, and 0.16 of 2 +- 1.2 with +-0.032: gases.EXPECTED_PPB_PER_PPM.
-    assert unseen.common_percent["no"] == pytest.approx(fsc_factor() * math.hypot(0.015 * 7.5, 0.0015 * 19.5), rel=0.01)
+    assert unseen.common_percent["no"] == pytest.approx(
+        fsc_factor() * math.hypot(0.015 * 7.5, 0.0015 * 19.5), rel=0.01
+    )
     assert unseen.common_percent["no2"] > seen.common_percent["no2"]
     assert unseen.low_percent < 0.5 < unseen.high_percent
 
@@ -193,14 +224,18 @@ def test_without_a_stated_response_nox_shows_only_how_much_of_it_there_is(emitte
     assert seen.fsc_percent == pytest.approx(unseen.fsc_percent, rel=1e-3)
     # The gain, response and noise of the NO cell are not those that are assumed: 20 %.
     assert seen.common_percent["no"] == pytest.approx(fsc_factor() * 0.02 * 20.7 * emitted, rel=0.2)
-    assert unseen.common_percent["no"] == pytest.approx(fsc_factor() * 0.02 * math.hypot(18.0, 7.5), rel=0.01)
+    assert unseen.common_percent["no"] == pytest.approx(
+        fsc_factor() * 0.02 * math.hypot(18.0, 7.5), rel=0.01
+    )
     assert (seen.total_percent > unseen.total_percent) == wider
 
 
 @pytest.mark.parametrize("seed", [0, 5, 7, 8])
 def test_a_response_that_is_not_given_is_not_taken_for_a_fast_one_where_so2_is_noisy(seed):
     # Noise of 25 ppb, as much as passes raise SO2; a t90 of 0 would smooth it most, and read a quarter of the content.
-    readings = read(plain_sniffer(so2_noise=25.0, co2_noise=1.0), crossings(0.25, seed=seed), seed=seed)
+    readings = read(
+        plain_sniffer(so2_noise=25.0, co2_noise=1.0), crossings(0.25, seed=seed), seed=seed
+    )
     readings.values[:, 2:] = np.nan
     spec = read_spec({"channels": {"so2": {"cross": {}}, "co2": {}}}, "own")
     found = estimate(readings, spec)
@@ -218,6 +253,8 @@ def test_a_response_that_is_found_is_as_uncertain_as_that_of_co2_makes_it(co2_t9
         crossings(0.25, interval=30.0, width=2.0, meander=0.0),
     )
     stated = sensor_preset("unspecified")
-    found = estimate(readings, stated.with_channel(replace(stated.known("so2"), cross={}, cross_sd={})))
+    found = estimate(
+        readings, stated.with_channel(replace(stated.known("so2"), cross={}, cross_sd={}))
+    )
     assert abs(found.so2_t90_s - 20.0) < 2.0 * found.so2_t90_sd_s < 10.0
     assert abs(found.delay_s - 3.0) < 2.0 * found.delay_sd_s < 1.0

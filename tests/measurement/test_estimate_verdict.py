@@ -38,7 +38,9 @@ def test_fuels_at_the_limit_are_called_above_in_five_of_a_hundred_at_most():
     generator = np.random.default_rng(0)
     for deviation in (0.005, 0.03, 0.1, 0.5):
         found = 0.1 + deviation * generator.standard_normal(4000)
-        above = np.mean([judged(0.1, float(f), deviation, admitted=True).verdict == "above" for f in found])
+        above = np.mean(
+            [judged(0.1, float(f), deviation, admitted=True).verdict == "above" for f in found]
+        )
         # Of 4000 at 5 % the share is known to 0.35 %; three times that.
         assert above == pytest.approx(0.05, abs=0.011)
 
@@ -47,11 +49,15 @@ def test_fuels_at_the_limit_are_called_above_in_five_of_a_hundred_at_most():
 def test_interval_and_probability_are_those_of_one_sampled_distribution(fsc):
     # Contents that are not negative, of a reading with a standard uncertainty of 1: sampled by the inverse of a normal distribution
     # cut at 0, scipy's. 400,000 samples know a share of 5 % to 0.034 %; four times that.
-    content = truncnorm.rvs(-fsc, np.inf, loc=fsc, size=400_000, random_state=np.random.default_rng(1))
+    content = truncnorm.rvs(
+        -fsc, np.inf, loc=fsc, size=400_000, random_state=np.random.default_rng(1)
+    )
     low, high = interval(fsc, 1.0)
     assert np.mean((content >= low) & (content <= high)) == pytest.approx(0.95, abs=0.0014)
     for limit in (0.2, 1.0, high):
-        assert probability_above(limit, fsc, 1.0) == pytest.approx(np.mean(content > limit), abs=0.004)
+        assert probability_above(limit, fsc, 1.0) == pytest.approx(
+            np.mean(content > limit), abs=0.004
+        )
     # No other interval that holds 95 % is shorter: those that begin at each of the samples' lowest 5 %.
     ordered = np.sort(content)
     held = round(0.95 * len(ordered))
@@ -99,9 +105,21 @@ GOOD = {
         ({}, "A", ""),
         ({"snr": 12.0}, "B", "CO2 signal to noise is 12.0; class A needs 20"),
         ({"deviation": 0.03}, "B", "standard uncertainty is 0.030 %; class A needs 0.020 %"),
-        ({"deviation": 0.03, "responses_stated": False}, "B", "as the response of SO2 to NO and NO2 is not stated (cross)"),
-        ({"deviation": 36.0}, "C", "the standard uncertainty is 36 %, and no fuel has above 5 %: SO2 does not follow CO2"),
-        ({"fsc": 250.0, "deviation": 0.02}, "C", "the result is 250.0 %, and no fuel has above 5 %: check the units of SO2"),
+        (
+            {"deviation": 0.03, "responses_stated": False},
+            "B",
+            "as the response of SO2 to NO and NO2 is not stated (cross)",
+        ),
+        (
+            {"deviation": 36.0},
+            "C",
+            "the standard uncertainty is 36 %, and no fuel has above 5 %: SO2 does not follow CO2",
+        ),
+        (
+            {"fsc": 250.0, "deviation": 0.02},
+            "C",
+            "the result is 250.0 %, and no fuel has above 5 %: check the units of SO2",
+        ),
         ({"passes": 2}, "B", "2 passes through the plume; class A needs 3"),
         ({"agreement": 1e-4}, "B", "passes differ more than their noise explains"),
         ({"problems": ("SO2 is saturated",)}, "C", "SO2 is saturated"),
@@ -117,7 +135,10 @@ def test_quality_is_stated_with_its_reason(change, quality, reason):
 
 
 def test_high_sulphur_is_called_above_and_low_sulphur_below_half_a_percent():
-    found = {fsc: [estimate(*flight("electrochemical", fsc, seed, duration=120.0)) for seed in range(12)] for fsc in (0.05, 0.5)}
+    found = {
+        fsc: [estimate(*flight("electrochemical", fsc, seed, duration=120.0)) for seed in range(12)]
+        for fsc in (0.05, 0.5)
+    }
     assert all(e.verdicts[0].verdict == "above" for e in found[0.5])
     assert all(e.verdicts[1].verdict == "below" for e in found[0.05])
     assert not any(e.verdicts[0].verdict == "above" for e in found[0.05])
@@ -168,14 +189,18 @@ def test_a_long_record_may_drift():
     readings = read(spec, crossings(0.25, duration=900.0))
     drift = 20.0 * np.sin(readings.time / 300.0)
     values = readings.values + drift[:, np.newaxis] * np.array([1.0, 0.5, 0.0, 0.0])
-    assert estimate(Readings(readings.time, values), spec).fsc_percent == pytest.approx(0.25, rel=0.05)
+    assert estimate(Readings(readings.time, values), spec).fsc_percent == pytest.approx(
+        0.25, rel=0.05
+    )
 
 
 def test_uneven_times_are_laid_on_a_grid():
     spec = plain_sniffer(rate_hz=10.0)
     readings = read(spec, crossings(0.25))
     late = readings.time + 0.02 * np.sin(np.arange(len(readings)))
-    values = np.stack([np.interp(late, readings.time, column) for column in readings.values.T], axis=1)
+    values = np.stack(
+        [np.interp(late, readings.time, column) for column in readings.values.T], axis=1
+    )
     assert estimate(Readings(late, values), spec).fsc_percent == pytest.approx(0.25, rel=0.005)
 
 
@@ -194,5 +219,8 @@ def test_an_instrument_that_is_not_the_one_stated_is_noticed():
     assert estimate(readings, spec).quality != "C"
     mistaken = estimate(readings, changed(spec, "so2", t90_s=0.5))
     assert mistaken.quality == "C"
-    assert "more than the stated uncertainty of the instrument explains" in mistaken.quality_reasons[-1]
+    assert (
+        "more than the stated uncertainty of the instrument explains"
+        in mistaken.quality_reasons[-1]
+    )
     assert estimate(readings, sensor_preset("unspecified")).quality != "C"

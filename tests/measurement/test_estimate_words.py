@@ -12,11 +12,14 @@ from measurement.gases import limit_words
 
 
 @pytest.mark.parametrize(
-    ("limit", "words"), [(0.1, "0.10 %"), (0.5, "0.50 %"), (1.0, "1.00 %"), (0.001, "0.001 %"), (0.125, "0.125 %")]
+    ("limit", "words"),
+    [(0.1, "0.10 %"), (0.5, "0.50 %"), (1.0, "1.00 %"), (0.001, "0.001 %"), (0.125, "0.125 %")],
 )
 def test_a_limit_is_printed_with_as_many_decimals_as_it_has(limit, words):
     assert limit_words(limit) == words
-    assert f"above the limit of {words}; probability above it: 99.0 %" in verdict_words("above", limit, 0.99)
+    assert f"above the limit of {words}; probability above it: 99.0 %" in verdict_words(
+        "above", limit, 0.99
+    )
 
 
 def test_a_content_that_rounds_to_0_has_no_sign():
@@ -39,7 +42,9 @@ def test_a_record_without_a_verdict_says_so_and_prints_no_nan(logged, capsys, le
     assert "are needed" not in printed
     assert not re.search(r"\bnan\b", printed)
     assert ("CO2 reads the same throughout; check its sensor" in printed) == (level is not None)
-    assert ("and no fuel has above 5 %: SO2 does not follow CO2; check its sign" in printed) == (level is None)
+    assert ("and no fuel has above 5 %: SO2 does not follow CO2; check its sign" in printed) == (
+        level is None
+    )
 
 
 def test_an_open_verdict_beyond_the_probability_names_the_guard_band():
@@ -50,12 +55,20 @@ def test_an_open_verdict_beyond_the_probability_names_the_guard_band():
     assert verdict.probability_above > 0.95
     assert verdict_words("open", 0.01, verdict.probability_above).endswith(": 98.8 %")
     assert needed(verdict.probability_above) == "the result is within the guard band"
-    assert needed(judged(0.1, 0.12, 0.1, admitted=True).probability_above) == "95 % or 5 % are needed"
+    assert (
+        needed(judged(0.1, 0.12, 0.1, admitted=True).probability_above) == "95 % or 5 % are needed"
+    )
 
 
 def test_an_open_verdict_says_which_part_of_the_uncertainty_to_lower():
-    known = {"passes": 9, "undecided": True, "errors": {"correction for NO2": 0.02, "carbon content": 0.01}}
+    known = {
+        "passes": 9,
+        "undecided": True,
+        "errors": {"correction for NO2": 0.02, "carbon content": 0.01},
+    }
     assert "measure more passes" in next_step("B", noise=0.03, **known)
     assert "as by a calibration: correction for NO2." in next_step("B", noise=0.01, **known)
     assert next_step("B", noise=0.01, **{**known, "undecided": False}) == ""
-    assert "measure again in the plume" in next_step("C", noise=float("nan"), **{**known, "passes": 0})
+    assert "measure again in the plume" in next_step(
+        "C", noise=float("nan"), **{**known, "passes": 0}
+    )

@@ -4,7 +4,9 @@ import pytest
 
 from tests.standing_alone import StandingAlone
 
-MEASUREMENT = StandingAlone("measurement", allowed={"numpy", "pandas", "scipy"}, barred={"hypothesis"})
+MEASUREMENT = StandingAlone(
+    "measurement", allowed={"numpy", "pandas", "scipy"}, barred={"hypothesis"}
+)
 
 
 @pytest.mark.parametrize("name", ["common", "gnc", "hypothesis", "pydantic"])
@@ -15,10 +17,22 @@ def test_the_bar_keeps_out_what_measurement_must_not_know(name):
 
 
 def test_every_module_imports_and_the_tests_are_collected():
-    assert {"measurement.gases", "measurement.emission.emission", "measurement.plume.fluctuating_plume"} <= set(MEASUREMENT.modules)
+    assert {
+        "measurement.gases",
+        "measurement.emission.emission",
+        "measurement.plume.fluctuating_plume",
+    } <= set(MEASUREMENT.modules)
     imports = "".join(f"import {module}\n" for module in MEASUREMENT.modules)
     # What tests/conftest.py imports counts, too.
-    options = ["--collect-only", "--assert=plain", "-p", "no:cacheprovider", "-p", "no:hypothesispytest", "tests/measurement"]
+    options = [
+        "--collect-only",
+        "--assert=plain",
+        "-p",
+        "no:cacheprovider",
+        "-p",
+        "no:hypothesispytest",
+        "tests/measurement",
+    ]
     outcome = MEASUREMENT.run(f"{imports}import pytest; sys.exit(pytest.main({options}))")
     assert outcome.returncode == 0, outcome.stdout + outcome.stderr
     assert "test_flux.py::test_what_passes_a_plane_is_what_was_emitted" in outcome.stdout

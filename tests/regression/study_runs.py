@@ -10,7 +10,10 @@ from scenarios.schema.load import load_study
 from scenarios.studies.registry import run_study
 from tests.run_tables import rows_of
 
-AT_THE_SHIP = ("guidance.mission=standoff", f"guidance.law={Path(__file__).parent}/law_at_the_ship.py:AtTheShip")
+AT_THE_SHIP = (
+    "guidance.mission=standoff",
+    f"guidance.law={Path(__file__).parent}/law_at_the_ship.py:AtTheShip",
+)
 """Settings of flights that are steered at the ship."""
 
 
@@ -38,7 +41,12 @@ def flown(path, name, *overrides):
 
 def flown_once(path, name, keys, *overrides):
     """Fly one flight of a catalog scenario, with nothing drawn but what keys say, and return its row."""
-    words = ["draws=[]", "flights=1", *overrides, *(f"{key}={value}" for key, value in keys.items())]
+    words = [
+        "draws=[]",
+        "flights=1",
+        *overrides,
+        *(f"{key}={value}" for key, value in keys.items()),
+    ]
     (row,) = flown(path, name, *words).to_dict("records")
     return row
 

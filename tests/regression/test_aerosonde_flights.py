@@ -13,7 +13,12 @@ CROSSINGS = 15
 @pytest.fixture(scope="module")
 def run(designs, tmp_path_factory):
     designs("aerosonde")
-    return fly_study(tmp_path_factory.mktemp("aerosonde") / "run", "aerosonde", f"flight.crossings={CROSSINGS}", nus=NUS)
+    return fly_study(
+        tmp_path_factory.mktemp("aerosonde") / "run",
+        "aerosonde",
+        f"flight.crossings={CROSSINGS}",
+        nus=NUS,
+    )
 
 
 @pytest.mark.parametrize("nu", NUS)
@@ -54,7 +59,9 @@ def test_the_guard_keeps_it_out_where_the_law_would_fly_in(tmp_path):
         "flight.crossings=2",
         "criteria.crossing_interval_error=0.1",
     ]
-    without = fly_study(tmp_path / "without", "aerosonde", *words, "guidance.keepout_guard=false", nus=(0.15,)).rows[0.15]
+    without = fly_study(
+        tmp_path / "without", "aerosonde", *words, "guidance.keepout_guard=false", nus=(0.15,)
+    ).rows[0.15]
     guarded = fly_study(tmp_path / "guarded", "aerosonde", *words, nus=(0.15,)).rows[0.15]
     assert without["keepout_violations"] > 0
     assert guarded["keepout_violations"] == 0

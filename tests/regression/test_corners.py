@@ -19,7 +19,13 @@ GUSTS = [
     "sea_wind", "flights=2", "turbulence.gusts=12", "turbulence.gust_speed_mps=8", "flight.duration_max_s=170",
     "flight.crossings=0",
 ]  # fmt: skip
-WITHOUT_SATELLITES = ["sea_wind", "flights=2", "fault.kind=satellite_navigation", "flight.duration_max_s=251", "flight.crossings=0"]
+WITHOUT_SATELLITES = [
+    "sea_wind",
+    "flights=2",
+    "fault.kind=satellite_navigation",
+    "flight.duration_max_s=251",
+    "flight.crossings=0",
+]
 STEEP = [
     "sweep_nu", "sweep.nu=[0.1,0.6]", "start.spread_deg=180", "guidance.bank_deg=49.9", "flight.crossings=4",
     "flight.duration_max_s=130",
@@ -93,15 +99,34 @@ def test_an_aircraft_that_is_gaining_speed_turns_away_as_predicted(tmp_path):
     ("nu", "flight_seed", "keys"),
     [
         (0.6, 3657000729, {"law": "lyapunov"}),
-        (0.9, 3988975038, {"law": "constant_bearing", "airspeed_trim_max_mps": 5, "airspeed_gain_per_s": 1}),
+        (
+            0.9,
+            3988975038,
+            {"law": "constant_bearing", "airspeed_trim_max_mps": 5, "airspeed_gain_per_s": 1},
+        ),
     ],
 )
 def test_a_vehicle_that_takes_on_any_airspeed_at_once_keeps_out(tmp_path, nu, flight_seed, keys):
     # It has no deviation that the guard keeps. One came in by 2 cm, since airspeeds 0.5 m/s apart were predicted as one, and one
     # by 9 cm, since the slower pace commanded for a step was not predicted.
-    words = ["fidelity=kinematic", "keepout.radius_m=50", "start.distance_m=[70,300]", "start.spread_deg=180", f"sweep.nu=[{nu}]"]
-    flight = ["flights=1", f"flight_seed={flight_seed}", "flight.duration_max_s=200", "flight.crossings=0"]
-    law = ["comparison.variants=[]", "guidance.approach=false", *(f"guidance.{key}={value}" for key, value in keys.items())]
+    words = [
+        "fidelity=kinematic",
+        "keepout.radius_m=50",
+        "start.distance_m=[70,300]",
+        "start.spread_deg=180",
+        f"sweep.nu=[{nu}]",
+    ]
+    flight = [
+        "flights=1",
+        f"flight_seed={flight_seed}",
+        "flight.duration_max_s=200",
+        "flight.crossings=0",
+    ]
+    law = [
+        "comparison.variants=[]",
+        "guidance.approach=false",
+        *(f"guidance.{key}={value}" for key, value in keys.items()),
+    ]
     rows = flown(tmp_path / "run", "sweep_nu", *words, *flight, *law)
     assert rows["guard_interventions"].sum() > 0
     assert (rows["min_distance_m"] > rows["keepout_radius_m"]).all()

@@ -74,7 +74,9 @@ def test_dead_reckoning_goes_by_a_compass_with_noise(tmp_path):
     assert (rows["min_distance_m"] >= rows["keepout_radius_m"]).all()
 
 
-@pytest.mark.parametrize("noise", ["velocity_sigma_mps=1", "airspeed_sigma_mps=1"], ids=["velocity", "airspeed"])
+@pytest.mark.parametrize(
+    "noise", ["velocity_sigma_mps=1", "airspeed_sigma_mps=1"], ids=["velocity", "airspeed"]
+)
 def test_noise_of_the_own_velocity_does_not_make_commands_look_safe(tmp_path, noise):
     # A law that circles within r_min: the guard decides at each step, and went by the lucky ones (185.8 and 198.8 m).
     rows = flown(
@@ -86,9 +88,12 @@ def test_noise_of_the_own_velocity_does_not_make_commands_look_safe(tmp_path, no
 
 
 @pytest.mark.parametrize(
-    ("flight_seed", "wind", "from_deg", "vessel"), [(1309792723, 4.757, 236.178, 1.547), (1339808699, 9.146, 196.918, 6.008)]
+    ("flight_seed", "wind", "from_deg", "vessel"),
+    [(1309792723, 4.757, 236.178, 1.547), (1339808699, 9.146, 196.918, 6.008)],
 )
-def test_satellites_are_lost_when_a_noisy_compass_has_measured_the_wind_once(tmp_path, flight_seed, wind, from_deg, vessel):
+def test_satellites_are_lost_when_a_noisy_compass_has_measured_the_wind_once(
+    tmp_path, flight_seed, wind, from_deg, vessel
+):
     # 5 of 60 had come in, by up to 126 m: the first measurement, 3.5 m/s wrong, was taken for the wind for 60 s.
     rows = flown(
         tmp_path, "fidelity=six_dof", "flights=1", f"flight_seed={flight_seed}", f"wind.speed_mps={wind}",
@@ -121,11 +126,19 @@ def test_satellites_are_lost_at_the_start_in_a_strong_wind(tmp_path, keys):
     "changes",
     [
         {},
-        {"fault.at_s": 0.6, "wind.speed_mps": 4, "vessel.speed_mps": 13, "flight.duration_max_s": 150, "flight_seed": 3774224420},
+        {
+            "fault.at_s": 0.6,
+            "wind.speed_mps": 4,
+            "vessel.speed_mps": 13,
+            "flight.duration_max_s": 150,
+            "flight_seed": 3774224420,
+        },
     ],
     ids=["settled", "first second"],
 )
-def test_an_aircraft_whose_dead_reckoning_is_declared_better_than_its_own_keeps_out(changes, tmp_path):
+def test_an_aircraft_whose_dead_reckoning_is_declared_better_than_its_own_keeps_out(
+    changes, tmp_path
+):
     # Five minutes without satellites, exact sensors, and a law that flies at the ship. With the 0 m/s that are declared it came
     # 57 m in: its turns change all the time, and the crab angles that it reckons with are those of steady ones. And 7 m, where
     # the wind had been measured once, as it rolled in.

@@ -27,7 +27,9 @@ def fly(tmp_path):
     return run
 
 
-@pytest.mark.parametrize(("nu", "crossings"), [(0.0, 10), (0.1, 10), (0.3, 10), (0.5, 30), (0.7, 10), (0.95, 16)])
+@pytest.mark.parametrize(
+    ("nu", "crossings"), [(0.0, 10), (0.1, 10), (0.3, 10), (0.5, 30), (0.7, 10), (0.95, 16)]
+)
 def test_crossings_stay_outside_r_min_and_nothing_ever_enters_it(fly, nu, crossings):
     # One flight has the study's 30 crossings; those of the others are as good from the first to the tenth, but for the fastest
     # vessel's, whose first crossings have the rest of the way onto the orbit in their error.
@@ -40,7 +42,9 @@ def test_crossings_stay_outside_r_min_and_nothing_ever_enters_it(fly, nu, crossi
     assert row["min_distance_m"] >= 200.0
     # Issue: interval within 1 % of pi/omega_0, tracking rms <= 1.5 m, airspeed rms <= 0.3 m/s, altitude <= 1.5 m, and no command
     # above omega_max.
-    assert row["crossing_interval_mean_s"] == pytest.approx(row["crossing_interval_predicted_s"], rel=0.01)
+    assert row["crossing_interval_mean_s"] == pytest.approx(
+        row["crossing_interval_predicted_s"], rel=0.01
+    )
     assert row["tracking_error_rms_m"] <= 1.5
     assert row["airspeed_error_rms_mps"] <= 0.3
     assert row["altitude_error_max_m"] <= 1.5
@@ -58,7 +62,9 @@ def assert_the_papers_two_numbers(row):
 
 def test_the_law_alone_flies_into_the_keep_out_area_where_the_guard_does_not(fly):
     # The sweep's own start at nu = 0.15, tracked from the first step on as the paper does: 10 m inside without the guard.
-    without, _ = fly("guidance.approach=false", "guidance.keepout_guard=false", "flight.crossings=3", nu=0.15)
+    without, _ = fly(
+        "guidance.approach=false", "guidance.keepout_guard=false", "flight.crossings=3", nu=0.15
+    )
     assert without["keepout_violations"] > 0
     assert "guard_interventions" not in without
     guarded, history = fly("guidance.approach=false", "flight.crossings=3", nu=0.15)
@@ -66,7 +72,9 @@ def test_the_law_alone_flies_into_the_keep_out_area_where_the_guard_does_not(fly
     assert guarded["guard_interventions"] > 0
     # Recorded at half the rate of the guidance.
     shown = history["guard"] > 0.0
-    assert guarded["guard_time_s"] == pytest.approx(0.1 * shown.sum(), abs=0.1 * guarded["guard_interventions"])
+    assert guarded["guard_time_s"] == pytest.approx(
+        0.1 * shown.sum(), abs=0.1 * guarded["guard_interventions"]
+    )
     # On the way to the orbit, never on it.
     assert history["time_s"][shown].max() < guarded["settling_time_s"]
 
@@ -82,11 +90,21 @@ def test_a_flight_that_needs_no_guard_flies_the_same_without_one_to_the_last_bit
 
 @pytest.mark.parametrize(
     ("seed", "nu", "approach", "duration"),
-    [(1, 0.0, "true", 60), (1, 0.0, "false", 250), (10, 0.9, "false", 250), (7, 0.75, "false", 250)],
+    [
+        (1, 0.0, "true", 60),
+        (1, 0.0, "false", 250),
+        (10, 0.9, "false", 250),
+        (7, 0.75, "false", 250),
+    ],
 )
 def test_from_anywhere_about_the_ship_nothing_enters(fly, seed, nu, approach, duration):
     # Starts from which the law alone, or a guard that takes the lag of slow commands for that of a reversal, got 3 to 7 m in.
-    words = ["start.spread_deg=180", f"seed={seed}", f"flight.duration_max_s={duration}", f"guidance.approach={approach}"]
+    words = [
+        "start.spread_deg=180",
+        f"seed={seed}",
+        f"flight.duration_max_s={duration}",
+        f"guidance.approach={approach}",
+    ]
     row, _ = fly(*words, nu=nu)
     assert row["keepout_violations"] == 0
     # The paper's tracking needs the guard from each of them, the way round the vessel from none.
@@ -102,9 +120,16 @@ def test_law_and_guard_do_not_hold_each_other_beside_a_fast_ship(fly):
 
 
 @pytest.mark.parametrize("course", [-150, 30])
-def test_starting_ahead_of_the_vessel_without_an_approach_the_guard_keeps_out_and_it_gets_round(fly, course):
+def test_starting_ahead_of_the_vessel_without_an_approach_the_guard_keeps_out_and_it_gets_round(
+    fly, course
+):
     # With an approach it goes round by itself, and the guard has nothing to do.
-    words = [f"start.course_deg={course}", "start.spread_deg=180", "start.distance_m=[300, 500]", "guidance.approach=false"]
+    words = [
+        f"start.course_deg={course}",
+        "start.spread_deg=180",
+        "start.distance_m=[300, 500]",
+        "guidance.approach=false",
+    ]
     row, _ = fly(*words, "seed=4", "flight.crossings=1", nu=0.3)
     assert abs(row["start_aspect_deg"]) > 90.0
     assert row["outcome"] == "completed"
@@ -116,7 +141,9 @@ def test_preview_and_airspeed_trim_each_take_away_error(fly):
     def steady_error(*overrides):
         _, history = fly("flight.crossings=9", *overrides)
         late = history[history["time_s"] > history["time_s"].iloc[-1] - 60.0]
-        off = np.hypot(late["reference_north_m"] - late["north_m"], late["reference_east_m"] - late["east_m"])
+        off = np.hypot(
+            late["reference_north_m"] - late["north_m"], late["reference_east_m"] - late["east_m"]
+        )
         return math.sqrt(float(np.mean(off**2)))
 
     both = steady_error()
@@ -133,7 +160,9 @@ def test_a_plume_that_rises_is_crossed_at_its_own_height(fly):
     assert row["keepout_violations"] == 0
     assert row["crossing_distance_min_m"] >= 200.0
     # Equation (9): z_CO = r_CO sin(alpha_P) above the funnel at 60 m; altitude within the issue's 1.5 m.
-    assert history["altitude_m"].iloc[-1] == pytest.approx(60.0 + row["r_co_m"] * math.sin(math.radians(10.0)), abs=1.5)
+    assert history["altitude_m"].iloc[-1] == pytest.approx(
+        60.0 + row["r_co_m"] * math.sin(math.radians(10.0)), abs=1.5
+    )
 
 
 def test_the_compass_does_not_matter(fly):
@@ -142,8 +171,12 @@ def test_the_compass_does_not_matter(fly):
     north, _ = fly("vessel.course_deg=0", "start.course_deg=20", "flight.crossings=4")
     east, _ = fly("vessel.course_deg=110", "start.course_deg=130", "flight.crossings=4")
     # Measured: 4e-6 s and 2 mm apart; the room is for another start.
-    assert east["crossing_interval_mean_s"] == pytest.approx(north["crossing_interval_mean_s"], abs=0.01)
-    assert east["crossing_distance_mean_m"] == pytest.approx(north["crossing_distance_mean_m"], abs=0.1)
+    assert east["crossing_interval_mean_s"] == pytest.approx(
+        north["crossing_interval_mean_s"], abs=0.01
+    )
+    assert east["crossing_distance_mean_m"] == pytest.approx(
+        north["crossing_distance_mean_m"], abs=0.1
+    )
 
 
 @pytest.mark.parametrize(

@@ -23,14 +23,20 @@ def directory(tmp_path_factory):
         "flight.crossings=10",
     ]
     scenario = load_study("sweep_nu", overrides)
-    result = run_study(scenario, "sweep_nu", path, executor_factory=InProcessExecutor, overrides=overrides)
+    result = run_study(
+        scenario, "sweep_nu", path, executor_factory=InProcessExecutor, overrides=overrides
+    )
     assert result.all_met
     return path
 
 
 def test_no_command_is_cut_and_none_exceeds_the_bound(directory):
     for _, row in pd.read_csv(directory / "summary.csv").iterrows():
-        assert row["heading_rate_demand_max_rad_s"] <= row["heading_rate_bound_rad_s"] <= row["heading_rate_limit_rad_s"]
+        assert (
+            row["heading_rate_demand_max_rad_s"]
+            <= row["heading_rate_bound_rad_s"]
+            <= row["heading_rate_limit_rad_s"]
+        )
         assert row["saturation_fraction"] == 0.0
         # The look-ahead is the searched one, not the default of 60 m.
         assert row["look_ahead_m"] > 100.0

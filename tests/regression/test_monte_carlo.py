@@ -15,7 +15,9 @@ FLIGHTS = 6
 @pytest.fixture(scope="module")
 def directory(tmp_path_factory):
     out = tmp_path_factory.mktemp("monte_carlo") / "run"
-    scenario = load_study("monte_carlo", [f"flights={FLIGHTS}", "flight.duration_max_s=60", "histories=1"])
+    scenario = load_study(
+        "monte_carlo", [f"flights={FLIGHTS}", "flight.duration_max_s=60", "histories=1"]
+    )
     run_study(scenario, "monte_carlo", out, executor_factory=InProcessExecutor)
     return out
 
@@ -38,4 +40,6 @@ def test_no_flight_enters_the_keep_out_area(directory):
 def test_the_bound_follows_from_their_number(directory):
     statistics = json.loads((directory / "statistics.json").read_text(encoding="utf-8"))
     # One-sided, Clopper and Pearson: 0 of n.
-    assert statistics["violation"]["pessimistic"]["upper"] == pytest.approx(1.0 - 0.05 ** (1.0 / FLIGHTS), rel=1e-9)
+    assert statistics["violation"]["pessimistic"]["upper"] == pytest.approx(
+        1.0 - 0.05 ** (1.0 / FLIGHTS), rel=1e-9
+    )

@@ -50,17 +50,24 @@ def history(directory):
 
 
 def distance(history):
-    return np.hypot(history["reference_north_m"] - history["north_m"], history["reference_east_m"] - history["east_m"]).to_numpy()
+    return np.hypot(
+        history["reference_north_m"] - history["north_m"],
+        history["reference_east_m"] - history["east_m"],
+    ).to_numpy()
 
 
 def test_every_flight_of_the_verdict_met_its_criteria(rows):
     assert {name for name, row in rows.items() if row["criteria_met"]} == {
-        f"{case}_{fidelity}" for case in ("sim1", "sim2_delta", "sim2_los", "sim3") for fidelity in ("kinematic", "six_dof")
+        f"{case}_{fidelity}"
+        for case in ("sim1", "sim2_delta", "sim2_los", "sim3")
+        for fidelity in ("kinematic", "six_dof")
     }
 
 
 @pytest.mark.parametrize(("fidelity", "share"), [("kinematic", 0.005), ("six_dof", 0.02)])
-def test_sim_3_crosses_every_9_5_s_at_214_m_and_never_enters_the_keep_out_area(rows, fidelity, share):
+def test_sim_3_crosses_every_9_5_s_at_214_m_and_never_enters_the_keep_out_area(
+    rows, fidelity, share
+):
     # Section V, to the 0.5 % kinematic and 2 % in six degrees of freedom. Figure 9: never inside 200 m.
     row = rows[f"sim3_{fidelity}"]
     assert row["crossing_interval_mean_s"] == pytest.approx(9.5, rel=share)
@@ -75,7 +82,9 @@ def test_both_vehicles_start_from_the_same_places(history):
         # Placed on JSBSim's globe and read back; the course by the aircraft's trim. Measured: 1e-6 m and 1e-6 rad.
         for name in ("north_m", "east_m"):
             assert starts[1][name] == pytest.approx(starts[0][name], rel=0.0, abs=1e-4)
-        assert math.remainder(starts[0]["course_rad"] - starts[1]["course_rad"], 2.0 * math.pi) == pytest.approx(0.0, abs=1e-5)
+        assert math.remainder(
+            starts[0]["course_rad"] - starts[1]["course_rad"], 2.0 * math.pi
+        ) == pytest.approx(0.0, abs=1e-5)
 
 
 @pytest.mark.parametrize("case", ["sim1", "sim2_delta"])
@@ -88,7 +97,11 @@ def test_sims_1_and_2_end_on_the_reference(rows, case):
 @BOTH
 def test_sim_1_is_figures_4_and_5(history, fidelity):
     flown = history(f"sim1_{fidelity}")
-    phi, phi_r, d = np.abs(flown["phi_rad"].to_numpy()), np.abs(flown["phi_r_rad"].to_numpy()), distance(flown)
+    phi, phi_r, d = (
+        np.abs(flown["phi_rad"].to_numpy()),
+        np.abs(flown["phi_r_rad"].to_numpy()),
+        distance(flown),
+    )
     # The headings are opposite at first; phi goes to zero before phi_r and the distance do.
     assert phi[0] > 1.5
     assert np.nonzero(phi > 0.05)[0][-1] < np.nonzero(phi_r > 0.05)[0][-1]
@@ -103,7 +116,11 @@ def test_sim_1_is_figures_4_and_5(history, fidelity):
 def test_sim_1_has_saddle_points_where_phi_and_phi_r_vanish_together(history):
     flown = history("sim1_kinematic")
     settled = flown[flown["time_s"] > 60.0]
-    phi, phi_r, d = settled["phi_rad"].to_numpy(), settled["phi_r_rad"].to_numpy(), distance(settled)
+    phi, phi_r, d = (
+        settled["phi_rad"].to_numpy(),
+        settled["phi_r_rad"].to_numpy(),
+        distance(settled),
+    )
     zeros = np.nonzero(phi_r[:-1] * phi_r[1:] < 0.0)[0]
     # Figure 5: a row of them. phi is gone by 60 s; the distance falls before and after, and its slope vanishes in between:
     # V_1-dot = -V (rho + delta)(1 - cos phi_r), equation (33).
@@ -134,7 +151,10 @@ def test_the_bound_covers_every_speed_that_was_flown(rows, directory):
 
 def test_sim_2_the_line_of_sight_is_near_sooner_but_never_on_the_reference(history, rows):
     # Section V: "despite the fast convergence of UAV 1".
-    near = {name: np.nonzero(distance(history(f"sim2_{name}_kinematic")) > 30.0)[0][-1] for name in ("los", "delta")}
+    near = {
+        name: np.nonzero(distance(history(f"sim2_{name}_kinematic")) > 30.0)[0][-1]
+        for name in ("los", "delta")
+    }
     assert near["los"] < near["delta"]
     assert rows["sim2_los_kinematic"]["tracking_error_end_m"] > 10.0
 
@@ -146,13 +166,17 @@ def test_bounds_stand_beside_the_worst_states_found(directory):
     assert record["samples"] == 50_000
     for row in record["flown"]:
         # Never exceeded, and tight: see docs/actuation_bounds.md.
-        assert row["largest_found_rad_s"] <= row["bound_rad_s"] <= 1.001 * row["largest_found_rad_s"]
+        assert (
+            row["largest_found_rad_s"] <= row["bound_rad_s"] <= 1.001 * row["largest_found_rad_s"]
+        )
         if row["tuning"] == "bounded":
             assert row["bound_rad_s"] <= row["heading_rate_max_rad_s"]
     by_reserve = {row["reserve"]: row for row in record["guaranteed"]}
     # A reference that spends all of omega_max leaves no bound; every reserve that does has a price that falls.
     assert "more of omega_max in reserve" in by_reserve[0.0]["message"]
-    times = [row["convergence_time_s"] for row in record["guaranteed"] if "convergence_time_s" in row]
+    times = [
+        row["convergence_time_s"] for row in record["guaranteed"] if "convergence_time_s" in row
+    ]
     assert times == sorted(times, reverse=True)
 
 
@@ -171,7 +195,10 @@ def test_its_report_has_every_figure_for_both_vehicles_and_every_published_numbe
             assert re.fullmatch(r".+ \[[^\]]+\]", panel.x_label)
             assert all(np.isfinite(line.y).all() and len(line.y) for line in panel.lines)
     (section,) = (section for section in report.sections if section.anchor == "numbers")
-    numbers = {row[1]: row[2:] for row in next(block for block in section.blocks if isinstance(block, Table)).rows}
+    numbers = {
+        row[1]: row[2:]
+        for row in next(block for block in section.blocks if isinstance(block, Table)).rows
+    }
     # Beside the printed number the reproduced ones, as in the summary.
     for what, printed, column in (
         ("smoke plume measurements every", "9.5 s", "crossing_interval_mean_s"),
@@ -181,7 +208,9 @@ def test_its_report_has_every_figure_for_both_vehicles_and_every_published_numbe
         assert cells[0] == printed
         for cell, fidelity in zip(cells[1:], ("kinematic", "six_dof"), strict=True):
             # Printed to two to four digits.
-            assert float(cell.split()[0]) == pytest.approx(rows[f"sim3_{fidelity}"][column], rel=1e-4)
+            assert float(cell.split()[0]) == pytest.approx(
+                rows[f"sim3_{fidelity}"][column], rel=1e-4
+            )
 
 
 def test_saddle_points_are_marked_where_the_relative_courses_meet(directory):
@@ -206,7 +235,9 @@ def few_bounds(monkeypatch):
 
 
 def test_the_kinematic_half_flies_alone(tmp_path, few_bounds):
-    scenario = load_study("paper", ["fidelity=kinematic", "guidance.rate_hz=10", "flight.crossings=10"])
+    scenario = load_study(
+        "paper", ["fidelity=kinematic", "guidance.rate_hz=10", "flight.crossings=10"]
+    )
     result = run_study(scenario, "paper", tmp_path / "run", executor_factory=InProcessExecutor)
     assert [row["flight_id"] for row in rows_of(tmp_path / "run")] == [
         "sim1_kinematic",
@@ -225,14 +256,19 @@ def test_the_kinematic_half_flies_alone(tmp_path, few_bounds):
     ("changes", "headline"),
     [
         # One statement each; so weak a gain that the line of sight does not exceed omega_max.
-        (["keepout.radius_m=300", "guidance.gain_per_s=0.1"], "Not reproduced: 2 of 7 statements do not hold"),
+        (
+            ["keepout.radius_m=300", "guidance.gain_per_s=0.1"],
+            "Not reproduced: 2 of 7 statements do not hold",
+        ),
         (["sweep.nu=[0.3]"], "Not reproduced: 2 of 7 statements do not hold"),
         (["reference.radius_m=30"], "Unfinished: 3 of 7 statements could be tested, and hold"),
     ],
 )
 def test_what_is_not_the_papers_is_not_called_reproduced(changes, headline, tmp_path, few_bounds):
     # An override has its way in every case, also where the case sets that key; report and exit status then agree.
-    scenario = load_study("paper", ["fidelity=kinematic", "guidance.rate_hz=10", "flight.crossings=10", *changes])
+    scenario = load_study(
+        "paper", ["fidelity=kinematic", "guidance.rate_hz=10", "flight.crossings=10", *changes]
+    )
     result = run_study(scenario, "paper", tmp_path / "run", executor_factory=InProcessExecutor)
     assert not result.all_met
     report = content(read_run(tmp_path / "run"))
@@ -253,7 +289,15 @@ def test_what_is_not_the_papers_is_not_called_reproduced(changes, headline, tmp_
 def test_a_study_of_cases_with_a_sniffer_has_its_sulphur_statistics(tmp_path, few_bounds):
     overrides = ["study=paper", 'cases=[{name="one"}]', "fidelity=kinematic"]
     short = ["flight.after_settling_s=1", "flight.duration_max_s=3"]
-    run_study(load_study("sulphur", [*overrides, *short]), "sulphur", tmp_path / "run", executor_factory=InProcessExecutor)
+    run_study(
+        load_study("sulphur", [*overrides, *short]),
+        "sulphur",
+        tmp_path / "run",
+        executor_factory=InProcessExecutor,
+    )
     # Too short for a result: its tables are empty, but they are there, and so are the bounds.
-    assert json.loads((tmp_path / "run" / "sulphur.json").read_text(encoding="utf-8"))["accuracy"] == []
+    assert (
+        json.loads((tmp_path / "run" / "sulphur.json").read_text(encoding="utf-8"))["accuracy"]
+        == []
+    )
     assert (tmp_path / "run" / "bounds.json").is_file()

@@ -21,14 +21,22 @@ def test_the_same_flights_leave_the_same_bytes_whatever_the_number_of_processes(
     path = tmp_path / "short.toml"
     path.write_text(LISTED, encoding="utf-8")
     for jobs in (1, 2):
-        run_study(load_study(str(path)), "short", tmp_path / f"{jobs}", executor_factory=ExecutorFactory(jobs=jobs))
+        run_study(
+            load_study(str(path)),
+            "short",
+            tmp_path / f"{jobs}",
+            executor_factory=ExecutorFactory(jobs=jobs),
+        )
     one, two = tmp_path / "1", tmp_path / "2"
     for name in TABLES:
         # Long enough for crossings and for the guard.
         assert len((one / name).read_text(encoding="utf-8").splitlines()) > 1, name
         assert (one / name).read_bytes() == (two / name).read_bytes(), name
     # Of a row, all but how long its flight took to compute.
-    rows = [pd.read_csv(out / "summary.csv", dtype=str).drop(columns="wall_time_s") for out in (one, two)]
+    rows = [
+        pd.read_csv(out / "summary.csv", dtype=str).drop(columns="wall_time_s")
+        for out in (one, two)
+    ]
     pd.testing.assert_frame_equal(*rows, check_exact=True)
     assert len(rows[0]) == 4
     flights = sorted(path.name for path in (one / "flights").iterdir())

@@ -23,15 +23,21 @@ WITH_A_COMPARISON = 'comparison={ nu = [0.5], variants = [{ name = "no_preview",
 @pytest.fixture(scope="module")
 def t37(designs, tmp_path_factory):
     designs("T37")
-    return fly_study(tmp_path_factory.mktemp("T37") / "run", "T37", *SHORT, WITH_A_COMPARISON, nus=(NU,))
+    return fly_study(
+        tmp_path_factory.mktemp("T37") / "run", "T37", *SHORT, WITH_A_COMPARISON, nus=(NU,)
+    )
 
 
 def test_a_jet_trainer_flies_the_sweep(t37):
     assert_flown_as_the_issue_asks(t37.rows[NU])
 
 
-def test_a_light_aircraft_flies_the_sweep_and_its_rudder_keeps_it_from_slipping(heavy_design, tmp_path):
-    run = fly_study(tmp_path / "run", heavy_design.design.schedule.spec.folder, "flight.crossings=5")
+def test_a_light_aircraft_flies_the_sweep_and_its_rudder_keeps_it_from_slipping(
+    heavy_design, tmp_path
+):
+    run = fly_study(
+        tmp_path / "run", heavy_design.design.schedule.spec.folder, "flight.crossings=5"
+    )
     ((nu, row),) = run.rows.items()
     assert_flown_as_the_issue_asks(row)
     # Turns are coordinated by the rudder. Measured once settled: 0.013 deg; asserted is four times that, and a fortieth of what the
@@ -43,9 +49,15 @@ def test_a_light_aircraft_flies_the_sweep_and_its_rudder_keeps_it_from_slipping(
 
 def test_its_airspeeds_are_named_where_the_scenario_leaves_them(t37, tmp_path):
     # Found by trimming it: from 1.3 times its stall in the steepest turn, 58.7 m/s, to 1.6 times that.
-    with pytest.raises(InputError, match=r"airspeed_mps is 50; T37 flies 58\.7 to 93\.9 m/s: choose an airspeed in between"):
+    with pytest.raises(
+        InputError,
+        match=r"airspeed_mps is 50; T37 flies 58\.7 to 93\.9 m/s: choose an airspeed in between",
+    ):
         fly_study(tmp_path / "slow", "T37", *SHORT, "guidance.airspeed_mps=50.0")
-    with pytest.raises(InputError, match=r"asks for 45\.0 deg of bank; the autopilot of T37 stops at 35: lower guidance\.bank_deg"):
+    with pytest.raises(
+        InputError,
+        match=r"asks for 45\.0 deg of bank; the autopilot of T37 stops at 35: lower guidance\.bank_deg",
+    ):
         fly_study(tmp_path / "steep", "T37", *SHORT, "guidance.bank_deg=45.0")
     assert list(tmp_path.iterdir()) == []
 
@@ -77,7 +89,10 @@ def test_the_report_of_its_run_names_it_and_shows_it_to_its_own_scale(report, tm
     charts = {block.name: block for block in blocks if isinstance(block, Chart)}
     # Half of what a comparison's panel could show is there to be seen, after settling and within the settling band.
     for line in charts["trial1-comparison"].panels[0].lines:
-        (_, last), (_, top) = charts["trial1-comparison"].panels[0].x_range, charts["trial1-comparison"].panels[0].y_range
+        (_, last), (_, top) = (
+            charts["trial1-comparison"].panels[0].x_range,
+            charts["trial1-comparison"].panels[0].y_range,
+        )
         assert line.x[-1] > 0.9 * last
         assert (line.y <= top).all()
     # Beside a vessel at 38 m/s, until it has settled and for 9 crossings every 65 s: forty kilometres.
@@ -87,14 +102,19 @@ def test_the_report_of_its_run_names_it_and_shows_it_to_its_own_scale(report, tm
     (way,) = (line for line in tracks.panels[-1].lines if line.label == "ship's track")
     assert way.x.max() == pytest.approx(41.0, abs=5.0)
     # Fitted limits have three digits, and equilibria are shown in the turn that it flies, nearest to 30 degrees.
-    assert {card.name: card.limit for card in report.verdict.figures}["Tracking error, rms after settling, worst"] == (
-        "≤ 40.1 m, scaled to the aircraft"
-    )
+    assert {card.name: card.limit for card in report.verdict.figures}[
+        "Tracking error, rms after settling, worst"
+    ] == ("≤ 40.1 m, scaled to the aircraft")
     assert not [block for block in blocks if isinstance(block, Table) and not block.rows]
     assert "level, and at 31.6 degrees of bank" in html
 
 
 def test_the_report_of_its_run_does_not_speak_of_the_x8(report):
     said = [report.verdict.headline, report.verdict.detail]
-    said += [block.caption for section in report.sections for block in section.blocks if isinstance(block, Chart)]
+    said += [
+        block.caption
+        for section in report.sections
+        for block in section.blocks
+        if isinstance(block, Chart)
+    ]
     assert not [text for text in said if "X8" in text or "propeller" in text]

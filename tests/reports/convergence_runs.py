@@ -13,23 +13,40 @@ TRAJECTORIES = 1200
 """Of each law, in the studies that several tests read."""
 
 
-def write_convergence_run(path, trajectories, *, seed=1, failures=(), cut_failures=0, state="complete", planned=None, samples=1):
+def write_convergence_run(
+    path,
+    trajectories,
+    *,
+    seed=1,
+    failures=(),
+    cut_failures=0,
+    state="complete",
+    planned=None,
+    samples=1,
+):
     """Write a run directory, with the time histories of the first ``samples`` trajectories and of those that failed.
 
     ``failures`` are (law, trajectory, outcome); ``cut_failures`` so many more under the cut law, which run out of time.
     """
     rng = np.random.default_rng(seed)
     rows = pd.concat([law_rows(law, trajectories, rng) for law in LAWS], ignore_index=True)
-    cut = [("cascade_cut", int(i), "time_up") for i in rng.choice(trajectories, cut_failures, replace=False)]
+    cut = [
+        ("cascade_cut", int(i), "time_up")
+        for i in rng.choice(trajectories, cut_failures, replace=False)
+    ]
     for law, trajectory, outcome in [*failures, *cut]:
         fail(rows, (rows["law"] == law) & (rows["trajectory"] == trajectory), outcome)
     failed = rows[rows["outcome"] != "converged"]
     (path / "trajectories").mkdir(parents=True)
     rows.to_csv(path / "summary.csv", index=False)
     failed.to_csv(path / "counterexamples.csv", index=False)
-    kept = pd.concat([rows[rows["trajectory"] < samples], failed]).drop_duplicates(["law", "trajectory"])
+    kept = pd.concat([rows[rows["trajectory"] < samples], failed]).drop_duplicates(
+        ["law", "trajectory"]
+    )
     for _, row in kept.iterrows():
-        history(row).to_parquet(path / "trajectories" / f"{row['law']}_{row['trajectory']:05d}.parquet")
+        history(row).to_parquet(
+            path / "trajectories" / f"{row['law']}_{row['trajectory']:05d}.parquet"
+        )
     text = json.dumps(manifest(planned or trajectories, seed, state))
     (path / "manifest.json").write_text(text, encoding="utf-8")
     return path
@@ -45,7 +62,9 @@ def law_rows(law, count, rng):
     predicted = distance * np.array([0.9, 1.0, 1.2])[kind]
     # As a trial with gnc.analysis.ensemble: medians near a second per metre, a long tail about references that turn at random.
     # They end at 20,000 s at the latest.
-    settling = np.minimum(predicted * rng.lognormal(0.0, np.array([0.2, 0.25, 0.35])[kind]), 19_000.0)
+    settling = np.minimum(
+        predicted * rng.lognormal(0.0, np.array([0.2, 0.25, 0.35])[kind]), 19_000.0
+    )
     command = {
         "lyapunov": 0.5 / np.maximum(np.abs(np.pi - np.abs(phi)), 1e-5),
         "cascade": 0.4 + rng.exponential(0.6, count),
@@ -79,7 +98,9 @@ def fail(rows, chosen, outcome):
     finite = outcome != "not_finite"
     rows.loc[chosen, "outcome"] = outcome
     rows.loc[chosen, "message"] = (
-        "812.3 m from the reference after 20000 s, phi 0.31 rad: raise time_max" if finite else "the step from there is not finite"
+        "812.3 m from the reference after 20000 s, phi 0.31 rad: raise time_max"
+        if finite
+        else "the step from there is not finite"
     )
     rows.loc[chosen, "settling_time_s"] = np.nan
     rows.loc[chosen, "distance_final_m"] = 812.3 if finite else np.nan
@@ -92,7 +113,9 @@ def history(row):
     converged = row["outcome"] == "converged"
     reach = row["settling_time_s"] if converged else 1e6
     # A straight way in and then an exponential end, as z shrinks.
-    distance = row["start_distance_m"] * np.maximum(1.0 - time / reach, 0.0) + 5.0 * np.exp(-np.maximum(time - reach, 0.0) / 50.0)
+    distance = row["start_distance_m"] * np.maximum(1.0 - time / reach, 0.0) + 5.0 * np.exp(
+        -np.maximum(time - reach, 0.0) / 50.0
+    )
     angle = 0.3 * time
     return pd.DataFrame({
         "time_s": time,
@@ -111,9 +134,24 @@ def manifest(planned, seed, state):
     ensemble = {"trajectories": planned, "distance_max_m": 5000.0, "settling_band_m": 5.0}
     guidance = {"laws": list(LAWS), "airspeed_mps": SPEED, "heading_rate_max_rad_s": 0.503}
     parameters = [
-        {"key": "ensemble.trajectories", "value": planned, "unit": "", "meaning": "Initial states, each flown with every law."},
-        {"key": "ensemble.distance_max_m", "value": 5000.0, "unit": "m", "meaning": "Farthest start from the reference."},
-        {"key": "guidance.laws", "value": list(LAWS), "unit": "", "meaning": "Eq. (24); eq. (30); eq. (30) cut at omega_max."},
+        {
+            "key": "ensemble.trajectories",
+            "value": planned,
+            "unit": "",
+            "meaning": "Initial states, each flown with every law.",
+        },
+        {
+            "key": "ensemble.distance_max_m",
+            "value": 5000.0,
+            "unit": "m",
+            "meaning": "Farthest start from the reference.",
+        },
+        {
+            "key": "guidance.laws",
+            "value": list(LAWS),
+            "unit": "",
+            "meaning": "Eq. (24); eq. (30); eq. (30) cut at omega_max.",
+        },
     ]
     return {
         "format": 1,

@@ -9,8 +9,23 @@ from tests.run_tables import write_manifest
 
 AIRSPEEDS = [45.0, 50.0, 55.0, 60.0, 65.0]
 BANKS_DEG = [-33.0, -27.0, -21.0, -13.0, 0.0, 13.0, 21.0, 27.0, 33.0]
-LOOPS = ("elevator", "aileron", "throttle", "rudder", "airspeed", "altitude", "heading_rate", "sideslip")
-CASES = ("mass +20 %", "mass -20 %", "inertia +20 %", "control effectiveness -20 %", "one more period of delay")
+LOOPS = (
+    "elevator",
+    "aileron",
+    "throttle",
+    "rudder",
+    "airspeed",
+    "altitude",
+    "heading_rate",
+    "sideslip",
+)
+CASES = (
+    "mass +20 %",
+    "mass -20 %",
+    "inertia +20 %",
+    "control effectiveness -20 %",
+    "one more period of delay",
+)
 REVERSALS = {
     "bank_deg": 45.0, "airspeed_mps": 19.42, "delay_s": 0.254, "lag_s": 0.254, "reversals": 100, "unguided_reversals": 64,
     "deviation_99_percent_m": 2.37,
@@ -22,7 +37,11 @@ GRAVITY = 9.81
 def write_design(path, **changes):
     """Write a directory as the design command leaves it; ``changes`` are fields of the record."""
     (path / "model" / "aircraft" / "c172x").mkdir(parents=True)
-    for folder, name in (("aircraft/c172x", "c172x"), ("systems", "c172x_autopilot"), ("scripts", "c172x")):
+    for folder, name in (
+        ("aircraft/c172x", "c172x"),
+        ("systems", "c172x_autopilot"),
+        ("scripts", "c172x"),
+    ):
         (path / "model" / folder).mkdir(parents=True, exist_ok=True)
         (path / "model" / folder / f"{name}.xml").write_text("<xml/>", encoding="utf-8")
     write_manifest(path, manifest())
@@ -65,20 +84,41 @@ def record():
             "stall_airspeed_mps": 27.0,
             "bank_deg": 27.0,
             "bank_max_deg": 33.0,
-            "notes": ["The stall is that of level flight without flaps.", "Bank is limited by the load factor of 1.2."],
+            "notes": [
+                "The stall is that of level flight without flaps.",
+                "Bank is limited by the load factor of 1.2.",
+            ],
         },
-        "inputs": [control("elevator", -1.55, 0.45, True), control("aileron"), control("throttle", 0.35), control("rudder")],
+        "inputs": [
+            control("elevator", -1.55, 0.45, True),
+            control("aileron"),
+            control("throttle", 0.35),
+            control("rudder"),
+        ],
         "design_airspeed_mps": 55.0,
         "airspeeds_mps": AIRSPEEDS,
         "banks_deg": BANKS_DEG,
-        "weights": {"airspeed": 1.0, "pitch": 0.3, "altitude": 0.5, "roll": 0.1, "sideslip": 0.05, "throttle": 0.15},
+        "weights": {
+            "airspeed": 1.0,
+            "pitch": 0.3,
+            "altitude": 0.5,
+            "roll": 0.1,
+            "sideslip": 0.05,
+            "throttle": 0.15,
+        },
         "model_frequency_rad_s": 1.5,
         "model_damping": 0.9,
         "trims": [*(trim(v, b) for v, b in grid), *climbs],
         "poles": [poles(v, b) for v, b in grid],
-        "margins": [m for v, b in grid for m in margins(v, b, False)] + [m for v, b in between for m in margins(v, b, True)],
+        "margins": [m for v, b in grid for m in margins(v, b, False)]
+        + [m for v, b in between for m in margins(v, b, True)],
         "robustness": [robustness(case, i, v, b) for i, case in enumerate(CASES) for v, b in grid],
-        "required": {"gain_db": 6.0, "phase_deg": 45.0, "perturbed_gain_db": 4.0, "perturbed_phase_deg": 30.0},
+        "required": {
+            "gain_db": 6.0,
+            "phase_deg": 45.0,
+            "perturbed_gain_db": 4.0,
+            "perturbed_phase_deg": 30.0,
+        },
         "loops": [loop_shape(name, i) for i, name in enumerate(LOOPS)],
         "responses": responses(),
         "heading_rate_lag_s": 0.61,
@@ -115,15 +155,29 @@ def poles(airspeed, bank_deg):
 
     def pair(frequency, damping):
         size = frequency * s
-        return [[-damping * size, sign * size * math.sqrt(1.0 - damping**2)] for sign in (-1.0, 1.0)]
+        return [
+            [-damping * size, sign * size * math.sqrt(1.0 - damping**2)] for sign in (-1.0, 1.0)
+        ]
 
     real = [[-6.0 * s, 0.0], [-0.01 + 0.05 * b * b, 0.0], [-20.0, 0.0], [-20.0, 0.0]]
-    closed = [[-7.0 * s, 0.0], [-0.5 - 0.1 * b * b, 0.0], [-18.0 * s, 0.0], [-240.0, 139.0], [-240.0, -139.0]]
+    closed = [
+        [-7.0 * s, 0.0],
+        [-0.5 - 0.1 * b * b, 0.0],
+        [-18.0 * s, 0.0],
+        [-240.0, 139.0],
+        [-240.0, -139.0],
+    ]
     return {
         "airspeed_mps": airspeed,
         "bank_rad": b,
         "open_loop": [*pair(5.0, 0.55), *pair(0.18, 0.08 + 0.1 * b * b), *pair(2.8, 0.25), *real],
-        "closed_loop": [*pair(6.0, 0.7), *pair(1.1, 0.75), *pair(3.4, 0.62), *pair(1.4, 0.85), *closed],
+        "closed_loop": [
+            *pair(6.0, 0.7),
+            *pair(1.1, 0.75),
+            *pair(3.4, 0.62),
+            *pair(1.4, 0.85),
+            *closed,
+        ],
     }
 
 
@@ -165,10 +219,18 @@ def loop_shape(name, i):
 
 
 def responses():
-    steps = (("heading_rate", 0.05, 1.5, 0.9), ("airspeed", 1.0, 1.1, 0.75), ("altitude", 1.0, 0.9, 0.8))
+    steps = (
+        ("heading_rate", 0.05, 1.5, 0.9),
+        ("airspeed", 1.0, 1.1, 0.75),
+        ("altitude", 1.0, 0.9, 0.8),
+    )
     rows = []
     for command, size, frequency, ratio in steps:
-        for kind, slower, less in (("predicted", 1.0, 0.0), ("flown", 0.96, 0.05), ("model", 1.0, -0.01)):
+        for kind, slower, less in (
+            ("predicted", 1.0, 0.0),
+            ("flown", 0.96, 0.05),
+            ("model", 1.0, -0.01),
+        ):
             if kind != "model" or command == "heading_rate":
                 rows.append(response(kind, command, size, slower * frequency, ratio - less))
     return rows
@@ -178,12 +240,27 @@ def response(kind, command, size, frequency, ratio):
     time = np.linspace(0.0, 12.0, 241)
     damped = frequency * math.sqrt(1.0 - ratio**2)
     decay = np.exp(-ratio * frequency * time)
-    step = 1.0 - decay * (np.cos(damped * time) + ratio * frequency / damped * np.sin(damped * time))
+    step = 1.0 - decay * (
+        np.cos(damped * time) + ratio * frequency / damped * np.sin(damped * time)
+    )
     bump = time * decay
-    names = ("airspeed", "altitude", "heading_rate", "roll", "sideslip", "elevator", "aileron", "throttle")
+    names = (
+        "airspeed",
+        "altitude",
+        "heading_rate",
+        "roll",
+        "sideslip",
+        "elevator",
+        "aileron",
+        "throttle",
+    )
     channels = dict.fromkeys(names, 0.05 * size * bump)
     if command == "heading_rate":
-        channels |= {"roll": 0.28 * step, "altitude": -2.0 * bump * size, "airspeed": -0.5 * bump * size}
+        channels |= {
+            "roll": 0.28 * step,
+            "altitude": -2.0 * bump * size,
+            "airspeed": -0.5 * bump * size,
+        }
     channels[command] = size * step
     if kind == "model":
         channels = {"heading_rate": channels["heading_rate"]}

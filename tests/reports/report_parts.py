@@ -15,7 +15,13 @@ from scenarios.studies.registry import run_study
 def flown(tmp_path_factory, scenario, overrides):
     """Fly a scenario with overrides and return the directory of the run."""
     path = tmp_path_factory.mktemp(scenario) / "run"
-    run_study(load_study(scenario, overrides), scenario, path, executor_factory=InProcessExecutor, overrides=overrides)
+    run_study(
+        load_study(scenario, overrides),
+        scenario,
+        path,
+        executor_factory=InProcessExecutor,
+        overrides=overrides,
+    )
     return path
 
 
@@ -54,6 +60,12 @@ def assert_axes_read_quantity_and_unit(charts):
     for chart in charts:
         for panel in chart.panels:
             named = any(not re.fullmatch(r"[\d.]+", name) for _, name in panel.y_names)
-            for label, bare in ((panel.x_label, panel.x_whole), (panel.y_label, panel.y_whole or named)):
+            for label, bare in (
+                (panel.x_label, panel.x_whole),
+                (panel.y_label, panel.y_whole or named),
+            ):
                 # Names and counts have no unit; an ordinate of names may share its label with the panel to its left.
-                assert re.fullmatch(r"[^\[]*" if bare else r".+ \[[^\]]+\]", label), (chart.name, label)
+                assert re.fullmatch(r"[^\[]*" if bare else r".+ \[[^\]]+\]", label), (
+                    chart.name,
+                    label,
+                )

@@ -12,7 +12,13 @@ from reports.arena.charts import clusters, crossing_chart, effort_charts, track_
 from reports.arena.content import arena_content
 from reports.arena.data import Estimate, read_arena
 from reports.arena.figures import CROSSINGS, ERROR, PLUME_TIME, SULPHUR
-from reports.arena.tables import _interval, by_condition_table, condition_table, plume_table, tracking_table
+from reports.arena.tables import (
+    _interval,
+    by_condition_table,
+    condition_table,
+    plume_table,
+    tracking_table,
+)
 from reports.document.blocks import Table
 from reports.document.chart import Chart
 from reports.registry import content
@@ -68,7 +74,10 @@ def test_there_is_one_mark_a_law_numbered_as_in_the_tables(arena):
     assert sum(len(line.x) for line in panel.lines) == 2
     assert {note.text for note in panel.notes} == {"1", "2"}
     # Page 1 has the first one: the section does not show it once more.
-    assert [chart.name for chart in blocks_of(content(arena.run), Chart, "tracking")] == ["efforts", "tracks1"]
+    assert [chart.name for chart in blocks_of(content(arena.run), Chart, "tracking")] == [
+        "efforts",
+        "tracks1",
+    ]
     assert len(each.panels) == 2
     # The ordinate is logarithmic: its marks are powers of ten.
     error = arena.of(ERROR, arena.entrants[0], "all").mean
@@ -77,7 +86,9 @@ def test_there_is_one_mark_a_law_numbered_as_in_the_tables(arena):
 
 def test_a_law_that_does_not_say_what_it_makes_use_of_is_not_said_to_leave_the_turn_out(arena):
     first, *others = arena.entrants
-    unsaid = replace(arena, entrants=[replace(first, given="its class does not say (given)"), *others])
+    unsaid = replace(
+        arena, entrants=[replace(first, given="its class does not say (given)"), *others]
+    )
     (panel,) = effort_charts(unsaid)[0].panels
     labels = {line.label: len(line.x) for line in panel.lines}
     assert labels["it does not say what it makes use of"] == 1
@@ -86,7 +97,9 @@ def test_a_law_that_does_not_say_what_it_makes_use_of_is_not_said_to_leave_the_t
 
 def test_the_limit_of_any_path_is_drawn_and_listed_where_it_is_known(arena):
     chart = crossing_chart(arena)
-    limits = [line for panel in chart.panels for line in panel.lines if line.label == "limit of any path"]
+    limits = [
+        line for panel in chart.panels for line in panel.lines if line.label == "limit of any path"
+    ]
     # 5 + 4 nu at nu = 0.5 in calm air.
     assert limits[0].x == pytest.approx([7.0, 7.0], abs=1e-3)
     table = by_condition_table(arena, CROSSINGS)
@@ -102,9 +115,15 @@ def test_what_a_minute_is_worth_to_the_measurement_is_drawn_and_listed(arena):
     table = plume_table(arena)
     column = table.head.index("Sulphur error of a minute [% m/m]")
     for row in table.rows:
-        mean, low, high = re.fullmatch(r"([\d.]+|∞) \(([\d.]+|∞)–([\d.]+|∞)\)", row[column]).groups()
+        mean, low, high = re.fullmatch(
+            r"([\d.]+|∞) \(([\d.]+|∞)–([\d.]+|∞)\)", row[column]
+        ).groups()
         # Flights of 40 s about the vessel may not meet the plume at all, and then leave it unknown.
-        assert float(low.replace("∞", "inf")) <= float(mean.replace("∞", "inf")) <= float(high.replace("∞", "inf"))
+        assert (
+            float(low.replace("∞", "inf"))
+            <= float(mean.replace("∞", "inf"))
+            <= float(high.replace("∞", "inf"))
+        )
     # Information adds up: what is shown is the inverse root of the mean, and less of it is better.
     shown = {entrant.name: arena.of(SULPHUR, entrant, "all") for entrant in arena.entrants}
     best = min(shown.values(), key=lambda estimate: estimate.mean)
@@ -113,7 +132,10 @@ def test_what_a_minute_is_worth_to_the_measurement_is_drawn_and_listed(arena):
 
 
 def test_tracks_are_shown_of_each_law_from_the_same_start(arena):
-    assert [[len(chart.panels) for chart in track_charts(arena, tracking=tracking)] for tracking in (True, False)] == [[2], [1]]
+    assert [
+        [len(chart.panels) for chart in track_charts(arena, tracking=tracking)]
+        for tracking in (True, False)
+    ] == [[2], [1]]
 
 
 def test_numbers_that_would_hide_each_other_are_written_together():
@@ -140,7 +162,10 @@ def test_what_the_conditions_set_is_said_in_words(arena):
 
 def test_the_headline_names_the_best_of_each_task(run):
     verdict = arena_content(run).verdict
-    assert re.match(r"Tracking: npfg is best, \d+\.\d\d m rms; circling: npfg \(circle\) is best", verdict.headline)
+    assert re.match(
+        r"Tracking: npfg is best, \d+\.\d\d m rms; circling: npfg \(circle\) is best",
+        verdict.headline,
+    )
 
 
 def test_of_one_flight_in_each_condition_no_law_is_called_best(run, monkeypatch):
@@ -148,13 +173,18 @@ def test_of_one_flight_in_each_condition_no_law_is_called_best(run, monkeypatch)
     monkeypatch.setattr("reports.arena.content.read_arena", lambda _: once)
     found = arena_content(run)
     assert ", each flown once in each of " in found.flown
-    assert re.match(r"Tracking: npfg has the least error, \d+\.\d\d m rms; circling: ", found.verdict.headline)
+    assert re.match(
+        r"Tracking: npfg has the least error, \d+\.\d\d m rms; circling: ", found.verdict.headline
+    )
     assert "which law is best is not shown" in found.verdict.detail
 
 
 def test_a_mean_of_single_flights_stands_without_an_interval():
     assert _interval(Estimate(mean=0.12, flights=2), ERROR) == "0.12"
-    assert _interval(Estimate(mean=0.12, low=0.1, high=0.15, flights=4), ERROR) == "0.12 (0.10\N{EN DASH}0.15)"
+    assert (
+        _interval(Estimate(mean=0.12, low=0.1, high=0.15, flights=4), ERROR)
+        == "0.12 (0.10\N{EN DASH}0.15)"
+    )
 
 
 def test_a_mean_without_an_interval_is_on_its_panel(arena, monkeypatch):
@@ -165,13 +195,24 @@ def test_a_mean_without_an_interval_is_on_its_panel(arena, monkeypatch):
 
 def of_a_few_flights(run, path, missing):
     """Return the report of a copy of an arena of which the flights that are named by what they contain could not be flown."""
-    rows, record = run.summary.copy(), json.loads((run.path / "arena.json").read_text(encoding="utf-8"))
+    rows, record = (
+        run.summary.copy(),
+        json.loads((run.path / "arena.json").read_text(encoding="utf-8")),
+    )
     gone = rows["flight_id"].str.contains(missing)
-    rows.loc[gone, ["duration_s", "min_distance_m", "criteria_met", "kept_out"]] = [math.nan, math.nan, False, False]
+    rows.loc[gone, ["duration_s", "min_distance_m", "criteria_met", "kept_out"]] = [
+        math.nan,
+        math.nan,
+        False,
+        False,
+    ]
     rows.loc[gone, ["outcome", "message"]] = ["infeasible", "too near"]
     windows = pd.read_csv(run.path / "window.csv").set_index("flight_id")
     figures = {
-        name: [{} if gone[i] else windows.loc[row["flight_id"]].dropna().to_dict() for i, row in of.iterrows()]
+        name: [
+            {} if gone[i] else windows.loc[row["flight_id"]].dropna().to_dict()
+            for i, row in of.iterrows()
+        ]
         for name, of in rows.groupby("trial")
     }
     named = ("name", "law", "task", "given", "defaults")
@@ -185,7 +226,9 @@ def test_a_law_that_lacks_flights_is_named_and_not_called_best(run, tmp_path):
     found = of_a_few_flights(run, tmp_path, "wind_npfg_kinematic_00001")
     assert found.verdict.headline.startswith("Tracking: pure pursuit is best, ")
     assert found.verdict.tone == "warn"
-    assert found.verdict.failures == ["npfg: 1 of 4 flights could not be flown, and it is not compared: infeasible: too near"]
+    assert found.verdict.failures == [
+        "npfg: 1 of 4 flights could not be flown, and it is not compared: infeasible: too near"
+    ]
     table = tracking_table(read_arena(replace(run, path=tmp_path)), tracking=True)
     # Its mean is by far the better one, of the flights that it has.
     assert [row[1] for row in table.rows] == ["pure pursuit", "npfg"]
@@ -204,8 +247,12 @@ def test_an_arena_of_which_nothing_was_flown_is_red(run, tmp_path):
 
 
 def test_where_each_law_lacks_another_flight_none_is_called_best(run, tmp_path):
-    headline = of_a_few_flights(run, tmp_path, "calm_npfg_kinematic_00000|wind_pure_pursuit_kinematic_00001").verdict.headline
-    assert headline.startswith("Tracking: no law is called best, as each lacks flights; circling: npfg (circle) is best")
+    headline = of_a_few_flights(
+        run, tmp_path, "calm_npfg_kinematic_00000|wind_pure_pursuit_kinematic_00001"
+    ).verdict.headline
+    assert headline.startswith(
+        "Tracking: no law is called best, as each lacks flights; circling: npfg (circle) is best"
+    )
 
 
 def test_an_arena_that_was_not_evaluated_is_reported_as_flights(path, run):

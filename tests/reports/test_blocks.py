@@ -8,7 +8,17 @@ import numpy as np
 import pypdfium2
 import pytest
 
-from reports.document.blocks import Card, Content, FlightContent, FlightPicker, Heading, Section, Table, Text, Verdict
+from reports.document.blocks import (
+    Card,
+    Content,
+    FlightContent,
+    FlightPicker,
+    Heading,
+    Section,
+    Table,
+    Text,
+    Verdict,
+)
 from reports.document.chart import Chart, Line, Panel
 from reports.registry import _figures
 from reports.render.html import write_html
@@ -19,7 +29,11 @@ from reports.run.letterhead import Letterhead
 def a_chart(name):
     x = np.array([1.0, 2.0])
     line = Line(x=x, y=x, label="curve", colour="blue")
-    return Chart(name=name, caption=f"Caption of {name}.", panels=[Panel(x_label="Time [s]", y_label="Distance [m]", lines=[line])])
+    return Chart(
+        name=name,
+        caption=f"Caption of {name}.",
+        panels=[Panel(x_label="Time [s]", y_label="Distance [m]", lines=[line])],
+    )
 
 
 def a_report(blocks):
@@ -30,7 +44,14 @@ def a_report(blocks):
         changes="",
         flown="One flight.",
         picture=None,
-        verdict=Verdict(holds=True, complete=True, headline="Good", detail="", failures=[], figures=[Card("Card", "1")]),
+        verdict=Verdict(
+            holds=True,
+            complete=True,
+            headline="Good",
+            detail="",
+            failures=[],
+            figures=[Card("Card", "1")],
+        ),
         sections=[
             Section(anchor="first", title="The first section", nav_title="First", blocks=blocks),
             Section(anchor="second", title="Second section", blocks=[Text("Second text.")]),
@@ -57,7 +78,10 @@ def test_the_navigation_names_every_section_once(tmp_path):
 def test_blocks_appear_in_their_order_with_their_text_escaped(tmp_path):
     table = Table(head=["Head"], rows=[["cell"]], widths=[1.0])
     text = html_of([Text("a < b"), table, Heading("Middle"), a_chart("last")], tmp_path)
-    places = [text.index(part) for part in ("<p>a &lt; b</p>", "<td", "<h3>Middle</h3>", 'data-figure="fig-last"')]
+    places = [
+        text.index(part)
+        for part in ("<p>a &lt; b</p>", "<td", "<h3>Middle</h3>", 'data-figure="fig-last"')
+    ]
     assert places == sorted(places)
 
 
@@ -68,7 +92,9 @@ def test_so_many_columns_are_left_aligned_as_a_table_says(left_columns, lefts, t
 
 
 def test_prose_and_a_missing_head_are_a_tables_own_matter(tmp_path):
-    text = html_of([Table(head=["", ""], rows=[["1", "2"]], widths=[1.0, 1.0], prose=True)], tmp_path)
+    text = html_of(
+        [Table(head=["", ""], rows=[["1", "2"]], widths=[1.0, 1.0], prose=True)], tmp_path
+    )
     assert '<div class="prose">' in text
     assert "<thead>" not in text
     text = html_of([Table(head=["", "", "b"], rows=[["1", "2", "3"]], widths=[1.0] * 3)], tmp_path)
@@ -77,9 +103,15 @@ def test_prose_and_a_missing_head_are_a_tables_own_matter(tmp_path):
 
 
 def test_a_picker_offers_flights_by_their_labels_and_a_report_without_one_has_no_picker(tmp_path):
-    flights = [FlightContent(flight_id=i, label=f"label {i}", title=f"Page {i}", charts=[]) for i in ("a", "b")]
+    flights = [
+        FlightContent(flight_id=i, label=f"label {i}", title=f"Page {i}", charts=[])
+        for i in ("a", "b")
+    ]
     text = html_of([FlightPicker(flights=flights)], tmp_path)
-    assert re.findall(r'<option value="(\w)">(.*?)</option>', text) == [("a", "label a"), ("b", "label b")]
+    assert re.findall(r'<option value="(\w)">(.*?)</option>', text) == [
+        ("a", "label a"),
+        ("b", "label b"),
+    ]
     assert "<option" not in html_of([Text("none")], tmp_path)
 
 
@@ -92,10 +124,18 @@ def test_figures_of_a_flight_have_their_captions_on_the_screen_too(tmp_path):
 
 
 def test_every_block_is_printed_and_each_flight_has_a_heading(tmp_path):
-    flights = [FlightContent(flight_id=i, label=i, title=f"Page {i}", charts=[a_chart("same")] * (i == "a")) for i in ("a", "b")]
+    flights = [
+        FlightContent(
+            flight_id=i, label=i, title=f"Page {i}", charts=[a_chart("same")] * (i == "a")
+        )
+        for i in ("a", "b")
+    ]
     table = Table(head=["Head"], rows=[["cell"]] * 200, widths=[1.0], breakable=True)
     write_pdf(
-        a_report([Text("Text."), Heading("Heading"), a_chart("one"), FlightPicker(flights=flights)]), tmp_path / "flights.pdf"
+        a_report(
+            [Text("Text."), Heading("Heading"), a_chart("one"), FlightPicker(flights=flights)]
+        ),
+        tmp_path / "flights.pdf",
     )
     write_pdf(a_report([Text("Text.")]), tmp_path / "text.pdf")
     write_pdf(a_report([table]), tmp_path / "table.pdf")
@@ -118,7 +158,10 @@ def headings(path):
 
 
 def test_flights_that_are_not_printed_have_a_page_only_where_all_are_asked_for(tmp_path):
-    flights = [FlightContent(flight_id=i, label=i, title=f"Page {i}", charts=[], printed=i == "b") for i in "abc"]
+    flights = [
+        FlightContent(flight_id=i, label=i, title=f"Page {i}", charts=[], printed=i == "b")
+        for i in "abc"
+    ]
     report = a_report([FlightPicker(flights=flights)])
     write_pdf(report, tmp_path / "some.pdf")
     write_pdf(report, tmp_path / "all.pdf", all_flights=True)
@@ -128,7 +171,10 @@ def test_flights_that_are_not_printed_have_a_page_only_where_all_are_asked_for(t
 
 def test_a_long_key_goes_on_over_the_next_line_and_is_copied_whole(tmp_path):
     key = "criteria.law_beyond_heading_rate_max_rad_s"
-    write_pdf(a_report([Table(head=["Key", "Value"], rows=[[key, "no"]], widths=[1.0, 8.0])]), tmp_path / "keys.pdf")
+    write_pdf(
+        a_report([Table(head=["Key", "Value"], rows=[[key, "no"]], widths=[1.0, 8.0])]),
+        tmp_path / "keys.pdf",
+    )
     document = pypdfium2.PdfDocument(tmp_path / "keys.pdf")
     text = "".join(page.get_textpage().get_text_range() for page in document)
     document.close()
@@ -140,7 +186,10 @@ def test_a_long_key_goes_on_over_the_next_line_and_is_copied_whole(tmp_path):
 
 def test_a_second_line_of_negative_figures_stands_below_the_first_in_print(tmp_path):
     cell = "\N{MINUS SIGN}0.03\n(\N{MINUS SIGN}0.04 to \N{MINUS SIGN}0.02)"
-    write_pdf(a_report([Table(head=["Key", "Value"], rows=[["key", cell]], widths=[1.0, 1.0])]), tmp_path / "figures.pdf")
+    write_pdf(
+        a_report([Table(head=["Key", "Value"], rows=[["key", cell]], widths=[1.0, 1.0])]),
+        tmp_path / "figures.pdf",
+    )
     document = pypdfium2.PdfDocument(tmp_path / "figures.pdf")
     heights = {}
     for text in (page.get_textpage() for page in document):
@@ -160,9 +209,15 @@ def test_long_keys_may_go_on_over_the_next_line_on_the_screen_and_short_ones_may
     assert "ω_max &amp; &lt;b&gt;, r_min" in text
 
 
-def test_a_narrow_window_leaves_a_long_text_its_width_and_a_hash_may_go_on_over_the_next_line(tmp_path):
+def test_a_narrow_window_leaves_a_long_text_its_width_and_a_hash_may_go_on_over_the_next_line(
+    tmp_path,
+):
     digest = "0123456789abcdef" * 4
-    table = Table(head=["Sulphur [% m/m]", "Words"], rows=[["short words here", f"{digest}, of the file"]], widths=[1.0, 1.0])
+    table = Table(
+        head=["Sulphur [% m/m]", "Words"],
+        rows=[["short words here", f"{digest}, of the file"]],
+        widths=[1.0, 1.0],
+    )
     text = html_of([table], tmp_path)
     assert f">{'<wbr>'.join([digest[:16]] * 4)}, of the file</td>" in text
     # A long text has a column of 14rem at least, and the table scrolls; a unit is not divided.
@@ -171,7 +226,12 @@ def test_a_narrow_window_leaves_a_long_text_its_width_and_a_hash_may_go_on_over_
 
 
 def test_a_unit_in_the_head_of_a_printed_table_is_not_divided(tmp_path):
-    write_pdf(a_report([Table(head=["Sulphur content [% m/m]", "b"], rows=[["1", "2"]], widths=[1.0, 7.0])]), tmp_path / "unit.pdf")
+    write_pdf(
+        a_report(
+            [Table(head=["Sulphur content [% m/m]", "b"], rows=[["1", "2"]], widths=[1.0, 7.0])]
+        ),
+        tmp_path / "unit.pdf",
+    )
     document = pypdfium2.PdfDocument(tmp_path / "unit.pdf")
     text = "".join(page.get_textpage().get_text_range() for page in document)
     document.close()
@@ -179,13 +239,24 @@ def test_a_unit_in_the_head_of_a_printed_table_is_not_divided(tmp_path):
     assert not re.search(r"\[%\s*[\r\n]+m/m", text)
 
 
-@pytest.mark.parametrize(("rows", "classes"), [(14, 'class="scroll whole"'), (15, 'class="scroll"')])
-def test_a_short_table_stays_on_one_printed_page_and_a_long_one_may_go_on_over_the_next(rows, classes, tmp_path):
+@pytest.mark.parametrize(
+    ("rows", "classes"), [(14, 'class="scroll whole"'), (15, 'class="scroll"')]
+)
+def test_a_short_table_stays_on_one_printed_page_and_a_long_one_may_go_on_over_the_next(
+    rows, classes, tmp_path
+):
     assert classes in html_of([Table(head=["a"], rows=[["1"]] * rows, widths=[1.0])], tmp_path)
 
 
 def test_what_page_1_has_no_room_for_stands_below_the_key_figures_and_nothing_twice():
-    verdict = Verdict(holds=True, complete=False, headline="", detail="", failures=[f"flight {i}" for i in range(7)], figures=[])
+    verdict = Verdict(
+        holds=True,
+        complete=False,
+        headline="",
+        detail="",
+        failures=[f"flight {i}" for i in range(7)],
+        figures=[],
+    )
     heading, *more = _figures(verdict)[1:]
     assert heading == Heading("More failures and remarks")
     assert [*verdict.first_failures[:4], *(text.text for text in more)] == verdict.failures

@@ -24,7 +24,12 @@ def whole(tmp_path_factory):
     """A run whose manifest says that it had a file of each kind; statistics and a design it has not, as if they were gone."""
     folder = tmp_path_factory.mktemp("runs")
     (folder / "short.toml").write_text(short_trial(flights=2, duration=8.0), encoding="utf-8")
-    run_study(load_study(str(folder / "short.toml")), "short", folder / "run", executor_factory=InProcessExecutor)
+    run_study(
+        load_study(str(folder / "short.toml")),
+        "short",
+        folder / "run",
+        executor_factory=InProcessExecutor,
+    )
     return folder / "run"
 
 
@@ -35,8 +40,16 @@ def copy(whole, tmp_path):
 
 def named(run):
     """Return what the report says is missing: file, state, and what it does not show."""
-    sections = [section for section in content(read_run(run)).sections if section.anchor == "missing"]
-    return [tuple(row) for section in sections for block in section.blocks if isinstance(block, Table) for row in block.rows]
+    sections = [
+        section for section in content(read_run(run)).sections if section.anchor == "missing"
+    ]
+    return [
+        tuple(row)
+        for section in sections
+        for block in section.blocks
+        if isinstance(block, Table)
+        for row in block.rows
+    ]
 
 
 def had(run, *names):
@@ -48,7 +61,9 @@ def had(run, *names):
 
 def test_flights_of_a_scenario_whose_name_is_all_digits_are_found(copy):
     for table in copy.glob("*.csv"):
-        table.write_text(table.read_text(encoding="utf-8").replace(",short,", ",2026,"), encoding="utf-8")
+        table.write_text(
+            table.read_text(encoding="utf-8").replace(",short,", ",2026,"), encoding="utf-8"
+        )
     manifest = manifest_of(copy)
     manifest["trials"] = {"2026": manifest["trials"]["short"]}
     write_manifest(copy, manifest)
@@ -59,7 +74,11 @@ def test_flights_of_a_scenario_whose_name_is_all_digits_are_found(copy):
 
 
 @pytest.mark.parametrize(
-    ("study", "words"), [("flights", "plume-flight run with --resume makes them again"), ("measurement", "plume-flight estimate")]
+    ("study", "words"),
+    [
+        ("flights", "plume-flight run with --resume makes them again"),
+        ("measurement", "plume-flight estimate"),
+    ],
 )
 def test_what_is_missing_is_made_again_by_the_command_that_made_it(copy, study, words):
     (copy / "crossings.csv").unlink()
@@ -107,7 +126,11 @@ def test_a_file_that_is_gone_is_named_with_what_is_not_shown_for_it(copy, name, 
     ],
 )
 def test_a_file_that_is_empty_or_cut_is_named(copy, name, cut):
-    whole = (copy / name).read_bytes() if (copy / name).is_file() else b'{"confidence": 0.95, "violation"'
+    whole = (
+        (copy / name).read_bytes()
+        if (copy / name).is_file()
+        else b'{"confidence": 0.95, "violation"'
+    )
     (copy / name).write_bytes(whole[:cut])
     ((found, state, _),) = named(copy)
     assert (found, state) == (name, "cannot be read")
@@ -119,8 +142,13 @@ def test_the_exit_status_says_that_pieces_are_missing(copy):
     ended = run_command("reports.build", copy)
     assert ended.status == 1
     missing = copy / "flights" / "short_00000.parquet"
-    assert ended.errors.splitlines()[-1] == f"missing: {missing} is gone or cannot be read; the report says what it does not show"
-    assert "flights/short_00000.parquet" in (copy / "report.html").read_text(encoding="utf-8").replace("<wbr>", "")
+    assert (
+        ended.errors.splitlines()[-1]
+        == f"missing: {missing} is gone or cannot be read; the report says what it does not show"
+    )
+    assert "flights/short_00000.parquet" in (copy / "report.html").read_text(
+        encoding="utf-8"
+    ).replace("<wbr>", "")
     assert (copy / "report.pdf").is_file()
 
 
@@ -128,7 +156,10 @@ def test_the_exit_status_says_that_pieces_are_missing(copy):
 def test_an_export_of_a_run_with_a_name_that_leads_elsewhere_is_refused(copy, name):
     change_manifest(copy, name=name)
     before = sorted(copy.parent.parent.rglob("*"))
-    assert_refused(run_command("reports.build", copy, "--export", "tracks_csv"), "no name of a file; do not use this run")
+    assert_refused(
+        run_command("reports.build", copy, "--export", "tracks_csv"),
+        "no name of a file; do not use this run",
+    )
     assert sorted(copy.parent.parent.rglob("*")) == before
 
 
@@ -142,16 +173,34 @@ def test_an_export_into_a_link_is_refused(copy, tmp_path):
 @pytest.mark.parametrize(
     ("name", "change", "words"),
     [
-        ("summary.csv", lambda text: text[:1000], "' has 0 rows; by manifest.json the run ended with 2: "),
-        ("summary.csv", lambda text: text[: text[:-1].rindex("\n") + 1], "' has 1 rows; by manifest.json the run ended with 2: "),
+        (
+            "summary.csv",
+            lambda text: text[:1000],
+            "' has 0 rows; by manifest.json the run ended with 2: ",
+        ),
+        (
+            "summary.csv",
+            lambda text: text[: text[:-1].rindex("\n") + 1],
+            "' has 1 rows; by manifest.json the run ended with 2: ",
+        ),
         ("summary.csv", lambda text: text[: text.rindex(",")], "' is cut off; "),
         ("draws.csv", lambda text: text[: text.rindex(",")], "' is cut off; "),
-        ("summary.csv", lambda text: text.replace(",", ";"), "' is separated by semicolons; separate its columns by commas"),
-        ("summary.csv", lambda text: text.replace("False", "maybe"), "' has 'maybe' in criteria_met; it must be True or False: "),
+        (
+            "summary.csv",
+            lambda text: text.replace(",", ";"),
+            "' is separated by semicolons; separate its columns by commas",
+        ),
+        (
+            "summary.csv",
+            lambda text: text.replace("False", "maybe"),
+            "' has 'maybe' in criteria_met; it must be True or False: ",
+        ),
         ("summary.csv", lambda text: text[:0], "' cannot be read: No columns to parse from file; "),
     ],
 )
-def test_a_table_that_was_cut_or_saved_otherwise_is_refused_with_its_name_and_the_remedy(copy, name, change, words):
+def test_a_table_that_was_cut_or_saved_otherwise_is_refused_with_its_name_and_the_remedy(
+    copy, name, change, words
+):
     table = copy / name
     table.write_text(change(table.read_text(encoding="utf-8")), encoding="utf-8")
     ended = run_command("reports.build", copy)

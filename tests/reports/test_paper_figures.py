@@ -23,7 +23,10 @@ def sim_3(tmp_path_factory):
     raised = history.assign(altitude_m=history["altitude_m"] + 60.0)
     raised.to_parquet(run.path / time_history_path("sim3_kinematic"))
     tables = {name: getattr(run, name) for name in ("summary", "crossings")}
-    tables = {name: rows[rows["flight_id"] == "steady_00000"].assign(flight_id="sim3_kinematic") for name, rows in tables.items()}
+    tables = {
+        name: rows[rows["flight_id"] == "steady_00000"].assign(flight_id="sim3_kinematic")
+        for name, rows in tables.items()
+    }
     return replace(run, manifest=run.manifest | {"config": config}, **tables)
 
 
@@ -41,4 +44,8 @@ def test_figure_9_shows_the_distance_that_the_keep_out_area_is_about(sim_3, shap
     assert crossed.y == pytest.approx(table, abs=0.1)
     on_curve = np.interp(crossed.x, flown.x, flown.y)
     # 200 m and more away, and 60 m higher. Within 0.2 s it turns.
-    assert (np.abs(on_curve - crossed.y).max() < 0.5) if shape == "cylinder" else (on_curve - crossed.y).min() > 5.0
+    assert (
+        (np.abs(on_curve - crossed.y).max() < 0.5)
+        if shape == "cylinder"
+        else (on_curve - crossed.y).min() > 5.0
+    )

@@ -28,11 +28,16 @@ def test_the_verdict_compares_with_the_oracle(run):
     found = patrol_content(run).verdict
     figures = {card.name: card for card in found.figures}
     (row,) = run.summary.to_dict("records")
-    assert figures["Correct verdicts, over the oracle's"].value == f"{row['correct']} of {row['oracle_verdicts']}"
+    assert (
+        figures["Correct verdicts, over the oracle's"].value
+        == f"{row['correct']} of {row['oracle_verdicts']}"
+    )
     assert figures["Keep-out violations"].value == "0"
     assert found.holds
     # 80 % and 5 % are the catalog's.
-    assert figures["Correct verdicts, over the oracle's"].met == (row["correct"] >= 0.8 * row["oracle_verdicts"])
+    assert figures["Correct verdicts, over the oracle's"].met == (
+        row["correct"] >= 0.8 * row["oracle_verdicts"]
+    )
 
 
 def test_keys_that_are_sampled_say_how_and_not_what_they_are_where_nothing_samples_them(run):
@@ -48,16 +53,23 @@ def of_row(run, **values):
     return patrol_content(replace(run, summary=run.summary.assign(**values))).verdict
 
 
-@pytest.mark.parametrize(("oracle", "words"), [(0, "no correct verdict"), (1, "1 correct verdict"), (2, "2 correct verdicts")])
+@pytest.mark.parametrize(
+    ("oracle", "words"),
+    [(0, "no correct verdict"), (1, "1 correct verdict"), (2, "2 correct verdicts")],
+)
 def test_patrols_that_served_no_ship_are_red_and_claim_no_share(run, oracle, words):
-    none = dict.fromkeys(("served", "verdicts", "correct", "wrong", "open", "keepout_violations"), 0)
+    none = dict.fromkeys(
+        ("served", "verdicts", "correct", "wrong", "open", "keepout_violations"), 0
+    )
     found = of_row(run, **none, oracle_verdicts=oracle, kept_out=True, criteria_met=True)
     assert (found.headline, found.tone) == (f"No ship was served, and an oracle has {words}", "bad")
     figures = {card.name: card.met for card in found.figures}
     assert figures["Ships served"] is False
     assert figures["Keep-out violations"] is False
     assert figures["Correct verdicts, over the oracle's"] is (False if oracle else None)
-    assert figures["Wrong verdicts"] is figures["Patrols that kept out, with their aircraft"] is None
+    assert (
+        figures["Wrong verdicts"] is figures["Patrols that kept out, with their aircraft"] is None
+    )
 
 
 def test_a_share_of_an_oracle_without_verdicts_is_not_told(run):
@@ -98,25 +110,45 @@ def test_bars_are_as_long_as_the_stretches_and_stand_in_the_ships_rows(run):
         own = patrol.phases[patrol.phases["phase"] == line.label]
         lasts = np.nansum(np.diff(line.x.reshape(-1, 3)[:, :2], axis=1))
         # Minutes in the figure, seconds in the table.
-        assert lasts == pytest.approx((own["ends_s"] - own["begins_s"]).sum() / 60.0, rel=1e-9), line.label
+        assert lasts == pytest.approx((own["ends_s"] - own["begins_s"]).sum() / 60.0, rel=1e-9), (
+            line.label
+        )
         assert set(line.y[np.isfinite(line.y)]) == set(2.0 - own["ship"])
-    assert {line.label for line in time_lines(patrols).panels[0].lines} == set(patrol.phases["phase"]) | {"leaving", "measuring"}
+    assert {line.label for line in time_lines(patrols).panels[0].lines} == set(
+        patrol.phases["phase"]
+    ) | {"leaving", "measuring"}
 
 
 def test_the_map_has_every_ship_and_marks_those_that_are_not_served(run):
     (patrol,) = read_patrols(run).patrols
     shown, _ = patrol_chart(patrol).panels
     assert sum(line.label == "ship" for line in shown.lines) == 2
-    assert sum(line.label == "not served" for line in shown.lines) == patrol.ships["position"].isna().sum() == 1
+    assert (
+        sum(line.label == "not served" for line in shown.lines)
+        == patrol.ships["position"].isna().sum()
+        == 1
+    )
     assert {note.text for note in shown.notes} >= {"0", "1", "N"}
     served = ship_table(patrol, 0).rows[int(patrol.ships["position"].notna().to_numpy().argmax())]
     assert "correct" in served[6] or "open" in served[6]
     # Ship and turn are those of ships.csv, both from 0: of one served ship the turn is 0.
-    assert (served[0], served[11]) == (str(patrol.ships["ship"][patrol.ships["position"] == 0].item()), "0")
+    assert (served[0], served[11]) == (
+        str(patrol.ships["ship"][patrol.ships["position"] == 0].item()),
+        "0",
+    )
 
 
 def test_a_patrol_that_failed_is_a_row_of_dashes_with_its_reason(run):
-    failed = pd.DataFrame([{"flight_id": "patrol_00001", "criteria_met": False, "outcome": "failed", "message": "no room"}])
+    failed = pd.DataFrame(
+        [
+            {
+                "flight_id": "patrol_00001",
+                "criteria_met": False,
+                "outcome": "failed",
+                "message": "no room",
+            }
+        ]
+    )
     both = replace(run, summary=pd.concat([run.summary, failed], ignore_index=True))
     assert oracle_table(read_patrols(both)).rows[1][1:] == ["–"] * 13
     found = patrol_content(both)
@@ -126,7 +158,10 @@ def test_a_patrol_that_failed_is_a_row_of_dashes_with_its_reason(run):
 
 def test_one_verdict_is_told_as_one_and_the_report_is_judged_as_the_study_is(run):
     found = of_row(run, correct=1, wrong=0, verdicts=1, oracle_verdicts=1)
-    assert (found.headline, found.complete) == ("1 correct verdict, 100 % of an oracle's, 0 wrong", True)
+    assert (found.headline, found.complete) == (
+        "1 correct verdict, 100 % of an oracle's, 0 wrong",
+        True,
+    )
     # The study's exit status is of the same sums: a patrol that did not come through fails both.
     fallen = replace(run, summary=run.summary.assign(criteria_met=False))
     assert (patrol_content(fallen).verdict.holds, read_patrols(fallen).counts.met) == (False, False)

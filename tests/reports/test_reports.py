@@ -10,7 +10,13 @@ import numpy as np
 import pandas as pd
 import pytest
 from design_runs import record
-from report_parts import assert_axes_read_quantity_and_unit, blocks_of, built, draw_all_but, named_charts
+from report_parts import (
+    assert_axes_read_quantity_and_unit,
+    blocks_of,
+    built,
+    draw_all_but,
+    named_charts,
+)
 
 from reports.build import build_reports
 from reports.document.blocks import FlightPicker, Table
@@ -58,7 +64,10 @@ def flights_of(report):
 
 
 def charts_of(report):
-    return [*blocks_of(report, Chart), *(chart for flight in flights_of(report) for chart in flight.charts)]
+    return [
+        *blocks_of(report, Chart),
+        *(chart for flight in flights_of(report) for chart in flight.charts),
+    ]
 
 
 def test_both_reports_are_built_from_disk_alone(copy, monkeypatch):
@@ -75,16 +84,26 @@ def test_the_sweep_shows_everything_in_its_place(report):
     assert [section.anchor for section in report.sections] == [
         "figures", "trials", "trial1", "comparison", "failed", "flights", "innerloop", "parameters", "provenance",
     ]  # fmt: skip
-    names = {section.anchor: [c.name for c in blocks_of(report, Chart, section.anchor)] for section in report.sections}
-    assert names["trial1"] == [f"trial1-nu1-{what}" for what in ("interval", "distance", "errors", "command")]
+    names = {
+        section.anchor: [c.name for c in blocks_of(report, Chart, section.anchor)]
+        for section in report.sections
+    }
+    assert names["trial1"] == [
+        f"trial1-nu1-{what}" for what in ("interval", "distance", "errors", "command")
+    ]
     assert names["comparison"] == ["trial1-comparison"]
     assert names["innerloop"] == AUTOPILOT
-    tables = {section.anchor: len(blocks_of(report, Table, section.anchor)) for section in report.sections}
+    tables = {
+        section.anchor: len(blocks_of(report, Table, section.anchor)) for section in report.sections
+    }
     assert tables == {
         "figures": 1, "trials": 1, "trial1": 1, "comparison": 1, "failed": 1, "flights": 0, "innerloop": 3, "parameters": 2,
         "provenance": 1,
     }  # fmt: skip
-    assert all([chart.name for chart in flight.charts] == ["tracks", "histories"] for flight in flights_of(report)[:2])
+    assert all(
+        [chart.name for chart in flight.charts] == ["tracks", "histories"]
+        for flight in flights_of(report)[:2]
+    )
 
 
 def test_names_that_become_anchors_and_files_are_unique(report):
@@ -112,7 +131,10 @@ def test_every_chart_is_drawn_alike_on_screen_and_in_print(report):
 def test_no_curve_is_empty_or_not_a_number_where_there_is_data(report):
     for chart in charts_of(report):
         for panel in chart.panels:
-            assert any(np.isfinite(line.y).any() for line in panel.lines), (chart.name, panel.y_label)
+            assert any(np.isfinite(line.y).any() for line in panel.lines), (
+                chart.name,
+                panel.y_label,
+            )
 
 
 @pytest.mark.usefixtures("without_single_flights")
@@ -134,8 +156,13 @@ def test_a_flight_of_a_comparison_is_drawn(run_path):
 
 def test_without_time_histories_no_flight_is_said_to_be_printed(copy):
     shutil.rmtree(copy / "flights")
-    (section,) = (section for section in content(read_run(copy)).sections if section.anchor == "flights")
-    assert "none has a time history (histories)" in section.blocks[0].text or "report.pdf 1 of them" in section.blocks[0].text
+    (section,) = (
+        section for section in content(read_run(copy)).sections if section.anchor == "flights"
+    )
+    assert (
+        "none has a time history (histories)" in section.blocks[0].text
+        or "report.pdf 1 of them" in section.blocks[0].text
+    )
 
 
 def test_an_infeasible_flight_is_in_the_report_with_its_reason(report):
@@ -155,7 +182,9 @@ def test_every_key_that_acts_is_among_the_parameters(run_path, report):
     for section, values in config.items():
         if isinstance(values, dict) and section not in ("sweep", "comparison"):
             for key in values:
-                assert (f"{section}.{key}" in listed) == (not unused(scenario, f"{section}.{key}")), key
+                assert (f"{section}.{key}" in listed) == (
+                    not unused(scenario, f"{section}.{key}")
+                ), key
     for row in parameters.rows:
         assert row[-1], row[0]
 
@@ -178,7 +207,9 @@ def test_an_interrupted_run_can_be_reported_on(copy):
     assert "continue it with --resume" in html_of(content(read_run(copy)), copy)
 
 
-def test_of_a_sweep_the_closest_flight_and_a_typical_one_are_printed_and_all_if_asked_for(report, copy):
+def test_of_a_sweep_the_closest_flight_and_a_typical_one_are_printed_and_all_if_asked_for(
+    report, copy
+):
     flights = {flight.flight_id: flight for flight in flights_of(report)}
     # Of the three one cannot be flown, and is printed with its reason; of the two others one is the closest, one the median.
     assert [flight_id for flight_id, flight in flights.items() if flight.printed] == list(flights)
@@ -186,7 +217,9 @@ def test_of_a_sweep_the_closest_flight_and_a_typical_one_are_printed_and_all_if_
     (section,) = (section for section in report.sections if section.anchor == "flights")
     assert "report.pdf 3 of them, by what each shows: " in section.blocks[0].text
     summary = pd.read_csv(copy / "summary.csv")
-    more = summary[summary["flight_id"] == "nu_0.50"].assign(flight_id="nu_0.51", min_distance_m=215.0)
+    more = summary[summary["flight_id"] == "nu_0.50"].assign(
+        flight_id="nu_0.51", min_distance_m=215.0
+    )
     pd.concat([summary, more]).to_csv(copy / "summary.csv", index=False)
     longer = flights_of(content(read_run(copy)))
     assert not {flight.flight_id: flight.printed for flight in longer}["nu_0.51"]
@@ -223,7 +256,10 @@ def test_poles_are_shown_as_far_out_as_the_aircraft_has_them(copy):
     assert panel.y_range == pytest.approx((-1.485, 1.485), rel=1e-9)
 
 
-@pytest.mark.parametrize(("value", "text"), [(1.5, "1.5"), (40.0925, "40.1"), (1234.5, "1230"), (0.3, "0.3"), (0.01, "0.01")])
+@pytest.mark.parametrize(
+    ("value", "text"),
+    [(1.5, "1.5"), (40.0925, "40.1"), (1234.5, "1230"), (0.3, "0.3"), (0.01, "0.01")],
+)
 def test_limits_have_three_digits_and_no_exponent(value, text):
     assert limit(value) == text
 
@@ -239,19 +275,46 @@ def without(path, entry):
     [
         (lambda path: (path / "manifest.json").unlink(), "no manifest.json"),
         (lambda path: (path / "manifest.json").write_text("{", encoding="utf-8"), "cannot be read"),
-        (lambda path: (path / "manifest.json").write_text("{}", encoding="utf-8"), "not that of a run"),
-        (lambda path: (path / "manifest.json").write_text("[1]", encoding="utf-8"), "not that of a run"),
-        (lambda path: change_manifest(path, study="opera"), "study is 'opera', which has no report; those that have one: flights"),
-        (lambda path: change_manifest(path, study=["flights"]), "study is \\['flights'\\], which has no report"),
-        (lambda path: change_manifest(path, study="sea_trial"), "study is 'sea_trial', which has no report"),
+        (
+            lambda path: (path / "manifest.json").write_text("{}", encoding="utf-8"),
+            "not that of a run",
+        ),
+        (
+            lambda path: (path / "manifest.json").write_text("[1]", encoding="utf-8"),
+            "not that of a run",
+        ),
+        (
+            lambda path: change_manifest(path, study="opera"),
+            "study is 'opera', which has no report; those that have one: flights",
+        ),
+        (
+            lambda path: change_manifest(path, study=["flights"]),
+            "study is \\['flights'\\], which has no report",
+        ),
+        (
+            lambda path: change_manifest(path, study="sea_trial"),
+            "study is 'sea_trial', which has no report",
+        ),
         (lambda path: without(path, "format"), "is a run of format None, and this version reads 1"),
         (lambda path: without(path, "study"), "study is None, which has no report"),
-        (lambda path: without(path, "trials"), "another version: its manifest.json has no 'trials'"),
-        (lambda path: change_manifest(path, trials={}), "manifest.json names no trials, whose flights these are"),
+        (
+            lambda path: without(path, "trials"),
+            "another version: its manifest.json has no 'trials'",
+        ),
+        (
+            lambda path: change_manifest(path, trials={}),
+            "manifest.json names no trials, whose flights these are",
+        ),
         (lambda path: change_manifest(path, trials=None), "manifest.json names no trials"),
         (lambda path: (path / "summary.csv").unlink(), "no summary.csv"),
-        (lambda path: (path / "summary.csv").write_text("x,y\n" + 9 * "1,2\n", encoding="utf-8"), "is damaged"),
-        (lambda path: (path / "crossings.csv").write_text("x,y\n1,2\n", encoding="utf-8"), "is damaged"),
+        (
+            lambda path: (path / "summary.csv").write_text("x,y\n" + 9 * "1,2\n", encoding="utf-8"),
+            "is damaged",
+        ),
+        (
+            lambda path: (path / "crossings.csv").write_text("x,y\n1,2\n", encoding="utf-8"),
+            "is damaged",
+        ),
     ],
 )
 def test_a_damaged_run_is_refused_in_one_line(copy, damage, words):

@@ -29,7 +29,12 @@ def test_a_parameter_is_written_in_words(value, words):
 
 
 @pytest.mark.parametrize(
-    ("key", "words"), [("fault.at_s", "100 to 250"), ("start.place_m", "100, 250"), ("sweep.keepout.radius_m", "100, 250")]
+    ("key", "words"),
+    [
+        ("fault.at_s", "100 to 250"),
+        ("start.place_m", "100, 250"),
+        ("sweep.keepout.radius_m", "100, 250"),
+    ],
 )
 def test_two_figures_are_a_range_where_their_key_has_limits(key, words):
     assert value_in_words([100.0, 250.0], key) == words
@@ -48,7 +53,13 @@ def test_a_distance_is_written_on_the_side_of_the_radius_on_which_it_lies(distan
 
 @pytest.mark.parametrize(
     ("value", "bound", "words"),
-    [(1.504, 1.5, "1.504"), (1.5, 1.5, "1.5"), (1.61, 1.5, "1.61"), (7.99996, 8.0, "7.99996"), (1234.0, 100.0, "1230")],
+    [
+        (1.504, 1.5, "1.504"),
+        (1.5, 1.5, "1.5"),
+        (1.61, 1.5, "1.61"),
+        (7.99996, 8.0, "7.99996"),
+        (1234.0, 100.0, "1230"),
+    ],
 )
 def test_a_figure_is_written_on_the_side_of_its_limit_on_which_it_lies(value, bound, words):
     assert beside_limit(value, bound) == words
@@ -71,4 +82,6 @@ def test_a_figure_is_written_on_the_side_of_its_limit_on_which_it_lies(value, bo
     ],
 )
 def test_an_ending_is_without_its_advice(outcome, message, words):
-    assert ending(pd.Series({"criteria_met": False, "outcome": outcome, "message": message})) == words
+    assert (
+        ending(pd.Series({"criteria_met": False, "outcome": outcome, "message": message})) == words
+    )

@@ -51,7 +51,11 @@ def small_trials(folder):
     """Fly both trials, two flights each; return the run directory."""
     for name, text in (("steady", STEADY), ("turns", TURNS)):
         (folder / f"{name}.toml").write_text(text, encoding="utf-8")
-    study = TrialList(study="trials", title="Small", trials=[str(folder / "steady.toml"), str(folder / "turns.toml")])
+    study = TrialList(
+        study="trials",
+        title="Small",
+        trials=[str(folder / "steady.toml"), str(folder / "turns.toml")],
+    )
     run_study(study, "small", folder / "run", executor_factory=InProcessExecutor)
     return folder / "run"
 
@@ -66,13 +70,23 @@ def with_values(run, number, **values):
 
 def charts_of(report):
     blocks = [block for section in report.sections for block in section.blocks]
-    flights = [flight for block in blocks if isinstance(block, FlightPicker) for flight in block.flights]
-    return [*(block for block in blocks if isinstance(block, Chart)), *(chart for flight in flights for chart in flight.charts)]
+    flights = [
+        flight for block in blocks if isinstance(block, FlightPicker) for flight in block.flights
+    ]
+    return [
+        *(block for block in blocks if isinstance(block, Chart)),
+        *(chart for flight in flights for chart in flight.charts),
+    ]
 
 
 def rows_of(report, title):
     """Return the cells of a trial in the tables of all trials, but for its title."""
-    return [row[1:] for table in blocks_of(report, Table, "trials") for row in table.rows if row[0] == title]
+    return [
+        row[1:]
+        for table in blocks_of(report, Table, "trials")
+        for row in table.rows
+        if row[0] == title
+    ]
 
 
 def with_criterion(run, trial, key, value):

@@ -31,13 +31,17 @@ def scenario(**changes):
 
 def plan(given, *, seed=1, setup=None, **spreads):
     """Return the plan of a scenario's flight; of the kinematic vehicle without a setup."""
-    return plan_flight(given, flight_id="a", seed=seed, setup=setup or kinematic_setup(given), **spreads)
+    return plan_flight(
+        given, flight_id="a", seed=seed, setup=setup or kinematic_setup(given), **spreads
+    )
 
 
 def work(**changes):
     """Return the work on the one flight of a scenario."""
     experiment = Experiment("trial", scenario(**changes))
-    return FlightWork(experiments=(experiment,), histories=1, setup=None, spreads=PredictedSpreads())
+    return FlightWork(
+        experiments=(experiment,), histories=1, setup=None, spreads=PredictedSpreads()
+    )
 
 
 @dataclass(frozen=True)

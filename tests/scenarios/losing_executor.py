@@ -15,7 +15,12 @@ class LosingExecutor(InProcessExecutor):
 
     def fly(self, tasks: Iterable[Task]) -> Iterator[Result]:
         """Yield the result of every task, in their order."""
-        return (self._work.lost(task, "was killed") if task.number in self._numbers else self._work.fly(task) for task in tasks)
+        return (
+            self._work.lost(task, "was killed")
+            if task.number in self._numbers
+            else self._work.fly(task)
+            for task in tasks
+        )
 
 
 def losing(*numbers: int) -> Callable[[Work], LosingExecutor]:

@@ -83,7 +83,13 @@ from aircraft.fleet.x8 import X8
 SLOW_X8 = replace(X8, name="slow_x8", title="Slow X8", envelope=replace(X8.envelope, airspeed=19.1))
 '''
 
-FILES = {"law.py": LAW, "plume.py": PLUME, "track.py": TRACK, "instrument.py": INSTRUMENT, "aeroplane.py": AIRCRAFT}
+FILES = {
+    "law.py": LAW,
+    "plume.py": PLUME,
+    "track.py": TRACK,
+    "instrument.py": INSTRUMENT,
+    "aeroplane.py": AIRCRAFT,
+}
 
 PARTS = {
     "guidance.law": "law.py:Pursuit",

@@ -55,12 +55,22 @@ uniform = [0.0, 360.0]
 def run(search, out, *overrides, factory=InProcessExecutor, resume=False, progress=lambda *_: None):
     """Fly the search of a scenario file."""
     scenario = load_study(str(search), overrides)
-    return run_study(scenario, "short", out, executor_factory=factory, resume=resume, progress=progress, overrides=overrides)
+    return run_study(
+        scenario,
+        "short",
+        out,
+        executor_factory=factory,
+        resume=resume,
+        progress=progress,
+        overrides=overrides,
+    )
 
 
 def tables(out):
     """Return a run's flights of the search, and those that repeat the worst, each with its row of inputs."""
-    rows = pd.read_csv(out / "summary.csv").merge(pd.read_csv(out / "draws.csv"), on="flight_id", validate="one_to_one")
+    rows = pd.read_csv(out / "summary.csv").merge(
+        pd.read_csv(out / "draws.csv"), on="flight_id", validate="one_to_one"
+    )
     repeated = rows["confirms"].notna()
     return rows[~repeated], rows[repeated]
 
@@ -68,7 +78,10 @@ def tables(out):
 def same_tables(one, other):
     """Assert that two runs have the same flights, and keep the same worst ones."""
     for name in ("summary.csv", "draws.csv"):
-        rows = [pd.read_csv(run / name).drop(columns="wall_time_s", errors="ignore") for run in (one, other)]
+        rows = [
+            pd.read_csv(run / name).drop(columns="wall_time_s", errors="ignore")
+            for run in (one, other)
+        ]
         pd.testing.assert_frame_equal(*rows, check_exact=True)
     assert {p.name: p.read_bytes() for p in (one / "worst").iterdir()} == {
         p.name: p.read_bytes() for p in (other / "worst").iterdir()

@@ -29,7 +29,8 @@ def study_rows(flights, seed=20261121):
             "keepout_radius_m": RADIUS,
             "keepout_violations": 0,
             "min_distance_m": RADIUS + clearance,
-            "crossing_interval_mean_s": PREDICTED * (1.0 + 0.001 * generator.standard_normal(flights)),
+            "crossing_interval_mean_s": PREDICTED
+            * (1.0 + 0.001 * generator.standard_normal(flights)),
             "crossing_interval_predicted_s": PREDICTED,
             "crossing_distance_min_m": RADIUS + clearance + 3.0,
             "crossing_clearance_min_m": clearance + 3.0,
@@ -37,7 +38,9 @@ def study_rows(flights, seed=20261121):
             "settling_time_s": generator.uniform(80.0, 140.0, flights),
         }
     )
-    inputs = pd.DataFrame({"flight_id": flight_ids, "wind.speed_mps": wind, "turbulence.level": level})
+    inputs = pd.DataFrame(
+        {"flight_id": flight_ids, "wind.speed_mps": wind, "turbulence.level": level}
+    )
     return rows, inputs
 
 

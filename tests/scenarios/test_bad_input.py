@@ -39,10 +39,20 @@ def folder(tmp_path, monkeypatch):
         (["--out", "a" * 300, "--resume"], ["cannot be written: File name too long"]),
         (
             ["--set", "reports.interval_s=[1e-9, 1e-9]"],
-            ["reports.interval_s is [1e-09, 1e-09] s", "more than 200000 reports", "at least 2.5e-05 s pass", "or fly shorter"],
+            [
+                "reports.interval_s is [1e-09, 1e-09] s",
+                "more than 200000 reports",
+                "at least 2.5e-05 s pass",
+                "or fly shorter",
+            ],
         ),
         (
-            ["--set", f"sweep.wind.from_deg={[*range(200)]}", "--set", f"sweep.vessel.course_deg={[*range(200)]}"],
+            [
+                "--set",
+                f"sweep.wind.from_deg={[*range(200)]}",
+                "--set",
+                f"sweep.vessel.course_deg={[*range(200)]}",
+            ],
             ["sweep has 40000 points; the most is 10000"],
         ),
     ],
@@ -136,7 +146,26 @@ def test_no_home_and_a_terminal_with_ascii_alone_are_enough(folder):
     homes = ("HOME", "XDG_CACHE_HOME", "XDG_CONFIG_HOME", "MPLCONFIGDIR")
     environment = {name: value for name, value in os.environ.items() if name not in homes}
     environment |= {"PYTHONPATH": str(ROOT), "PYTHONIOENCODING": "ascii"}
-    command = [sys.executable, "-c", NO_HOME, "run", "é.toml", "--no-report", "--out", "run", "--jobs", "1"]
-    ended = subprocess.run(command, cwd=folder, env=environment, capture_output=True, text=True, check=False, timeout=60)
+    command = [
+        sys.executable,
+        "-c",
+        NO_HOME,
+        "run",
+        "é.toml",
+        "--no-report",
+        "--out",
+        "run",
+        "--jobs",
+        "1",
+    ]
+    ended = subprocess.run(
+        command,
+        cwd=folder,
+        env=environment,
+        capture_output=True,
+        text=True,
+        check=False,
+        timeout=60,
+    )
     assert ended.returncode == 0, ended.stderr
     assert "\\xe9_00000: " in ended.stdout

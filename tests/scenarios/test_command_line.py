@@ -41,7 +41,10 @@ def run_apart(arguments, errors):
     # Also where pytest itself was started to ignore it, as a script does behind ``&``.
     signal.signal(signal.SIGINT, signal.default_int_handler)
     sys.argv = ["scenarios.run", *map(str, arguments)]
-    with errors.open("w", encoding="utf-8") as sys.stderr, Path(os.devnull).open("w", encoding="utf-8") as sys.stdout:
+    with (
+        errors.open("w", encoding="utf-8") as sys.stderr,
+        Path(os.devnull).open("w", encoding="utf-8") as sys.stdout,
+    ):
         main()
 
 
@@ -65,7 +68,8 @@ for fidelity in ("kinematic", "six_dof"):
 
 
 STEPS = {
-    "import scenarios.run, innerloop.design, reports.build": HEAVY | {"numpy", "jsbsim", "plotly", "pydantic"},
+    "import scenarios.run, innerloop.design, reports.build": HEAVY
+    | {"numpy", "jsbsim", "plotly", "pydantic"},
     "from scenarios.console.describe import described; described('payload.sensor')": HEAVY,
     FLIGHTS: DESIGNING,
 }
@@ -75,15 +79,29 @@ STEPS = {
 @pytest.mark.usefixtures("x8_design")
 def test_what_is_not_needed_is_not_imported():
     unneeded = "if found := sorted({!r} & set(sys.modules)): sys.exit({!r} + ' imports ' + ', '.join(found))"
-    code = ["import sys", *(line for step, heavy in STEPS.items() for line in (step, unneeded.format(heavy, step)))]
-    found = subprocess.run([sys.executable, "-c", "\n".join(code)], cwd=ROOT, capture_output=True, text=True, check=False)
+    code = [
+        "import sys",
+        *(line for step, heavy in STEPS.items() for line in (step, unneeded.format(heavy, step))),
+    ]
+    found = subprocess.run(
+        [sys.executable, "-c", "\n".join(code)],
+        cwd=ROOT,
+        capture_output=True,
+        text=True,
+        check=False,
+    )
     assert found.stderr == ""
     assert found.returncode == 0
 
 
 def test_help_and_list_answer():
     command = [sys.executable, "-m", "scenarios.run", "--help"]
-    assert "--resume" in subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=True, timeout=120).stdout
+    assert (
+        "--resume"
+        in subprocess.run(
+            command, cwd=ROOT, capture_output=True, text=True, check=True, timeout=120
+        ).stdout
+    )
     assert "sweep_nu" in in_process.run_command("scenarios.run", "--list").out
 
 
@@ -93,19 +111,47 @@ def test_help_and_list_answer():
         ([], ["no scenario given", "sweep_nu"]),
         (["sweep_mu"], ["unknown scenario 'sweep_mu'"]),
         (["sweep_nu", "--set", "keepout.radius=5"], ["unknown key 'keepout.radius'"]),
-        (["sweep_nu", "--set", "keepout.radius_m=-1"], ["keepout.radius_m is -1; it must be at least 10 m"]),
+        (
+            ["sweep_nu", "--set", "keepout.radius_m=-1"],
+            ["keepout.radius_m is -1; it must be at least 10 m"],
+        ),
         (["sweep_nu", "--set", "guidance.airspeed_mps=nan"], ["guidance.airspeed_mps", "nan"]),
-        (["sweep_nu", "--set", "guidance.airspeed_mps=60"], ["guidance.airspeed_mps is 60", "Skywalker X8 flies 15.0 to 25.0 m/s"]),
-        (["sweep_nu", "--set", "aircraft=zeppelin"], ["unknown aircraft 'zeppelin'", "plume-flight design --list"]),
+        (
+            ["sweep_nu", "--set", "guidance.airspeed_mps=60"],
+            ["guidance.airspeed_mps is 60", "Skywalker X8 flies 15.0 to 25.0 m/s"],
+        ),
+        (
+            ["sweep_nu", "--set", "aircraft=zeppelin"],
+            ["unknown aircraft 'zeppelin'", "plume-flight design --list"],
+        ),
         (["sweep_nu", "--set", "aircraft=t37"], ["unknown aircraft 't37'", "did you mean 'T37'"]),
-        (["sweep_nu", "--set", "aircraft=SGS"], ["aircraft 'SGS' cannot be flown", "it has no engine"]),
-        (["sweep_nu", "--set", "aircraft=J246"], ["aircraft 'J246' cannot be flown", "rocket engines"]),
-        (["sweep_nu", "--set", "guidance.bank_deg=60"], ["60.0 deg of bank", "stops at 50", "lower guidance.bank_deg"]),
-        (["sea_wind", "--set", 'draws=[{key="guidance.bank_deg", uniform=[55, 60]}]'], ["60.0 deg of bank", "stops at 50"]),
-        (["sweep_nu", "--set", "start.distance_m=[100, 150]"], ["begins at 100 m", "must exceed keepout.radius_m, 200 m"]),
+        (
+            ["sweep_nu", "--set", "aircraft=SGS"],
+            ["aircraft 'SGS' cannot be flown", "it has no engine"],
+        ),
+        (
+            ["sweep_nu", "--set", "aircraft=J246"],
+            ["aircraft 'J246' cannot be flown", "rocket engines"],
+        ),
+        (
+            ["sweep_nu", "--set", "guidance.bank_deg=60"],
+            ["60.0 deg of bank", "stops at 50", "lower guidance.bank_deg"],
+        ),
+        (
+            ["sea_wind", "--set", 'draws=[{key="guidance.bank_deg", uniform=[55, 60]}]'],
+            ["60.0 deg of bank", "stops at 50"],
+        ),
+        (
+            ["sweep_nu", "--set", "start.distance_m=[100, 150]"],
+            ["begins at 100 m", "must exceed keepout.radius_m, 200 m"],
+        ),
         (
             ["sweep_nu", "--set", "guidance.law=own.py:Law"],
-            ["guidance.law: ", "own.py: there is no such file", "relative to the current directory"],
+            [
+                "guidance.law: ",
+                "own.py: there is no such file",
+                "relative to the current directory",
+            ],
         ),
         (
             ["sweep_nu", "--set", "payload.instruments=['sniffer']"],
@@ -113,11 +159,19 @@ def test_help_and_list_answer():
         ),
         (
             ["sweep_nu", "--set", "emission.ship=container"],
-            ["emission.ship is 'container', and plume.model 'straight' has no smoke: set plume.model to 'fluctuating'"],
+            [
+                "emission.ship is 'container', and plume.model 'straight' has no smoke: set plume.model to 'fluctuating'"
+            ],
         ),
         (
-            ["plume_search", *(f"--set=flight.altitude_{key}" for key in ("m=102", "min_m=100", "max_m=105"))],
-            ["flight.altitude_min_m and altitude_max_m are 100 and 105 m", "give them 16 m or more between them"],
+            [
+                "plume_search",
+                *(f"--set=flight.altitude_{key}" for key in ("m=102", "min_m=100", "max_m=105")),
+            ],
+            [
+                "flight.altitude_min_m and altitude_max_m are 100 and 105 m",
+                "give them 16 m or more between them",
+            ],
         ),
         (
             ["sweep_nu", "--set", "vessel.manoeuvres=[{at_s=100, turn_deg=90}]"],
@@ -134,9 +188,18 @@ def test_help_and_list_answer():
         (["sweep_nu", "--resume"], ["--resume needs --out"]),
         (["sweep_nu", "--jobs", "0"], ["--jobs", "greater than or equal to 1"]),
         (["sweep_nu", "--sed", "5"], ["--sed", "--help"]),
-        (["sweep_nu", "--scheduler", "tcp://127.0.0.1:1"], ["--scheduler is tcp://127.0.0.1:1", "add --executor dask"]),
-        (["sea_trial", "--set", "trials=['sea_nowhere']"], ["unknown scenario 'sea_nowhere'", "sea_wind"]),
-        (["sweep_nu", "--scheduler", "tcp://host:1"], ["--scheduler is tcp://host:1 with --executor local", "--executor dask"]),
+        (
+            ["sweep_nu", "--scheduler", "tcp://127.0.0.1:1"],
+            ["--scheduler is tcp://127.0.0.1:1", "add --executor dask"],
+        ),
+        (
+            ["sea_trial", "--set", "trials=['sea_nowhere']"],
+            ["unknown scenario 'sea_nowhere'", "sea_wind"],
+        ),
+        (
+            ["sweep_nu", "--scheduler", "tcp://host:1"],
+            ["--scheduler is tcp://host:1 with --executor local", "--executor dask"],
+        ),
         (["sweep_nu", "--executor", "slurm"], ["--executor", "'slurm'", "'local', 'dask'"]),
     ],
 )
@@ -147,9 +210,13 @@ def test_bad_input_is_one_line_and_exit_status_2(arguments, words, tmp_path, run
 
 
 def test_a_directory_that_holds_another_run_is_left_alone(tmp_path, run_here):
-    (tmp_path / "manifest.json").write_text('{"config_hash": "other", "fingerprint": {}}', encoding="utf-8")
+    (tmp_path / "manifest.json").write_text(
+        '{"config_hash": "other", "fingerprint": {}}', encoding="utf-8"
+    )
     assert_refused(run_here("sweep_nu", "--out", tmp_path, *SHORT), "holds another run", "--resume")
-    assert_refused(run_here("sweep_nu", "--out", tmp_path, "--resume", *SHORT), "another configuration")
+    assert_refused(
+        run_here("sweep_nu", "--out", tmp_path, "--resume", *SHORT), "another configuration"
+    )
     assert [path.name for path in tmp_path.iterdir()] == ["manifest.json"]
 
 
@@ -158,13 +225,29 @@ def test_a_run_that_is_resumed_with_other_keys_says_which_with_both_values(tmp_p
     sweep += ["--set", "fidelity=kinematic", "--set", "sweep.nu=[0.5]"]
 
     def resumed(*changes):
-        return run_here(*sweep, "--resume", *(word for change in changes for word in ("--set", change)))
+        return run_here(
+            *sweep, "--resume", *(word for change in changes for word in ("--set", change))
+        )
 
     run_here(*sweep)
-    assert_refused(resumed("seed=7"), "another configuration: seed was ", ", and is 7 now; resume it with the same scenario")
+    assert_refused(
+        resumed("seed=7"),
+        "another configuration: seed was ",
+        ", and is 7 now; resume it with the same scenario",
+    )
     both = resumed("keepout.radius_m=190", "start.aspect_deg=20.0")
-    assert_refused(both, "keepout.radius_m was 200.0, and is 190.0 now", "start.aspect_deg was not set, and is 20.0 now; resume")
-    many = resumed("seed=7", "keepout.radius_m=190", "start.aspect_deg=20.0", "guidance.bank_deg=40", "guidance.reserve=0.1")
+    assert_refused(
+        both,
+        "keepout.radius_m was 200.0, and is 190.0 now",
+        "start.aspect_deg was not set, and is 20.0 now; resume",
+    )
+    many = resumed(
+        "seed=7",
+        "keepout.radius_m=190",
+        "start.aspect_deg=20.0",
+        "guidance.bank_deg=40",
+        "guidance.reserve=0.1",
+    )
     assert_refused(many, "; and 2 more; resume it")
 
 
@@ -173,13 +256,23 @@ def test_a_run_is_no_scenario_and_its_flights_are_replayed_by_name(tmp_path, run
     (tmp_path / "a").mkdir()
     (tmp_path / "a" / "manifest.json").write_text("{}", encoding="utf-8")
     for name in ("a", "a/flights"):
-        assert_refused(run_here(name), "'a' is a run, not a scenario; to replay one of its flights, give a/flights/ID")
+        assert_refused(
+            run_here(name),
+            "'a' is a run, not a scenario; to replay one of its flights, give a/flights/ID",
+        )
 
 
 def test_flights_that_miss_a_criterion_or_cannot_be_flown_are_exit_status_1(tmp_path, run_here):
     out = tmp_path / "run"
     result = run_here(
-        "sweep_nu", "--out", out, *SHORT, "--set", "sweep.nu=[0.5, 1.0]", "--set", "criteria.tracking_error_rms_m=0.001"
+        "sweep_nu",
+        "--out",
+        out,
+        *SHORT,
+        "--set",
+        "sweep.nu=[0.5, 1.0]",
+        "--set",
+        "criteria.tracking_error_rms_m=0.001",
     )
     assert result.returncode == 1
     assert "must be below 1" in result.stdout
@@ -195,11 +288,20 @@ def test_an_interrupted_run_keeps_what_is_done_and_resumes_to_the_same_result(tm
     settings += ["--set", "criteria.tracking_error_rms_m=5.0"]
     # Flights enough that some are left when the interrupt comes: each takes a tenth of a second.
     nus = [0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9]
-    settings += ["--set", "fidelity=kinematic", "--set", "guidance.rate_hz=10", "--set", f"sweep.nu={nus}"]
+    settings += [
+        "--set",
+        "fidelity=kinematic",
+        "--set",
+        "guidance.rate_hz=10",
+        "--set",
+        f"sweep.nu={nus}",
+    ]
     whole, broken = tmp_path / "whole", tmp_path / "broken"
     assert run_here(*settings, "--out", whole).returncode == 0
     arguments = [*settings, "--out", broken]
-    process = multiprocessing.get_context("fork").Process(target=run_apart, args=(arguments, tmp_path / "errors"))
+    process = multiprocessing.get_context("fork").Process(
+        target=run_apart, args=(arguments, tmp_path / "errors")
+    )
     process.start()
     # A time history is there just before its flight is done: once there are two, the first flight is.
     while len(list((broken / "flights").glob("*.parquet"))) < 2:
@@ -219,12 +321,16 @@ def test_an_interrupted_run_keeps_what_is_done_and_resumes_to_the_same_result(tm
     assert resumed.returncode == 0, resumed.stderr
     columns = [name for name in kept.columns if name != "wall_time_s"]
     pd.testing.assert_frame_equal(
-        pd.read_csv(broken / "summary.csv")[columns], pd.read_csv(whole / "summary.csv")[columns], check_exact=True
+        pd.read_csv(broken / "summary.csv")[columns],
+        pd.read_csv(whole / "summary.csv")[columns],
+        check_exact=True,
     )
     assert (broken / "crossings.csv").read_bytes() == (whole / "crossings.csv").read_bytes()
 
 
-def test_an_interrupted_replay_is_resumed_by_the_command_that_is_printed(tmp_path, run_here, monkeypatch):
+def test_an_interrupted_replay_is_resumed_by_the_command_that_is_printed(
+    tmp_path, run_here, monkeypatch
+):
     out, flight = tmp_path / "a run", tmp_path / "before" / "flights" / "nu_0.30"
     flight.parent.mkdir(parents=True)
     (flight.parents[1] / "manifest.json").touch()
@@ -233,16 +339,33 @@ def test_an_interrupted_replay_is_resumed_by_the_command_that_is_printed(tmp_pat
     def interrupted(study, directory, *, resume, **_):
         calls.append((study, directory, resume))
         summary = StudySummary(done=0, met=False, lines=[], manifest={})
-        return RunResult(directory=directory, what="flights", planned=1, summary=summary, interrupted=True)
+        return RunResult(
+            directory=directory, what="flights", planned=1, summary=summary, interrupted=True
+        )
 
     monkeypatch.setattr("scenarios.engine.runner.fly_study", interrupted)
-    monkeypatch.setattr("scenarios.studies.replay.Replay", lambda name, viewer, **given: (name, viewer, given))
-    typed = [flight, "--aircraft-dir", "my fleet", "--flightgear", "localhost:5550", "--out", out, "--no-report", "--jobs", "1"]
+    monkeypatch.setattr(
+        "scenarios.studies.replay.Replay", lambda name, viewer, **given: (name, viewer, given)
+    )
+    typed = [
+        flight,
+        "--aircraft-dir",
+        "my fleet",
+        "--flightgear",
+        "localhost:5550",
+        "--out",
+        out,
+        "--no-report",
+        "--jobs",
+        "1",
+    ]
     ended = run_here(*typed)
     assert ended.returncode == 130
     program, command, *arguments = shlex.split(ended.stderr.rpartition("Continue with: ")[2])
     assert (program, command, arguments) == ("plume-flight", "run", [*map(str, typed), "--resume"])
-    assert shlex.split(run_here(*arguments).stderr.rpartition("Continue with: ")[2])[2:] == arguments
+    assert (
+        shlex.split(run_here(*arguments).stderr.rpartition("Continue with: ")[2])[2:] == arguments
+    )
     assert len(calls) == 2
     (study, directory, _), (again, there, resume) = calls
     assert study == again == (str(flight), ("localhost", 5550), {"aircraft_dir": Path("my fleet")})
@@ -252,12 +375,27 @@ def test_an_interrupted_replay_is_resumed_by_the_command_that_is_printed(tmp_pat
 def test_an_interrupted_run_is_resumed_by_what_was_typed_with_its_directory(run_here, monkeypatch):
     def interrupted(_study, _stem, directory, **_):
         summary = StudySummary(done=2, met=False, lines=[], manifest={}, beside_left=3)
-        return RunResult(directory=directory, what="flights", planned=9, summary=summary, interrupted=True)
+        return RunResult(
+            directory=directory, what="flights", planned=9, summary=summary, interrupted=True
+        )
 
     monkeypatch.setattr("scenarios.studies.registry.run_study", interrupted)
-    typed = ["sweep_nu", "--jobs", "3", "--seed", "7", "--set", "flight.crossings=3", "--time-limit", "90", "--memory-limit=2.5"]
+    typed = [
+        "sweep_nu",
+        "--jobs",
+        "3",
+        "--seed",
+        "7",
+        "--set",
+        "flight.crossings=3",
+        "--time-limit",
+        "90",
+        "--memory-limit=2.5",
+    ]
     told, _, again = run_here(*typed).stderr.rpartition("Continue with: ")
-    assert told.endswith("interrupted; 2 of 9 flights are done and kept; of the comparisons 3 are left to fly. ")
+    assert told.endswith(
+        "interrupted; 2 of 9 flights are done and kept; of the comparisons 3 are left to fly. "
+    )
     *words, out, directory, resume = shlex.split(again)
     assert words == ["plume-flight", "run", *typed]
     assert (out, resume) == ("--out", "--resume")
@@ -266,9 +404,25 @@ def test_an_interrupted_run_is_resumed_by_what_was_typed_with_its_directory(run_
 
 def test_a_list_of_trials_takes_its_own_keys_and_hands_on_those_of_the_trials(tmp_path, run_here):
     # 0.005 of 200 flights, with the seed and the duration that the trials are told; too short to settle.
-    keys = ["trials=['sea_wind']", "share=0.005", "fidelity=kinematic", "flight.duration_max_s=10", "start.spread_deg=0"]
+    keys = [
+        "trials=['sea_wind']",
+        "share=0.005",
+        "fidelity=kinematic",
+        "flight.duration_max_s=10",
+        "start.spread_deg=0",
+    ]
     settings = [word for key in keys for word in ("--set", key)]
-    result = run_here("sea_trial", *settings, "--seed", "7", "--no-report", "--jobs", "1", "--out", tmp_path / "run")
+    result = run_here(
+        "sea_trial",
+        *settings,
+        "--seed",
+        "7",
+        "--no-report",
+        "--jobs",
+        "1",
+        "--out",
+        tmp_path / "run",
+    )
     assert result.returncode == 1, result.stderr
     assert "flights: 1 planned, 1 flown" in result.stdout
     manifest = manifest_of(tmp_path / "run")

@@ -22,7 +22,9 @@ from tests.scenarios.plugin_files import LAW, PARTS, TRACK, line_of, write_scena
 
 def run(path, out, *overrides, resume=False):
     scenario = load_study(path, overrides)
-    return run_study(scenario, "own", out, executor_factory=InProcessExecutor, resume=resume, overrides=overrides)
+    return run_study(
+        scenario, "own", out, executor_factory=InProcessExecutor, resume=resume, overrides=overrides
+    )
 
 
 def refusal(path, out, *overrides, resume=False):
@@ -70,7 +72,10 @@ def test_a_part_of_one_file_flies_in_a_sweep_and_stands_in_the_manifest(tmp_path
 
 @pytest.mark.usefixtures("asked")
 def test_parts_act_on_the_flight(tmp_path):
-    path = write_scenario(tmp_path, "".join(line_of(key, name) for key, name in PARTS.items() if key != "guidance.law"))
+    path = write_scenario(
+        tmp_path,
+        "".join(line_of(key, name) for key, name in PARTS.items() if key != "guidance.law"),
+    )
     run(path, tmp_path / "run", "sweep.nu=[0.5]")
     (row,) = rows_of(tmp_path / "run")
     # Of the slower aircraft, 19.1 m/s; of the plume's model, 190 deg from the bow, which points north at first.
@@ -96,7 +101,12 @@ def test_a_steering_laws_fields_are_keys_of_guidance(tmp_path):
 
 def test_the_fields_of_every_law_that_is_flown_are_listed(tmp_path):
     laws = f'["cascade", "{tmp_path / "law.py"}:Pursuit"]'
-    listed = {of["key"]: of["value"] for of in parameters(load_study(write_scenario(tmp_path, ""), [f"sweep.guidance.law={laws}"]))}
+    listed = {
+        of["key"]: of["value"]
+        for of in parameters(
+            load_study(write_scenario(tmp_path, ""), [f"sweep.guidance.law={laws}"])
+        )
+    }
     assert listed["guidance.lead_s"] == 1.0
     assert "guidance.lyapunov_gain_per_m2" not in listed
 
@@ -105,7 +115,9 @@ def test_another_law_does_not_inherit_the_keys_of_the_law_that_it_replaces(tmp_p
     path = write_scenario(tmp_path, 'guidance.law = "law.py:Pursuit"\nguidance.lead_s = 0.5\n')
     scenario = load_study(path)
     assert with_values(scenario, {"guidance.law": "lyapunov"}).guidance.model_extra == {}
-    assert with_values(scenario, {"guidance.law": scenario.guidance.law}).guidance.model_extra == {"lead_s": 0.5}
+    assert with_values(scenario, {"guidance.law": scenario.guidance.law}).guidance.model_extra == {
+        "lead_s": 0.5
+    }
     with pytest.raises(InputError, match=r"unknown key 'guidance\.lead_s'"):
         with_values(scenario, {"guidance.law": "lyapunov", "guidance.lead_s": 1.0})
     with pytest.raises(InputError, match="unknown steering law 'nosuch'"):
@@ -123,9 +135,13 @@ def test_another_law_does_not_inherit_the_keys_of_the_law_that_it_replaces(tmp_p
     ],
 )
 def test_a_key_that_the_law_does_not_have_or_cannot_use_is_refused(tmp_path, override, words):
-    assert words in refusal(write_scenario(tmp_path, 'guidance.law = "law.py:Pursuit"\n'), tmp_path / "run", override)
+    assert words in refusal(
+        write_scenario(tmp_path, 'guidance.law = "law.py:Pursuit"\n'), tmp_path / "run", override
+    )
     # And without that law its keys are no keys at all.
-    assert "unknown key 'guidance.lead_s'" in refusal(str(tmp_path / "own.toml"), tmp_path / "run", "guidance={lead_s=1}")
+    assert "unknown key 'guidance.lead_s'" in refusal(
+        str(tmp_path / "own.toml"), tmp_path / "run", "guidance={lead_s=1}"
+    )
 
 
 NEEDY = """
@@ -143,16 +159,22 @@ class Listed:
 """
 
 
-def test_a_field_of_a_law_without_a_default_is_refused_and_one_that_makes_its_default_has_it(tmp_path):
+def test_a_field_of_a_law_without_a_default_is_refused_and_one_that_makes_its_default_has_it(
+    tmp_path,
+):
     (tmp_path / "needy.py").write_text(NEEDY, encoding="utf-8")
     path = write_scenario(tmp_path, "")
     for key in ("guidance.law", "following.margin_law"):
         message = refusal(path, tmp_path / "run", f"{key}={tmp_path}/needy.py:Needy")
         assert "has no default for its field 'lead_s'; give it one" in message
-    assert load_study(path, [f"guidance.law={tmp_path}/needy.py:Listed"]).guidance.law_keys == {"leads": [0.5]}
+    assert load_study(path, [f"guidance.law={tmp_path}/needy.py:Listed"]).guidance.law_keys == {
+        "leads": [0.5]
+    }
 
 
-def test_a_file_is_relative_to_the_scenario_file_and_in_an_override_to_the_current_directory(tmp_path, monkeypatch):
+def test_a_file_is_relative_to_the_scenario_file_and_in_an_override_to_the_current_directory(
+    tmp_path, monkeypatch
+):
     write_scenario(tmp_path, 'guidance.law = "law.py:Pursuit"\n')
     elsewhere = tmp_path / "elsewhere"
     elsewhere.mkdir()
@@ -161,10 +183,14 @@ def test_a_file_is_relative_to_the_scenario_file_and_in_an_override_to_the_curre
     (elsewhere / "trials.toml").write_text(trials, encoding="utf-8")
     monkeypatch.chdir(elsewhere)
     assert load_study("../own.toml").guidance.law == str(tmp_path / "law.py:Pursuit")
-    assert load_study("../own.toml", ["guidance.law=other.py:Pursuit"]).guidance.law == str(elsewhere / "other.py:Pursuit")
+    assert load_study("../own.toml", ["guidance.law=other.py:Pursuit"]).guidance.law == str(
+        elsewhere / "other.py:Pursuit"
+    )
     monkeypatch.chdir(tmp_path)
     # A list of trials hands it on to its trials, wherever they lie.
-    assert load_study("elsewhere/trials.toml").set == (f'guidance.law="{elsewhere / "other.py:Pursuit"}"',)
+    assert load_study("elsewhere/trials.toml").set == (
+        f'guidance.law="{elsewhere / "other.py:Pursuit"}"',
+    )
 
 
 def test_files_may_be_swept_sampled_compared_and_set_in_cases(tmp_path):
@@ -180,23 +206,50 @@ def test_files_may_be_swept_sampled_compared_and_set_in_cases(tmp_path):
         run(str(tmp_path / f"{name}.toml"), tmp_path / name, "sweep.nu=[0.5]")
         assert list(manifest_of(tmp_path / name)["plugins"]) == [str(tmp_path / law)], name
         assert {row["outcome"] for row in rows_of(tmp_path / name)} == {"completed"}, name
-    assert {row["flight_id"][:15] for row in rows_of(tmp_path / "sweep")} == {"nu_0.50_law_Pur", "nu_0.50_law_cas"}
+    assert {row["flight_id"][:15] for row in rows_of(tmp_path / "sweep")} == {
+        "nu_0.50_law_Pur",
+        "nu_0.50_law_cas",
+    }
     assert {row["variant"] for row in rows_of(tmp_path / "comparison", "comparison.csv")} == {"own"}
     case = '[[cases]]\nname = "one"\nset = { "guidance.law" = "law.py:Pursuit", "vessel.speed_ratio" = 0.5 }\n'
-    (tmp_path / "cases.toml").write_text(f'title = "cases"\nfidelity = "kinematic"\n{case}', encoding="utf-8")
-    assert load_study(str(tmp_path / "cases.toml")).cases[0].set["guidance.law"] == str(tmp_path / law)
+    (tmp_path / "cases.toml").write_text(
+        f'title = "cases"\nfidelity = "kinematic"\n{case}', encoding="utf-8"
+    )
+    assert load_study(str(tmp_path / "cases.toml")).cases[0].set["guidance.law"] == str(
+        tmp_path / law
+    )
 
 
 @pytest.mark.parametrize(
     ("key", "text", "words"),
     [
-        ("guidance.law", "import nowhere_to_be_found\n", "own.py does not load: ModuleNotFoundError: No module named 'nowhere_to"),
+        (
+            "guidance.law",
+            "import nowhere_to_be_found\n",
+            "own.py does not load: ModuleNotFoundError: No module named 'nowhere_to",
+        ),
         ("guidance.law", "class Part:\n", "own.py does not load: IndentationError"),
         ("guidance.law", "import sys\nsys.exit(0)\n", "own.py does not load: SystemExit: 0"),
-        ("guidance.law", "\n1 / 0\n", "own.py does not load: ZeroDivisionError: division by zero (own.py:2)"),
-        ("guidance.law", "import beside\n", "(own.py:1); 'beside' lies beside it, but a part is one file, or an installed"),
-        ("vessel.track", "class Of:\n    motion = course = id\nPart = Of()\n", "is an object of class Of; give the class itself"),
-        ("guidance.law", LAW.replace("Pursuit:", "Part:\n    cannot = 'standoff'"), "has cannot = 'standoff'; give the reason"),
+        (
+            "guidance.law",
+            "\n1 / 0\n",
+            "own.py does not load: ZeroDivisionError: division by zero (own.py:2)",
+        ),
+        (
+            "guidance.law",
+            "import beside\n",
+            "(own.py:1); 'beside' lies beside it, but a part is one file, or an installed",
+        ),
+        (
+            "vessel.track",
+            "class Of:\n    motion = course = id\nPart = Of()\n",
+            "is an object of class Of; give the class itself",
+        ),
+        (
+            "guidance.law",
+            LAW.replace("Pursuit:", "Part:\n    cannot = 'standoff'"),
+            "has cannot = 'standoff'; give the reason",
+        ),
         (
             "guidance.law",
             LAW.replace("Pursuit:", "Part:\n    cannot = {'oscillaton': 'no'}"),
@@ -207,23 +260,49 @@ def test_files_may_be_swept_sampled_compared_and_set_in_cases(tmp_path):
             LAW.replace("Pursuit:", "Part:\n    cannot = {'standoff': 3}"),
             "has cannot['standoff'] = 3; give the reason",
         ),
-        ("study", "class Part: ...\n", "has no method work(); see the Protocol in scenarios.studies"),
+        (
+            "study",
+            "class Part: ...\n",
+            "has no method work(); see the Protocol in scenarios.studies",
+        ),
         (
             "study",
             "class Part:\n    work = run = postprocess = export = summary = planned = None.__init__\n",
             "Part': TypeError: Part() takes no arguments",
         ),
         ("guidance.law", "class Pert: ...\n", "own.py has no 'Part'; did you mean 'Pert'?"),
-        ("guidance.law", "class Part: ...\n", "has no method heading_rate(); see the Protocol in gnc.laws"),
-        ("guidance.law", "class Part:\n    def heading_rate(self): ...\n", "is not a dataclass; its fields are the keys"),
+        (
+            "guidance.law",
+            "class Part: ...\n",
+            "has no method heading_rate(); see the Protocol in gnc.laws",
+        ),
+        (
+            "guidance.law",
+            "class Part:\n    def heading_rate(self): ...\n",
+            "is not a dataclass; its fields are the keys",
+        ),
         ("plume.model", "class Part: ...\n", "plume.model: plume model '"),
-        ("vessel.track", "class Part:\n    def motion(self, time): ...\n", "has no method course(); see the Protocol"),
-        ("payload", "class Part: ...\n", "has no method read() or evaluate(); see the Protocol in scenarios.instruments"),
-        ("reference.shape", "class Part: ...\n", "has no method design(); see the Protocol in gnc.reference"),
+        (
+            "vessel.track",
+            "class Part:\n    def motion(self, time): ...\n",
+            "has no method course(); see the Protocol",
+        ),
+        (
+            "payload",
+            "class Part: ...\n",
+            "has no method read() or evaluate(); see the Protocol in scenarios.instruments",
+        ),
+        (
+            "reference.shape",
+            "class Part: ...\n",
+            "has no method design(); see the Protocol in gnc.reference",
+        ),
         ("aircraft", "Part = 3\n", "own.py:Part' is of type int; it must be an AircraftSpec"),
     ],
 )
-def test_a_file_that_does_not_load_or_is_not_the_part_is_refused_in_one_line(tmp_path, key, text, words):
+def test_a_file_that_does_not_load_or_is_not_the_part_is_refused_in_one_line(
+    tmp_path, key, text, words
+):
     (tmp_path / "beside.py").touch()
     message = refusal(write_scenario(tmp_path, line_of(key, "own.py:Part"), text), tmp_path / "run")
     assert words in message
@@ -232,24 +311,34 @@ def test_a_file_that_does_not_load_or_is_not_the_part_is_refused_in_one_line(tmp
 
 
 def test_a_file_that_is_not_there_is_refused_with_its_path(tmp_path):
-    message = refusal(write_scenario(tmp_path, 'guidance.law = "lav.py:Pursuit"\n'), tmp_path / "run")
+    message = refusal(
+        write_scenario(tmp_path, 'guidance.law = "lav.py:Pursuit"\n'), tmp_path / "run"
+    )
     assert f"{tmp_path / 'lav.py'}: cannot be read: No such file" in message
 
 
 def test_a_part_that_raises_in_flight_makes_a_row_that_says_where(tmp_path):
     text = LAW.replace(
-        "        lead =", '        if reference.course > 0.5:\n            raise RuntimeError("lost")\n        lead ='
+        "        lead =",
+        '        if reference.course > 0.5:\n            raise RuntimeError("lost")\n        lead =',
     )
     run(write_scenario(tmp_path, 'guidance.law = "own.py:Pursuit"\n', text), tmp_path / "run")
     rows = rows_of(tmp_path / "run")
     line = text.splitlines().index('            raise RuntimeError("lost")') + 1
-    assert [(row["outcome"], row["message"]) for row in rows] == [("failed", f"RuntimeError: lost (own.py:{line})")] * 2
+    assert [(row["outcome"], row["message"]) for row in rows] == [
+        ("failed", f"RuntimeError: lost (own.py:{line})")
+    ] * 2
 
 
 def test_a_part_that_raises_before_any_flight_is_refused_in_one_line(tmp_path):
-    text = TRACK.replace("        self._speed,", '        raise RuntimeError("no chart")\n        self._speed,')
+    text = TRACK.replace(
+        "        self._speed,", '        raise RuntimeError("no chart")\n        self._speed,'
+    )
     draws = '[[draws]]\nkey = "wind.speed_mps"\nuniform = [0.0, 5.0]\n'
-    message = refusal(write_scenario(tmp_path, 'vessel.track = "own.py:Weaving"\n' + draws, text), tmp_path / "run")
+    message = refusal(
+        write_scenario(tmp_path, 'vessel.track = "own.py:Weaving"\n' + draws, text),
+        tmp_path / "run",
+    )
     assert message.startswith(
         f"a flight cannot be sampled: vessel.track '{tmp_path / 'own.py'}:Weaving' cannot be made: RuntimeError: no chart (own.py:"
     )
@@ -261,24 +350,39 @@ def test_a_run_is_resumed_and_replayed_with_the_same_file_only(tmp_path):
     flight = str(tmp_path / "run" / "flights" / "nu_0.50")
 
     def replay(out):
-        return fly_study(Replay(flight), out, executor_factory=InProcessExecutor, resume=False, progress=lambda *_: None)
+        return fly_study(
+            Replay(flight),
+            out,
+            executor_factory=InProcessExecutor,
+            resume=False,
+            progress=lambda *_: None,
+        )
 
     assert run(path, tmp_path / "run", "sweep.nu=[0.5]", resume=True).all_met
     assert replay(tmp_path / "again").all_met
     (tmp_path / "own.py").write_text(LAW.replace("1.2", "1.3"), encoding="utf-8")
-    assert "has changed since the run" in refusal(path, tmp_path / "run", "sweep.nu=[0.5]", resume=True)
-    with pytest.raises(InputError, match=r"own\.py' has changed since the run; use it as it was then, or start a new run"):
+    assert "has changed since the run" in refusal(
+        path, tmp_path / "run", "sweep.nu=[0.5]", resume=True
+    )
+    with pytest.raises(
+        InputError,
+        match=r"own\.py' has changed since the run; use it as it was then, or start a new run",
+    ):
         replay(tmp_path / "changed")
 
 
 def test_an_installed_package_announces_a_part_as_an_entry_point(tmp_path, monkeypatch):
     (tmp_path / "their_package.py").write_text(LAW, encoding="utf-8")
     monkeypatch.syspath_prepend(tmp_path)
-    point = importlib.metadata.EntryPoint("pursuit", "their_package:Pursuit", f"{ENTRY_POINTS}.{STEERING_LAWS.kind}")
+    point = importlib.metadata.EntryPoint(
+        "pursuit", "their_package:Pursuit", f"{ENTRY_POINTS}.{STEERING_LAWS.kind}"
+    )
     found = importlib.metadata.entry_points
 
     def entry_points(**selected):
-        return importlib.metadata.EntryPoints([*found(**selected), *([point] if selected == {"group": point.group} else [])])
+        return importlib.metadata.EntryPoints(
+            [*found(**selected), *([point] if selected == {"group": point.group} else [])]
+        )
 
     monkeypatch.setattr(importlib.metadata, "entry_points", entry_points)
     # Pursuit of a point ahead flies 1.7 m beside its reference, and settles within the band.

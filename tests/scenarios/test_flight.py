@@ -13,19 +13,34 @@ from scenarios.metrics.columns import INPUT_COLUMNS, SUMMARY_COLUMNS
 @pytest.mark.parametrize(
     ("changes", "words"),
     [
-        ({"vessel": {"speed_mps": 19.0}}, "nu = 0.98; the UAV at 19.42 m/s follows up to nu = 0.97: fly faster"),
+        (
+            {"vessel": {"speed_mps": 19.0}},
+            "nu = 0.98; the UAV at 19.42 m/s follows up to nu = 0.97: fly faster",
+        ),
         # Not at first, but once the vessel has turned against the wind.
         (
             {
-                "vessel": {"speed_mps": 10.0, "manoeuvres": [{"at_s": 60.0, "turn_deg": 180.0, "turn_rate_deg_s": 2.0}]},
+                "vessel": {
+                    "speed_mps": 10.0,
+                    "manoeuvres": [{"at_s": 60.0, "turn_deg": 180.0, "turn_rate_deg_s": 2.0}],
+                },
                 "wind": {"speed_mps": 9.5, "from_deg": 180.0},
             },
             "the vessel moves at up to 19.5 m/s through the air",
         ),
-        ({"vessel": {"speed_mps": 0.0}}, "the apparent wind is 0.00 m/s; below 1 m/s the plume has no direction"),
-        ({"wind": {"speed_mps": 8.0, "from_deg": 180.0}}, "another speed, or the plume a direction (plume.direction=given)"),
+        (
+            {"vessel": {"speed_mps": 0.0}},
+            "the apparent wind is 0.00 m/s; below 1 m/s the plume has no direction",
+        ),
+        (
+            {"wind": {"speed_mps": 8.0, "from_deg": 180.0}},
+            "another speed, or the plume a direction (plume.direction=given)",
+        ),
         # Exhaust goes with the wind in any case.
-        ({"wind": {"speed_mps": 8.0, "from_deg": 180.0}, "emission": {"ship": "container"}}, "another speed"),
+        (
+            {"wind": {"speed_mps": 8.0, "from_deg": 180.0}, "emission": {"ship": "container"}},
+            "another speed",
+        ),
     ],
 )
 def test_what_cannot_be_flown_is_an_infeasible_row_with_one_clear_line(changes, words):
@@ -65,31 +80,56 @@ def test_a_flight_that_has_not_all_its_crossings_in_time_says_so(duration, outco
     [
         ({}, "completed", ""),
         # Settled, but not yet back at the axis.
-        ({"flight": {"crossings": 0, "duration_max_s": 40.0}}, "not_settled", "did not settle within 40 s"),
+        (
+            {"flight": {"crossings": 0, "duration_max_s": 40.0}},
+            "not_settled",
+            "did not settle within 40 s",
+        ),
         # Nothing is received from the vessel for a minute at its end: it holds off, until the next report.
         ({"fault": {"kind": "vessel_data", "at_s": (130.0, 130.0)}}, "completed", ""),
     ],
 )
 def test_a_flight_for_a_while_completes_if_it_settles_and_crosses(changed, outcome, words):
     row = fly(
-        **{"start": ASTERN, "flight": {"crossings": 0, "duration_max_s": 160.0}, "criteria": {"settles": False}} | changed
+        **{
+            "start": ASTERN,
+            "flight": {"crossings": 0, "duration_max_s": 160.0},
+            "criteria": {"settles": False},
+        }
+        | changed
     ).row
-    assert (row["outcome"], row["criteria_met"]) == (outcome, outcome == "completed"), row["message"]
+    assert (row["outcome"], row["criteria_met"]) == (outcome, outcome == "completed"), row[
+        "message"
+    ]
     assert words in row["message"]
     assert row["mode_at_end"] == ("holding off" if "fault" in changed else "tracking")
 
 
 def test_manoeuvres_that_begin_after_the_end_of_the_flight_are_counted():
-    vessel = {"speed_mps": 8.0, "manoeuvres": [{"at_s": 60.0, "turn_deg": 10.0}, {"at_s": 90.0, "turn_deg": 10.0}]}
+    vessel = {
+        "speed_mps": 8.0,
+        "manoeuvres": [{"at_s": 60.0, "turn_deg": 10.0}, {"at_s": 90.0, "turn_deg": 10.0}],
+    }
     declared = {"vessel_acceleration_mps2": 0.1}
-    row = fly(start=ASTERN, vessel=vessel, following=declared, flight={"crossings": 0, "duration_max_s": 90.0}).row
+    row = fly(
+        start=ASTERN,
+        vessel=vessel,
+        following=declared,
+        flight={"crossings": 0, "duration_max_s": 90.0},
+    ).row
     assert row["manoeuvres_unflown"] == 1
-    assert "manoeuvres_unflown" not in fly(start=ASTERN, flight={"crossings": 0, "duration_max_s": 20.0}).row
+    assert (
+        "manoeuvres_unflown"
+        not in fly(start=ASTERN, flight={"crossings": 0, "duration_max_s": 20.0}).row
+    )
 
 
 def test_a_flight_whose_vessel_has_manoeuvres_that_overlap_is_not_flown():
     # Each turns by 0.5 deg/s: together they would turn by 1 deg/s, from 80 s on.
-    vessel = {"speed_mps": 8.0, "manoeuvres": [{"at_s": 60.0, "turn_deg": 10.0}, {"at_s": 70.0, "turn_deg": 10.0}]}
+    vessel = {
+        "speed_mps": 8.0,
+        "manoeuvres": [{"at_s": 60.0, "turn_deg": 10.0}, {"at_s": 70.0, "turn_deg": 10.0}],
+    }
     row = fly(start=ASTERN, vessel=vessel).row
     assert row["outcome"] == "infeasible"
     assert row["message"].startswith(
@@ -119,7 +159,9 @@ def test_an_error_that_nobody_thought_of_is_a_row_too(broken):
     # What is known by then is in the tables: the flight that was sampled, and its plan.
     assert result.row["nu"] == pytest.approx(8.0 / SPEED)
     (inputs,) = result.tables["draws.csv"]
-    assert inputs == dict(zip(INPUT_COLUMNS, ("trial_00000", "trial", "study", result.row["nu"]), strict=True))
+    assert inputs == dict(
+        zip(INPUT_COLUMNS, ("trial_00000", "trial", "study", result.row["nu"]), strict=True)
+    )
     assert set(result.row) <= set(SUMMARY_COLUMNS)
     assert result.history is None
 
@@ -146,12 +188,20 @@ def test_beside_a_plume_that_rises_steeply_a_cylinder_is_kept_out_of_horizontall
         "start": ASTERN,
     }  # fmt: skip
     cylinder = fly(**steep, keepout={"shape": "cylinder"}).row
-    assert (cylinder["outcome"], cylinder["keepout_violations"], cylinder["keepout_shape"]) == ("completed", 0, "cylinder")
+    assert (cylinder["outcome"], cylinder["keepout_violations"], cylinder["keepout_shape"]) == (
+        "completed",
+        0,
+        "cylinder",
+    )
     # Its distance is the horizontal one, and the orbit comes as near to r_min as over a level plume: within the margin.
     assert cylinder["min_distance_m"] == cylinder["horizontal_distance_min_m"]
     assert 200.0 <= cylinder["min_distance_m"] < 230.0
     sphere = fly(**steep).row
-    assert (sphere["outcome"], sphere["keepout_violations"], sphere["keepout_shape"]) == ("completed", 0, "sphere")
+    assert (sphere["outcome"], sphere["keepout_violations"], sphere["keepout_shape"]) == (
+        "completed",
+        0,
+        "sphere",
+    )
     assert sphere["min_distance_m"] >= 200.0
     if mission == "track":
         # Issue: at 60 degrees the UAV passes 80 m beside the funnel, outside the sphere.

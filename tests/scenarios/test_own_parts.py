@@ -75,25 +75,58 @@ KEYS = {"Track": ("vessel", "track"), "Plume": ("plume", "model"), "Shape": ("re
 @pytest.mark.parametrize(
     ("name", "words"),
     [
-        ("TrackWithoutArguments", "cannot be made: TypeError: TrackWithoutArguments.__init__() takes 1 positional argument but 4"),
-        ("TrackWithoutEnd", " has no manoeuvres_end, the time at which its last manoeuvre ends [s]; give it one, math.nan without"),
+        (
+            "TrackWithoutArguments",
+            "cannot be made: TypeError: TrackWithoutArguments.__init__() takes 1 positional argument but 4",
+        ),
+        (
+            "TrackWithoutEnd",
+            " has no manoeuvres_end, the time at which its last manoeuvre ends [s]; give it one, math.nan without",
+        ),
         ("TrackElsewhere", " begins at 100 m north and 50 m east; let it begin at the origin"),
-        ("TrackAcross", ": course(0) is 1.5 rad, and the velocity of motion(0) points to 0 rad; let them agree"),
-        ("TrackInDegrees", ": course(0) is 90 rad, and the velocity of motion(0) points to 1.571 rad; let them agree"),
-        ("TrackWithText", ": course(0) returned 'north'; it has to return a finite number: the course, clockwise from north [rad]"),
-        ("TrackOfThree", ": motion(0) returned (0.0, 0.0, 8.0); it has to return four finite numbers: north, east [m] and their"),
-        ("TrackThatEnds", ": motion(3) returned (nan, nan, nan, nan); it has to return four finite numbers"),
+        (
+            "TrackAcross",
+            ": course(0) is 1.5 rad, and the velocity of motion(0) points to 0 rad; let them agree",
+        ),
+        (
+            "TrackInDegrees",
+            ": course(0) is 90 rad, and the velocity of motion(0) points to 1.571 rad; let them agree",
+        ),
+        (
+            "TrackWithText",
+            ": course(0) returned 'north'; it has to return a finite number: the course, clockwise from north [rad]",
+        ),
+        (
+            "TrackOfThree",
+            ": motion(0) returned (0.0, 0.0, 8.0); it has to return four finite numbers: north, east [m] and their",
+        ),
+        (
+            "TrackThatEnds",
+            ": motion(3) returned (nan, nan, nan, nan); it has to return four finite numbers",
+        ),
         ("TrackThatRaises", " failed in motion(3): KeyError: 'boom' (own.py:29)"),
-        ("PlumeWithoutWind", "unexpected keyword argument 'by_wind'; it is called with plume, vessel, wind, duration, by_wind=..."),
-        ("PlumeOfNothing", ": axis(0) returned nan; it has to return a finite number: the course along which the plume trails"),
+        (
+            "PlumeWithoutWind",
+            "unexpected keyword argument 'by_wind'; it is called with plume, vessel, wind, duration, by_wind=...",
+        ),
+        (
+            "PlumeOfNothing",
+            ": axis(0) returned nan; it has to return a finite number: the course along which the plume trails",
+        ),
         ("PlumeOfNone", ": axis(0) returned None; it has to return a finite number"),
         ("PlumeThatRaises", " failed in axis(0): RuntimeError: no plume (own.py:41)"),
         (
             "ShapeOfNone",
             "returned None; it has to return an orbit, with finite nu, speed, eta, omega_0, amplitude, period, crossing_interval",
         ),
-        ("ShapeWithoutShare", " has no joining_share, the part of its heading rate that the reference takes until it is tracked"),
-        ("ShapeOfOtherWords", "unexpected keyword argument 'nu'; it is called with nu, speed, vessel_heading_rate"),
+        (
+            "ShapeWithoutShare",
+            " has no joining_share, the part of its heading rate that the reference takes until it is tracked",
+        ),
+        (
+            "ShapeOfOtherWords",
+            "unexpected keyword argument 'nu'; it is called with nu, speed, vessel_heading_rate",
+        ),
         (
             "ShapeThatIsNotSteered",
             ": swing() returned None; it has to return courses, with the methods eta, speed_ratio, frequency",
@@ -117,7 +150,10 @@ def test_a_shape_that_fails_at_one_point_of_a_sweep_leaves_the_others(tmp_path):
     run(path, tmp_path / "run")
     slow, fast = rows_of(tmp_path / "run")
     assert slow["outcome"] == "completed"
-    part, line = f"{tmp_path / 'own.py'}:ShapeForSlowShips", PARTS.partition("nu > 0.4")[0].count("\n") + 1
+    part, line = (
+        f"{tmp_path / 'own.py'}:ShapeForSlowShips",
+        PARTS.partition("nu > 0.4")[0].count("\n") + 1,
+    )
     words = f"reference.shape '{part}' failed in design() at nu = 0.5: ValueError: no design for fast ships (own.py:{line})"
     assert (fast["outcome"], fast["message"]) == ("failed", words)
 
@@ -132,5 +168,7 @@ class Ends(FlightStudy):
 
 def test_a_study_that_ends_the_process_is_an_error_with_its_line(tmp_path):
     path = write_scenario(tmp_path, 'study = "own.py:Ends"\n', STUDY)
-    message = refusal(path, tmp_path / "run", "sweep.nu=[0.5]", "flight.crossings=0", "flight.duration_max_s=5")
+    message = refusal(
+        path, tmp_path / "run", "sweep.nu=[0.5]", "flight.crossings=0", "flight.duration_max_s=5"
+    )
     assert message == f"study '{tmp_path / 'own.py'}:Ends': SystemExit: 7 (own.py:5)"

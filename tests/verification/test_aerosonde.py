@@ -47,7 +47,12 @@ READS = {
 
 PITCHING = ("u", "w", "pitch", "q", "altitude")
 ROLLING = ("v", "roll", "yaw", "p", "r")
-PLANES = {"elevator": PITCHING, "aileron": ROLLING, "rudder": ROLLING, "throttle": ("u", "pitch", "q", "altitude", "roll", "yaw")}
+PLANES = {
+    "elevator": PITCHING,
+    "aileron": ROLLING,
+    "rudder": ROLLING,
+    "throttle": ("u", "pitch", "q", "altitude", "roll", "yaw"),
+}
 """What each input moves by itself. After a throttle step w hardly moves (0.03 m/s), and half of that is the rotor's."""
 
 
@@ -116,7 +121,9 @@ def published_answer(name, lags=LAGS):
 
     def commands(time):
         now = dict(zip(INPUTS, [*surfaces, throttle], strict=True))
-        now[name] += SIZES[name] * shape(name, time) * (1.0 if name == "throttle" else bm.FULL_DEFLECTION)
+        now[name] += (
+            SIZES[name] * shape(name, time) * (1.0 if name == "throttle" else bm.FULL_DEFLECTION)
+        )
         return list(now.values())
 
     breaks = [] if name == "throttle" else [0.5, 1.0]
@@ -138,7 +145,9 @@ def test_the_equations_of_this_test_balance_at_the_inputs_that_their_authors_tri
     # Users of the authors' mavsim start it with these inputs, rounded to four digits (three public copies; the authors' own script
     # was not seen): 25 m/s, level, in 1.2682 kg/m^3 and 9.8 m/s^2, by the parameters before C_Dp became 0.043. The throttle
     # is 0.13 % off ours, as far as a minimiser may stop short, and with it the torque that aileron and rudder carry.
-    _, (elevator, aileron, rudder), throttle, _ = bm.trim_level(AIRSPEED, ALTITUDE, bm.World(1.2682, 9.8), parasitic=0.0)
+    _, (elevator, aileron, rudder), throttle, _ = bm.trim_level(
+        AIRSPEED, ALTITUDE, bm.World(1.2682, 9.8), parasitic=0.0
+    )
     assert elevator == pytest.approx(-0.1248, abs=5e-5)
     assert throttle == pytest.approx(0.6768, abs=1e-3)
     assert aileron == pytest.approx(0.001836, abs=1e-5)
@@ -204,6 +213,9 @@ def test_a_coefficient_that_is_off_would_show(monkeypatch, name, constant, facto
     as_published = published_answer(name)
     monkeypatch.setattr(bm, constant, factor * getattr(bm, constant))
     column = bm.FLOWN_STATES.index(state)
-    moved = np.abs(published_answer(name) - as_published)[:, column].max() / np.abs(as_published[:, column]).max()
+    moved = (
+        np.abs(published_answer(name) - as_published)[:, column].max()
+        / np.abs(as_published[:, column]).max()
+    )
     # Twice what the comparison allows.
     assert moved > 0.02

@@ -22,7 +22,12 @@ EMISSION = emission_of(ship_preset("container"), fuel_preset("mgo", 0.1), power=
 
 
 def prior_of(
-    of: Emission = EMISSION, *, load_deviation: float = 0.3, wind_deviation: float, source_height: float, **situation: float
+    of: Emission = EMISSION,
+    *,
+    load_deviation: float = 0.3,
+    wind_deviation: float,
+    source_height: float,
+    **situation: float,
 ) -> PlumePrior:
     expected = Expectation(
         stack_diameter=of.stack_diameter, exhaust_speed=of.exhaust_speed, momentum_flux=of.momentum_flux,
@@ -33,12 +38,24 @@ def prior_of(
 
 
 @pytest.mark.parametrize("source", [20.0, 35.0, 60.0])
-@pytest.mark.parametrize(("apparent", "wind"), [(5.0, 7.0), (6.0, 12.0), (10.0, 10.0), (14.0, 5.0), (18.0, 8.0)])
-def test_height_spreads_and_peak_are_those_of_the_plume_model(apparent: float, wind: float, source: float) -> None:
+@pytest.mark.parametrize(
+    ("apparent", "wind"), [(5.0, 7.0), (6.0, 12.0), (10.0, 10.0), (14.0, 5.0), (18.0, 8.0)]
+)
+def test_height_spreads_and_peak_are_those_of_the_plume_model(
+    apparent: float, wind: float, source: float
+) -> None:
     distance = 270.0
-    prior = prior_of(distance=distance, apparent_wind=apparent, wind_speed=wind, wind_deviation=0.6, source_height=source)
+    prior = prior_of(
+        distance=distance,
+        apparent_wind=apparent,
+        wind_speed=wind,
+        wind_deviation=0.6,
+        source_height=source,
+    )
     age = distance / apparent
-    of = spreads(EMISSION, MarineAir(wind_speed=wind), source, np.array([apparent]), age, PlumeSettings())
+    of = spreads(
+        EMISSION, MarineAir(wind_speed=wind), source, np.array([apparent]), age, PlumeSettings()
+    )
     true = {name: float(np.interp(age, 0.1 * np.arange(getattr(of, name).shape[1]), getattr(of, name)[0])) for name in (
         "height", "relative_y", "relative_z", "meander_y", "meander_z")}  # fmt: skip
     # Rise and downwash are the same equations; the model's table has steps of 0.1 s.
@@ -50,13 +67,19 @@ def test_height_spreads_and_peak_are_those_of_the_plume_model(apparent: float, w
     ):  # fmt: skip
         assert abs(math.log(expected / true[name])) < limit, name
     assert prior.meander_z == pytest.approx(true["meander_z"], rel=0.3, abs=3.0)
-    peak = 1e6 * EMISSION.rates[GASES.index("co2")] / (2.0 * math.pi * apparent * true["relative_y"] * true["relative_z"] * 42.3)
+    peak = (
+        1e6
+        * EMISSION.rates[GASES.index("co2")]
+        / (2.0 * math.pi * apparent * true["relative_y"] * true["relative_z"] * 42.3)
+    )
     assert abs(math.log(prior.peak / peak)) < 0.3
 
 
 @pytest.mark.parametrize("source", [2.0, 35.0])
 @pytest.mark.parametrize("apparent", [5.0, 10.0, 18.0])
-def test_a_plume_that_is_not_searched_for_is_followed_at_the_height_of_the_plume_model(apparent: float, source: float) -> None:
+def test_a_plume_that_is_not_searched_for_is_followed_at_the_height_of_the_plume_model(
+    apparent: float, source: float
+) -> None:
     """At a sixth of her power, whose slow exhaust the wake of the funnel draws down by up to 3.6 m, and never below the sea."""
     weak = emission_of(ship_preset("container"), fuel_preset("mgo", 0.1), power=2e6)
     height = AxisHeight(
@@ -64,24 +87,49 @@ def test_a_plume_that_is_not_searched_for_is_followed_at_the_height_of_the_plume
         exhaust_speed=weak.exhaust_speed,
     )  # fmt: skip
     age = 270.0 / apparent
-    of = spreads(weak, MarineAir(wind_speed=8.0), source, np.array([apparent]), age, PlumeSettings())
+    of = spreads(
+        weak, MarineAir(wind_speed=8.0), source, np.array([apparent]), age, PlumeSettings()
+    )
     # The model's table has steps of 0.1 s.
     true = float(np.interp(age, 0.1 * np.arange(of.height.shape[1]), of.height[0]))
     assert height.at(270.0, apparent) == pytest.approx(true, abs=0.02)
 
 
 @pytest.mark.parametrize(
-    ("apparent", "wind", "source"), [(5.0, 8.0, 30.0), (6.0, 12.0, 50.0), (10.0, 5.0, 40.0), (16.0, 10.0, 25.0)]
+    ("apparent", "wind", "source"),
+    [(5.0, 8.0, 30.0), (6.0, 12.0, 50.0), (10.0, 5.0, 40.0), (16.0, 10.0, 25.0)],
 )
-def test_spreads_and_meander_are_carried_to_another_distance(apparent: float, wind: float, source: float) -> None:
+def test_spreads_and_meander_are_carried_to_another_distance(
+    apparent: float, wind: float, source: float
+) -> None:
     """From where an orbit is joined to where it has closed in, against the plume model."""
     far, near = 440.0, 270.0
-    prior = prior_of(distance=far, apparent_wind=apparent, wind_speed=wind, wind_deviation=0.3, source_height=source)
-    of = spreads(EMISSION, MarineAir(wind_speed=wind), source, np.array([apparent]), far / apparent + 1.0, PlumeSettings())
+    prior = prior_of(
+        distance=far,
+        apparent_wind=apparent,
+        wind_speed=wind,
+        wind_deviation=0.3,
+        source_height=source,
+    )
+    of = spreads(
+        EMISSION,
+        MarineAir(wind_speed=wind),
+        source,
+        np.array([apparent]),
+        far / apparent + 1.0,
+        PlumeSettings(),
+    )
     ages = 0.1 * np.arange(of.height.shape[1])
     assert prior.widened(far, apparent) == pytest.approx(1.0)
-    for name, limit in (("relative_y", 0.15), ("relative_z", 0.15), ("meander_y", 0.15), ("meander_z", 0.25)):
-        ratio = np.interp(near / apparent, ages, getattr(of, name)[0]) / np.interp(far / apparent, ages, getattr(of, name)[0])
+    for name, limit in (
+        ("relative_y", 0.15),
+        ("relative_z", 0.15),
+        ("meander_y", 0.15),
+        ("meander_z", 0.25),
+    ):
+        ratio = np.interp(near / apparent, ages, getattr(of, name)[0]) / np.interp(
+            far / apparent, ages, getattr(of, name)[0]
+        )
         # One factor for four, that differ by as much from each other: behind a low source the sea stops the meander in height.
         assert prior.widened(near, apparent) == pytest.approx(float(ratio), rel=limit), name
 
@@ -105,7 +153,9 @@ def test_a_load_that_is_off_changes_the_peak_by_what_is_stated(load: float) -> N
 
     off = abs(math.log(other.rates[1] / middle.rates[1]))
     changed = abs(math.log(prior(other, 0.0).peak / prior(middle, 0.0).peak))
-    stated = math.sqrt(prior(middle, off).peak_deviation ** 2 - prior(middle, 0.0).peak_deviation ** 2)
+    stated = math.sqrt(
+        prior(middle, off).peak_deviation ** 2 - prior(middle, 0.0).peak_deviation ** 2
+    )
     assert changed < 0.8 * off
     # The share of buoyancy in the spreads is that at the middle load; and heat and gas of an engine do not go quite alike.
     assert stated == pytest.approx(changed, rel=0.3)
@@ -113,7 +163,9 @@ def test_a_load_that_is_off_changes_the_peak_by_what_is_stated(load: float) -> N
 
 def test_rise_by_buoyancy_is_briggs_law() -> None:
     """1.609 F^(1/3) x^(2/3) / U: Briggs' 1.6."""
-    assert rise(0.0, 49.6, 200.0, 10.0) == pytest.approx(1.609 * 49.6 ** (1 / 3) * 200.0 ** (2 / 3) / 10.0, rel=1e-3)
+    assert rise(0.0, 49.6, 200.0, 10.0) == pytest.approx(
+        1.609 * 49.6 ** (1 / 3) * 200.0 ** (2 / 3) / 10.0, rel=1e-3
+    )
 
 
 def test_a_hit_of_the_guidance_is_a_hit_of_the_figures() -> None:

@@ -12,7 +12,12 @@ from common.physics.units import STANDARD_GRAVITY
 from gnc.reference.bessel import eta_for_speed_ratio, mean_speed_ratio
 from gnc.reference.orbit import f_x, half_widths, offset
 from gnc.reference.oscillation import design_oscillation
-from gnc.reference.placement import PlumeAxis, centre_of_oscillation, distance_by_paper, distance_exact
+from gnc.reference.placement import (
+    PlumeAxis,
+    centre_of_oscillation,
+    distance_by_paper,
+    distance_exact,
+)
 
 SPEED = 19.42
 HEADING_RATE_MAX = 0.503
@@ -20,7 +25,9 @@ ASTERN = PlumeAxis(heading=math.pi)
 
 
 def oscillation_at(nu, **changes):
-    return design_oscillation(**({"nu": nu, "speed": SPEED, "heading_rate_max": HEADING_RATE_MAX} | changes))
+    return design_oscillation(
+        **({"nu": nu, "speed": SPEED, "heading_rate_max": HEADING_RATE_MAX} | changes)
+    )
 
 
 @pytest.mark.parametrize(
@@ -61,7 +68,11 @@ def test_the_two_numbers_of_sim_3_give_the_speed_and_heading_rate_that_the_paper
     assert omega_max == pytest.approx(0.503, abs=5e-4)
     # The orbit scales with V_r at given omega_0, so 14 m along gives V_r: 19.49 m/s for 14.000 m. The notes say 19.4; 14 m has but
     # two digits, and at the 19.42 m/s that they settle on the orbit is 13.953 m.
-    speed = brentq(lambda v: half_widths(oscillation_at(0.5, speed=v, heading_rate_max=omega_max))[0] - 14.0, 5.0, 50.0)
+    speed = brentq(
+        lambda v: half_widths(oscillation_at(0.5, speed=v, heading_rate_max=omega_max))[0] - 14.0,
+        5.0,
+        50.0,
+    )
     assert speed == pytest.approx(19.4, abs=0.1)
     assert math.degrees(math.atan(0.503 * 19.4 / STANDARD_GRAVITY)) == pytest.approx(45.0, abs=0.5)
     assert heading_rate_for_bank(math.radians(45.0), 19.4) == pytest.approx(0.503, abs=0.003)
@@ -78,10 +89,17 @@ def test_the_first_zero_of_j_0():
 def test_the_quarter_period_advance_is_exactly_that_of_the_vessel(nu):
     oscillation = oscillation_at(nu)
     quarter = 0.25 * oscillation.period
-    advance, _ = quad(lambda t: SPEED * math.cos(oscillation.eta * math.cos(oscillation.omega_0 * t)), 0.0, quarter, epsabs=1e-12)
+    advance, _ = quad(
+        lambda t: SPEED * math.cos(oscillation.eta * math.cos(oscillation.omega_0 * t)),
+        0.0,
+        quarter,
+        epsabs=1e-12,
+    )
     # The notes: exactly nu V_r T/4, by the Bessel integral. Tolerances of quadrature and rounding.
     assert advance == pytest.approx(nu * SPEED * quarter, abs=1e-10)
-    assert SPEED * float(f_x(oscillation, quarter)) == pytest.approx(nu * SPEED * quarter, abs=1e-11)
+    assert SPEED * float(f_x(oscillation, quarter)) == pytest.approx(
+        nu * SPEED * quarter, abs=1e-11
+    )
 
 
 @pytest.mark.parametrize("nu", [0.1, 0.5, 0.9])
@@ -110,7 +128,11 @@ def test_equation_11_is_conservative_by_up_to_ten_metres():
     assert slack(0.1, 165.0) == pytest.approx(9.9, abs=0.05)
     # The notes call that the largest; searched for more finely the largest is 9.985 m, at nu = 0.14 and 163.5 degrees.
     assert slack(0.14, 163.5) == pytest.approx(9.985, abs=5e-4)
-    slacks = [slack(nu, heading) for nu in np.linspace(0.02, 0.94, 7) for heading in np.linspace(90.0, 180.0, 10)]
+    slacks = [
+        slack(nu, heading)
+        for nu in np.linspace(0.02, 0.94, 7)
+        for heading in np.linspace(90.0, 180.0, 10)
+    ]
     # The search stops within 1e-6 m; none of a grid of 0.15 and 10 degrees is larger than that.
     assert min(slacks) >= -1e-6
     assert 9.0 < max(slacks) <= 9.985 + 5e-4
@@ -127,9 +149,13 @@ def test_equation_10_keeps_a_sphere_with_a_margin_for_elevated_plumes(nu, elevat
     closest = np.min(np.sqrt((ahead + along) ** 2 + (right + across) ** 2 + above**2))
     # The notes, care 3: the margin left is sqrt(r_min^2 + d^2 sin^2 alpha_P) - r_min. Abeam the orbit's end is that point exactly,
     # and one of the samples, at three quarters of the period. Rounding.
-    assert closest - 200.0 == pytest.approx(math.sqrt(200.0**2 + (d_y * math.sin(elevation)) ** 2) - 200.0, abs=1e-10)
+    assert closest - 200.0 == pytest.approx(
+        math.sqrt(200.0**2 + (d_y * math.sin(elevation)) ** 2) - 200.0, abs=1e-10
+    )
     # And the horizontal distance is r_CO cos alpha_P - d there, which a vertical cylinder of 200 m would not allow.
-    assert np.min(np.hypot(ahead + along, right + across)) == pytest.approx(distance * math.cos(elevation) - d_y, abs=1e-10)
+    assert np.min(np.hypot(ahead + along, right + across)) == pytest.approx(
+        distance * math.cos(elevation) - d_y, abs=1e-10
+    )
 
 
 def test_the_reference_respects_the_roll_rate_where_equation_8_does_not():
@@ -137,8 +163,12 @@ def test_the_reference_respects_the_roll_rate_where_equation_8_does_not():
     # 0.503^2/0.45 rad/s^2, which is 64 deg/s of roll.
     roll_rate = math.radians(40.0)
     free, limited = oscillation_at(0.95), oscillation_at(0.95, roll_rate_max=roll_rate)
-    assert math.degrees(free.eta * free.omega_0**2 * SPEED / STANDARD_GRAVITY) == pytest.approx(64.0, abs=1.0)
-    assert limited.eta * limited.omega_0**2 * SPEED / STANDARD_GRAVITY == pytest.approx(roll_rate, rel=1e-13)
+    assert math.degrees(free.eta * free.omega_0**2 * SPEED / STANDARD_GRAVITY) == pytest.approx(
+        64.0, abs=1.0
+    )
+    assert limited.eta * limited.omega_0**2 * SPEED / STANDARD_GRAVITY == pytest.approx(
+        roll_rate, rel=1e-13
+    )
 
 
 def test_a_reference_started_on_the_centre_at_another_phase_would_fly_off_centre():

@@ -38,7 +38,9 @@ def balance(density, gravity):
         dynamic = 0.5 * density * AIRSPEED**2 * WING_AREA
         lift = dynamic * (CL_0 + CL_A * alpha + CL_DE * elevon(alpha))
         drag = dynamic * (CD_0 + CD_A * alpha + CD_AA * alpha**2 + CD_DEDE * elevon(alpha) ** 2)
-        return lift + drag * math.tan(alpha) - MASS * gravity  # thrust along the body: T cos(alpha) = D, T sin(alpha) lifts
+        return (
+            lift + drag * math.tan(alpha) - MASS * gravity
+        )  # thrust along the body: T cos(alpha) = D, T sin(alpha) lifts
 
     alpha = brentq(excess, 0.0, 0.2, xtol=1e-12)
     return alpha, elevon(alpha)
@@ -46,14 +48,18 @@ def balance(density, gravity):
 
 def test_alpha_at_18_mps_and_200_m_is_the_published_one_within_two_milliradians():
     # Two milliradians, a ninth of a degree, is what wind-tunnel coefficients and two independent simulations can be asked for.
-    assert trim(Fdm(X8), airspeed=AIRSPEED, altitude=ALTITUDE).alpha == pytest.approx(ALPHA, abs=2e-3)
+    assert trim(Fdm(X8), airspeed=AIRSPEED, altitude=ALTITUDE).alpha == pytest.approx(
+        ALPHA, abs=2e-3
+    )
 
 
 def test_elevon_at_18_mps_and_200_m_is_the_published_one_within_what_density_explains():
     # 2.2 mrad, not 2: the published pair balances at sea-level density (below), and at 200 m there is 1.9 % less. The wing needs
     # 1.2 mrad more there; the elevon answers with C_ma/C_mde = 2.0 times that, -2.5 mrad, of which JSBSim's lower gravity takes
     # 0.4 back.
-    assert trim(Fdm(X8), airspeed=AIRSPEED, altitude=ALTITUDE).driven["elevator_position"] == pytest.approx(ELEVON, abs=2.2e-3)
+    assert trim(Fdm(X8), airspeed=AIRSPEED, altitude=ALTITUDE).driven[
+        "elevator_position"
+    ] == pytest.approx(ELEVON, abs=2.2e-3)
 
 
 def test_the_published_trim_balances_at_sea_level_density_and_not_at_that_of_200_m():
@@ -76,15 +82,21 @@ def test_at_the_published_density_and_our_gravity_the_trim_is_that_of_hand_calcu
     alpha, elevon = balance(SEA_LEVEL_DENSITY, EQUATORIAL_GRAVITY)
     # 0.01 mrad: gravity's and density's last digits (5e-6 and less of 0.055 rad), sideslip and bank of half a milliradian squared.
     assert found.alpha == pytest.approx(alpha, abs=1e-5)
-    assert found.driven["elevator_position"] == pytest.approx(elevon, abs=2e-5)  # C_ma/C_mde = 2.0 times that
+    assert found.driven["elevator_position"] == pytest.approx(
+        elevon, abs=2e-5
+    )  # C_ma/C_mde = 2.0 times that
 
 
 def test_at_the_published_density_the_trim_is_the_published_one_but_for_gravity():
     found = trim(Fdm(X8), airspeed=AIRSPEED, altitude=0.0)
     # The textbook's gravity in place of the equator's, by the hand calculation that the trim agrees with: 0.2 mrad of alpha.
-    heavier, lighter = (balance(SEA_LEVEL_DENSITY, gravity) for gravity in (GRAVITY, EQUATORIAL_GRAVITY))
+    heavier, lighter = (
+        balance(SEA_LEVEL_DENSITY, gravity) for gravity in (GRAVITY, EQUATORIAL_GRAVITY)
+    )
     assert found.alpha + heavier[0] - lighter[0] == pytest.approx(ALPHA, abs=2e-4)
-    assert found.driven["elevator_position"] + heavier[1] - lighter[1] == pytest.approx(ELEVON, abs=2e-4)
+    assert found.driven["elevator_position"] + heavier[1] - lighter[1] == pytest.approx(
+        ELEVON, abs=2e-4
+    )
     # Without that correction alpha still is, and the elevon is within C_ma/C_mde = 2.0 times 0.2 mrad.
     assert found.alpha == pytest.approx(ALPHA, abs=2e-4)
     assert found.driven["elevator_position"] == pytest.approx(ELEVON, abs=4e-4)

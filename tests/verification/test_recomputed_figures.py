@@ -39,11 +39,16 @@ class Recorded:
         place, rate = [], []
         for axis in ("north", "east"):
             place.append(table[f"{axis}_m"].to_numpy() - table[f"vessel_{axis}_m"].to_numpy())
-            rate.append(table[f"velocity_{axis}_mps"].to_numpy() - table[f"vessel_velocity_{axis}_mps"].to_numpy())
+            rate.append(
+                table[f"velocity_{axis}_mps"].to_numpy()
+                - table[f"vessel_velocity_{axis}_mps"].to_numpy()
+            )
         place.append(table["altitude_m"].to_numpy() - source_height)
         rate.append(table["climb_rate_mps"].to_numpy())
         # One polynomial of three components: samples by derivatives by components.
-        self.path = BPoly.from_derivatives(self.time, np.stack([np.transpose(place), np.transpose(rate)], axis=1))
+        self.path = BPoly.from_derivatives(
+            self.time, np.stack([np.transpose(place), np.transpose(rate)], axis=1)
+        )
         self.axis = np.unwrap(table["plume_axis_rad"].to_numpy())
 
     def distance(self, moment):
@@ -53,7 +58,9 @@ class Recorded:
         """Metres right of the axis and along it."""
         north, east, _ = np.moveaxis(self.path(moment), -1, 0)
         axis = np.interp(moment, self.time, self.axis)
-        return np.cos(axis) * east - np.sin(axis) * north, np.cos(axis) * north + np.sin(axis) * east
+        return np.cos(axis) * east - np.sin(axis) * north, np.cos(axis) * north + np.sin(
+            axis
+        ) * east
 
     def crossings(self, since):
         times = self.time[self.time >= since]
@@ -71,7 +78,12 @@ class Recorded:
         least = distances.min()
         for i in np.argsort(distances)[:3]:
             low, high = self.time[max(0, i - 1)], self.time[min(len(self.time) - 1, i + 1)]
-            least = min(least, minimize_scalar(self.distance, bounds=(low, high), method="bounded", options={"xatol": 1e-9}).fun)
+            least = min(
+                least,
+                minimize_scalar(
+                    self.distance, bounds=(low, high), method="bounded", options={"xatol": 1e-9}
+                ).fun,
+            )
         return least
 
 
@@ -98,6 +110,10 @@ def test_tables_agree_with_what_the_time_histories_say(run):
         distances = flight.distance(np.array(times))
         assert listed["distance_m"].to_numpy() == pytest.approx(distances, abs=METRES)
         assert row["crossing_distance_min_m"] == pytest.approx(min(distances), abs=METRES)
-        assert row["crossing_clearance_min_m"] == pytest.approx(min(distances) - row["keepout_radius_m"], abs=METRES)
+        assert row["crossing_clearance_min_m"] == pytest.approx(
+            min(distances) - row["keepout_radius_m"], abs=METRES
+        )
         assert row["crossing_distance_mean_m"] == pytest.approx(np.mean(distances), abs=METRES)
-        assert row["crossing_interval_mean_s"] == pytest.approx(np.mean(np.diff(times)), abs=SECONDS)
+        assert row["crossing_interval_mean_s"] == pytest.approx(
+            np.mean(np.diff(times)), abs=SECONDS
+        )

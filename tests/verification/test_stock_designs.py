@@ -23,10 +23,18 @@ def stock(request, designs, tmp_path_factory):
         # No flight of other tests asks for its record, and the search over reversals is half of the time that this takes.
         design = design_autopilot(find_spec("737"), ALTITUDE)
         schedule = design.schedule
-        aircraft = AutopilotedAircraft(schedule.spec, write_root(schedule, tmp_path_factory.mktemp("737")))
-        return design, measure_lag(aircraft, schedule.level(schedule.middle), schedule.envelope.bank)
+        aircraft = AutopilotedAircraft(
+            schedule.spec, write_root(schedule, tmp_path_factory.mktemp("737"))
+        )
+        return design, measure_lag(
+            aircraft, schedule.level(schedule.middle), schedule.envelope.bank
+        )
     # The Cessna is heavier by 150 lb: that of docs/scripts/aircraft_directory.py, which other tests need anyway.
-    found = request.getfixturevalue("heavy_design") if request.param == "c172p" else designs(request.param)
+    found = (
+        request.getfixturevalue("heavy_design")
+        if request.param == "c172p"
+        else designs(request.param)
+    )
     return found.design, found.record["heading_rate_lag_s"]
 
 
@@ -48,14 +56,19 @@ def test_margins_hold_at_every_grid_point_and_between_as_modelled_and_changed(st
 
 
 @pytest.mark.parametrize("sign", [1.0, -1.0])
-def test_half_the_studys_turn_overshoots_its_model_by_less_than_a_tenth_and_slips_little(stock, sign, tmp_path):
+def test_half_the_studys_turn_overshoots_its_model_by_less_than_a_tenth_and_slips_little(
+    stock, sign, tmp_path
+):
     design, _ = stock
     schedule = design.schedule
     level = schedule.level(schedule.middle)
     size = sign * TURN * 9.80665 * math.tan(schedule.envelope.bank) / level.airspeed
     duration = 20.0 / schedule.weights.model_frequency
     aircraft = AutopilotedAircraft(schedule.spec, write_root(schedule, tmp_path))
-    flown, model = flown_step(aircraft, level, "heading_rate", size, duration), model_step(schedule, size, duration)
+    flown, model = (
+        flown_step(aircraft, level, "heading_rate", size, duration),
+        model_step(schedule, size, duration),
+    )
     # The requirement on every design.
     assert flown.overshoot() < model.overshoot() + 0.1
     # It gets there, and as quickly as its model within a fifth.

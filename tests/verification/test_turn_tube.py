@@ -39,7 +39,10 @@ def rolled_back(x8_root, x8_schedule, record):
     rate = STANDARD_GRAVITY * math.tan(X8.envelope.bank) / level.airspeed
     aircraft = AutopilotedAircraft(X8, x8_root)
     aircraft.release(level.state(), airspeed=level.airspeed, altitude=level.altitude)
-    read = [aircraft.fdm.node(name).get_double_value for name in ("velocities/v-north-fps", "velocities/v-east-fps")]
+    read = [
+        aircraft.fdm.node(name).get_double_value
+        for name in ("velocities/v-north-fps", "velocities/v-east-fps")
+    ]
     turning = aircraft.fdm.node(HEADING_RATE).get_double_value
     place = np.zeros(2)
 
@@ -54,7 +57,10 @@ def rolled_back(x8_root, x8_schedule, record):
 
     def own():
         return KnownMotion(
-            ground_north=place[0], ground_east=place[1], course=math.atan2(read[1](), read[0]()), heading_rate=turning()
+            ground_north=place[0],
+            ground_east=place[1],
+            course=math.atan2(read[1](), read[0]()),
+            heading_rate=turning(),
         )
 
     found = []
@@ -96,12 +102,19 @@ def lacking(flights, record, *, remembers):
             for off in np.radians([0.0, 15.0, 30.0, 50.0]):
                 # Ahead to the left, so that it is away from it to the right, and coming nearer.
                 towards = np.array([math.cos(now.course - off), math.sin(now.course - off)])
-                place = np.array([now.ground_north, now.ground_east]) + (RADIUS + 20.0 + 4.0 * closing) * towards
+                place = (
+                    np.array([now.ground_north, now.ground_east])
+                    + (RADIUS + 20.0 + 4.0 * closing) * towards
+                )
                 disc = Tube(time, *place, *(-closing * towards))
-                motion = guard._relative(disc, time, now, speed, speed, to_come if remembers else 0.0)
+                motion = guard._relative(
+                    disc, time, now, speed, speed, to_come if remembers else 0.0
+                )
                 then = guard._prediction.when_acting(motion, guard._given.under_way)
                 start = (then[0], then[1], then[4], then[6])
-                kept, *_ = guard._prediction.turn_away(1.0, start, then, guard._given.change, record["delay_s"], -math.inf)
+                kept, *_ = guard._prediction.turn_away(
+                    1.0, start, then, guard._given.change, record["delay_s"], -math.inf
+                )
                 flown = np.hypot(*(path - place + closing * after[:, None] * towards).T)
                 if np.argmin(flown) < len(path) - 1:
                     lacks.append(kept - float(np.min(flown) - RADIUS))
@@ -121,13 +134,19 @@ def test_without_what_is_to_come_it_would_come_nearer_by_metres(rolled_back, rec
     assert lacks.max() > 4.0
 
 
-def test_the_search_and_the_guard_mean_the_same_by_what_is_still_to_come(x8_root, x8_schedule, record):
+def test_the_search_and_the_guard_mean_the_same_by_what_is_still_to_come(
+    x8_root, x8_schedule, record
+):
     level = x8_schedule.level(x8_schedule.middle)
     response = TurnReversalResponse(delay=record["delay_s"], lag=record["lag_s"])
     searched = _Flight(AutopilotedAircraft(X8, x8_root), level, response, record["slow_lag_s"])
     rate = STANDARD_GRAVITY * math.tan(X8.envelope.bank) / level.airspeed
     guarded = GivenCommands(
-        lag=response.lag, delay=response.delay, slow_lag=record["slow_lag_s"], time_step=STEP, heading_rate_max=rate
+        lag=response.lag,
+        delay=response.delay,
+        slow_lag=record["slow_lag_s"],
+        time_step=STEP,
+        heading_rate_max=rate,
     )
     guarded.still_to_come(0.0)
     lacks = []
@@ -138,7 +157,9 @@ def test_the_search_and_the_guard_mean_the_same_by_what_is_still_to_come(x8_root
             searched.fly(share * rate, STEP)
             guarded.still_to_come(searched._rate())
             lacks.append((searched._lack, guarded._lack))
-        assert guarded.change == pytest.approx(max(LEAST_CHANGE, searched._change / (2.0 * rate)), rel=0.01)
+        assert guarded.change == pytest.approx(
+            max(LEAST_CHANGE, searched._change / (2.0 * rate)), rel=0.01
+        )
     own, others = np.array(lacks).T
     assert np.max(np.abs(own)) > 0.05
     # The search takes the dead time to whole steps of the simulation, 4 ms at most, and the course, of which 0.5 rad/s make 2 mrad.

@@ -36,8 +36,14 @@ def aircraft(heavy_design, tmp_path_factory):
     schedule, record = heavy_design.design.schedule, heavy_design.record
     level, envelope = schedule.level(schedule.middle), schedule.envelope
     reversal, rate = record["turn_reversal"], heading_rate_for_bank(envelope.bank, level.airspeed)
-    aircraft = AutopilotedAircraft(schedule.spec, write_root(schedule, tmp_path_factory.mktemp("c172p")))
-    overshoot = next(r["overshoot"] for r in record["responses"] if (r["command"], r["kind"]) == ("airspeed", "flown"))
+    aircraft = AutopilotedAircraft(
+        schedule.spec, write_root(schedule, tmp_path_factory.mktemp("c172p"))
+    )
+    overshoot = next(
+        r["overshoot"]
+        for r in record["responses"]
+        if (r["command"], r["kind"]) == ("airspeed", "flown")
+    )
 
     def guarded(radius):
         guard = KeepoutGuard(
@@ -53,9 +59,14 @@ def aircraft(heavy_design, tmp_path_factory):
             )
         )
         reckoning = SpeedReckoning(
-            speed=level.airspeed, bandwidth=record["bandwidths_rad_s"]["airspeed"], overshoot=overshoot, time_step=STEP
+            speed=level.airspeed,
+            bandwidth=record["bandwidths_rad_s"]["airspeed"],
+            overshoot=overshoot,
+            time_step=STEP,
         )
-        return GuardedCommands(guard, reckoning=reckoning, speed=level.airspeed, heading_rate_max=rate)
+        return GuardedCommands(
+            guard, reckoning=reckoning, speed=level.airspeed, heading_rate_max=rate
+        )
 
     return aircraft, level, rate, guarded
 
@@ -71,7 +82,10 @@ def test_a_fast_aircraft_keeps_out_though_it_slows_down_in_the_turn(aircraft, ca
     velocity = [node(f"velocities/v-{axis}-fps").get_double_value for axis in ("north", "east")]
     turning = node(HEADING_RATE).get_double_value
     disc = [far * turn_radius * math.cos(bearing), far * turn_radius * math.sin(bearing)]
-    moving = [share * level.airspeed * math.cos(heading), share * level.airspeed * math.sin(heading)]
+    moving = [
+        share * level.airspeed * math.cos(heading),
+        share * level.airspeed * math.sin(heading),
+    ]
     own, place, nearest, time = TrueNavigation(), [0.0, 0.0], math.inf, 0.0
     while time < 80.0:
         north, east = (METRES_PER_FOOT * of() for of in velocity)
@@ -84,7 +98,10 @@ def test_a_fast_aircraft_keeps_out_though_it_slows_down_in_the_turn(aircraft, ca
         flown.command_airspeed(pace)
         for _ in range(RUNS):
             flown.run()
-            place = [p + METRES_PER_FOOT * of() * TIME_STEP for p, of in zip(place, velocity, strict=True)]
+            place = [
+                p + METRES_PER_FOOT * of() * TIME_STEP
+                for p, of in zip(place, velocity, strict=True)
+            ]
         disc = [p + v * STEP for p, v in zip(disc, moving, strict=True)]
         time += STEP
         nearest = min(nearest, math.dist(disc, place) - radii * turn_radius)

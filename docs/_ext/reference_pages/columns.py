@@ -8,7 +8,13 @@ from reference_pages.markdown import literal, plain, table
 from reports.compare.figures import MEASURES
 from reports.export.tracks_csv import COLUMNS as TRACK_COLUMNS
 from scenarios.instruments.sniffer import SnifferOnBoard
-from scenarios.metrics.columns import CROSSING_COLUMNS, INPUT_COLUMNS, INTERVENTION_COLUMNS, SEARCH_COLUMNS, SUMMARY_COLUMNS
+from scenarios.metrics.columns import (
+    CROSSING_COLUMNS,
+    INPUT_COLUMNS,
+    INTERVENTION_COLUMNS,
+    SEARCH_COLUMNS,
+    SUMMARY_COLUMNS,
+)
 from scenarios.metrics.finding import FINDING_FIGURES
 from scenarios.metrics.meanings import CONVERGENCE_MEANINGS, MEANINGS
 from scenarios.metrics.window import MEASURED_COLUMNS, WINDOW_COLUMNS
@@ -29,7 +35,10 @@ Made from the code that writes the files. What each file is for, and how figures
 settling time on; `rms` stands for the root mean square.
 """
 
-SNIFFER_TITLE, SEARCH_TITLE = "summary.csv, of flights with a sniffer", "summary.csv, of flights that search for the plume"
+SNIFFER_TITLE, SEARCH_TITLE = (
+    "summary.csv, of flights with a sniffer",
+    "summary.csv, of flights that search for the plume",
+)
 
 
 def tables() -> dict[str, tuple[Iterable[str], Mapping[str, str]]]:
@@ -51,13 +60,22 @@ def tables() -> dict[str, tuple[Iterable[str], Mapping[str, str]]]:
         **{name: (of, MEANINGS[name]) for name, of in columns.items()},
         "flights/ID.parquet": (HISTORY_MEANINGS, histories),
         "flights/ID.parquet, of flights with a sniffer": (SnifferOnBoard.COLUMNS, histories),
-        "flights/ID.parquet, of flights that search for the plume": (PlumeBelief.COLUMNS, histories),
-        "summary.csv and counterexamples.csv, of a study of convergence": (CONVERGENCE_COLUMNS, CONVERGENCE_MEANINGS),
+        "flights/ID.parquet, of flights that search for the plume": (
+            PlumeBelief.COLUMNS,
+            histories,
+        ),
+        "summary.csv and counterexamples.csv, of a study of convergence": (
+            CONVERGENCE_COLUMNS,
+            CONVERGENCE_MEANINGS,
+        ),
         "summary.csv, of patrols": (PATROL_COLUMNS, PATROL_MEANINGS[SUMMARY]),
         "ships.csv, of patrols": (SHIP_COLUMNS, PATROL_MEANINGS[SHIPS]),
         "phases.csv, of patrols": (PHASE_COLUMNS, PATROL_MEANINGS[PHASES]),
         "samples.csv of the log of a flight": (SAMPLE_MEANINGS, SAMPLE_MEANINGS),
-        "export/NAME.tracks.csv": (("flight_id", *TRACK_COLUMNS), {"flight_id": "name of the flight", **histories}),
+        "export/NAME.tracks.csv": (
+            ("flight_id", *TRACK_COLUMNS),
+            {"flight_id": "name of the flight", **histories},
+        ),
     }
 
 
@@ -66,9 +84,15 @@ def columns_page() -> str:
     lines = [_INTRODUCTION]
     for title, (names, meanings) in tables().items():
         lines += [f"## {plain(title)}", ""]
-        lines += table(("column", "unit", "meaning"), ((literal(name), _unit(name), plain(meanings[name])) for name in names))
+        lines += table(
+            ("column", "unit", "meaning"),
+            ((literal(name), _unit(name), plain(meanings[name])) for name in names),
+        )
     lines += ["## differences.csv of a comparison of runs", "", _DIFFERENCES, ""]
-    rows = ((literal(name), plain(of.figure.unit.replace("-", "")), plain(of.figure.name)) for name, of in MEASURES.items())
+    rows = (
+        (literal(name), plain(of.figure.unit.replace("-", "")), plain(of.figure.name))
+        for name, of in MEASURES.items()
+    )
     return "\n".join([*lines, *table(("column", "unit", "meaning"), rows)])
 
 

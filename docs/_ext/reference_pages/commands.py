@@ -38,10 +38,23 @@ def commands_page() -> str:
 def _command(word: str, command: Any) -> Iterator[str]:
     arguments = [option for option in command.params if option.param_type_name == "argument"]
     usage = " ".join(["plume-flight", word, *(_argument(of) for of in arguments), "[OPTIONS]"])
-    yield from (f"## {word}", "", plain(" ".join((command.help or "").split())), "", "```", usage, "```", "")
+    yield from (
+        f"## {word}",
+        "",
+        plain(" ".join((command.help or "").split())),
+        "",
+        "```",
+        usage,
+        "```",
+        "",
+    )
     yield from table(
         ("argument or option", "default", "meaning"),
-        ((_name(of), _default(of), plain(getattr(of, "help", None) or "")) for of in command.params if of.name != "help"),
+        (
+            (_name(of), _default(of), plain(getattr(of, "help", None) or ""))
+            for of in command.params
+            if of.name != "help"
+        ),
     )
 
 
@@ -60,4 +73,8 @@ def _name(option: Any) -> str:
 def _default(option: Any) -> str:
     if option.required:
         return "required"
-    return "" if option.default in (None, (), [], False) or callable(option.default) else literal(option.default)
+    return (
+        ""
+        if option.default in (None, (), [], False) or callable(option.default)
+        else literal(option.default)
+    )

@@ -37,7 +37,9 @@ def frames_svg() -> str:
     """Return the sketch."""
     orbit = _orbit()
     points = " ".join(_point(place) for place in orbit)
-    plume = " ".join(_point(place) for place in (_SHIP, _along_plume(_END, -42.0), _along_plume(_END, 42.0)))
+    plume = " ".join(
+        _point(place) for place in (_SHIP, _along_plume(_END, -42.0), _along_plume(_END, 42.0))
+    )
     return "\n".join(
         (
             f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 760 600" role="img" aria-label="{_TITLE}">',
@@ -65,7 +67,9 @@ def _ship() -> Iterator[str]:
     yield _text((x - 18, y + 5), "funnel", anchor="end")
     yield _arrow(_SHIP, edge)
     yield _text((edge[0] + 10, edge[1] + 4), "r_min: keep-out area")
-    yield _text((_along_plume(_END)[0] + 56, _along_plume(_END - 18)[1]), "plume, along the apparent wind")
+    yield _text(
+        (_along_plume(_END)[0] + 56, _along_plume(_END - 18)[1]), "plume, along the apparent wind"
+    )
 
 
 def _centre() -> Iterator[str]:

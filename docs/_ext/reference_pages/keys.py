@@ -5,7 +5,12 @@ from collections.abc import Iterator
 from reference_pages.markdown import literal, plain, table
 from scenarios.console.describe import value_text
 from scenarios.schema.documented import DocumentedSection, documented_sections
-from scenarios.schema.documented_parts import DIMENSIONLESS, FLIGHT_STUDIES, DocumentedKey, documented_part_keys
+from scenarios.schema.documented_parts import (
+    DIMENSIONLESS,
+    FLIGHT_STUDIES,
+    DocumentedKey,
+    documented_part_keys,
+)
 from scenarios.schema.scenario import Scenario
 from scenarios.schema.sections.convergence import ConvergenceScenario
 from scenarios.schema.sections.experiment import TrialList
@@ -23,7 +28,11 @@ A key is a number in the unit that stands beside its default. *Acts with* names 
 where it has none it is refused.
 """
 
-_KINDS = ((Scenario, "Studies of flights"), (TrialList, "Lists of trials"), (ConvergenceScenario, "Studies of convergence"))
+_KINDS = (
+    (Scenario, "Studies of flights"),
+    (TrialList, "Lists of trials"),
+    (ConvergenceScenario, "Studies of convergence"),
+)
 
 
 def keys_page() -> str:
@@ -57,11 +66,22 @@ def _of_parts() -> Iterator[str]:
 
 def _row(key: DocumentedKey) -> tuple[str, ...]:
     unit = f" {plain(key.unit)}" if key.unit not in ("", DIMENSIONLESS) else ""
-    default = "required" if key.required else "not set" if key.default is None else f"{literal(value_text(key.default))}{unit}"
+    default = (
+        "required"
+        if key.required
+        else "not set"
+        if key.default is None
+        else f"{literal(value_text(key.default))}{unit}"
+    )
     range_unit = f" [{plain(key.unit)}]" if unit else ""
     about = [plain(key.meaning)]
     if key.studies and key.studies != FLIGHT_STUDIES and set(key.studies) < set(FLIGHT_STUDIES):
         about.append(f"*Studies:* {', '.join(map(plain, key.studies))}.")
     if key.conditions:
         about.append(f"*Acts with:* {plain('; '.join(key.conditions))}.")
-    return literal(key.key.replace(".0", "")), default, f"{plain(key.range)}{range_unit}", " ".join(about)
+    return (
+        literal(key.key.replace(".0", "")),
+        default,
+        f"{plain(key.range)}{range_unit}",
+        " ".join(about),
+    )

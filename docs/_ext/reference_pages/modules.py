@@ -28,7 +28,11 @@ def _page(package: ModuleType) -> str:
     lines = [f"# {package.__name__}", "", *_automodule(package.__name__, members=False)]
     for found in pkgutil.iter_modules(package.__path__, f"{package.__name__}."):
         if not found.ispkg and not found.name.endswith("__main__"):
-            lines += [f"## {found.name.rpartition('.')[2]}", "", *_automodule(found.name, members=True)]
+            lines += [
+                f"## {found.name.rpartition('.')[2]}",
+                "",
+                *_automodule(found.name, members=True),
+            ]
     return "\n".join(lines)
 
 

@@ -136,7 +136,15 @@ class PlumeEstimator:
         if self._watch.state is not SensorState.WORKING:
             self._spoilt = True
 
-    def update(self, along: float, across: float, altitude: float, reading: float, *, apparent_wind: float | None = None) -> bool:
+    def update(
+        self,
+        along: float,
+        across: float,
+        altitude: float,
+        reading: float,
+        *,
+        apparent_wind: float | None = None,
+    ) -> bool:
         """Take note of the vehicle's place and of a reading; return whether a pass is over and the estimate is a new one.
 
         To be called after ``predict``, for each reading, and in between as often as the place is to be known: each 0.5 s at least.
@@ -154,7 +162,9 @@ class PlumeEstimator:
         path = self._collector.add(self._time, along, across, altitude, reading)
         if path is None:
             return False
-        self._wind = max(self.prior.apparent_wind if apparent_wind is None else apparent_wind, SPEED_MIN)
+        self._wind = max(
+            self.prior.apparent_wind if apparent_wind is None else apparent_wind, SPEED_MIN
+        )
         if self._time >= self._diffused_at + _DIFFUSED:
             self._diffuse(self._time - self._diffused_at)
             self._diffused_at = self._time
@@ -165,7 +175,11 @@ class PlumeEstimator:
             # Where the plume is met it has another spread, and another strength, than where the cells have theirs.
             self._distance, self._widened = along, self.prior.widened(along, self._wind)
         self._heights = self.prior.height_at(self.grid.height, self._distance, self._wind)
-        evidence = self._reader.read(path, self.grid.places, self._widened * self.grid.widths) if believed else None
+        evidence = (
+            self._reader.read(path, self.grid.places, self._widened * self.grid.widths)
+            if believed
+            else None
+        )
         if evidence is not None:
             self._correct(path, evidence, altitude)
         self._spoilt = False
@@ -194,28 +208,38 @@ class PlumeEstimator:
         """
         heights = self.grid.coarse_heights(self._heights)
         off = heights - (altitudes[:, np.newaxis] if altitudes.ndim == 1 else altitudes)
-        return self._weights, self.grid.chances(off / self._widened, self._looks, self._least, self._spread)
+        return self._weights, self.grid.chances(
+            off / self._widened, self._looks, self._least, self._spread
+        )
 
     def expected_deviation(self, altitudes: Array) -> Array:
         """Return what the standard deviation of the height is expected to be after a pass at each altitude [m], shape (n,)."""
         likely = self._weights.sum(axis=1) > _UNLIKELY
         heights = self.grid.coarse_heights(self._heights)[likely]
         off = (heights - altitudes[:, np.newaxis]) / self._widened
-        return self.grid.expected_deviation(self._weights[likely], heights, off, self._looks, self._spread[likely])
+        return self.grid.expected_deviation(
+            self._weights[likely], heights, off, self._looks, self._spread[likely]
+        )
 
     def hits(self, altitudes: Array) -> Array:
         """Return the probability that a pass at each altitude [m] hits the plume in height, shape (n,)."""
         off = self.grid.coarse_heights(self._heights) - altitudes[:, np.newaxis]
-        result: Array = self.grid.hits(off / self._widened, self._looks, self._spread, HIT) @ self._weights.sum(axis=1)
+        result: Array = self.grid.hits(
+            off / self._widened, self._looks, self._spread, HIT
+        ) @ self._weights.sum(axis=1)
         return result
 
     def _diffuse(self, time: float) -> None:
         """Let the axis wander for ``time`` [s], and let some of what is known be forgotten."""
         grid = self.grid
         forgotten = -math.expm1(-time / _FORGET)
-        self.cells = wandered(self.cells, 1, HEIGHT_DRIFT**2 * time / (grid.height[1] - grid.height[0]) ** 2)
+        self.cells = wandered(
+            self.cells, 1, HEIGHT_DRIFT**2 * time / (grid.height[1] - grid.height[0]) ** 2
+        )
         self.cells += forgotten * (grid.prior - self.cells)
-        self.bearings = wandered(self.bearings, 0, BEARING_DRIFT**2 * time / (grid.bearing[1] - grid.bearing[0]) ** 2)
+        self.bearings = wandered(
+            self.bearings, 0, BEARING_DRIFT**2 * time / (grid.bearing[1] - grid.bearing[0]) ** 2
+        )
         self.bearings += forgotten * (grid.bearing_prior - self.bearings)
 
     def _correct(self, path: Path, evidence: Evidence, altitude: float) -> None:
@@ -228,7 +252,9 @@ class PlumeEstimator:
         read = grid.over_faint(self.cells, fading)
         self._judge(evidence, self._detected(read) * path.covered(grid.places, places))
         seen = places @ likelihood + nothing * (1.0 - places.sum())
-        of_cells = fading @ grid.over_strengths(seen) + nothing * (1.0 - fading.sum(axis=-1, keepdims=True))
+        of_cells = fading @ grid.over_strengths(seen) + nothing * (
+            1.0 - fading.sum(axis=-1, keepdims=True)
+        )
         there = (likelihood @ read[..., np.newaxis]).sum(axis=0)[:, 0]
         of_bearings = beside @ (there - nothing * read.sum()) + nothing
         self.cells = normalised(self.cells * of_cells**_BELIEVED, grid.prior)
@@ -238,14 +264,24 @@ class PlumeEstimator:
         """Take note of how a pass met the axis; return how likely its readings are."""
         prior, grid = self.prior, self.grid
         stronger = prior.apparent_wind / (self._wind * self._widened**2)
-        self._least = SIGNAL_TO_NOISE * prior.sensor.noise / (max(evidence.response, _RESPONSE_MIN) * stronger)
+        self._least = (
+            SIGNAL_TO_NOISE
+            * prior.sensor.noise
+            / (max(evidence.response, _RESPONSE_MIN) * stronger)
+        )
         significant = evidence.significance > SIGNAL_TO_NOISE
-        drawn_out = path.drawn_out(float(grid.places[evidence.at]) if significant else self.offset, self._wind)
-        self._looks = 1.0 + 2.0 * self._widened * prior.sigma_y * drawn_out / (_LOOK * prior.meander_length)
+        drawn_out = path.drawn_out(
+            float(grid.places[evidence.at]) if significant else self.offset, self._wind
+        )
+        self._looks = 1.0 + 2.0 * self._widened * prior.sigma_y * drawn_out / (
+            _LOOK * prior.meander_length
+        )
         exponent = over_nothing(evidence.slope, evidence.bend, stronger * grid.faint, drawn_out)
         largest = max(0.0, float(exponent.max()))
         exponent -= largest
-        likelihood = grid.of_widths(drawn_out) @ np.exp(exponent, out=exponent).reshape(len(exponent), -1)
+        likelihood = grid.of_widths(drawn_out) @ np.exp(exponent, out=exponent).reshape(
+            len(exponent), -1
+        )
         return _Scene(likelihood.reshape(exponent.shape), math.exp(-largest))
 
     def _judge(self, evidence: Evidence, chance: float) -> None:
@@ -275,10 +311,17 @@ class PlumeEstimator:
         self._spread: Array = grid.coarse_heights(of_spreads.sum(axis=1) @ grid.sigma_z)
         self.height = float(of_heights @ self._heights)
         step = float(self._heights[1] - self._heights[0])
-        self.height_deviation = math.sqrt(float(of_heights @ (self._heights - self.height) ** 2) + step**2 / 12.0)
+        self.height_deviation = math.sqrt(
+            float(of_heights @ (self._heights - self.height) ** 2) + step**2 / 12.0
+        )
         self.bearing = float(self.bearings @ grid.bearing)
-        self.bearing_deviation = math.sqrt(float(self.bearings @ (grid.bearing - self.bearing) ** 2))
-        self.offset, self.offset_deviation = self._distance * self.bearing, self._distance * self.bearing_deviation
+        self.bearing_deviation = math.sqrt(
+            float(self.bearings @ (grid.bearing - self.bearing) ** 2)
+        )
+        self.offset, self.offset_deviation = (
+            self._distance * self.bearing,
+            self._distance * self.bearing_deviation,
+        )
         self.sigma_y = self._widened * float(np.vdot(of_spreads, grid.sigma_y))
         self.sigma_z = self._widened * float(np.vdot(of_spreads, grid.sigma_z))
         self.meander_z = self._widened * prior.meander_z
@@ -295,6 +338,8 @@ class PlumeEstimator:
     @property
     def measurable(self) -> float:
         """Probability that a pass at the best altitude within the limits detects the plume more often than not [-]."""
-        best = np.clip(self.grid.coarse_heights(self._heights), self.prior.lowest, self.prior.highest)
+        best = np.clip(
+            self.grid.coarse_heights(self._heights), self.prior.lowest, self.prior.highest
+        )
         weights, chances = self.prospects(best[np.newaxis])
         return float(np.sum(weights * (chances[0] > 0.5)))

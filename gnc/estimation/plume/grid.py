@@ -78,7 +78,9 @@ class PlumeGrid:
     def __init__(self, prior: PlumePrior) -> None:
         self._expected = prior
         low = max(_LOWEST, prior.height - _REACH * prior.height_deviation)
-        self.height: Array = np.linspace(low, prior.height + _REACH * prior.height_deviation, _HEIGHTS)
+        self.height: Array = np.linspace(
+            low, prior.height + _REACH * prior.height_deviation, _HEIGHTS
+        )
         # The last one has no other.
         self._pairs = np.arange(0, _HEIGHTS, _COARSE)
         self._paired = np.diff(self._pairs, append=_HEIGHTS)
@@ -88,8 +90,12 @@ class PlumeGrid:
         step = _SPREAD_STEP * prior.sigma_deviation
         self._scales = step * (np.arange(_SPREADS) - _MIDDLE)
         scales = np.exp(self._scales)[:, np.newaxis]
-        self.sigma_y: Array = scales * np.sqrt(np.maximum(prior.sigma_y**2 + squares, (_SPREAD_MIN * prior.sigma_y) ** 2))
-        self.sigma_z: Array = scales * np.sqrt(np.maximum(prior.sigma_z**2 + squares, (_SPREAD_MIN * prior.sigma_z) ** 2))
+        self.sigma_y: Array = scales * np.sqrt(
+            np.maximum(prior.sigma_y**2 + squares, (_SPREAD_MIN * prior.sigma_y) ** 2)
+        )
+        self.sigma_z: Array = scales * np.sqrt(
+            np.maximum(prior.sigma_z**2 + squares, (_SPREAD_MIN * prior.sigma_z) ** 2)
+        )
         self.widths: Array = prior.sigma_y * np.exp(self._scales)
         median = np.log(prior.peak * prior.sigma_y * prior.sigma_z / (self.sigma_y * self.sigma_z))
         reach = _REACH * prior.peak_deviation
@@ -104,21 +110,32 @@ class PlumeGrid:
         weight = np.exp(-0.5 * ((logs - median[..., np.newaxis]) / prior.peak_deviation) ** 2)
         of_spreads = np.exp(-0.5 * (_SPREAD_STEP * (np.arange(_SPREADS) - _MIDDLE)) ** 2)
         cells = (
-            of_spreads[:, np.newaxis, np.newaxis] * self._of_heights()[:, np.newaxis] * weight / weight.sum(axis=2, keepdims=True)
+            of_spreads[:, np.newaxis, np.newaxis]
+            * self._of_heights()[:, np.newaxis]
+            * weight
+            / weight.sum(axis=2, keepdims=True)
         )
         self.prior: Array = cells / cells.sum()
         of_bearings = np.exp(-0.5 * (self.bearing / prior.bearing_deviation) ** 2)
         self.bearing_prior: Array = of_bearings / of_bearings.sum()
         across = _REACH * math.hypot(prior.bearing_deviation * prior.distance, prior.meander_y)
-        self.places: Array = np.linspace(-across, across, 1 + 2 * math.ceil(across / (_PLACE_STEP * prior.sigma_y)))
+        self.places: Array = np.linspace(
+            -across, across, 1 + 2 * math.ceil(across / (_PLACE_STEP * prior.sigma_y))
+        )
 
     def _of_heights(self) -> Array:
         """Return how likely each height is, shape (h,): a funnel as likely anywhere in its range, and a rise that is normal."""
         prior = self._expected
         risen = math.sqrt(
-            max(prior.height_deviation**2 - prior.source_deviation**2, (0.5 * (self.height[1] - self.height[0])) ** 2)
+            max(
+                prior.height_deviation**2 - prior.source_deviation**2,
+                (0.5 * (self.height[1] - self.height[0])) ** 2,
+            )
         )
-        off, half = self.height - prior.height, math.sqrt(3.0) * max(prior.source_deviation, _RANGE_MIN * risen)
+        off, half = (
+            self.height - prior.height,
+            math.sqrt(3.0) * max(prior.source_deviation, _RANGE_MIN * risen),
+        )
         result: Array = (ndtr((off + half) / risen) - ndtr((off - half) / risen)) / half
         return result
 
@@ -180,7 +197,10 @@ class PlumeGrid:
         apart = 2.0 * duration / prior.meander_time
         common = (1.0 + apart) * math.exp(-apart)
         step, cell = float(places[1] - places[0]), distance * float(bearing[1] - bearing[0])
-        deviation = math.sqrt((widened * prior.meander_y) ** 2 * (1.0 + common) / (1.0 - common) + (step**2 + cell**2) / 12.0)
+        deviation = math.sqrt(
+            (widened * prior.meander_y) ** 2 * (1.0 + common) / (1.0 - common)
+            + (step**2 + cell**2) / 12.0
+        )
         off = (places - distance * bearing[:, np.newaxis]) / deviation
         result: Array = np.exp(-0.5 * off**2) * (step / (deviation * math.sqrt(2.0 * math.pi)))
         result /= np.maximum(1.0, result.sum(axis=1, keepdims=True))
@@ -205,7 +225,9 @@ class PlumeGrid:
         beyond **= looks
         return np.subtract(1.0, beyond, out=beyond)
 
-    def expected_deviation(self, weights: Array, heights: Array, off: Array, looks: float, sigma_z: Array) -> Array:
+    def expected_deviation(
+        self, weights: Array, heights: Array, off: Array, looks: float, sigma_z: Array
+    ) -> Array:
         """Return the standard deviation of the height that is expected after a pass whose strength is read [m], shape (n,).
 
         Parameters
@@ -222,7 +244,9 @@ class PlumeGrid:
         joint = np.empty((len(heights), len(off), len(self.faint) + 1))
         padded = np.zeros((len(heights), weights.shape[1] + 2 * (_FADE - 1)))
         padded[:, _FADE - 1 : 1 - _FADE] = weights
-        np.matmul(fading.transpose(1, 0, 2), padded.take(self._stronger, axis=1), out=joint[..., :-1])
+        np.matmul(
+            fading.transpose(1, 0, 2), padded.take(self._stronger, axis=1), out=joint[..., :-1]
+        )
         joint[..., -1] = (of_heights * (1.0 - fading.sum(axis=-1))).T
         total = np.maximum(joint.sum(axis=0), _TINY)
         mean = (heights @ joint.reshape(len(heights), -1)).reshape(total.shape)
@@ -288,5 +312,7 @@ def over_nothing(slope: Array, bend: Array, strength: Array, drawn_out: float) -
     slope, bend = slope[..., np.newaxis], np.maximum(bend, BEND_MIN)[..., np.newaxis]
     best = slope**2 / bend
     widened = 1.0 + bend * (error * strength) ** 2
-    result: Array = 0.5 * (best - (best - 2.0 * slope * strength + bend * strength**2) / widened - np.log(widened))
+    result: Array = 0.5 * (
+        best - (best - 2.0 * slope * strength + bend * strength**2) / widened - np.log(widened)
+    )
     return result

@@ -135,7 +135,12 @@ class PassReader:
         _, middle, high = _spread_of(y)
         total = noise + (_SHAPE_ERROR * max(0.0, high - middle)) ** 2
         inner = _inner(background, total)
-        match = _Match(templates @ y, (templates * templates).sum(axis=1), templates @ background.T, background @ y)
+        match = _Match(
+            templates @ y,
+            (templates * templates).sum(axis=1),
+            templates @ background.T,
+            background @ y,
+        )
         slope, bend = match.projected(total, inner)
         bend_up = np.maximum(bend, BEND_MIN)
         gain = np.maximum(slope, 0.0) ** 2 / bend_up
@@ -160,7 +165,9 @@ class PassReader:
             significance=float(alone_slope / math.sqrt(max(float(alone_bend), BEND_MIN))),
         )
 
-    def _settle(self, rest: Array, background: Array, covariance: Array, variance: float, level: float) -> None:
+    def _settle(
+        self, rest: Array, background: Array, covariance: Array, variance: float, level: float
+    ) -> None:
         """Take the level of the background from what the pulse leaves, for the pass that follows."""
         known = covariance @ (background @ rest)
         # Level and slope at the end of the pass.
@@ -173,7 +180,9 @@ class PassReader:
         """Responses to pulses of strength 1 at every place with every spread, shape (w j, m)."""
         off = path.across - places[:, np.newaxis]
         off *= off
-        pulses = np.exp(np.multiply.outer(-0.5 / spreads**2, off)).reshape(len(spreads) * len(places), -1)
+        pulses = np.exp(np.multiply.outer(-0.5 / spreads**2, off)).reshape(
+            len(spreads) * len(places), -1
+        )
         constant = self._sensor.time_constant
         # Air that came in from half a step before a point of the path to half a step after it.
         after = np.maximum(path.read_at[:, np.newaxis] - path.time + 0.5 * FINE, 0.0)

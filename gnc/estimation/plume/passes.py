@@ -63,8 +63,14 @@ class Path:
         apparent_wind : with which the plume itself moves along [m/s]
         """
         i = min(max(self._nearest(across), 1), len(self.time) - 2)
-        along = self.along[i + 1] - self.along[i - 1] - apparent_wind * (self.time[i + 1] - self.time[i - 1])
-        return float(abs(along) / max(abs(self.across[i + 1] - self.across[i - 1]), _BESIDE * abs(along)))
+        along = (
+            self.along[i + 1]
+            - self.along[i - 1]
+            - apparent_wind * (self.time[i + 1] - self.time[i - 1])
+        )
+        return float(
+            abs(along) / max(abs(self.across[i + 1] - self.across[i - 1]), _BESIDE * abs(along))
+        )
 
     def covered(self, places: Array, weights: Array) -> float:
         """Return the sum of the weights of those places across, in order, that the way goes over."""
@@ -83,7 +89,17 @@ class PassCollector:
     delay, tail : of the sensor, and how long after a turn what it reads belongs to the pass before [s]
     """
 
-    __slots__ = ("_columns", "_delay", "_farthest", "_farthest_at", "_read_at", "_readings", "_side", "_tail", "_turn")
+    __slots__ = (
+        "_columns",
+        "_delay",
+        "_farthest",
+        "_farthest_at",
+        "_read_at",
+        "_readings",
+        "_side",
+        "_tail",
+        "_turn",
+    )
 
     def __init__(self, *, delay: float, tail: float) -> None:
         self._delay, self._tail = delay, tail
@@ -94,7 +110,9 @@ class PassCollector:
         self._side = 0.0
         self._turn: float | None = None
 
-    def add(self, time: float, along: float, across: float, altitude: float, reading: float) -> Path | None:
+    def add(
+        self, time: float, along: float, across: float, altitude: float, reading: float
+    ) -> Path | None:
         """Take note of a place and of a reading, or of none; return the pass that is over, if one is.
 
         Parameters
@@ -146,4 +164,11 @@ class PassCollector:
         known_at, *known = map(np.array, columns)
         time = np.arange(begun, end + FINE, FINE)
         along, across, altitude = (np.interp(time, known_at, values) for values in known)
-        return Path(time, along, across, altitude, np.array(read_at[first:last]), np.array(readings[first:last]))
+        return Path(
+            time,
+            along,
+            across,
+            altitude,
+            np.array(read_at[first:last]),
+            np.array(readings[first:last]),
+        )

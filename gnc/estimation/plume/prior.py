@@ -66,7 +66,9 @@ _MEANDER_MIN = 0.5
 """Least standard deviation of the meander [m]."""
 
 
-def rise(momentum_flux: float, buoyancy_flux: float, distance: float, apparent_wind: float) -> float:
+def rise(
+    momentum_flux: float, buoyancy_flux: float, distance: float, apparent_wind: float
+) -> float:
     """Return the rise of a bent-over plume in neutral air [m] (Briggs 1975; AERMOD, CBLPRD).
 
     Parameters
@@ -76,7 +78,10 @@ def rise(momentum_flux: float, buoyancy_flux: float, distance: float, apparent_w
     apparent_wind : past the ship [m/s]
     """
     u = max(apparent_wind, SPEED_MIN)
-    momentum, buoyancy = 3.0 * momentum_flux * distance / u**2, 1.5 * buoyancy_flux * distance**2 / u**3
+    momentum, buoyancy = (
+        3.0 * momentum_flux * distance / u**2,
+        1.5 * buoyancy_flux * distance**2 / u**3,
+    )
     return math.cbrt((momentum + buoyancy) / _ENTRAINMENT**2)
 
 
@@ -115,7 +120,9 @@ class GasSensor:
     def __post_init__(self) -> None:
         for name, unit in (("interval", "s"), ("time_constant", "s"), ("noise", "ppm")):
             if not getattr(self, name) > 0.0:
-                raise InfeasibleError(f"{name} of the CO2 sensor is {getattr(self, name):g} {unit}; it must be above 0")
+                raise InfeasibleError(
+                    f"{name} of the CO2 sensor is {getattr(self, name):g} {unit}; it must be above 0"
+                )
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -164,9 +171,19 @@ class PlumePrior:
             raise InfeasibleError(
                 f"altitudes that may be flown are {self.lowest:g} to {self.highest:g} m; the second must be above the first"
             )
-        for name in ("distance", "apparent_wind", "height_deviation", "bearing_deviation", "sigma_y", "sigma_z", "peak"):
+        for name in (
+            "distance",
+            "apparent_wind",
+            "height_deviation",
+            "bearing_deviation",
+            "sigma_y",
+            "sigma_z",
+            "peak",
+        ):
             if not getattr(self, name) > 0.0:
-                raise InfeasibleError(f"{name} of the expected plume is {getattr(self, name):g}; it must be above 0")
+                raise InfeasibleError(
+                    f"{name} of the expected plume is {getattr(self, name):g}; it must be above 0"
+                )
 
     def rise_of(self, height: Array | float) -> Array:
         """Return the expected rise of axes that are so high at the prior's distance and wind [m], at least 0.
@@ -178,7 +195,9 @@ class PlumePrior:
         height : above the sea [m], any shape
         """
         share = max(0.0, 1.0 - (self.source_deviation / self.height_deviation) ** 2)
-        result: Array = np.maximum(0.0, self.height - self.source_height + share * (np.asarray(height) - self.height))
+        result: Array = np.maximum(
+            0.0, self.height - self.source_height + share * (np.asarray(height) - self.height)
+        )
         return result
 
     def widened(self, distance: float, apparent_wind: float) -> float:
@@ -190,7 +209,9 @@ class PlumePrior:
         turbulent = max(0.0, self.sigma_y**2 - _SOURCE_SPREAD**2) + self.meander_y**2
         source = min(self.sigma_y, _SOURCE_SPREAD) ** 2
         grown = (
-            (max(distance, _NEAR * self.distance) / self.distance) ** _GROWTH * self.apparent_wind / max(apparent_wind, SPEED_MIN)
+            (max(distance, _NEAR * self.distance) / self.distance) ** _GROWTH
+            * self.apparent_wind
+            / max(apparent_wind, SPEED_MIN)
         )
         return math.sqrt((source + turbulent * grown**2) / (source + turbulent))
 
@@ -204,7 +225,9 @@ class PlumePrior:
         height : at the prior's distance, in its apparent wind [m], any shape
         distance, apparent_wind : behind the funnel [m], past the ship [m/s]
         """
-        scale = rise(0.0, 1.0, max(distance, 0.0), apparent_wind) / rise(0.0, 1.0, self.distance, self.apparent_wind)
+        scale = rise(0.0, 1.0, max(distance, 0.0), apparent_wind) / rise(
+            0.0, 1.0, self.distance, self.apparent_wind
+        )
         result: Array = height + (scale - 1.0) * self.rise_of(height)
         return result
 
@@ -238,7 +261,9 @@ class Expectation:
     highest: float
 
 
-def expected_plume(expected: Expectation, *, distance: float, apparent_wind: float, wind_speed: float) -> PlumePrior:
+def expected_plume(
+    expected: Expectation, *, distance: float, apparent_wind: float, wind_speed: float
+) -> PlumePrior:
     """Return the plume that a ship of a class makes in some wind, over the sea in neutral air.
 
     Spreads about a moving centre are those of source, buoyancy and turbulence; the meander has the rest of the turbulence. That the
@@ -257,13 +282,19 @@ def expected_plume(expected: Expectation, *, distance: float, apparent_wind: flo
     wind_share, age = expected.wind_deviation / wind, distance / wind
     # The rise goes with the cube root of the flux, and with 1/U.
     rise_deviation = climbed * math.hypot(expected.load_deviation / 3.0, wind_share, _MODEL_ERROR)
-    mouth = max(0.0, expected.source_height - downwash(expected.stack_diameter, expected.exhaust_speed, wind))
+    mouth = max(
+        0.0,
+        expected.source_height - downwash(expected.stack_diameter, expected.exhaust_speed, wind),
+    )
     height = mouth + climbed
     friction = max(wind_speed, _WIND_MIN) * (_DRAG + _DRAG_SLOPE * wind_speed)
     path = _SIGMA_W * friction * age
     across, up = _SIGMA_V * friction * age, path / math.sqrt(1.0 + path / (_SURFACE_SCALE * height))
     own = math.hypot(_SOURCE_SPREAD, BUOYANT_SPREAD * climbed)
-    own_across = across * min(_OWN_UP, _OWN_SHARE * (_OWN_HEIGHT * _OWN_FRICTION / (expected.source_height * friction)) ** 0.25)
+    own_across = across * min(
+        _OWN_UP,
+        _OWN_SHARE * (_OWN_HEIGHT * _OWN_FRICTION / (expected.source_height * friction)) ** 0.25,
+    )
     own_up = min(own_across, _OWN_UP * up)
     sigma_y, sigma_z = math.hypot(own, own_across), math.hypot(own, own_up)
     # Twice the load is twice the gas, and makes what buoyancy has of the spreads 2^(1/3) times as wide.

@@ -59,7 +59,9 @@ class SensorWatch:
         if reading >= self._saturated:
             self.state = SensorState.SATURATED
         else:
-            self.state = SensorState.STUCK if self._equal >= self._stuck_from else SensorState.WORKING
+            self.state = (
+                SensorState.STUCK if self._equal >= self._stuck_from else SensorState.WORKING
+            )
 
 
 def equal_readings(sensor: GasSensor) -> float:

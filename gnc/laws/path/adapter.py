@@ -43,11 +43,20 @@ class PathMotion(NamedTuple):
     @property
     def circle(self) -> tuple[Vector, float, int]:
         """Return centre [m], radius [m] and side (+1 clockwise) of the circle that the path is, at its point."""
-        return scaled(right_of(self.tangent), 1.0 / self.curvature), 1.0 / abs(self.curvature), 1 if self.curvature > 0.0 else -1
+        return (
+            scaled(right_of(self.tangent), 1.0 / self.curvature),
+            1.0 / abs(self.curvature),
+            1 if self.curvature > 0.0 else -1,
+        )
 
 
 def path_motion(
-    reference: Reference, to_north: float, to_east: float, course: float, speed: float, surroundings: Surroundings
+    reference: Reference,
+    to_north: float,
+    to_east: float,
+    course: float,
+    speed: float,
+    surroundings: Surroundings,
 ) -> PathMotion:
     """Return the vehicle beside the path that the reference stands for; parameters are those of ``SteeringLaw``.
 
@@ -96,7 +105,9 @@ class PathLaw(ABC):
         """Return the law of one flight, in these surroundings, called every ``time_step`` [s]."""
         return BegunLaw(self.rate, surroundings)
 
-    def heading_rate(self, reference: Reference, to_north: float, to_east: float, course: float, speed: float) -> float:
+    def heading_rate(
+        self, reference: Reference, to_north: float, to_east: float, course: float, speed: float
+    ) -> float:
         """Return the demanded heading rate in still air [rad/s]; parameters are those of ``SteeringLaw``."""
         return self.rate(path_motion(reference, to_north, to_east, course, speed, STILL_AIR))
 
@@ -115,9 +126,13 @@ class BegunLaw:
     def __init__(self, rate: Any, surroundings: Surroundings) -> None:
         self._rate, self._surroundings = rate, surroundings
 
-    def heading_rate(self, reference: Reference, to_north: float, to_east: float, course: float, speed: float) -> float:
+    def heading_rate(
+        self, reference: Reference, to_north: float, to_east: float, course: float, speed: float
+    ) -> float:
         """Return the demanded heading rate [rad/s]; parameters are those of ``SteeringLaw``."""
-        rate: float = self._rate(path_motion(reference, to_north, to_east, course, speed, self._surroundings))
+        rate: float = self._rate(
+            path_motion(reference, to_north, to_east, course, speed, self._surroundings)
+        )
         return rate
 
 

@@ -111,7 +111,9 @@ def update_waypoint(
         state = L1State(integral, p.integrator_gain, state.last_angle)
         angle = capture + integral + _angle_to(direction, velocity)
     angle = decided(angle, state.last_angle, bearing=course_of(minus(end, position)), yaw=yaw)
-    acceleration = 4.0 * p.damping**2 * speed * speed / distance * math.sin(clip(angle, -_QUARTER, _QUARTER))
+    acceleration = (
+        4.0 * p.damping**2 * speed * speed / distance * math.sin(clip(angle, -_QUARTER, _QUARTER))
+    )
     return acceleration, L1State(integral, state.gain, angle)
 
 
@@ -137,7 +139,11 @@ def decided(angle: float, last: float, *, bearing: float, yaw: float) -> float:
     bearing : of the target [rad]
     yaw : heading [rad]
     """
-    behind = abs(angle) > 0.9 * math.pi and abs(last) > 0.9 * math.pi and abs(wrap(bearing - yaw)) > math.radians(120.0)
+    behind = (
+        abs(angle) > 0.9 * math.pi
+        and abs(last) > 0.9 * math.pi
+        and abs(wrap(bearing - yaw)) > math.radians(120.0)
+    )
     return last if behind and angle * last < 0.0 else angle
 
 
@@ -197,9 +203,16 @@ class _Flight:
     __slots__ = ("_law", "_state", "_surroundings", "_time_step")
 
     def __init__(self, law: ArduPilotL1Law, surroundings: Surroundings, time_step: float) -> None:
-        self._law, self._surroundings, self._time_step, self._state = law, surroundings, time_step, FRESH
+        self._law, self._surroundings, self._time_step, self._state = (
+            law,
+            surroundings,
+            time_step,
+            FRESH,
+        )
 
-    def heading_rate(self, reference: Reference, to_north: float, to_east: float, course: float, speed: float) -> float:
+    def heading_rate(
+        self, reference: Reference, to_north: float, to_east: float, course: float, speed: float
+    ) -> float:
         motion = path_motion(reference, to_north, to_east, course, speed, self._surroundings)
         rate, self._state = self._law.step(motion, self._time_step, self._state)
         return rate

@@ -80,7 +80,9 @@ def update_loiter(
         outward = along(yaw)
     across, inbound = cross(outward, velocity), -dot(velocity, outward)
     angle = math.atan2(across, inbound)
-    capture = 4.0 * p.damping**2 * speed * speed / distance * math.sin(clip(angle, -_QUARTER, _QUARTER))
+    capture = (
+        4.0 * p.damping**2 * speed * speed / distance * math.sin(clip(angle, -_QUARTER, _QUARTER))
+    )
     outside, around = range_ - radius, across * side
     correction = outside * rate * rate - inbound * 2.0 * p.damping * rate
     if inbound < 0.0 and around < 0.0:
@@ -117,7 +119,13 @@ class ArduPilotLoiterLaw(PathLaw):
     def rate(self, motion: PathMotion) -> float:
         """Return the demanded heading rate [rad/s]."""
         parameters = LoiterParameters(self.loiter_period_s, self.loiter_damping)
-        asked = update_loiter(motion.position, self.velocity(motion), motion.heading, *motion.circle, parameters=parameters)
+        asked = update_loiter(
+            motion.position,
+            self.velocity(motion),
+            motion.heading,
+            *motion.circle,
+            parameters=parameters,
+        )
         return turn_rate(asked.lateral_acceleration, motion.airspeed)
 
 

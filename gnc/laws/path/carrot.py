@@ -18,7 +18,9 @@ def carrot_on_line(position: Vector, origin: Vector, tangent: Vector, ahead: flo
     return plus(origin, tangent, dot(minus(position, origin), tangent) + ahead)
 
 
-def carrot_on_circle(position: Vector, centre: Vector, radius: float, side: int, ahead: float) -> Vector:
+def carrot_on_circle(
+    position: Vector, centre: Vector, radius: float, side: int, ahead: float
+) -> Vector:
     """Return the point of a circle that is an angle ``ahead`` [rad] of the vehicle's nearest [m]; side +1 is clockwise."""
     return plus(centre, along(course_of(minus(position, centre)) + side * ahead), radius)
 
@@ -29,7 +31,14 @@ def chase(position: Vector, velocity: Vector, target: Vector, gain: float) -> fl
 
 
 def plos(
-    position: Vector, velocity: Vector, origin: Vector, tangent: Vector, target: Vector, *, pursuit_gain: float, sight_gain: float
+    position: Vector,
+    velocity: Vector,
+    origin: Vector,
+    tangent: Vector,
+    target: Vector,
+    *,
+    pursuit_gain: float,
+    sight_gain: float,
 ) -> float:
     """Return a = k_1 V angle - k_2 V e, positive to the right [m/s2]. A pure function.
 
@@ -62,7 +71,9 @@ class CarrotLaw(PathLaw):
     def rate(self, motion: PathMotion) -> float:
         """Return the demanded heading rate [rad/s]."""
         target = carrot_on_line(motion.position, (0.0, 0.0), motion.tangent, self.carrot_ahead_m)
-        return turn_rate(chase(motion.position, motion.velocity, target, self.carrot_gain_per_s), motion.airspeed)
+        return turn_rate(
+            chase(motion.position, motion.velocity, target, self.carrot_gain_per_s), motion.airspeed
+        )
 
 
 @steering_law("carrot_orbit")
@@ -84,7 +95,9 @@ class CarrotOrbitLaw(PathLaw):
     def rate(self, motion: PathMotion) -> float:
         """Return the demanded heading rate [rad/s]."""
         target = carrot_on_circle(motion.position, *motion.circle, self.carrot_angle_rad)
-        return turn_rate(chase(motion.position, motion.velocity, target, self.carrot_gain_per_s), motion.airspeed)
+        return turn_rate(
+            chase(motion.position, motion.velocity, target, self.carrot_gain_per_s), motion.airspeed
+        )
 
 
 @steering_law("plos")

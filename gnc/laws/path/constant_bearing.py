@@ -40,7 +40,11 @@ class ConstantBearingLaw:
     def __post_init__(self) -> None:
         check_parameters(self)
 
-    def heading_rate(self, reference: Reference, to_north: float, to_east: float, course: float, speed: float) -> float:
+    def heading_rate(
+        self, reference: Reference, to_north: float, to_east: float, course: float, speed: float
+    ) -> float:
         """Return the demanded heading rate [rad/s]; parameters are those of ``SteeringLaw``."""
         ratio = reference.speed / max(speed, 1.0)
-        return self.bearing_gain_per_s * wrap(collision_course((to_north, to_east), reference.course, ratio) - course)
+        return self.bearing_gain_per_s * wrap(
+            collision_course((to_north, to_east), reference.course, ratio) - course
+        )

@@ -122,6 +122,17 @@ class LgvfLaw(PathLaw):
     def rate(self, motion: PathMotion) -> float:
         """Return the demanded heading rate [rad/s]; a centre that is as fast as the vehicle is followed, not circled."""
         if norm(motion.wind) >= motion.airspeed:
-            return heading_rate(HeadingField(course_of(motion.wind) + math.pi, 0.0), motion.heading, self.lgvf_gain_per_s)
-        field = lgvf(motion.position, motion.heading, motion.airspeed, *motion.circle, (0.0, 0.0), motion.wind)
+            return heading_rate(
+                HeadingField(course_of(motion.wind) + math.pi, 0.0),
+                motion.heading,
+                self.lgvf_gain_per_s,
+            )
+        field = lgvf(
+            motion.position,
+            motion.heading,
+            motion.airspeed,
+            *motion.circle,
+            (0.0, 0.0),
+            motion.wind,
+        )
         return heading_rate(field, motion.heading, self.lgvf_gain_per_s)

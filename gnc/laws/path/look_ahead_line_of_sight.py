@@ -11,7 +11,14 @@ from gnc.vectors import Vector, along, cross, dot
 
 
 def look_ahead_line_of_sight(
-    position: Vector, course: float, speed: float, line_course: float, line_rate: float, *, look_ahead: float, gain: float
+    position: Vector,
+    course: float,
+    speed: float,
+    line_course: float,
+    line_rate: float,
+    *,
+    look_ahead: float,
+    gain: float,
 ) -> float:
     """Return omega [rad/s]. A pure function.
 
@@ -49,7 +56,9 @@ class LookAheadLineOfSightLaw:
     def __post_init__(self) -> None:
         check_parameters(self)
 
-    def heading_rate(self, reference: Reference, to_north: float, to_east: float, course: float, speed: float) -> float:
+    def heading_rate(
+        self, reference: Reference, to_north: float, to_east: float, course: float, speed: float
+    ) -> float:
         """Return the demanded heading rate [rad/s]; parameters are those of ``SteeringLaw``."""
         return look_ahead_line_of_sight(
             (-to_north, -to_east),

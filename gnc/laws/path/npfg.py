@@ -91,7 +91,9 @@ def npfg(
     airspeed, ground_speed, wind_speed = norm(air_velocity), norm(velocity), norm(wind)
     error = cross(tangent, minus(position, path_point))
     track_feasible = bearing_feasibility(tangent, wind, airspeed)
-    period = _adapted_period(p, abs(error), ground_speed, airspeed, wind_speed, curvature, track_feasible)
+    period = _adapted_period(
+        p, abs(error), ground_speed, airspeed, wind_speed, curvature, track_feasible
+    )
     gain = 4.0 * math.pi * p.damping / period
     bound = track_error_bound(ground_speed, p.damping * period)
     off = clip(abs(error) / bound, 0.0, 1.0)
@@ -135,7 +137,13 @@ def track_error_bound(ground_speed: float, time_constant: float) -> float:
 
 
 def _adapted_period(
-    p: NpfgParameters, error: float, ground_speed: float, airspeed: float, wind_speed: float, curvature: float, feasible: float
+    p: NpfgParameters,
+    error: float,
+    ground_speed: float,
+    airspeed: float,
+    wind_speed: float,
+    curvature: float,
+    feasible: float,
 ) -> float:
     """Return the period, kept to what the roll dynamics allow and the path's curvature in wind needs [s]."""
     if p.roll_time_constant <= _EPSILON:
@@ -148,7 +156,10 @@ def _adapted_period(
     straight = math.pi * p.roll_time_constant / p.damping
     lowest = straight
     if turn_rate * wind_factor >= _EPSILON and p.damping >= 0.5:
-        lowest = 4.0 * math.pi * p.roll_time_constant * p.damping * feasible + (1.0 - feasible) * straight
+        lowest = (
+            4.0 * math.pi * p.roll_time_constant * p.damping * feasible
+            + (1.0 - feasible) * straight
+        )
     lowest, straight = lowest * p.safety_factor, straight * p.safety_factor
     off = clip(error / track_error_bound(ground_speed, straight * p.damping), 0.0, 1.0)
     proximity = math.sin(0.5 * math.pi * (off - 1.0) ** 2) ** 2
@@ -162,13 +173,21 @@ def _adapted_period(
     return period
 
 
-def _air_velocity_reference(bearing: Vector, wind: Vector, wind_speed: float, airspeed: float) -> Vector:
+def _air_velocity_reference(
+    bearing: Vector, wind: Vector, wind_speed: float, airspeed: float
+) -> Vector:
     """Return the velocity through the air that gives the demanded bearing over the ground, as far as the wind lets it [m/s]."""
     across, along = cross(wind, bearing), dot(wind, bearing)
     if abs(across) < airspeed and (along > 0.0 or wind_speed < airspeed):
-        return plus(scaled(bearing, math.sqrt(max(airspeed * airspeed - across * across, 0.0))), right_of(bearing), across)
+        return plus(
+            scaled(bearing, math.sqrt(max(airspeed * airspeed - across * across, 0.0))),
+            right_of(bearing),
+            across,
+        )
     # No heading gives that bearing: it heads against the wind, turned towards the bearing.
-    drift = minus(scaled(bearing, math.sqrt(max(wind_speed * wind_speed - airspeed * airspeed, 0.0))), wind)
+    drift = minus(
+        scaled(bearing, math.sqrt(max(wind_speed * wind_speed - airspeed * airspeed, 0.0))), wind
+    )
     length = norm(drift)
     return scaled(drift, airspeed / length) if length > 0.0 else scaled(bearing, airspeed)
 
@@ -181,9 +200,15 @@ def _feedback(gain: float, air_velocity: Vector, airspeed: float, reference: Vec
     return gain * turn / length if length > 0.0 else 0.0
 
 
-def _feed_forward(tangent: Vector, velocity: Vector, wind: Vector, airspeed: float, error: float, curvature: float) -> float:
+def _feed_forward(
+    tangent: Vector, velocity: Vector, wind: Vector, airspeed: float, error: float, curvature: float
+) -> float:
     """Return the lateral acceleration that the path's curvature needs, at the vehicle's distance from it [m/s2]."""
-    here = curvature / max(1.0 - curvature * error, abs(curvature) * _RADIUS_MIN) if curvature != 0.0 else 0.0
+    here = (
+        curvature / max(1.0 - curvature * error, abs(curvature) * _RADIUS_MIN)
+        if curvature != 0.0
+        else 0.0
+    )
     path_rate = here * max(dot(velocity, tangent), 0.0)
     crosswind = cross(wind, tangent)
     along = math.sqrt(max(airspeed * airspeed - crosswind * crosswind, 0.0))
@@ -202,7 +227,9 @@ class NpfgLaw(PathLaw):
     npfg_roll_time_constant_s : time constant T_phi of the roll angle; 0 for no bounds on the period [s]
     """
 
-    given: ClassVar[str] = "tangent and curvature over the ground (M1), a circle in its centre's frame (M2); wind"
+    given: ClassVar[str] = (
+        "tangent and curvature over the ground (M1), a circle in its centre's frame (M2); wind"
+    )
     npfg_period_s: float = 10.0
     npfg_damping: float = 0.7
     npfg_roll_time_constant_s: float = 0.5
@@ -215,5 +242,13 @@ class NpfgLaw(PathLaw):
             roll_time_constant=self.npfg_roll_time_constant_s,
             airspeed=motion.airspeed,
         )
-        command = npfg(motion.position, motion.velocity, motion.wind, (0.0, 0.0), motion.tangent, motion.curvature, parameters)
+        command = npfg(
+            motion.position,
+            motion.velocity,
+            motion.wind,
+            (0.0, 0.0),
+            motion.tangent,
+            motion.curvature,
+            parameters,
+        )
         return turn_rate(command.lateral_acceleration, motion.airspeed)

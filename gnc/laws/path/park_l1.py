@@ -44,10 +44,16 @@ def point_on_line(position: Vector, origin: Vector, course: float, distance: flo
     """
     tangent, off = along(course), minus(position, origin)
     error = cross(tangent, off)
-    return plus(origin, tangent, dot(tangent, off) + math.sqrt(max(distance * distance - error * error, 0.0)))
+    return plus(
+        origin,
+        tangent,
+        dot(tangent, off) + math.sqrt(max(distance * distance - error * error, 0.0)),
+    )
 
 
-def point_on_circle(position: Vector, centre: Vector, radius: float, side: int, distance: float) -> Vector:
+def point_on_circle(
+    position: Vector, centre: Vector, radius: float, side: int, distance: float
+) -> Vector:
     """Return the point of a circle at ``distance`` L1 ahead [m]; its nearest point where there is none.
 
     Parameters
@@ -60,7 +66,9 @@ def point_on_circle(position: Vector, centre: Vector, radius: float, side: int, 
     from_centre = minus(position, centre)
     d, ahead = norm(from_centre), 0.0
     if d > 0.0 and abs(d - radius) <= distance <= d + radius:
-        ahead = math.acos(clip((d * d + radius * radius - distance * distance) / (2.0 * d * radius), -1.0, 1.0))
+        ahead = math.acos(
+            clip((d * d + radius * radius - distance * distance) / (2.0 * d * radius), -1.0, 1.0)
+        )
     return plus(centre, along(course_of(from_centre) + side * ahead), radius)
 
 
@@ -85,7 +93,9 @@ class ParkL1Law(PathLaw):
 
     def rate(self, motion: PathMotion) -> float:
         """Return the demanded heading rate [rad/s]."""
-        acceleration = park_l1(motion.position, motion.velocity, self.target(motion), range_min=self.range_min())
+        acceleration = park_l1(
+            motion.position, motion.velocity, self.target(motion), range_min=self.range_min()
+        )
         return turn_rate(acceleration, motion.airspeed)
 
 
@@ -98,7 +108,9 @@ class ParkL1TangentLaw(ParkL1Law):
 
     def target(self, motion: PathMotion) -> Vector:
         """Return the point of the tangent at L1 from the vehicle, from the path's point [m]."""
-        return point_on_line(motion.position, (0.0, 0.0), course_of(motion.tangent), self.l1_distance_m)
+        return point_on_line(
+            motion.position, (0.0, 0.0), course_of(motion.tangent), self.l1_distance_m
+        )
 
 
 @steering_law("park_l1_ahead")

@@ -37,7 +37,11 @@ class ProportionalNavigationLaw:
     def __post_init__(self) -> None:
         check_parameters(self)
 
-    def heading_rate(self, reference: Reference, to_north: float, to_east: float, course: float, speed: float) -> float:
+    def heading_rate(
+        self, reference: Reference, to_north: float, to_east: float, course: float, speed: float
+    ) -> float:
         """Return the demanded heading rate [rad/s]; parameters are those of ``SteeringLaw``."""
-        relative = minus(scaled(along(reference.course), reference.speed), scaled(along(course), speed))
+        relative = minus(
+            scaled(along(reference.course), reference.speed), scaled(along(course), speed)
+        )
         return self.navigation_constant * sight_rate((to_north, to_east), relative)

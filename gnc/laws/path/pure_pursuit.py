@@ -40,6 +40,13 @@ class PurePursuitLaw:
     def __post_init__(self) -> None:
         check_parameters(self)
 
-    def heading_rate(self, reference: Reference, to_north: float, to_east: float, course: float, speed: float) -> float:  # noqa: ARG002
+    def heading_rate(
+        self,
+        reference: Reference,  # noqa: ARG002
+        to_north: float,
+        to_east: float,
+        course: float,
+        speed: float,
+    ) -> float:
         """Return the demanded heading rate [rad/s]; parameters are those of ``SteeringLaw``."""
         return pure_pursuit((to_north, to_east), course, speed, range_min=self.range_min_m)

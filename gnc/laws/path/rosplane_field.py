@@ -18,7 +18,15 @@ _G = 9.81
 """Gravity as ROSplane has it [m/s2]."""
 
 
-def line_course(position: Vector, course: float, origin: Vector, line_course: float, *, gain: float, approach: float) -> float:
+def line_course(
+    position: Vector,
+    course: float,
+    origin: Vector,
+    line_course: float,
+    *,
+    gain: float,
+    approach: float,
+) -> float:
     """Return the course command for a line, as ROSplane flies it [rad].
 
     Parameters
@@ -33,7 +41,9 @@ def line_course(position: Vector, course: float, origin: Vector, line_course: fl
     return nearest - approach * math.atan(gain * error) / _HALF_PI
 
 
-def orbit_course(position: Vector, centre: Vector, radius: float, side: int, *, gain: float) -> float:
+def orbit_course(
+    position: Vector, centre: Vector, radius: float, side: int, *, gain: float
+) -> float:
     """Return the course command for a circle, as ROSplane flies it, within a turn [rad].
 
     Parameters
@@ -105,4 +115,6 @@ class RosplaneOrbitLaw(PathLaw):
         course, (centre, radius, side) = course_of(motion.velocity), motion.circle
         command = orbit_course(motion.position, centre, radius, side, gain=self.orbit_gain)
         roll = orbit_roll(motion.airspeed, radius, side, course, motion.heading)
-        return self.course_gain_per_s * wrap(command - course) + _G * math.tan(roll) / motion.airspeed
+        return (
+            self.course_gain_per_s * wrap(command - course) + _G * math.tan(roll) / motion.airspeed
+        )

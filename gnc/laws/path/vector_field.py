@@ -61,7 +61,9 @@ def line_field(
     )
 
 
-def orbit_field(position: Vector, velocity: Vector, centre: Vector, radius: float, side: int, *, gain: float) -> Field:
+def orbit_field(
+    position: Vector, velocity: Vector, centre: Vector, radius: float, side: int, *, gain: float
+) -> Field:
     """Return the field of a circle, the course of the velocity relative to its centre, and its rate along the vehicle's way.
 
     Parameters
@@ -118,7 +120,9 @@ class VectorFieldLaw:
     def __post_init__(self) -> None:
         check_parameters(self)
 
-    def heading_rate(self, reference: Reference, to_north: float, to_east: float, course: float, speed: float) -> float:
+    def heading_rate(
+        self, reference: Reference, to_north: float, to_east: float, course: float, speed: float
+    ) -> float:
         """Return the demanded heading rate [rad/s]; parameters are those of ``SteeringLaw``."""
         field = line_field(
             (-to_north, -to_east),
@@ -129,7 +133,9 @@ class VectorFieldLaw:
             approach=self.field_approach_rad,
             line_rate=reference.heading_rate,
         )
-        return field_heading_rate(field, course, kappa=self.field_rate_rad_s, width=self.field_width_rad)
+        return field_heading_rate(
+            field, course, kappa=self.field_rate_rad_s, width=self.field_width_rad
+        )
 
 
 @steering_law("vector_field_orbit")
@@ -154,6 +160,10 @@ class OrbitFieldLaw(PathLaw):
         drift = scaled(motion.wind, -1.0)
         field = Field(course_of(drift), 0.0)
         if norm(drift) < motion.airspeed:
-            relative = orbit_field(motion.position, motion.velocity, *motion.circle, gain=self.field_gain_per_m)
+            relative = orbit_field(
+                motion.position, motion.velocity, *motion.circle, gain=self.field_gain_per_m
+            )
             field = Field(*heading_for(relative.course, relative.rate, motion.airspeed, drift))
-        return field_heading_rate(field, motion.heading, kappa=self.field_rate_rad_s, width=self.field_width_rad)
+        return field_heading_rate(
+            field, motion.heading, kappa=self.field_rate_rad_s, width=self.field_width_rad
+        )

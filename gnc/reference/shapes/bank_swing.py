@@ -84,7 +84,10 @@ class BankSwing:
         """Return the largest omega_0 within a heading rate and the roll rate, no more than that at ``ETA_FREQUENCY`` [rad/s]."""
         eta = eta if eta > ETA_FREQUENCY else ETA_FREQUENCY
         if eta > self._rolled:
-            quarter, largest = self._ramp + (eta - self._rolled) / self._heading_rate, self._heading_rate
+            quarter, largest = (
+                self._ramp + (eta - self._rolled) / self._heading_rate,
+                self._heading_rate,
+            )
         else:
             quarter, largest = self._rolled_through(eta)
         fastest = _QUARTER_TURN / quarter
@@ -156,7 +159,11 @@ class BankSwing:
     def _shape(self, eta: float) -> tuple[float, float, float]:
         """Return a quarter of the period, the time until bank is largest [s], and the heading rate then [rad/s]."""
         if eta > self._rolled:
-            return self._ramp + (eta - self._rolled) / self._heading_rate, self._ramp, self._heading_rate
+            return (
+                self._ramp + (eta - self._rolled) / self._heading_rate,
+                self._ramp,
+                self._heading_rate,
+            )
         quarter, largest = self._rolled_through(eta)
         return quarter, quarter, largest
 
@@ -173,7 +180,10 @@ class BankSwing:
         order = np.arange(1, 2 * _ORDERS + 1)
         # The course is even in the phase, and its negative half a period later: of exp(i course) the cosine has even orders alone,
         # and the sine odd ones.
-        series = [fourier_coefficients(functools.partial(self.course, ETA_STEP * i))[order] for i in range(len(ratios))]
+        series = [
+            fourier_coefficients(functools.partial(self.course, ETA_STEP * i))[order]
+            for i in range(len(ratios))
+        ]
         both = np.where(order % 2, np.imag(series), np.real(series))
         return OrbitTables(np.array(ratios), 2.0 * both / order)
 

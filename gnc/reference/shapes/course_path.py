@@ -21,7 +21,9 @@ _SAMPLES = 128
 def fourier_coefficients(course: Course) -> npt.NDArray[np.complex128]:
     """Return c_n of exp(i course) = sum of c_n exp(i n phase), in the order of ``numpy.fft.fft``, shape (128,)."""
     phases = (2.0 * np.pi / _SAMPLES * np.arange(_SAMPLES)).tolist()
-    return np.asarray(np.fft.fft(np.exp(1j * np.array([course(phase) for phase in phases]))) / _SAMPLES)
+    return np.asarray(
+        np.fft.fft(np.exp(1j * np.array([course(phase) for phase in phases]))) / _SAMPLES
+    )
 
 
 class CoursePath:

@@ -67,7 +67,9 @@ class FastestOscillation:
 
     def offset(self, time: npt.ArrayLike) -> tuple[Array, Array]:
         """Return where the reference is from the centre of oscillation, along its course and to its right, within 1e-5 m [m]."""
-        along, right = _path(self.courses, self.eta).offset(self.omega_0 * np.asarray(time, dtype=np.float64))
+        along, right = _path(self.courses, self.eta).offset(
+            self.omega_0 * np.asarray(time, dtype=np.float64)
+        )
         unit = self.speed / self.omega_0
         return unit * along, unit * right
 
@@ -104,7 +106,14 @@ class Fastest:
         return JOINING_SHARE
 
     def design(
-        self, *, nu: float, speed: float, heading_rate_max: float, reserve: float, vessel_heading_rate: float, roll_rate_max: float
+        self,
+        *,
+        nu: float,
+        speed: float,
+        heading_rate_max: float,
+        reserve: float,
+        vessel_heading_rate: float,
+        roll_rate_max: float,
     ) -> FastestOscillation:
         """Return the fastest oscillation that the vehicle can follow; parameters are those of ``ReferenceShape``."""
         available = available_heading_rate(
@@ -116,10 +125,17 @@ class Fastest:
             roll_rate_max=roll_rate_max,
         )
         courses = bank_swing(speed, available, roll_rate_max)
-        eta = float(brentq(lambda eta: courses.speed_ratio(eta) - nu, 0.0, _ETA_MAX, xtol=1e-15, rtol=1e-14))
+        eta = float(
+            brentq(lambda eta: courses.speed_ratio(eta) - nu, 0.0, _ETA_MAX, xtol=1e-15, rtol=1e-14)
+        )
         interval = courses.half_period(eta)
         return FastestOscillation(
-            nu=nu, speed=speed, eta=eta, crossing_interval=interval, omega_0=math.pi / interval, courses=courses
+            nu=nu,
+            speed=speed,
+            eta=eta,
+            crossing_interval=interval,
+            omega_0=math.pi / interval,
+            courses=courses,
         )
 
     def swing(self, *, speed: float, heading_rate: float, roll_rate_max: float) -> Swing:

@@ -116,7 +116,11 @@ class Loiter:
         rolled = 0.0
         if self._ramp:
             times = self.straight + 0.5 * self._ramp * (1.0 + _NODES)
-            rolled = 0.5 * self._ramp * float(_WEIGHTS @ np.cos([self._half(time) for time in times.tolist()]))
+            rolled = (
+                0.5
+                * self._ramp
+                * float(_WEIGHTS @ np.cos([self._half(time) for time in times.tolist()]))
+            )
         return self.straight + rolled - math.sin(self.turned) / self.amplitude
 
     @property
@@ -143,7 +147,9 @@ class Loiter:
         if time <= 0.0:
             return 0.0
         if time < self._ramp:
-            return self._rolling * math.log(math.cos(self.least_bank) / math.cos(self.least_bank + self.roll_rate * time))
+            return self._rolling * math.log(
+                math.cos(self.least_bank) / math.cos(self.least_bank + self.roll_rate * time)
+            )
         return self.turned + self.amplitude * (time - self._ramp)
 
 
@@ -161,7 +167,14 @@ class LoiterShape:
         return JOINING_SHARE
 
     def design(
-        self, *, nu: float, speed: float, heading_rate_max: float, reserve: float, vessel_heading_rate: float, roll_rate_max: float
+        self,
+        *,
+        nu: float,
+        speed: float,
+        heading_rate_max: float,
+        reserve: float,
+        vessel_heading_rate: float,
+        roll_rate_max: float,
     ) -> Loiter:
         """Return the fastest loiter that the vehicle can follow; parameters are those of ``ReferenceShape``.
 
@@ -182,7 +195,12 @@ class LoiterShape:
 
         def turn(least_bank: float, straight: float) -> Loiter:
             return Loiter(
-                nu=nu, speed=speed, amplitude=available, roll_rate=roll_rate_max, least_bank=least_bank, straight=straight
+                nu=nu,
+                speed=speed,
+                amplitude=available,
+                roll_rate=roll_rate_max,
+                least_bank=least_bank,
+                straight=straight,
             )
 
         level = turn(0.0, 0.0)

@@ -43,12 +43,16 @@ class SinusoidSwing:
         """Return the mean speed over the speed, J_0(eta) [-]: equation (5)."""
         # The power series of J_0 in (eta/2)^2, whose k-th term is -x/k^2 of the one before: good to 5e-7 up to eta = 2.4.
         x = 0.25 * eta * eta
-        return 1.0 - x * (1.0 - x / 4.0 * (1.0 - x / 9.0 * (1.0 - x / 16.0 * (1.0 - x / 25.0 * (1.0 - x / 36.0)))))
+        return 1.0 - x * (
+            1.0 - x / 4.0 * (1.0 - x / 9.0 * (1.0 - x / 16.0 * (1.0 - x / 25.0 * (1.0 - x / 36.0))))
+        )
 
     def frequency(self, eta: float, heading_rate: float) -> float:
         """Return omega_0 by the heading rate that is left and by the roll rate, as ``gnc.reference.oscillation`` does [rad/s]."""
         eta = eta if eta > ETA_FREQUENCY else ETA_FREQUENCY
-        by_heading_rate = (heading_rate if heading_rate < self.heading_rate else self.heading_rate) / eta
+        by_heading_rate = (
+            heading_rate if heading_rate < self.heading_rate else self.heading_rate
+        ) / eta
         by_roll_rate = math.sqrt(self.acceleration / eta)
         return by_heading_rate if by_heading_rate < by_roll_rate else by_roll_rate
 
@@ -76,7 +80,14 @@ class Sinusoid:
         return 1.0
 
     def design(
-        self, *, nu: float, speed: float, heading_rate_max: float, reserve: float, vessel_heading_rate: float, roll_rate_max: float
+        self,
+        *,
+        nu: float,
+        speed: float,
+        heading_rate_max: float,
+        reserve: float,
+        vessel_heading_rate: float,
+        roll_rate_max: float,
     ) -> Oscillation:
         """Return the fastest oscillation that the vehicle can follow; parameters are those of ``ReferenceShape``."""
         return design_oscillation(

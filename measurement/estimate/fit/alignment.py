@@ -60,8 +60,12 @@ def stated(instrument: SnifferSpec) -> Alignment:
     so2, co2 = instrument.known("so2"), instrument.known("co2")
     spread = so2.t90_s * so2.t90_sd, math.hypot(so2.delay_sd_s, co2.delay_sd_s)
     if not all(math.isfinite(value) for value in spread):
-        raise MeasurementError(f"t90 and delay of '{instrument.name}' are not both given; give them, or use the regression")
-    return Alignment(instrument=instrument, slope_deviation=0.0, t90_sd_s=spread[0], delay_sd_s=spread[1])
+        raise MeasurementError(
+            f"t90 and delay of '{instrument.name}' are not both given; give them, or use the regression"
+        )
+    return Alignment(
+        instrument=instrument, slope_deviation=0.0, t90_sd_s=spread[0], delay_sd_s=spread[1]
+    )
 
 
 def align(record: Record, instrument: SnifferSpec, start: SnifferSpec | None = None) -> Alignment:
@@ -102,36 +106,56 @@ def widened(alignment: Alignment, known: SnifferSpec, others: Sequence[SnifferSp
     known, others : the instrument aligned as it is known, and with one error each
     """
     so2 = alignment.instrument.known("so2")
-    log_t90, delay = np.linalg.norm([_place(other) - _place(known) for other in others] or np.zeros((1, 2)), axis=0).tolist()
+    log_t90, delay = np.linalg.norm(
+        [_place(other) - _place(known) for other in others] or np.zeros((1, 2)), axis=0
+    ).tolist()
     return replace(
         alignment,
-        t90_sd_s=math.hypot(alignment.t90_sd_s, so2.t90_s * log_t90) if math.isinf(so2.t90_sd) else alignment.t90_sd_s,
-        delay_sd_s=math.hypot(alignment.delay_sd_s, delay) if math.isinf(so2.delay_sd_s) else alignment.delay_sd_s,
+        t90_sd_s=math.hypot(alignment.t90_sd_s, so2.t90_s * log_t90)
+        if math.isinf(so2.t90_sd)
+        else alignment.t90_sd_s,
+        delay_sd_s=math.hypot(alignment.delay_sd_s, delay)
+        if math.isinf(so2.delay_sd_s)
+        else alignment.delay_sd_s,
     )
 
 
 def _place(instrument: SnifferSpec) -> Array:
     """Return log(t90) of SO2 and its delay after CO2 [s]."""
-    return np.array([math.log(instrument.known("so2").t90_s), instrument.known("so2").delay_s - instrument.known("co2").delay_s])
+    return np.array(
+        [
+            math.log(instrument.known("so2").t90_s),
+            instrument.known("so2").delay_s - instrument.known("co2").delay_s,
+        ]
+    )
 
 
 def _applied(instrument: SnifferSpec, place: Array) -> SnifferSpec:
     """Return the instrument with log(t90) of SO2 and its delay after CO2 [s]; where that is negative, all others are later."""
     late = max(0.0, -float(place[1]) - instrument.known("co2").delay_s)
     if late:
-        channels = tuple(replace(channel, delay_s=channel.delay_s + late) for channel in instrument.channels)
+        channels = tuple(
+            replace(channel, delay_s=channel.delay_s + late) for channel in instrument.channels
+        )
         instrument = replace(instrument, channels=channels)
     delay = max(0.0, instrument.known("co2").delay_s + float(place[1]))
-    return instrument.with_channel(replace(instrument.known("so2"), t90_s=math.exp(float(place[0])), delay_s=delay))
+    return instrument.with_channel(
+        replace(instrument.known("so2"), t90_s=math.exp(float(place[0])), delay_s=delay)
+    )
 
 
-def _round(record: Record, instrument: SnifferSpec, place: Array, free: npt.NDArray[np.int64]) -> tuple[Array, Array, float]:
+def _round(
+    record: Record, instrument: SnifferSpec, place: Array, free: npt.NDArray[np.int64]
+) -> tuple[Array, Array, float]:
     """Return the Gauss-Newton step, the covariance of log(t90) and delay, and what it adds to the slope's deviation."""
     signals = make_signals(record, _applied(instrument, place))
     slope, residual = fitted(signals)
     if not math.isfinite(slope):
         return np.zeros(2), np.zeros((2, 2)), math.nan
-    derivatives = np.stack([-signals.excess()[0], *(_derivative(signals, instrument, place, i, slope) for i in free)], axis=1)
+    derivatives = np.stack(
+        [-signals.excess()[0], *(_derivative(signals, instrument, place, i, slope) for i in free)],
+        axis=1,
+    )
     inverse = np.linalg.pinv(derivatives.T @ derivatives, hermitian=True)
     step = np.zeros(2)
     step[free] = np.clip(-(inverse @ (derivatives.T @ residual))[1:], -_JUMPS[free], _JUMPS[free])
@@ -146,7 +170,9 @@ def _round(record: Record, instrument: SnifferSpec, place: Array, free: npt.NDAr
     return step, covariance, math.sqrt(max(0.0, float(spread[0, 0]) - alone))
 
 
-def _derivative(signals: Signals, instrument: SnifferSpec, place: Array, i: int, slope: float) -> Array:
+def _derivative(
+    signals: Signals, instrument: SnifferSpec, place: Array, i: int, slope: float
+) -> Array:
     """Return what the residuals change by with log(t90) or delay, relative to the noise that SO2 has left."""
     sides, noise, known = [], _noise(signals), signals.known
     for sign in (1.0, -1.0):
@@ -178,7 +204,9 @@ def _searched(record: Record, instrument: SnifferSpec, free: npt.NDArray[np.int6
         _, so2 = signals.excess()
         energy, noise = float(so2 @ so2), _noise(signals)
         for delay in _DELAY_SEARCH if 1 in free else (given,):
-            co2 = without(signals.basis, signals.known * shifted(signals.co2, record.step, delay - given))
+            co2 = without(
+                signals.basis, signals.known * shifted(signals.co2, record.step, delay - given)
+            )
             # SO2 does not fall where CO2 rises: a negative share is none.
             explained = max(0.0, float(co2 @ so2)) / max(float(np.linalg.norm(co2)), 1e-30)
             if (energy - explained**2) / noise < least:

@@ -39,7 +39,9 @@ class Groups:
     agreement: float
 
 
-def grouped(signals: Signals, passes: Sequence[Pass], slope: float, *, misfit: float, response: float) -> Groups:
+def grouped(
+    signals: Signals, passes: Sequence[Pass], slope: float, *, misfit: float, response: float
+) -> Groups:
     """Return the slopes of groups of passes, fitted together: each group's CO2 excess, equalised, is a signal of its own.
 
     Parameters
@@ -73,7 +75,9 @@ def grouped(signals: Signals, passes: Sequence[Pass], slope: float, *, misfit: f
     if covariance.any():
         inverse = np.linalg.inv(covariance + response**2 * np.eye(len(found)))
         mean = float(inverse.sum(axis=0) @ found / inverse.sum())
-        agreement = float(chdtrc(len(found) - 1, max(0.0, float((found - mean) @ inverse @ (found - mean)))))
+        agreement = float(
+            chdtrc(len(found) - 1, max(0.0, float((found - mean) @ inverse @ (found - mean))))
+        )
     return Groups(
         slopes=tuple(float(v) for v in found),
         deviations=tuple(float(v) for v in np.sqrt(np.diagonal(covariance))),
@@ -88,5 +92,9 @@ def _part(signals: Signals, start: float, end: float) -> Array:
     parts = []
     for time, excess in zip(record.times, co2_excesses(record, channel.noise), strict=True):
         inside = np.where((time >= start) & (time < end), excess / channel.gain, 0.0)
-        parts.append(shifted(equalised(inside, record.step, channel.constants, signals.common), record.step, late))
+        parts.append(
+            shifted(
+                equalised(inside, record.step, channel.constants, signals.common), record.step, late
+            )
+        )
     return np.concatenate(parts)

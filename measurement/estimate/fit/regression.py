@@ -88,7 +88,9 @@ def _noise_energy(signals: Signals, so2: float, co2: float) -> float:
 def _correlated(signals: Signals) -> float:
     """Return N times the sum of the squared autocovariance of the CO2 signal's noise."""
     return signals.count * sum(
-        (in_co2 * signals.noise(gas)) ** 4 * signals.noise_correlation(gas) for gas, (_, in_co2) in signals.shares.items() if in_co2
+        (in_co2 * signals.noise(gas)) ** 4 * signals.noise_correlation(gas)
+        for gas, (_, in_co2) in signals.shares.items()
+        if in_co2
     )
 
 

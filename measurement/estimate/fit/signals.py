@@ -8,7 +8,16 @@ import numpy as np
 import pandas as pd
 
 from measurement.estimate.fit.background import background_basis, without
-from measurement.estimate.fit.response import Poles, adjoint, between_samples, equalised, impulse, shifted, slowest, unread
+from measurement.estimate.fit.response import (
+    Poles,
+    adjoint,
+    between_samples,
+    equalised,
+    impulse,
+    shifted,
+    slowest,
+    unread,
+)
 from measurement.estimate.record import Record
 from measurement.gases import GASES, UNITS
 from measurement.sniffer.lag import Array
@@ -67,7 +76,9 @@ class Signals:
 
     @cached_property
     def _excess(self) -> tuple[Array, Array]:
-        return without(self.basis, self.known * self.co2), without(self.basis, self.known * self.so2)
+        return without(self.basis, self.known * self.co2), without(
+            self.basis, self.known * self.so2
+        )
 
     @cached_property
     def count(self) -> int:
@@ -83,7 +94,9 @@ class Signals:
         """Return the weights of a gas's readings in a weighted sum of its equalised samples, shape (n,) or (n, k)."""
         ends = np.cumsum([len(segment) for segment in self.record.times])[:-1]
         parts = np.split(weights, ends)
-        return np.concatenate([adjoint(part, self.record.step, self.poles(gas), self.common) for part in parts])
+        return np.concatenate(
+            [adjoint(part, self.record.step, self.poles(gas), self.common) for part in parts]
+        )
 
     def noise_energy(self, gas: str) -> float:
         """Return the expected sum of squares, beside the background, of a gas's equalised noise of standard deviation 1."""
@@ -96,9 +109,13 @@ class Signals:
             squares = self._impulse(gas, len(segment)) ** 2
             # Each reading is in all samples after it.
             first, end = self.ends[0], len(segment) - self.ends[1]
-            energy += float(np.sum(squares * np.maximum(0, end - np.maximum(first, np.arange(len(squares))))))
+            energy += float(
+                np.sum(squares * np.maximum(0, end - np.maximum(first, np.arange(len(squares)))))
+            )
         key = "background energy", self.poles(gas), self.common, self.ends
-        return energy - self.record.once(key, lambda: float(np.sum(self.backwards(gas, self.basis) ** 2)))
+        return energy - self.record.once(
+            key, lambda: float(np.sum(self.backwards(gas, self.basis) ** 2))
+        )
 
     def noise_correlation(self, gas: str) -> float:
         """Return the sum over all lags of the squared autocovariance of a gas's equalised noise of standard deviation 1."""
@@ -127,13 +144,20 @@ def used_gases(record: Record) -> tuple[str, ...]:
 def shares_of(instrument: SnifferSpec, gases: tuple[str, ...]) -> dict[str, tuple[float, float]]:
     """Return what each gas's reading has to count for in SO2 and in CO2: the inverse of gains and cross-sensitivities."""
     channels = [instrument.known(gas) for gas in gases]
-    response = np.array([[c.gain * (1.0 if c.gas == other else c.cross.get(other, 0.0)) for other in gases] for c in channels])
+    response = np.array(
+        [
+            [c.gain * (1.0 if c.gas == other else c.cross.get(other, 0.0)) for other in gases]
+            for c in channels
+        ]
+    )
     inverse = np.linalg.inv(response)
     so2, co2 = inverse[gases.index("so2")], inverse[gases.index("co2")]
     return {gas: (float(so2[i]), float(co2[i])) for i, gas in enumerate(gases)}
 
 
-def common_poles(instrument: SnifferSpec, gases: tuple[str, ...], shares: dict[str, tuple[float, float]]) -> Poles:
+def common_poles(
+    instrument: SnifferSpec, gases: tuple[str, ...], shares: dict[str, tuple[float, float]]
+) -> Poles:
     """Return the poles of the common response.
 
     They are the slowest of SO2 and CO2; a slower channel that corrects them joins in where bringing it to their response would make
@@ -144,7 +168,8 @@ def common_poles(instrument: SnifferSpec, gases: tuple[str, ...], shares: dict[s
     slow = [
         channel.constants
         for channel in (instrument.known(gas) for gas in gases if gas not in ("so2", "co2"))
-        if abs(shares[channel.gas][0]) * channel.noise * channel.constants[0] / poles[0] > main[0].noise
+        if abs(shares[channel.gas][0]) * channel.noise * channel.constants[0] / poles[0]
+        > main[0].noise
     ]
     return slowest([poles, *slow])
 
@@ -165,12 +190,27 @@ def make_signals(record: Record, instrument: SnifferSpec, ends: Ends = (0, 0)) -
         signal = _brought(record, gas, channel.constants, common, reference - channel.delay_s)
         so2 += shares[gas][0] * signal
         co2 += shares[gas][1] * signal
-    unknown = [ends, *(unread(record.step, reference - instrument.known(gas).delay_s) for gas in gases if any(shares[gas]))]
+    unknown = [
+        ends,
+        *(
+            unread(record.step, reference - instrument.known(gas).delay_s)
+            for gas in gases
+            if any(shares[gas])
+        ),
+    ]
     ends = max(begin for begin, _ in unknown), max(end for _, end in unknown)
     known = record.once(("known", ends), lambda: _known(record, ends))
     basis = record.once(("basis", common, ends), lambda: background_basis(record, common, known))
     return Signals(
-        record=record, instrument=instrument, co2=co2, so2=so2, ends=ends, known=known, basis=basis, common=common, shares=shares
+        record=record,
+        instrument=instrument,
+        co2=co2,
+        so2=so2,
+        ends=ends,
+        known=known,
+        basis=basis,
+        common=common,
+        shares=shares,
     )
 
 
@@ -202,7 +242,9 @@ def samples_of(signals: Signals, slope: float) -> tuple[pd.DataFrame, float]:
     # Beside the background both have a mean of 0; they are shown from the level that CO2 has outside the plume.
     level = float(np.quantile(co2[known], _OUTSIDE)) if known.any() else 0.0
     fit = slope * co2
-    signal, rest = (float(np.std(values[known])) if known.any() else 0.0 for values in (fit, so2 - fit))
+    signal, rest = (
+        float(np.std(values[known])) if known.any() else 0.0 for values in (fit, so2 - fit)
+    )
     columns = {"time_s": record.time}
     columns |= {f"{gas}_{UNITS[gas]}": record.of(gas) for gas in used_gases(record)}
     excesses = {

@@ -45,8 +45,14 @@ class Analysis:
         return {
             "estimate": self.estimate.record(),
             "other": None if self.other is None else self.other.record(),
-            "over_time": [{str(key): plain(value) for key, value in row.items()} for row in self.table.to_dict("records")],
-            "time_to_verdict_s": {f"{v.limit_percent:g}": plain(time_to_verdict(self.table, v.limit_percent)) for v in verdicts},
+            "over_time": [
+                {str(key): plain(value) for key, value in row.items()}
+                for row in self.table.to_dict("records")
+            ],
+            "time_to_verdict_s": {
+                f"{v.limit_percent:g}": plain(time_to_verdict(self.table, v.limit_percent))
+                for v in verdicts
+            },
             "instrument": self._instrument(),
             "carbon": self.carbon,
             "true_percent": true_percent,
@@ -54,8 +60,13 @@ class Analysis:
 
     def _instrument(self) -> dict[str, Any]:
         """Return the instrument as it was stated, and its channels as they were used, by gas; None is not stated, or no limit."""
-        stated, used = ({c.gas: plain(asdict(c)) for c in spec.channels} for spec in (self.instrument, self.estimate.instrument))
-        about = {name: getattr(self.instrument, name) for name in ("name", "title", "source", "rate_hz")}
+        stated, used = (
+            {c.gas: plain(asdict(c)) for c in spec.channels}
+            for spec in (self.instrument, self.estimate.instrument)
+        )
+        about = {
+            name: getattr(self.instrument, name) for name in ("name", "title", "source", "rate_hz")
+        }
         return about | {"stated": stated, "used": used}
 
 
@@ -74,14 +85,27 @@ def analyse(
     ------
     MeasurementError : as ``estimate``
     """
-    found = estimate(readings, instrument, method=method, carbon=carbon, limits_percent=limits_percent)
+    found = estimate(
+        readings, instrument, method=method, carbon=carbon, limits_percent=limits_percent
+    )
     second: Method = "areas" if method == "regression" else "regression"
     try:
-        other = estimate(readings, instrument, method=second, carbon=carbon, limits_percent=limits_percent)
+        other = estimate(
+            readings, instrument, method=second, carbon=carbon, limits_percent=limits_percent
+        )
     except MeasurementError:
         other = None
     duration = float(readings.time[-1] - readings.time[0])
     even = np.linspace(0.0, duration, points + 1)[1:] if points else np.empty(0)
-    elapsed = sorted({*(round(float(t), 3) for t in even), *(t for t in ELAPSED_S if t <= duration)})
-    table = over_time(readings, instrument, elapsed_s=elapsed, method=method, carbon=carbon, limits_percent=limits_percent)
+    elapsed = sorted(
+        {*(round(float(t), 3) for t in even), *(t for t in ELAPSED_S if t <= duration)}
+    )
+    table = over_time(
+        readings,
+        instrument,
+        elapsed_s=elapsed,
+        method=method,
+        carbon=carbon,
+        limits_percent=limits_percent,
+    )
     return Analysis(estimate=found, other=other, table=table, instrument=instrument, carbon=carbon)

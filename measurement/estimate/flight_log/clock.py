@@ -35,7 +35,9 @@ def check_seconds(time: Array, name: str, path: Path) -> None:
             f"'{path}': time {time[0]:.0f} in column '{name}' is a date and time without marks; give seconds, or"
             " 2024-05-01T12:00:00.0"
         )
-    if not ((time >= 0.0) & (time < _DAY_ENDS) & (time % 100.0 < 60.0) & (time // 100.0 % 100.0 < 60.0)).all():
+    if not (
+        (time >= 0.0) & (time < _DAY_ENDS) & (time % 100.0 < 60.0) & (time // 100.0 % 100.0 < 60.0)
+    ).all():
         return
     minutes = np.flatnonzero(np.diff(time // 100.0) > 0.0)
     if len(minutes) >= _MINUTES_MIN:

@@ -30,7 +30,16 @@ COLUMNS = {
 DEFAULT_INSTRUMENT = "unspecified"
 """The instrument of a flight without a configuration."""
 
-_KEYS = {"instrument", "carbon", "limits_percent", "method", "missing", "columns", "scale", "flight"}
+_KEYS = {
+    "instrument",
+    "carbon",
+    "limits_percent",
+    "method",
+    "missing",
+    "columns",
+    "scale",
+    "flight",
+}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -71,30 +80,43 @@ def read_config(path: Path) -> LogConfig:
     try:
         table = tomllib.loads(path.read_text(encoding="utf-8"))
     except OSError as error:
-        raise MeasurementError(f"'{path}' cannot be read: {error.strerror}; give a TOML file") from None
+        raise MeasurementError(
+            f"'{path}' cannot be read: {error.strerror}; give a TOML file"
+        ) from None
     except (UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
         raise MeasurementError(f"'{path}' is not TOML: {error}; correct it") from None
     if unknown := sorted(set(table) - _KEYS):
         raise MeasurementError(
             f"'{path}' has the key '{unknown[0]}'{guess(unknown[0], _KEYS)} it may have {', '.join(sorted(_KEYS))}"
         )
-    columns, scale = _table(table, "columns", str, COLUMNS, path), _table(table, "scale", (int, float), GASES, path)
+    columns, scale = (
+        _table(table, "columns", str, COLUMNS, path),
+        _table(table, "scale", (int, float), GASES, path),
+    )
     for gas, factor in scale.items():
         if not 0.0 < factor < math.inf:
-            raise MeasurementError(f"'{path}': scale of {gas} is {factor!r}; it must be positive, 1000 for ppm of SO2")
+            raise MeasurementError(
+                f"'{path}': scale of {gas} is {factor!r}; it must be positive, 1000 for ppm of SO2"
+            )
     _check_once({**COLUMNS, **columns}, columns, path)
     method = table.get("method", "regression")
     limits = table.get("limits_percent", list(LIMITS_PERCENT))
     if not isinstance(limits, list) or not limits or not all(_is_number(limit) for limit in limits):
-        raise MeasurementError(f"'{path}': limits_percent is {limits!r}; give a list of numbers, as in [0.10, 0.50]")
+        raise MeasurementError(
+            f"'{path}': limits_percent is {limits!r}; give a list of numbers, as in [0.10, 0.50]"
+        )
     if len(set(limits)) < len(limits):
         raise MeasurementError(f"'{path}': limits_percent is {limits!r}; give each limit once")
     missing = table.get("missing", [])
     if not isinstance(missing, list) or not all(_is_number(code) for code in missing):
-        raise MeasurementError(f"'{path}': missing is {missing!r}; give a list of numbers, as in [-9999]")
+        raise MeasurementError(
+            f"'{path}': missing is {missing!r}; give a list of numbers, as in [-9999]"
+        )
     carbon = table.get("carbon", CARBON_FRACTION)
     if not _is_number(carbon):
-        raise MeasurementError(f"'{path}': carbon is {carbon!r}; give the mass share of the fuel, 0.85 to 0.875 for most")
+        raise MeasurementError(
+            f"'{path}': carbon is {carbon!r}; give the mass share of the fuel, 0.85 to 0.875 for most"
+        )
     try:
         check_parameters(method, carbon, limits)
     except MeasurementError as error:
@@ -103,7 +125,9 @@ def read_config(path: Path) -> LogConfig:
     instrument = _instrument(given, path)
     return LogConfig(
         instrument=instrument,
-        stated={gas: tuple(given["channels"][gas]) for gas in instrument.gases} if isinstance(given, dict) else None,
+        stated={gas: tuple(given["channels"][gas]) for gas in instrument.gases}
+        if isinstance(given, dict)
+        else None,
         carbon=float(carbon),
         limits_percent=tuple(sorted(float(limit) for limit in limits)),
         method=method,
@@ -131,9 +155,13 @@ def _table(table: Mapping[str, Any], key: str, kind: Any, names: Any, path: Path
         raise MeasurementError(f"'{path}': {key} is {found!r}; give a table [{key}]")
     for name, value in found.items():
         if name not in names:
-            raise MeasurementError(f"'{path}': [{key}] has the key '{name}'{guess(name, names)} it may have {', '.join(names)}")
+            raise MeasurementError(
+                f"'{path}': [{key}] has the key '{name}'{guess(name, names)} it may have {', '.join(names)}"
+            )
         if not isinstance(value, kind) or isinstance(value, bool):
-            raise MeasurementError(f"'{path}': {key}.{name} is {value!r}; give a {'name' if kind is str else 'number'}")
+            raise MeasurementError(
+                f"'{path}': {key}.{name} is {value!r}; give a {'name' if kind is str else 'number'}"
+            )
     return dict(found)
 
 

@@ -36,7 +36,10 @@ _LONG_ROW = re.compile(r"Expected \d+ fields in line (\d+), saw \d+")
 _OPEN_QUOTE = re.compile(r"EOF inside string starting at row (\d+)")
 """What pandas says of a quotation mark that is not closed, by a row of which the head line is row 0."""
 
-_NUMBER, _DECIMAL_COMMA = re.compile(r"[-+]?[\d.]+(e[-+]?\d+)?(\.\d+)?", re.IGNORECASE), re.compile(r"[-+]?\d+,\d+")
+_NUMBER, _DECIMAL_COMMA = (
+    re.compile(r"[-+]?[\d.]+(e[-+]?\d+)?(\.\d+)?", re.IGNORECASE),
+    re.compile(r"[-+]?\d+,\d+"),
+)
 """A number, with what pandas adds to one that is there twice; and one with a decimal comma."""
 
 TRUE_COLUMNS = {f"{gas}_true_{UNITS[gas]}": gas for gas in GASES}
@@ -76,16 +79,22 @@ def read_flight(path: Path, config: LogConfig) -> LoggedFlight:
         with warnings.catch_warnings(action="error", category=pd.errors.ParserWarning):
             table = pd.read_csv(path, skipinitialspace=True, low_memory=False, index_col=False)
             # As they stand there: pandas gives the second of a name a number.
-            names = pd.read_csv(path, skipinitialspace=True, header=None, nrows=1, dtype=str, index_col=False).iloc[0]
+            names = pd.read_csv(
+                path, skipinitialspace=True, header=None, nrows=1, dtype=str, index_col=False
+            ).iloc[0]
     except MeasurementError:
         raise
     except (pd.errors.ParserWarning, pd.errors.ParserError, pd.errors.EmptyDataError) as error:
         raise MeasurementError(f"'{path}' {_fault(error, head)}") from None
     except (EOFError, lzma.LZMAError, zipfile.BadZipFile, zlib.error) as error:
-        raise MeasurementError(f"'{path}' cannot be unpacked: {error}; give a whole file, or the CSV file itself") from None
+        raise MeasurementError(
+            f"'{path}' cannot be unpacked: {error}; give a whole file, or the CSV file itself"
+        ) from None
     except OSError as error:
         # A file that is no archive, as its name says, has no number of an error.
-        raise MeasurementError(f"'{path}' cannot be read: {error.strerror or error}; give a CSV file") from None
+        raise MeasurementError(
+            f"'{path}' cannot be read: {error.strerror or error}; give a CSV file"
+        ) from None
     except UnicodeDecodeError:
         raise MeasurementError(f"'{path}' is not text in UTF-8; save it as CSV in UTF-8") from None
     except ValueError as error:
@@ -94,13 +103,21 @@ def read_flight(path: Path, config: LogConfig) -> LoggedFlight:
         ) from None
     table.columns = table.columns.map(str).str.strip()
     names = names.dropna().str.strip()
-    if len(twice := names[names.duplicated() & names.isin([*config.columns.values(), *TRUE_COLUMNS])]):
-        raise MeasurementError(f"'{path}' has the column '{twice.iloc[0]}' twice; rename or remove one of them")
+    if len(
+        twice := names[names.duplicated() & names.isin([*config.columns.values(), *TRUE_COLUMNS])]
+    ):
+        raise MeasurementError(
+            f"'{path}' has the column '{twice.iloc[0]}' twice; rename or remove one of them"
+        )
     if table.empty:
-        raise MeasurementError(f"'{path}' has a head line and 0 readings; it needs a row per reading")
+        raise MeasurementError(
+            f"'{path}' has a head line and 0 readings; it needs a row per reading"
+        )
     for key, name in config.columns.items():
         if name not in table and (key in _REQUIRED or name != COLUMNS[key]):
-            raise MeasurementError(_missing(path, key.upper() if key in GASES else key, key, name, table))
+            raise MeasurementError(
+                _missing(path, key.upper() if key in GASES else key, key, name, table)
+            )
     time, logged = _time(table, config.columns["time"], path)
     _check_time(time, path)
     values = np.full((len(table), len(GASES)), np.nan)
@@ -112,7 +129,13 @@ def read_flight(path: Path, config: LogConfig) -> LoggedFlight:
     readings = new_readings(Readings(time, values), config.instrument.gases)
     _check_negative(values, readings, config, path)
     found, remark = places_of(
-        {key: _readings(table, name, path, config) for key in PLACES if (name := config.columns[key]) in table}, time, path
+        {
+            key: _readings(table, name, path, config)
+            for key in PLACES
+            if (name := config.columns[key]) in table
+        },
+        time,
+        path,
     )
     place = {"time_s": time, **on_a_plane(found)}
     place |= {name: _numbers(table, name, path) for name in TRUE_COLUMNS if name in table}
@@ -196,7 +219,9 @@ def _numbers(table: pd.DataFrame, name: str, path: Path) -> Array:
 def _with_a_point(value: str) -> str:
     """Return the remedy for a number with a decimal comma, and nothing for other words."""
     return (
-        f"; write decimals with a point, as in {value.strip().replace(',', '.')}" if _DECIMAL_COMMA.fullmatch(value.strip()) else ""
+        f"; write decimals with a point, as in {value.strip().replace(',', '.')}"
+        if _DECIMAL_COMMA.fullmatch(value.strip())
+        else ""
     )
 
 
@@ -231,7 +256,10 @@ def _check_negative(values: Array, readings: Readings, config: LogConfig, path: 
         lowest = lowest_reading(gas, readings.values, config.instrument)
         low = np.flatnonzero(column < lowest)
         if low.size:
-            least, more = float(column[low[0]]), f", and {low.size - 1} more are as low" if low.size > 1 else ""
+            least, more = (
+                float(column[low[0]]),
+                f", and {low.size - 1} more are as low" if low.size > 1 else "",
+            )
             air = "air, " if gas == "co2" else ""
             raise MeasurementError(
                 f"'{path}': {gas.upper()} is {least:g} {unit} in row {low[0] + 2}{more}; {air}noise, zero and other gases explain"
@@ -241,7 +269,9 @@ def _check_negative(values: Array, readings: Readings, config: LogConfig, path: 
             )
 
 
-def _time(table: pd.DataFrame, name: str, path: Path) -> tuple[Array, tuple[datetime, datetime] | None]:
+def _time(
+    table: pd.DataFrame, name: str, path: Path
+) -> tuple[Array, tuple[datetime, datetime] | None]:
     """Return the times [s], and of a log with dates and times those of its first and last row in UTC."""
     column = table[name]
     if pd.api.types.is_numeric_dtype(column):
@@ -258,7 +288,10 @@ def _time(table: pd.DataFrame, name: str, path: Path) -> tuple[Array, tuple[date
             f"{_with_a_point(told)}"
         ) from None
     time = np.asarray((moments - moments.iloc[0]).dt.total_seconds(), dtype=np.float64)
-    return time, None if moments.isna().any() else (moments.iloc[0].to_pydatetime(), moments.iloc[-1].to_pydatetime())
+    return time, None if moments.isna().any() else (
+        moments.iloc[0].to_pydatetime(),
+        moments.iloc[-1].to_pydatetime(),
+    )
 
 
 def _unreadable(column: pd.Series) -> int:
@@ -271,7 +304,9 @@ def _unreadable(column: pd.Series) -> int:
 def _check_time(time: Array, path: Path) -> None:
     """Refuse times that are missing, or do not increase."""
     if (missing := np.flatnonzero(~np.isfinite(time))).size:
-        raise MeasurementError(f"'{path}' has no time in row {missing[0] + 2}; give a time in every row, or remove the row")
+        raise MeasurementError(
+            f"'{path}' has no time in row {missing[0] + 2}; give a time in every row, or remove the row"
+        )
     check_increasing(time, path)
 
 

@@ -84,7 +84,8 @@ class FlightRecord:
         return {name: value for name, value in found.items() if name != "details"} | {
             "first_utc": _text(self.first_utc),
             "last_utc": _text(self.last_utc),
-            "details": found["details"] | {"day": _text(self.details.day), "start": _text(self.details.start)},
+            "details": found["details"]
+            | {"day": _text(self.details.day), "start": _text(self.details.start)},
         }
 
 
@@ -104,7 +105,13 @@ def read_details(table: Mapping[str, Any], path: Path) -> FlightDetails:
             )
     day, start = _date(table.get("date"), path)
     words = {key: _words(table.get(key, ""), key, path) for key in ("vessel", "place", "operator")}
-    return FlightDetails(**words, imo=_imo(table.get("imo"), path), mmsi=_mmsi(table.get("mmsi"), path), day=day, start=start)
+    return FlightDetails(
+        **words,
+        imo=_imo(table.get("imo"), path),
+        mmsi=_mmsi(table.get("mmsi"), path),
+        day=day,
+        start=start,
+    )
 
 
 def times_of(
@@ -136,7 +143,9 @@ def times_of(
     apart = details.start is not None and abs((first - details.start).total_seconds()) >= 1.0
     if apart or (details.day is not None and first.date() != details.day):
         given = _text(details.start or details.day)
-        raise MeasurementError(f"flight.date is {given}, but '{path}' begins at {_text(first)}; correct it, or leave it out")
+        raise MeasurementError(
+            f"flight.date is {given}, but '{path}' begins at {_text(first)}; correct it, or leave it out"
+        )
     return (*logged, FROM_LOG)
 
 
@@ -176,7 +185,11 @@ def _imo(value: Any, path: Path) -> int | None:
     if value is None:
         return None
     digits = [int(digit) for digit in str(value)] if _is_number(value, 7) else []
-    if not digits or sum(digit * weight for digit, weight in zip(digits, range(7, 1, -1), strict=False)) % 10 != digits[-1]:
+    if (
+        not digits
+        or sum(digit * weight for digit, weight in zip(digits, range(7, 1, -1), strict=False)) % 10
+        != digits[-1]
+    ):
         raise MeasurementError(
             f"'{path}': flight.imo is {value!r}; give seven digits whose last is their check digit, as 9074729{_bare(value)}"
         )
@@ -187,7 +200,9 @@ def _mmsi(value: Any, path: Path) -> int | None:
     if value is None:
         return None
     if not _is_number(value, 9):
-        raise MeasurementError(f"'{path}': flight.mmsi is {value!r}; give nine digits, as 219000000{_bare(value)}")
+        raise MeasurementError(
+            f"'{path}': flight.mmsi is {value!r}; give nine digits, as 219000000{_bare(value)}"
+        )
     return int(value)
 
 
@@ -197,11 +212,17 @@ def _bare(value: Any) -> str:
 
 
 def _is_number(value: Any, digits: int) -> bool:
-    return isinstance(value, int) and not isinstance(value, bool) and 10 ** (digits - 1) <= value < 10**digits
+    return (
+        isinstance(value, int)
+        and not isinstance(value, bool)
+        and 10 ** (digits - 1) <= value < 10**digits
+    )
 
 
 def _text(value: date | datetime | None) -> str | None:
     """Return a date, or a time of UTC to a millisecond where it has a fraction, in ISO 8601."""
     if isinstance(value, datetime):
-        return value.isoformat(timespec="milliseconds" if value.microsecond else "seconds").replace("+00:00", "Z")
+        return value.isoformat(timespec="milliseconds" if value.microsecond else "seconds").replace(
+            "+00:00", "Z"
+        )
     return None if value is None else value.isoformat()

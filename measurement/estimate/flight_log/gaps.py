@@ -46,14 +46,14 @@ class Gaps:
         """What the log lacks, in words by what it is; nothing of a log that is whole."""
         found = {"Rows": self.row_words} if self.log_rows > self.rows else {}
         found |= {"Missing readings": self.missing_words} if any(self.missing.values()) else {}
-        return found | ({"Gaps": self.gap_words} if self.gaps or self.interpolated or self.unused else {})
+        return found | (
+            {"Gaps": self.gap_words} if self.gaps or self.interpolated or self.unused else {}
+        )
 
     @property
     def row_words(self) -> str:
         """How many rows of a log that is faster than its sensors have a new reading."""
-        return (
-            f"{self.log_rows:,}, of which {self.rows:,} have a new reading; the others repeat one, or have none, and do not count"
-        )
+        return f"{self.log_rows:,}, of which {self.rows:,} have a new reading; the others repeat one, or have none, and do not count"
 
     @property
     def missing_words(self) -> str:
@@ -69,13 +69,19 @@ class Gaps:
             start, end = max(self.gaps, key=lambda gap: gap[1] - gap[0])
             longest = f"{end - start:.0f} s from {start:.0f} s on"
             whole = sum(end - start for start, end in self.gaps)
-            told.append(f"{len(self.gaps)} of {whole:.0f} s in all, the longest {longest}" if self.gaps[1:] else f"1 of {longest}")
+            told.append(
+                f"{len(self.gaps)} of {whole:.0f} s in all, the longest {longest}"
+                if self.gaps[1:]
+                else f"1 of {longest}"
+            )
         if self.interpolated:
             samples = f"{self.interpolated:,} sample{'s' * (self.interpolated > 1)}"
             told.append(f"{samples} in short ones interpolated, not shown as readings")
         if self.unused:
             rows = f"{self.unused:,} row{'s' * (self.unused > 1)}"
-            told.append(f"{rows} beside gaps left out, as fewer than {SHORTEST} in a row are too few to use")
+            told.append(
+                f"{rows} beside gaps left out, as fewer than {SHORTEST} in a row are too few to use"
+            )
         return "; ".join(told) or "none"
 
 
@@ -84,14 +90,20 @@ def found_gaps(readings: Readings, signals: pd.DataFrame, log_rows: int) -> Gaps
     used = _used(signals)
     known, period = np.isfinite(readings.values), _period(readings)
     complete = np.flatnonzero(known[:, used].all(axis=1))
-    times = np.concatenate([readings.time[:1], readings.time[complete], readings.time[-1:]]) - readings.time[0]
+    times = (
+        np.concatenate([readings.time[:1], readings.time[complete], readings.time[-1:]])
+        - readings.time[0]
+    )
     parts = [len(piece) for piece in pieces(readings.time, complete, period)]
     return Gaps(
         log_rows=log_rows,
         rows=len(readings.time),
         missing={GASES[i]: int(np.sum(~known[:, i])) for i in used},
         interpolated=int(np.sum(interpolated(readings, signals))),
-        gaps=[(float(times[i]), float(times[i + 1])) for i in np.flatnonzero(np.diff(times) > BRIDGED * period)],
+        gaps=[
+            (float(times[i]), float(times[i + 1]))
+            for i in np.flatnonzero(np.diff(times) > BRIDGED * period)
+        ],
         unused=sum(rows for rows in parts if rows < SHORTEST),
     )
 

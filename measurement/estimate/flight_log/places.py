@@ -55,9 +55,16 @@ def _with_fix(found: dict[str, Array]) -> tuple[dict[str, Array], str]:
     rows = np.flatnonzero(without) + 2
     if not len(rows):
         return found, ""
-    named = f"row {rows[0]} is" if len(rows) == 1 else f"{len(rows):,} rows, from row {rows[0]} to row {rows[-1]}, are"
+    named = (
+        f"row {rows[0]} is"
+        if len(rows) == 1
+        else f"{len(rows):,} rows, from row {rows[0]} to row {rows[-1]}, are"
+    )
     kept = {name: np.where(without, np.nan, found[name]) for name in ("latitude", "longitude")}
-    return found | kept, f"{named} at latitude 0 and longitude 0, as of a receiver without a fix: taken as missing"
+    return (
+        found | kept,
+        f"{named} at latitude 0 and longitude 0, as of a receiver without a fix: taken as missing",
+    )
 
 
 def _check_jumps(place: dict[str, Array], time: Array, path: Path) -> None:
@@ -67,7 +74,11 @@ def _check_jumps(place: dict[str, Array], time: Array, path: Path) -> None:
     north, east = place["north_m"], place["east_m"]
     rows = np.flatnonzero(np.isfinite(north + east))
     # A receiver may be slower than the log: a place counts from the row on in which it is new.
-    rows = rows[np.concatenate([[True], (np.diff(north[rows]) != 0.0) | (np.diff(east[rows]) != 0.0)])] if len(rows) else rows
+    rows = (
+        rows[np.concatenate([[True], (np.diff(north[rows]) != 0.0) | (np.diff(east[rows]) != 0.0)])]
+        if len(rows)
+        else rows
+    )
     distance, seconds = np.hypot(np.diff(north[rows]), np.diff(east[rows])), np.diff(time[rows])
     jumps = np.flatnonzero(distance > SPEED_MOST * seconds + _ERROR_M)
     if jumps.size:
@@ -81,7 +92,11 @@ def _check_jumps(place: dict[str, Array], time: Array, path: Path) -> None:
 
 def _known(found: dict[str, Array]) -> npt.NDArray[np.intp]:
     """Return the rows that have a latitude and a longitude."""
-    return np.flatnonzero(np.isfinite(found["latitude"] + found["longitude"])) if {"latitude", "longitude"} <= set(found) else _NONE
+    return (
+        np.flatnonzero(np.isfinite(found["latitude"] + found["longitude"]))
+        if {"latitude", "longitude"} <= set(found)
+        else _NONE
+    )
 
 
 def on_a_plane(found: dict[str, Array]) -> dict[str, Array]:
@@ -106,5 +121,7 @@ def ends(found: dict[str, Array]) -> tuple[Position | None, Position | None]:
     """Return the first and the last known latitude and longitude, or twice None."""
     if not len(known := _known(found)):
         return None, None
-    first, last = ((float(found["latitude"][i]), float(found["longitude"][i])) for i in known[[0, -1]])
+    first, last = (
+        (float(found["latitude"][i]), float(found["longitude"][i])) for i in known[[0, -1]]
+    )
     return first, last

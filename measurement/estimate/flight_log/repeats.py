@@ -59,7 +59,10 @@ def rows_per_reading(column: Array) -> float:
     """
     changes = _changes(column)
     between = np.diff(changes)
-    if len(between) < _FEWEST or np.mean(np.abs(np.diff(column[changes])) > 1.5 * shown_step(column)) < _LARGER:
+    if (
+        len(between) < _FEWEST
+        or np.mean(np.abs(np.diff(column[changes])) > 1.5 * shown_step(column)) < _LARGER
+    ):
         return 1.0
     rows = float(np.mean(between[between <= 1.5 * np.quantile(between, _LOW)]))
     off = np.abs(between / rows - np.round(between / rows))
@@ -77,5 +80,7 @@ def _first_rows(column: Array, rows: float) -> npt.NDArray[np.intp]:
     starts = np.unique(np.concatenate([[0], _changes(column)]))
     parts = []
     for start, end in zip(starts, [*starts[1:], len(column)], strict=True):
-        parts.append(start + np.round(rows * np.arange(max(1, round((end - start) / rows)))).astype(np.intp))
+        parts.append(
+            start + np.round(rows * np.arange(max(1, round((end - start) / rows)))).astype(np.intp)
+        )
     return np.concatenate(parts)

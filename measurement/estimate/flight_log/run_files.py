@@ -88,7 +88,9 @@ def refuse_another_run(directory: Path) -> None:
     except (OSError, ValueError, AttributeError, RecursionError):
         study = None
     if study != STUDY:
-        raise MeasurementError(f"output directory '{directory}' holds another run; choose another --out")
+        raise MeasurementError(
+            f"output directory '{directory}' holds another run; choose another --out"
+        )
 
 
 def refuse_another_log(directory: Path, source: Path) -> None:
@@ -108,11 +110,18 @@ def refuse_another_log(directory: Path, source: Path) -> None:
     except (FileNotFoundError, NotADirectoryError):
         return
     if known != _digest(source.read_bytes()):
-        raise MeasurementError(f"'{directory}' holds the estimate of another log than '{source}'; give another --out")
+        raise MeasurementError(
+            f"'{directory}' holds the estimate of another log than '{source}'; give another --out"
+        )
 
 
 def write_run(
-    directory: Path, flight: LoggedFlight, analysis: Analysis, source: Path, config: Path | None, given: Sequence[str]
+    directory: Path,
+    flight: LoggedFlight,
+    analysis: Analysis,
+    source: Path,
+    config: Path | None,
+    given: Sequence[str],
 ) -> None:
     """Write manifest, estimate and samples of an analysis; reports and exports of an older one are removed.
 
@@ -135,10 +144,14 @@ def write_run(
         table = samples(analysis.estimate.signals, flight)
         # A log's time may be seconds since 1970 or 1980, of which six digits are weeks.
         table["time_s"] = [f"{time:.{_TIME_DIGITS}g}" for time in table["time_s"]]
-        _whole(directory / SAMPLES, lambda part: table.to_csv(part, index=False, float_format="%.6g"))
+        _whole(
+            directory / SAMPLES, lambda part: table.to_csv(part, index=False, float_format="%.6g")
+        )
         _write_json(directory / MANIFEST, _manifest(analysis, source, config, given))
     except OSError as error:
-        raise MeasurementError(f"'{directory}' cannot be written: {error.strerror}; give another --out") from None
+        raise MeasurementError(
+            f"'{directory}' cannot be written: {error.strerror}; give another --out"
+        ) from None
 
 
 def _remove_older(directory: Path) -> None:
@@ -171,14 +184,21 @@ def build_report(directory: Path) -> str:
     """Have the reports of a directory built by the room ``reports``, where it is installed; return what there is to say."""
     if importlib.util.find_spec("reports") is None:
         return "report: not built, as the package 'reports' is not installed; estimate.json has everything"
-    outcome = subprocess.run([sys.executable, "-m", "reports.build", str(directory)], capture_output=True, text=True, check=False)
+    outcome = subprocess.run(
+        [sys.executable, "-m", "reports.build", str(directory)],
+        capture_output=True,
+        text=True,
+        check=False,
+    )
     if outcome.returncode:
         last = (outcome.stderr.strip().splitlines() or ["no reason given"])[-1]
         return f"report: not built: {last}"
     return outcome.stdout.strip()
 
 
-def _manifest(analysis: Analysis, source: Path, config: Path | None, given: Sequence[str]) -> dict[str, Any]:
+def _manifest(
+    analysis: Analysis, source: Path, config: Path | None, given: Sequence[str]
+) -> dict[str, Any]:
     command, revision = _told(given)
     log, settings = source.read_bytes(), config.read_bytes() if config else b""
     return {
@@ -190,7 +210,9 @@ def _manifest(analysis: Analysis, source: Path, config: Path | None, given: Sequ
         "title": f"Fuel sulphur content of {source.stem}",
         "state": "complete",
         "overrides": [],
-        "config": {"description": f"Logged flight {source.name}, measured with: {analysis.instrument.title}."},
+        "config": {
+            "description": f"Logged flight {source.name}, measured with: {analysis.instrument.title}."
+        },
         "config_hash": _digest(log + settings)[:_HASH_LETTERS],
         "source": source.name,
         SOURCE_HASH: _digest(log),
@@ -221,7 +243,9 @@ def _version() -> str:
 def _told(given: Sequence[str]) -> tuple[str, str]:
     """Return command and revision of the source as the project's other runs record them; without these, the arguments alone."""
     if importlib.util.find_spec("common") is None:
-        return shlex.join(["python", "-m", _MODULE, *(Path(argument).name or argument for argument in given[1:])]), "not recorded"
+        return shlex.join(
+            ["python", "-m", _MODULE, *(Path(argument).name or argument for argument in given[1:])]
+        ), "not recorded"
     shared = importlib.import_module("common.provenance")
     return str(shared.command_line(_MODULE, given)), str(shared.provenance()["git_revision"])
 

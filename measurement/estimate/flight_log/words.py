@@ -42,14 +42,26 @@ def summary(analysis: Analysis, name: str) -> Iterator[str]:
         yield f"  noise {found.noise_percent:.4f}"
         for key, size in by_size(found):
             yield f"  {ERRORS.get(key, key)} {size:.4f}"
-    yield f"quality {found.quality}" + (f": {'; '.join(found.quality_reasons)}" if found.quality_reasons else "")
+    yield f"quality {found.quality}" + (
+        f": {'; '.join(found.quality_reasons)}" if found.quality_reasons else ""
+    )
     for verdict in found.verdicts:
         chance = verdict.probability_above
         words = verdict_words(verdict.verdict, verdict.limit_percent, chance, found.quality)
-        yield f"{words}; {needed(chance)}" if verdict.verdict == OPEN and found.quality != "C" else words
+        yield (
+            f"{words}; {needed(chance)}"
+            if verdict.verdict == OPEN and found.quality != "C"
+            else words
+        )
     told = {ERRORS.get(key, key): size for key, size in found.common_percent.items()}
     undecided = any(verdict.verdict == OPEN for verdict in found.verdicts)
-    if step := next_step(found.quality, passes=figures.passes, undecided=undecided, noise=found.noise_percent, errors=told):
+    if step := next_step(
+        found.quality,
+        passes=figures.passes,
+        undecided=undecided,
+        noise=found.noise_percent,
+        errors=told,
+    ):
         yield step
 
 

@@ -8,9 +8,24 @@ import numpy as np
 from reports.document.chart import Chart, Line, Panel, circle
 from reports.document.map_marks import hull_line, on_map, plume_lines
 from reports.document.palette import Meaning
-from reports.document.panels import COUNTED_MIN, Group, capped, classes, histogram, points, quartiles, strips
+from reports.document.panels import (
+    COUNTED_MIN,
+    Group,
+    capped,
+    classes,
+    histogram,
+    points,
+    quartiles,
+    strips,
+)
 from reports.flights.names import changes_flights, fault_name, manoeuvres_flown, swept_words
-from reports.flights.trials.panels_over import CLEARANCE, LIMIT_LABEL, PanelsOver, by_violation, by_words
+from reports.flights.trials.panels_over import (
+    CLEARANCE,
+    LIMIT_LABEL,
+    PanelsOver,
+    by_violation,
+    by_words,
+)
 from reports.monte_carlo.names import input_name
 from reports.run.columns import NOTICEABLE, Array, clearance, column, total
 from reports.run.ship import hull_of
@@ -47,22 +62,45 @@ def trial_charts(trial: Trial) -> list[Chart]:
         Kind.APPROACH: [_starts, _distances],
         Kind.GENERAL: [_distances, _errors],
     }
-    charts = [chart for maker in makers[trial.kind] for chart in maker(trial)] if len(trial.flown) else []
+    charts = (
+        [chart for maker in makers[trial.kind] for chart in maker(trial)]
+        if len(trial.flown)
+        else []
+    )
     return [chart for chart in charts if chart.panels]
 
 
-def _chart(trial: Trial, name: str, caption: str, panels: Sequence[Panel | None], height: float, columns: int = 2) -> Chart:
+def _chart(
+    trial: Trial,
+    name: str,
+    caption: str,
+    panels: Sequence[Panel | None],
+    height: float,
+    columns: int = 2,
+) -> Chart:
     """Return a chart of the panels that show anything."""
-    shown = [panel for panel in panels if panel is not None and any(len(line.x) for line in panel.lines)]
+    shown = [
+        panel for panel in panels if panel is not None and any(len(line.x) for line in panel.lines)
+    ]
     columns = max(1, min(columns if len(shown) != _ROW else _ROW, len(shown)))
     # What would be alone in its row is as wide as the page.
     last = height if len(shown) > columns and len(shown) % columns == 1 else 0.0
-    return Chart(name=f"{trial.name}-{name}", caption=caption, panels=shown, columns=columns, panel_height=height, last_height=last)
+    return Chart(
+        name=f"{trial.name}-{name}",
+        caption=caption,
+        panels=shown,
+        columns=columns,
+        panel_height=height,
+        last_height=last,
+    )
 
 
 def _sweep(trial: Trial) -> list[Chart]:
     """Return the figures over the keys that were swept: over several numbers in as many columns, over one in more detail."""
-    names = {key: f"{key.rsplit('.', 1)[-1]}{i}".replace("_", "") for i, key in enumerate(trial.swept, start=1)}
+    names = {
+        key: f"{key.rsplit('.', 1)[-1]}{i}".replace("_", "")
+        for i, key in enumerate(trial.swept, start=1)
+    }
     words = swept_words(trial)
     numbers = [key for key in trial.swept if key not in words]
     if len(numbers) > 1:
@@ -70,7 +108,14 @@ def _sweep(trial: Trial) -> list[Chart]:
         charts = [chart for keys in in_rows for chart in _over_keys(trial, keys, names[keys[0]])]
     else:
         charts = [chart for key in numbers for chart in _over_key(trial, key, names[key])]
-    return [*charts, *(_by_word(trial, key, of, names[key]) for key, of in words.items() if changes_flights(trial, key))]
+    return [
+        *charts,
+        *(
+            _by_word(trial, key, of, names[key])
+            for key, of in words.items()
+            if changes_flights(trial, key)
+        ),
+    ]
 
 
 def _by_word(trial: Trial, key: str, words: list[str], name: str) -> Chart:
@@ -94,14 +139,24 @@ def _over_keys(trial: Trial, keys: Sequence[str], name: str) -> list[Chart]:
     )
     errors = "Tracking error, the distance to the reference, after settling, and settling time, over the same keys."
     rows = {
-        ("crossings", crossings): [[over.interval() for over in every], [over.distances() for over in every]],
+        ("crossings", crossings): [
+            [over.interval() for over in every],
+            [over.distances() for over in every],
+        ],
         ("errors", errors): [
             [over.figure(*_TRACKING) for over in every],
             [over.figure("settling_time_s", "Settling time [s]") for over in every],
         ],
     }
     return [
-        _chart(trial, f"{name}-{what}", caption, [panel for row in panels for panel in row], 0.3, columns=len(keys))
+        _chart(
+            trial,
+            f"{name}-{what}",
+            caption,
+            [panel for row in panels for panel in row],
+            0.3,
+            columns=len(keys),
+        )
         for (what, caption), panels in rows.items()
     ]
 
@@ -159,7 +214,10 @@ def _spread(trial: Trial) -> Panel | None:
     ends = np.array([0.0, min(top, 1.05 * most)])
     same = Line(x=ends, y=ends, label="turbulence alone", colour="black", style="dot")
     return Panel(
-        x_label="From turbulence alone [m]", y_label="Deviation towards the vessel [m]", lines=[*lines, same], y_range=(0.0, top)
+        x_label="From turbulence alone [m]",
+        y_label="Deviation towards the vessel [m]",
+        lines=[*lines, same],
+        y_range=(0.0, top),
     )
 
 
@@ -172,12 +230,16 @@ def _distances(trial: Trial) -> list[Chart]:
     all_flights = [(clearance(trial.flown), "all flights", Meaning.FLOWN)]
     counted = None if counted_there else histogram(all_flights, CLEARANCE, [_R_MIN])
     if trial.kind is Kind.APPROACH:
-        other = histogram([(column(trial.flown, "settling_time_s"), "", Meaning.FLOWN)], "Settling time [s]")
+        other = histogram(
+            [(column(trial.flown, "settling_time_s"), "", Meaning.FLOWN)], "Settling time [s]"
+        )
         shown = f"beyond r_min{', and settling time, of those that settled' if other else ''}."
     else:
         other = PanelsOver(trial, "nu", by_violation(trial)).margin()
         shown = f"beyond r_min: {'counted, and ' if counted else ''}against the planned margin."
-    caption = f"Closest approach of each flight from its first second, {trial.measured_from}, {shown}"
+    caption = (
+        f"Closest approach of each flight from its first second, {trial.measured_from}, {shown}"
+    )
     return [_chart(trial, "distances", caption, [counted, other], 0.36)]
 
 
@@ -186,13 +248,22 @@ def _errors(trial: Trial) -> list[Chart]:
     largest, typical = column(rows, "vessel_error_max_m"), column(rows, "vessel_error_rms_m")
     vessel = None
     if np.nanmax(largest, initial=0.0) > NOTICEABLE:
-        series = [(largest, "largest of the flight", "plum"), (typical, "rms after settling", Meaning.FLOWN)]
+        series = [
+            (largest, "largest of the flight", "plum"),
+            (typical, "rms after settling", Meaning.FLOWN),
+        ]
         vessel = histogram(series, "Error of the vessel's position [m]")
     panels = {
-        "mean crossing interval": over.interval_error() if trial.criteria.get("crossing_interval_error") else None,
+        "mean crossing interval": over.interval_error()
+        if trial.criteria.get("crossing_interval_error")
+        else None,
         "tracking error": over.figure(*_TRACKING),
-        "its part towards the vessel, from all causes, over the one predicted from turbulence alone": _spread(trial),
-        "error of the wind estimate": over.figure("wind_error_rms_mps", "Error of the wind estimate, rms [m/s]"),
+        "its part towards the vessel, from all causes, over the one predicted from turbulence alone": _spread(
+            trial
+        ),
+        "error of the wind estimate": over.figure(
+            "wind_error_rms_mps", "Error of the wind estimate, rms [m/s]"
+        ),
         "error of the vessel's position, counted": vessel,
         "how long the keep-out guard changed commands": (
             over.figure("guard_time_s", "Time guarded [s]") if total(rows, "guard_time_s") else None
@@ -200,7 +271,10 @@ def _errors(trial: Trial) -> list[Chart]:
     }
     shown = [(words, panel) for words, panel in panels.items() if panel is not None]
     in_rows = [shown[i : i + _ROW] for i in range(0, len(shown), _ROW)]
-    captions = [f"Each flight, with errors as they are after settling: {'; '.join(words for words, _ in row)}." for row in in_rows]
+    captions = [
+        f"Each flight, with errors as they are after settling: {'; '.join(words for words, _ in row)}."
+        for row in in_rows
+    ]
     return [
         _chart(trial, f"errors{i}", caption, [panel for _, panel in row], 0.34)
         for i, (caption, row) in enumerate(zip(captions, in_rows, strict=True), start=1)
@@ -209,13 +283,18 @@ def _errors(trial: Trial) -> list[Chart]:
 
 def _starts(trial: Trial) -> list[Chart]:
     rows = trial.flown
-    distance, aspect = column(rows, "start_distance_m"), np.radians(column(rows, "start_aspect_deg"))
+    distance, aspect = (
+        column(rows, "start_distance_m"),
+        np.radians(column(rows, "start_aspect_deg")),
+    )
     if np.count_nonzero(np.isfinite(distance)) < COUNTED_MIN:
         return []
     right, along = distance * np.sin(aspect), distance * np.cos(aspect)
     settling, guard = column(rows, "settling_time_s"), column(rows, "guard_time_s")
     unsettled = np.isnan(settling) & np.isfinite(distance)
-    never = Line(x=right[unsettled], y=along[unsettled], label=_NEVER, colour="black", style="cross")
+    never = Line(
+        x=right[unsettled], y=along[unsettled], label=_NEVER, colour="black", style="cross"
+    )
     guarded: list[Group] = [
         (guard == 0.0, "no intervention", "grey"),
         (guard > 0.0, "guard changed commands", Meaning.GUARD),
@@ -252,7 +331,11 @@ def _manoeuvres(trial: Trial) -> list[Chart]:
         return []
     limit = trial.criteria.get("resumes_within_periods")
     criterion = [(float(limit), "criterion")] if limit else []
-    resumed = (column(trial.flown, "resume_periods"), "Next crossing after the manoeuvre [periods]", criterion)
+    resumed = (
+        column(trial.flown, "resume_periods"),
+        "Next crossing after the manoeuvre [periods]",
+        criterion,
+    )
     kept = (clearance(trial.flown), CLEARANCE, [_R_MIN])
     caption = (
         "By what the vessel did: time from the end of its last manoeuvre to the next crossing, in periods of the oscillation, and"
@@ -263,12 +346,27 @@ def _manoeuvres(trial: Trial) -> list[Chart]:
 
 def _faults(trial: Trial) -> list[Chart]:
     kept = (clearance(trial.flown), CLEARANCE, [_R_MIN])
-    end = (column(trial.flown, "end_distance_m"), "Distance at the end [m]", [(trial.radius, "r_min")])
+    end = (
+        column(trial.flown, "end_distance_m"),
+        "Distance at the end [m]",
+        [(trial.radius, "r_min")],
+    )
     caption = "By the fault: closest approach of the whole flight, and distance from the vessel at the end."
-    return [_strips(trial, "faults", caption, [fault_name(kind) for kind in trial.flown["fault"]], "Fault", [kept, end])]
+    return [
+        _strips(
+            trial,
+            "faults",
+            caption,
+            [fault_name(kind) for kind in trial.flown["fault"]],
+            "Fault",
+            [kept, end],
+        )
+    ]
 
 
-def _strips(trial: Trial, name: str, caption: str, kinds: list[str], y_label: str, figures: list[_Figure]) -> Chart:
+def _strips(
+    trial: Trial, name: str, caption: str, kinds: list[str], y_label: str, figures: list[_Figure]
+) -> Chart:
     """Return panels beside each other with a row of markers per kind, of which the first names the rows."""
     known = [figure for figure in figures if np.isfinite(figure[0]).any()]
     panels = [

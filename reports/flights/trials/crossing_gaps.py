@@ -25,8 +25,16 @@ def gap_lines(trial: Trial, *, only: bool = True) -> list[str]:
     """Return in a line how many flights had such a gap, and the longest; ``only`` is whether it is the run's only trial."""
     flown = trial.flown
     crossings = trial.run.crossings
-    times = {str(name): of.to_numpy() for name, of in crossings.groupby("flight_id")["time_s"]} if len(crossings) else {}
-    gaps = [(gap, row) for _, row in flown.iterrows() if (gap := _gap(row, times.get(str(row["flight_id"]), np.empty(0))))]
+    times = (
+        {str(name): of.to_numpy() for name, of in crossings.groupby("flight_id")["time_s"]}
+        if len(crossings)
+        else {}
+    )
+    gaps = [
+        (gap, row)
+        for _, row in flown.iterrows()
+        if (gap := _gap(row, times.get(str(row["flight_id"]), np.empty(0))))
+    ]
     if not gaps:
         return []
     longest, row = max(gaps, key=lambda found: found[0][1] - found[0][0])
@@ -51,12 +59,18 @@ def gap_words(gap: tuple[float, float]) -> str:
 
 
 def _gap(row: "pd.Series[Any]", crossings: Array) -> tuple[float, float] | None:
-    settled, manoeuvred = (float(row.get(key, math.nan)) for key in ("settling_time_s", "manoeuvre_end_s"))
+    settled, manoeuvred = (
+        float(row.get(key, math.nan)) for key in ("settling_time_s", "manoeuvre_end_s")
+    )
     if not settled < manoeuvred or math.isfinite(float(row.get("plume_axis_crossings", math.nan))):
         return None
-    ends = np.array([settled, *crossings, *([] if row["mode_at_end"] in _LEFT else [float(row["duration_s"])])])
+    ends = np.array(
+        [settled, *crossings, *([] if row["mode_at_end"] in _LEFT else [float(row["duration_s"])])]
+    )
     lengths = np.where(ends[:-1] < manoeuvred, np.diff(ends), 0.0)
     longest = int(np.argmax(lengths)) if len(lengths) else 0
-    if not len(lengths) or not lengths[longest] > _INTERVALS * float(row["crossing_interval_predicted_s"]):
+    if not len(lengths) or not lengths[longest] > _INTERVALS * float(
+        row["crossing_interval_predicted_s"]
+    ):
         return None
     return float(ends[longest]), float(ends[longest + 1])

@@ -33,10 +33,17 @@ def failure_lines(trial: Trial) -> list[str]:
     failed = rows[~met(rows)]
     begun = was_flown(failed)
     flown, unflown = failed[begun], failed[~begun]
-    lines = [*_named(trial, flown)] if len(flown) <= _NAMED_MAX else [_by_criterion(trial, len(flown))]
-    lines += [*_named(trial, unflown)] if len(unflown) <= _NAMED_MAX else [_not_flown(trial, unflown)]
+    lines = (
+        [*_named(trial, flown)] if len(flown) <= _NAMED_MAX else [_by_criterion(trial, len(flown))]
+    )
+    lines += (
+        [*_named(trial, unflown)] if len(unflown) <= _NAMED_MAX else [_not_flown(trial, unflown)]
+    )
     missing = trial.planned - len(rows)
-    return [*lines, *([f"{trial.title}: {missing} of {trial.planned} not flown yet"] if missing else [])]
+    return [
+        *lines,
+        *([f"{trial.title}: {missing} of {trial.planned} not flown yet"] if missing else []),
+    ]
 
 
 def _named(trial: Trial, flights: pd.DataFrame) -> Iterator[str]:
@@ -52,9 +59,15 @@ def _by_criterion(trial: Trial, failed: int) -> str:
     """Return how many of the flights that were flown failed which criterion."""
     flown = trial.flown
     inside, depth = count(violated(flown)), largest(column(flown, "keepout_depth_m"))
-    parts = [f"{inside} violated the keep-out area, by up to {number(depth, '{:.1f} m')}"] if inside else []
+    parts = (
+        [f"{inside} violated the keep-out area, by up to {number(depth, '{:.1f} m')}"]
+        if inside
+        else []
+    )
     parts += [
-        f"{c.flown_failed} did not complete the mission" if c.key == "mission" else f"{c.flown_failed}: {c.what}, {c.limit}"
+        f"{c.flown_failed} did not complete the mission"
+        if c.key == "mission"
+        else f"{c.flown_failed}: {c.what}, {c.limit}"
         for c in criteria_of(trial)
         if c.flown_failed
     ]
@@ -84,12 +97,16 @@ def noteworthy(flown: pd.DataFrame) -> list[str]:
         )
     if unflown := count(column(flown, "manoeuvres_unflown") > 0.0):
         flights = f"{unflown:,} flight{'s' * (unflown > 1)}"
-        lines.append(f"In {flights} a manoeuvre of the vessel begins after the end of the flight, and was never flown.")
+        lines.append(
+            f"In {flights} a manoeuvre of the vessel begins after the end of the flight, and was never flown."
+        )
     begun = flown[column(flown, "fault_time_s") <= column(flown, "duration_s")]
     if len(begun):
         kinds, times = begun["fault"].map(fault_name), span(column(begun, "fault_time_s"), "{:.0f}")
         kind = kinds.iloc[0] if kinds.nunique() == 1 else counted(kinds)
-        lines.append(f"{_in_flights(len(begun), len(flown))} a fault began, as the scenario has it: {kind}, at {times} s.")
+        lines.append(
+            f"{_in_flights(len(begun), len(flown))} a fault began, as the scenario has it: {kind}, at {times} s."
+        )
     return lines
 
 
@@ -107,7 +124,11 @@ def tracking_lines(trial: Trial, *, only: bool = True) -> list[str]:
     trial : whose flights
     only : whether it is the run's only one, else the line begins with its title
     """
-    criteria, flown, band = trial.criteria, trial.flown, float(trial.setting("flight.settling_band_m"))
+    criteria, flown, band = (
+        trial.criteria,
+        trial.flown,
+        float(trial.setting("flight.settling_band_m")),
+    )
     if criteria.get("tracking_error_rms_m") and criteria.get("settles", True):
         return []
     errors = column(flown, "tracking_error_rms_m")
@@ -116,7 +137,11 @@ def tracking_lines(trial: Trial, *, only: bool = True) -> list[str]:
         return []
     alone = len(flown) == 1
     known = count(np.isfinite(errors))
-    which = "The" if alone else f"In {len(far):,} of {known:,} flights{' that settled' if known < len(flown) else ''} the"
+    which = (
+        "The"
+        if alone
+        else f"In {len(far):,} of {known:,} flights{' that settled' if known < len(flown) else ''} the"
+    )
     told = ", ".join(_told_apart(far, flown[errors <= band]))
     nothing = f"nothing that the summary records {'explains it' if alone else 'sets them apart'}"
     why = f"after settling {told}" if told else nothing
@@ -136,9 +161,21 @@ def _told_apart(far: pd.DataFrame, others: pd.DataFrame) -> list[str]:
     for words, mask in happened.items():
         here, there = count(mask[: len(far)]), count(mask[len(far) :])
         if here and here + there < len(mask):
-            these = [f"in {'all' if here == len(far) else f'{here:,} of'} these {len(far):,}"] if len(far) > 1 else []
-            elsewhere = [f"in {f'{there:,}' if there else 'none'} of the {len(others):,} others"] if len(others) > 1 else []
-            elsewhere = ["also in the other" if there else "not in the other"] if len(others) == 1 else elsewhere
+            these = (
+                [f"in {'all' if here == len(far) else f'{here:,} of'} these {len(far):,}"]
+                if len(far) > 1
+                else []
+            )
+            elsewhere = (
+                [f"in {f'{there:,}' if there else 'none'} of the {len(others):,} others"]
+                if len(others) > 1
+                else []
+            )
+            elsewhere = (
+                ["also in the other" if there else "not in the other"]
+                if len(others) == 1
+                else elsewhere
+            )
             told.append(f"{words} ({', '.join([*these, *elsewhere])})")
     return told
 
@@ -146,12 +183,23 @@ def _told_apart(far: pd.DataFrame, others: pd.DataFrame) -> list[str]:
 def _after_settling(rows: pd.DataFrame) -> dict[str, Mask]:
     """Return what took flights off their reference after they had settled, and which flights."""
     settled = column(rows, "settling_time_s")
-    modes, air = (rows[name].fillna(no) if name in rows else pd.Series(no, rows.index) for name, no in _WORDS.items())
-    others = {mode: None for flown in modes for mode in str(flown).split(", ") if mode and mode not in _USUAL_MODES}
+    modes, air = (
+        rows[name].fillna(no) if name in rows else pd.Series(no, rows.index)
+        for name, no in _WORDS.items()
+    )
+    others = {
+        mode: None
+        for flown in modes
+        for mode in str(flown).split(", ")
+        if mode and mode not in _USUAL_MODES
+    }
     return {
         "the vessel manoeuvred": column(rows, "manoeuvre_end_s") > settled,
         "the keep-out guard changed commands": column(rows, "guard_after_settling_s") > 0.0,
         "a fault began": column(rows, "fault_time_s") > settled,
         "the air was turbulent": ~air.isin(["none"]).to_numpy(),
-        **{f"the mode was '{mode}' for a time": modes.str.contains(mode, regex=False).to_numpy() for mode in others},
+        **{
+            f"the mode was '{mode}' for a time": modes.str.contains(mode, regex=False).to_numpy()
+            for mode in others
+        },
     }

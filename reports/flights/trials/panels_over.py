@@ -38,7 +38,10 @@ _RATIOS = (-0.02, 1.02)
 def by_violation(trial: Trial) -> list[Group]:
     """Return the flights without a keep-out violation and those with one, as groups of markers."""
     inside = violated(trial.flown)
-    return [(~inside, "flight", Meaning.FLOWN), (inside, "flight with a keep-out violation", Meaning.LIMIT)]
+    return [
+        (~inside, "flight", Meaning.FLOWN),
+        (inside, "flight with a keep-out violation", Meaning.LIMIT),
+    ]
 
 
 def by_words(trial: Trial) -> list[Group]:
@@ -51,7 +54,8 @@ def by_words(trial: Trial) -> list[Group]:
     if not 1 < len(names) <= len(SERIES):
         return by_violation(trial)
     groups: list[Group] = [
-        (np.array([word == name for word in words]) & ~inside, name, series_colour(i)) for i, name in enumerate(names)
+        (np.array([word == name for word in words]) & ~inside, name, series_colour(i))
+        for i, name in enumerate(names)
     ]
     return [*groups, *by_violation(trial)[1:]]
 
@@ -66,7 +70,9 @@ class PanelsOver:
     by_words : whether these are of words that were swept, so that what is measured of flights is coloured by them, too
     """
 
-    def __init__(self, trial: Trial, key: str, groups: list[Group], *, by_words: bool = False) -> None:
+    def __init__(
+        self, trial: Trial, key: str, groups: list[Group], *, by_words: bool = False
+    ) -> None:
         self._parted = by_words and len(groups) > len(by_violation(trial))
         self._trial, self._key, self._groups, self._rows = trial, key, groups, trial.flown
         self._x = trial.input(key).reindex(self._rows["flight_id"]).to_numpy(dtype=np.float64)
@@ -85,14 +91,21 @@ class PanelsOver:
     def interval_error(self) -> Panel | None:
         """Return the mean crossing interval against its prediction."""
         limit = 100.0 * self.limit("crossing_interval_error")
-        criterion = [] if math.isnan(limit) else [level(self._span, side * limit, "criterion") for side in (1.0, -1.0)]
+        criterion = (
+            []
+            if math.isnan(limit)
+            else [level(self._span, side * limit, "criterion") for side in (1.0, -1.0)]
+        )
         return self._panel(
-            "Mean interval against π/ω₀ [%]", [*points(self._x, 100.0 * interval_error(self._rows), self._groups), *criterion]
+            "Mean interval against π/ω₀ [%]",
+            [*points(self._x, 100.0 * interval_error(self._rows), self._groups), *criterion],
         )
 
     def interval(self) -> Panel | None:
         """Return the crossing interval, with bars of one standard deviation, its prediction, and what else could be flown."""
-        flown = self._points("crossing_interval_mean_s", "flight", Meaning.FLOWN, error="crossing_interval_std_s")
+        flown = self._points(
+            "crossing_interval_mean_s", "flight", Meaning.FLOWN, error="crossing_interval_std_s"
+        )
         theory = self._theory("crossing_interval_predicted_s", "theory, π/ω₀", "black")
         return self._panel("Crossing interval [s]", [*self._other_intervals(), theory, *flown])
 
@@ -108,31 +121,50 @@ class PanelsOver:
         if self._key != "nu":
             return []
         return [
-            Line(x=curve[0], y=curve[1], label=label, colour=colour, style=style) for curve, label, colour, style in curves if curve
+            Line(x=curve[0], y=curve[1], label=label, colour=colour, style=style)
+            for curve, label, colour, style in curves
+            if curve
         ]
 
     def distances(self) -> Panel | None:
         """Return the distances of the crossings and the closest approach."""
-        closest = "closest approach, horizontal" if self._trial.shape == "cylinder" else "closest approach, whole flight"
+        closest = (
+            "closest approach, horizontal"
+            if self._trial.shape == "cylinder"
+            else "closest approach, whole flight"
+        )
         lines = [
             self._limit("keepout_radius_m", f"r_min of the keep-out {self._trial.shape}"),
             self._theory("r_co_m", "centre of oscillation r_CO", "grey"),
-            *self._points("crossing_distance_mean_m", "crossings, mean", Meaning.CROSSING, "dots" if self._parted else "points"),
-            *self._points("crossing_distance_min_m", "crossings, closest", Meaning.CROSSING, "ring"),
-            *self._points("min_distance_m", closest, Meaning.FLOWN, "square" if self._parted else "points"),
+            *self._points(
+                "crossing_distance_mean_m",
+                "crossings, mean",
+                Meaning.CROSSING,
+                "dots" if self._parted else "points",
+            ),
+            *self._points(
+                "crossing_distance_min_m", "crossings, closest", Meaning.CROSSING, "ring"
+            ),
+            *self._points(
+                "min_distance_m", closest, Meaning.FLOWN, "square" if self._parted else "points"
+            ),
         ]
         return self._panel("Distance from the funnel [m]", lines)
 
     def command(self) -> Panel | None:
         """Return the largest commanded heading rate, and its limit."""
         command = self._points("heading_rate_command_max_rad_s", "largest command", Meaning.ASKED)
-        return self._panel("Heading rate [rad/s]", [*command, self._limit("heading_rate_limit_rad_s", "ω_max")])
+        return self._panel(
+            "Heading rate [rad/s]", [*command, self._limit("heading_rate_limit_rad_s", "ω_max")]
+        )
 
     def margin(self) -> Panel | None:
         """Return what of the planned margin was left, over the margin if flights differ in it by much."""
         planned, kept = column(self._rows, "keepout_margin_m"), clearance(self._rows)
         if not np.isfinite(planned).any():
-            return self._panel(CLEARANCE, [*points(self._x, kept, self._groups), level(self._span, 0.0, "r_min")])
+            return self._panel(
+                CLEARANCE, [*points(self._x, kept, self._groups), level(self._span, 0.0, "r_min")]
+            )
         if float(np.ptp(planned)) <= _MARGINS_APART * float(np.max(planned)):
             margin = level(self._span, float(np.mean(planned)), "planned margin", Meaning.ASKED)
             levels = [level(self._span, 0.0, "r_min"), margin]
@@ -140,7 +172,11 @@ class PanelsOver:
         ends = np.array([float(planned.min()), float(planned.max())])
         same = Line(x=ends, y=ends, label="planned margin", colour=Meaning.ASKED, style="dash")
         levels = [level(planned, 0.0, "r_min"), same]
-        return Panel(x_label="Planned margin [m]", y_label=CLEARANCE, lines=[*points(planned, kept, self._groups), *levels])
+        return Panel(
+            x_label="Planned margin [m]",
+            y_label=CLEARANCE,
+            lines=[*points(planned, kept, self._groups), *levels],
+        )
 
     def limit(self, key: str) -> float:
         """Return the limit of a criterion, or not a number."""
@@ -148,7 +184,9 @@ class PanelsOver:
         # A criterion that does not apply is false.
         return math.nan if value is None or value is False else float(value)
 
-    def _points(self, name: str, label: str, colour: str, style: Style = "points", error: str = "") -> list[Line]:
+    def _points(
+        self, name: str, label: str, colour: str, style: Style = "points", error: str = ""
+    ) -> list[Line]:
         """Return what is measured of the flights, in its colour; of each word that was swept in the colour of that."""
         bars, values = column(self._rows, error) if error else None, column(self._rows, name)
         if not self._parted:
@@ -170,7 +208,9 @@ class PanelsOver:
         """Return what theory says: its curve over the speed ratio, however few flights there are; else a mark for each flight."""
         curve = self._trial.theory(name) if self._key == "nu" else None
         if curve is None:
-            return Line(x=self._x, y=column(self._rows, name), label=label, colour=colour, style="diamonds")
+            return Line(
+                x=self._x, y=column(self._rows, name), label=label, colour=colour, style="diamonds"
+            )
         return Line(x=curve[0], y=curve[1], label=label, colour=colour)
 
     def _limit(self, name: str, label: str) -> Line:
@@ -180,10 +220,16 @@ class PanelsOver:
             return level(self._span, float(values[0]), label)
         return Line(x=self._x, y=values, label=label, colour=Meaning.LIMIT, style="diamonds")
 
-    def _panel(self, y_label: str, lines: list[Line], y_range: tuple[float, float] | None = None) -> Panel | None:
+    def _panel(
+        self, y_label: str, lines: list[Line], y_range: tuple[float, float] | None = None
+    ) -> Panel | None:
         known = [line for line in lines if np.isfinite(line.y).any()]
-        shown = any(line.style in ("points", "dots", "diamonds", "ring", "square") for line in known)
+        shown = any(
+            line.style in ("points", "dots", "diamonds", "ring", "square") for line in known
+        )
         if not shown:
             return None
         x_range = _RATIOS if self._key == "nu" else around(self._x)
-        return Panel(x_label=self._label, y_label=y_label, lines=known, x_range=x_range, y_range=y_range)
+        return Panel(
+            x_label=self._label, y_label=y_label, lines=known, x_range=x_range, y_range=y_range
+        )

@@ -93,15 +93,24 @@ def flight_table(
         rows = rows.assign(flown_ratio=rows["nu"].where(was_flown(rows)))
         columns = (("ν flown [-]", "flown_ratio", "{:.2f}"), *columns)
         caption += " ν is swept as the ratio of the speeds over the ground; as flown, in wind, it is that through the air."
-    cells = [[name(row), outcome(row), *(_cell(row, key, pattern) for _, key, pattern in columns)] for _, row in rows.iterrows()]
-    words = [min(_WORDS_MAX, max(1.0, 0.1 * max((len(row[i]) for row in cells), default=0))) for i in (0, 1)]
+    cells = [
+        [name(row), outcome(row), *(_cell(row, key, pattern) for _, key, pattern in columns)]
+        for _, row in rows.iterrows()
+    ]
+    words = [
+        min(_WORDS_MAX, max(1.0, 0.1 * max((len(row[i]) for row in cells), default=0)))
+        for i in (0, 1)
+    ]
     # A name goes on over the next line where a word of it ends.
     parts = (part for row in cells for part in re.split(r" |(?<=_)(?=[a-z])", row[0]))
     words[0] = max(words[0], _NAME_LETTER * max(map(len, parts), default=0))
     # The longest word of a heading has to fit.
     widths = [
         *words,
-        *(max(_APART if title == _BEYOND else _NUMBER, _LETTER * max(map(len, title.split()))) for title, _, _ in columns),
+        *(
+            max(_APART if title == _BEYOND else _NUMBER, _LETTER * max(map(len, title.split())))
+            for title, _, _ in columns
+        ),
     ]
     return Table(
         caption=caption,
@@ -118,7 +127,11 @@ def _cell(row: "pd.Series[Any]", key: str, pattern: str) -> str:
     value = row.get(key)
     if key == "min_distance_m" and not pd.isna(value):
         return approach(float(value), float(row["keepout_radius_m"]))
-    return approach(float(value), 0.0, "+") if key == "clearance_m" and not pd.isna(value) else number(value, pattern)
+    return (
+        approach(float(value), 0.0, "+")
+        if key == "clearance_m" and not pd.isna(value)
+        else number(value, pattern)
+    )
 
 
 def nearest_cells(rows: pd.DataFrame) -> tuple[str, str]:
@@ -127,7 +140,9 @@ def nearest_cells(rows: pd.DataFrame) -> tuple[str, str]:
     if not np.isfinite(distances).any():
         return "–", "–"
     radius = float(column(rows, "keepout_radius_m")[np.nanargmin(distances)])
-    return approach(float(np.nanmin(distances)), radius), approach(float(np.nanmin(beyond)), 0.0, "+")
+    return approach(float(np.nanmin(distances)), radius), approach(
+        float(np.nanmin(beyond)), 0.0, "+"
+    )
 
 
 def trial_table(trials: list[Trial]) -> Table:
@@ -173,7 +188,10 @@ def criteria_table(trials: list[Trial]) -> Table:
             [trial.title, c.what, c.limit, "; ".join(filter(None, (c.worst, c.missing))), f"{n}"]
             for c, n in zip(listed, failed, strict=True)
         ]
-    head, widths = ["Trial", "Criterion", "Limit", "Worst measured", "Not met"], [1.7, 2.5, 1.2, 1.7, 0.7]
+    head, widths = (
+        ["Trial", "Criterion", "Limit", "Worst measured", "Not met"],
+        [1.7, 2.5, 1.2, 1.7, 0.7],
+    )
     if len(trials) == 1:
         return Table(
             caption="Criteria beside the keep-out area, and the worst measured values.",
@@ -195,7 +213,10 @@ def fault_table(trial: Trial) -> Table:
     """Return a row per kind of fault: how the flights ended, and how close they came from the fault on."""
     flown = trial.flown
     differ = radii_differ(flown)
-    after = {str(row["flight_id"]): _closest_after(trial, row, beyond=differ) for _, row in flown.iterrows()}
+    after = {
+        str(row["flight_id"]): _closest_after(trial, row, beyond=differ)
+        for _, row in flown.iterrows()
+    }
     rows = []
     for kind, members in flown.groupby("fault", sort=False):
         closest = [after[str(flight_id)] for flight_id in members["flight_id"]]
@@ -234,17 +255,28 @@ def _closest_after(trial: Trial, row: "pd.Series[Any]", *, beyond: bool) -> floa
     after = history[history["time_s"] >= row["fault_time_s"]]
     if not len(after):
         return None
-    return float(keepout_distance(after, trial.flight_config(row)).min()) - beyond * float(row["keepout_radius_m"])
+    return float(keepout_distance(after, trial.flight_config(row)).min()) - beyond * float(
+        row["keepout_radius_m"]
+    )
 
 
 def failed_blocks(trials: Sequence[Trial]) -> list[Block]:
     """Return the flights that failed a criterion, keep-out violations first, ``FAILED_MAX`` at most, each with its reason."""
-    by_key, summary = {trial.key: trial for trial in trials}, pd.concat([trial.rows for trial in trials])
+    by_key, summary = (
+        {trial.key: trial for trial in trials},
+        pd.concat([trial.rows for trial in trials]),
+    )
     failed = summary.assign(clearance_m=clearance(summary))[~met(summary)]
     if not len(failed):
         return []
     differ = radii_differ(summary)
-    order = np.lexsort((np.arange(len(failed)), -np.nan_to_num(column(failed, "keepout_depth_m")), ~violated(failed)))
+    order = np.lexsort(
+        (
+            np.arange(len(failed)),
+            -np.nan_to_num(column(failed, "keepout_depth_m")),
+            ~violated(failed),
+        )
+    )
     rows = [
         [
             told_name(by_key[row["trial"]], row),
@@ -264,7 +296,14 @@ def failed_blocks(trials: Sequence[Trial]) -> list[Block]:
         caption=f"Flights that failed a criterion, {'keep-out violations first, ' * first}each with its reason.",
         head=head,
         rows=rows,
-        widths=[min(2.4, 0.12 * max(len(row[0]) for row in rows)), 0.5, 0.9, 0.8, *([0.8] if differ else []), 4.4],
+        widths=[
+            min(2.4, 0.12 * max(len(row[0]) for row in rows)),
+            0.5,
+            0.9,
+            0.8,
+            *([0.8] if differ else []),
+            4.4,
+        ],
         prose=True,
         left_columns=len(head),
         breakable=True,
@@ -272,4 +311,10 @@ def failed_blocks(trials: Sequence[Trial]) -> list[Block]:
     more = len(failed) - len(rows)
     flights = "flights did" if len(failed) > 1 else "flight did"
     text = f"{len(failed)} {flights} not meet every criterion{'; those with keep-out violations come first' * first}."
-    return [Text(text + (f" The first {len(rows)} are listed, {more} more are in {SUMMARY}." if more else "")), table]
+    return [
+        Text(
+            text
+            + (f" The first {len(rows)} are listed, {more} more are in {SUMMARY}." if more else "")
+        ),
+        table,
+    ]

@@ -38,7 +38,9 @@ _AGES = 200
 """Ages of an outage at which that is looked at [-]."""
 
 
-def drift_rate(scenario: Scenario, wind: WindField, turn: float, altitude_error: float = 0.0) -> float:
+def drift_rate(
+    scenario: Scenario, wind: WindField, turn: float, altitude_error: float = 0.0
+) -> float:
     """Return how fast dead reckoning may go wrong [m/s]; 0 where satellite navigation is not lost.
 
     Parameters
@@ -53,9 +55,15 @@ def drift_rate(scenario: Scenario, wind: WindField, turn: float, altitude_error:
     # The wind may have changed before the loss, too, and its estimate not have followed.
     changed = largest_wind_change(scenario, wind, outage + wind_followed(scenario), altitude_error)
     age = np.linspace(0.0, min(outage, duration), _AGES)
-    covered = float(np.max((_by_gusts(scenario, age) + _by_turbulence(scenario, age)) / (age + turn)))
+    covered = float(
+        np.max((_by_gusts(scenario, age) + _by_turbulence(scenario, age)) / (age + turn))
+    )
     # An airspeed and a heading with biases are wrong in the estimated wind, and the other way round once the vehicle has turned.
-    sensed = _by_noise(scenario, age, turn) + 2.0 * wind_bias(scenario) + _CHANGING_TURNS * scenario.guidance.airspeed_mps
+    sensed = (
+        _by_noise(scenario, age, turn)
+        + 2.0 * wind_bias(scenario)
+        + _CHANGING_TURNS * scenario.guidance.airspeed_mps
+    )
     steady = max(scenario.following.drift_rate_mps, sensed)
     return steady + changed + _gust_taken_for_wind(scenario) + covered
 
@@ -69,8 +77,14 @@ def _by_noise(scenario: Scenario, age: Array, turn: float) -> float:
     """
     noise, g = wind_noise(scenario), scenario.guidance
     walked = NOISE_DEVIATIONS * noise * np.sqrt(age / g.rate_hz)
-    lowered = -g.airspeed_mps * math.expm1(-0.5 * math.radians(scenario.sensors.heading_sigma_deg) ** 2)
-    return NOISE_DEVIATIONS * wind_noise_left(scenario) + 2.0 * lowered + float(np.max(walked / (age + turn)))
+    lowered = -g.airspeed_mps * math.expm1(
+        -0.5 * math.radians(scenario.sensors.heading_sigma_deg) ** 2
+    )
+    return (
+        NOISE_DEVIATIONS * wind_noise_left(scenario)
+        + 2.0 * lowered
+        + float(np.max(walked / (age + turn)))
+    )
 
 
 def velocity_error(scenario: Scenario, drift: float) -> float:
@@ -83,7 +97,9 @@ def velocity_error(scenario: Scenario, drift: float) -> float:
     ----------
     drift : how fast dead reckoning may go wrong, by ``drift_rate`` [m/s]
     """
-    noise = NOISE_DEVIATIONS * math.hypot(scenario.sensors.velocity_sigma_mps, wind_noise_left(scenario))
+    noise = NOISE_DEVIATIONS * math.hypot(
+        scenario.sensors.velocity_sigma_mps, wind_noise_left(scenario)
+    )
     read = NOISE_DEVIATIONS * wind_noise(scenario) - drift if drift else 0.0
     return max(noise, read, wind_bias(scenario))
 

@@ -45,7 +45,9 @@ def navigation_parameters(scenario: Scenario, setup: VehicleSetup) -> Navigation
 
 def wind_noise(scenario: Scenario) -> float:
     """Return the deviation of the wind by the noise of airspeed and heading, as they are read at a step [m/s]."""
-    return _wrong_by(scenario, scenario.sensors.airspeed_sigma_mps, scenario.sensors.heading_sigma_deg)
+    return _wrong_by(
+        scenario, scenario.sensors.airspeed_sigma_mps, scenario.sensors.heading_sigma_deg
+    )
 
 
 def wind_bias(scenario: Scenario) -> float:
@@ -54,7 +56,9 @@ def wind_bias(scenario: Scenario) -> float:
     The error turns with the vehicle: an estimate keeps that of the courses flown so far. In a climb the airspeed is read that is
     flown along it, of which a little less leads ahead.
     """
-    climbing = 1.0 - 1.0 / math.hypot(1.0, scenario.following.climb_gradient) if climbs(scenario) else 0.0
+    climbing = (
+        1.0 - 1.0 / math.hypot(1.0, scenario.following.climb_gradient) if climbs(scenario) else 0.0
+    )
     airspeed = scenario.sensors.airspeed_bias_mps + climbing * scenario.guidance.airspeed_mps
     return _wrong_by(scenario, airspeed, scenario.sensors.heading_bias_deg)
 
@@ -68,7 +72,9 @@ def wind_noise_left(scenario: Scenario) -> float:
 def first_wind_error(scenario: Scenario, setup: VehicleSetup) -> float:
     """Return by how much more than in the end the wind may be wrong that is measured at the start [m/s]."""
     navigation = Navigation(navigation_parameters(scenario, setup))
-    navigation.update((0.0, 0.0, scenario.guidance.airspeed_mps, 0.0), scenario.guidance.airspeed_mps, 0.0, 0.0)
+    navigation.update(
+        (0.0, 0.0, scenario.guidance.airspeed_mps, 0.0), scenario.guidance.airspeed_mps, 0.0, 0.0
+    )
     return navigation.wind_error
 
 
@@ -80,7 +86,9 @@ def wind_change(scenario: Scenario, wind: WindField, altitude_error: float) -> f
     return largest_wind_change(scenario, wind, wind_followed(scenario), altitude_error)
 
 
-def largest_wind_change(scenario: Scenario, wind: WindField, interval: float, altitude_error: float) -> float:
+def largest_wind_change(
+    scenario: Scenario, wind: WindField, interval: float, altitude_error: float
+) -> float:
     """Return by how much the wind that is flown in changes at most within an interval [s], by time and by height [m/s].
 
     Parameters
@@ -120,8 +128,12 @@ def _measured_noise(scenario: Scenario) -> float:
 def _sensor_sigmas(scenario: Scenario) -> tuple[float, float]:
     """Return the deviations of airspeed [m/s] and course [rad] that the wind's filter takes for noise of the sensors."""
     sensors, velocity = scenario.sensors, scenario.sensors.velocity_sigma_mps
-    course = math.hypot(math.radians(sensors.heading_sigma_deg), velocity / scenario.guidance.airspeed_mps)
-    return max(_AIRSPEED_SIGMA, math.hypot(sensors.airspeed_sigma_mps, velocity)), max(_COURSE_SIGMA, course)
+    course = math.hypot(
+        math.radians(sensors.heading_sigma_deg), velocity / scenario.guidance.airspeed_mps
+    )
+    return max(_AIRSPEED_SIGMA, math.hypot(sensors.airspeed_sigma_mps, velocity)), max(
+        _COURSE_SIGMA, course
+    )
 
 
 def _sensor_sigma(scenario: Scenario) -> float:
@@ -135,4 +147,10 @@ def _gust_sigma(scenario: Scenario) -> float:
         return 0.0
     g, height = scenario.guidance, scenario.source_height
     sigma = intensities(height, TURBULENCE[scenario.turbulence.level].wind_at_20ft)[0]
-    return sigma * math.sqrt(2.0 * scale_lengths(height)[0] / g.airspeed_mps * g.rate_hz / plan_interval(scenario.guidance))
+    return sigma * math.sqrt(
+        2.0
+        * scale_lengths(height)[0]
+        / g.airspeed_mps
+        * g.rate_hz
+        / plan_interval(scenario.guidance)
+    )

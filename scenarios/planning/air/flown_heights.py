@@ -25,8 +25,15 @@ _LOOKED_AT = 30
 
 def climbed_along(scenario: Scenario) -> float:
     """Return the distance from the vessel up to which an inclined plume is climbed along [m]."""
-    radius, turn = scenario.keepout.radius_m, scenario.guidance.airspeed_mps / omega_max(scenario.guidance)
-    return max(_RADII * radius, radius + _BEYOND + _TURN_RADII * turn, scenario.reference.standoff_radius_m or 0.0)
+    radius, turn = (
+        scenario.keepout.radius_m,
+        scenario.guidance.airspeed_mps / omega_max(scenario.guidance),
+    )
+    return max(
+        _RADII * radius,
+        radius + _BEYOND + _TURN_RADII * turn,
+        scenario.reference.standoff_radius_m or 0.0,
+    )
 
 
 def flown_heights(scenario: Scenario) -> list[float]:
@@ -50,10 +57,16 @@ def _crossed_heights(scenario: Scenario, distance: float) -> list[float]:
     flight, source = scenario.flight, scenario.source_height
     if scenario.emission.ship is not None:
         return [scenario.altitude, flight.altitude_min_m, flight.altitude_max_m]
-    return [scenario.altitude, source, source + math.tan(math.radians(scenario.plume.elevation_deg)) * distance]
+    return [
+        scenario.altitude,
+        source,
+        source + math.tan(math.radians(scenario.plume.elevation_deg)) * distance,
+    ]
 
 
-def check_not_outrun(scenario: Scenario, vessel: VesselTruth, wind: WindField, distance: float) -> None:
+def check_not_outrun(
+    scenario: Scenario, vessel: VesselTruth, wind: WindField, distance: float
+) -> None:
     """Refuse a vessel that outruns the UAV through the air at a height that is flown.
 
     Parameters
@@ -75,7 +88,11 @@ def check_not_outrun(scenario: Scenario, vessel: VesselTruth, wind: WindField, d
     past = winds_past(vessel, wind, looked_at, scenario.flight.duration_max_s + TRACK_MARGIN)
     fastest, height = max((of.greatest, height) for of, height in zip(past, looked_at, strict=True))
     if fastest >= ratio * speed:
-        why = "to which it glides if a part of it fails" if height < min(crossed) else "which is flown"
+        why = (
+            "to which it glides if a part of it fails"
+            if height < min(crossed)
+            else "which is flown"
+        )
         raise InfeasibleError(
             f"at a height of {height:.0f} m, {why}, the vessel moves at up to {fastest:.1f} m/s through the air,"
             f" nu = {fastest / speed:.2f}; the UAV at {speed:g} m/s follows up to nu = {ratio:g}: fly faster, in less wind, or at"

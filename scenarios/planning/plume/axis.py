@@ -37,7 +37,9 @@ _WIND_ERROR = 0.3
 CO2 = GASES.index("co2")
 
 
-def plume_axis(scenario: Scenario, vessel: VesselTruth, altitude_reach: float = math.inf) -> AxisParameters:
+def plume_axis(
+    scenario: Scenario, vessel: VesselTruth, altitude_reach: float = math.inf
+) -> AxisParameters:
     """Return how the guidance knows the plume's axis.
 
     Parameters
@@ -54,7 +56,9 @@ def plume_axis(scenario: Scenario, vessel: VesselTruth, altitude_reach: float = 
     gradient = f.climb_gradient
     if scenario.emission.ship is None or f.plume == "predicted":
         climb = Climb(time=PREDICTED_TIME, gradient=gradient)
-        return PredictedPlume(height=axis_height(scenario, vessel), altitude=scenario.altitude, climb=climb)
+        return PredictedPlume(
+            height=axis_height(scenario, vessel), altitude=scenario.altitude, climb=climb
+        )
     limits = flown_altitudes(scenario)
     height = axis_height(scenario, vessel, limits)
     climb = Climb(time=KNOWN_TIME, gradient=gradient, reach=altitude_reach)
@@ -93,7 +97,9 @@ def flown_altitudes(scenario: Scenario) -> tuple[float, float]:
     return lowest, highest
 
 
-def axis_height(scenario: Scenario, vessel: VesselTruth, limits: tuple[float, float] | None = None) -> AxisHeight:
+def axis_height(
+    scenario: Scenario, vessel: VesselTruth, limits: tuple[float, float] | None = None
+) -> AxisHeight:
     """Return the height that the guidance expects: at the load that the speed takes, or in the middle of the ranges given.
 
     Parameters
@@ -110,7 +116,9 @@ def axis_height(scenario: Scenario, vessel: VesselTruth, limits: tuple[float, fl
     source = sum(f.source_height_m) / 2.0 if f.source_height_m else scenario.source_height
     climb = math.tan(math.radians(scenario.plume.elevation_deg))
     if scenario.emission.ship is None:
-        return AxisHeight(source=source, climb=climb, highest=source + max(0.0, climb) * climbed_along(scenario))
+        return AxisHeight(
+            source=source, climb=climb, highest=source + max(0.0, climb) * climbed_along(scenario)
+        )
     expected = expected_emission(scenario, vessel, 0.5)
     return AxisHeight(
         source=source,
@@ -133,10 +141,15 @@ def expected_emission(scenario: Scenario, vessel: VesselTruth, quantile: float) 
     return emission(scenario, speed=math.hypot(v_north, v_east))
 
 
-def _expectation(scenario: Scenario, vessel: VesselTruth, limits: tuple[float, float]) -> Expectation:
+def _expectation(
+    scenario: Scenario, vessel: VesselTruth, limits: tuple[float, float]
+) -> Expectation:
     """Return what is known of ship and sensor, within the altitudes that are flown."""
     f, middle = scenario.following, expected_emission(scenario, vessel, 0.5)
-    sources, loads = f.source_height_m, [expected_emission(scenario, vessel, (i + 0.5) / _LOADS) for i in range(_LOADS)]
+    sources, loads = (
+        f.source_height_m,
+        [expected_emission(scenario, vessel, (i + 0.5) / _LOADS) for i in range(_LOADS)],
+    )
     return Expectation(
         source_height=axis_height(scenario, vessel).source,
         source_deviation=(sources[1] - sources[0]) / math.sqrt(12.0) if sources else _SOURCE_ERROR,
@@ -145,7 +158,9 @@ def _expectation(scenario: Scenario, vessel: VesselTruth, limits: tuple[float, f
         momentum_flux=middle.momentum_flux,
         buoyancy_flux=middle.buoyancy_flux,
         co2_rate=middle.rates[CO2],
-        load_deviation=float(np.std(np.log([of.rates[CO2] for of in loads]))) if f.load else _LOAD_ERROR,
+        load_deviation=float(np.std(np.log([of.rates[CO2] for of in loads])))
+        if f.load
+        else _LOAD_ERROR,
         wind_deviation=_WIND_ERROR,
         sensor=co2_sensor(sniffer_on_board(scenario)),
         lowest=limits[0],
@@ -161,7 +176,9 @@ def sniffer_on_board(scenario: Scenario) -> SnifferSpec:
     InfeasibleError : there is none
     """
     if "sniffer" not in scenario.payload.instruments:
-        raise InfeasibleError("following.plume is 'estimated', and nothing measures it: put 'sniffer' into payload.instruments")
+        raise InfeasibleError(
+            "following.plume is 'estimated', and nothing measures it: put 'sniffer' into payload.instruments"
+        )
     spec: SnifferSpec = scenario.payload.settings(SnifferOnBoard).spec
     return spec
 

@@ -15,7 +15,12 @@ from gnc.errors import InfeasibleError
 from measurement.plume.air import MarineAir
 from measurement.plume.settings import PlumeSettings
 from measurement.plume.spread import STEP, spreads
-from scenarios.planning.plume.axis import axis_height, expected_emission, flown_altitudes, sniffer_on_board
+from scenarios.planning.plume.axis import (
+    axis_height,
+    expected_emission,
+    flown_altitudes,
+    sniffer_on_board,
+)
 from scenarios.schema.scenario import Scenario
 from scenarios.world.vessel import VesselTruth
 
@@ -34,7 +39,9 @@ _WIND_LEAST = 2.0
 """Apparent wind from which on the spreads hold [m/s]."""
 
 
-def additional_distance(scenario: Scenario, vessel: VesselTruth, nearest: float, apparent_wind: float) -> float:
+def additional_distance(
+    scenario: Scenario, vessel: VesselTruth, nearest: float, apparent_wind: float
+) -> float:
     """Return by how much farther than the nearest distance [m] the sulphur is known best after a minute [m].
 
     Parameters
@@ -54,10 +61,14 @@ def additional_distance(scenario: Scenario, vessel: VesselTruth, nearest: float,
             "following.distance is 'best_measurement', and nothing measures: put 'sniffer' into payload.instruments"
         )
     further = np.linspace(0.0, _FARTHEST, _GRID)
-    return float(further[int(np.argmax(information(scenario, vessel, nearest + further, apparent_wind)))])
+    return float(
+        further[int(np.argmax(information(scenario, vessel, nearest + further, apparent_wind)))]
+    )
 
 
-def information(scenario: Scenario, vessel: VesselTruth, distance: Array, apparent_wind: float) -> Array:
+def information(
+    scenario: Scenario, vessel: VesselTruth, distance: Array, apparent_wind: float
+) -> Array:
     """Return the mean integral of the squared pulse of a pass over that of all gas at once, shape as ``distance`` [m]: relative.
 
     One over its root is the uncertainty of the sulphur by noise after a time, up to a factor that all distances have.
@@ -65,7 +76,14 @@ def information(scenario: Scenario, vessel: VesselTruth, distance: Array, appare
     wind = max(apparent_wind, _WIND_LEAST)
     height, emitted = axis_height(scenario, vessel), expected_emission(scenario, vessel, 0.5)
     age = distance / wind
-    of = spreads(emitted, MarineAir(wind_speed=_TYPICAL_WIND), height.source, np.array([wind]), float(age.max()), PlumeSettings())
+    of = spreads(
+        emitted,
+        MarineAir(wind_speed=_TYPICAL_WIND),
+        height.source,
+        np.array([wind]),
+        float(age.max()),
+        PlumeSettings(),
+    )
     sigma_y, sigma_z, meander_z, axis = (
         np.interp(age, STEP * np.arange(values.shape[1]), values[0])
         for values in (of.relative_y, of.relative_z, of.meander_z, of.height)

@@ -39,10 +39,20 @@ def theory_over_speed_ratio(scenario: Scenario) -> dict[str, list[float]]:
     A reference that is known in advance alone has a fixed r_CO; that of a steered one depends on the margin of each flight. Beside
     the flown shape's crossing interval there are those of the project's oscillations, and the shortest of any path.
     """
-    if "nu" not in scenario.sweep.root or any(key.startswith(_OTHERS) for key in scenario.sweep.root):
+    if "nu" not in scenario.sweep.root or any(
+        key.startswith(_OTHERS) for key in scenario.sweep.root
+    ):
         return {}
-    axis = PlumeAxis(heading=math.radians(scenario.plume.heading_deg), elevation=math.radians(scenario.plume.elevation_deg))
-    names = ("nu", "crossing_interval_predicted_s", "r_co_m", *(f"crossing_interval_{shape}_s" for shape in _OSCILLATIONS))
+    axis = PlumeAxis(
+        heading=math.radians(scenario.plume.heading_deg),
+        elevation=math.radians(scenario.plume.elevation_deg),
+    )
+    names = (
+        "nu",
+        "crossing_interval_predicted_s",
+        "r_co_m",
+        *(f"crossing_interval_{shape}_s" for shape in _OSCILLATIONS),
+    )
     points = _points(scenario.guidance, scenario.reference, scenario.keepout, axis)
     curves = {name: [point[i] for point in points] for i, name in enumerate(names)}
     if scenario.follows:
@@ -90,5 +100,11 @@ def crossing_limit(guidance: GuidanceConfig) -> dict[str, list[float]]:
         and math.isclose(ratio, solved["roll_rate_over_omega_max"], rel_tol=_SAME)
     ):
         return {}
-    best = [min(x for x in pair if x is not None) for pair in zip(solved["oscillating"], solved["going_round"], strict=True)]
-    return {"limit_nu": solved["nu"], "crossing_interval_limit_s": [value / fastest for value in best]}
+    best = [
+        min(x for x in pair if x is not None)
+        for pair in zip(solved["oscillating"], solved["going_round"], strict=True)
+    ]
+    return {
+        "limit_nu": solved["nu"],
+        "crossing_interval_limit_s": [value / fastest for value in best],
+    }

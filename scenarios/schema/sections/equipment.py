@@ -73,7 +73,11 @@ class FaultConfig(Section):
     @classmethod
     def _one_time(cls, given: Any) -> Any:
         """Take a number for the range that holds it alone, so that a random variable can set the time."""
-        return (given, given) if isinstance(given, int | float) and not isinstance(given, bool) else given
+        return (
+            (given, given)
+            if isinstance(given, int | float) and not isinstance(given, bool)
+            else given
+        )
 
     @model_validator(mode="after")
     def _ordered(self) -> "FaultConfig":

@@ -8,7 +8,16 @@ from pydantic import Field, RootModel, field_validator, model_validator
 
 from common.registry import PluginError
 from scenarios.schema.sections.report import ReportConfig
-from scenarios.schema.sections.section import Fraction, NonNegative, Positive, Range, Section, Seed, Title, check_ordered
+from scenarios.schema.sections.section import (
+    Fraction,
+    NonNegative,
+    Positive,
+    Range,
+    Section,
+    Seed,
+    Title,
+    check_ordered,
+)
 from scenarios.search.method import SEARCH_METHODS
 
 Sampling = Literal["sobol", "latin_hypercube", "random"]
@@ -45,7 +54,9 @@ class SweepConfig(RootModel[dict[str, tuple[Any, ...]]]):
             if len(values) > 1000:
                 raise ValueError(f"{key} has {len(values)} values; the most is 1000")
             if any(isinstance(value, int) and abs(value) > sys.float_info.max for value in values):
-                raise ValueError(f"{key} has a number of more than 308 digits; give values that flights can have")
+                raise ValueError(
+                    f"{key} has a number of more than 308 digits; give values that flights can have"
+                )
         for nu in self.root.get("nu", ()):
             if not isinstance(nu, int | float) or isinstance(nu, bool) or not 0.0 <= nu <= NU_MAX:
                 raise ValueError(f"nu is {nu!r}; speed ratios lie between 0 and {NU_MAX:g}")
@@ -61,7 +72,11 @@ def _flat(values: dict[str, Any], before: str = "") -> list[tuple[str, Any]]:
     return [
         entry
         for key, value in values.items()
-        for entry in (_flat(value, f"{before}{key}.") if isinstance(value, dict) else [(f"{before}{key}", value)])
+        for entry in (
+            _flat(value, f"{before}{key}.")
+            if isinstance(value, dict)
+            else [(f"{before}{key}", value)]
+        )
     ]
 
 
@@ -117,7 +132,11 @@ class DrawConfig(Section):
 
     @model_validator(mode="after")
     def _one(self) -> "DrawConfig":
-        given = [name for name in ("uniform", "normal", "weibull", "choice") if getattr(self, name) is not None]
+        given = [
+            name
+            for name in ("uniform", "normal", "weibull", "choice")
+            if getattr(self, name) is not None
+        ]
         if len(given) != 1:
             raise ValueError(
                 f"draw of '{self.key}' has {' and '.join(given) or 'none'} of uniform, normal, weibull and choice; give one"
@@ -125,15 +144,25 @@ class DrawConfig(Section):
         for name in ("uniform", "within"):
             check_ordered(f"{name} of the draw of '{self.key}'", getattr(self, name))
         if self.within is not None and given[0] not in ("normal", "weibull"):
-            raise ValueError(f"draw of '{self.key}' has within beside {given[0]}; it cuts off a normal or a weibull")
-        if self.weights is not None and not (len(self.weights) == len(self.choice or ()) and 0.0 < sum(self.weights) < math.inf):
-            raise ValueError(f"draw of '{self.key}' has weights {list(self.weights)}; give each choice one, with a sum above 0")
+            raise ValueError(
+                f"draw of '{self.key}' has within beside {given[0]}; it cuts off a normal or a weibull"
+            )
+        if self.weights is not None and not (
+            len(self.weights) == len(self.choice or ()) and 0.0 < sum(self.weights) < math.inf
+        ):
+            raise ValueError(
+                f"draw of '{self.key}' has weights {list(self.weights)}; give each choice one, with a sum above 0"
+            )
         return self
 
     @property
     def largest(self) -> float | None:
         """Return the largest number that may be sampled; None where there is none."""
-        numbers = self.uniform or self.within or tuple(value for value in self.choice or () if isinstance(value, int | float))
+        numbers = (
+            self.uniform
+            or self.within
+            or tuple(value for value in self.choice or () if isinstance(value, int | float))
+        )
         return max(numbers, default=None)
 
 
@@ -176,7 +205,9 @@ class SubsetConfig(Section):
     @property
     def flights_max(self) -> int:
         """Return the number of flights of all simulations, if every level is flown and every move is."""
-        return self.repeats * (self.flights_per_level + (self.levels_max - 1) * (self.flights_per_level - self.passing))
+        return self.repeats * (
+            self.flights_per_level + (self.levels_max - 1) * (self.flights_per_level - self.passing)
+        )
 
     @model_validator(mode="after")
     def _enough(self) -> "SubsetConfig":
@@ -191,7 +222,12 @@ class SubsetConfig(Section):
 class SearchConfig(Section):
     """A search over the ranges of the random variables, by methods that take turns."""
 
-    methods: Annotated[tuple[str, ...], Field(min_length=1)] = ("corners", "differential_evolution", "local", "cma")
+    methods: Annotated[tuple[str, ...], Field(min_length=1)] = (
+        "corners",
+        "differential_evolution",
+        "local",
+        "cma",
+    )
     """Search methods, which take turns in this order; each by its name or FILE.py:NAME."""
     population: Annotated[int, Field(ge=8, le=10_000)] = 64
     """Flights of a turn, and members of differential evolution [-]."""

@@ -6,7 +6,14 @@ from pydantic import Field, field_validator, model_validator
 
 from common.spelling import did_you_mean
 from gnc.mission.mode import Mode
-from scenarios.schema.sections.section import Angle, Limit, NonNegative, Positive, Section, check_ordered
+from scenarios.schema.sections.section import (
+    Angle,
+    Limit,
+    NonNegative,
+    Positive,
+    Section,
+    check_ordered,
+)
 
 ALTITUDE_MIN = 5.0
 """Least altitude at the start [m]: a few metres lower a wing that is banked in a turn reaches the sea."""
@@ -39,7 +46,9 @@ class StartConfig(Section):
     def _ordered(self) -> "StartConfig":
         check_ordered("distance_m", self.distance_m)
         if self.place_m is not None and (self.range_m is not None or self.aspect_deg is not None):
-            raise ValueError("place_m is given beside range_m or aspect_deg; give the place in one way")
+            raise ValueError(
+                "place_m is given beside range_m or aspect_deg; give the place in one way"
+            )
         return self
 
 
@@ -145,7 +154,9 @@ class CriteriaConfig(Section):
         """Take ``false`` for nothing where a list of two is expected."""
         if not isinstance(given, dict):
             return given
-        return {key: None if key in _PAIRS and value is False else value for key, value in given.items()}
+        return {
+            key: None if key in _PAIRS and value is False else value for key, value in given.items()
+        }
 
     @model_validator(mode="after")
     def _ordered(self) -> "CriteriaConfig":
@@ -159,5 +170,7 @@ class CriteriaConfig(Section):
         known = [*(mode.value for mode in Mode), DITCHED]
         for mode in modes:
             if mode not in known:
-                raise ValueError(f"'{mode}' is not a mode{did_you_mean(mode, known) or ';'} modes are {', '.join(known)}")
+                raise ValueError(
+                    f"'{mode}' is not a mode{did_you_mean(mode, known) or ';'} modes are {', '.join(known)}"
+                )
         return modes

@@ -11,7 +11,14 @@ from pydantic import ConfigDict, Field, field_validator, model_validator
 from common.registry import PluginError
 from common.spelling import did_you_mean, nearest
 from gnc.laws.steering_law import ON_CIRCLE, ON_OSCILLATION, STEERING_LAWS
-from scenarios.schema.sections.section import Angle, NonNegative, Positive, Section, check_divides, check_ordered
+from scenarios.schema.sections.section import (
+    Angle,
+    NonNegative,
+    Positive,
+    Section,
+    check_divides,
+    check_ordered,
+)
 
 Share = Annotated[float, Field(gt=0.0, le=1.0)]
 
@@ -108,7 +115,9 @@ class GuidanceConfig(Section):
     @model_validator(mode="after")
     def _law(self) -> "GuidanceConfig":
         if self.tuning == "bounded" and self.law != "cascade":
-            raise ValueError(f"tuning is 'bounded' with law '{self.law}', which has no bound; set law to 'cascade'")
+            raise ValueError(
+                f"tuning is 'bounded' with law '{self.law}', which has no bound; set law to 'cascade'"
+            )
         check_divides("rate_hz", self.rate_hz, 120.0)
         keys, types = self.law_keys, self.law_types if self.model_extra else {}
         for name, value in (self.model_extra or {}).items():
@@ -118,7 +127,9 @@ class GuidanceConfig(Section):
                 others = f"; those of law '{self.law}' are {', '.join(keys)}"
                 raise ValueError(f"unknown key 'guidance.{name}'{guess or others}")
             if (expected := _expected(types[name], value)) is not None:
-                raise ValueError(f"{name} is {value!r}; law '{self.law}' takes {expected}, by default {keys[name]!r}")
+                raise ValueError(
+                    f"{name} is {value!r}; law '{self.law}' takes {expected}, by default {keys[name]!r}"
+                )
         return self
 
     @property
@@ -169,7 +180,9 @@ def _reasons(law: str) -> Mapping[str, str]:
                 f" {' and '.join(tasks)}"
             )
         if not isinstance(reason, str):
-            raise PluginError(f"steering law '{law}' has cannot['{task}'] = {reason!r}; give the reason in words")
+            raise PluginError(
+                f"steering law '{law}' has cannot['{task}'] = {reason!r}; give the reason in words"
+            )
     found: Mapping[str, str] = reasons
     return found
 
@@ -179,8 +192,13 @@ def _law_keys(law: str) -> dict[str, Any]:
     try:
         of_dataclass = _fields_of(STEERING_LAWS.get(law))
     except TypeError:
-        raise PluginError(f"steering law '{law}' is not a dataclass; its fields are the keys of [guidance]") from None
-    keys = {of.name: of.default if of.default_factory is MISSING else of.default_factory() for of in of_dataclass}
+        raise PluginError(
+            f"steering law '{law}' is not a dataclass; its fields are the keys of [guidance]"
+        ) from None
+    keys = {
+        of.name: of.default if of.default_factory is MISSING else of.default_factory()
+        for of in of_dataclass
+    }
     if without := [name for name, default in keys.items() if default is MISSING]:
         raise PluginError(
             f"steering law '{law}' has no default for its field '{without[0]}'; give it one, for its fields are keys of [guidance]"

@@ -39,7 +39,9 @@ class PartSection(Section):
         """Return the settings of a part: those that the section gives, and its defaults."""
         made = part.SETTINGS
         names = {of.name for of in fields(made)}
-        return _adapter(made).validate_python({key: value for key, value in (self.model_extra or {}).items() if key in names})
+        return _adapter(made).validate_python(
+            {key: value for key, value in (self.model_extra or {}).items() if key in names}
+        )
 
     def __getattr__(self, name: str) -> Any:
         """Say where the value of a part's key is, to a part that looks for it here: the section has those alone that are given."""
@@ -73,7 +75,9 @@ class PartSection(Section):
             if name not in keys:
                 of_parts = f"; keys of {', '.join(map(repr, parts))} are {', '.join(keys)}"
                 known = of_parts if keys else "; no part that takes it is named"
-                raise ValueError(f"key '{name}' is not known{did_you_mean(name, [*type(self).model_fields, *keys]) or known}")
+                raise ValueError(
+                    f"key '{name}' is not known{did_you_mean(name, [*type(self).model_fields, *keys]) or known}"
+                )
         for part in parts.values():
             if hasattr(part, "SETTINGS"):
                 self._check(part)
@@ -87,7 +91,10 @@ class PartSection(Section):
             first = error.errors()[0]
             key = ".".join(map(str, first["loc"]))
             text = first["msg"].removeprefix("Value error, ")
-            demanded = must_be(first, key=key, default=self.part_keys.get(key)) or f"{text[0].lower()}{text[1:]}"
+            demanded = (
+                must_be(first, key=key, default=self.part_keys.get(key))
+                or f"{text[0].lower()}{text[1:]}"
+            )
             raise ValueError(f"{key} is {first['input']!r}; {demanded}" if key else text) from None
 
     def keys_lost_with(self, changed: Mapping[str, object]) -> list[str]:

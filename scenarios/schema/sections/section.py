@@ -11,7 +11,9 @@ from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Fie
 class Section(BaseModel):
     """Frozen; unknown keys, numbers that are not finite, and truth values in the place of numbers are refused."""
 
-    model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False, use_attribute_docstrings=True)
+    model_config = ConfigDict(
+        extra="forbid", frozen=True, allow_inf_nan=False, use_attribute_docstrings=True
+    )
 
     @model_validator(mode="before")
     @classmethod
@@ -25,9 +27,15 @@ def refuse_truth_values(kind: Any, given: Mapping[str, Any]) -> None:
     """Raise a ValueError where a key that takes a number, of a section or of a part's settings, has ``true`` or ``false``."""
     numbers = _number_keys(kind)
     for key, value in given.items():
-        if isinstance(value, bool | list | tuple) and (words := numbers.get(key)) is not None and _has_other_truth(value, words):
+        if (
+            isinstance(value, bool | list | tuple)
+            and (words := numbers.get(key)) is not None
+            and _has_other_truth(value, words)
+        ):
             or_false = ", or false" if words else ""
-            raise ValueError(f"{key} is {str(value).lower()}; a truth value is no number: give a number{or_false}")
+            raise ValueError(
+                f"{key} is {str(value).lower()}; a truth value is no number: give a number{or_false}"
+            )
 
 
 def _has_other_truth(value: object, words: tuple[bool, ...]) -> bool:
@@ -40,8 +48,15 @@ def _has_other_truth(value: object, words: tuple[bool, ...]) -> bool:
 @functools.cache
 def _number_keys(kind: Any) -> dict[str, tuple[bool, ...]]:
     """Return the keys that take numbers, each with the truth values that it takes as words beside them."""
-    fields = {name: field.annotation for name, field in kind.model_fields.items()} if issubclass(kind, BaseModel) else None
-    leaves = {name: list(_leaves(annotation)) for name, annotation in (fields or typing.get_type_hints(kind)).items()}
+    fields = (
+        {name: field.annotation for name, field in kind.model_fields.items()}
+        if issubclass(kind, BaseModel)
+        else None
+    )
+    leaves = {
+        name: list(_leaves(annotation))
+        for name, annotation in (fields or typing.get_type_hints(kind)).items()
+    }
     return {
         name: tuple(word for word in of if isinstance(word, bool))
         for name, of in leaves.items()
@@ -64,7 +79,9 @@ def _leaves(annotation: Any) -> Iterator[Any]:
 def _no_zero(given: Any) -> Any:
     """Refuse 0, which would count as ``false``."""
     if isinstance(given, int | float) and not isinstance(given, bool) and given == 0:
-        raise ValueError(f"value is {given!r}; give a limit above 0, or false where the quantity is not judged")
+        raise ValueError(
+            f"value is {given!r}; give a limit above 0, or false where the quantity is not judged"
+        )
     return given
 
 

@@ -62,7 +62,9 @@ class VesselConfig(Section):
     def _of_data(cls, track: str) -> str:
         file = Path(track).suffix and not (is_file_part(track) or is_data_file(track))
         if file and track not in VESSEL_TRACKS:
-            raise ValueError(f"track is '{track}'; the name of a file of AIS reports ends in .csv, .nmea or .txt: rename it")
+            raise ValueError(
+                f"track is '{track}'; the name of a file of AIS reports ends in .csv, .nmea or .txt: rename it"
+            )
         return track
 
     @model_validator(mode="after")
@@ -92,7 +94,9 @@ class PlaceConfig(Section):
     @classmethod
     def _no_number(cls, utc: object) -> object:
         if isinstance(utc, int | float) or (isinstance(utc, str) and utc.strip().isdecimal()):
-            raise ValueError(f"value is {utc}, a number; give date and time, as in 2026-06-01T12:00:00Z")
+            raise ValueError(
+                f"value is {utc}, a number; give date and time, as in 2026-06-01T12:00:00Z"
+            )
         return utc
 
     @field_validator("utc")
@@ -101,13 +105,17 @@ class PlaceConfig(Section):
         if utc is not None and not 1970 <= utc.year < 2200:
             raise ValueError(f"value is {utc.isoformat()}; give a time from 1970 to 2199")
         if utc is not None and utc.tzinfo is None:
-            raise ValueError(f"value is {utc.isoformat()}, without a zone; give a time in UTC, as in {utc.isoformat()}Z")
+            raise ValueError(
+                f"value is {utc.isoformat()}, without a zone; give a time in UTC, as in {utc.isoformat()}Z"
+            )
         return utc
 
     @model_validator(mode="after")
     def _whole(self) -> "PlaceConfig":
         if (self.latitude_deg is None) != (self.longitude_deg is None):
-            raise ValueError("one of place.latitude_deg and place.longitude_deg is given; give both, or neither")
+            raise ValueError(
+                "one of place.latitude_deg and place.longitude_deg is given; give both, or neither"
+            )
         return self
 
 
@@ -142,7 +150,9 @@ class PlumeConfig(PartSection):
 def _known_ship(given: Any) -> Any:
     """Refuse a name of no ship, and a table that is of no use."""
     if not isinstance(given, str | dict | None):
-        raise ValueError(f"value is {given!r}; give the name of a ship, or a table with her engine and funnel")
+        raise ValueError(
+            f"value is {given!r}; give the name of a ship, or a table with her engine and funnel"
+        )
     if given is not None:
         ship_of(given)
     return given

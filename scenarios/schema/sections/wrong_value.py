@@ -4,7 +4,12 @@ import re
 from collections.abc import Mapping
 from typing import Any
 
-from common.physics.units import METRES_PER_FOOT, METRES_PER_NAUTICAL_MILE, METRES_PER_SECOND_PER_KNOT, SECONDS_PER_HOUR
+from common.physics.units import (
+    METRES_PER_FOOT,
+    METRES_PER_NAUTICAL_MILE,
+    METRES_PER_SECOND_PER_KNOT,
+    SECONDS_PER_HOUR,
+)
 
 _LIMITS = {
     "less_than_equal": ("le", "at most"),
@@ -25,7 +30,10 @@ _OTHERS = {
 
 _NUMBER_AND_UNIT = re.compile(r"\s*([-+]?\d+(?:\.\d+)?)\s*(.*?)\s*")
 _IN_UNITS = {
-    "m/s": {**dict.fromkeys(("kn", "kt", "knots"), METRES_PER_SECOND_PER_KNOT), "km/h": 1000.0 / SECONDS_PER_HOUR},
+    "m/s": {
+        **dict.fromkeys(("kn", "kt", "knots"), METRES_PER_SECOND_PER_KNOT),
+        "km/h": 1000.0 / SECONDS_PER_HOUR,
+    },
     "m": {"km": 1000.0, "ft": METRES_PER_FOOT, "nmi": METRES_PER_NAUTICAL_MILE},
     "s": {"min": 60.0, "h": SECONDS_PER_HOUR},
     "%": {"ppm": 1e-4},
@@ -44,7 +52,9 @@ _PERCENT, _SURELY_PERCENT = 100.0, 2.0
 """Percent in a whole, and the least value in the place of a fraction that is taken for percent."""
 
 
-def must_be(error: Mapping[str, Any], *, key: str, unit: str = "", default: object = None) -> str | None:
+def must_be(
+    error: Mapping[str, Any], *, key: str, unit: str = "", default: object = None
+) -> str | None:
     """Return what a value must be, as "it must be at most 40 m/s"; None for an error of another kind.
 
     Parameters
@@ -66,7 +76,11 @@ def must_be(error: Mapping[str, Any], *, key: str, unit: str = "", default: obje
         return "it must be a whole number"
     if kind == "string_pattern_mismatch":
         letters = _PATTERN.fullmatch(error["ctx"]["pattern"])
-        return f"it must be made of {_letters(letters[1])} alone" if letters else f"it must match {error['ctx']['pattern']}"
+        return (
+            f"it must be made of {_letters(letters[1])} alone"
+            if letters
+            else f"it must match {error['ctx']['pattern']}"
+        )
     if kind == "too_long":
         return f"it must have {error['ctx']['max_length']} values at most, and has {error['ctx']['actual_length'] or 'more'}"
     if kind not in _LIMITS:
@@ -76,9 +90,7 @@ def must_be(error: Mapping[str, Any], *, key: str, unit: str = "", default: obje
     percent = isinstance(value, int | float) and _SURELY_PERCENT <= value <= _PERCENT
     fraction = percent and not unit and limit == 1 and name in ("le", "lt")
     number = f"{limit:,}" if isinstance(limit, int) else f"{limit:g}"
-    return (
-        f"it must be {words} {number}{f' {unit}' if unit else ''}{f': a fraction, e.g. {value / _PERCENT:g}' if fraction else ''}"
-    )
+    return f"it must be {words} {number}{f' {unit}' if unit else ''}{f': a fraction, e.g. {value / _PERCENT:g}' if fraction else ''}"
 
 
 def _letters(pattern: str) -> str:

@@ -71,7 +71,10 @@ def entrants_of(scenario: Scenario) -> tuple[list[Entrant], list[Refused]]:
     ------
     InputError : a law does not exist, or is named twice for a task, or none takes part
     """
-    listed = {TRACKING: [*scenario.arena.tracking, *scenario.laws], STANDOFF: [*scenario.arena.standoff, *scenario.laws]}
+    listed = {
+        TRACKING: [*scenario.arena.tracking, *scenario.laws],
+        STANDOFF: [*scenario.arena.standoff, *scenario.laws],
+    }
     entrants: list[Entrant] = []
     refused: list[Refused] = []
     for law in dict.fromkeys([*listed[TRACKING], *listed[STANDOFF]]):
@@ -88,14 +91,24 @@ def entrants_of(scenario: Scenario) -> tuple[list[Entrant], list[Refused]]:
             if reasons[task]:
                 refused.append(Refused(law=law, task=task, reason=reasons[task]))
             elif law in laws:
-                given = str(getattr(STEERING_LAWS.get(law), "given", "its class does not say (given)"))
-                entrants.append(Entrant(name=_name(law, task), law=law, task=task, given=given, defaults=defaults))
+                given = str(
+                    getattr(STEERING_LAWS.get(law), "given", "its class does not say (given)")
+                )
+                entrants.append(
+                    Entrant(
+                        name=_name(law, task), law=law, task=task, given=given, defaults=defaults
+                    )
+                )
     names = [entrant.name for entrant in entrants]
     for name in names:
         if names.count(name) > 1:
-            raise InputError(f"laws: two are called '{name}'; give files or classes names of their own")
+            raise InputError(
+                f"laws: two are called '{name}'; give files or classes names of their own"
+            )
     if not entrants:
-        raise InputError('no law takes part; name some in arena.tracking, arena.standoff or laws, as in laws=["npfg"]')
+        raise InputError(
+            'no law takes part; name some in arena.tracking, arena.standoff or laws, as in laws=["npfg"]'
+        )
     entrants.sort(key=lambda entrant: entrant.task != TRACKING)
     return entrants, refused
 
@@ -109,13 +122,19 @@ def conditions_of(scenario: Scenario, name: str, entrants: list[Entrant]) -> dic
     """
     conditions = scenario.arena.conditions
     if not conditions:
-        raise InputError('arena.conditions is empty; give one at least, as in [[arena.conditions]] name = "calm", title = "Calm"')
+        raise InputError(
+            'arena.conditions is empty; give one at least, as in [[arena.conditions]] name = "calm", title = "Calm"'
+        )
     trials = {}
     for condition in conditions:
         if condition.name in trials:
-            raise InputError(f"arena.conditions: two are called '{condition.name}'; give each a name of its own")
+            raise InputError(
+                f"arena.conditions: two are called '{condition.name}'; give each a name of its own"
+            )
         if condition.name == TUNING:
-            raise InputError(f"arena.conditions: '{TUNING}' is what the tuner's flights are called; give it another name")
+            raise InputError(
+                f"arena.conditions: '{TUNING}' is what the tuner's flights are called; give it another name"
+            )
         bare = {
             "study": "flights",
             "title": condition.title,
@@ -125,7 +144,9 @@ def conditions_of(scenario: Scenario, name: str, entrants: list[Entrant]) -> dic
             "flight.measured_s": scenario.arena.window_s,
         }
         try:
-            trials[condition.name] = with_values(scenario, {**draws_left(scenario, condition.set), **condition.set, **bare})
+            trials[condition.name] = with_values(
+                scenario, {**draws_left(scenario, condition.set), **condition.set, **bare}
+            )
         except InputError as error:
             raise InputError(f"condition '{condition.name}' of '{name}': {error}") from None
     return trials
@@ -137,16 +158,25 @@ def draws_left(scenario: Scenario, values: Mapping[str, object]) -> dict[str, ob
     return {} if len(left) == len(scenario.draws) else {"draws": left}
 
 
-def cases_of(entrants: list[Entrant], chosen: Mapping[str, Mapping[str, float]]) -> tuple[dict[str, Any], ...]:
+def cases_of(
+    entrants: list[Entrant], chosen: Mapping[str, Mapping[str, float]]
+) -> tuple[dict[str, Any], ...]:
     """Return a case for each entrant, with the parameters that were chosen for it, by its name."""
-    return tuple({"name": entrant.name, "set": entrant.values(chosen.get(entrant.name, {}))} for entrant in entrants)
+    return tuple(
+        {"name": entrant.name, "set": entrant.values(chosen.get(entrant.name, {}))}
+        for entrant in entrants
+    )
 
 
 def _defaults(law: str, guidance: GuidanceConfig) -> dict[str, float]:
     """Return the parameters of a law that are numbers, whole ones apart: those that the scenario has, and its own defaults."""
     of = GuidanceConfig(law=law)
     types = of.law_types
-    numbers = {key: value for key, value in of.law_keys.items() if type(value) in (int, float) and types[key] is not int}
+    numbers = {
+        key: value
+        for key, value in of.law_keys.items()
+        if type(value) in (int, float) and types[key] is not int
+    }
     return {key: float(getattr(guidance, key, value)) for key, value in numbers.items()}
 
 

@@ -46,8 +46,14 @@ def tuned_record(entrants: Sequence[Entrant], rows: Iterable[Row]) -> list[dict[
         of[row["entrant"]].append(row)
     record = []
     for entrant in entrants:
-        tried = sorted((row for row in of[entrant.name] if "cost_m" in row), key=lambda row: row["evaluation"])
-        entry = asdict(entrant) | {"defaults": dict(entrant.defaults), "evaluations": len(tried), "tuned": dict(entrant.defaults)}
+        tried = sorted(
+            (row for row in of[entrant.name] if "cost_m" in row), key=lambda row: row["evaluation"]
+        )
+        entry = asdict(entrant) | {
+            "defaults": dict(entrant.defaults),
+            "evaluations": len(tried),
+            "tuned": dict(entrant.defaults),
+        }
         if tried:
             least = min(tried, key=lambda row: row["cost_m"])
             entry |= {
@@ -96,7 +102,9 @@ def estimates(
     return found
 
 
-def limits(rows: Mapping[str, Sequence[Row]], arena: ArenaConfig, guidance: GuidanceConfig) -> dict[str, float]:
+def limits(
+    rows: Mapping[str, Sequence[Row]], arena: ArenaConfig, guidance: GuidanceConfig
+) -> dict[str, float]:
     """Return the most crossings per minute that any path allows, in the mean over a condition's flights.
 
     They are those that the arena gives, or those of the optimum, where it was solved for the aircraft's bank and roll rate.
@@ -104,7 +112,10 @@ def limits(rows: Mapping[str, Sequence[Row]], arena: ArenaConfig, guidance: Guid
     if arena.limits:
         ratios, most = (np.array(values) for values in zip(*sorted(arena.limits), strict=True))
     elif solved := crossing_limit(guidance):
-        ratios, most = np.array(solved["limit_nu"]), 60.0 / np.array(solved["crossing_interval_limit_s"])
+        ratios, most = (
+            np.array(solved["limit_nu"]),
+            60.0 / np.array(solved["crossing_interval_limit_s"]),
+        )
     else:
         return {}
     found = {}

@@ -21,7 +21,16 @@ from scenarios.studies.arena.work import ArenaWork
 from scenarios.studies.flight_study import FlightStudy
 from scenarios.studies.study import study
 
-TUNING_COLUMNS = ("entrant", "evaluation", "cost_m", "error_m", "excess_rad_s", "parameters", "message", "wall_time_s")
+TUNING_COLUMNS = (
+    "entrant",
+    "evaluation",
+    "cost_m",
+    "error_m",
+    "excess_rad_s",
+    "parameters",
+    "message",
+    "wall_time_s",
+)
 
 
 @study("arena")
@@ -41,11 +50,23 @@ class ArenaStudy(FlightStudy):
 
     chooses_flights = True
 
-    def __init__(self, scenario: Scenario, name: str, trials: Mapping[str, Scenario], *, overrides: Sequence[str] = ()) -> None:
+    def __init__(
+        self,
+        scenario: Scenario,
+        name: str,
+        trials: Mapping[str, Scenario],
+        *,
+        overrides: Sequence[str] = (),
+    ) -> None:
         self._arena, self._seed = scenario.arena, scenario.seed
         super().__init__(scenario, name, trials, overrides=overrides)
-        keys = dict.fromkeys(f"guidance.{key}" for entrant in self.entrants for key in entrant.defaults)
-        self.tables |= {WINDOW_TABLE: ("flight_id", "trial", *WINDOW_COLUMNS, *MEASURED_COLUMNS), TUNING_TABLE: TUNING_COLUMNS}
+        keys = dict.fromkeys(
+            f"guidance.{key}" for entrant in self.entrants for key in entrant.defaults
+        )
+        self.tables |= {
+            WINDOW_TABLE: ("flight_id", "trial", *WINDOW_COLUMNS, *MEASURED_COLUMNS),
+            TUNING_TABLE: TUNING_COLUMNS,
+        }
         self.tables[DRAWS] = (*self.tables[DRAWS], *keys)
         self._chosen: dict[str, Mapping[str, float]] = {}
 
@@ -53,7 +74,9 @@ class ArenaStudy(FlightStudy):
         """Return a trial for each condition, with a case for each law."""
         ((name, self._scenario),) = trials.items()
         if self._scenario.flight.measured_s is not None:
-            raise InputError("flight.measured_s is given; an arena measures the last arena.window_s of each flight: set that")
+            raise InputError(
+                "flight.measured_s is given; an arena measures the last arena.window_s of each flight: set that"
+            )
         for key, duration in (
             ("flight.duration_max_s", self._scenario.flight.duration_max_s),
             ("arena.tuning_duration_s", self._arena.tuning_duration_s),
@@ -83,19 +106,32 @@ class ArenaStudy(FlightStudy):
         fly(self.task(number) for number in range(self._numbers))
         # The report draws the first flight of each law in the first condition.
         first = range(0, len(self.entrants) * self._scenario.flights, self._scenario.flights)
-        shown = {task.number: task for task in (*self.unrecorded(first, run, journal), *self.representative_flights(run, journal))}
+        shown = {
+            task.number: task
+            for task in (
+                *self.unrecorded(first, run, journal),
+                *self.representative_flights(run, journal),
+            )
+        }
         fly(shown.values())
 
     def task(self, number: int) -> Task:
         """Return the task of a flight, with the parameters that were chosen for its law."""
         entrant = self.entrants[number // self._scenario.flights % len(self.entrants)]
         chosen = self._chosen.get(entrant.name, {})
-        return Task(number=number, labels=tuple((f"guidance.{key}", repr(value)) for key, value in chosen.items()))
+        return Task(
+            number=number,
+            labels=tuple((f"guidance.{key}", repr(value)) for key, value in chosen.items()),
+        )
 
     @staticmethod
     def _refuse_untuned(journal: Journal) -> None:
         """Raise an InputError if the process that tuned a law was lost: with its defaults it would not be compared fairly."""
-        lost = {row["entrant"]: row["message"] for row in journal.rows(TUNING_TABLE) if "cost_m" not in row}
+        lost = {
+            row["entrant"]: row["message"]
+            for row in journal.rows(TUNING_TABLE)
+            if "cost_m" not in row
+        }
         if lost:
             name, reason = next(iter(lost.items()))
             more = f" and {len(lost) - 1} more" if len(lost) > 1 else ""
@@ -109,7 +145,9 @@ class ArenaStudy(FlightStudy):
         record = tuned_record(self.entrants, journal.rows(TUNING_TABLE))
         self._chosen = {entry["name"]: entry["tuned"] for entry in record}
         cases = tuple(CaseConfig(**case) for case in cases_of(self.entrants, self._chosen))
-        self.trials = {name: trial.model_copy(update={"cases": cases}) for name, trial in self.trials.items()}
+        self.trials = {
+            name: trial.model_copy(update={"cases": cases}) for name, trial in self.trials.items()
+        }
 
     def postprocess(self, run: RunDirectory, journal: Journal, progress: Progress) -> None:
         """Write ``arena.json``."""
@@ -122,10 +160,14 @@ class ArenaStudy(FlightStudy):
         rows: dict[str, list[Row]] = {}
         for trial in self.trials:
             # A flight that could not be flown has no figures.
-            rows[trial] = [windows.get(number, {}) for number in range(first, first + flights[trial])]
+            rows[trial] = [
+                windows.get(number, {}) for number in range(first, first + flights[trial])
+            ]
             first += flights[trial]
         return {
-            "conditions": [{"name": name, "title": trial.title} for name, trial in self.trials.items()],
+            "conditions": [
+                {"name": name, "title": trial.title} for name, trial in self.trials.items()
+            ],
             "flights": self._scenario.flights,
             "entrants": tuned_record(self.entrants, journal.rows(TUNING_TABLE)),
             "refused": [asdict(law) for law in self._refused],
@@ -139,4 +181,8 @@ class ArenaStudy(FlightStudy):
             self._take_tuned(journal)
         found = super().summary(journal)
         record = tuned_record(self.entrants, journal.rows(TUNING_TABLE))
-        return replace(found, manifest=found.manifest | {"tuned": {entry["name"]: entry["tuned"] for entry in record}})
+        return replace(
+            found,
+            manifest=found.manifest
+            | {"tuned": {entry["name"]: entry["tuned"] for entry in record}},
+        )

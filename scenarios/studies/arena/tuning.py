@@ -57,19 +57,31 @@ class Tuner:
 
         def cost(point: Point) -> float:
             parameters = self._parameters(entrant, keys, point)
-            row: Row = {"entrant": entrant.name, "evaluation": len(tried), "parameters": json.dumps(parameters)}
+            row: Row = {
+                "entrant": entrant.name,
+                "evaluation": len(tried),
+                "parameters": json.dumps(parameters),
+            }
             row |= self._flown(entrant, parameters)
             tried.append(row)
             return float(row["cost_m"])
 
         # A law without parameters has one setting.
-        _search(cost, len(keys), self.arena.evaluations if keys else min(1, self.arena.evaluations), self.scenario.seed)
+        _search(
+            cost,
+            len(keys),
+            self.arena.evaluations if keys else min(1, self.arena.evaluations),
+            self.scenario.seed,
+        )
         yield from tried
 
     def _parameters(self, entrant: Entrant, keys: list[str], point: Point) -> dict[str, float]:
         """Return the parameters at a point of the unit cube, in whose middle the defaults are."""
         spans = self.arena.tuning_range ** (2.0 * np.clip(point, 0.0, 1.0) - 1.0)
-        return {key: float(f"{entrant.defaults[key] * span:.6g}") for key, span in zip(keys, spans, strict=True)}
+        return {
+            key: float(f"{entrant.defaults[key] * span:.6g}")
+            for key, span in zip(keys, spans, strict=True)
+        }
 
     def _flown(self, entrant: Entrant, parameters: Mapping[str, float]) -> Row:
         """Return what a setting costs: the mean error of its flights, and what their excess of effort counts as."""
@@ -80,7 +92,9 @@ class Tuner:
             for number in range(arena.tuning_flights):
                 request = experiment.request(number)
                 setup = kinematic_setup(request.scenario)
-                plan = plan_flight(request.scenario, flight_id=request.flight_id, seed=request.noise, setup=setup)
+                plan = plan_flight(
+                    request.scenario, flight_id=request.flight_id, seed=request.noise, setup=setup
+                )
                 record = fly(plan, release(plan, setup))
                 figures = window_figures(plan, record, window=arena.window_s)
                 errors.append(figures["error_rms_m"])
@@ -90,7 +104,12 @@ class Tuner:
         error, excess = float(np.mean(errors)), float(np.mean(excesses))
         counted = float(np.mean(np.minimum(errors, arena.error_max_m)))
         found = counted + arena.effort_weight_m_s * excess
-        return {"cost_m": found if math.isfinite(found) else _FAILED, "error_m": error, "excess_rad_s": excess, "message": ""}
+        return {
+            "cost_m": found if math.isfinite(found) else _FAILED,
+            "error_m": error,
+            "excess_rad_s": excess,
+            "message": "",
+        }
 
     def _scenario(self, entrant: Entrant, parameters: Mapping[str, float]) -> Scenario:
         arena = self.arena

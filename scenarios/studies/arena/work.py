@@ -55,7 +55,9 @@ class ArenaWork(FlightWork):
         chosen = {key: float(value) for key, value in task.labels if key.startswith(_GUIDANCE)}
         return replace(request, scenario=with_values(request.scenario, chosen))
 
-    def more_tables(self, request: FlightRequest, plan: FlightPlan, record: FlightRecord, row: Row) -> dict[str, list[Row]]:
+    def more_tables(
+        self, request: FlightRequest, plan: FlightPlan, record: FlightRecord, row: Row
+    ) -> dict[str, list[Row]]:
         """Return the figures of the end of a flight."""
         window = self.tuner.arena.window_s
         figures = window_figures(plan, record, window=window) | measured_figures(row, window=window)

@@ -60,7 +60,9 @@ class Case:
     terms: tuple[Term, ...]
 
 
-def draw_case(seed: int, trajectory: int, distance_max: float, speed: float, heading_rate_max: float) -> Case:
+def draw_case(
+    seed: int, trajectory: int, distance_max: float, speed: float, heading_rate_max: float
+) -> Case:
     """Return a trajectory's start and reference, which depend on the arguments alone.
 
     Parameters
@@ -106,7 +108,11 @@ def draw_case(seed: int, trajectory: int, distance_max: float, speed: float, hea
 
 def references_of(cases: Sequence[Case]) -> TurningReferences:
     """Return the references of cases of one kind."""
-    terms = np.array([case.terms for case in cases], dtype=float).reshape(len(cases), -1, 3).transpose(1, 2, 0)
+    terms = (
+        np.array([case.terms for case in cases], dtype=float)
+        .reshape(len(cases), -1, 3)
+        .transpose(1, 2, 0)
+    )
     return TurningReferences(
         course=[case.reference_course for case in cases],
         rate=[case.rate for case in cases],

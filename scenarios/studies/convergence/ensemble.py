@@ -15,7 +15,13 @@ from gnc.analysis.ensemble_result import DISTANCE_CONVERGED, EnsembleResult, Out
 from gnc.analysis.turning_reference import TurningReferences
 from scenarios.engine.task import Row
 from scenarios.errors import InputError
-from scenarios.studies.convergence.cases import CIRCLE_HEADING_RATES, REFERENCES, Case, draw_case, references_of
+from scenarios.studies.convergence.cases import (
+    CIRCLE_HEADING_RATES,
+    REFERENCES,
+    Case,
+    draw_case,
+    references_of,
+)
 
 BLOCK = 1250
 """Largest number of trajectories in a task."""
@@ -79,8 +85,14 @@ def convergence_blocks(
     InputError : unknown law, a number out of range, or a vehicle that cannot turn as fast as its references
     """
     if unknown := [law for law in laws if law not in {known.value for known in Steering}]:
-        raise InputError(f"law {unknown[0]!r} is unknown; choose from {', '.join(law.value for law in Steering)}")
-    for name, value in (("trajectories", trajectories), ("distance_max", distance_max), ("time_max", time_max)):
+        raise InputError(
+            f"law {unknown[0]!r} is unknown; choose from {', '.join(law.value for law in Steering)}"
+        )
+    for name, value in (
+        ("trajectories", trajectories),
+        ("distance_max", distance_max),
+        ("time_max", time_max),
+    ):
         if not value > 0:
             raise InputError(f"{name} is {value:g}; it must be above 0")
     if not vehicle.heading_rate_max > CIRCLE_HEADING_RATES[1]:
@@ -88,10 +100,15 @@ def convergence_blocks(
             f"heading_rate_max is {vehicle.heading_rate_max:g} rad/s; circles turn at up to {CIRCLE_HEADING_RATES[1]:g}: raise it"
         )
     cases = [
-        draw_case(seed, trajectory, distance_max, vehicle.speed, vehicle.heading_rate_max) for trajectory in range(trajectories)
+        draw_case(seed, trajectory, distance_max, vehicle.speed, vehicle.heading_rate_max)
+        for trajectory in range(trajectories)
     ]
     blocks = [
-        block for law in laws for block in _blocks(Steering(law), vehicle, cases, settling_band=settling_band, time_max=time_max)
+        block
+        for law in laws
+        for block in _blocks(
+            Steering(law), vehicle, cases, settling_band=settling_band, time_max=time_max
+        )
     ]
     # The longest first, so that the last block to finish is a short one.
     return sorted(blocks, key=lambda block: -float(block.time_max.max()))
@@ -109,7 +126,9 @@ def counterexamples(frame: pd.DataFrame) -> pd.DataFrame:
     return frame[frame["outcome"] != Outcome.CONVERGED.value]
 
 
-def trajectory_of(row: pd.Series, *, vehicle: Vehicle, settling_band: float, step_max: float = 0.5) -> pd.DataFrame:
+def trajectory_of(
+    row: pd.Series, *, vehicle: Vehicle, settling_band: float, step_max: float = 0.5
+) -> pd.DataFrame:
     """Return the time history of one row, integrated again with steps of at most ``step_max`` [s].
 
     Columns: time_s, north_m, east_m, course_rad of the vehicle, the same of the reference (which starts at 0, 0),
@@ -120,12 +139,25 @@ def trajectory_of(row: pd.Series, *, vehicle: Vehicle, settling_band: float, ste
     references = TurningReferences(
         course=[row["reference_course_rad"]],
         rate=[terms["rate"]],
-        **{name: np.array(terms[name], dtype=float).reshape(-1, 1) for name in ("amplitude", "frequency", "phase")},
+        **{
+            name: np.array(terms[name], dtype=float).reshape(-1, 1)
+            for name in ("amplitude", "frequency", "phase")
+        },
     )
     steps: list[tuple[float, ...]] = []
 
-    def observe(_: npt.NDArray[np.int64], time: Array, state: Array, phi: Array, command: Array) -> None:
-        steps.append((float(time[0]), float(state[0, 0]), float(state[1, 0]), float(phi[0]), float(command[0])))
+    def observe(
+        _: npt.NDArray[np.int64], time: Array, state: Array, phi: Array, command: Array
+    ) -> None:
+        steps.append(
+            (
+                float(time[0]),
+                float(state[0, 0]),
+                float(state[1, 0]),
+                float(phi[0]),
+                float(command[0]),
+            )
+        )
 
     fly_ensemble(
         Steering(row["law"]),
@@ -162,7 +194,9 @@ def _course(references: TurningReferences, time: Array) -> Array:
     return references.take(np.zeros(len(time), dtype=np.int64)).course_at(time)
 
 
-def _reference_track(references: TurningReferences, speed: float, time: Array) -> tuple[Array, Array]:
+def _reference_track(
+    references: TurningReferences, speed: float, time: Array
+) -> tuple[Array, Array]:
     """Return north and east [m] of one reference: its velocity integrated by Gauss's rule of three points."""
     nodes, weights = np.polynomial.legendre.leggauss(3)
     step = np.diff(time)
@@ -174,7 +208,9 @@ def _reference_track(references: TurningReferences, speed: float, time: Array) -
     return np.concatenate([[0.0], np.cumsum(north)]), np.concatenate([[0.0], np.cumsum(east)])
 
 
-def _blocks(law: Steering, vehicle: Vehicle, cases: Sequence[Case], *, settling_band: float, time_max: float) -> Iterator[Block]:
+def _blocks(
+    law: Steering, vehicle: Vehicle, cases: Sequence[Case], *, settling_band: float, time_max: float
+) -> Iterator[Block]:
     """Yield the trajectories in blocks of one kind of reference, the longest first.
 
     A block takes as long as its longest trajectory, so trajectories of similar length share a block.
@@ -185,8 +221,12 @@ def _blocks(law: Steering, vehicle: Vehicle, cases: Sequence[Case], *, settling_
             continue
         references = references_of(chosen)
         to_reference = -np.array([[case.north for case in chosen], [case.east for case in chosen]])
-        predicted = averaged_settling_time(vehicle.look_ahead, vehicle.speed, references, to_reference, settling_band)
-        limit = averaged_settling_time(vehicle.look_ahead, vehicle.speed, references, to_reference, DISTANCE_CONVERGED)
+        predicted = averaged_settling_time(
+            vehicle.look_ahead, vehicle.speed, references, to_reference, settling_band
+        )
+        limit = averaged_settling_time(
+            vehicle.look_ahead, vehicle.speed, references, to_reference, DISTANCE_CONVERGED
+        )
         limit *= TIME_FACTOR_CUT if law is Steering.CASCADE_CUT else TIME_FACTOR
         if law is Steering.CASCADE_CUT:
             # Turning once at omega_max leaves 1 - omega_r/omega_max of the reference's time of turn to fly straight.
@@ -212,7 +252,9 @@ def fly_block(block: Block) -> list[Row]:
         block.law,
         block.vehicle,
         references_of(block.cases),
-        to_reference=-np.array([[case.north for case in block.cases], [case.east for case in block.cases]]),
+        to_reference=-np.array(
+            [[case.north for case in block.cases], [case.east for case in block.cases]]
+        ),
         course=[case.course for case in block.cases],
         settling_band=block.settling_band,
         time_max=block.time_max,

@@ -89,7 +89,9 @@ class ConvergenceStudy:
 
     what = "trajectories"
 
-    def __init__(self, scenario: ConvergenceScenario, name: str, *, overrides: Sequence[str] = ()) -> None:
+    def __init__(
+        self, scenario: ConvergenceScenario, name: str, *, overrides: Sequence[str] = ()
+    ) -> None:
         self._scenario = scenario
         g = scenario.guidance
         try:
@@ -142,13 +144,20 @@ class ConvergenceStudy:
         """Write time histories of the first trajectories and of the counter-examples."""
         progress("writing time histories", self.planned, self.planned)
         frame = self._frame(journal)
-        kept = pd.concat([frame[frame["trajectory"] < self._scenario.ensemble.samples], counterexamples(frame).head(_KEPT_MAX)])
+        kept = pd.concat(
+            [
+                frame[frame["trajectory"] < self._scenario.ensemble.samples],
+                counterexamples(frame).head(_KEPT_MAX),
+            ]
+        )
         # A trajectory whose process was lost has no duration to replay.
         kept = kept[kept["duration_s"].notna()]
         kept["duration_s"] = kept["duration_s"].clip(upper=_HISTORY_MAX)
         for _, row in kept.drop_duplicates(["trajectory", "law"]).iterrows():
             band = self._scenario.ensemble.settling_band_m
-            history = trajectory_of(row, vehicle=self._vehicle, settling_band=band, step_max=_HISTORY_STEP)
+            history = trajectory_of(
+                row, vehicle=self._vehicle, settling_band=band, step_max=_HISTORY_STEP
+            )
             run.write_frame(trajectory_path(row["law"], row["trajectory"]), history)
 
     def export(self, run: RunDirectory, journal: Journal) -> None:
@@ -167,11 +176,24 @@ class ConvergenceStudy:
         # The verdict is about the laws that the theory covers or, if there are none, about all.
         judged = tuple(law for law in laws if law != "cascade_cut") or laws
         converged = frame["outcome"] == Outcome.CONVERGED.value
-        flown = frame.assign(converged=converged).groupby(["law", "reference"], sort=False)["converged"]
-        lines = [f"  {law}, {kind}: {int(of_kind.sum())} of {len(of_kind)} converged" for (law, kind), of_kind in flown]
+        flown = frame.assign(converged=converged).groupby(["law", "reference"], sort=False)[
+            "converged"
+        ]
+        lines = [
+            f"  {law}, {kind}: {int(of_kind.sum())} of {len(of_kind)} converged"
+            for (law, kind), of_kind in flown
+        ]
         return StudySummary(
             done=len(frame),
             met=len(frame) == self.planned and bool(converged[frame["law"].isin(judged)].all()),
-            lines=[f"{self.planned} trajectories planned, {len(frame)} done: {int(converged.sum())} converged", *lines],
-            manifest={"outcomes": {name: int((frame["outcome"] == name).sum()) for name in (*(o.value for o in Outcome), _LOST)}},
+            lines=[
+                f"{self.planned} trajectories planned, {len(frame)} done: {int(converged.sum())} converged",
+                *lines,
+            ],
+            manifest={
+                "outcomes": {
+                    name: int((frame["outcome"] == name).sum())
+                    for name in (*(o.value for o in Outcome), _LOST)
+                }
+            },
         )

@@ -50,7 +50,11 @@ class SearchedFlight:
 
 def nearest(flights: Sequence[SearchedFlight]) -> SearchedFlight | None:
     """Return the flight that came closest, or none where none was measured."""
-    return min((flight for flight in flights if flight.measured), key=lambda flight: flight.clearance, default=None)
+    return min(
+        (flight for flight in flights if flight.measured),
+        key=lambda flight: flight.clearance,
+        default=None,
+    )
 
 
 def searched_flights(journal: Journal) -> list[SearchedFlight]:
@@ -59,7 +63,9 @@ def searched_flights(journal: Journal) -> list[SearchedFlight]:
         SearchedFlight(
             number=number,
             flight_id=row["flight_id"],
-            method=(drawn := next(journal.rows(DRAWS, first=number, below=number + 1), {})).get("search_method", ""),
+            method=(drawn := next(journal.rows(DRAWS, first=number, below=number + 1), {})).get(
+                "search_method", ""
+            ),
             confirms=drawn.get("confirms", ""),
             clearance=clearance(row, unmeasured=UNFLOWN),
             violates=bool(row.get("keepout_violations", 0)),
@@ -68,7 +74,9 @@ def searched_flights(journal: Journal) -> list[SearchedFlight]:
     ]
 
 
-def worst_flights(flights: Sequence[SearchedFlight], space: Space, journal: Journal, kept: int) -> list[SearchedFlight]:
+def worst_flights(
+    flights: Sequence[SearchedFlight], space: Space, journal: Journal, kept: int
+) -> list[SearchedFlight]:
     """Return the flights of a search that came closest, no two of them alike; the rest by clearance where too few differ."""
     searched = [flight for flight in flights if flight.measured and not flight.confirms]
     order = sorted(searched, key=lambda flight: (flight.clearance, flight.number))
@@ -85,13 +93,25 @@ def worst_flights(flights: Sequence[SearchedFlight], space: Space, journal: Jour
     return sorted(chosen, key=lambda flight: (flight.clearance, flight.number))
 
 
-def search_manifest(flights: Sequence[SearchedFlight], worst: Sequence[SearchedFlight]) -> dict[str, Any]:
+def search_manifest(
+    flights: Sequence[SearchedFlight], worst: Sequence[SearchedFlight]
+) -> dict[str, Any]:
     """Return the entry of the manifest on a search: its methods, every violation, and the worst flights confirmed."""
     methods = dict.fromkeys(flight.method for flight in flights)
     return {
-        "methods": {name: _of_method([flight for flight in flights if flight.method == name]) for name in methods},
-        "violations": [flight.entry() for flight in sorted(flights, key=lambda flight: flight.clearance) if flight.violates],
-        "worst": [flight.entry() | _confirmed([of for of in flights if of.confirms == flight.flight_id]) for flight in worst],
+        "methods": {
+            name: _of_method([flight for flight in flights if flight.method == name])
+            for name in methods
+        },
+        "violations": [
+            flight.entry()
+            for flight in sorted(flights, key=lambda flight: flight.clearance)
+            if flight.violates
+        ],
+        "worst": [
+            flight.entry() | _confirmed([of for of in flights if of.confirms == flight.flight_id])
+            for flight in worst
+        ],
     }
 
 
@@ -124,7 +144,11 @@ def search_lines(found: dict[str, Any]) -> Iterator[str]:
     """Yield what a search has found in lines of text, from its entry in the manifest."""
     for name, of in found["methods"].items():
         flights = f"{of['flights']} flight{'s' * (of['flights'] != 1)}"
-        flights += f" ({of['measured']} could be flown and measured)" if 0 < of["measured"] < of["flights"] else ""
+        flights += (
+            f" ({of['measured']} could be flown and measured)"
+            if 0 < of["measured"] < of["flights"]
+            else ""
+        )
         yield f"  {name or 'no method'}: {flights}, {of['violations']} violated, {_outside(of['worst_clearance_m'])}"
     for rank, flight in enumerate(found["worst"][:1], start=1):
         repeats = (

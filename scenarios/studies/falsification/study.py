@@ -47,7 +47,14 @@ class FalsificationStudy(ChosenFlightsStudy):
     Parameters as of any study; ``InputError`` as of ``FlightStudy``.
     """
 
-    def __init__(self, scenario: Scenario, name: str, trials: Mapping[str, Scenario], *, overrides: Sequence[str] = ()) -> None:
+    def __init__(
+        self,
+        scenario: Scenario,
+        name: str,
+        trials: Mapping[str, Scenario],
+        *,
+        overrides: Sequence[str] = (),
+    ) -> None:
         self._search, self._seed = scenario.search, scenario.seed
         numbers = self._search.flights_max * (1 + self._search.confirmations)
         super().__init__(scenario, name, trials, numbers=numbers, overrides=overrides)
@@ -61,7 +68,9 @@ class FalsificationStudy(ChosenFlightsStudy):
 
     def _plan(self, searched: int) -> None:
         """Take the number of flights that the search will have, as far as it is known."""
-        self.flights = {self._trial: searched + self._search.confirmations * min(self._search.kept, searched)}
+        self.flights = {
+            self._trial: searched + self._search.confirmations * min(self._search.kept, searched)
+        }
 
     def run(self, fly: Fly, run: RunDirectory, journal: Journal) -> None:
         """Search; then keep the worst flights, and fly them again with fresh noise."""
@@ -109,9 +118,14 @@ class FalsificationStudy(ChosenFlightsStudy):
     @property
     def _has_room(self) -> bool:
         """Return whether there are numbers for another batch of a search by time; one by generations has them."""
-        return self._search.time_s is None or len(self._tasks) + self._search.population <= self._search.flights_max
+        return (
+            self._search.time_s is None
+            or len(self._tasks) + self._search.population <= self._search.flights_max
+        )
 
-    def _clearances(self, method: str, points: Array, fly: Fly, journal: Journal, timer: "_Timer") -> Array:
+    def _clearances(
+        self, method: str, points: Array, fly: Fly, journal: Journal, timer: "_Timer"
+    ) -> Array:
         """Return how far from the keep-out area flights at these points stay at their closest [m].
 
         What leaves the declared ranges is not flown, and counts the worse the farther it does.
@@ -120,7 +134,9 @@ class FalsificationStudy(ChosenFlightsStudy):
         excesses = [self._space.beyond(np.array(point)) for point in chosen]
         within = [point for point, excess in zip(chosen, excesses, strict=True) if not excess]
         first, labels = len(self._tasks), (("search_method", method), ("confirms", ""))
-        self._tasks += [Task(number=first + i, point=point, labels=labels) for i, point in enumerate(within)]
+        self._tasks += [
+            Task(number=first + i, point=point, labels=labels) for i, point in enumerate(within)
+        ]
         self._proposed += len(points)
         if self._search.time_s is not None:
             self._plan(len(self._tasks))
@@ -131,19 +147,28 @@ class FalsificationStudy(ChosenFlightsStudy):
             fly(batch)
         for task in batch:
             self._check_point(task, journal)
-        flown = (clearance(row, unmeasured=UNFLOWN) for row in journal.rows(SUMMARY, first=first, below=len(self._tasks)))
-        return np.array([UNFLOWN * (1.0 + excess) if excess else next(flown) for excess in excesses])
+        flown = (
+            clearance(row, unmeasured=UNFLOWN)
+            for row in journal.rows(SUMMARY, first=first, below=len(self._tasks))
+        )
+        return np.array(
+            [UNFLOWN * (1.0 + excess) if excess else next(flown) for excess in excesses]
+        )
 
     @staticmethod
     def _check_point(task: Task, journal: Journal) -> None:
         before = journal.task(task.number).point
-        if len(before) != len(task.point) or not np.allclose(before, task.point, rtol=0.0, atol=_SAME_POINT):
+        if len(before) != len(task.point) or not np.allclose(
+            before, task.point, rtol=0.0, atol=_SAME_POINT
+        ):
             raise InputError(
                 f"flight {task.number} of the run to be resumed was not flown at the point that this search proposes:"
                 " start a new run in another --out"
             )
 
-    def _keep(self, worst: Sequence[SearchedFlight], fly: Fly, run: RunDirectory, journal: Journal) -> None:
+    def _keep(
+        self, worst: Sequence[SearchedFlight], fly: Fly, run: RunDirectory, journal: Journal
+    ) -> None:
         """Write scenario files of the worst flights, and have those recorded that have no time history."""
         experiment = self.experiments[self._trial]
         for path in (run.path / WORST).glob("*.toml"):
@@ -152,7 +177,9 @@ class FalsificationStudy(ChosenFlightsStudy):
         for rank, flight in enumerate(worst, start=1):
             request = experiment.request(flight.number, self._tasks[flight.number].point)
             title = f"{self._scenario.title}: number {rank}, {flight.clearance:.2f} m from the keep-out area"
-            run.write_bytes(f"{WORST}/{rank:02d}_{flight.flight_id}.toml", scenario_file(request, title=title))
+            run.write_bytes(
+                f"{WORST}/{rank:02d}_{flight.flight_id}.toml", scenario_file(request, title=title)
+            )
         fly(self.unrecorded([flight.number for flight in worst], run, journal))
 
     def _confirm(self, worst: Sequence[SearchedFlight], fly: Fly, journal: Journal) -> None:
@@ -169,7 +196,9 @@ class FalsificationStudy(ChosenFlightsStudy):
             for i in range(repeats)
         ]
         # Beside those that a run before this one has flown, of flights that are not among the worst any more.
-        numbers = {task.number for task in confirming} | {number for number in journal.done() if number >= first}
+        numbers = {task.number for task in confirming} | {
+            number for number in journal.done() if number >= first
+        }
         self.flights = {self._trial: len(self._tasks) + len(numbers)}
         fly(confirming)
 
@@ -184,7 +213,9 @@ class FalsificationStudy(ChosenFlightsStudy):
         manifest: dict[str, object] = {"search": search}
         if least := nearest(flights):
             manifest |= {"worst_flight": least.flight_id, "worst_clearance_m": least.clearance}
-        return replace(found, lines=[*found.lines, *search_lines(search)], manifest=found.manifest | manifest)
+        return replace(
+            found, lines=[*found.lines, *search_lines(search)], manifest=found.manifest | manifest
+        )
 
 
 class _Timer:
@@ -204,10 +235,16 @@ class _Timer:
 
     def before(self, first: int, tasks: Sequence[Task]) -> None:
         """Take the tasks that are about to be flown, from number ``first`` on; none where no point can be flown."""
-        if self._began is None and (first > self._last or any(task.number not in self._done for task in tasks)):
+        if self._began is None and (
+            first > self._last or any(task.number not in self._done for task in tasks)
+        ):
             self._began = time.monotonic()
 
     @property
     def left(self) -> bool:
         """Return whether there is time left."""
-        return self._limit is None or self._began is None or time.monotonic() - self._began < self._limit
+        return (
+            self._limit is None
+            or self._began is None
+            or time.monotonic() - self._began < self._limit
+        )

@@ -12,7 +12,12 @@ from scenarios.errors import InputError
 from scenarios.experiment.random_sample import flights_per_sample, is_random_sample
 from scenarios.experiment.sampling import Points
 from scenarios.schema.scenario import Scenario
-from scenarios.statistics.estimates import COLUMNS, interval_confidence, pessimistic_share, study_statistics
+from scenarios.statistics.estimates import (
+    COLUMNS,
+    interval_confidence,
+    pessimistic_share,
+    study_statistics,
+)
 from scenarios.statistics.stopping import looks, tight_enough
 from scenarios.statistics.violations import count_violations
 from scenarios.studies.flight_study import FlightStudy
@@ -35,7 +40,14 @@ class MonteCarloStudy(FlightStudy):
     InputError : as of ``FlightStudy``; a study of several points that is to stop by itself, or flights that are no random sample
     """
 
-    def __init__(self, scenario: Scenario, name: str, trials: Mapping[str, Scenario], *, overrides: Sequence[str] = ()) -> None:
+    def __init__(
+        self,
+        scenario: Scenario,
+        name: str,
+        trials: Mapping[str, Scenario],
+        *,
+        overrides: Sequence[str] = (),
+    ) -> None:
         super().__init__(scenario, name, trials, overrides=overrides)
         self._scenario = scenario
         ((_, self._experiment),) = self.experiments.items()
@@ -49,7 +61,12 @@ class MonteCarloStudy(FlightStudy):
                 f"flights is {scenario.flights}, and nothing random differs between them: seeds, start and choices are given, so"
                 " some are copies, from which no probability follows; leave out flight_seed, or set study to 'flights'"
             )
-        self._points = Points(scenario.sampling, dimension=len(scenario.draws), flights=scenario.flights, seed=scenario.seed)
+        self._points = Points(
+            scenario.sampling,
+            dimension=len(scenario.draws),
+            flights=scenario.flights,
+            seed=scenario.seed,
+        )
         self._looks, self._stopped = 0, False
 
     def task(self, number: int) -> Task:
@@ -63,7 +80,11 @@ class MonteCarloStudy(FlightStudy):
         """
         first, study = 0, self.planned
         stops = self._scenario.statistics.stops
-        flown = max((number for number, _ in journal.numbered(SUMMARY, below=study)), default=-1) if stops else -1
+        flown = (
+            max((number for number, _ in journal.numbered(SUMMARY, below=study)), default=-1)
+            if stops
+            else -1
+        )
         for flights in looks(self.planned) if stops else [self.planned]:
             self._looks += 1
             fly(self.task(number) for number in range(first, flights))
@@ -110,10 +131,15 @@ class MonteCarloStudy(FlightStudy):
         """Return the line on keep-out violations with the bound of ``statistics.json``."""
         confidence = self._scenario.statistics.confidence
         found = count_violations(frame(journal.rows(SUMMARY), COLUMNS))
-        level, per_sample = interval_confidence(confidence, self._look_number), flights_per_sample(self._scenario)
+        level, per_sample = (
+            interval_confidence(confidence, self._look_number),
+            flights_per_sample(self._scenario),
+        )
         upper = pessimistic_share(found, level, per_sample=per_sample)["upper"]
         unknown, samples = found.events_at_most - found.events, found.flights // per_sample
-        return counts.violation_line(found.events, unknown, found.flights, upper, confidence, samples=samples)
+        return counts.violation_line(
+            found.events, unknown, found.flights, upper, confidence, samples=samples
+        )
 
     def summary(self, journal: Journal) -> StudySummary:
         """Return what the flights have come to, and whether the study stopped by itself."""

@@ -18,7 +18,12 @@ from scenarios.experiment.draws import has_speed_ratio, value_at, values_at
 from scenarios.schema.load import with_values
 from scenarios.schema.scenario import Scenario
 from scenarios.statistics.estimates import COLUMNS
-from scenarios.statistics.subset_estimates import RareProbability, input_shifts, near_event, rare_probability
+from scenarios.statistics.subset_estimates import (
+    RareProbability,
+    input_shifts,
+    near_event,
+    rare_probability,
+)
 from scenarios.statistics.subset_levels import Array, Simulation
 from scenarios.statistics.subset_simulation import Point, Simulating, SubsetSimulation
 from scenarios.statistics.subset_statistics import pessimistic_upper, subset_statistics
@@ -36,8 +41,17 @@ class SubsetStudy(ChosenFlightsStudy):
     Parameters as of any study; ``InputError`` as of ``FlightStudy``.
     """
 
-    def __init__(self, scenario: Scenario, name: str, trials: Mapping[str, Scenario], *, overrides: Sequence[str] = ()) -> None:
-        super().__init__(scenario, name, trials, numbers=scenario.subset.flights_max, overrides=overrides)
+    def __init__(
+        self,
+        scenario: Scenario,
+        name: str,
+        trials: Mapping[str, Scenario],
+        *,
+        overrides: Sequence[str] = (),
+    ) -> None:
+        super().__init__(
+            scenario, name, trials, numbers=scenario.subset.flights_max, overrides=overrides
+        )
         self._statistics = scenario.statistics
         self._simulations: list[Simulation] = []
 
@@ -47,7 +61,9 @@ class SubsetStudy(ChosenFlightsStudy):
         waiting = {repeat: next(simulating) for repeat, simulating in running.items()}
         ended: dict[int, Simulation] = {}
         while waiting:
-            values = self._clearances([point for points in waiting.values() for point in points], fly, journal)
+            values = self._clearances(
+                [point for points in waiting.values() for point in points], fly, journal
+            )
             ends = np.cumsum([len(points) for points in waiting.values()])
             parts = dict(zip(waiting, np.split(values, ends[:-1]), strict=True))
             waiting = {}
@@ -65,7 +81,8 @@ class SubsetStudy(ChosenFlightsStudy):
         settings = scenario.subset
         simulation = SubsetSimulation(
             dimension=len(scenario.draws),
-            noise=scenario.flight_seed is None and all(draw.key != "flight_seed" for draw in scenario.draws),
+            noise=scenario.flight_seed is None
+            and all(draw.key != "flight_seed" for draw in scenario.draws),
             flights=settings.flights_per_level,
             conditional_probability=settings.conditional_probability,
             levels_max=settings.levels_max,
@@ -73,7 +90,9 @@ class SubsetStudy(ChosenFlightsStudy):
             seeded=self._seeded,
         )
         seeds = np.random.SeedSequence(scenario.seed).spawn(settings.repeats)
-        return {repeat: simulation.run(np.random.default_rng(seed)) for repeat, seed in enumerate(seeds)}
+        return {
+            repeat: simulation.run(np.random.default_rng(seed)) for repeat, seed in enumerate(seeds)
+        }
 
     def _allowed(self, inputs: Array) -> bool:
         """Return whether the plain study would fly at these inputs, and not sample again.
@@ -82,7 +101,9 @@ class SubsetStudy(ChosenFlightsStudy):
         planned, the flight has no measurement and its end is unknown.
         """
         try:
-            return has_speed_ratio(with_values(self._scenario, values_at(self._scenario.draws, inputs.tolist())))
+            return has_speed_ratio(
+                with_values(self._scenario, values_at(self._scenario.draws, inputs.tolist()))
+            )
         except (InputError, InfeasibleError):
             return True
 
@@ -90,7 +111,11 @@ class SubsetStudy(ChosenFlightsStudy):
         """Return whether a flight depends on its seed: turbulence, and what exhaust and payload read, cannot be blended."""
         drawn = values_at(self._scenario.draws, inputs.tolist())
         shaken = drawn.get("turbulence.level", self._scenario.turbulence.level) != "none"
-        return shaken or bool(self._scenario.payload.instruments) or any(key.startswith("payload.") for key in drawn)
+        return (
+            shaken
+            or bool(self._scenario.payload.instruments)
+            or any(key.startswith("payload.") for key in drawn)
+        )
 
     def _clearances(self, points: Sequence[Point], fly: Fly, journal: Journal) -> Array:
         """Return how far from the keep-out area flights at these points stay at their closest [m]; infinite if not measured."""
@@ -107,14 +132,29 @@ class SubsetStudy(ChosenFlightsStudy):
         """Write ``statistics.json``."""
         progress("estimating", self.planned, self.planned)
         first = np.concatenate([simulation.levels[0].points for simulation in self._simulations])
-        near = np.concatenate([simulation.levels[-1].points[chosen] for simulation, chosen in near_event(self._simulations)])
+        near = np.concatenate(
+            [
+                simulation.levels[-1].points[chosen]
+                for simulation, chosen in near_event(self._simulations)
+            ]
+        )
         shifts = input_shifts(self._values(first), self._values(near), (first, near))
         rows = frame(journal.rows(SUMMARY), COLUMNS)
-        run.write_json(run.statistics, subset_statistics(rows, self._simulations, shifts, confidence=self._statistics.confidence))
+        run.write_json(
+            run.statistics,
+            subset_statistics(
+                rows, self._simulations, shifts, confidence=self._statistics.confidence
+            ),
+        )
 
     def _values(self, points: Array) -> pd.DataFrame:
         """Return the values of the random variables at points of the unit cube."""
-        return pd.DataFrame({draw.key: [value_at(draw, at) for at in points[:, i]] for i, draw in enumerate(self._scenario.draws)})
+        return pd.DataFrame(
+            {
+                draw.key: [value_at(draw, at) for at in points[:, i]]
+                for i, draw in enumerate(self._scenario.draws)
+            }
+        )
 
     def summary(self, journal: Journal) -> StudySummary:
         """Return what the flights have come to, and the probability if every simulation has ended."""
@@ -122,21 +162,33 @@ class SubsetStudy(ChosenFlightsStudy):
         if not self._simulations:
             return found
         probability = rare_probability(self._simulations, self._statistics.confidence)
-        return replace(found, lines=[*found.lines, *self._first_lines(journal, probability), self._line(probability)])
+        return replace(
+            found,
+            lines=[*found.lines, *self._first_lines(journal, probability), self._line(probability)],
+        )
 
     def _first_lines(self, journal: Journal, found: RareProbability) -> list[str]:
         """Return what of the first levels, which are a plain sample, was sampled again, and what is not known to its end."""
         first = [simulation.levels[0] for simulation in self._simulations]
-        flights, outside = sum(len(level.values) for level in first), sum(level.counts.outside for level in first)
+        flights, outside = (
+            sum(len(level.values) for level in first),
+            sum(level.counts.outside for level in first),
+        )
         lines = []
         if outside:
-            lines.append(f"{outside} of {flights + outside} points of the first levels were beyond speed_ratio and sampled again")
+            lines.append(
+                f"{outside} of {flights + outside} points of the first levels were beyond speed_ratio and sampled again"
+            )
         plain = count_violations(frame(journal.rows(SUMMARY, below=flights), COLUMNS))
         alone = upper_bound(plain.events_at_most, plain.flights, self._statistics.confidence)
         if alone < found.upper:
-            lines.append(f"the first levels alone, a plain sample of {flights} flights, bound the probability below by {alone:.2g}")
+            lines.append(
+                f"the first levels alone, a plain sample of {flights} flights, bound the probability below by {alone:.2g}"
+            )
         if unknown := plain.events_at_most - plain.events:
-            upper = pessimistic_upper(self._simulations, found, unknown, flights, self._statistics.confidence)
+            upper = pessimistic_upper(
+                self._simulations, found, unknown, flights, self._statistics.confidence
+            )
             lines.append(
                 f"of {flights} flights of the first levels {unknown} {'is' if unknown == 1 else 'are'} of unknown end; if each"
                 f" were a violation, the probability below would be at most {upper:.2g}"
@@ -144,13 +196,20 @@ class SubsetStudy(ChosenFlightsStudy):
         return lines
 
     def _line(self, found: RareProbability) -> str:
-        sure, repeats = f"{100.0 * self._statistics.confidence:g} % confidence", len(self._simulations)
+        sure, repeats = (
+            f"{100.0 * self._statistics.confidence:g} % confidence",
+            len(self._simulations),
+        )
         if not found.reached:
             return (
                 f"none of {repeats} subset simulations reached a keep-out violation: its probability in a flight is at most"
                 f" {found.upper:.2g} with {sure}, if chains find the way to it"
             )
-        some = "" if found.reached == repeats else f"; {repeats - found.reached} of {repeats} simulations reached none"
+        some = (
+            ""
+            if found.reached == repeats
+            else f"; {repeats - found.reached} of {repeats} simulations reached none"
+        )
         return (
             f"probability of a keep-out violation in a flight: {found.estimate:.2g}, {found.low:.2g} to {found.high:.2g} and at"
             f" most {found.upper:.2g} with {sure}, by {repeats} subset simulations{some}"

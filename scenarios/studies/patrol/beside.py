@@ -21,7 +21,10 @@ _TAKEN = (
 def start_beside(ship: Mover, course: float, last: Leg, air: Air) -> dict[str, object]:
     """Return where a flight beside a ship on a course [rad] begins, as keys of its scenario: at the end of the way to her."""
     place = (last.end - ship.at(last.ends)) * complex(math.cos(course), -math.sin(course))
-    return {"start.place_m": (place.real, place.imag), "start.course_deg": math.degrees(last.course(air))}
+    return {
+        "start.place_m": (place.real, place.imag),
+        "start.course_deg": math.degrees(last.course(air)),
+    }
 
 
 def taken(row: Row) -> Row:

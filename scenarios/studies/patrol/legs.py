@@ -75,7 +75,9 @@ class Leg:
     @property
     def velocity(self) -> complex:
         """Return the velocity over the ground [m/s]; 0 of a leg without a length."""
-        return (self.end - self.start) / (self.ends - self.begins) if self.ends > self.begins else 0j
+        return (
+            (self.end - self.start) / (self.ends - self.begins) if self.ends > self.begins else 0j
+        )
 
     def course(self, air: Air) -> float:
         """Return the course through the air [rad]."""
@@ -84,7 +86,11 @@ class Leg:
 
     def distance(self, other: Mover) -> float:
         """Return the least distance to a ship on the way [m]."""
-        return least_distance(self.start - other.at(self.begins), self.velocity - other.velocity, self.ends - self.begins)
+        return least_distance(
+            self.start - other.at(self.begins),
+            self.velocity - other.velocity,
+            self.ends - self.begins,
+        )
 
 
 def least_distance(apart: complex, velocity: complex, duration: float) -> float:
@@ -130,11 +136,21 @@ def straight_leg(start: complex, time: float, goal: Mover, radius: float, air: A
 
 def keeps_clear(leg: Leg, ships: Iterable[Mover], distance: float) -> bool:
     """Return whether a leg stays at a distance from ships [m], or, of one that it begins nearer to, comes no nearer than that."""
-    return all(leg.distance(ship) >= min(distance, abs(leg.start - ship.at(leg.begins))) - _TOUCHES for ship in ships)
+    return all(
+        leg.distance(ship) >= min(distance, abs(leg.start - ship.at(leg.begins))) - _TOUCHES
+        for ship in ships
+    )
 
 
 def route(
-    start: complex, time: float, goal: Mover, radius: float, *, air: Air, ships: Sequence[Mover], clearance: float
+    start: complex,
+    time: float,
+    goal: Mover,
+    radius: float,
+    *,
+    air: Air,
+    ships: Sequence[Mover],
+    clearance: float,
 ) -> Sequence[Leg] | None:
     """Return the way to within a radius of a goal that keeps clear of ships: straight, or by corners round them.
 
@@ -178,7 +194,10 @@ def route(
 def _corners(ship: Mover, distance: float) -> list[Mover]:
     size = _ROOM * distance / math.cos(math.pi / _CORNERS)
     angles = [2.0 * math.pi * i / _CORNERS for i in range(_CORNERS)]
-    return [Mover(ship.place + size * complex(math.cos(angle), math.sin(angle)), ship.velocity) for angle in angles]
+    return [
+        Mover(ship.place + size * complex(math.cos(angle), math.sin(angle)), ship.velocity)
+        for angle in angles
+    ]
 
 
 def nearest_on(time: Array, track: npt.NDArray[np.complex128], ship: Mover) -> float:

@@ -68,7 +68,12 @@ class Prospect:
         if leg is None:
             return _State(state.place, math.inf, state.served + 1, state.verdicts)
         ends, served = leg.ends + self.service[ship], state.served + 1
-        return _State(self.ships[ship].at(ends), ends, served, state.verdicts + self.chance[ship] * self._in_time(ends, served))
+        return _State(
+            self.ships[ship].at(ends),
+            ends,
+            served,
+            state.verdicts + self.chance[ship] * self._in_time(ends, served),
+        )
 
     def _in_time(self, ends: float, served: int) -> float:
         """Return the probability that a number of services, expected to end at a time [s], do so within the endurance."""
@@ -93,7 +98,9 @@ class Prospect:
 
 def best_order(prospect: Prospect, start: complex, time: float, ships: Sequence[int]) -> Order:
     """Return the best of all orders from a place at a time [m, s]; of many ships a good one, by insertion."""
-    return (exact_order if len(ships) <= EXACT_MAX else inserted_order)(prospect, start, time, ships)
+    return (exact_order if len(ships) <= EXACT_MAX else inserted_order)(
+        prospect, start, time, ships
+    )
 
 
 def inserted_order(prospect: Prospect, start: complex, time: float, ships: Sequence[int]) -> Order:
@@ -107,7 +114,9 @@ def inserted_order(prospect: Prospect, start: complex, time: float, ships: Seque
     for first in ships:
         found = prospect.judged(start, time, (first,))
         while True:
-            filled = _improved(prospect, start, time, _filled(prospect, start, time, found, ships), ships)
+            filled = _improved(
+                prospect, start, time, _filled(prospect, start, time, found, ships), ships
+            )
             if filled == found:
                 break
             found = filled
@@ -148,19 +157,27 @@ def _better(prospect: Prospect, one: Order, other: Order) -> Order:
     return other if prospect.score_of(other) > prospect.score_of(one) + 1e-12 else one
 
 
-def _filled(prospect: Prospect, start: complex, time: float, best: Order, ships: Sequence[int]) -> Order:
+def _filled(
+    prospect: Prospect, start: complex, time: float, best: Order, ships: Sequence[int]
+) -> Order:
     while True:
         tried = best
         for ship in ships:
             if ship not in best.ships:
                 for i in range(len(best.ships) + 1):
-                    tried = _better(prospect, tried, prospect.judged(start, time, (*best.ships[:i], ship, *best.ships[i:])))
+                    tried = _better(
+                        prospect,
+                        tried,
+                        prospect.judged(start, time, (*best.ships[:i], ship, *best.ships[i:])),
+                    )
         if tried.verdicts < best.verdicts + _GAIN:
             return best
         best = tried
 
 
-def _improved(prospect: Prospect, start: complex, time: float, order: Order, ships: Sequence[int]) -> Order:
+def _improved(
+    prospect: Prospect, start: complex, time: float, order: Order, ships: Sequence[int]
+) -> Order:
     while True:
         best = order
         for neighbour in _neighbours(order.ships, ships):

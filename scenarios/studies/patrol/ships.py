@@ -87,15 +87,28 @@ def sampled_patrol(study: str, scenario: Scenario, number: int) -> Patrol:
     by_ship = tuple(draw for draw in scenario.draws if not draw.key.startswith(_WIND))
     # The speed ratio is a ship's: any wind will do.
     air = sampled_flight(
-        study, scenario.model_copy(update={"draws": by_wind, "speed_ratio": Scenario.model_fields["speed_ratio"].default}), number
+        study,
+        scenario.model_copy(
+            update={"draws": by_wind, "speed_ratio": Scenario.model_fields["speed_ratio"].default}
+        ),
+        number,
     )
     name = f"{study}_{number:05d}"
     sampled = [
-        sampled_flight(name, air.scenario.model_copy(update={"draws": by_ship, "speed_ratio": scenario.speed_ratio}), i)
+        sampled_flight(
+            name,
+            air.scenario.model_copy(update={"draws": by_ship, "speed_ratio": scenario.speed_ratio}),
+            i,
+        )
         for i in range(scenario.patrol.ships)
     ]
-    generator = np.random.default_rng(np.random.SeedSequence([scenario.seed, zlib.crc32(b"places"), number]))
-    flown = [sample.scenario.model_copy(update={"draws": (), "flights": 1, "flight_seed": sample.seed}) for sample in sampled]
+    generator = np.random.default_rng(
+        np.random.SeedSequence([scenario.seed, zlib.crc32(b"places"), number])
+    )
+    flown = [
+        sample.scenario.model_copy(update={"draws": (), "flights": 1, "flight_seed": sample.seed})
+        for sample in sampled
+    ]
     movers = _placed([_velocity(of) for of in flown], scenario, generator)
     return Patrol(
         name=name,
@@ -117,14 +130,19 @@ def _wind(scenario: Scenario) -> complex:
     return complex(*wind_of(scenario, given_place(scenario.place, altitude)).now(0.0, altitude))
 
 
-def _placed(velocities: Sequence[complex], scenario: Scenario, generator: np.random.Generator) -> list[Mover]:
+def _placed(
+    velocities: Sequence[complex], scenario: Scenario, generator: np.random.Generator
+) -> list[Mover]:
     """Return ships at random places that stay apart from each other."""
     p = scenario.patrol
     placed: list[Mover] = []
     for velocity in velocities:
         for _ in range(_TRIES):
             place = complex(*generator.uniform(-0.5 * p.area_m, 0.5 * p.area_m, size=2))
-            apart = (least_distance(place - ship.place, velocity - ship.velocity, p.endurance_s) for ship in placed)
+            apart = (
+                least_distance(place - ship.place, velocity - ship.velocity, p.endurance_s)
+                for ship in placed
+            )
             if min((abs(place), *apart)) >= p.separation_m:
                 placed.append(Mover(place, velocity))
                 break

@@ -42,7 +42,14 @@ class PatrolStudy(FlightStudy):
     what = "patrols"
     chooses_flights = True
 
-    def __init__(self, scenario: Scenario, name: str, trials: Mapping[str, Scenario], *, overrides: Sequence[str] = ()) -> None:
+    def __init__(
+        self,
+        scenario: Scenario,
+        name: str,
+        trials: Mapping[str, Scenario],
+        *,
+        overrides: Sequence[str] = (),
+    ) -> None:
         _check(scenario)
         super().__init__(scenario, name, trials, overrides=overrides)
         ((_, self._patrols),) = self.trials.items()
@@ -65,7 +72,10 @@ class PatrolStudy(FlightStudy):
         """Return the result so far."""
         rows, config = list(journal.rows(SUMMARY)), self._patrols.patrol
         counts = PatrolCounts.of(
-            rows, planned=self.planned, oracle_share_min=config.oracle_share_min, wrong_share_max=config.wrong_share_max
+            rows,
+            planned=self.planned,
+            oracle_share_min=config.oracle_share_min,
+            wrong_share_max=config.wrong_share_max,
         )
         share = f"{100.0 * counts.correct / counts.oracle:.0f} %" if counts.oracle else "–"
         enough, right = ("meet" if of else "fail" for of in (counts.enough, counts.right))
@@ -90,7 +100,9 @@ class PatrolStudy(FlightStudy):
             "patrols_met": counts.through, "ships_served": counts.served, "verdicts": counts.verdicts,
             "verdicts_wrong": counts.wrong, "oracle_verdicts": counts.oracle,
         }  # fmt: skip
-        return StudySummary(done=counts.done, met=counts.met, lines=lines, manifest=manifest | self._sizes())
+        return StudySummary(
+            done=counts.done, met=counts.met, lines=lines, manifest=manifest | self._sizes()
+        )
 
 
 def _given(scenario: Scenario, key: str) -> bool:
@@ -110,7 +122,10 @@ def _check(scenario: Scenario) -> None:
             f"flight.until is '{scenario.flight.until}' and payload.instruments {list(scenario.payload.instruments)}; a patrol goes"
             " on after a verdict: set flight.until to 'verdict', and put 'sniffer' into payload.instruments"
         )
-    placed = sorted({draw.key for draw in scenario.draws} & set(_PLACES) | {key for key in _PLACES if _given(scenario, key)})
+    placed = sorted(
+        {draw.key for draw in scenario.draws} & set(_PLACES)
+        | {key for key in _PLACES if _given(scenario, key)}
+    )
     if placed:
         raise InputError(
             f"study is 'patrol' beside {' and '.join(placed)}; a flight beside a ship begins where the way to her ends,"

@@ -37,7 +37,13 @@ PHASE_COLUMNS = (
 )  # fmt: skip
 """Of ``phases.csv``: a row per stretch of a patrol, in its order."""
 
-TRANSIT, APPROACH, SEARCHING, MEASURING, LEAVING = "transit", "approach", "searching", "measuring", "leaving"
+TRANSIT, APPROACH, SEARCHING, MEASURING, LEAVING = (
+    "transit",
+    "approach",
+    "searching",
+    "measuring",
+    "leaving",
+)
 """Phases: the way to a ship; beside her to the orbit; until the plume is found; until there is a verdict; and away."""
 
 
@@ -75,17 +81,26 @@ def verdict_of(row: Row) -> str:
 def wind_row(patrol: Patrol) -> Row:
     """Return the wind of a patrol, as it is given: one for all of its ships."""
     wind = patrol.ships[0].scenario.wind
-    return {"wind_speed_mps": wind.speed_mps, "wind_from_deg": wind.from_deg % 360.0 if wind.speed_mps else 0.0}
+    return {
+        "wind_speed_mps": wind.speed_mps,
+        "wind_from_deg": wind.from_deg % 360.0 if wind.speed_mps else 0.0,
+    }
 
 
 def phase_row(named: Row, phase: str, leg: Leg) -> Row:
     """Return the row of a stretch of a patrol; ``named`` has its flight, patrol and ship."""
     places = zip(("from", "to"), (leg.start, leg.end), strict=True)
-    ends = {f"{end}_{axis}_m": value for end, at in places for axis, value in (("north", at.real), ("east", at.imag))}
+    ends = {
+        f"{end}_{axis}_m": value
+        for end, at in places
+        for axis, value in (("north", at.real), ("east", at.imag))
+    }
     return named | {"phase": phase, "begins_s": leg.begins, "ends_s": leg.ends} | ends
 
 
-def patrol_figures(ships: Sequence[Row], stretches: Sequence[Row], *, endurance: float, keepout_radius: float) -> Row:
+def patrol_figures(
+    ships: Sequence[Row], stretches: Sequence[Row], *, endurance: float, keepout_radius: float
+) -> Row:
     """Return the figures of a patrol.
 
     Parameters
@@ -103,7 +118,9 @@ def patrol_figures(ships: Sequence[Row], stretches: Sequence[Row], *, endurance:
     others = min(passed, default=math.inf)
     lost = any(row["outcome"] in LOST for row in served)
     # On each way to a ship and beside her, that of other ships counts once.
-    violations = sum(int(row.get("keepout_violations", 0)) for row in served) + sum(int(near < keepout_radius) for near in passed)
+    violations = sum(int(row.get("keepout_violations", 0)) for row in served) + sum(
+        int(near < keepout_radius) for near in passed
+    )
     kept_out = all(row.get("kept_out", False) for row in served) and others >= keepout_radius
     figures: dict[str, Any] = {
         "ships": len(ships),
@@ -127,7 +144,9 @@ def patrol_figures(ships: Sequence[Row], stretches: Sequence[Row], *, endurance:
     near = [row["min_distance_m"] for row in served if "min_distance_m" in row]
     figures |= {"min_distance_m": min(near)} if near else {}
     figures |= {"others_distance_min_m": others} if math.isfinite(others) else {}
-    return figures | ({"served_per_hour": SECONDS_PER_HOUR * len(served) / duration} if duration else {})
+    return figures | (
+        {"served_per_hour": SECONDS_PER_HOUR * len(served) / duration} if duration else {}
+    )
 
 
 def _message(served: Sequence[Row], others: float, keepout_radius: float) -> str:
@@ -150,5 +169,9 @@ def _ended(row: Row) -> str:
     """Return how the flight beside a ship ended: its outcome, its violations and its message."""
     inside = int(row.get("keepout_violations", 0))
     violations = f"{inside} keep-out violation{'s' * (inside > 1)}" if inside else ""
-    ended = "" if inside and row["outcome"] == Outcome.COMPLETED.value else str(row["outcome"]).replace("_", " ")
+    ended = (
+        ""
+        if inside and row["outcome"] == Outcome.COMPLETED.value
+        else str(row["outcome"]).replace("_", " ")
+    )
     return ": ".join(words for words in (ended, violations, str(row.get("message") or "")) if words)

@@ -75,11 +75,15 @@ class PatrolWork(FlightWork):
         try:
             patrol = sampled_patrol(experiment.name, experiment.scenario, task.number)
             row |= {"seed": patrol.seed} | wind_row(patrol)
-            ships = [ship_row(patrol, i, limit_percent(self._scenario)) for i in range(len(patrol.ships))]
+            ships = [
+                ship_row(patrol, i, limit_percent(self._scenario)) for i in range(len(patrol.ships))
+            ]
             stretches = self._patrolled(patrol, ships).stretches
             row |= self._oracle(patrol, ships)
             radius = self._scenario.keepout.radius_m
-            row |= patrol_figures(ships, stretches, endurance=self._endurance, keepout_radius=radius)
+            row |= patrol_figures(
+                ships, stretches, endurance=self._endurance, keepout_radius=radius
+            )
         except Exception as error:  # noqa: BLE001 - a patrol that fails is a row with its reason, and the study goes on
             row |= failure(error)
         row["wall_time_s"] = time.perf_counter() - began
@@ -87,7 +91,11 @@ class PatrolWork(FlightWork):
 
     def lost(self, task: Task, reason: str) -> Result:
         """Return the result of a patrol whose process was lost."""
-        row = {"flight_id": self.experiments[0].named(task.number)[0], "outcome": Outcome.FAILED.value, "message": reason}
+        row = {
+            "flight_id": self.experiments[0].named(task.number)[0],
+            "outcome": Outcome.FAILED.value,
+            "message": reason,
+        }
         return Result(task=task, tables={SUMMARY: [row | {"criteria_met": False}]}, lost=True)
 
     @property
@@ -103,7 +111,14 @@ class PatrolWork(FlightWork):
         """Distance from a ship at which the way to her ends [m]."""
         return self._scenario.start.distance_m[1]
 
-    def _prospect(self, patrol: Patrol, service: Sequence[float], chance: Sequence[float], *, deviation: float = 0.0) -> Prospect:
+    def _prospect(
+        self,
+        patrol: Patrol,
+        service: Sequence[float],
+        chance: Sequence[float],
+        *,
+        deviation: float = 0.0,
+    ) -> Prospect:
         """Return what is expected of serving the ships, given how long each takes, and how likely a verdict is."""
         return Prospect(
             ships=patrol.movers,
@@ -120,7 +135,9 @@ class PatrolWork(FlightWork):
         config = self._scenario.patrol
         uav, left = _Uav(), list(range(len(ships)))
         count = len(ships)
-        prospect = self._prospect(patrol, [config.service_s] * count, [1.0] * count, deviation=config.service_deviation_s)
+        prospect = self._prospect(
+            patrol, [config.service_s] * count, [1.0] * count, deviation=config.service_deviation_s
+        )
         clearance = self._scenario.keepout.radius_m + config.clearance_m
         while left and not uav.lost:
             order = best_order(prospect, uav.place, uav.time, left).ships
@@ -129,33 +146,60 @@ class PatrolWork(FlightWork):
             ship = order[0]
             left.remove(ship)
             goal = patrol.movers[ship]
-            legs = route(uav.place, uav.time, goal, self._reach, air=patrol.air, ships=patrol.movers, clearance=clearance)
+            legs = route(
+                uav.place,
+                uav.time,
+                goal,
+                self._reach,
+                air=patrol.air,
+                ships=patrol.movers,
+                clearance=clearance,
+            )
             if not legs or legs[-1].ends + _SHORTEST > self._endurance:
                 continue
             self._serve(patrol, ship, legs, uav, ships)
         return uav
 
-    def _serve(self, patrol: Patrol, ship: int, legs: Sequence[Leg], uav: _Uav, ships: list[Row]) -> None:
+    def _serve(
+        self, patrol: Patrol, ship: int, legs: Sequence[Leg], uav: _Uav, ships: list[Row]
+    ) -> None:
         """Go to a ship, and fly beside her; her row is completed."""
         row, target = ships[ship], patrol.movers[ship]
         named = {name: row[name] for name in ("flight_id", "patrol", "ship")}
         others = [mover for mover in patrol.movers if mover is not target]
-        row |= {"position": sum("position" in other for other in ships), "leaves_s": uav.time, "reached_s": legs[-1].ends}
+        row |= {
+            "position": sum("position" in other for other in ships),
+            "leaves_s": uav.time,
+            "reached_s": legs[-1].ends,
+        }
         for leg in legs:
             uav.go(leg, named, TRANSIT)
         near = [leg.distance(other) for leg in legs for other in others]
         start = start_beside(target, patrol.ships[ship].course, legs[-1], patrol.air)
         duration = min(self._scenario.patrol.patience_s, self._endurance - uav.time)
-        flown = self._flown(patrol, ship, row["flight_id"], start | {"flight.duration_max_s": duration})
+        flown = self._flown(
+            patrol, ship, row["flight_id"], start | {"flight.duration_max_s": duration}
+        )
         row |= taken(flown.row)
         row["correct"] = row["verdict"] == row["truth"]
         if flown.history is not None:
-            time, north, east = (flown.history[name].to_numpy(np.float64) for name in ("time_s", "north_m", "east_m"))
+            time, north, east = (
+                flown.history[name].to_numpy(np.float64) for name in ("time_s", "north_m", "east_m")
+            )
             time, origin = time + uav.time, target.at(uav.time)
             track = north + origin.real + 1j * (east + origin.imag)
             near += [nearest_on(time, track, other) for other in others]
             for phase, first, last in phases(flown.row, flown.history):
-                uav.go(Leg(float(time[first]), float(time[last]), complex(track[first]), complex(track[last])), named, phase)
+                uav.go(
+                    Leg(
+                        float(time[first]),
+                        float(time[last]),
+                        complex(track[first]),
+                        complex(track[last]),
+                    ),
+                    named,
+                    phase,
+                )
         row["ended_s"] = uav.time
         if near:
             row["others_distance_min_m"] = min(near)
@@ -173,13 +217,19 @@ class PatrolWork(FlightWork):
         )
         result = work.fly(Task(number=0))
         (row,) = result.tables[SUMMARY]
-        histories = [content for file, content in result.files.items() if file.endswith(HISTORY_SUFFIX)]
+        histories = [
+            content for file, content in result.files.items() if file.endswith(HISTORY_SUFFIX)
+        ]
         return _Flown(row, pd.read_parquet(io.BytesIO(histories[0])) if histories else None)
 
     def _oracle(self, patrol: Patrol, ships: list[Row]) -> Row:
         """Complete the ships' rows by the oracle's order: it knows how long each ship takes, with and without the true axis."""
         service, chance = [], []
-        told = {"following.plume": "told", "flight.duration_max_s": self._scenario.patrol.patience_s, "start.range_m": self._reach}
+        told = {
+            "following.plume": "told",
+            "flight.duration_max_s": self._scenario.patrol.patience_s,
+            "start.range_m": self._reach,
+        }
         for ship, row in enumerate(ships):
             flown = self._flown(patrol, ship, f"{row['flight_id']}_told", told).row
             verdict = verdict_of(flown)
@@ -191,9 +241,14 @@ class PatrolWork(FlightWork):
             chance.append(float(bool(known)))
         prospect = self._prospect(patrol, service, chance)
         best = best_order(prospect, 0j, 0.0, [ship for ship, worth in enumerate(chance) if worth])
-        for position, (ship, ends) in enumerate(zip(best.ships, ends_of(prospect, 0j, 0.0, best.ships), strict=True)):
+        for position, (ship, ends) in enumerate(
+            zip(best.ships, ends_of(prospect, 0j, 0.0, best.ships), strict=True)
+        ):
             ships[ship] |= {"oracle_position": position, "oracle_ended_s": ends}
-        return {"oracle_verdicts": round(best.verdicts), "told_verdicts": sum(row["told_verdict"] == row["truth"] for row in ships)}
+        return {
+            "oracle_verdicts": round(best.verdicts),
+            "told_verdicts": sum(row["told_verdict"] == row["truth"] for row in ships),
+        }
 
 
 def limit_percent(scenario: Scenario) -> float:

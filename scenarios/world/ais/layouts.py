@@ -56,8 +56,16 @@ LAYOUTS = (
         _danish_time,
         "01/06/2026 10:00:00",
     ),
-    Layout("Marine Cadastre up to 2024", ("basedatetime", "mmsi", "lat", "lon", "sog", "cog"), seconds_of),
-    Layout("Marine Cadastre from 2025", ("base_date_time", "mmsi", "latitude", "longitude", "sog", "cog"), seconds_of),
+    Layout(
+        "Marine Cadastre up to 2024",
+        ("basedatetime", "mmsi", "lat", "lon", "sog", "cog"),
+        seconds_of,
+    ),
+    Layout(
+        "Marine Cadastre from 2025",
+        ("base_date_time", "mmsi", "latitude", "longitude", "sog", "cog"),
+        seconds_of,
+    ),
 )
 """The project's own; that of the Danish Maritime Authority ("# Timestamp,Type of mobile,MMSI,..."); and those of NOAA's Marine
 Cadastre ("MMSI,BaseDateTime,LAT,LON,...", and "mmsi,base_date_time,longitude,latitude,...")."""
@@ -82,14 +90,18 @@ def rows_of(path: Path, mmsi: int | None) -> tuple[int, list[AisRow]]:
                 file.seek(0)
                 lines = list(islice((line for line in file if line.strip()), 2))
                 if len(lines) == 1 and "!AI" not in lines[0]:
-                    raise InputError(f"{path}: it has a header, and no rows below it; give a file of AIS reports")
+                    raise InputError(
+                        f"{path}: it has a header, and no rows below it; give a file of AIS reports"
+                    )
                 file.seek(0)
                 raise _no_row(path, mmsi, islice(_all_rows(path, file, None), _COUNTED))
             return found
     except OSError as error:
         raise InputError(f"{path}: cannot be read: {error.strerror}; check the path") from None
     except (UnicodeDecodeError, csv.Error) as error:
-        raise InputError(f"{path}: not a table or NMEA sentences as text ({error}); unpack it, or save it in UTF-8") from None
+        raise InputError(
+            f"{path}: not a table or NMEA sentences as text ({error}); unpack it, or save it in UTF-8"
+        ) from None
 
 
 def _all_rows(path: Path, file: TextIO, mmsi: int | None) -> Iterator[tuple[int, AisRow]]:
@@ -102,7 +114,9 @@ def _all_rows(path: Path, file: TextIO, mmsi: int | None) -> Iterator[tuple[int,
     return _table_rows(path, above + 1, head, file, mmsi)
 
 
-def _table_rows(path: Path, first: int, head: str, file: TextIO, mmsi: int | None) -> Iterator[tuple[int, AisRow]]:
+def _table_rows(
+    path: Path, first: int, head: str, file: TextIO, mmsi: int | None
+) -> Iterator[tuple[int, AisRow]]:
     """Return the rows below a header, which stands in line ``first``."""
     heads = [name.strip().removeprefix("#").strip().lower() for name in next(csv.reader([head]))]
     layout = next((layout for layout in LAYOUTS if set(layout.columns) <= set(heads)), None)
@@ -116,11 +130,15 @@ def _table_rows(path: Path, first: int, head: str, file: TextIO, mmsi: int | Non
             f" of Marine Cadastre, and {','.join(plain)}: {remedy}"
         )
     if twice := [column for column in layout.columns if heads.count(column) > 1]:
-        raise InputError(f"{path}, line {first}: the header has '{twice[0]}' twice; leave one of the columns out")
+        raise InputError(
+            f"{path}, line {first}: the header has '{twice[0]}' twice; leave one of the columns out"
+        )
     places = [heads.index(column) for column in layout.columns]
     identifier = "" if mmsi is None else str(mmsi)
     # Files of a day have millions of lines: those of other vessels are passed over as they are.
-    lines = ((number, line) for number, line in enumerate(file, start=first + 1) if identifier in line)
+    lines = (
+        (number, line) for number, line in enumerate(file, start=first + 1) if identifier in line
+    )
     for number, line in lines:
         cells = next(csv.reader([line]), [])
         if words := decimal_commas(cells, heads, places[2:]):
@@ -141,7 +159,9 @@ def _table_rows(path: Path, first: int, head: str, file: TextIO, mmsi: int | Non
         yield int(identity), AisRow(number, seconds, *map(number_of, others))
 
 
-def _of_one(path: Path, mmsi: int | None, rows: Iterable[tuple[int, AisRow]]) -> tuple[int, list[AisRow]] | None:
+def _of_one(
+    path: Path, mmsi: int | None, rows: Iterable[tuple[int, AisRow]]
+) -> tuple[int, list[AisRow]] | None:
     """Return the rows of the given vessel, or of the only one; an empty list if there are none."""
     found: list[AisRow] = []
     counts: Counter[int] = Counter()
@@ -150,7 +170,9 @@ def _of_one(path: Path, mmsi: int | None, rows: Iterable[tuple[int, AisRow]]) ->
         if mmsi is None or identity == mmsi:
             found.append(row)
     if mmsi is None and len(counts) > 1:
-        raise InputError(f"{path}: it has {len(counts)} vessels, {_most(counts)}; name one of them by its MMSI (vessel.mmsi)")
+        raise InputError(
+            f"{path}: it has {len(counts)} vessels, {_most(counts)}; name one of them by its MMSI (vessel.mmsi)"
+        )
     if not found:
         return None
     return mmsi if mmsi is not None else next(iter(counts)), found
@@ -163,9 +185,14 @@ def _no_row(path: Path, mmsi: int | None, rows: Iterable[tuple[int, AisRow]]) ->
         return InputError(
             f"{path}: no row has an MMSI in digits, as 219999001, in the column of its name; give a file of AIS reports"
         )
-    return InputError(f"{path}: no row of MMSI {mmsi}; it has {_most(counts)}: check the number (vessel.mmsi)")
+    return InputError(
+        f"{path}: no row of MMSI {mmsi}; it has {_most(counts)}: check the number (vessel.mmsi)"
+    )
 
 
 def _most(counts: Counter[int]) -> str:
-    named = ", ".join(f"{identity} ({rows} row{'s' * (rows > 1)})" for identity, rows in counts.most_common(_NAMED))
+    named = ", ".join(
+        f"{identity} ({rows} row{'s' * (rows > 1)})"
+        for identity, rows in counts.most_common(_NAMED)
+    )
     return f"{named}, ..." if len(counts) > _NAMED else named

@@ -42,7 +42,9 @@ def danish_file() -> str:
     rows = [
         f"{datetime.fromtimestamp(time, UTC):%d/%m/%Y %H:%M:%S},Class A,{MADE['made_danish.csv']},{latitude:.6f},{longitude:.6f},"
         f"Under way using engine,,{speed:.1f},{course:.1f},,Unknown,,MADE SHIP,Cargo,,,,GPS,,,,AIS,,,,"
-        for time, latitude, longitude, speed, course in _reports(ship, times, place=(57.2, 11.3), seed=1)
+        for time, latitude, longitude, speed, course in _reports(
+            ship, times, place=(57.2, 11.3), seed=1
+        )
     ]
     # What real files have as well: a row twice, one out of order, values that say "not available", and another vessel.
     rows.insert(120, rows[119])
@@ -61,7 +63,9 @@ def marine_cadastre_file() -> str:
     rows = [
         f"{MADE['made_marine_cadastre.csv']},{datetime.fromtimestamp(time, UTC):%Y-%m-%d %H:%M:%S},{longitude:.5f},{latitude:.5f},"
         f"{speed:.1f},{course:.1f},511,MADE SHIP,,,70,0,,,,70,A"
-        for time, latitude, longitude, speed, course in _reports(ship, times, place=(44.6, -124.6), seed=2)
+        for time, latitude, longitude, speed, course in _reports(
+            ship, times, place=(44.6, -124.6), seed=2
+        )
     ]
     return "\n".join([_MARINE_CADASTRE, *rows]) + "\n"
 
@@ -73,7 +77,11 @@ def _ship(*, speed_kn: float, course_deg: float, turn_deg: float) -> Manoeuvring
             "course_deg": course_deg,
             "manoeuvres": [
                 {"at_s": 1200.0, "turn_deg": turn_deg, "turn_rate_deg_s": 0.5},
-                {"at_s": 2400.0, "speed_mps": 7.0 * METRES_PER_SECOND_PER_KNOT, "acceleration_mps2": 0.03},
+                {
+                    "at_s": 2400.0,
+                    "speed_mps": 7.0 * METRES_PER_SECOND_PER_KNOT,
+                    "acceleration_mps2": 0.03,
+                },
             ],
         }
     )
@@ -84,7 +92,9 @@ def _report_times(ship: ManoeuvringVessel, *, slow: float, fast: float, lost: fl
     generator = np.random.default_rng(11)
     times, time = [0.0], 0.0
     while time < _DURATION - slow:
-        turning = abs(ship.course(time + 5.0) - ship.course(max(0.0, time - 5.0))) > math.radians(1.0)
+        turning = abs(ship.course(time + 5.0) - ship.course(max(0.0, time - 5.0))) > math.radians(
+            1.0
+        )
         time += (fast if turning else slow) + float(generator.uniform(-0.5, 0.5))
         if generator.random() >= lost:
             times.append(time)
@@ -101,15 +111,27 @@ def _reports(
     reports = []
     for time in times:
         kept = math.exp(-(time - before) / _WANDERING_TIME)
-        wandering = kept * wandering + _WANDERING * math.sqrt(1.0 - kept**2) * generator.standard_normal(2)
+        wandering = kept * wandering + _WANDERING * math.sqrt(
+            1.0 - kept**2
+        ) * generator.standard_normal(2)
         north, east, v_north, v_east = ship.motion(time)
         off_north, off_east = wandering + _WHITE * generator.standard_normal(2)
-        latitude, longitude = (float(angle) for angle in frame.to_geodetic(north + off_north, east + off_east))
+        latitude, longitude = (
+            float(angle) for angle in frame.to_geodetic(north + off_north, east + off_east)
+        )
         v_north, v_east = (float(v + 0.05 * generator.standard_normal()) for v in (v_north, v_east))
         course = math.atan2(v_east, v_north) - float(frame.true_north(latitude, longitude))
         speed = math.hypot(v_north, v_east) / METRES_PER_SECOND_PER_KNOT
         reported = round(math.degrees(course) % 360.0, 1) % 360.0
-        reports.append((float(math.floor(_START + time)), math.degrees(latitude), math.degrees(longitude), speed, reported))
+        reports.append(
+            (
+                float(math.floor(_START + time)),
+                math.degrees(latitude),
+                math.degrees(longitude),
+                speed,
+                reported,
+            )
+        )
         before = time
     return reports
 

@@ -31,7 +31,9 @@ def nmea_rows(lines: Iterable[str], path: Path) -> Iterator[tuple[int, AisRow]]:
     try:
         import pyais
     except ImportError:
-        raise InputError(f"{path}: NMEA sentences need pyais; install the extra: {install_words('ais')}") from None
+        raise InputError(
+            f"{path}: NMEA sentences need pyais; install the extra: {install_words('ais')}"
+        ) from None
     others: set[int] = set()
     read = False
     for number, line in enumerate(lines, start=1):
@@ -48,9 +50,16 @@ def nmea_rows(lines: Iterable[str], path: Path) -> Iterator[tuple[int, AisRow]]:
             read = True
             speed, course = _value(said, "speed"), _value(said, "course")
             time = _time_of(head, path, number)
-            yield int(said["mmsi"]), AisRow(number, time, _value(said, "lat"), _value(said, "lon"), speed, course)
+            yield (
+                int(said["mmsi"]),
+                AisRow(number, time, _value(said, "lat"), _value(said, "lon"), speed, course),
+            )
     if not read:
-        types = f"messages of type {', '.join(map(str, sorted(others)))} alone" if others else "no sentence that can be decoded"
+        types = (
+            f"messages of type {', '.join(map(str, sorted(others)))} alone"
+            if others
+            else "no sentence that can be decoded"
+        )
         raise InputError(
             f"{path}: it has {types}; position reports of types {', '.join(map(str, _POSITION_REPORTS))} are read, others have no"
             " speed and course, or none that is exact enough: give a file with these"

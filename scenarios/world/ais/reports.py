@@ -98,8 +98,14 @@ def read_ais(path: str | Path, mmsi: int | None = None) -> AisReports:
                 first.setdefault(reason, row.line)
         kept = [row for row, reason in zip(kept, reasons, strict=True) if not reason]
     if len(kept) < 2:
-        why = ", ".join(f"{count} {reason} (first in line {first[reason]})" for reason, count in dropped.items())
-        remedy = "sort the file by time" if dropped[OUT_OF_ORDER] else "correct the rows, or give another file"
+        why = ", ".join(
+            f"{count} {reason} (first in line {first[reason]})" for reason, count in dropped.items()
+        )
+        remedy = (
+            "sort the file by time"
+            if dropped[OUT_OF_ORDER]
+            else "correct the rows, or give another file"
+        )
         raise InputError(
             f"{path}: {len(kept)} of {len(rows)} rows of MMSI {identity} used, two are needed;{f' dropped: {why};' if why else ''}"
             f" {remedy}"
@@ -119,7 +125,9 @@ def read_ais(path: str | Path, mmsi: int | None = None) -> AisReports:
         rows=len(rows),
         dropped=dict(dropped),
     )
-    check_units(path, reports.time, reports.latitude, reports.longitude, reports.speed, reports.course)
+    check_units(
+        path, reports.time, reports.latitude, reports.longitude, reports.speed, reports.course
+    )
     return reports
 
 
@@ -128,9 +136,13 @@ def _by_what_they_say(rows: Sequence[AisRow]) -> list[str]:
     reasons = []
     for row in rows:
         place = abs(row.latitude) <= 90.0 and abs(row.longitude) <= 180.0
-        speed = 0.0 <= row.speed <= _SPEED_MAX_KN and (0.0 <= row.course < 360.0 or row.speed < _AT_REST_KN)
+        speed = 0.0 <= row.speed <= _SPEED_MAX_KN and (
+            0.0 <= row.course < 360.0 or row.speed < _AT_REST_KN
+        )
         timed = not math.isnan(row.time)
-        reasons.append(NO_TIME if not timed else NO_PLACE if not place else NO_SPEED if not speed else "")
+        reasons.append(
+            NO_TIME if not timed else NO_PLACE if not place else NO_SPEED if not speed else ""
+        )
     return reasons
 
 
@@ -155,16 +167,27 @@ def _by_their_times(rows: Sequence[AisRow]) -> list[str]:
         kept.add(i)
         i = before[i]
     known = {rows[i].time for i in kept}
-    return ["" if i in kept else DUPLICATE if row.time in known else OUT_OF_ORDER for i, row in enumerate(rows)]
+    return [
+        "" if i in kept else DUPLICATE if row.time in known else OUT_OF_ORDER
+        for i, row in enumerate(rows)
+    ]
 
 
 def _by_their_places(rows: Sequence[AisRow]) -> list[str]:
     """Return why each row is of no use by its place: a vessel could not have come from the row before, nor gone to the next."""
-    _, time, latitude, longitude, _, _ = (np.array(column) for column in zip(*rows, strict=True)) if rows else np.empty((6, 0))
-    apart = np.linalg.norm(np.diff(cartesian(np.radians(latitude), np.radians(longitude)), axis=0), axis=-1)
+    _, time, latitude, longitude, _, _ = (
+        (np.array(column) for column in zip(*rows, strict=True)) if rows else np.empty((6, 0))
+    )
+    apart = np.linalg.norm(
+        np.diff(cartesian(np.radians(latitude), np.radians(longitude)), axis=0), axis=-1
+    )
     near = (apart <= _REACH + _REACH_SPEED * np.diff(time)).tolist()
     if len(near) < 2:
         return [""] * len(rows)
     # At an end the only neighbour decides, where that one fits to its own other neighbour.
-    alone = [not near[0] and near[1], *(not (before or after) for before, after in pairwise(near)), not near[-1] and near[-2]]
+    alone = [
+        not near[0] and near[1],
+        *(not (before or after) for before, after in pairwise(near)),
+        not near[-1] and near[-2],
+    ]
     return [OUT_OF_REACH if row_alone else "" for row_alone in alone]

@@ -66,5 +66,9 @@ def _noise(step: float) -> Array:
     """Return the covariance that white jerk adds in a time step (Bar-Shalom et al., Estimation with Applications, 6.2.3)."""
     t = step
     return JERK_DENSITY * np.array(
-        [[t**5 / 20.0, t**4 / 8.0, t**3 / 6.0], [t**4 / 8.0, t**3 / 3.0, t**2 / 2.0], [t**3 / 6.0, t**2 / 2.0, t]]
+        [
+            [t**5 / 20.0, t**4 / 8.0, t**3 / 6.0],
+            [t**4 / 8.0, t**3 / 3.0, t**2 / 2.0],
+            [t**3 / 6.0, t**2 / 2.0, t],
+        ]
     )

@@ -54,7 +54,9 @@ class AisVessel(TabledVessel):
     source : the file's
     """
 
-    def __init__(self, reports: AisReports, *, altitude: float, start: float, duration: float, margin: float) -> None:
+    def __init__(
+        self, reports: AisReports, *, altitude: float, start: float, duration: float, margin: float
+    ) -> None:
         self.source = reports
         near = _around(reports.time, start, start + duration)
         since = reports.time[near] - start
@@ -63,7 +65,12 @@ class AisVessel(TabledVessel):
         first = LocalFrame(float(latitude[0]), float(longitude[0]), altitude)
         origin = smooth_motion(since, *_in_frame(first, latitude, longitude, speed, course))(0.0)
         latitude_there, longitude_there = first.to_geodetic(origin[0], origin[1])
-        self.place = Place(latitude=float(latitude_there), longitude=float(longitude_there), altitude=altitude, utc=start)
+        self.place = Place(
+            latitude=float(latitude_there),
+            longitude=float(longitude_there),
+            altitude=altitude,
+            utc=start,
+        )
         place, velocity = _in_frame(self.place.frame, latitude, longitude, speed, course)
         earliest = min(-_KNOWN_BEFORE, float(since[since <= 0.0][-1]))
         self.reports = [
@@ -71,11 +78,15 @@ class AisVessel(TabledVessel):
             for t, p, v in zip(since, place, velocity, strict=True)
             if earliest <= t <= duration
         ]
-        smooth = smooth_motion(since, place, velocity).derivative()(np.minimum(track_times(duration + margin), duration))
+        smooth = smooth_motion(since, place, velocity).derivative()(
+            np.minimum(track_times(duration + margin), duration)
+        )
         super().__init__(smooth, _course_of(smooth), _manoeuvres_end(smooth))
 
 
-def ais_vessel(config: VesselConfig, *, altitude: float, utc: datetime | None, duration: float, margin: float) -> AisVessel:
+def ais_vessel(
+    config: VesselConfig, *, altitude: float, utc: datetime | None, duration: float, margin: float
+) -> AisVessel:
     """Return the vessel of a scenario whose track is a file.
 
     Parameters
@@ -93,7 +104,9 @@ def ais_vessel(config: VesselConfig, *, altitude: float, utc: datetime | None, d
     try:
         stamp = path.stat()
     except OSError as error:
-        raise InputError(f"vessel.track: {path}: cannot be read: {error.strerror}; check the path") from None
+        raise InputError(
+            f"vessel.track: {path}: cannot be read: {error.strerror}; check the path"
+        ) from None
     reports = _read(path, (stamp.st_mtime_ns, stamp.st_size), config.mmsi)
     begin = float(reports.time[0]) if utc is None else utc.timestamp()
     _check_covered(reports, begin, begin + duration, config.gap_max_s)
@@ -120,7 +133,9 @@ def _check_covered(reports: AisReports, begin: float, end: float, gap_max: float
 
 
 @lru_cache(maxsize=_KEPT)
-def _vessel(reports: AisReports, altitude: float, start: float, duration: float, margin: float) -> AisVessel:
+def _vessel(
+    reports: AisReports, altitude: float, start: float, duration: float, margin: float
+) -> AisVessel:
     return AisVessel(reports, altitude=altitude, start=start, duration=duration, margin=margin)
 
 
@@ -144,10 +159,14 @@ def _around(time: Array, begin: float, end: float) -> slice:
     return slice(int(first), int(last))
 
 
-def _in_frame(frame: LocalFrame, latitude: Array, longitude: Array, speed: Array, course: Array) -> tuple[Array, Array]:
+def _in_frame(
+    frame: LocalFrame, latitude: Array, longitude: Array, speed: Array, course: Array
+) -> tuple[Array, Array]:
     """Return places and velocities in a frame, each shape (n, 2) [m, m/s]: courses are from true north at each place."""
     along = course + frame.true_north(latitude, longitude)
-    return np.column_stack(frame.to_local(latitude, longitude)), speed[:, None] * np.column_stack([np.cos(along), np.sin(along)])
+    return np.column_stack(frame.to_local(latitude, longitude)), speed[:, None] * np.column_stack(
+        [np.cos(along), np.sin(along)]
+    )
 
 
 def _course_of(velocity: Array) -> Array:
@@ -156,7 +175,10 @@ def _course_of(velocity: Array) -> Array:
     if not moving.any():
         return np.zeros(len(velocity))
     # Before it first moves, it points where it then goes.
-    last = np.maximum(np.maximum.accumulate(np.where(moving, np.arange(len(velocity)), -1)), int(np.argmax(moving)))
+    last = np.maximum(
+        np.maximum.accumulate(np.where(moving, np.arange(len(velocity)), -1)),
+        int(np.argmax(moving)),
+    )
     course: Array = np.unwrap(np.arctan2(velocity[:, 1], velocity[:, 0])[last])
     return course
 

@@ -31,7 +31,9 @@ _OFF_MAX = 30.0
 """Difference of courses from those between places, in the median [deg]."""
 
 
-def check_units(path: Path, time: Array, latitude: Array, longitude: Array, speed: Array, course: Array) -> None:
+def check_units(
+    path: Path, time: Array, latitude: Array, longitude: Array, speed: Array, course: Array
+) -> None:
     """Raise an InputError where speeds [m/s] or courses [rad] are not those between places [rad], in the median of all pairs."""
     judged = _against_places(time, latitude, longitude, speed, course)
     if judged is None or _agree(*judged):
@@ -54,23 +56,31 @@ def check_units(path: Path, time: Array, latitude: Array, longitude: Array, spee
     )
 
 
-def _against_places(time: Array, latitude: Array, longitude: Array, speed: Array, course: Array) -> tuple[float, float] | None:
+def _against_places(
+    time: Array, latitude: Array, longitude: Array, speed: Array, course: Array
+) -> tuple[float, float] | None:
     """Return the median ratio of speeds to those between places [-], and of differences of course [deg]; none of too few pairs."""
     way = np.diff(cartesian(latitude, longitude), axis=0)
     apart, passed = np.linalg.norm(way, axis=-1), np.diff(time)
     mean = 0.5 * (speed[1:] + speed[:-1])
-    far = (np.maximum(apart, mean * passed) > _WAY_MIN * np.maximum(1.0, passed / _TIME_MAX)) & (apart > 0.0)
+    far = (np.maximum(apart, mean * passed) > _WAY_MIN * np.maximum(1.0, passed / _TIME_MAX)) & (
+        apart > 0.0
+    )
     judged = far & (passed <= _TIME_MAX)
     if np.count_nonzero(judged) < _PAIRS_MIN:
         judged |= far & _straight(passed, speed, course)
     if np.count_nonzero(judged) < _PAIRS_MIN:
         return None
-    sin_lat, cos_lat, sin_lon, cos_lon = (f(of[:-1]) for of in (latitude, longitude) for f in (np.sin, np.cos))
+    sin_lat, cos_lat, sin_lon, cos_lon = (
+        f(of[:-1]) for of in (latitude, longitude) for f in (np.sin, np.cos)
+    )
     north = -sin_lat * cos_lon * way[:, 0] - sin_lat * sin_lon * way[:, 1] + cos_lat * way[:, 2]
     east = cos_lon * way[:, 1] - sin_lon * way[:, 0]
     middle = np.angle(np.exp(1j * course[1:]) + np.exp(1j * course[:-1]))
     off = np.abs(np.angle(np.exp(1j * (np.arctan2(east, north) - middle))))
-    return float(np.median((mean * passed / np.maximum(apart, 1e-9))[judged])), float(np.degrees(np.median(off[judged])))
+    return float(np.median((mean * passed / np.maximum(apart, 1e-9))[judged])), float(
+        np.degrees(np.median(off[judged]))
+    )
 
 
 def _straight(passed: Array, speed: Array, course: Array) -> npt.NDArray[np.bool_]:
@@ -85,4 +95,7 @@ def _straight(passed: Array, speed: Array, course: Array) -> npt.NDArray[np.bool
 
 def _agree(ratio: float, off: float, share: float = 1.0) -> bool:
     """Return whether speeds and courses are those between places, within a share of what is allowed."""
-    return 1.0 + share * (_RATIO[0] - 1.0) <= ratio <= 1.0 + share * (_RATIO[1] - 1.0) and off <= share * _OFF_MAX
+    return (
+        1.0 + share * (_RATIO[0] - 1.0) <= ratio <= 1.0 + share * (_RATIO[1] - 1.0)
+        and off <= share * _OFF_MAX
+    )

@@ -28,8 +28,13 @@ def test_at_50_metres_scale_lengths_are_those_of_the_published_table():
 
 def test_light_moderate_and_severe_turbulence_shake_with_1_5_3_and_4_5_knots():
     # MIL-F-8785C, figures 9 and 11: a tenth of the wind at 20 ft, which is 15, 30 and 45 knots; a knot is 1852 m an hour.
-    shaking = [intensities(60.0, TURBULENCE[name].wind_at_20ft)[2] for name in ("light", "moderate", "severe")]
-    assert shaking == pytest.approx([1.5 * 1852 / 3600, 3.0 * 1852 / 3600, 4.5 * 1852 / 3600], rel=1e-12)
+    shaking = [
+        intensities(60.0, TURBULENCE[name].wind_at_20ft)[2]
+        for name in ("light", "moderate", "severe")
+    ]
+    assert shaking == pytest.approx(
+        [1.5 * 1852 / 3600, 3.0 * 1852 / 3600, 4.5 * 1852 / 3600], rel=1e-12
+    )
 
 
 def test_below_ten_feet_turbulence_is_that_at_ten_feet():
@@ -45,7 +50,8 @@ def test_above_1000_feet_the_low_altitude_laws_are_refused(ask):
 
 
 @pytest.mark.parametrize(
-    ("value", "message"), [({"wind_at_20ft": 0.0}, "above 0"), ({"wind_at_20ft": 5.0, "severity": 8}, "curves 1 to 7")]
+    ("value", "message"),
+    [({"wind_at_20ft": 0.0}, "above 0"), ({"wind_at_20ft": 5.0, "severity": 8}, "curves 1 to 7")],
 )
 def test_turbulence_out_of_range_is_refused(value, message):
     with pytest.raises(AircraftError, match=message):
@@ -57,9 +63,17 @@ def blown(x8_fdm):
     """A function from a weather to the turbulence that a held X8 meets, shape (steps, 3): north, east, down [m/s]."""
 
     def blow(weather, steps, altitude, airspeed):
-        x8_fdm.place(RigidBodyState(altitude=altitude, roll=0.0, pitch=0.0, velocity_body=(airspeed, 0.0, 0.0)), (0.0, 0.0))
+        x8_fdm.place(
+            RigidBodyState(
+                altitude=altitude, roll=0.0, pitch=0.0, velocity_body=(airspeed, 0.0, 0.0)
+            ),
+            (0.0, 0.0),
+        )
         begin_turbulence(x8_fdm, weather)
-        nodes = [x8_fdm.node(f"atmosphere/turb-{component}-fps") for component in ("north", "east", "down")]
+        nodes = [
+            x8_fdm.node(f"atmosphere/turb-{component}-fps")
+            for component in ("north", "east", "down")
+        ]
         log = np.empty((steps, 3))
         with x8_fdm.frozen():
             for row in log:
@@ -73,12 +87,18 @@ def blown(x8_fdm):
 def test_jsbsim_shakes_as_strongly_as_the_standard_says_and_has_the_spectra_of_dryden(blown):
     # Fast, so that many scale lengths go by.
     altitude, airspeed, steps = 60.0, 200.0, 160_000
-    log = blown(Weather(turbulence=Turbulence(wind_at_20ft=10.0), seed=2), steps, altitude, airspeed)
+    log = blown(
+        Weather(turbulence=Turbulence(wind_at_20ft=10.0), seed=2), steps, altitude, airspeed
+    )
     duration = steps / 120.0
-    for measured, sigma, length in zip(log.std(axis=0), intensities(altitude, 10.0), scale_lengths(altitude), strict=True):
+    for measured, sigma, length in zip(
+        log.std(axis=0), intensities(altitude, 10.0), scale_lengths(altitude), strict=True
+    ):
         # Of a process with the correlation exp(-t/tau), a standard deviation over T is known to sqrt(tau / 2T) of itself (Bendat
         # and Piersol, Random Data, 8.2); those across and down forget sooner. The start from smooth air is within that.
-        assert measured == pytest.approx(sigma, rel=SIGMAS * math.sqrt(0.5 * length / airspeed / duration))
+        assert measured == pytest.approx(
+            sigma, rel=SIGMAS * math.sqrt(0.5 * length / airspeed / duration)
+        )
     # And its spectra are those of Dryden: with wind toward the north, after x scale lengths the wind along has the correlation
     # exp(-x), those across and down have exp(-x) (1 - x/2): transforms of the spectra of MIL-F-8785C. First-order filters, as of
     # JSBSim's type 3, would have exp(-2x) there: at half a scale length 0.37 in place of 0.45.
@@ -90,9 +110,14 @@ def test_jsbsim_shakes_as_strongly_as_the_standard_says_and_has_the_spectra_of_d
         assert correlation == pytest.approx(factor * math.exp(-0.5), abs=tolerance)
 
 
-@pytest.mark.parametrize(("wind", "toward"), [((0.0, 7.0), 90.0), ((0.0, -7.0), 270.0), ((-5.0, 0.0), 180.0), ((0.0, 0.0), 0.0)])
+@pytest.mark.parametrize(
+    ("wind", "toward"),
+    [((0.0, 7.0), 90.0), ((0.0, -7.0), 270.0), ((-5.0, 0.0), 180.0), ((0.0, 0.0), 0.0)],
+)
 def test_turbulence_has_its_axes_in_the_wind_wherever_it_blows(x8_fdm, wind, toward):
-    x8_fdm.place(RigidBodyState(altitude=60.0, roll=0.0, pitch=0.0, velocity_body=(20.0, 0.0, 0.0)), wind)
+    x8_fdm.place(
+        RigidBodyState(altitude=60.0, roll=0.0, pitch=0.0, velocity_body=(20.0, 0.0, 0.0)), wind
+    )
     x8_fdm.step()
     # JSBSim leaves its axes where they were in a wind that has no north at all; 1e-6 ft/s of it turn 7 m/s by 5e-8 rad.
     assert x8_fdm.read("atmosphere/psiw-rad") == pytest.approx(math.radians(toward), abs=1e-7)
@@ -104,7 +129,12 @@ def test_a_seed_gives_its_own_turbulence_each_time(blown, x8_fdm):
     end_weather(x8_fdm)
     np.testing.assert_array_equal(blown(weather, 200, 60.0, 20.0), first)
     end_weather(x8_fdm)
-    assert np.abs(blown(Weather(turbulence=TURBULENCE["light"], seed=6), 200, 60.0, 20.0) - first).max() > 0.1  # of 0.8 m/s
+    assert (
+        np.abs(
+            blown(Weather(turbulence=TURBULENCE["light"], seed=6), 200, 60.0, 20.0) - first
+        ).max()
+        > 0.1
+    )  # of 0.8 m/s
 
 
 def test_a_seed_that_jsbsim_cannot_hold_is_refused():

@@ -34,7 +34,13 @@ def moments(spec, level, name, values):
     """Angular acceleration about the surface's axis over an input's values [rad/s^2]."""
     fdm = Fdm(spec)
     old = level.inputs[name]
-    start = float(np.interp(old, [c for _, c in spec.input(name).effectiveness], [e for e, _ in spec.input(name).effectiveness]))
+    start = float(
+        np.interp(
+            old,
+            [c for _, c in spec.input(name).effectiveness],
+            [e for e, _ in spec.input(name).effectiveness],
+        )
+    )
     found = []
     with fdm.frozen():
         for value in values:
@@ -86,20 +92,32 @@ def test_the_new_command_runs_from_nought_at_the_old_and_over_two_from_stop_to_s
         control_input = spec.input(name)
         assert control_input.command(0.0) == pytest.approx(0.0, abs=1e-12)
         assert control_input.upper - control_input.lower == pytest.approx(2.0)
-        assert -1.0 <= control_input.command(control_input.lower) < control_input.command(control_input.upper) <= 1.0
+        assert (
+            -1.0
+            <= control_input.command(control_input.lower)
+            < control_input.command(control_input.upper)
+            <= 1.0
+        )
 
 
 @pytest.mark.parametrize(("lower", "upper"), [(-0.5, 0.5), (-0.75, 0.25)])
 def test_a_surface_is_commanded_within_the_range_that_its_spec_states(twin, lower, upper):
     fdm, level, whole = twin
-    stated = replace(fdm.spec, inputs=tuple(replace(i, lower=lower, upper=upper) if i.name in AXES else i for i in fdm.spec.inputs))
+    stated = replace(
+        fdm.spec,
+        inputs=tuple(
+            replace(i, lower=lower, upper=upper) if i.name in AXES else i for i in fdm.spec.inputs
+        ),
+    )
     elevator = with_linearised_controls(Fdm(stated), level).input("elevator")
     commands = [command for _, command in elevator.effectiveness]
     assert (commands[0], commands[-1]) == (lower, upper)
     assert (elevator.command(elevator.lower), elevator.command(elevator.upper)) == (lower, upper)
     # The same surface: effects of the commands that both have are in proportion, but for a bend between two measured points.
     both = (lower, 0.5 * lower, 0.5 * upper, upper)
-    ratio = np.divide(*([effect_of(command, i) for command in both] for i in (elevator, whole.input("elevator"))))
+    ratio = np.divide(
+        *([effect_of(command, i) for command in both] for i in (elevator, whole.input("elevator")))
+    )
     assert np.ptp(ratio) < 0.02 * ratio.mean()
 
 
@@ -118,7 +136,15 @@ def test_controls_that_are_linearised_already_are_left_as_they_are(twin):
 
 @pytest.mark.parametrize(
     ("effect", "command"),
-    [(-1.5, -1.0), (-0.75, -0.5), (0.0, 0.0), (0.25, 0.5), (0.5, 1.0), (-3.0, -2.0), (1.0, 2.0)],  # past the ends as before them
+    [
+        (-1.5, -1.0),
+        (-0.75, -0.5),
+        (0.0, 0.0),
+        (0.25, 0.5),
+        (0.5, 1.0),
+        (-3.0, -2.0),
+        (1.0, 2.0),
+    ],  # past the ends as before them
 )
 def test_an_effect_is_named_by_the_command_that_has_it(effect, command):
     assert KINKED.command(effect) == pytest.approx(command)

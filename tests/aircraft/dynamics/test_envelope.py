@@ -41,7 +41,10 @@ def test_an_envelope_that_the_spec_states_is_taken_as_it_is(spec):
 
 def test_a_stated_envelope_has_a_note_where_an_equilibrium_lacks_a_reserve_and_none_elsewhere():
     fdm = Fdm(X8)
-    slow = [search_trim(fdm, airspeed=11.0, altitude=ALTITUDE, bank=math.radians(bank)) for bank in (0.0, 55.0)]
+    slow = [
+        search_trim(fdm, airspeed=11.0, altitude=ALTITUDE, bank=math.radians(bank))
+        for bank in (0.0, 55.0)
+    ]
     # Beyond nine tenths of its travel in the turn, and not in level flight.
     assert slow[1].outcome is TrimOutcome.CONVERGED
     assert slow[1].inputs["elevator"] < -0.9 < slow[0].inputs["elevator"]
@@ -61,7 +64,10 @@ def test_an_equilibrium_beyond_the_angle_of_attack_up_to_which_the_model_is_righ
     assert steep.outcome is TrimOutcome.CONVERGED
     assert steep.alpha == pytest.approx(0.2022, abs=1e-4)
     (note,) = with_reserve_note(X8.envelope, [steep], X8).notes
-    assert "15 m/s and -55 deg of bank take 11.6 deg of angle of attack; the model is right up to 11.5 deg" in note
+    assert (
+        "15 m/s and -55 deg of bank take 11.6 deg of angle of attack; the model is right up to 11.5 deg"
+        in note
+    )
     # Of a model that states none nothing is known.
     assert with_reserve_note(X8.envelope, [steep], replace(X8, alpha_max=math.nan)) is X8.envelope
 
@@ -75,11 +81,15 @@ def test_an_equilibrium_beyond_the_angle_of_attack_up_to_which_the_model_is_righ
     ],
 )
 @pytest.mark.parametrize("stated", [True, False])
-def test_a_model_without_weight_or_wing_area_is_refused_in_a_line(tmp_path, key, pattern, found, stated):
+def test_a_model_without_weight_or_wing_area_is_refused_in_a_line(
+    tmp_path, key, pattern, found, stated
+):
     root = shutil.copytree(MODELS, tmp_path / "models")
     file = root / "aircraft" / "x8" / "x8.xml"
     number = "-3.0" if found.endswith("-") else "0.0"
-    file.write_text(re.sub(pattern, rf"\g<1> {number} ", file.read_text(encoding="utf-8")), encoding="utf-8")
+    file.write_text(
+        re.sub(pattern, rf"\g<1> {number} ", file.read_text(encoding="utf-8")), encoding="utf-8"
+    )
     spec = replace(X8, root=root, envelope=X8.envelope if stated else None)
     with pytest.raises(AircraftError, match=found) as caught:
         first_trim(Fdm(spec), ALTITUDE)
@@ -89,7 +99,15 @@ def test_a_model_without_weight_or_wing_area_is_refused_in_a_line(tmp_path, key,
 @pytest.mark.parametrize(
     ("mass", "bank_deg"),
     # Small unmanned aircraft turn steeply; up to 12,500 lb (5670 kg), CS-23's limit, as light aeroplanes do; above as airliners.
-    [(3.4, 45.0), (150.0, 45.0), (151.0, 30.0), (1100.0, 30.0), (5670.0, 30.0), (5671.0, 25.0), (60_000.0, 25.0)],
+    [
+        (3.4, 45.0),
+        (150.0, 45.0),
+        (151.0, 30.0),
+        (1100.0, 30.0),
+        (5670.0, 30.0),
+        (5671.0, 25.0),
+        (60_000.0, 25.0),
+    ],
 )
 def test_the_bank_goes_with_the_class(mass, bank_deg):
     assert math.degrees(bank_by_class(mass)) == pytest.approx(bank_deg)
@@ -103,7 +121,11 @@ def test_the_stall_is_where_the_largest_lift_just_carries_the_weight(jet, envelo
     with jet.frozen():
         for alpha in np.radians(np.arange(0.0, 23.0, 0.1)):
             velocity = body_velocity(envelope.stall, float(alpha), 0.0)
-            jet.place(RigidBodyState(altitude=ALTITUDE, roll=0.0, pitch=float(alpha), velocity_body=velocity))
+            jet.place(
+                RigidBodyState(
+                    altitude=ALTITUDE, roll=0.0, pitch=float(alpha), velocity_body=velocity
+                )
+            )
             jet.step(2)
             lifts.append(-jet.read("forces/fwz-aero-lbs") * NEWTONS_PER_POUND)
     weight = jet.read("inertia/weight-lbs") * NEWTONS_PER_POUND
@@ -113,7 +135,9 @@ def test_the_stall_is_where_the_largest_lift_just_carries_the_weight(jet, envelo
 def test_the_slowest_airspeed_leaves_three_tenths_above_stall_in_the_steepest_turn(envelope):
     steepest = STEEPEST * (envelope.bank + BANK_RESERVE)
     # In a turn stall rises with the root of the load, 1/cos(bank).
-    assert envelope.airspeed_min == pytest.approx(1.3 * envelope.stall / math.sqrt(math.cos(steepest)))
+    assert envelope.airspeed_min == pytest.approx(
+        1.3 * envelope.stall / math.sqrt(math.cos(steepest))
+    )
     assert envelope.airspeed_max <= 1.6 * envelope.airspeed_min * (1.0 + 1e-9)
     assert envelope.airspeed_min < envelope.airspeed < envelope.airspeed_max
     assert len(envelope.design_airspeeds) == 5

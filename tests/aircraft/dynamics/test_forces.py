@@ -23,7 +23,16 @@ STATES = [
     *(x8.Air(airspeed=20.0, elevator=e) for e in (-0.3, 0.2)),
     *(x8.Air(airspeed=20.0, aileron=a) for a in (-0.2, 0.3)),
     *(
-        x8.Air(airspeed=21.0, alpha=0.08, beta=0.05 * b, p=0.5 * p, q=0.2, r=-0.3 * p, elevator=-0.1, aileron=0.1 * b)
+        x8.Air(
+            airspeed=21.0,
+            alpha=0.08,
+            beta=0.05 * b,
+            p=0.5 * p,
+            q=0.2,
+            r=-0.3 * p,
+            elevator=-0.1,
+            aileron=0.1 * b,
+        )
         for b, p in itertools.product((-1.0, 1.0), repeat=2)
     ),
 ]
@@ -31,7 +40,13 @@ STATES = [
 
 def hold(fdm, air, altitude=150.0):
     """Hold the aircraft still in the air's motion with its elevons at rest; return JSBSim's density [kg/m^3]."""
-    fdm.command({"elevator": air.elevator / x8.ELEVON_FULL, "aileron": air.aileron / x8.ELEVON_FULL, "throttle": 0.5})
+    fdm.command(
+        {
+            "elevator": air.elevator / x8.ELEVON_FULL,
+            "aileron": air.aileron / x8.ELEVON_FULL,
+            "throttle": 0.5,
+        }
+    )
     fdm.place(
         RigidBodyState(
             altitude=altitude,
@@ -50,7 +65,9 @@ def test_aerodynamic_forces_and_moments_are_those_of_the_published_coefficients(
     with x8_fdm.frozen():
         density = hold(x8_fdm, air)
         force = np.array([x8_fdm.read(f"forces/fb{axis}-aero-lbs") for axis in "xyz"]) * N_PER_LBF
-        moment = np.array([x8_fdm.read(f"moments/{axis}-aero-lbsft") for axis in "lmn"]) * NM_PER_LBF_FT
+        moment = (
+            np.array([x8_fdm.read(f"moments/{axis}-aero-lbsft") for axis in "lmn"]) * NM_PER_LBF_FT
+        )
     # Source of the coefficients: x8_published. At JSBSim's own density (which has its own test) a part in a million is left for
     # JSBSim's unit factors, which carry eight digits or so. Absolute: a millionth of what a coefficient of 0.01 gives at 20 m/s.
     np.testing.assert_allclose(force, x8.aero_force(air, density), rtol=1e-6, atol=2e-6)
@@ -80,7 +97,9 @@ def test_gravity_at_the_equator_is_that_of_wgs_84(x8_fdm):
     # A body without aerodynamics to speak of, level and at rest in the air, falls with gravity alone.
     with x8_fdm.frozen():
         x8_fdm.command({"elevator": 0.0, "aileron": 0.0, "throttle": 0.0})
-        x8_fdm.place(RigidBodyState(altitude=100.0, roll=0.0, pitch=0.0, velocity_body=(0.01, 0.0, 0.0)))
+        x8_fdm.place(
+            RigidBodyState(altitude=100.0, roll=0.0, pitch=0.0, velocity_body=(0.01, 0.0, 0.0))
+        )
         x8_fdm.step(2)
         down = x8_fdm.acceleration_body()[2]
     # Normal gravity of WGS 84, 9.7803253 m/s^2, less 3.09e-6 a metre. JSBSim keeps the oblateness term alone: 1e-5 of it.

@@ -34,7 +34,9 @@ def angular_acceleration_and_moment(fdm, case):
             )
         )
         assert fdm.settle()
-        moment = np.array([fdm.read(f"moments/{axis}-total-lbsft") for axis in "lmn"]) * NM_PER_LBF_FT
+        moment = (
+            np.array([fdm.read(f"moments/{axis}-total-lbsft") for axis in "lmn"]) * NM_PER_LBF_FT
+        )
         return np.array(fdm.angular_acceleration()), moment
 
 
@@ -48,7 +50,9 @@ def test_angular_acceleration_obeys_eulers_equation(x8_fdm, case):
     flown, moment = angular_acceleration_and_moment(x8_fdm, case)
     expected = eulers_equation(x8.INERTIA, moment, case["rates"])
     # Absolute: the earth's rate of 7e-5 rad/s times rates near 1 rad/s.
-    np.testing.assert_allclose(flown, expected, rtol=JSBSIM_INERTIA_ERROR, atol=2e-4 * np.abs(expected).max())
+    np.testing.assert_allclose(
+        flown, expected, rtol=JSBSIM_INERTIA_ERROR, atol=2e-4 * np.abs(expected).max()
+    )
 
 
 @pytest.mark.parametrize("case", CASES)
@@ -56,13 +60,18 @@ def test_the_other_sign_of_the_product_of_inertia_would_show(x8_fdm, case):
     flown, moment = angular_acceleration_and_moment(x8_fdm, case)
     other = x8.INERTIA * np.array([[1.0, 1.0, -1.0], [1.0, 1.0, 1.0], [-1.0, 1.0, 1.0]])
     # A hundred times the tolerance above.
-    assert np.abs(flown - eulers_equation(other, moment, case["rates"])).max() > 2e-2 * np.abs(flown).max()
+    assert (
+        np.abs(flown - eulers_equation(other, moment, case["rates"])).max()
+        > 2e-2 * np.abs(flown).max()
+    )
 
 
 def test_aileron_alone_rolls_and_yaws_as_coefficients_and_inertia_say(x8_fdm):
     deflection = 0.1
     with_aileron, without = (
-        angular_acceleration_and_moment(x8_fdm, {"beta": 0.0, "aileron": command, "rates": (0.0, 0.0, 0.0)})[0]
+        angular_acceleration_and_moment(
+            x8_fdm, {"beta": 0.0, "aileron": command, "rates": (0.0, 0.0, 0.0)}
+        )[0]
         for command in (deflection / x8.ELEVON_FULL, 0.0)
     )
     density = x8.standard_density(100.0)
@@ -70,11 +79,17 @@ def test_aileron_alone_rolls_and_yaws_as_coefficients_and_inertia_say(x8_fdm):
     moment, none = (x8.aero_moment(a, density) for a in air)
     # Nothing of this is read from JSBSim. Three quarters of the yaw to the left is the product of inertia, the rest C_nda.
     expected = np.linalg.solve(x8.INERTIA, moment - none)
-    np.testing.assert_allclose(with_aileron - without, expected, rtol=JSBSIM_INERTIA_ERROR, atol=1e-5)
+    np.testing.assert_allclose(
+        with_aileron - without, expected, rtol=JSBSIM_INERTIA_ERROR, atol=1e-5
+    )
     assert expected[2] < 0.0
 
 
 @pytest.mark.parametrize(("name", "published"), [("ixx", x8.JX), ("iyy", x8.JY), ("izz", x8.JZ)])
 def test_moments_of_inertia_are_those_of_the_model_file(x8_fdm, name, published):
-    x8_fdm.place(RigidBodyState(altitude=100.0, roll=0.0, pitch=0.0, velocity_body=(20.0, 0.0, 0.0)))
-    assert x8_fdm.read(f"inertia/{name}-slugs_ft2") * KG_M2_PER_SLUG_FT2 == pytest.approx(published, rel=JSBSIM_INERTIA_ERROR)
+    x8_fdm.place(
+        RigidBodyState(altitude=100.0, roll=0.0, pitch=0.0, velocity_body=(20.0, 0.0, 0.0))
+    )
+    assert x8_fdm.read(f"inertia/{name}-slugs_ft2") * KG_M2_PER_SLUG_FT2 == pytest.approx(
+        published, rel=JSBSIM_INERTIA_ERROR
+    )

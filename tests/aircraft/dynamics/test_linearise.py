@@ -23,7 +23,10 @@ BANKS = {"level": 0.0, "right turn": 0.6, "left turn": -0.6}
 
 @pytest.fixture(scope="module")
 def trims():
-    return {name: trim(Fdm(X8), airspeed=20.0, altitude=100.0, bank=bank) for name, bank in BANKS.items()}
+    return {
+        name: trim(Fdm(X8), airspeed=20.0, altitude=100.0, bank=bank)
+        for name, bank in BANKS.items()
+    }
 
 
 @pytest.fixture(scope="module")
@@ -46,22 +49,44 @@ def entry(model, output, source):
 
 def published_derivatives(found):
     """Central differences of the published equations: rows of ``RATES``; columns of ``STATES``, then the throttle."""
-    body = [found.airspeed, found.alpha, found.beta, *found.rates_body, found.roll, found.pitch, found.altitude]
+    body = [
+        found.airspeed,
+        found.alpha,
+        found.beta,
+        *found.rates_body,
+        found.roll,
+        found.pitch,
+        found.altitude,
+    ]
     state = np.array([*body, *(found.driven[name] for name in DRIVEN)])
     throttle = found.inputs["throttle"]
     # Smooth functions: steps of 1e-4 of each quantity's range leave 1e-8 of truncation and 1e-10 of rounding.
     steps = np.array([0.01, *([1e-4] * 7), 1.0, 1e-4, 1e-4, 0.1])
     columns = [
-        (x8.state_rates(state + step, throttle) - x8.state_rates(state - step, throttle)) / (2.0 * step.sum())
+        (x8.state_rates(state + step, throttle) - x8.state_rates(state - step, throttle))
+        / (2.0 * step.sum())
         for step in np.diag(steps)
     ]
-    by_throttle = (x8.state_rates(state, throttle + 1e-4) - x8.state_rates(state, throttle - 1e-4)) / 2e-4
+    by_throttle = (
+        x8.state_rates(state, throttle + 1e-4) - x8.state_rates(state, throttle - 1e-4)
+    ) / 2e-4
     return np.column_stack([*columns, by_throttle])
 
 
 def test_states_inputs_and_outputs_are_named(models):
     model = models["level"]
-    assert tuple(model.state_labels) == ("airspeed", "alpha", "beta", "p", "q", "r", "roll", "pitch", "altitude", *DRIVEN)
+    assert tuple(model.state_labels) == (
+        "airspeed",
+        "alpha",
+        "beta",
+        "p",
+        "q",
+        "r",
+        "roll",
+        "pitch",
+        "altitude",
+        *DRIVEN,
+    )
     assert tuple(model.state_labels[:9]) == BODY_STATES
     assert tuple(model.input_labels) == ("elevator", "aileron", "throttle")
     assert tuple(model.output_labels) == (*model.state_labels, "heading_rate", "climb_rate")
@@ -72,7 +97,9 @@ def test_states_inputs_and_outputs_are_named(models):
 
 @pytest.mark.parametrize("name", BANKS)
 @pytest.mark.parametrize("rate", [r for r in x8.RATES if r != "propeller_speed"])
-def test_every_derivative_of_the_rigid_body_is_that_of_the_published_equations(trims, models, name, rate):
+def test_every_derivative_of_the_rigid_body_is_that_of_the_published_equations(
+    trims, models, name, rate
+):
     expected = published_derivatives(trims[name])[x8.RATES.index(rate)]
     found = [entry(models[name], rate, source) for source in (*x8.STATES, "throttle")]
     # Relative: JSBSim's inertia and density are off by 1e-4 and 1e-5 (test_inertia, test_forces); differences truncate less. Thrust
@@ -80,7 +107,9 @@ def test_every_derivative_of_the_rigid_body_is_that_of_the_published_equations(t
     # derivative, 0.2158, of C_T: 3 % of a slope of 0.18. It enters the airspeed's rate by airspeed, angles and propeller speed.
     tolerance = 3.5e-2 if rate == "airspeed" else 3e-4
     # Absolute: the earth turns at 7.3e-5 rad/s, and twice that enters as Coriolis acceleration, 3e-3 m/s^2 per rad at 20 m/s.
-    np.testing.assert_allclose(found, expected, rtol=tolerance, atol=3e-3 if rate == "airspeed" else 2e-4)
+    np.testing.assert_allclose(
+        found, expected, rtol=tolerance, atol=3e-3 if rate == "airspeed" else 2e-4
+    )
 
 
 def analytic(found):
@@ -129,7 +158,9 @@ def analytic(found):
 
 
 @pytest.mark.parametrize(
-    "pair", list(analytic(trim(Fdm(X8), airspeed=20.0, altitude=100.0))), ids=lambda pair: f"{pair[0]}-by-{pair[1]}"
+    "pair",
+    list(analytic(trim(Fdm(X8), airspeed=20.0, altitude=100.0))),
+    ids=lambda pair: f"{pair[0]}-by-{pair[1]}",
 )
 def test_the_classic_derivatives_are_formulas_in_the_published_coefficients(trims, models, pair):
     # Inertia 1e-4 (see above). The gyroscopic ones are a hundredth of the aerodynamic ones and carry the rounding of differences
@@ -153,8 +184,12 @@ def test_servo_poles_are_those_of_the_model_file(models):
 
 def test_servos_settle_at_full_deflection_times_command(models):
     for name in ("elevator", "aileron"):
-        gain = -entry(models["level"], f"{name}_position", name) / entry(models["level"], f"{name}_position", f"{name}_position")
-        assert gain == pytest.approx(x8.ELEVON_FULL, rel=1e-7)  # linear in the model; settled to 1e-8
+        gain = -entry(models["level"], f"{name}_position", name) / entry(
+            models["level"], f"{name}_position", f"{name}_position"
+        )
+        assert gain == pytest.approx(
+            x8.ELEVON_FULL, rel=1e-7
+        )  # linear in the model; settled to 1e-8
 
 
 @pytest.mark.parametrize("name", BANKS)
@@ -167,7 +202,9 @@ def test_the_propellers_pole_is_that_of_motor_and_load_under_eulers_rule(trims, 
     assert pole == pytest.approx(math.log(1.0 - rate * TIME_STEP) / TIME_STEP, rel=0.015)
     # Where it settles does not depend on that: d(omega)/dV and d(omega)/d(throttle). Torque's slope by J: a few per cent, as above.
     for source, column in (("airspeed", 0), ("throttle", 12)):
-        assert entry(models[name], "propeller_speed", source) / pole == pytest.approx(row[column] / -rate, rel=0.05)
+        assert entry(models[name], "propeller_speed", source) / pole == pytest.approx(
+            row[column] / -rate, rel=0.05
+        )
 
 
 def test_the_modes_are_where_textbooks_put_them(models):
@@ -185,7 +222,9 @@ def test_the_modes_are_where_textbooks_put_them(models):
     m_q = force * x8.CHORD**2 * x8.CM_Q / (2.0 * v * x8.JY)
     z_alpha = -force * x8.CL_A / (x8.MASS * v)
     q_gain = 1.0 - force * x8.CL_Q * x8.CHORD / (2.0 * v * x8.MASS * v)
-    assert abs(short_period) == pytest.approx(math.sqrt(m_q * z_alpha - m_alpha * q_gain), rel=0.02)  # two states of twelve
+    assert abs(short_period) == pytest.approx(
+        math.sqrt(m_q * z_alpha - m_alpha * q_gain), rel=0.02
+    )  # two states of twelve
     assert short_period.real == pytest.approx(0.5 * (m_q + z_alpha), rel=0.02)
     # Roll mode: L_p, changed by a few per cent by its coupling to yaw and sideslip.
     roll_rate = force * x8.SPAN**2 * x8.CR_P / (2.0 * v * x8.JX)
@@ -210,7 +249,11 @@ READS = {
     "airspeed": ("velocities/vt-fps", 0.3048),
     "propeller_speed": ("propulsion/engine/propeller-rpm", math.pi / 30.0),
 }
-DOUBLETS = {"elevator": ("q", "alpha", "pitch"), "aileron": ("p", "r", "beta", "roll"), "throttle": ("propeller_speed", "airspeed")}
+DOUBLETS = {
+    "elevator": ("q", "alpha", "pitch"),
+    "aileron": ("p", "r", "beta", "roll"),
+    "throttle": ("propeller_speed", "airspeed"),
+}
 
 
 def doublet_errors(found, name, time_step):
@@ -233,8 +276,12 @@ def doublet_errors(found, name, time_step):
     flown = np.array(flown) - flown[0]
     held = np.zeros((3, len(inputs) + 1))
     held[model.input_labels.index(name), :-1] = inputs
-    sampled = control.sample_system(control.ss(model.A, model.B, model.C, model.D), time_step, method="zoh")
-    predicted = control.forced_response(sampled, time_step * np.arange(len(inputs) + 1), held).outputs
+    sampled = control.sample_system(
+        control.ss(model.A, model.B, model.C, model.D), time_step, method="zoh"
+    )
+    predicted = control.forced_response(
+        sampled, time_step * np.arange(len(inputs) + 1), held
+    ).outputs
     rows = np.array([predicted[model.output_labels.index(output)] for output in DOUBLETS[name]]).T
     return np.abs(flown - rows).max(axis=0) / np.abs(rows).max(axis=0)
 
@@ -248,7 +295,9 @@ def test_in_short_time_steps_a_small_doublet_is_flown_as_the_linear_model_predic
 
 @pytest.mark.parametrize("name", DOUBLETS)
 def test_at_120_hertz_a_small_doublet_is_flown_as_predicted_but_for_the_step(trims, name):
-    coarse, fine = (doublet_errors(trims["level"], name, step).max() for step in (TIME_STEP, TIME_STEP / 4.0))
+    coarse, fine = (
+        doublet_errors(trims["level"], name, step).max() for step in (TIME_STEP, TIME_STEP / 4.0)
+    )
     # JSBSim moves the body with the forces of the step before and by rectangles: an error of first order in the step. For the
     # quickest motions, 16 and 24 rad/s, that is 0.13 and 0.2 in a step, smoothed by the servo.
     assert coarse < 0.18
@@ -269,12 +318,16 @@ def test_a_servo_that_follows_at_once_is_no_state(trims, tmp_path, lag):
     with pytest.raises(AircraftError, match=why) as caught:
         linearise(Fdm(replace(X8, root=root)), trims["level"])
     assert "\n" not in str(caught.value)
-    assert np.isfinite(linearise(Fdm(replace(X8, root=root, driven_states=(propeller_speed(),))), trims["level"]).A).all()
+    assert np.isfinite(
+        linearise(Fdm(replace(X8, root=root, driven_states=(propeller_speed(),))), trims["level"]).A
+    ).all()
 
 
 def test_an_input_that_drives_nothing_is_named(trims):
     stuck = DrivenState(name="rudder_position", position="fcs/rudder-pos-rad", input="elevator")
     spec = replace(X8, driven_states=(stuck, *X8.driven_states[1:]))
-    with pytest.raises(AircraftError, match="'fcs/rudder-pos-rad' does not follow input 'elevator'") as caught:
+    with pytest.raises(
+        AircraftError, match="'fcs/rudder-pos-rad' does not follow input 'elevator'"
+    ) as caught:
         linearise(Fdm(spec), trims["level"])
     assert "\n" not in str(caught.value)

@@ -20,13 +20,29 @@ CT_ERROR = 0.05**2 / 8.0 * 0.2158 + 5e-7
 CQ_ERROR = 0.05**2 / 8.0 * 0.03328 + 5e-7 / (2.0 * math.pi)
 
 # Airspeed [m/s] and throttle [-]: from windmilling (J = 0.87) to full power, slow and fast; all with J inside the tables' 0 to 1.
-CONDITIONS = [(14.0, 0.3), (20.0, 0.5), (20.0, 0.667), (20.0, 1.0), (14.0, 1.0), (26.0, 1.0), (26.0, 0.7)]
+CONDITIONS = [
+    (14.0, 0.3),
+    (20.0, 0.5),
+    (20.0, 0.667),
+    (20.0, 1.0),
+    (14.0, 1.0),
+    (26.0, 1.0),
+    (26.0, 0.7),
+]
 
 
 def settled(fdm, airspeed, throttle, rates=(0.0, 0.0, 0.0)):
     """Hold the aircraft, moving straight ahead, until the propeller stands; return its speed [rad/s] and the density [kg/m^3]."""
     fdm.command({"elevator": 0.0, "aileron": 0.0, "throttle": throttle})
-    fdm.place(RigidBodyState(altitude=100.0, roll=0.0, pitch=0.0, velocity_body=(airspeed, 0.0, 0.0), rates_body=rates))
+    fdm.place(
+        RigidBodyState(
+            altitude=100.0,
+            roll=0.0,
+            pitch=0.0,
+            velocity_body=(airspeed, 0.0, 0.0),
+            rates_body=rates,
+        )
+    )
     assert fdm.settle()
     return propeller_speed(fdm), fdm.read("atmosphere/rho-slugs_ft3") * KG_M3_PER_SLUG_FT3
 
@@ -55,7 +71,9 @@ def test_settled_torque_is_that_of_the_published_polynomial(x8_fdm, airspeed, th
         torque = shaft_torque(x8_fdm)
     unit = density * (speed / (2.0 * math.pi)) ** 2 * x8.PROPELLER_DIAMETER**5
     # The motor balances it within what its own equations allow, see below.
-    assert torque == pytest.approx(x8.propeller_torque(airspeed, speed, density), abs=CQ_ERROR * unit + 2e-5 * abs(torque))
+    assert torque == pytest.approx(
+        x8.propeller_torque(airspeed, speed, density), abs=CQ_ERROR * unit + 2e-5 * abs(torque)
+    )
 
 
 @pytest.mark.parametrize(("airspeed", "throttle"), CONDITIONS)
@@ -98,7 +116,9 @@ def test_the_propeller_follows_the_throttle_with_the_time_constant_of_motor_and_
     share = (np.array(moved) - start) / (end - start)
     # J d(omega)/dt = Kt ((V - Kt omega)/R - I0) - Q(omega): without load the time constant is J R/Kt^2 = 0.051 s, and the load's
     # slope shortens it to 0.044 s. JSBSim steps this with Euler's rule: (1 - dt/T)^n of the step is left after n steps.
-    load = x8.propeller_torque(airspeed, start + 0.5, density) - x8.propeller_torque(airspeed, start - 0.5, density)
+    load = x8.propeller_torque(airspeed, start + 0.5, density) - x8.propeller_torque(
+        airspeed, start - 0.5, density
+    )
     rate = (x8.MOTOR_KT**2 / x8.MOTOR_RESISTANCE + load) / x8.PROPELLER_INERTIA
     assert 1.0 / rate == pytest.approx(0.0438, abs=0.0005)
     expected = 1.0 - (1.0 - TIME_STEP * rate) ** np.arange(1, 21)
@@ -110,7 +130,9 @@ def test_the_propeller_follows_the_throttle_with_the_time_constant_of_motor_and_
 def test_the_airframe_feels_the_motors_torque_against_the_propellers_turn(x8_fdm):
     with x8_fdm.frozen():
         settled(x8_fdm, 20.0, 0.667)
-        roll, pitch, yaw = (x8_fdm.read(f"moments/{axis}-prop-lbsft") * NM_PER_LBF_FT for axis in "lmn")
+        roll, pitch, yaw = (
+            x8_fdm.read(f"moments/{axis}-prop-lbsft") * NM_PER_LBF_FT for axis in "lmn"
+        )
         torque = shaft_torque(x8_fdm)
     # Clockwise seen from behind (sense 1): the reaction rolls left. The thrust line passes the centre of gravity. Exact but for
     # rounding.
@@ -122,7 +144,9 @@ def test_the_turning_propeller_resists_like_a_gyroscope(x8_fdm):
     rates = (0.3, -0.4, 0.5)
     with x8_fdm.frozen():
         speed, _ = settled(x8_fdm, 20.0, 0.667, rates)
-        moment = np.array([x8_fdm.read(f"moments/{axis}-prop-lbsft") * NM_PER_LBF_FT for axis in "lmn"])
+        moment = np.array(
+            [x8_fdm.read(f"moments/{axis}-prop-lbsft") * NM_PER_LBF_FT for axis in "lmn"]
+        )
         moment[0] += shaft_torque(x8_fdm)
     # The airframe turns the rotor's angular momentum H, ahead for clockwise seen from behind, and feels -omega x H.
     momentum = np.array([x8.PROPELLER_INERTIA * speed, 0.0, 0.0])

@@ -37,8 +37,18 @@ def trims():
 
 
 def state_of(found):
-    driven = [found.driven[name] for name in ("elevator_position", "aileron_position", "propeller_speed")]
-    body = [found.airspeed, found.alpha, found.beta, *found.rates_body, found.roll, found.pitch, found.altitude]
+    driven = [
+        found.driven[name] for name in ("elevator_position", "aileron_position", "propeller_speed")
+    ]
+    body = [
+        found.airspeed,
+        found.alpha,
+        found.beta,
+        *found.rates_body,
+        found.roll,
+        found.pitch,
+        found.altitude,
+    ]
     return np.array([*body, *driven])
 
 
@@ -52,8 +62,13 @@ def test_what_is_left_of_the_accelerations_is_a_millionth_of_g(trims, name):
 @pytest.mark.parametrize("name", CONDITIONS)
 def test_the_published_equations_are_in_balance_at_every_trim(trims, name):
     found = trims[name]
-    rates = dict(zip(x8.RATES, x8.state_rates(state_of(found), found.inputs["throttle"]), strict=True))
-    unit = x8.standard_density(found.altitude) * (found.driven["propeller_speed"] / (2.0 * math.pi)) ** 2
+    rates = dict(
+        zip(x8.RATES, x8.state_rates(state_of(found), found.inputs["throttle"]), strict=True)
+    )
+    unit = (
+        x8.standard_density(found.altitude)
+        * (found.driven["propeller_speed"] / (2.0 * math.pi)) ** 2
+    )
     # Thrust may be off by what linear interpolation in a table with steps of 0.05 is (see test_propulsion), 6.8e-5 in C_T.
     thrust_error = 6.8e-5 * unit * x8.PROPELLER_DIAMETER**4 / x8.MASS
     # The earth turns and is round: 2 omega V = 3e-3 m/s^2 where motion is not north, V^2/R = 6e-5 m/s^2.
@@ -66,7 +81,9 @@ def test_the_published_equations_are_in_balance_at_every_trim(trims, name):
     assert (rates["p"], rates["q"], rates["r"]) == pytest.approx((0.0, 0.0, 0.0), abs=3e-4)
     # Definitions of a steady turn: exact but for rounding.
     assert (rates["roll"], rates["pitch"]) == pytest.approx((0.0, 0.0), abs=1e-12)
-    assert rates["climb_rate"] == pytest.approx(found.airspeed * math.sin(found.climb_angle), abs=1e-9)
+    assert rates["climb_rate"] == pytest.approx(
+        found.airspeed * math.sin(found.climb_angle), abs=1e-9
+    )
     assert rates["heading_rate"] == pytest.approx(found.yaw_rate, abs=coriolis / found.airspeed)
 
 
@@ -74,10 +91,14 @@ def test_the_published_equations_are_in_balance_at_every_trim(trims, name):
 def test_in_level_flight_lift_and_thrust_carry_the_weight_and_thrust_meets_drag(trims, name):
     found = trims[name]
     density = x8.standard_density(found.altitude)
-    air = x8.Air(found.airspeed, found.alpha, found.beta, elevator=found.driven["elevator_position"])
+    air = x8.Air(
+        found.airspeed, found.alpha, found.beta, elevator=found.driven["elevator_position"]
+    )
     dynamic = 0.5 * density * found.airspeed**2 * x8.WING_AREA
     lift, drag = dynamic * x8.lift_coefficient(air), dynamic * x8.drag_coefficient(air)
-    pull = x8.thrust(found.airspeed * math.cos(found.alpha), found.driven["propeller_speed"], density)
+    pull = x8.thrust(
+        found.airspeed * math.cos(found.alpha), found.driven["propeller_speed"], density
+    )
     weight = x8.MASS * x8.equatorial_gravity(found.altitude)
     # 33 N. Bank and sideslip of less than a milliradian leave their square; density and gravity are good to 1e-5 each.
     assert lift + pull * math.sin(found.alpha) == pytest.approx(weight, rel=5e-5)
@@ -86,12 +107,19 @@ def test_in_level_flight_lift_and_thrust_carry_the_weight_and_thrust_meets_drag(
 
 
 @pytest.mark.parametrize("name", ["turning right", "turning left"])
-def test_in_a_level_turn_the_horizontal_force_is_centripetal_and_the_vertical_one_carries_the_weight(trims, name):
+def test_in_a_level_turn_the_horizontal_force_is_centripetal_and_the_vertical_one_carries_the_weight(
+    trims, name
+):
     found = trims[name]
     density = x8.standard_density(found.altitude)
     p, q, r = found.rates_body
-    deflections = {"elevator": found.driven["elevator_position"], "aileron": found.driven["aileron_position"]}
-    force = x8.aero_force(x8.Air(found.airspeed, found.alpha, found.beta, p, q, r, **deflections), density)
+    deflections = {
+        "elevator": found.driven["elevator_position"],
+        "aileron": found.driven["aileron_position"],
+    }
+    force = x8.aero_force(
+        x8.Air(found.airspeed, found.alpha, found.beta, p, q, r, **deflections), density
+    )
     velocity = np.array(body_velocity(found.airspeed, found.alpha, found.beta))
     force[0] += x8.thrust(float(velocity[0]), found.driven["propeller_speed"], density)
     ahead, right, down = level(tuple(map(float, force)), found.roll, found.pitch)
@@ -99,8 +127,12 @@ def test_in_a_level_turn_the_horizontal_force_is_centripetal_and_the_vertical_on
     # Newton: m V omega towards the middle of the circle, across the course; the course's own direction is (v_ahead, v_right).
     across = (v_ahead * right - v_right * ahead) / found.airspeed
     assert v_down == pytest.approx(0.0, abs=1e-9)
-    assert across == pytest.approx(x8.MASS * found.airspeed * found.yaw_rate, abs=x8.MASS * 2.0 * 7.292e-5 * found.airspeed)
-    assert -down == pytest.approx(x8.MASS * x8.equatorial_gravity(found.altitude), rel=1e-3)  # earth's rotation, see above: 3e-4
+    assert across == pytest.approx(
+        x8.MASS * found.airspeed * found.yaw_rate, abs=x8.MASS * 2.0 * 7.292e-5 * found.airspeed
+    )
+    assert -down == pytest.approx(
+        x8.MASS * x8.equatorial_gravity(found.altitude), rel=1e-3
+    )  # earth's rotation, see above: 3e-4
 
 
 def test_a_turn_to_the_right_is_clockwise_and_needs_more_lift(trims):
@@ -123,8 +155,12 @@ def test_a_climb_trim_climbs_at_the_asked_angle_when_flown(x8_fdm, trims, name):
 
 def test_the_course_offset_of_a_trim_is_course_less_yaw(trims):
     found = trims["turning right"]
-    north, east, _ = x8.body_from_ned(found.roll, found.pitch).T @ np.array(body_velocity(found.airspeed, found.alpha, found.beta))
-    assert found.course_offset() == pytest.approx(math.atan2(east, north), abs=1e-12)  # rounding of one rotation
+    north, east, _ = x8.body_from_ned(found.roll, found.pitch).T @ np.array(
+        body_velocity(found.airspeed, found.alpha, found.beta)
+    )
+    assert found.course_offset() == pytest.approx(
+        math.atan2(east, north), abs=1e-12
+    )  # rounding of one rotation
     # Sideslip and angle of attack, seen from above: beta cos(bank) - alpha sin(bank) and the square of either.
     small = found.beta * math.cos(found.roll) - found.alpha * math.sin(found.roll)
     assert found.course_offset() == pytest.approx(small, abs=3e-3)
@@ -136,7 +172,9 @@ def test_the_course_offset_of_a_trim_is_course_less_yaw(trims):
     roll=st.floats(-1.2, 1.2),
     climb_angle=st.floats(-0.5, 0.5),
 )
-def test_pitch_for_climb_is_the_pitch_at_which_the_velocity_climbs_so(alpha, beta, roll, climb_angle):
+def test_pitch_for_climb_is_the_pitch_at_which_the_velocity_climbs_so(
+    alpha, beta, roll, climb_angle
+):
     pitch = pitch_for_climb(alpha, beta, roll, climb_angle)
     _, _, down = level(body_velocity(1.0, alpha, beta), roll, pitch)
     assert -down == pytest.approx(math.sin(climb_angle), abs=1e-12)  # rounding
@@ -148,17 +186,23 @@ def test_without_sideslip_and_bank_pitch_is_angle_of_attack_plus_climb():
 
 @pytest.mark.parametrize("airspeed", [-3.0, 0.0, math.nan, math.inf])
 def test_an_impossible_airspeed_is_refused_in_one_line_that_names_it(x8_fdm, airspeed):
-    with pytest.raises(TrimError, match=rf"'x8'.* airspeed is {airspeed:g}|'x8'.* airspeed is {airspeed} m/s") as caught:
+    with pytest.raises(
+        TrimError, match=rf"'x8'.* airspeed is {airspeed:g}|'x8'.* airspeed is {airspeed} m/s"
+    ) as caught:
         trim(x8_fdm, airspeed=airspeed, altitude=100.0)
     assert "must be finite and above 0" in str(caught.value)
     assert "\n" not in str(caught.value)
 
 
 IMPOSSIBLE = {
-    "bank 85 deg": {"bank": math.radians(85.0)},  # needs eleven times the weight in lift: alpha 0.6 rad
+    "bank 85 deg": {
+        "bank": math.radians(85.0)
+    },  # needs eleven times the weight in lift: alpha 0.6 rad
     "5 m/s": {"airspeed": 5.0},  # needs a lift coefficient of 2.9: alpha 0.7 rad
     "climb 57.2958 deg": {"climb_angle": 1.0},  # needs 28 N of thrust, of which there are 19
-    "15000 m": {"altitude": 15000.0},  # a sixth of the density: 20 m/s there is 8 m/s here, and thrust a sixth
+    "15000 m": {
+        "altitude": 15000.0
+    },  # a sixth of the density: 20 m/s there is 8 m/s here, and thrust a sixth
 }
 
 
@@ -174,8 +218,12 @@ def test_an_impossible_condition_is_refused_in_one_line_that_names_it_and_a_reme
     assert "\n" not in str(caught.value)
 
 
-@pytest.mark.parametrize("airspeed", [35.0, 60.0])  # full throttle gives 1.9 N at 35 m/s, where drag is 11 N
-def test_an_airspeed_beyond_the_propellers_power_is_refused_in_one_line_that_names_it_and_a_remedy(x8_fdm, airspeed):
+@pytest.mark.parametrize(
+    "airspeed", [35.0, 60.0]
+)  # full throttle gives 1.9 N at 35 m/s, where drag is 11 N
+def test_an_airspeed_beyond_the_propellers_power_is_refused_in_one_line_that_names_it_and_a_remedy(
+    x8_fdm, airspeed
+):
     with pytest.raises(TrimError, match=f"{airspeed:g} m/s") as caught:
         trim(x8_fdm, airspeed=airspeed, altitude=100.0)
     assert "choose a condition inside the flight envelope" in str(caught.value)
@@ -194,7 +242,9 @@ def test_a_quantity_that_is_not_a_number_is_refused_by_name(x8_fdm, quantity):
     assert "\n" not in str(caught.value)
 
 
-@pytest.mark.parametrize("condition", [{"bank": math.radians(85.0)}, {"airspeed": -1.0}, {"altitude": math.nan}])
+@pytest.mark.parametrize(
+    "condition", [{"bank": math.radians(85.0)}, {"airspeed": -1.0}, {"altitude": math.nan}]
+)
 def test_a_refused_trim_leaves_an_aircraft_that_can_be_trimmed_and_flown(x8_fdm, trims, condition):
     with pytest.raises(TrimError):
         trim(x8_fdm, **{"airspeed": 20.0, "altitude": 100.0, **condition})
@@ -213,5 +263,7 @@ def test_a_turn_on_its_side_or_back_is_refused(x8_fdm, bank_deg):
 
 def test_a_fourth_input_that_is_no_rudder_is_refused_by_name():
     flapped = Fdm(replace(X8, inputs=(*X8.inputs, surface("flap"))))
-    with pytest.raises(AircraftError, match="has the inputs elevator, aileron, throttle, flap; it needs"):
+    with pytest.raises(
+        AircraftError, match="has the inputs elevator, aileron, throttle, flap; it needs"
+    ):
         trim(flapped, airspeed=20.0, altitude=100.0)

@@ -35,13 +35,17 @@ def trims(jet):
 
 
 @pytest.mark.parametrize("name", CONDITIONS)
-def test_a_trim_that_converged_says_so_and_leaves_less_than_a_millionth_of_g_without_sideslip(trims, name):
+def test_a_trim_that_converged_says_so_and_leaves_less_than_a_millionth_of_g_without_sideslip(
+    trims, name
+):
     found = trims[name]
     assert found.outcome is TrimOutcome.CONVERGED
     assert found.limits == ()
     assert len(found.residuals) == 6
     assert found.residual == max(abs(value) for value in found.residuals) < 1e-5
-    assert found.beta == pytest.approx(0.0, abs=1e-6)  # what the rudder is for; solved for as the accelerations are
+    assert found.beta == pytest.approx(
+        0.0, abs=1e-6
+    )  # what the rudder is for; solved for as the accelerations are
 
 
 @pytest.mark.parametrize("name", CONDITIONS)
@@ -124,5 +128,7 @@ def test_an_impossible_airspeed_of_a_jet_names_its_throttle(jet):
 def test_a_trim_found_from_a_neighbour_is_the_one_found_from_nothing(jet, trims):
     nearby = trim(jet, airspeed=84.0, altitude=1000.0)
     found = trim(jet, **JET, start=nearby)
-    assert found.alpha == pytest.approx(trims["level"].alpha, abs=1e-6)  # both solved to 1e-5 m/s^2 of 50 m/s^2 per rad
+    assert found.alpha == pytest.approx(
+        trims["level"].alpha, abs=1e-6
+    )  # both solved to 1e-5 m/s^2 of 50 m/s^2 per rad
     assert found.inputs == pytest.approx(trims["level"].inputs, abs=1e-5)

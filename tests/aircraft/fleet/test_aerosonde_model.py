@@ -24,10 +24,19 @@ LAGS = bm.Lags()
 # attached and through the stall at 0.47 rad on both sides.
 STILL = (0.0, 0.0, 0.0)
 CONDITIONS = [
-    *((25.0, alpha, 0.0, STILL, STILL) for alpha in (-0.6, -0.47, -0.1, 0.0, 0.05, 0.2, 0.44, 0.47, 0.5, 0.6)),
+    *(
+        (25.0, alpha, 0.0, STILL, STILL)
+        for alpha in (-0.6, -0.47, -0.1, 0.0, 0.05, 0.2, 0.44, 0.47, 0.5, 0.6)
+    ),
     *((25.0, 0.05, beta, STILL, STILL) for beta in (-0.15, 0.1)),
-    *((22.0, 0.05, 0.0, rates, STILL) for rates in ((0.8, 0.0, 0.0), (0.0, -0.6, 0.0), (0.0, 0.0, 0.5))),
-    *((28.0, 0.05, 0.0, STILL, surfaces) for surfaces in ((-0.3, 0.0, 0.0), (0.0, 0.2, 0.0), (0.0, 0.0, -0.25))),
+    *(
+        (22.0, 0.05, 0.0, rates, STILL)
+        for rates in ((0.8, 0.0, 0.0), (0.0, -0.6, 0.0), (0.0, 0.0, 0.5))
+    ),
+    *(
+        (28.0, 0.05, 0.0, STILL, surfaces)
+        for surfaces in ((-0.3, 0.0, 0.0), (0.0, 0.2, 0.0), (0.0, 0.0, -0.25))
+    ),
     *((25.0, alpha, 0.1, (0.5, -0.2, 0.3), (-0.2, 0.1, 0.15)) for alpha in (0.08, 0.45)),
 ]
 
@@ -39,10 +48,19 @@ def fdm():
 
 def hold(fdm, airspeed, alpha, beta, rates, surfaces, throttle=0.7):
     """Hold the aircraft in this motion until servos and propeller stand; return the density [kg/m^3]."""
-    commands = {name: deflection / bm.FULL_DEFLECTION for name, deflection in zip(bm.SURFACES, surfaces, strict=True)}
+    commands = {
+        name: deflection / bm.FULL_DEFLECTION
+        for name, deflection in zip(bm.SURFACES, surfaces, strict=True)
+    }
     fdm.command({**commands, "throttle": throttle})
     fdm.place(
-        RigidBodyState(altitude=100.0, roll=0.1, pitch=0.1, velocity_body=body_velocity(airspeed, alpha, beta), rates_body=rates)
+        RigidBodyState(
+            altitude=100.0,
+            roll=0.1,
+            pitch=0.1,
+            velocity_body=body_velocity(airspeed, alpha, beta),
+            rates_body=rates,
+        )
     )
     assert fdm.settle()
     return fdm.read("atmosphere/rho-slugs_ft3") * KG_M3_PER_SLUG_FT3
@@ -54,8 +72,12 @@ def test_aerodynamic_forces_and_moments_are_those_of_the_published_coefficients(
     with fdm.frozen():
         density = hold(fdm, *condition)
         force = np.array([fdm.read(f"forces/fb{axis}-aero-lbs") for axis in "xyz"]) * N_PER_LBF
-        moment = np.array([fdm.read(f"moments/{axis}-aero-lbsft") for axis in "lmn"]) * NM_PER_LBF_FT
-    expected_force, expected_moment = bm.aero(body_velocity(airspeed, alpha, beta), rates, surfaces, density)
+        moment = (
+            np.array([fdm.read(f"moments/{axis}-aero-lbsft") for axis in "lmn"]) * NM_PER_LBF_FT
+        )
+    expected_force, expected_moment = bm.aero(
+        body_velocity(airspeed, alpha, beta), rates, surfaces, density
+    )
     # JSBSim's unit factors carry eight digits or so; the blend multiplies those of its exponent by 50. Absolute: a millionth of
     # what a coefficient of 0.05 gives at 25 m/s.
     np.testing.assert_allclose(force, expected_force, rtol=2e-6, atol=1e-5)
@@ -81,7 +103,9 @@ def test_mass_and_inertia_are_the_published_ones(fdm):
     assert fdm.read("inertia/mass-slugs") * 14.593902937 == pytest.approx(bm.MASS, rel=1e-7)
     # JSBSim's kg m^2 is 9e-5 off (test_inertia). The sign of Jxz shows in how it answers moments (the doublets of verification).
     for name, published in (("ixx", bm.JX), ("iyy", bm.JY), ("izz", bm.JZ)):
-        assert fdm.read(f"inertia/{name}-slugs_ft2") * NM_PER_LBF_FT == pytest.approx(published, rel=2e-4)
+        assert fdm.read(f"inertia/{name}-slugs_ft2") * NM_PER_LBF_FT == pytest.approx(
+            published, rel=2e-4
+        )
 
 
 def settled(fdm, airspeed, throttle):
@@ -92,8 +116,12 @@ def settled(fdm, airspeed, throttle):
         return density, speed, fdm.read("propulsion/engine/thrust-lbs") * N_PER_LBF
 
 
-@pytest.mark.parametrize(("airspeed", "throttle"), [(20.0, 0.5), (25.0, 0.6), (25.0, 0.77), (25.0, 1.0), (32.0, 1.0)])
-def test_the_propeller_settles_where_the_published_quadratic_says_and_pulls_as_much(fdm, airspeed, throttle):
+@pytest.mark.parametrize(
+    ("airspeed", "throttle"), [(20.0, 0.5), (25.0, 0.6), (25.0, 0.77), (25.0, 1.0), (32.0, 1.0)]
+)
+def test_the_propeller_settles_where_the_published_quadratic_says_and_pulls_as_much(
+    fdm, airspeed, throttle
+):
     density, speed, thrust = settled(fdm, airspeed, throttle)
     # Interpolation in steps of 0.01 is 2.7e-6 of C_T and 0.4e-6 of C_Q off, and JSBSim's horsepower 1.3e-5 of the torque.
     assert speed == pytest.approx(bm.settled_propeller_speed(throttle, airspeed, density), rel=1e-5)
@@ -101,8 +129,12 @@ def test_the_propeller_settles_where_the_published_quadratic_says_and_pulls_as_m
     assert thrust == pytest.approx(bm.thrust(airspeed, speed, density), abs=3e-6 * unit)
 
 
-@pytest.mark.parametrize(("airspeed", "throttle"), [(21.0, 0.3), (25.0, 0.05), (25.0, 0.2), (25.0, 0.4), (30.0, 0.1)])
-def test_with_little_throttle_the_propeller_windmills_and_brakes_as_published(fdm, airspeed, throttle):
+@pytest.mark.parametrize(
+    ("airspeed", "throttle"), [(21.0, 0.3), (25.0, 0.05), (25.0, 0.2), (25.0, 0.4), (30.0, 0.1)]
+)
+def test_with_little_throttle_the_propeller_windmills_and_brakes_as_published(
+    fdm, airspeed, throttle
+):
     density, speed, thrust = settled(fdm, airspeed, throttle)
     # Beyond an advance ratio of 1; with the throttle nearly closed 7.
     assert airspeed / (speed / (2.0 * math.pi) * bm.PROPELLER_DIAMETER) > 1.0
@@ -115,7 +147,9 @@ def test_with_little_throttle_the_propeller_windmills_and_brakes_as_published(fd
 
 def test_the_published_propeller_brakes_by_23_6_newtons_at_a_fifth_of_the_throttle():
     # Issue: 25 m/s, throttle 0.2, in the authors' own air of 1.2682 kg/m^3.
-    assert bm.thrust(25.0, bm.settled_propeller_speed(0.2, 25.0, 1.2682), 1.2682) == pytest.approx(-23.6, abs=0.05)
+    assert bm.thrust(25.0, bm.settled_propeller_speed(0.2, 25.0, 1.2682), 1.2682) == pytest.approx(
+        -23.6, abs=0.05
+    )
 
 
 TRIMS = {
@@ -135,14 +169,19 @@ def published_state(found):
     velocity = body_velocity(found.airspeed, found.alpha, found.beta)
     surfaces = [found.driven[f"{name}_position"] for name in bm.SURFACES]
     body = [*velocity, found.roll, found.pitch, 0.0, *found.rates_body, found.altitude]
-    return np.array([*body, *surfaces, found.driven["propeller_speed"]]), [*surfaces, found.inputs["throttle"]]
+    return np.array([*body, *surfaces, found.driven["propeller_speed"]]), [
+        *surfaces,
+        found.inputs["throttle"],
+    ]
 
 
 @pytest.mark.parametrize("name", TRIMS)
 def test_the_published_equations_are_in_balance_at_every_trim(fdm, name):
     found = trim(fdm, altitude=100.0, **TRIMS[name])
     world = bm.World(standard_density, equatorial_gravity(100.0))
-    rates = dict(zip(bm.FLOWN_STATES, bm.flown_rates(*published_state(found), world, LAGS), strict=True))
+    rates = dict(
+        zip(bm.FLOWN_STATES, bm.flown_rates(*published_state(found), world, LAGS), strict=True)
+    )
     # The earth turns (2 omega V = 4e-3 m/s^2 where motion is not north, in turns) and is round (V^2/R = 1e-4 m/s^2).
     coriolis = 2.0 * 7.292e-5 * found.airspeed
     assert (rates["u"], rates["v"], rates["w"]) == pytest.approx((0.0, 0.0, 0.0), abs=coriolis)
@@ -150,7 +189,9 @@ def test_the_published_equations_are_in_balance_at_every_trim(fdm, name):
     assert (rates["p"], rates["q"], rates["r"]) == pytest.approx((0.0, 0.0, 0.0), abs=1e-3)
     assert (rates["roll"], rates["pitch"]) == pytest.approx((0.0, 0.0), abs=1e-12)  # rounding
     assert rates["yaw"] == pytest.approx(found.yaw_rate, abs=1e-12)
-    assert rates["altitude"] == pytest.approx(found.airspeed * math.sin(found.climb_angle), abs=1e-9)
+    assert rates["altitude"] == pytest.approx(
+        found.airspeed * math.sin(found.climb_angle), abs=1e-9
+    )
     # rad/s^2. Interpolation in steps of 0.01 is 4e-7 of C_Q off, whose unit is 390 N m at 30 m/s, on a rotor of 2.1e-3 kg m^2; and
     # JSBSim's horsepower is 1.3e-5 of 1 N m.
     assert rates["propeller_speed"] == pytest.approx(0.0, abs=0.09)
@@ -167,10 +208,16 @@ def test_the_poles_of_the_linear_model_are_those_of_the_published_equations(bank
     world = bm.World(standard_density, equatorial_gravity(100.0))
     steps = np.diag([1e-4] * 9 + [1.0] + [1e-4] * 3 + [1e-2])
     columns = [
-        (bm.flown_rates(y + step, commands, world, LAGS) - bm.flown_rates(y - step, commands, world, LAGS)) / (2.0 * step.sum())
+        (
+            bm.flown_rates(y + step, commands, world, LAGS)
+            - bm.flown_rates(y - step, commands, world, LAGS)
+        )
+        / (2.0 * step.sum())
         for step in steps
     ]
-    without_yaw = [i for i, name in enumerate(bm.FLOWN_STATES) if name != "yaw"]  # yaw does not act back: a pole at zero
+    without_yaw = [
+        i for i, name in enumerate(bm.FLOWN_STATES) if name != "yaw"
+    ]  # yaw does not act back: a pole at zero
     expected = np.linalg.eigvals(np.column_stack(columns)[np.ix_(without_yaw, without_yaw)])
     found_poles = model.poles()
     for pole in expected:

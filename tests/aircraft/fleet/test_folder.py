@@ -64,12 +64,16 @@ def test_jsbsim_flies_it_with_its_own_weight_and_with_engine_and_propeller_of_js
     mine, stock = Fdm(find_spec(str(heavy))), Fdm(find_spec("c172p"))
     for fdm in (mine, stock):
         fdm.step(3)
-    assert mine.read("inertia/empty-weight-lbs") - stock.read("inertia/empty-weight-lbs") == pytest.approx(150.0, abs=1e-9)
+    assert mine.read("inertia/empty-weight-lbs") - stock.read(
+        "inertia/empty-weight-lbs"
+    ) == pytest.approx(150.0, abs=1e-9)
 
 
 # As JSBSim searches: the model's folder and its Engines, then the root beside it; JSBSim's own only where there is none.
 @pytest.mark.parametrize("place", ["fleet/heavy", "fleet/heavy/Engines", "engine"])
-def test_engines_are_found_in_the_folder_in_its_engines_and_beside_the_directory(heavy, tmp_path, place):
+def test_engines_are_found_in_the_folder_in_its_engines_and_beside_the_directory(
+    heavy, tmp_path, place
+):
     (tmp_path / place).mkdir(exist_ok=True)
     copy = tmp_path / place / "own_io320.xml"
     shutil.copy(STOCK / "engine" / "eng_io320.xml", copy)
@@ -77,7 +81,10 @@ def test_engines_are_found_in_the_folder_in_its_engines_and_beside_the_directory
     spec = find_spec(str(heavy))
     Fdm(spec).step(3)
     before = model_hash(spec.files)
-    copy.write_text(re.sub(r"(<displacement[^>]*>)[^<]*", r"\g<1>300.0", copy.read_text(encoding="utf-8")), encoding="utf-8")
+    copy.write_text(
+        re.sub(r"(<displacement[^>]*>)[^<]*", r"\g<1>300.0", copy.read_text(encoding="utf-8")),
+        encoding="utf-8",
+    )
     assert model_hash(spec.files) != before
 
 
@@ -136,7 +143,11 @@ def test_settings_say_title_commands_properties_and_envelope(heavy):
     assert dict(spec.configuration)["fcs/flap-cmd-norm"] == 0.5
     assert dict(spec.configuration)["propulsion/fuel_freeze"] == 0.0  # in place of the usual 1
     assert spec.envelope is not None
-    assert (spec.envelope.airspeed_min, spec.envelope.airspeed, spec.envelope.airspeed_max) == (40.0, 45.0, 55.0)
+    assert (spec.envelope.airspeed_min, spec.envelope.airspeed, spec.envelope.airspeed_max) == (
+        40.0,
+        45.0,
+        55.0,
+    )
     assert spec.envelope.bank == math.radians(30.0)
     check_user_aircraft(spec)
 
@@ -146,13 +157,31 @@ def test_settings_say_title_commands_properties_and_envelope(heavy):
     [
         ("elevatr = 'a'", r"unknown key 'elevatr'; did you mean 'elevator'\?"),
         ("elevator = 'a b'", r'elevator.0 is "a b"; give a JSBSim property'),
-        ("elevator = 'fcs/not-there'", r"no elevator command; name what takes it in heavy.toml, elevator = \"PROPERTY\"$"),
-        ("rudder = 'fcs/not-there'", r"no rudder command; name .* in heavy.toml, rudder = \"PROPERTY\", or rudder = false$"),
-        ("elevator = []", r'elevator is \[\]; give the JSBSim property that takes its command, as in "fcs/elevator-cmd-norm"'),
-        ("elevator = false", r'elevator is false; give the JSBSim property .* "fcs/elevator-cmd-norm", or leave the key out$'),
-        ("rudder = true", r"rudder is true; give the JSBSim property .* or leave the key out; false is for no rudder$"),
+        (
+            "elevator = 'fcs/not-there'",
+            r"no elevator command; name what takes it in heavy.toml, elevator = \"PROPERTY\"$",
+        ),
+        (
+            "rudder = 'fcs/not-there'",
+            r"no rudder command; name .* in heavy.toml, rudder = \"PROPERTY\", or rudder = false$",
+        ),
+        (
+            "elevator = []",
+            r'elevator is \[\]; give the JSBSim property that takes its command, as in "fcs/elevator-cmd-norm"',
+        ),
+        (
+            "elevator = false",
+            r'elevator is false; give the JSBSim property .* "fcs/elevator-cmd-norm", or leave the key out$',
+        ),
+        (
+            "rudder = true",
+            r"rudder is true; give the JSBSim property .* or leave the key out; false is for no rudder$",
+        ),
         ("rudder = [3]", r"rudder.0 is 3; give text in quotes$"),
-        ("envelope = 'found'", r'envelope is "found"; give a table with airspeed_min_mps, .*, or leave the key out$'),
+        (
+            "envelope = 'found'",
+            r'envelope is "found"; give a table with airspeed_min_mps, .*, or leave the key out$',
+        ),
         ("properties = 1", "properties is 1; give a table of JSBSim properties and their values$"),
         ("[properties]\n'fcs/flap' = 'a'", r'properties.fcs/flap is "a"; it must be a number$'),
         ("title = 3", "title is 3; give text in quotes$"),
@@ -172,8 +201,14 @@ def test_settings_say_title_commands_properties_and_envelope(heavy):
             "[envelope]\nairspeed_min_mps=40\nairspeed_mps=45\nairspeed_max_mps=55\nbank_deg=30\nairspeed=45",
             "unknown key 'envelope.airspeed'",
         ),
-        ("[envelope]\nairspeed_min_mps=40\nairspeed_mps=45\nairspeed_max_mps=500\nbank_deg=30", r"above 0 and up to 400"),
-        ("[envelope]\nairspeed_min_mps=40\nairspeed_mps=45\nairspeed_max_mps=55\nbank_deg=70", r"bank is 70 deg \(1\.22173 rad\)"),
+        (
+            "[envelope]\nairspeed_min_mps=40\nairspeed_mps=45\nairspeed_max_mps=500\nbank_deg=30",
+            r"above 0 and up to 400",
+        ),
+        (
+            "[envelope]\nairspeed_min_mps=40\nairspeed_mps=45\nairspeed_max_mps=55\nbank_deg=70",
+            r"bank is 70 deg \(1\.22173 rad\)",
+        ),
         ("title = ", r"heavy\.toml: not valid TOML"),
     ],
 )
@@ -183,7 +218,9 @@ def test_settings_that_are_wrong_are_refused_in_a_line(heavy, text, why):
 
 
 def test_every_key_of_the_settings_is_documented():
-    page = (Path(__file__).parents[3] / "docs" / "howto" / "aircraft.md").read_text(encoding="utf-8")
+    page = (Path(__file__).parents[3] / "docs" / "howto" / "aircraft.md").read_text(
+        encoding="utf-8"
+    )
     for key in ModelSettings.model_fields:
         assert f"`{key}`" in page, key
 
@@ -191,9 +228,17 @@ def test_every_key_of_the_settings_is_documented():
 @pytest.mark.parametrize(
     ("old", "new", "why"),
     [
-        ('file="eng_io320"', 'file="eng_none"', "engine file 'eng_none' is not in .*heavy', .*engine'; put it there"),
+        (
+            'file="eng_io320"',
+            'file="eng_none"',
+            "engine file 'eng_none' is not in .*heavy', .*engine'; put it there",
+        ),
         ('file="prop_75in2f"', 'file="prop_none"', "thruster file 'prop_none' is not in"),
-        ('file="eng_io320"', 'file="../../../eng_io320"', "engine file '../../../eng_io320' leads out of the aircraft's folders"),
+        (
+            'file="eng_io320"',
+            'file="../../../eng_io320"',
+            "engine file '../../../eng_io320' leads out of the aircraft's folders",
+        ),
         ('file="eng_io320"', 'file="/etc/passwd"', "engine file '/etc/passwd' leads out"),
         ('file="eng_io320"', r'file="C:\eng_io320"', "leads out"),
         ("<fdm_config", "<fdm", "heavy.xml: not valid XML"),
@@ -206,7 +251,9 @@ def test_a_model_that_cannot_be_flown_is_refused_in_a_line(heavy, old, new, why)
 
 
 @pytest.mark.parametrize("encoding", ["none-such", "utf-7", "punycode"])
-def test_a_file_in_an_encoding_that_no_parser_knows_is_refused_or_passed_over_beside_the_model(heavy, encoding):
+def test_a_file_in_an_encoding_that_no_parser_knows_is_refused_or_passed_over_beside_the_model(
+    heavy, encoding
+):
     declared = f'<?xml version="1.0" encoding="{encoding}"?>'
     (heavy / "notes.xml").write_text(f"{declared}<notes/>", encoding="utf-8")
     (heavy / "heavy.xml").rename(heavy / "c172.xml")
@@ -224,9 +271,13 @@ def test_a_folder_without_a_model_or_with_two_is_refused(heavy, tmp_path):
     assert "has no JSBSim model; put it there as light.xml" in refused(tmp_path / "fleet" / "light")
     for name in ("a", "b"):
         shutil.copy(heavy / "heavy.xml", tmp_path / "fleet" / "light" / f"{name}.xml")
-    assert "has 2 models, a.xml, b.xml; call one of them light.xml" in refused(tmp_path / "fleet" / "light")
+    assert "has 2 models, a.xml, b.xml; call one of them light.xml" in refused(
+        tmp_path / "fleet" / "light"
+    )
     heavy.rename(tmp_path / "fleet" / "hea vy")
-    (tmp_path / "fleet" / "hea vy" / "heavy.xml").rename(tmp_path / "fleet" / "hea vy" / "hea vy.xml")
+    (tmp_path / "fleet" / "hea vy" / "heavy.xml").rename(
+        tmp_path / "fleet" / "hea vy" / "hea vy.xml"
+    )
     assert "'hea vy' is no name of an aircraft" in refused(tmp_path / "fleet" / "hea vy")
 
 
@@ -245,21 +296,30 @@ def test_a_directory_lists_the_aircraft_that_it_holds(heavy, tmp_path):
             folder_path(fleet, name)
     with pytest.raises(AircraftError, match="there is no such directory"):
         folder_names(tmp_path / "none")
-    with pytest.raises(AircraftError, match="is the folder of an aircraft itself, 'heavy'; give the directory that it is in"):
+    with pytest.raises(
+        AircraftError,
+        match="is the folder of an aircraft itself, 'heavy'; give the directory that it is in",
+    ):
         folder_names(tmp_path / "fleet" / "heavy")
     (tmp_path / "empty").mkdir()
     with pytest.raises(AircraftError, match="holds no aircraft"):
         folder_names(tmp_path / "empty")
 
 
-def test_a_model_that_ends_jsbsims_process_and_a_property_that_does_not_exist_are_refused_in_a_line(heavy):
+def test_a_model_that_ends_jsbsims_process_and_a_property_that_does_not_exist_are_refused_in_a_line(
+    heavy,
+):
     spec = said(heavy, "[properties]\n'fcs/flap-comd-norm' = 1")
     with pytest.raises(AircraftError, match="has no JSBSim property 'fcs/flap-comd-norm'"):
         check_user_aircraft(spec)
     (heavy / "heavy.toml").unlink()
-    function = '<axis name="DRAG"><function name="aero/x"><property>no/such</property></function></axis>'
+    function = (
+        '<axis name="DRAG"><function name="aero/x"><property>no/such</property></function></axis>'
+    )
     edited(heavy, "<aerodynamics>", f"<aerodynamics>{function}")
-    with pytest.raises(AircraftError, match=r"JSBSim ends the whole process with its model: .*no/such") as caught:
+    with pytest.raises(
+        AircraftError, match=r"JSBSim ends the whole process with its model: .*no/such"
+    ) as caught:
         check_user_aircraft(find_spec(str(heavy)))
     assert "\n" not in str(caught.value)
 
@@ -269,17 +329,28 @@ def test_ground_contacts_are_looked_at_though_no_design_needs_them(heavy):
     begun = text.index("<location", text.index("<contact"))
     ended = text.index("</location>", begun) + len("</location>")
     (heavy / "heavy.xml").write_text(text[:begun] + text[ended:], encoding="utf-8")
-    with pytest.raises(AircraftError, match=r"JSBSim refused its model|JSBSim ends the whole process"):
+    with pytest.raises(
+        AircraftError, match=r"JSBSim refused its model|JSBSim ends the whole process"
+    ):
         check_user_aircraft(find_spec(str(heavy)))
 
 
-def test_an_error_while_the_model_runs_is_one_line_without_a_traceback_that_names_the_model_file(heavy):
+def test_an_error_while_the_model_runs_is_one_line_without_a_traceback_that_names_the_model_file(
+    heavy,
+):
     # In its first time step JSBSim raises an error of its own for an input that nothing sets.
     gain = '<pure_gain name="x/y"><input>no/such</input><gain>1</gain></pure_gain>'
-    edited(heavy, "<flight_control", f'<system name="x"><channel name="x">{gain}</channel></system><flight_control')
+    edited(
+        heavy,
+        "<flight_control",
+        f'<system name="x"><channel name="x">{gain}</channel></system><flight_control',
+    )
     with pytest.raises(AircraftError) as caught:
         check_user_aircraft(find_spec(str(heavy)))
     told = str(caught.value)
-    assert re.fullmatch(rf"aircraft 'heavy': its model does not run: \S*Error: .*no/such.*; correct {heavy / 'heavy.xml'}", told)
+    assert re.fullmatch(
+        rf"aircraft 'heavy': its model does not run: \S*Error: .*no/such.*; correct {heavy / 'heavy.xml'}",
+        told,
+    )
     assert "Traceback" not in told
     assert "File " not in told

@@ -30,9 +30,13 @@ def installed(added_file, monkeypatch):
     """The file as a package whose entry points are known, as after pip install."""
     metadata = added_file.parent / "added_aircraft-1.0.dist-info"
     metadata.mkdir()
-    (metadata / "METADATA").write_text("Metadata-Version: 2.1\nName: added-aircraft\nVersion: 1.0\n", encoding="utf-8")
+    (metadata / "METADATA").write_text(
+        "Metadata-Version: 2.1\nName: added-aircraft\nVersion: 1.0\n", encoding="utf-8"
+    )
     points = "trainer = added_aircraft:TRAINER\nnumber = added_aircraft:NOT_AN_AIRCRAFT\nlost = added_aircraft:LOST\n"
-    (metadata / "entry_points.txt").write_text(f"[plume_flight_study.aircraft]\n{points}", encoding="utf-8")
+    (metadata / "entry_points.txt").write_text(
+        f"[plume_flight_study.aircraft]\n{points}", encoding="utf-8"
+    )
     monkeypatch.syspath_prepend(added_file.parent)
 
 

@@ -6,7 +6,12 @@ from aircraft.fleet.find import find_spec
 from aircraft.simulation.fdm import Fdm
 from aircraft.simulation.state import RigidBodyState, body_velocity
 
-AIRSPEEDS = {"c172x": 55.0, "c310": 75.0, "T37": 80.0, "737": 150.0}  # m/s, each somewhere in its flight manual's range
+AIRSPEEDS = {
+    "c172x": 55.0,
+    "c310": 75.0,
+    "T37": 80.0,
+    "737": 150.0,
+}  # m/s, each somewhere in its flight manual's range
 
 
 @pytest.fixture(scope="module", params=AIRSPEEDS)
@@ -14,7 +19,12 @@ def placed(request):
     """An aircraft that has been placed in flight, and its state."""
     name = request.param
     fdm = Fdm(find_spec(name))
-    state = RigidBodyState(altitude=1000.0, roll=0.0, pitch=0.05, velocity_body=body_velocity(AIRSPEEDS[name], 0.05, 0.0))
+    state = RigidBodyState(
+        altitude=1000.0,
+        roll=0.0,
+        pitch=0.05,
+        velocity_body=body_velocity(AIRSPEEDS[name], 0.05, 0.0),
+    )
     fdm.command({"elevator": 0.0, "aileron": 0.0, "throttle": 0.7, "rudder": 0.0})
     fdm.place(state)
     return name, fdm, state
@@ -39,7 +49,11 @@ def test_an_engine_that_jsbsim_does_not_start_at_once_is_started_by_its_starter(
     # The Mustang's: asked to run at once, its running flag stays 0.
     fdm = Fdm(find_spec("p51d"))
     fdm.command({"throttle": 0.7})
-    fdm.place(RigidBodyState(altitude=1000.0, roll=0.0, pitch=0.05, velocity_body=body_velocity(110.0, 0.05, 0.0)))
+    fdm.place(
+        RigidBodyState(
+            altitude=1000.0, roll=0.0, pitch=0.05, velocity_body=body_velocity(110.0, 0.05, 0.0)
+        )
+    )
     assert fdm.cranked
     assert fdm.read("propulsion/engine/set-running") == 1.0
     assert fdm.read("propulsion/starter_cmd") == 0.0
@@ -67,7 +81,11 @@ def test_engines_come_to_rest_and_the_same_place_gives_the_same_accelerations(pl
             found.append([*fdm.acceleration_body(), *fdm.angular_acceleration()])
             # Elsewhere in between, with another throttle.
             fdm.command({"throttle": 0.9})
-            fdm.place(RigidBodyState(altitude=2000.0, roll=0.3, pitch=0.0, velocity_body=(AIRSPEEDS[name], 1.0, 2.0)))
+            fdm.place(
+                RigidBodyState(
+                    altitude=2000.0, roll=0.3, pitch=0.0, velocity_body=(AIRSPEEDS[name], 1.0, 2.0)
+                )
+            )
             fdm.step(600)
             fdm.command({"throttle": 0.7})
     # Settled to 1e-9 a step, behind engines as slow as a second or two (120 to 240 steps).
@@ -77,4 +95,7 @@ def test_engines_come_to_rest_and_the_same_place_gives_the_same_accelerations(pl
 def test_a_command_reaches_every_engine():
     fdm = Fdm(find_spec("c310"))
     fdm.command({"throttle": 0.37})
-    assert [fdm.read(name) for name in ("fcs/throttle-cmd-norm", "fcs/throttle-cmd-norm[1]")] == [0.37, 0.37]
+    assert [fdm.read(name) for name in ("fcs/throttle-cmd-norm", "fcs/throttle-cmd-norm[1]")] == [
+        0.37,
+        0.37,
+    ]

@@ -35,11 +35,20 @@ def failable(tmp_path):
 @pytest.mark.parametrize(
     ("name", "airspeed", "aileron", "play"),
     # Half the hysteresis of the elevator's servo of JSBSim's Cessna, 0.05 rad in its file; this project's Aerosonde has none.
-    [("aerosonde", 25.0, "fcs/aileron-pos-rad", 0.0), ("c172x", 55.0, "fcs/left-aileron-pos-rad", 0.025)],
+    [
+        ("aerosonde", 25.0, "fcs/aileron-pos-rad", 0.0),
+        ("c172x", 55.0, "fcs/left-aileron-pos-rad", 0.025),
+    ],
 )
-def test_each_surface_follows_its_command_until_it_sticks_at_trim(failable, name, airspeed, aileron, play):
+def test_each_surface_follows_its_command_until_it_sticks_at_trim(
+    failable, name, airspeed, aileron, play
+):
     fdm, faults = failable(name, airspeed)
-    positions = {"elevator": "fcs/elevator-pos-rad", "aileron": aileron, "rudder": "fcs/rudder-pos-rad"}
+    positions = {
+        "elevator": "fcs/elevator-pos-rad",
+        "aileron": aileron,
+        "rudder": "fcs/rudder-pos-rad",
+    }
     for surface, position in positions.items():
         trim = fdm.read(position)
         with fdm.frozen():
@@ -57,17 +66,24 @@ def test_each_surface_follows_its_command_until_it_sticks_at_trim(failable, name
     assert faults.failed == list(positions)
 
 
-@pytest.mark.parametrize(("name", "airspeed"), [("aerosonde", 25.0), ("c172x", 55.0), ("T38", 200.0)])
+@pytest.mark.parametrize(
+    ("name", "airspeed"), [("aerosonde", 25.0), ("c172x", 55.0), ("T38", 200.0)]
+)
 def test_a_lost_engine_of_any_kind_gives_no_thrust_until_it_is_repaired(failable, name, airspeed):
     fdm, faults = failable(name, airspeed)
-    thrust = [f"propulsion/engine[{i}]/thrust-lbs" for i in range(len(fdm.spec.input("throttle").commands))]
+    thrust = [
+        f"propulsion/engine[{i}]/thrust-lbs"
+        for i in range(len(fdm.spec.input("throttle").commands))
+    ]
     assert all(fdm.read(engine) > 0.1 for engine in thrust)
     faults.fail(ENGINE)
     fdm.command({"throttle": 1.0})
     with fdm.frozen():
         fdm.step(1200)
     assert all(fdm.read(engine) <= 0.0 for engine in thrust)
-    assert all(fdm.read(running) == 0.0 for running in fdm.spec.engine_flags)  # nor does it come to life while it wind-mills
+    assert all(
+        fdm.read(running) == 0.0 for running in fdm.spec.engine_flags
+    )  # nor does it come to life while it wind-mills
     faults.clear()
     fdm.renew()
     fdm.command({"throttle": 0.8})
@@ -80,12 +96,20 @@ def test_a_lost_engine_of_any_kind_gives_no_thrust_until_it_is_repaired(failable
 
 def test_the_names_are_those_of_what_each_aircraft_has():
     assert fault_names(X8) == ("engine", "left_elevon", "right_elevon", "throttle")
-    assert fault_names(find_spec("c172x")) == ("engine", "elevator", "aileron", "throttle", "rudder")
+    assert fault_names(find_spec("c172x")) == (
+        "engine",
+        "elevator",
+        "aileron",
+        "throttle",
+        "rudder",
+    )
 
 
 def test_an_actuator_that_nothing_reads_is_refused(tmp_path):
     copy_model(X8.files, tmp_path / "own")
     fields = {name: getattr(X8, name) for name in AircraftSpec.__slots__}
-    odd = AircraftSpec(**fields | {"own_actuators": (Actuator(name="flap", commands=("fcs/flap-cmd-rad",)),)})
+    odd = AircraftSpec(
+        **fields | {"own_actuators": (Actuator(name="flap", commands=("fcs/flap-cmd-rad",)),)}
+    )
     with pytest.raises(AircraftError, match="no <actuator> of its model reads 'fcs/flap-cmd-rad'"):
         failable_root(odd, tmp_path / "own", tmp_path / "failable")

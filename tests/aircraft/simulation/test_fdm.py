@@ -35,7 +35,9 @@ def test_a_misspelt_property_is_refused_by_name_on_reading(x8_fdm, use):
         getattr(x8_fdm, use)("aero/alpha-rd")
 
 
-@pytest.mark.parametrize("name", ["aero/alpha rad", "", "/aero", "aero//alpha-rad", "aero/alpha-rad "])
+@pytest.mark.parametrize(
+    "name", ["aero/alpha rad", "", "/aero", "aero//alpha-rad", "aero/alpha-rad "]
+)
 def test_what_is_not_a_property_name_is_refused_before_it_can_end_the_process(x8_fdm, name):
     with pytest.raises(UnknownPropertyError):
         x8_fdm.read(name)
@@ -97,7 +99,13 @@ def test_loading_and_flying_prints_nothing(capfd):
 def test_nothing_is_left_in_a_buffer_to_be_printed_when_the_program_ends():
     # C++ flushes its own buffer at exit, which capfd would not see.
     program = "from aircraft.simulation.fdm import Fdm; from aircraft.fleet.x8 import X8; Fdm(X8); print('mine')"
-    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True, cwd=MODELS.parents[1])
+    done = subprocess.run(
+        [sys.executable, "-c", program],
+        capture_output=True,
+        text=True,
+        check=True,
+        cwd=MODELS.parents[1],
+    )
     assert (done.stdout, done.stderr) == ("mine\n", "")
 
 
@@ -112,7 +120,9 @@ def test_a_step_lasts_one_hundred_and_twentieth_of_a_second(x8_fdm):
     before = x8_fdm.read("simulation/sim-time-sec")
     x8_fdm.step(12)
     assert TIME_STEP == 1.0 / 120.0
-    assert x8_fdm.read("simulation/sim-time-sec") - before == pytest.approx(0.1, abs=1e-12)  # rounding of twelve additions
+    assert x8_fdm.read("simulation/sim-time-sec") - before == pytest.approx(
+        0.1, abs=1e-12
+    )  # rounding of twelve additions
 
 
 def test_a_placed_aircraft_is_where_and_as_it_was_asked(x8_fdm):
@@ -120,7 +130,9 @@ def test_a_placed_aircraft_is_where_and_as_it_was_asked(x8_fdm):
     # Feet and quaternions in between: twelve digits survive.
     assert x8_fdm.read("position/lat-geod-rad") == pytest.approx(0.2, abs=1e-12)
     assert x8_fdm.read("position/long-gc-rad") == pytest.approx(-0.3, abs=1e-12)
-    assert x8_fdm.read("position/h-sl-meters") == pytest.approx(120.0, abs=1e-6)  # a metre in 6.4 million, twice
+    assert x8_fdm.read("position/h-sl-meters") == pytest.approx(
+        120.0, abs=1e-6
+    )  # a metre in 6.4 million, twice
     assert x8_fdm.velocity_body() == pytest.approx(SOMEWHERE.velocity_body, abs=1e-11)
     assert x8_fdm.rates_body() == pytest.approx(SOMEWHERE.rates_body, abs=1e-12)
     for name, angle in (("phi", 0.3), ("theta", 0.1), ("psi", 1.234)):
@@ -133,7 +145,9 @@ def test_hold_releases_at_the_asked_place_with_the_asked_yaw_and_motion(x8_fdm, 
     state = replace(SOMEWHERE, latitude=latitude, yaw=yaw)
     x8_fdm.hold(state, 240)
     frame = LocalFrame(latitude, state.longitude, state.altitude)
-    north, east = frame.to_local(x8_fdm.read("position/lat-geod-rad"), x8_fdm.read("position/long-gc-rad"))
+    north, east = frame.to_local(
+        x8_fdm.read("position/lat-geod-rad"), x8_fdm.read("position/long-gc-rad")
+    )
     # In two seconds the equator turns away by 930 m; 0.1 m is a thousandth of a percent of a plume crossing of kilometres.
     assert math.hypot(north, east) < 0.1
     assert x8_fdm.read("position/h-sl-meters") == pytest.approx(120.0, abs=0.1)
@@ -177,8 +191,12 @@ def test_frozen_restores_motion_also_after_an_error(x8_fdm):
     # A tenth of a second of unbalanced flight: several hundredths of a radian and two metres.
     assert abs(x8_fdm.read("attitude/phi-rad") - SOMEWHERE.roll) > 0.01
     frame = LocalFrame(SOMEWHERE.latitude, SOMEWHERE.longitude, SOMEWHERE.altitude)
-    north, east = frame.to_local(x8_fdm.read("position/lat-geod-rad"), x8_fdm.read("position/long-gc-rad"))
-    assert math.hypot(north, east) == pytest.approx(2.0, abs=0.2)  # 20 m/s for 0.1 s, slightly climbing and accelerating
+    north, east = frame.to_local(
+        x8_fdm.read("position/lat-geod-rad"), x8_fdm.read("position/long-gc-rad")
+    )
+    assert math.hypot(north, east) == pytest.approx(
+        2.0, abs=0.2
+    )  # 20 m/s for 0.1 s, slightly climbing and accelerating
 
 
 def test_settle_says_whether_there_was_enough_time(x8_fdm):
@@ -190,7 +208,9 @@ def test_settle_says_whether_there_was_enough_time(x8_fdm):
         assert x8_fdm.settle()
         speed = x8_fdm.read("propulsion/engine/propeller-rpm")
         x8_fdm.step(120)
-    assert x8_fdm.read("propulsion/engine/propeller-rpm") == pytest.approx(speed, rel=1e-7)  # 1e-9 a step, dying out
+    assert x8_fdm.read("propulsion/engine/propeller-rpm") == pytest.approx(
+        speed, rel=1e-7
+    )  # 1e-9 a step, dying out
 
 
 def test_two_aircraft_do_not_share_state(x8_fdm):
@@ -206,7 +226,11 @@ def test_a_slow_engine_settles_where_it_would_at_its_own_pace(throttle):
     # The Cessna's piston engine changes its speed in a second: from 0.7 of its throttle it takes a thousand steps and more.
     fdm = Fdm(find_spec("c172x"))
     fdm.command({"throttle": 0.7})
-    fdm.place(RigidBodyState(altitude=500.0, roll=0.0, pitch=0.05, velocity_body=body_velocity(50.0, 0.05, 0.0)))
+    fdm.place(
+        RigidBodyState(
+            altitude=500.0, roll=0.0, pitch=0.05, velocity_body=body_velocity(50.0, 0.05, 0.0)
+        )
+    )
     with fdm.frozen():
         assert fdm.settle(2e-9)
         fdm.command({"throttle": throttle})

@@ -13,7 +13,13 @@ from aircraft.simulation.pace import paced
 from aircraft.simulation.state import RigidBodyState
 
 SOMEWHERE = RigidBodyState(
-    latitude=0.01, longitude=-0.02, altitude=120.0, roll=0.3, pitch=0.1, yaw=1.2, velocity_body=(20.0, 0.0, 1.0)
+    latitude=0.01,
+    longitude=-0.02,
+    altitude=120.0,
+    roll=0.3,
+    pitch=0.1,
+    yaw=1.2,
+    velocity_body=(20.0, 0.0, 1.0),
 )
 
 
@@ -42,7 +48,12 @@ def test_a_flight_that_is_shown_is_the_same_to_the_last_bit():
     for fdm in (shown, alone):
         fdm.place(SOMEWHERE)
         fdm.step(30)
-    names = ("position/lat-geod-rad", "position/long-gc-rad", "attitude/phi-rad", "velocities/vt-fps")
+    names = (
+        "position/lat-geod-rad",
+        "position/long-gc-rad",
+        "attitude/phi-rad",
+        "velocities/vt-fps",
+    )
     assert [shown.read(name) for name in names] == [alone.read(name) for name in names]
 
 

@@ -14,7 +14,13 @@ from aircraft.simulation.state import RigidBodyState
 
 SPEC = find_spec("c172p")
 START = RigidBodyState(altitude=60.0, roll=0.2, pitch=0.05, velocity_body=(50.0, 1.0, 3.0))
-STATES = ("position/h-sl-ft", "attitude/phi-rad", "attitude/theta-rad", "velocities/vt-fps", "velocities/r-rad_sec")
+STATES = (
+    "position/h-sl-ft",
+    "attitude/phi-rad",
+    "attitude/theta-rad",
+    "velocities/vt-fps",
+    "velocities/r-rad_sec",
+)
 
 
 @pytest.fixture
@@ -24,7 +30,11 @@ def root(tmp_path):
 
 
 def contacts(root):
-    return read_xml(root / "aircraft" / "c172p" / "c172p.xml").getroot().findall("ground_reactions/contact")
+    return (
+        read_xml(root / "aircraft" / "c172p" / "c172p.xml")
+        .getroot()
+        .findall("ground_reactions/contact")
+    )
 
 
 def flown(root):
@@ -50,10 +60,14 @@ def test_without_contacts_it_flies_the_same_to_the_last_bit(root):
 
 
 @pytest.mark.parametrize("encoding", ["utf-8", "utf-16"])
-@pytest.mark.parametrize("name", ["gear/unit[1]/WOW", "contact/unit[4]/WOW", "gear/num-units", "fcs/steer-pos-deg[0]"])
+@pytest.mark.parametrize(
+    "name", ["gear/unit[1]/WOW", "contact/unit[4]/WOW", "gear/num-units", "fcs/steer-pos-deg[0]"]
+)
 def test_a_model_that_reads_a_property_of_its_contacts_keeps_them(root, name, encoding):
     (root / "systems").mkdir(exist_ok=True)
-    (root / "systems" / "reads.xml").write_text(f"<system><property>{name}</property></system>", encoding=encoding)
+    (root / "systems" / "reads.xml").write_text(
+        f"<system><property>{name}</property></system>", encoding=encoding
+    )
     leave_out_ground_contacts(SPEC, root)
     assert len(contacts(root)) == 7
 

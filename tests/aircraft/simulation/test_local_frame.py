@@ -16,7 +16,9 @@ from common.physics.geodesy import LocalFrame
 METRES_PER_FOOT = 0.3048
 
 
-@given(north=st.floats(-50e3, 50e3), east=st.floats(-50e3, 50e3), altitude=st.floats(-100.0, 3000.0))
+@given(
+    north=st.floats(-50e3, 50e3), east=st.floats(-50e3, 50e3), altitude=st.floats(-100.0, 3000.0)
+)
 def test_places_come_back_from_the_globe(north, east, altitude):
     frame = EquatorFrame(altitude)
     # Four steps, each by 6e-5 nearer: rounding of 50 km is left, 7e-12 m a step.
@@ -30,7 +32,9 @@ def test_it_is_the_azimuthal_equidistant_frame_at_the_origin(distance, error):
         north, east = distance * math.cos(azimuth), distance * math.sin(azimuth)
         latitude, longitude = (float(angle) for angle in whole.to_geodetic(north, east))
         # The other frame is good to 2e-4 m at 20 km, growing as the fifth power; this one is better.
-        assert EquatorFrame(60.0).to_local(latitude, longitude) == pytest.approx((north, east), abs=error)
+        assert EquatorFrame(60.0).to_local(latitude, longitude) == pytest.approx(
+            (north, east), abs=error
+        )
 
 
 def test_a_degree_has_its_surveyed_length():
@@ -43,8 +47,12 @@ def test_a_degree_has_its_surveyed_length():
 
 def test_higher_up_a_degree_is_longer():
     # By the ratio of radii: 1000 m in about 6378 km.
-    assert EquatorFrame(1000.0).east_scale - EquatorFrame().east_scale == pytest.approx(1000.0, abs=1e-6)
-    assert EquatorFrame(1000.0).north_scale - EquatorFrame().north_scale == pytest.approx(1000.0, abs=1e-6)
+    assert EquatorFrame(1000.0).east_scale - EquatorFrame().east_scale == pytest.approx(
+        1000.0, abs=1e-6
+    )
+    assert EquatorFrame(1000.0).north_scale - EquatorFrame().north_scale == pytest.approx(
+        1000.0, abs=1e-6
+    )
 
 
 FLIGHTS = {
@@ -62,11 +70,18 @@ def start():
 
 
 @pytest.mark.parametrize("name", FLIGHTS)
-def test_local_metres_are_the_integral_of_ground_velocity_over_a_long_flight(x8_aircraft, start, name):
+def test_local_metres_are_the_integral_of_ground_velocity_over_a_long_flight(
+    x8_aircraft, start, name
+):
     yaw, heading_rate = FLIGHTS[name]
     x8_aircraft.release(start.state(yaw=yaw), airspeed=20.0, altitude=100.0)
     fdm = x8_aircraft.fdm
-    names = ("velocities/v-north-fps", "velocities/v-east-fps", "position/lat-geod-rad", "position/long-gc-rad")
+    names = (
+        "velocities/v-north-fps",
+        "velocities/v-east-fps",
+        "position/lat-geod-rad",
+        "position/long-gc-rad",
+    )
     nodes = [fdm.node(n) for n in names]
     frame = EquatorFrame(100.0)
     steps = 60 * 120
@@ -76,7 +91,9 @@ def test_local_metres_are_the_integral_of_ground_velocity_over_a_long_flight(x8_
         x8_aircraft.command_heading_rate(heading_rate(i * TIME_STEP))
         fdm.run()
     velocity = log[:, :2] * METRES_PER_FOOT
-    integral = np.vstack([[0.0, 0.0], np.cumsum(0.5 * (velocity[1:] + velocity[:-1]) * TIME_STEP, axis=0)])
+    integral = np.vstack(
+        [[0.0, 0.0], np.cumsum(0.5 * (velocity[1:] + velocity[:-1]) * TIME_STEP, axis=0)]
+    )
     local = np.array([frame.to_local(latitude, longitude) for latitude, longitude in log[:, 2:]])
     local -= local[0]
     distance = 20.0 * 60.0

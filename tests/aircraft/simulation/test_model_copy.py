@@ -93,19 +93,31 @@ def test_outputs_inputs_and_autopilots_are_left_out_and_other_systems_stay(probe
     assert names == ["GNCUtilities", "map of flaps", "The model's own autopilot, off"]
 
 
-def test_the_autopilots_properties_stay_at_rest_before_the_flight_controls_that_read_them(probe, tmp_path):
+def test_the_autopilots_properties_stay_at_rest_before_the_flight_controls_that_read_them(
+    probe, tmp_path
+):
     config = copied(probe, "probe", tmp_path / "copy")
     rest = config.findall("system")[-1]
     values = {p.text: float(p.get("value")) for p in rest}
     # Declared ones, written ones, and components by the name that JSBSim gives them, from the model and from files.
     assert values == dict.fromkeys(
-        ("ap/heading_hold", "ap/wing-leveler", "ap/aileron_cmd", "ap/named/already", "ap/thrust_hold", "ap/from-file"), 0.0
+        (
+            "ap/heading_hold",
+            "ap/wing-leveler",
+            "ap/aileron_cmd",
+            "ap/named/already",
+            "ap/thrust_hold",
+            "ap/from-file",
+        ),
+        0.0,
     )
     order = [element.tag for element in config]
     assert order.index("flight_control") == list(config).index(rest) + 1
 
 
-@pytest.mark.parametrize(("play", "parts"), [(True, ["hysteresis_width", "deadband_width"]), (False, [])])
+@pytest.mark.parametrize(
+    ("play", "parts"), [(True, ["hysteresis_width", "deadband_width"]), (False, [])]
+)
 def test_servos_keep_their_play_only_if_asked_to(probe, tmp_path, play, parts):
     config = copied(probe, "probe", tmp_path / "copy", play=play)
     actuator = next(config.iter("actuator"))
@@ -120,7 +132,9 @@ def test_play_is_taken_out_of_the_systems_files_too(probe, tmp_path):
     file = probe / "aircraft" / "probe" / "Systems" / "servo.xml"
     file.write_text(text, encoding="utf-8")
     copy_model(files(probe, "probe"), tmp_path / "copy", play=False)
-    assert "hysteresis" not in (tmp_path / "copy" / "aircraft" / "probe" / "Systems" / "servo.xml").read_text(encoding="utf-8")
+    assert "hysteresis" not in (
+        tmp_path / "copy" / "aircraft" / "probe" / "Systems" / "servo.xml"
+    ).read_text(encoding="utf-8")
     assert file.read_text(encoding="utf-8") == text
 
 
@@ -133,9 +147,13 @@ def test_a_file_beside_the_model_that_no_parser_reads_is_left_as_it_is(probe, tm
 
 
 @pytest.mark.parametrize("content", UNREADABLE)
-def test_a_file_that_the_model_names_and_no_parser_reads_is_refused_in_a_line(probe, tmp_path, content):
+def test_a_file_that_the_model_names_and_no_parser_reads_is_refused_in_a_line(
+    probe, tmp_path, content
+):
     (probe / "aircraft" / "probe" / "Systems" / "Autopilot.xml").write_bytes(content)
-    with pytest.raises(AircraftError, match=r"^\S*Systems/Autopilot\.xml: not valid XML: .*; correct it$"):
+    with pytest.raises(
+        AircraftError, match=r"^\S*Systems/Autopilot\.xml: not valid XML: .*; correct it$"
+    ):
         copy_model(files(probe, "probe"), tmp_path / "copy")
 
 
@@ -143,7 +161,9 @@ def test_a_file_that_cannot_be_copied_is_named_in_a_line(probe, tmp_path):
     taken = tmp_path / "copy" / "aircraft" / "probe" / "Systems"
     taken.parent.mkdir(parents=True)
     taken.write_text("no folder", encoding="utf-8")
-    with pytest.raises(AircraftError, match=r"probe cannot be copied: \[Errno \d+\] .*Systems'; check that file$") as caught:
+    with pytest.raises(
+        AircraftError, match=r"probe cannot be copied: \[Errno \d+\] .*Systems'; check that file$"
+    ) as caught:
         copy_model(files(probe, "probe"), tmp_path / "copy")
     assert "\n" not in str(caught.value)
 
@@ -181,7 +201,17 @@ def test_a_copy_flies_under_the_stick_alone_as_the_original_does(tmp_path):
         fdm.command({"elevator": -0.1, "aileron": 0.05, "throttle": 0.6, "rudder": 0.02})
         fdm.hold(state, 240)
         fdm.step(240)
-        flights.append([fdm.read(n) for n in ("attitude/phi-rad", "attitude/theta-rad", "velocities/vt-fps", "position/h-sl-ft")])
+        flights.append(
+            [
+                fdm.read(n)
+                for n in (
+                    "attitude/phi-rad",
+                    "attitude/theta-rad",
+                    "velocities/vt-fps",
+                    "position/h-sl-ft",
+                )
+            ]
+        )
     assert flights[0] == flights[1]
 
 

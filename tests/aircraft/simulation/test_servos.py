@@ -47,25 +47,41 @@ def test_a_large_step_is_followed_at_200_degrees_a_second(x8_fdm, sign):
     lagged = size * (1.0 - np.exp(-LAG * (time - 0.5 * TIME_STEP)))
     # Tolerance of the lag: as above. It is met at 0.12 s, when 1 % of the step is left, so the limit is what shows until then.
     np.testing.assert_allclose(positions, np.minimum(RATE_LIMIT * time, lagged), atol=0.012 * size)
-    assert np.diff(positions).max() == pytest.approx(RATE_LIMIT * TIME_STEP, rel=1e-9)  # a clip: rounding alone
+    assert np.diff(positions).max() == pytest.approx(
+        RATE_LIMIT * TIME_STEP, rel=1e-9
+    )  # a clip: rounding alone
 
 
 @pytest.mark.parametrize(
     ("elevator", "aileron", "left", "right"),
-    [(1.0, 0.0, 1.0, 1.0), (2.0, 0.0, 1.0, 1.0), (-3.0, 0.0, -1.0, -1.0), (1.0, 1.0, 1.0, 0.0), (-0.5, -0.9, -1.0, 0.4)],
+    [
+        (1.0, 0.0, 1.0, 1.0),
+        (2.0, 0.0, 1.0, 1.0),
+        (-3.0, 0.0, -1.0, -1.0),
+        (1.0, 1.0, 1.0, 0.0),
+        (-0.5, -0.9, -1.0, 0.4),
+    ],
 )
 def test_each_elevon_stops_at_full_deflection_on_its_own(x8_fdm, elevator, aileron, left, right):
     # left = elevator + aileron, right = elevator - aileron, each within -1 and 1.
     inputs = {"elevator": elevator, "aileron": aileron}
-    assert step_answer(x8_fdm, inputs, 240, "fcs/left-elevon-pos-rad")[-1] == pytest.approx(left * FULL, abs=1e-9)
-    assert step_answer(x8_fdm, inputs, 240, "fcs/right-elevon-pos-rad")[-1] == pytest.approx(right * FULL, abs=1e-9)
+    assert step_answer(x8_fdm, inputs, 240, "fcs/left-elevon-pos-rad")[-1] == pytest.approx(
+        left * FULL, abs=1e-9
+    )
+    assert step_answer(x8_fdm, inputs, 240, "fcs/right-elevon-pos-rad")[-1] == pytest.approx(
+        right * FULL, abs=1e-9
+    )
 
 
 def test_elevator_and_aileron_are_the_symmetric_and_antisymmetric_part(x8_fdm):
     inputs = {"elevator": 0.2, "aileron": -0.3}
     # Twenty time constants leave 1e-9 of the step.
-    assert step_answer(x8_fdm, inputs, 60, "fcs/elevator-pos-rad")[-1] == pytest.approx(0.2 * FULL, abs=1e-8)
-    assert step_answer(x8_fdm, inputs, 60, "fcs/aileron-pos-rad")[-1] == pytest.approx(-0.3 * FULL, abs=1e-8)
+    assert step_answer(x8_fdm, inputs, 60, "fcs/elevator-pos-rad")[-1] == pytest.approx(
+        0.2 * FULL, abs=1e-8
+    )
+    assert step_answer(x8_fdm, inputs, 60, "fcs/aileron-pos-rad")[-1] == pytest.approx(
+        -0.3 * FULL, abs=1e-8
+    )
 
 
 def test_positive_aileron_rolls_right_and_positive_elevator_pitches_down(x8_fdm):

@@ -10,7 +10,15 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
-from aircraft.simulation.state import RigidBodyState, body_velocity, course_rate, euler_rates, level, turn_rates, with_wind
+from aircraft.simulation.state import (
+    RigidBodyState,
+    body_velocity,
+    course_rate,
+    euler_rates,
+    level,
+    turn_rates,
+    with_wind,
+)
 
 components = st.floats(-50.0, 50.0)
 vectors = st.tuples(components, components, components)
@@ -27,11 +35,15 @@ def test_level_is_the_rotation_back_from_body_to_ahead_right_down(vector, roll, 
 
 @given(vector=vectors, roll=rolls, pitch=pitches)
 def test_level_keeps_lengths(vector, roll, pitch):
-    assert math.hypot(*level(vector, roll, pitch)) == pytest.approx(math.hypot(*vector), abs=ROUNDING)
+    assert math.hypot(*level(vector, roll, pitch)) == pytest.approx(
+        math.hypot(*vector), abs=ROUNDING
+    )
 
 
 def test_level_follows_the_frames_definition():
-    assert level((1.0, 0.0, 0.0), 0.0, 0.1)[2] < 0.0  # nose up: ahead points above the horizon, down is positive
+    assert (
+        level((1.0, 0.0, 0.0), 0.0, 0.1)[2] < 0.0
+    )  # nose up: ahead points above the horizon, down is positive
     assert level((0.0, 1.0, 0.0), 0.1, 0.0)[2] > 0.0  # right wing down
 
 
@@ -52,7 +64,9 @@ def test_the_rates_of_a_steady_turn_move_yaw_alone(yaw_rate, roll, pitch):
 
 @given(yaw_rate=st.floats(-3.0, 3.0), roll=rolls, pitch=pitches)
 def test_a_steady_turn_is_a_rotation_about_the_vertical(yaw_rate, roll, pitch):
-    assert level(turn_rates(yaw_rate, roll, pitch), roll, pitch) == pytest.approx((0.0, 0.0, yaw_rate), abs=ROUNDING)
+    assert level(turn_rates(yaw_rate, roll, pitch), roll, pitch) == pytest.approx(
+        (0.0, 0.0, yaw_rate), abs=ROUNDING
+    )
 
 
 @given(rates=vectors, roll=rolls, pitch=pitches)
@@ -73,7 +87,9 @@ def test_euler_rates_put_together_again_are_the_body_rates(rates, roll, pitch):
     roll=rolls,
     pitch=st.floats(-0.5, 0.5),
 )
-def test_what_pulls_straight_down_does_not_turn_the_course(velocity, acceleration, pull, roll, pitch):
+def test_what_pulls_straight_down_does_not_turn_the_course(
+    velocity, acceleration, pull, roll, pitch
+):
     # Which is why specific force serves as well as acceleration.
     down = x8.body_from_ned(roll, pitch) @ np.array([0.0, 0.0, pull])
     pulled = tuple(float(a) for a in np.array(acceleration) + down)
@@ -85,7 +101,12 @@ def test_what_pulls_straight_down_does_not_turn_the_course(velocity, acceleratio
         )
 
 
-@given(airspeed=st.floats(5.0, 50.0), yaw_rate=st.floats(-1.0, 1.0), roll=st.floats(-1.2, 1.2), pitch=st.floats(-0.3, 0.3))
+@given(
+    airspeed=st.floats(5.0, 50.0),
+    yaw_rate=st.floats(-1.0, 1.0),
+    roll=st.floats(-1.2, 1.2),
+    pitch=st.floats(-0.3, 0.3),
+)
 def test_in_a_steady_turn_the_course_turns_at_the_yaw_rate(airspeed, yaw_rate, roll, pitch):
     velocity = body_velocity(airspeed, 0.05, -0.03)
     acceleration = np.cross(turn_rates(yaw_rate, roll, pitch), velocity)
@@ -105,7 +126,11 @@ def test_course_rate_is_the_derivative_of_the_course_along_a_banking_turning_pat
         return 0.3 * t + 0.2 * math.sin(0.7 * t)
 
     def velocity(t):
-        return np.array(body_velocity(20.0 + math.sin(t), 0.06 + 0.03 * math.sin(2.0 * t), 0.05 * math.cos(1.7 * t)))
+        return np.array(
+            body_velocity(
+                20.0 + math.sin(t), 0.06 + 0.03 * math.sin(2.0 * t), 0.05 * math.cos(1.7 * t)
+            )
+        )
 
     def velocity_ned(t):
         return x8.body_from_ned(roll(t), pitch(t), yaw(t)).T @ velocity(t)
@@ -118,7 +143,9 @@ def test_course_rate_is_the_derivative_of_the_course_along_a_banking_turning_pat
     acceleration_ned = (velocity_ned(time + h) - velocity_ned(time - h)) / (2.0 * h)
     acceleration = x8.body_from_ned(roll(time), pitch(time), yaw(time)) @ acceleration_ned
     expected = (course(time + h) - course(time - h)) / (2.0 * h)
-    found = course_rate(tuple(map(float, velocity(time))), tuple(map(float, acceleration)), roll(time), pitch(time))
+    found = course_rate(
+        tuple(map(float, velocity(time))), tuple(map(float, acceleration)), roll(time), pitch(time)
+    )
     assert found == pytest.approx(expected, abs=1e-8)
 
 
@@ -136,7 +163,9 @@ def test_while_the_bank_changes_the_course_rate_is_not_the_rate_of_yaw_and_sides
 
 
 def test_with_wind_adds_the_wind_whatever_the_attitude():
-    state = RigidBodyState(altitude=60.0, roll=0.4, pitch=-0.2, yaw=2.1, velocity_body=(19.0, 1.0, -2.0))
+    state = RigidBodyState(
+        altitude=60.0, roll=0.4, pitch=-0.2, yaw=2.1, velocity_body=(19.0, 1.0, -2.0)
+    )
     # Scipy's intrinsic z-y'-x'' rotation takes body vectors to north, east, down. Roundings.
     to_ned = Rotation.from_euler("ZYX", [state.yaw, state.pitch, state.roll])
     over_ground = with_wind(state, (-7.0, 4.0))

@@ -25,9 +25,14 @@ def test_a_fault_in_the_root_of_a_python_files_aircraft_is_reported_in_a_line(tm
     name = f"{tmp_path / 'mine.py'}:MINE"
     check_user_aircraft(find_spec(name))
     text = model.read_text(encoding="utf-8")
-    function = '<axis name="DRAG"><function name="aero/x"><property>no/such</property></function></axis>'
+    function = (
+        '<axis name="DRAG"><function name="aero/x"><property>no/such</property></function></axis>'
+    )
     model.write_text(text.replace("<aerodynamics>", f"<aerodynamics>{function}"), encoding="utf-8")
-    with pytest.raises(AircraftError, match=r"aircraft 'mine': JSBSim ends the whole process with its model: .*no/such") as caught:
+    with pytest.raises(
+        AircraftError,
+        match=r"aircraft 'mine': JSBSim ends the whole process with its model: .*no/such",
+    ) as caught:
         check_user_aircraft(find_spec(name))
     assert "\n" not in str(caught.value)
 

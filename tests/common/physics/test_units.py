@@ -25,11 +25,16 @@ def test_a_foot_is_twelve_inches_of_25_4_millimetres():
 
 def test_a_pound_force_is_a_pound_under_standard_gravity():
     # Pound of 0.45359237 kg (1959 agreement) times 9.80665 m/s^2 (CGPM 1901), both exact.
-    assert pytest.approx(0.45359237 * 9.80665, rel=1e-15) == units.NEWTONS_PER_POUND  # rounding of one product
+    assert (
+        pytest.approx(0.45359237 * 9.80665, rel=1e-15) == units.NEWTONS_PER_POUND
+    )  # rounding of one product
 
 
 def test_a_slug_gains_one_foot_per_second_squared_from_one_pound_force():
-    assert pytest.approx(units.NEWTONS_PER_POUND, rel=1e-15) == units.KG_PER_SLUG * units.METRES_PER_FOOT  # rounding
+    assert (
+        pytest.approx(units.NEWTONS_PER_POUND, rel=1e-15)
+        == units.KG_PER_SLUG * units.METRES_PER_FOOT
+    )  # rounding
 
 
 def test_a_slug_weighs_32_174_pounds():
@@ -38,7 +43,9 @@ def test_a_slug_weighs_32_174_pounds():
 
 
 def test_sixty_revolutions_a_minute_are_one_turn_a_second():
-    assert pytest.approx(2.0 * math.pi, rel=1e-15) == 60.0 * units.RAD_S_PER_RPM  # rounding of one product
+    assert (
+        pytest.approx(2.0 * math.pi, rel=1e-15) == 60.0 * units.RAD_S_PER_RPM
+    )  # rounding of one product
 
 
 def test_sea_level_density_in_slugs_per_cubic_foot_is_1_225_kilograms_per_cubic_metre():

@@ -14,15 +14,21 @@ ROW = {
 
 
 def counts(*rows, planned=1):
-    return PatrolCounts.of([ROW | row for row in rows], planned=planned, oracle_share_min=0.8, wrong_share_max=0.05)
+    return PatrolCounts.of(
+        [ROW | row for row in rows], planned=planned, oracle_share_min=0.8, wrong_share_max=0.05
+    )
 
 
 @pytest.mark.parametrize(
     ("served", "verdicts", "oracle", "judged"),
     [(0, 0, 2, False), (2, 0, 0, False), (2, 0, 1, True), (2, 1, 0, True)],
 )
-def test_patrols_are_judged_by_a_ship_that_was_served_and_a_verdict_of_the_patrol_or_an_oracle(served, verdicts, oracle, judged):
-    assert counts({"served": served, "verdicts": verdicts, "oracle_verdicts": oracle}).judged is judged
+def test_patrols_are_judged_by_a_ship_that_was_served_and_a_verdict_of_the_patrol_or_an_oracle(
+    served, verdicts, oracle, judged
+):
+    assert (
+        counts({"served": served, "verdicts": verdicts, "oracle_verdicts": oracle}).judged is judged
+    )
 
 
 @pytest.mark.parametrize(
@@ -36,7 +42,9 @@ def test_patrols_are_judged_by_a_ship_that_was_served_and_a_verdict_of_the_patro
         ({"verdicts": 0, "correct": 0, "open": 5, "oracle_verdicts": 0}, True, False),
     ],
 )
-def test_patrols_hold_by_what_must_not_happen_and_are_met_by_their_verdicts_as_well(change, holds, met):
+def test_patrols_hold_by_what_must_not_happen_and_are_met_by_their_verdicts_as_well(
+    change, holds, met
+):
     assert (counts(change).holds, counts(change).met) == (holds, met)
 
 

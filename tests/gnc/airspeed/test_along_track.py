@@ -14,7 +14,9 @@ def test_the_pace_is_trimmed_by_the_way_that_the_reference_is_ahead(along, expec
 
 
 def test_no_pace_is_asked_for_that_the_vehicle_cannot_fly():
-    trim = AlongTrackTrim(speed=20.0, gain=0.15, change_max=30.0, airspeed_min=14.0, airspeed_max=26.0)
+    trim = AlongTrackTrim(
+        speed=20.0, gain=0.15, change_max=30.0, airspeed_min=14.0, airspeed_max=26.0
+    )
     assert [trim.pace(along) for along in (-1000.0, 0.0, 1000.0)] == [14.0, 20.0, 26.0]
     # Nor, where nothing is known of the vehicle, that it flies backwards.
     assert AlongTrackTrim(speed=20.0, gain=0.15, change_max=30.0).pace(-1000.0) == 0.0
@@ -22,7 +24,9 @@ def test_no_pace_is_asked_for_that_the_vehicle_cannot_fly():
 
 @pytest.mark.parametrize("guarding", [False, True])
 def test_in_still_air_a_pace_is_an_airspeed(guarding):
-    assert AlongTrackTrim(speed=20.0, gain=0.15, change_max=1.0).airspeed(20.3, None, guarding) == 20.3
+    assert (
+        AlongTrackTrim(speed=20.0, gain=0.15, change_max=1.0).airspeed(20.3, None, guarding) == 20.3
+    )
 
 
 def test_without_a_gain_the_airspeed_is_that_of_the_reference():

@@ -10,7 +10,13 @@ from gnc.errors import InfeasibleError
 
 HOLD = SpeedHold(gain=0.3, airspeed_min=15.0, airspeed_max=25.0)
 LAW = PaceHold(speed=19.0, hold=HOLD)
-X8 = {"bandwidth": 1.3, "speed": 19.42, "look_ahead": 60.0, "airspeed_min": 15.0, "airspeed_max": 25.0}
+X8 = {
+    "bandwidth": 1.3,
+    "speed": 19.42,
+    "look_ahead": 60.0,
+    "airspeed_min": 15.0,
+    "airspeed_max": 25.0,
+}
 
 
 def commanded(along, *, speed, airspeed):
@@ -26,7 +32,9 @@ def test_on_the_reference_at_its_speed_the_airspeed_that_is_flown_is_asked_for()
 
 @given(st.floats(-100.0, 100.0), st.floats(5.0, 40.0), st.floats(5.0, 40.0))
 def test_the_airspeed_asked_for_is_one_the_vehicle_can_fly(along, speed, airspeed):
-    assert HOLD.airspeed_min <= commanded(along, speed=speed, airspeed=airspeed) <= HOLD.airspeed_max
+    assert (
+        HOLD.airspeed_min <= commanded(along, speed=speed, airspeed=airspeed) <= HOLD.airspeed_max
+    )
 
 
 def test_a_reference_ahead_and_a_lack_of_speed_ask_for_more():
@@ -45,7 +53,9 @@ def test_a_slow_airspeed_is_given_a_gain_that_does_not_overshoot():
     assert bandwidth**2 - 4.0 * bandwidth * gain == pytest.approx(0.0, abs=1e-12)
 
 
-@pytest.mark.parametrize("changed", [{"speed": 14.0}, {"speed": 25.0}, {"bandwidth": 0.0}, {"look_ahead": math.nan}])
+@pytest.mark.parametrize(
+    "changed", [{"speed": 14.0}, {"speed": 25.0}, {"bandwidth": 0.0}, {"look_ahead": math.nan}]
+)
 def test_what_cannot_be_held_is_refused(changed):
     with pytest.raises(InfeasibleError):
         design_speed_hold(**(X8 | changed))
@@ -54,7 +64,9 @@ def test_what_cannot_be_held_is_refused(changed):
 def test_the_same_acceleration_turns_both_motions():
     # 0.4 rad/s over the mean air at 20 m/s is 8 m/s^2, which at an airspeed of 16 m/s turns 0.5 rad/s.
     assert air_turn(0.4, speed=20.0, airspeed=16.0) == pytest.approx(0.5, rel=1e-12)
-    assert air_turn(air_turn(0.4, speed=20.0, airspeed=16.0), speed=16.0, airspeed=20.0) == pytest.approx(0.4, rel=1e-12)
+    assert air_turn(
+        air_turn(0.4, speed=20.0, airspeed=16.0), speed=16.0, airspeed=20.0
+    ) == pytest.approx(0.4, rel=1e-12)
 
 
 @pytest.mark.parametrize(("along", "expected"), [(2.0, 21.1), (0.0, 20.5), (-3.0, 19.6)])

@@ -5,11 +5,25 @@ import math
 import numpy as np
 import pytest
 from bounds_cases import LIMIT, fastest, time_of
-from gnc_cases import HEADING_RATE_MAX, LOOK_AHEAD, SPEED, examples, fly, make_guidance, make_reference, paper_oscillation
+from gnc_cases import (
+    HEADING_RATE_MAX,
+    LOOK_AHEAD,
+    SPEED,
+    examples,
+    fly,
+    make_guidance,
+    make_reference,
+    paper_oscillation,
+)
 from hypothesis import given
 from hypothesis import strategies as st
 
-from gnc.analysis.bounds import convergence_time, fastest_within, heading_rate_bound, heading_rate_bound_least
+from gnc.analysis.bounds import (
+    convergence_time,
+    fastest_within,
+    heading_rate_bound,
+    heading_rate_bound_least,
+)
 from gnc.analysis.worst_case_search import heading_rates
 from gnc.errors import InfeasibleError
 from gnc.laws.cascade import CascadeLaw
@@ -30,17 +44,24 @@ def test_the_fastest_keeps_its_limit_and_with_a_shorter_look_ahead_would_not_or_
     turn = (1.0 - reserve) * limit
     task = {"speed": speed, "distance_from": distance_from, "distance_to": 10.0, "gain": gain}
     found = fastest_within(heading_rate_max=limit, reference_heading_rate_max=turn, **task)
-    states = {"speed": speed, "reference_heading_rate_max": turn, "steering_max": found.steering_max}
+    states = {
+        "speed": speed,
+        "reference_heading_rate_max": turn,
+        "steering_max": found.steering_max,
+    }
     assert found.bound <= limit
     assert found.bound == heading_rate_bound(found.look_ahead, **states)
-    assert found.convergence_time == convergence_time(found.look_ahead, steering_max=found.steering_max, **task)
+    assert found.convergence_time == convergence_time(
+        found.look_ahead, steering_max=found.steering_max, **task
+    )
     epsilon, radius = found.look_ahead
     # At the same sigma; V/(2 omega_r) is the shortest R allowed. What tolerances leave unspent of the limit, 2e-4 of it, is less
     # than what 10 % of R bring, V/R being some hundredth of the limit at least.
     shorter = look_ahead(epsilon / 0.9, 0.9 * radius)
     assert (
         shorter.radius < speed / (2.0 * turn)
-        or convergence_time(shorter, steering_max=found.steering_max, **task) > found.convergence_time
+        or convergence_time(shorter, steering_max=found.steering_max, **task)
+        > found.convergence_time
         or heading_rate_bound(shorter, **states) > limit
     )
 
@@ -61,17 +82,28 @@ def test_no_neighbour_of_the_fastest_is_faster_within_the_limit(reserve):
     assert len(faster) > 20
     for neighbour, steering_max in faster:
         least = heading_rate_bound_least(
-            neighbour, speed=SPEED, reference_heading_rate_max=(1.0 - reserve) * LIMIT, gain=1.5, steering_max=steering_max
+            neighbour,
+            speed=SPEED,
+            reference_heading_rate_max=(1.0 - reserve) * LIMIT,
+            gain=1.5,
+            steering_max=steering_max,
         )
         # Cheap first: what exceeds the limit head on exceeds it.
         if least <= LIMIT:
-            states = {"speed": SPEED, "reference_heading_rate_max": (1.0 - reserve) * LIMIT, "steering_max": steering_max}
+            states = {
+                "speed": SPEED,
+                "reference_heading_rate_max": (1.0 - reserve) * LIMIT,
+                "steering_max": steering_max,
+            }
             # The bound may lie 1e-4 high.
             assert heading_rate_bound(neighbour, **states) > LIMIT * (1.0 - 1e-4)
 
 
 def test_a_reference_that_spends_all_leaves_nothing_to_search():
-    with pytest.raises(InfeasibleError, match=r"reference heading rate is 0.505 rad/s; .* leave more of omega_max in reserve"):
+    with pytest.raises(
+        InfeasibleError,
+        match=r"reference heading rate is 0.505 rad/s; .* leave more of omega_max in reserve",
+    ):
         fastest(0.0)
 
 
@@ -135,9 +167,13 @@ def closing_time(parameters):
 
 
 @pytest.mark.parametrize("reserve", [0.3, 0.7])
-def test_about_a_circling_reference_distance_closes_as_estimated_with_no_command_above_the_limit(reserve):
+def test_about_a_circling_reference_distance_closes_as_estimated_with_no_command_above_the_limit(
+    reserve,
+):
     found = fastest(reserve)
-    since, largest = convergence(found.look_ahead, found.steering_max, lambda _: (1.0 - reserve) * LIMIT, 0.0)
+    since, largest = convergence(
+        found.look_ahead, found.steering_max, lambda _: (1.0 - reserve) * LIMIT, 0.0
+    )
     # The estimate averages over the reference's circle; measured 0.95 to 1.03, the spread of where on the circle 5 m is crossed.
     assert since == pytest.approx(closing_time(found.look_ahead), rel=0.07)
     assert largest <= found.bound <= LIMIT
@@ -145,7 +181,9 @@ def test_about_a_circling_reference_distance_closes_as_estimated_with_no_command
 
 def test_from_the_worst_course_the_estimate_holds_where_the_reference_turns_much_faster_than_h():
     found = fastest(0.3)
-    since, largest = convergence(found.look_ahead, found.steering_max, lambda _: 0.7 * LIMIT, math.pi - 1e-3)
+    since, largest = convergence(
+        found.look_ahead, found.steering_max, lambda _: 0.7 * LIMIT, math.pi - 1e-3
+    )
     # Left out: how far the vehicle strays while it turns. Measured 0.85 to 1.19.
     assert since == pytest.approx(found.convergence_time, rel=0.25)
     assert largest <= LIMIT
@@ -168,7 +206,9 @@ def test_the_guidance_flies_its_preview_without_a_command_above_the_bound():
     )
     for start in ((-400.0, 300.0, 3.0), (100.0, -50.0, -1.6), (0.0, 0.0, -1.5)):
         # Not to be cut at omega_max: the law itself keeps it.
-        guidance = make_guidance(make_reference(oscillation), law=law, lag=0.5, heading_rate_max=10.0)
+        guidance = make_guidance(
+            make_reference(oscillation), law=law, lag=0.5, heading_rate_max=10.0
+        )
         flight = fly(guidance, start, duration=120.0, delay=0.5)
         assert np.abs(flight.command).max() <= found.bound <= HEADING_RATE_MAX
     # As flown, the command would pass omega_max ...
@@ -181,10 +221,16 @@ def test_the_guidance_flies_its_preview_without_a_command_above_the_bound():
     )
 
 
-@pytest.mark.parametrize(("distance_from", "distance_to"), [(5.0, 5.0), (5.0, 500.0), (math.inf, 5.0), (500.0, 0.0)])
+@pytest.mark.parametrize(
+    ("distance_from", "distance_to"), [(5.0, 5.0), (5.0, 500.0), (math.inf, 5.0), (500.0, 0.0)]
+)
 def test_convergence_that_goes_nowhere_is_refused(distance_from, distance_to):
     task = {"speed": SPEED, "distance_from": distance_from, "distance_to": distance_to, "gain": 1.5}
-    with pytest.raises(InfeasibleError, match=r"distance_to is .* m and distance_from .* from far to near"):
+    with pytest.raises(
+        InfeasibleError, match=r"distance_to is .* m and distance_from .* from far to near"
+    ):
         convergence_time(LOOK_AHEAD, steering_max=0.4, **task)
-    with pytest.raises(InfeasibleError, match=r"distance_to is .* m and distance_from .* from far to near"):
+    with pytest.raises(
+        InfeasibleError, match=r"distance_to is .* m and distance_from .* from far to near"
+    ):
         fastest_within(heading_rate_max=0.5, reference_heading_rate_max=0.3, **task)

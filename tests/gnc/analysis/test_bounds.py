@@ -51,8 +51,12 @@ def test_omega_rho_is_that_of_the_derivation_and_the_distance_cancels_in_its_wei
 
 
 @examples(100)
-@given(parameters=look_aheads(), alpha=st.floats(0.0, 3.1), beta=st.floats(0.0, math.pi), turn=turns)
-def test_at_each_position_the_worst_course_and_turn_give_the_two_factors(parameters, alpha, beta, turn):
+@given(
+    parameters=look_aheads(), alpha=st.floats(0.0, 3.1), beta=st.floats(0.0, math.pi), turn=turns
+)
+def test_at_each_position_the_worst_course_and_turn_give_the_two_factors(
+    parameters, alpha, beta, turn
+):
     sigma = 0.5 / math.sqrt(parameters.epsilon * parameters.radius)
     distance = math.sqrt(parameters.radius / parameters.epsilon) * math.tan(0.5 * alpha)
     course = np.linspace(-math.pi, math.pi, 3601)
@@ -72,9 +76,13 @@ def test_at_each_position_the_worst_course_and_turn_give_the_two_factors(paramet
         ).max()
         for sign in (1.0, -1.0)
     )
-    speed_factor, turn_factor = (float(factor) for factor in factors(sigma, np.array(alpha), np.array(beta)))
+    speed_factor, turn_factor = (
+        float(factor) for factor in factors(sigma, np.array(alpha), np.array(beta))
+    )
     # Courses every 0.1 degrees miss the crest of a cosine by (0.1 degrees)^2/8 = 4e-7 of its amplitude.
-    assert worst == pytest.approx(SPEED / parameters.radius * speed_factor + turn * turn_factor, rel=1e-6)
+    assert worst == pytest.approx(
+        SPEED / parameters.radius * speed_factor + turn * turn_factor, rel=1e-6
+    )
 
 
 @examples(300)
@@ -85,7 +93,9 @@ def test_at_each_position_the_worst_course_and_turn_give_the_two_factors(paramet
     size=st.floats(-4.0, 0.3).map(lambda power: 10.0**power),
     inside=st.tuples(st.floats(0.0, 1.0), st.floats(0.0, 1.0)),
 )
-def test_no_point_of_a_cell_exceeds_the_cells_bounds_which_close_in(sigma, alpha, beta, size, inside):
+def test_no_point_of_a_cell_exceeds_the_cells_bounds_which_close_in(
+    sigma, alpha, beta, size, inside
+):
     low = np.array([[alpha], [beta]])
     high = np.minimum(low + size, math.pi)
     at = low + np.array(inside)[:, None] * (high - low)
@@ -113,12 +123,24 @@ def test_no_command_exceeds_the_bound_also_at_unequal_speeds(
     parameters, distance, direction, course, turn, factor, speeds, gain, steering_max
 ):
     bound = heading_rate_bound(
-        parameters, speed=max(speeds), reference_heading_rate_max=turn, steering_max=steering_max, tolerance=0.01
+        parameters,
+        speed=max(speeds),
+        reference_heading_rate_max=turn,
+        steering_max=steering_max,
+        tolerance=0.01,
     )
     north, east = distance * math.cos(direction), distance * math.sin(direction)
     reference_speed, speed = speeds
     omega = command(
-        parameters, north, east, course, factor * turn, gain, steering_max, reference_speed=reference_speed, speed=speed
+        parameters,
+        north,
+        east,
+        course,
+        factor * turn,
+        gain,
+        steering_max,
+        reference_speed=reference_speed,
+        speed=speed,
     )
     assert abs(omega) <= bound
 
@@ -137,7 +159,9 @@ def test_lengths_of_another_unit_have_the_same_bound(parameters, turn, steering_
 @given(parameters=look_aheads(), turn=turns)
 def test_the_tolerance_is_kept(parameters, turn):
     kept = {"speed": SPEED, "reference_heading_rate_max": turn, "steering_max": 1e-9}
-    coarse, fine = (heading_rate_bound(parameters, **kept, tolerance=tolerance) for tolerance in (0.05, 0.002))
+    coarse, fine = (
+        heading_rate_bound(parameters, **kept, tolerance=tolerance) for tolerance in (0.05, 0.002)
+    )
     # Both are bounds of one number, 0.05 and 0.002 high at most.
     assert coarse <= 1.05 * fine
     assert fine <= 1.002 * coarse
@@ -145,8 +169,16 @@ def test_the_tolerance_is_kept(parameters, turn):
 
 @examples(200)
 @given(parameters=look_aheads(), turn=turns, gain=st.floats(0.1, 5.0), steering_max=steering)
-def test_the_least_bound_is_a_command_that_is_met_and_no_larger_one_is_met_head_on(parameters, turn, gain, steering_max):
-    least = heading_rate_bound_least(parameters, speed=SPEED, reference_heading_rate_max=turn, gain=gain, steering_max=steering_max)
+def test_the_least_bound_is_a_command_that_is_met_and_no_larger_one_is_met_head_on(
+    parameters, turn, gain, steering_max
+):
+    least = heading_rate_bound_least(
+        parameters,
+        speed=SPEED,
+        reference_heading_rate_max=turn,
+        gain=gain,
+        steering_max=steering_max,
+    )
     scale = math.sqrt(parameters.radius / parameters.epsilon)
     distances_over = scale * np.tan(0.5 * np.linspace(0.0, 3.0, 20001))
     omega = heading_rates(
@@ -165,27 +197,49 @@ def test_the_least_bound_is_a_command_that_is_met_and_no_larger_one_is_met_head_
     assert omega.max() == pytest.approx(least, rel=5e-5)
     assert omega.max() <= least * (1.0 + 1e-12)
     # The functions that fly command the same. Roundings, amplified by 1/(1 - sigma)^2 at most.
-    assert command(parameters, -worst, 0.0, -0.5 * math.pi, turn, gain, steering_max) == pytest.approx(omega.max(), rel=1e-10)
-    bound = heading_rate_bound(parameters, speed=SPEED, reference_heading_rate_max=turn, steering_max=steering_max, tolerance=0.01)
+    assert command(
+        parameters, -worst, 0.0, -0.5 * math.pi, turn, gain, steering_max
+    ) == pytest.approx(omega.max(), rel=1e-10)
+    bound = heading_rate_bound(
+        parameters,
+        speed=SPEED,
+        reference_heading_rate_max=turn,
+        steering_max=steering_max,
+        tolerance=0.01,
+    )
     assert least <= bound
 
 
 @examples(60)
 @given(parameters=look_aheads(), turn=turns)
 def test_states_head_on_come_close_to_the_worst_of_all(parameters, turn):
-    worst = heading_rate_bound(parameters, speed=SPEED, reference_heading_rate_max=turn, steering_max=1e-9, tolerance=1e-3)
-    least = heading_rate_bound_least(parameters, speed=SPEED, reference_heading_rate_max=turn, gain=1.5, steering_max=1e-9)
+    worst = heading_rate_bound(
+        parameters, speed=SPEED, reference_heading_rate_max=turn, steering_max=1e-9, tolerance=1e-3
+    )
+    least = heading_rate_bound_least(
+        parameters, speed=SPEED, reference_heading_rate_max=turn, gain=1.5, steering_max=1e-9
+    )
     # docs, "In short": 0.75 % over sigma and omega_r R/V, measured; and 0.1 % by which the bound may lie high.
     assert worst <= 1.0085 * least
 
 
 @examples(200)
 @given(parameters=look_aheads(), turn=turns, steering_max=steering)
-def test_on_the_reference_itself_the_command_takes_the_references_turn_and_what_the_look_ahead_adds(parameters, turn, steering_max):
+def test_on_the_reference_itself_the_command_takes_the_references_turn_and_what_the_look_ahead_adds(
+    parameters, turn, steering_max
+):
     # docs, "What is necessary": d = 0 makes rho = delta = R. So a reference that spends omega_max leaves no bound within it.
     on_it = turn + SPEED / parameters.radius + min(steering_max, 0.75 * math.pi)
-    assert command(parameters, 0.0, 0.0, -0.5 * math.pi, turn, 1.5, steering_max) == pytest.approx(on_it, rel=1e-12)
-    least = heading_rate_bound_least(parameters, speed=SPEED, reference_heading_rate_max=turn, gain=1.5, steering_max=steering_max)
+    assert command(parameters, 0.0, 0.0, -0.5 * math.pi, turn, 1.5, steering_max) == pytest.approx(
+        on_it, rel=1e-12
+    )
+    least = heading_rate_bound_least(
+        parameters,
+        speed=SPEED,
+        reference_heading_rate_max=turn,
+        gain=1.5,
+        steering_max=steering_max,
+    )
     assert on_it <= least * (1.0 + 1e-12)
 
 
@@ -194,7 +248,9 @@ def test_law_24_has_no_bound():
     # k_1 rho V tan(phi/2): rho grows as epsilon d^2.
     commands = [abs(lyapunov_law(state, SPEED, 0.0, 0.001)) for state in far]
     assert commands[2] > 50.0 * commands[1] > 50.0 * 5.0 * commands[0]
-    turned = [relative_state(LOOK_AHEAD, 0.0, 0.0, 0.0, math.pi - angle) for angle in (1e-1, 1e-3, 1e-5)]
+    turned = [
+        relative_state(LOOK_AHEAD, 0.0, 0.0, 0.0, math.pi - angle) for angle in (1e-1, 1e-3, 1e-5)
+    ]
     commands = [abs(lyapunov_law(state, SPEED, 0.0, 0.001)) for state in turned]
     # tan(pi/2 - angle/2) is 2/angle.
     assert commands[2] > 90.0 * commands[1] > 90.0 * 90.0 * commands[0]
@@ -205,7 +261,10 @@ def test_law_24_has_no_bound():
     [
         ({"speed": 0.0}, r"speed is 0 m/s; it must be finite and above 0"),
         ({"speed": math.nan}, r"speed is nan m/s"),
-        ({"reference_heading_rate_max": -0.1}, r"reference_heading_rate_max is -0.1 rad/s; it must be finite and at least 0"),
+        (
+            {"reference_heading_rate_max": -0.1},
+            r"reference_heading_rate_max is -0.1 rad/s; it must be finite and at least 0",
+        ),
         ({"reference_heading_rate_max": math.inf}, r"reference_heading_rate_max is inf rad/s"),
         ({"steering_max": 0.0}, r"steering_max is 0 rad/s"),
     ],
@@ -221,5 +280,13 @@ def test_bounds_of_what_cannot_be_are_refused(changes, message):
 @pytest.mark.parametrize("radius", [50.0, 50.0 * (1.0 + 1e-12)])
 def test_a_look_ahead_at_the_edge_of_the_singularity_is_refused(radius):
     # R = 1/(4 epsilon) = 50 m, exactly and but for rounding.
-    with pytest.raises(InfeasibleError, match=r"look-ahead R is 50 m.* 1/\(4 epsilon\) = 50 m.*: raise R or epsilon"):
-        heading_rate_bound(LOOK_AHEAD._replace(radius=radius), speed=SPEED, reference_heading_rate_max=0.3, steering_max=0.4)
+    with pytest.raises(
+        InfeasibleError,
+        match=r"look-ahead R is 50 m.* 1/\(4 epsilon\) = 50 m.*: raise R or epsilon",
+    ):
+        heading_rate_bound(
+            LOOK_AHEAD._replace(radius=radius),
+            speed=SPEED,
+            reference_heading_rate_max=0.3,
+            steering_max=0.4,
+        )

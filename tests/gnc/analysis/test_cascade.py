@@ -49,15 +49,32 @@ def test_h_has_the_sign_of_phi_and_is_proportional_within_its_bound(phi, gain, r
 
 
 @examples(200)
-@given(driven=any_driven, phi=courses, speed=speeds, reference_heading_rate=heading_rates, gain=gains, rate_max=rates_max)
-def test_under_law_30_the_system_21_is_the_cascade_31(driven, phi, speed, reference_heading_rate, gain, rate_max):
+@given(
+    driven=any_driven,
+    phi=courses,
+    speed=speeds,
+    reference_heading_rate=heading_rates,
+    gain=gains,
+    rate_max=rates_max,
+)
+def test_under_law_30_the_system_21_is_the_cascade_31(
+    driven, phi, speed, reference_heading_rate, gain, rate_max
+):
     state = RelativeState(*driven, phi)
     _, omega_rho = relative_velocity(LOOK_AHEAD, state, speed, speed, reference_heading_rate)
-    whole = state_rates(LOOK_AHEAD, state, speed, reference_heading_rate, cascade_law(phi, omega_rho, gain, rate_max))
+    whole = state_rates(
+        LOOK_AHEAD,
+        state,
+        speed,
+        reference_heading_rate,
+        cascade_law(phi, omega_rho, gain, rate_max),
+    )
     # (31a) is exact: the same lines. In (31b) omega_rho cancels but for its rounding; it reaches some 1e4 rad/s where rho is short
     # and delta long.
     assert whole[:3] == driven_rates(LOOK_AHEAD, driven, phi, speed, reference_heading_rate)
-    assert whole.phi == pytest.approx(driving_rate(phi, gain, rate_max), rel=0.0, abs=1e-15 * abs(omega_rho) + 1e-15)
+    assert whole.phi == pytest.approx(
+        driving_rate(phi, gain, rate_max), rel=0.0, abs=1e-15 * abs(omega_rho) + 1e-15
+    )
 
 
 @examples(200)
@@ -72,23 +89,36 @@ def test_the_unforced_system_32_is_21_at_phi_zero_whatever_the_heading_rate(
     driven, epsilon, speed, reference_heading_rate, heading_rate
 ):
     parameters = look_ahead(epsilon, 60.0)
-    whole = state_rates(parameters, RelativeState(*driven, 0.0), speed, reference_heading_rate, heading_rate)
+    whole = state_rates(
+        parameters, RelativeState(*driven, 0.0), speed, reference_heading_rate, heading_rate
+    )
     unforced = unforced_rates(parameters, driven, speed, reference_heading_rate)
     # Roundings of terms up to 2 * 0.05 * 40 * 6,000 * 2 = 5e4 m/s, over no less than rho.
-    assert (unforced.delta, unforced.rho) == pytest.approx((whole.delta, whole.rho), rel=0.0, abs=1e-10)
+    assert (unforced.delta, unforced.rho) == pytest.approx(
+        (whole.delta, whole.rho), rel=0.0, abs=1e-10
+    )
     assert unforced.phi_r == pytest.approx(whole.phi_r, rel=0.0, abs=1e-10 / driven.rho + 1e-15)
 
 
 @examples(100)
 @given(driven=any_driven, speed=speeds, reference_heading_rate=heading_rates)
-def test_equation_32_is_as_printed_but_for_the_factor_v_r_that_its_first_line_lacks(driven, speed, reference_heading_rate):
+def test_equation_32_is_as_printed_but_for_the_factor_v_r_that_its_first_line_lacks(
+    driven, speed, reference_heading_rate
+):
     delta, rho, phi_r = driven
     epsilon, c_r, s_r = LOOK_AHEAD.epsilon, math.cos(phi_r), math.sin(phi_r)
     printed = (
         -2.0 * epsilon * (rho + delta) * (1.0 - c_r),
-        -speed * (1.0 - c_r) - delta * reference_heading_rate * s_r - 2.0 * epsilon * speed * c_r * (rho + delta) * (1.0 - c_r),
+        -speed * (1.0 - c_r)
+        - delta * reference_heading_rate * s_r
+        - 2.0 * epsilon * speed * c_r * (rho + delta) * (1.0 - c_r),
         reference_heading_rate
-        - (speed * s_r + delta * reference_heading_rate * c_r - 2.0 * epsilon * speed * s_r * (rho + delta) * (1.0 - c_r)) / rho,
+        - (
+            speed * s_r
+            + delta * reference_heading_rate * c_r
+            - 2.0 * epsilon * speed * s_r * (rho + delta) * (1.0 - c_r)
+        )
+        / rho,
     )
     rates = unforced_rates(LOOK_AHEAD, driven, speed, reference_heading_rate)
     # Roundings of terms up to 1e4 m/s, over no less than 10 m.
@@ -100,7 +130,9 @@ def test_equation_32_is_as_printed_but_for_the_factor_v_r_that_its_first_line_la
 def test_equation_33_is_23_at_phi_zero_and_never_positive(driven, speed):
     unforced = v_1_unforced_rate(driven, speed)
     # Rounding of 40 m/s * 6 km * 2.
-    assert unforced == pytest.approx(v_1_rate(RelativeState(*driven, 0.0), speed), rel=0.0, abs=1e-9)
+    assert unforced == pytest.approx(
+        v_1_rate(RelativeState(*driven, 0.0), speed), rel=0.0, abs=1e-9
+    )
     assert unforced <= 0.0
 
 
@@ -116,7 +148,9 @@ def test_equation_35_is_23_whatever_the_state(driven, phi, speed):
 @given(start=tracking_starts(phi_max=0.0), time=st.floats(0.0, 20.0))
 def test_equation_34_is_the_numerical_rate_of_33_along_the_unforced_system(start, time):
     def motion(moment, driven):
-        return np.array(unforced_rates(LOOK_AHEAD, DrivenState(*driven), SPEED, oscillating(moment)))
+        return np.array(
+            unforced_rates(LOOK_AHEAD, DrivenState(*driven), SPEED, oscillating(moment))
+        )
 
     here = DrivenState(*relative(start)[:3])
     step = 1e-5
@@ -142,19 +176,27 @@ def test_distance_does_not_rise_where_phi_is_within_phi_r(start, share):
 
 @examples(200)
 @given(d=st.floats(1.0, 300.0), reference_course=courses, beyond=st.floats(0.01, 1.0))
-def test_distance_rises_right_behind_the_reference_as_soon_as_phi_is_not_zero(d, reference_course, beyond):
+def test_distance_rises_right_behind_the_reference_as_soon_as_phi_is_not_zero(
+    d, reference_course, beyond
+):
     # So the bound |phi| <= |phi_r| is tight: with phi_r = 0 and d behind the reference, rho - delta = d, and (35) becomes
     # (rho - delta) V_r (1 - cos phi) = d V_r (1 - cos phi) > 0.
     north, east = -d * math.cos(reference_course), -d * math.sin(reference_course)
     state = [0.0, 0.0, reference_course, north, east, reference_course + beyond]
     # Roundings of angles, 5e-16 of 300 m * 39 m/s; the least rise is 1 m * 19.42 m/s * 5e-5.
-    assert cartesian_v_1_rate(state) == pytest.approx(d * SPEED * (1.0 - math.cos(beyond)), rel=0.0, abs=1e-10)
+    assert cartesian_v_1_rate(state) == pytest.approx(
+        d * SPEED * (1.0 - math.cos(beyond)), rel=0.0, abs=1e-10
+    )
 
 
 @examples(25)
 @given(**LAW_30_FLIGHTS)
-def test_along_flights_under_law_30_distance_does_not_rise_while_phi_is_within_phi_r(start, gain, rate_max, reference_heading_rate):
-    _, states, distances = fly_law_30(start, reference_heading_rate, gain=gain, rate_max=rate_max, duration=30.0, interval=0.02)
+def test_along_flights_under_law_30_distance_does_not_rise_while_phi_is_within_phi_r(
+    start, gain, rate_max, reference_heading_rate
+):
+    _, states, distances = fly_law_30(
+        start, reference_heading_rate, gain=gain, rate_max=rate_max, duration=30.0, interval=0.02
+    )
     within = np.array([abs(state.phi) <= abs(state.phi_r) for state in states])
     # In 300 random flights it never rose by more than 1.3e-8 m from one such sample to the next, the integration's tolerance; in
     # between phi_r may dip below phi, by the square of the interval. Where d does rise, it rises by up to 0.8 m a sample.
@@ -165,7 +207,9 @@ def test_along_flights_under_law_30_distance_does_not_rise_while_phi_is_within_p
 def test_the_distance_can_rise_again_after_phi_was_first_within_phi_r():
     # Section IV.D says that it cannot, from the first such instant on. But phi_r passes through zero while phi still dies out.
     start = [0.0, 0.0, OSCILLATION.eta, -150.0, 0.0, 2.0]
-    times, states, distances = fly_law_30(start, oscillating, gain=0.1, rate_max=0.4, duration=40.0, interval=0.02)
+    times, states, distances = fly_law_30(
+        start, oscillating, gain=0.1, rate_max=0.4, duration=40.0, interval=0.02
+    )
     within = np.array([abs(state.phi) <= abs(state.phi_r) for state in states])
     first = int(np.argmax(within))
     after = distances[first:]

@@ -5,7 +5,16 @@ import math
 import numpy as np
 import pytest
 from cascade_cases import LAW_30_FLIGHTS, cartesian_v_1_rate, fly_law_30, gains, rates_max
-from gnc_cases import LOOK_AHEAD, OSCILLATION, SPEED, courses, examples, oscillating, relative, tracking_starts
+from gnc_cases import (
+    LOOK_AHEAD,
+    OSCILLATION,
+    SPEED,
+    courses,
+    examples,
+    oscillating,
+    relative,
+    tracking_starts,
+)
 from hypothesis import given
 from hypothesis import strategies as st
 from scipy.integrate import quad
@@ -54,19 +63,34 @@ def test_delta_grows_no_faster_than_the_bound_says(start, epsilon, excess):
 
 @examples(100)
 @given(epsilon=st.floats(1e-3, 0.1), excess=st.floats(1.001, 50.0), reference_course=courses)
-def test_rho_reaches_its_largest_share_of_delta_right_behind_the_reference(epsilon, excess, reference_course):
+def test_rho_reaches_its_largest_share_of_delta_right_behind_the_reference(
+    epsilon, excess, reference_course
+):
     parameters = look_ahead(epsilon, excess / (4.0 * epsilon))
     # d/(epsilon d^2 + R) is largest at d = sqrt(R/epsilon), and rho = delta + d with the vehicle right behind.
     d = math.sqrt(parameters.radius / epsilon)
-    behind = [0.0, 0.0, reference_course, -d * math.cos(reference_course), -d * math.sin(reference_course), 0.0]
+    behind = [
+        0.0,
+        0.0,
+        reference_course,
+        -d * math.cos(reference_course),
+        -d * math.sin(reference_course),
+        0.0,
+    ]
     state = relative(behind, parameters)
-    assert state.rho / state.delta == pytest.approx(1.0 + 0.5 / math.sqrt(epsilon * parameters.radius), rel=1e-13)
+    assert state.rho / state.delta == pytest.approx(
+        1.0 + 0.5 / math.sqrt(epsilon * parameters.radius), rel=1e-13
+    )
 
 
 @examples(25)
 @given(**LAW_30_FLIGHTS)
-def test_along_flights_under_law_30_delta_stays_below_its_bound(start, gain, rate_max, reference_heading_rate):
-    _, states, _ = fly_law_30(start, reference_heading_rate, gain=gain, rate_max=rate_max, duration=60.0, interval=0.25)
+def test_along_flights_under_law_30_delta_stays_below_its_bound(
+    start, gain, rate_max, reference_heading_rate
+):
+    _, states, _ = fly_law_30(
+        start, reference_heading_rate, gain=gain, rate_max=rate_max, duration=60.0, interval=0.25
+    )
     # At every instant, for what is left to come from there; 1e-6 for the integration's 1e-8 over some hundred steps.
     left = np.array([delta_bound(LOOK_AHEAD, state, SPEED, gain, rate_max) for state in states])
     deltas = np.array([state.delta for state in states])
@@ -80,8 +104,12 @@ def test_a_flight_from_the_reference_on_the_opposite_course_and_its_bound():
     # phi = pi is as far as phi goes, and I, the integral of 1 - cos phi, is Cin(0.2667)/1.5 + (pi - 0.2667 + sin 0.2667)/0.4 =
     # 0.0118 + 7.8462 s. Exponent: 2 * 0.005/m * 19.42 m/s * (1 + 1/(2 sqrt(0.3))) * I = 0.37147/s * 7.858 s = 2.919; exp is 18.52.
     start = [0.0, 0.0, OSCILLATION.eta, 0.0, 0.0, OSCILLATION.eta + 3.1]
-    _, states, _ = fly_law_30(start, oscillating, gain=1.5, rate_max=0.4, duration=60.0, interval=0.25)
+    _, states, _ = fly_law_30(
+        start, oscillating, gain=1.5, rate_max=0.4, duration=60.0, interval=0.25
+    )
     opposite = states[0]._replace(phi=math.pi)
-    assert delta_bound(LOOK_AHEAD, opposite, SPEED, 1.5, 0.4) == pytest.approx(60.0 * 18.52, rel=1e-3)
+    assert delta_bound(LOOK_AHEAD, opposite, SPEED, 1.5, 0.4) == pytest.approx(
+        60.0 * 18.52, rel=1e-3
+    )
     # The flight itself: d rises from 0 to 127 m, delta from 60 m to 141 m; measured once, to the metre.
     assert max(state.delta for state in states) == pytest.approx(141.0, abs=1.0)

@@ -48,9 +48,14 @@ def open_loop(state, omega_rho):
 
 
 @examples(16)
-@given(start=tracking_starts(phi_max=2.8), reference_heading_rate=st.sampled_from([oscillating, circling]))
+@given(
+    start=tracking_starts(phi_max=2.8),
+    reference_heading_rate=st.sampled_from([oscillating, circling]),
+)
 @pytest.mark.parametrize("law", [open_loop, law_24, law_30])
-def test_the_nominal_system_is_the_cartesian_motion_in_other_words(law, start, reference_heading_rate):
+def test_the_nominal_system_is_the_cartesian_motion_in_other_words(
+    law, start, reference_heading_rate
+):
     # Equation (21) integrated on its own, with the integral of (35) beside it, against (1) and (13).
     def nominal_rates(time, row):
         state, omega_r = RelativeState(*row[:4]), reference_heading_rate(time)
@@ -61,7 +66,9 @@ def test_the_nominal_system_is_the_cartesian_motion_in_other_words(law, start, r
     motion = tracking_motion(delta_steering(law, reference_heading_rate), reference_heading_rate)
     accuracy = {"method": "DOP853", "rtol": 1e-10, "atol": 1e-10, "max_step": 0.25}
     cartesian = solve_ivp(motion, (0.0, 20.0), start, **accuracy)
-    nominal = solve_ivp(nominal_rates, (0.0, 20.0), [*relative(start), v_1(relative(start))], **accuracy)
+    nominal = solve_ivp(
+        nominal_rates, (0.0, 20.0), [*relative(start), v_1(relative(start))], **accuracy
+    )
     assert cartesian.success
     assert nominal.success
     expected, got = relative(cartesian.y[:, -1]), RelativeState(*nominal.y[:4, -1])
@@ -76,7 +83,9 @@ def test_the_nominal_system_is_the_cartesian_motion_in_other_words(law, start, r
 
 @examples(200)
 @given(
-    state=st.builds(RelativeState, st.floats(60.0, 3000.0), st.floats(10.0, 3000.0), courses, courses),
+    state=st.builds(
+        RelativeState, st.floats(60.0, 3000.0), st.floats(10.0, 3000.0), courses, courses
+    ),
     reference_heading_rate=heading_rates,
     heading_rate=heading_rates,
 )
@@ -99,30 +108,44 @@ def test_equation_20_follows_from_21_by_the_law_of_cosines_and_keeps_delta_what_
 
 @examples(100)
 @ANY_MOTION
-def test_equation_21_is_as_printed(north, east, reference_course, course, reference_heading_rate, heading_rate):
+def test_equation_21_is_as_printed(
+    north, east, reference_course, course, reference_heading_rate, heading_rate
+):
     state = relative([north, east, reference_course, 0.0, 0.0, course])
     delta, rho, phi_r, phi = state
-    c, c_r, s, s_r, c_both = math.cos(phi), math.cos(phi_r), math.sin(phi), math.sin(phi_r), math.cos(phi - phi_r)
+    c, c_r, s, s_r, c_both = (
+        math.cos(phi),
+        math.cos(phi_r),
+        math.sin(phi),
+        math.sin(phi_r),
+        math.cos(phi - phi_r),
+    )
     epsilon = LOOK_AHEAD.epsilon
     both = rho * (c - c_r) + delta * (1.0 - c_both)
-    turn = -(SPEED * s_r - SPEED * s + delta * reference_heading_rate * c_r) / rho + 2.0 * epsilon * SPEED * s_r * (
-        c - c_r + delta / rho * (1.0 - c_both)
-    )
+    turn = -(
+        SPEED * s_r - SPEED * s + delta * reference_heading_rate * c_r
+    ) / rho + 2.0 * epsilon * SPEED * s_r * (c - c_r + delta / rho * (1.0 - c_both))
     printed = (
         -2.0 * epsilon * SPEED * both,
-        SPEED * (c_r - c) - delta * reference_heading_rate * s_r - 2.0 * epsilon * SPEED * c_r * both,
+        SPEED * (c_r - c)
+        - delta * reference_heading_rate * s_r
+        - 2.0 * epsilon * SPEED * c_r * both,
         reference_heading_rate + turn,
         heading_rate + turn,
     )
     # Roundings of up to 1e3 m/s, over no less than 10 m.
-    assert state_rates(LOOK_AHEAD, state, SPEED, reference_heading_rate, heading_rate) == pytest.approx(printed, rel=0.0, abs=1e-10)
+    assert state_rates(
+        LOOK_AHEAD, state, SPEED, reference_heading_rate, heading_rate
+    ) == pytest.approx(printed, rel=0.0, abs=1e-10)
 
 
 @examples(100)
 @given(reference_heading_rate=heading_rates)
 def test_on_the_reference_and_with_its_heading_rate_nothing_changes(reference_heading_rate):
     # Section IV.C: x_d = [R, R, 0, 0]. Rounding of R omega_r/R.
-    rates = state_rates(LOOK_AHEAD, equilibrium(LOOK_AHEAD), SPEED, reference_heading_rate, reference_heading_rate)
+    rates = state_rates(
+        LOOK_AHEAD, equilibrium(LOOK_AHEAD), SPEED, reference_heading_rate, reference_heading_rate
+    )
     assert rates == pytest.approx((0.0, 0.0, 0.0, 0.0), abs=1e-15)
     assert equilibrium(LOOK_AHEAD) == (60.0, 60.0, 0.0, 0.0)
 
@@ -132,7 +155,9 @@ def test_on_the_reference_and_with_its_heading_rate_nothing_changes(reference_he
 def test_v_1_is_half_the_squared_distance(north, east, reference_course, course):
     state = relative([north, east, reference_course, 0.0, 0.0, course])
     # Equation (22). The squares of rho and delta cancel but for their rounding.
-    assert v_1(state) == pytest.approx(0.5 * (north**2 + east**2), rel=0.0, abs=1e-14 * state.delta**2)
+    assert v_1(state) == pytest.approx(
+        0.5 * (north**2 + east**2), rel=0.0, abs=1e-14 * state.delta**2
+    )
 
 
 @examples(100)
@@ -150,7 +175,13 @@ def test_the_rate_of_v_1_is_equation_23_whatever_the_control(
 
 
 @examples(200)
-@given(north=offsets, east=offsets, course=courses, reference_heading_rate=heading_rates, heading_rate=heading_rates)
+@given(
+    north=offsets,
+    east=offsets,
+    course=courses,
+    reference_heading_rate=heading_rates,
+    heading_rate=heading_rates,
+)
 def test_where_phi_equals_phi_r_distance_is_at_a_maximum_or_a_minimum_unless_both_are_zero(
     north, east, course, reference_heading_rate, heading_rate
 ):
@@ -162,12 +193,16 @@ def test_where_phi_equals_phi_r_distance_is_at_a_maximum_or_a_minimum_unless_bot
     assert v_1_rate(state, SPEED) == pytest.approx(0.0, abs=1e-9)
     motion = tracking_motion(lambda *_: heading_rate, lambda _: reference_heading_rate)
     step = 1e-3
-    ahead, behind = (v_1_rate(relative(moved(motion, 0.0, cartesian, way)), SPEED) for way in (step, -step))
+    ahead, behind = (
+        v_1_rate(relative(moved(motion, 0.0, cartesian, way)), SPEED) for way in (step, -step)
+    )
     expected = state.rho * SPEED * math.sin(state.phi) * (heading_rate - reference_heading_rate)
     # step^2/6 of the fourth rate: over 3,000 random states it erred by 4e-4 m^2/s^2, a hundred times more at ten times the step.
     # The second rate itself reaches some 1e4.
     assert (ahead - behind) / (2.0 * step) == pytest.approx(expected, rel=0.0, abs=4e-3)
-    assert v_2_rate(state, SPEED) == pytest.approx(-SPEED * state.rho * (1.0 - math.cos(state.phi)), abs=1e-9)
+    assert v_2_rate(state, SPEED) == pytest.approx(
+        -SPEED * state.rho * (1.0 - math.cos(state.phi)), abs=1e-9
+    )
 
 
 def test_v_1_is_zero_off_x_d_too_where_delta_is_not_what_15_says():

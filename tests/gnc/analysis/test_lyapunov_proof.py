@@ -23,7 +23,14 @@ from hypothesis import strategies as st
 from lyapunov_cases import K_1, law_24
 from scipy.integrate import simpson, solve_ivp
 
-from gnc.analysis.dynamics import equilibrium, state_rates, v_1_rate, v_2, v_2_acceleration, v_2_rate
+from gnc.analysis.dynamics import (
+    equilibrium,
+    state_rates,
+    v_1_rate,
+    v_2,
+    v_2_acceleration,
+    v_2_rate,
+)
 from gnc.laws.delta import relative_velocity
 
 offsets = st.floats(-300.0, 300.0)
@@ -34,14 +41,18 @@ REFERENCES = pytest.mark.parametrize("reference_heading_rate", [oscillating, cir
 
 
 # From behind, abeam, close by and almost opposite; not exactly opposite, where law (24) is singular.
-STARTS = pytest.mark.parametrize("start", [(-250.0, 40.0, 0.5), (20.0, -150.0, -1.0), (3.0, 2.0, 2.5), (120.0, 5.0, 3.0)])
+STARTS = pytest.mark.parametrize(
+    "start", [(-250.0, 40.0, 0.5), (20.0, -150.0, -1.0), (3.0, 2.0, 2.5), (120.0, 5.0, 3.0)]
+)
 
 
 def fly_law_24(reference_heading_rate, start, duration):
     """Fly (24) in Cartesian coordinates; return times, relative states and the Cartesian ones."""
     motion = tracking_motion(delta_steering(law_24, reference_heading_rate), reference_heading_rate)
     times = np.linspace(0.0, duration, 601)
-    solution = solve_ivp(motion, (0.0, duration), start, t_eval=times, max_step=0.25, rtol=1e-8, atol=1e-8)
+    solution = solve_ivp(
+        motion, (0.0, duration), start, t_eval=times, max_step=0.25, rtol=1e-8, atol=1e-8
+    )
     assert solution.success
     return times, [relative(state) for state in solution.y.T], solution.y.T
 
@@ -58,8 +69,12 @@ def test_v_2_is_positive_everywhere_but_on_the_reference(north, east, reference_
 
 
 @examples(150)
-@given(north=offsets, east=offsets, reference_course=courses, course=courses, time=st.floats(0.0, 20.0))
-def test_under_law_24_the_rates_of_v_2_are_equations_26_and_27(north, east, reference_course, course, time):
+@given(
+    north=offsets, east=offsets, reference_course=courses, course=courses, time=st.floats(0.0, 20.0)
+)
+def test_under_law_24_the_rates_of_v_2_are_equations_26_and_27(
+    north, east, reference_course, course, time
+):
     cartesian = [north, east, reference_course, 0.0, 0.0, course]
     here = relative(cartesian)
     # Towards phi = pi law (24) is singular, and no difference quotient is good.
@@ -87,8 +102,14 @@ def test_the_rate_of_v_2_is_never_positive(north, east, reference_course, course
 
 
 @examples(100)
-@given(start=tracking_starts(phi_max=3.1), k_1_k_2=st.floats(0.1, 10.0), reference_heading_rate=heading_rates)
-def test_equation_26_is_the_rate_of_v_2_for_k_1_k_2_of_1_only(start, k_1_k_2, reference_heading_rate):
+@given(
+    start=tracking_starts(phi_max=3.1),
+    k_1_k_2=st.floats(0.1, 10.0),
+    reference_heading_rate=heading_rates,
+)
+def test_equation_26_is_the_rate_of_v_2_for_k_1_k_2_of_1_only(
+    start, k_1_k_2, reference_heading_rate
+):
     state = relative(start)
     _, omega_rho = relative_velocity(LOOK_AHEAD, state, SPEED, SPEED, reference_heading_rate)
     rates = state_rates(LOOK_AHEAD, state, SPEED, reference_heading_rate, law_24(state, omega_rho))
@@ -100,7 +121,10 @@ def test_equation_26_is_the_rate_of_v_2_for_k_1_k_2_of_1_only(start, k_1_k_2, re
 
 
 @examples(14)
-@given(start=tracking_starts(phi_max=3.1), reference_heading_rate=st.sampled_from([oscillating, circling]))
+@given(
+    start=tracking_starts(phi_max=3.1),
+    reference_heading_rate=st.sampled_from([oscillating, circling]),
+)
 def test_v_2_never_rises_under_law_24(start, reference_heading_rate):
     _, states, _ = fly_law_24(reference_heading_rate, start, 120.0)
     values = np.array([v_2(state, K_2) for state in states])
@@ -120,7 +144,9 @@ def test_under_law_24_the_states_converge_as_the_proof_says(reference_heading_ra
     times, states, cartesian = fly_law_24(reference_heading_rate, [0.0, 0.0, course, *start], 250.0)
     final, time = states[-1], times[-1]
     motion = tracking_motion(delta_steering(law_24, reference_heading_rate), reference_heading_rate)
-    rates = state_rates(LOOK_AHEAD, final, SPEED, reference_heading_rate(time), motion(time, cartesian[-1])[5])
+    rates = state_rates(
+        LOOK_AHEAD, final, SPEED, reference_heading_rate(time), motion(time, cartesian[-1])[5]
+    )
     # (28): phi_r and phi go to zero, and with them V_2's rate; (29): so does phi_r's rate; so rho goes to delta, and delta to R.
     # Convergence is exponential, and 250 s are ample: all is rounding by then, 1e-12. Of the look-ahead's 60 m, 1e-6 is 0.06 mm.
     assert abs(v_2_rate(final, SPEED)) < 1e-6
@@ -135,7 +161,9 @@ def test_under_law_24_the_states_converge_as_the_proof_says(reference_heading_ra
 
 @examples(50)
 @given(behind=st.floats(1.0, 300.0), reference_course=courses)
-def test_on_a_straight_reference_every_place_right_behind_is_at_rest_off_x_d(behind, reference_course):
+def test_on_a_straight_reference_every_place_right_behind_is_at_rest_off_x_d(
+    behind, reference_course
+):
     # Section IV.C says: rho goes to delta, as long as omega_r is not zero. With omega_r = 0 all that has phi_r = phi = 0 rests.
     position = [-behind * math.cos(reference_course), -behind * math.sin(reference_course)]
     state = relative([0.0, 0.0, reference_course, *position, reference_course])
@@ -148,7 +176,9 @@ def test_on_a_straight_reference_every_place_right_behind_is_at_rest_off_x_d(beh
 
 def test_a_heading_rate_that_never_is_zero_but_dies_out_leaves_a_distance():
     # The same for ever less of a turn: omega_r = exp(-t/2 s) 0.3 rad/s is zero at no time. It must not go to zero either.
-    _, states, cartesian = fly_law_24(lambda time: 0.3 * math.exp(-0.5 * time), [0.0, 0.0, 0.0, -100.0, 0.0, 0.0], 250.0)
+    _, states, cartesian = fly_law_24(
+        lambda time: 0.3 * math.exp(-0.5 * time), [0.0, 0.0, 0.0, -100.0, 0.0, 0.0], 250.0
+    )
     # (28) and (29) hold: all has come to rest to 1e-6 by then.
     assert max(abs(states[-1].phi_r), abs(states[-1].phi)) < 1e-6
     # Of 100 m, 88.80 m are left for good; measured once, to the decimetre, for nothing but that it is far from zero matters.

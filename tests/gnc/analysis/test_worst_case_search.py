@@ -36,11 +36,15 @@ def design(name):
 
 def found_and_bound(parameters, turn, gain, steering_max, *, samples, seed):
     task = {"speed": SPEED, "reference_heading_rate_max": turn, "steering_max": steering_max}
-    found = largest_heading_rate(parameters, **task, gain=gain, samples=samples, generator=np.random.default_rng(seed))
+    found = largest_heading_rate(
+        parameters, **task, gain=gain, samples=samples, generator=np.random.default_rng(seed)
+    )
     return found, heading_rate_bound(parameters, **task)
 
 
-@pytest.mark.parametrize("name", [*DESIGNS, *(f"fastest with a reserve of {reserve}" for reserve in (0.1, 0.3, 0.6))])
+@pytest.mark.parametrize(
+    "name", [*DESIGNS, *(f"fastest with a reserve of {reserve}" for reserve in (0.1, 0.3, 0.6))]
+)
 def test_a_hundred_thousand_adverse_states_reach_the_bound_and_do_not_exceed_it(name):
     found, bound = found_and_bound(*design(name), samples=100_000, seed=14)
     assert found <= bound
@@ -86,12 +90,23 @@ def test_the_worst_case_search_commands_what_the_guidance_does(
         steering_max=steering_max,
     )
     # Roundings of z, amplified by 1/(1 - sigma) = 100 twice, in commands of up to 1,000 rad/s.
-    assert float(vectors) == pytest.approx(cascade_law(state.phi, omega_rho, gain, steering_max), rel=1e-9, abs=1e-9)
+    assert float(vectors) == pytest.approx(
+        cascade_law(state.phi, omega_rho, gain, steering_max), rel=1e-9, abs=1e-9
+    )
 
 
 def test_the_search_is_the_generators_alone():
-    search = {"speed": SPEED, "reference_heading_rate_max": 0.497, "gain": 1.5, "steering_max": 0.4, "samples": 1000}
-    first, second = (largest_heading_rate(LOOK_AHEAD, **search, generator=np.random.default_rng(3)) for _ in range(2))
+    search = {
+        "speed": SPEED,
+        "reference_heading_rate_max": 0.497,
+        "gain": 1.5,
+        "steering_max": 0.4,
+        "samples": 1000,
+    }
+    first, second = (
+        largest_heading_rate(LOOK_AHEAD, **search, generator=np.random.default_rng(3))
+        for _ in range(2)
+    )
     assert first == second
 
 

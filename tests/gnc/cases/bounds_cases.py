@@ -23,7 +23,9 @@ def look_aheads(draw):
     return look_ahead(1.0 / (4.0 * sigma**2 * radius), radius)
 
 
-def command(parameters, north, east, course, turn, gain, steering_max, *, reference_speed=SPEED, speed=SPEED):
+def command(
+    parameters, north, east, course, turn, gain, steering_max, *, reference_speed=SPEED, speed=SPEED
+):
     """Return the command by the functions that fly, for a reference that heads north."""
     state = relative_state(parameters, north, east, 0.0, course)
     _, omega_rho = relative_velocity(parameters, state, reference_speed, speed, turn)
@@ -43,5 +45,10 @@ def fastest(reserve, *, distance_from=500.0, limit=LIMIT):
 
 def time_of(parameters, steering_max, *, distance_from=500.0):
     return convergence_time(
-        parameters, speed=SPEED, distance_from=distance_from, distance_to=5.0, gain=1.5, steering_max=steering_max
+        parameters,
+        speed=SPEED,
+        distance_from=distance_from,
+        distance_to=5.0,
+        gain=1.5,
+        steering_max=steering_max,
     )

@@ -3,7 +3,15 @@
 import math
 
 import numpy as np
-from gnc_cases import SPEED, circling, delta_steering, oscillating, relative, tracking_motion, tracking_starts
+from gnc_cases import (
+    SPEED,
+    circling,
+    delta_steering,
+    oscillating,
+    relative,
+    tracking_motion,
+    tracking_starts,
+)
 from hypothesis import strategies as st
 from scipy.integrate import solve_ivp
 
@@ -22,14 +30,21 @@ LAW_30_FLIGHTS = {
 
 
 def cascade_steering(gain, rate_max, reference_heading_rate):
-    return delta_steering(lambda state, omega_rho: cascade_law(state.phi, omega_rho, gain, rate_max), reference_heading_rate)
+    return delta_steering(
+        lambda state, omega_rho: cascade_law(state.phi, omega_rho, gain, rate_max),
+        reference_heading_rate,
+    )
 
 
 def fly_law_30(start, reference_heading_rate, *, gain, rate_max, duration, interval):
     """Fly (30) in Cartesian coordinates; return times, relative states and distances [m] every ``interval`` seconds."""
-    motion = tracking_motion(cascade_steering(gain, rate_max, reference_heading_rate), reference_heading_rate)
+    motion = tracking_motion(
+        cascade_steering(gain, rate_max, reference_heading_rate), reference_heading_rate
+    )
     times = np.linspace(0.0, duration, round(duration / interval) + 1)
-    solution = solve_ivp(motion, (0.0, duration), start, t_eval=times, max_step=0.25, rtol=1e-8, atol=1e-8)
+    solution = solve_ivp(
+        motion, (0.0, duration), start, t_eval=times, max_step=0.25, rtol=1e-8, atol=1e-8
+    )
     assert solution.success
     north, east = solution.y[0] - solution.y[3], solution.y[1] - solution.y[4]
     return times, [relative(state) for state in solution.y.T], np.hypot(north, east)
@@ -37,6 +52,6 @@ def fly_law_30(start, reference_heading_rate, *, gain, rate_max, duration, inter
 
 def cartesian_v_1_rate(state):
     """d . (v_r - v) [m^2/s], nothing of the delta formulation."""
-    return (state[0] - state[3]) * SPEED * (math.cos(state[2]) - math.cos(state[5])) + (state[1] - state[4]) * SPEED * (
-        math.sin(state[2]) - math.sin(state[5])
-    )
+    return (state[0] - state[3]) * SPEED * (math.cos(state[2]) - math.cos(state[5])) + (
+        state[1] - state[4]
+    ) * SPEED * (math.sin(state[2]) - math.sin(state[5]))

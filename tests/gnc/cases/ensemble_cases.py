@@ -13,7 +13,12 @@ from gnc.analysis.turning_reference import TurningReferences
 
 GAIN, STEERING_MAX = 1.5, 0.4
 VEHICLE = Vehicle(
-    speed=SPEED, look_ahead=LOOK_AHEAD, gain=GAIN, steering_max=STEERING_MAX, k_1=K_1, heading_rate_max=HEADING_RATE_MAX
+    speed=SPEED,
+    look_ahead=LOOK_AHEAD,
+    gain=GAIN,
+    steering_max=STEERING_MAX,
+    k_1=K_1,
+    heading_rate_max=HEADING_RATE_MAX,
 )
 BAND = 5.0
 TIGHT = Tolerances(relative=1e-10, absolute=1e-9)
@@ -23,8 +28,12 @@ def references(*, course=(0.0,), rate=(0.0,), terms=()):
     """References that share their terms of amplitude, frequency and phase."""
     count = len(course)
     columns = np.array(terms, dtype=float).reshape(-1, 3)
-    amplitude, frequency, phase = (np.repeat(column[:, None], count, axis=1) for column in columns.T)
-    return TurningReferences(course=course, rate=rate, amplitude=amplitude, frequency=frequency, phase=phase)
+    amplitude, frequency, phase = (
+        np.repeat(column[:, None], count, axis=1) for column in columns.T
+    )
+    return TurningReferences(
+        course=course, rate=rate, amplitude=amplitude, frequency=frequency, phase=phase
+    )
 
 
 def oscillating(phase=0.7):
@@ -48,6 +57,8 @@ def history(law, refs, to_reference, course, **changes):
     def observe(_, time, state, phi, command):
         rows.append((time[0], state[:, 0].copy(), phi[0], command[0]))
 
-    result = fly(law, refs, [[to_reference[0]], [to_reference[1]]], [course], observe=observe, **changes)
+    result = fly(
+        law, refs, [[to_reference[0]], [to_reference[1]]], [course], observe=observe, **changes
+    )
     time, state, phi, command = zip(*rows, strict=True)
     return result, np.array(time), np.array(state), np.array(phi), np.array(command)

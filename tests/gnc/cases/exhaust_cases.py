@@ -54,7 +54,12 @@ class MadePlume:
     meander: float = 1.0
 
     def fly(
-        self, estimator: PlumeEstimator, altitudes: list[float], *, mirrored: bool = False, broken: float | None = None
+        self,
+        estimator: PlumeEstimator,
+        altitudes: list[float],
+        *,
+        mirrored: bool = False,
+        broken: float | None = None,
     ) -> None:
         """Fly a pass at each altitude; a sensor that is ``broken`` reads that value [ppm]."""
         generator = np.random.default_rng(self.seed)
@@ -64,8 +69,12 @@ class MadePlume:
         # A plume that rises less is narrower and stronger.
         narrower = spread_at(prior, self.height) / prior.sigma_z
         for number, altitude in enumerate([*altitudes, altitudes[-1]]):
-            across_centre = self.offset + self.meander * prior.meander_y * generator.standard_normal()
-            height_centre = self.height + self.meander * prior.meander_z * generator.standard_normal()
+            across_centre = (
+                self.offset + self.meander * prior.meander_y * generator.standard_normal()
+            )
+            height_centre = (
+                self.height + self.meander * prior.meander_z * generator.standard_normal()
+            )
             for i in range(round(0.5 * PERIOD / step)):
                 across = SWING * math.cos(math.pi * (number + i * step / (0.5 * PERIOD)))
                 square = ((across - across_centre) / (narrower * prior.sigma_y)) ** 2 + (
@@ -74,7 +83,11 @@ class MadePlume:
                 waiting.append(self.peak / narrower**2 * math.exp(-0.5 * square))
                 lagged += (waiting.pop(0) - lagged) * -math.expm1(-step / sensor.time_constant)
                 estimator.predict(step)
-                read = broken if broken is not None else 420.0 + lagged + sensor.noise * generator.standard_normal()
+                read = (
+                    broken
+                    if broken is not None
+                    else 420.0 + lagged + sensor.noise * generator.standard_normal()
+                )
                 reading = read if i % every == 0 else math.nan
                 estimator.update(prior.distance, -across if mirrored else across, altitude, reading)
 

@@ -40,11 +40,15 @@ def examples(count):
     A quarter of ``count``, but twelve where there are as many: all of them, and more, with the environment variable FUZZ_DEPTH,
     as in tests/test_fuzz.py.
     """
-    return settings(max_examples=max(min(count // 2, 12), count * DEPTH // 4), deadline=None, derandomize=True)
+    return settings(
+        max_examples=max(min(count // 2, 12), count * DEPTH // 4), deadline=None, derandomize=True
+    )
 
 
 def paper_oscillation(nu, **changes):
-    return design_oscillation(**({"nu": nu, "speed": SPEED, "heading_rate_max": HEADING_RATE_MAX} | changes))
+    return design_oscillation(
+        **({"nu": nu, "speed": SPEED, "heading_rate_max": HEADING_RATE_MAX} | changes)
+    )
 
 
 def assert_a_copy_goes_on(reference, copied):
@@ -107,7 +111,11 @@ def relative(state, parameters=LOOK_AHEAD):
 @st.composite
 def tracking_starts(draw, *, phi_max=math.pi, reach=300.0):
     """The reference at the origin, the vehicle up to ``reach`` [m] about it, phi no more than ``phi_max`` [rad] to either side."""
-    north, east, reference_course = draw(st.floats(-reach, reach)), draw(st.floats(-reach, reach)), draw(courses)
+    north, east, reference_course = (
+        draw(st.floats(-reach, reach)),
+        draw(st.floats(-reach, reach)),
+        draw(courses),
+    )
     z_course = -relative([0.0, 0.0, reference_course, north, east, 0.0]).phi
     return [0.0, 0.0, reference_course, north, east, z_course + draw(st.floats(-phi_max, phi_max))]
 
@@ -117,7 +125,9 @@ def delta_steering(law, reference_heading_rate, parameters=LOOK_AHEAD):
 
     def steer(state, time):
         there = relative(state, parameters)
-        _, omega_rho = relative_velocity(parameters, there, SPEED, SPEED, reference_heading_rate(time))
+        _, omega_rho = relative_velocity(
+            parameters, there, SPEED, SPEED, reference_heading_rate(time)
+        )
         return law(there, omega_rho)
 
     return steer
@@ -125,12 +135,23 @@ def delta_steering(law, reference_heading_rate, parameters=LOOK_AHEAD):
 
 def tracking_parameters(**changes):
     """Return how the paper's vehicle tracks; it answers at once."""
-    defaults = {"law": CascadeLaw(), "heading_rate_max": HEADING_RATE_MAX, "time_step": TIME_STEP, "lag": 0.0}
+    defaults = {
+        "law": CascadeLaw(),
+        "heading_rate_max": HEADING_RATE_MAX,
+        "time_step": TIME_STEP,
+        "lag": 0.0,
+    }
     return TrackingParameters(**(defaults | changes))
 
 
 def make_reference(oscillation, *, phase=0.0, centre=(0.0, 0.0), vessel_course=0.0):
-    start = start_reference(oscillation, phase=phase, centre_north=centre[0], centre_east=centre[1], vessel_course=vessel_course)
+    start = start_reference(
+        oscillation,
+        phase=phase,
+        centre_north=centre[0],
+        centre_east=centre[1],
+        vessel_course=vessel_course,
+    )
     return OscillatingReference(oscillation, start, phase=phase, time_step=TIME_STEP)
 
 
@@ -149,7 +170,9 @@ def paper_parameters(reference, *, vessel=(0.0, 0.0), guard=None, airspeed_gain=
         navigation=None,
         vessel=vessel,
         guard=guard,
-        mission=reference if isinstance(reference, DirectParameters) else DirectParameters(reference=reference),
+        mission=reference
+        if isinstance(reference, DirectParameters)
+        else DirectParameters(reference=reference),
         health=None,
     )
 
@@ -186,9 +209,13 @@ def fly(guidance, start, *, duration, delay=0.0):
         distance = math.hypot(reference.north - north, reference.east - east)
         guidance.step(step * TIME_STEP, motion(north, east, course, SPEED, rate))
         command = guidance.heading_rate_command
-        rows.append((north, east, command, distance, math.hypot(north - target.north, east - target.east)))
+        rows.append(
+            (north, east, command, distance, math.hypot(north - target.north, east - target.east))
+        )
         pending.append(command)
         rate = pending.popleft()
         north, east, course = unicycle_move(north, east, course, SPEED, rate, TIME_STEP)
     columns = np.array(rows).T
-    return KinematicFlight(**dict(zip(("north", "east", "command", "distance", "to_vessel"), columns, strict=True)))
+    return KinematicFlight(
+        **dict(zip(("north", "east", "command", "distance", "to_vessel"), columns, strict=True))
+    )

@@ -42,23 +42,50 @@ class DiscGuard:
     def interventions(self):
         return self.guard.interventions
 
-    def _own(self, x, y, velocity_north, velocity_east, course, speed, heading_rate, radius_inflation=0.0):
+    def _own(
+        self, x, y, velocity_north, velocity_east, course, speed, heading_rate, radius_inflation=0.0
+    ):
         place = (self._time, self._north, self._east, velocity_north, velocity_east)
         self.guard.tubes = (Tube(*place, radius_inflation, 0.0, self._acceleration),)
         place = {"ground_north": self._north + x, "ground_east": self._east + y}
         return KnownMotion(**place, course=course, heading_rate=heading_rate, speed=speed)
 
     def limit(
-        self, command, x, y, velocity_north, velocity_east, course, speed, heading_rate, *, radius_inflation=0.0, slowest=math.inf
+        self,
+        command,
+        x,
+        y,
+        velocity_north,
+        velocity_east,
+        course,
+        speed,
+        heading_rate,
+        *,
+        radius_inflation=0.0,
+        slowest=math.inf,
     ):
-        own = self._own(x, y, velocity_north, velocity_east, course, speed, heading_rate, radius_inflation)
+        own = self._own(
+            x, y, velocity_north, velocity_east, course, speed, heading_rate, radius_inflation
+        )
         answer = self.guard.limit(command, self._time, own, speed, slowest)
         self._time += TIME_STEP
         self._north += TIME_STEP * velocity_north
         self._east += TIME_STEP * velocity_east
         return answer
 
-    def allows(self, command, x, y, velocity_north, velocity_east, course, speed, heading_rate, *, slowest=math.inf):
+    def allows(
+        self,
+        command,
+        x,
+        y,
+        velocity_north,
+        velocity_east,
+        course,
+        speed,
+        heading_rate,
+        *,
+        slowest=math.inf,
+    ):
         own = self._own(x, y, velocity_north, velocity_east, course, speed, heading_rate)
         return self.guard.allows(command, self._time, own, speed, slowest)
 
@@ -68,7 +95,9 @@ class DiscGuard:
 
 
 def make_guard(*, lag=0.4, delay=0.0, radius=RADIUS, heading_rate_max=HEADING_RATE_MAX, **changes):
-    return DiscGuard(radius=radius, heading_rate_max=heading_rate_max, lag=lag, delay=delay, **changes)
+    return DiscGuard(
+        radius=radius, heading_rate_max=heading_rate_max, lag=lag, delay=delay, **changes
+    )
 
 
 def moved(state, command, lag, duration, speed=SPEED):
@@ -93,7 +122,12 @@ class Hunter:
     """A disc that turns and speeds up towards the vehicle as hard as it may, and says its velocity with a constant error."""
 
     def __init__(self, velocity, *, acceleration, speed_max, error):
-        self.velocity, self._acceleration, self._speed_max, self._error = velocity, acceleration, speed_max, error
+        self.velocity, self._acceleration, self._speed_max, self._error = (
+            velocity,
+            acceleration,
+            speed_max,
+            error,
+        )
 
     @property
     def told(self):
@@ -101,7 +135,10 @@ class Hunter:
 
     def step(self, x, y, duration):
         distance = math.hypot(x, y)
-        faster = [v + self._acceleration * duration * to / distance for v, to in zip(self.velocity, (x, y), strict=True)]
+        faster = [
+            v + self._acceleration * duration * to / distance
+            for v, to in zip(self.velocity, (x, y), strict=True)
+        ]
         if math.hypot(*faster) <= self._speed_max:
             self.velocity = tuple(faster)
 
@@ -113,14 +150,18 @@ def fly_guarded(guard, start, want, disc, *, lag, delay=0.0, duration=45.0, spee
     closest, changed, lost = math.hypot(x, y), [], []
     pieces = 2
     for step in range(round(duration / TIME_STEP)):
-        command = guard.limit(want(step, x, y, course), x, y, *disc.told, course, speed, heading_rate)
+        command = guard.limit(
+            want(step, x, y, course), x, y, *disc.told, course, speed, heading_rate
+        )
         changed.append(guard.intervening)
         lost.append(guard.lost)
         under_way.append(command)
         acting = under_way.popleft()
         for _ in range(pieces):
             piece = TIME_STEP / pieces
-            x, y, course, heading_rate = moved((x, y, course, heading_rate), acting, lag, piece, speed)
+            x, y, course, heading_rate = moved(
+                (x, y, course, heading_rate), acting, lag, piece, speed
+            )
             x, y = x - disc.velocity[0] * piece, y - disc.velocity[1] * piece
             disc.step(x, y, piece)
             closest = min(closest, math.hypot(x, y))

@@ -42,7 +42,9 @@ def ahead_of(vessel, north, east, silent):
 def braking(vessel, north, east, silent):
     """Brakes as soon as its reports cease, and stops."""
     going = math.hypot(vessel.velocity_north, vessel.velocity_east)
-    return (-vessel.velocity_north, -vessel.velocity_east) if silent and going > 0.05 else (0.0, 0.0)
+    return (
+        (-vessel.velocity_north, -vessel.velocity_east) if silent and going > 0.05 else (0.0, 0.0)
+    )
 
 
 def turning(vessel, north, east, silent):
@@ -88,16 +90,45 @@ def forgetful(guard):
     return guard
 
 
-def hunted(seed, hunter, *, lag=0.4, delay=0.0, time_step=0.1, silence=0.0, speed_max=12.0, known=None, made=None):
+def hunted(
+    seed,
+    hunter,
+    *,
+    lag=0.4,
+    delay=0.0,
+    time_step=0.1,
+    silence=0.0,
+    speed_max=12.0,
+    known=None,
+    made=None,
+):
     """Return the hunt that a seed stands for: vessel, start and reports, which cease for a time after 40 s."""
     generator, duration = np.random.default_rng(seed), 100.0 + silence
     limits = replace(LIMITS, speed_max=speed_max)
     velocity = random_velocity(generator, float(generator.uniform(2.0, 0.9 * speed_max)))
     bearing, distance = generator.uniform(-math.pi, math.pi), generator.uniform(450.0, 700.0)
-    start = (distance * math.cos(bearing), distance * math.sin(bearing), generator.uniform(-math.pi, math.pi), 0.0)
-    sent = radio(generator, interval=(2.0, 10.0), latency=3.0, missing=0.2, silences=[(40.0, 40.0 + silence)], duration=duration)
+    start = (
+        distance * math.cos(bearing),
+        distance * math.sin(bearing),
+        generator.uniform(-math.pi, math.pi),
+        0.0,
+    )
+    sent = radio(
+        generator,
+        interval=(2.0, 10.0),
+        latency=3.0,
+        missing=0.2,
+        silences=[(40.0, 40.0 + silence)],
+        duration=duration,
+    )
     guard = KeepoutGuard(
-        GuardParameters(radius=RADIUS, heading_rate_max=HEADING_RATE_MAX, lag=lag, delay=delay, time_step=time_step)
+        GuardParameters(
+            radius=RADIUS,
+            heading_rate_max=HEADING_RATE_MAX,
+            lag=lag,
+            delay=delay,
+            time_step=time_step,
+        )
     )
     return hunt(
         made(guard) if made else guard, start, Vessel(0.0, 0.0, *velocity, limits), hunter, sent, generator,
@@ -105,7 +136,20 @@ def hunted(seed, hunter, *, lag=0.4, delay=0.0, time_step=0.1, silence=0.0, spee
     )  # fmt: skip
 
 
-def hunt(guard, start, vessel, hunter, sent, generator, *, lag, delay=0.0, duration=120.0, known=None, time_step=0.05):
+def hunt(
+    guard,
+    start,
+    vessel,
+    hunter,
+    sent,
+    generator,
+    *,
+    lag,
+    delay=0.0,
+    duration=120.0,
+    known=None,
+    time_step=0.05,
+):
     """Fly a guarded vehicle that aims at the vessel against a hunter.
 
     Parameters
@@ -133,13 +177,17 @@ def hunt(guard, start, vessel, hunter, sent, generator, *, lag, delay=0.0, durat
             when, arrives = sent.pop(0)
             split = float(generator.uniform(0.0, 0.5 * math.pi))
             side = away if generator.uniform() < 0.7 else away + math.pi
-            post.send(arrives + time - when, report_of(vessel, time, split=split, place=side, drift=side))
+            post.send(
+                arrives + time - when, report_of(vessel, time, split=split, place=side, drift=side)
+            )
             last_report = time
         for report in post.deliver(time):
             reach.report(report)
         if step % each == 0:
             guard.tubes = tubes(time)
-        own = KnownMotion(ground_north=state[0], ground_east=state[1], course=state[2], heading_rate=state[3])
+        own = KnownMotion(
+            ground_north=state[0], ground_east=state[1], course=state[2], heading_rate=state[3]
+        )
         command = guard.limit(aim_at(guard.tubes[0], own, time), time, own, SPEED)
         changed += guard.intervening
         lost += guard.lost
@@ -147,6 +195,8 @@ def hunt(guard, start, vessel, hunter, sent, generator, *, lag, delay=0.0, durat
         for _ in range(pieces):
             under_way.append(command)
             state = moved(state, under_way.popleft(), lag, piece)
-            vessel.accelerate(*(1e3 * part for part in hunter(vessel, state[0], state[1], silent)), piece)
+            vessel.accelerate(
+                *(1e3 * part for part in hunter(vessel, state[0], state[1], silent)), piece
+            )
             closest = min(closest, math.hypot(state[0] - vessel.north, state[1] - vessel.east))
     return Hunt(closest, changed, lost)

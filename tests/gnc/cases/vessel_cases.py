@@ -6,7 +6,14 @@ from dataclasses import dataclass, field
 from gnc.estimation.reachable_set import VesselLimits
 from gnc.estimation.vessel_filter import VesselReport
 
-LIMITS = VesselLimits(acceleration=0.25, speed_max=15.0, position_sigma=5.0, velocity_sigma=0.15, deviations=5.0, horizon=9.0)
+LIMITS = VesselLimits(
+    acceleration=0.25,
+    speed_max=15.0,
+    position_sigma=5.0,
+    velocity_sigma=0.15,
+    deviations=5.0,
+    horizon=9.0,
+)
 
 
 @dataclass
@@ -22,7 +29,10 @@ class Vessel:
     def accelerate(self, north, east, duration):
         """Move on under a demanded acceleration [m/s^2], of which it does what its limits leave, exactly."""
         share = min(1.0, self.limits.acceleration / max(math.hypot(north, east), 1e-300))
-        faster = (self.velocity_north + share * north * duration, self.velocity_east + share * east * duration)
+        faster = (
+            self.velocity_north + share * north * duration,
+            self.velocity_east + share * east * duration,
+        )
         if math.hypot(*faster) > self.limits.speed_max:
             # To the largest speed in that direction, if that is within its acceleration; else it goes straight on.
             cut = self.limits.speed_max / math.hypot(*faster) * (1.0 - 1e-12)
@@ -65,7 +75,9 @@ def radio(generator, *, interval, latency, missing, silences, duration):
     while time < duration:
         time += float(generator.uniform(*interval))
         arrives = time + float(generator.uniform(0.0, latency))
-        if generator.uniform() >= missing and not any(begin <= time < end for begin, end in silences):
+        if generator.uniform() >= missing and not any(
+            begin <= time < end for begin, end in silences
+        ):
             sent.append((time, arrives))
     return sorted(sent, key=lambda entry: entry[1])
 

@@ -13,9 +13,14 @@ def make(lag=LAG):
     return Health(airspeed_error=2.4, heading_rate_error=0.2, lag=lag, time_step=TIME_STEP)
 
 
-def checks_until_a_fault(health, lack=0.0, heading_rate=0.0, command=0.0, servo_error=0.0, limit=4000, gain=-0.01):
+def checks_until_a_fault(
+    health, lack=0.0, heading_rate=0.0, command=0.0, servo_error=0.0, limit=4000, gain=-0.01
+):
     for step in range(1, limit):
-        if health.check(lack, 100.0 + gain * step, heading_rate, command, servo_error) is not Fault.NONE:
+        if (
+            health.check(lack, 100.0 + gain * step, heading_rate, command, servo_error)
+            is not Fault.NONE
+        ):
             return step * TIME_STEP
     return math.inf
 
@@ -23,7 +28,9 @@ def checks_until_a_fault(health, lack=0.0, heading_rate=0.0, command=0.0, servo_
 def test_a_lack_of_airspeed_that_lasts_is_no_thrust():
     health = make()
     # The mean of 4 m/s rises as 4 (1 - e^(-t/2)) and is above 2.4 from t = -2 ln 0.4 on; looks are 0.05 s apart.
-    assert checks_until_a_fault(health, lack=4.0) == pytest.approx(-PATIENCE * math.log(0.4), abs=TIME_STEP)
+    assert checks_until_a_fault(health, lack=4.0) == pytest.approx(
+        -PATIENCE * math.log(0.4), abs=TIME_STEP
+    )
     assert health.fault is Fault.THRUST_LOST
 
 
@@ -40,7 +47,9 @@ def test_less_than_that_or_too_much_airspeed_is_none(lack):
 def test_a_turn_that_is_not_flown_is_no_control(sign):
     health = make(lag=0.0)
     # As above: 0.5 (1 - e^(-t/2)) is above 0.2 from t = -2 ln 0.6 on.
-    assert checks_until_a_fault(health, command=sign * 0.5) == pytest.approx(-PATIENCE * math.log(0.6), abs=TIME_STEP)
+    assert checks_until_a_fault(health, command=sign * 0.5) == pytest.approx(
+        -PATIENCE * math.log(0.6), abs=TIME_STEP
+    )
     assert health.fault is Fault.CONTROL_LOST
 
 
@@ -95,6 +104,9 @@ def test_gusts_that_come_and_go_are_no_fault():
         assert health.check(lack, 100.0 - 0.01 * step, 0.0, 0.0, 0.0) is Fault.NONE
     health = make()
     slower = (
-        health.check(6.0 * math.sin(0.2 * math.pi * step * TIME_STEP), 100.0 - 0.01 * step, 0.0, 0.0, 0.0) for step in range(200)
+        health.check(
+            6.0 * math.sin(0.2 * math.pi * step * TIME_STEP), 100.0 - 0.01 * step, 0.0, 0.0, 0.0
+        )
+        for step in range(200)
     )
     assert Fault.THRUST_LOST in slower

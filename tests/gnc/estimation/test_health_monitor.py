@@ -10,7 +10,13 @@ SPEED, HEADING_RATE_MAX, TIME_STEP = 19.42, 0.5, 0.05
 
 def monitor(lag=0.4, time_step=TIME_STEP):
     return HealthMonitor(
-        HealthParameters(airspeed_error=2.0, speed=SPEED, heading_rate_max=HEADING_RATE_MAX, lag=lag, time_step=time_step)
+        HealthParameters(
+            airspeed_error=2.0,
+            speed=SPEED,
+            heading_rate_max=HEADING_RATE_MAX,
+            lag=lag,
+            time_step=time_step,
+        )
     )
 
 
@@ -23,7 +29,9 @@ def found_after(made, seconds, *, airspeed_command=SPEED, heading_rate_command=0
     for step in range(round(seconds / TIME_STEP)):
         # A vehicle that speeds up, if by rounding alone, has its thrust.
         airspeed = read.get("airspeed", SPEED) - 0.001 * step
-        if made.check(readings(**(read | {"airspeed": airspeed})), airspeed_command, heading_rate_command):
+        if made.check(
+            readings(**(read | {"airspeed": airspeed})), airspeed_command, heading_rate_command
+        ):
             return step * TIME_STEP
     return None
 
@@ -40,7 +48,11 @@ def test_a_sound_vehicle_has_no_fault():
         # Means with a time constant of 2 s; 5 m/s lacking pass 2 m/s after 2 ln(5/3) s.
         ({"airspeed": SPEED - 5.0}, Fault.THRUST_LOST, 1.0),
         # Twice omega_max off passes 0.8 omega_max after 2 ln(2/1.2) s, and later by the vehicle's own lag.
-        ({"heading_rate": -HEADING_RATE_MAX, "heading_rate_command": HEADING_RATE_MAX}, Fault.CONTROL_LOST, 1.0),
+        (
+            {"heading_rate": -HEADING_RATE_MAX, "heading_rate_command": HEADING_RATE_MAX},
+            Fault.CONTROL_LOST,
+            1.0,
+        ),
         # A servo's mean has a time constant of 0.1 s.
         ({"servo_error": 0.5}, Fault.ACTUATOR_STUCK, 0.0),
     ],
@@ -70,7 +82,9 @@ def test_a_vehicle_that_turns_at_once_follows_commands_that_change_from_step_to_
     # At 5 Hz: the mean over four of its steps is none of the heading rates that the vehicle has.
     made, heading_rate = monitor(lag=0.0, time_step=0.2), 0.0
     for step in range(300):
-        assert not made.check(readings(airspeed=SPEED - 0.001 * step, heading_rate=heading_rate), SPEED, heading_rate)
+        assert not made.check(
+            readings(airspeed=SPEED - 0.001 * step, heading_rate=heading_rate), SPEED, heading_rate
+        )
         heading_rate = HEADING_RATE_MAX if step % 2 else -HEADING_RATE_MAX
 
 
@@ -79,5 +93,7 @@ def test_a_command_that_changes_its_sign_at_every_step_asks_for_no_turn():
     made = monitor()
     for step in range(round(60.0 / TIME_STEP)):
         command = HEADING_RATE_MAX if step % 2 else -HEADING_RATE_MAX
-        assert not made.check(readings(airspeed=SPEED - 0.001 * step), SPEED - 0.001 * step, command)
+        assert not made.check(
+            readings(airspeed=SPEED - 0.001 * step), SPEED - 0.001 * step, command
+        )
     assert made.fault is Fault.NONE

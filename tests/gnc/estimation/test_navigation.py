@@ -61,7 +61,9 @@ def test_dead_reckoning_with_exact_sensors_in_steady_wind_does_not_drift():
     # Position by the trapezoidal rule, which is off by dt^2/12 times how much the acceleration has changed: twice 20 m/s times 0.5
     # rad/s make 4 mm. By one end of each step it was off by up to 0.97 m.
     assert math.hypot(navigation.north - where[0], navigation.east - where[1]) < 0.01
-    assert (navigation.velocity_north, navigation.velocity_east) == pytest.approx(velocity_at(159.95), abs=1e-3)
+    assert (navigation.velocity_north, navigation.velocity_east) == pytest.approx(
+        velocity_at(159.95), abs=1e-3
+    )
 
 
 def test_satellites_that_come_back_end_the_dead_reckoning():
@@ -84,13 +86,23 @@ def test_the_air_frame_drifts_with_the_estimated_wind():
     # Rounding.
     assert (navigation.drift_north, navigation.drift_east) == pytest.approx(total, abs=1e-9)
     # The wind is known to 2 % after the first look: each of 20 s at 5 m/s is 100 m.
-    assert (navigation.drift_north, navigation.drift_east) == pytest.approx((20.0 * WIND[0], 20.0 * WIND[1]), rel=0.02)
+    assert (navigation.drift_north, navigation.drift_east) == pytest.approx(
+        (20.0 * WIND[0], 20.0 * WIND[1]), rel=0.02
+    )
 
 
 @pytest.mark.parametrize(
     ("roll", "offset"),
     # The table of ``make``, halfway between its points, and beyond its ends along the last piece.
-    [(-0.8, 0.03), (-0.4, 0.015), (0.0, 0.0), (0.4, -0.025), (0.8, -0.05), (1.2, -0.075), (-1.2, 0.045)],
+    [
+        (-0.8, 0.03),
+        (-0.4, 0.015),
+        (0.0, 0.0),
+        (0.4, -0.025),
+        (0.8, -0.05),
+        (1.2, -0.075),
+        (-1.2, 0.045),
+    ],
 )
 def test_the_course_through_the_air_is_the_heading_and_the_crab_of_the_bank(roll, offset):
     navigation = make()
@@ -126,11 +138,15 @@ def test_after_a_loss_of_satellites_the_wind_is_known_as_little_as_it_has_wander
     before = navigation.wind.sigma
     for _ in range(1200):
         navigation.update(None, SPEED, 0.3, 0.0)
-    navigation.wind._speed_variance = navigation.wind._course_variance = 1e12  # what is measured then says nothing
+    navigation.wind._speed_variance = navigation.wind._course_variance = (
+        1e12  # what is measured then says nothing
+    )
     for _ in range(5):
         navigation.update((*where, *velocity_at(0.0)), SPEED, course_at(0.0), 0.0)
     # 60 s at 0.02 m/s a root of a second, and at most one interval of 0.25 s more.
-    assert navigation.wind.sigma == pytest.approx(math.hypot(before, 0.02 * math.sqrt(60.0)), rel=5e-3)
+    assert navigation.wind.sigma == pytest.approx(
+        math.hypot(before, 0.02 * math.sqrt(60.0)), rel=5e-3
+    )
 
 
 def test_a_wind_that_was_measured_seldom_may_be_wrong_by_as_much_as_its_filter_says():
@@ -168,10 +184,17 @@ def test_a_noisy_compass_makes_the_wind_wrong_by_no_more_than_that(measured):
     # Of a normal error in a plane one in 90 exceeds three deviations of its worst direction; 1,000 winds were estimated.
     noise, generator, exceeded = 0.09, np.random.default_rng(measured), 0
     for _ in range(1000):
-        navigation = make(course_sigma=noise, airspeed_sigma=0.5, wind_interval=1, wind_noise=3.0 * noise * SPEED)
+        navigation = make(
+            course_sigma=noise, airspeed_sigma=0.5, wind_interval=1, wind_noise=3.0 * noise * SPEED
+        )
         for step in range(measured):
             time = 0.5 * step
-            navigation.update((0.0, 0.0, *velocity_at(time)), SPEED, course_at(time) + generator.normal(0.0, noise), 0.0)
+            navigation.update(
+                (0.0, 0.0, *velocity_at(time)),
+                SPEED,
+                course_at(time) + generator.normal(0.0, noise),
+                0.0,
+            )
         wrong = math.hypot(navigation.wind.north - WIND[0], navigation.wind.east - WIND[1])
         exceeded += wrong > navigation.wind_error
     assert exceeded <= 20

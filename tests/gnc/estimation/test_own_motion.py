@@ -26,7 +26,9 @@ def test_the_true_motion_has_course_and_speed_of_its_velocity_and_no_wind():
     own.update((100.0, -50.0, 12.0, -5.0, 0.2))
     assert (own.north, own.east, own.ground_north, own.ground_east) == (100.0, -50.0, 100.0, -50.0)
     # 5, 12, 13.
-    assert (own.speed, own.course, own.heading_rate) == pytest.approx((13.0, math.atan2(-5.0, 12.0), 0.2), rel=1e-15)
+    assert (own.speed, own.course, own.heading_rate) == pytest.approx(
+        (13.0, math.atan2(-5.0, 12.0), 0.2), rel=1e-15
+    )
     assert (own.wind_north, own.wind_east, own.drift_north, own.drift_east, own.lost) == (0.0,) * 5
     # Nothing in its measurement says how fast the air goes by.
     assert own.air_ratio == 1.0
@@ -41,7 +43,9 @@ def settled_in_wind(*, airspeed=SPEED, heading_rate=0.1):
         heading = 0.1 * step * TIME_STEP
         velocity = SPEED * math.cos(heading) + WIND[0], SPEED * math.sin(heading) + WIND[1]
         last = step == 4801  # between two measurements of the wind
-        own.update(((north, east, *velocity), airspeed if last else SPEED, heading, 0.0, heading_rate, 0.0))
+        own.update(
+            ((north, east, *velocity), airspeed if last else SPEED, heading, 0.0, heading_rate, 0.0)
+        )
         place = north, east
         north, east = north + TIME_STEP * velocity[0], east + TIME_STEP * velocity[1]
     return own, place, math.remainder(heading, 2.0 * math.pi)
@@ -55,8 +59,12 @@ def test_the_estimated_motion_is_that_through_the_mean_air():
     assert own.course == pytest.approx(heading, abs=1e-3)
     assert (own.ground_north, own.ground_east) == place
     # The air mass has drifted by as much as its frame lies from that of the ground; over 240 s of a wind that was found soon.
-    assert (own.north + own.drift_north, own.east + own.drift_east) == pytest.approx(place, abs=1e-9)
-    assert (own.drift_north, own.drift_east) == pytest.approx((240.0 * WIND[0], 240.0 * WIND[1]), rel=0.1)
+    assert (own.north + own.drift_north, own.east + own.drift_east) == pytest.approx(
+        place, abs=1e-9
+    )
+    assert (own.drift_north, own.drift_east) == pytest.approx(
+        (240.0 * WIND[0], 240.0 * WIND[1]), rel=0.1
+    )
     assert own.air_ratio == pytest.approx(1.0, abs=1e-3)
 
 

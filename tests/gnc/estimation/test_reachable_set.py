@@ -28,7 +28,11 @@ def beyond(disc, vessel, time):
 @st.composite
 def errors(draw):
     """An error on the limit of what is allowed for, anywhere on it."""
-    return {"split": draw(st.floats(0.0, math.pi / 2.0)), "place": draw(courses), "drift": draw(courses)}
+    return {
+        "split": draw(st.floats(0.0, math.pi / 2.0)),
+        "place": draw(courses),
+        "drift": draw(courses),
+    }
 
 
 @st.composite
@@ -44,7 +48,9 @@ def manoeuvres(draw):
 @given(
     manoeuvre=manoeuvres(),
     velocity=st.tuples(courses, st.floats(0.0, LIMITS.speed_max)),
-    reported=st.lists(st.tuples(st.booleans(), st.floats(0.0, 25.0), errors()), min_size=1, max_size=40),
+    reported=st.lists(
+        st.tuples(st.booleans(), st.floats(0.0, 25.0), errors()), min_size=1, max_size=40
+    ),
     speed_max=st.sampled_from([LIMITS.speed_max, math.inf]),
 )
 def test_the_vessel_is_in_every_disc_at_every_time(manoeuvre, velocity, reported, speed_max):
@@ -67,7 +73,11 @@ def test_the_vessel_is_in_every_disc_at_every_time(manoeuvre, velocity, reported
         for disc in discs:
             assert disc.reach(time - disc.time) >= 0.0
             assert beyond(disc, vessel, time) <= ROUNDING
-        vessel.accelerate(share * limits.acceleration * math.cos(towards), share * limits.acceleration * math.sin(towards), STEP)
+        vessel.accelerate(
+            share * limits.acceleration * math.cos(towards),
+            share * limits.acceleration * math.sin(towards),
+            STEP,
+        )
 
 
 def test_the_disc_is_no_larger_than_what_the_vessel_can_do():
@@ -94,14 +104,19 @@ def test_the_disc_by_speed_of_a_new_report_begins_as_the_other_one():
     report = VesselReport(0.0, 3.0, -4.0, 8.0, 0.0)
     disc = tube_by_speed(report, LIMITS, 20.0)
     # By hand: 5 hypot(5, 0.15 * 20) and 0.25 * 20^2/2 about 160 m farther north; from then on anywhere at 15 m/s.
-    assert disc == pytest.approx((20.0, 163.0, -4.0, 0.0, 0.0, 5.0 * math.hypot(5.0, 3.0) + 50.0, 15.0, 0.0), rel=1e-12)
+    assert disc == pytest.approx(
+        (20.0, 163.0, -4.0, 0.0, 0.0, 5.0 * math.hypot(5.0, 3.0) + 50.0, 15.0, 0.0), rel=1e-12
+    )
 
 
 def test_a_disc_by_speed_is_there_as_soon_as_the_edge_of_the_other_may_be_faster_than_the_vessel():
     reach = ReachableSet(LIMITS)
     reach.report(VesselReport(0.0, 0.0, 0.0, 8.0, 0.0))
     # 8 m/s, and 0.25 m/s^2 until 9 s ahead: 15 m/s for reports that are 19 s old; their errors make that less than a second sooner.
-    by_speed = [bool([disc for disc in reach.tubes(time) if disc.velocity_north == 0.0]) for time in (0.0, 17.0, 19.1, 60.0)]
+    by_speed = [
+        bool([disc for disc in reach.tubes(time) if disc.velocity_north == 0.0])
+        for time in (0.0, 17.0, 19.1, 60.0)
+    ]
     assert by_speed == [False, False, True, True]
 
 
@@ -113,7 +128,9 @@ def test_a_disc_by_speed_is_there_as_soon_as_the_edge_of_the_other_may_be_faster
     place=st.sampled_from([0.0, 5.0]),
     drift=st.sampled_from([0.0, 0.15, 2.0]),
 )
-def test_a_report_that_gets_older_never_widens_its_disc_beyond_what_it_was_said_to_become(age, later, ahead, place, drift):
+def test_a_report_that_gets_older_never_widens_its_disc_beyond_what_it_was_said_to_become(
+    age, later, ahead, place, drift
+):
     limits = replace(LIMITS, position_sigma=place, velocity_sigma=drift)
     report = VesselReport(0.0, 0.0, 0.0, 8.0, 0.0)
     then, now = tube(report, limits, age), tube(report, limits, age + later)
@@ -155,9 +172,13 @@ def test_normal_errors_are_outside_of_a_disc_as_rarely_as_its_deviations_say():
     generator = np.random.default_rng(11)
     limits = replace(LIMITS, deviations=3.0, acceleration=0.0, speed_max=math.inf)
     count, vessel = 20_000, Vessel(limits=limits)
-    place, drift = 5.0 * generator.standard_normal((count, 2)), 0.15 * generator.standard_normal((count, 2))
+    place, drift = (
+        5.0 * generator.standard_normal((count, 2)),
+        0.15 * generator.standard_normal((count, 2)),
+    )
     outside = sum(
-        beyond(tube(VesselReport(0.0, *p, *v), limits, 12.0), vessel, 12.0) > 0.0 for p, v in zip(place, drift, strict=True)
+        beyond(tube(VesselReport(0.0, *p, *v), limits, 12.0), vessel, 12.0) > 0.0
+        for p, v in zip(place, drift, strict=True)
     )
     # 222 expected, plus or minus 15; three times that.
     assert outside == pytest.approx(count * math.exp(-4.5), abs=45.0)

@@ -13,7 +13,12 @@ FIRST = VesselReport(0.0, 100.0, -40.0, 5.0, 2.0)
 
 
 def make(**changes):
-    sigmas = {"position_sigma": POSITION, "velocity_sigma": VELOCITY, "acceleration": SIGMA, "memory": MEMORY}
+    sigmas = {
+        "position_sigma": POSITION,
+        "velocity_sigma": VELOCITY,
+        "acceleration": SIGMA,
+        "memory": MEMORY,
+    }
     return VesselFilter(FilterParameters(**(sigmas | changes)))
 
 
@@ -54,7 +59,9 @@ def test_it_is_a_plain_matrix_kalman_filter():
     rng = np.random.default_rng(3)
     vessel = make()
     vessel.report(FIRST)
-    states = np.array([[FIRST.north, FIRST.velocity_north, 0.0], [FIRST.east, FIRST.velocity_east, 0.0]]).T
+    states = np.array(
+        [[FIRST.north, FIRST.velocity_north, 0.0], [FIRST.east, FIRST.velocity_east, 0.0]]
+    ).T
     p = np.diag([POSITION**2, VELOCITY**2, SIGMA**2])
     h, r = np.eye(2, 3), np.diag([POSITION**2, VELOCITY**2])
     time = 0.0
@@ -65,15 +72,23 @@ def test_it_is_a_plain_matrix_kalman_filter():
         transition, noise = singer(gap)
         states, p = transition @ states, transition @ p @ transition.T + noise
         gain = p @ h.T @ np.linalg.inv(h @ p @ h.T + r)
-        measured = np.array([[report.north, report.east], [report.velocity_north, report.velocity_east]])
+        measured = np.array(
+            [[report.north, report.east], [report.velocity_north, report.velocity_east]]
+        )
         states, p = states + gain @ (measured - h @ states), (np.eye(3) - gain @ h) @ p
         motion = vessel.at(time + 3.0)
         ahead, more = singer(3.0)
         expected = ahead @ states
         # Rounding of some hundred metres in 40 updates, and the closed forms of the noise as above.
-        assert (motion.north, motion.velocity_north, motion.acceleration_north) == pytest.approx(expected[:, 0], rel=1e-6, abs=1e-6)
-        assert (motion.east, motion.velocity_east, motion.acceleration_east) == pytest.approx(expected[:, 1], rel=1e-6, abs=1e-6)
-        assert motion.sigma == pytest.approx(math.sqrt((ahead @ p @ ahead.T + more)[0, 0]), rel=1e-6)
+        assert (motion.north, motion.velocity_north, motion.acceleration_north) == pytest.approx(
+            expected[:, 0], rel=1e-6, abs=1e-6
+        )
+        assert (motion.east, motion.velocity_east, motion.acceleration_east) == pytest.approx(
+            expected[:, 1], rel=1e-6, abs=1e-6
+        )
+        assert motion.sigma == pytest.approx(
+            math.sqrt((ahead @ p @ ahead.T + more)[0, 0]), rel=1e-6
+        )
 
 
 def test_it_starts_from_the_first_report():

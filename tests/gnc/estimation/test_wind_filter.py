@@ -35,7 +35,9 @@ def feed(wind_filter, course, wind, airspeed=SPEED, measured_airspeed=None, meas
 
 
 def covariance(wind_filter):
-    return np.array([[wind_filter._p_nn, wind_filter._p_ne], [wind_filter._p_ne, wind_filter._p_ee]])
+    return np.array(
+        [[wind_filter._p_nn, wind_filter._p_ne], [wind_filter._p_ne, wind_filter._p_ee]]
+    )
 
 
 @pytest.mark.parametrize("course", [circle, weave])
@@ -82,7 +84,9 @@ def test_it_is_the_kalman_filter_of_the_textbook(course):
         p = p + DRIFT**2 * TIME_STEP * np.eye(2)
         along = np.array([math.cos(seen), math.sin(seen)])
         across = np.array([-along[1], along[0]])
-        r = AIRSPEED_SIGMA**2 * np.outer(along, along) + (airspeed * COURSE_SIGMA) ** 2 * np.outer(across, across)
+        r = AIRSPEED_SIGMA**2 * np.outer(along, along) + (airspeed * COURSE_SIGMA) ** 2 * np.outer(
+            across, across
+        )
         # Before the first measurement nothing is known.
         gain = p @ np.linalg.inv(p + r) if step else np.eye(2)
         state = state + gain @ (velocity - airspeed * along - state)

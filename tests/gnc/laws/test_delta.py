@@ -43,12 +43,21 @@ def test_the_relative_state_holds_the_geometry_of_figure_2(north, east, referenc
     delta = 0.005 * (north**2 + east**2) + 60.0
     # Roundings of angles, 1e-15 times lengths up to 3 km.
     assert state.delta == pytest.approx(delta, rel=1e-14)
-    assert state.rho * math.cos(z_course) - delta * math.cos(reference_course) == pytest.approx(north, rel=0.0, abs=1e-11)
-    assert state.rho * math.sin(z_course) - delta * math.sin(reference_course) == pytest.approx(east, rel=0.0, abs=1e-11)
+    assert state.rho * math.cos(z_course) - delta * math.cos(reference_course) == pytest.approx(
+        north, rel=0.0, abs=1e-11
+    )
+    assert state.rho * math.sin(z_course) - delta * math.sin(reference_course) == pytest.approx(
+        east, rel=0.0, abs=1e-11
+    )
     assert wrap(reference_course - state.phi_r - z_course) == pytest.approx(0.0, abs=1e-14)
     assert -math.pi <= state.phi < math.pi
     assert -math.pi <= state.phi_r < math.pi
-    assert bare_state(LOOK_AHEAD, north, east, reference_course, course) == (state.delta, state.rho, state.phi_r, state.phi)
+    assert bare_state(LOOK_AHEAD, north, east, reference_course, course) == (
+        state.delta,
+        state.rho,
+        state.phi_r,
+        state.phi,
+    )
 
 
 @examples(200)
@@ -56,30 +65,47 @@ def test_the_relative_state_holds_the_geometry_of_figure_2(north, east, referenc
 def test_the_law_of_cosines_gives_the_cartesian_distance(state):
     there = relative(state)
     # Between equations (19) and (20). The squares of rho and delta, up to 6.7e6 m^2 each, cancel but for their rounding.
-    assert distance_squared(there) == pytest.approx(state[3] ** 2 + state[4] ** 2, rel=0.0, abs=1e-14 * there.delta**2)
+    assert distance_squared(there) == pytest.approx(
+        state[3] ** 2 + state[4] ** 2, rel=0.0, abs=1e-14 * there.delta**2
+    )
 
 
 @examples(200)
 @given(
-    state=cartesian_states(), reference_speed=speeds, speed=speeds, reference_heading_rate=heading_rates, heading_rate=heading_rates
+    state=cartesian_states(),
+    reference_speed=speeds,
+    speed=speeds,
+    reference_heading_rate=heading_rates,
+    heading_rate=heading_rates,
 )
 def test_relative_rates_are_those_of_the_cartesian_motion_also_at_unequal_speeds(
     state, reference_speed, speed, reference_heading_rate, heading_rate
 ):
-    rates = tracking_motion(lambda *_: heading_rate, lambda _: reference_heading_rate, reference_speed=reference_speed, speed=speed)
+    rates = tracking_motion(
+        lambda *_: heading_rate,
+        lambda _: reference_heading_rate,
+        reference_speed=reference_speed,
+        speed=speed,
+    )
     step = 1e-4
     before, after = moved(rates, 0.0, state, -step), moved(rates, 0.0, state, step)
     there = relative(state)
-    rho_rate, omega_rho = relative_velocity(LOOK_AHEAD, there, reference_speed, speed, reference_heading_rate)
+    rho_rate, omega_rho = relative_velocity(
+        LOOK_AHEAD, there, reference_speed, speed, reference_heading_rate
+    )
     delta_rate = LOOK_AHEAD.epsilon * distance_squared_rate(there, reference_speed, speed)
-    squared_rate = (distance_squared(relative(after)) - distance_squared(relative(before))) / (2.0 * step)
+    squared_rate = (distance_squared(relative(after)) - distance_squared(relative(before))) / (
+        2.0 * step
+    )
     numerical_delta = (relative(after).delta - relative(before).delta) / (2.0 * step)
     numerical_rho = (relative(after).rho - relative(before).rho) / (2.0 * step)
     numerical_omega = wrap(course_of_z(after) - course_of_z(before)) / (2.0 * step)
     # Central differences err by step^2/6 of the third derivative, which is largest where delta (5 km) swings the end of z or where
     # rho is shortest (10 m). Over 4,000 random states they erred by 4e-5 m^2/s, 2e-7 m/s, 8e-6 m/s and 9e-7 rad/s, a hundred times
     # more at ten times the step; corners are allowed some ten times that. The rates themselves reach 9e4, 400, 600 and 9.
-    assert distance_squared_rate(there, reference_speed, speed) == pytest.approx(squared_rate, rel=0.0, abs=5e-4)
+    assert distance_squared_rate(there, reference_speed, speed) == pytest.approx(
+        squared_rate, rel=0.0, abs=5e-4
+    )
     assert delta_rate == pytest.approx(numerical_delta, rel=0.0, abs=5e-6)
     assert rho_rate == pytest.approx(numerical_rho, rel=0.0, abs=1e-4)
     assert omega_rho == pytest.approx(numerical_omega, rel=0.0, abs=2e-5)
@@ -91,14 +117,28 @@ def test_at_equal_speeds_the_rates_are_the_papers(state, reference_heading_rate)
     there = relative(state)
     delta, rho, phi_r, phi = there
     # Equation (20), as printed.
-    printed = -2.0 * SPEED * (rho * (math.cos(phi) - math.cos(phi_r)) + delta * (1.0 - math.cos(phi_r - phi)))
+    printed = (
+        -2.0
+        * SPEED
+        * (rho * (math.cos(phi) - math.cos(phi_r)) + delta * (1.0 - math.cos(phi_r - phi)))
+    )
     # Roundings of products of up to 2 * 19 m/s * 2.6 km.
     assert distance_squared_rate(there, SPEED, SPEED) == pytest.approx(printed, rel=0.0, abs=1e-9)
     # Equation (18), as printed.
     delta_rate = LOOK_AHEAD.epsilon * printed
     swing = delta * reference_heading_rate
-    along = SPEED * math.cos(phi_r) - SPEED * math.cos(phi) - swing * math.sin(phi_r) + delta_rate * math.cos(phi_r)
-    across = SPEED * math.sin(phi_r) - SPEED * math.sin(phi) + swing * math.cos(phi_r) + delta_rate * math.sin(phi_r)
+    along = (
+        SPEED * math.cos(phi_r)
+        - SPEED * math.cos(phi)
+        - swing * math.sin(phi_r)
+        + delta_rate * math.cos(phi_r)
+    )
+    across = (
+        SPEED * math.sin(phi_r)
+        - SPEED * math.sin(phi)
+        + swing * math.cos(phi_r)
+        + delta_rate * math.sin(phi_r)
+    )
     rho_rate, omega_rho = relative_velocity(LOOK_AHEAD, there, SPEED, SPEED, reference_heading_rate)
     assert rho_rate == pytest.approx(along, rel=0.0, abs=1e-10)
     assert omega_rho * rho == pytest.approx(across, rel=0.0, abs=1e-10)
@@ -113,7 +153,9 @@ def test_at_equal_speeds_the_rates_are_the_papers(state, reference_heading_rate)
     reference_course=courses,
 )
 @example(epsilon=0.005, excess=1.2, north=-100.0, east=0.0, reference_course=0.0)
-def test_z_never_gets_shorter_than_the_look_ahead_allows(epsilon, excess, north, east, reference_course):
+def test_z_never_gets_shorter_than_the_look_ahead_allows(
+    epsilon, excess, north, east, reference_course
+):
     parameters = look_ahead(epsilon, excess / (4.0 * epsilon))
     rho = relative_state(parameters, north, east, reference_course, 0.0).rho
     shortest = parameters.radius - 1.0 / (4.0 * epsilon)
@@ -124,12 +166,20 @@ def test_z_never_gets_shorter_than_the_look_ahead_allows(epsilon, excess, north,
 @examples(200)
 @given(epsilon=st.floats(1e-4, 1.0), excess=st.floats(1.001, 100.0), reference_course=courses)
 @example(epsilon=0.005, excess=1.2, reference_course=0.0)
-def test_the_shortest_z_is_met_by_a_vehicle_right_ahead_of_the_reference(epsilon, excess, reference_course):
+def test_the_shortest_z_is_met_by_a_vehicle_right_ahead_of_the_reference(
+    epsilon, excess, reference_course
+):
     # delta - d is least at d = 1/(2 epsilon), and rho is that when d points against the reference's course: at epsilon = 0.005 and
     # R = 60 m, d = 100 m and rho = 60 - 50 = 10 m.
     parameters = look_ahead(epsilon, excess / (4.0 * epsilon))
     d = 0.5 / epsilon
-    rho = relative_state(parameters, -d * math.cos(reference_course), -d * math.sin(reference_course), reference_course, 0.0).rho
+    rho = relative_state(
+        parameters,
+        -d * math.cos(reference_course),
+        -d * math.sin(reference_course),
+        reference_course,
+        0.0,
+    ).rho
     # Rounding of delta, up to a thousand times rho along z; across it the angle's, 5e-16 of d, which rho hardly feels.
     assert rho == pytest.approx(parameters.radius - 0.25 / epsilon, rel=1e-12)
 
@@ -141,15 +191,21 @@ def test_the_look_ahead_grows_with_the_square_of_distance():
 
 
 @examples(50)
-@given(reference_course=courses, course_error=st.floats(-1.0, 1.0), reference_heading_rate=heading_rates)
-def test_on_the_reference_z_points_along_its_course_and_turns_with_it(reference_course, course_error, reference_heading_rate):
+@given(
+    reference_course=courses,
+    course_error=st.floats(-1.0, 1.0),
+    reference_heading_rate=heading_rates,
+)
+def test_on_the_reference_z_points_along_its_course_and_turns_with_it(
+    reference_course, course_error, reference_heading_rate
+):
     state = relative_state(LOOK_AHEAD, 0.0, 0.0, reference_course, reference_course + course_error)
     # Section IV.B: on top of the reference, chi_rho becomes chi_r; there is no singularity. Roundings.
     assert state == pytest.approx(RelativeState(60.0, 60.0, 0.0, course_error), abs=1e-13)
     on_course = RelativeState(60.0, 60.0, 0.0, 0.0)
-    assert relative_velocity(LOOK_AHEAD, on_course, SPEED, SPEED, reference_heading_rate) == pytest.approx(
-        (0.0, reference_heading_rate), abs=1e-15
-    )
+    assert relative_velocity(
+        LOOK_AHEAD, on_course, SPEED, SPEED, reference_heading_rate
+    ) == pytest.approx((0.0, reference_heading_rate), abs=1e-15)
 
 
 @examples(100)
@@ -174,13 +230,17 @@ def test_the_look_ahead_keeps_its_parameters():
 @pytest.mark.parametrize("radius", [50.0, 49.9, 0.0, -60.0, math.nan, math.inf])
 def test_a_look_ahead_too_short_for_its_epsilon_is_refused(radius):
     # Section IV.B: R > 1/(4 epsilon), 50 m at epsilon = 0.005.
-    with pytest.raises(InfeasibleError, match=r"look-ahead R is .* must exceed .* = 50 m: raise R or epsilon") as refusal:
+    with pytest.raises(
+        InfeasibleError, match=r"look-ahead R is .* must exceed .* = 50 m: raise R or epsilon"
+    ) as refusal:
         look_ahead(0.005, radius)
     assert f"R is {radius:g} m" in str(refusal.value)
 
 
 @pytest.mark.parametrize("epsilon", [0.0, -0.005, math.nan, math.inf])
 def test_a_look_ahead_that_does_not_grow_is_refused(epsilon):
-    with pytest.raises(InfeasibleError, match=r"look-ahead epsilon is .* 1/m; it must be finite and above 0") as refusal:
+    with pytest.raises(
+        InfeasibleError, match=r"look-ahead epsilon is .* 1/m; it must be finite and above 0"
+    ) as refusal:
         look_ahead(epsilon, 60.0)
     assert f"epsilon is {epsilon:g} 1/m" in str(refusal.value)

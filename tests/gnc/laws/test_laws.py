@@ -4,7 +4,16 @@ from dataclasses import fields, replace
 
 import numpy as np
 import pytest
-from gnc_cases import LOOK_AHEAD, SPEED, courses, delta_steering, examples, paper_oscillation, relative, tracking_motion
+from gnc_cases import (
+    LOOK_AHEAD,
+    SPEED,
+    courses,
+    delta_steering,
+    examples,
+    paper_oscillation,
+    relative,
+    tracking_motion,
+)
 from hypothesis import given
 from hypothesis import strategies as st
 from scipy.integrate import solve_ivp
@@ -41,7 +50,9 @@ def test_the_cascade_law_is_equation_30_as_printed(phi, omega_rho, gain, rate_ma
 def test_the_lyapunov_law_is_equation_24_as_printed(phi, rho, omega_rho):
     printed = -K_1 * rho * SPEED * math.sin(phi) / (1.0 + math.cos(phi)) + omega_rho
     # 1 + cos(3.1) = 9e-4 cancels three digits of the printed form.
-    assert lyapunov_law(RelativeState(60.0, rho, 0.3, phi), SPEED, omega_rho, K_1) == pytest.approx(printed, rel=1e-12, abs=1e-12)
+    assert lyapunov_law(RelativeState(60.0, rho, 0.3, phi), SPEED, omega_rho, K_1) == pytest.approx(
+        printed, rel=1e-12, abs=1e-12
+    )
 
 
 def test_the_lyapunov_law_grows_without_limit_towards_the_opposite_course():
@@ -54,7 +65,9 @@ def test_the_lyapunov_law_grows_without_limit_towards_the_opposite_course():
 @examples(50)
 @given(reference_heading_rate=st.floats(-0.5, 0.5))
 @pytest.mark.parametrize(
-    "law", [law_30, lambda state, omega_rho: lyapunov_law(state, SPEED, omega_rho, K_1)], ids=["cascade", "lyapunov"]
+    "law",
+    [law_30, lambda state, omega_rho: lyapunov_law(state, SPEED, omega_rho, K_1)],
+    ids=["cascade", "lyapunov"],
 )
 def test_on_the_reference_the_delta_laws_command_its_heading_rate(law, reference_heading_rate):
     state = equilibrium(LOOK_AHEAD)
@@ -77,7 +90,14 @@ def test_a_kinematic_vehicle_converges_onto_the_oscillating_reference_under_law_
         return -oscillation.amplitude * math.sin(oscillation.omega_0 * time)
 
     motion = tracking_motion(delta_steering(law_30, reference_heading_rate), reference_heading_rate)
-    solution = solve_ivp(motion, (0.0, 240.0), [0.0, 0.0, oscillation.eta, *start], max_step=0.5, rtol=1e-7, atol=1e-7)
+    solution = solve_ivp(
+        motion,
+        (0.0, 240.0),
+        [0.0, 0.0, oscillation.eta, *start],
+        max_step=0.5,
+        rtol=1e-7,
+        atol=1e-7,
+    )
     end = solution.y[:, -1]
     # Section IV.D: globally asymptotically stable; 0.1 m is what four minutes are ample for.
     assert math.hypot(end[0] - end[3], end[1] - end[4]) < 0.1
@@ -125,24 +145,36 @@ def test_the_laws_are_known_by_name_and_have_the_defaults_of_a_scenario():
     assert STEERING_LAWS.get("cascade")() == CascadeLaw(
         epsilon_per_m=0.005, look_ahead_m=60.0, gain_per_s=1.5, steering_max_rad_s=0.4
     )
-    assert STEERING_LAWS.get("lyapunov")() == LyapunovLaw(epsilon_per_m=0.005, look_ahead_m=60.0, lyapunov_gain_per_m2=0.001)
+    assert STEERING_LAWS.get("lyapunov")() == LyapunovLaw(
+        epsilon_per_m=0.005, look_ahead_m=60.0, lyapunov_gain_per_m2=0.001
+    )
     assert STEERING_LAWS.get("line_of_sight")() == LineOfSightLaw(gain_per_s=1.5)
 
 
 @pytest.mark.parametrize("value", [0.0, -1.0, math.inf, math.nan])
 @pytest.mark.parametrize(
     ("law", "name"),
-    [(law, field.name) for law in (CascadeLaw, LyapunovLaw, LineOfSightLaw) for field in fields(law) if field.init],
+    [
+        (law, field.name)
+        for law in (CascadeLaw, LyapunovLaw, LineOfSightLaw)
+        for field in fields(law)
+        if field.init
+    ],
 )
 def test_a_law_refuses_parameters_that_are_not_finite_and_above_zero(law, name, value):
-    with pytest.raises(ValueError, match=rf"{name} is .*; it must be finite and above 0; the default is "):
+    with pytest.raises(
+        ValueError, match=rf"{name} is .*; it must be finite and above 0; the default is "
+    ):
         law(**{name: value})
 
 
 @pytest.mark.parametrize("law", [CascadeLaw, LyapunovLaw])
 def test_a_law_refuses_a_look_ahead_that_is_too_short(law):
     # 1/(4 epsilon) is 50 m.
-    with pytest.raises(InfeasibleError, match=r"R is 40 m; it must exceed 1/\(4 epsilon\) = 50 m: raise R or epsilon"):
+    with pytest.raises(
+        InfeasibleError,
+        match=r"R is 40 m; it must exceed 1/\(4 epsilon\) = 50 m: raise R or epsilon",
+    ):
         law(look_ahead_m=40.0)
 
 

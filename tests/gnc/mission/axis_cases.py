@@ -7,12 +7,16 @@ from gnc.mission.plume_axis import Situation
 from gnc.reference.moving_centre import CentreParameters, MovingCentre
 
 SPEED, PLAN_TIME = 19.42, 0.5
-RISING = AxisHeight(source=35.0, momentum_flux=124.0, buoyancy_flux=49.6, lowest=23.0, highest=117.0)
+RISING = AxisHeight(
+    source=35.0, momentum_flux=124.0, buoyancy_flux=49.6, lowest=23.0, highest=117.0
+)
 
 
 def situation(*, wind=(0.0, 0.0), vessel=(8.0, 0.0)):
     """Return a vehicle astern of a vessel, whose centre of oscillation has found its place."""
-    own = KnownMotion(ground_north=-230.0, ground_east=0.0, course=0.0, wind_north=wind[0], wind_east=wind[1])
+    own = KnownMotion(
+        ground_north=-230.0, ground_east=0.0, course=0.0, wind_north=wind[0], wind_east=wind[1]
+    )
     parameters = CentreParameters(
         distance_min=203.0,
         speed_ratio_max=0.97,
@@ -26,5 +30,14 @@ def situation(*, wind=(0.0, 0.0), vessel=(8.0, 0.0)):
     )
     centre = MovingCentre(parameters)
     still = {"acceleration_north": 0.0, "acceleration_east": 0.0, "additional_range": 0.0}
-    centre.move(PLAN_TIME, vessel_north=vessel[0], vessel_east=vessel[1], wind_north=wind[0], wind_east=wind[1], **still)
-    return Situation(own=own, target=SteadyTarget(*vessel), centre=centre, speed=SPEED, plan_time=PLAN_TIME)
+    centre.move(
+        PLAN_TIME,
+        vessel_north=vessel[0],
+        vessel_east=vessel[1],
+        wind_north=wind[0],
+        wind_east=wind[1],
+        **still,
+    )
+    return Situation(
+        own=own, target=SteadyTarget(*vessel), centre=centre, speed=SPEED, plan_time=PLAN_TIME
+    )

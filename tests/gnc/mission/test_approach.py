@@ -7,7 +7,9 @@ from gnc.estimation.own_motion import TrueNavigation
 from gnc.estimation.target_motion import SteadyTarget
 from gnc.mission.approach import Approach, ApproachParameters
 
-PARAMETERS = ApproachParameters(blocked_radius=201.0, round_radius=232.0, join_distance=150.0, tracked=12.0, airspeed=21.0)
+PARAMETERS = ApproachParameters(
+    blocked_radius=201.0, round_radius=232.0, join_distance=150.0, tracked=12.0, airspeed=21.0
+)
 CENTRE = (-240.0, 0.0)
 AXIS = math.pi
 TIME_STEP = 0.05
@@ -52,7 +54,8 @@ def test_tracking_begins_nearer_to_the_centre_than_it_ends(place, from_afar, onc
 
 
 @pytest.mark.parametrize(
-    ("aspect", "from_afar", "once_tracking"), [(1.15, True, True), (1.25, False, True), (1.85, False, True), (1.95, False, False)]
+    ("aspect", "from_afar", "once_tracking"),
+    [(1.15, True, True), (1.25, False, True), (1.85, False, True), (1.95, False, False)],
 )
 def test_tracking_begins_nearer_to_the_plumes_axis_than_it_ends(aspect, from_afar, once_tracking):
     # 1.2 and 1.9 rad off the axis; near enough to the vessel that a centre 100 m astern of it is within 150 m at any aspect.
@@ -113,7 +116,9 @@ def test_held_by_the_guard_on_a_course_beside_the_vessel_it_flies_abeam(east, si
     assert held(beside, 0.2 * quarter_turn) == -side * HEADING_RATE_MAX
     off = math.atan2(100.0, 180.0) - 0.5 * math.pi
     slow = approach((-180.0, east), side * (off + 0.05))
-    assert held(slow, 1.1 * quarter_turn) == pytest.approx(-side * 2.0 * HEADING_RATE_MAX * 0.05, rel=1e-9)
+    assert held(slow, 1.1 * quarter_turn) == pytest.approx(
+        -side * 2.0 * HEADING_RATE_MAX * 0.05, rel=1e-9
+    )
 
 
 def test_it_flies_abeam_no_farther_than_it_goes_round_the_vessel():

@@ -11,7 +11,14 @@ F = g w (d^2/4) (1 - Ta/Ts)."""
 
 @pytest.mark.parametrize(
     ("speed", "distance", "height"),
-    [(5.0, 200.0, 77.0), (5.0, 500.0, 111.0), (10.0, 200.0, 57.0), (10.0, 500.0, 73.0), (20.0, 200.0, 47.0), (20.0, 500.0, 55.0)],
+    [
+        (5.0, 200.0, 77.0),
+        (5.0, 500.0, 111.0),
+        (10.0, 200.0, 57.0),
+        (10.0, 500.0, 73.0),
+        (20.0, 200.0, 47.0),
+        (20.0, 500.0, 55.0),
+    ],
 )
 def test_it_is_that_of_the_worked_example(speed, distance, height):
     # The table is printed to a metre.

@@ -26,7 +26,14 @@ from gnc.reference.shapes.sinusoid import Sinusoid
 from gnc.safety.guard_parameters import GuardParameters
 
 NU = 0.1
-GUARD = GuardParameters(radius=200.75, heading_rate_max=HEADING_RATE_MAX, lag=0.0, delay=0.0, slow_lag=0.0, time_step=TIME_STEP)
+GUARD = GuardParameters(
+    radius=200.75,
+    heading_rate_max=HEADING_RATE_MAX,
+    lag=0.0,
+    delay=0.0,
+    slow_lag=0.0,
+    time_step=TIME_STEP,
+)
 APPROACH = ApproachParameters(
     blocked_radius=200.75,
     round_radius=200.75 + 0.8 * SPEED / HEADING_RATE_MAX,
@@ -41,18 +48,24 @@ PLAN_INTERVAL = 10
 def mission():
     parameters = DirectParameters(reference=make_reference(paper_oscillation(0.5)))
     own, target = TrueNavigation(), SteadyTarget(0.0, 0.0)
-    return DirectTracking(parameters, tracking_parameters(), own=own, target=target, guard=None, altitude=62.0)
+    return DirectTracking(
+        parameters, tracking_parameters(), own=own, target=target, guard=None, altitude=62.0
+    )
 
 
 def guidance(*, joining=True, nu=NU):
     """Return the guidance of a flight behind a vessel that goes north from the origin, with a guard about it."""
     oscillation = paper_oscillation(nu, reserve=0.015)
     orbit = JoinedOrbit(shape=Sinusoid(), orbit=oscillation, vessel_course=0.0, time_step=TIME_STEP)
-    centre = SteadyCentre(-distance_by_paper(oscillation, PlumeAxis(heading=math.pi), 201.0), 0.0, nu)
+    centre = SteadyCentre(
+        -distance_by_paper(oscillation, PlumeAxis(heading=math.pi), 201.0), 0.0, nu
+    )
     mission = DirectParameters(
         reference=orbit.reference(0.0, centre.x, centre.y),
         centre=centre,
-        joining=Joining(approach=APPROACH, orbit=orbit, plan_interval=PLAN_INTERVAL) if joining else None,
+        joining=Joining(approach=APPROACH, orbit=orbit, plan_interval=PLAN_INTERVAL)
+        if joining
+        else None,
     )
     return compose(paper_parameters(mission, vessel=(nu * SPEED, 0.0), guard=GUARD))
 
@@ -67,21 +80,32 @@ def settles(flight):
 def test_without_a_way_it_tracks_from_the_first_step_on_and_overrides_nothing(mission):
     assert mission.started
     mission.plan(0.0)
-    assert (mission.mode, mission.overriding, mission.leaving, mission.command(0.2)) == (Mode.TRACKING, False, False, 0.0)
+    assert (mission.mode, mission.overriding, mission.leaving, mission.command(0.2)) == (
+        Mode.TRACKING,
+        False,
+        False,
+        0.0,
+    )
     assert (mission.altitude, mission.centre_error, mission.in_place) == (62.0, 0.0, True)
     # Its reference is placed beforehand: it knows no centre of its own.
     assert all(math.isnan(value) for value in mission.centre)
 
 
 def test_it_knows_no_way_out(mission):
-    with pytest.raises(ValueError, match="the vehicle has a fault, thrust lost, and its mission has no departure"):
+    with pytest.raises(
+        ValueError, match="the vehicle has a fault, thrust lost, and its mission has no departure"
+    ):
         mission.leave(Fault.THRUST_LOST)
 
 
 @pytest.mark.parametrize(("nu", "bearing"), [(0.1, 0.0), (0.1, -2.0), (0.5, 0.3), (0.5, -2.0)])
-def test_from_ahead_it_goes_round_the_vessel_and_settles_where_law_and_guard_alone_take_longer(nu, bearing):
+def test_from_ahead_it_goes_round_the_vessel_and_settles_where_law_and_guard_alone_take_longer(
+    nu, bearing
+):
     start = (600.0 * math.cos(bearing), 600.0 * math.sin(bearing) + 10.0, bearing + math.pi)
-    round_the_vessel, straight = (fly(guidance(joining=joining, nu=nu), start, duration=400.0) for joining in (True, False))
+    round_the_vessel, straight = (
+        fly(guidance(joining=joining, nu=nu), start, duration=400.0) for joining in (True, False)
+    )
     for flight in (round_the_vessel, straight):
         # The guard's radius, at the steps at least.
         assert np.min(flight.to_vessel) >= 200.75
@@ -104,7 +128,12 @@ def test_the_orbit_is_joined_outside_of_its_place_and_closes_in_once_it_is_track
     made = guidance()
     mission = made.mission
     # As it begins: on the way, two times 12 m outside.
-    assert (mission.mode, mission.overriding, mission.in_place, mission.centre_error) == (Mode.APPROACH, True, False, 24.0)
+    assert (mission.mode, mission.overriding, mission.in_place, mission.centre_error) == (
+        Mode.APPROACH,
+        True,
+        False,
+        24.0,
+    )
     fly(made, (-600.0, 40.0, 0.0), duration=120.0)
     modes, in_place, errors = zip(*seen, strict=True)
     joined = modes.index(Mode.TRACKING)
@@ -115,4 +144,8 @@ def test_the_orbit_is_joined_outside_of_its_place_and_closes_in_once_it_is_track
     assert errors[joined] == 24.0
     there = in_place.index(True)
     assert there - joined >= 13
-    assert [error == 0.0 for error in errors] == list(in_place) == [False] * there + [True] * (len(seen) - there)
+    assert (
+        [error == 0.0 for error in errors]
+        == list(in_place)
+        == [False] * there + [True] * (len(seen) - there)
+    )

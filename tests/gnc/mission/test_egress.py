@@ -42,4 +42,7 @@ def test_from_a_course_towards_the_vessel_it_keeps_to_the_turn_that_it_has_begun
 @pytest.mark.parametrize("side", [1.0, -1.0])
 def test_where_one_turn_is_shorter_it_is_taken_whatever_is_flown(side):
     # 120 degrees to go: to the right for a vehicle east of north by that.
-    assert Egress(HEADING_RATE_MAX).command(400.0, 0.0, -side * math.radians(120.0), -side * 0.4) == side * HEADING_RATE_MAX
+    assert (
+        Egress(HEADING_RATE_MAX).command(400.0, 0.0, -side * math.radians(120.0), -side * 0.4)
+        == side * HEADING_RATE_MAX
+    )

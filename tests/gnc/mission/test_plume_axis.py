@@ -13,8 +13,12 @@ from tests.gnc.mission.axis_cases import PLAN_TIME, RISING, SPEED, situation
 altitudes = st.floats(20.0, 120.0)
 
 
-@given(altitude=altitudes, demanded=altitudes, gradient=st.floats(0.01, 0.2), time=st.floats(1.0, 20.0))
-def test_the_command_climbs_no_steeper_than_the_gradient_and_never_beyond_what_is_demanded(altitude, demanded, gradient, time):
+@given(
+    altitude=altitudes, demanded=altitudes, gradient=st.floats(0.01, 0.2), time=st.floats(1.0, 20.0)
+)
+def test_the_command_climbs_no_steeper_than_the_gradient_and_never_beyond_what_is_demanded(
+    altitude, demanded, gradient, time
+):
     following = Climb(time=time, gradient=gradient).step(altitude, demanded, SPEED, PLAN_TIME)
     # Rounding alone.
     assert abs(following - altitude) <= gradient * SPEED * PLAN_TIME + 1e-9
@@ -23,7 +27,9 @@ def test_the_command_climbs_no_steeper_than_the_gradient_and_never_beyond_what_i
 
 @given(altitude=altitudes, demanded=altitudes, flown=altitudes)
 def test_the_command_stays_within_reach_of_the_altitude_that_is_flown(altitude, demanded, flown):
-    following = Climb(time=4.0, gradient=0.08, reach=1.2).step(altitude, demanded, SPEED, PLAN_TIME, flown=flown)
+    following = Climb(time=4.0, gradient=0.08, reach=1.2).step(
+        altitude, demanded, SPEED, PLAN_TIME, flown=flown
+    )
     assert abs(following - flown) <= 1.2 + 1e-9
 
 
@@ -62,10 +68,19 @@ def test_the_plume_trails_behind_the_vessels_motion_through_the_air():
 
 
 def test_a_bearing_turns_the_centre_to_the_right_of_where_the_plume_would_trail():
-    around, still = situation(), {"acceleration_north": 0.0, "acceleration_east": 0.0, "additional_range": 0.0}
+    around, still = (
+        situation(),
+        {"acceleration_north": 0.0, "acceleration_east": 0.0, "additional_range": 0.0},
+    )
     for _ in range(400):
         around.centre.move(
-            PLAN_TIME, vessel_north=8.0, vessel_east=0.0, wind_north=0.0, wind_east=0.0, bearing=math.radians(10.0), **still
+            PLAN_TIME,
+            vessel_north=8.0,
+            vessel_east=0.0,
+            wind_north=0.0,
+            wind_east=0.0,
+            bearing=math.radians(10.0),
+            **still,
         )
     # Astern is 180 degrees; to the right of it, seen along the plume, is west. It comes there asymptotically.
     assert math.degrees(around.centre.axis) % 360.0 == pytest.approx(190.0, abs=0.1)

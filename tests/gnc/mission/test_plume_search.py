@@ -107,7 +107,11 @@ def test_hits_are_those_of_centres_drawn_at_random() -> None:
 
 
 def test_a_ladder_goes_up_and_down_between_its_ends() -> None:
-    search, estimator, altitude = LadderSearch(lowest=20.0, highest=120.0), PlumeEstimator(PRIOR), 65.0
+    search, estimator, altitude = (
+        LadderSearch(lowest=20.0, highest=120.0),
+        PlumeEstimator(PRIOR),
+        65.0,
+    )
     steps = []
     for _ in range(10):
         altitude = search.next_altitude(estimator, altitude, PASS_TIME)

@@ -29,7 +29,11 @@ EXPECTED = Expectation(
     highest=117.0,
 )
 SEARCHED = SearchedPlume(
-    height=RISING, altitude=60.0, climb=Climb(time=4.0, gradient=0.08), expected=EXPECTED, climb_rate=0.08 * SPEED
+    height=RISING,
+    altitude=60.0,
+    climb=Climb(time=4.0, gradient=0.08),
+    expected=EXPECTED,
+    climb_rate=0.08 * SPEED,
 )
 CLEAN, PEAK, WIDTH = 420.0, 150.0, 12.0
 """CO2 of clean air, in the plume's centre [ppm], and its spread across and in height [m]: an example of the fast preset."""
@@ -83,7 +87,9 @@ def test_on_the_way_it_flies_at_the_height_that_is_predicted_and_believes_nothin
 @pytest.mark.parametrize("distance", [130.0, 220.0, 300.0])
 def test_the_bearing_is_that_from_the_funnel_wherever_the_plume_is_crossed(distance):
     axis = SEARCHED.begin()
-    flown(axis, height=60.0, duration=150.0, sensor=noisy, distance=distance, offset=0.08 * distance)
+    flown(
+        axis, height=60.0, duration=150.0, sensor=noisy, distance=distance, offset=0.08 * distance
+    )
     # The prior of 0.06 rad about 0 draws the estimate inwards by a tenth; the centre of the orbit is 213 m astern in each case.
     assert 0.055 < axis.bearing < 0.09
 

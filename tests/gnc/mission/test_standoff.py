@@ -57,11 +57,17 @@ def flown(law, seconds, vessel=(6.0, 3.0), start=(-400.0, 50.0, 1.0)):
 
 
 @given(bearing=st.floats(-3.1, 3.1), drift=st.floats(0.0, 0.9), towards=st.floats(-3.1, 3.1))
-def test_a_vehicle_on_the_circle_with_the_references_course_and_heading_rate_stays_on_it(bearing, drift, towards):
+def test_a_vehicle_on_the_circle_with_the_references_course_and_heading_rate_stays_on_it(
+    bearing, drift, towards
+):
     velocity = drift * SPEED * math.cos(towards), drift * SPEED * math.sin(towards)
     point, time = CirclePoint(SPEED), 1e-3
-    point.place((0.0, 0.0), velocity, (RADIUS * math.cos(bearing), RADIUS * math.sin(bearing)), RADIUS)
-    north, east, course = unicycle_move(point.north, point.east, point.course, SPEED, point.heading_rate, time)
+    point.place(
+        (0.0, 0.0), velocity, (RADIUS * math.cos(bearing), RADIUS * math.sin(bearing)), RADIUS
+    )
+    north, east, course = unicycle_move(
+        point.north, point.east, point.course, SPEED, point.heading_rate, time
+    )
     off = math.hypot(north - time * velocity[0], east - time * velocity[1]) - RADIUS
     # What is left is of third order: V (V/R)^2 t^3 and a constant, at up to twice the speed.
     assert off == pytest.approx(0.0, abs=1e-8)
@@ -70,12 +76,16 @@ def test_a_vehicle_on_the_circle_with_the_references_course_and_heading_rate_sta
     assert math.remainder(point.course - course, math.tau) == pytest.approx(0.0, abs=2e-6)
 
 
-@pytest.mark.parametrize("law", [NpfgLaw(), LgvfLaw(), CascadeLaw()], ids=lambda law: type(law).__name__)
+@pytest.mark.parametrize(
+    "law", [NpfgLaw(), LgvfLaw(), CascadeLaw()], ids=lambda law: type(law).__name__
+)
 def test_laws_circle_a_moving_vessel_at_the_radius(law):
     distances, circling = flown(law, 200.0)
     # Closed in, and within the centimetres of a law that is called twenty times a second; LGVF converges within V/R.
     assert circling.in_place
-    assert max(abs(distance - RADIUS) for distance in distances[-1000:]) < (2.0 if isinstance(law, LgvfLaw) else 0.2)
+    assert max(abs(distance - RADIUS) for distance in distances[-1000:]) < (
+        2.0 if isinstance(law, LgvfLaw) else 0.2
+    )
 
 
 def test_the_circle_is_joined_outside_of_its_place():
@@ -89,7 +99,9 @@ def test_a_vessel_that_outruns_the_vehicle_is_followed():
     distances, circling = flown(NpfgLaw(), 60.0, vessel=(1.1 * SPEED, 0.0))
     assert circling.mode is Mode.OUTRUN
     # Behind her, and somewhat to the side after its turn: she gains a tenth of its speed.
-    assert (distances[-1] - distances[-201]) / (200 * TIME_STEP) == pytest.approx(0.1 * SPEED, rel=0.03)
+    assert (distances[-1] - distances[-201]) / (200 * TIME_STEP) == pytest.approx(
+        0.1 * SPEED, rel=0.03
+    )
     # On her course, north.
     assert circling.tracker.heading_rate_demand == pytest.approx(0.0, abs=1e-6)
 

@@ -55,8 +55,14 @@ geometry = {
 
 @given(**geometry)
 @examples(200)
-def test_the_straight_relative_way_never_enters_the_blocked_circle_from_outside(distance, bearing, target, course, speed, heading):
-    place, goal, velocity = polar(distance, bearing), polar(TARGET_DISTANCE, target), polar(speed, heading)
+def test_the_straight_relative_way_never_enters_the_blocked_circle_from_outside(
+    distance, bearing, target, course, speed, heading
+):
+    place, goal, velocity = (
+        polar(distance, bearing),
+        polar(TARGET_DISTANCE, target),
+        polar(speed, heading),
+    )
     transit = Transit(TURN_RADIUS)
     way = relative(course_of(transit, place, goal, velocity=velocity, course=course), velocity)
     # As far as the target where the way there is clear, or else past the tangent point, far enough for all that is ahead.
@@ -70,7 +76,11 @@ def test_the_straight_relative_way_never_enters_the_blocked_circle_from_outside(
 def test_the_relative_velocity_lies_along_the_way_to_the_target_where_that_is_clear(
     distance, bearing, target, course, speed, heading
 ):
-    place, goal, velocity = polar(distance, bearing), polar(TARGET_DISTANCE, target), polar(speed, heading)
+    place, goal, velocity = (
+        polar(distance, bearing),
+        polar(TARGET_DISTANCE, target),
+        polar(speed, heading),
+    )
     transit = Transit(TURN_RADIUS)
     way = relative(course_of(transit, place, goal, velocity=velocity, course=course), velocity)
     to = (goal[0] - place[0], goal[1] - place[1])
@@ -82,7 +92,9 @@ def test_the_relative_velocity_lies_along_the_way_to_the_target_where_that_is_cl
 
 @given(**geometry)
 @examples(100)
-def test_mirrored_geometry_gives_the_mirrored_course(distance, bearing, target, course, speed, heading):
+def test_mirrored_geometry_gives_the_mirrored_course(
+    distance, bearing, target, course, speed, heading
+):
     def asked(side, nudge=0.0):
         transit = Transit(TURN_RADIUS)
         found = course_of(
@@ -106,7 +118,9 @@ def test_it_passes_on_the_shorter_side(sign):
     # Ahead of the disc, north of it, and 30 degrees to one side; the target is south. Straight there is through the disc.
     transit = Transit(TURN_RADIUS)
     bearing = sign * math.radians(30.0)
-    found = course_of(transit, polar(600.0, bearing), (-TARGET_DISTANCE, 0.0), course=bearing + math.pi)
+    found = course_of(
+        transit, polar(600.0, bearing), (-TARGET_DISTANCE, 0.0), course=bearing + math.pi
+    )
     # On the east side clockwise as seen from above, on the west side the other way; either way the tangent of the round circle.
     assert transit.side == sign
     expected = bearing + math.pi - sign * math.asin(ROUND / 600.0)
@@ -118,7 +132,12 @@ def test_of_two_ways_nearly_as_long_it_takes_the_one_that_it_need_not_turn_to(si
     # From 0.02 rad to the other side, so that the way round on this one is 0.04 rad of the round circle longer; it heads there.
     transit, bearing = Transit(TURN_RADIUS), -sign * 0.02
     lean = math.asin(ROUND / 600.0)
-    course_of(transit, polar(600.0, bearing), (-TARGET_DISTANCE, 0.0), course=bearing + math.pi - sign * lean)
+    course_of(
+        transit,
+        polar(600.0, bearing),
+        (-TARGET_DISTANCE, 0.0),
+        course=bearing + math.pi - sign * lean,
+    )
     assert transit.side == sign
 
 
@@ -136,7 +155,9 @@ def test_it_keeps_the_side_that_it_has_chosen_until_the_way_is_clear():
 
 @pytest.mark.parametrize("bearing", [0.0, 0.7, 2.0, -1.3])
 @pytest.mark.parametrize("speed_ratio", [0.0, 0.5, 0.9])
-def test_following_it_leads_round_a_moving_disc_to_the_target_and_never_inside(bearing, speed_ratio):
+def test_following_it_leads_round_a_moving_disc_to_the_target_and_never_inside(
+    bearing, speed_ratio
+):
     transit = Transit(TURN_RADIUS)
     velocity = (speed_ratio * SPEED, 0.0)
     x, y = polar(700.0, bearing)
@@ -157,9 +178,17 @@ def test_following_it_leads_round_a_moving_disc_to_the_target_and_never_inside(b
 @pytest.mark.parametrize(
     ("distance", "outwards"),
     # Of the relative velocity, sin 0.6 leads outwards until a turn radius is left to the circle, then proportionally less.
-    [(10.0, 0.5646), (100.0, 0.5646), (ROUND - TURN_RADIUS, 0.5646), (ROUND - 0.5 * TURN_RADIUS, 0.2955), (ROUND - 1e-6, 0.0)],
+    [
+        (10.0, 0.5646),
+        (100.0, 0.5646),
+        (ROUND - TURN_RADIUS, 0.5646),
+        (ROUND - 0.5 * TURN_RADIUS, 0.2955),
+        (ROUND - 1e-6, 0.0),
+    ],
 )
 def test_inside_the_circle_it_leads_outwards(distance, outwards):
     place = polar(distance, 0.4)
     way = relative(course_of(Transit(TURN_RADIUS), place, (-TARGET_DISTANCE, 0.0)), (0.0, 0.0))
-    assert (place[0] * way[0] + place[1] * way[1]) / (distance * SPEED) == pytest.approx(outwards, abs=1e-4)
+    assert (place[0] * way[0] + place[1] * way[1]) / (distance * SPEED) == pytest.approx(
+        outwards, abs=1e-4
+    )

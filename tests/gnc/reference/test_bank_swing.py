@@ -49,7 +49,9 @@ def test_a_course_is_even_in_the_phase_and_its_negative_half_a_period_later(eta,
 
 @given(eta=etas, heading_rate=heading_rates, roll_rate=roll_rates, part=st.floats(0.0, 2.0))
 @examples(80)
-def test_neither_heading_rate_nor_roll_rate_ever_exceed_their_limits(eta, heading_rate, roll_rate, part):
+def test_neither_heading_rate_nor_roll_rate_ever_exceed_their_limits(
+    eta, heading_rate, roll_rate, part
+):
     swing = courses(heading_rate=heading_rate, roll_rate=roll_rate)
     half = swing.half_period(eta)
     step = 1e-4 * half
@@ -88,8 +90,19 @@ def test_the_heading_rate_is_the_slope_over_the_phase_at_full_rates(eta, phase, 
 def test_the_mean_speed_is_the_mean_of_the_cosine_of_the_course(eta, roll_rate):
     swing = courses(roll_rate=roll_rate)
     # Another integrator, told where the integrand has a corner.
-    ramp = math.atan(HEADING_RATE * SPEED / STANDARD_GRAVITY) / roll_rate / swing.half_period(eta) * math.pi
-    mean, _ = quad(lambda phase: math.cos(swing.course(eta, phase)), 0.0, 0.5 * math.pi, points=[min(ramp, 1.5)], epsabs=1e-13)
+    ramp = (
+        math.atan(HEADING_RATE * SPEED / STANDARD_GRAVITY)
+        / roll_rate
+        / swing.half_period(eta)
+        * math.pi
+    )
+    mean, _ = quad(
+        lambda phase: math.cos(swing.course(eta, phase)),
+        0.0,
+        0.5 * math.pi,
+        points=[min(ramp, 1.5)],
+        epsabs=1e-13,
+    )
     assert swing.speed_ratio(eta) == pytest.approx(mean / (0.5 * math.pi), rel=0.0, abs=1e-9)
     if swing.speed_ratio(eta) > -0.19:
         # Within the table, which ends at -0.2: 1e-5 by its docstring.
@@ -113,16 +126,22 @@ def test_a_small_amplitude_is_rolled_through_without_reaching_the_largest_bank()
     assert COURSES.largest_heading_rate(0.5 * turned) < HEADING_RATE
     assert COURSES.largest_heading_rate(2.0 * turned) == pytest.approx(HEADING_RATE, rel=1e-14)
     # At the border both say the same: rolling to 45 degrees and back at 40 deg/s takes 2.25 s.
-    assert [COURSES.half_period(part * turned) for part in (1.0 - 1e-9, 1.0 + 1e-9)] == pytest.approx([2.25, 2.25], rel=1e-8)
+    assert [
+        COURSES.half_period(part * turned) for part in (1.0 - 1e-9, 1.0 + 1e-9)
+    ] == pytest.approx([2.25, 2.25], rel=1e-8)
 
 
 @given(eta=st.floats(0.001, 3.0), heading_rate=heading_rates, roll_rate=roll_rates)
 @examples(60)
-def test_half_a_period_grows_with_the_amplitude_and_falls_with_the_limits(eta, heading_rate, roll_rate):
+def test_half_a_period_grows_with_the_amplitude_and_falls_with_the_limits(
+    eta, heading_rate, roll_rate
+):
     half = courses(heading_rate=heading_rate, roll_rate=roll_rate).half_period(eta)
     assert courses(heading_rate=heading_rate, roll_rate=roll_rate).half_period(1.01 * eta) > half
     # A limit that is not reached has no say.
-    assert courses(heading_rate=1.1 * heading_rate, roll_rate=roll_rate).half_period(eta) <= half * (1.0 + 1e-12)
+    assert courses(heading_rate=1.1 * heading_rate, roll_rate=roll_rate).half_period(
+        eta
+    ) <= half * (1.0 + 1e-12)
     assert courses(heading_rate=heading_rate, roll_rate=1.1 * roll_rate).half_period(eta) < half
 
 
@@ -132,7 +151,9 @@ def test_half_a_period_grows_with_the_amplitude_and_falls_with_the_limits(eta, h
     stretch=st.booleans(),
 )
 @examples(150)
-def test_no_course_that_swings_evenly_to_both_sides_within_the_limits_is_slower_on_average(rolls, half, stretch):
+def test_no_course_that_swings_evenly_to_both_sides_within_the_limits_is_slower_on_average(
+    rolls, half, stretch
+):
     """docs/fastest_oscillation.md: of all such courses of a period, the trapezoid of bank has the least mean of the cosine."""
     if stretch:
         rolls = [math.copysign(1.0, roll) for roll in rolls]
@@ -158,24 +179,41 @@ def test_the_orbit_is_that_of_its_fourier_series_and_of_its_path(eta):
     path = CoursePath(functools.partial(COURSES.course, eta))
     assert path.mean == pytest.approx(COURSES.speed_ratio(eta), abs=1e-8)
     for phase in (-2.0, 0.0, 0.4, 1.5, 3.0, 7.0):
-        along, _ = quad(lambda at: math.cos(COURSES.course(eta, at)) - path.mean.real, 0.0, phase, limit=400, epsabs=1e-10)
-        right, _ = quad(lambda at: math.sin(COURSES.course(eta, at)), 0.0, phase, limit=400, epsabs=1e-10)
+        along, _ = quad(
+            lambda at: math.cos(COURSES.course(eta, at)) - path.mean.real,
+            0.0,
+            phase,
+            limit=400,
+            epsabs=1e-10,
+        )
+        right, _ = quad(
+            lambda at: math.sin(COURSES.course(eta, at)), 0.0, phase, limit=400, epsabs=1e-10
+        )
         # A cubic over pieces of 0.006 rad: 1e-7 by its docstring.
-        assert [float(x) for x in path.offset(phase)] == pytest.approx([along, right], rel=0.0, abs=3e-7)
+        assert [float(x) for x in path.offset(phase)] == pytest.approx(
+            [along, right], rel=0.0, abs=3e-7
+        )
         # Eight pairs of terms, whose size falls with the fourth power: below 5e-4 of an orbit of about 1.
         assert COURSES.offset(eta, phase) == pytest.approx((along, right), rel=0.0, abs=5e-4)
     # Parseval: the mean of |exp(i course)|^2 is 1.
-    assert float(np.sum(np.abs(fourier_coefficients(functools.partial(COURSES.course, eta))) ** 2)) == pytest.approx(1.0, rel=1e-12)
+    assert float(
+        np.sum(np.abs(fourier_coefficients(functools.partial(COURSES.course, eta))) ** 2)
+    ) == pytest.approx(1.0, rel=1e-12)
 
 
 def test_the_frequency_spends_what_is_left_of_the_heading_rate():
     for eta in (0.1, 0.5, 2.0):
         for left in (0.2 * HEADING_RATE, 0.8 * HEADING_RATE, HEADING_RATE):
             frequency = COURSES.frequency(eta, left)
-            largest = max(abs(eta * frequency * COURSES.slopes(eta, phase)[1]) for phase in np.linspace(0.0, math.pi, 101))
+            largest = max(
+                abs(eta * frequency * COURSES.slopes(eta, phase)[1])
+                for phase in np.linspace(0.0, math.pi, 101)
+            )
             # Rounding.
             assert largest <= left * (1.0 + 1e-12)
-        assert COURSES.frequency(eta, HEADING_RATE) == pytest.approx(math.pi / COURSES.half_period(max(eta, 0.2)), rel=1e-14)
+        assert COURSES.frequency(eta, HEADING_RATE) == pytest.approx(
+            math.pi / COURSES.half_period(max(eta, 0.2)), rel=1e-14
+        )
 
 
 def test_a_straight_course_has_no_shape_and_raises_nothing():

@@ -17,7 +17,12 @@ ETA_MAX = 2.404825557695773
 
 @pytest.mark.parametrize("eta", [0.0, 0.3, 1.0, 1.521144, 2.2, ETA_MAX])
 def test_the_mean_speed_ratio_is_the_mean_of_equation_5(eta):
-    mean_along, _ = quad(lambda angle: math.cos(eta * math.cos(angle)) / (2.0 * math.pi), 0.0, 2.0 * math.pi, epsabs=1e-13)
+    mean_along, _ = quad(
+        lambda angle: math.cos(eta * math.cos(angle)) / (2.0 * math.pi),
+        0.0,
+        2.0 * math.pi,
+        epsabs=1e-13,
+    )
     # Tolerance of the quadrature.
     assert mean_speed_ratio(eta) == pytest.approx(mean_along, rel=0.0, abs=1e-12)
 
@@ -26,8 +31,12 @@ def test_the_mean_speed_ratio_is_the_mean_of_equation_5(eta):
 def test_the_reference_makes_no_way_across_the_vessels_course(nu):
     # Equation (5), second line: of the reference that is flown, over a period, in steps that divide it; and along it nu V_r T.
     oscillation = paper_oscillation(nu)
-    start = start_reference(oscillation, phase=0.4, centre_north=0.0, centre_east=0.0, vessel_course=0.0)
-    reference = OscillatingReference(oscillation, start, phase=0.4, time_step=oscillation.period / 400)
+    start = start_reference(
+        oscillation, phase=0.4, centre_north=0.0, centre_east=0.0, vessel_course=0.0
+    )
+    reference = OscillatingReference(
+        oscillation, start, phase=0.4, time_step=oscillation.period / 400
+    )
     for _ in range(400):
         reference.step()
     # Simpson's rule, 1e-9 m a step.
@@ -46,7 +55,9 @@ def test_eta_gives_back_the_speed_ratio(nu):
 @given(eta=st.floats(1e-3, ETA_MAX))
 def test_the_speed_ratio_gives_back_eta(eta):
     # nu rounds by 1e-16, and d eta/d nu = 1/J_1(eta) <= 2000 for eta >= 0.001.
-    assert eta_for_speed_ratio(max(0.0, mean_speed_ratio(eta))) == pytest.approx(eta, rel=0.0, abs=1e-12)
+    assert eta_for_speed_ratio(max(0.0, mean_speed_ratio(eta))) == pytest.approx(
+        eta, rel=0.0, abs=1e-12
+    )
 
 
 @examples(300)
@@ -73,6 +84,9 @@ def test_near_equal_speeds_eta_follows_the_series_of_j_0():
 
 @pytest.mark.parametrize("nu", [-0.01, 1.01, math.nan, math.inf, -math.inf])
 def test_speed_ratios_that_j_0_does_not_take_are_refused(nu):
-    with pytest.raises(InfeasibleError, match=r"speed ratio nu is .*must lie within 0 and 1: give the vessel a speed") as refusal:
+    with pytest.raises(
+        InfeasibleError,
+        match=r"speed ratio nu is .*must lie within 0 and 1: give the vessel a speed",
+    ) as refusal:
         eta_for_speed_ratio(nu)
     assert f"{nu:g}" in str(refusal.value)

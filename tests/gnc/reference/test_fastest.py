@@ -31,7 +31,9 @@ def design(nu=0.5, **changes):
 
 
 def reference_on(orbit, *, phase=0.0, share=1.0, vessel_course=0.3):
-    joined = JoinedOrbit(shape=Fastest(), orbit=orbit, vessel_course=vessel_course, time_step=TIME_STEP)
+    joined = JoinedOrbit(
+        shape=Fastest(), orbit=orbit, vessel_course=vessel_course, time_step=TIME_STEP
+    )
     return joined.reference(phase, -214.0, 5.0, share=share)
 
 
@@ -42,7 +44,10 @@ def interval_by_integration(nu):
 
     def excess(half):
         time = np.linspace(0.0, half, 20001)
-        bank = np.minimum(np.minimum(LIMITS["roll_rate_max"] * time, LIMITS["roll_rate_max"] * (half - time)), bank_max)
+        bank = np.minimum(
+            np.minimum(LIMITS["roll_rate_max"] * time, LIMITS["roll_rate_max"] * (half - time)),
+            bank_max,
+        )
         rate = STANDARD_GRAVITY / SPEED * np.tan(bank)
         course = np.concatenate([[0.0], np.cumsum(0.5 * (rate[1:] + rate[:-1]) * time[1])])
         return float(np.trapezoid(np.cos(course - 0.5 * course[-1]), time)) / half - nu
@@ -69,12 +74,21 @@ def test_it_is_shorter_than_the_sinusoids_by_at_least_an_eighth(nu):
     assert share <= (0.83 if nu == 0.5 else 0.88)
 
 
-@given(nu=st.floats(0.0, 0.999), bank=st.floats(10.0, 60.0), roll_rate=st.floats(10.0, 200.0), reserve=st.floats(0.0, 0.3))
+@given(
+    nu=st.floats(0.0, 0.999),
+    bank=st.floats(10.0, 60.0),
+    roll_rate=st.floats(10.0, 200.0),
+    reserve=st.floats(0.0, 0.3),
+)
 @examples(60)
 def test_its_mean_velocity_is_that_of_the_vessel(nu, bank, roll_rate, reserve):
     heading_rate = STANDARD_GRAVITY * math.tan(math.radians(bank)) / SPEED
-    orbit = design(nu, heading_rate_max=heading_rate, reserve=reserve, roll_rate_max=math.radians(roll_rate))
-    courses = np.array([orbit.course(phase) for phase in (2.0 * math.pi * (np.arange(400) + 0.5) / 400).tolist()])
+    orbit = design(
+        nu, heading_rate_max=heading_rate, reserve=reserve, roll_rate_max=math.radians(roll_rate)
+    )
+    courses = np.array(
+        [orbit.course(phase) for phase in (2.0 * math.pi * (np.arange(400) + 0.5) / 400).tolist()]
+    )
     # The midpoint rule over a whole period of a course whose third derivative jumps: (2 pi/400)^3 times a few.
     assert np.mean(np.cos(courses)) == pytest.approx(nu, abs=1e-5)
     assert np.mean(np.sin(courses)) == pytest.approx(0.0, abs=1e-12)
@@ -87,7 +101,9 @@ def test_its_mean_velocity_is_that_of_the_vessel(nu, bank, roll_rate, reserve):
 def test_a_point_that_turns_so_flies_the_orbit(nu):
     orbit = design(nu)
     assert_a_point_that_turns_so_flies(orbit, nu, start=(0.0, 0.0, orbit.eta))
-    widths = [float(np.abs(part).max()) for part in orbit.offset(np.linspace(0.0, orbit.period, 40001))]
+    widths = [
+        float(np.abs(part).max()) for part in orbit.offset(np.linspace(0.0, orbit.period, 40001))
+    ]
     # 40,000 points miss a peak by less than V omega (T/80,000)^2/2 = 2e-7 m.
     assert orbit.half_widths() == pytest.approx(widths, rel=0.0, abs=1e-5)
 
@@ -98,7 +114,9 @@ def test_the_exact_rule_keeps_the_whole_orbit_outside_and_no_farther_than_that(n
     orbit = design(nu)
     distance = distance_exact(orbit, PlumeAxis(heading=heading), 200.0)
     along, right = orbit.offset(np.linspace(0.0, orbit.period, 20001))
-    closest = np.hypot(distance * math.cos(heading) + along, distance * math.sin(heading) + right).min()
+    closest = np.hypot(
+        distance * math.cos(heading) + along, distance * math.sin(heading) + right
+    ).min()
     # 20,000 points of an orbit of 250 m: 0.006 m apart, which at 200 m of distance is missed by its square.
     assert closest == pytest.approx(200.0, abs=1e-4)
 
@@ -106,12 +124,17 @@ def test_the_exact_rule_keeps_the_whole_orbit_outside_and_no_farther_than_that(n
 def test_the_mirrored_reference_flies_the_mirrored_path():
     # Mirrored in the north-south line courses change sign, which is half a period of phase.
     orbit = design()
-    one, other = (reference_on(orbit, phase=phase, vessel_course=course) for phase, course in ((0.4, 0.3), (0.4 + math.pi, -0.3)))
+    one, other = (
+        reference_on(orbit, phase=phase, vessel_course=course)
+        for phase, course in ((0.4, 0.3), (0.4 + math.pi, -0.3))
+    )
     for _ in range(1000):
         one.step()
         other.step()
         # Rounding over 1,000 steps.
-        assert (other.north, 10.0 - other.east) == pytest.approx((one.north, one.east), rel=0.0, abs=1e-8)
+        assert (other.north, 10.0 - other.east) == pytest.approx(
+            (one.north, one.east), rel=0.0, abs=1e-8
+        )
         assert other.heading_rate == pytest.approx(-one.heading_rate, rel=0.0, abs=1e-10)
 
 
@@ -125,7 +148,9 @@ def test_the_reference_stays_on_its_orbit():
     along, right = orbit.offset(0.7 / orbit.omega_0 + steps * TIME_STEP)
     way = orbit.nu * SPEED * steps * TIME_STEP
     # Simpson's rule over 150 corners of the roll rate: 1e-5 m each by its docstring, which partly cancel.
-    assert (reference.north, reference.east) == pytest.approx((-214.0 + way + float(along), 5.0 + float(right)), rel=0.0, abs=2e-3)
+    assert (reference.north, reference.east) == pytest.approx(
+        (-214.0 + way + float(along), 5.0 + float(right)), rel=0.0, abs=2e-3
+    )
 
 
 @pytest.mark.parametrize("share", [JOINING_SHARE, 0.5])
@@ -136,7 +161,10 @@ def test_a_reference_that_is_slowed_down_has_a_larger_orbit_about_the_same_centr
     # About the same centre, 1/share as far off, on the same course.
     assert slow.north + 214.0 == pytest.approx((full.north + 214.0) / share, rel=1e-12)
     assert slow.east - 5.0 == pytest.approx((full.east - 5.0) / share, rel=1e-12)
-    assert (slow.course, slow.heading_rate) == (full.course, pytest.approx(share * full.heading_rate, rel=1e-15))
+    assert (slow.course, slow.heading_rate) == (
+        full.course,
+        pytest.approx(share * full.heading_rate, rel=1e-15),
+    )
     for _ in range(round(1.3 * orbit.period / TIME_STEP)):
         slow.step()
         assert abs(slow.heading_rate) <= share * orbit.amplitude * (1.0 + 1e-12)
@@ -171,7 +199,10 @@ def test_a_vehicle_on_its_way_joins_a_reference_that_leaves_it_some_of_the_headi
         ({"nu": 1.0}, "speed ratio nu is 1; it must be below 1"),
         ({"nu": -0.1}, "speed ratio nu is -0.1; it must lie within 0 and 1"),
         ({"nu": math.nan}, "speed ratio nu is nan; it must lie within 0 and 1"),
-        ({"vessel_heading_rate": 0.6}, "vessel heading rate is 0.6 rad/s; with a reserve of 0.015 it must stay below"),
+        (
+            {"vessel_heading_rate": 0.6},
+            "vessel heading rate is 0.6 rad/s; with a reserve of 0.015 it must stay below",
+        ),
         ({"roll_rate_max": 0.0}, "roll_rate_max is 0 rad/s; it must be above 0"),
         ({"reserve": 1.0}, "reserve is 1 of omega_max"),
     ],

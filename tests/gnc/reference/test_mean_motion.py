@@ -33,7 +33,9 @@ def test_an_orbit_in_its_place_moves_as_a_fast_centre_does(nu, turn):
     centre = moved(nu, turn)
     course, ratio = demanded(centre)
     assert course == pytest.approx(motion_course(centre), abs=1e-12)
-    assert ratio == pytest.approx(math.hypot(centre.velocity_north, centre.velocity_east) / SPEED, rel=1e-12)
+    assert ratio == pytest.approx(
+        math.hypot(centre.velocity_north, centre.velocity_east) / SPEED, rel=1e-12
+    )
 
 
 def test_a_steady_centre_is_followed_however_slow_it_is():
@@ -50,7 +52,9 @@ def test_a_slow_orbit_follows_a_fast_swing_and_little_of_a_slow_one():
     assert 0.0 < turned < 0.2 * motion_course(slow)
     # Six are a plume that goes over to the other side: nine tenths of them are followed, beside what the centre moves outwards.
     fast = moved(0.1, turn=-6.0 / moved(0.1).distance)
-    assert math.tan(demanded(fast)[0]) == pytest.approx(0.9 * math.tan(motion_course(fast)), rel=0.01)
+    assert math.tan(demanded(fast)[0]) == pytest.approx(
+        0.9 * math.tan(motion_course(fast)), rel=0.01
+    )
 
 
 def test_a_slow_orbit_follows_a_small_swing_that_goes_on():
@@ -58,7 +62,12 @@ def test_a_slow_orbit_follows_a_small_swing_that_goes_on():
     centre, (wind, turn) = make(), (2.0, math.radians(0.3))
     for k in range(400):
         angle = turn * k * PLAN_TIME
-        move(centre, (0.0, 0.0), wind=(-wind * math.cos(angle), -wind * math.sin(angle)), time_step=PLAN_TIME)
+        move(
+            centre,
+            (0.0, 0.0),
+            wind=(-wind * math.cos(angle), -wind * math.sin(angle)),
+            time_step=PLAN_TIME,
+        )
         course = demanded(centre)[0]
         if k == 20:
             assert abs(wrap(course - motion_course(centre))) > 0.2
@@ -66,7 +75,12 @@ def test_a_slow_orbit_follows_a_small_swing_that_goes_on():
     assert course == pytest.approx(motion_course(centre), abs=0.02)
     # When the wind stops turning, the orbit does not go on.
     for _ in range(120):
-        move(centre, (0.0, 0.0), wind=(-wind * math.cos(angle), -wind * math.sin(angle)), time_step=PLAN_TIME)
+        move(
+            centre,
+            (0.0, 0.0),
+            wind=(-wind * math.cos(angle), -wind * math.sin(angle)),
+            time_step=PLAN_TIME,
+        )
     assert abs(centre.steady_swing) < 0.2
 
 
@@ -117,6 +131,8 @@ def orbit_errors(nu, scatter, seed):
 
 
 @pytest.mark.parametrize(("nu", "most"), [(0.11, 12.0), (0.15, 6.0), (0.3, 4.0)])
-def test_an_orbit_beside_a_slow_vessel_stays_near_its_place_though_her_plume_is_not_known_well(nu, most):
+def test_an_orbit_beside_a_slow_vessel_stays_near_its_place_though_her_plume_is_not_known_well(
+    nu, most
+):
     # 0.1 m/s is what reports and the estimate of the wind leave. In the mean over 500 s.
     assert np.mean([np.mean(orbit_errors(nu, 0.1, seed)) for seed in (1, 2, 3)]) < most

@@ -14,7 +14,10 @@ TIME_STEP = 0.5
 
 
 def make(plume_heading=None, vessel_course=0.0):
-    widths = [half_widths(paper_oscillation(nu, roll_rate_max=math.radians(40.0))) for nu in np.linspace(0.0, RATIO_MAX, 49)]
+    widths = [
+        half_widths(paper_oscillation(nu, roll_rate_max=math.radians(40.0)))
+        for nu in np.linspace(0.0, RATIO_MAX, 49)
+    ]
     return MovingCentre(
         CentreParameters(
             distance_min=DISTANCE_MIN,
@@ -30,7 +33,15 @@ def make(plume_heading=None, vessel_course=0.0):
     )
 
 
-def move(centre, velocity, *, acceleration=(0.0, 0.0), wind=(0.0, 0.0), time_step=TIME_STEP, additional_range=0.0):
+def move(
+    centre,
+    velocity,
+    *,
+    acceleration=(0.0, 0.0),
+    wind=(0.0, 0.0),
+    time_step=TIME_STEP,
+    additional_range=0.0,
+):
     centre.move(
         time_step,
         vessel_north=velocity[0],
@@ -77,7 +88,9 @@ def test_a_given_plume_keeps_its_bearing_from_the_bow():
     centre = make(plume_heading=math.radians(150.0))
     move(centre, (0.0, 8.0), wind=(5.0, -5.0), time_step=0.0)
     # Course east, plume 150 degrees to the right of the bow; the wind does not matter. Rounding.
-    assert math.remainder(centre.axis - math.radians(240.0), 2.0 * math.pi) == pytest.approx(0.0, abs=1e-12)
+    assert math.remainder(centre.axis - math.radians(240.0), 2.0 * math.pi) == pytest.approx(
+        0.0, abs=1e-12
+    )
     assert centre.plume_known
 
 
@@ -87,11 +100,15 @@ def test_beside_a_vessel_too_slow_to_have_a_course_a_given_plume_is_where_her_bo
     for _ in range(20):
         # Bow east, plume astern; what little she drifts about does not matter, nor does a wind.
         move(centre, velocity, wind=(5.0, -5.0))
-        assert math.remainder(centre.axis - math.radians(270.0), 2.0 * math.pi) == pytest.approx(0.0, abs=1e-12)
+        assert math.remainder(centre.axis - math.radians(270.0), 2.0 * math.pi) == pytest.approx(
+            0.0, abs=1e-12
+        )
     # Under way she has one: north-east.
     for _ in range(400):
         move(centre, (4.0, 4.0))
-    assert math.remainder(centre.axis - math.radians(225.0), 2.0 * math.pi) == pytest.approx(0.0, abs=1e-3)
+    assert math.remainder(centre.axis - math.radians(225.0), 2.0 * math.pi) == pytest.approx(
+        0.0, abs=1e-3
+    )
 
 
 def test_the_plume_trails_behind_the_motion_through_the_air():
@@ -179,7 +196,9 @@ def test_an_apparent_wind_that_passes_through_nothing_turns_the_axis_no_faster_t
         # _AXIS_SPEED of the vehicle's speed, at the centre's distance; that itself changes by 1 % in a step.
         assert turned * centre.distance <= 0.7 * SPEED * 1.02
     # 35 s as fast as it may, 0.057 rad/s, down to the 1.1 rad from which it slows; e^(-0.05 165 s) of that.
-    assert math.remainder(centre.axis - math.atan2(0.1, 2.0), 2.0 * math.pi) == pytest.approx(0.0, abs=1e-3)
+    assert math.remainder(centre.axis - math.atan2(0.1, 2.0), 2.0 * math.pi) == pytest.approx(
+        0.0, abs=1e-3
+    )
 
 
 def test_it_goes_where_it_has_to_be_when_it_must_stay_further_off():

@@ -34,11 +34,21 @@ def test_the_orbit_is_equation_2_integrated_less_the_motion_of_the_centre(nu):
 
     def rates(time, state):
         # Equation (2), phi_0 = 0 and omega_V = 0, the vessel going north.
-        return SPEED * math.cos(state[2]), SPEED * math.sin(state[2]), -oscillation.amplitude * math.sin(oscillation.omega_0 * time)
+        return (
+            SPEED * math.cos(state[2]),
+            SPEED * math.sin(state[2]),
+            -oscillation.amplitude * math.sin(oscillation.omega_0 * time),
+        )
 
     times = np.linspace(0.0, 3.0 * oscillation.period, 97)
     solution = solve_ivp(
-        rates, (0.0, times[-1]), [0.0, 0.0, oscillation.eta], t_eval=times, method="DOP853", rtol=1e-11, atol=1e-11
+        rates,
+        (0.0, times[-1]),
+        [0.0, 0.0, oscillation.eta],
+        t_eval=times,
+        method="DOP853",
+        rtol=1e-11,
+        atol=1e-11,
     )
     along, across = offset(oscillation, times)
     # Integration tolerance, 1e-11 of up to 800 m in each of a hundred steps.
@@ -64,11 +74,15 @@ def test_the_orbit_is_a_figure_of_eight(nu, time):
 def test_the_reference_passes_the_centre_twice_a_period(nu):
     oscillation = paper_oscillation(nu)
     # paper-notes: it flies a figure of eight through the CO. An odd number of samples keeps the passages between samples.
-    times = np.linspace(0.0, oscillation.period, 1001, endpoint=False) + 0.3 * oscillation.period / 1001
+    times = (
+        np.linspace(0.0, oscillation.period, 1001, endpoint=False) + 0.3 * oscillation.period / 1001
+    )
     _, across = offset(oscillation, times)
     assert np.count_nonzero(np.diff(np.sign(across), append=np.sign(across[0]))) == 2
     # Rounding of 100 m.
-    assert offset(oscillation, [0.0, oscillation.crossing_interval]) == pytest.approx(np.zeros((2, 2)), abs=1e-12)
+    assert offset(oscillation, [0.0, oscillation.crossing_interval]) == pytest.approx(
+        np.zeros((2, 2)), abs=1e-12
+    )
 
 
 @examples(14)
@@ -93,10 +107,15 @@ def test_the_orbit_shrinks_as_the_vessel_speeds_up():
 
 
 def test_the_orbit_scales_with_speed_over_frequency():
-    slow, fast = paper_oscillation(0.4), paper_oscillation(0.4, speed=2.0 * SPEED, heading_rate_max=1.5)
+    slow, fast = (
+        paper_oscillation(0.4),
+        paper_oscillation(0.4, speed=2.0 * SPEED, heading_rate_max=1.5),
+    )
     scale = 2.0 * slow.omega_0 / fast.omega_0
     # (4) has no other length than V_r/omega_0. Rounding.
-    assert half_widths(fast) == pytest.approx(tuple(scale * width for width in half_widths(slow)), rel=1e-13)
+    assert half_widths(fast) == pytest.approx(
+        tuple(scale * width for width in half_widths(slow)), rel=1e-13
+    )
 
 
 def test_offsets_keep_the_shape_of_time():

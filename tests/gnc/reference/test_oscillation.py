@@ -20,7 +20,9 @@ def test_the_reference_spends_what_equation_8_allows(nu, vessel_heading_rate):
     assert oscillation.omega_0 == pytest.approx(
         (HEADING_RATE_MAX - 0.02 * (vessel_heading_rate != 0.0)) / oscillation.eta, rel=1e-14
     )
-    assert oscillation.amplitude + abs(vessel_heading_rate) == pytest.approx(HEADING_RATE_MAX, rel=1e-14)
+    assert oscillation.amplitude + abs(vessel_heading_rate) == pytest.approx(
+        HEADING_RATE_MAX, rel=1e-14
+    )
     assert oscillation.limit == "heading rate"
 
 
@@ -31,11 +33,19 @@ def test_the_reference_spends_what_equation_8_allows(nu, vessel_heading_rate):
     vessel_heading_rate=st.floats(-0.04, 0.04),
     roll_rate_max=st.floats(0.01, 10.0),
 )
-def test_the_oscillation_is_the_fastest_within_heading_rate_and_roll_rate(nu, reserve, vessel_heading_rate, roll_rate_max):
-    oscillation = paper_oscillation(nu, reserve=reserve, vessel_heading_rate=vessel_heading_rate, roll_rate_max=roll_rate_max)
-    heading_rate_use = (oscillation.amplitude + abs(vessel_heading_rate)) / ((1.0 - reserve) * HEADING_RATE_MAX)
+def test_the_oscillation_is_the_fastest_within_heading_rate_and_roll_rate(
+    nu, reserve, vessel_heading_rate, roll_rate_max
+):
+    oscillation = paper_oscillation(
+        nu, reserve=reserve, vessel_heading_rate=vessel_heading_rate, roll_rate_max=roll_rate_max
+    )
+    heading_rate_use = (oscillation.amplitude + abs(vessel_heading_rate)) / (
+        (1.0 - reserve) * HEADING_RATE_MAX
+    )
     # paper-notes, care 5: the heading acceleration's amplitude is eta omega_0^2 = g/V times the roll rate.
-    roll_rate_use = oscillation.eta * oscillation.omega_0**2 / (STANDARD_GRAVITY / SPEED * roll_rate_max)
+    roll_rate_use = (
+        oscillation.eta * oscillation.omega_0**2 / (STANDARD_GRAVITY / SPEED * roll_rate_max)
+    )
     # Neither bound is exceeded and one of them is met, to rounding.
     assert max(heading_rate_use, roll_rate_use) == pytest.approx(1.0, rel=1e-12)
     assert (oscillation.limit == "heading rate") == (heading_rate_use >= roll_rate_use)
@@ -52,7 +62,9 @@ def test_the_roll_rate_takes_over_for_fast_vessels():
     fast = paper_oscillation(0.9, roll_rate_max=ROLL_RATE_MAX)
     assert fast.limit == "roll rate"
     # Roundings of the square root.
-    assert fast.omega_0**2 * fast.eta == pytest.approx(STANDARD_GRAVITY * ROLL_RATE_MAX / SPEED, rel=1e-14)
+    assert fast.omega_0**2 * fast.eta == pytest.approx(
+        STANDARD_GRAVITY * ROLL_RATE_MAX / SPEED, rel=1e-14
+    )
 
 
 @pytest.mark.parametrize(
@@ -71,11 +83,19 @@ def test_a_speed_ratio_that_cannot_be_flown_is_refused(ratios, words):
 
 @pytest.mark.parametrize(
     ("vessel_heading_rate", "reserve", "limit"),
-    [(0.503, 0.0, "0.503"), (-0.6, 0.0, "0.503"), (0.3, 0.5, "0.2515"), (math.nan, 0.0, "0.503"), (-math.inf, 0.0, "0.503")],
+    [
+        (0.503, 0.0, "0.503"),
+        (-0.6, 0.0, "0.503"),
+        (0.3, 0.5, "0.2515"),
+        (math.nan, 0.0, "0.503"),
+        (-math.inf, 0.0, "0.503"),
+    ],
 )
 def test_a_vessel_that_turns_as_fast_as_the_uav_can_is_refused(vessel_heading_rate, reserve, limit):
     # The limit is (1 - reserve) omega_max, from equation (8).
-    with pytest.raises(InfeasibleError, match=r"vessel heading rate is .*raise omega_max or lower the reserve") as refusal:
+    with pytest.raises(
+        InfeasibleError, match=r"vessel heading rate is .*raise omega_max or lower the reserve"
+    ) as refusal:
         paper_oscillation(0.5, vessel_heading_rate=vessel_heading_rate, reserve=reserve)
     message = str(refusal.value)
     assert f"is {vessel_heading_rate:g} rad/s" in message
@@ -84,7 +104,9 @@ def test_a_vessel_that_turns_as_fast_as_the_uav_can_is_refused(vessel_heading_ra
 
 @pytest.mark.parametrize("reserve", [-0.1, 1.0, 1.5, math.nan, math.inf])
 def test_a_reserve_that_is_no_fraction_is_refused(reserve):
-    with pytest.raises(InfeasibleError, match=r"reserve is .* of omega_max; it must be at least 0 and below 1") as refusal:
+    with pytest.raises(
+        InfeasibleError, match=r"reserve is .* of omega_max; it must be at least 0 and below 1"
+    ) as refusal:
         paper_oscillation(0.5, reserve=reserve)
     assert f"reserve is {reserve:g}" in str(refusal.value)
 

@@ -8,7 +8,13 @@ from hypothesis import strategies as st
 
 from gnc.errors import InfeasibleError
 from gnc.reference.orbit import half_widths, offset
-from gnc.reference.placement import PlumeAxis, centre_of_oscillation, distance_by_paper, distance_exact, reach
+from gnc.reference.placement import (
+    PlumeAxis,
+    centre_of_oscillation,
+    distance_by_paper,
+    distance_exact,
+    reach,
+)
 
 ratios = st.floats(0.0, 0.98)
 headings = st.floats(-math.pi, math.pi)
@@ -39,7 +45,9 @@ def closest_approach(oscillation, axis, distance):
 
 @examples(50)
 @given(nu=ratios, heading=headings, elevation=elevations, radius=radii)
-def test_the_exact_placement_touches_the_keep_out_sphere_and_no_more(nu, heading, elevation, radius):
+def test_the_exact_placement_touches_the_keep_out_sphere_and_no_more(
+    nu, heading, elevation, radius
+):
     oscillation, axis = paper_oscillation(nu), PlumeAxis(heading=heading, elevation=elevation)
     closest = closest_approach(oscillation, axis, distance_exact(oscillation, axis, radius))
     assert closest >= radius - SEARCH
@@ -63,7 +71,10 @@ def test_no_closer_placement_keeps_the_orbit_outside(nu, heading, elevation, rad
 def test_the_exact_placement_is_never_farther_than_the_papers(nu, heading, elevation, radius):
     oscillation, axis = paper_oscillation(nu), PlumeAxis(heading=heading, elevation=elevation)
     # paper-notes, care 4, which says so from abeam to astern.
-    assert distance_exact(oscillation, axis, radius) <= distance_by_paper(oscillation, axis, radius) + SEARCH
+    assert (
+        distance_exact(oscillation, axis, radius)
+        <= distance_by_paper(oscillation, axis, radius) + SEARCH
+    )
 
 
 @examples(60)
@@ -71,7 +82,10 @@ def test_the_exact_placement_is_never_farther_than_the_papers(nu, heading, eleva
 def test_the_papers_placement_keeps_the_orbit_outside(nu, heading, elevation, radius):
     oscillation, axis = paper_oscillation(nu), PlumeAxis(heading=heading, elevation=elevation)
     # paper-notes, care 3: equation (10) keeps the three-dimensional distance. Rounding of 1 km.
-    assert closest_approach(oscillation, axis, distance_by_paper(oscillation, axis, radius)) >= radius - 1e-9
+    assert (
+        closest_approach(oscillation, axis, distance_by_paper(oscillation, axis, radius))
+        >= radius - 1e-9
+    )
 
 
 @examples(50)
@@ -113,7 +127,9 @@ def test_mirrored_plumes_are_measured_at_the_same_distance(rule, nu, heading, el
 
 def test_a_wider_keep_out_area_puts_the_centre_farther_away():
     oscillation, axis = paper_oscillation(0.3), PlumeAxis(heading=2.4, elevation=0.2)
-    distances = [distance_exact(oscillation, axis, radius) for radius in (50.0, 100.0, 200.0, 400.0)]
+    distances = [
+        distance_exact(oscillation, axis, radius) for radius in (50.0, 100.0, 200.0, 400.0)
+    ]
     # By no less than the radius grows, for |d r_CO/d r_min| = r_min/sqrt(...) >= 1.
     assert np.all(np.diff(distances) >= np.array([50.0, 100.0, 200.0]) - SEARCH)
 
@@ -124,8 +140,12 @@ def test_the_reach_goes_from_the_half_width_along_to_that_across():
     # Equation (11); halfway at sin(chi_P) = 1/2. Tolerances are roundings.
     assert reach(oscillation, PlumeAxis(heading=math.pi)) == pytest.approx(d_x, rel=1e-13)
     assert reach(oscillation, PlumeAxis(heading=-0.5 * math.pi)) == pytest.approx(d_y, rel=1e-13)
-    assert reach(oscillation, PlumeAxis(heading=math.radians(150.0))) == pytest.approx(0.5 * (d_x + d_y), rel=1e-13)
-    assert reach(oscillation, PlumeAxis(heading=math.radians(-30.0))) == pytest.approx(0.5 * (d_x + d_y), rel=1e-13)
+    assert reach(oscillation, PlumeAxis(heading=math.radians(150.0))) == pytest.approx(
+        0.5 * (d_x + d_y), rel=1e-13
+    )
+    assert reach(oscillation, PlumeAxis(heading=math.radians(-30.0))) == pytest.approx(
+        0.5 * (d_x + d_y), rel=1e-13
+    )
 
 
 @pytest.mark.parametrize("elevation", [0.0, 0.4, -0.4])
@@ -164,7 +184,9 @@ def test_the_centre_is_at_its_distance(heading, elevation, distance):
 @pytest.mark.parametrize("radius", [-1.0, math.nan, math.inf])
 @pytest.mark.parametrize("rule", [distance_exact, distance_by_paper])
 def test_an_impossible_keep_out_radius_is_refused(rule, radius):
-    with pytest.raises(InfeasibleError, match=r"keep-out radius is .* m; it must be finite and at least 0") as refusal:
+    with pytest.raises(
+        InfeasibleError, match=r"keep-out radius is .* m; it must be finite and at least 0"
+    ) as refusal:
         rule(paper_oscillation(0.5), PlumeAxis(heading=math.pi), radius)
     assert f"is {radius:g} m" in str(refusal.value)
 
@@ -173,7 +195,8 @@ def test_an_impossible_keep_out_radius_is_refused(rule, radius):
 @pytest.mark.parametrize("rule", [distance_exact, distance_by_paper])
 def test_a_vertical_plume_is_refused(rule, elevation):
     with pytest.raises(
-        InfeasibleError, match=r"plume elevation is .*within -pi/2 and pi/2: a vertical plume cannot be crossed"
+        InfeasibleError,
+        match=r"plume elevation is .*within -pi/2 and pi/2: a vertical plume cannot be crossed",
     ) as refusal:
         rule(paper_oscillation(0.5), PlumeAxis(heading=math.pi, elevation=elevation), 200.0)
     assert f"is {elevation:g} rad" in str(refusal.value)

@@ -20,7 +20,13 @@ COURSE = 0.7
 
 def make(nu, *, phase=0.0, time_step=TIME_STEP):
     oscillation = paper_oscillation(nu, roll_rate_max=math.radians(40.0))
-    start = start_reference(oscillation, phase=phase, centre_north=CENTRE[0], centre_east=CENTRE[1], vessel_course=COURSE)
+    start = start_reference(
+        oscillation,
+        phase=phase,
+        centre_north=CENTRE[0],
+        centre_east=CENTRE[1],
+        vessel_course=COURSE,
+    )
     return oscillation, OscillatingReference(oscillation, start, phase=phase, time_step=time_step)
 
 
@@ -49,11 +55,16 @@ def test_the_stepped_reference_does_not_drift_off_the_closed_form_in_1000_second
 
 @pytest.mark.parametrize("vessel_heading_rate", [0.0, 0.02, -0.01])
 @pytest.mark.parametrize("phase", [0.0, 1.0])
-def test_the_stepped_reference_is_equation_2_integrated_also_while_the_vessel_turns(vessel_heading_rate, phase):
+def test_the_stepped_reference_is_equation_2_integrated_also_while_the_vessel_turns(
+    vessel_heading_rate, phase
+):
     oscillation, reference = make(0.5, phase=phase)
 
     def rates(time, state):
-        heading_rate = -oscillation.amplitude * math.sin(oscillation.omega_0 * time + phase) + vessel_heading_rate
+        heading_rate = (
+            -oscillation.amplitude * math.sin(oscillation.omega_0 * time + phase)
+            + vessel_heading_rate
+        )
         return SPEED * math.cos(state[2]), SPEED * math.sin(state[2]), heading_rate
 
     start = [reference.north, reference.east, reference.course]
@@ -61,8 +72,12 @@ def test_the_stepped_reference_is_equation_2_integrated_also_while_the_vessel_tu
     for _ in range(1200):
         reference.step(vessel_heading_rate)
     # Integration tolerance 1e-11 of up to 1 km in each of some hundred steps.
-    assert (reference.north, reference.east, reference.course) == pytest.approx(solution.y[:, -1], rel=0.0, abs=1e-6)
-    assert reference.heading_rate == pytest.approx(rates(60.0, solution.y[:, -1])[2], rel=0.0, abs=1e-12)
+    assert (reference.north, reference.east, reference.course) == pytest.approx(
+        solution.y[:, -1], rel=0.0, abs=1e-6
+    )
+    assert reference.heading_rate == pytest.approx(
+        rates(60.0, solution.y[:, -1])[2], rel=0.0, abs=1e-12
+    )
 
 
 @pytest.mark.parametrize("phase", [0.0, 0.5, 0.5 * math.pi, -2.0])
@@ -71,7 +86,9 @@ def test_the_reference_starts_on_the_course_of_equation_7(phase):
     # Rounding.
     assert reference.course == pytest.approx(COURSE + oscillation.eta * math.cos(phase), abs=1e-15)
     # And turns as equation (2) says from there on.
-    assert reference.heading_rate == pytest.approx(-oscillation.amplitude * math.sin(phase), abs=1e-15)
+    assert reference.heading_rate == pytest.approx(
+        -oscillation.amplitude * math.sin(phase), abs=1e-15
+    )
 
 
 @pytest.mark.parametrize("phase", [0.0, 0.5, -2.0])
@@ -80,7 +97,9 @@ def test_the_course_is_that_of_equation_3_about_the_vessels(phase):
     for step in range(1, 2001):
         reference.step()
         # Equation (3) with the start of (7). Rounding of angles of 30 rad; time comes from the step count, so it does not grow.
-        expected = COURSE + oscillation.eta * math.cos(oscillation.omega_0 * step * TIME_STEP + phase)
+        expected = COURSE + oscillation.eta * math.cos(
+            oscillation.omega_0 * step * TIME_STEP + phase
+        )
         assert reference.course == pytest.approx(expected, abs=1e-13)
 
 
@@ -90,14 +109,24 @@ def test_the_reference_is_a_unicycle_of_constant_speed():
         north, east = reference.north, reference.east
         reference.step()
         # Equation (4): the speed is V_r throughout. The chord is shorter than the arc by (omega h)^2/24 of it, 1e-8.
-        assert math.hypot(reference.north - north, reference.east - east) == pytest.approx(SPEED * 1e-3, rel=2e-8)
+        assert math.hypot(reference.north - north, reference.east - east) == pytest.approx(
+            SPEED * 1e-3, rel=2e-8
+        )
 
 
 def test_the_reference_starts_on_the_centre_with_phase_zero_only():
     # Section III.B has it start on the CO; paper-notes, care 2, says why that holds for phi_0 = 0 only.
     oscillation = paper_oscillation(0.5)
-    on = start_reference(oscillation, phase=0.0, centre_north=CENTRE[0], centre_east=CENTRE[1], vessel_course=COURSE)
-    off = start_reference(oscillation, phase=0.5 * math.pi, centre_north=CENTRE[0], centre_east=CENTRE[1], vessel_course=COURSE)
+    on = start_reference(
+        oscillation, phase=0.0, centre_north=CENTRE[0], centre_east=CENTRE[1], vessel_course=COURSE
+    )
+    off = start_reference(
+        oscillation,
+        phase=0.5 * math.pi,
+        centre_north=CENTRE[0],
+        centre_east=CENTRE[1],
+        vessel_course=COURSE,
+    )
     assert (on.north, on.east) == pytest.approx(CENTRE, abs=1e-12)
     # A quarter period on it is d_y = 68.395 m to the vessel's right (table of paper-notes, rounded to 1 cm).
     right = -(off.north - CENTRE[0]) * math.sin(COURSE) + (off.east - CENTRE[1]) * math.cos(COURSE)
@@ -109,7 +138,9 @@ def test_the_reference_starts_on_the_centre_with_phase_zero_only():
 @pytest.mark.parametrize("heading_rate", [0.15, -0.4])
 def test_a_circling_reference_is_a_unicycle_that_turns_steadily(heading_rate):
     start = ReferenceStart(north=12.0, east=-7.0, course=COURSE)
-    reference = CirclingReference(start, speed=SPEED, heading_rate=heading_rate, time_step=TIME_STEP)
+    reference = CirclingReference(
+        start, speed=SPEED, heading_rate=heading_rate, time_step=TIME_STEP
+    )
     state = (start.north, start.east, start.course)
     assert (reference.north, reference.east, reference.course) == state
     for _ in range(8000):

@@ -24,7 +24,9 @@ shapes = pytest.mark.parametrize("shape", ["sinusoid", "fastest"])
 
 
 def swing(shape):
-    return REFERENCE_SHAPES.get(shape)().swing(speed=SPEED, heading_rate=HEADING_RATE_MAX, roll_rate_max=ROLL_RATE_MAX)
+    return REFERENCE_SHAPES.get(shape)().swing(
+        speed=SPEED, heading_rate=HEADING_RATE_MAX, roll_rate_max=ROLL_RATE_MAX
+    )
 
 
 def steered(shape="sinusoid", *, nu=0.5, mean_course=0.7, phase=0.0):
@@ -41,7 +43,11 @@ def steered(shape="sinusoid", *, nu=0.5, mean_course=0.7, phase=0.0):
     )
 
 
-steering = st.lists(st.tuples(st.floats(-math.pi, math.pi), st.floats(-0.3, 1.1), st.integers(1, 200)), min_size=1, max_size=8)
+steering = st.lists(
+    st.tuples(st.floats(-math.pi, math.pi), st.floats(-0.3, 1.1), st.integers(1, 200)),
+    min_size=1,
+    max_size=8,
+)
 
 
 @shapes
@@ -52,12 +58,16 @@ def test_with_constant_parameters_it_is_the_reference_of_its_shape(shape, nu):
         nu=reference.speed_ratio, speed=SPEED, heading_rate_max=HEADING_RATE_MAX, reserve=0.0, vessel_heading_rate=0.0,
         roll_rate_max=ROLL_RATE_MAX,
     )  # fmt: skip
-    fixed = JoinedOrbit(shape=made, orbit=orbit, vessel_course=0.7, time_step=TIME_STEP).reference(0.0, -214.0, 35.0)
+    fixed = JoinedOrbit(shape=made, orbit=orbit, vessel_course=0.7, time_step=TIME_STEP).reference(
+        0.0, -214.0, 35.0
+    )
     for _ in range(2000):
         reference.step()
         fixed.step()
     # The same Simpson's rule; the series of J_0 is good to 5e-7, and so is eta, which 100 s of turning make 2e-5 rad of phase.
-    assert (reference.north, reference.east) == pytest.approx((fixed.north, fixed.east), rel=0.0, abs=2e-3)
+    assert (reference.north, reference.east) == pytest.approx(
+        (fixed.north, fixed.east), rel=0.0, abs=2e-3
+    )
     assert reference.course == pytest.approx(fixed.course, rel=0.0, abs=5e-5)
     assert reference.heading_rate == pytest.approx(fixed.heading_rate, rel=0.0, abs=5e-5)
 
@@ -90,9 +100,18 @@ def test_it_is_a_unicycle_of_constant_speed_whatever_is_steered(shape, steering,
             turn = reference.course - course
             # The chord of an arc that turns evenly, and the course on its middle; how the rate changes within a step, 1.5 rad/s^2
             # at most, moves the end by V dt^3 1.5/12 = 0.3 mm.
-            chord = SPEED * TIME_STEP * math.sin(0.5 * turn) / (0.5 * turn) if turn else SPEED * TIME_STEP
-            expected = (chord * math.cos(course + 0.5 * turn), chord * math.sin(course + 0.5 * turn))
-            assert (reference.north - north, reference.east - east) == pytest.approx(expected, rel=0.0, abs=4e-4)
+            chord = (
+                SPEED * TIME_STEP * math.sin(0.5 * turn) / (0.5 * turn)
+                if turn
+                else SPEED * TIME_STEP
+            )
+            expected = (
+                chord * math.cos(course + 0.5 * turn),
+                chord * math.sin(course + 0.5 * turn),
+            )
+            assert (reference.north - north, reference.east - east) == pytest.approx(
+                expected, rel=0.0, abs=4e-4
+            )
 
 
 @shapes
@@ -100,7 +119,10 @@ def test_it_is_a_unicycle_of_constant_speed_whatever_is_steered(shape, steering,
 @examples(10)
 def test_mirrored_steering_gives_a_mirrored_path(shape, steering, nu):
     # Mirrored in the north-south line: courses change sign, and so does the amplitude, which is half a period of phase.
-    one, other = (steered(shape, nu=nu, mean_course=side * 0.4, phase=phase) for side, phase in ((1.0, 0.0), (-1.0, math.pi)))
+    one, other = (
+        steered(shape, nu=nu, mean_course=side * 0.4, phase=phase)
+        for side, phase in ((1.0, 0.0), (-1.0, math.pi))
+    )
     for mean_course, ratio, steps in steering:
         one.steer(mean_course, ratio)
         other.steer(-mean_course, ratio)
@@ -110,7 +132,9 @@ def test_mirrored_steering_gives_a_mirrored_path(shape, steering, nu):
             one.step()
             other.step()
         # 1,600 steps of rounding; north is the same, east mirrored about the start at 35 m.
-        assert (other.north, 70.0 - other.east) == pytest.approx((one.north, one.east), rel=0.0, abs=1e-7)
+        assert (other.north, 70.0 - other.east) == pytest.approx(
+            (one.north, one.east), rel=0.0, abs=1e-7
+        )
         assert other.centre()[0] == pytest.approx(one.centre()[0], rel=0.0, abs=1e-7)
 
 
@@ -137,7 +161,9 @@ def test_its_centre_is_the_mean_of_its_orbit(shape, nu, phase):
 @pytest.mark.parametrize("phase", [0.3, 1.5, 2.9, -1.1])
 @pytest.mark.parametrize("eta", [0.1, 1.0, 1.5211, 2.4])
 def test_the_offset_is_the_series_of_equation_12(eta, phase):
-    oscillation = design_oscillation(nu=float(j0(eta)), speed=SPEED, heading_rate_max=HEADING_RATE_MAX)
+    oscillation = design_oscillation(
+        nu=float(j0(eta)), speed=SPEED, heading_rate_max=HEADING_RATE_MAX
+    )
     along, right = offset(oscillation, phase / oscillation.omega_0)
     unit = SPEED / oscillation.omega_0
     found = SINUSOID.offset(eta, phase)
@@ -148,7 +174,9 @@ def test_the_offset_is_the_series_of_equation_12(eta, phase):
 def test_the_table_of_eta_is_equation_6():
     ratios = np.concatenate([np.linspace(0.0, 1.0, 501), 1.0 - np.logspace(-12, -3, 50)])
     # 1e-5 by its docstring.
-    assert [SINUSOID.eta(r) for r in ratios] == pytest.approx([eta_for_speed_ratio(r) for r in ratios], rel=0.0, abs=1e-5)
+    assert [SINUSOID.eta(r) for r in ratios] == pytest.approx(
+        [eta_for_speed_ratio(r) for r in ratios], rel=0.0, abs=1e-5
+    )
 
 
 def test_mean_speeds_beyond_the_table_are_those_of_its_ends():
@@ -184,7 +212,9 @@ def test_it_turns_the_shorter_way():
         reference.step()
         assert reference.mean_course > 2.9
     # As above.
-    assert math.remainder(reference.mean_course + 3.0, 2.0 * math.pi) == pytest.approx(0.0, abs=0.01)
+    assert math.remainder(reference.mean_course + 3.0, 2.0 * math.pi) == pytest.approx(
+        0.0, abs=0.01
+    )
 
 
 @pytest.mark.parametrize("copied", [copy.copy, copy.deepcopy])

@@ -35,7 +35,9 @@ def test_it_allows_what_it_would_let_pass_and_asking_changes_nothing(lag, delay)
 def test_what_is_allowed_at_a_speed_is_safe_at_that_speed_from_then_on():
     # Head on, at just the distance from which it can still turn away; not so if it were half as fast again.
     far = next(
-        distance for distance in np.arange(205.0, 400.0) if make_guard().allows(0.0, -distance, 0.0, 0.0, 0.0, 0.0, SPEED, 0.0)
+        distance
+        for distance in np.arange(205.0, 400.0)
+        if make_guard().allows(0.0, -distance, 0.0, 0.0, 0.0, 0.0, SPEED, 0.0)
     )
     assert not make_guard().allows(0.0, -far, 0.0, 0.0, 0.0, 0.0, 1.5 * SPEED, 0.0)
     guard = make_guard()
@@ -107,7 +109,9 @@ def test_far_away_it_need_not_look_for_as_long_as_nothing_can_happen(speed):
     guard = make_guard(turn_speed=SPEED, acceleration=acceleration)
 
     def free_from(distance, closing):
-        return guard.guard._free_when_far((-distance, 0.0, -closing, 0.0, 0.0, speed, 0.0, RADIUS, 0.0, acceleration, 0.0, 0.0))
+        return guard.guard._free_when_far(
+            (-distance, 0.0, -closing, 0.0, 0.0, speed, 0.0, RADIUS, 0.0, acceleration, 0.0, 0.0)
+        )
 
     duration = 1.5 * math.pi / HEADING_RATE_MAX * speed / SPEED
     for distance in (800.0, 1000.0, 1200.0):

@@ -29,16 +29,28 @@ def guard_of(*, radius, heading_rate_max, time_step, lag=0.0, delay=0.0, deviati
 
 def motion_of(state):
     north, east, course, heading_rate = state
-    return KnownMotion(ground_north=north, ground_east=east, course=course, heading_rate=heading_rate)
+    return KnownMotion(
+        ground_north=north, ground_east=east, course=course, heading_rate=heading_rate
+    )
 
 
-@pytest.mark.parametrize(("rate_hz", "heading_rate_max"), [(5.0, 0.49), (5.0, 0.58), (8.0, 0.58), (10.0, 0.85)])
+@pytest.mark.parametrize(
+    ("rate_hz", "heading_rate_max"), [(5.0, 0.49), (5.0, 0.58), (8.0, 0.58), (10.0, 0.85)]
+)
 def test_no_path_leads_in_within_a_wide_step(rate_hz, heading_rate_max):
     generator = np.random.default_rng(3)
     radius, step, nearest, worked = 10.0, 1.0 / rate_hz, math.inf, 0
     for _ in range(60):
-        bearing, distance = generator.uniform(-math.pi, math.pi), generator.uniform(1.1, 8.0) * radius
-        state = (distance * math.cos(bearing), distance * math.sin(bearing), generator.uniform(-math.pi, math.pi), 0.0)
+        bearing, distance = (
+            generator.uniform(-math.pi, math.pi),
+            generator.uniform(1.1, 8.0) * radius,
+        )
+        state = (
+            distance * math.cos(bearing),
+            distance * math.sin(bearing),
+            generator.uniform(-math.pi, math.pi),
+            0.0,
+        )
         guard = guard_of(radius=radius, heading_rate_max=heading_rate_max, time_step=step)
         if guard.clearance(0.0, motion_of(state), SPEED) < 0.0:
             continue
@@ -62,7 +74,12 @@ def test_a_command_that_passes_leaves_a_turn_with_all_that_is_kept_for_its_own_c
     worked, least = 0, math.inf
     for gap in (1.0, 5.0, 15.0, 30.0):
         guard = guard_of(
-            radius=200.0, heading_rate_max=heading_rate_max, time_step=step, lag=lag, delay=4 * step, deviation=deviation
+            radius=200.0,
+            heading_rate_max=heading_rate_max,
+            time_step=step,
+            lag=lag,
+            delay=4 * step,
+            deviation=deviation,
         )
         state = (0.0, 200.0 + gap + 2.0 * SPEED / heading_rate_max, 0.0, -heading_rate_max)
         under_way = deque([-heading_rate_max] * 4)
@@ -70,7 +87,9 @@ def test_a_command_that_passes_leaves_a_turn_with_all_that_is_kept_for_its_own_c
         for k in range(900):
             # It has come round to the disc on the settled turn.
             inwards = inwards or (k > 400 and state[1] < 200.0 + gap + 1.0)
-            demanded = aim_at_the_centre(k, *state[:3], heading_rate_max) if inwards else -heading_rate_max
+            demanded = (
+                aim_at_the_centre(k, *state[:3], heading_rate_max) if inwards else -heading_rate_max
+            )
             # The turn away that keeps off by all that a change of command before it takes; once begun it is one itself.
             if k and not (guard.intervening and abs(command) == heading_rate_max):
                 asked = copy.copy(guard)
@@ -93,7 +112,9 @@ def test_a_command_that_passes_leaves_a_turn_with_all_that_is_kept_for_its_own_c
         (0.0, SPEED + 0.04, SPEED - 0.04, 0), (0.0, SPEED + 0.06, SPEED, 1), (0.0, SPEED, SPEED - 0.06, 1),
     ],
 )  # fmt: skip
-def test_another_command_or_speed_than_was_counted_is_looked_at_at_once(command, speed, slowest, looks, monkeypatch):
+def test_another_command_or_speed_than_was_counted_is_looked_at_at_once(
+    command, speed, slowest, looks, monkeypatch
+):
     # Beside the disc, northbound: of a look some steps are free. Half a reversal is counted, which it has to roll into the turn
     # as well, so a quarter to either side.
     guard, own = (
@@ -116,7 +137,8 @@ def flown(state, under_way, command, lag):
 
 
 @pytest.mark.parametrize(
-    ("deviation", "radius", "closing"), [(0.0, 200.0, 0.5), (3.1, 200.0, 0.5), (19.7, 200.0, 0.5), (6.1, 41.0, 0.9)]
+    ("deviation", "radius", "closing"),
+    [(0.0, 200.0, 0.5), (3.1, 200.0, 0.5), (19.7, 200.0, 0.5), (6.1, 41.0, 0.9)],
 )
 @pytest.mark.parametrize("order", ["against the turn", "at random", "of the turn"])
 def test_whatever_needs_no_look_leaves_the_turn_that_was_found(deviation, radius, closing, order):
@@ -127,17 +149,33 @@ def test_whatever_needs_no_look_leaves_the_turn_that_was_found(deviation, radius
     tried = np.linspace(-1.0, 1.0, 9) * heading_rate_max
     for _ in range(120):
         guard = guard_of(
-            radius=radius, heading_rate_max=heading_rate_max, time_step=step, lag=lag, delay=4 * step, deviation=deviation
+            radius=radius,
+            heading_rate_max=heading_rate_max,
+            time_step=step,
+            lag=lag,
+            delay=4 * step,
+            deviation=deviation,
         )
-        bearing, distance = generator.uniform(-math.pi, math.pi), radius + deviation + generator.uniform(2.0, 90.0)
+        bearing, distance = (
+            generator.uniform(-math.pi, math.pi),
+            radius + deviation + generator.uniform(2.0, 90.0),
+        )
         velocity = (closing * SPEED * math.cos(bearing), closing * SPEED * math.sin(bearing))
         guard.tubes = (Tube(0.0, 0.0, *velocity, 0.0),)
-        state = (distance * math.cos(bearing), distance * math.sin(bearing), generator.uniform(-math.pi, math.pi), 0.0)
+        state = (
+            distance * math.cos(bearing),
+            distance * math.sin(bearing),
+            generator.uniform(-math.pi, math.pi),
+            0.0,
+        )
         under_way, k, free = deque([0.0] * 4), 0, [0.0]
         while free and k < 200:
             side = guard._free._towards
             against = min(free, key=lambda each, side=side: side * each)
-            ordered = {"against the turn": against, "of the turn": max(free, key=lambda each, side=side: side * each)}
+            ordered = {
+                "against the turn": against,
+                "of the turn": max(free, key=lambda each, side=side: side * each),
+            }
             demanded = ordered.get(order) if order in ordered else generator.choice(free)
             command = guard.limit(float(demanded), k * step, motion_of(state), SPEED)
             if guard.intervening:
@@ -147,7 +185,8 @@ def test_whatever_needs_no_look_leaves_the_turn_that_was_found(deviation, radius
         if (
             k > 1
             and not guard.intervening
-            and math.hypot(state[0] - k * step * velocity[0], state[1] - k * step * velocity[1]) < 500.0
+            and math.hypot(state[0] - k * step * velocity[0], state[1] - k * step * velocity[1])
+            < 500.0
         ):
             passed += 1
             least = min(least, guard.clearance(k * step, motion_of(state), SPEED))

@@ -14,7 +14,11 @@ from gnc.safety.given_commands import GivenCommands, commands_under_way
 def commands(lag, delay, *, sooner=0.0):
     """Return the commands to a vehicle of that lag and dead time that follows slow commands by so much sooner than they say."""
     return GivenCommands(
-        lag=lag, delay=delay, slow_lag=lag + delay - sooner, time_step=TIME_STEP, heading_rate_max=HEADING_RATE_MAX
+        lag=lag,
+        delay=delay,
+        slow_lag=lag + delay - sooner,
+        time_step=TIME_STEP,
+        heading_rate_max=HEADING_RATE_MAX,
     )
 
 
@@ -24,7 +28,9 @@ def give(given, told, rate):
         given.rates.append(rate)
 
 
-@pytest.mark.parametrize(("lag", "delay"), [(0.0, 0.0), (0.4, 0.0), (0.25, 5.0 * TIME_STEP), (0.4, 2.5 * TIME_STEP)])
+@pytest.mark.parametrize(
+    ("lag", "delay"), [(0.0, 0.0), (0.4, 0.0), (0.25, 5.0 * TIME_STEP), (0.4, 2.5 * TIME_STEP)]
+)
 def test_of_a_vehicle_with_just_that_dead_time_and_lag_nothing_is_to_come(lag, delay):
     generator = np.random.default_rng(1)
     given = commands(lag, delay)
@@ -68,7 +74,9 @@ def test_a_lack_that_stays_is_forgotten():
     give(given, [0.3], 0.0)
     lacking = given.still_to_come(0.0)
     give(given, [0.0] * 100, 0.0)
-    assert given.still_to_come(0.0) == pytest.approx(lacking * math.exp(-100 * TIME_STEP / (FORGOTTEN * 0.4)), rel=1e-9)
+    assert given.still_to_come(0.0) == pytest.approx(
+        lacking * math.exp(-100 * TIME_STEP / (FORGOTTEN * 0.4)), rel=1e-9
+    )
 
 
 def test_of_a_vehicle_that_follows_slow_commands_sooner_nothing_is_to_come_in_a_slow_turn():
@@ -87,7 +95,9 @@ def test_as_much_as_slow_commands_may_be_followed_sooner_or_later_does_not_count
     give(given, [0.2, 0.2], 0.2)
     # 0.008 rad are lacking, of which some per cent of the course that is turned in 0.4 s do not count.
     give(given, [0.36], 0.2)
-    assert given.still_to_come(0.2) == pytest.approx((0.16 * TIME_STEP - SLOW_LAG_ERROR * 0.4 * 0.2) / 0.4, rel=1e-9)
+    assert given.still_to_come(0.2) == pytest.approx(
+        (0.16 * TIME_STEP - SLOW_LAG_ERROR * 0.4 * 0.2) / 0.4, rel=1e-9
+    )
     other = commands(0.4, 0.0)
     other.still_to_come(0.2)
     give(other, [0.2 + 0.9 * SLOW_LAG_ERROR * 0.4 * 0.2 / TIME_STEP], 0.2)
@@ -99,7 +109,9 @@ def test_no_more_is_to_come_than_of_a_full_reversal():
     given.still_to_come(0.0)
     give(given, [HEADING_RATE_MAX] * 100, -HEADING_RATE_MAX)
     doubt = SLOW_LAG_ERROR * 0.6 * HEADING_RATE_MAX
-    assert given.still_to_come(-HEADING_RATE_MAX) == pytest.approx((2.0 * HEADING_RATE_MAX * 0.6 - doubt) / 0.4, rel=1e-12)
+    assert given.still_to_come(-HEADING_RATE_MAX) == pytest.approx(
+        (2.0 * HEADING_RATE_MAX * 0.6 - doubt) / 0.4, rel=1e-12
+    )
 
 
 def test_the_largest_change_of_late_counts_less_with_time():
@@ -112,7 +124,9 @@ def test_the_largest_change_of_late_counts_less_with_time():
     assert given.change == pytest.approx(0.75, rel=1e-12)
     give(given, [-0.5 * HEADING_RATE_MAX] * 40, 0.0)
     given.still_to_come(0.0)
-    assert given.change == pytest.approx(0.75 * math.exp(-40 * TIME_STEP / (CHANGED * 0.4)), rel=1e-12)
+    assert given.change == pytest.approx(
+        0.75 * math.exp(-40 * TIME_STEP / (CHANGED * 0.4)), rel=1e-12
+    )
     give(given, [-0.5 * HEADING_RATE_MAX] * 2000, 0.0)
     given.still_to_come(0.0)
     assert given.change == LEAST_CHANGE

@@ -6,7 +6,16 @@ import numpy as np
 import pytest
 from gnc_cases import HEADING_RATE_MAX, SPEED
 from guard_cases import RADIUS, TIME_STEP, moved
-from hunt_cases import HUNTERS, ahead_of, as_it_was_known, braking, forgetful, hunted, towards, turning
+from hunt_cases import (
+    HUNTERS,
+    ahead_of,
+    as_it_was_known,
+    braking,
+    forgetful,
+    hunted,
+    towards,
+    turning,
+)
 
 from gnc.estimation.own_motion import KnownMotion
 from gnc.estimation.reachable_set import Tube
@@ -37,10 +46,14 @@ def test_a_hunter_nearly_as_fast_as_the_vehicle_does_not_get_in(hunter):
         assert found.lost == 0
 
 
-@pytest.mark.parametrize(("delay", "lag", "rate"), [(0.27, 0.3, 5.0), (0.5, 0.4, 5.0), (0.14, 0.3, 10.0)])
+@pytest.mark.parametrize(
+    ("delay", "lag", "rate"), [(0.27, 0.3, 5.0), (0.5, 0.4, 5.0), (0.14, 0.3, 10.0)]
+)
 def test_a_dead_time_of_no_whole_number_of_steps_lets_nobody_in(delay, lag, rate):
     for seed, hunter in enumerate(HUNTERS):
-        found = hunted(seed, hunter, delay=delay, lag=lag, time_step=1.0 / rate, silence=60.0 * (seed % 2))
+        found = hunted(
+            seed, hunter, delay=delay, lag=lag, time_step=1.0 / rate, silence=60.0 * (seed % 2)
+        )
         assert found.closest >= RADIUS
         assert found.lost == 0
 
@@ -48,12 +61,17 @@ def test_a_dead_time_of_no_whole_number_of_steps_lets_nobody_in(delay, lag, rate
 @HUNTED
 def test_where_the_vessel_is_taken_to_be_is_not_enough(hunter):
     # The same hunts, and a guard that knows where the newest report says that she is. Measured, 27 to 200 m inside.
-    assert any(hunted(seed, hunter, silence=60.0, known=as_it_was_known).closest < RADIUS - 20.0 for seed in range(2))
+    assert any(
+        hunted(seed, hunter, silence=60.0, known=as_it_was_known).closest < RADIUS - 20.0
+        for seed in range(2)
+    )
 
 
 def test_a_guard_that_forgets_what_it_kept_off_finds_no_way_out():
     # A report that says that she may be elsewhere leaves no turn that keeps off all that she may be then.
-    found = [hunted(seed, hunter, made=forgetful) for seed in range(2) for hunter in (towards, braking)]
+    found = [
+        hunted(seed, hunter, made=forgetful) for seed in range(2) for hunter in (towards, braking)
+    ]
     assert sum(hunt.lost > 0 for hunt in found) >= 2
 
 
@@ -62,15 +80,25 @@ def test_a_report_that_widens_the_disc_does_not_take_the_way_out():
     known, wider = Tube(0.0, 0.0, 0.0, 0.0, 0.0), Tube(0.0, 0.0, 0.0, 0.0, 0.0, 60.0)
     lost = {}
     for made in (lambda guard: guard, forgetful):
-        guard = made(KeepoutGuard(GuardParameters(radius=RADIUS, heading_rate_max=HEADING_RATE_MAX, lag=0.4, time_step=TIME_STEP)))
+        guard = made(
+            KeepoutGuard(
+                GuardParameters(
+                    radius=RADIUS, heading_rate_max=HEADING_RATE_MAX, lag=0.4, time_step=TIME_STEP
+                )
+            )
+        )
         state, lost[made], closest = (-400.0, 3.0, 0.0, 0.0), 0, math.inf
         for step in range(400):
             guard.tubes = (known if step < 160 else wider,)
-            own = KnownMotion(ground_north=state[0], ground_east=state[1], course=state[2], heading_rate=state[3])
+            own = KnownMotion(
+                ground_north=state[0], ground_east=state[1], course=state[2], heading_rate=state[3]
+            )
             # Straight at her.
             error = wrap(math.atan2(-state[1], -state[0]) - state[2])
             demanded = min(max(error, -HEADING_RATE_MAX), HEADING_RATE_MAX)
-            state = moved(state, guard.limit(demanded, step * TIME_STEP, own, SPEED), 0.4, TIME_STEP)
+            state = moved(
+                state, guard.limit(demanded, step * TIME_STEP, own, SPEED), 0.4, TIME_STEP
+            )
             lost[made] += guard.lost
             closest = min(closest, math.hypot(state[0], state[1]))
         # By then it is beside the first disc, as near as it gets before it passes.
@@ -93,7 +121,13 @@ def test_dead_reckoning_that_goes_wrong_as_fast_as_declared_does_not_lead_in(rat
         closest, lost = math.inf, 0
         for _ in range(2):
             guard = KeepoutGuard(
-                GuardParameters(radius=RADIUS, heading_rate_max=HEADING_RATE_MAX, lag=0.4, time_step=TIME_STEP, drift_rate=declared)
+                GuardParameters(
+                    radius=RADIUS,
+                    heading_rate_max=HEADING_RATE_MAX,
+                    lag=0.4,
+                    time_step=TIME_STEP,
+                    drift_rate=declared,
+                )
             )
             guard.tubes = (Tube(0.0, 0.0, 0.0, 4.0, 0.0),)
             bearing = generator.uniform(-math.pi, math.pi)
@@ -116,7 +150,9 @@ def test_dead_reckoning_that_goes_wrong_as_fast_as_declared_does_not_lead_in(rat
                     heading_rate=state[3],
                     lost=outage,
                 )
-                error = wrap(math.atan2(-own.ground_east, 4.0 * time - own.ground_north) - own.course)
+                error = wrap(
+                    math.atan2(-own.ground_east, 4.0 * time - own.ground_north) - own.course
+                )
                 demanded = min(max(1.5 * error, -HEADING_RATE_MAX), HEADING_RATE_MAX)
                 state = moved(state, guard.limit(demanded, time, own, SPEED), 0.4, TIME_STEP)
                 lost += guard.lost

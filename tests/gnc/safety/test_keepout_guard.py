@@ -4,7 +4,16 @@ from collections import deque
 
 import numpy as np
 import pytest
-from gnc_cases import HEADING_RATE_MAX, SPEED, courses, examples, fly, make_guidance, make_reference, paper_oscillation
+from gnc_cases import (
+    HEADING_RATE_MAX,
+    SPEED,
+    courses,
+    examples,
+    fly,
+    make_guidance,
+    make_reference,
+    paper_oscillation,
+)
 from guard_cases import (
     LAGS,
     RADIUS,
@@ -41,7 +50,9 @@ def test_no_commands_lead_in(lag, delay, nu):
         if guard.clearance(*start[:2], *velocity, start[2], SPEED, start[3]) < 0.0:
             continue
         want = aim_at_the_centre if i % 2 else held_at_random(generator)
-        closest, changed, lost = fly_guarded(guard, start, want, Steady(velocity), lag=lag, delay=delay)
+        closest, changed, lost = fly_guarded(
+            guard, start, want, Steady(velocity), lag=lag, delay=delay
+        )
         # The theorem of docs/keepout_guard.md, with what the guard keeps for its looks, 0.04 m, on the safe side of it.
         assert closest >= RADIUS
         assert not any(lost)
@@ -78,13 +89,17 @@ def test_a_guard_that_knows_nothing_of_the_hunters_acceleration_is_caught():
 
 
 @pytest.mark.parametrize(
-    ("speed", "heading_rate_max", "radius"), [(15.0, 0.4, 200.0), (30.0, 0.33, 300.0), (60.0, 0.16, 500.0), (SPEED, 0.5, 60.0)]
+    ("speed", "heading_rate_max", "radius"),
+    [(15.0, 0.4, 200.0), (30.0, 0.33, 300.0), (60.0, 0.16, 500.0), (SPEED, 0.5, 60.0)],
 )
 def test_other_vehicles_are_kept_out_of_other_discs(speed, heading_rate_max, radius):
     generator = np.random.default_rng(2)
     for share in (0.0, 0.5, 0.85):
         guard = make_guard(radius=radius, heading_rate_max=heading_rate_max)
-        bearing, distance = generator.uniform(-math.pi, math.pi), radius + 4.0 * speed / heading_rate_max
+        bearing, distance = (
+            generator.uniform(-math.pi, math.pi),
+            radius + 4.0 * speed / heading_rate_max,
+        )
         start = (distance * math.cos(bearing), distance * math.sin(bearing), bearing + math.pi, 0.0)
 
         def want(*where, limit=heading_rate_max):
@@ -102,7 +117,9 @@ def test_without_the_guard_those_vehicles_do_get_in(nu):
         def limit(self, command, *_):
             return command
 
-    closest, *_ = fly_guarded(Idle(), (500.0, 0.0, math.pi, 0.0), aim_at_the_centre, Steady((nu * SPEED, 0.0)), lag=0.4)
+    closest, *_ = fly_guarded(
+        Idle(), (500.0, 0.0, math.pi, 0.0), aim_at_the_centre, Steady((nu * SPEED, 0.0)), lag=0.4
+    )
     assert closest < 0.5 * RADIUS
 
 
@@ -132,29 +149,68 @@ def test_looking_less_often_where_nothing_can_happen_changes_nothing(lag, delay)
 
 
 @examples(200)
-@given(bearing=courses, farther=st.floats(0.0, 5000.0), course=courses, command=commands, turn=commands, nu=st.floats(0.0, 0.9))
+@given(
+    bearing=courses,
+    farther=st.floats(0.0, 5000.0),
+    course=courses,
+    command=commands,
+    turn=commands,
+    nu=st.floats(0.0, 0.9),
+)
 def test_a_vehicle_far_away_is_left_alone(bearing, farther, course, command, turn, nu):
     # Farther than both can close in the whole of a turn and the lag from any heading rate: nothing can have got near by then.
     distance = RADIUS + (1.0 + nu) * SPEED * (2.0 * math.pi / HEADING_RATE_MAX + 1.0) + farther
     guard = make_guard()
-    motion = (distance * math.cos(bearing), distance * math.sin(bearing), nu * SPEED, 0.0, course, SPEED, turn)
+    motion = (
+        distance * math.cos(bearing),
+        distance * math.sin(bearing),
+        nu * SPEED,
+        0.0,
+        course,
+        SPEED,
+        turn,
+    )
     assert guard.limit(command, *motion) == command
     assert not guard.intervening
 
 
 @examples(200)
-@given(side=st.sampled_from([-1.0, 1.0]), clear=st.floats(0.05, 200.0), command=st.floats(0.0, HEADING_RATE_MAX))
+@given(
+    side=st.sampled_from([-1.0, 1.0]),
+    clear=st.floats(0.05, 200.0),
+    command=st.floats(0.0, HEADING_RATE_MAX),
+)
 def test_a_vehicle_that_passes_clear_is_left_alone(side, clear, command):
     # Northbound, the disc abeam to port or starboard, farther than what is kept for the looks, and the command away from it.
-    assert make_guard().limit(side * command, 0.0, side * (RADIUS + clear), 0.0, 0.0, 0.0, SPEED, 0.0) == side * command
+    assert (
+        make_guard().limit(side * command, 0.0, side * (RADIUS + clear), 0.0, 0.0, 0.0, SPEED, 0.0)
+        == side * command
+    )
 
 
 @LAGS
 @examples(150)
-@given(bearing=courses, distance=distances, course=courses, command=commands, turn=commands, nu=st.floats(0.0, 0.95))
-def test_a_command_within_omega_max_stays_within(lag, delay, bearing, distance, course, command, turn, nu):
+@given(
+    bearing=courses,
+    distance=distances,
+    course=courses,
+    command=commands,
+    turn=commands,
+    nu=st.floats(0.0, 0.95),
+)
+def test_a_command_within_omega_max_stays_within(
+    lag, delay, bearing, distance, course, command, turn, nu
+):
     guard = make_guard(lag=lag, delay=delay)
-    motion = (distance * math.cos(bearing), distance * math.sin(bearing), nu * SPEED, 0.0, course, SPEED, turn)
+    motion = (
+        distance * math.cos(bearing),
+        distance * math.sin(bearing),
+        nu * SPEED,
+        0.0,
+        course,
+        SPEED,
+        turn,
+    )
     # A mixture of two commands rounds.
     assert abs(guard.limit(command, *motion)) <= HEADING_RATE_MAX * (1.0 + 1e-15)
 
@@ -166,12 +222,17 @@ def test_mirrored_situations_are_answered_mirrored(lag, delay):
     for _ in range(150):
         # Random, since a situation that is its own mirror has two answers.
         x, y = generator.uniform(-350.0, 350.0, 2)
-        course, turn = generator.uniform(-math.pi, math.pi), generator.uniform(-HEADING_RATE_MAX, HEADING_RATE_MAX)
+        course, turn = (
+            generator.uniform(-math.pi, math.pi),
+            generator.uniform(-HEADING_RATE_MAX, HEADING_RATE_MAX),
+        )
         north, east = random_velocity(generator, 8.0)
         command = generator.uniform(-HEADING_RATE_MAX, HEADING_RATE_MAX)
         one, other = make_guard(lag=lag, delay=delay), make_guard(lag=lag, delay=delay)
         answer = one.limit(command, x, y, north, east, course, SPEED, turn)
-        assert other.limit(-command, x, -y, north, -east, -course, SPEED, -turn) == pytest.approx(-answer, abs=1e-12)
+        assert other.limit(-command, x, -y, north, -east, -course, SPEED, -turn) == pytest.approx(
+            -answer, abs=1e-12
+        )
         assert (one.lost, one.intervening) == (other.lost, other.intervening)
         changed += answer != command
     assert 10 < changed < 140
@@ -183,9 +244,13 @@ def test_a_start_that_cannot_be_held_is_said_to_be_so():
     assert guard.clearance(-220.0, 0.0, 0.0, 0.0, 0.0, SPEED, 0.0) < -10.0
     # Turning away at once from a disc at rest, without lag: the circle beside it is sqrt(220^2 + r^2) - r from the centre.
     alone = make_guard(lag=0.0).clearance(-220.0, 0.0, 0.0, 0.0, 0.0, SPEED, 0.0)
-    assert alone == pytest.approx(math.hypot(220.0, TURN_RADIUS) - TURN_RADIUS - RADIUS, abs=1e-3 * TURN_RADIUS)
+    assert alone == pytest.approx(
+        math.hypot(220.0, TURN_RADIUS) - TURN_RADIUS - RADIUS, abs=1e-3 * TURN_RADIUS
+    )
     # Abeam and heading away, it is the distance.
-    assert guard.clearance(0.0, 230.0, 0.0, 0.0, 0.5 * math.pi, SPEED, 0.0) == pytest.approx(30.0, abs=1e-9)
+    assert guard.clearance(0.0, 230.0, 0.0, 0.0, 0.5 * math.pi, SPEED, 0.0) == pytest.approx(
+        30.0, abs=1e-9
+    )
 
 
 def test_lost_is_said_and_the_better_turn_is_flown():
@@ -197,7 +262,9 @@ def test_lost_is_said_and_the_better_turn_is_flown():
     # Nothing more is lost than what was at the start.
     start = (-220.0, -5.0, 0.0, 0.0)
     best = make_guard().clearance(*start[:2], 0.0, 0.0, start[2], SPEED, start[3])
-    closest, _, lost = fly_guarded(make_guard(), start, aim_at_the_centre, Steady((0.0, 0.0)), lag=0.4, duration=30.0)
+    closest, _, lost = fly_guarded(
+        make_guard(), start, aim_at_the_centre, Steady((0.0, 0.0)), lag=0.4, duration=30.0
+    )
     # Held commands and looks, as above.
     assert closest - RADIUS == pytest.approx(best, abs=0.05)
     # And it is found again.
@@ -219,7 +286,9 @@ def test_what_an_allowance_or_an_error_of_the_own_place_takes_is_explained(decla
 def test_a_vehicle_that_heads_straight_away_from_what_closes_in_flies_on(off):
     # The disc gains on it by 0.1 m/s: 1.5 m within the time that is looked ahead. Once round it would gain 250 m.
     guard = make_guard(deviation=3.0)
-    command = guard.limit(HEADING_RATE_MAX, 0.0, RADIUS + 1.0, 0.0, SPEED + 0.1, 0.5 * math.pi + off, SPEED, 0.0)
+    command = guard.limit(
+        HEADING_RATE_MAX, 0.0, RADIUS + 1.0, 0.0, SPEED + 0.1, 0.5 * math.pi + off, SPEED, 0.0
+    )
     assert guard.intervening
     assert not guard.lost
     assert command == pytest.approx(-off / TIME_STEP)
@@ -246,15 +315,26 @@ def test_a_vehicle_whose_turn_leads_beyond_straight_away_turns_back(side):
     # side it would come once round, towards the disc.
     course = 0.5 * math.pi - side * 0.15
     guard = make_guard()
-    command = guard.limit(0.0, 0.0, 210.0, 0.0, 0.0, course, SPEED, side * 0.5, radius_inflation=20.0)
+    command = guard.limit(
+        0.0, 0.0, 210.0, 0.0, 0.0, course, SPEED, side * 0.5, radius_inflation=20.0
+    )
     assert guard.lost
     assert command == -side * HEADING_RATE_MAX
 
 
 def test_interventions_are_counted_once_each():
     guard = make_guard()
-    _, changed, _ = fly_guarded(guard, (-500.0, 3.0, 0.0, 0.0), aim_at_the_centre, Steady((0.0, 0.0)), lag=0.4, duration=120.0)
-    assert guard.interventions == sum(now and not before for before, now in zip([False, *changed], changed, strict=False))
+    _, changed, _ = fly_guarded(
+        guard,
+        (-500.0, 3.0, 0.0, 0.0),
+        aim_at_the_centre,
+        Steady((0.0, 0.0)),
+        lag=0.4,
+        duration=120.0,
+    )
+    assert guard.interventions == sum(
+        now and not before for before, now in zip([False, *changed], changed, strict=False)
+    )
     assert 0 < guard.interventions < sum(changed)
 
 
@@ -279,7 +359,12 @@ def test_on_the_settled_orbit_it_never_intervenes_and_would_if_it_kept_more(nu):
     reference = make_reference(oscillation, centre=centre)
     for kept, intervenes in ((0.75, False), (12.0, True)):
         guard = GuardParameters(
-            radius=RADIUS + kept, heading_rate_max=HEADING_RATE_MAX, lag=0.0, delay=0.0, slow_lag=0.0, time_step=TIME_STEP
+            radius=RADIUS + kept,
+            heading_rate_max=HEADING_RATE_MAX,
+            lag=0.0,
+            delay=0.0,
+            slow_lag=0.0,
+            time_step=TIME_STEP,
         )
         guidance = make_guidance(reference, vessel=(nu * SPEED, 0.0), guard=guard)
         fly(guidance, (reference.north, reference.east, reference.course), duration=120.0)

@@ -51,7 +51,13 @@ def test_a_start_and_an_orbit_are_judged_by_the_slowest_too():
     clearances = []
     for slowest in (math.inf, SPEED, SLOWEST):
         guard = KeepoutGuard(
-            GuardParameters(radius=RADIUS, heading_rate_max=HEADING_RATE_MAX, lag=LAG, time_step=TIME_STEP, slowest=slowest)
+            GuardParameters(
+                radius=RADIUS,
+                heading_rate_max=HEADING_RATE_MAX,
+                lag=LAG,
+                time_step=TIME_STEP,
+                slowest=slowest,
+            )
         )
         guard.tubes = (Tube(0.0, 0.0, 0.0, 13.0, 0.0),)
         clearances.append(guard.clearance(0.0, own, SPEED))

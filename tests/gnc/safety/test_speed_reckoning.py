@@ -11,7 +11,12 @@ SPEED, BANDWIDTH, TIME_STEP = 19.42, 1.3, 0.05
 
 
 def made(**changes):
-    return SpeedReckoning(**({"speed": SPEED, "bandwidth": BANDWIDTH, "overshoot": 0.13, "time_step": TIME_STEP} | changes))
+    return SpeedReckoning(
+        **(
+            {"speed": SPEED, "bandwidth": BANDWIDTH, "overshoot": 0.13, "time_step": TIME_STEP}
+            | changes
+        )
+    )
 
 
 @pytest.mark.parametrize("pace", [SPEED, 21.0, 15.0])
@@ -50,7 +55,9 @@ def test_a_fall_from_a_fast_pace_is_none_that_a_vehicle_could_rise_beyond():
 def test_a_pace_is_reckoned_with_for_as_long_as_the_vehicle_may_be_as_fast_or_slow(damping):
     # A second-order airspeed, commanded up and down at random and to V_r in the end, stays within what was reckoned with then.
     generator = np.random.default_rng(3)
-    overshoot = 0.0 if damping == 1.0 else math.exp(-math.pi * damping / math.sqrt(1.0 - damping**2))
+    overshoot = (
+        0.0 if damping == 1.0 else math.exp(-math.pi * damping / math.sqrt(1.0 - damping**2))
+    )
     pieces, frequency = 10, BANDWIDTH * (2.0 if damping == 1.0 else 1.0)
     for _ in range(40):
         reckoning, airspeed, rate, pace = made(overshoot=overshoot), SPEED, 0.0, SPEED
@@ -70,7 +77,11 @@ def test_a_pace_is_reckoned_with_for_as_long_as_the_vehicle_may_be_as_fast_or_sl
 def second_order(value, rate, command, damping, frequency, pieces):
     """Return value and rate after one time step, flown in pieces."""
     for _ in range(pieces):
-        rate += TIME_STEP / pieces * (frequency**2 * (command - value) - 2.0 * damping * frequency * rate)
+        rate += (
+            TIME_STEP
+            / pieces
+            * (frequency**2 * (command - value) - 2.0 * damping * frequency * rate)
+        )
         value += TIME_STEP / pieces * rate
     return value, rate
 

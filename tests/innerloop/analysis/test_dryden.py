@@ -20,8 +20,16 @@ def spectrum(name, frequency, air=LIGHT):
     v = AIRSPEED
     along, down = air.horizontal_length / v * frequency, air.vertical_length / v * frequency
     transverse = {
-        "gust_right": air.horizontal**2 * air.horizontal_length / (math.pi * v) * (1 + 3 * along**2) / (1 + along**2) ** 2,
-        "gust_down": air.vertical**2 * air.vertical_length / (math.pi * v) * (1 + 3 * down**2) / (1 + down**2) ** 2,
+        "gust_right": air.horizontal**2
+        * air.horizontal_length
+        / (math.pi * v)
+        * (1 + 3 * along**2)
+        / (1 + along**2) ** 2,
+        "gust_down": air.vertical**2
+        * air.vertical_length
+        / (math.pi * v)
+        * (1 + 3 * down**2)
+        / (1 + down**2) ** 2,
     }
     if name in transverse:
         return transverse[name]
@@ -63,7 +71,9 @@ def test_the_covariance_of_the_filters_is_the_integral_of_the_spectrum(filters, 
 def test_velocities_are_as_strong_as_the_standard_says(filters):
     covariance = filters.C @ control.lyap(filters.A, filters.B @ filters.B.T) @ filters.C.T
     deviations = np.sqrt(np.diag(covariance))
-    assert deviations[:3] == pytest.approx([LIGHT.horizontal, LIGHT.horizontal, LIGHT.vertical], rel=1e-9)
+    assert deviations[:3] == pytest.approx(
+        [LIGHT.horizontal, LIGHT.horizontal, LIGHT.vertical], rel=1e-9
+    )
 
 
 def test_at_a_thousand_feet_low_altitude_turbulence_is_the_same_in_every_direction():

@@ -25,9 +25,22 @@ CONDITIONS = {
 
 BREAKS = {
     "x8": ("elevator", "aileron", "throttle", "airspeed", "altitude", "heading_rate"),
-    "aerosonde": ("elevator", "aileron", "throttle", "rudder", "airspeed", "altitude", "heading_rate", "beta"),
+    "aerosonde": (
+        "elevator",
+        "aileron",
+        "throttle",
+        "rudder",
+        "airspeed",
+        "altitude",
+        "heading_rate",
+        "beta",
+    ),
 }
-CASES = [(condition, name) for condition, (aircraft, *_) in CONDITIONS.items() for name in BREAKS[aircraft]]
+CASES = [
+    (condition, name)
+    for condition, (aircraft, *_) in CONDITIONS.items()
+    for name in BREAKS[aircraft]
+]
 
 
 @pytest.fixture(scope="module")
@@ -46,7 +59,10 @@ def margins(systems):
     found = {}
     for condition, pair in systems.items():
         loops = Loops(*pair)
-        found |= {(condition, name): margin for name, margin in zip(loops.breaks, loops.margins(), strict=True)}
+        found |= {
+            (condition, name): margin
+            for name, margin in zip(loops.breaks, loops.margins(), strict=True)
+        }
         found[condition, "all controls"] = loops.margin_at_all_controls()
     return found
 
@@ -79,7 +95,9 @@ def test_classical_margins_are_those_that_python_control_finds(margins, loops, c
     gains, phases, _, _, crossings, _ = control.stability_margins(sampled, returnall=True)
     # From 300 frequencies, 4 % apart, with phase and log gain interpolated: errors of second order in 4 %.
     inside = (crossings > FREQUENCIES[0]) & (crossings < FREQUENCIES[-1])
-    assert margin.phase_deg == pytest.approx(min(abs(math.remainder(p, 360.0)) for p in phases[inside]), abs=0.2)
+    assert margin.phase_deg == pytest.approx(
+        min(abs(math.remainder(p, 360.0)) for p in phases[inside]), abs=0.2
+    )
     assert margin.crossover == pytest.approx(max(crossings[inside]), rel=2e-3)
     decibels = [abs(20.0 * math.log10(g)) for g in gains if math.isfinite(g) and g > 0.0]
     assert margin.gain_db == pytest.approx(min(decibels, default=math.inf), abs=0.1)
@@ -88,14 +106,18 @@ def test_classical_margins_are_those_that_python_control_finds(margins, loops, c
 @pytest.mark.parametrize(("condition", "name"), CASES)
 def test_disk_margins_are_those_that_python_control_finds(margins, loops, condition, name):
     margin = margins[condition, name]
-    _, gain_db, phase_deg = control.disk_margins(loops[condition, name], np.logspace(-2.0, 2.3, 600), skew=0.0)
+    _, gain_db, phase_deg = control.disk_margins(
+        loops[condition, name], np.logspace(-2.0, 2.3, 600), skew=0.0
+    )
     # A grid more than twice as fine as the package's finds a lowest point lower by a fraction of a per cent.
     assert margin.disk_gain_db == pytest.approx(gain_db, rel=5e-3)
     assert margin.disk_phase_deg == pytest.approx(phase_deg, rel=5e-3)
 
 
 @pytest.mark.parametrize("condition", CONDITIONS)
-def test_the_disk_margin_at_all_controls_is_that_which_python_control_finds_by_mu(systems, margins, condition):
+def test_the_disk_margin_at_all_controls_is_that_which_python_control_finds_by_mu(
+    systems, margins, condition
+):
     aircraft, autopilot, late = systems[condition]
     frequencies = FREQUENCIES[(FREQUENCIES > 0.05) & (FREQUENCIES < 60.0)]
     controls = list(autopilot.output_labels)
@@ -115,7 +137,9 @@ def test_the_disk_margin_at_all_controls_is_that_which_python_control_finds_by_m
 
 
 @pytest.mark.parametrize(("condition", "name"), CASES)
-def test_the_loop_stays_stable_up_to_its_gain_margin_and_not_beyond(margins, loops, condition, name):
+def test_the_loop_stays_stable_up_to_its_gain_margin_and_not_beyond(
+    margins, loops, condition, name
+):
     loop, margin = loops[condition, name], margins[condition, name].gain_db
 
     def stable(decibels):
@@ -129,7 +153,9 @@ def test_the_loop_stays_stable_up_to_its_gain_margin_and_not_beyond(margins, loo
 
 
 @pytest.mark.parametrize(("condition", "name"), CASES)
-def test_the_closed_loops_poles_are_those_of_the_opened_loop_closed(systems, loops, condition, name):
+def test_the_closed_loops_poles_are_those_of_the_opened_loop_closed(
+    systems, loops, condition, name
+):
     found = Loops(*systems[condition]).poles()
     # Slow poles, far below the delay's own (166 rad/s and more), whose order of approximation differs: 2 here, 4 there.
     slow = [p for p in closed_poles(loops[condition, name]) if abs(p) < 15.0]
@@ -137,7 +163,9 @@ def test_the_closed_loops_poles_are_those_of_the_opened_loop_closed(systems, loo
     for pole in slow:
         assert np.abs(found - pole).min() < 2e-4 * (1.0 + abs(pole))
     assert Loops(*systems[condition]).stable
-    assert found.real.max() == pytest.approx(closed_loop(*systems[condition]).poles().real.max(), abs=1e-6)
+    assert found.real.max() == pytest.approx(
+        closed_loop(*systems[condition]).poles().real.max(), abs=1e-6
+    )
 
 
 @pytest.mark.parametrize("condition", CONDITIONS)
@@ -150,7 +178,9 @@ def test_what_is_commanded_is_reached_and_nothing_else_moves(systems, condition)
 
 
 @pytest.mark.parametrize("name", ["x8", "aerosonde"])
-def test_every_single_loop_has_six_decibels_and_forty_five_degrees_everywhere_and_less_when_changed(designs, name):
+def test_every_single_loop_has_six_decibels_and_forty_five_degrees_everywhere_and_less_when_changed(
+    designs, name
+):
     checks = designs(name).design.checks
     # Five airspeeds by five banks, and between them four by five and five by four: the aircraft as modelled and changed in 7 ways.
     assert (len(checks), sum(check.between for check in checks)) == (75 * 8, 50 * 8)
@@ -232,5 +262,7 @@ def test_at_the_delay_where_stability_ends_the_pitching_loops_go_through_minus_o
 
 def test_the_loops_delay_is_one_step_of_computing_and_half_a_period_of_hold():
     # At 120, 60 and 40 Hz; and a period later, at 40 Hz.
-    assert [loop_delay(period) for period in (1, 2, 3)] == pytest.approx([1.5 / 120.0, 2.0 / 120.0, 2.5 / 120.0], abs=1e-12)
+    assert [loop_delay(period) for period in (1, 2, 3)] == pytest.approx(
+        [1.5 / 120.0, 2.0 / 120.0, 2.5 / 120.0], abs=1e-12
+    )
     assert loop_delay(3, late=1) == pytest.approx(5.5 / 120.0, abs=1e-12)

@@ -36,7 +36,9 @@ def x8_with(tmp_path, *changes):
     text = file.read_text(encoding="utf-8")
     for tag, factor in changes:
         pattern = rf"(<{tag}[^>]*>)\s*([-+.\deE]+)\s*(</{tag}>)"
-        text, count = re.subn(pattern, lambda m, factor=factor: f"{m[1]}{float(m[2]) * factor!r}{m[3]}", text)
+        text, count = re.subn(
+            pattern, lambda m, factor=factor: f"{m[1]}{float(m[2]) * factor!r}{m[3]}", text
+        )
         assert count == 1, tag
     file.write_text(text, encoding="utf-8")
     return root
@@ -44,7 +46,10 @@ def x8_with(tmp_path, *changes):
 
 @pytest.fixture(scope="module")
 def trims():
-    return {name: trim(Fdm(X8), airspeed=20.0, altitude=100.0, bank=bank) for name, bank in BANKS.items()}
+    return {
+        name: trim(Fdm(X8), airspeed=20.0, altitude=100.0, bank=bank)
+        for name, bank in BANKS.items()
+    }
 
 
 @pytest.fixture(scope="module")
@@ -60,12 +65,16 @@ def changed(case, model, found):
 
 def assert_same(found, expected, rtol, atol):
     for name in "ABCD":
-        np.testing.assert_allclose(getattr(found, name), getattr(expected, name), rtol=rtol, atol=atol, err_msg=name)
+        np.testing.assert_allclose(
+            getattr(found, name), getattr(expected, name), rtol=rtol, atol=atol, err_msg=name
+        )
 
 
 @pytest.mark.parametrize("sign", [1.0, -1.0])
 @pytest.mark.parametrize("name", BANKS)
-def test_a_fifth_of_mass_changes_the_linear_aircraft_as_a_fifth_of_mass_in_jsbsim(tmp_path, trims, models, name, sign):
+def test_a_fifth_of_mass_changes_the_linear_aircraft_as_a_fifth_of_mass_in_jsbsim(
+    tmp_path, trims, models, name, sign
+):
     factor = 1.0 + sign * 0.2
     heavier = linearise(Fdm(X8, x8_with(tmp_path, ("emptywt", factor))), trims[name])
     found = changed(f"mass {100.0 * (factor - 1.0):+.0f} %", models[name], trims[name])
@@ -115,7 +124,9 @@ def test_gravity_and_turning_are_those_of_a_body_without_forces(trims):
     # Without force a body falls: in level flight the path bends down at g/V, V_dot by pitch is -g, alpha_dot by q
     # is 1, and sideslip follows -r and g roll/V (Stevens and Lewis, linear equations of motion with all aerodynamics left out).
     states = ["airspeed", "alpha", "beta", "p", "q", "r", "roll", "pitch", "altitude"]
-    level = dataclasses.replace(trims["level"], alpha=0.05, beta=0.0, roll=0.0, pitch=0.05, rates_body=(0.0, 0.0, 0.0))
+    level = dataclasses.replace(
+        trims["level"], alpha=0.05, beta=0.0, roll=0.0, pitch=0.05, rates_body=(0.0, 0.0, 0.0)
+    )
     found = gravity_and_turning(level, states)
     g, v = 9.80665, 20.0
     expected = np.zeros((3, 9))
@@ -130,7 +141,9 @@ def test_gravity_and_turning_are_those_of_a_body_without_forces(trims):
 
 
 def test_there_is_a_case_for_each_change_both_ways_and_one_for_one_more_period_of_delay():
-    assert {name: late for name, (_, late) in CASES.items() if late} == {"one more period of delay": 1}
+    assert {name: late for name, (_, late) in CASES.items() if late} == {
+        "one more period of delay": 1
+    }
     for what in ("control effectiveness", "mass", "inertia"):
         assert {f"{what} +20 %", f"{what} -20 %"} < set(CASES)
     assert len(CASES) == 8
@@ -141,28 +154,49 @@ def test_points_between_lie_half_way_between_neighbours_along_airspeed_and_along
     between = [p.trim for p in points if p.between]
     v, bank = x8_schedule.airspeeds, x8_schedule.gain_banks
     assert len(points) - len(between) == len(v) * len(bank)
-    assert (len(between), len({(round(t.airspeed, 9), round(t.roll, 3)) for t in between})) == (50, 50)
-    assert any(t.airspeed == pytest.approx(0.5 * (v[0] + v[1])) and t.roll == pytest.approx(bank[4]) for t in between)
-    assert any(t.airspeed == v[3] and t.roll == pytest.approx(0.5 * (bank[2] + bank[3]), abs=1e-3) for t in between)
+    assert (len(between), len({(round(t.airspeed, 9), round(t.roll, 3)) for t in between})) == (
+        50,
+        50,
+    )
+    assert any(
+        t.airspeed == pytest.approx(0.5 * (v[0] + v[1])) and t.roll == pytest.approx(bank[4])
+        for t in between
+    )
+    assert any(
+        t.airspeed == v[3] and t.roll == pytest.approx(0.5 * (bank[2] + bank[3]), abs=1e-3)
+        for t in between
+    )
     # At every airspeed the largest bank that the autopilot commands, either way; the tables reach a tenth farther.
     largest = [t for t in between if abs(t.roll) > bank[4] + 0.01]
-    assert sorted((t.airspeed, t.roll > 0.0) for t in largest) == sorted(itertools.product(v, (False, True)))
-    assert [abs(t.roll) for t in largest] == pytest.approx([X8.envelope.bank_max] * 10, abs=math.radians(0.1))
+    assert sorted((t.airspeed, t.roll > 0.0) for t in largest) == sorted(
+        itertools.product(v, (False, True))
+    )
+    assert [abs(t.roll) for t in largest] == pytest.approx(
+        [X8.envelope.bank_max] * 10, abs=math.radians(0.1)
+    )
 
 
 @pytest.mark.parametrize("along", ["airspeed", "bank"])
-def test_between_grid_points_interpolated_margins_are_those_of_the_aircraft_linearised_there(x8_schedule, along):
+def test_between_grid_points_interpolated_margins_are_those_of_the_aircraft_linearised_there(
+    x8_schedule, along
+):
     fdm, law = Fdm(X8), ControlLaw(x8_schedule)
     points = [p for p in operating_points(x8_schedule) if p.between]
-    chosen = [p for p in points if (p.trim.airspeed in x8_schedule.airspeeds) == (along == "bank")][::5]
+    chosen = [p for p in points if (p.trim.airspeed in x8_schedule.airspeeds) == (along == "bank")][
+        ::5
+    ]
     assert len(chosen) == {"airspeed": 4, "bank": 6}[along]
     for point in chosen:
         bank = 0.0 if point.trim.yaw_rate == 0.0 else point.trim.roll
         there = trim(fdm, airspeed=point.trim.airspeed, altitude=x8_schedule.altitude, bank=bank)
         # Half a step of the grid is 1.25 m/s or 11 degrees; the bend of alpha over either, second order, is 7 % of it.
         assert point.trim.alpha == pytest.approx(there.alpha, abs=0.006)
-        linearised = Loops(linearise(fdm, there), linear_controller(law, there), x8_schedule.delay).margins()
-        interpolated = Loops(point.model, linear_controller(law, point.trim), x8_schedule.delay).margins()
+        linearised = Loops(
+            linearise(fdm, there), linear_controller(law, there), x8_schedule.delay
+        ).margins()
+        interpolated = Loops(
+            point.model, linear_controller(law, point.trim), x8_schedule.delay
+        ).margins()
         for found, expected in zip(interpolated, linearised, strict=True):
             # A few per cent of loop gain: 0.4 dB is 5 %, of 27 dB 3 %; of phase 1.5 degrees is 0.026 rad. What is required leaves
             # far more.
@@ -172,15 +206,31 @@ def test_between_grid_points_interpolated_margins_are_those_of_the_aircraft_line
 
 def test_a_check_knows_what_it_lacks():
     def margin(loop, gain, phase):
-        return Margin(loop=loop, gain_db=gain, phase_deg=phase, crossover=1.0, disk_gain_db=gain, disk_phase_deg=phase)
+        return Margin(
+            loop=loop,
+            gain_db=gain,
+            phase_deg=phase,
+            crossover=1.0,
+            disk_gain_db=gain,
+            disk_phase_deg=phase,
+        )
 
-    loops = (margin("elevator", 7.0, 44.0), margin("aileron", 5.0, 60.0), margin("throttle", math.inf, 90.0))
-    nominal = Check(case=NOMINAL, airspeed=20.0, bank=0.1, between=False, stable=True, margins=loops)
+    loops = (
+        margin("elevator", 7.0, 44.0),
+        margin("aileron", 5.0, 60.0),
+        margin("throttle", math.inf, 90.0),
+    )
+    nominal = Check(
+        case=NOMINAL, airspeed=20.0, bank=0.1, between=False, stable=True, margins=loops
+    )
     assert not nominal.met
     assert nominal.short_loops == ("elevator", "aileron")
     assert (nominal.worst_gain.loop, nominal.worst_phase.loop) == ("aileron", "elevator")
     assert nominal.shortfall == pytest.approx(5.0 / 6.0)
-    assert "5.0 dB (aileron) and 44.0 deg (elevator) at 20.0 m/s and 6 deg of bank" in nominal.describe()
+    assert (
+        "5.0 dB (aileron) and 44.0 deg (elevator) at 20.0 m/s and 6 deg of bank"
+        in nominal.describe()
+    )
     # Of a changed aircraft 4 dB and 30 degrees are asked for.
     assert dataclasses.replace(nominal, case="mass +20 %").met
     unstable = dataclasses.replace(nominal, case="mass +20 %", stable=False)
@@ -203,23 +253,34 @@ def test_a_design_with_too_little_margin_is_refused_with_what_it_lacks_and_not_f
     # end at 0.13 of 4.8 rad/s; three end at half of it.
     monkeypatch.setattr(robustness, "CASES", {NOMINAL: (CASES[NOMINAL][0], 120)})  # 120 steps late
     monkeypatch.setattr(designer, "_ATTEMPTS", 3)
-    with pytest.raises(DesignError, match="'x8': no design has 6 dB and 45 deg at every operating point") as caught:
+    with pytest.raises(
+        DesignError, match="'x8': no design has 6 dB and 45 deg at every operating point"
+    ) as caught:
         design_autopilot(X8)
     assert "It cannot be flown" in str(caught.value)
     assert "\n" not in str(caught.value)
 
 
 @pytest.mark.usefixtures("x8_grid")
-def test_a_design_that_lacks_margin_only_under_a_perturbation_is_refused_with_what_is_required_there(monkeypatch):
+def test_a_design_that_lacks_margin_only_under_a_perturbation_is_refused_with_what_is_required_there(
+    monkeypatch,
+):
     # As above, but the second of delay is a case of its own, of which less is required.
-    monkeypatch.setattr(robustness, "CASES", {NOMINAL: CASES[NOMINAL], "far too late": (CASES[NOMINAL][0], 120)})
+    monkeypatch.setattr(
+        robustness, "CASES", {NOMINAL: CASES[NOMINAL], "far too late": (CASES[NOMINAL][0], 120)}
+    )
     monkeypatch.setattr(designer, "_ATTEMPTS", 1)
-    with pytest.raises(DesignError, match="no design has 4 dB and 30 deg at every operating point under every perturbation; the"):
+    with pytest.raises(
+        DesignError,
+        match="no design has 4 dB and 30 deg at every operating point under every perturbation; the",
+    ):
         design_autopilot(X8)
 
 
 @pytest.mark.parametrize(("name", "period"), [("x8", 3), ("T37", 2)])
-def test_the_autopilot_computes_as_seldom_as_leaves_every_loop_its_phase_margin_but_for_five_degrees(designs, name, period):
+def test_the_autopilot_computes_as_seldom_as_leaves_every_loop_its_phase_margin_but_for_five_degrees(
+    designs, name, period
+):
     # The X8's fastest loop crosses over at 6.1 rad/s and the T-37's, its elevator, at 13.2 rad/s: half a step of 1/120 s more
     # delay takes 1.5 and 3.2 degrees, and twice that 2.9 and 6.3.
     schedule = designs(name).design.schedule
@@ -244,13 +305,18 @@ def test_a_loop_with_too_little_margin_is_slowed_and_the_others_are_left(monkeyp
         found = check(point, case, period)
         if point is not points[0]:
             return found
-        lacking = [dataclasses.replace(m, gain_db=1.0) if m.loop == "aileron" else m for m in found.margins]
+        lacking = [
+            dataclasses.replace(m, gain_db=1.0) if m.loop == "aileron" else m for m in found.margins
+        ]
         return dataclasses.replace(found, margins=tuple(lacking))
 
     monkeypatch.setattr(robustness.ClosedPoint, "check", short_at_the_first_point)
     found = design_autopilot(X8, x8_design.schedule.altitude)
     # Designed twice, then checked with the longest period, first as modelled; with the shortest no change of a good design is.
-    assert asked[-375:] == [(NOMINAL, 1)] * 75 + [(NOMINAL, 3)] * 75 + [(case, 3) for case in cases] * 75
+    assert (
+        asked[-375:]
+        == [(NOMINAL, 1)] * 75 + [(NOMINAL, 3)] * 75 + [(case, 3) for case in cases] * 75
+    )
     assert found.bandwidths.lateral == pytest.approx(0.8 * x8_design.bandwidths.lateral)
     assert found.bandwidths.longitudinal == x8_design.bandwidths.longitudinal
     assert found.bandwidths.airspeed == x8_design.bandwidths.airspeed

@@ -70,10 +70,16 @@ def test_a_design_is_made_once_and_found_again_whole(asked, designs):
     assert second is not first
     # What is found is what was made, to the last bit: tables, gains, models, checks and record.
     assert second.record == first.record
-    assert repr(second.design.checks) == repr(first.design.checks)  # all controls at once have margins that are nan
+    assert repr(second.design.checks) == repr(
+        first.design.checks
+    )  # all controls at once have margins that are nan
     assert second.design.bandwidths == first.design.bandwidths
     one, two = first.design.schedule, second.design.schedule
-    assert (repr(one.spec), one.weights, one.trims) == (repr(two.spec), two.weights, two.trims)  # a stall of nan is not itself
+    assert (repr(one.spec), one.weights, one.trims) == (
+        repr(two.spec),
+        two.weights,
+        two.trims,
+    )  # a stall of nan is not itself
     for mine, other in zip(sum(one.models, ()), sum(two.models, ()), strict=True):
         for matrix in "ABCD":
             np.testing.assert_array_equal(getattr(mine, matrix), getattr(other, matrix))
@@ -84,13 +90,17 @@ def test_a_design_is_made_once_and_found_again_whole(asked, designs):
             np.testing.assert_array_equal(getattr(mine, field.name), getattr(other, field.name))
 
 
-def test_a_design_that_is_used_is_the_one_that_was_made_to_the_last_bit(asked, designs, monkeypatch):
+def test_a_design_that_is_used_is_the_one_that_was_made_to_the_last_bit(
+    asked, designs, monkeypatch
+):
     made = designs("x8")
     monkeypatch.setattr(cache, "_design", lambda *_: cache._Entry(made=made))
     used = designed(X8)
     # As text, which has every bit of every number: what was made may hold figures of numpy where Python's own come back.
     assert cache.as_text(used) == cache.as_text(made)
-    for mine, other in zip(sum(made.design.schedule.models, ()), sum(used.design.schedule.models, ()), strict=True):
+    for mine, other in zip(
+        sum(made.design.schedule.models, ()), sum(used.design.schedule.models, ()), strict=True
+    ):
         for matrix in "ABCD":
             # Also as it lies in memory, by which products are rounded.
             assert getattr(mine, matrix).tobytes("A") == getattr(other, matrix).tobytes("A")
@@ -119,11 +129,17 @@ def test_any_change_of_the_spec_is_another_key(change):
     assert design_key(dataclasses.replace(X8, **change), 100.0) != design_key(X8, 100.0)
 
 
-def test_the_same_model_elsewhere_on_disk_is_the_same_key_and_any_changed_file_of_it_another(tmp_path):
+def test_the_same_model_elsewhere_on_disk_is_the_same_key_and_any_changed_file_of_it_another(
+    tmp_path,
+):
     root = shutil.copytree(MODELS, tmp_path / "models")
     there = dataclasses.replace(X8, root=root)
     assert design_key(there, 100.0) == design_key(X8, 100.0)
-    numbers = {"aircraft/x8/x8.xml": "0.75", "engine/x8_motor.xml": ".", "engine/x8_propeller.xml": "0.05"}
+    numbers = {
+        "aircraft/x8/x8.xml": "0.75",
+        "engine/x8_motor.xml": ".",
+        "engine/x8_propeller.xml": "0.05",
+    }
     for name, number in numbers.items():
         before = design_key(there, 100.0)
         text = (root / name).read_text(encoding="utf-8")
@@ -133,12 +149,15 @@ def test_the_same_model_elsewhere_on_disk_is_the_same_key_and_any_changed_file_o
         assert design_key(there, 100.0) != before, name
 
 
-def test_a_design_made_of_the_same_model_elsewhere_flies_the_model_that_is_here(asked, designs, monkeypatch, tmp_path):
+def test_a_design_made_of_the_same_model_elsewhere_flies_the_model_that_is_here(
+    asked, designs, monkeypatch, tmp_path
+):
     root = shutil.copytree(MODELS, tmp_path / "models")
     there = dataclasses.replace(X8, root=root)
     made, schedule = designs("x8"), designs("x8").design.schedule
     elsewhere = dataclasses.replace(
-        made, design=dataclasses.replace(made.design, schedule=dataclasses.replace(schedule, spec=there))
+        made,
+        design=dataclasses.replace(made.design, schedule=dataclasses.replace(schedule, spec=there)),
     )
     monkeypatch.setattr(cache, "_design", lambda *_: cache._Entry(made=elsewhere))
     assert designed(there).design.schedule.spec.root == root
@@ -149,7 +168,12 @@ def test_a_design_made_of_the_same_model_elsewhere_flies_the_model_that_is_here(
 
 
 @pytest.mark.parametrize(
-    ("package", "file"), [("aircraft", "dynamics/trim.py"), ("common", "physics/units.py"), ("innerloop", "synthesis/weights.py")]
+    ("package", "file"),
+    [
+        ("aircraft", "dynamics/trim.py"),
+        ("common", "physics/units.py"),
+        ("innerloop", "synthesis/weights.py"),
+    ],
 )
 def test_any_changed_source_file_is_another_key(monkeypatch, tmp_path, package, file):
     before = design_key(X8, 100.0)
@@ -167,7 +191,11 @@ def test_any_changed_source_file_is_another_key(monkeypatch, tmp_path, package, 
 def test_another_version_of_a_package_is_another_key(monkeypatch, package):
     before = design_key(X8, 100.0)
     version = cache.importlib.metadata.version
-    monkeypatch.setattr(cache.importlib.metadata, "version", lambda name: "0.0" if name == package else version(name))
+    monkeypatch.setattr(
+        cache.importlib.metadata,
+        "version",
+        lambda name: "0.0" if name == package else version(name),
+    )
     cache._program_hash.cache_clear()
     assert design_key(X8, 100.0) != before
 
@@ -194,7 +222,18 @@ def hashed(text):
         b"garbage",
         b"\xff\xfe",
         pickle.dumps({"design": 1}),
-        *(hashed(text) for text in ("", "[]", "{}x", '{"made": 1}', '{"made": {"design": []}}', '{"other": 1}', "[" * 100_000)),
+        *(
+            hashed(text)
+            for text in (
+                "",
+                "[]",
+                "{}x",
+                '{"made": 1}',
+                '{"made": {"design": []}}',
+                '{"other": 1}',
+                "[" * 100_000,
+            )
+        ),
     ],
 )
 def test_a_file_that_holds_no_design_is_ignored_and_replaced(asked, content):

@@ -20,7 +20,18 @@ READ = (
     "fcs/throttle-cmd-norm", "autopilot/throttle-command", "propulsion/engine/thrust-lbs", "position/h-sl-ft", "velocities/vt-fps",
     "autopilot/heading-rate-rad_sec",
 )  # fmt: skip
-LEFT, RIGHT, LEFT_MIXED, RIGHT_MIXED, THROTTLE, THROTTLE_DEMANDED, THRUST, ALTITUDE, AIRSPEED, HEADING_RATE = range(len(READ))
+(
+    LEFT,
+    RIGHT,
+    LEFT_MIXED,
+    RIGHT_MIXED,
+    THROTTLE,
+    THROTTLE_DEMANDED,
+    THRUST,
+    ALTITUDE,
+    AIRSPEED,
+    HEADING_RATE,
+) = range(len(READ))
 AT = 3.0
 
 
@@ -47,13 +58,20 @@ def failable(x8_root):
     return AutopilotedAircraft(X8, x8_root, failable=True)
 
 
-def test_an_aircraft_that_can_fail_flies_as_one_that_cannot_until_it_does(x8_schedule, x8_aircraft, failable):
+def test_an_aircraft_that_can_fail_flies_as_one_that_cannot_until_it_does(
+    x8_schedule, x8_aircraft, failable
+):
     start = x8_schedule.level(MIDDLE)
     np.testing.assert_array_equal(fly(failable, start, 6.0), fly(x8_aircraft, start, 6.0))
 
 
-@pytest.mark.parametrize(("fault", "position", "mixed"), [("left_elevon", LEFT, LEFT_MIXED), ("right_elevon", RIGHT, RIGHT_MIXED)])
-def test_an_elevon_that_sticks_goes_to_trim_and_stays_there_while_its_command_moves(x8_schedule, failable, fault, position, mixed):
+@pytest.mark.parametrize(
+    ("fault", "position", "mixed"),
+    [("left_elevon", LEFT, LEFT_MIXED), ("right_elevon", RIGHT, RIGHT_MIXED)],
+)
+def test_an_elevon_that_sticks_goes_to_trim_and_stays_there_while_its_command_moves(
+    x8_schedule, failable, fault, position, mixed
+):
     log = fly(failable, x8_schedule.level(MIDDLE), 8.0, fault)
     trim, failed = log[0, position], round(AT / TIME_STEP)
     assert abs(log[failed, position] - trim) > 0.01  # in the turn it was elsewhere
@@ -62,7 +80,9 @@ def test_an_elevon_that_sticks_goes_to_trim_and_stays_there_while_its_command_mo
     assert np.ptp(log[failed + 60 :, mixed]) > 0.1  # of a command from -1 to 1
 
 
-def test_a_throttle_that_sticks_stays_at_trim_and_the_turn_costs_airspeed_alone(x8_schedule, failable):
+def test_a_throttle_that_sticks_stays_at_trim_and_the_turn_costs_airspeed_alone(
+    x8_schedule, failable
+):
     log = fly(failable, x8_schedule.level(MIDDLE), 25.0, "throttle")
     failed = round(AT / TIME_STEP) + 1
     np.testing.assert_array_equal(log[failed:, THROTTLE], log[0, THROTTLE])
@@ -73,7 +93,9 @@ def test_a_throttle_that_sticks_stays_at_trim_and_the_turn_costs_airspeed_alone(
     assert log[-1, HEADING_RATE] == pytest.approx(0.3, abs=1e-3)
 
 
-def test_without_its_engine_it_glides_and_turns_at_the_commanded_airspeed_if_commanded_to_sink(x8_schedule, failable):
+def test_without_its_engine_it_glides_and_turns_at_the_commanded_airspeed_if_commanded_to_sink(
+    x8_schedule, failable
+):
     start = x8_schedule.level(MIDDLE)
     log = fly(failable, start, 25.0, "engine", [("altitude", -1000.0)])
     failed = round(AT / TIME_STEP)
@@ -85,10 +107,14 @@ def test_without_its_engine_it_glides_and_turns_at_the_commanded_airspeed_if_com
     # The published polynomials in level balance, at 20 m/s under 90 m of standard atmosphere.
     pressure, weight = 0.5 * 1.2147 * 20.0**2 * x8.WING_AREA, x8.MASS * STANDARD_GRAVITY
     lift = weight / math.cos(math.atan(20.0 * 0.3 / STANDARD_GRAVITY)) / pressure
-    alpha, elevator = np.linalg.solve([[x8.CL_A, x8.CL_DE], [x8.CM_A, x8.CM_DE]], [lift - x8.CL_0, -x8.CM_0])
+    alpha, elevator = np.linalg.solve(
+        [[x8.CL_A, x8.CL_DE], [x8.CM_A, x8.CM_DE]], [lift - x8.CL_0, -x8.CM_0]
+    )
     drag = x8.drag_coefficient(x8.Air(airspeed=20.0, alpha=alpha, elevator=elevator)) * pressure
     sink = (log[-480, ALTITUDE] - log[-1, ALTITUDE]) * FOOT / (479 * TIME_STEP)
-    assert sink == pytest.approx(drag * 20.0 / weight, rel=0.03)  # the turn's rates and what is left of settling are left out
+    assert sink == pytest.approx(
+        drag * 20.0 / weight, rel=0.03
+    )  # the turn's rates and what is left of settling are left out
 
 
 def test_the_next_flight_of_an_aircraft_that_failed_is_whole(x8_schedule, x8_root, failable):
@@ -96,11 +122,16 @@ def test_the_next_flight_of_an_aircraft_that_failed_is_whole(x8_schedule, x8_roo
     for fault in ("engine", "left_elevon"):
         fly(failable, start, 4.0, fault)
     # Servos and propeller come to rest from elsewhere, to a millionth (tests/innerloop/flight/test_flight.py).
-    np.testing.assert_allclose(fly(failable, start, 4.0), fly(AutopilotedAircraft(X8, x8_root), start, 4.0), atol=1e-5)
+    np.testing.assert_allclose(
+        fly(failable, start, 4.0), fly(AutopilotedAircraft(X8, x8_root), start, 4.0), atol=1e-5
+    )
 
 
 def test_what_cannot_fail_says_so(x8_schedule, x8_aircraft, failable):
-    with pytest.raises(AircraftError, match="has no 'rudder' to fail; it has engine, left_elevon, right_elevon, throttle"):
+    with pytest.raises(
+        AircraftError,
+        match="has no 'rudder' to fail; it has engine, left_elevon, right_elevon, throttle",
+    ):
         failable.fail("rudder")
     with pytest.raises(AircraftError, match="'engine' cannot fail; make it with failable=True"):
         x8_aircraft.fail("engine")
@@ -113,16 +144,23 @@ def test_without_its_engine_the_airspeed_falls_in_a_turn_by_drag_over_mass(x8_sc
     # slower by a fifteenth; and the propeller adds drag while it runs down.
     pressure, weight = 0.5 * 1.2147 * 20.0**2 * x8.WING_AREA, x8.MASS * STANDARD_GRAVITY
     lift = math.sqrt(2.0) * weight / pressure
-    alpha, elevator = np.linalg.solve([[x8.CL_A, x8.CL_DE], [x8.CM_A, x8.CM_DE]], [lift - x8.CL_0, -x8.CM_0])
+    alpha, elevator = np.linalg.solve(
+        [[x8.CL_A, x8.CL_DE], [x8.CM_A, x8.CM_DE]], [lift - x8.CL_0, -x8.CM_0]
+    )
     drag = x8.drag_coefficient(x8.Air(airspeed=20.0, alpha=alpha, elevator=elevator)) * pressure
     assert found.airspeed_fall == pytest.approx(drag / x8.MASS, rel=0.05)
 
 
-def test_the_push_over_to_a_glide_takes_from_a_turn_what_it_takes_from_the_lift(x8_schedule, failable):
+def test_the_push_over_to_a_glide_takes_from_a_turn_what_it_takes_from_the_lift(
+    x8_schedule, failable
+):
     # At one bank lift turns the aircraft by L sin(bank)/(m V), and pushes it over by L cos(bank)/m less g. So whatever the time it
     # takes, to sink with w costs the course omega w/g, until the autopilot has banked more.
     start, bank = x8_schedule.level(MIDDLE), math.radians(45.0)
-    level, climbing = (measure_part_failure(failable, start, bank, 15.0, gradient).glide_deviation for gradient in (0.0, 0.2))
+    level, climbing = (
+        measure_part_failure(failable, start, bank, 15.0, gradient).glide_deviation
+        for gradient in (0.0, 0.2)
+    )
     rate = STANDARD_GRAVITY / start.airspeed
     lag = rate * 2.4 / STANDARD_GRAVITY
     # It is regained while the aircraft turns on, within a second or two of a turn of six.

@@ -38,12 +38,18 @@ def test_a_released_aircraft_starts_where_it_was_put(x8_schedule, x8_aircraft, y
         fdm.read("position/lat-geod-rad"), fdm.read("position/long-gc-rad")
     )
     assert math.hypot(north, east) < 0.1  # of plumes and tracks of hundreds of metres
-    assert math.remainder(fdm.read("attitude/psi-rad") - yaw, 2.0 * math.pi) == pytest.approx(0.0, abs=1e-6)
+    assert math.remainder(fdm.read("attitude/psi-rad") - yaw, 2.0 * math.pi) == pytest.approx(
+        0.0, abs=1e-6
+    )
 
 
 @pytest.mark.parametrize("steps", [600, 601, 602])
-@pytest.mark.parametrize("before", [[(0.0, "heading_rate", 0.5)], [(0.0, "altitude", 150.0), (0.0, "airspeed", 25.0)]])
-def test_a_second_flight_knows_nothing_of_the_first_nor_when_it_ended(x8_schedule, x8_root, before, steps):
+@pytest.mark.parametrize(
+    "before", [[(0.0, "heading_rate", 0.5)], [(0.0, "altitude", 150.0), (0.0, "airspeed", 25.0)]]
+)
+def test_a_second_flight_knows_nothing_of_the_first_nor_when_it_ended(
+    x8_schedule, x8_root, before, steps
+):
     found, commands = x8_schedule.level(MIDDLE), [(1.0, "heading_rate", 0.2)]
     fresh = fly(AutopilotedAircraft(X8, x8_root), found, 5.0, commands)
     used = AutopilotedAircraft(X8, x8_root)
@@ -56,15 +62,22 @@ def test_a_second_flight_knows_nothing_of_the_first_nor_when_it_ended(x8_schedul
 
 def test_two_fresh_aircraft_fly_the_same_flight(x8_schedule, x8_root):
     commands = [(1.0, "heading_rate", 0.3), (2.0, "altitude", 101.0)]
-    first, second = (fly(AutopilotedAircraft(X8, x8_root), x8_schedule.level(MIDDLE), 5.0, commands) for _ in range(2))
+    first, second = (
+        fly(AutopilotedAircraft(X8, x8_root), x8_schedule.level(MIDDLE), 5.0, commands)
+        for _ in range(2)
+    )
     for name in CHANNELS:
-        np.testing.assert_array_equal(first[name], second[name], err_msg=name)  # nothing in it is random
+        np.testing.assert_array_equal(
+            first[name], second[name], err_msg=name
+        )  # nothing in it is random
 
 
 @pytest.mark.parametrize("altitude", [10.0, 1000.0, 2000.0])
 def test_the_autopilot_designed_near_the_sea_flies_at_other_altitudes(x8_aircraft, altitude):
     found = trim(Fdm(X8), airspeed=20.0, altitude=altitude)
-    flight = fly(x8_aircraft, found, 30.0, [(1.0, "heading_rate", 0.25), (15.0, "heading_rate", 0.0)])
+    flight = fly(
+        x8_aircraft, found, 30.0, [(1.0, "heading_rate", 0.25), (15.0, "heading_rate", 0.0)]
+    )
     # Integral action takes up the different equilibrium: at 2000 m, with a fifth less density, 0.2 m at first.
     assert np.abs(flight["altitude"] - altitude).max() < 0.5
     assert np.abs(flight["airspeed"] - 20.0).max() < 0.2

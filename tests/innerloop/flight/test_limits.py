@@ -14,7 +14,9 @@ BANK_MAX = X8.envelope.bank_max  # 50 degrees
 
 
 @pytest.mark.parametrize("sign", [1.0, -1.0])
-def test_a_huge_heading_rate_command_stays_within_the_envelopes_bank(x8_schedule, x8_aircraft, sign):
+def test_a_huge_heading_rate_command_stays_within_the_envelopes_bank(
+    x8_schedule, x8_aircraft, sign
+):
     flight = fly(x8_aircraft, x8_schedule.level(MIDDLE), 20.0, [(1.0, "heading_rate", sign * 5.0)])
     # The command is clipped: the limit as written in the file, nine digits. It is reached, else nothing was tried.
     assert np.abs(flight["bank_command"]).max() <= BANK_MAX * (1.0 + 1e-8)
@@ -41,7 +43,9 @@ def test_half_a_minute_of_saturated_bank_leaves_no_lasting_offset(x8_schedule, x
 
 
 @pytest.mark.parametrize("sign", [1.0, -1.0])
-def test_a_turn_at_forty_five_degrees_of_bank_holds_altitude_and_airspeed(x8_schedule, x8_aircraft, sign):
+def test_a_turn_at_forty_five_degrees_of_bank_holds_altitude_and_airspeed(
+    x8_schedule, x8_aircraft, sign
+):
     flight = fly(x8_aircraft, x8_schedule.level(MIDDLE), 21.0, [(1.0, "heading_rate", sign * 0.45)])
     # 20 m/s times 0.45 rad/s over g is tan(43 degrees); sideslip makes it 44 and 45.
     assert np.degrees(np.abs(after(flight, 6.0, "bank"))) == pytest.approx(44.5, abs=1.0)
@@ -52,8 +56,12 @@ def test_a_turn_at_forty_five_degrees_of_bank_holds_altitude_and_airspeed(x8_sch
     assert after(flight, 16.0, "heading_rate") == pytest.approx(sign * 0.45, abs=1e-3)
 
 
-@pytest.mark.parametrize(("commanded", "held"), [(100.0, X8.envelope.airspeed_max), (1.0, X8.envelope.airspeed_min)])
-def test_an_airspeed_command_outside_the_envelope_is_held_at_its_limit(x8_schedule, x8_aircraft, commanded, held):
+@pytest.mark.parametrize(
+    ("commanded", "held"), [(100.0, X8.envelope.airspeed_max), (1.0, X8.envelope.airspeed_min)]
+)
+def test_an_airspeed_command_outside_the_envelope_is_held_at_its_limit(
+    x8_schedule, x8_aircraft, commanded, held
+):
     flight = fly(x8_aircraft, x8_schedule.level(MIDDLE), 35.0, [(1.0, "airspeed", commanded)])
     # After 30 s there is nothing left of the change; the limit itself is in the file with nine digits.
     assert after(flight, 30.0, "airspeed") == pytest.approx(held, abs=0.01)
@@ -65,7 +73,9 @@ def test_an_airspeed_command_outside_the_envelope_is_held_at_its_limit(x8_schedu
 
 def test_a_wide_open_throttle_winds_nothing_up(x8_schedule, x8_aircraft):
     flight = fly(x8_aircraft, x8_schedule.level(MIDDLE), 35.0, [(1.0, "airspeed", 25.0)])
-    assert np.count_nonzero(flight["throttle"] == 1.0) > 60  # saturated for half a second at least, or nothing was tried
+    assert (
+        np.count_nonzero(flight["throttle"] == 1.0) > 60
+    )  # saturated for half a second at least, or nothing was tried
     # Wound up, it would go on past 25 m/s. Within 0.3 m/s five seconds after full throttle ends, and in 15 s within 0.02.
     ended = np.nonzero(flight["throttle"] == 1.0)[0][-1] / 120.0
     assert flight["airspeed"].max() < 25.3
@@ -74,8 +84,15 @@ def test_a_wide_open_throttle_winds_nothing_up(x8_schedule, x8_aircraft):
 
 
 @pytest.mark.parametrize("size", [200.0, -200.0])
-def test_an_altitude_that_cannot_be_reached_in_time_is_approached_within_the_envelope(x8_schedule, x8_aircraft, size):
-    flight = fly(x8_aircraft, x8_schedule.level(MIDDLE), 21.0, [(1.0, "altitude", x8_schedule.altitude + size)])
+def test_an_altitude_that_cannot_be_reached_in_time_is_approached_within_the_envelope(
+    x8_schedule, x8_aircraft, size
+):
+    flight = fly(
+        x8_aircraft,
+        x8_schedule.level(MIDDLE),
+        21.0,
+        [(1.0, "altitude", x8_schedule.altitude + size)],
+    )
     # It climbs steadily (near 2.3 m/s, what an altitude error of 1 m asks for), with wings level and airspeed held: 0.5 m/s. The
     # model is linear in angle of attack to 0.2 rad.
     climbed = (after(flight, 20.9, "altitude")[0] - x8_schedule.altitude) * math.copysign(1.0, size)
@@ -88,8 +105,13 @@ def test_an_altitude_that_cannot_be_reached_in_time_is_approached_within_the_env
 
 
 @pytest.mark.parametrize("size", [200.0, -200.0])
-def test_an_altitude_that_could_not_be_reached_in_time_winds_nothing_up(x8_schedule, x8_aircraft, size):
-    commands = [(1.0, "altitude", x8_schedule.altitude + size), (21.0, "altitude", x8_schedule.altitude)]
+def test_an_altitude_that_could_not_be_reached_in_time_winds_nothing_up(
+    x8_schedule, x8_aircraft, size
+):
+    commands = [
+        (1.0, "altitude", x8_schedule.altitude + size),
+        (21.0, "altitude", x8_schedule.altitude),
+    ]
     flight = fly(x8_aircraft, x8_schedule.level(MIDDLE), 60.0, commands)
     error = (flight["altitude"] - x8_schedule.altitude) * math.copysign(1.0, size)
     # Sent back after 20 s it turns round within a second and less than 3 m further on ...
@@ -131,7 +153,10 @@ def test_an_altitude_step_is_not_overshot_by_more_for_being_larger(x8_schedule, 
     overshoots = {}
     for size in (2.0, 10.0, 30.0):
         flight = fly(
-            AutopilotedAircraft(X8, x8_root), x8_schedule.level(MIDDLE), 40.0, [(1.0, "altitude", x8_schedule.altitude + size)]
+            AutopilotedAircraft(X8, x8_root),
+            x8_schedule.level(MIDDLE),
+            40.0,
+            [(1.0, "altitude", x8_schedule.altitude + size)],
         )
         overshoots[size] = flight["altitude"].max() - x8_schedule.altitude - size
     # The last metre is flown the same way whatever came before it.
@@ -144,7 +169,14 @@ def test_controls_stay_within_their_range_whatever_is_commanded(x8_schedule, x8_
         *((1.0 + t, "heading_rate", sign * 5.0 * (-1.0) ** t) for t in range(8)),
         *((1.5 + 2 * t, "airspeed", 20.0 + 30.0 * (-1.0) ** t) for t in range(4)),
         *((1.2 + 2 * t, "altitude", x8_schedule.altitude + 50.0 * (-1.0) ** t) for t in range(4)),
-        *((10.0, name, value) for name, value in (("heading_rate", 0.0), ("airspeed", 20.0), ("altitude", x8_schedule.altitude))),
+        *(
+            (10.0, name, value)
+            for name, value in (
+                ("heading_rate", 0.0),
+                ("airspeed", 20.0),
+                ("altitude", x8_schedule.altitude),
+            )
+        ),
     ]
     flight = fly(x8_aircraft, x8_schedule.level(MIDDLE), 40.0, commands)
     for name in ("elevator", "aileron", "throttle"):

@@ -41,9 +41,13 @@ def test_they_are_those_with_which_margins_are_checked_but_for_the_delay():
 @pytest.mark.parametrize("case", CASES)
 def test_mass_and_inertia_are_as_modelled_times_the_factor(flown, case):
     by = CASES[case]
-    assert value(flown[case], "inertia/weight-lbs") == pytest.approx(3.364 * 2.2046226 * by.mass, rel=1e-6)
+    assert value(flown[case], "inertia/weight-lbs") == pytest.approx(
+        3.364 * 2.2046226 * by.mass, rel=1e-6
+    )
     for axis, moment in (("xx", 0.335), ("yy", 0.140), ("zz", 0.400)):
-        assert value(flown[case], f"inertia/i{axis}-slugs_ft2") == pytest.approx(moment / 1.3558179 * by.inertia, rel=1e-4)
+        assert value(flown[case], f"inertia/i{axis}-slugs_ft2") == pytest.approx(
+            moment / 1.3558179 * by.inertia, rel=1e-4
+        )
 
 
 @pytest.mark.parametrize("case", CASES)
@@ -61,9 +65,17 @@ def test_what_a_deflection_does_is_as_modelled_times_the_factor(flown, case):
 
 
 @pytest.mark.parametrize("case", CASES)
-def test_sections_in_files_of_their_own_are_perturbed_as_those_of_the_model_file_are(tmp_path, case):
+def test_sections_in_files_of_their_own_are_perturbed_as_those_of_the_model_file_are(
+    tmp_path, case
+):
     # JSBSim's Cessna has what the X8 has not: fuel, a crew of point masses.
-    state = RigidBodyState(altitude=300.0, roll=0.1, pitch=0.05, velocity_body=(50.0, 0.5, 2.0), rates_body=(0.1, 0.1, 0.1))
+    state = RigidBodyState(
+        altitude=300.0,
+        roll=0.1,
+        pitch=0.05,
+        velocity_body=(50.0, 0.5, 2.0),
+        rates_body=(0.1, 0.1, 0.1),
+    )
     moved = []
     for spec in (find_spec("c172p"), find_spec(str(split_model("c172p", tmp_path)))):
         root = tmp_path / f"copy{len(moved)}"
@@ -71,7 +83,9 @@ def test_sections_in_files_of_their_own_are_perturbed_as_those_of_the_model_file
         fdm = Fdm(spec, root)
         fdm.command({"elevator": -0.1, "aileron": 0.2, "rudder": 0.1, "throttle": 0.5})
         fdm.hold(state, 240)
-        moved.append([fdm.read("inertia/weight-lbs"), *fdm.acceleration_body(), *fdm.angular_acceleration()])
+        moved.append(
+            [fdm.read("inertia/weight-lbs"), *fdm.acceleration_body(), *fdm.angular_acceleration()]
+        )
     assert moved[1] == moved[0]
 
 
@@ -79,7 +93,13 @@ def test_the_deflections_of_jsbsims_short_s23_are_scaled(tmp_path):
     copy = copy_model(find_spec("Short_S23").files, tmp_path)
     perturb(copy, CASES["control effectiveness +20 %"])
     products = ET.parse(copy).getroot().find("aerodynamics").iter("product")
-    scaled = [product.findtext("property").strip() for product in products if product.findtext("value") == "1.2"]
+    scaled = [
+        product.findtext("property").strip()
+        for product in products
+        if product.findtext("value") == "1.2"
+    ]
     # Every <property> of a deflection that the file of its aerodynamics has, in its order; what tables are read at stays.
-    rudder, aileron, elevator = (f"fcs/{name}-pos-rad" for name in ("rudder", "left-aileron", "elevator"))
+    rudder, aileron, elevator = (
+        f"fcs/{name}-pos-rad" for name in ("rudder", "left-aileron", "elevator")
+    )
     assert scaled == [rudder, aileron, rudder, rudder, elevator]

@@ -16,7 +16,12 @@ from gnc.unicycle import lagged_move
 from innerloop.designs import long_search
 from innerloop.designs.long_search import repeat_search
 from innerloop.flight.autopiloted_aircraft import AutopilotedAircraft
-from innerloop.flight.reversal_search import _deviation, _Flight, reversals_of_a_design, search_reversals
+from innerloop.flight.reversal_search import (
+    _deviation,
+    _Flight,
+    reversals_of_a_design,
+    search_reversals,
+)
 from innerloop.flight.step_responses import measure_lag
 from innerloop.flight.turn_reversal import TurnReversalResponse, measure_turn_reversal
 from innerloop.jsbsim.properties import HEADING_RATE
@@ -29,12 +34,17 @@ def flown(x8_schedule, x8_root):
     """Return the response of the X8 at the bank of its studies, and a function that searches a few reversals of a new one."""
     level, bank = x8_schedule.level(x8_schedule.middle), X8.envelope.bank
     measuring = AutopilotedAircraft(X8, x8_root)
-    measured, slow_lag = measure_turn_reversal(measuring, level, bank), measure_lag(measuring, level, bank)
+    measured, slow_lag = (
+        measure_turn_reversal(measuring, level, bank),
+        measure_lag(measuring, level, bank),
+    )
 
     @functools.cache
     def flown(response=measured, seed=0, slow_lag_times=1.0, settled=False):
         aircraft, behind = [AutopilotedAircraft(X8, x8_root)], slow_lag_times * slow_lag
-        return search_reversals(aircraft, level, bank, response, behind, reversals=REVERSALS, seed=seed, settled=settled)
+        return search_reversals(
+            aircraft, level, bank, response, behind, reversals=REVERSALS, seed=seed, settled=settled
+        )
 
     return measured, flown
 
@@ -124,10 +134,14 @@ def test_the_deviation_is_the_way_that_is_lacking_in_the_direction_of_the_turn()
     assert _deviation(flown, predicted, -1.0) <= 0.0
     # 2 m behind: by 30 and 60 degrees forward of abeam, that is sin(60 deg) of it.
     behind = predicted - np.outer(np.linspace(0.0, 1.0, 100), [2.0, 0.0])
-    assert _deviation(behind, predicted, 1.0) == pytest.approx(2.0 * math.sin(math.radians(60.0)), rel=1e-12)
+    assert _deviation(behind, predicted, 1.0) == pytest.approx(
+        2.0 * math.sin(math.radians(60.0)), rel=1e-12
+    )
 
 
-@pytest.mark.parametrize(("bank_deg", "airspeed", "expected"), [(45.0, 19.42, 150), (30.0, 76.5, 24), (25.0, 144.6, 20)])
+@pytest.mark.parametrize(
+    ("bank_deg", "airspeed", "expected"), [(45.0, 19.42, 150), (30.0, 76.5, 24), (25.0, 144.6, 20)]
+)
 def test_a_design_flies_as_many_reversals_as_a_thousand_seconds_hold(bank_deg, airspeed, expected):
     # A quarter of a turn takes pi/2 V/(g tan(bank)): 3.1, 21 and 50 s, and twice that with what comes before it; 20 to 150.
     assert reversals_of_a_design(math.radians(bank_deg), airspeed) == expected
@@ -136,7 +150,9 @@ def test_a_design_flies_as_many_reversals_as_a_thousand_seconds_hold(bank_deg, a
 def test_a_repeated_search_reports_part_by_part_and_counts_all(designs, x8_root, monkeypatch):
     monkeypatch.setattr(long_search, "PART", 8)
     told = []
-    found = repeat_search(designs("x8"), x8_root, 10, done=lambda count, deviation: told.append((count, deviation)))
+    found = repeat_search(
+        designs("x8"), x8_root, 10, done=lambda count, deviation: told.append((count, deviation))
+    )
     assert found["reversals"] == 10
     assert len(told) == 2
     assert told[-1] == (10, found["deviation_max_m"])

@@ -31,7 +31,9 @@ def failable(x8_root):
 
 def release(aircraft, x8_schedule, weather=None):
     start = x8_schedule.level(MIDDLE)
-    aircraft.release(start.state(), airspeed=start.airspeed, altitude=start.altitude, weather=weather)
+    aircraft.release(
+        start.state(), airspeed=start.airspeed, altitude=start.altitude, weather=weather
+    )
     return ServoMonitor(aircraft.fdm, TIME_STEP)
 
 
@@ -51,7 +53,9 @@ def reversals(time):
     return 0.5 if time % 2.0 < 1.0 else -0.5
 
 
-def test_a_sound_elevon_is_always_where_it_was_commanded_to_be_a_moment_ago(x8_aircraft, x8_schedule):
+def test_a_sound_elevon_is_always_where_it_was_commanded_to_be_a_moment_ago(
+    x8_aircraft, x8_schedule
+):
     weather = Weather(turbulence=TURBULENCE["severe"], seed=3)
     errors, _ = watched(x8_aircraft, release(x8_aircraft, x8_schedule, weather), reversals, 20.0)
     # What was told between two looks is not seen: 0.08 at most in 32 flights of 500 s through severe and light turbulence.
@@ -60,7 +64,9 @@ def test_a_sound_elevon_is_always_where_it_was_commanded_to_be_a_moment_ago(x8_a
 
 
 @BOTH
-def test_a_stuck_elevon_is_noticed_half_a_second_after_a_turn_was_asked_of_it(failable, x8_schedule, fault):
+def test_a_stuck_elevon_is_noticed_half_a_second_after_a_turn_was_asked_of_it(
+    failable, x8_schedule, fault
+):
     watch = release(failable, x8_schedule)
     errors, _ = watched(failable, watch, lambda _: 0.0, 2.0)
     assert max(errors) < 0.1
@@ -76,7 +82,10 @@ def test_a_stuck_throttle_is_no_stuck_surface(failable, x8_schedule):
     failable.command_airspeed(25.0)
     errors, _ = watched(failable, watch, lambda _: 0.3, 5.0)
     # Much more is asked of it than it gives.
-    assert failable.fdm.read("autopilot/throttle-command") - failable.fdm.read("fcs/throttle-cmd-norm") > 0.2
+    assert (
+        failable.fdm.read("autopilot/throttle-command") - failable.fdm.read("fcs/throttle-cmd-norm")
+        > 0.2
+    )
     assert max(errors) < 0.1
 
 
@@ -92,14 +101,18 @@ def heading_rates(aircraft, x8_schedule, fault, *, held):
 
 
 @BOTH
-def test_with_the_elevator_held_the_other_elevon_turns_the_aircraft_round(failable, x8_schedule, fault):
+def test_with_the_elevator_held_the_other_elevon_turns_the_aircraft_round(
+    failable, x8_schedule, fault
+):
     # From 4 to 6 s after the failure; measured 0.41 and 0.32 rad/s to the left with the elevator held, and 0.15 and 0.19 while
     # elevator and aileron both work the elevon that is left. As it slows down in the climb out of the turn it turns faster.
     assert np.mean(heading_rates(failable, x8_schedule, fault, held=True)[-40:]) < -RATE
     assert np.mean(heading_rates(failable, x8_schedule, fault, held=False)[-40:]) > -0.7 * RATE
 
 
-def test_the_elevator_is_held_where_it_was_at_the_release_until_the_next_one(x8_aircraft, x8_schedule):
+def test_the_elevator_is_held_where_it_was_at_the_release_until_the_next_one(
+    x8_aircraft, x8_schedule
+):
     watch = release(x8_aircraft, x8_schedule)
     trim = x8_aircraft.fdm.read("fcs/elevator-cmd-norm")
     watched(x8_aircraft, watch, lambda _: RATE, 3.0)
@@ -111,10 +124,20 @@ def test_the_elevator_is_held_where_it_was_at_the_release_until_the_next_one(x8_
     assert abs(x8_aircraft.fdm.read("fcs/elevator-cmd-norm") - trim) > 0.01
 
 
-def test_a_throttle_of_another_name_is_monitored_as_little_as_one_that_is_called_so(x8_aircraft, x8_schedule):
+def test_a_throttle_of_another_name_is_monitored_as_little_as_one_that_is_called_so(
+    x8_aircraft, x8_schedule
+):
     release(x8_aircraft, x8_schedule)
-    renamed = replace(X8, own_actuators=(*X8.own_actuators, Actuator(name="motor", commands=X8.input("throttle").commands)))
+    renamed = replace(
+        X8,
+        own_actuators=(
+            *X8.own_actuators,
+            Actuator(name="motor", commands=X8.input("throttle").commands),
+        ),
+    )
     check_spec(renamed)
-    monitor = ServoMonitor(cast("Fdm", SimpleNamespace(spec=renamed, node=x8_aircraft.fdm.node)), TIME_STEP)
+    monitor = ServoMonitor(
+        cast("Fdm", SimpleNamespace(spec=renamed, node=x8_aircraft.fdm.node)), TIME_STEP
+    )
     # Of the elevons alone, in trim: rounding of JSBSim.
     assert monitor.error() < 1e-6

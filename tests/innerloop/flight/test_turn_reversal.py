@@ -10,7 +10,11 @@ from innerloop.flight.turn_reversal import TurnReversalResponse, displacement, m
 
 @pytest.mark.parametrize(
     "reversal",
-    [TurnReversalResponse(delay=0.2, lag=0.4), TurnReversalResponse(delay=0.0, lag=0.3), TurnReversalResponse(delay=0.5, lag=0.01)],
+    [
+        TurnReversalResponse(delay=0.2, lag=0.4),
+        TurnReversalResponse(delay=0.0, lag=0.3),
+        TurnReversalResponse(delay=0.5, lag=0.01),
+    ],
 )
 def test_the_displacement_is_the_course_fallen_behind_by_summed_up(reversal):
     # A heading rate that starts after the delay and follows with the lag, by small steps.
@@ -30,14 +34,18 @@ def test_a_reversal_takes_the_x8_longer_than_a_slow_command(x8_schedule, x8_airc
     assert reversal.delay + reversal.lag > 1.1 * measure_lag(x8_aircraft, level, X8.envelope.bank)
 
 
-def test_the_model_is_nowhere_ahead_of_the_aircraft_that_it_is_measured_on(x8_schedule, x8_aircraft):
+def test_the_model_is_nowhere_ahead_of_the_aircraft_that_it_is_measured_on(
+    x8_schedule, x8_aircraft
+):
     # Flown again here, read as course and not as heading rate.
     level = x8_schedule.level(x8_schedule.middle)
     reversal = measure_turn_reversal(x8_aircraft, level, X8.envelope.bank)
     fdm = x8_aircraft.fdm
     rate = 9.80665 * math.tan(X8.envelope.bank) / level.airspeed
     x8_aircraft.release(level.state(), airspeed=level.airspeed, altitude=level.altitude)
-    north, east = (fdm.node(f"velocities/v-{way}-fps").get_double_value for way in ("north", "east"))
+    north, east = (
+        fdm.node(f"velocities/v-{way}-fps").get_double_value for way in ("north", "east")
+    )
     x8_aircraft.command_heading_rate(-rate)
     for _ in range(round(2.0 * math.pi / rate * 120)):
         fdm.run()

@@ -31,7 +31,9 @@ AIRSPEED, ALTITUDE, ROLL, NORTH_SPEED, EAST_SPEED, NORTH, EAST = range(7)
 
 def fly(aircraft, start, weather, duration, turn_at=5.0):
     """Release the aircraft, turn from ``turn_at`` [s] on, and return what was read at each step, shape (steps, 7)."""
-    aircraft.release(start.state(yaw=YAW), airspeed=start.airspeed, altitude=start.altitude, weather=weather)
+    aircraft.release(
+        start.state(yaw=YAW), airspeed=start.airspeed, altitude=start.altitude, weather=weather
+    )
     nodes = [(aircraft.fdm.node(name), scale) for name, scale in READ]
     log = np.empty((round(duration / TIME_STEP), len(nodes)))
     for i, row in enumerate(log):
@@ -44,19 +46,27 @@ def fly(aircraft, start, weather, duration, turn_at=5.0):
 
 @pytest.mark.parametrize("toward", [0.0, 90.0, 180.0, -90.0, 135.0])
 def test_in_wind_an_aircraft_flies_the_calm_path_carried_along(x8_schedule, x8_root, toward):
-    start, wind = x8_schedule.level(MIDDLE), (10.0 * math.cos(math.radians(toward)), 10.0 * math.sin(math.radians(toward)))
+    start, wind = (
+        x8_schedule.level(MIDDLE),
+        (10.0 * math.cos(math.radians(toward)), 10.0 * math.sin(math.radians(toward))),
+    )
     calm = fly(AutopilotedAircraft(X8, x8_root), start, None, 25.0)
     windy = fly(AutopilotedAircraft(X8, x8_root), start, Weather(wind=constant_wind(*wind)), 25.0)
     course = YAW + start.course_offset()
     # The velocity triangle at the release, to the last digits that are left of a globe's coordinates and 1e-6 ft/s of north wind.
-    ground = (start.airspeed * math.cos(course) + wind[0], start.airspeed * math.sin(course) + wind[1])
+    ground = (
+        start.airspeed * math.cos(course) + wind[0],
+        start.airspeed * math.sin(course) + wind[1],
+    )
     assert windy[0, [NORTH_SPEED, EAST_SPEED]] == pytest.approx(ground, abs=1e-6)
     assert windy[0, AIRSPEED] == pytest.approx(start.airspeed, abs=1e-6)
     # No more of a transient in the first 5 s than in calm air. The earth turns: an aircraft that goes 10 m/s faster eastward weighs
     # 2 x 7.3e-5 x 10 m/s^2 less, 1.5e-4 of its weight, so altitude and airspeed settle as much elsewhere: 0.1 mm and 0.02 mm/s were
     # measured; and the same is allowed of roll [rad], where 5e-7 were.
     first = slice(0, round(5.0 / TIME_STEP))
-    transients = [np.ptp(flight[first, [AIRSPEED, ALTITUDE, ROLL]], axis=0) for flight in (windy, calm)]
+    transients = [
+        np.ptp(flight[first, [AIRSPEED, ALTITUDE, ROLL]], axis=0) for flight in (windy, calm)
+    ]
     lighter = 2.0 * EARTH_RATE * 10.0 / STANDARD_GRAVITY
     assert np.all(transients[0] < transients[1] + lighter)
     # And its turns are as much wider, so the path is off by that part of their radius, 15 mm, at most twice across a circle.
@@ -67,7 +77,12 @@ def test_in_wind_an_aircraft_flies_the_calm_path_carried_along(x8_schedule, x8_r
 
 def test_turbulence_begins_with_the_release_and_grows(x8_schedule, x8_root):
     start = x8_schedule.level(MIDDLE)
-    log = fly(AutopilotedAircraft(X8, x8_root), start, Weather(turbulence=TURBULENCE["light"], seed=4), 20.0)
+    log = fly(
+        AutopilotedAircraft(X8, x8_root),
+        start,
+        Weather(turbulence=TURBULENCE["light"], seed=4),
+        20.0,
+    )
     assert log[0, AIRSPEED] == pytest.approx(start.airspeed, abs=1e-6)  # as in calm air
     # Light turbulence has 0.8 to 1.2 m/s; the airspeed follows what is faster than its loop.
     assert 0.2 < log[round(5.0 / TIME_STEP) :, AIRSPEED].std() < 2.4
@@ -75,13 +90,23 @@ def test_turbulence_begins_with_the_release_and_grows(x8_schedule, x8_root):
 
 def test_a_used_aircraft_flies_a_weather_as_a_fresh_one_does(x8_schedule, x8_root):
     start = x8_schedule.level(MIDDLE)
-    gusts = [Gust(start=1.0, rise=0.5, hold=0.5, fall=0.5, velocity_ned=v) for v in ((0.0, 3.0, 0.0), (2.0, 0.0, -1.0))]
+    gusts = [
+        Gust(start=1.0, rise=0.5, hold=0.5, fall=0.5, velocity_ned=v)
+        for v in ((0.0, 3.0, 0.0), (2.0, 0.0, -1.0))
+    ]
     rough, other = (
-        Weather(wind=constant_wind(3.0, -5.0), turbulence=TURBULENCE["moderate"], gusts=(gust,), seed=seed)
+        Weather(
+            wind=constant_wind(3.0, -5.0),
+            turbulence=TURBULENCE["moderate"],
+            gusts=(gust,),
+            seed=seed,
+        )
         for seed, gust in enumerate(gusts)
     )
     used = AutopilotedAircraft(X8, x8_root)
-    fly(used, start, other, 181 * TIME_STEP)  # and ends in the middle of a gust, and of a period of the autopilot
+    fly(
+        used, start, other, 181 * TIME_STEP
+    )  # and ends in the middle of a gust, and of a period of the autopilot
     for weather in (rough, None):
         fresh = fly(AutopilotedAircraft(X8, x8_root), start, weather, 5.0)
         # Servos and propeller come to rest from elsewhere, to a millionth (tests/innerloop/flight/test_flight.py).
@@ -91,6 +116,12 @@ def test_a_used_aircraft_flies_a_weather_as_a_fresh_one_does(x8_schedule, x8_roo
 def test_another_seed_is_another_flight(x8_schedule, x8_root):
     start = x8_schedule.level(MIDDLE)
     one, two = (
-        fly(AutopilotedAircraft(X8, x8_root), start, Weather(turbulence=TURBULENCE["light"], seed=seed), 3.0) for seed in (1, 2)
+        fly(
+            AutopilotedAircraft(X8, x8_root),
+            start,
+            Weather(turbulence=TURBULENCE["light"], seed=seed),
+            3.0,
+        )
+        for seed in (1, 2)
     )
     assert np.abs(one - two)[:, AIRSPEED].max() > 0.1  # m/s, of turbulence of 0.8 m/s

@@ -54,10 +54,18 @@ def fly_both(schedule, tmp_path_factory):
     """An autopilot's schedule, the demonstration flown by JSBSim alone, hold and all, and flown from Python."""
     root, away = tmp_path_factory.mktemp("root"), tmp_path_factory.mktemp("away")
     script = write_script(schedule, write_root(schedule, root))
-    run_jsbsim(f"--root={root}", f"--outputpath={away}", f"--script=scripts/{script.name}", directory=away)
+    run_jsbsim(
+        f"--root={root}", f"--outputpath={away}", f"--script=scripts/{script.name}", directory=away
+    )
     alone = read_result(away / f"{script.stem}.csv")
     duration = alone["Time"].iloc[-1]
-    return schedule, alone, fly_in_python(root, schedule, demonstration(schedule.envelope, schedule.level(MIDDLE)), duration)
+    return (
+        schedule,
+        alone,
+        fly_in_python(
+            root, schedule, demonstration(schedule.envelope, schedule.level(MIDDLE)), duration
+        ),
+    )
 
 
 @pytest.fixture(scope="module", params=["x8", "aerosonde"])
@@ -92,7 +100,9 @@ def test_jsbsim_alone_flies_the_trajectory_that_python_flies(flights):
     alone = released(alone)
     same = python.iloc[:: STEPS_PER_SECOND // 20].reset_index(drop=True)
     assert len(alone) == len(same) == 95 * 20 + 1
-    np.testing.assert_allclose(alone["Time"], same["Time"], atol=1e-9)  # JSBSim adds up 12000 steps and prints ten digits
+    np.testing.assert_allclose(
+        alone["Time"], same["Time"], atol=1e-9
+    )  # JSBSim adds up 12000 steps and prints ten digits
     assert set(alone) == set(python)
     for name in set(python) - {"Time"}:
         # To the last bit: 18 digits are printed, one more than a number has, and both set the same state in the same order.
@@ -102,22 +112,34 @@ def test_jsbsim_alone_flies_the_trajectory_that_python_flies(flights):
 def test_the_demonstration_turns_climbs_changes_speed_and_comes_back(flights):
     schedule, alone, _ = flights
     start = schedule.level(MIDDLE)
-    rate, _, higher, faster, *_ = (command.value for command in demonstration(schedule.envelope, start))
+    rate, _, higher, faster, *_ = (
+        command.value for command in demonstration(schedule.envelope, start)
+    )
     # A turn commanded for 15 s and given time to end turns by rate times 15 s, however it lags; a hundredth is let go.
     assert turned(alone, 5.0, 25.0) == pytest.approx(15.0 * rate, rel=0.01)
     assert turned(alone, 70.0, 95.0) == pytest.approx(-15.0 * rate, rel=0.01)
     # Fifteen seconds after each step: within four hundredths of it; the Aerosonde's slowest closed-loop pole is 0.23 1/s.
-    assert at(alone, 40.0, "position/h-sl-meters") == pytest.approx(higher, abs=0.04 * (higher - start.altitude))
-    assert at(alone, 55.0, "autopilot/airspeed-mps") == pytest.approx(faster, abs=0.04 * abs(faster - start.airspeed))
-    assert at(alone, 70.0, "position/h-sl-meters") == pytest.approx(start.altitude, abs=0.04 * (higher - start.altitude))
-    assert at(alone, 70.0, "autopilot/airspeed-mps") == pytest.approx(start.airspeed, abs=0.04 * abs(faster - start.airspeed))
+    assert at(alone, 40.0, "position/h-sl-meters") == pytest.approx(
+        higher, abs=0.04 * (higher - start.altitude)
+    )
+    assert at(alone, 55.0, "autopilot/airspeed-mps") == pytest.approx(
+        faster, abs=0.04 * abs(faster - start.airspeed)
+    )
+    assert at(alone, 70.0, "position/h-sl-meters") == pytest.approx(
+        start.altitude, abs=0.04 * (higher - start.altitude)
+    )
+    assert at(alone, 70.0, "autopilot/airspeed-mps") == pytest.approx(
+        start.airspeed, abs=0.04 * abs(faster - start.airspeed)
+    )
 
 
 def test_the_engine_runs_at_its_trim_when_the_aircraft_is_released(flights):
     schedule, alone, _ = flights
     first = released(alone).iloc[0]
     rpm = schedule.level(MIDDLE).driven["propeller_speed"] * 30.0 / math.pi
-    assert first["propulsion/engine/propeller-rpm"] == pytest.approx(rpm, rel=1e-3)  # two seconds from standstill
+    assert first["propulsion/engine/propeller-rpm"] == pytest.approx(
+        rpm, rel=1e-3
+    )  # two seconds from standstill
     assert first["propulsion/engine[0]/thrust-lbs"] > 0.1
 
 
@@ -131,7 +153,9 @@ def test_a_held_body_is_released_where_it_was_meant_to_be(flights):
     assert np.ptp(held["attitude/phi-rad"]) < 1e-9
 
 
-def test_a_stock_aircraft_is_flown_by_jsbsim_alone_as_from_python_but_for_its_engines_last_breath(jet_flight):
+def test_a_stock_aircraft_is_flown_by_jsbsim_alone_as_from_python_but_for_its_engines_last_breath(
+    jet_flight,
+):
     schedule, alone, python = jet_flight
     alone = released(alone)
     same = python.iloc[:: STEPS_PER_SECOND // 20].reset_index(drop=True)
@@ -154,11 +178,16 @@ def test_a_stock_aircraft_is_flown_by_jsbsim_alone_as_from_python_but_for_its_en
     assert alone["position/h-sl-meters"].max() > start.altitude + 0.4 * start.airspeed
 
 
-def test_a_stock_aircrafts_script_runs_its_engines_up_while_the_body_is_held_and_has_gear_and_fuel_as_in_flight(designs, tmp_path):
+def test_a_stock_aircrafts_script_runs_its_engines_up_while_the_body_is_held_and_has_gear_and_fuel_as_in_flight(
+    designs, tmp_path
+):
     schedule = designs("T37").design.schedule
     script = write_script(schedule, write_root(schedule, tmp_path))
     run = ET.parse(script).getroot().find("run")
-    events = [{e.get("name"): float(e.get("value")) for e in event.findall("set")} for event in run.findall("event")]
+    events = [
+        {e.get("name"): float(e.get("value")) for e in event.findall("set")}
+        for event in run.findall("event")
+    ]
     start, again, release = events[:3]
     assert dict(START_ENGINES).items() <= start.items()
     # Ten seconds of running up (RUN_UP_STEPS), for turbines are not cranked, then the settling time of 20 s.
@@ -174,13 +203,20 @@ def test_a_title_may_hold_what_xml_means_something_by(x8_schedule, tmp_path):
     assert script.getroot().get("name") == 'The <"Bird"> & Co under its autopilot'
 
 
-def test_run_without_options_a_script_of_a_name_with_two_dashes_writes_its_result_where_it_is_run(x8_schedule, tmp_path):
+def test_run_without_options_a_script_of_a_name_with_two_dashes_writes_its_result_where_it_is_run(
+    x8_schedule, tmp_path
+):
     own = replace(x8_schedule.spec, model="own--x8", folder=tmp_path / "own--x8")
     shutil.copytree(x8_schedule.spec.files.folder, own.folder)
     (own.folder / "x8.xml").rename(own.files.file)
     schedule = replace(x8_schedule, spec=own)
     script = write_script(schedule, write_root(schedule, tmp_path / "root"))
-    assert ET.parse(script.parents[1] / "aircraft" / "own--x8" / "own--x8_autopilot_init.xml").getroot().tag == "initialize"
+    assert (
+        ET.parse(script.parents[1] / "aircraft" / "own--x8" / "own--x8_autopilot_init.xml")
+        .getroot()
+        .tag
+        == "initialize"
+    )
     run_jsbsim(f"--script=scripts/{script.name}", directory=tmp_path / "root")
     times = read_result(tmp_path / "root" / "own--x8_autopilot.csv")["Time"]
     assert times.iloc[-1] == pytest.approx(95.0)
@@ -189,8 +225,12 @@ def test_run_without_options_a_script_of_a_name_with_two_dashes_writes_its_resul
 
 @pytest.mark.parametrize(("index", "step"), [(1, 1.75), (2, 2.0), (3, -2.25)])
 def test_the_airspeed_step_goes_where_the_envelope_has_room(x8_schedule, index, step):
-    start = x8_schedule.level(index)  # 17.5, 20, 22.5 m/s in an envelope of 15 to 25 m/s: a tenth of each
-    assert demonstration(x8_schedule.envelope, start)[3].value - start.airspeed == pytest.approx(step)
+    start = x8_schedule.level(
+        index
+    )  # 17.5, 20, 22.5 m/s in an envelope of 15 to 25 m/s: a tenth of each
+    assert demonstration(x8_schedule.envelope, start)[3].value - start.airspeed == pytest.approx(
+        step
+    )
 
 
 def test_engines_are_started_before_the_body_is_held(x8_schedule, x8_root, tmp_path):

@@ -12,7 +12,12 @@ from aircraft.fleet.x8 import X8
 from aircraft.simulation.fdm import Fdm
 from aircraft.spec import MODELS
 from innerloop.flight.autopiloted_aircraft import AutopilotedAircraft
-from innerloop.jsbsim.properties import AIRSPEED_COMMAND, ALTITUDE_COMMAND, HEADING_RATE_COMMAND, system_name
+from innerloop.jsbsim.properties import (
+    AIRSPEED_COMMAND,
+    ALTITUDE_COMMAND,
+    HEADING_RATE_COMMAND,
+    system_name,
+)
 from innerloop.jsbsim.root import write_root
 from innerloop.jsbsim.system import system_xml
 
@@ -33,7 +38,11 @@ def test_the_system_says_nan_or_infinity_nowhere(x8_schedule):
 
 def test_every_property_that_the_system_reads_exists(x8_schedule, x8_aircraft):
     root = ET.fromstring(system_xml(x8_schedule).encode())
-    names = {e.text.strip().lstrip("-") for tag in ("p", "input", "independentVar", "output", "trigger") for e in root.iter(tag)}
+    names = {
+        e.text.strip().lstrip("-")
+        for tag in ("p", "input", "independentVar", "output", "trigger")
+        for e in root.iter(tag)
+    }
     assert len(names) > 20
     for name in names:
         assert math.isfinite(x8_aircraft.fdm.read(name)), name
@@ -41,13 +50,20 @@ def test_every_property_that_the_system_reads_exists(x8_schedule, x8_aircraft):
 
 def test_the_written_root_has_the_aircraft_its_engine_files_and_the_system(x8_root):
     files = {str(p.relative_to(x8_root)) for p in x8_root.rglob("*.xml")}
-    assert files == {"aircraft/x8/x8.xml", "engine/x8_motor.xml", "engine/x8_propeller.xml", "systems/x8_autopilot.xml"}
+    assert files == {
+        "aircraft/x8/x8.xml",
+        "engine/x8_motor.xml",
+        "engine/x8_propeller.xml",
+        "systems/x8_autopilot.xml",
+    }
 
 
 def test_the_written_model_differs_from_the_original_by_the_system_alone(x8_root):
     def parts(path):
         root = ET.parse(path / "aircraft" / "x8" / "x8.xml").getroot()
-        return [ET.tostring(element).strip() for element in root if element.tag != "system"], root.findall("system")
+        return [
+            ET.tostring(element).strip() for element in root if element.tag != "system"
+        ], root.findall("system")
 
     original, none = parts(MODELS)
     written, systems = parts(x8_root)
@@ -79,7 +95,12 @@ def test_commands_are_properties_that_take_writes(x8_aircraft, name):
 
 
 def test_the_measured_heading_rate_is_the_rate_of_the_flown_course(x8_schedule, x8_aircraft):
-    flight = fly(x8_aircraft, x8_schedule.level(2), 12.0, [(1.0, "heading_rate", 0.3), (6.0, "heading_rate", -0.2)])
+    flight = fly(
+        x8_aircraft,
+        x8_schedule.level(2),
+        12.0,
+        [(1.0, "heading_rate", 0.3), (6.0, "heading_rate", -0.2)],
+    )
     course = np.unwrap(np.arctan2(flight["east_speed"], flight["north_speed"]))
     differentiated = (course[2:] - course[:-2]) / (2.0 * TIME_STEP)
     # Calm air: the air-relative course is the ground's. The autopilot measures forces a step or two before the motion they make, at
@@ -106,4 +127,8 @@ def test_the_autopilot_computes_once_in_a_period_and_integrates_over_it(x8_sched
     jerk, acceleration, rate = np.array(rows)[::period].T
     for integral, integrand in ((acceleration, jerk), (rate, acceleration)):
         # The trapezoidal rule over the period, to rounding of sums of values near 1.
-        np.testing.assert_allclose(np.diff(integral), 0.5 * period * TIME_STEP * (integrand[1:] + integrand[:-1]), atol=1e-12)
+        np.testing.assert_allclose(
+            np.diff(integral),
+            0.5 * period * TIME_STEP * (integrand[1:] + integrand[:-1]),
+            atol=1e-12,
+        )

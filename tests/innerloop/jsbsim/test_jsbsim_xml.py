@@ -37,9 +37,13 @@ def run(tmp_path):
     def load(*components):
         shutil.copytree(MODELS, tmp_path, dirs_exist_ok=True)
         (tmp_path / "systems").mkdir()
-        properties = "".join(f'<property value="0">test/{name}</property>' for name in ("x", "y", "reset"))
+        properties = "".join(
+            f'<property value="0">test/{name}</property>' for name in ("x", "y", "reset")
+        )
         body = "".join(components)
-        document = f'<system name="probe">{properties}<channel name="probe">{body}</channel></system>'
+        document = (
+            f'<system name="probe">{properties}<channel name="probe">{body}</channel></system>'
+        )
         (tmp_path / "systems" / "probe.xml").write_text(document, encoding="utf-8")
         model_file = tmp_path / "aircraft" / "x8" / "x8.xml"
         model = ET.parse(model_file)
@@ -68,23 +72,41 @@ def test_expressions_compute_what_they_say(run):
         function("test/quotient", operation("quotient", x, y)),
         function("test/cosine", operation("cos", x)),
     )
-    found = {name: value_at(fdm, 3.0, 4.0, f"test/{name}") for name in ("sum", "product", "difference", "quotient", "cosine")}
+    found = {
+        name: value_at(fdm, 3.0, 4.0, f"test/{name}")
+        for name in ("sum", "product", "difference", "quotient", "cosine")
+    }
     assert found == pytest.approx(
-        {"sum": 7.25, "product": -24.0, "difference": -2.5, "quotient": 0.75, "cosine": np.cos(3.0)}, abs=1e-14
+        {
+            "sum": 7.25,
+            "product": -24.0,
+            "difference": -2.5,
+            "quotient": 0.75,
+            "cosine": np.cos(3.0),
+        },
+        abs=1e-14,
     )
 
 
 @pytest.mark.parametrize("value", [0.3048, -1.0 / 3.0, 1e-12, 123456.789, 0.0])
 def test_a_number_keeps_nine_digits(run, value):
-    assert value_at(run(function("test/out", number(value))), 0.0) == pytest.approx(value, rel=DIGITS, abs=0.0)
+    assert value_at(run(function("test/out", number(value))), 0.0) == pytest.approx(
+        value, rel=DIGITS, abs=0.0
+    )
 
 
-@pytest.mark.parametrize(("x", "kept"), [(-3.0, -0.5), (-0.5, -0.5), (0.2, 0.2), (2.0, 2.0), (7.0, 2.0)])
+@pytest.mark.parametrize(
+    ("x", "kept"), [(-3.0, -0.5), (-0.5, -0.5), (0.2, 0.2), (2.0, 2.0), (7.0, 2.0)]
+)
 def test_a_clipped_value_stays_within_its_limits(run, x, kept):
-    assert value_at(run(function("test/out", clipped(read("test/x"), -0.5, 2.0))), x) == pytest.approx(kept, abs=1e-15)
+    assert value_at(
+        run(function("test/out", clipped(read("test/x"), -0.5, 2.0))), x
+    ) == pytest.approx(kept, abs=1e-15)
 
 
-@pytest.mark.parametrize(("x", "inside"), [(-1.2, 0.0), (-0.9, 1.0), (0.0, 1.0), (0.9, 1.0), (1.1, 0.0)])
+@pytest.mark.parametrize(
+    ("x", "inside"), [(-1.2, 0.0), (-0.9, 1.0), (0.0, 1.0), (0.9, 1.0), (1.1, 0.0)]
+)
 def test_within_is_one_inside_the_limit_and_zero_outside(run, x, inside):
     assert value_at(run(function("test/out", within(read("test/x"), 1.0))), x) == inside
 
@@ -93,16 +115,23 @@ def test_within_is_one_inside_the_limit_and_zero_outside(run, x, inside):
 def test_a_table_is_linear_between_its_rows_and_constant_past_its_ends(run, x):
     rows, values = (1.0, 2.0, 4.0), (10.0, -5.0, 7.0)
     # numpy's interpolation, which is also constant past the ends.
-    assert value_at(run(function("test/out", table_1d("test/x", rows, values))), x) == pytest.approx(np.interp(x, rows, values))
+    assert value_at(
+        run(function("test/out", table_1d("test/x", rows, values))), x
+    ) == pytest.approx(np.interp(x, rows, values))
 
 
-@pytest.mark.parametrize(("x", "y"), [(0.0, 10.0), (0.5, 10.0), (0.0, 15.0), (0.25, 12.5), (1.7, 19.0), (-9.0, 12.0), (9.0, 99.0)])
+@pytest.mark.parametrize(
+    ("x", "y"),
+    [(0.0, 10.0), (0.5, 10.0), (0.0, 15.0), (0.25, 12.5), (1.7, 19.0), (-9.0, 12.0), (9.0, 99.0)],
+)
 def test_a_table_over_two_properties_is_bilinear_with_rows_first(run, x, y):
     rows, columns = (0.0, 1.0, 2.0), (10.0, 20.0)
     values = np.array([[1.0, 2.0], [4.0, -3.0], [0.5, 7.0]])
     by_column = [np.interp(y, columns, line) for line in values]
     expected = np.interp(x, rows, by_column)
-    assert value_at(run(function("test/out", table_2d("test/x", "test/y", rows, columns, values))), x, y) == pytest.approx(expected)
+    assert value_at(
+        run(function("test/out", table_2d("test/x", "test/y", rows, columns, values))), x, y
+    ) == pytest.approx(expected)
 
 
 def test_a_function_writes_its_outputs_as_well(run):
@@ -118,7 +147,9 @@ def test_an_integrator_integrates_by_the_trapezoidal_rule(run):
     inputs = np.sin(np.arange(1, 60))
     found = [value_at(fdm, float(x)) for x in inputs]
     before = np.concatenate([[0.0], inputs[:-1]])
-    np.testing.assert_allclose(found, np.cumsum(0.5 * (inputs + before) * TIME_STEP), atol=1e-14)  # rounding
+    np.testing.assert_allclose(
+        found, np.cumsum(0.5 * (inputs + before) * TIME_STEP), atol=1e-14
+    )  # rounding
 
 
 def test_an_integrator_is_held_at_zero_by_its_reset_and_starts_from_there(run):
@@ -131,5 +162,7 @@ def test_an_integrator_is_held_at_zero_by_its_reset_and_starts_from_there(run):
     assert value_at(fdm, 1.0) == 0.0
     assert value_at(fdm, 1.0) == 0.0
     fdm.write("test/reset", 0.0)
-    assert value_at(fdm, 1.0) == pytest.approx(TIME_STEP, rel=0.51)  # one step, or half of one by the trapezium
+    assert value_at(fdm, 1.0) == pytest.approx(
+        TIME_STEP, rel=0.51
+    )  # one step, or half of one by the trapezium
     assert value_at(fdm, 1.0) == pytest.approx(2.0 * TIME_STEP, rel=0.26)

@@ -80,15 +80,23 @@ def held(flown, rng, computed):
     aircraft.command_heading_rate(commands["heading_rate_command"])
     fdm.write(RESET, -1.0)
     fdm.place(state)
-    remembered = {name: prop for name, prop in REMEMBERED.items() if name != "rudder_integral" or "rudder" in schedule.controls}
+    remembered = {
+        name: prop
+        for name, prop in REMEMBERED.items()
+        if name != "rudder_integral" or "rudder" in schedule.controls
+    }
     with fdm.frozen():
         fdm.step(3 * period)
         fdm.write(RESET, 0.0 if computed else -1.0)
         fdm.step(period * max(0, computed - 1))
-        before = dict.fromkeys(STATES, 0.0) | {name: fdm.read(prop) for name, prop in remembered.items()}
+        before = dict.fromkeys(STATES, 0.0) | {
+            name: fdm.read(prop) for name, prop in remembered.items()
+        }
         fdm.step(period)
     # Integrals act a period after they are gathered; the model's own states at once.
-    states = before | {name: fdm.read(REMEMBERED[name]) for name in ("model_rate", "model_acceleration")}
+    states = before | {
+        name: fdm.read(REMEMBERED[name]) for name in ("model_rate", "model_acceleration")
+    }
     measured = {name: fdm.read(MEASURED[name]) for name in measurements(schedule)}
     return commands, measured, states
 
@@ -98,7 +106,9 @@ def with_flown_jerk(flown, commands, states):
     schedule, _, aircraft = flown
     frequency, damping = schedule.weights.model_frequency, schedule.weights.model_damping
     jerk = aircraft.fdm.read("autopilot/model-jerk")
-    target = (jerk + 2.0 * damping * frequency * states["model_acceleration"]) / frequency**2 + states["model_rate"]
+    target = (
+        jerk + 2.0 * damping * frequency * states["model_acceleration"]
+    ) / frequency**2 + states["model_rate"]
     return commands | {"heading_rate_command": target}
 
 
@@ -112,7 +122,9 @@ def test_at_random_states_jsbsim_asks_for_the_controls_that_the_law_computes(flo
         if abs(aircraft.fdm.read("autopilot/bank-unlimited-rad")) > schedule.envelope.bank_max:
             continue  # the law has no limits
         _, expected = law.evaluate(with_flown_jerk(flown, commands, states), measured, states)
-        found = {name: aircraft.fdm.read(f"autopilot/{name}-unlimited") for name in schedule.controls}
+        found = {
+            name: aircraft.fdm.read(f"autopilot/{name}-unlimited") for name in schedule.controls
+        }
         assert found == pytest.approx(expected, rel=DIGITS, abs=DIGITS)
         compared += 1
     assert compared > 8
@@ -133,8 +145,12 @@ def test_at_random_states_the_integrals_grow_as_the_law_says(flown):
             - back * (read(f"autopilot/{name}-command") - read(f"autopilot/{name}-unlimited"))
             for name in integrals
         }
-        assert found == pytest.approx({name: expected[name] for name in found}, rel=DIGITS, abs=DIGITS)
-        assert read("autopilot/bank-integral-rate") == pytest.approx(expected["bank_integral"], rel=DIGITS, abs=DIGITS)
+        assert found == pytest.approx(
+            {name: expected[name] for name in found}, rel=DIGITS, abs=DIGITS
+        )
+        assert read("autopilot/bank-integral-rate") == pytest.approx(
+            expected["bank_integral"], rel=DIGITS, abs=DIGITS
+        )
 
 
 def test_the_random_states_reach_every_part_of_the_law(flown):
@@ -152,7 +168,9 @@ def test_the_random_states_reach_every_part_of_the_law(flown):
 
 
 @pytest.mark.parametrize("name", NAMES)
-def test_in_every_equilibrium_the_law_asks_for_its_controls_and_its_integrals_stand_still(designs, name):
+def test_in_every_equilibrium_the_law_asks_for_its_controls_and_its_integrals_stand_still(
+    designs, name
+):
     schedule = designs(name).design.schedule
     law = ControlLaw(schedule)
     for i in range(len(schedule.airspeeds)):
@@ -161,10 +179,18 @@ def test_in_every_equilibrium_the_law_asks_for_its_controls_and_its_integrals_st
             rates, controls = evaluate_at(law, operating_point(law, t))
             # The law damps all of the roll rate, and a nose-up turn has its own, -yaw rate times sin(pitch): what aileron and
             # rudder then lack, the integral of the heading rate adds.
-            by_roll_rate = dict(zip(("aileron", "rudder"), -gains.lateral[:, LATERAL.index("p")] * t.rates_body[0], strict=True))
+            by_roll_rate = dict(
+                zip(
+                    ("aileron", "rudder"),
+                    -gains.lateral[:, LATERAL.index("p")] * t.rates_body[0],
+                    strict=True,
+                )
+            )
             # At its own nodes a table is exact, and every error is nought.
             for control_name, value in t.inputs.items():
-                assert controls[control_name] == pytest.approx(value + by_roll_rate.get(control_name, 0.0), abs=1e-9)
+                assert controls[control_name] == pytest.approx(
+                    value + by_roll_rate.get(control_name, 0.0), abs=1e-9
+                )
             assert rates["bank_integral"] == 0.0
             assert max(abs(rates["elevator_integral"]), abs(rates["throttle_integral"])) == 0.0
             assert rates["model_acceleration"] == pytest.approx(0.0, abs=1e-12)
@@ -185,7 +211,11 @@ def test_a_gain_that_is_a_thousandth_off_would_show(flown):
                 gains[k] *= 1.001
                 patch.setattr(law, "gains", lambda *_, gains=gains: gains)
                 changed = law.evaluate(commands, measured, states)
-            moved = (abs(after[name] - value) for now, after in zip(as_it_is, changed, strict=True) for name, value in now.items())
+            moved = (
+                abs(after[name] - value)
+                for now, after in zip(as_it_is, changed, strict=True)
+                for name, value in now.items()
+            )
             largest[k] = max(largest[k], *moved)
     used = np.abs(gain_vector(schedule.gains[2][2])) > 0.0
     assert largest[used].min() > 10.0 * DIGITS

@@ -52,7 +52,13 @@ def aerosonde(designs, tmp_path_factory):
 
 def state_off_trim(found, name, size):
     """The trim's state with one measured quantity moved and every other one as it was."""
-    alpha, beta, airspeed, pitch, roll = found.alpha, found.beta, found.airspeed, found.pitch, found.roll
+    alpha, beta, airspeed, pitch, roll = (
+        found.alpha,
+        found.beta,
+        found.airspeed,
+        found.pitch,
+        found.roll,
+    )
     altitude, rates = found.altitude, list(found.rates_body)
     if name == "airspeed":
         airspeed += size  # level flight: the flight path, and so the climb rate, stays level
@@ -71,7 +77,14 @@ def state_off_trim(found, name, size):
     elif name in ("p", "q", "r"):
         rates["pqr".index(name)] += size
     velocity = body_velocity(airspeed, alpha, beta)
-    return replace(found.state(), altitude=altitude, roll=roll, pitch=pitch, velocity_body=velocity, rates_body=tuple(rates))
+    return replace(
+        found.state(),
+        altitude=altitude,
+        roll=roll,
+        pitch=pitch,
+        velocity_body=velocity,
+        rates_body=tuple(rates),
+    )
 
 
 def commands_off_trim(root, found, name, size, steps, running=False, spec=X8, properties=()):
@@ -92,7 +105,10 @@ def commands_off_trim(root, found, name, size, steps, running=False, spec=X8, pr
 
 def slope_of_commands(root, found, name, steps=3, running=False, spec=X8):
     size = SIZES.get(name, 1e-4)
-    high, low = (commands_off_trim(root, found, name, sign * size, steps, running, spec) for sign in (1.0, -1.0))
+    high, low = (
+        commands_off_trim(root, found, name, sign * size, steps, running, spec)
+        for sign in (1.0, -1.0)
+    )
     return (high - low) / (2.0 * size)
 
 
@@ -122,14 +138,21 @@ def designed_slopes(schedule, name):
         return np.array([0.0, -k_p, 0.0])
     if name == "r":
         return np.array([0.0, -k_r, 0.0])
-    if name == "roll":  # turn compensation: the equilibrium moves with bank, in controls, pitch, pitch rate and yaw rate
-        pitch, q, r = (over_bank(schedule, f) for f in (lambda t: t.pitch, lambda t: t.rates_body[1], lambda t: t.rates_body[2]))
+    if (
+        name == "roll"
+    ):  # turn compensation: the equilibrium moves with bank, in controls, pitch, pitch rate and yaw rate
+        pitch, q, r = (
+            over_bank(schedule, f)
+            for f in (lambda t: t.pitch, lambda t: t.rates_body[1], lambda t: t.rates_body[2])
+        )
         controls = [
             over_bank(schedule, lambda t, name=name: t.inputs[name]) - row[2] * q - row[3] * pitch
             for name, row in (("elevator", elevator), ("throttle", throttle))
         ]
         return np.array([controls[0], -k_roll + k_r * r, controls[1]])
-    if name == "airspeed_command":  # the equilibrium moves with the commanded airspeed, in controls and pitch
+    if (
+        name == "airspeed_command"
+    ):  # the equilibrium moves with the commanded airspeed, in controls and pitch
         pitch = over_airspeed(schedule, lambda t: t.pitch)
         controls = [
             over_airspeed(schedule, lambda t, name=name: t.inputs[name]) - row[0] - row[3] * pitch
@@ -141,18 +164,24 @@ def designed_slopes(schedule, name):
 
 
 @pytest.mark.parametrize("index", [1, 2, 3])
-def test_at_a_design_airspeed_the_held_aircraft_gets_the_equilibriums_controls(x8_schedule, x8_root, index):
+def test_at_a_design_airspeed_the_held_aircraft_gets_the_equilibriums_controls(
+    x8_schedule, x8_root, index
+):
     found = x8_schedule.level(index)
     flown = commands_off_trim(x8_root, found, "nothing", 0.0, 3)
     # The tables have their kink at wings level, the equilibrium (propeller torque) its bank 0.3 mrad beside it: that far along
     # slopes of up to 0.4 a radian, and on the aileron 2.3 a radian.
-    assert flown[[0, 2]] == pytest.approx([found.inputs["elevator"], found.inputs["throttle"]], abs=2e-4)
+    assert flown[[0, 2]] == pytest.approx(
+        [found.inputs["elevator"], found.inputs["throttle"]], abs=2e-4
+    )
     assert flown[1] == pytest.approx(found.inputs["aileron"], abs=1.5e-3)
 
 
 @pytest.mark.parametrize("bank", range(len(TRIM_BANKS)))
 @pytest.mark.parametrize("index", [1, 2, 3])
-def test_in_a_turning_equilibrium_turn_compensation_asks_for_its_elevator_and_throttle(x8_schedule, x8_root, index, bank):
+def test_in_a_turning_equilibrium_turn_compensation_asks_for_its_elevator_and_throttle(
+    x8_schedule, x8_root, index, bank
+):
     found = x8_schedule.trims[index][bank]
     flown = commands_off_trim(x8_root, found, "nothing", 0.0, 3)
     # Every error of the longitudinal feedback is nought in it, so only the table speaks; at its own nodes, in nine digits. At wings
@@ -186,7 +215,9 @@ def assert_the_feedback_is_flown(schedule, root, name):
     flown = slope_of_commands(root, found, name, spec=schedule.spec)
     system = linear_controller(ControlLaw(schedule), found)
     # As above: the description, too, is that about wings level.
-    np.testing.assert_allclose(flown, system.D[:, system.input_labels.index(name)], rtol=1e-3, atol=5e-4)
+    np.testing.assert_allclose(
+        flown, system.D[:, system.input_labels.index(name)], rtol=1e-3, atol=5e-4
+    )
 
 
 def test_sideslip_to_the_right_is_answered_by_rudder_to_the_right_at_once_and_ever_more(aerosonde):
@@ -194,22 +225,38 @@ def test_sideslip_to_the_right_is_answered_by_rudder_to_the_right_at_once_and_ev
     found = schedule.level(MIDDLE)
     properties = ("autopilot/rudder-unlimited", "autopilot/rudder-integral")
     (early, gathered), (late, more) = (
-        commands_off_trim(root, found, "beta", 0.01, steps, running=True, spec=schedule.spec, properties=properties)
+        commands_off_trim(
+            root,
+            found,
+            "beta",
+            0.01,
+            steps,
+            running=True,
+            spec=schedule.spec,
+            properties=properties,
+        )
         for steps in (20, 80)
     )
     # Air from the right: the nose has to turn right, into it. A positive rudder yaws left (C_n_dr < 0).
     assert late < early < found.inputs["rudder"]
     # The integral: its gain times sideslip times time, at a node of its table; nine digits, and sideslip as placed.
     gains = schedule.gains[MIDDLE][LEVEL_GAINS]
-    assert (more - gathered) / (60 * TIME_STEP) == pytest.approx(gains.sideslip_integral * (found.beta + 0.01), rel=1e-6)
+    assert (more - gathered) / (60 * TIME_STEP) == pytest.approx(
+        gains.sideslip_integral * (found.beta + 0.01), rel=1e-6
+    )
 
 
 @pytest.mark.parametrize(
-    ("name", "error"), [("airspeed", -1.0), ("altitude", -1.0), ("airspeed_command", 1.0), ("altitude_command", 1.0)]
+    ("name", "error"),
+    [("airspeed", -1.0), ("altitude", -1.0), ("airspeed_command", 1.0), ("altitude_command", 1.0)],
 )
-def test_the_integrals_gather_the_designed_gain_times_error_times_time(x8_schedule, x8_root, name, error):
+def test_the_integrals_gather_the_designed_gain_times_error_times_time(
+    x8_schedule, x8_root, name, error
+):
     found = x8_schedule.level(MIDDLE)
-    early, late = (slope_of_commands(x8_root, found, name, steps, running=True) for steps in (20, 80))
+    early, late = (
+        slope_of_commands(x8_root, found, name, steps, running=True) for steps in (20, 80)
+    )
     gathered = (late - early)[[0, 2]] / (60 * TIME_STEP)
     column = 0 if name.startswith("airspeed") else 1
     # Errors are constant while held, and anti-windup stays out of it: nothing saturates. A moved airspeed command moves the
@@ -218,14 +265,21 @@ def test_the_integrals_gather_the_designed_gain_times_error_times_time(x8_schedu
     np.testing.assert_allclose(gathered, expected, rtol=5e-3, atol=1e-6)
 
 
-def test_an_altitude_error_beyond_the_limit_asks_for_no_more_and_is_not_integrated(x8_schedule, x8_root):
+def test_an_altitude_error_beyond_the_limit_asks_for_no_more_and_is_not_integrated(
+    x8_schedule, x8_root
+):
     found, limit = x8_schedule.level(MIDDLE), x8_schedule.weights.altitude_error_max
-    commands = [commands_off_trim(x8_root, found, "altitude_command", e, 40, running=True) for e in (1.01 * limit, 50.0 * limit)]
+    commands = [
+        commands_off_trim(x8_root, found, "altitude_command", e, 40, running=True)
+        for e in (1.01 * limit, 50.0 * limit)
+    ]
     # The climb that such an error asks for saturates nothing, so the two fly alike to rounding.
     np.testing.assert_allclose(commands[0], commands[1], atol=1e-9)
 
 
-def test_a_heading_rate_command_moves_the_aileron_as_the_linear_description_says(x8_schedule, x8_root):
+def test_a_heading_rate_command_moves_the_aileron_as_the_linear_description_says(
+    x8_schedule, x8_root
+):
     found = x8_schedule.level(MIDDLE)
     system = linear_controller(ControlLaw(x8_schedule), found)
     size, steps = 0.02, 120
@@ -245,7 +299,9 @@ def test_a_heading_rate_command_moves_the_aileron_as_the_linear_description_says
     measured, flown = (0.5 * (fly(1.0) - fly(-1.0))).T
     inputs = np.zeros((len(system.input_labels), steps))
     inputs[system.input_labels.index("heading_rate_command")] = size
-    inputs[system.input_labels.index("heading_rate")] = measured  # a held aircraft does not turn, but its ailerons push sideways
+    inputs[system.input_labels.index("heading_rate")] = (
+        measured  # a held aircraft does not turn, but its ailerons push sideways
+    )
     time = TIME_STEP * np.arange(1, steps + 1)
     answer = control.forced_response(named(system, "autopilot"), time - TIME_STEP, inputs)
     expected = answer.outputs[system.output_labels.index("aileron")]

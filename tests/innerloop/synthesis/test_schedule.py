@@ -30,31 +30,46 @@ def test_banks_are_symmetric_about_level(shares):
     assert [-b for b in reversed(shares)] == list(shares)
 
 
-def test_the_tables_reach_past_the_largest_commanded_bank_and_gains_are_those_of_equilibria(x8_schedule):
+def test_the_tables_reach_past_the_largest_commanded_bank_and_gains_are_those_of_equilibria(
+    x8_schedule,
+):
     # The X8's guidance banks by 45 degrees, its autopilot by 5 more, and a tenth more than that is in the tables.
     assert math.degrees(x8_schedule.banks[-1]) == pytest.approx(TABLE_REACH * 50.0)
     assert set(x8_schedule.gain_banks) < set(x8_schedule.banks)
     for i, row in enumerate(x8_schedule.trims):
-        assert [t.roll for t in row] == pytest.approx(x8_schedule.banks, abs=1e-3)  # level: 0.3 mrad against the propeller's torque
+        assert [t.roll for t in row] == pytest.approx(
+            x8_schedule.banks, abs=1e-3
+        )  # level: 0.3 mrad against the propeller's torque
         for j, gains in enumerate(x8_schedule.gains[i]):
-            assert (gains.airspeed, gains.bank) == (x8_schedule.airspeeds[i], x8_schedule.gain_trim(i, j).roll)
+            assert (gains.airspeed, gains.bank) == (
+                x8_schedule.airspeeds[i],
+                x8_schedule.gain_trim(i, j).roll,
+            )
 
 
 def test_level_is_the_straight_equilibrium_of_each_airspeed(x8_schedule):
     for index, airspeed in enumerate(X8.envelope.design_airspeeds):
         found = x8_schedule.level(index)
-        assert (found.airspeed, found.yaw_rate, found.altitude) == (airspeed, 0.0, x8_schedule.altitude)
+        assert (found.airspeed, found.yaw_rate, found.altitude) == (
+            airspeed,
+            0.0,
+            x8_schedule.altitude,
+        )
 
 
 @pytest.mark.parametrize("quantity", ["elevator", "throttle", "pitch", "q"])
-def test_what_a_turn_asks_for_in_the_plane_of_symmetry_is_nearly_even_over_bank(x8_schedule, quantity):
+def test_what_a_turn_asks_for_in_the_plane_of_symmetry_is_nearly_even_over_bank(
+    x8_schedule, quantity
+):
     even, odd = even_and_odd(x8_schedule.over_bank(quantity))
     # Odd is what the propeller does: its torque, and its gyroscopic moment H r of 0.1 N m at most against 8 N m a unit of elevator.
     # A fifth of the even part in the elevator and in pitch.
     assert np.abs(odd).max() < 0.25 * np.abs(even).max()
 
 
-@pytest.mark.parametrize(("quantity", "share"), [("r", 0.05), ("yaw_rate", 0.05), ("p", 0.15), ("aileron", 0.6)])
+@pytest.mark.parametrize(
+    ("quantity", "share"), [("r", 0.05), ("yaw_rate", 0.05), ("p", 0.15), ("aileron", 0.6)]
+)
 def test_what_a_turn_asks_for_across_it_is_nearly_odd_over_bank(x8_schedule, quantity, share):
     even, odd = even_and_odd(x8_schedule.over_bank(quantity))
     # Even is what the propeller does: its gyroscopic moment H q of 0.15 N m makes sideslip to the same side in either turn, and
@@ -66,7 +81,9 @@ def test_a_turn_asks_for_more_lift_and_more_power(x8_schedule):
     banks = np.abs(TRIM_BANKS)
     order = np.argsort(banks[: LEVEL + 1])
     for side in (slice(None, LEVEL + 1), slice(None, LEVEL - 1 if LEVEL else None, -1)):
-        elevator, throttle, pitch_rate = (x8_schedule.over_bank(name)[side][order] for name in ("elevator", "throttle", "q"))
+        elevator, throttle, pitch_rate = (
+            x8_schedule.over_bank(name)[side][order] for name in ("elevator", "throttle", "q")
+        )
         assert (np.diff(elevator, axis=0) < 0.0).all()  # trailing edge up pitches up
         assert (np.diff(throttle, axis=0) > 0.0).all()
         assert (np.diff(pitch_rate, axis=0) > 0.0).all()  # nose up in a turn to either side
@@ -88,7 +105,9 @@ def test_the_bank_for_a_turn_is_that_of_the_equilibrium_with_this_yaw_rate(x8_sc
     airspeed = x8_schedule.airspeeds[index]
     turns = np.array([airspeed * t.yaw_rate / STANDARD_GRAVITY for t in x8_schedule.trims[index]])
     banks = x8_schedule.bank_for_turn(turns)[:, index]
-    np.testing.assert_allclose(banks, [t.roll for t in x8_schedule.trims[index]], atol=1e-12)  # at the nodes: rounding
+    np.testing.assert_allclose(
+        banks, [t.roll for t in x8_schedule.trims[index]], atol=1e-12
+    )  # at the nodes: rounding
 
 
 @pytest.mark.parametrize("bank", [-50.0, -28.0, -11.0, 11.0, 28.0, 50.0])
@@ -96,10 +115,14 @@ def test_between_equilibria_the_bank_for_a_turn_is_within_a_tenth_of_a_degree(x8
     found = trim(Fdm(X8), airspeed=20.0, altitude=100.0, bank=math.radians(bank))
     turn = np.array([20.0 * found.yaw_rate / STANDARD_GRAVITY])
     # tan(bank) is nearly proportional to V omega/g; half-way between two equilibria it is off by second order of that "nearly".
-    assert math.degrees(float(x8_schedule.bank_for_turn(turn)[0, 2])) == pytest.approx(bank, abs=0.1)
+    assert math.degrees(float(x8_schedule.bank_for_turn(turn)[0, 2])) == pytest.approx(
+        bank, abs=0.1
+    )
 
 
-def test_past_the_steepest_equilibrium_the_bank_goes_on_growing_and_stays_short_of_a_right_angle(x8_schedule):
+def test_past_the_steepest_equilibrium_the_bank_goes_on_growing_and_stays_short_of_a_right_angle(
+    x8_schedule,
+):
     turns = np.linspace(-3.0, 3.0, 61)
     banks = x8_schedule.bank_for_turn(turns)
     assert banks.shape == (61, 5)
@@ -118,8 +141,17 @@ def test_a_table_has_a_row_for_each_bank_and_a_column_for_each_airspeed(x8_sched
 
 def test_a_slower_heading_rate_model_is_designed_when_asked_for(x8_design, tmp_path):
     old = x8_design.schedule
-    grid = Grid(spec=X8, envelope=old.envelope, altitude=old.altitude, trims=old.trims, models=old.models, edges=old.edges)
-    schedule = schedule_at(grid, x8_design.bandwidths.scaled(lateral=3.0 / x8_design.bandwidths.lateral))
+    grid = Grid(
+        spec=X8,
+        envelope=old.envelope,
+        altitude=old.altitude,
+        trims=old.trims,
+        models=old.models,
+        edges=old.edges,
+    )
+    schedule = schedule_at(
+        grid, x8_design.bandwidths.scaled(lateral=3.0 / x8_design.bandwidths.lateral)
+    )
     aircraft = AutopilotedAircraft(X8, write_root(schedule, tmp_path))
     flown = flown_step(aircraft, schedule.level(1), "heading_rate", 0.1, 6.0)
     # From 10 to 90 % a second-order answer with a damping of 0.9 takes 2.9/omega_n (1.8 at 0.5, 3.4 at 1: control textbooks); the

@@ -11,15 +11,34 @@ from common.physics.units import STANDARD_GRAVITY
 from innerloop.synthesis import weights
 from innerloop.synthesis.schedule import LEVEL_GAINS
 from innerloop.synthesis.servo_lqr import design_gains
-from innerloop.synthesis.weights import LoopBandwidths, control_weights, design_weights, reachable_bandwidths
+from innerloop.synthesis.weights import (
+    LoopBandwidths,
+    control_weights,
+    design_weights,
+    reachable_bandwidths,
+)
 
-STATES = ["airspeed", "alpha", "beta", "p", "q", "r", "roll", "pitch", "altitude", "elevator_effect", "throttle_effect"]
+STATES = [
+    "airspeed",
+    "alpha",
+    "beta",
+    "p",
+    "q",
+    "r",
+    "roll",
+    "pitch",
+    "altitude",
+    "elevator_effect",
+    "throttle_effect",
+]
 INPUTS = ["elevator", "aileron", "throttle", "rudder"]
 LAG, ENGINE_LAG = 0.04, 0.5  # s, of elevator and engine; aileron and rudder have none
 DELAY = 0.0125  # s, of the autopilot's steps
 
 
-def simple(aileron=30.0, roll_damping=-4.0, elevator=-20.0, z_alpha=-3.0, rudder=5.0, yaw_stiffness=8.0):
+def simple(
+    aileron=30.0, roll_damping=-4.0, elevator=-20.0, z_alpha=-3.0, rudder=5.0, yaw_stiffness=8.0
+):
     """An aircraft with one number for each thing that the bandwidths depend on [1/s, 1/s^2]."""
     a, b = np.zeros((11, 11)), np.zeros((11, 4))
     entries = {
@@ -43,7 +62,15 @@ def simple(aileron=30.0, roll_damping=-4.0, elevator=-20.0, z_alpha=-3.0, rudder
     }
     for (row, column), value in forcing.items():
         b[STATES.index(row), INPUTS.index(column)] = value
-    return LinearModel(A=a, B=b, C=np.eye(11), D=np.zeros((11, 4)), state_labels=STATES, input_labels=INPUTS, output_labels=STATES)
+    return LinearModel(
+        A=a,
+        B=b,
+        C=np.eye(11),
+        D=np.zeros((11, 4)),
+        state_labels=STATES,
+        input_labels=INPUTS,
+        output_labels=STATES,
+    )
 
 
 BANK = 0.6  # rad; half of it is the step that half the authority is to turn
@@ -61,7 +88,9 @@ BANK = 0.6  # rad; half of it is the step that half the authority is to turn
     ],
 )
 def test_the_turn_is_as_fast_as_delay_authority_and_roll_damping_allow(changes, expected):
-    assert reachable_bandwidths([simple(**changes)], BANK).lateral == pytest.approx(expected, rel=1e-12)
+    assert reachable_bandwidths([simple(**changes)], BANK).lateral == pytest.approx(
+        expected, rel=1e-12
+    )
 
 
 @pytest.mark.parametrize(
@@ -76,13 +105,19 @@ def test_the_turn_is_as_fast_as_delay_authority_and_roll_damping_allow(changes, 
     ],
 )
 def test_altitude_is_as_fast_as_delay_authority_and_lift_allow(changes, expected):
-    assert reachable_bandwidths([simple(**changes)], BANK).longitudinal == pytest.approx(expected, rel=1e-12)
+    assert reachable_bandwidths([simple(**changes)], BANK).longitudinal == pytest.approx(
+        expected, rel=1e-12
+    )
 
 
 def test_airspeed_is_as_fast_as_the_engine_and_slower_than_altitude():
     # Lift allows 2.25 rad/s, of which 0.27; the engine 0.3 over its lag.
-    assert reachable_bandwidths([simple()], BANK).airspeed == pytest.approx(0.3 / (ENGINE_LAG + DELAY), rel=1e-12)
-    assert reachable_bandwidths([simple(z_alpha=-1.2)], BANK).airspeed == pytest.approx(0.27 * 0.9, rel=1e-12)
+    assert reachable_bandwidths([simple()], BANK).airspeed == pytest.approx(
+        0.3 / (ENGINE_LAG + DELAY), rel=1e-12
+    )
+    assert reachable_bandwidths([simple(z_alpha=-1.2)], BANK).airspeed == pytest.approx(
+        0.27 * 0.9, rel=1e-12
+    )
 
 
 def test_the_slowest_of_all_airspeeds_decides_each_axis_by_itself():
@@ -108,7 +143,11 @@ def test_the_controls_may_do_what_moves_their_axis_at_its_frequency_against_its_
 
 def test_an_aircraft_without_a_rudder_has_no_weight_for_it(x8_design):
     schedule = x8_design.schedule
-    assert math.isnan(control_weights(schedule.models[2][LEVEL_GAINS], x8_design.bandwidths, schedule.weights).rudder)
+    assert math.isnan(
+        control_weights(
+            schedule.models[2][LEVEL_GAINS], x8_design.bandwidths, schedule.weights
+        ).rudder
+    )
 
 
 def test_deviations_are_those_that_a_pitch_of_three_tenths_makes_in_a_unit_of_time():
@@ -132,7 +171,10 @@ def test_with_half_the_speed_everything_takes_twice_as_long():
         "roll_rate": -1, "sideslip": 0, "heading_integral": 1, "sideslip_integral": 1, "model_frequency": -1, "model_damping": 0,
         "altitude_error_max": 1, "airspeed_error_max": 1, "anti_windup_rate": -1,
     }  # fmt: skip
-    ratios = {field.name: getattr(slow, field.name) / getattr(quick, field.name) for field in fields(quick)}
+    ratios = {
+        field.name: getattr(slow, field.name) / getattr(quick, field.name)
+        for field in fields(quick)
+    }
     assert ratios == pytest.approx({name: 2.0**exponent for name, exponent in exponents.items()})
 
 
@@ -171,7 +213,9 @@ def test_a_dynamically_similar_aircraft_gets_the_similar_autopilot(monkeypatch, 
     def designed(models, airspeed, level):
         bandwidths = reachable_bandwidths(models, bank)
         asked = design_weights(bandwidths, airspeed)
-        return bandwidths, design_gains(models[2], level, asked, control_weights(models[2], bandwidths, asked))
+        return bandwidths, design_gains(
+            models[2], level, asked, control_weights(models[2], bandwidths, asked)
+        )
 
     level = schedule.level(2)
     bandwidths, gains = designed(models, airspeed, level)
@@ -181,11 +225,30 @@ def test_a_dynamically_similar_aircraft_gets_the_similar_autopilot(monkeypatch, 
     slower, scaled = designed([similar(model) for model in models], 2.0 * airspeed, larger)
     assert astuple(slower) == pytest.approx([0.5 * s for s in astuple(bandwidths)])
     # The same deflection for a deviation that is as large for the larger aircraft: gains are over the deviation's scale.
-    units = np.array([SCALES[n] if n != "pitch" else 1.0 for n in ("airspeed", "climb_rate", "q", "pitch", "altitude")])
-    np.testing.assert_allclose(scaled.longitudinal * units, gains.longitudinal, rtol=1e-5, atol=1e-9)
-    np.testing.assert_allclose(scaled.longitudinal_integral * 2.0 * np.array([2.0, 4.0]), gains.longitudinal_integral, rtol=1e-5)
-    np.testing.assert_allclose(scaled.lateral * np.array([0.5, 0.5, 1.0, 1.0]), gains.lateral, rtol=1e-5, atol=1e-9)
-    assert scaled.heading_integral == pytest.approx(gains.heading_integral, rel=1e-5)  # heading is an angle
+    units = np.array(
+        [
+            SCALES[n] if n != "pitch" else 1.0
+            for n in ("airspeed", "climb_rate", "q", "pitch", "altitude")
+        ]
+    )
+    np.testing.assert_allclose(
+        scaled.longitudinal * units, gains.longitudinal, rtol=1e-5, atol=1e-9
+    )
+    np.testing.assert_allclose(
+        scaled.longitudinal_integral * 2.0 * np.array([2.0, 4.0]),
+        gains.longitudinal_integral,
+        rtol=1e-5,
+    )
+    np.testing.assert_allclose(
+        scaled.lateral * np.array([0.5, 0.5, 1.0, 1.0]), gains.lateral, rtol=1e-5, atol=1e-9
+    )
+    assert scaled.heading_integral == pytest.approx(
+        gains.heading_integral, rel=1e-5
+    )  # heading is an angle
     assert 2.0 * scaled.sideslip_integral == pytest.approx(gains.sideslip_integral, rel=1e-5)
-    np.testing.assert_allclose(0.5 * scaled.roll_rate_feedforward, gains.roll_rate_feedforward, rtol=1e-9)
-    np.testing.assert_allclose(0.25 * scaled.roll_acceleration_feedforward, gains.roll_acceleration_feedforward, rtol=1e-9)
+    np.testing.assert_allclose(
+        0.5 * scaled.roll_rate_feedforward, gains.roll_rate_feedforward, rtol=1e-9
+    )
+    np.testing.assert_allclose(
+        0.25 * scaled.roll_acceleration_feedforward, gains.roll_acceleration_feedforward, rtol=1e-9
+    )

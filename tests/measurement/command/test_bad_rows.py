@@ -25,12 +25,24 @@ def refusal(logged, capsys):
 @pytest.mark.parametrize(
     ("column", "rows", "value", "told"),
     [
-        ("so2_ppb", [20], 50000.0, "SO2 is 50000 ppb in row 22; its sensor reads 20000 ppb at most (range_high)"),
-        ("so2_ppb", [20, 30], 50000.0, "SO2 is 50000 ppb in row 22, and 1 more; its sensor reads 20000 ppb at most"),
+        (
+            "so2_ppb",
+            [20],
+            50000.0,
+            "SO2 is 50000 ppb in row 22; its sensor reads 20000 ppb at most (range_high)",
+        ),
+        (
+            "so2_ppb",
+            [20, 30],
+            50000.0,
+            "SO2 is 50000 ppb in row 22, and 1 more; its sensor reads 20000 ppb at most",
+        ),
         ("co2_ppm", [40], 6000.0, "CO2 is 6000 ppm in row 42; its sensor reads 5000 ppm at most"),
     ],
 )
-def test_a_reading_beyond_the_range_of_its_sensor_is_refused_with_its_row(logged, capsys, column, rows, value, told):
+def test_a_reading_beyond_the_range_of_its_sensor_is_refused_with_its_row(
+    logged, capsys, column, rows, value, told
+):
     with_values(logged, column, rows, value)
     error = refusal(logged, capsys)
     assert told in error
@@ -42,7 +54,10 @@ def test_a_calibration_with_air_without_co2_is_refused_with_its_row(logged, caps
     with_values(logged, "co2_ppm", range(40, 60), 2.0)
     error = refusal(logged, capsys)
     # Air has 250 ppm at least; noise of 1 ppm, a zero of 5 ppm (1 sigma) and 1 ppm for what is not stated, 8 times: 42 ppm.
-    assert "CO2 is 2 ppm in row 42, and 19 more are as low; air, noise, zero and other gases explain 208 ppm at least" in error
+    assert (
+        "CO2 is 2 ppm in row 42, and 19 more are as low; air, noise, zero and other gases explain 208 ppm at least"
+        in error
+    )
     assert "or is of a calibration from which the sensor has not recovered, leave it empty" in error
 
 
@@ -98,9 +113,14 @@ def test_a_place_that_no_aircraft_reaches_is_refused_with_its_row(logged, capsys
     if column == "latitude_deg":
         in_degrees(logged)
     table = pd.read_csv(logged)
-    with_values(logged, column, [70], table[column][70] + (1.0 if column == "latitude_deg" else 111_195.0))
+    with_values(
+        logged, column, [70], table[column][70] + (1.0 if column == "latitude_deg" else 111_195.0)
+    )
     error = refusal(logged, capsys)
-    assert "the place in row 72 is 111.2 km from that in row 71, 1 s earlier, which is faster than 340 m/s" in error
+    assert (
+        "the place in row 72 is 111.2 km from that in row 71, 1 s earlier, which is faster than 340 m/s"
+        in error
+    )
     assert "(1 of 2 such jumps)" in error
 
 
@@ -126,13 +146,31 @@ HEAD = "time_s,so2_ppb,co2_ppm\n"
             "# UAV 3\n# flight 7\n" + HEAD + ROWS,
             "has in line 3 more values than its head line has names ('# UAV 3'): the first line has to name every column",
         ),
-        ("# UAV 3\n" + HEAD + ROWS, "has rows with more values than its head line has names ('# UAV 3'): the first line has to"),
+        (
+            "# UAV 3\n" + HEAD + ROWS,
+            "has rows with more values than its head line has names ('# UAV 3'): the first line has to",
+        ),
         (HEAD + ROWS.replace(".", ","), "and write decimals with a point"),
-        (ROWS, "has no head line, but numbers in its first line; add one that names every column, as in time_s, so2_ppb, co2_ppm"),
-        (ROWS.replace(".0", ".5").replace("2.5", "0.5"), "has no head line, but numbers in its first line"),
-        (HEAD + '"0,0","2,5","420,1"\n', "or 2024-05-01T12:00:00.0; write decimals with a point, as in 0.0"),
-        (HEAD + '0,"2,5",420\n', "it must hold numbers, or be empty; write decimals with a point, as in 2.5"),
-        ("time_s,so2_ppb,so2_ppb,co2_ppm\n1,2,2,420\n", "has the column 'so2_ppb' twice; rename or remove one of them"),
+        (
+            ROWS,
+            "has no head line, but numbers in its first line; add one that names every column, as in time_s, so2_ppb, co2_ppm",
+        ),
+        (
+            ROWS.replace(".0", ".5").replace("2.5", "0.5"),
+            "has no head line, but numbers in its first line",
+        ),
+        (
+            HEAD + '"0,0","2,5","420,1"\n',
+            "or 2024-05-01T12:00:00.0; write decimals with a point, as in 0.0",
+        ),
+        (
+            HEAD + '0,"2,5",420\n',
+            "it must hold numbers, or be empty; write decimals with a point, as in 2.5",
+        ),
+        (
+            "time_s,so2_ppb,so2_ppb,co2_ppm\n1,2,2,420\n",
+            "has the column 'so2_ppb' twice; rename or remove one of them",
+        ),
         (HEAD + '"' + ROWS, "has a quotation mark in line 2 that is not closed; remove it"),
     ],
 )
@@ -157,11 +195,16 @@ def test_a_clock_that_is_set_back_is_told_apart_from_rows_that_are_not_sorted(lo
 def test_a_row_without_a_time_is_named(logged, capsys, dates):
     table = pd.read_csv(logged)
     if dates:
-        table["time_s"] = (pd.Timestamp("2026-06-01T10:00:00") + pd.to_timedelta(table["time_s"], unit="s")).astype(str)
+        table["time_s"] = (
+            pd.Timestamp("2026-06-01T10:00:00") + pd.to_timedelta(table["time_s"], unit="s")
+        ).astype(str)
     table.loc[20, "time_s"] = np.nan
     table.to_csv(logged, index=False)
     error = refusal(logged, capsys)
-    assert error == f"error: '{logged}' has no time in row 22; give a time in every row, or remove the row\n"
+    assert (
+        error
+        == f"error: '{logged}' has no time in row 22; give a time in every row, or remove the row\n"
+    )
 
 
 @pytest.mark.parametrize(("row", "word"), [(301, "Mean"), (100, "time_s"), (0, "s")])
@@ -170,7 +213,9 @@ def test_a_row_of_words_among_readings_is_named(logged, capsys, row, word):
     lines = logged.read_text(encoding="utf-8").splitlines()
     lines.insert(1 + row, word + "," * lines[0].count(","))
     logged.write_text("\n".join(lines), encoding="utf-8")
-    assert f"time '{word}' in column 'time_s' cannot be read (row {row + 2})" in refusal(logged, capsys)
+    assert f"time '{word}' in column 'time_s' cannot be read (row {row + 2})" in refusal(
+        logged, capsys
+    )
 
 
 def test_dates_and_times_of_digits_alone_are_no_seconds(logged, capsys):
@@ -178,4 +223,6 @@ def test_dates_and_times_of_digits_alone_are_no_seconds(logged, capsys):
     table = pd.read_csv(logged)
     moments = pd.Timestamp("2026-06-01T10:00:00") + pd.to_timedelta(table["time_s"], unit="s")
     table.assign(time_s=moments.dt.strftime("%Y%m%d%H%M%S")).to_csv(logged, index=False)
-    assert "time 20260601100000 in column 'time_s' is a date and time without marks" in refusal(logged, capsys)
+    assert "time 20260601100000 in column 'time_s' is a date and time without marks" in refusal(
+        logged, capsys
+    )

@@ -30,7 +30,9 @@ def test_the_command_does_not_write_over_a_run_of_another_kind(logged, capsys, m
     assert (out / "manifest.json").read_text(encoding="utf-8") == manifest
 
 
-def test_two_logs_of_one_name_do_not_share_the_default_directory(logged, capsys, tmp_path, monkeypatch):
+def test_two_logs_of_one_name_do_not_share_the_default_directory(
+    logged, capsys, tmp_path, monkeypatch
+):
     monkeypatch.chdir(tmp_path)
     (tmp_path / "other").mkdir()
     other = tmp_path / "other" / logged.name
@@ -56,11 +58,17 @@ def test_an_estimate_made_anew_leaves_no_report_of_the_older_one(logged):
     (out / "export").mkdir()
     (out / "export" / "flight.kml").write_text("of the older estimate", encoding="utf-8")
     assert run(logged) == 0
-    assert sorted(path.name for path in out.iterdir()) == ["estimate.json", "manifest.json", "samples.csv"]
+    assert sorted(path.name for path in out.iterdir()) == [
+        "estimate.json",
+        "manifest.json",
+        "samples.csv",
+    ]
 
 
 @pytest.mark.parametrize("console", [True, False])
-def test_command_and_revision_are_recorded_as_those_of_flights(logged, monkeypatch, tmp_path, console):
+def test_command_and_revision_are_recorded_as_those_of_flights(
+    logged, monkeypatch, tmp_path, console
+):
     shared = pytest.importorskip("common.provenance", reason="measurement stands alone here")
     arguments = [str(logged), "--out", "m", "--no-report"]
     monkeypatch.chdir(tmp_path)

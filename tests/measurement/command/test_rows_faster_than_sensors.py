@@ -19,19 +19,25 @@ def estimated(logged, capsys, table):
     """Estimate a table; return what its directory and the console say."""
     table.to_csv(logged, index=False)
     assert run(logged) == 0
-    return json.loads((logged.parent / "out" / "estimate.json").read_text(encoding="utf-8")), capsys.readouterr().out
+    return json.loads(
+        (logged.parent / "out" / "estimate.json").read_text(encoding="utf-8")
+    ), capsys.readouterr().out
 
 
 def held(table, rows):
     """Return the table, a row per second, with so many rows a second, each with the latest reading."""
-    faster = table.loc[np.floor(np.arange(rows * len(table)) / rows).astype(int)].reset_index(drop=True)
+    faster = table.loc[np.floor(np.arange(rows * len(table)) / rows).astype(int)].reset_index(
+        drop=True
+    )
     return faster.assign(time_s=np.arange(len(faster)) / rows)
 
 
 @pytest.mark.usefixtures("briefly")
 @pytest.mark.parametrize("between", ["repeated", "empty"])
 @pytest.mark.parametrize("rows", [2, 10])
-def test_a_log_that_is_faster_than_its_sensors_has_the_estimate_of_their_readings(logged, capsys, rows, between):
+def test_a_log_that_is_faster_than_its_sensors_has_the_estimate_of_their_readings(
+    logged, capsys, rows, between
+):
     table = pd.read_csv(logged)
     expected, words = estimated(logged, capsys, table)
     assert "rows:" not in words
@@ -43,7 +49,10 @@ def test_a_log_that_is_faster_than_its_sensors_has_the_estimate_of_their_reading
     # Readings and times are the same numbers.
     assert found["estimate"] == expected["estimate"]
     assert found["estimate"]["quality"] == "B"
-    assert f"rows: {301 * rows:,}, of which 301 have a new reading; the others repeat one, or have none, and do not count" in words
+    assert (
+        f"rows: {301 * rows:,}, of which 301 have a new reading; the others repeat one, or have none, and do not count"
+        in words
+    )
     assert found["gaps"]["missing"] == expected["gaps"]["missing"]
     assert found["gaps"]["gaps"] == []
 

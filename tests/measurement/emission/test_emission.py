@@ -14,7 +14,9 @@ CONTAINER = ship_preset("container")
 
 
 def names_in(file):
-    return sorted(tomllib.loads(files("measurement.emission").joinpath(file).read_text(encoding="utf-8")))
+    return sorted(
+        tomllib.loads(files("measurement.emission").joinpath(file).read_text(encoding="utf-8"))
+    )
 
 
 # Worked example of the specification, section 2, printed to three digits: kg/s, CO2 mol/s, SO2 mmol/s, NOx g/s, FSC read.
@@ -66,7 +68,9 @@ def test_the_exhaust_of_the_worked_example():
     assert emission.buoyancy_flux == pytest.approx(49.6, rel=0.01)
     assert emission.momentum_flux == pytest.approx(124.0, rel=0.015)
     # At 12 m/s the ship needs these 10 MW.
-    assert emission_of(CONTAINER, fuel_preset("mgo"), speed=12.0).power == pytest.approx(10e6, rel=1e-3)
+    assert emission_of(CONTAINER, fuel_preset("mgo"), speed=12.0).power == pytest.approx(
+        10e6, rel=1e-3
+    )
 
 
 def test_power_is_the_cube_of_speed_and_not_below_dead_slow():
@@ -83,7 +87,9 @@ def test_at_full_power_there_is_no_correction_for_part_load():
     assert emission.fuel_rate == pytest.approx(185e-3 * 1.025 * CONTAINER.power_max / 3.6e6)
     volume = emission.exhaust_speed * math.pi * CONTAINER.stack_diameter**2 / 4.0
     mass = CONTAINER.exhaust_per_energy_kg_kwh * CONTAINER.power_max / 3.6e6
-    assert volume == pytest.approx(mass * 8.314462618 * emission.exhaust_temperature / (28.8e-3 * 101325.0))
+    assert volume == pytest.approx(
+        mass * 8.314462618 * emission.exhaust_temperature / (28.8e-3 * 101325.0)
+    )
 
 
 @pytest.mark.parametrize("ship", names_in("ships.toml"))
@@ -113,15 +119,36 @@ def test_sulphur_changes_sulphur_alone():
         (lambda: fuel_preset("mgo", -0.1), "FSC of mgo is -0.1"),
         (lambda: fuel_preset("mgo", math.nan), "FSC of mgo is nan"),
         (lambda: fuel_preset("coal"), "there are mgo, vlsfo, hfo"),
-        (lambda: Fuel(name="x", title="", residual=False, co2_per_fuel=4.0, sulphur_percent=0.1), "CO2 of x is 4 kg/kg"),
+        (
+            lambda: Fuel(name="x", title="", residual=False, co2_per_fuel=4.0, sulphur_percent=0.1),
+            "CO2 of x is 4 kg/kg",
+        ),
         (lambda: ship_preset("canoe"), "there are container, coaster, tanker, cruise"),
         (lambda: emission_of(CONTAINER, fuel_preset("mgo")), "neither is given"),
-        (lambda: emission_of(CONTAINER, fuel_preset("mgo"), speed=1.0, power=1.0), "both are given"),
-        (lambda: emission_of(CONTAINER, fuel_preset("mgo"), speed=13.1), "speed of container is 13.1 m/s"),
-        (lambda: emission_of(CONTAINER, fuel_preset("mgo"), speed=-1.0), "speed of container is -1 m/s"),
-        (lambda: emission_of(CONTAINER, fuel_preset("mgo"), power=0.0), "power of container is 0 W"),
-        (lambda: emission_of(CONTAINER, fuel_preset("mgo"), power=13e6), "power of container is 1.3e"),
-        (lambda: emission_of(CONTAINER, fuel_preset("mgo"), speed=12.0, air_temperature=15.0), "air temperature is 15 K"),
+        (
+            lambda: emission_of(CONTAINER, fuel_preset("mgo"), speed=1.0, power=1.0),
+            "both are given",
+        ),
+        (
+            lambda: emission_of(CONTAINER, fuel_preset("mgo"), speed=13.1),
+            "speed of container is 13.1 m/s",
+        ),
+        (
+            lambda: emission_of(CONTAINER, fuel_preset("mgo"), speed=-1.0),
+            "speed of container is -1 m/s",
+        ),
+        (
+            lambda: emission_of(CONTAINER, fuel_preset("mgo"), power=0.0),
+            "power of container is 0 W",
+        ),
+        (
+            lambda: emission_of(CONTAINER, fuel_preset("mgo"), power=13e6),
+            "power of container is 1.3e",
+        ),
+        (
+            lambda: emission_of(CONTAINER, fuel_preset("mgo"), speed=12.0, air_temperature=15.0),
+            "air temperature is 15 K",
+        ),
         (lambda: fsc_factor(87.0), "carbon fraction is 87"),
     ],
 )

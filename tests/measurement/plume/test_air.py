@@ -5,7 +5,9 @@ from measurement.errors import MeasurementError
 from measurement.plume.air import MarineAir
 
 
-@pytest.mark.parametrize(("wind", "friction"), [(3.0, 0.095), (5.0, 0.164), (7.0, 0.242), (10.0, 0.371), (15.0, 0.612)])
+@pytest.mark.parametrize(
+    ("wind", "friction"), [(3.0, 0.095), (5.0, 0.164), (7.0, 0.242), (10.0, 0.371), (15.0, 0.612)]
+)
 def test_friction_velocity_over_the_sea(wind, friction):
     # Section 1.4 of the specification, three digits.
     assert MarineAir(wind_speed=wind).friction_velocity == pytest.approx(friction, abs=6e-4)
@@ -26,7 +28,11 @@ def test_the_air_of_the_worked_example_has_42_moles_a_cubic_metre():
 
 
 def test_in_a_calm_turbulence_is_that_of_half_a_metre_a_second():
-    assert MarineAir(wind_speed=0.0).friction_velocity == MarineAir(wind_speed=0.5).friction_velocity > 0.0
+    assert (
+        MarineAir(wind_speed=0.0).friction_velocity
+        == MarineAir(wind_speed=0.5).friction_velocity
+        > 0.0
+    )
 
 
 @pytest.mark.parametrize(

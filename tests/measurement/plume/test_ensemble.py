@@ -23,7 +23,9 @@ def test_the_mean_of_realisations_is_the_regulatory_gaussian(structure):
     for seed in range(60):
         plume = straight(WIND, TRUE_WIND, seed=seed, structure_intensity=structure, **COMMON)
         time = np.repeat(times, 15)
-        sample = plume.sample(time, WIND * time - DISTANCE, np.tile(across, len(times)), np.tile(up, len(times)))
+        sample = plume.sample(
+            time, WIND * time - DISTANCE, np.tile(across, len(times)), np.tile(up, len(times))
+        )
         values.append(sample.dilution.reshape(len(times), 15))
     values = np.concatenate(values)
     error = values.std(axis=0) / np.sqrt(len(values))
@@ -34,7 +36,9 @@ def test_the_mean_of_realisations_is_the_regulatory_gaussian(structure):
 
 def test_the_mean_plume_is_the_gaussian_of_the_total_spreads():
     # Section 2 at 200 m, 10 m/s, wind 10: relative 9.1 m, meander 12.7 and 6.7 m, three digits; the total is their root of squares.
-    of = straight(WIND, TRUE_WIND, mean=True, **COMMON).sample(*np.array([[0.0], [-DISTANCE], [0.0], [56.8]]))
+    of = straight(WIND, TRUE_WIND, mean=True, **COMMON).sample(
+        *np.array([[0.0], [-DISTANCE], [0.0], [56.8]])
+    )
     assert of.sigma_y[0] == pytest.approx(np.hypot(9.1, 12.7), abs=0.1)
     assert of.sigma_z[0] == pytest.approx(np.hypot(9.1, 6.7), abs=0.1)
     assert of.centre_across[0] == 0.0
@@ -42,7 +46,9 @@ def test_the_mean_plume_is_the_gaussian_of_the_total_spreads():
 
 
 def test_a_realisation_is_higher_and_narrower_than_the_mean():
-    mean = straight(WIND, TRUE_WIND, mean=True, **COMMON).sample(*np.array([[0.0], [-DISTANCE], [0.0], [56.8]]))
+    mean = straight(WIND, TRUE_WIND, mean=True, **COMMON).sample(
+        *np.array([[0.0], [-DISTANCE], [0.0], [56.8]])
+    )
     one = straight(WIND, TRUE_WIND, **COMMON).sample(*np.array([[0.0], [-DISTANCE], [0.0], [56.8]]))
     # Section 0, item 6: 1.1 to 2.1 times the mean on the axis at 200 m; the table has 171 over 80 ppm here.
     assert one.axis_dilution[0] / mean.axis_dilution[0] == pytest.approx(171.0 / 80.0, rel=0.02)
@@ -50,7 +56,9 @@ def test_a_realisation_is_higher_and_narrower_than_the_mean():
 
 
 def test_without_meander_the_centre_is_the_axis():
-    of = straight(WIND, TRUE_WIND, meander=False, **COMMON).sample(*np.array([[0.0], [-DISTANCE], [0.0], [56.8]]))
+    of = straight(WIND, TRUE_WIND, meander=False, **COMMON).sample(
+        *np.array([[0.0], [-DISTANCE], [0.0], [56.8]])
+    )
     assert of.centre_across[0] == 0.0
     assert of.centre_height[0] == of.axis_height[0]
     assert of.sigma_y[0] == pytest.approx(9.1, abs=0.05)
@@ -60,8 +68,13 @@ def test_fluctuations_within_the_plume_have_the_intensity_asked_for():
     times = np.arange(0.0, 400.0, 5.0)
     flat, rough = [], []
     for seed in range(20):
-        both = [straight(WIND, TRUE_WIND, seed=seed, structure_intensity=i, **COMMON) for i in (0.0, 0.4)]
-        centre = both[0].sample(times, WIND * times - DISTANCE, np.zeros(len(times)), np.full(len(times), 57.0))
+        both = [
+            straight(WIND, TRUE_WIND, seed=seed, structure_intensity=i, **COMMON)
+            for i in (0.0, 0.4)
+        ]
+        centre = both[0].sample(
+            times, WIND * times - DISTANCE, np.zeros(len(times)), np.full(len(times), 57.0)
+        )
         # The plume goes south: across is to the west.
         at = (times, WIND * times - DISTANCE, -centre.centre_across, centre.centre_height)
         flat.append(both[0].sample(*at).dilution)

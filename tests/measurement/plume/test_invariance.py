@@ -14,24 +14,48 @@ TRACK = turning(8.0, 4.0, 1.0)
 def plume(track, seed=3, **settings):
     time, north, east = track
     chosen = PlumeSettings(age_max=200.0, **settings)
-    return FluctuatingPlume(EMISSION, air(7.0), time=time, north=north, east=east, source_height=HEIGHT, settings=chosen, seed=seed)
+    return FluctuatingPlume(
+        EMISSION,
+        air(7.0),
+        time=time,
+        north=north,
+        east=east,
+        source_height=HEIGHT,
+        settings=chosen,
+        seed=seed,
+    )
 
 
 def flight(count=5000):
     """Times and places of a UAV that weaves about the plume's axis, some of them outside of it."""
     time = np.linspace(0.0, 240.0, count)
     of = plume(TRACK)
-    place = np.array([np.concatenate(of.axis(when, np.array([15.0 + 0.1 * when]))) for when in time[:: count // 50]])
+    place = np.array(
+        [
+            np.concatenate(of.axis(when, np.array([15.0 + 0.1 * when])))
+            for when in time[:: count // 50]
+        ]
+    )
     north, east, up = (np.interp(time, time[:: count // 50], column) for column in place.T)
-    return time, north + 40.0 * np.sin(time), east + 40.0 * np.cos(1.3 * time), up + 10.0 * np.sin(0.7 * time)
+    return (
+        time,
+        north + 40.0 * np.sin(time),
+        east + 40.0 * np.cos(1.3 * time),
+        up + 10.0 * np.sin(0.7 * time),
+    )
 
 
 def assert_same(one, other, rtol, names=NAMES):
     for name in names:
-        np.testing.assert_allclose(getattr(one, name), getattr(other, name), rtol=rtol, atol=1e-6 * rtol, err_msg=name)
+        np.testing.assert_allclose(
+            getattr(one, name), getattr(other, name), rtol=rtol, atol=1e-6 * rtol, err_msg=name
+        )
 
 
-@pytest.mark.parametrize(("turn", "shift", "later"), [(0.7, (0.0, 0.0), 0.0), (0.0, (5e4, -2e4), 0.0), (0.0, (0.0, 0.0), 1e4)])
+@pytest.mark.parametrize(
+    ("turn", "shift", "later"),
+    [(0.7, (0.0, 0.0), 0.0), (0.0, (5e4, -2e4), 0.0), (0.0, (0.0, 0.0), 1e4)],
+)
 def test_where_and_when_the_frame_begins_changes_nothing(turn, shift, later):
     def seen(north, east):
         return (
@@ -42,7 +66,9 @@ def test_where_and_when_the_frame_begins_changes_nothing(turn, shift, later):
     time, north, east = TRACK
     when, there_north, there_east, up = flight()
     one = plume(TRACK).sample(when, there_north, there_east, up)
-    other = plume((time + later, *seen(north, east))).sample(when + later, *seen(there_north, there_east), up)
+    other = plume((time + later, *seen(north, east))).sample(
+        when + later, *seen(there_north, there_east), up
+    )
     # Rounding of 5e4 m and of 1e4 s is 1e-11, over spreads of 10 m and times 10 in the tails; ages are differences of such times.
     assert_same(one, other, 1e-6)
 
@@ -57,7 +83,9 @@ def test_any_order_and_any_chunks_give_the_same():
     for name in NAMES:
         expected = getattr(whole, name)
         np.testing.assert_array_equal(getattr(shuffled, name), expected[order], err_msg=name)
-        np.testing.assert_array_equal(np.concatenate([getattr(part, name) for part in parts]), expected, err_msg=name)
+        np.testing.assert_array_equal(
+            np.concatenate([getattr(part, name) for part in parts]), expected, err_msg=name
+        )
 
 
 def test_the_same_seed_is_the_same_plume_and_another_is_not():
@@ -89,6 +117,12 @@ def test_a_straight_line_of_parcels_is_the_slender_plume():
     np.testing.assert_allclose(sample.across, across, atol=1e-7)
     # Section 1.5, of the values that the sample itself gives.
     y, z, h = (sample.across - sample.centre_across) / sample.sigma_y, 70.0, sample.centre_height
-    column = np.exp(-0.5 * ((z - h) / sample.sigma_z) ** 2) + np.exp(-0.5 * ((z + h) / sample.sigma_z) ** 2)
-    expected = np.exp(-0.5 * y**2) * column / (2.0 * np.pi * wind * sample.sigma_y * sample.sigma_z * air(7.0).molar_density)
+    column = np.exp(-0.5 * ((z - h) / sample.sigma_z) ** 2) + np.exp(
+        -0.5 * ((z + h) / sample.sigma_z) ** 2
+    )
+    expected = (
+        np.exp(-0.5 * y**2)
+        * column
+        / (2.0 * np.pi * wind * sample.sigma_y * sample.sigma_z * air(7.0).molar_density)
+    )
     np.testing.assert_allclose(sample.dilution, expected, rtol=1e-9, atol=1e-30)

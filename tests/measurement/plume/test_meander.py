@@ -37,7 +37,9 @@ def test_means_over_long_ways_vary_as_the_integral_scale_says():
     means = values.reshape(2000, -1).mean(axis=1)
     # 2 SCALE/B (1 - 3 SCALE/4 B): the integral over the covariance, less what its tail loses at the ends. 2,000 variances are known
     # to sqrt(2/2000) = 3.2 %; three times that.
-    assert np.var(means) == pytest.approx(2.0 * SCALE / block * (1.0 - 0.75 * SCALE / block), rel=0.1)
+    assert np.var(means) == pytest.approx(
+        2.0 * SCALE / block * (1.0 - 0.75 * SCALE / block), rel=0.1
+    )
 
 
 def test_the_process_is_smooth_between_its_steps():
@@ -52,7 +54,12 @@ def test_the_process_is_smooth_between_its_steps():
 
 
 def test_it_is_stationary_from_its_first_place_on():
-    first = np.array([Meander(0.0, 10.0, SCALE, np.random.default_rng(k)).at(np.zeros(1))[0] for k in range(2000)])
+    first = np.array(
+        [
+            Meander(0.0, 10.0, SCALE, np.random.default_rng(k)).at(np.zeros(1))[0]
+            for k in range(2000)
+        ]
+    )
     # Standard errors of 2,000: 0.022 and 0.032; three of them.
     assert np.mean(first) == pytest.approx(0.0, abs=0.07)
     assert np.var(first) == pytest.approx(1.0, abs=0.1)
@@ -69,6 +76,8 @@ def test_successive_crossings_are_correlated_as_the_integral_scale_says(name, sc
     values = centre / centre.std()
     # 60,000 s times 3 m/s over twice the integral scale: at least 1,000 independent values; three standard errors are 0.1.
     for crossings in (1, 2, 4):
-        assert correlation(values, 2 * crossings) == pytest.approx(covariance(crossings * interval * wind, scale), abs=0.1)
+        assert correlation(values, 2 * crossings) == pytest.approx(
+            covariance(crossings * interval * wind, scale), abs=0.1
+        )
     # Paper's interval: across, successive crossings see nearly the same meander; up, hardly.
     assert correlation(values, 2) > 0.7 if name == "across" else correlation(values, 2) < 0.4

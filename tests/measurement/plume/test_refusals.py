@@ -11,14 +11,23 @@ TIME = np.array([0.0, 50.0, 100.0])
 
 def plume(time=TIME, north=5.0 * TIME, east=0.0 * TIME, height=HEIGHT, seed=0):
     return FluctuatingPlume(
-        EMISSION, air(7.0), time=np.array(time), north=np.array(north), east=np.array(east), source_height=height, seed=seed
+        EMISSION,
+        air(7.0),
+        time=np.array(time),
+        north=np.array(north),
+        east=np.array(east),
+        source_height=height,
+        seed=seed,
     )
 
 
 @pytest.mark.parametrize(
     ("track", "said"),
     [
-        ({"north": 0.9 * TIME}, r"apparent wind is 0\.90 m/s at \d+ s; below 1 m/s a plume has no direction"),
+        (
+            {"north": 0.9 * TIME},
+            r"apparent wind is 0\.90 m/s at \d+ s; below 1 m/s a plume has no direction",
+        ),
         ({"north": [0.0, 250.0, 250.0]}, r"apparent wind is 0\.00 m/s at \d+ s"),
         ({"time": [0.0, 50.0, 50.0]}, "do not increase after 50 s"),
         ({"time": [0.0, 100.0, 50.0]}, "do not increase after 100 s"),
@@ -39,7 +48,10 @@ def test_a_track_without_a_plume_is_refused_in_one_line(track, said):
 @pytest.mark.parametrize(
     ("places", "said"),
     [
-        ([[101.0], [0.0], [0.0], [50.0]], "time in the plume is 101 to 101 s; the ship's track has 0 to 100"),
+        (
+            [[101.0], [0.0], [0.0], [50.0]],
+            "time in the plume is 101 to 101 s; the ship's track has 0 to 100",
+        ),
         ([[-0.5], [0.0], [0.0], [50.0]], "time in the plume is -0.5"),
         ([[50.0], [0.0], [0.0], [-1.0]], "height above the sea is -1 m"),
         ([[50.0], [np.nan], [0.0], [50.0]], "missing or infinite"),

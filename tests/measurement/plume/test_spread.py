@@ -8,7 +8,9 @@ from measurement.plume.settings import PlumeSettings
 from measurement.plume.spread import STEP, spreads
 
 WIND = np.array([5.0, 10.0, 20.0])
-COLD_POINT = replace(EMISSION, buoyancy_flux=0.0, momentum_flux=0.0, stack_diameter=1e-4, wake_spread=0.0)
+COLD_POINT = replace(
+    EMISSION, buoyancy_flux=0.0, momentum_flux=0.0, stack_diameter=1e-4, wake_spread=0.0
+)
 
 
 def test_relative_spread_goes_to_the_cube_of_time_without_buoyancy():
@@ -36,17 +38,28 @@ def test_relative_spread_and_meander_make_the_regulatory_total(buoyant):
     scale = weather.mixing_height / (156.0 * weather.sigma_v) * final / 0.46
     across = weather.sigma_v * 50.0 / (1.0 + 50.0 / (2.0 * scale)) ** 0.3
     up = weather.sigma_w * 50.0 / np.sqrt(1.0 + weather.sigma_w * 50.0 / (0.72 * final))
-    source = emission.stack_diameter**2 / 8.0 * np.maximum(20.0 / WIND, 1.0) + emission.wake_spread**2
+    source = (
+        emission.stack_diameter**2 / 8.0 * np.maximum(20.0 / WIND, 1.0) + emission.wake_spread**2
+    )
     own = source + 0.08 * rise**2
-    np.testing.assert_allclose(of.relative_y[:, i] ** 2 + of.meander_y[:, i] ** 2, across**2 + own, rtol=1e-9)
-    np.testing.assert_allclose(of.relative_z[:, i] ** 2 + of.meander_z[:, i] ** 2, up**2 + own, rtol=1e-9)
+    np.testing.assert_allclose(
+        of.relative_y[:, i] ** 2 + of.meander_y[:, i] ** 2, across**2 + own, rtol=1e-9
+    )
+    np.testing.assert_allclose(
+        of.relative_z[:, i] ** 2 + of.meander_z[:, i] ** 2, up**2 + own, rtol=1e-9
+    )
     assert (of.meander_y[:, i] > 0.0).all()
     assert (of.meander_z[:, i] >= 0.0).all()
 
 
 def test_relative_spread_hardly_depends_on_its_least_certain_constant():
     i = round(40.0 / STEP)
-    of = [spreads(EMISSION, air(7.0), HEIGHT, WIND[:1], 60.0, PlumeSettings(richardson=c)).relative_y[0, i] for c in (0.1, 0.6)]
+    of = [
+        spreads(EMISSION, air(7.0), HEIGHT, WIND[:1], 60.0, PlumeSettings(richardson=c)).relative_y[
+            0, i
+        ]
+        for c in (0.1, 0.6)
+    ]
     # Section 0, item 8: 15.4 to 16.5 m for C_r 0.1 to 0.6, at 200 m and 5 m/s; three digits.
     assert of == pytest.approx([15.4, 16.5], abs=0.06)
 
@@ -59,9 +72,15 @@ def test_spreads_of_a_table_do_not_depend_on_its_other_winds_and_ages():
 
 
 def test_stable_air_is_narrower_and_lower():
-    neutral, stable = (spreads(EMISSION, air(7.0, brunt_vaisala=n), HEIGHT, WIND, 200.0, PlumeSettings()) for n in (0.0, 0.02))
+    neutral, stable = (
+        spreads(EMISSION, air(7.0, brunt_vaisala=n), HEIGHT, WIND, 200.0, PlumeSettings())
+        for n in (0.0, 0.02)
+    )
     assert (stable.height[:, -1] < neutral.height[:, -1]).all()
-    assert (np.hypot(stable.relative_z, stable.meander_z)[:, -1] < np.hypot(neutral.relative_z, neutral.meander_z)[:, -1]).all()
+    assert (
+        np.hypot(stable.relative_z, stable.meander_z)[:, -1]
+        < np.hypot(neutral.relative_z, neutral.meander_z)[:, -1]
+    ).all()
 
 
 def test_halving_the_step_of_the_axis_changes_nothing_that_is_printed(monkeypatch):
@@ -69,4 +88,6 @@ def test_halving_the_step_of_the_axis_changes_nothing_that_is_printed(monkeypatc
     monkeypatch.setattr("measurement.plume.spread.STEP", 0.05)
     fine = spreads(EMISSION, air(7.0), HEIGHT, WIND, 100.0, PlumeSettings())
     # Euler's rule is of first order: a step of 0.1 s is 0.1 % of what is left of 100 s.
-    np.testing.assert_allclose(coarse.relative_y[:, 100:1000], fine.relative_y[:, 200:2000:2], rtol=2e-3)
+    np.testing.assert_allclose(
+        coarse.relative_y[:, 100:1000], fine.relative_y[:, 200:2000:2], rtol=2e-3
+    )

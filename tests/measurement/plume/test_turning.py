@@ -12,13 +12,17 @@ SETTINGS = {"meander": False, "age_max": 250.0}
 def plume(track, **settings):
     time, north, east = track
     chosen = PlumeSettings(**SETTINGS | settings)
-    return FluctuatingPlume(EMISSION, air(7.0), time=time, north=north, east=east, source_height=HEIGHT, settings=chosen)
+    return FluctuatingPlume(
+        EMISSION, air(7.0), time=time, north=north, east=east, source_height=HEIGHT, settings=chosen
+    )
 
 
 def around(of, when, spacing=12.0, youngest=12.0):
     """Places around the axis at a time, at the height of its middle."""
     north, east, up = of.axis(when, np.arange(youngest, 200.0, 1.0))
-    grid = np.meshgrid(*(np.arange(axis.min() - 80.0, axis.max() + 80.0, spacing) for axis in (north, east)))
+    grid = np.meshgrid(
+        *(np.arange(axis.min() - 80.0, axis.max() + 80.0, spacing) for axis in (north, east))
+    )
     places = [axis.ravel() for axis in grid]
     near = np.min(np.hypot(places[0][:, None] - north, places[1][:, None] - east), axis=1) < 90.0
     return places[0][near], places[1][near], np.full(near.sum(), np.median(up))
@@ -112,7 +116,11 @@ def test_every_nearest_parcel_is_found_once():
 
 def test_smoke_of_a_course_that_jumps_still_has_a_nearest_parcel_everywhere():
     # A track of two legs with a corner of 60 degrees, given as three points.
-    track = (np.array([-200.0, 0.0, 100.0]), np.array([-1600.0, 0.0, 400.0]), np.array([0.0, 0.0, 692.8]))
+    track = (
+        np.array([-200.0, 0.0, 100.0]),
+        np.array([-1600.0, 0.0, 400.0]),
+        np.array([0.0, 0.0, 692.8]),
+    )
     of = plume(track)
     north, east, up = of.axis(90.0, np.linspace(0.5, 200.0, 400))
     sample = of.sample(np.full(400, 90.0), north, east, up)

@@ -19,7 +19,11 @@ def test_a_steady_reading_is_gain_times_air_and_other_gases_with_pressure_and_ze
     )  # fmt: skip
     air = np.array([[30.0, 420.0, 1000.0, 50.0]] * 3)
     spec = sniffer_of(so2)
-    reading = Sniffer(spec, generator=np.random.default_rng(0), time_step=1.0).advance(air, np.full(3, 2.0)).values
+    reading = (
+        Sniffer(spec, generator=np.random.default_rng(0), time_step=1.0)
+        .advance(air, np.full(3, 2.0))
+        .values
+    )
     # gain (c + sum k c) (1 + 0.15 %/hPa 2 hPa) + zero, as Channel says.
     np.testing.assert_allclose(reading[:, 0], 1.1 * (30.0 + 15.0 - 80.0) * 1.003 - 2.0, rtol=1e-12)
     assert np.isnan(reading[:, 1:]).all()
@@ -27,17 +31,26 @@ def test_a_steady_reading_is_gain_times_air_and_other_gases_with_pressure_and_ze
 
 def test_pressure_moves_co2_by_what_the_specification_says():
     # 420 ppm x 0.15 %/hPa = 0.63 ppm/hPa, uncompensated: manual of Vaisala's GMP343.
-    spec = changed(sensor_preset("electrochemical"), "co2", noise=0.0, random_walk=0.0, resolution=0.0)
+    spec = changed(
+        sensor_preset("electrochemical"), "co2", noise=0.0, random_walk=0.0, resolution=0.0
+    )
     sniffer = Sniffer(spec, generator=np.random.default_rng(0), time_step=1.0)
     assert sniffer.advance(STILL[:2], np.ones(2)).values[0, 1] == pytest.approx(420.63, abs=1e-9)
 
 
 def test_noise_and_drift_have_the_size_that_is_stated():
-    reading = read(sniffer_of(Channel(gas="so2", t90_s=5.0, noise=2.5)), STILL, step=1.0).values[:, 0]
+    reading = read(sniffer_of(Channel(gas="so2", t90_s=5.0, noise=2.5)), STILL, step=1.0).values[
+        :, 0
+    ]
     # 20,000 readings: the standard deviation is known to 0.5 %; four times that.
     assert np.std(reading) == pytest.approx(2.5, rel=0.02)
     walks = [
-        read(sniffer_of(Channel(gas="so2", t90_s=5.0, noise=0.0, random_walk=0.5), rate_hz=4.0), STILL[:401], seed=i, step=0.25)
+        read(
+            sniffer_of(Channel(gas="so2", t90_s=5.0, noise=0.0, random_walk=0.5), rate_hz=4.0),
+            STILL[:401],
+            seed=i,
+            step=0.25,
+        )
         for i in range(400)
     ]
     ends = np.array([walk.values[-1, 0] for walk in walks])
@@ -49,7 +62,13 @@ def test_readings_are_rounded_and_cut_at_the_range():
     air = np.tile(BACKGROUND, (50, 1))
     air[:, 0] = np.linspace(-20.0, 60.0, 50)
     reading = read(
-        sniffer_of(Channel(gas="so2", t90_s=1e-3, noise=0.0, resolution=0.5, range_low=-5.0, range_high=40.0)), air, step=1.0
+        sniffer_of(
+            Channel(
+                gas="so2", t90_s=1e-3, noise=0.0, resolution=0.5, range_low=-5.0, range_high=40.0
+            )
+        ),
+        air,
+        step=1.0,
     )
     assert reading.values[:, 0].min() == -5.0
     assert reading.values[:, 0].max() == 40.0
@@ -61,9 +80,13 @@ def test_instruments_of_one_flight_scatter_as_the_analyst_knows_them():
     drawn = [spec.drawn(np.random.default_rng(i)).known("so2") for i in range(2000)]
     # 2000 draws know a standard deviation to 1.6 %; four times that.
     for name, sd in (("gain", 0.03), ("t90_s", 1.0), ("delay_s", 0.3), ("zero", 5.0)):
-        assert np.std([getattr(channel, name) for channel in drawn]) == pytest.approx(sd, rel=0.065), name
+        assert np.std([getattr(channel, name) for channel in drawn]) == pytest.approx(
+            sd, rel=0.065
+        ), name
     assert np.std([channel.cross["no2"] for channel in drawn]) == pytest.approx(0.032, rel=0.065)
-    assert np.mean([channel.cross["no2"] for channel in drawn]) == pytest.approx(-0.16, abs=4.0 * 0.032 / math.sqrt(2000))
+    assert np.mean([channel.cross["no2"] for channel in drawn]) == pytest.approx(
+        -0.16, abs=4.0 * 0.032 / math.sqrt(2000)
+    )
     assert drawn[0].gain_sd == drawn[0].t90_sd == drawn[0].delay_sd_s == 0.0
     assert spec.drawn(np.random.default_rng(7)) == spec.drawn(np.random.default_rng(7))
 
@@ -71,7 +94,10 @@ def test_instruments_of_one_flight_scatter_as_the_analyst_knows_them():
 def test_every_preset_has_the_figures_of_its_source():
     # Data sheets of Alphasense's SO2-A4 and SO2-B4: t90 < 20 s and < 30 s, noise 15 and 5 ppb at two standard deviations,
     # NO2 < -160 %, NO < -1.5 % and < -2 %.
-    for name, t90, noise, no in (("alphasense_a4", 20.0, 7.5, -0.015), ("alphasense_b4", 30.0, 2.5, -0.02)):
+    for name, t90, noise, no in (
+        ("alphasense_a4", 20.0, 7.5, -0.015),
+        ("alphasense_b4", 30.0, 2.5, -0.02),
+    ):
         so2 = sensor_preset(name).known("so2")
         assert (so2.t90_s, so2.noise, so2.cross) == (t90, noise, {"no": no, "no2": -1.6})
     for name in sensor_presets():
@@ -79,7 +105,11 @@ def test_every_preset_has_the_figures_of_its_source():
         assert {"so2", "co2"} <= set(spec.gases)
         assert spec.source
     electrochemical = sensor_preset("electrochemical")
-    assert (electrochemical.known("so2").t90_s, electrochemical.known("co2").t90_s, electrochemical.rate_hz) == (20.0, 4.0, 1.0)
+    assert (
+        electrochemical.known("so2").t90_s,
+        electrochemical.known("co2").t90_s,
+        electrochemical.rate_hz,
+    ) == (20.0, 4.0, 1.0)
 
 
 @pytest.mark.parametrize(
@@ -92,7 +122,10 @@ def test_every_preset_has_the_figures_of_its_source():
         ({"gain": 0.0}, "gain of so2 is 0; it must be 0.1 to 10"),
         ({"delay_s": -1.0}, "delay_s of so2 is -1"),
         ({"gain_sd": math.inf}, "gain_sd of so2 is inf"),
-        ({"gas": "co2", "t90_sd": math.inf}, "t90_sd of co2 is inf; .* t90 and delay of SO2 alone can be estimated from a record"),
+        (
+            {"gas": "co2", "t90_sd": math.inf},
+            "t90_sd of co2 is inf; .* t90 and delay of SO2 alone can be estimated from a record",
+        ),
         ({"range_low": 5.0, "range_high": 5.0}, "range of so2 is 5 to 5"),
         ({"cross": {"so2": 0.1}}, "cross of so2 names 'so2'"),
         ({"cross": {"co": 0.1}}, "cross of so2 names 'co'"),
@@ -128,7 +161,10 @@ def test_sniffers_that_cannot_be_are_refused():
         ({"channels": {"so2": {}}, "colour": 1}, "has the key 'colour'"),
         ({"channels": {"ozone": {}}}, "channel 'ozone' of instrument 'x' is not known"),
         ({"channels": {"so2": {"t80_s": 1}}}, "has the key 't80_s'"),
-        ({"channels": {"so2": {"t90_s": "fast"}}}, "t90_s of channel 'so2' of instrument 'x' is 'fast'; it must be a number"),
+        (
+            {"channels": {"so2": {"t90_s": "fast"}}},
+            "t90_s of channel 'so2' of instrument 'x' is 'fast'; it must be a number",
+        ),
         ({"channels": {"so2": {"cross": 0.1}}}, "give a table"),
         ({"rate_hz": True, "channels": {"so2": {}}}, "rate_hz of x is True"),
     ],

@@ -19,14 +19,18 @@ def response(channel, signal, *, step=STEP, rate_hz=4.0):
     """Return what a channel reads of a signal of its own gas."""
     air = np.tile(BACKGROUND, (len(signal), 1))
     air[:, GASES.index(channel.gas)] = signal
-    return read(sniffer_of(channel, rate_hz=rate_hz), air, step=step).values[:, GASES.index(channel.gas)]
+    return read(sniffer_of(channel, rate_hz=rate_hz), air, step=step).values[
+        :, GASES.index(channel.gas)
+    ]
 
 
 def test_a_ramp_is_followed_exactly():
     # y = t - tau (1 - e^(-t/tau)): solution of tau y' + y = t.
     time = STEP * np.arange(400)
     read_off = response(Channel(gas="so2", t90_s=20.0, noise=0.0), 3.0 * time)
-    np.testing.assert_allclose(read_off, 3.0 * (time - TAU * (1.0 - np.exp(-time / TAU))), rtol=1e-12, atol=1e-11)
+    np.testing.assert_allclose(
+        read_off, 3.0 * (time - TAU * (1.0 - np.exp(-time / TAU))), rtol=1e-12, atol=1e-11
+    )
 
 
 def test_a_step_reaches_90_percent_after_t90():
@@ -58,13 +62,17 @@ def test_two_poles_are_two_lags_in_a_row_and_keep_their_t90(second_pole):
     first, second = time_constants(20.0, second_pole)
     assert second == pytest.approx(second_pole * first, rel=1e-12)
     # Step response of two real poles at t90.
-    reached = 1.0 - (first * math.exp(-20.0 / first) - second * math.exp(-20.0 / second)) / (first - second)
+    reached = 1.0 - (first * math.exp(-20.0 / first) - second * math.exp(-20.0 / second)) / (
+        first - second
+    )
     assert reached == pytest.approx(0.9, abs=1e-9)
     # In a row at a step a hundred times finer, where the first lag's output is as good as straight between samples.
     fine = 0.0025 * np.arange(40_001)
     signal = np.interp(fine, [0.0, 10.0, 20.0, 40.0], [0.0, 5.0, 1.0, 2.0])
     in_a_row = lag(lag(signal, 0.0025, first), 0.0025, second)
-    coarse = response(Channel(gas="so2", t90_s=20.0, second_pole=second_pole, noise=0.0), signal[::100])
+    coarse = response(
+        Channel(gas="so2", t90_s=20.0, second_pole=second_pole, noise=0.0), signal[::100]
+    )
     np.testing.assert_allclose(coarse, in_a_row[::100], atol=1e-6)
 
 
@@ -87,7 +95,10 @@ def test_readings_in_parts_are_those_in_one(rate_hz, step):
     air = crossings(0.1, duration=60.0, step=step)
     pressure = np.linspace(-1.0, 1.0, len(air))
     whole = Sniffer(spec, generator=np.random.default_rng(1), time_step=step).advance(air, pressure)
-    parts, cuts = Sniffer(spec, generator=np.random.default_rng(1), time_step=step), np.random.default_rng(2)
+    parts, cuts = (
+        Sniffer(spec, generator=np.random.default_rng(1), time_step=step),
+        np.random.default_rng(2),
+    )
     found, at = [], 0
     while at < len(air):
         length = int(cuts.integers(0, 25))

@@ -29,16 +29,37 @@ OWN_SHAPE = f"reference.shape={Path(__file__).parent}/shape_of_lists.py:ShapeOfL
 OWN_INSTRUMENT = f'payload=["{Path(__file__).parent}/instrument_of_lists.py:InstrumentOfLists"]'
 
 STUDIES = {
-    "calm air": ["sweep_nu", "sweep.nu=[0.1,0.5,0.95]", "flight.crossings=4", "start.spread_deg=180"],
+    "calm air": [
+        "sweep_nu",
+        "sweep.nu=[0.1,0.5,0.95]",
+        "flight.crossings=4",
+        "start.spread_deg=180",
+    ],
     "the paper": ["paper"],
     "a fast oscillation": [*IN_CALM_AIR, "reference.shape=fastest"],
-    "a loiter": ["sweep_nu", "sweep.nu=[0.1]", "comparison.variants=[]", "reference.shape=loiter", "flight.crossings=6"],
+    "a loiter": [
+        "sweep_nu",
+        "sweep.nu=[0.1]",
+        "comparison.variants=[]",
+        "reference.shape=loiter",
+        "flight.crossings=6",
+    ],
     "samples": ["monte_carlo", "flights=6", "flight.duration_max_s=200"],
     "silent braking": SILENT_BRAKING,
     "ordinary reports": ORDINARY_REPORTS,
-    "no satellites": ["sea_wind", "flights=2", "fault.kind=satellite_navigation", "flight.duration_max_s=251"],
+    "no satellites": [
+        "sea_wind",
+        "flights=2",
+        "fault.kind=satellite_navigation",
+        "flight.duration_max_s=251",
+    ],
     "a failing engine": ENGINE_FAILS,
-    "a stuck surface": ["sea_faults", "flights=2", "fault.kind=left_elevon", "flight.duration_max_s=300"],
+    "a stuck surface": [
+        "sea_faults",
+        "flights=2",
+        "fault.kind=left_elevon",
+        "flight.duration_max_s=300",
+    ],
     "a law that copies its reference": [*IN_WIND, LOOKING_AHEAD],
     "a law that copies it in calm air": [*IN_CALM_AIR, LOOKING_AHEAD],
     "a shape that answers in lists": [*IN_WIND, OWN_SHAPE],
@@ -51,14 +72,34 @@ STUDIES = {
 def rows_and_histories(path, name, *overrides, **environment):
     """Fly a study in a process of its own; return its summary, crossings and time histories."""
     words = [word for override in overrides for word in ("--set", override)]
-    command = [sys.executable, "-m", "scenarios.run", name, "--jobs", "2", "--no-report", "--out", str(path), *words]
-    run = subprocess.run(command, env={**os.environ, **environment}, capture_output=True, text=True, check=False)
+    command = [
+        sys.executable,
+        "-m",
+        "scenarios.run",
+        name,
+        "--jobs",
+        "2",
+        "--no-report",
+        "--out",
+        str(path),
+        *words,
+    ]
+    run = subprocess.run(
+        command, env={**os.environ, **environment}, capture_output=True, text=True, check=False
+    )
     # 1: a flight did not meet what is required of it.
     assert run.returncode in {0, 1}, run.stderr
     tables = {
-        file: pd.read_csv(path / file).drop(columns="wall_time_s", errors="ignore") for file in ("summary.csv", "crossings.csv")
+        file: pd.read_csv(path / file).drop(columns="wall_time_s", errors="ignore")
+        for file in ("summary.csv", "crossings.csv")
     }
-    return {**tables, **{file.name: pd.read_parquet(file) for file in sorted((path / "flights").glob("*.parquet"))}}
+    return {
+        **tables,
+        **{
+            file.name: pd.read_parquet(file)
+            for file in sorted((path / "flights").glob("*.parquet"))
+        },
+    }
 
 
 @pytest.mark.parametrize("study", STUDIES.values(), ids=STUDIES)
@@ -75,5 +116,11 @@ def test_the_guidance_that_is_compiled_is_the_one_that_flies():
     code = "import gnc.safety.keepout_guard as module; print(module.__file__)"
     for asked, ending in (("", EXTENSION_SUFFIXES[0]), ("1", ".py")):
         environment = {**os.environ, "PLUME_FLIGHT_SOURCES": asked}
-        run = subprocess.run([sys.executable, "-c", code], env=environment, capture_output=True, text=True, check=True)
+        run = subprocess.run(
+            [sys.executable, "-c", code],
+            env=environment,
+            capture_output=True,
+            text=True,
+            check=True,
+        )
         assert run.stdout.strip().endswith(ending)

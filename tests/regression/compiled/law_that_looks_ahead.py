@@ -19,6 +19,9 @@ class LooksAhead:
         later = copy.deepcopy(reference)
         for _ in range(20):
             later.step()
-        north, east = to_north + later.north - reference.north, to_east + later.east - reference.east
+        north, east = (
+            to_north + later.north - reference.north,
+            to_east + later.east - reference.east,
+        )
         off = math.remainder(math.atan2(east, north) - course, math.tau)
         return np.float32(self.pursuit_per_s * off + reference.heading_rate)

@@ -20,7 +20,9 @@ class Listed:
 
         def listed(*values):
             found = answer(*values)
-            return [np.float32(of) for of in found] if isinstance(found, tuple) else np.float32(found)
+            return (
+                [np.float32(of) for of in found] if isinstance(found, tuple) else np.float32(found)
+            )
 
         return listed if callable(answer) else answer
 

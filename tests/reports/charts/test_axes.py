@@ -7,7 +7,15 @@ import numpy as np
 import pytest
 from matplotlib.text import Text
 
-from reports.document.axes import about_values, cut_words, in_kilometres, log_axis, mark_text, with_one_abscissa, wrapped
+from reports.document.axes import (
+    about_values,
+    cut_words,
+    in_kilometres,
+    log_axis,
+    mark_text,
+    with_one_abscissa,
+    wrapped,
+)
 from reports.document.chart import Chart, Line, Note, Panel
 from reports.render import matplotlib_charts, plotly_charts
 
@@ -22,7 +30,9 @@ from reports.render import matplotlib_charts, plotly_charts
         ((0.0121, 0.0149), [0.013, 0.014]),
     ],
 )
-def test_a_logarithmic_axis_has_three_marks_at_least_and_powers_of_ten_where_they_are_enough(limits, marks):
+def test_a_logarithmic_axis_has_three_marks_at_least_and_powers_of_ten_where_they_are_enough(
+    limits, marks
+):
     assert log_axis(limits, [])[1] == pytest.approx(marks)
 
 
@@ -39,7 +49,15 @@ def test_limits_that_are_not_given_hold_the_positive_data_with_room_to_spare():
 
 
 @pytest.mark.parametrize(
-    ("value", "text"), [(0.001, "0.001"), (30.0, "30"), (1e5, "10⁵"), (3e-7, "3·10⁻⁷"), (1e-12, "10⁻¹²"), (2e4, "20000")]
+    ("value", "text"),
+    [
+        (0.001, "0.001"),
+        (30.0, "30"),
+        (1e5, "10⁵"),
+        (3e-7, "3·10⁻⁷"),
+        (1e-12, "10⁻¹²"),
+        (2e4, "20000"),
+    ],
 )
 def test_marks_are_plain_figures_or_powers_of_ten(value, text):
     assert mark_text(value) == text
@@ -47,10 +65,20 @@ def test_marks_are_plain_figures_or_powers_of_ten(value, text):
 
 def test_both_renderers_have_the_same_marks():
     x = np.array([2.0, 130.0])
-    panel = Panel(x_label="a [m]", y_label="b [m]", lines=[Line(x=x, y=x, label="", colour="blue")], log_x=True, log_y=True)
+    panel = Panel(
+        x_label="a [m]",
+        y_label="b [m]",
+        lines=[Line(x=x, y=x, label="", colour="blue")],
+        log_x=True,
+        log_y=True,
+    )
     chart = Chart(name="c", caption="", panels=[panel])
     printed, screen = matplotlib_charts.draw(chart).axes[0], plotly_charts.draw(chart)["layout"]
-    assert [text.get_text() for text in printed.get_yticklabels()] == screen["yaxis"]["ticktext"] == ["3", "10", "30", "100"]
+    assert (
+        [text.get_text() for text in printed.get_yticklabels()]
+        == screen["yaxis"]["ticktext"]
+        == ["3", "10", "30", "100"]
+    )
     assert list(printed.get_xticks()) == pytest.approx(screen["xaxis"]["tickvals"])
 
 
@@ -58,7 +86,9 @@ def test_both_renderers_have_the_same_marks():
 def test_counts_are_marked_at_whole_numbers(most, dtick):
     x = np.array([0.0, 1.0])
     line = Line(x=x, y=most * x, label="", colour="blue")
-    panel = Panel(x_label="a [m]", y_label="Flights", lines=[line], y_range=(0.0, most), y_whole=True)
+    panel = Panel(
+        x_label="a [m]", y_label="Flights", lines=[line], y_range=(0.0, most), y_whole=True
+    )
     chart = Chart(name="c", caption="", panels=[panel])
     # From eight on Plotly marks whole numbers by itself: it makes about six marks.
     assert plotly_charts.draw(chart)["layout"]["yaxis"].get("dtick") == dtick
@@ -69,18 +99,32 @@ def test_counts_are_marked_at_whole_numbers(most, dtick):
 def test_a_caption_says_which_curves_leave_their_panels_and_on_which_side():
     def panel(values, y_range):
         y = np.array(values)
-        return Panel(x_label="a [m]", y_label="Gain [dB]", lines=[Line(x=y, y=y, label="", colour="blue")], y_range=y_range)
+        return Panel(
+            x_label="a [m]",
+            y_label="Gain [dB]",
+            lines=[Line(x=y, y=y, label="", colour="blue")],
+            y_range=y_range,
+        )
 
     assert cut_words([panel([0.0, 39.0], (0.0, 40.0))]) == ""
-    assert cut_words([panel([0.0, 41.0, np.nan], (0.0, 40.0))]) == " Beyond the scale: gain above 40 dB."
-    assert cut_words([panel([-61.0, 61.0], (-60.0, 60.0))] * 2) == " Beyond the scale: gain above 60 dB, gain below −60 dB."
+    assert (
+        cut_words([panel([0.0, 41.0, np.nan], (0.0, 40.0))])
+        == " Beyond the scale: gain above 40 dB."
+    )
+    assert (
+        cut_words([panel([-61.0, 61.0], (-60.0, 60.0))] * 2)
+        == " Beyond the scale: gain above 60 dB, gain below −60 dB."
+    )
     assert cut_words([panel([1e9], None)]) == ""
 
 
 def test_words_among_the_curves_go_along_to_kilometres():
     x = np.array([0.0, 2e4])
     panel = Panel(
-        x_label="a [m]", y_label="b [s]", lines=[Line(x=x, y=x, label="", colour="blue")], notes=[Note(x=1e4, y=5.0, text="here")]
+        x_label="a [m]",
+        y_label="b [s]",
+        lines=[Line(x=x, y=x, label="", colour="blue")],
+        notes=[Note(x=1e4, y=5.0, text="here")],
     )
     (note,) = in_kilometres(panel).notes
     assert (note.x, note.y) == (10.0, 5.0)
@@ -113,14 +157,22 @@ def test_both_renderers_write_a_long_label_on_two_lines():
     panel = Panel(x_label="A quantity with a long name [m]", y_label="b [m]", lines=[line])
     chart = Chart(name="c", caption="", panels=[panel] * 5, columns=5, panel_height=0.2)
     assert matplotlib_charts.draw(chart).axes[0].get_xlabel() == "A quantity with\na long name [m]"
-    assert plotly_charts.draw(chart)["layout"]["xaxis"]["title"]["text"] == "A quantity with<br>a long name [m]"
+    assert (
+        plotly_charts.draw(chart)["layout"]["xaxis"]["title"]["text"]
+        == "A quantity with<br>a long name [m]"
+    )
 
 
 @pytest.mark.parametrize("words", [r"a $\foo$", "100 $ and 200 $"])
 def test_a_dollar_sign_is_one(words):
     line = Line(x=np.arange(2.0), y=np.arange(2.0), label=words, colour="black")
     named = Panel(
-        x_label=words, y_label="y [m]", title=words, lines=[line], y_names=[(0.0, words)], notes=[Note(x=0.5, y=0.5, text=words)]
+        x_label=words,
+        y_label="y [m]",
+        title=words,
+        lines=[line],
+        y_names=[(0.0, words)],
+        notes=[Note(x=0.5, y=0.5, text=words)],
     )
     figure = matplotlib_charts.draw(Chart(name="a", caption="", panels=[named]))
     texts = [text for text in figure.findobj(Text) if text.get_text() == words]
@@ -135,8 +187,12 @@ NEARLY_THE_SAME = np.array([0.50493, 0.50497])
 
 
 def test_an_axis_of_values_that_are_nearly_the_same_has_marks_of_few_digits_and_no_offset():
-    line = Line(x=np.array([0.3, 0.6]), y=NEARLY_THE_SAME, label="flight", colour="blue", style="points")
-    chart = Chart(name="a", caption="", panels=[Panel(x_label="x [-]", y_label="y [rad/s]", lines=[line])])
+    line = Line(
+        x=np.array([0.3, 0.6]), y=NEARLY_THE_SAME, label="flight", colour="blue", style="points"
+    )
+    chart = Chart(
+        name="a", caption="", panels=[Panel(x_label="x [-]", y_label="y [rad/s]", lines=[line])]
+    )
     figure = matplotlib_charts.draw(chart)
     figure.canvas.draw()
     (ax,) = figure.axes
@@ -150,15 +206,25 @@ def test_an_axis_of_values_that_are_nearly_the_same_has_marks_of_few_digits_and_
 
 def test_an_axis_of_values_that_are_all_the_same_is_as_long_on_the_screen_as_in_print():
     # Largest heading rates, each at ω_max: Plotly by itself would draw 1 to both sides, and rates below 0.
-    line = Line(x=np.array([0.3, 0.6]), y=np.array([0.505, 0.505]), label="flight", colour="blue", style="points")
-    chart = Chart(name="a", caption="", panels=[Panel(x_label="x [-]", y_label="y [rad/s]", lines=[line])])
+    line = Line(
+        x=np.array([0.3, 0.6]),
+        y=np.array([0.505, 0.505]),
+        label="flight",
+        colour="blue",
+        style="points",
+    )
+    chart = Chart(
+        name="a", caption="", panels=[Panel(x_label="x [-]", y_label="y [rad/s]", lines=[line])]
+    )
     limits = plotly_charts.draw(chart)["layout"]["yaxis"]["range"]
     assert limits == pytest.approx(matplotlib_charts.draw(chart).axes[0].get_ylim())
     assert limits[0] > 0.4
 
 
 def test_no_axis_has_an_offset_where_its_limits_are_given_and_near_to_each_other():
-    line = Line(x=np.array([0.3, 0.6]), y=NEARLY_THE_SAME, label="flight", colour="blue", style="points")
+    line = Line(
+        x=np.array([0.3, 0.6]), y=NEARLY_THE_SAME, label="flight", colour="blue", style="points"
+    )
     panel = Panel(x_label="x [-]", y_label="y [rad/s]", lines=[line], y_range=(0.50492, 0.50498))
     figure = matplotlib_charts.draw(Chart(name="a", caption="", panels=[panel]))
     figure.canvas.draw()
@@ -167,14 +233,20 @@ def test_no_axis_has_an_offset_where_its_limits_are_given_and_near_to_each_other
 
 def test_panels_that_share_their_abscissa_have_the_same_limits_of_it_in_every_column():
     def panel(end, label="Time [s]"):
-        return Panel(x_label=label, y_label="", lines=[Line(x=np.array([0.0, end]), y=np.zeros(2), label="", colour="blue")])
+        return Panel(
+            x_label=label,
+            y_label="",
+            lines=[Line(x=np.array([0.0, end]), y=np.zeros(2), label="", colour="blue")],
+        )
 
     # In the first column marks, whose room an axis adds to by itself, and a shorter curve.
     panels = [panel(3600.0), panel(3599.0), panel(9.0, "Distance [m]"), panel(3000.0)]
     chart = Chart(name="", caption="", panels=panels, columns=2, share_x=True)
     limits = [of.x_range for of in with_one_abscissa(chart).panels]
     assert limits == [(0.0, 3600.0), (0.0, 3600.0), (0.0, 9.0), (0.0, 3600.0)]
-    assert [of.x_range for of in with_one_abscissa(replace(chart, share_x=False)).panels] == [None] * 4
+    assert [of.x_range for of in with_one_abscissa(replace(chart, share_x=False)).panels] == [
+        None
+    ] * 4
     chart = replace(chart, panels=[panels[0], panels[1], panels[3]])
     drawn = plotly_charts.draw(chart)["layout"]
     assert {tuple(drawn[f"xaxis{number}"]["range"]) for number in ("", "2", "3")} == {(0.0, 3600.0)}
@@ -200,7 +272,9 @@ def test_limits_of_values_that_differ_are_left_to_the_axis():
 def test_far_flights_are_shown_in_kilometres(reach, equal, labels):
     line = Line(x=np.array([-reach[0], 0.0]), y=np.array([0.0, -reach[1]]), label="", colour="blue")
     nothing = Line(x=np.array([]), y=np.array([]), label="", colour="blue")
-    panel = in_kilometres(Panel(x_label="East [m]", y_label="North [m]", lines=[nothing, line], equal=equal))
+    panel = in_kilometres(
+        Panel(x_label="East [m]", y_label="North [m]", lines=[nothing, line], equal=equal)
+    )
     assert (panel.x_label, panel.y_label) == labels
     shown = [1000.0 if "[km]" in label else 1.0 for label in labels]
     assert panel.lines[1].x[0] * shown[0] == pytest.approx(-reach[0], rel=1e-12)

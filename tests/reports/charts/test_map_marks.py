@@ -27,7 +27,9 @@ def test_a_hull_is_to_scale_with_its_bow_at_the_angle(angle):
     line = hull_line(Hull(title="a ship", length=150.0, beam=23.0), angle, x=10.0, y=-5.0)
     ahead = np.array([math.sin(angle), math.cos(angle)])
     beside = np.array([math.cos(angle), -math.sin(angle)])
-    along, across = (np.column_stack([line.x - 10.0, line.y + 5.0]) @ side for side in (ahead, beside))
+    along, across = (
+        np.column_stack([line.x - 10.0, line.y + 5.0]) @ side for side in (ahead, beside)
+    )
     # The funnel is a fifth of the length from the stern.
     assert (along.min(), along.max()) == pytest.approx((-30.0, 120.0))
     assert (across.min(), across.max()) == pytest.approx((-11.5, 11.5))
@@ -62,7 +64,9 @@ def test_a_word_at_the_edge_of_a_map_has_room_for_its_letters(align):
     # Ten letters of 4 points each in a map that is some 170 points high take a quarter of its height.
     for at in x.tolist():
         notes = [Note(x=at, y=200.0, text="10 minutes", align=align)]
-        panel = on_map(Panel(x_label="", y_label="", lines=lines, notes=notes), north=None, aspect=1.5)
+        panel = on_map(
+            Panel(x_label="", y_label="", lines=lines, notes=notes), north=None, aspect=1.5
+        )
         (left, right), height = panel.x_range, float(np.ptp(panel.y_range))
         begin, end = {"left": (0.0, 1.0), "center": (-0.5, 0.5), "right": (-1.0, 0.0)}[align]
         assert left < at + begin * 0.2 * height
@@ -92,16 +96,24 @@ def test_the_scale_bar_is_as_long_as_it_says():
 
 
 def test_calm_air_has_no_arrow_and_what_is_not_known_no_word():
-    assert [note.text for note in a_map(north=0.0, wind=(0.0, 0.0)).notes] == [" 100 m", "calm air", "N"]
+    assert [note.text for note in a_map(north=0.0, wind=(0.0, 0.0)).notes] == [
+        " 100 m",
+        "calm air",
+        "N",
+    ]
     assert [note.text for note in a_map(north=None).notes] == [" 100 m"]
     assert [note.text for note in a_map(north=0.0, wind=(7.04, 0.3)).notes][1] == "wind 7.0 m/s"
     # An arrow is a shaft and a head.
     for wind, lines in (((0.0, 0.0), 0), ((7.04, 0.3), 2), (None, 0)):
-        assert sum(line.colour == Meaning.WIND for line in a_map(north=0.0, wind=wind).lines) == lines
+        assert (
+            sum(line.colour == Meaning.WIND for line in a_map(north=0.0, wind=wind).lines) == lines
+        )
 
 
 def test_a_plume_begins_at_the_funnel_and_is_as_wide_as_given():
-    width, axis = plume_lines(np.array([0.0, 100.0]), np.array([2.0, 10.0]), math.radians(90.0), x=1.0)
+    width, axis = plume_lines(
+        np.array([0.0, 100.0]), np.array([2.0, 10.0]), math.radians(90.0), x=1.0
+    )
     # Along x: its width lies across, along y.
     assert (axis.x.tolist(), axis.y) == (pytest.approx([1.0, 101.0]), pytest.approx([0.0, 0.0]))
     assert (width.y.min(), width.y.max()) == pytest.approx((-10.0, 10.0))
@@ -114,13 +126,19 @@ def test_a_course_that_is_up_is_up():
 
 
 def test_every_ship_that_is_known_has_a_hull_that_is_a_ships():
-    ships = set(tomllib.loads(files("measurement.emission").joinpath("ships.toml").read_text(encoding="utf-8")))
+    ships = set(
+        tomllib.loads(
+            files("measurement.emission").joinpath("ships.toml").read_text(encoding="utf-8")
+        )
+    )
     assert set(HULLS) == ships
     for hull in (ANY, *HULLS.values()):
         # Merchant ships are five to eight and a half times as long as they are wide; an assumption of this table.
         assert 5.0 < hull.length / hull.beam < 8.5
     # The most powerful is the longest.
-    assert max(HULLS, key=lambda name: HULLS[name].length) == max(ships, key=lambda name: ship_preset(name).power_max)
+    assert max(HULLS, key=lambda name: HULLS[name].length) == max(
+        ships, key=lambda name: ship_preset(name).power_max
+    )
     assert hull_of({"emission": {"ship": "coaster"}}).length == HULLS["coaster"].length
     assert hull_of({"emission": {"ship": None}}) == hull_of({}) == ANY
 

@@ -13,8 +13,16 @@ from reports.document.palette import COLOURS, SERIES, Meaning
 # Machado, Oliveira and Fernandes, A physiologically-based model for simulation of color vision deficiency, IEEE TVCG 15 (2009),
 # severity 1.0, for linear RGB.
 DEFICIENCIES = {
-    "protanopia": [[0.152286, 1.052583, -0.204868], [0.114503, 0.786281, 0.099216], [-0.003882, -0.048116, 1.051998]],
-    "deuteranopia": [[0.367322, 0.860646, -0.227968], [0.280085, 0.672501, 0.047413], [-0.011820, 0.042940, 0.968881]],
+    "protanopia": [
+        [0.152286, 1.052583, -0.204868],
+        [0.114503, 0.786281, 0.099216],
+        [-0.003882, -0.048116, 1.051998],
+    ],
+    "deuteranopia": [
+        [0.367322, 0.860646, -0.227968],
+        [0.280085, 0.672501, 0.047413],
+        [-0.011820, 0.042940, 0.968881],
+    ],
 }
 
 
@@ -26,7 +34,9 @@ def linear(name):
 
 def lab(rgb):
     """Return CIE L*a*b* of linear RGB, white of D65."""
-    to_xyz = np.array([[0.4124, 0.3576, 0.1805], [0.2126, 0.7152, 0.0722], [0.0193, 0.1192, 0.9505]])
+    to_xyz = np.array(
+        [[0.4124, 0.3576, 0.1805], [0.2126, 0.7152, 0.0722], [0.0193, 0.1192, 0.9505]]
+    )
     ratio = to_xyz @ np.clip(rgb, 0.0, 1.0) / np.array([0.9505, 1.0, 1.089])
     f = np.where(ratio > (6 / 29) ** 3, np.cbrt(ratio), ratio / (3 * (6 / 29) ** 2) + 4 / 29)
     return np.array([116.0 * f[1] - 16.0, 500.0 * (f[0] - f[1]), 200.0 * (f[1] - f[2])])
@@ -55,5 +65,9 @@ def test_every_meaning_has_a_colour_and_categories_have_none_of_a_limit_or_the_g
 
 def test_limits_and_the_guard_have_their_colours_by_their_meaning_alone():
     package = Path(reports.__file__).parent
-    named = [path.name for path in package.rglob("*.py") if re.search(r'"(vermillion|purple)"', path.read_text(encoding="utf-8"))]
+    named = [
+        path.name
+        for path in package.rglob("*.py")
+        if re.search(r'"(vermillion|purple)"', path.read_text(encoding="utf-8"))
+    ]
     assert named == ["palette.py"]

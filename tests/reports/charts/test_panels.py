@@ -10,13 +10,18 @@ from reports.monte_carlo.names import input_label
 
 def test_a_marker_beyond_its_panel_has_its_value_in_the_legend():
     values = np.array([80.0, 82.0, 84.0, 900.0])
-    lines, top = capped(np.arange(4.0), values, [(np.ones(4, dtype=bool), "flight", "blue")], float("nan"), unit="s")
+    lines, top = capped(
+        np.arange(4.0), values, [(np.ones(4, dtype=bool), "flight", "blue")], float("nan"), unit="s"
+    )
     assert top < 900.0
     assert lines[-1].label == "beyond the panel: 900 s"
 
 
 def test_values_beyond_panels_that_share_a_legend_are_told_with_their_figure():
-    assert beyond_label(np.array([190.0]), "s", "settling time") == "settling time beyond the panel: 190 s"
+    assert (
+        beyond_label(np.array([190.0]), "s", "settling time")
+        == "settling time beyond the panel: 190 s"
+    )
 
 
 def test_of_many_values_beyond_a_panel_the_largest_is_told():
@@ -38,7 +43,10 @@ def test_an_entry_of_a_list_counts_from_one(key, label):
 
 
 def test_symbols_of_messages_and_documents_are_those_of_figures():
-    assert in_symbols("off pi/omega_0, at nu = 1.11, above omega_max = 0.50") == "off π/ω₀, at ν = 1.11, above ω_max = 0.50"
+    assert (
+        in_symbols("off pi/omega_0, at nu = 1.11, above omega_max = 0.50")
+        == "off π/ω₀, at ν = 1.11, above ω_max = 0.50"
+    )
     # Keys of a file stay what they are.
     assert in_symbols("omega_0_rad_s, sweep.nu=[0.3]") == "omega_0_rad_s, sweep.nu=[0.3]"
 
@@ -54,4 +62,7 @@ def test_few_flights_are_counted_in_few_bars(flights, bars):
 def test_two_figures_of_three_flights_are_not_enough_for_a_histogram():
     three = np.array([1.0, 2.0, 3.0])
     assert histogram([(three, "largest", "black"), (three, "rms", "blue")], "Error [m]") is None
-    assert histogram([(np.arange(5.0), "largest", "black"), (three, "rms", "blue")], "Error [m]") is not None
+    assert (
+        histogram([(np.arange(5.0), "largest", "black"), (three, "rms", "blue")], "Error [m]")
+        is not None
+    )

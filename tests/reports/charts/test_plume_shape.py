@@ -15,7 +15,10 @@ from reports.run.flight_config import source_height
 from reports.run.plume_shape import LINE_HALF_WIDTH, SPREADS, plume_shape
 
 SPEED, WIND, HEIGHT, LENGTH = 12.0, 7.0, 35.0, 800.0
-LINE = {"plume": {"model": "straight", "elevation_deg": 10.0, "source_height_m": HEIGHT}, "emission": {"ship": None}}
+LINE = {
+    "plume": {"model": "straight", "elevation_deg": 10.0, "source_height_m": HEIGHT},
+    "emission": {"ship": None},
+}
 SMOKE = {
     "plume": {"model": "fluctuating", "elevation_deg": 0.0, "source_height_m": HEIGHT},
     "emission": {"ship": "container", "fuel": "mgo", "sulphur_percent": 0.1, "load": None},
@@ -79,7 +82,10 @@ def test_smoke_begins_at_the_funnel_of_its_ship_unless_a_height_is_given():
 
 
 def test_smoke_is_lower_in_warmer_air():
-    cold, warm = (shape_of(SMOKE | {"wind": {"temperature_c": celsius, "stability_per_s": 0.0}}) for celsius in (-10.0, 40.0))
+    cold, warm = (
+        shape_of(SMOKE | {"wind": {"temperature_c": celsius, "stability_per_s": 0.0}})
+        for celsius in (-10.0, 40.0)
+    )
     # Near the funnel momentum carries it, and that is less of colder air: further on it is buoyancy.
     assert cold.height[-1] > warm.height[-1] + 1.0
 

@@ -12,7 +12,9 @@ SIZE = 100.0
 
 
 def line(x, y):
-    return Line(x=np.array(x, dtype=float), y=np.array(y, dtype=float), label="flown", colour="blue")
+    return Line(
+        x=np.array(x, dtype=float), y=np.array(y, dtype=float), label="flown", colour="blue"
+    )
 
 
 def upright(x):
@@ -42,7 +44,11 @@ def test_a_word_stands_where_the_fewest_curves_are(drawn, align, above):
 @pytest.mark.parametrize(("edge", "align"), [("right", "right"), ("left", "left"), ("top", "left")])
 def test_a_word_does_not_stand_beyond_all_curves_where_the_figure_may_end(edge, align):
     # A track that comes to the edge of what is shown, which ends there, and turns back.
-    ends = {"right": ([10.0, 51.0], [20.0, 80.0]), "left": ([49.0, 90.0], [20.0, 80.0]), "top": ([10.0, 90.0], [10.0, 54.0])}
+    ends = {
+        "right": ([10.0, 51.0], [20.0, 80.0]),
+        "left": ([49.0, 90.0], [20.0, 80.0]),
+        "top": ([10.0, 90.0], [10.0, 54.0]),
+    }
     (x, y) = ends[edge]
     _, (note,) = marked([line(x, [y[0]] * 2), line([x[0]] * 2, y)])
     assert note.align == align
@@ -68,19 +74,27 @@ def test_words_of_marks_that_are_near_each_other_do_not_overlap():
     shift = {"left": 0.5, "right": -0.5, "center": 0.0}
     for one, other in itertools.combinations(notes, 2):
         (middle, half), (its, its_half) = (
-            (note.x + shift[note.align] * 0.01 * SIZE * len(note.text), 0.005 * SIZE * len(note.text)) for note in (one, other)
+            (
+                note.x + shift[note.align] * 0.01 * SIZE * len(note.text),
+                0.005 * SIZE * len(note.text),
+            )
+            for note in (one, other)
         )
         assert abs(one.y - other.y) >= 0.045 * SIZE or abs(middle - its) >= half + its_half
 
 
 def test_words_in_a_row_are_apart_and_every_mark_is_kept():
     x = np.arange(0.0, 100.0, 5.0)
-    lines, notes = marks_in_a_row(x, np.zeros(len(x)), [f"{i} min" for i in range(len(x))], 10.0, SIZE)
+    lines, notes = marks_in_a_row(
+        x, np.zeros(len(x)), [f"{i} min" for i in range(len(x))], 10.0, SIZE
+    )
     assert lines[0].x.tolist() == x.tolist()
     assert np.min(np.diff([note.x for note in notes])) > 0.12 * SIZE
     assert {note.y for note in notes} == {10.0}
     # The legend names the marks, and a line leads from the mark of each word to just below it.
     assert [line.label for line in lines] == [TIMES] + [""] * len(notes)
-    assert [(line.x.tolist(), line.y[0]) for line in lines[1:]] == [([note.x] * 2, 0.0) for note in notes]
+    assert [(line.x.tolist(), line.y[0]) for line in lines[1:]] == [
+        ([note.x] * 2, 0.0) for note in notes
+    ]
     assert all(8.0 < line.y[1] < 10.0 for line in lines[1:])
     assert marks_in_a_row(x[:0], x[:0], [], 10.0, SIZE) == ([], [])

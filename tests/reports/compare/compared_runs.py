@@ -25,7 +25,13 @@ SWEEP = (
 def flown(path, *overrides):
     """Fly a short sweep into a directory and return its path."""
     given = [*SWEEP, *overrides]
-    run_study(load_study("sweep_nu", given), "sweep_nu", path, executor_factory=InProcessExecutor, overrides=given)
+    run_study(
+        load_study("sweep_nu", given),
+        "sweep_nu",
+        path,
+        executor_factory=InProcessExecutor,
+        overrides=given,
+    )
     return path
 
 

@@ -15,7 +15,11 @@ def first(tmp_path_factory):
 @pytest.fixture(scope="session")
 def larger(tmp_path_factory):
     # No flight tracks to a nanometre: none meets its criteria here, and all do in the first.
-    return flown(tmp_path_factory.mktemp("compare") / "larger", "keepout.radius_m=230.0", "criteria.tracking_error_rms_m=1e-9")
+    return flown(
+        tmp_path_factory.mktemp("compare") / "larger",
+        "keepout.radius_m=230.0",
+        "criteria.tracking_error_rms_m=1e-9",
+    )
 
 
 @pytest.fixture(scope="session")

@@ -29,7 +29,8 @@ def test_it_prints_the_figures_and_writes_reports_and_table_beside_the_first_run
     assert (ended.status, ended.errors) == (0, "")
     folder = tmp_path / "compare-first-larger"
     assert [line for line in ended.out.splitlines() if line.startswith("comparison: ")] == [
-        f"comparison: {folder / name}" for name in ("differences.csv", "compare.html", "compare.pdf")
+        f"comparison: {folder / name}"
+        for name in ("differences.csv", "compare.html", "compare.pdf")
     ]
     assert "Of 3 pairs of flights, 3 no longer meet the criteria" in ended.out
     assert "keepout.radius_m" in ended.out
@@ -50,7 +51,9 @@ def test_out_names_the_directory_and_is_made(first, same, tmp_path):
     assert (tmp_path / "a" / "b" / "compare.html").is_file()
 
 
-def test_other_runs_have_another_directory_where_names_are_cut_or_lie_elsewhere(first, same, tmp_path, monkeypatch):
+def test_other_runs_have_another_directory_where_names_are_cut_or_lie_elsewhere(
+    first, same, tmp_path, monkeypatch
+):
     # Where it is written is what is asked for, not what.
     for writer in ("html.write_html", "pdf.write_pdf"):
         monkeypatch.setattr(f"reports.render.{writer}", lambda _, path: path.touch())
@@ -61,7 +64,9 @@ def test_other_runs_have_another_directory_where_names_are_cut_or_lie_elsewhere(
     for pair in ((one, two), (one, three), (one, elsewhere), (one, two)):
         ended = compared(*pair)
         assert ended.status == 0, ended
-        folders.add(next(line for line in ended.out.splitlines() if line.startswith("comparison: ")))
+        folders.add(
+            next(line for line in ended.out.splitlines() if line.startswith("comparison: "))
+        )
     assert len(folders) == 3
     assert all(f"{tmp_path}/compare-{name[:38]}-{name[:38]}-" in folder for folder in folders)
 
@@ -71,7 +76,9 @@ def test_runs_of_other_seeds_have_no_flight_in_common(copies):
     rows = pd.read_csv(summary)
     rows.assign(seed=rows["seed"] + 77).to_csv(summary, index=False)
     before = set(copies[0].parent.iterdir())
-    assert_refused(compared(*copies), "no flight in common", "3 agree in name but not in seed", "--seed")
+    assert_refused(
+        compared(*copies), "no flight in common", "3 agree in name but not in seed", "--seed"
+    )
     assert set(copies[0].parent.iterdir()) == before
 
 
@@ -100,7 +107,9 @@ def test_a_manifest_of_another_version_is_refused(copies, entry):
 
 def test_a_summary_of_another_version_is_refused(copies):
     summary = copies[1] / "summary.csv"
-    summary.write_text(summary.read_text(encoding="utf-8").replace(",seed,", ",noise_seed,"), encoding="utf-8")
+    summary.write_text(
+        summary.read_text(encoding="utf-8").replace(",seed,", ",noise_seed,"), encoding="utf-8"
+    )
     assert_refused(compared(*copies), "another version", "'seed'")
 
 
@@ -112,7 +121,11 @@ def test_studies_whose_rows_are_no_flights_are_refused(copies, study):
 
 @pytest.mark.parametrize(
     ("trials", "words"),
-    [([], "names no trials"), ({"sweep_nu": 3}, "is damaged"), ({"sweep_nu": {"draws": 7}}, "is damaged")],
+    [
+        ([], "names no trials"),
+        ({"sweep_nu": 3}, "is damaged"),
+        ({"sweep_nu": {"draws": 7}}, "is damaged"),
+    ],
 )
 def test_a_damaged_manifest_is_one_line(copies, trials, words):
     change_manifest(copies[1], trials=trials)
@@ -125,7 +138,9 @@ def test_the_directory_of_a_run_is_no_place_for_a_comparison(copies):
 
 def test_a_place_that_cannot_be_made_is_refused(copies, tmp_path):
     (tmp_path / "file").touch()
-    assert_refused(compared(*copies, "--out", tmp_path / "file" / "below"), "cannot be made", "--out")
+    assert_refused(
+        compared(*copies, "--out", tmp_path / "file" / "below"), "cannot be made", "--out"
+    )
 
 
 def _hold(path, opened, released):
@@ -145,7 +160,11 @@ def test_a_run_that_another_process_is_writing_is_refused_and_one_that_was_kille
     try:
         assert opened.wait(30.0)
         assert_refused(compared(*copies), "another program is writing to", str(copies[1]))
-        assert_refused(run_command("reports.build", copies[1]), "another program is writing to", "; wait until it has ended")
+        assert_refused(
+            run_command("reports.build", copies[1]),
+            "another program is writing to",
+            "; wait until it has ended",
+        )
     finally:
         writer.kill()
         writer.join()

@@ -24,7 +24,12 @@ def texts_of(report):
 
 
 def test_the_report_says_what_was_changed_what_came_of_it_and_in_which_flights(report):
-    assert [section.anchor for section in report.sections] == ["changed", "figures", "flightsb", "provenance"]
+    assert [section.anchor for section in report.sections] == [
+        "changed",
+        "figures",
+        "flightsb",
+        "provenance",
+    ]
     (keys,) = blocks_of(report, Table, "changed")
     assert [row[:3] for row in keys.rows] == [
         ["keepout.radius_m", "200", "230"],
@@ -40,15 +45,21 @@ def test_the_report_says_what_was_changed_what_came_of_it_and_in_which_flights(r
 def test_figures_of_whole_runs_are_those_of_their_summaries(report, first, larger):
     (table,) = blocks_of(report, Table, "figures")
     cells = {row[0]: row[1:] for row in table.rows}
-    nearest = [pd.read_csv(path / "summary.csv")["min_distance_m"].min() for path in (first, larger)]
-    assert cells["Closest approach of any flight [m]"][:2] == [f"{distance:.1f}" for distance in nearest]
+    nearest = [
+        pd.read_csv(path / "summary.csv")["min_distance_m"].min() for path in (first, larger)
+    ]
+    assert cells["Closest approach of any flight [m]"][:2] == [
+        f"{distance:.1f}" for distance in nearest
+    ]
     assert cells["Flights that met every criterion"] == ["3 of 3", "0 of 3", "−3"]
     # Three crossings of three flights each, as the scenario asks for.
     assert cells["Plume crossings after settling, all flights"] == ["9", "9", "0"]
 
 
 def test_every_flight_whose_criteria_changed_is_listed_with_its_reason(report):
-    table = next(table for table in blocks_of(report, Table, "flightsb") if table.head[0] == "Flight")
+    table = next(
+        table for table in blocks_of(report, Table, "flightsb") if table.head[0] == "Flight"
+    )
     assert [row[0] for row in table.rows] == ["nu_0.30", "nu_0.50", "nu_0.70"]
     for row in table.rows:
         assert row[1:3] == ["met in A alone", "met"]
@@ -56,7 +67,9 @@ def test_every_flight_whose_criteria_changed_is_listed_with_its_reason(report):
 
 
 def test_flights_that_met_in_one_run_alone_are_told_apart_in_grey(report):
-    lines = [line for chart in blocks_of(report, Chart) for panel in chart.panels for line in panel.lines]
+    lines = [
+        line for chart in blocks_of(report, Chart) for panel in chart.panels for line in panel.lines
+    ]
     assert {line.style for line in lines if line.label == "met in A alone"} == {"diamonds"}
 
 
@@ -84,7 +97,9 @@ def test_both_tracks_of_the_flight_that_differs_most_are_those_of_its_time_histo
         assert set(line.x) <= set(right)
 
 
-def test_the_table_of_pairs_has_each_figure_of_both_runs_and_their_difference(compared, first, larger, tmp_path):
+def test_the_table_of_pairs_has_each_figure_of_both_runs_and_their_difference(
+    compared, first, larger, tmp_path
+):
     write_differences(compared, tmp_path / "table.csv")
     table = pd.read_csv(tmp_path / "table.csv")
     before, after = (pd.read_csv(path / "summary.csv") for path in (first, larger))
@@ -119,22 +134,33 @@ def test_a_figure_that_differs_in_its_last_bit_is_a_difference(first, same):
     rows.loc[1, "end_distance_m"] = np.nextafter(rows.loc[1, "end_distance_m"], np.inf)
     compared = compare(runs)
     assert compared[0].differing == ["end_distance_m"]
-    assert headline(compared) == "No flight changed between met and not met in 3 pairs of flights; figures differ"
+    assert (
+        headline(compared)
+        == "No flight changed between met and not met in 3 pairs of flights; figures differ"
+    )
     comparison_content(runs, compared)
 
 
 def test_a_flight_that_one_run_has_not_flown_yet_has_no_partner(first, same):
     runs = read_runs([first, same])
     manifest = runs[1].manifest | {"state": "interrupted"}
-    runs[1] = replace(runs[1], data=replace(runs[1].data, summary=runs[1].data.summary.iloc[:2], manifest=manifest))
+    runs[1] = replace(
+        runs[1],
+        data=replace(runs[1].data, summary=runs[1].data.summary.iloc[:2], manifest=manifest),
+    )
     report = comparison_content(runs, compare(runs))
-    assert report.verdict.headline == "No figure differs in 2 pairs of flights; other flights have no partner"
+    assert (
+        report.verdict.headline
+        == "No figure differs in 2 pairs of flights; other flights have no partner"
+    )
     assert not report.verdict.complete
     assert "B: the run is interrupted" in report.verdict.failures
     assert "Without a partner are 1 of A." in texts_of(report)
     (figures,) = blocks_of(report, Table, "figures")
     # Counts of 3 and of 2 flights have no difference that says anything.
-    assert next(row for row in figures.rows if row[0] == "Flights that are known to have kept out")[1:] == ["3 of 3", "2 of 2", "–"]
+    assert next(row for row in figures.rows if row[0] == "Flights that are known to have kept out")[
+        1:
+    ] == ["3 of 3", "2 of 2", "–"]
     assert [row[-1] for row in figures.rows] == ["−1"] + ["–"] * (len(figures.rows) - 1)
 
 
@@ -143,7 +169,10 @@ def test_the_headline_counts_both_directions(first, same):
     runs[0].data.summary.loc[0, "criteria_met"] = False
     assert headline(compare(runs)) == "Of 3 pairs of flights, 1 newly meets the criteria"
     runs[1].data.summary.loc[1:, "criteria_met"] = False
-    assert headline(compare(runs)) == "Of 3 pairs of flights, 2 no longer meet and 1 newly meets the criteria"
+    assert (
+        headline(compare(runs))
+        == "Of 3 pairs of flights, 2 no longer meet and 1 newly meets the criteria"
+    )
 
 
 @pytest.mark.parametrize("change", [{"keepout_violations": 1}, {"outcome": "aircraft_lost"}])
@@ -153,7 +182,10 @@ def test_a_new_violation_or_a_lost_aircraft_makes_it_red(first, same, change):
         runs[1].data.summary.loc[0, name] = value
     verdict = comparison_content(runs, compare(runs)).verdict
     assert not verdict.holds
-    assert "B: 1 flight violates the keep-out area or loses the aircraft, and not in A" in verdict.failures
+    assert (
+        "B: 1 flight violates the keep-out area or loses the aircraft, and not in A"
+        in verdict.failures
+    )
     # The other way round the flight is better.
     back = comparison_content(runs[::-1], compare(runs[::-1])).verdict
     assert (back.holds, back.complete) == (True, True)
@@ -171,11 +203,16 @@ def test_a_flight_that_met_in_neither_run_and_cannot_be_flown_any_more_is_worse(
     report = comparison_content(runs, compare(runs))
     assert report.verdict.tone == "warn"
     changed = "No flight changed between met and not met in 3 pairs of flights"
-    assert report.verdict.headline == f"{changed}; 1 that met in neither run no longer keeps out or completes the mission"
+    assert (
+        report.verdict.headline
+        == f"{changed}; 1 that met in neither run no longer keeps out or completes the mission"
+    )
     assert report.verdict.failures == [
         "B: 1 of 3 paired flights known to keep out in A alone", "B: 1 of 3 paired flights completed their mission in A alone"
     ]  # fmt: skip
-    listed = next(table for table in blocks_of(report, Table, "flightsb") if table.head[0] == "Flight")
+    listed = next(
+        table for table in blocks_of(report, Table, "flightsb") if table.head[0] == "Flight"
+    )
     ((_, alone, _, ended),) = listed.rows
     assert alone == "known to keep out in A alone, completed their mission in A alone"
     assert "too fast" in ended
@@ -187,7 +224,9 @@ def test_a_flight_that_met_in_neither_run_and_cannot_be_flown_any_more_is_worse(
     assert {cells[name][2] for name in cells if "[" in name} == {"–"}
 
 
-def test_a_run_in_which_nothing_was_flown_is_compared_without_a_table_of_differences(first, same, tmp_path):
+def test_a_run_in_which_nothing_was_flown_is_compared_without_a_table_of_differences(
+    first, same, tmp_path
+):
     runs = read_runs([first, same])
     rows = runs[1].data.summary
     known = rows.select_dtypes("number").columns.drop(["seed"])
@@ -196,7 +235,11 @@ def test_a_run_in_which_nothing_was_flown_is_compared_without_a_table_of_differe
     report = comparison_content(runs, compare(runs))
     assert not [table for table in blocks_of(report, Table, "flightsb") if not table.rows]
     # Typst takes a table without rows, too.
-    empty = Section(anchor="none", title="None", blocks=[Table(head=["A", "B"], rows=[], widths=[1.0, 1.0], caption="None.")])
+    empty = Section(
+        anchor="none",
+        title="None",
+        blocks=[Table(head=["A", "B"], rows=[], widths=[1.0, 1.0], caption="None.")],
+    )
     write_pdf(replace(report, sections=[*report.sections, empty]), tmp_path / "compare.pdf")
     assert (tmp_path / "compare.pdf").read_bytes().startswith(b"%PDF")
 
@@ -212,7 +255,9 @@ def test_several_runs_are_each_compared_with_the_first(first, larger, same):
     assert len({chart.name for chart in blocks_of(report, Chart)}) == len(blocks_of(report, Chart))
 
 
-def test_each_flight_has_its_own_limit_in_its_colour_and_within_the_panel_of_the_distance(report, runs):
+def test_each_flight_has_its_own_limit_in_its_colour_and_within_the_panel_of_the_distance(
+    report, runs
+):
     panel = next(panel for panel in report.picture.panels if panel.title.startswith("Distance"))
     flown = {line.label: line.colour for line in panel.lines}
     # The keep-out areas of the two runs are 200 and 230 m.
@@ -225,21 +270,34 @@ def test_each_flight_has_its_own_limit_in_its_colour_and_within_the_panel_of_the
 
 def test_of_a_flight_that_never_settled_the_second_half_is_shown(first, larger):
     runs = read_runs([first, larger])
-    never = replace(runs[1], data=replace(runs[1].data, summary=runs[1].data.summary.assign(settling_time_s=math.nan)))
-    titles = [panel.title for panel in comparison_content([runs[0], never], compare([runs[0], never])).picture.panels]
+    never = replace(
+        runs[1],
+        data=replace(runs[1].data, summary=runs[1].data.summary.assign(settling_time_s=math.nan)),
+    )
+    titles = [
+        panel.title
+        for panel in comparison_content([runs[0], never], compare([runs[0], never])).picture.panels
+    ]
     assert "Each once settled, or its second half" in titles
     assert "Each once settled" not in titles
 
 
-def test_of_two_flights_that_are_never_settled_at_the_same_time_each_is_shown_from_its_own_settling(first, larger):
+def test_of_two_flights_that_are_never_settled_at_the_same_time_each_is_shown_from_its_own_settling(
+    first, larger
+):
     tables = [(run, run.data.summary) for run in read_runs([first, larger])]
     # The first just before its end, the second from its beginning on.
-    settled = [rows["duration_s"] - 1.0 if first else 0.0 for first, (_, rows) in zip((True, False), tables, strict=True)]
+    settled = [
+        rows["duration_s"] - 1.0 if first else 0.0
+        for first, (_, rows) in zip((True, False), tables, strict=True)
+    ]
     runs = [
         replace(run, data=replace(run.data, summary=rows.assign(settling_time_s=at)))
         for (run, rows), at in zip(tables, settled, strict=True)
     ]
-    panels = {panel.title: panel for panel in comparison_content(runs, compare(runs)).picture.panels}
+    panels = {
+        panel.title: panel for panel in comparison_content(runs, compare(runs)).picture.panels
+    }
     sizes = {line.label: len(line.x) for line in panels["Each once settled"].lines}
     assert 0 < sizes[runs[0].title] < sizes[runs[1].title]
 
@@ -247,18 +305,24 @@ def test_of_two_flights_that_are_never_settled_at_the_same_time_each_is_shown_fr
 def test_flights_without_a_time_history_have_no_tracks(first, larger):
     runs = read_runs([first, larger])
     # Page 1 has the tracks of two runs.
-    assert comparison_content(runs, compare(runs)).picture.caption.startswith("The flight that differs most")
+    assert comparison_content(runs, compare(runs)).picture.caption.startswith(
+        "The flight that differs most"
+    )
     runs = [replace(run, data=replace(run.data, path=run.data.path / "nowhere")) for run in runs]
     assert comparison_content(runs, compare(runs)).picture is None
 
 
 def test_the_report_has_no_path_of_the_machine(report, first):
-    assert str(first.parent) not in json.dumps([block.rows for block in blocks_of(report, Table)]) + texts_of(report)
+    assert str(first.parent) not in json.dumps(
+        [block.rows for block in blocks_of(report, Table)]
+    ) + texts_of(report)
 
 
 def test_a_verdict_on_the_fuel_that_is_another_is_told_and_not_green(first, same):
     runs = read_runs([first, same])
-    for run, verdicts in zip(runs, (["above", "open", "below"], ["above", "above", "below"]), strict=True):
+    for run, verdicts in zip(
+        runs, (["above", "open", "below"], ["above", "above", "below"]), strict=True
+    ):
         run.data.summary["sulphur_verdict"] = verdicts
     report = comparison_content(runs, compare(runs))
     assert report.verdict.headline.endswith("; the verdict on the fuel is another in 1")

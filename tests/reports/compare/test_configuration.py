@@ -18,7 +18,9 @@ def two(first, same):
 
 def _with(run, manifest):
     data = replace(run.data, manifest=manifest)
-    trials = [replace(trial, run=data, config=manifest["trials"][trial.key]) for trial in run.trials]
+    trials = [
+        replace(trial, run=data, config=manifest["trials"][trial.key]) for trial in run.trials
+    ]
     return replace(run, data=data, trials=trials)
 
 
@@ -82,10 +84,19 @@ def test_long_lists_are_written_by_their_range_unless_that_is_the_same(two):
 
 
 def test_random_variables_cases_and_variants_are_told_by_their_names(two):
-    draw = {"key": "wind.speed_mps", "uniform": [2.0, 4.0], "choice": None, "weights": None, "normal": None, "weibull": None}
+    draw = {
+        "key": "wind.speed_mps",
+        "uniform": [2.0, 4.0],
+        "choice": None,
+        "weights": None,
+        "normal": None,
+        "weibull": None,
+    }
     for run, high in zip(two, (4.0, 5.0), strict=True):
         config_of(run)["draws"] = [draw | {"uniform": [2.0, high], "within": None}]
-        config_of(run)["cases"] = [{"name": "near", "set": {"keepout.radius_m": 100.0 * high}, "comparison": False}]
+        config_of(run)["cases"] = [
+            {"name": "near", "set": {"keepout.radius_m": 100.0 * high}, "comparison": False}
+        ]
     assert cells(two) == {
         "wind.speed_mps": ("uniform from 2 to 4", "uniform from 2 to 5"),
         "cases.near.set.keepout.radius_m": ("400", "500"),
@@ -93,22 +104,40 @@ def test_random_variables_cases_and_variants_are_told_by_their_names(two):
 
 
 def test_a_key_that_one_run_samples_is_told_by_its_distribution_there(two):
-    draw = {"key": "wind.speed_mps", "uniform": [2.0, 4.0], "choice": None, "weights": None, "normal": None, "weibull": None}
-    config_of(two[0])["draws"], config_of(two[0])["wind"]["speed_mps"] = [draw | {"within": None}], 0.0
+    draw = {
+        "key": "wind.speed_mps",
+        "uniform": [2.0, 4.0],
+        "choice": None,
+        "weights": None,
+        "normal": None,
+        "weibull": None,
+    }
+    config_of(two[0])["draws"], config_of(two[0])["wind"]["speed_mps"] = (
+        [draw | {"within": None}],
+        0.0,
+    )
     config_of(two[1])["wind"]["speed_mps"] = 3.0
     assert cells(two) == {"wind.speed_mps": ("uniform from 2 to 4", "3")}
 
 
 def test_a_key_that_one_version_does_not_have_is_said_to_be_none(two):
     del config_of(two[0])["guidance"]["preview"]
-    parameters_of(two[0])[:] = [of for of in parameters_of(two[0]) if of["key"] != "guidance.preview"]
+    parameters_of(two[0])[:] = [
+        of for of in parameters_of(two[0]) if of["key"] != "guidance.preview"
+    ]
     assert cells(two) == {"guidance.preview": ("not a key", "yes")}
 
 
 def test_a_key_of_a_part_that_one_run_leaves_out_has_its_default(two):
     # A configuration has what is set alone of such keys.
     for run, value in zip(two, ("electrochemical", "fast"), strict=True):
-        known = {"key": "payload.sensor", "value": value, "default": "electrochemical", "unit": "", "meaning": "Sniffer."}
+        known = {
+            "key": "payload.sensor",
+            "value": value,
+            "default": "electrochemical",
+            "unit": "",
+            "meaning": "Sniffer.",
+        }
         parameters_of(run).append(known)
     config_of(two[1])["payload"]["sensor"] = "fast"
     (row,) = configuration_table(two).rows
@@ -117,12 +146,20 @@ def test_a_key_of_a_part_that_one_run_leaves_out_has_its_default(two):
 
 def test_keys_of_lists_of_trials_name_the_trials(two):
     for run in two:
-        run.manifest["trials"] = {name: copy.deepcopy(config_of(run)) for name in ("one", "two", "three")}
+        run.manifest["trials"] = {
+            name: copy.deepcopy(config_of(run)) for name in ("one", "two", "three")
+        }
     two[1].manifest["trials"]["one"]["wind"]["speed_mps"] = 7.0
     two[1].manifest["trials"]["three"]["wind"]["speed_mps"] = 7.0
     two[1].manifest["trials"]["four"] = two[1].manifest["trials"].pop("two")
     runs = [
-        replace(run, trials=[replace(run.trials[0], key=key, config=config) for key, config in run.manifest["trials"].items()])
+        replace(
+            run,
+            trials=[
+                replace(run.trials[0], key=key, config=config)
+                for key, config in run.manifest["trials"].items()
+            ],
+        )
         for run in two
     ]
     runs = [replace(run, trials=[_quiet(trial) for trial in run.trials]) for run in runs]
@@ -171,7 +208,16 @@ def test_versions_files_and_hashes_that_differ_stand_out(two):
 
 def test_designs_are_compared_part_by_part(two):
     design = {"aircraft": "x8", "title": "Skywalker X8", "poles": [1.0], "heading_rate_lag_s": 0.3}
-    others = (design, design | {"heading_rate_lag_s": 0.4}, design | {"aircraft": "T37", "title": "T37"})
-    for other, words in zip(others, ("the same", "differs in heading rate lag s", "T37, "), strict=True):
-        runs = [replace(run, data=replace(run.data, innerloop=of)) for run, of in zip(two, (design, other), strict=True)]
+    others = (
+        design,
+        design | {"heading_rate_lag_s": 0.4},
+        design | {"aircraft": "T37", "title": "T37"},
+    )
+    for other, words in zip(
+        others, ("the same", "differs in heading rate lag s", "T37, "), strict=True
+    ):
+        runs = [
+            replace(run, data=replace(run.data, innerloop=of))
+            for run, of in zip(two, (design, other), strict=True)
+        ]
         assert words in software(runs)[0]["Autopilot’s design"][1]

@@ -13,7 +13,8 @@ from tests.reports.compare.compared_runs import made_run, rows_of
 
 def pairs_of(before, after, name="tracking_error_rms_m"):
     return paired(
-        made_run("A", rows_of(range(len(before)), **{name: before})), made_run("B", rows_of(range(len(after)), **{name: after}))
+        made_run("A", rows_of(range(len(before)), **{name: before})),
+        made_run("B", rows_of(range(len(after)), **{name: after})),
     )
 
 
@@ -49,7 +50,9 @@ def test_what_is_common_to_both_flights_of_a_pair_is_no_difference():
 
 
 def test_pairs_of_which_one_flight_lacks_the_figure_are_left_out():
-    found = differences(pairs_of([1.0, math.nan, 3.0], [2.0, 5.0, math.nan]))["tracking_error_rms_m"]
+    found = differences(pairs_of([1.0, math.nan, 3.0], [2.0, 5.0, math.nan]))[
+        "tracking_error_rms_m"
+    ]
     assert list(found.known) == [1.0]
     assert found.median == 1.0
 
@@ -69,8 +72,13 @@ def test_the_clearance_is_from_each_runs_own_keep_out_area():
 
 
 def test_the_crossing_interval_is_compared_by_its_distance_from_theory_in_per_cent():
-    rows = [rows_of([0], crossing_interval_mean_s=[mean], crossing_interval_predicted_s=[10.0]) for mean in (9.8, 10.1)]
-    found = differences(paired(made_run("A", rows[0]), made_run("B", rows[1])))["crossing_interval_error"]
+    rows = [
+        rows_of([0], crossing_interval_mean_s=[mean], crossing_interval_predicted_s=[10.0])
+        for mean in (9.8, 10.1)
+    ]
+    found = differences(paired(made_run("A", rows[0]), made_run("B", rows[1])))[
+        "crossing_interval_error"
+    ]
     # |9.8/10 - 1| is 2 %, |10.1/10 - 1| 1 %; to rounding.
     assert (found.before[0], found.after[0]) == pytest.approx((2.0, 1.0), abs=1e-12)
 
@@ -80,18 +88,38 @@ def test_the_table_counts_lower_and_higher_and_marks_an_interval_without_0():
     table = difference_table(pairs_of(np.zeros(8), np.ones(8)), found)
     row = next(i for i, cells in enumerate(table.rows) if cells[0].startswith("Tracking error"))
     # The first and the eighth of eight: 2/2^8 is left outside; with the second and the seventh it were 18/2^8, above 5 %.
-    assert table.rows[row][1:] == ["8", "0.00", "4.50", "+4.50", "+1.00 to +8.00", "+1.00 to +8.00", "0, 8"]
+    assert table.rows[row][1:] == [
+        "8",
+        "0.00",
+        "4.50",
+        "+4.50",
+        "+1.00 to +8.00",
+        "+1.00 to +8.00",
+        "0, 8",
+    ]
     assert (row, 5) in table.bold
 
 
 def test_values_that_are_nearly_0_are_written_with_as_many_digits_as_their_difference():
     pairs = pairs_of([0.003] * 8, [0.006] * 8)
-    (row,) = (cells for cells in difference_table(pairs, differences(pairs)).rows if cells[0].startswith("Tracking error"))
+    (row,) = (
+        cells
+        for cells in difference_table(pairs, differences(pairs)).rows
+        if cells[0].startswith("Tracking error")
+    )
     assert row[2:5] == ["0.0030", "0.0060", "+0.0030"]
 
 
 @pytest.mark.parametrize(
-    ("value", "text"), [(0.0, "0"), (-0.0, "0"), (1234.56, "+1,234.6"), (-0.04, "−0.04"), (-0.06, "−0.1"), (1.5e-7, "+1.5·10⁻⁷")]
+    ("value", "text"),
+    [
+        (0.0, "0"),
+        (-0.0, "0"),
+        (1234.56, "+1,234.6"),
+        (-0.04, "−0.04"),
+        (-0.06, "−0.1"),
+        (1.5e-7, "+1.5·10⁻⁷"),
+    ],
 )
 def test_a_difference_that_digits_would_hide_is_written_with_two(value, text):
     assert signed(value, 1) == text
@@ -109,13 +137,21 @@ def test_every_figure_has_a_unit_and_a_name_of_its_own():
 
 def test_the_uncertainty_of_the_sulphur_content_says_that_it_is_one_sigma():
     # Reports on flights give it at 95 %.
-    assert MEASURES["fsc_uncertainty_percent"].figure.name == "Uncertainty of the sulphur content, 1σ"
+    assert (
+        MEASURES["fsc_uncertainty_percent"].figure.name == "Uncertainty of the sulphur content, 1σ"
+    )
 
 
 def test_pairs_that_share_their_random_sample_count_as_one():
     # Three seeds at two points of a sweep: differences of one seed are alike, and six pairs are three samples.
-    rows = [rows_of(range(3), prefix=f"p{point}_", tracking_error_rms_m=[1.0, 1.0, 1.0]) for point in (0, 1)]
-    moved = [rows_of(range(3), prefix=f"p{point}_", tracking_error_rms_m=[2.0, 3.0, 5.0 + point]) for point in (0, 1)]
+    rows = [
+        rows_of(range(3), prefix=f"p{point}_", tracking_error_rms_m=[1.0, 1.0, 1.0])
+        for point in (0, 1)
+    ]
+    moved = [
+        rows_of(range(3), prefix=f"p{point}_", tracking_error_rms_m=[2.0, 3.0, 5.0 + point])
+        for point in (0, 1)
+    ]
     pairs = paired(made_run("A", [*rows[0], *rows[1]]), made_run("B", [*moved[0], *moved[1]]))
     found = differences(pairs)["tracking_error_rms_m"]
     assert len(found.known) == 6

@@ -11,13 +11,19 @@ FAILURES = [("lyapunov", 3, "time_up"), ("cascade", 7, "steps_up"), ("cascade", 
 
 @pytest.fixture(scope="session")
 def converged_path(tmp_path_factory):
-    return write_convergence_run(tmp_path_factory.mktemp("converged") / "run", TRAJECTORIES, samples=SAMPLES)
+    return write_convergence_run(
+        tmp_path_factory.mktemp("converged") / "run", TRAJECTORIES, samples=SAMPLES
+    )
 
 
 @pytest.fixture(scope="session")
 def failed_path(tmp_path_factory):
     return write_convergence_run(
-        tmp_path_factory.mktemp("failed") / "run", TRAJECTORIES, samples=SAMPLES, failures=FAILURES, cut_failures=40
+        tmp_path_factory.mktemp("failed") / "run",
+        TRAJECTORIES,
+        samples=SAMPLES,
+        failures=FAILURES,
+        cut_failures=40,
     )
 
 

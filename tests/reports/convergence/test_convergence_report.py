@@ -63,7 +63,9 @@ def test_cut_commands_have_no_part_in_the_verdict_but_are_shown(tmp_path):
 
 
 def test_the_verdict_names_the_first_counter_examples_and_counts_the_others(tmp_path):
-    report = small(tmp_path, failures=[("cascade", i, "time_up") for i in range(FAILURES_NAMED + 5)])
+    report = small(
+        tmp_path, failures=[("cascade", i, "time_up") for i in range(FAILURES_NAMED + 5)]
+    )
     assert len(report.verdict.failures) == FAILURES_NAMED + 1
     assert report.verdict.failures[-1].startswith("and 5 more")
 
@@ -84,13 +86,19 @@ def test_trajectories_that_were_lost_with_their_process_are_no_counter_examples(
     known = ["trajectory", "law", "reference"]
     rows.loc[lost, [name for name in rows if name not in known]] = np.nan
     rows["outcome"] = rows["outcome"].astype(object)
-    rows.loc[lost, "outcome"], rows.loc[lost, "message"] = "lost", "2 processes that flew it were lost"
+    rows.loc[lost, "outcome"], rows.loc[lost, "message"] = (
+        "lost",
+        "2 processes that flew it were lost",
+    )
     rows.to_csv(path / "summary.csv", index=False)
     report = content(read_run(path))
     assert report.verdict.holds
     assert not report.verdict.complete
     assert report.verdict.headline == "All 50 trajectories so far converged; 60 are planned"
-    assert "10 trajectories were lost with their processes, and count as not flown; --resume" in report.verdict.detail
+    assert (
+        "10 trajectories were lost with their processes, and count as not flown; --resume"
+        in report.verdict.detail
+    )
     assert report.verdict.figures[1][1:] == ("100 %", "100 %", True)
     assert "counterexamples" not in [section.anchor for section in report.sections]
     (table,) = blocks_of(report, Table, "settling")
@@ -102,7 +110,8 @@ def test_a_study_of_which_rows_are_missing_is_not_called_complete(tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("part", "whole", "text"), [(3, 3, "100 %"), (99_999, 100_000, "99.99 %"), (999_999, 1_000_000, "99.99 %"), (0, 5, "0 %")]
+    ("part", "whole", "text"),
+    [(3, 3, "100 %"), (99_999, 100_000, "99.99 %"), (999_999, 1_000_000, "99.99 %"), (0, 5, "0 %")],
 )
 def test_only_all_are_a_hundred_percent(part, whole, text):
     assert percentage(part, whole) == text
@@ -117,7 +126,9 @@ def test_the_table_counts_and_orders_as_the_run_did(failed_path, failed):
         assert cells[2:4] == [f"{len(rows):,}", f"{(rows['outcome'] == 'converged').sum():,}"]
         ordered = np.sort(rows["settling_time_s"].fillna(np.inf))
         # The 600th or 601st of 1200 is their median: either may be printed, to the second.
-        assert float(cells[4].replace(",", "")) == pytest.approx(ordered[600], abs=0.5 + ordered[600] - ordered[599])
+        assert float(cells[4].replace(",", "")) == pytest.approx(
+            ordered[600], abs=0.5 + ordered[600] - ordered[599]
+        )
         # Under every law some never settled, so that there is no time by which all had.
         assert cells[7] == "–"
         assert [row[2] for row in table.rows[4 * i : 4 * i + 3]] == ["400", "400", "400"]
@@ -131,7 +142,12 @@ def test_where_no_settling_time_is_predicted_none_is_compared(tmp_path):
     known = rows[rows["trajectory"] >= 6].query("law != 'cascade_cut'")
     ratio = (known["settling_time_s"] / known["settling_time_predicted_s"]).median()
     report = content(read_run(path))
-    assert report.verdict.figures[-1] == ("Settling over predicted, median", f"{ratio:.2f}", "", None)
+    assert report.verdict.figures[-1] == (
+        "Settling over predicted, median",
+        f"{ratio:.2f}",
+        "",
+        None,
+    )
     # Of 10 trajectories of a law about a kind of reference 8 are left, and the first point comes twice.
     panels = named_charts(report)["predicted"].panels
     assert {len(line.x) for panel in panels for line in panel.lines} == {9}
@@ -169,7 +185,9 @@ def test_a_study_without_rows_or_with_next_to_none_can_be_reported_on(kept, tmp_
 
 @pytest.mark.usefixtures("sketched")
 def test_a_study_in_which_nothing_ever_settles_can_be_reported_on(tmp_path):
-    path = write_convergence_run(tmp_path / "run", 4, failures=[(law, i, "time_up") for law in LAWS for i in range(4)])
+    path = write_convergence_run(
+        tmp_path / "run", 4, failures=[(law, i, "time_up") for law in LAWS for i in range(4)]
+    )
     html, _ = build_reports(path)
     assert "8 of 8 trajectories did not converge" in html.read_text(encoding="utf-8")
 
@@ -188,10 +206,22 @@ def without_ensemble(path):
     ("damage", "words"),
     [
         (lambda path: (path / "summary.csv").unlink(), "no summary.csv"),
-        (lambda path: (path / "summary.csv").write_text("x,y\n1,2\n", encoding="utf-8"), "is damaged"),
-        (lambda path: change(path, lambda rows: rows.assign(law="pursuit")), "law is pursuit; known are lyapunov"),
-        (lambda path: change(path, lambda rows: rows.assign(reference="square")), "reference is square; known are circle"),
-        (lambda path: change(path, lambda rows: rows.drop(columns="settling_time_s")), "is damaged"),
+        (
+            lambda path: (path / "summary.csv").write_text("x,y\n1,2\n", encoding="utf-8"),
+            "is damaged",
+        ),
+        (
+            lambda path: change(path, lambda rows: rows.assign(law="pursuit")),
+            "law is pursuit; known are lyapunov",
+        ),
+        (
+            lambda path: change(path, lambda rows: rows.assign(reference="square")),
+            "reference is square; known are circle",
+        ),
+        (
+            lambda path: change(path, lambda rows: rows.drop(columns="settling_time_s")),
+            "is damaged",
+        ),
         (without_ensemble, "is damaged"),
     ],
 )

@@ -42,7 +42,10 @@ def test_both_reports_are_built_from_disk_alone(path, monkeypatch):
 
 
 def test_everything_is_in_its_place(report):
-    shown = {section.anchor: [chart.name for chart in blocks_of(report, Chart, section.anchor)] for section in report.sections}
+    shown = {
+        section.anchor: [chart.name for chart in blocks_of(report, Chart, section.anchor)]
+        for section in report.sections
+    }
     assert shown == {
         "figures": [],
         "margins": ["diskmargins", "classicalmargins"],
@@ -62,40 +65,77 @@ def test_axes_have_units_and_every_curve_is_drawn_on_screen_and_in_print(report)
     for chart in blocks_of(report, Chart):
         lines = [line for panel in chart.panels for line in panel.lines]
         assert len(plotly_charts.draw(chart)["data"]) == len(lines), chart.name
-        assert sum(len(ax.lines) for ax in matplotlib_charts.draw(chart).axes) == len(lines), chart.name
+        assert sum(len(ax.lines) for ax in matplotlib_charts.draw(chart).axes) == len(lines), (
+            chart.name
+        )
         for panel in chart.panels:
-            assert any(np.isfinite(line.y).any() for line in panel.lines), (chart.name, panel.y_label)
+            assert any(np.isfinite(line.y).any() for line in panel.lines), (
+                chart.name,
+                panel.y_label,
+            )
 
 
 def test_a_design_with_every_margin_is_called_good(report):
     verdict = report.verdict
     assert (verdict.holds, verdict.complete, verdict.failures) == (True, True, [])
-    assert verdict.headline == "Every loop has at least 6 dB and 45° of margin at every point of the grid and between"
-    assert "45 points of the grid over airspeed and bank and at 20 points between them" in verdict.detail
+    assert (
+        verdict.headline
+        == "Every loop has at least 6 dB and 45° of margin at every point of the grid and between"
+    )
+    assert (
+        "45 points of the grid over airspeed and bank and at 20 points between them"
+        in verdict.detail
+    )
     # Four of the five cases change the aircraft, and one delays its autopilot.
     assert "tried on 4 perturbed aircraft and with one more period of delay." in verdict.detail
     assert "1 of 45 equilibria are at a limit" in verdict.detail
     # At the corner of the grid: 11 dB less 2.2 dB for each of airspeed and bank.
-    assert verdict.figures[0] == ("Worst gain margin: elevator, 45 m/s, −33°", "6.6 dB", "≥ 6 dB", True)
+    assert verdict.figures[0] == (
+        "Worst gain margin: elevator, 45 m/s, −33°",
+        "6.6 dB",
+        "≥ 6 dB",
+        True,
+    )
     # Of the cases the last has the least margins, 8.5 - 0.5 x 4 dB less 1 dB for each of airspeed and bank.
-    worst = ("Worst gain margin, one more period of delay: elevator, 45 m/s, −33°", "4.5 dB", "≥ 4 dB", True)
+    worst = (
+        "Worst gain margin, one more period of delay: elevator, 45 m/s, −33°",
+        "4.5 dB",
+        "≥ 4 dB",
+        True,
+    )
     assert verdict.figures[2] == worst
 
 
 def test_the_margin_table_has_the_worst_of_each_loop_and_where(report):
     table = blocks_of(report, Table, "margins")[0]
-    assert [row[0] for row in table.rows] == [*(loop.replace("_", " ") for loop in LOOPS), "all controls"]
-    assert table.rows[0] == ["elevator", "6.6", "45 m/s, −33°", "71.0", "45 m/s, −33°", "6.0", "46.0", "45 m/s, −33°"]
+    assert [row[0] for row in table.rows] == [
+        *(loop.replace("_", " ") for loop in LOOPS),
+        "all controls",
+    ]
+    assert table.rows[0] == [
+        "elevator",
+        "6.6",
+        "45 m/s, −33°",
+        "71.0",
+        "45 m/s, −33°",
+        "6.0",
+        "46.0",
+        "45 m/s, −33°",
+    ]
     # The throttle bears any gain; of all controls at once there are disk margins only.
     assert [table.rows[2][1], table.rows[-1][1], table.rows[-1][3]] == ["∞", "–", "–"]
 
 
 def test_curves_of_margins_are_the_worst_over_the_other_axis():
     design = complete(record())
-    row = next(m for m in design["margins"] if m["loop"] == "aileron" and where(m) == "60 m/s, +21°")
+    row = next(
+        m for m in design["margins"] if m["loop"] == "aileron" and where(m) == "60 m/s, +21°"
+    )
     row["disk_gain_db"] = 0.5
     chart = margin_charts(design)[0]
-    by_airspeed, by_bank = (next(line for line in chart.panels[i].lines if line.label == "aileron") for i in (0, 2))
+    by_airspeed, by_bank = (
+        next(line for line in chart.panels[i].lines if line.label == "aileron") for i in (0, 2)
+    )
     assert by_airspeed.x.tolist() == AIRSPEEDS
     assert by_bank.x.tolist() == BANKS_DEG
     assert by_airspeed.y[AIRSPEEDS.index(60.0)] == by_bank.y[BANKS_DEG.index(21.0)] == 0.5
@@ -129,14 +169,21 @@ def test_every_loop_has_a_nichols_panel_with_the_region_that_is_excluded(report)
     for panel in nichols.panels:
         region = next(line for line in panel.lines if line.fill)
         assert region.label == "excluded: 6 dB, 45 deg"
-        assert set(zip(region.x, region.y, strict=True)) == {(-225.0, 0.0), (-180.0, 6.0), (-135.0, 0.0), (-180.0, -6.0)}
+        assert set(zip(region.x, region.y, strict=True)) == {
+            (-225.0, 0.0),
+            (-180.0, 6.0),
+            (-135.0, 0.0),
+            (-180.0, -6.0),
+        }
         assert panel.x_range[0] < -225.0
         assert panel.x_range[1] > -135.0
 
 
 def test_the_overshoot_is_counted_beyond_that_of_the_reference_model():
     design = complete(record())
-    overshoot = {r["kind"]: r["overshoot"] for r in design["responses"] if r["command"] == "heading_rate"}
+    overshoot = {
+        r["kind"]: r["overshoot"] for r in design["responses"] if r["command"] == "heading_rate"
+    }
     assert excess_overshoot(design) == pytest.approx(overshoot["flown"] - overshoot["model"])
     assert excess_overshoot(design) > 0.0
 
@@ -152,8 +199,14 @@ def test_perturbations_and_checks_of_the_linear_model_are_listed(report):
 
 def test_how_to_fly_it_elsewhere_names_the_files_that_are_there(report, tmp_path):
     files, order = (text.text for text in blocks_of(report, Text, "elsewhere"))
-    assert "aircraft/c172x/c172x.xml; its autopilot, systems/c172x_autopilot.xml; a script, scripts/c172x.xml" in files
-    assert "from the directory of this report: JSBSim --root=model --script=scripts/c172x.xml." in order
+    assert (
+        "aircraft/c172x/c172x.xml; its autopilot, systems/c172x_autopilot.xml; a script, scripts/c172x.xml"
+        in files
+    )
+    assert (
+        "from the directory of this report: JSBSim --root=model --script=scripts/c172x.xml."
+        in order
+    )
     assert "writes model/c172x.csv" in order
     path = write_design(tmp_path / "run")
     (path / "model" / "scripts" / "c172x.xml").unlink()
@@ -165,7 +218,10 @@ def test_a_sweeps_report_takes_from_a_design_only_what_belongs_to_level_flight()
     section = innerloop_section(design)
     steps, margins, trims = (block for block in section.blocks if isinstance(block, Table))
     assert len(steps.rows) == len(design["responses"])
-    assert [row[0] for row in margins.rows] == [*(loop.replace("_", " ") for loop in LOOPS), "all controls"]
+    assert [row[0] for row in margins.rows] == [
+        *(loop.replace("_", " ") for loop in LOOPS),
+        "all controls",
+    ]
     # Of all banks the one that the envelope says is flown.
     assert {float(row[1]) for row in trims.rows} == {0.0, 27.0}
     assert section.blocks[-2] == Heading("Equilibria: level, and at 27 degrees of bank")
@@ -183,16 +239,29 @@ def test_a_limit_is_drawn_only_for_margins_of_which_something_is_required():
 
 def test_brackets_in_a_title_are_printed_as_they_are(capsys):
     print_summary(record() | {"title": "Wing [mk 2] [/x]", "source": "see [1] and [b]"})
-    assert capsys.readouterr().out.startswith("Wing [mk 2] [/x], designed at 1000 m. see [1] and [b]\n")
+    assert capsys.readouterr().out.startswith(
+        "Wing [mk 2] [/x], designed at 1000 m. see [1] and [b]\n"
+    )
 
 
 @pytest.mark.parametrize(
     ("damage", "words"),
     [
-        (lambda path: (path / "innerloop.json").unlink(), "holds no design record that can be read"),
-        (lambda path: (path / "innerloop.json").write_text("{", encoding="utf-8"), "holds no design record that can be read"),
+        (
+            lambda path: (path / "innerloop.json").unlink(),
+            "holds no design record that can be read",
+        ),
+        (
+            lambda path: (path / "innerloop.json").write_text("{", encoding="utf-8"),
+            "holds no design record that can be read",
+        ),
         (lambda path: (path / "innerloop.json").write_text("{}", encoding="utf-8"), "is damaged"),
-        (lambda path: (path / "innerloop.json").write_text(json.dumps({**record(), "poles": []})), "is damaged"),
+        (
+            lambda path: (path / "innerloop.json").write_text(
+                json.dumps({**record(), "poles": []})
+            ),
+            "is damaged",
+        ),
     ],
 )
 def test_a_damaged_design_is_refused_in_one_line(damage, words, tmp_path):
@@ -211,14 +280,23 @@ def test_how_far_reversals_stray_is_said():
         "up to 4.39 m nearer to what it turned away from than predicted. Of the 64 that did not follow the worst ones none"
         " came nearer by more than 2.37 m."
     )
-    more = {"reversals": 10000, "deviation_max_m": 7.21, "worst_command_before": 1.0, "worst_airspeed_before_mps": 18.2}
+    more = {
+        "reversals": 10000,
+        "deviation_max_m": 7.21,
+        "worst_command_before": 1.0,
+        "worst_airspeed_before_mps": 18.2,
+    }
     repeated = record() | {"turn_reversal": REVERSALS | {"repeated_search": more}}
     assert reversal_sentences(repeated) == f"{said} In 10000 others it came up to 7.21 m nearer."
 
 
 def test_the_report_and_the_console_say_how_far_reversals_stray(tmp_path, capsys):
     write_design(tmp_path)
-    (section,) = (section for section in content(read_run(tmp_path)).sections if section.anchor == "responses")
-    assert reversal_sentences(record()) in [block.text for block in section.blocks if isinstance(block, Text)]
+    (section,) = (
+        section for section in content(read_run(tmp_path)).sections if section.anchor == "responses"
+    )
+    assert reversal_sentences(record()) in [
+        block.text for block in section.blocks if isinstance(block, Text)
+    ]
     print_summary(record())
     assert "4.39 m nearer" in " ".join(capsys.readouterr().out.split())

@@ -21,7 +21,9 @@ def test_one_margin_too_small_is_named_and_never_rounded_up_to_what_is_required(
     assert not verdict.complete
     assert verdict.headline == "Stable everywhere, but short of 6 dB and 45° in elevator"
     # 45 grid points and 20 between.
-    assert verdict.failures == ["elevator: gain margin 5.9 dB at 45 m/s, −33°, required 6 dB; short at 1 of 65 points"]
+    assert verdict.failures == [
+        "elevator: gain margin 5.9 dB at 45 m/s, −33°, required 6 dB; short at 1 of 65 points"
+    ]
 
 
 def test_a_point_between_those_of_the_grid_counts_as_much():
@@ -37,8 +39,13 @@ def test_a_perturbed_aircraft_that_falls_short_is_named():
     assert verdict.holds
     assert not verdict.complete
     # Less is required of it than of the aircraft as modelled.
-    assert verdict.headline == "Every loop has 6 dB and 45° everywhere, but is short of 4 dB and 30° under a perturbation"
-    assert verdict.failures == ["mass +20 %: phase margin 29.0 deg of heading rate at 45 m/s, −33°, required 30 deg"]
+    assert (
+        verdict.headline
+        == "Every loop has 6 dB and 45° everywhere, but is short of 4 dB and 30° under a perturbation"
+    )
+    assert verdict.failures == [
+        "mass +20 %: phase margin 29.0 deg of heading rate at 45 m/s, −33°, required 30 deg"
+    ]
 
 
 def test_an_unstable_point_is_worse_than_any_margin():
@@ -67,13 +74,18 @@ def test_a_pole_at_the_origin_but_for_rounding_is_not_unstable():
     assert design_verdict(changed(poles={"closed_loop": [[1e-12, 0.0]]})).holds
 
 
-@pytest.mark.parametrize(("value", "text"), [(5.99, "5.9"), (5.7, "5.7"), (6.0, "6.0"), (-0.3, "−0.3"), (None, "∞")])
+@pytest.mark.parametrize(
+    ("value", "text"), [(5.99, "5.9"), (5.7, "5.7"), (6.0, "6.0"), (-0.3, "−0.3"), (None, "∞")]
+)
 def test_margins_are_rounded_down(value, text):
     assert down(value) == text
 
 
 @pytest.mark.parametrize(("errors", "shown"), [((0.012, None), ["1.2 %"]), ((None, None), [])])
 def test_the_worst_error_of_the_linear_model_is_that_of_inputs_that_move_something(errors, shown):
-    rows = [{"input": "elevator", "output": f"output {i}", "error": error} for i, error in enumerate(errors)]
+    rows = [
+        {"input": "elevator", "output": f"output {i}", "error": error}
+        for i, error in enumerate(errors)
+    ]
     figures = design_verdict(complete(record() | {"verification": rows})).figures
     assert [figure.value for figure in figures if figure.name.startswith("Linear model")] == shown

@@ -16,7 +16,14 @@ def run_path(request, tmp_path):
     latitude, longitude = PLACES[request.param]
     path = tmp_path / "run"
     (path / "flights").mkdir(parents=True)
-    manifest = {"format": 1, "study": "flights", "name": "made", "title": "Made, <&> here", "config": {}, "flights_planned": 1}
+    manifest = {
+        "format": 1,
+        "study": "flights",
+        "name": "made",
+        "title": "Made, <&> here",
+        "config": {},
+        "flights_planned": 1,
+    }
     manifest |= {"begun_utc": "2026-06-02T08:00:00Z", "command": "plume-flight run made.toml"}
     write_manifest(path, manifest)
     row = {
@@ -34,7 +41,12 @@ def run_path(request, tmp_path):
 def truth(run_path):
     """Places of UAV and vessel on earth, shape (n, 2), latitude and longitude [deg], from the recorded metres alone."""
     row, history = pd.read_csv(run_path / "summary.csv").iloc[0], track()
-    frame = LocalFrame(math.radians(row["place_latitude_deg"]), math.radians(row["place_longitude_deg"]), 60.0)
+    frame = LocalFrame(
+        math.radians(row["place_latitude_deg"]), math.radians(row["place_longitude_deg"]), 60.0
+    )
     return [
-        np.degrees(np.column_stack(frame.to_geodetic(history[f"{of}north_m"], history[f"{of}east_m"]))) for of in ("", "vessel_")
+        np.degrees(
+            np.column_stack(frame.to_geodetic(history[f"{of}north_m"], history[f"{of}east_m"]))
+        )
+        for of in ("", "vessel_")
     ]

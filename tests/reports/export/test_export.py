@@ -39,9 +39,17 @@ def run_path(tmp_path):
     """Return a run of two flights, of which one has a time history."""
     path = tmp_path / "run"
     (path / "flights").mkdir(parents=True)
-    manifest = {"format": 1, "study": "flights", "name": "small", "config": {}, "flights_planned": 2}
+    manifest = {
+        "format": 1,
+        "study": "flights",
+        "name": "small",
+        "config": {},
+        "flights_planned": 2,
+    }
     write_manifest(path, manifest)
-    pd.DataFrame({"flight_id": ["nu_0.50", "nu_1.00"], "nu": [0.5, 1.0]}).to_csv(path / "summary.csv", index=False)
+    pd.DataFrame({"flight_id": ["nu_0.50", "nu_1.00"], "nu": [0.5, 1.0]}).to_csv(
+        path / "summary.csv", index=False
+    )
     time = np.arange(3.0)
     flown = {"time_s": time, "north_m": 7.0 * time, "east_m": 0.0 * time, "altitude_m": 60.0 + time}
     flown |= {"vessel_north_m": 0.0 * time, "vessel_east_m": 10.0 * time}
@@ -69,19 +77,30 @@ def test_tracks_are_exported_with_the_vessel_that_was_flown_about(run_path):
 
 @pytest.mark.parametrize("exporter", ["tracks_csv", "geojson"])
 def test_a_time_history_that_cannot_be_read_is_named_and_the_status_is_1(run_path, exporter):
-    (run_path / "flights" / "nu_1.00.parquet").write_bytes((run_path / "flights" / "nu_0.50.parquet").read_bytes()[:200])
+    (run_path / "flights" / "nu_1.00.parquet").write_bytes(
+        (run_path / "flights" / "nu_0.50.parquet").read_bytes()[:200]
+    )
     ended = run_command("reports.build", run_path, "--export", exporter)
     assert ended.status == 1
     assert "nu_1.00.parquet is gone or cannot be read; the export lacks it" in ended.errors
     assert "export: " in ended.out
     # Of the other flight alone nothing is missing.
-    assert run_command("reports.build", run_path, "--export", exporter, "--flight", "nu_0.50").status == 0
+    assert (
+        run_command("reports.build", run_path, "--export", exporter, "--flight", "nu_0.50").status
+        == 0
+    )
 
 
-@pytest.mark.parametrize(("run", "expected"), [("small", "small.nu_0.50"), ("nu", "nu_0.50"), ("n" * 198, "nu_0.50")])
-def test_the_file_of_a_flight_has_the_name_of_the_run_once_and_no_more_letters_than_a_file_may(run_path, run, expected):
+@pytest.mark.parametrize(
+    ("run", "expected"), [("small", "small.nu_0.50"), ("nu", "nu_0.50"), ("n" * 198, "nu_0.50")]
+)
+def test_the_file_of_a_flight_has_the_name_of_the_run_once_and_no_more_letters_than_a_file_may(
+    run_path, run, expected
+):
     change_manifest(run_path, name=run)
-    assert [path.name for path in export_run(run_path, "tracks_csv", "nu_0.50")] == [f"{expected}.tracks.csv"]
+    assert [path.name for path in export_run(run_path, "tracks_csv", "nu_0.50")] == [
+        f"{expected}.tracks.csv"
+    ]
 
 
 def test_a_history_that_cannot_be_read_leaves_the_head_whole(run_path):
@@ -93,7 +112,9 @@ def test_a_history_that_cannot_be_read_leaves_the_head_whole(run_path):
     assert list(tracks["flight_id"]) == ["nu_1.00"]
 
 
-def test_a_flight_is_written_where_the_packages_of_another_format_are_missing(run_path, monkeypatch, tmp_path):
+def test_a_flight_is_written_where_the_packages_of_another_format_are_missing(
+    run_path, monkeypatch, tmp_path
+):
     for package in ("mcap", "xarray", "h5netcdf"):
         monkeypatch.setitem(sys.modules, package, None)
     run = read_run(run_path)
@@ -116,15 +137,32 @@ def test_a_user_adds_an_exporter_in_a_file_of_one_class(run_path, tmp_path):
 @pytest.mark.parametrize(
     ("body", "words"),
     [
-        ("def write(self, run, path): ...", "has suffix = None; it needs one with a leading dot and no slash, as '.csv'"),
+        (
+            "def write(self, run, path): ...",
+            "has suffix = None; it needs one with a leading dot and no slash, as '.csv'",
+        ),
         ("suffix = '/../x'\n    def write(self, run, path): ...", "has suffix = '/../x'"),
-        ("suffix = '.x'\n    def __init__(self, a): ...\n    def write(self, run, path): ...", "missing 1 required positional"),
-        ("suffix = '.x'\n    def write(self, run, path): ...", "wrote no file; an exporter writes to the path that it is given"),
-        ("suffix = '.x'\n    def write(self, run, path): raise KeyError('speed')", "Part': KeyError: 'speed'"),
-        ("suffix = '.x'\n    def write(self, run, path): raise RuntimeError('a\\nb')", "Part': RuntimeError: a"),
+        (
+            "suffix = '.x'\n    def __init__(self, a): ...\n    def write(self, run, path): ...",
+            "missing 1 required positional",
+        ),
+        (
+            "suffix = '.x'\n    def write(self, run, path): ...",
+            "wrote no file; an exporter writes to the path that it is given",
+        ),
+        (
+            "suffix = '.x'\n    def write(self, run, path): raise KeyError('speed')",
+            "Part': KeyError: 'speed'",
+        ),
+        (
+            "suffix = '.x'\n    def write(self, run, path): raise RuntimeError('a\\nb')",
+            "Part': RuntimeError: a",
+        ),
     ],
 )
-def test_what_is_wrong_with_a_users_exporter_is_no_damage_of_the_run(run_path, tmp_path, body, words):
+def test_what_is_wrong_with_a_users_exporter_is_no_damage_of_the_run(
+    run_path, tmp_path, body, words
+):
     (tmp_path / "mine.py").write_text(f"class Part:\n    {body}\n", encoding="utf-8")
     with pytest.raises(ReportError) as refused:
         export_run(run_path, f"{tmp_path / 'mine.py'}:Part")
@@ -146,7 +184,10 @@ def test_the_command_exports_and_names_what_it_knows(run_path, monkeypatch, caps
     monkeypatch.setattr(sys, "argv", ["reports.build", str(run_path), "--export", "tracks_csv"])
     with pytest.raises(SystemExit) as ended:
         runpy.run_module("reports.build", run_name="__main__")
-    assert (ended.value.code, capsys.readouterr().out) == (0, f"export: {run_path / 'export' / 'small.tracks.csv'}\n")
+    assert (ended.value.code, capsys.readouterr().out) == (
+        0,
+        f"export: {run_path / 'export' / 'small.tracks.csv'}\n",
+    )
     refused = run_command("reports.build", run_path, "--export", "track_csv")
     assert_refused(refused, "error: unknown exporter 'track_csv'; did you mean 'tracks_csv'?")
     assert "tracks_csv" in EXPORTERS.names()
@@ -157,9 +198,14 @@ def test_an_export_that_cannot_be_written_is_one_line(run_path, tmp_path, monkey
         raise ValueError("a time runs backwards")
 
     monkeypatch.setattr("reports.export.tracks_csv.TracksCsv.write", fails)
-    with pytest.raises(ReportError, match=r"^flight 'nu_0.50' could not be written as 'a.tracks.csv': ValueError: a time runs b"):
+    with pytest.raises(
+        ReportError,
+        match=r"^flight 'nu_0.50' could not be written as 'a.tracks.csv': ValueError: a time runs b",
+    ):
         write_flight(read_run(run_path), "nu_0.50", tmp_path / "a.tracks.csv")
     # A folder that cannot be made, whoever runs the test: there is a file of its name.
     (run_path / "export").write_text("", encoding="utf-8")
-    with pytest.raises(ReportError, match=r"export' cannot be written: File exists; check permissions and space"):
+    with pytest.raises(
+        ReportError, match=r"export' cannot be written: File exists; check permissions and space"
+    ):
         export_run(run_path, "tracks_csv")

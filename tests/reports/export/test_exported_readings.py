@@ -17,7 +17,10 @@ READ = {"so2_reading_ppb": 12.3, "co2_reading_ppm": 431.25, "no_reading_ppb": 80
 def read():
     """Return what was read at each sample, as a time history has it."""
     time = track()["time_s"].to_numpy()
-    return {name: np.where(time < 1.0, math.nan, rise * np.floor(time) / 60.0) for name, rise in READ.items()}
+    return {
+        name: np.where(time < 1.0, math.nan, rise * np.floor(time) / 60.0)
+        for name, rise in READ.items()
+    }
 
 
 @pytest.fixture
@@ -29,20 +32,26 @@ def sniffed(run_path):
 
 def assert_read(found, name):
     """Readings are exported to six digits, or to a thousandth."""
-    np.testing.assert_allclose(np.array(found, dtype=float), read()[name], rtol=1e-5, atol=1e-3, err_msg=name)
+    np.testing.assert_allclose(
+        np.array(found, dtype=float), read()[name], rtol=1e-5, atol=1e-3, err_msg=name
+    )
 
 
 def test_kmz_has_an_array_of_readings_beside_the_track_and_is_valid(sniffed):
     from lxml import etree
 
-    schemas = Path(pytest.importorskip("fastkml", reason="it brings the schema").__file__).parent / "schema"
+    schemas = (
+        Path(pytest.importorskip("fastkml", reason="it brings the schema").__file__).parent
+        / "schema"
+    )
     with zipfile.ZipFile(exported(sniffed, "kmz")) as archive:
         root = etree.fromstring(archive.read("doc.kml"))
     names = {"k": "http://www.opengis.net/kml/2.2", "gx": "http://www.google.com/kml/ext/2.2"}
     whole = etree.XMLSchema(etree.parse(schemas / "kml22gx.xsd"))
     assert whole.validate(root), whole.error_log
     fields = {
-        field.get("name"): field.find("k:displayName", names).text for field in root.iter(f"{{{names['gx']}}}SimpleArrayField")
+        field.get("name"): field.find("k:displayName", names).text
+        for field in root.iter(f"{{{names['gx']}}}SimpleArrayField")
     }
     assert fields == {
         "so2_reading_ppb": "SO2 reading [ppb]", "co2_reading_ppm": "CO2 reading [ppm]", "no_reading_ppb": "NO reading [ppb]",
@@ -61,17 +70,24 @@ def test_kmz_has_an_array_of_readings_beside_the_track_and_is_valid(sniffed):
 
 def test_geojson_has_an_array_of_readings_for_the_times_of_the_track(sniffed):
     collection = json.loads(exported(sniffed, "geojson").read_text(encoding="utf-8"))
-    by_what = {feature["properties"]["what"]: feature["properties"] for feature in collection["features"]}
+    by_what = {
+        feature["properties"]["what"]: feature["properties"] for feature in collection["features"]
+    }
     for name in READ:
         assert len(by_what["uav"][name]) == len(by_what["uav"]["times_s"])
         # Null where there is no reading: JSON has no number for it.
         assert by_what["uav"][name][0] is None
         assert_read([math.nan if value is None else value for value in by_what["uav"][name]], name)
-    assert not {key for key in (*by_what["uav"], *by_what["vessel"]) if "reading" in key} - set(READ)
+    assert not {key for key in (*by_what["uav"], *by_what["vessel"]) if "reading" in key} - set(
+        READ
+    )
 
 
 def test_czml_has_readings_as_properties_of_the_uav_over_time(sniffed):
-    packets = {packet["id"]: packet for packet in json.loads(exported(sniffed, "czml").read_text(encoding="utf-8"))}
+    packets = {
+        packet["id"]: packet
+        for packet in json.loads(exported(sniffed, "czml").read_text(encoding="utf-8"))
+    }
     properties = packets["uav"]["properties"]
     assert set(properties) == set(READ)
     for name, sampled in properties.items():

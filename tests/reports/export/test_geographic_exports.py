@@ -24,7 +24,10 @@ from tests.reports.export.placed_flight import START, TOLERANCE, exported, off, 
 def test_a_kmz_is_valid_by_the_schema_of_the_ogc_and_has_the_places(run_path, truth):
     from lxml import etree
 
-    schemas = Path(pytest.importorskip("fastkml", reason="it brings the schema").__file__).parent / "schema"
+    schemas = (
+        Path(pytest.importorskip("fastkml", reason="it brings the schema").__file__).parent
+        / "schema"
+    )
     schema = etree.XMLSchema(etree.parse(schemas / "ogckml22.xsd"))
     with zipfile.ZipFile(exported(run_path, "kmz")) as archive:
         assert archive.namelist() == ["doc.kml"]
@@ -35,10 +38,16 @@ def test_a_kmz_is_valid_by_the_schema_of_the_ogc_and_has_the_places(run_path, tr
     whole = etree.XMLSchema(etree.parse(schemas / "kml22gx.xsd"))
     for place, true in zip(tracks, truth, strict=True):
         assert whole.validate(place), whole.error_log
-        coordinates = np.array([[float(x) for x in coord.text.split()] for coord in place.findall("gx:coord", names)])
+        coordinates = np.array(
+            [[float(x) for x in coord.text.split()] for coord in place.findall("gx:coord", names)]
+        )
         assert off(coordinates[:, [1, 0]], true) < TOLERANCE
         times = [when.text for when in place.findall("k:when", names)]
-        assert (times[0], times[-1], len(times)) == ("2026-06-01T10:00:00.000Z", "2026-06-01T10:01:00.000Z", 601)
+        assert (times[0], times[-1], len(times)) == (
+            "2026-06-01T10:00:00.000Z",
+            "2026-06-01T10:01:00.000Z",
+            601,
+        )
     assert whole.validate(root), whole.error_log
     for place in tracks:
         place.getparent().remove(place)
@@ -55,7 +64,9 @@ def test_an_acmi_file_is_read_by_another_reader(run_path, truth):
     times = track()["time_s"].round(3)
     for identity, true in zip(("a1", "b2"), truth, strict=True):
         body = reader.objects[identity]
-        assert off([(body.latitude(time), body.longitude(time)) for time in times], true) < TOLERANCE
+        assert (
+            off([(body.latitude(time), body.longitude(time)) for time in times], true) < TOLERANCE
+        )
     text = path.read_text(encoding="utf-8-sig")
     assert "0,ReferenceTime=2026-06-01T10:00:00.000Z" in text
     assert "EngagementRange=200" in text
@@ -69,14 +80,25 @@ def test_czml_positions_interpolate_to_the_places(run_path, truth):
     by_name = {packet["id"]: packet for packet in packets}
     for name, true in (("uav", truth[0]), ("vessel", truth[1])):
         position = by_name[name]["position"]
-        assert (position["epoch"], position["interpolationDegree"]) == ("2026-06-01T10:00:00.000Z", 1)
+        assert (position["epoch"], position["interpolationDegree"]) == (
+            "2026-06-01T10:00:00.000Z",
+            1,
+        )
         samples = np.array(position["cartographicDegrees"]).reshape(-1, 4)
         between = samples[0, 0] + np.linspace(0.0, 60.0, 1201)
         longitude, latitude = np.unwrap(samples[:, 1], period=360.0), samples[:, 2]
-        found = np.column_stack([np.interp(between, samples[:, 0], values) for values in (latitude, longitude)])
-        recorded = [np.interp(between, track()["time_s"], np.unwrap(true[:, k], period=360.0)) for k in (0, 1)]
+        found = np.column_stack(
+            [np.interp(between, samples[:, 0], values) for values in (latitude, longitude)]
+        )
+        recorded = [
+            np.interp(between, track()["time_s"], np.unwrap(true[:, k], period=360.0))
+            for k in (0, 1)
+        ]
         assert off(found, np.column_stack(recorded)) < TOLERANCE
-    assert by_name["plume_end"]["polyline"]["positions"]["references"] == ["funnel#position", "plume_end#position"]
+    assert by_name["plume_end"]["polyline"]["positions"]["references"] == [
+        "funnel#position",
+        "plume_end#position",
+    ]
     assert by_name["funnel"]["ellipse"]["semiMajorAxis"] == 200.0
 
 
@@ -91,10 +113,16 @@ def test_mcap_is_read_by_its_own_reader(run_path, truth):
             assert json.loads(schema.data)["properties"].keys() == said.keys()
             if channel.topic in found:
                 found[channel.topic].append((said["latitude"], said["longitude"]))
-                assert message.log_time == said["timestamp"]["sec"] * 10**9 + said["timestamp"]["nsec"]
+                assert (
+                    message.log_time == said["timestamp"]["sec"] * 10**9 + said["timestamp"]["nsec"]
+                )
     assert off(found["/uav/fix"], truth[0]) < TOLERANCE
     assert off(found["/vessel/fix"], truth[1]) < TOLERANCE
-    assert {name for name, _ in schemas} >= {"foxglove.LocationFix", "foxglove.PoseInFrame", "foxglove.GeoJSON"}
+    assert {name for name, _ in schemas} >= {
+        "foxglove.LocationFix",
+        "foxglove.PoseInFrame",
+        "foxglove.GeoJSON",
+    }
     assert {encoding for _, encoding in schemas} == {"jsonschema"}
 
 
@@ -104,7 +132,10 @@ def test_netcdf_has_the_places(run_path, truth):
     path = exported(run_path, "netcdf")
     with h5netcdf.File(path, "r") as data:
         assert off(np.column_stack([data["lat"][:], data["lon"][:]]), truth[0]) < TOLERANCE
-        assert off(np.column_stack([data["vessel_lat"][:], data["vessel_lon"][:]]), truth[1]) < TOLERANCE
+        assert (
+            off(np.column_stack([data["vessel_lat"][:], data["vessel_lon"][:]]), truth[1])
+            < TOLERANCE
+        )
         assert data["row_size"][:].tolist() == [601]
         assert data["time"][0] == START
         assert data.attrs["history"] == "2026-06-02T08:00:00Z: plume-flight run made.toml"
@@ -118,7 +149,11 @@ def test_netcdf_keeps_to_the_conventions(run_path, tmp_path):
     # In a process of its own: the checker's own packages warn as they are imported.
     checker = Path(sys.executable).with_name("compliance-checker")
     checked = subprocess.run(
-        [checker, "-t", "cf:1.8", path], capture_output=True, text=True, check=False, env={**os.environ, "HOME": str(tmp_path)}
+        [checker, "-t", "cf:1.8", path],
+        capture_output=True,
+        text=True,
+        check=False,
+        env={**os.environ, "HOME": str(tmp_path)},
     )
     assert "All tests passed!" in checked.stdout, checked.stdout + checked.stderr
 
@@ -129,44 +164,72 @@ def test_geojson_has_the_places_in_pieces_that_keep_to_one_side_of_the_date_line
     assert set(by_what) == {"uav", "vessel", "keepout_at_end", "crossing"}
     for what, true in (("uav", truth[0]), ("vessel", truth[1])):
         geometry = by_what[what]["geometry"]
-        parts = [geometry["coordinates"]] if geometry["type"] == "LineString" else geometry["coordinates"]
+        parts = (
+            [geometry["coordinates"]]
+            if geometry["type"] == "LineString"
+            else geometry["coordinates"]
+        )
         for part in parts:
             assert np.abs(np.diff([place[0] for place in part])).max() < 1.0
         places = [place for part in parts for place in part if abs(place[0]) != 180.0]
         assert off(np.array(places)[:, [1, 0]], true) < TOLERANCE
     geometry = by_what["keepout_at_end"]["geometry"]
-    polygons = [geometry["coordinates"]] if geometry["type"] == "Polygon" else geometry["coordinates"]
+    polygons = (
+        [geometry["coordinates"]] if geometry["type"] == "Polygon" else geometry["coordinates"]
+    )
     area = 0.0
     for (ring,) in polygons:
         x, y = np.array(ring).T
         assert np.abs(x).max() <= 180.0
         assert (x[0], y[0]) == (x[-1], y[-1])
         # Counter-clockwise, as RFC 7946 has it: its area by longitude and latitude is positive.
-        part = 0.5 * float(np.sum((x[:-1] - x[0]) * (y[1:] - y[0]) - (x[1:] - x[0]) * (y[:-1] - y[0])))
+        part = 0.5 * float(
+            np.sum((x[:-1] - x[0]) * (y[1:] - y[0]) - (x[1:] - x[0]) * (y[:-1] - y[0]))
+        )
         assert part > 0.0
         area += part * math.radians(1.0) ** 2 * 6.4e6**2 * math.cos(math.radians(y[0]))
     # The earth's radii of curvature differ from 6.4e6 m by 1 %.
     assert area == pytest.approx(math.pi * 200.0**2, rel=0.02)
     at = 30.05
-    north, east = (np.interp(at, track()["time_s"], track()[f"{axis}_m"]) for axis in ("north", "east"))
+    north, east = (
+        np.interp(at, track()["time_s"], track()[f"{axis}_m"]) for axis in ("north", "east")
+    )
     row = pd.read_csv(run_path / "summary.csv").iloc[0]
-    frame = LocalFrame(math.radians(row["place_latitude_deg"]), math.radians(row["place_longitude_deg"]), 60.0)
+    frame = LocalFrame(
+        math.radians(row["place_latitude_deg"]), math.radians(row["place_longitude_deg"]), 60.0
+    )
     crossed = by_what["crossing"]["geometry"]["coordinates"]
-    assert off([[crossed[1], crossed[0]]], [np.degrees(np.array(frame.to_geodetic(north, east)))]) < TOLERANCE
+    assert (
+        off([[crossed[1], crossed[0]]], [np.degrees(np.array(frame.to_geodetic(north, east)))])
+        < TOLERANCE
+    )
 
 
-@pytest.mark.parametrize(("longitude", "pieces"), [(179.999, 2), (-179.999, 2), (180.0, 2), (179.9, 1), (-179.9, 1), (0.0, 1)])
+@pytest.mark.parametrize(
+    ("longitude", "pieces"),
+    [(179.999, 2), (-179.999, 2), (180.0, 2), (179.9, 1), (-179.9, 1), (0.0, 1)],
+)
 def test_a_keepout_area_over_the_date_line_is_two(run_path, longitude, pieces):
     path = run_path / "summary.csv"
     # The vessel ends 300 m and 360 m from where the frame has its origin.
-    rows = pd.read_csv(path).assign(place_latitude_deg=-300.0 / 111e3, place_longitude_deg=longitude - 360.0 / 111.3e3)
+    rows = pd.read_csv(path).assign(
+        place_latitude_deg=-300.0 / 111e3, place_longitude_deg=longitude - 360.0 / 111.3e3
+    )
     rows.to_csv(path, index=False)
     collection = json.loads(exported(run_path, "geojson").read_text(encoding="utf-8"))
-    (area,) = (feature["geometry"] for feature in collection["features"] if feature["properties"]["what"] == "keepout_at_end")
-    assert area["type"] == {1: "Polygon", 2: "MultiPolygon"}[pieces]
-    places = np.array([place for polygon in area["coordinates"] for place in (polygon if pieces == 1 else polygon[0])]).reshape(
-        -1, 2
+    (area,) = (
+        feature["geometry"]
+        for feature in collection["features"]
+        if feature["properties"]["what"] == "keepout_at_end"
     )
+    assert area["type"] == {1: "Polygon", 2: "MultiPolygon"}[pieces]
+    places = np.array(
+        [
+            place
+            for polygon in area["coordinates"]
+            for place in (polygon if pieces == 1 else polygon[0])
+        ]
+    ).reshape(-1, 2)
     assert np.abs(places[:, 0]).max() <= 180.0
     assert off(places[:, ::-1], np.tile([0.0, longitude], (len(places), 1))) < 210.0
 
@@ -175,7 +238,10 @@ def test_a_track_of_one_place_is_a_point(run_path):
     path = run_path / "flights" / "a, <b>.parquet"
     pd.read_parquet(path).iloc[:1].to_parquet(path)
     collection = json.loads(exported(run_path, "geojson").read_text(encoding="utf-8"))
-    kinds = {feature["properties"]["what"]: feature["geometry"]["type"] for feature in collection["features"]}
+    kinds = {
+        feature["properties"]["what"]: feature["geometry"]["type"]
+        for feature in collection["features"]
+    }
     assert (kinds["uav"], kinds["vessel"]) == ("Point", "Point")
 
 
@@ -186,11 +252,15 @@ def test_a_ship_that_stops_keeps_her_heading(run_path):
     history.to_parquet(path)
     (flight,) = recorded_flights(read_run(run_path))
     # By her place the true north turns by a hundredth of a degree.
-    assert flight.vessel_heading == pytest.approx(np.full(601, math.degrees(math.atan2(6.0, 5.0))), abs=0.02)
+    assert flight.vessel_heading == pytest.approx(
+        np.full(601, math.degrees(math.atan2(6.0, 5.0))), abs=0.02
+    )
 
 
 def test_a_flight_without_a_place_is_shown_at_the_origin(run_path):
-    rows = pd.read_csv(run_path / "summary.csv").drop(columns=["place_latitude_deg", "place_longitude_deg", "start_utc"])
+    rows = pd.read_csv(run_path / "summary.csv").drop(
+        columns=["place_latitude_deg", "place_longitude_deg", "start_utc"]
+    )
     rows.to_csv(run_path / "summary.csv", index=False)
     (flight,) = recorded_flights(read_run(run_path))
     assert not flight.placed
@@ -202,15 +272,24 @@ def test_a_flight_without_a_place_is_shown_at_the_origin(run_path):
 
 def test_one_flight_can_be_chosen_and_another_name_is_refused(run_path):
     assert [path.name for path in export_run(run_path, "kmz", "a, <b>")] == ["made.a, <b>.kmz"]
-    with pytest.raises(ReportError, match=r"no time history of a flight 'nu'; it has those of a, <b>"):
+    with pytest.raises(
+        ReportError, match=r"no time history of a flight 'nu'; it has those of a, <b>"
+    ):
         export_run(run_path, "kmz", "nu")
 
 
-@pytest.mark.parametrize(("name", "package"), [("mcap", "mcap"), ("netcdf", "xarray"), ("netcdf", "h5netcdf")])
+@pytest.mark.parametrize(
+    ("name", "package"), [("mcap", "mcap"), ("netcdf", "xarray"), ("netcdf", "h5netcdf")]
+)
 def test_a_package_that_is_missing_is_one_line_with_the_extra(run_path, monkeypatch, name, package):
     monkeypatch.setitem(sys.modules, package, None)
-    with pytest.raises(ReportError, match=r"install the extra: in the clone, pip install -c constraints.txt -e '\.\[export\]'"):
+    with pytest.raises(
+        ReportError,
+        match=r"install the extra: in the clone, pip install -c constraints.txt -e '\.\[export\]'",
+    ):
         export_run(run_path, name)
     # What comes before it in a list is not written either.
-    assert_refused(run_command("reports.build", run_path, "--export", f"kmz,{name}"), "install the extra")
+    assert_refused(
+        run_command("reports.build", run_path, "--export", f"kmz,{name}"), "install the extra"
+    )
     assert not (run_path / "export").exists()

@@ -23,7 +23,9 @@ from tests.reports.export.placed_flight import START, TOLERANCE, exported, off, 
 def received(packets):
     """Return the messages in bytes, as pymavlink reads them."""
     os.environ["MAVLINK20"] = "1"
-    common = pytest.importorskip("pymavlink.dialects.v20.common", reason="pymavlink is a reader for developers")
+    common = pytest.importorskip(
+        "pymavlink.dialects.v20.common", reason="pymavlink is a reader for developers"
+    )
     link = common.MAVLink(None)
     return [message for packet in packets for message in link.parse_buffer(packet) or []]
 
@@ -65,8 +67,13 @@ def test_a_telemetry_log_is_read_by_pymavlink(run_path, truth):
 def test_a_vessel_at_rest_has_her_heading_and_no_course(run_path):
     flight = next(recorded_flights(read_run(run_path)))
     still = np.zeros(len(flight.time))
-    flight = replace(flight, vessel=replace(flight.vessel, north=still, east=still), vessel_heading=still + 90.0)
-    said = {message.get_type(): message for message in received([packet for _, packet in messages(flight)])}
+    flight = replace(
+        flight, vessel=replace(flight.vessel, north=still, east=still), vessel_heading=still + 90.0
+    )
+    said = {
+        message.get_type(): message
+        for message in received([packet for _, packet in messages(flight)])
+    }
     ais, adsb = said["AIS_VESSEL"], said["ADSB_VEHICLE"]
     assert (ais.heading, ais.velocity, ais.flags) == (9000, 0, 1 | 4 | 4096)
     assert (adsb.heading, adsb.hor_velocity) == (9000, 0)
@@ -76,7 +83,9 @@ def test_a_flight_is_streamed_in_real_time_and_received_by_a_second_process(run_
     receiving = "import socket, sys\ns = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)\ns.bind(('127.0.0.1', 0))\n"
     receiving += "print(s.getsockname()[1], flush=True)\ns.settimeout(10)\nn = 0\n"
     receiving += "while True:\n d = s.recv(512)\n n += 1\n if d == b'end': break\n sys.stdout.write(d.hex() + '\\n')\n"
-    with subprocess.Popen([sys.executable, "-c", receiving], stdout=subprocess.PIPE, text=True) as receiver:
+    with subprocess.Popen(
+        [sys.executable, "-c", receiving], stdout=subprocess.PIPE, text=True
+    ) as receiver:
         port = int(receiver.stdout.readline())
         short = track().iloc[:6]
         short.to_parquet(run_path / "flights" / "a, <b>.parquet")
@@ -92,7 +101,9 @@ def test_a_flight_is_streamed_in_real_time_and_received_by_a_second_process(run_
     }  # fmt: skip
 
 
-@pytest.mark.parametrize("address", ["127.0.0.1:14550", "udp://127.0.0.1", "udp://127.0.0.1:99999", "tcp://127.0.0.1:1"])
+@pytest.mark.parametrize(
+    "address", ["127.0.0.1:14550", "udp://127.0.0.1", "udp://127.0.0.1:99999", "tcp://127.0.0.1:1"]
+)
 def test_an_address_that_is_none_is_refused(run_path, address):
     with pytest.raises(ReportError, match=r"give udp://HOST:PORT"):
         stream_run(run_path, address)
@@ -103,10 +114,22 @@ def test_the_command_exports_several_formats_of_one_flight_and_streams_it(run_pa
         receiver.bind(("127.0.0.1", 0))
         address = f"udp://127.0.0.1:{receiver.getsockname()[1]}"
         track().iloc[:3].to_parquet(run_path / "flights" / "a, <b>.parquet")
-        ended = run_command("reports.build", run_path, "--export", "tlog,geojson", "--flight", "a, <b>", "--stream", address)
+        ended = run_command(
+            "reports.build",
+            run_path,
+            "--export",
+            "tlog,geojson",
+            "--flight",
+            "a, <b>",
+            "--stream",
+            address,
+        )
     assert ended.out.splitlines() == [
         f"export: {run_path / 'export' / 'made.a, <b>.tlog'}",
         f"export: {run_path / 'export' / 'made.a, <b>.geojson'}",
         f"stream: 13 messages of a, <b>, 0 s of flight, to {address}",
     ]
-    assert_refused(run_command("reports.build", run_path, "--flight", "a, <b>"), "--flight is of use beside --export or --stream")
+    assert_refused(
+        run_command("reports.build", run_path, "--flight", "a, <b>"),
+        "--flight is of use beside --export or --stream",
+    )

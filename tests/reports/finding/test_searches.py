@@ -35,14 +35,21 @@ def view(run):
 
 def test_a_search_is_shown_in_height_and_in_cross_section(run):
     report = content(run)
-    charts = {name: chart for name, chart in named_charts(report).items() if name.startswith("search-")}
-    assert [name.rsplit("-", 1)[0].removeprefix("search-") for name in charts] == ["height-sulphur", "section-sulphur"]
+    charts = {
+        name: chart for name, chart in named_charts(report).items() if name.startswith("search-")
+    }
+    assert [name.rsplit("-", 1)[0].removeprefix("search-") for name in charts] == [
+        "height-sulphur",
+        "section-sulphur",
+    ]
     assert_axes_read_quantity_and_unit(charts.values())
     (height, section) = charts.values()
     assert {"believed, 95 %", "believed, mean", "flown"} <= set(height.labels)
     assert section.scale_label == "CO2 read [ppm]"
     told = blocks_of(report, Text, "searches")[0].text
-    assert told.startswith(f"Found {run.summary['time_to_find_s'].iloc[0]:.0f} s after the orbit was reached")
+    assert told.startswith(
+        f"Found {run.summary['time_to_find_s'].iloc[0]:.0f} s after the orbit was reached"
+    )
 
 
 def test_the_bands_are_the_modes_of_the_flight_without_gaps_in_each(run, view):
@@ -51,7 +58,9 @@ def test_the_bands_are_the_modes_of_the_flight_without_gaps_in_each(run, view):
     known = {modes.index(band.label) for band in view.modes()}
     step = view.time[1] - view.time[0]
     # A band ends where the next mode begins: a sample less than there are of the last one.
-    assert shown == pytest.approx(step * np.count_nonzero(view.history["mode"].isin(known)), abs=1.5 * step)
+    assert shown == pytest.approx(
+        step * np.count_nonzero(view.history["mode"].isin(known)), abs=1.5 * step
+    )
     # What it does once it has found the plume, most of the time, is not tinted.
     assert "searching" in {band.label for band in view.modes()}
     assert "found" not in {band.label for band in view.modes()}
@@ -70,7 +79,12 @@ def test_the_estimated_plume_is_that_of_the_time_history(view):
     _, height, across, up = view.estimated_plume()
     last = view.history.iloc[-1]
     assert (height, across, up) == tuple(
-        last[name] for name in ("axis_height_estimated_m", "axis_spread_across_estimated_m", "axis_spread_estimated_m")
+        last[name]
+        for name in (
+            "axis_height_estimated_m",
+            "axis_spread_across_estimated_m",
+            "axis_spread_estimated_m",
+        )
     )
 
 
@@ -83,19 +97,33 @@ def test_the_true_axis_is_where_the_passes_cross_it(view):
 
 
 def test_a_flight_that_is_told_nothing_of_a_search_has_no_such_section(tmp_path_factory):
-    run = read_run(flown(tmp_path_factory, "sulphur", (*QUICK, "following.plume=predicted", "flight.after_settling_s=20")))
+    run = read_run(
+        flown(
+            tmp_path_factory,
+            "sulphur",
+            (*QUICK, "following.plume=predicted", "flight.after_settling_s=20"),
+        )
+    )
     assert search_view(run, run.summary.iloc[0]) is None
     assert not {"searches", "finding"} & {section.anchor for section in content(run).sections}
 
 
 @pytest.mark.parametrize(
     ("kept", "typical", "why"),
-    [([0, 3, 4], "3", "nearest to the median error"), ([2, 4], "2", "the median error"), ([4], "4", "nearest to the median error")],
+    [
+        ([0, 3, 4], "3", "nearest to the median error"),
+        ([2, 4], "2", "the median error"),
+        ([4], "4", "nearest to the median error"),
+    ],
 )
 def test_the_typical_search_is_at_the_median_of_all_errors_or_nearest_to_it(kept, typical, why):
     # Of these the median is 3 m, whichever of the flights have a time history.
-    rows = pd.DataFrame({"flight_id": list("01234"), "axis_height_error_3min_m": [-1.0, 2.0, 3.0, 3.5, -9.0]})
-    run = SimpleNamespace(with_history=lambda rows: rows["flight_id"].isin([str(i) for i in kept]).to_numpy())
+    rows = pd.DataFrame(
+        {"flight_id": list("01234"), "axis_height_error_3min_m": [-1.0, 2.0, 3.0, 3.5, -9.0]}
+    )
+    run = SimpleNamespace(
+        with_history=lambda rows: rows["flight_id"].isin([str(i) for i in kept]).to_numpy()
+    )
     picked = _picked(run, rows)
     assert picked[0][0]["flight_id"] == typical
     assert picked[0][1].startswith(why)

@@ -50,20 +50,36 @@ class Histories(RunData):
         time = 0.1 * np.arange(1201)
         across = 50.0 * np.sin(math.pi * time / 10.0 + 1e-3)
         peak = np.where((time / 10.0).round() % 2 == 0, 0.9, 0.3)
-        return pd.DataFrame({"time_s": time, "plume_across_m": across, "plume_fraction": np.where(np.abs(across) < 5.0, peak, 0.0)})
+        return pd.DataFrame(
+            {
+                "time_s": time,
+                "plume_across_m": across,
+                "plume_fraction": np.where(np.abs(across) < 5.0, peak, 0.0),
+            }
+        )
 
 
 @pytest.fixture
 def trial(tmp_path):
     empty = pd.DataFrame()
     run = Histories(
-        path=tmp_path, manifest={}, summary=ROWS, comparison=TOLD, crossings=empty, innerloop=None, statistics=None, draws=empty
+        path=tmp_path,
+        manifest={},
+        summary=ROWS,
+        comparison=TOLD,
+        crossings=empty,
+        innerloop=None,
+        statistics=None,
+        draws=empty,
     )
     return Trial(run=run, key="search", name="trial1", config={"title": "Search"}, rows=ROWS)
 
 
 def test_a_flight_that_never_reached_its_orbit_does_not_count(trial):
-    assert [(variant.name, len(variant.rows)) for variant in variants_of(trial)] == [("as in the study", 3), ("told", 2)]
+    assert [(variant.name, len(variant.rows)) for variant in variants_of(trial)] == [
+        ("as in the study", 3),
+        ("told", 2),
+    ]
 
 
 def test_a_plume_that_was_not_found_counts_against_the_share(trial):
@@ -74,8 +90,13 @@ def test_a_plume_that_was_not_found_counts_against_the_share(trial):
     assert row[3:5] == ["50", "not found"]
 
 
-@pytest.mark.parametrize(("times", "median"), [([15.1, 34.8], "25"), ([9.0, math.nan], "not found"), ([math.nan] * 2, "not found")])
-def test_the_median_time_of_an_even_number_of_flights_is_the_mean_of_the_two_in_the_middle(trial, times, median):
+@pytest.mark.parametrize(
+    ("times", "median"),
+    [([15.1, 34.8], "25"), ([9.0, math.nan], "not found"), ([math.nan] * 2, "not found")],
+)
+def test_the_median_time_of_an_even_number_of_flights_is_the_mean_of_the_two_in_the_middle(
+    trial, times, median
+):
     variant = replace(variants_of(trial)[0], rows=ROWS.iloc[:2].assign(time_to_find_s=times))
     assert search_table([variant]).rows[0][3] == median
 
@@ -86,7 +107,10 @@ def test_flights_are_compared_with_those_of_the_same_case(trial):
     assert sorted(study.beside(told, "fsc_uncertainty_percent")) == pytest.approx([1.0, 3.0])
     rows = search_table([study, told]).rows
     # Errors +0.02, -0.02 and 0: rms 0.02 sqrt(2/3). Medians of 1 and 3, and of the noise 2 and 2.
-    assert [row[6:] for row in rows] == [["0.0163", "0.0300", "2.00", "2.00"], ["0.0200", "0.0150", "1.00", "1.00"]]
+    assert [row[6:] for row in rows] == [
+        ["0.0163", "0.0300", "2.00", "2.00"],
+        ["0.0200", "0.0150", "1.00", "1.00"],
+    ]
 
 
 def test_without_a_variant_that_is_told_nothing_is_compared_with_it(trial):
@@ -98,7 +122,17 @@ def test_the_height_is_covered_where_its_error_is_within_two_standard_deviations
     # 3 of 2 and -4 of 3 are within 1.96, 12 of 4 is not: two of three, whose exact interval is 9.43 to 99.16 % (Clopper, Pearson).
     # Bias (3 - 4 + 12)/3; rms sqrt((9 + 16 + 144)/3).
     per_cent = "\N{NO-BREAK SPACE}%"
-    assert table.rows == [["as in the study", "3", "+3.7", "7.5", "3.0", f"66.7{per_cent}", f"9.43{per_cent} to 99.16{per_cent}"]]
+    assert table.rows == [
+        [
+            "as in the study",
+            "3",
+            "+3.7",
+            "7.5",
+            "3.0",
+            f"66.7{per_cent}",
+            f"9.43{per_cent} to 99.16{per_cent}",
+        ]
+    ]
     assert height_table(variants_of(trial)[1:]) is None
 
 

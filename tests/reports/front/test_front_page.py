@@ -41,7 +41,9 @@ def run_path(tmp_path_factory):
     """Five flights, enough for a bound, that fail the criterion on tracking, as nothing tracks to 0.1 mm, and meet the others."""
     folder = tmp_path_factory.mktemp("front")
     (folder / "short.toml").write_text(SHORT, encoding="utf-8")
-    ended = run_command("scenarios.run", folder / "short.toml", "--out", folder / "run", "--no-report")
+    ended = run_command(
+        "scenarios.run", folder / "short.toml", "--out", folder / "run", "--no-report"
+    )
     assert ended.status == 1, ended.errors
     return folder / "run"
 
@@ -56,7 +58,9 @@ def built(run_path):
     """Return the text of the page for the screen, and that of each printed page, of whose figures page 1's alone is drawn."""
 
     def drawn(chart):
-        return matplotlib_charts.draw(chart) if chart.name == "first" else Figure(figsize=(1.0, 1.0))
+        return (
+            matplotlib_charts.draw(chart) if chart.name == "first" else Figure(figsize=(1.0, 1.0))
+        )
 
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr("reports.render.figure_files.draw", drawn)
@@ -90,20 +94,27 @@ def test_page_1_says_when_and_what_was_flown_and_shows_the_closest_flight_and_a_
 @pytest.mark.parametrize(
     ("levels", "words"),
     [
-        (["none", "light", "light", "moderate", "none"], "wind of 4 m/s and, in 3 of them, light or moderate turbulence"),
+        (
+            ["none", "light", "light", "moderate", "none"],
+            "wind of 4 m/s and, in 3 of them, light or moderate turbulence",
+        ),
         (["light"] * 5, "wind of 4 m/s and light turbulence"),
         (["none"] * 5, "wind of 4 m/s"),
     ],
 )
 def test_turbulence_that_only_some_flights_had_is_not_told_of_all(run_path, levels, words):
     run = read_run(run_path)
-    assert flights_in_words(run, run.summary.assign(turbulence=levels, wind_speed_mps=4.0)).endswith(f", in {words}")
+    assert flights_in_words(
+        run, run.summary.assign(turbulence=levels, wind_speed_mps=4.0)
+    ).endswith(f", in {words}")
 
 
 def test_of_a_vessel_that_changes_her_speed_page_1_tells_that_of_the_start(run_path):
     run = read_run(run_path)
     manoeuvring = run.summary.assign(nu_min=0.2, nu_max=[0.2, 0.2, 0.5, 0.2, 0.2])
-    assert flights_in_words(run, manoeuvring).endswith(", beside a vessel at 8 m/s at the start, in still air")
+    assert flights_in_words(run, manoeuvring).endswith(
+        ", beside a vessel at 8 m/s at the start, in still air"
+    )
 
 
 def test_the_closest_and_the_median_flight_are_those_of_the_summary(run_path, report):
@@ -114,7 +125,10 @@ def test_the_closest_and_the_median_flight_are_those_of_the_summary(run_path, re
 
 
 def test_a_figure_says_in_words_whether_its_criterion_is_met(report):
-    closest, tracking = card(report, "Closest approach"), card(report, "Tracking error, rms after settling, worst")
+    closest, tracking = (
+        card(report, "Closest approach"),
+        card(report, "Tracking error, rms after settling, worst"),
+    )
     assert closest.met
     assert closest.judgement == "✓ met, required ≥ 200 m"
     assert not tracking.met
@@ -123,14 +137,18 @@ def test_a_figure_says_in_words_whether_its_criterion_is_met(report):
 
 
 def test_colours_on_the_screen_are_those_of_the_criteria(built):
-    cards = re.findall(r'<div class="card( met| missed|)">.*?<span class="judged">(.*?)</span>', built[0])
+    cards = re.findall(
+        r'<div class="card( met| missed|)">.*?<span class="judged">(.*?)</span>', built[0]
+    )
     assert len(cards) == CARDS_MAX
     meaning = {" met": "✓ met, ", " missed": "✗ not met, ", "": "no criterion"}
     assert all(words.startswith(meaning[colour]) for colour, words in cards)
     assert {colour for colour, _ in cards} == set(meaning)
 
 
-def test_page_1_holds_everything_that_is_for_the_client_and_the_contents_stand_on_page_2(built, report):
+def test_page_1_holds_everything_that_is_for_the_client_and_the_contents_stand_on_page_2(
+    built, report
+):
     first, second, *others = built[1]
     flat = " ".join(first.split())
     for words in (
@@ -149,7 +167,9 @@ def test_page_1_holds_everything_that_is_for_the_client_and_the_contents_stand_o
 def test_single_flights_stand_in_print_below_the_words_on_them(built, report):
     (section,) = [section for section in report.sections if section.anchor == "flights"]
     text, picker = section.blocks
-    (page,) = [page for page in built[1] if " ".join(text.text.split())[:60] in " ".join(page.split())]
+    (page,) = [
+        page for page in built[1] if " ".join(text.text.split())[:60] in " ".join(page.split())
+    ]
     assert picker.flights[0].title.split(":")[0] in page
     assert "printed flights" not in built[1][1]
     assert built[1][1].count("Single flights") == 1
@@ -168,7 +188,9 @@ def test_a_tile_does_not_break_between_figure_and_unit_and_plots_have_names(repo
 def test_page_1_is_one_page_however_much_failed(report, tmp_path):
     long = "a flight that failed, " * 15
     verdict = replace(report.verdict, detail=long * 2, failures=[long] * 9)
-    write_pdf(replace(report, verdict=verdict, sections=report.sections[-1:]), tmp_path / "report.pdf")
+    write_pdf(
+        replace(report, verdict=verdict, sections=report.sections[-1:]), tmp_path / "report.pdf"
+    )
     first, second, *_ = pages_of(tmp_path / "report.pdf")
     assert "Figure 1." in first
     assert "and 5 more" in first
@@ -181,14 +203,25 @@ def test_the_provenance_is_last_and_names_command_hashes_and_kind_of_host(built,
     assert rows["Command"] == "python -m scenarios.run short.toml --out run --no-report"
     assert rows["Began"] == report.letterhead.when
     assert re.fullmatch(r"\w+ \w+, \d+ cores", rows["Host"])
-    assert {"Source revision", "Hash of the source", "Hash of the scenario", "Seed", "Duration"} <= rows.keys()
-    assert rows["Hash of the scenario"].endswith(", of its keys and files: the first 16 digits of the SHA-256")
+    assert {
+        "Source revision",
+        "Hash of the source",
+        "Hash of the scenario",
+        "Seed",
+        "Duration",
+    } <= rows.keys()
+    assert rows["Hash of the scenario"].endswith(
+        ", of its keys and files: the first 16 digits of the SHA-256"
+    )
     assert "Provenance" in built[1][-1]
 
 
 def test_figures_and_tables_are_numbered_in_reading_order_without_gaps(report):
     blocks = [block for section in report.sections for block in section.blocks]
-    figures = [report.picture.number, *(block.number for block in blocks if isinstance(block, Chart))]
+    figures = [
+        report.picture.number,
+        *(block.number for block in blocks if isinstance(block, Chart)),
+    ]
     assert figures == [f"Figure {i}" for i in range(1, len(figures) + 1)]
     assert figures_in(report.picture, report.sections) == len(figures)
     tables = [block for block in blocks if isinstance(block, Table)]
@@ -198,9 +231,19 @@ def test_figures_and_tables_are_numbered_in_reading_order_without_gaps(report):
 
 def test_a_heading_right_before_a_table_is_its_caption():
     table = Table(head=["a"], rows=[["1"]], widths=[1.0])
-    blocks = [Heading("Of the table"), table, table, Heading("Kept"), replace(table, caption="Its own")]
+    blocks = [
+        Heading("Of the table"),
+        table,
+        table,
+        Heading("Kept"),
+        replace(table, caption="Its own"),
+    ]
     _, (section,) = numbered(None, [Section(anchor="s", title="Title", blocks=blocks)])
-    assert [block.caption for block in section.blocks if isinstance(block, Table)] == ["Of the table", "Of the table", "Its own"]
+    assert [block.caption for block in section.blocks if isinstance(block, Table)] == [
+        "Of the table",
+        "Of the table",
+        "Its own",
+    ]
     assert [block.text for block in section.blocks if isinstance(block, Heading)] == ["Kept"]
 
 
@@ -228,27 +271,44 @@ def without_histories(run_path, tmp_path, gone):
     return read_run(copy), ranked["min_distance_m"].tolist()
 
 
-@pytest.mark.parametrize(("gone", "nearest"), [((), {2}), ((3, 4), {2}), ((2,), {1, 3}), ((0, 1, 2), {3})])
-def test_the_typical_flight_is_at_the_median_of_all_flights_or_nearest_to_it(run_path, tmp_path, gone, nearest):
+@pytest.mark.parametrize(
+    ("gone", "nearest"), [((), {2}), ((3, 4), {2}), ((2,), {1, 3}), ((0, 1, 2), {3})]
+)
+def test_the_typical_flight_is_at_the_median_of_all_flights_or_nearest_to_it(
+    run_path, tmp_path, gone, nearest
+):
     run, distances = without_histories(run_path, tmp_path, gone)
     picture = closest_and_typical(read_trials(run))
     typical = min(nearest, key=lambda rank: abs(distances[rank] - distances[2]))
     closest = min(set(range(5)) - set(gone))
-    told = "the flight with the closest approach" + (" of those with a time history." if gone else ".")
+    told = "the flight with the closest approach" + (
+        " of those with a time history." if gone else "."
+    )
     assert told in picture.caption
     if closest == typical:
         # One flight is both: all its tracks are shown, and below them its name.
-        assert re.search(r" Closest: short_0000\d, the flight with the closest approach[^.]*\.$", picture.caption)
+        assert re.search(
+            r" Closest: short_0000\d, the flight with the closest approach[^.]*\.$", picture.caption
+        )
         assert "Typical" not in picture.caption
     else:
         shown = [float(re.search(r"([\d.]+) m$", panel.title)[1]) for panel in picture.panels]
         assert shown == [round(distances[rank], 1) for rank in (closest, typical)]
-        assert ("Typical: the one whose closest approach is the median." in picture.caption) == (2 not in gone)
-        assert ("Typical: of these the one nearest to the median of all flights." in picture.caption) == (2 in gone)
+        assert ("Typical: the one whose closest approach is the median." in picture.caption) == (
+            2 not in gone
+        )
+        assert (
+            "Typical: of these the one nearest to the median of all flights." in picture.caption
+        ) == (2 in gone)
 
 
-def test_flights_shown_one_by_one_have_one_at_the_median_of_all_or_nearest_to_it(run_path, tmp_path):
-    for gone, why in (((3, 4), "median of closest approaches"), ((2,), "nearest to the median of closest approaches")):
+def test_flights_shown_one_by_one_have_one_at_the_median_of_all_or_nearest_to_it(
+    run_path, tmp_path
+):
+    for gone, why in (
+        ((3, 4), "median of closest approaches"),
+        ((2,), "nearest to the median of closest approaches"),
+    ):
         run, distances = without_histories(run_path, tmp_path / str(len(gone)), gone)
         # As of flights that met their criteria: one that did not is shown as such.
         trial = read_trials(replace(run, summary=run.summary.assign(criteria_met=True)))[0]
@@ -263,7 +323,9 @@ def test_long_names_of_flights_stand_below_the_picture(run_path, monkeypatch):
     monkeypatch.setattr("reports.flights.first_page._NAME_MAX", 3)
     bare = closest_and_typical(trials)
     for with_name, without in zip(named.panels, bare.panels, strict=True):
-        what, name, distance = re.fullmatch(r"(\w+): (short_0000\d), (.+ m)", with_name.title).groups()
+        what, name, distance = re.fullmatch(
+            r"(\w+): (short_0000\d), (.+ m)", with_name.title
+        ).groups()
         assert without.title == f"{what}: {distance}"
         assert f" {what}: {name}, the " in bare.caption
         assert bare.caption.count(f"{what}:") == 1
@@ -274,20 +336,32 @@ def test_long_names_of_flights_stand_below_the_picture(run_path, monkeypatch):
     [
         ([], "Flights for a test."),
         (["report.author=N. N."], "Flights for a test."),
-        (["wind.speed_mps=3"], "As the scenario describes it, before the changes below: Flights for a test."),
+        (
+            ["wind.speed_mps=3"],
+            "As the scenario describes it, before the changes below: Flights for a test.",
+        ),
         (["description=Flights for a test.", "wind.speed_mps=3"], "Flights for a test."),
     ],
 )
-def test_the_description_of_a_scenario_is_said_to_be_of_what_was_there_before_its_changes(run_path, overrides, words):
+def test_the_description_of_a_scenario_is_said_to_be_of_what_was_there_before_its_changes(
+    run_path, overrides, words
+):
     run = read_run(run_path)
     report = content(replace(run, manifest=run.manifest | {"overrides": overrides}))
     assert report.description == words
 
 
 @pytest.mark.parametrize(("columns", "wide"), [(1, ["wide", "wide"]), (2, ["", "", "wide"])])
-def test_a_map_above_one_over_the_ground_is_as_wide_as_that_where_it_is_alone(report, tmp_path, columns, wide):
+def test_a_map_above_one_over_the_ground_is_as_wide_as_that_where_it_is_alone(
+    report, tmp_path, columns, wide
+):
     panels = [report.picture.panels[0]] * len(wide)
-    write_html(replace(report, picture=replace(report.picture, panels=panels, columns=columns, last_height=0.2)), tmp_path / "page")
+    write_html(
+        replace(
+            report, picture=replace(report.picture, panels=panels, columns=columns, last_height=0.2)
+        ),
+        tmp_path / "page",
+    )
     page = (tmp_path / "page").read_text(encoding="utf-8")
     (beside,) = re.findall(r'<div class="beside">(.*?)</div></div>', page)
     assert [of.strip() for of in re.findall(r'class="plot([^"]*)"', beside)] == wide

@@ -31,7 +31,12 @@ report.author = "A. Author"
 def flown(tmp_path_factory):
     folder = tmp_path_factory.mktemp("letterhead")
     (folder / "short.toml").write_text(SHORT, encoding="utf-8")
-    run_study(load_study(str(folder / "short.toml")), "short", folder / "run", executor_factory=InProcessExecutor)
+    run_study(
+        load_study(str(folder / "short.toml")),
+        "short",
+        folder / "run",
+        executor_factory=InProcessExecutor,
+    )
     return folder / "run"
 
 
@@ -48,12 +53,20 @@ def refused(*arguments):
 
 
 @pytest.mark.usefixtures("sketched")
-def test_reports_of_a_run_that_exists_take_another_title_and_logo_and_leave_the_run_as_it_is(run_path, tmp_path):
+def test_reports_of_a_run_that_exists_take_another_title_and_logo_and_leave_the_run_as_it_is(
+    run_path, tmp_path
+):
     logo = tmp_path / "logo.jpg"
     Image.new("RGB", (40, 20), "navy").save(logo)
     before = (run_path / "manifest.json").read_bytes()
-    settings = [f"report.logo={logo}", "report.title='Over the strait'", "report.organisation=Agency"]
-    ended = run_command("reports.build", run_path, *(word for setting in settings for word in ("--set", setting)))
+    settings = [
+        f"report.logo={logo}",
+        "report.title='Over the strait'",
+        "report.organisation=Agency",
+    ]
+    ended = run_command(
+        "reports.build", run_path, *(word for setting in settings for word in ("--set", setting))
+    )
     assert ended.status == 0, ended.errors
     page = (run_path / "report.html").read_text(encoding="utf-8")
     assert "<h1>Over the strait</h1>" in page
@@ -68,7 +81,11 @@ def test_a_run_without_a_date_or_settings_has_the_scenarios_title(run_path):
     write_manifest(run_path, manifest)
     report = content(read_run(run_path))
     assert report.title == "Short"
-    assert (report.letterhead.when, report.letterhead.signature, report.letterhead.logo) == ("date not recorded", "", None)
+    assert (report.letterhead.when, report.letterhead.signature, report.letterhead.logo) == (
+        "date not recorded",
+        "",
+        None,
+    )
     assert parse_settings([]) == {}
 
 
@@ -91,7 +108,10 @@ def test_a_setting_that_reports_do_not_have_is_refused(override, said):
 def test_a_logo_that_is_no_picture_ends_the_command_with_status_2(run_path):
     (run_path / "text.png").write_text("no picture", encoding="utf-8")
     said = refused(run_path, "--set", f"report.logo={run_path / 'text.png'}")
-    assert said == "error: report.logo: 'text.png' is not a picture; give a whole PNG, JPEG or SVG file\n"
+    assert (
+        said
+        == "error: report.logo: 'text.png' is not a picture; give a whole PNG, JPEG or SVG file\n"
+    )
 
 
 def test_a_logo_that_the_run_has_lost_is_named_among_its_missing_files(run_path):
@@ -105,5 +125,7 @@ def test_a_logo_that_the_run_has_lost_is_named_among_its_missing_files(run_path)
 @pytest.mark.parametrize("version", [0, 2, "3"])
 def test_a_run_directory_of_another_version_is_refused_in_one_line(version, run_path):
     change_manifest(run_path, format=version)
-    said = f"is a run of format {version!r}, and this version reads 1; use the version that made it\n"
+    said = (
+        f"is a run of format {version!r}, and this version reads 1; use the version that made it\n"
+    )
     assert refused(run_path).endswith(said)

@@ -50,7 +50,9 @@ def page_with(texts, words):
         (1.2, False),
     ],
 )
-def test_a_figure_goes_on_the_page_before_it_if_it_fits_when_it_is_drawn_smaller(second, together, tmp_path):
+def test_a_figure_goes_on_the_page_before_it_if_it_fits_when_it_is_drawn_smaller(
+    second, together, tmp_path
+):
     texts = pages_of([tall("one", 0.7), tall("two", second)], tmp_path / "report.pdf")
     assert (page_with(texts, "Caption of one") == page_with(texts, "Caption of two")) is together
 
@@ -58,13 +60,17 @@ def test_a_figure_goes_on_the_page_before_it_if_it_fits_when_it_is_drawn_smaller
 def test_a_page_makes_room_for_a_figure_that_would_stand_alone_on_the_next(tmp_path):
     # The first two fill a page but for a tenth, and the last one fills one: the third needs others to be smaller.
     heights = [0.55, 0.55, 0.35, 1.3]
-    texts = pages_of([tall(f"figure {i}", height) for i, height in enumerate(heights)], tmp_path / "report.pdf")
+    texts = pages_of(
+        [tall(f"figure {i}", height) for i, height in enumerate(heights)], tmp_path / "report.pdf"
+    )
     assert [page_with(texts, f"Caption of figure {i}") for i in range(4)] == [2, 2, 2, 3]
 
 
 def test_what_follows_a_table_begins_below_its_last_row(tmp_path):
     rows = [[f"row {i}", "word " * (1 + 60 * (i % 3 == 0))] for i in range(78)]
-    table = Table(head=["Row", "Words"], rows=rows, widths=[1.0, 3.0], breakable=True, caption="Table of rows")
+    table = Table(
+        head=["Row", "Words"], rows=rows, widths=[1.0, 3.0], breakable=True, caption="Table of rows"
+    )
     texts = pages_of([tall("one", 0.5), table, tall("two", 0.5)], tmp_path / "report.pdf")
     begin, end = page_with(texts, "Table of rows"), page_with(texts, "row 77")
     assert begin == page_with(texts, "Caption of one")
@@ -76,13 +82,17 @@ def test_what_follows_a_table_begins_below_its_last_row(tmp_path):
 
 def test_no_row_of_a_table_goes_on_over_the_next_page(tmp_path):
     rows = [[f"row {i}", f"begin{i} " + "word " * 300 + f"end{i}"] for i in range(20)]
-    table = Table(head=["Row", "Words"], rows=rows, widths=[1.0, 3.0], breakable=True, caption="Table of rows")
+    table = Table(
+        head=["Row", "Words"], rows=rows, widths=[1.0, 3.0], breakable=True, caption="Table of rows"
+    )
     texts = pages_of([table], tmp_path / "report.pdf")
     assert page_with(texts, "end19") > page_with(texts, "begin0")
     assert all(page_with(texts, f"begin{i} ") == page_with(texts, f"end{i}") for i in range(20))
 
 
-def test_words_that_a_section_ends_with_stay_on_its_page_if_the_next_section_does_not_fit_there(tmp_path):
+def test_words_that_a_section_ends_with_stay_on_its_page_if_the_next_section_does_not_fit_there(
+    tmp_path,
+):
     # What failed, below the figures of the verdict: a section without words of its own, whose figure fills a page, comes next.
     report = a_report([tall("filler", 0.9), tall("one", 0.5), Text("The words. " * 60)])
     following = Section(anchor="next", title="The next section", blocks=[tall("two", 1.1)])
@@ -99,9 +109,19 @@ def test_words_that_a_section_ends_with_stay_on_its_page_if_the_next_section_doe
 def test_a_table_without_room_for_a_row_below_its_caption_is_planned_on_the_next_page(tmp_path):
     # Below the first figure there is room for the caption and the head of the table alone.
     rows = [[f"row {i}", "word " * 40] for i in range(8)]
-    table = Table(head=["Row", "Words"], rows=rows, widths=[1.0, 3.0], breakable=True, caption="Rows. " + "Long caption. " * 36)
+    table = Table(
+        head=["Row", "Words"],
+        rows=rows,
+        widths=[1.0, 3.0],
+        breakable=True,
+        caption="Rows. " + "Long caption. " * 36,
+    )
     figures = [tall("two", 0.5), tall("three", 0.35), tall("four", 1.2)]
     texts = pages_of([tall("one", 1.18), table, *figures], tmp_path / "report.pdf")
-    assert page_with(texts, "Rows.") == page_with(texts, "row 0") == page_with(texts, "Caption of one") + 1
+    assert (
+        page_with(texts, "Rows.")
+        == page_with(texts, "row 0")
+        == page_with(texts, "Caption of one") + 1
+    )
     # The third is smaller, beside the second, and not alone on a page before the fourth.
     assert page_with(texts, "Caption of three") == page_with(texts, "Caption of two")

@@ -11,22 +11,34 @@ from reports.render import plotly_charts
 
 
 def test_error_bars_are_the_intervals_and_not_symmetric_where_these_are_cut():
-    rows = pd.DataFrame({"sensor": ["fast"], "fsc_expected_percent": [0.01], "fsc_percent": [0.01], "areas_fsc_percent": [-0.01]})
+    rows = pd.DataFrame(
+        {
+            "sensor": ["fast"],
+            "fsc_expected_percent": [0.01],
+            "fsc_percent": [0.01],
+            "areas_fsc_percent": [-0.01],
+        }
+    )
     for method, low, high in (("fsc", 0.0, 0.03), ("areas_fsc", 0.0, 0.02)):
         rows = rows.assign(**{f"{method}_low_percent": low, f"{method}_high_percent": high})
     chart = flight_charts.error_chart(rows)
     bars = [panel.lines[0].error.ravel() for panel in chart.panels]
     np.testing.assert_allclose(bars, [[0.01, 0.02], [0.0, 0.03]], atol=1e-12)
     drawn = plotly_charts.draw(chart)["data"][0]["error_y"]
-    assert [np.frombuffer(base64.b64decode(drawn[end]["bdata"]), dtype="<f4")[0] for end in ("arrayminus", "array")] == (
-        pytest.approx([0.01, 0.02])
-    )
+    assert [
+        np.frombuffer(base64.b64decode(drawn[end]["bdata"]), dtype="<f4")[0]
+        for end in ("arrayminus", "array")
+    ] == (pytest.approx([0.01, 0.02]))
 
 
 def _results(expected, found):
     columns = {"fsc_expected_percent": expected, "sensor": "fast"}
     for method in ("fsc", "areas_fsc"):
-        columns |= {f"{method}_percent": found, f"{method}_low_percent": 0.0, f"{method}_high_percent": np.abs(found) + 0.02}
+        columns |= {
+            f"{method}_percent": found,
+            f"{method}_low_percent": 0.0,
+            f"{method}_high_percent": np.abs(found) + 0.02,
+        }
     return pd.DataFrame(columns)
 
 
@@ -42,7 +54,10 @@ def test_results_below_a_logarithmic_scale_stand_at_its_edge_and_are_counted():
 
 
 def test_only_flights_of_one_fuel_are_drawn_beside_each_other():
-    once, often = (flight_charts.error_chart(_results(fuels, fuels)) for fuels in ([0.05, 0.1, 1.0], [0.05, 0.1, 0.1, 1.0]))
+    once, often = (
+        flight_charts.error_chart(_results(fuels, fuels))
+        for fuels in ([0.05, 0.1, 1.0], [0.05, 0.1, 0.1, 1.0])
+    )
     assert list(once.panels[0].lines[0].x) == [0.05, 0.1, 1.0]
     assert "side by side" not in once.caption
     np.testing.assert_allclose(often.panels[0].lines[0].x, [0.05, 0.095, 0.105, 1.0])

@@ -37,7 +37,13 @@ operator = "Agency"
 def run_directory(tmp_path_factory):
     folder = tmp_path_factory.mktemp("evidence")
     (folder / "flight.toml").write_text(CONFIG, encoding="utf-8")
-    given = [str(EXAMPLES / "example_flight.csv"), "--config", str(folder / "flight.toml"), "--out", str(folder / "out")]
+    given = [
+        str(EXAMPLES / "example_flight.csv"),
+        "--config",
+        str(folder / "flight.toml"),
+        "--out",
+        str(folder / "out"),
+    ]
     assert main([*given, "--no-report"]) == 0
     return folder / "out"
 
@@ -61,9 +67,13 @@ def test_page_1_says_when_where_which_ship_by_whom_and_from_which_log(directory)
     told = facts(directory)
     # The log has 300 s; its file is the one whose hash sha256sum prints.
     assert (
-        told["Time (UTC)"] == "2026-06-01 23:58:00 to 2026-06-02 00:03:00 UTC (start by the configuration; the log counts seconds)"
+        told["Time (UTC)"]
+        == "2026-06-01 23:58:00 to 2026-06-02 00:03:00 UTC (start by the configuration; the log counts seconds)"
     )
-    assert told["Place"] == "Kattegat, east of Anholt (by the configuration); latitude and longitude are not in the log"
+    assert (
+        told["Place"]
+        == "Kattegat, east of Anholt (by the configuration); latitude and longitude are not in the log"
+    )
     assert told["Ship"] == "Nordlys, IMO 9074729, MMSI 219000000 (by the configuration)"
     assert told["Operator"] == "Agency (by the configuration)"
     digest = hashlib.sha256((EXAMPLES / "example_flight.csv").read_bytes()).hexdigest()
@@ -73,24 +83,46 @@ def test_page_1_says_when_where_which_ship_by_whom_and_from_which_log(directory)
 
 
 def test_what_neither_log_nor_configuration_says_is_told_to_be_missing(directory):
-    nothing = {"vessel": "", "imo": None, "mmsi": None, "day": None, "start": None, "place": "", "operator": ""}
+    nothing = {
+        "vessel": "",
+        "imo": None,
+        "mmsi": None,
+        "day": None,
+        "start": None,
+        "place": "",
+        "operator": "",
+    }
     told = facts(directory, first_utc=None, last_utc=None, utc_from="", details=nothing)
-    assert told["Time (UTC)"] == "not in the log, whose times are seconds, and not in the configuration"
+    assert (
+        told["Time (UTC)"]
+        == "not in the log, whose times are seconds, and not in the configuration"
+    )
     assert told["Place"] == "latitude and longitude are not in the log"
     assert told["Ship"] == "not named in the configuration"
     assert "Operator" not in told
     told = facts(directory, details=nothing | {"day": "2026-06-01"})
-    assert told["Time (UTC)"] == "2026-06-01 (by the configuration); the time of day is not in the log, whose times are seconds"
+    assert (
+        told["Time (UTC)"]
+        == "2026-06-01 (by the configuration); the time of day is not in the log, whose times are seconds"
+    )
 
 
 @pytest.mark.parametrize(
-    ("offset", "words"), [(True, "by the log"), (False, "by the log, whose times have no offset: taken as UTC")]
+    ("offset", "words"),
+    [(True, "by the log"), (False, "by the log, whose times have no offset: taken as UTC")],
 )
 def test_times_and_positions_of_the_log_are_told_as_those(directory, offset, words):
-    times = {"first_utc": "2026-06-01T10:00:00Z", "last_utc": "2026-06-01T10:05:00.500Z", "utc_from": "log", "offset": offset}
+    times = {
+        "first_utc": "2026-06-01T10:00:00Z",
+        "last_utc": "2026-06-01T10:05:00.500Z",
+        "utc_from": "log",
+        "offset": offset,
+    }
     told = facts(directory, **times, first_position=[56.7, 11.52], last_position=[-56.71, 348.0])
     assert told["Time (UTC)"] == f"2026-06-01 10:00:00 to 10:05:00 UTC ({words})"
-    assert told["Place"].endswith("from 56.70000° N, 11.52000° E to 56.71000° S, 12.00000° W (first and last of the log)")
+    assert told["Place"].endswith(
+        "from 56.70000° N, 11.52000° E to 56.71000° S, 12.00000° W (first and last of the log)"
+    )
 
 
 def test_the_date_of_the_analysis_is_not_taken_for_that_of_the_flight(directory):
@@ -113,7 +145,10 @@ def test_screen_and_page_1_of_print_have_every_fact(directory):
 
 
 def rows_of(directory, number):
-    return {row[0]: row[1:] for row in blocks_of(content(read_run(directory)), Table, "instrument")[number].rows}
+    return {
+        row[0]: row[1:]
+        for row in blocks_of(content(read_run(directory)), Table, "instrument")[number].rows
+    }
 
 
 def test_the_instrument_has_a_column_for_each_channel_with_every_property(directory):
@@ -137,7 +172,10 @@ def test_the_analysis_names_its_configuration_thresholds_and_assumptions(directo
     assert rows["Codes of missing readings"] == ["−9999"]
     # 0.2322 at 87 % carbon: Balzani Loov et al., AMT 7:2597 (2014).
     carbon = rows["Carbon in the fuel"][0].replace("\N{NO-BREAK SPACE}", " ")
-    assert carbon == "87 % by mass ± 1.5 % of it (1σ): 0.2322 % of sulphur per ppb of SO2 per ppm of CO2"
+    assert (
+        carbon
+        == "87 % by mass ± 1.5 % of it (1σ): 0.2322 % of sulphur per ppb of SO2 per ppm of CO2"
+    )
     assert rows["Exhaust gas cleaning"][0].startswith(
         "none is assumed: of a ship with a scrubber the content is that of a fuel which"
     )
@@ -147,8 +185,13 @@ def test_the_analysis_names_its_configuration_thresholds_and_assumptions(directo
     assert rows["A verdict"][0].startswith(
         "“above” where the content is more than 1.645 standard uncertainties above the limit; “below”"
     )
-    assert "1.960 standard uncertainties on either side far above 0, fewer nearer to it" in rows["Interval"][0]
-    assert rows["NO and NO2"] == ["NO is measured, and SO2 corrected for it; NO2 is measured, and SO2 corrected for it"]
+    assert (
+        "1.960 standard uncertainties on either side far above 0, fewer nearer to it"
+        in rows["Interval"][0]
+    )
+    assert rows["NO and NO2"] == [
+        "NO is measured, and SO2 corrected for it; NO2 is measured, and SO2 corrected for it"
+    ]
 
 
 def test_what_the_record_showed_of_the_instrument_is_said_to_be_from_it(tmp_path):
@@ -157,7 +200,10 @@ def test_what_the_record_showed_of_the_instrument_is_said_to_be_from_it(tmp_path
     assert main([str(log), "--out", str(tmp_path / "out"), "--no-report"]) == 0
     found = json.loads((tmp_path / "out" / "estimate.json").read_text(encoding="utf-8"))["estimate"]
     rows = rows_of(tmp_path / "out", 0)
-    assert rows["Response time t90 ± 1σ [s]"][0] == f"{found['so2_t90_s']:.1f} ± {found['so2_t90_sd_s']:.1f}, from the record"
+    assert (
+        rows["Response time t90 ± 1σ [s]"][0]
+        == f"{found['so2_t90_s']:.1f} ± {found['so2_t90_sd_s']:.1f}, from the record"
+    )
     assert rows["Delay ± 1σ [s]"][0].endswith("after CO2, from the record")
     assert rows["Noise of a reading, 1σ"][1].endswith(", from the record")
     assert rows["Column of the log"][3] == "none: not measured"
@@ -178,8 +224,16 @@ def test_places_and_times_are_told_the_same_everywhere():
 
 def test_what_the_configuration_leaves_out_of_its_instrument_is_marked_as_assumed(tmp_path):
     channels = "so2]\nt90_s = 18.0\ngain_sd = 0.04\ncross = { no = 0.015 }\n[instrument.channels.co2]\nt90_s = 3.0\nt90_sd = 0.1\n"
-    (tmp_path / "own.toml").write_text(f"[instrument.channels.{channels}noise = 1.0\n", encoding="utf-8")
-    given = [str(EXAMPLES / "example_flight.csv"), "--config", str(tmp_path / "own.toml"), "--out", str(tmp_path / "out")]
+    (tmp_path / "own.toml").write_text(
+        f"[instrument.channels.{channels}noise = 1.0\n", encoding="utf-8"
+    )
+    given = [
+        str(EXAMPLES / "example_flight.csv"),
+        "--config",
+        str(tmp_path / "own.toml"),
+        "--out",
+        str(tmp_path / "out"),
+    ]
     assert main([*given, "--no-report"]) == 0
     rows = rows_of(tmp_path / "out", 0)
     # What is assumed is that of measurement/sniffer/presets.py: 10 % of a t90, a gain of CO2 known to 3 %, a fifth of a response.
@@ -198,7 +252,13 @@ def test_a_preset_has_no_marks_as_its_source_says_what_is_assumed(directory):
 def test_the_provenance_says_of_which_file_each_hash_is_and_which_hash(directory):
     run = read_run(directory)
     rows = dict(provenance_section(run, letterhead(run, {})).blocks[0].rows)
-    for what, path in (("log", EXAMPLES / "example_flight.csv"), ("configuration", directory.parent / "flight.toml")):
+    for what, path in (
+        ("log", EXAMPLES / "example_flight.csv"),
+        ("configuration", directory.parent / "flight.toml"),
+    ):
         written = CONFIG.encode() if what == "configuration" else path.read_bytes()
-        assert rows[f"SHA-256 of the {what}"] == f"{hashlib.sha256(written).hexdigest()}, of the file {path.name}"
+        assert (
+            rows[f"SHA-256 of the {what}"]
+            == f"{hashlib.sha256(written).hexdigest()}, of the file {path.name}"
+        )
     assert "Hash of the input" not in rows

@@ -22,7 +22,19 @@ def estimated(folder, *missing):
         table.loc[rows, column] = np.nan
     table.drop(index=[100, *range(150, 170)]).to_csv(folder / "log.csv", index=False)
     config = str(EXAMPLE / "example_instrument.toml")
-    assert main([str(folder / "log.csv"), "--config", config, "--out", str(folder / "out"), "--no-report"]) == 0
+    assert (
+        main(
+            [
+                str(folder / "log.csv"),
+                "--config",
+                config,
+                "--out",
+                str(folder / "out"),
+                "--no-report",
+            ]
+        )
+        == 0
+    )
     return read_run(folder / "out")
 
 
@@ -82,7 +94,19 @@ def test_figures_draw_nothing_where_the_log_has_no_readings(report):
 
 def test_a_whole_log_has_no_word_of_gaps_on_page_1(tmp_path):
     config = str(EXAMPLE / "example_instrument.toml")
-    assert main([str(EXAMPLE / "example_flight.csv"), "--config", config, "--out", str(tmp_path), "--no-report"]) == 0
+    assert (
+        main(
+            [
+                str(EXAMPLE / "example_flight.csv"),
+                "--config",
+                config,
+                "--out",
+                str(tmp_path),
+                "--no-report",
+            ]
+        )
+        == 0
+    )
     report = content(read_run(tmp_path))
     assert {"Missing readings", "Gaps"}.isdisjoint({fact.name for fact in report.facts})
     assert "no track" not in named_charts(report)["track"].caption
@@ -94,8 +118,12 @@ def test_quality_c_is_not_called_open_and_says_what_to_do_next(tmp_path, capsys)
     step = "analyse apart, as logs of their own, those parts of the log that are free of it"
     assert step in report.verdict.detail
     assert step in console
-    assert {card.value for card in report.verdict.figures if card.name.startswith("Time to")} == {"none: quality C"}
-    over_time = next(table for table in blocks_of(report, Table, "result") if table.head[0] == "After")
+    assert {card.value for card in report.verdict.figures if card.name.startswith("Time to")} == {
+        "none: quality C"
+    }
+    over_time = next(
+        table for table in blocks_of(report, Table, "result") if table.head[0] == "After"
+    )
     assert over_time.rows[-1][-3:] == ["C", "none", "none"]
 
 

@@ -55,10 +55,20 @@ def test_the_report_shows_what_was_asked(run_directory):
     assert set(charts) == {"budget", "regression", "track", "channels"}
     assert_axes_read_quantity_and_unit(charts.values())
     # In a narrow window panels stand below each other: captions name them, and not their places.
-    assert not any(re.search(r"\b(left|right|bottom)\b", chart.caption, re.IGNORECASE) for chart in charts.values())
+    assert not any(
+        re.search(r"\b(left|right|bottom)\b", chart.caption, re.IGNORECASE)
+        for chart in charts.values()
+    )
     assert [panel.title for panel in charts["track"].panels] == ["In plan", "In height"]
-    assert {line.label for panel in charts["channels"].panels for line in panel.lines} >= {"truth", "reading", "what CO2 explains"}
-    assert "Above the limit of 0.10 %; probability above it: more than 99.9 %" in report.verdict.headline
+    assert {line.label for panel in charts["channels"].panels for line in panel.lines} >= {
+        "truth",
+        "reading",
+        "what CO2 explains",
+    }
+    assert (
+        "Above the limit of 0.10 %; probability above it: more than 99.9 %"
+        in report.verdict.headline
+    )
     assert "Below the limit of 0.50 %" in report.verdict.detail
     assert not report.verdict.holds
 
@@ -72,7 +82,9 @@ def test_both_reports_are_built_and_print_takes_four_pages(run_directory, tmp_pa
 
 def test_parts_of_the_uncertainty_add_to_the_whole(record):
     # The parts are independent: they add in squares.
-    assert math.hypot(*(part for _, part in errors(record))) == pytest.approx(record["estimate"]["total_percent"], rel=1e-9)
+    assert math.hypot(*(part for _, part in errors(record))) == pytest.approx(
+        record["estimate"]["total_percent"], rel=1e-9
+    )
 
 
 def test_an_estimate_below_0_is_not_told_outside_of_its_own_interval_without_a_word(record):
@@ -86,8 +98,20 @@ def test_an_estimate_below_0_is_not_told_outside_of_its_own_interval_without_a_w
     ("verdict", "chance", "holds", "complete", "words"),
     [
         ("above", 0.97, False, False, "Above the limit of 0.10 %; probability above it: 97.0 %"),
-        ("below", 0.0001, True, True, "Below the limit of 0.10 %; probability above it: less than 0.1 %"),
-        ("open", 0.4, True, False, "Not shown to be above or below the limit of 0.10 %; probability above it: 40.0 %"),
+        (
+            "below",
+            0.0001,
+            True,
+            True,
+            "Below the limit of 0.10 %; probability above it: less than 0.1 %",
+        ),
+        (
+            "open",
+            0.4,
+            True,
+            False,
+            "Not shown to be above or below the limit of 0.10 %; probability above it: 40.0 %",
+        ),
     ],
 )
 def test_a_verdict_says_probability_and_limit(record, verdict, chance, holds, complete, words):
@@ -96,7 +120,9 @@ def test_a_verdict_says_probability_and_limit(record, verdict, chance, holds, co
     assert (told.holds, told.complete, told.headline) == (holds, complete, words)
 
 
-def test_a_result_is_told_with_its_interval_at_95_percent_and_every_spread_says_which_it_is(run_directory, record):
+def test_a_result_is_told_with_its_interval_at_95_percent_and_every_spread_says_which_it_is(
+    run_directory, record
+):
     told = measurement_verdict(record)
     found = record["estimate"]
     interval = f"{found['low_percent']:.3f} to {found['high_percent']:.3f} %"
@@ -105,13 +131,28 @@ def test_a_result_is_told_with_its_interval_at_95_percent_and_every_spread_says_
     assert "±" not in told.detail
     report = content(read_run(run_directory))
     for table in blocks_of(report, Table, "result"):
-        assert all(name.endswith(", 1σ [% m/m]") for name in table.head if "uncertainty" in name or "Noise" in name)
-    spreads = [cell for table in blocks_of(report, Table, "record") for row in table.rows for cell in row if "±" in cell]
+        assert all(
+            name.endswith(", 1σ [% m/m]")
+            for name in table.head
+            if "uncertainty" in name or "Noise" in name
+        )
+    spreads = [
+        cell
+        for table in blocks_of(report, Table, "record")
+        for row in table.rows
+        for cell in row
+        if "±" in cell
+    ]
     assert [cell.count("±") == cell.count("(1σ)") for cell in spreads] == [True]
 
 
 def test_a_result_that_is_less_sure_than_fuels_have_sulphur_is_none(record):
-    record["estimate"] |= {"fsc_percent": 81.7, "total_percent": 10936.7, "quality": "C", "quality_reasons": ["SO2 is not of it"]}
+    record["estimate"] |= {
+        "fsc_percent": 81.7,
+        "total_percent": 10936.7,
+        "quality": "C",
+        "quality_reasons": ["SO2 is not of it"],
+    }
     told = measurement_verdict(record)
     assert told.headline == "Nothing can be said of the limit of 0.10 %: there is no result"
     assert not any("81.7" in text for text in (told.detail, *(card[1] for card in told.figures)))
@@ -124,7 +165,12 @@ def test_quality_c_gives_no_verdict_in_words_either(record):
     told = measurement_verdict(record)
     assert told.headline == "No verdict on the limit of 0.10 %: quality C gives none"
     assert "No verdict on the limit of 0.50 %: quality C gives none." in told.detail
-    assert ("Probability above the limit of 0.10 %", "no verdict: quality C", "", None) in told.figures
+    assert (
+        "Probability above the limit of 0.10 %",
+        "no verdict: quality C",
+        "",
+        None,
+    ) in told.figures
     assert not told.complete
 
 
@@ -133,43 +179,89 @@ def test_limits_are_told_with_all_their_decimals(record):
     record["time_to_verdict_s"] = {"0.125": 40.0}
     told = measurement_verdict(record)
     assert "the limit of 0.125 %" in told.headline
-    assert {"Probability above the limit of 0.125 %", "Time to a verdict on 0.125 %"} <= {card[0] for card in told.figures}
+    assert {"Probability above the limit of 0.125 %", "Time to a verdict on 0.125 %"} <= {
+        card[0] for card in told.figures
+    }
     for row in record["over_time"]:
         row["verdict_0.125"] = "above"
     assert "Limit 0.125 %" in over_time_table(record).head
-    assert "limit 0.125 %" in {note.text.strip() for note in over_time_chart(record).panels[0].notes}
+    assert "limit 0.125 %" in {
+        note.text.strip() for note in over_time_chart(record).panels[0].notes
+    }
 
 
 def test_the_caption_has_the_factor_of_the_fuels_carbon(run_directory, record):
     samples = pd.read_csv(run_directory / "samples.csv")
-    assert "the sulphur content by regression is 0.2322 times the slope. Groups" in regression_chart(samples, record).caption
+    assert (
+        "the sulphur content by regression is 0.2322 times the slope. Groups"
+        in regression_chart(samples, record).caption
+    )
     # In proportion to carbon: 0.2322 x 0.85/0.87.
-    assert "is 0.2269 times the slope" in regression_chart(samples, record | {"carbon": 0.85}).caption
+    assert (
+        "is 0.2269 times the slope" in regression_chart(samples, record | {"carbon": 0.85}).caption
+    )
 
 
 def test_what_is_assumed_of_gases_that_a_log_does_not_have_is_told(tmp_path, capsys):
     log = pd.read_csv(ROOT / EXAMPLE[0]).drop(columns=["no_ppb", "no2_ppb"])
     log.to_csv(tmp_path / "log.csv", index=False)
     out = tmp_path / "run"
-    assert main([str(tmp_path / "log.csv"), "--config", str(ROOT / EXAMPLE[1]), "--out", str(out), "--no-report"]) == 0
+    assert (
+        main(
+            [
+                str(tmp_path / "log.csv"),
+                "--config",
+                str(ROOT / EXAMPLE[1]),
+                "--out",
+                str(out),
+                "--no-report",
+            ]
+        )
+        == 0
+    )
     found = json.loads((out / "estimate.json").read_text(encoding="utf-8"))
     estimate, samples = found["estimate"], pd.read_csv(out / "samples.csv")
     # 0.015 of 18 ppb/ppm of NO and -0.16 of 2 ppb/ppm of NO2, to 0.2322 %: less 0.063 %, and more 0.074 %.
     assert estimate["assumed_percent"] == pytest.approx(0.012, abs=0.0015)
-    assert estimate["fsc_percent"] == pytest.approx(0.2322 * estimate["slope_ppb_per_ppm"] + estimate["assumed_percent"], abs=1e-4)
+    assert estimate["fsc_percent"] == pytest.approx(
+        0.2322 * estimate["slope_ppb_per_ppm"] + estimate["assumed_percent"], abs=1e-4
+    )
     words = f"{estimate['assumed_percent']:+.3f} % "
-    assert f"of it {words}correct SO2 for NO and NO2 that the log does not have" in capsys.readouterr().out
-    assert f"times the slope, and {words}for NO and NO2 that the log does not have" in regression_chart(samples, found).caption
+    assert (
+        f"of it {words}correct SO2 for NO and NO2 that the log does not have"
+        in capsys.readouterr().out
+    )
+    assert (
+        f"times the slope, and {words}for NO and NO2 that the log does not have"
+        in regression_chart(samples, found).caption
+    )
 
 
 def test_why_areas_have_quality_c_is_told_below_their_result(record):
-    assert "Why areas of passes have quality C: passes every 9.6 s overlap in an SO2 channel" in result_table(record).caption
+    assert (
+        "Why areas of passes have quality C: passes every 9.6 s overlap in an SO2 channel"
+        in result_table(record).caption
+    )
 
 
 def test_where_the_result_is_by_areas_the_regression_is_still_shown_with_its_own_line(tmp_path):
     config = tmp_path / "config.toml"
-    config.write_text('method = "areas"\n' + (ROOT / EXAMPLE[1]).read_text(encoding="utf-8"), encoding="utf-8")
-    assert main([str(ROOT / EXAMPLE[0]), "--config", str(config), "--out", str(tmp_path / "run"), "--no-report"]) == 0
+    config.write_text(
+        'method = "areas"\n' + (ROOT / EXAMPLE[1]).read_text(encoding="utf-8"), encoding="utf-8"
+    )
+    assert (
+        main(
+            [
+                str(ROOT / EXAMPLE[0]),
+                "--config",
+                str(config),
+                "--out",
+                str(tmp_path / "run"),
+                "--no-report",
+            ]
+        )
+        == 0
+    )
     found = json.loads((tmp_path / "run" / "estimate.json").read_text(encoding="utf-8"))
     assert found["estimate"]["method"] == "areas"
     scatter, groups = regression_chart(pd.read_csv(tmp_path / "run" / "samples.csv"), found).panels
@@ -189,13 +281,28 @@ def test_how_little_passes_agree_is_told_however_little_that_is(record, agreemen
 
 @pytest.mark.usefixtures("sketched")
 def test_a_flight_without_a_result_says_why(run_directory, tmp_path, record):
-    nothing = dict.fromkeys(("fsc_percent", "noise_percent", "total_percent", "slope_ppb_per_ppm", "agreement", "misfit"))
-    record["estimate"] |= nothing | {"quality": "C", "quality_reasons": ["no pass through a plume"], "common_percent": {}}
+    nothing = dict.fromkeys(
+        (
+            "fsc_percent",
+            "noise_percent",
+            "total_percent",
+            "slope_ppb_per_ppm",
+            "agreement",
+            "misfit",
+        )
+    )
+    record["estimate"] |= nothing | {
+        "quality": "C",
+        "quality_reasons": ["no pass through a plume"],
+        "common_percent": {},
+    }
     for verdict in record["estimate"]["verdicts"]:
         verdict |= {"verdict": "open", "probability_above": None}
     record |= {"over_time": [], "other": None, "time_to_verdict_s": {"0.1": None}}
     report = content(read_run(changed_run(run_directory, tmp_path, record)))
-    assert report.verdict.headline == "Nothing can be said of the limit of 0.10 %: there is no result"
+    assert (
+        report.verdict.headline == "Nothing can be said of the limit of 0.10 %: there is no result"
+    )
     assert report.verdict.holds
     assert not report.verdict.complete
     assert report.verdict.failures == ["quality C: no pass through a plume"]
@@ -204,7 +311,9 @@ def test_a_flight_without_a_result_says_why(run_directory, tmp_path, record):
 
 
 def test_a_perfect_instrument_is_shown_where_it_is_known(run_directory, tmp_path, record):
-    report = content(read_run(changed_run(run_directory, tmp_path, record | {"true_percent": 0.25})))
+    report = content(
+        read_run(changed_run(run_directory, tmp_path, record | {"true_percent": 0.25}))
+    )
     labels = [line.label for line in report.picture.panels[0].lines]
     assert "a perfect instrument" in labels
     assert ("A perfect instrument reads", "0.250 % m/m", "", None) in report.verdict.figures
@@ -219,11 +328,15 @@ def test_without_samples_the_report_says_so(run_directory, tmp_path):
 
 def test_samples_without_a_place_have_no_track(run_directory, tmp_path):
     directory = changed_run(run_directory, tmp_path)
-    table = pd.read_csv(directory / "samples.csv").drop(columns=["north_m", "east_m", "height_m", "so2_true_ppb", "co2_true_ppm"])
+    table = pd.read_csv(directory / "samples.csv").drop(
+        columns=["north_m", "east_m", "height_m", "so2_true_ppb", "co2_true_ppm"]
+    )
     table.to_csv(directory / "samples.csv", index=False)
     charts = named_charts(content(read_run(directory)))
     assert "track" not in charts
-    assert "truth" not in {line.label for panel in charts["channels"].panels for line in panel.lines}
+    assert "truth" not in {
+        line.label for panel in charts["channels"].panels for line in panel.lines
+    }
 
 
 @pytest.mark.parametrize("text", ["", "[]", "{}", '{"estimate": 3}', "\x00"])
@@ -242,12 +355,17 @@ def test_probabilities_are_never_certain():
 
 def test_points_have_the_colour_of_their_value_on_one_scale():
     x = np.arange(4.0)
-    lines = [Line(x=x, y=x, label="", colour="blue", style="points", values=values) for values in (x, 2.0 * x, x * np.nan)]
+    lines = [
+        Line(x=x, y=x, label="", colour="blue", style="points", values=values)
+        for values in (x, 2.0 * x, x * np.nan)
+    ]
     panels = [Panel(x_label="A [m]", y_label="B [m]", lines=[line]) for line in lines]
     chart = Chart(name="coloured", caption="", panels=panels, columns=3, scale_label="CO2 [ppm]")
     assert chart.scale == (0.0, 6.0)
     traces = plotly_charts.draw(chart)["data"]
-    assert [(trace["marker"]["cmin"], trace["marker"]["cmax"]) for trace in traces] == [(0.0, 6.0)] * 3
+    assert [(trace["marker"]["cmin"], trace["marker"]["cmax"]) for trace in traces] == [
+        (0.0, 6.0)
+    ] * 3
     assert ["showscale" in trace["marker"] for trace in traces] == [True, False, False]
     figure = matplotlib_charts.draw(chart)
     # Three panels and one colour scale; values that are no numbers are not drawn.

@@ -42,7 +42,11 @@ def one(tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def several(tmp_path_factory):
-    sweeps = ('sweep.payload.sensor=["fast","laser"]', "sweep.emission.sulphur_percent=[0.05,0.1,0.5]", "flights=1")
+    sweeps = (
+        'sweep.payload.sensor=["fast","laser"]',
+        "sweep.emission.sulphur_percent=[0.05,0.1,0.5]",
+        "flights=1",
+    )
     more = ("sweep.guidance.bank_deg=[30,45]",)
     with pytest.MonkeyPatch.context() as patch:
         # Of each fuel and sensor one flight at either bank: too few for a curve that anybody is to read.
@@ -52,7 +56,9 @@ def several(tmp_path_factory):
 
 def test_one_flight_is_told_with_result_probability_and_limit(one):
     (section,) = [section for section in one.sections if section.anchor == "measurement"]
-    assert {"sulphur-track", "fsc-over-time", "budget", "channels", "regression"} <= set(named_charts(one))
+    assert {"sulphur-track", "fsc-over-time", "budget", "channels", "regression"} <= set(
+        named_charts(one)
+    )
     assert_axes_read_quantity_and_unit(named_charts(one).values())
     told = next(block.text for block in section.blocks if isinstance(block, Text))
     assert re.match(rf"The fuel's sulphur content is {CONTENT}: .* limit of 0\.10 %; prob", told)
@@ -68,12 +74,16 @@ def test_one_flight_is_told_with_result_probability_and_limit(one):
 def test_the_time_of_an_estimate_and_of_a_flight_say_what_they_are_counted_from(one):
     charts = named_charts(one)
     assert charts["fsc-over-time"].panels[0].x_label == "Time since the flight settled [s]"
-    assert {panel.x_label for panel in charts["channels"].panels} == {"Time since the start of the flight [s]"}
+    assert {panel.x_label for panel in charts["channels"].panels} == {
+        "Time since the start of the flight [s]"
+    }
     (table,) = (block for block in blocks_of(one, Table, "measurement") if block.head[0] == "After")
     assert table.caption.startswith("Result after each time since the flight settled.")
 
 
-def test_a_track_from_near_has_no_legend_for_what_lies_outside_and_shows_the_axis_where_it_was_crossed(one):
+def test_a_track_from_near_has_no_legend_for_what_lies_outside_and_shows_the_axis_where_it_was_crossed(
+    one,
+):
     chart = named_charts(one)["sulphur-track"]
     assert not any(label.startswith("ship, ") for label in chart.labels)
     # Nor does its caption speak of it.
@@ -101,7 +111,10 @@ def test_several_flights_are_judged_as_a_method(several):
     # 0.05 % is never above 0.1 %, and 0.5 % always is, with the noise of these sensors.
     assert ("laser", "0.05", "0\N{NO-BREAK SPACE}%") in fuels
     assert ("laser", "0.5", "100\N{NO-BREAK SPACE}%") in fuels
-    assert any(row[0].startswith("Crossings of the plume's mean axis, with smoke or without") for row in hits.rows)
+    assert any(
+        row[0].startswith("Crossings of the plume's mean axis, with smoke or without")
+        for row in hits.rows
+    )
     assert any("Bias of the sulphur content" in name for name, *_ in several.verdict.figures)
 
 
@@ -134,7 +147,9 @@ ROW = {
         ("open", "? not shown to be above or below the limit of 0.10 %", "open"),
     ],
 )
-def test_the_tile_of_a_verdict_has_a_colour_of_its_own_and_only_below_is_green(called, judgement, tone):
+def test_the_tile_of_a_verdict_has_a_colour_of_its_own_and_only_below_is_green(
+    called, judgement, tone
+):
     row = {**ROW, "fsc_percent": 0.1, "sulphur_verdict": called, "probability_above": 0.5}
     run = SimpleNamespace(summary=pd.DataFrame([row]))
     card = flights.sulphur_cards(run)[2]
@@ -142,14 +157,21 @@ def test_the_tile_of_a_verdict_has_a_colour_of_its_own_and_only_below_is_green(c
     assert flights.sulphur_below(run) == (called == "below")
     # Red, as the verdict of an estimate of the same fuel is.
     assert flights.sulphur_above(run) == (called == "above")
-    assert ("not shown to be above or below the limit" in flights.sulphur_headline(run)) == (called == "open")
+    assert ("not shown to be above or below the limit" in flights.sulphur_headline(run)) == (
+        called == "open"
+    )
 
 
 def test_a_sniffer_without_a_result_is_said_on_page_1():
-    run = SimpleNamespace(summary=pd.DataFrame([{"fsc_percent": float("nan"), "duration_s": 600.0}]))
+    run = SimpleNamespace(
+        summary=pd.DataFrame([{"fsc_percent": float("nan"), "duration_s": 600.0}])
+    )
     assert flights.sulphur_headline(run) == "No fuel sulphur content from 1 flight with a sniffer"
     run.summary["sulphur_reason"] = "no pass through a plume"
-    assert flights.sulphur_headline(run) == "No fuel sulphur content from 1 flight with a sniffer: no pass through a plume"
+    assert (
+        flights.sulphur_headline(run)
+        == "No fuel sulphur content from 1 flight with a sniffer: no pass through a plume"
+    )
     # All is left to be said of the fuel: not green.
     assert not flights.sulphur_below(run)
     assert flights.sulphur_below(SimpleNamespace(summary=pd.DataFrame([{"duration_s": 600.0}])))
@@ -157,7 +179,9 @@ def test_a_sniffer_without_a_result_is_said_on_page_1():
 
 def test_a_probability_is_never_told_as_certain():
     told = flights._told(pd.Series(ROW))
-    assert told.startswith("The fuel's sulphur content is 0.500 % m/m, 95 % interval 0.461 to 0.539 %: above the limit of 0.10 %; ")
+    assert told.startswith(
+        "The fuel's sulphur content is 0.500 % m/m, 95 % interval 0.461 to 0.539 %: above the limit of 0.10 %; "
+    )
     assert "probability above it: more than 99.9 %. Quality A." in told
     card = flights.sulphur_cards(SimpleNamespace(summary=pd.DataFrame([ROW])))[2]
     assert card[:2] == ("Probability above the limit of 0.10 %", "> 99.9 %")
@@ -165,20 +189,32 @@ def test_a_probability_is_never_told_as_certain():
 
 def test_a_content_below_0_is_told_with_the_interval_that_its_verdict_rests_on():
     # Of an estimate below 0 the words are those of the interval that the row has.
-    row = {**ROW, "fsc_percent": -0.025, "fsc_low_percent": 0.0, "fsc_high_percent": 0.039, "sulphur_verdict": "below"}
+    row = {
+        **ROW,
+        "fsc_percent": -0.025,
+        "fsc_low_percent": 0.0,
+        "fsc_high_percent": 0.039,
+        "sulphur_verdict": "below",
+    }
     run = SimpleNamespace(summary=pd.DataFrame([row]))
     words = "-0.025 % m/m, which is below 0; 95 % interval 0.000 to 0.039 %, given that no fuel has less than 0: below the limit"
     assert words in flights.sulphur_headline(run)
     assert words in flights._told(pd.Series(row))
     assert flights.sulphur_cards(run)[1].value == "0.000 to 0.039 % m/m"
     table = flight_tables.flight_table(
-        pd.DataFrame([{**row, "flight_id": "flight_1", "sensor": "fast"}]), lambda of: str(of["flight_id"])
+        pd.DataFrame([{**row, "flight_id": "flight_1", "sensor": "fast"}]),
+        lambda of: str(of["flight_id"]),
     )
     assert table.rows[0][table.head.index("95 % interval [% m/m]")] == "0.000 to 0.039"
 
 
 def test_quality_c_gives_no_verdict_in_words_either():
-    row = {**ROW, "sulphur_verdict": "open", "sulphur_quality": "C", "sulphur_reason": "SO2 is saturated"}
+    row = {
+        **ROW,
+        "sulphur_verdict": "open",
+        "sulphur_quality": "C",
+        "sulphur_reason": "SO2 is saturated",
+    }
     told = flights._told(pd.Series(row))
     assert "95 % interval 0.461 to 0.539 %: no verdict on the limit of 0.10 %: quality C" in told
     assert "Quality C: SO2 is saturated." in told
@@ -187,7 +223,10 @@ def test_quality_c_gives_no_verdict_in_words_either():
     assert card[1] == "no verdict: quality C"
 
 
-@pytest.mark.parametrize(("own", "minutes"), [(None, [4.0, 9.0]), (60.0, [1.0, 1.0]), ("swept", [1.0, 2.25]), (600.0, [6.0, 10.0])])
+@pytest.mark.parametrize(
+    ("own", "minutes"),
+    [(None, [4.0, 9.0]), (60.0, [1.0, 1.0]), ("swept", [1.0, 2.25]), (600.0, [6.0, 10.0])],
+)
 def test_noise_of_a_minute_follows_from_the_time_that_was_evaluated(own, minutes):
     """Flights of 6 and 11 minutes settle after 2; the last ``flight.measured_s`` may be all that is evaluated [min]."""
     rows = pd.DataFrame({
@@ -203,21 +242,42 @@ def test_noise_of_a_minute_follows_from_the_time_that_was_evaluated(own, minutes
     table = flight_tables.best_table(run, rows)
     found = sorted(float(row[table.head.index("1σ in a minute [% m/m]")]) for row in table.rows)
     assert found == pytest.approx(sorted(0.02 * np.sqrt(minutes)), abs=5e-5)
-    regression, areas = (panel.lines[0].y for panel in flight_charts.trajectory_chart(run, rows).panels[:2])
+    regression, areas = (
+        panel.lines[0].y for panel in flight_charts.trajectory_chart(run, rows).panels[:2]
+    )
     assert regression == pytest.approx(0.02 * np.sqrt(minutes))
     assert areas == pytest.approx(0.03 * np.sqrt(minutes))
 
 
 def test_a_fuel_without_sulphur_beside_others_is_drawn():
     fuels = np.repeat([0.0, 0.1, 0.5, 2.0], 4)
-    columns = ("fsc_percent", "areas_fsc_percent", "fsc_expected_percent", "crossing_interval_mean_s")
+    columns = (
+        "fsc_percent",
+        "areas_fsc_percent",
+        "fsc_expected_percent",
+        "crossing_interval_mean_s",
+    )
     rows = pd.DataFrame(dict.fromkeys(columns, fuels)).assign(sensor="fast")
     for method in ("fsc", "areas_fsc"):
-        rows = rows.assign(**{f"{method}_low_percent": np.maximum(0.0, fuels - 0.02), f"{method}_high_percent": fuels + 0.02})
+        rows = rows.assign(
+            **{
+                f"{method}_low_percent": np.maximum(0.0, fuels - 0.02),
+                f"{method}_high_percent": fuels + 0.02,
+            }
+        )
     chart = flight_charts.error_chart(rows)
     assert {(panel.log_x, panel.log_y) for panel in chart.panels} == {(False, False)}
-    entry = {"sensor": "fast", "flights": 4, "limit_percent": 0.1, "above": 0.0, "above_2min": 0.0, "above_interval": [0.0, 0.6]}
-    curve = flight_charts.operating_curve({"operating_curve": [entry | {"fsc_fuel_percent": fuel} for fuel in np.unique(fuels)]})
+    entry = {
+        "sensor": "fast",
+        "flights": 4,
+        "limit_percent": 0.1,
+        "above": 0.0,
+        "above_2min": 0.0,
+        "above_interval": [0.0, 0.6],
+    }
+    curve = flight_charts.operating_curve(
+        {"operating_curve": [entry | {"fsc_fuel_percent": fuel} for fuel in np.unique(fuels)]}
+    )
     assert not curve.panels[0].log_x
     for drawn in (chart, curve):
         matplotlib_charts.draw(drawn)
@@ -238,7 +298,10 @@ def test_an_operating_curve_of_two_limits_has_a_line_for_each():
     ]  # fmt: skip
     lines = flight_charts.operating_curve({"operating_curve": curve}).panels[0].lines
     ends = {line.label: line.y.tolist() for line in lines if line.label.endswith("at the end")}
-    assert ends == {"fast, 0.1 %, at the end": [0.0, 1.0, 1.0], "fast, 0.5 %, at the end": [0.0, 0.0, 1.0]}
+    assert ends == {
+        "fast, 0.1 %, at the end": [0.0, 1.0, 1.0],
+        "fast, 0.5 %, at the end": [0.0, 0.0, 1.0],
+    }
     assert [line.x[0] for line in lines if line.label == "limit"] == [0.1, 0.5]
 
 
@@ -259,9 +322,13 @@ def test_flights_without_a_sniffer_have_none_of_it(tmp_path):
     assert blocks_of(bare, Table)
 
 
-def test_page_1_says_which_instrument_measured_and_nothing_of_a_place_that_no_scenario_gave(one, several):
+def test_page_1_says_which_instrument_measured_and_nothing_of_a_place_that_no_scenario_gave(
+    one, several
+):
     # Titles of measurement/sniffer/presets/*.toml.
-    assert dict(one.facts) == {"Instrument": "Electrochemical SO2, NO and NO2 cells with NDIR CO2 (electrochemical)"}
+    assert dict(one.facts) == {
+        "Instrument": "Electrochemical SO2, NO and NO2 cells with NDIR CO2 (electrochemical)"
+    }
     (fact,) = several.facts
     assert fact.name == "Instruments"
     assert re.fullmatch(r".+ \(fast\); .+ \(laser\)", fact.value)
@@ -276,8 +343,13 @@ def test_page_1_has_place_and_time_where_the_scenario_has_them():
     assert told["Place"] == "56.90000° N, 11.50000° E (the ship at time 0, by the scenario)"
     # The longer one of the flights that measured takes 11 min 40 s.
     assert told["Time (UTC)"] == "2026-06-01 10:00:00 to 10:11:40 UTC (by the scenario)"
-    told = dict(flown_facts(SimpleNamespace(summary=rows.assign(place_latitude_deg=[56.9, 57.0, 1.0]))))
-    assert told["Place"] == "56.90000° N, 11.50000° E, and 1 more (the ship at time 0, by the scenario)"
+    told = dict(
+        flown_facts(SimpleNamespace(summary=rows.assign(place_latitude_deg=[56.9, 57.0, 1.0])))
+    )
+    assert (
+        told["Place"]
+        == "56.90000° N, 11.50000° E, and 1 more (the ship at time 0, by the scenario)"
+    )
     # Beside a ship from AIS flights have place and time whatever they carry; beside others they have no facts.
     without = rows.drop(columns=["sensor"])
     assert {"Place", "Time (UTC)"} == dict(flown_facts(SimpleNamespace(summary=without))).keys()

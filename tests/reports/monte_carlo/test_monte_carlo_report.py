@@ -45,7 +45,9 @@ def run_of(rows, inputs, **changes):
     return RunData(
         path=Path("nowhere"),
         manifest=manifest,
-        summary=rows.assign(criteria_met=True, nu=0.5, wind_speed_mps=5.0, fault="none", message=""),
+        summary=rows.assign(
+            criteria_met=True, nu=0.5, wind_speed_mps=5.0, fault="none", message=""
+        ),
         comparison=pd.DataFrame(),
         crossings=pd.DataFrame(),
         innerloop=None,
@@ -67,7 +69,12 @@ def run():
     # One that entered, one that never settled, and one of which nothing is known.
     rows.loc[3, ["min_distance_m", "keepout_violations"]] = [RADIUS - 0.5, 1]
     rows.loc[5, "settling_time_s"] = np.nan
-    rows.loc[7, ["outcome", "min_distance_m", "keepout_violations", "mode_at_end"]] = ["failed", np.nan, np.nan, None]
+    rows.loc[7, ["outcome", "min_distance_m", "keepout_violations", "mode_at_end"]] = [
+        "failed",
+        np.nan,
+        np.nan,
+        None,
+    ]
     return run_of(rows, inputs)
 
 
@@ -113,7 +120,13 @@ def test_a_study_that_was_looked_at_says_how_often_and_what_that_makes_of_the_co
 def test_of_a_study_without_any_measurement_nothing_is_claimed():
     rows, inputs = study_rows(5)
     rows["outcome"] = "failed"
-    measured = ["min_distance_m", "crossing_interval_mean_s", "crossing_distance_min_m", "tracking_error_rms_m", "settling_time_s"]
+    measured = [
+        "min_distance_m",
+        "crossing_interval_mean_s",
+        "crossing_distance_min_m",
+        "tracking_error_rms_m",
+        "settling_time_s",
+    ]
     rows[[*measured, "crossing_clearance_min_m", "keepout_violations"]] = np.nan
     run = run_of(rows, inputs)
     assert bound_in_words(run.statistics).startswith("No flight was measured")
@@ -130,12 +143,17 @@ def test_distances_of_flights_with_several_keep_out_radii_are_beyond_their_own()
     assert "Distances are beyond each flight's own r_min." in spread.blocks[0].text
     (table,) = (block for block in spread.blocks if isinstance(block, Table))
     named = {row[0]: dict(zip(table.head, row, strict=True)) for row in table.rows}
-    assert {name for name in named if "Closest" in name or ("crossing" in name.split(",")[0] and "[m]" in name)} == {
-        "Nearest crossing, beyond r_min [m]"
-    }
+    assert {
+        name
+        for name in named
+        if "Closest" in name or ("crossing" in name.split(",")[0] and "[m]" in name)
+    } == {"Nearest crossing, beyond r_min [m]"}
     median = np.median(rows["crossing_clearance_min_m"])
     assert named["Nearest crossing, beyond r_min [m]"][percent(0.5)].startswith(f"{median:.1f}\n")
-    assert any(panel.x_label == "Nearest crossing, beyond r_min [m]" for panel in charts_of(spread)["spread"].panels)
+    assert any(
+        panel.x_label == "Nearest crossing, beyond r_min [m]"
+        for panel in charts_of(spread)["spread"].panels
+    )
 
 
 def test_every_figure_has_its_quantiles_with_intervals_and_counts_who_has_none(run, sections):
@@ -144,7 +162,10 @@ def test_every_figure_has_its_quantiles_with_intervals_and_counts_who_has_none(r
     settling = rows["Settling time [s]"]
     assert settling["Flights"] == "249, 1 not settled"
     quantile = run.statistics["figures"]["settling_time_s"]["quantiles"][2]
-    assert settling[percent(0.5)] == f"{quantile['value']:.1f}\n({quantile['low']:.1f} to {quantile['high']:.1f})"
+    assert (
+        settling[percent(0.5)]
+        == f"{quantile['value']:.1f}\n({quantile['low']:.1f} to {quantile['high']:.1f})"
+    )
     # The interval's error is shown in per cent, at two digits after the point.
     error = run.statistics["figures"]["crossing_interval_error"]["quantiles"][0]
     shown = rows["Mean crossing interval off π/ω₀ [%]"][percent(0.01)]
@@ -155,18 +176,28 @@ def test_every_figure_has_its_quantiles_with_intervals_and_counts_who_has_none(r
 
 def test_every_axis_of_a_study_reads_quantity_and_unit_and_both_drawers_draw_all_charts(sections):
     charts = [chart for section in sections.values() for chart in charts_of(section).values()]
-    assert {chart.name for chart in charts} >= {"clearance", "spread", "drivers-clearancem", "over-figures", "over-words"}
+    assert {chart.name for chart in charts} >= {
+        "clearance",
+        "spread",
+        "drivers-clearancem",
+        "over-figures",
+        "over-words",
+    }
     assert_axes_read_quantity_and_unit(charts)
     for chart in charts:
         assert len(matplotlib_charts.draw(chart).axes) >= len(chart.panels)
-        assert len(plotly_charts.draw(chart)["data"]) == sum(len(panel.lines) for panel in chart.panels)
+        assert len(plotly_charts.draw(chart)["data"]) == sum(
+            len(panel.lines) for panel in chart.panels
+        )
 
 
 def test_the_nearest_flight_is_in_the_histogram_and_at_the_foot_of_the_curve(run, sections):
     chart = charts_of(sections["spread"])["clearance"]
     counted, tail = chart.panels
     far = np.nanmax(run.summary["min_distance_m"] - run.summary["keepout_radius_m"])
-    assert chart.caption.endswith(f"ends at the nearest 90\N{NO-BREAK SPACE}% of the flights: the farthest came to {far:.0f} m.")
+    assert chart.caption.endswith(
+        f"ends at the nearest 90\N{NO-BREAK SPACE}% of the flights: the farthest came to {far:.0f} m."
+    )
     # The first edge of the first bar, and the first point of the curve: one flight in 249.
     assert lines_of(counted)["flights"].x[0] == pytest.approx(-0.5, abs=1e-9)
     curve = lines_of(tail)["flights"]
@@ -188,7 +219,10 @@ def test_bars_are_as_long_as_the_indices_and_coloured_by_the_noise_floor(run, se
     first = found["inputs"][0]
     assert list(lines["above the noise floor"].x[:4]) == [0.0, first["delta"], first["delta"], 0.0]
     assert set(lines["noise floor"].x) == {found["delta_floor"]}
-    assert list(lines["interval"].x[:2]) == [first["delta"] - first["delta_error"], first["delta"] + first["delta_error"]]
+    assert list(lines["interval"].x[:2]) == [
+        first["delta"] - first["delta_error"],
+        first["delta"] + first["delta_error"],
+    ]
 
 
 def test_the_clearance_is_drawn_over_figures_and_words_alike(sections):
@@ -238,14 +272,18 @@ def test_of_ten_thousand_flights_so_many_are_drawn_as_is_said_and_always_the_nea
 def test_inputs_are_called_by_their_keys_without_the_unit_which_the_axis_has():
     assert input_label("wind.speed_mps") == "Wind speed [m/s]"
     assert input_label("guidance.roll_rate_max_deg_s") == "Guidance roll rate max [deg/s]"
-    assert input_label("following.vessel_acceleration_mps2") == "Following vessel acceleration [m/s2]"
+    assert (
+        input_label("following.vessel_acceleration_mps2") == "Following vessel acceleration [m/s2]"
+    )
     assert input_label("reports.missing") == "Reports missing [-]"
     assert input_name("turbulence.level") == "Turbulence level"
 
 
 def test_keys_that_name_their_unit_have_the_one_that_is_documented():
     # Those of a search or an arena are no inputs of flights; two keys of a plume name none.
-    keys = [of for of in documented_keys() if of.unit and not of.key.startswith(("draws.", "arena."))]
+    keys = [
+        of for of in documented_keys() if of.unit and not of.key.startswith(("draws.", "arena."))
+    ]
     other = {of.key for of in keys if input_unit(of.key) != of.unit}
     assert len(keys) > 150
     assert other == {"plume.age_max", "plume.parcel_interval"}
@@ -254,8 +292,12 @@ def test_keys_that_name_their_unit_have_the_one_that_is_documented():
 
 def test_units_are_those_of_the_parameters_of_a_run_parts_of_its_scenario_among_them():
     smoke = ["plume.model=fluctuating", "emission.ship=container", "plume.source_height_m=35"]
-    study = load_study("sea_wind", [*smoke, 'draws=[{key="plume.age_max", uniform=[100.0, 300.0]}]'])
-    units = documented_units({"trial_parameters": {"study": json.loads(json.dumps(parameters(study)))}})
+    study = load_study(
+        "sea_wind", [*smoke, 'draws=[{key="plume.age_max", uniform=[100.0, 300.0]}]']
+    )
+    units = documented_units(
+        {"trial_parameters": {"study": json.loads(json.dumps(parameters(study)))}}
+    )
     assert input_label("plume.age_max", units) == "Plume age max [s]"
     assert input_label("vessel.manoeuvres.0.turn_deg", units) == "Vessel manoeuvre 1 turn [deg]"
 
@@ -265,7 +307,9 @@ def test_a_scatter_has_the_documented_unit_of_its_input(run):
     drawn = run_of(run.summary, inputs)
     of = [{"key": "plume.age_max", "unit": "s"}]
     drawn = replace(drawn, manifest=drawn.manifest | {"trial_parameters": {"study": of}})
-    labels = [panel.x_label for chart in scatter_charts(drawn, drawn.statistics) for panel in chart.panels]
+    labels = [
+        panel.x_label for chart in scatter_charts(drawn, drawn.statistics) for panel in chart.panels
+    ]
     assert "Plume age max [s]" in labels
 
 

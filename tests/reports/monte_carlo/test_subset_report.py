@@ -7,7 +7,12 @@ from report_parts import assert_axes_read_quantity_and_unit
 
 from reports.document.blocks import Table, Text
 from reports.document.chart import Chart
-from reports.monte_carlo.subset import plain_bound_in_words, probability_in_words, subset_headline, subset_sections
+from reports.monte_carlo.subset import (
+    plain_bound_in_words,
+    probability_in_words,
+    subset_headline,
+    subset_sections,
+)
 from reports.monte_carlo.tables import percent
 from reports.render import matplotlib_charts, plotly_charts
 from scenarios.statistics.subset_estimates import input_shifts, near_event
@@ -19,15 +24,21 @@ REPEATS = 3
 
 
 def statistics_of(value, **settings):
-    simulations = [simulated(value, [20261203, i], flights=100, **settings)[0] for i in range(REPEATS)]
+    simulations = [
+        simulated(value, [20261203, i], flights=100, **settings)[0] for i in range(REPEATS)
+    ]
     first = np.concatenate([one.levels[0].points for one in simulations])
-    near = np.concatenate([one.levels[-1].points[chosen] for one, chosen in near_event(simulations)])
+    near = np.concatenate(
+        [one.levels[-1].points[chosen] for one, chosen in near_event(simulations)]
+    )
     names = ["wind.speed_mps", *(f"input_{i}" for i in range(2, DIMENSION)), "turbulence.level"]
     frames = [pd.DataFrame(at, columns=names) for at in (first, near)]
     for frame in frames:
         frame["turbulence.level"] = np.where(frame["turbulence.level"] < 0.5, "none", "light")
     flown = sum(level.counts.evaluated for one in simulations for level in one.levels)
-    return subset_statistics(study_rows(flown)[0], simulations, input_shifts(*frames, (first, near)), confidence=0.95)
+    return subset_statistics(
+        study_rows(flown)[0], simulations, input_shifts(*frames, (first, near)), confidence=0.95
+    )
 
 
 @pytest.fixture(scope="module")
@@ -41,12 +52,20 @@ def unreached():
 
 
 def blocks_of(statistics, kind):
-    return [block for section in subset_sections(statistics, {}) for block in section.blocks if isinstance(block, kind)]
+    return [
+        block
+        for section in subset_sections(statistics, {})
+        for block in section.blocks
+        if isinstance(block, kind)
+    ]
 
 
 def test_the_probability_is_said_with_its_interval_and_how_it_was_made(reached):
     words, found = probability_in_words(reached), reached["violation"]
-    assert f"{percent(found['low'])} to {percent(found['high'])}, and at most {percent(found['upper'])}" in words
+    assert (
+        f"{percent(found['low'])} to {percent(found['high'])}, and at most {percent(found['upper'])}"
+        in words
+    )
     assert "3 independent subset simulations estimate it." in words
     assert "log-normal" in words
     assert "is not found by chains" in words
@@ -58,21 +77,28 @@ def test_the_headline_is_about_what_the_simulation_bounds(reached, unreached):
         f"Keep-out violation with a probability of {percent(found['estimate'])} in a flight, at most"
         f" {percent(found['pessimistic']['upper'])} at {percent(0.95)} confidence, by subset simulation"
     )
-    assert subset_headline(unreached).startswith("Subset simulation reached no keep-out violation: a probability of at most ")
+    assert subset_headline(unreached).startswith(
+        "Subset simulation reached no keep-out violation: a probability of at most "
+    )
     plain = unreached["violation"]["first_levels"]
     # Clopper and Pearson, none of 300: 1 - 0.05^(1/300) = 0.994 %.
-    assert f"sample of 300 flights with 0 violations, bound the probability by {percent(plain['upper'])}" in plain_bound_in_words(
-        unreached
+    assert (
+        f"sample of 300 flights with 0 violations, bound the probability by {percent(plain['upper'])}"
+        in plain_bound_in_words(unreached)
     )
     assert percent(plain["upper"]).startswith("0.994")
 
 
 def test_where_nothing_was_reached_only_an_upper_bound_is_claimed(unreached):
     words = probability_in_words(unreached)
-    assert words.startswith("None of 3 independent subset simulations reached a keep-out violation.")
+    assert words.startswith(
+        "None of 3 independent subset simulations reached a keep-out violation."
+    )
     assert f"at most {percent(unreached['violation']['upper'])}" in words
     assert "m beyond r_min" in words
-    assert "Inputs of the nearest flights" in [section.title for section in subset_sections(unreached, {})]
+    assert "Inputs of the nearest flights" in [
+        section.title for section in subset_sections(unreached, {})
+    ]
 
 
 def test_tiny_probabilities_are_powers_of_ten():
@@ -87,17 +113,25 @@ def test_every_level_has_a_row_with_the_flights_of_all_simulations(reached):
     assert len(levels.rows) == max(len(simulation["levels"]) for simulation in simulations)
     flights = levels.head.index("Flights")
     total = sum(int(row[flights].replace(",", "")) for row in levels.rows)
-    assert total == sum(level["flights"] for simulation in simulations for level in simulation["levels"])
+    assert total == sum(
+        level["flights"] for simulation in simulations for level in simulation["levels"]
+    )
     assert levels.rows[0][levels.head.index("Within r_min plus [m]")] == "any"
 
 
 def test_every_axis_reads_quantity_and_unit_and_both_drawers_draw_all_charts(reached, unreached):
     for statistics in (reached, unreached):
         charts = blocks_of(statistics, Chart)
-        assert [chart.name for chart in charts] == ["rare-curve", "rare-inputs", "rare-distributions"]
+        assert [chart.name for chart in charts] == [
+            "rare-curve",
+            "rare-inputs",
+            "rare-distributions",
+        ]
         for chart in charts:
             assert len(matplotlib_charts.draw(chart).axes) >= len(chart.panels)
-            assert len(plotly_charts.draw(chart)["data"]) == sum(len(panel.lines) for panel in chart.panels)
+            assert len(plotly_charts.draw(chart)["data"]) == sum(
+                len(panel.lines) for panel in chart.panels
+            )
         assert_axes_read_quantity_and_unit(charts)
 
 
@@ -124,7 +158,9 @@ def test_words_are_in_the_table_of_inputs_and_numbers_have_their_medians(reached
 def test_a_seed_that_decides_is_warned_of():
     statistics = statistics_of(noisy(1e-5, seed_share=0.95, blend_share=0.02), noise=True)
     last = [simulation["levels"][-1] for simulation in statistics["simulations"]]
-    share = sum(level["renewed_accepted"] for level in last) / sum(level["renewed"] for level in last)
+    share = sum(level["renewed_accepted"] for level in last) / sum(
+        level["renewed"] for level in last
+    )
     texts = [block.text for block in blocks_of(statistics, Text)]
     assert share < 0.05
     assert any("the interval may be too narrow" in text.replace("\n", " ") for text in texts)

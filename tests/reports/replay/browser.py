@@ -7,7 +7,9 @@ import shutil
 import subprocess
 import time
 
-PROGRAM = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
+PROGRAM = (
+    shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
+)
 
 _SECONDS_MAX = 60.0
 """Longest wait for an answer: a machine that is busy with other tests takes seconds."""
@@ -34,17 +36,39 @@ class Browser:
         self._read, to_write = os.pipe()
         # The browser reads commands from file 3 and writes answers to file 4.
         shell = f'exec "$0" "$@" 3<&{to_read} 4>&{to_write}'
-        command = ["bash", "-c", shell, PROGRAM, *_OPTIONS, f"--user-data-dir={profile}", "about:blank"]
-        self._process = subprocess.Popen(command, pass_fds=(to_read, to_write), stderr=subprocess.DEVNULL)
+        command = [
+            "bash",
+            "-c",
+            shell,
+            PROGRAM,
+            *_OPTIONS,
+            f"--user-data-dir={profile}",
+            "about:blank",
+        ]
+        self._process = subprocess.Popen(
+            command, pass_fds=(to_read, to_write), stderr=subprocess.DEVNULL
+        )
         os.close(to_read)
         os.close(to_write)
         self._number, self._rest, self._session = 0, b"", None
         self.errors = []
-        page = next(target for target in self.send("Target.getTargets")["targetInfos"] if target["type"] == "page")
-        self._session = self.send("Target.attachToTarget", targetId=page["targetId"], flatten=True)["sessionId"]
+        page = next(
+            target
+            for target in self.send("Target.getTargets")["targetInfos"]
+            if target["type"] == "page"
+        )
+        self._session = self.send("Target.attachToTarget", targetId=page["targetId"], flatten=True)[
+            "sessionId"
+        ]
         for domain in ("Page", "Runtime", "Log", "Network"):
             self.send(f"{domain}.enable")
-        self.send("Network.emulateNetworkConditions", offline=True, latency=0, downloadThroughput=-1, uploadThroughput=-1)
+        self.send(
+            "Network.emulateNetworkConditions",
+            offline=True,
+            latency=0,
+            downloadThroughput=-1,
+            uploadThroughput=-1,
+        )
 
     def send(self, method, **parameters):
         """Send a command and return its answer; what the page complains of meanwhile is kept in ``errors``."""
@@ -75,8 +99,17 @@ class Browser:
         if event.get("method") == "Runtime.exceptionThrown":
             details = of["exceptionDetails"]
             self.errors.append(details.get("exception", {}).get("description", details["text"]))
-        elif event.get("method") == "Runtime.consoleAPICalled" and of["type"] in ("error", "warning", "assert"):
-            self.errors.append(" ".join(str(argument.get("value", argument.get("description"))) for argument in of["args"]))
+        elif event.get("method") == "Runtime.consoleAPICalled" and of["type"] in (
+            "error",
+            "warning",
+            "assert",
+        ):
+            self.errors.append(
+                " ".join(
+                    str(argument.get("value", argument.get("description")))
+                    for argument in of["args"]
+                )
+            )
         elif event.get("method") == "Log.entryAdded" and of["entry"]["level"] == "error":
             # Its warnings are the driver's on its own speed.
             self.errors.append(of["entry"]["text"])
@@ -96,18 +129,30 @@ class Browser:
 
     def resize(self, width, height=600):
         """Give the window a size [px]."""
-        self.send("Emulation.setDeviceMetricsOverride", width=width, height=height, deviceScaleFactor=1, mobile=False)
+        self.send(
+            "Emulation.setDeviceMetricsOverride",
+            width=width,
+            height=height,
+            deviceScaleFactor=1,
+            mobile=False,
+        )
         self.settle()
 
     def settle(self):
         """Wait until the page has drawn what it was asked to draw."""
-        self.run("new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(() => done(true))))")
+        self.run(
+            "new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(() => done(true))))"
+        )
 
     def run(self, script):
         """Return what an expression of JavaScript is in the page, once it is settled."""
-        answer = self.send("Runtime.evaluate", expression=script, awaitPromise=True, returnByValue=True)
+        answer = self.send(
+            "Runtime.evaluate", expression=script, awaitPromise=True, returnByValue=True
+        )
         if "exceptionDetails" in answer:
-            raise RuntimeError(answer["exceptionDetails"].get("exception", {}).get("description", script))
+            raise RuntimeError(
+                answer["exceptionDetails"].get("exception", {}).get("description", script)
+            )
         return answer["result"].get("value")
 
     def press(self, key):

@@ -11,7 +11,12 @@ from scenarios.studies.registry import run_study
 OVERRIDES = {
     "sweep_nu": ("sweep.nu=[0.5]", "flight.crossings=3", "comparison={}"),
     "monte_carlo": ("flights=1", "flight.duration_max_s=60", "draws=[]", "turbulence={}"),
-    "sulphur": ("reports.interval_s=[0,0]", "sensors={}", "start.place_m=[-250,-120]", "flight.after_settling_s=30"),
+    "sulphur": (
+        "reports.interval_s=[0,0]",
+        "sensors={}",
+        "start.place_m=[-250,-120]",
+        "flight.after_settling_s=30",
+    ),
     "paper": ("flight.crossings=5",),
 }
 
@@ -29,7 +34,9 @@ def run_of(tmp_path_factory):
                 # The bounds of the paper's run are not what is tested here, and take most of its time.
                 patch.setattr(paper, "SEARCH_STATES", 10_000)
                 patch.setattr(paper, "RESERVES", (0.0, 0.2, 0.4))
-                study = load_study(name, ("fidelity=kinematic", "guidance.rate_hz=10", *OVERRIDES[name]))
+                study = load_study(
+                    name, ("fidelity=kinematic", "guidance.rate_hz=10", *OVERRIDES[name])
+                )
                 run_study(study, name, directory / name, executor_factory=InProcessExecutor)
             flown[name] = directory / name
         return flown[name]

@@ -14,7 +14,9 @@ from reports.render.html import write_html
 from reports.run.letterhead import Letterhead
 from reports.run.run_data import read_run
 
-pytestmark = pytest.mark.skipif(PROGRAM is None, reason="no chromium is installed; .ci/run installs it")
+pytestmark = pytest.mark.skipif(
+    PROGRAM is None, reason="no chromium is installed; .ci/run installs it"
+)
 
 WHOLE = "sweep_nu"
 """The kind whose page has all its charts. Of the others the flights stay, on one page: charts take most of the time."""
@@ -60,7 +62,14 @@ def page(runs, tmp_path_factory):
     report = reports[OTHERS[0]]
     section = next(section for section in report.sections if section.anchor == "flights")
     path = tmp_path_factory.mktemp("others") / "report.html"
-    write_html(replace(report, picture=None, sections=[replace(section, blocks=[FlightPicker(flights=flights)])]), path)
+    write_html(
+        replace(
+            report,
+            picture=None,
+            sections=[replace(section, blocks=[FlightPicker(flights=flights)])],
+        ),
+        path,
+    )
     return path
 
 
@@ -76,10 +85,10 @@ def show(browser, page, width=WIDTH):
 def picked(browser, first=""):
     """Return the name of the flight that is picked, after the first one was whose name begins so."""
     known = f"[...pick.options].map((option) => option.value).find((value) => value.startsWith({json.dumps(first)}))"
-    change = (
-        f"if (!pick.value.startsWith({json.dumps(first)})) {{ pick.value = {known}; pick.dispatchEvent(new Event('change')); }}"
+    change = f"if (!pick.value.startsWith({json.dumps(first)})) {{ pick.value = {known}; pick.dispatchEvent(new Event('change')); }}"
+    return browser.run(
+        f"(() => {{ const pick = document.getElementById('pick'); {change} return pick.value; }})()"
     )
-    return browser.run(f"(() => {{ const pick = document.getElementById('pick'); {change} return pick.value; }})()")
 
 
 def turned(angle, other):
@@ -90,12 +99,16 @@ def turned(angle, other):
 @pytest.mark.parametrize("kind", [WHOLE, *OTHERS])
 def test_the_time_slider_takes_the_aircraft_to_where_it_was(kind, browser, runs, whole_page, page):
     show(browser, whole_page if kind == WHOLE else page)
-    flight = picked(browser) if kind == WHOLE else picked(browser, f"{kind}/").removeprefix(f"{kind}/")
+    flight = (
+        picked(browser) if kind == WHOLE else picked(browser, f"{kind}/").removeprefix(f"{kind}/")
+    )
     history = runs[kind].history(flight)
     for share in (0.0, 0.37, 0.8):
         sample = history.iloc[round(share * (len(history) - 1))]
         moved = f"slider.value = {sample['time_s']}; slider.dispatchEvent(new Event('input')); return window.replay.place();"
-        place = browser.run(f"(() => {{ const slider = document.querySelector('[data-part=time]'); {moved} }})()")
+        place = browser.run(
+            f"(() => {{ const slider = document.querySelector('[data-part=time]'); {moved} }})()"
+        )
         # The slider's steps are those of the history, 0.1 s.
         assert place["time"] == pytest.approx(sample["time_s"], abs=1e-9)
         # Samples are good to 0.5 cm, the cubic between them to 3.4 cm in any of 60 flights of all studies, turbulence among them.
@@ -103,10 +116,14 @@ def test_the_time_slider_takes_the_aircraft_to_where_it_was(kind, browser, runs,
             assert place[axis] == pytest.approx(sample[f"{axis}_m"], abs=0.05)
         assert place["altitude"] == pytest.approx(sample["altitude_m"], abs=0.05)
         # A kinematic vehicle has no heading of its own. Angles are good to 1 mrad; where a bank begins to change, to 0.06 rad.
-        heading = sample["heading_rad"] if np.isfinite(sample["heading_rad"]) else sample["course_rad"]
+        heading = (
+            sample["heading_rad"] if np.isfinite(sample["heading_rad"]) else sample["course_rad"]
+        )
         assert turned(place["heading"], heading) < 0.02
         assert turned(place["roll"], np.nan_to_num(sample["roll_rad"])) < 0.06
-        assert browser.run("window.replay.world.plumes.filter((plume) => plume.visible).length") == 1
+        assert (
+            browser.run("window.replay.world.plumes.filter((plume) => plume.visible).length") == 1
+        )
     assert browser.errors == []
 
 
@@ -141,7 +158,9 @@ def test_the_keyboard_moves_time_camera_and_play(browser, page):
     assert turned(browser.run(seen), before) == pytest.approx(0.1, abs=1e-6)
     browser.press(" ")
     assert browser.run("window.replay.playing") is True
-    moved = "(function wait() { window.replay.time > 1 ? done(true) : requestAnimationFrame(wait); })()"
+    moved = (
+        "(function wait() { window.replay.time > 1 ? done(true) : requestAnimationFrame(wait); })()"
+    )
     assert browser.run(f"new Promise((done) => {moved})")
     browser.press(" ")
     assert browser.run("window.replay.playing") is False
@@ -150,7 +169,9 @@ def test_the_keyboard_moves_time_camera_and_play(browser, page):
 
 def test_the_navigation_leads_to_the_replay(browser, page):
     show(browser, page)
-    assert browser.run("document.querySelector('nav a[href=\"#replay\"]').hash === '#' + document.querySelector('.replay').id")
+    assert browser.run(
+        "document.querySelector('nav a[href=\"#replay\"]').hash === '#' + document.querySelector('.replay').id"
+    )
 
 
 def test_the_page_is_not_wider_than_a_small_screen(browser, page):
@@ -183,7 +204,9 @@ def test_another_flight_is_picked_and_those_without_a_history_have_no_replay(bro
     flight = picked(browser)
     assert flight != before
     history = runs["trials"].history(flight.removeprefix("trials/"))
-    assert browser.run("window.replay.place()")["north"] == pytest.approx(history["north_m"].iloc[0], abs=0.05)
+    assert browser.run("window.replay.place()")["north"] == pytest.approx(
+        history["north_m"].iloc[0], abs=0.05
+    )
     browser.run("window.replay.show('no such flight')")
     assert browser.run("document.getElementById('replay').hidden") is True
 
@@ -200,7 +223,9 @@ def test_a_flight_opens_with_its_aircraft_in_the_picture(browser, page):
         # Of the picture from -1 to 1; 1 is how far the camera sees.
         assert np.max(np.abs(browser.run(place))) < 1.0, kind
         # Nearer by its end, where the aircraft is; a view that was turned by hand keeps its distance.
-        far = "window.replay.camera.camera.position.distanceTo(window.replay.camera.controls.target)"
+        far = (
+            "window.replay.camera.camera.position.distanceTo(window.replay.camera.controls.target)"
+        )
         begun = browser.run(far)
         browser.run("window.replay.seek(window.replay.flight.end)")
         ended = browser.run(f"(window.replay.place(), {far})")
@@ -221,11 +246,16 @@ def test_a_ship_of_unknown_size_is_pale_and_the_key_and_the_caption_say_so(brows
     for kind, known in (("sulphur", True), ("trials", False)):
         picked(browser, f"{kind}/")
         name, words = browser.run(told)
-        assert (name, browser.run(opaque) == 1) == ("ship" if known else "ship, size not known", known)
+        assert (name, browser.run(opaque) == 1) == (
+            "ship" if known else "ship, size not known",
+            known,
+        )
         assert ("her size is not known" in words) == (not known)
 
 
-def test_distances_are_shown_as_far_as_in_the_figures_and_words_say_where_they_are_not(browser, runs, page):
+def test_distances_are_shown_as_far_as_in_the_figures_and_words_say_where_they_are_not(
+    browser, runs, page
+):
     show(browser, page)
     for kind in OTHERS:
         flight = picked(browser, f"{kind}/").removeprefix(f"{kind}/")
@@ -234,7 +264,9 @@ def test_distances_are_shown_as_far_as_in_the_figures_and_words_say_where_they_a
         settled = runs[kind].summary.set_index("flight_id").loc[flight, "settling_time_s"]
         after = values[times >= settled]
         assert np.all((after > panel["low"]) & (after < panel["high"]))
-        assert panel["beyond"] == (f"above {panel['high']:.0f} m: not shown" if values.max() > panel["high"] else "")
+        assert panel["beyond"] == (
+            f"above {panel['high']:.0f} m: not shown" if values.max() > panel["high"] else ""
+        )
 
 
 def test_without_webgl_a_sentence_stands_in_its_place_and_the_curves_stay(browser, page):
@@ -254,7 +286,9 @@ def test_without_webgl_a_sentence_stands_in_its_place_and_the_curves_stay(browse
         assert browser.run("window.replay.place()") is None
         browser.run("window.replay.seek(12.5)")
         browser.settle()
-        assert browser.run("document.querySelector('[data-part=clock]').textContent").startswith("12.5 s")
+        assert browser.run("document.querySelector('[data-part=clock]').textContent").startswith(
+            "12.5 s"
+        )
         assert browser.errors == []
     finally:
         browser.send("Page.removeScriptToEvaluateOnNewDocument", identifier=script)
@@ -270,8 +304,13 @@ WIDTHS = (320, 500, 1000)
 
 def test_every_link_of_the_navigation_is_within_the_window(browser, tmp_path):
     """The head of a page in a narrow window: nothing runs off its edge."""
-    sections = [Section(anchor=f"s{i}", title=title, blocks=[Text("Words.")]) for i, title in enumerate(TITLES)]
-    verdict = Verdict(holds=True, complete=True, headline="All well", detail="", failures=[], figures=[])
+    sections = [
+        Section(anchor=f"s{i}", title=title, blocks=[Text("Words.")])
+        for i, title in enumerate(TITLES)
+    ]
+    verdict = Verdict(
+        holds=True, complete=True, headline="All well", detail="", failures=[], figures=[]
+    )
     head = Letterhead(run="run", when="2026-11-23 08:00 UTC")
     words = {"title": "Title", "description": "", "changes": "", "flown": ""}
     report = Content(**words, letterhead=head, verdict=verdict, picture=None, sections=sections)
@@ -279,7 +318,9 @@ def test_every_link_of_the_navigation_is_within_the_window(browser, tmp_path):
     browser.open(tmp_path / "report.html", width=WIDTHS[0])
     for width in WIDTHS:
         browser.resize(width)
-        rights = browser.run("[...document.querySelectorAll('nav a')].map((link) => link.getBoundingClientRect().right)")
+        rights = browser.run(
+            "[...document.querySelectorAll('nav a')].map((link) => link.getBoundingClientRect().right)"
+        )
         # The link to the summary beside those to the sections.
         assert len(rights) == 1 + len(TITLES)
         assert max(rights) <= width

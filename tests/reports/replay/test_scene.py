@@ -68,7 +68,9 @@ def test_a_scene_has_the_samples_of_the_history_a_fifth_of_a_second_apart(trial,
     # Both were recorded at these times: nothing but rounding.
     for axis in ("north", "east"):
         assert scene.columns[f"vessel_{axis}"] == pytest.approx(every[f"vessel_{axis}_m"], abs=1e-6)
-        assert scene.columns[axis] + every[f"vessel_{axis}_m"] == pytest.approx(every[f"{axis}_m"], abs=1e-6)
+        assert scene.columns[axis] + every[f"vessel_{axis}_m"] == pytest.approx(
+            every[f"{axis}_m"], abs=1e-6
+        )
     assert np.cos(scene.columns["heading"]) == pytest.approx(np.cos(every["course_rad"]), abs=1e-9)
 
 
@@ -99,7 +101,9 @@ def test_a_second_of_flight_takes_some_sixty_bytes(scene):
 
 def test_stretches_of_the_guard_are_told_by_whether_it_held(trial, row):
     time = history_of(trial, row)["time_s"]
-    guard = np.select([(time >= 10.0) & (time < 12.0), (time >= 12.0) & (time < 13.0)], [1.0, 2.0], 0.0)
+    guard = np.select(
+        [(time >= 10.0) & (time < 12.0), (time >= 12.0) & (time < 13.0)], [1.0, 2.0], 0.0
+    )
     assert with_history(trial, row, guard=guard).guard == [(10.0, 12.0, True), (12.0, 13.0, False)]
 
 
@@ -118,20 +122,35 @@ def test_smoke_is_drawn_anew_when_the_ship_has_slowed_down(run_of):
     flight = measured.rows.iloc[0]
     history = history_of(measured, flight)
     slower = np.where(history["time_s"] < 30.0, 1.0, 0.5)
-    slowed = {f"vessel_velocity_{axis}_mps": slower * history[f"vessel_velocity_{axis}_mps"] for axis in ("north", "east")}
+    slowed = {
+        f"vessel_velocity_{axis}_mps": slower * history[f"vessel_velocity_{axis}_mps"]
+        for axis in ("north", "east")
+    }
     (begun, before), *others, (last, after) = with_history(measured, flight, **slowed).plumes
     assert (begun, last) == (history["time_s"].iloc[0], pytest.approx(30.0, abs=0.11))
     assert not others
     # In a slower flow past the funnel exhaust is older, and so wider, at the same distance.
     assert after.half_width[-1] > 1.2 * before.half_width[-1]
-    swaying = {name: (1.0 + 0.5 * np.sin(0.15 * history["time_s"])) * column for name, column in slowed.items()}
+    swaying = {
+        name: (1.0 + 0.5 * np.sin(0.15 * history["time_s"])) * column
+        for name, column in slowed.items()
+    }
     assert 5 < len(with_history(measured, flight, **swaying).plumes) <= 25
 
 
 def test_a_ship_whose_size_is_not_known_is_told_from_one_of_a_known_class(scene):
-    sent = [replay.draw_scene(replace(scene, hull=hull))["hull"] for hull in (scene.hull, HULLS["coaster"])]
-    assert [(hull["known"], hull["name"]) for hull in sent] == [(False, "ship, size not known"), (True, "ship")]
-    assert sent[0]["words"] == "Of the ship: her size is not known, and drawn is a merchant ship of 150 m by 23 m."
+    sent = [
+        replay.draw_scene(replace(scene, hull=hull))["hull"]
+        for hull in (scene.hull, HULLS["coaster"])
+    ]
+    assert [(hull["known"], hull["name"]) for hull in sent] == [
+        (False, "ship, size not known"),
+        (True, "ship"),
+    ]
+    assert (
+        sent[0]["words"]
+        == "Of the ship: her size is not known, and drawn is a merchant ship of 150 m by 23 m."
+    )
     assert "a coaster, 90 m by 14 m" in sent[1]["words"]
 
 
@@ -142,8 +161,12 @@ def test_an_axis_without_smoke_has_one_shape(trial, row):
 
 def test_a_vessel_at_rest_points_along_its_course(trial, row):
     still = dict.fromkeys(("vessel_velocity_north_mps", "vessel_velocity_east_mps"), 0.0)
-    turned = replace(trial, config={**trial.config, "vessel": {**trial.config["vessel"], "course_deg": 90.0}})
-    assert with_history(turned, row, **still).columns["vessel_heading"] == pytest.approx(np.pi / 2.0)
+    turned = replace(
+        trial, config={**trial.config, "vessel": {**trial.config["vessel"], "course_deg": 90.0}}
+    )
+    assert with_history(turned, row, **still).columns["vessel_heading"] == pytest.approx(
+        np.pi / 2.0
+    )
 
 
 @pytest.mark.parametrize("samples", [0, 1, 2])
@@ -173,7 +196,10 @@ def test_the_library_is_in_the_page_once_and_only_where_there_is_a_replay(run_of
     banner = "/*! three.js 0.187.0, MIT"
     assert path.read_text(encoding="utf-8").count(banner) == 1
     sections = [
-        replace(section, blocks=[block for block in section.blocks if not isinstance(block, FlightPicker)])
+        replace(
+            section,
+            blocks=[block for block in section.blocks if not isinstance(block, FlightPicker)],
+        )
         for section in report.sections
     ]
     html.write_html(replace(report, sections=sections), path)
@@ -204,7 +230,13 @@ def test_names_of_flights_never_become_markup(run_of, tmp_path):
         return replace(block, flights=flights)
 
     sections = [
-        replace(section, blocks=[renamed(block) if isinstance(block, FlightPicker) else block for block in section.blocks])
+        replace(
+            section,
+            blocks=[
+                renamed(block) if isinstance(block, FlightPicker) else block
+                for block in section.blocks
+            ],
+        )
         for section in report.sections
     ]
     html.write_html(report, path)

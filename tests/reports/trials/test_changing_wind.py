@@ -25,11 +25,24 @@ RISING = [(0.0, 2.0), (100.0, 6.0)]
 @pytest.fixture(scope="module")
 def flown(tmp_path_factory):
     folder = tmp_path_factory.mktemp("wind")
-    rows = "\n".join(f"2026-06-01T12:{time // 60:02.0f}:{time % 60:02.0f}Z,{speed},270" for time, speed in RISING)
+    rows = "\n".join(
+        f"2026-06-01T12:{time // 60:02.0f}:{time % 60:02.0f}Z,{speed},270" for time, speed in RISING
+    )
     (folder / "wind.csv").write_text(f"time_utc,speed_mps,from_deg\n{rows}\n", encoding="utf-8")
-    keys = ["fidelity=kinematic", f"wind.table={folder / 'wind.csv'}", "sweep.nu=[0.4]", "comparison.variants=[]"]
+    keys = [
+        "fidelity=kinematic",
+        f"wind.table={folder / 'wind.csv'}",
+        "sweep.nu=[0.4]",
+        "comparison.variants=[]",
+    ]
     keys += ["flight.duration_max_s=100", "flight.crossings=0"]
-    run_study(load_study("sweep_nu", keys), "sweep_nu", folder / "run", overrides=keys, executor_factory=InProcessExecutor)
+    run_study(
+        load_study("sweep_nu", keys),
+        "sweep_nu",
+        folder / "run",
+        overrides=keys,
+        executor_factory=InProcessExecutor,
+    )
     trial = read_trials(read_run(folder / "run"))[0]
     return trial, trial.rows.iloc[0]
 
@@ -64,7 +77,9 @@ def test_a_map_has_the_wind_of_its_moment(flown):
         assert about.changing
     # Of a run in which it is not recorded it is that of the start.
     older = history.drop(columns=["true_wind_north_mps", "true_wind_east_mps"])
-    assert surroundings(config, row, older).wind == pytest.approx((2.0, math.atan2(*wind_velocity(2.0, 270.0)[::-1])))
+    assert surroundings(config, row, older).wind == pytest.approx(
+        (2.0, math.atan2(*wind_velocity(2.0, 270.0)[::-1]))
+    )
 
 
 def test_words_say_that_the_wind_is_that_of_the_start(flown):

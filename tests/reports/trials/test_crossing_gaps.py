@@ -34,12 +34,17 @@ def test_the_gap_of_a_flight_that_settled_before_the_last_manoeuvre_had_ended_is
     trial = turning(run)
     assert crossing_gap(trial, trial.rows.iloc[0]) == (110.0, 210.0)
     (line,) = gap_lines(trial)
-    assert line.startswith("1 of 2 flights, once settled, did not cross the plume for more than 5 crossing intervals")
+    assert line.startswith(
+        "1 of 2 flights, once settled, did not cross the plume for more than 5 crossing intervals"
+    )
     assert line.endswith("longest: turns_00000, 100 s from 110 s on.")
     assert gap_lines(trial, only=False) == [f"Turns: {line}"]
     assert f"Turns: {line}" in flight_verdict(trial.run, read_trials(trial.run)).failures
     histories = flight_charts(flight_view(trial, trial.rows.iloc[0]))[1]
-    assert "No crossing for 100 s from 110 s on, before the vessel's last manoeuvre had ended." in histories.caption
+    assert (
+        "No crossing for 100 s from 110 s on, before the vessel's last manoeuvre had ended."
+        in histories.caption
+    )
 
 
 @pytest.mark.parametrize(
@@ -53,7 +58,9 @@ def test_the_gap_of_a_flight_that_settled_before_the_last_manoeuvre_had_ended_is
         {"crossings": (100.0, 110.0), "mode_at_end": "gliding"},
     ],
 )
-def test_there_is_none_without_a_manoeuvre_after_it_with_smoke_or_where_it_is_short_or_the_flight_has_left(run, change):
+def test_there_is_none_without_a_manoeuvre_after_it_with_smoke_or_where_it_is_short_or_the_flight_has_left(
+    run, change
+):
     trial = turning(run, **change)
     assert crossing_gap(trial, trial.rows.iloc[0]) is None
     assert gap_lines(trial) == []

@@ -49,10 +49,16 @@ def test_stretches_of_the_guard_are_marked_in_the_track_and_over_time(flight):
     assert (held.x[0], held.y[0]) == (x[3], y[3])
     assert (held.x[first - 1], held.y[first - 1]) == (x[8], y[8])
     bands = [(band.label, band.start, band.end) for band in view.bands()]
-    assert bands == [(GUARD, time[4], time[8]), (GUARD, time[16], time[20]), (GUARD_LOST, time[8], time[12])]
+    assert bands == [
+        (GUARD, time[4], time[8]),
+        (GUARD, time[16], time[20]),
+        (GUARD_LOST, time[8], time[12]),
+    ]
 
 
-def test_the_panel_of_the_distance_shows_the_orbit_also_where_that_is_far_off_the_keep_out_area(flight):
+def test_the_panel_of_the_distance_shows_the_orbit_also_where_that_is_far_off_the_keep_out_area(
+    flight,
+):
     view = flight_view(*flight)
     settled = view.time >= view.row["settling_time_s"]
     # As of an area half as large beside the same orbit, which is left after a fault: 1.6 r_min lies below it.
@@ -70,14 +76,19 @@ def test_the_panel_of_the_distance_shows_the_orbit_also_where_that_is_far_off_th
     assert f"Distances above {panel.y_range[1]:.0f} m are not shown." in chart.caption
 
 
-def test_of_a_long_flight_rate_and_bank_are_shown_by_their_range_and_what_is_flown_lies_over_its_command(flight):
+def test_of_a_long_flight_rate_and_bank_are_shown_by_their_range_and_what_is_flown_lies_over_its_command(
+    flight,
+):
     trial, row = flight
     history = trial.run.history(str(row["flight_id"]))
     shown = {}
     for factor in (1.0, 20.0):
-        chart = flight_charts(FlightView(trial, row, history.assign(time_s=factor * history["time_s"])))[1]
+        chart = flight_charts(
+            FlightView(trial, row, history.assign(time_s=factor * history["time_s"]))
+        )[1]
         shown[factor] = {
-            panel.y_label: [line for line in panel.lines if line.label in ("flown", "command")] for panel in chart.panels
+            panel.y_label: [line for line in panel.lines if line.label in ("flown", "command")]
+            for panel in chart.panels
         }
         assert ("within each 30 s" in chart.caption) == (factor > 1.0)
     for panels in shown.values():
@@ -86,7 +97,10 @@ def test_of_a_long_flight_rate_and_bank_are_shown_by_their_range_and_what_is_flo
     assert (bank.y.min(), bank.y.max()) == pytest.approx((degrees.min(), degrees.max()))
     # In the third half minute, to the right and back to the left.
     within = (history["time_s"] * 20.0).between(60.0, 90.0, inclusive="left").to_numpy()
-    assert set(bank.y[(bank.x > 60.0) & (bank.x < 90.0)]) <= {degrees[within].min(), degrees[within].max()}
+    assert set(bank.y[(bank.x > 60.0) & (bank.x < 90.0)]) <= {
+        degrees[within].min(),
+        degrees[within].max(),
+    }
     assert len(shown[1.0]["Bank [deg]"][0].x) > len(bank.x)
 
 
@@ -119,7 +133,10 @@ def test_the_ship_on_the_map_heads_and_trails_her_plume_as_she_did(flight):
     view = flight_view(trial, row)
     about = surroundings(trial.config, row, view.whole)
     # She goes north; the plume trails along the wind less her own way.
-    north, east = (row["wind_speed_mps"] * f(math.radians(row["wind_from_deg"]) + math.pi) for f in (math.cos, math.sin))
+    north, east = (
+        row["wind_speed_mps"] * f(math.radians(row["wind_from_deg"]) + math.pi)
+        for f in (math.cos, math.sin)
+    )
     assert about.heading == pytest.approx(0.0, abs=1e-9)
     trails = math.atan2(east, north - row["vessel_speed_mps"])
     assert math.cos(about.axis - trails) == pytest.approx(1.0, abs=1e-9)
@@ -128,9 +145,13 @@ def test_the_ship_on_the_map_heads_and_trails_her_plume_as_she_did(flight):
 
 
 def test_a_ship_at_rest_heads_as_configured_and_one_that_stops_as_before():
-    still = pd.DataFrame({"vessel_velocity_north_mps": [0.0, 0.0], "vessel_velocity_east_mps": [0.0, 0.0]})
+    still = pd.DataFrame(
+        {"vessel_velocity_north_mps": [0.0, 0.0], "vessel_velocity_east_mps": [0.0, 0.0]}
+    )
     assert vessel_heading(still, 90.0) == pytest.approx(math.pi / 2)
-    stops = pd.DataFrame({"vessel_velocity_north_mps": [0.0, 0.0, 0.0], "vessel_velocity_east_mps": [0.0, 5.0, 0.0]})
+    stops = pd.DataFrame(
+        {"vessel_velocity_north_mps": [0.0, 0.0, 0.0], "vessel_velocity_east_mps": [0.0, 5.0, 0.0]}
+    )
     assert vessel_heading(stops, 0.0) == pytest.approx(math.pi / 2)
 
 
@@ -147,11 +168,17 @@ def test_a_picture_has_a_panel_for_each_flight_with_a_time_history(run, flight):
     trials = read_trials(run)
     unknown = row.copy()
     unknown["flight_id"] = "nobody"
-    shown = [(trial, row, "closest"), (trial, unknown, "none"), (trials[1], trials[1].rows.iloc[0], "typical")]
+    shown = [
+        (trial, row, "closest"),
+        (trial, unknown, "none"),
+        (trials[1], trials[1].rows.iloc[0], "typical"),
+    ]
     picture = track_picture(shown, " Told.")
     assert [panel.title for panel in picture.panels] == ["closest", "typical"]
     assert (picture.columns, picture.last_height, picture.caption[-6:]) == (2, 0.0, " Told.")
-    assert len(track_picture(shown[:2]).panels) == len(flight_charts(flight_view(trial, row))[0].panels)
+    assert len(track_picture(shown[:2]).panels) == len(
+        flight_charts(flight_view(trial, row))[0].panels
+    )
     assert track_picture(shown[1:2]) is None
 
 
@@ -173,7 +200,8 @@ def test_the_ground_lies_along_the_way_of_a_ship_that_goes_far(run):
 
 
 @pytest.mark.parametrize(
-    ("turn_deg", "labels"), [(5.0, ("Along the ship's way [m]", "To port [m]")), (60.0, ("East [m]", "North [m]"))]
+    ("turn_deg", "labels"),
+    [(5.0, ("Along the ship's way [m]", "To port [m]")), (60.0, ("East [m]", "North [m]"))],
 )
 def test_north_is_up_over_the_ground_where_the_ship_turns(flight, turn_deg, labels):
     trial, row = flight
@@ -181,9 +209,15 @@ def test_north_is_up_over_the_ground_where_the_ship_turns(flight, turn_deg, labe
     # The same flight beside a ship that goes 2 km, half of it on another course.
     way = np.linspace(0.0, 2000.0, len(history))
     before, after = np.minimum(way, 1000.0), np.maximum(way - 1000.0, 0.0)
-    moved = {"north": before + math.cos(math.radians(turn_deg)) * after, "east": math.sin(math.radians(turn_deg)) * after}
+    moved = {
+        "north": before + math.cos(math.radians(turn_deg)) * after,
+        "east": math.sin(math.radians(turn_deg)) * after,
+    }
     changed = {f"vessel_{axis}_m": of for axis, of in moved.items()}
-    changed |= {f"{axis}_m": history[f"{axis}_m"] - history[f"vessel_{axis}_m"] + of for axis, of in moved.items()}
+    changed |= {
+        f"{axis}_m": history[f"{axis}_m"] - history[f"vessel_{axis}_m"] + of
+        for axis, of in moved.items()
+    }
     panel = track_chart(FlightView(trial, row, history.assign(**changed))).panels[-1]
     assert (panel.x_label, panel.y_label) == labels
     (way,) = (line for line in panel.lines if line.label == "ship's track")
@@ -191,7 +225,9 @@ def test_north_is_up_over_the_ground_where_the_ship_turns(flight, turn_deg, labe
         assert (way.x[-1], way.y[-1]) == pytest.approx((moved["east"][-1], moved["north"][-1]))
         # Every mark of the time has its word.
         marks = [line for line in panel.lines if line.label == TIMES]
-        assert sum(len(line.x) for line in marks) == sum(note.text.endswith((" s", " min")) for note in panel.notes)
+        assert sum(len(line.x) for line in marks) == sum(
+            note.text.endswith((" s", " min")) for note in panel.notes
+        )
 
 
 @pytest.mark.parametrize(("duration", "points"), [(400.0, 1300), (3000.0, 3000), (7200.0, 4000)])

@@ -22,10 +22,24 @@ def test_one_keep_out_violation_decides_the_verdict_of_the_whole_run(run):
     verdict = content(run).verdict
     assert verdict.headline.startswith("No keep-out violation in 4 flights (")
     assert verdict.holds
-    judged = content(with_values(run, 3, keepout_violations=2, keepout_depth_m=1.5, min_distance_m=198.5, criteria_met=False))
+    judged = content(
+        with_values(
+            run,
+            3,
+            keepout_violations=2,
+            keepout_depth_m=1.5,
+            min_distance_m=198.5,
+            criteria_met=False,
+        )
+    )
     assert not judged.verdict.holds
     assert judged.verdict.headline == "Keep-out violations in 1 of 4 flights, 2 in all"
-    assert ("Closest approach, from the keep-out sphere's centre", "198.5 m", "≥ 200 m", False) in judged.verdict.figures
+    assert (
+        "Closest approach, from the keep-out sphere's centre",
+        "198.5 m",
+        "≥ 200 m",
+        False,
+    ) in judged.verdict.figures
     assert judged.verdict.failures == ["turns_00001: completed"]
     # Keep-out violations and the closest approach, from r_min too, are in the trial's row.
     assert rows_of(judged, "Turns")[0][7:10] == ["2", "198.5", "−1.5"]
@@ -41,12 +55,19 @@ def test_one_keep_out_violation_decides_the_verdict_of_the_whole_run(run):
         (200.06, 200.0, "200.1 m", "≥ 200 m", True),
     ],
 )
-def test_the_closest_approach_as_shown_agrees_with_its_judgement(run, distance, radius, shown, required, met):
+def test_the_closest_approach_as_shown_agrees_with_its_judgement(
+    run, distance, radius, shown, required, met
+):
     closest = run
     for i in range(4):
         closest = with_values(closest, i, min_distance_m=distance, keepout_radius_m=radius)
     report = content(closest)
-    assert ("Closest approach, from the keep-out sphere's centre", shown, required, met) in report.verdict.figures
+    assert (
+        "Closest approach, from the keep-out sphere's centre",
+        shown,
+        required,
+        met,
+    ) in report.verdict.figures
     assert f"from its first second: {shown} from" in report.verdict.detail
 
 
@@ -54,22 +75,37 @@ def test_a_limit_that_is_scaled_to_the_aircraft_says_so_on_page_1_and_in_the_tab
     key = "criteria.tracking_error_rms_m"
     limited = with_criterion(run, "steady", "tracking_error_rms_m", 2.5)
     (parameter,) = [of for of in limited.manifest["trial_parameters"]["steady"] if of["key"] == key]
-    for scaled, value, words in (([key], 2.5, "≤ 2.5 m, scaled to the aircraft"), ([], 2.5, "≤ 2.5 m"), ([key], 1.5, "≤ 2.5 m")):
+    for scaled, value, words in (
+        ([key], 2.5, "≤ 2.5 m, scaled to the aircraft"),
+        ([], 2.5, "≤ 2.5 m"),
+        ([key], 1.5, "≤ 2.5 m"),
+    ):
         parameter["value"] = value
         limited.manifest["scaled_parameters"] = {"steady": scaled}
         report = content(limited)
-        (tile,) = [card for card in report.verdict.figures if card.name.startswith("Tracking error, rms after settling, worst")]
+        (tile,) = [
+            card
+            for card in report.verdict.figures
+            if card.name.startswith("Tracking error, rms after settling, worst")
+        ]
         assert tile.limit == words
         (table,) = [table for table in blocks_of(report, Table, "trials") if "Limit" in table.head]
         assert words in [row[2] for row in table.rows]
 
 
-LOST = {"outcome": "aircraft_lost", "mode_at_end": "ditched", "criteria_met": False, "message": "it came down on the sea"}
+LOST = {
+    "outcome": "aircraft_lost",
+    "mode_at_end": "ditched",
+    "criteria_met": False,
+    "message": "it came down on the sea",
+}
 
 
 def test_a_flight_that_lost_its_aircraft_fails_a_run_of_which_it_is_required_to_complete(run):
     report = content(with_values(run, 1, **LOST))
-    assert report.verdict.headline.startswith("1 lost the aircraft, of 4 flights. No keep-out violation in 4 flights (")
+    assert report.verdict.headline.startswith(
+        "1 lost the aircraft, of 4 flights. No keep-out violation in 4 flights ("
+    )
     assert (report.verdict.holds, report.verdict.complete) == (False, False)
     assert report.verdict.failures == ["steady_00001: aircraft lost; it came down on the sea"]
     # Planned, flown, completed, met, lost, kept out.
@@ -98,36 +134,73 @@ def test_a_mission_that_was_not_completed_is_not_met_and_said(run):
 
 
 def test_of_a_flight_alone_the_headline_says_what_it_failed_and_no_figure_is_told_twice(run):
-    failed = with_values(run, 0, outcome="incomplete", message="flew 1 of 3 crossings", criteria_met=False, duration_s=64.0)
+    failed = with_values(
+        run,
+        0,
+        outcome="incomplete",
+        message="flew 1 of 3 crossings",
+        criteria_met=False,
+        duration_s=64.0,
+    )
     limited = with_criterion(failed, "steady", "tracking_error_rms_m", 2.5)
-    alone = replace(limited, summary=limited.summary.iloc[:1], manifest=limited.manifest | {"flights_planned": 1})
+    alone = replace(
+        limited,
+        summary=limited.summary.iloc[:1],
+        manifest=limited.manifest | {"flights_planned": 1},
+    )
     verdict = content(alone).verdict
-    assert verdict.headline == "No keep-out violation in 1 flight (64 s simulated); it did not complete the mission"
+    assert (
+        verdict.headline
+        == "No keep-out violation in 1 flight (64 s simulated); it did not complete the mission"
+    )
     # The other trial, of which nothing is left, does not limit it.
     names = [card.name for card in verdict.figures if card.name.startswith("Tracking error")]
     assert names == ["Tracking error, rms after settling, worst of the trials that limit it"]
 
 
 def test_faults_that_began_are_named_on_page_1(run):
-    report = content(with_values(with_values(run, 0, fault="sniffer_dead", fault_time_s=20.0), 1, fault="engine", fault_time_s=1e9))
+    report = content(
+        with_values(
+            with_values(run, 0, fault="sniffer_dead", fault_time_s=20.0),
+            1,
+            fault="engine",
+            fault_time_s=1e9,
+        )
+    )
     # The other one begins after the end of its flight.
-    assert report.verdict.failures == ["In 1 of 4 flights a fault began, as the scenario has it: sniffer dead, at 20 s."]
+    assert report.verdict.failures == [
+        "In 1 of 4 flights a fault began, as the scenario has it: sniffer dead, at 20 s."
+    ]
 
 
 def test_a_figure_whose_criterion_is_switched_off_keeps_its_row_with_a_dash_for_the_limit(run):
-    off = with_criterion(with_criterion(run, "steady", "crossing_interval_error", False), "turns", "crossing_interval_error", False)
-    (figure,) = [card for card in content(off).verdict.figures if card.name.startswith("Mean crossing interval off")]
+    off = with_criterion(
+        with_criterion(run, "steady", "crossing_interval_error", False),
+        "turns",
+        "crossing_interval_error",
+        False,
+    )
+    (figure,) = [
+        card
+        for card in content(off).verdict.figures
+        if card.name.startswith("Mean crossing interval off")
+    ]
     worst = np.nanmax(np.abs(interval_error(run.summary)))
     assert (figure.value, figure.required, figure.result) == (f"{100.0 * worst:.3g} %", "–", "–")
 
 
 def test_of_a_single_flight_the_words_are_of_one(run):
-    manifest = run.manifest | {"flights_planned": 1, "trials": {"steady": run.manifest["trials"]["steady"]}}
+    manifest = run.manifest | {
+        "flights_planned": 1,
+        "trials": {"steady": run.manifest["trials"]["steady"]},
+    }
     alone = replace(run, manifest=manifest, summary=run.summary.iloc[:1].copy())
     assert content(alone).verdict.headline.endswith("; it met its criteria")
     lost = content(with_values(alone, 0, fault="engine", fault_time_s=20.0, **LOST)).verdict
     assert lost.headline.startswith("1 lost the aircraft, of 1 flight. ")
-    assert lost.failures[-1] == "In the flight a fault began, as the scenario has it: engine, at 20 s."
+    assert (
+        lost.failures[-1] == "In the flight a fault began, as the scenario has it: engine, at 20 s."
+    )
 
 
 NOT_FLOWN = {
@@ -137,24 +210,41 @@ NOT_FLOWN = {
 
 
 def test_a_flight_that_could_not_be_flown_is_told_and_makes_no_other_flights_figure_red(run):
-    judged = with_criterion(with_values(run, 1, **NOT_FLOWN), "steady", "tracking_error_rms_m", 50.0)
+    judged = with_criterion(
+        with_values(run, 1, **NOT_FLOWN), "steady", "tracking_error_rms_m", 50.0
+    )
     report = content(judged)
     figures = {card.name: card for card in report.verdict.figures}
-    worst = figures["Tracking error, rms after settling, worst of the trials that limit it (1 flight has no figure: not flown)"]
+    worst = figures[
+        "Tracking error, rms after settling, worst of the trials that limit it (1 flight has no figure: not flown)"
+    ]
     assert worst.met
     assert re.fullmatch(r"[\d.]+ m", worst.value)
     # Of all that were planned, not of those that were flown.
-    assert (figures["Missions completed"].value, figures["Missions completed"].met) == ("3 of 4", False)
-    (row,) = (row for row in rows_of(report, "Steady") if row[2].endswith(" m; 1 flight has no figure: not flown"))
+    assert (figures["Missions completed"].value, figures["Missions completed"].met) == (
+        "3 of 4",
+        False,
+    )
+    (row,) = (
+        row
+        for row in rows_of(report, "Steady")
+        if row[2].endswith(" m; 1 flight has no figure: not flown")
+    )
     # As on page 1: it fails the mission, and not what could not be measured.
     assert row[3] == "0"
 
 
 def test_flights_that_were_not_flown_are_counted_apart_from_those_that_failed_a_criterion(run):
-    rows, failed = run.summary.iloc[[0]], {"criteria_met": False, "crossing_interval_mean_s": 99.0, "message": "off"}
+    rows, failed = (
+        run.summary.iloc[[0]],
+        {"criteria_met": False, "crossing_interval_mean_s": 99.0, "message": "off"},
+    )
     judged = [NOT_FLOWN] * 5 + [failed] * 4 + [{}]
     many = [rows.assign(flight_id=f"steady_{i:05}", **values) for i, values in enumerate(judged)]
-    manifest = json.loads(json.dumps(run.manifest)) | {"flights_planned": 10, "trial_flights": {"steady": 10, "turns": 0}}
+    manifest = json.loads(json.dumps(run.manifest)) | {
+        "flights_planned": 10,
+        "trial_flights": {"steady": 10, "turns": 0},
+    }
     report = content(replace(run, summary=pd.concat(many, ignore_index=True), manifest=manifest))
     assert report.verdict.failures == [
         "Steady: 4 of 5 flights flown failed a criterion (4: Mean crossing interval off π/ω₀, ≤ 3.21 %)",
@@ -183,13 +273,20 @@ def test_a_flight_that_was_flown_and_has_no_figure_fails_the_criterion_on_it(run
 
 
 def test_flights_of_one_reason_share_a_line(run):
-    values = {"outcome": "not_settled", "message": "did not settle within 300 s", "criteria_met": False}
+    values = {
+        "outcome": "not_settled",
+        "message": "did not settle within 300 s",
+        "criteria_met": False,
+    }
     report = content(with_values(with_values(run, 0, **values), 1, **values))
     assert report.verdict.failures == ["steady_00000, steady_00001: did not settle within 300 s"]
 
 
 def test_flights_that_are_not_flown_yet_are_not_failed_ones(run):
-    manifest = json.loads(json.dumps(run.manifest)) | {"flights_planned": 200, "state": "interrupted"}
+    manifest = json.loads(json.dumps(run.manifest)) | {
+        "flights_planned": 200,
+        "state": "interrupted",
+    }
     manifest["trial_flights"] = {"steady": 198, "turns": 2}
     report = content(replace(run, manifest=manifest))
     assert report.verdict.headline.endswith("; of 200, 196 not flown yet")
@@ -201,14 +298,26 @@ def test_flights_that_are_not_flown_yet_are_not_failed_ones(run):
 
 
 def test_the_verdict_claims_what_was_flown_and_the_bound_that_follows(run):
-    again = run.summary.assign(flight_id=[f"{flight_id}_again" for flight_id in run.summary["flight_id"]])
-    eight = replace(run, summary=pd.concat([run.summary, again], ignore_index=True), manifest=run.manifest | {"flights_planned": 8})
+    again = run.summary.assign(
+        flight_id=[f"{flight_id}_again" for flight_id in run.summary["flight_id"]]
+    )
+    eight = replace(
+        run,
+        summary=pd.concat([run.summary, again], ignore_index=True),
+        manifest=run.manifest | {"flights_planned": 8},
+    )
     verdict = content(eight).verdict
     # Clopper and Pearson, none of eight: 1 - 0.05^(1/8).
-    assert "at most 31.2 % of such flights violate the area, at 95 % confidence" in verdict.headline.replace(
-        "\N{NO-BREAK SPACE}", " "
+    assert (
+        "at most 31.2 % of such flights violate the area, at 95 % confidence"
+        in verdict.headline.replace("\N{NO-BREAK SPACE}", " ")
     )
-    texts = [verdict.headline, verdict.detail, *verdict.failures, *(text for figure in verdict.figures for text in figure[:3])]
+    texts = [
+        verdict.headline,
+        verdict.detail,
+        *verdict.failures,
+        *(text for figure in verdict.figures for text in figure[:3]),
+    ]
     assert not any(re.search(r"\bsafe", text, re.IGNORECASE) for text in texts)
     # Those of a search are no random sample: no bound follows from them.
     manifest = run.manifest | {"sampled_at_random": {"steady": False, "turns": True}}
@@ -219,8 +328,15 @@ def test_the_verdict_claims_what_was_flown_and_the_bound_that_follows(run):
 
 def test_a_flight_that_could_not_be_flown_counts_as_a_violation_in_the_bound(run):
     rows = with_values(run, 1, **NOT_FLOWN).summary
-    others = [run.summary.assign(flight_id=[f"{name}_{i}" for name in run.summary["flight_id"]]) for i in range(3)]
-    sixteen = replace(run, summary=pd.concat([rows, *others], ignore_index=True), manifest=run.manifest | {"flights_planned": 16})
+    others = [
+        run.summary.assign(flight_id=[f"{name}_{i}" for name in run.summary["flight_id"]])
+        for i in range(3)
+    ]
+    sixteen = replace(
+        run,
+        summary=pd.concat([rows, *others], ignore_index=True),
+        manifest=run.manifest | {"flights_planned": 16},
+    )
     verdict = content(sixteen).verdict
     headline = verdict.headline.replace("\N{NO-BREAK SPACE}", " ")
     # Clopper and Pearson, one of sixteen: (1 - p)^16 + 16 p (1 - p)^15 = 0.05; none of fifteen would be 18.1 %.
@@ -233,19 +349,35 @@ def test_a_handful_of_flights_states_no_bound_as_it_would_say_nothing(run):
     # None of four, 1 - 0.05^(1/4): 52.7 %; none of the two of a trial: 77.6 %.
     report = content(run)
     assert "at most" not in report.verdict.headline
-    assert "So few flights set no bound on the probability of a keep-out violation" in report.verdict.detail
+    assert (
+        "So few flights set no bound on the probability of a keep-out violation"
+        in report.verdict.detail
+    )
     assert not any(card.name.startswith("Probability") for card in report.verdict.figures)
     assert rows_of(report, "Steady")[0][6] == "–"
     alone = content(replace(run, summary=run.summary.iloc[:1])).verdict
-    assert "A single flight sets no bound on the probability of a keep-out violation" in alone.detail
+    assert (
+        "A single flight sets no bound on the probability of a keep-out violation" in alone.detail
+    )
 
 
 def test_what_no_criterion_asks_for_is_on_the_first_page_too(run):
-    report = content(with_values(run, 2, tracking_error_rms_m=107.0, guard_lost_s=3.2, guard_interventions=1, manoeuvres_unflown=1))
+    report = content(
+        with_values(
+            run,
+            2,
+            tracking_error_rms_m=107.0,
+            guard_lost_s=3.2,
+            guard_interventions=1,
+            manoeuvres_unflown=1,
+        )
+    )
     largest = "Tracking error, rms after settling, largest of the flights"
     (tracking,) = (value for name, value, *_ in report.verdict.figures if name == largest)
     assert tracking == "107 m"
-    assert report.verdict.failures[0].startswith("Turns: in 1 of 2 flights the tracking error, rms after settling, is 107 m")
+    assert report.verdict.failures[0].startswith(
+        "Turns: in 1 of 2 flights the tracking error, rms after settling, is 107 m"
+    )
     assert report.verdict.failures[1:] == [
         "In 1 of 4 flights the guard could not hold its own radius, for up to 3.2 s.",
         "In 1 flight a manoeuvre of the vessel begins after the end of the flight, and was never flown.",
@@ -266,13 +398,27 @@ def test_the_shape_of_the_keep_out_area_is_said_where_a_distance_is_printed(run)
     report = content(replace(run, summary=run.summary.assign(keepout_shape="cylinder")))
     assert " m horizontal, from the keep-out cylinder's axis, in " in report.verdict.detail
     # Beside the funnel, far above it: a sphere is narrower there.
-    rising = content(with_values(run, 0, min_distance_m=200.5, horizontal_distance_min_m=80.2)).verdict.detail
-    assert "200.5 m from the keep-out sphere's centre, in steady_00000; 80.2 m horizontally from the funnel" in rising
+    rising = content(
+        with_values(run, 0, min_distance_m=200.5, horizontal_distance_min_m=80.2)
+    ).verdict.detail
+    assert (
+        "200.5 m from the keep-out sphere's centre, in steady_00000; 80.2 m horizontally from the funnel"
+        in rising
+    )
 
 
 def test_a_flight_that_was_flown_before_an_instrument_failed_counts_with_its_violation(run):
     # An instrument is evaluated after the flight: where that fails, so is the flight's outcome, and its distances are known.
-    failed = {"outcome": "failed", "message": "no such gas", "criteria_met": False, "kept_out": False}
-    judged = content(with_values(run, 1, **failed, keepout_violations=1, keepout_depth_m=1.5, min_distance_m=198.5)).verdict
+    failed = {
+        "outcome": "failed",
+        "message": "no such gas",
+        "criteria_met": False,
+        "kept_out": False,
+    }
+    judged = content(
+        with_values(
+            run, 1, **failed, keepout_violations=1, keepout_depth_m=1.5, min_distance_m=198.5
+        )
+    ).verdict
     assert judged.headline == "Keep-out violations in 1 of 4 flights, 1 in all"
     assert judged.failures[0] == "steady_00001: failed; no such gas"

@@ -8,7 +8,14 @@ from reports.registry import content
 from reports.run.run_data import read_run
 
 # The paper's circle on its own vehicle, long enough to settle from any start.
-CIRCLE = ("cases=[]", "study=flights", "reference.path=circle", "fidelity=kinematic", "flight.duration_max_s=300", "flights=2")
+CIRCLE = (
+    "cases=[]",
+    "study=flights",
+    "reference.path=circle",
+    "fidelity=kinematic",
+    "flight.duration_max_s=300",
+    "flights=2",
+)
 
 
 @pytest.fixture(scope="module")
@@ -19,10 +26,16 @@ def report(tmp_path_factory):
 def test_they_count_as_flown_and_have_no_area_to_keep_out_of(report):
     verdict = report.verdict
     # Two flights of 300 s.
-    assert verdict.headline == "2 flights (10 min simulated) without a vessel to keep out of; every flight met its criteria"
+    assert (
+        verdict.headline
+        == "2 flights (10 min simulated) without a vessel to keep out of; every flight met its criteria"
+    )
     assert (verdict.holds, verdict.complete) == (True, True)
     figures = {card.name: card for card in verdict.figures}
-    assert (figures["Missions completed"].value, figures["Flights flown, 10 min simulated"].value) == ("2 of 2", "2 of 2")
+    assert (
+        figures["Missions completed"].value,
+        figures["Flights flown, 10 min simulated"].value,
+    ) == ("2 of 2", "2 of 2")
     assert not [name for name in figures if "eep" in name or "approach" in name]
     assert "bound" not in verdict.detail
 
@@ -36,7 +49,9 @@ def test_their_tables_are_filled_and_judge_what_needs_no_vessel(report):
     (flights,) = blocks_of(report, Table, "trial1")
     settled, error = (flights.head.index(title) for title in ("Settled [s]", "Tracking rms [m]"))
     # Below the criterion's 1.5 m, since both flights are met.
-    assert all(0.0 < float(row[settled]) < 300.0 and 0.0 < float(row[error]) < 1.5 for row in flights.rows)
+    assert all(
+        0.0 < float(row[settled]) < 300.0 and 0.0 < float(row[error]) < 1.5 for row in flights.rows
+    )
 
 
 def test_page_1_shows_the_track_of_the_first_and_the_section_of_flights_its_histories(report):

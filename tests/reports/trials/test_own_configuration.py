@@ -53,7 +53,12 @@ OWN = [("sphere", 20.0), ("sphere", 60.0), ("cylinder", 20.0), ("cylinder", 60.0
 def apart(tmp_path_factory):
     folder = tmp_path_factory.mktemp("apart")
     (folder / "apart.toml").write_text(APART, encoding="utf-8")
-    run_study(load_study(str(folder / "apart.toml")), "apart", folder / "run", executor_factory=InProcessExecutor)
+    run_study(
+        load_study(str(folder / "apart.toml")),
+        "apart",
+        folder / "run",
+        executor_factory=InProcessExecutor,
+    )
     return read_run(folder / "run")
 
 
@@ -88,7 +93,10 @@ def test_replay_map_and_export_have_the_flights_own_keep_out_area_and_funnel(apa
     assert [(scene.keepout_shape, scene.source_height) for scene in scenes] == OWN
     assert [scene.plumes[0][1].height[0] for scene in scenes] == [height for _, height in OWN]
     maps = [flight_charts(flight_view(trial, row))[0].caption for row in rows]
-    assert all(f"The keep-out {shape} is about" in caption for caption, (shape, _) in zip(maps, OWN, strict=True))
+    assert all(
+        f"The keep-out {shape} is about" in caption
+        for caption, (shape, _) in zip(maps, OWN, strict=True)
+    )
     heights = {flight.flight_id: flight.source_height for flight in recorded_flights(apart)}
     assert [heights[row["flight_id"]] for row in rows] == [height for _, height in OWN]
 
@@ -99,14 +107,21 @@ def test_the_plume_that_is_drawn_is_that_of_the_sampled_load(apart, trial):
     air = {"speed": 8.0, "wind": 8.0, "apparent_wind": 8.0, "length": 800.0}
     own = trial.config | {"emission": trial.config["emission"] | {"load": load}}
     own |= {"plume": trial.config["plume"] | {"source_height_m": 20.0}}
-    drawn, expected, base = (plume_shape(config, **air) for config in (trial.flight_config(row), own, trial.config))
+    drawn, expected, base = (
+        plume_shape(config, **air) for config in (trial.flight_config(row), own, trial.config)
+    )
     assert drawn.height == pytest.approx(expected.height)
-    assert drawn.height[-1] - drawn.height[0] != pytest.approx(base.height[-1] - base.height[0], abs=0.1)
+    assert drawn.height[-1] - drawn.height[0] != pytest.approx(
+        base.height[-1] - base.height[0], abs=0.1
+    )
 
 
 def test_a_trial_of_both_shapes_says_so_and_page_1_says_which_the_closest_flight_has(apart, trial):
     assert trial.shape == "sphere or cylinder"
-    assert trial.measured_from == "from the keep-out sphere's centre, or horizontal, from the keep-out cylinder's axis"
+    assert (
+        trial.measured_from
+        == "from the keep-out sphere's centre, or horizontal, from the keep-out cylinder's axis"
+    )
     report = content(apart)
     # Without height a distance is shorter.
     assert " m horizontal, from the keep-out cylinder's axis (" in report.verdict.detail
@@ -119,7 +134,13 @@ def test_a_trial_of_both_shapes_says_so_and_page_1_says_which_the_closest_flight
 def test_the_closest_approach_after_a_fault_is_measured_as_the_flights_own_is(trial):
     faulty = trial.rows.assign(fault="rudder", fault_time_s=0.0, end_distance_m=300.0)
     for i, (_, row) in enumerate(faulty.iterrows()):
-        alone = type(trial)(run=trial.run, key=trial.key, name=trial.name, config=trial.config, rows=faulty.iloc[[i]])
+        alone = type(trial)(
+            run=trial.run,
+            key=trial.key,
+            name=trial.name,
+            config=trial.config,
+            rows=faulty.iloc[[i]],
+        )
         table = fault_table(alone)
         after = float(table.rows[0][table.head.index("Closest after the fault [m]")])
         assert after == pytest.approx(row["min_distance_m"], abs=0.1)
@@ -129,21 +150,33 @@ def test_two_runs_are_compared_by_the_distances_of_their_own_areas(apart):
     runs = [Run(letter=letter, data=apart, trials=read_trials(apart)) for letter in "AB"]
     sphere, cylinder = apart.summary.iloc[[0]], apart.summary.iloc[[2]]
     pairs = Pairs(first=runs[0], other=runs[1], before=sphere, after=cylinder, same_name=0)
-    panel = next(panel for panel in most_changed(pairs, differences(pairs)).panels if panel.y_label == "Distance [m]")
-    nearest = [float(np.nanmin(line.y)) for line in panel.lines if line.label.startswith(("A:", "B:"))]
+    panel = next(
+        panel
+        for panel in most_changed(pairs, differences(pairs)).panels
+        if panel.y_label == "Distance [m]"
+    )
+    nearest = [
+        float(np.nanmin(line.y)) for line in panel.lines if line.label.startswith(("A:", "B:"))
+    ]
     # Every fifth sample or so is shown; the shapes differ by 11 m.
-    assert nearest == pytest.approx([sphere["min_distance_m"].iloc[0], cylinder["min_distance_m"].iloc[0]], abs=1.0)
+    assert nearest == pytest.approx(
+        [sphere["min_distance_m"].iloc[0], cylinder["min_distance_m"].iloc[0]], abs=1.0
+    )
 
 
 def test_a_comparisons_flight_has_what_the_comparison_sets(apart):
     configs = flight_configs(apart, apart.comparison)
     assert [config["keepout"]["shape"] for config in configs] == ["cylinder"] * 4
-    assert [config["plume"]["source_height_m"] for config in configs] == [height for _, height in OWN]
+    assert [config["plume"]["source_height_m"] for config in configs] == [
+        height for _, height in OWN
+    ]
 
 
 def made(trial, draws, **row):
     """Return a run of one flight with a configuration of its trial and its row of ``draws.csv``, and the flight's row."""
-    rows = pd.DataFrame([{"flight_id": "a", "trial": "t", "variant": "study", "fidelity": "six_dof"} | row])
+    rows = pd.DataFrame(
+        [{"flight_id": "a", "trial": "t", "variant": "study", "fidelity": "six_dof"} | row]
+    )
     empty = pd.DataFrame({"flight_id": []})
     run = RunData(
         path=None, manifest={"trials": {"t": trial}}, summary=rows, comparison=empty, crossings=empty, innerloop=None,
@@ -152,11 +185,21 @@ def made(trial, draws, **row):
     return run, rows.iloc[0]
 
 
-BASE = {"title": "T", "plume": {"source_height_m": 35.0}, "emission": {"load": 0.5}, "keepout": {"shape": "sphere"}}
+BASE = {
+    "title": "T",
+    "plume": {"source_height_m": 35.0},
+    "emission": {"load": 0.5},
+    "keepout": {"shape": "sphere"},
+}
 
 
 def test_lists_and_what_is_not_set_are_read_as_they_were_given_and_empty_cells_are_of_other_trials():
-    inputs = {"start.distance_m": "[400, 500]", "emission.load": "null", "plume.source_height_m": np.nan, "nu": 0.5}
+    inputs = {
+        "start.distance_m": "[400, 500]",
+        "emission.load": "null",
+        "plume.source_height_m": np.nan,
+        "nu": 0.5,
+    }
     config = flight_config(*made(BASE, inputs))
     assert config["start"]["distance_m"] == [400, 500]
     assert config["emission"]["load"] is None
@@ -165,21 +208,39 @@ def test_lists_and_what_is_not_set_are_read_as_they_were_given_and_empty_cells_a
 
 
 def test_what_is_sampled_holds_in_flights_of_a_comparison_and_what_is_swept_or_set_gives_way_to_it():
-    variants = [{"name": "high", "set": {"plume.source_height_m": 80.0, "keepout": {"radius_m": 300.0}}}]
+    variants = [
+        {"name": "high", "set": {"plume.source_height_m": 80.0, "keepout": {"radius_m": 300.0}}}
+    ]
     drawn = [{"key": key, "uniform": [0.2, 0.9]} for key in ("emission.load", "keepout.radius_m")]
     trial = BASE | {"comparison": {"variants": variants}, "draws": drawn}
     inputs = {"plume.source_height_m": 20.0, "emission.load": 0.7, "keepout.radius_m": 250.0}
     config = flight_config(*made(trial, inputs, variant="high"))
-    assert (config["plume"]["source_height_m"], config["emission"]["load"], config["keepout"]["radius_m"]) == (80.0, 0.7, 300.0)
+    assert (
+        config["plume"]["source_height_m"],
+        config["emission"]["load"],
+        config["keepout"]["radius_m"],
+    ) == (80.0, 0.7, 300.0)
     assert flight_config(*made(trial, inputs))["plume"]["source_height_m"] == 20.0
     assert flight_config(*made(trial, inputs))["keepout"]["radius_m"] == 250.0
 
 
 @pytest.mark.parametrize(
     ("flight_id", "fidelity", "height"),
-    [("low_six_dof", "six_dof", 20.0), ("t_low_kinematic_00003", "kinematic", 10.0), ("other_six_dof", "six_dof", 35.0)],
+    [
+        ("low_six_dof", "six_dof", 20.0),
+        ("t_low_kinematic_00003", "kinematic", 10.0),
+        ("other_six_dof", "six_dof", 35.0),
+    ],
 )
 def test_a_flight_of_a_case_has_what_the_case_sets(flight_id, fidelity, height):
-    cases = [{"name": "low", "set": {"plume.source_height_m": 20.0}, "set_kinematic": {"plume.source_height_m": 10.0}}]
-    config = flight_config(*made(BASE | {"cases": cases}, {}, flight_id=flight_id, fidelity=fidelity))
+    cases = [
+        {
+            "name": "low",
+            "set": {"plume.source_height_m": 20.0},
+            "set_kinematic": {"plume.source_height_m": 10.0},
+        }
+    ]
+    config = flight_config(
+        *made(BASE | {"cases": cases}, {}, flight_id=flight_id, fidelity=fidelity)
+    )
     assert config["plume"]["source_height_m"] == height

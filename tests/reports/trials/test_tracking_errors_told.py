@@ -17,7 +17,9 @@ from reports.run.trials import read_trials
 pytestmark = pytest.mark.usefixtures("without_single_flights")
 
 
-def test_a_large_tracking_error_that_no_criterion_limits_is_told_with_what_happened_after_settling(run):
+def test_a_large_tracking_error_that_no_criterion_limits_is_told_with_what_happened_after_settling(
+    run,
+):
     limited = with_criterion(run, "steady", "tracking_error_rms_m", 1.5)
     far = {
         "tracking_error_rms_m": 39.04,
@@ -34,28 +36,49 @@ def test_a_large_tracking_error_that_no_criterion_limits_is_told_with_what_happe
     )
     # Of a trial with a criterion that tells; it is not judged by it where it does not have to settle.
     assert content(with_values(limited, 0, tracking_error_rms_m=39.04)).verdict.failures == []
-    assert len(content(with_values(with_criterion(run, "turns", "tracking_error_rms_m", 1.5), 3, **far)).verdict.failures) == 1
+    assert (
+        len(
+            content(
+                with_values(with_criterion(run, "turns", "tracking_error_rms_m", 1.5), 3, **far)
+            ).verdict.failures
+        )
+        == 1
+    )
 
 
 def test_flights_with_a_large_error_are_counted_among_those_that_settled(run):
-    error, guard = np.array([39.0, 50.0, 1.0, 1.0, 1.0, np.nan]), np.array([1.0, 1.0, 1.0, 0.0, 0.0, 0.0])
+    error, guard = (
+        np.array([39.0, 50.0, 1.0, 1.0, 1.0, np.nan]),
+        np.array([1.0, 1.0, 1.0, 0.0, 0.0, 0.0]),
+    )
     trial = read_trials(run)[1]
     rows = pd.concat([trial.rows.iloc[:1]] * 6, ignore_index=True)
     rows = rows.assign(
-        tracking_error_rms_m=error, guard_after_settling_s=guard, settling_time_s=60.0, manoeuvre_end_s=np.nan, modes="tracking"
+        tracking_error_rms_m=error,
+        guard_after_settling_s=guard,
+        settling_time_s=60.0,
+        manoeuvre_end_s=np.nan,
+        modes="tracking",
     )
     (line,) = tracking_lines(replace(trial, rows=rows))
     assert line.startswith("In 2 of 5 flights that settled the tracking error")
-    assert line.endswith("after settling the keep-out guard changed commands (in all these 2, in 1 of the 3 others).")
+    assert line.endswith(
+        "after settling the keep-out guard changed commands (in all these 2, in 1 of the 3 others)."
+    )
 
 
 def test_of_a_flight_alone_the_table_of_flights_says_why_its_tracking_error_is_large(run):
     only = run.summary.iloc[:1].assign(tracking_error_rms_m=39.04, guard_after_settling_s=0.0)
-    manifest = run.manifest | {"trials": {"steady": run.manifest["trials"]["steady"] | {"flights": 1}}, "flights_planned": 1}
+    manifest = run.manifest | {
+        "trials": {"steady": run.manifest["trials"]["steady"] | {"flights": 1}},
+        "flights_planned": 1,
+    }
     manifest["trial_flights"] = {"steady": 1}
     report = content(replace(run, summary=only, manifest=manifest))
     words = "and no criterion limits it: nothing that the summary records explains it."
-    assert report.verdict.failures[0].startswith("The tracking error, rms after settling, is 39 m, above the 5 m")
+    assert report.verdict.failures[0].startswith(
+        "The tracking error, rms after settling, is 39 m, above the 5 m"
+    )
     assert [words in table.caption for table in blocks_of(report, Table, "trial1")] == [True]
 
 

@@ -52,13 +52,18 @@ def test_every_axis_of_trials_reads_quantity_and_unit_and_every_chart_shows_some
     assert len(set(names)) == len(names)
     for chart in charts_of(report):
         for panel in chart.panels:
-            assert any(np.isfinite(line.y).any() for line in panel.lines), (chart.name, panel.y_label)
+            assert any(np.isfinite(line.y).any() for line in panel.lines), (
+                chart.name,
+                panel.y_label,
+            )
     assert_axes_read_quantity_and_unit(charts_of(report))
 
 
 @BRIEF
 def test_of_nothing_flown_nothing_is_claimed(run):
-    unflown = run.summary.assign(duration_s=math.nan, min_distance_m=math.nan, criteria_met=False, outcome="infeasible")
+    unflown = run.summary.assign(
+        duration_s=math.nan, min_distance_m=math.nan, criteria_met=False, outcome="infeasible"
+    )
     empty = replace(run, summary=unflown)
     verdict = content(empty).verdict
     assert not verdict.holds
@@ -88,15 +93,21 @@ def test_the_worst_measured_value_of_a_criterion_is_that_of_the_summary(run, rep
 @BRIEF
 def test_a_criterion_without_a_figure_counts_as_failed(run):
     steady = read_trials(with_values(run, 0, crossing_interval_mean_s=math.nan))[0]
-    row = next(row for row in rows_of(content(steady.run), "Steady")[1:] if row[0].startswith("Mean"))
+    row = next(
+        row for row in rows_of(content(steady.run), "Steady")[1:] if row[0].startswith("Mean")
+    )
     assert row[2].endswith("; 1 flight has no figure: completed")
     assert row[3] == "1"
 
 
 @BRIEF
-@pytest.mark.parametrize(("measured", "shown"), [(0.63712, "0.637 m"), (0.0063712, "0.006 m"), (12.345, "12.3 m")])
+@pytest.mark.parametrize(
+    ("measured", "shown"), [(0.63712, "0.637 m"), (0.0063712, "0.006 m"), (12.345, "12.3 m")]
+)
 def test_a_figure_has_three_digits_and_none_below_a_thousandth_of_its_limit(run, measured, shown):
-    both = with_values(with_values(run, 0, tracking_error_rms_m=measured), 1, tracking_error_rms_m=measured)
+    both = with_values(
+        with_values(run, 0, tracking_error_rms_m=measured), 1, tracking_error_rms_m=measured
+    )
     rows = rows_of(content(with_criterion(both, "steady", "tracking_error_rms_m", 1.5)), "Steady")
     assert next(row for row in rows if row[0].startswith("Tracking error"))[2] == shown
 
@@ -104,15 +115,22 @@ def test_a_figure_has_three_digits_and_none_below_a_thousandth_of_its_limit(run,
 @BRIEF
 @pytest.mark.parametrize("settles", [True, False])
 def test_what_is_measured_after_settling_is_judged_where_flights_have_to_settle(run, settles):
-    judged = with_criterion(with_criterion(run, "turns", "settles", settles), "turns", "tracking_error_rms_m", 1e-9)
-    assert any(row[0].startswith("Tracking error, rms") for row in rows_of(content(judged), "Turns")) is settles
+    judged = with_criterion(
+        with_criterion(run, "turns", "settles", settles), "turns", "tracking_error_rms_m", 1e-9
+    )
+    assert (
+        any(row[0].startswith("Tracking error, rms") for row in rows_of(content(judged), "Turns"))
+        is settles
+    )
 
 
 @BRIEF
 def test_resuming_is_judged_of_flights_whose_vessel_ends_a_manoeuvre(run):
     ended = with_values(run, 2, manoeuvre_end_s=190.0, resume_periods=0.7)
     with_end = with_values(ended, 3, manoeuvre_end_s=math.nan, resume_periods=math.nan)
-    rows = rows_of(content(with_criterion(with_end, "turns", "resumes_within_periods", 1.0)), "Turns")
+    rows = rows_of(
+        content(with_criterion(with_end, "turns", "resumes_within_periods", 1.0)), "Turns"
+    )
     assert ["Next crossing after the last manoeuvre", "≤ 1 periods", "0.7 periods", "0"] in rows
 
 
@@ -120,13 +138,35 @@ def test_resuming_is_judged_of_flights_whose_vessel_ends_a_manoeuvre(run):
 @pytest.mark.parametrize(
     ("key", "value", "values", "shown"),
     [
-        ("crossing_interval_s", [8.0, 9.0], {"crossing_interval_mean_s": [8.5, 9.25]}, ["8 to 9 s", "8.5 to 9.25 s", "1"]),
-        ("crossing_distance_m", [200.0, 230.0], {"crossing_distance_mean_m": [214.0, math.nan]}, ["200 to 230 m", "214 m", "1"]),
-        ("law_within_heading_rate_max", True, {"heading_rate_demand_max_rad_s": [0.5, 0.6]}, ["≤ ω_max", "1.200 ω_max", "1"]),
-        ("law_beyond_heading_rate_max", True, {"heading_rate_demand_max_rad_s": [0.5, 0.6]}, ["> ω_max", "1.000 ω_max", "1"]),
+        (
+            "crossing_interval_s",
+            [8.0, 9.0],
+            {"crossing_interval_mean_s": [8.5, 9.25]},
+            ["8 to 9 s", "8.5 to 9.25 s", "1"],
+        ),
+        (
+            "crossing_distance_m",
+            [200.0, 230.0],
+            {"crossing_distance_mean_m": [214.0, math.nan]},
+            ["200 to 230 m", "214 m", "1"],
+        ),
+        (
+            "law_within_heading_rate_max",
+            True,
+            {"heading_rate_demand_max_rad_s": [0.5, 0.6]},
+            ["≤ ω_max", "1.200 ω_max", "1"],
+        ),
+        (
+            "law_beyond_heading_rate_max",
+            True,
+            {"heading_rate_demand_max_rad_s": [0.5, 0.6]},
+            ["> ω_max", "1.000 ω_max", "1"],
+        ),
     ],
 )
-def test_flights_that_failed_a_criterion_are_counted_whatever_its_limits(run, key, value, values, shown):
+def test_flights_that_failed_a_criterion_are_counted_whatever_its_limits(
+    run, key, value, values, shown
+):
     # Of two flights of the trial, the second or, where the law must exceed omega_max = 0.5 rad/s, the first.
     changed = {"heading_rate_limit_rad_s": [0.5, 0.5]} | values
     for i in range(2):
@@ -153,7 +193,9 @@ def test_a_report_that_cannot_be_drawn_is_one_line(run_path, run, tmp_path, monk
 
 def test_a_report_in_memory_of_a_damaged_run_is_refused_in_one_line(run, tmp_path):
     with pytest.raises(ReportError, match="is damaged"):
-        write_report(replace(run, summary=run.summary.drop(columns="outcome")), tmp_path / "report.html")
+        write_report(
+            replace(run, summary=run.summary.drop(columns="outcome")), tmp_path / "report.html"
+        )
 
 
 def test_a_run_without_any_history_and_with_a_trial_not_begun_is_reported_on(run_path, tmp_path):
@@ -168,7 +210,11 @@ def test_a_run_without_any_history_and_with_a_trial_not_begun_is_reported_on(run
     report = content(read_run(path))
     assert not report.verdict.complete
     assert "Turns: 2 of 2 not flown yet" in report.verdict.failures
-    assert [section.anchor for section in report.sections if section.anchor in ("trial1", "trial2", "flights")] == ["trial1"]
+    assert [
+        section.anchor
+        for section in report.sections
+        if section.anchor in ("trial1", "trial2", "flights")
+    ] == ["trial1"]
 
 
 @pytest.mark.parametrize(
@@ -206,10 +252,18 @@ def test_parameters_say_what_a_trial_sets_and_samples_and_nothing_else(report):
     steady, turns = ({row[0]: row[1:3] for row in table.rows} for table in tables)
     assert steady["wind.speed_mps"] == ["uniform from 2 to 4", "0"]
     assert steady["criteria.crossing_interval_error"] == ["0.0321", "0.01"]
-    assert turns["vessel.manoeuvres"] == ["in turn one of: 20° to starboard at 0.5°/s; 10° to port at 0.5°/s", "none"]
+    assert turns["vessel.manoeuvres"] == [
+        "in turn one of: 20° to starboard at 0.5°/s; 10° to port at 0.5°/s",
+        "none",
+    ]
     assert turns["reports.interval_s"] == ["2 to 10", "0 to 0"]
     # Its own keys, and those that the base which it extends sets otherwise than the schema.
-    own = {"flights, seed", "wind.speed_mps", "flight.crossings", "criteria.crossing_interval_error"}
+    own = {
+        "flights, seed",
+        "wind.speed_mps",
+        "flight.crossings",
+        "criteria.crossing_interval_error",
+    }
     own |= {"guidance.rate_hz"}
     base = given_keys(tomllib.loads(bases()[OPERATIONAL].read_text(encoding="utf-8")))
     assert own <= set(steady) <= own | base
@@ -218,22 +272,30 @@ def test_parameters_say_what_a_trial_sets_and_samples_and_nothing_else(report):
 
 def test_a_scenario_with_manoeuvres_of_its_own_has_a_manifest(run):
     scenario = load_study("sea_wind", ["vessel.manoeuvres=[{at_s = 10.0, turn_deg = 20.0}]"])
-    listed = {parameter["key"]: parameter for parameter in json.loads(json.dumps(parameters(scenario)))}
+    listed = {
+        parameter["key"]: parameter for parameter in json.loads(json.dumps(parameters(scenario)))
+    }
     assert listed["vessel.manoeuvres"]["value"][0]["turn_deg"] == 20.0
     assert listed["vessel.manoeuvres"]["default"] == []
 
 
 def test_a_criterion_that_is_just_failed_is_not_written_as_its_limit(run):
-    failed = with_values(with_criterion(run, "steady", "tracking_error_rms_m", 1.5), 0, tracking_error_rms_m=1.504)
+    failed = with_values(
+        with_criterion(run, "steady", "tracking_error_rms_m", 1.5), 0, tracking_error_rms_m=1.504
+    )
     assert ["≤ 1.5 m", "1.504 m", "1"] in [row[1:] for row in rows_of(content(failed), "Steady")]
 
 
 def test_a_criterion_that_does_not_apply_is_no_limit(run):
     trial = read_trials(with_criterion(run, "steady", "tracking_error_rms_m", False))[0]
-    panel = PanelsOver(trial, "nu", by_violation(trial)).figure("tracking_error_rms_m", "Tracking error, rms [m]")
+    panel = PanelsOver(trial, "nu", by_violation(trial)).figure(
+        "tracking_error_rms_m", "Tracking error, rms [m]"
+    )
     assert "criterion" not in {line.label for line in panel.lines}
     trial = read_trials(with_criterion(run, "steady", "tracking_error_rms_m", 2.0))[0]
-    panel = PanelsOver(trial, "nu", by_violation(trial)).figure("tracking_error_rms_m", "Tracking error, rms [m]")
+    panel = PanelsOver(trial, "nu", by_violation(trial)).figure(
+        "tracking_error_rms_m", "Tracking error, rms [m]"
+    )
     (level,) = (line for line in panel.lines if line.label == "criterion")
     assert set(level.y) == {2.0}
 
@@ -241,16 +303,25 @@ def test_a_criterion_that_does_not_apply_is_no_limit(run):
 @BRIEF
 def test_altitudes_that_have_to_be_kept_are_a_criterion_on_the_time_outside(run):
     changed = with_criterion(run, "turns", "within_altitudes", True)
-    rows = changed.summary.assign(altitude_outside_s=[0.0 if trial != "turns" else 1.5 for trial in changed.summary["trial"]])
+    rows = changed.summary.assign(
+        altitude_outside_s=[0.0 if trial != "turns" else 1.5 for trial in changed.summary["trial"]]
+    )
     shown = rows_of(content(replace(changed, summary=rows)), "Turns")
     assert ["Time outside the altitudes of the scenario", "≤ 0 s", "1.5 s", "2"] in shown
 
 
 def test_a_flight_has_one_name_in_a_report_which_is_that_of_its_files(report, run):
     text = json.dumps(
-        [report.verdict.detail, report.verdict.failures, report.picture.caption, *(p.title for p in report.picture.panels)]
+        [
+            report.verdict.detail,
+            report.verdict.failures,
+            report.picture.caption,
+            *(p.title for p in report.picture.panels),
+        ]
     )
     assert "in steady_0000" in text or "in turns_0000" in text
     (picker,) = blocks_of(report, FlightPicker)
-    assert {flight.label.partition(" · ")[0] for flight in picker.flights} <= set(run.summary["flight_id"])
+    assert {flight.label.partition(" · ")[0] for flight in picker.flights} <= set(
+        run.summary["flight_id"]
+    )
     assert "Flight 0" not in text + str(picker)

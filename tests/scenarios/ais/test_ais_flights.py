@@ -25,7 +25,9 @@ def flown():
 
 
 def test_beside_a_ship_from_a_file_it_keeps_out_and_crossings_resume(flown):
-    assert (flown.row["outcome"], flown.row["keepout_violations"]) == ("completed", 0), flown.row["message"]
+    assert (flown.row["outcome"], flown.row["keepout_violations"]) == ("completed", 0), flown.row[
+        "message"
+    ]
     assert flown.row["resume_periods"] <= 2.0
     crossings = pd.DataFrame(flown.tables["crossings.csv"])["time_s"].to_numpy()
     for ends in (1380.0, 2486.0):
@@ -37,14 +39,28 @@ def test_beside_a_ship_from_a_file_it_keeps_out_and_crossings_resume(flown):
 
 
 def test_the_vessel_is_received_at_the_times_of_the_file_alone(flown):
-    flight = plan(scenario(vessel=DANISH, following=DECLARED, flight=LONG, wind={"speed_mps": 5.0, "from_deg": 60.0}))
+    flight = plan(
+        scenario(
+            vessel=DANISH,
+            following=DECLARED,
+            flight=LONG,
+            wind={"speed_mps": 5.0, "from_deg": 60.0},
+        )
+    )
     times = np.array([when for when, _ in flight.sensing.received])
     assert [report.time for _, report in flight.sensing.received] == times.tolist()
     # The flight begins with the first report; rounding of seconds since 1970.
     said = read_ais(DANISH["track"], DANISH["mmsi"]).time
     duration = flown.row["duration_s"]
-    assert times[times <= duration] == pytest.approx((said - said[0])[said - said[0] <= duration], abs=1e-6)
-    seen = np.hypot(*(flown.history[f"vessel_seen_{axis}_m"] - flown.history[f"vessel_{axis}_m"] for axis in ("north", "east")))
+    assert times[times <= duration] == pytest.approx(
+        (said - said[0])[said - said[0] <= duration], abs=1e-6
+    )
+    seen = np.hypot(
+        *(
+            flown.history[f"vessel_seen_{axis}_m"] - flown.history[f"vessel_{axis}_m"]
+            for axis in ("north", "east")
+        )
+    )
     # Errors of the reports are 3 m, and reports up to 20 s old.
     assert 0.5 < np.sqrt(np.mean(seen**2)) < 10.0
 
@@ -62,58 +78,99 @@ def test_its_row_says_where_and_when_and_how_fast_the_ship_was(flown):
     [
         (
             {"vessel_acceleration_mps2": 0.03},
-            ["accelerates by", "following.vessel_acceleration_mps2 = 0.03", "declare more, or fly another time of its file"],
+            [
+                "accelerates by",
+                "following.vessel_acceleration_mps2 = 0.03",
+                "declare more, or fly another time of its file",
+            ],
         ),
         (
             {"vessel_speed_max_mps": 5.0},
-            ["moves at up to", "following.vessel_speed_max_mps = 5", "more, or fly another time of its file (place.utc)"],
+            [
+                "moves at up to",
+                "following.vessel_speed_max_mps = 5",
+                "more, or fly another time of its file (place.utc)",
+            ],
         ),
     ],
 )
 def test_a_ship_that_does_more_than_is_declared_is_a_row_with_that_reason(changes, words):
-    row = fly(vessel=DANISH, following=DECLARED | changes, flight=LONG, wind={"speed_mps": 5.0, "from_deg": 60.0}).row
+    row = fly(
+        vessel=DANISH,
+        following=DECLARED | changes,
+        flight=LONG,
+        wind={"speed_mps": 5.0, "from_deg": 60.0},
+    ).row
     assert row["outcome"] == "infeasible"
     for word in words:
         assert word in row["message"]
 
 
 def test_a_start_is_judged_by_the_report_that_the_guard_has_and_not_by_where_the_ship_is(tmp_path):
-    lines = (CATALOG / "ais" / "made_marine_cadastre.csv").read_text(encoding="utf-8").splitlines(keepends=True)
+    lines = (
+        (CATALOG / "ais" / "made_marine_cadastre.csv")
+        .read_text(encoding="utf-8")
+        .splitlines(keepends=True)
+    )
     (tmp_path / "sparse.csv").write_text("".join([lines[0], *lines[1:60:2]]), encoding="utf-8")
     sparse = {"track": str(tmp_path / "sparse.csv"), "gap_max_s": 180.0}
     near = {"distance_m": (320.0, 320.0), "aspect_deg": 0.0, "course_deg": 0.0}
     flight = {"crossings": 0, "duration_max_s": 60.0}
 
     def planned(utc):
-        return plan(scenario(vessel=sparse, following=DECLARED, start=near, flight=flight, place={"utc": utc}))
+        return plan(
+            scenario(
+                vessel=sparse, following=DECLARED, start=near, flight=flight, place={"utc": utc}
+            )
+        )
 
     # Reports come each 119 s. Just after one the ship is where it says; 100 s later she may be up to 500 m from there.
     planned("2026-06-01T10:02:01Z")
-    with pytest.raises(InfeasibleError, match=r"where the best turn away comes within 0\.0 m of where it may be"):
+    with pytest.raises(
+        InfeasibleError, match=r"where the best turn away comes within 0\.0 m of where it may be"
+    ):
         planned("2026-06-01T10:03:40Z")
 
 
 def test_reports_that_are_farther_off_than_declared_are_a_row_with_that_reason():
     reports = {"position_sigma_m": 0.1, "velocity_sigma_mps": 0.01}
-    row = fly(vessel=DANISH, following=DECLARED, reports=reports, flight=LONG, wind={"speed_mps": 5.0, "from_deg": 60.0}).row
+    row = fly(
+        vessel=DANISH,
+        following=DECLARED,
+        reports=reports,
+        flight=LONG,
+        wind={"speed_mps": 5.0, "from_deg": 60.0},
+    ).row
     assert row["outcome"] == "infeasible"
     assert "the report of 2026-06-01T10:" in row["message"]
     assert "reports.position_sigma_m" in row["message"]
 
 
-def test_a_report_whose_velocity_is_wrong_is_refused_for_what_it_makes_of_a_silence_after_it(tmp_path):
+def test_a_report_whose_velocity_is_wrong_is_refused_for_what_it_makes_of_a_silence_after_it(
+    tmp_path,
+):
     # Until the next one, 2 s later, it is within its disc; 21 s later, with all data of the vessel lost, the ship is 41 m outside.
     # Of 16 flights of a law that flies at her 6 had come in, by up to 31 m.
     path, lines = tmp_path / "wrong.csv", ["time_utc,mmsi,lat_deg,lon_deg,sog_kn,cog_deg"]
     for time in range(0, 400, 2):
         wrong = time == 150
-        north, east, speed, course = (1788.6, -18.3, 13.47, 336.0) if wrong else (12.0 * time, 0.0, 12.0, 0.0)
+        north, east, speed, course = (
+            (1788.6, -18.3, 13.47, 336.0) if wrong else (12.0 * time, 0.0, 12.0, 0.0)
+        )
         place = f"{55.0 + north / 111320.0:.7f},{10.0 + east / 63851.0:.7f}"
-        lines.append(f"2026-06-01T12:{time // 60:02d}:{time % 60:02d}Z,219999001,{place},{speed / 0.5144:.2f},{course:.1f}")
+        lines.append(
+            f"2026-06-01T12:{time // 60:02d}:{time % 60:02d}Z,219999001,{place},{speed / 0.5144:.2f},{course:.1f}"
+        )
     path.write_text("\n".join(lines))
     declared = {"vessel_acceleration_mps2": 0.25, "vessel_speed_max_mps": 20.0}
     with pytest.raises(InfeasibleError, match=r"report of 2026-06-01T12:02:30.*apart after 2\d"):
-        plan(scenario(vessel={"track": str(path)}, following=declared, flight={"crossings": 0, "duration_max_s": 300.0}))
+        plan(
+            scenario(
+                vessel={"track": str(path)},
+                following=declared,
+                flight={"crossings": 0, "duration_max_s": 300.0},
+            )
+        )
 
 
 @pytest.mark.parametrize(
@@ -140,13 +197,27 @@ def test_a_ship_that_was_faster_than_declared_is_refused_where_the_guard_relies_
             continue
         since = np.clip(time - slows_down[0], 0.0, (lasts := slows_down[1] - slows_down[0]))
         after = max(0.0, time - slows_down[1])
-        north = 15.0 * min(time, slows_down[0]) + 15.0 * since - 7.0 / lasts * since**2 / 2.0 + 8.0 * after
+        north = (
+            15.0 * min(time, slows_down[0])
+            + 15.0 * since
+            - 7.0 / lasts * since**2 / 2.0
+            + 8.0 * after
+        )
         utc = np.datetime64("2026-06-01T12:00:00") + np.timedelta64(time, "s")
-        lines.append(f"{utc}Z,219999001,{55.0 + north / 111320.0:.7f},10.0,{(15.0 - 7.0 * since / lasts) / 0.514444:.2f},0.0")
+        lines.append(
+            f"{utc}Z,219999001,{55.0 + north / 111320.0:.7f},10.0,{(15.0 - 7.0 * since / lasts) / 0.514444:.2f},0.0"
+        )
     path.write_text("\n".join(lines))
     declared = {"vessel_acceleration_mps2": 0.35, "vessel_speed_max_mps": fastest}
-    changes = {"start": {"distance_m": (3000.0, 3000.0)}, "flight": {"crossings": 0, "duration_max_s": 60.0}}
-    changes |= {"place": {"utc": "2026-06-01T12:00:00Z"}, "following": declared, "vessel": {"track": str(path)}}
+    changes = {
+        "start": {"distance_m": (3000.0, 3000.0)},
+        "flight": {"crossings": 0, "duration_max_s": 60.0},
+    }
+    changes |= {
+        "place": {"utc": "2026-06-01T12:00:00Z"},
+        "following": declared,
+        "vessel": {"track": str(path)},
+    }
     if words is None:
         plan(scenario(**changes))
         return
@@ -157,16 +228,21 @@ def test_a_ship_that_was_faster_than_declared_is_refused_where_the_guard_relies_
 def test_a_folder_of_files_may_have_an_equals_sign_in_its_name(tmp_path):
     # As archives that are parted by days have it.
     (tmp_path / "day=2026-06-01").mkdir()
-    (tmp_path / "day=2026-06-01" / "ship.csv").write_bytes((CATALOG / "ais" / "made_danish.csv").read_bytes())
+    (tmp_path / "day=2026-06-01" / "ship.csv").write_bytes(
+        (CATALOG / "ais" / "made_danish.csv").read_bytes()
+    )
     text = 'extends = "ship_from_ais"\ntitle = "mine"\nvessel.track = "day=2026-06-01/ship.csv"\n'
     (tmp_path / "mine.toml").write_text(text, encoding="utf-8")
-    assert load_study(str(tmp_path / "mine.toml")).vessel.track == str(tmp_path / "day=2026-06-01" / "ship.csv")
+    assert load_study(str(tmp_path / "mine.toml")).vessel.track == str(
+        tmp_path / "day=2026-06-01" / "ship.csv"
+    )
 
 
 def test_a_track_file_is_relative_to_the_scenario_file_and_its_hash_is_in_the_manifest(tmp_path):
     (tmp_path / "ship.csv").write_bytes((CATALOG / "ais" / "made_danish.csv").read_bytes())
     (tmp_path / "mine.toml").write_text(
-        'extends = "ship_from_ais"\ntitle = "mine"\nfidelity = "kinematic"\nvessel.track = "ship.csv"\n', encoding="utf-8"
+        'extends = "ship_from_ais"\ntitle = "mine"\nfidelity = "kinematic"\nvessel.track = "ship.csv"\n',
+        encoding="utf-8",
     )
     scenario = load_study(str(tmp_path / "mine.toml"))
     assert isinstance(scenario, Scenario)
@@ -195,12 +271,15 @@ def test_keys_that_contradict_a_track_from_a_file_are_refused(override, words):
 
 def test_a_file_whose_name_does_not_end_as_those_of_reports_do_is_refused_with_how_they_end():
     with pytest.raises(
-        InputError, match=r"vessel\.track: track is 'x\.log'; the name of a file of AIS reports ends in \.csv, \.nmea or"
+        InputError,
+        match=r"vessel\.track: track is 'x\.log'; the name of a file of AIS reports ends in \.csv, \.nmea or",
     ):
         load_study("ship_from_ais", ["vessel.track=x.log"])
 
 
 def test_a_track_from_a_file_that_is_not_there_is_refused_before_any_flight(tmp_path):
-    scenario = load_study("ship_from_ais", [f"vessel.track={tmp_path / 'none.csv'}", "fidelity=kinematic"])
+    scenario = load_study(
+        "ship_from_ais", [f"vessel.track={tmp_path / 'none.csv'}", "fidelity=kinematic"]
+    )
     with pytest.raises(InputError, match=r"none\.csv: cannot be read"):
         FlightStudy(scenario, "mine", {"mine": scenario})

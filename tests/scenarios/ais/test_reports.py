@@ -56,8 +56,13 @@ def read(tmp_path):
 @pytest.mark.parametrize("layout", LAYOUTS)
 def test_every_layout_says_the_same(read, layout):
     head, row = LAYOUTS[layout]
-    found = read(table(*(row.format(second, 57.0 + 1e-5 * second) for second in (0, 10, 20)), head=head), 219999001)
-    np.testing.assert_allclose(np.degrees(found.latitude), [57.0, 57.0001, 57.0002], rtol=0.0, atol=1e-9)
+    found = read(
+        table(*(row.format(second, 57.0 + 1e-5 * second) for second in (0, 10, 20)), head=head),
+        219999001,
+    )
+    np.testing.assert_allclose(
+        np.degrees(found.latitude), [57.0, 57.0001, 57.0002], rtol=0.0, atol=1e-9
+    )
     np.testing.assert_allclose(np.degrees(found.longitude), 11.3, rtol=1e-12)
     # 2026-06-01T10:00:00Z is 1780308000 s after 1970 began (date -u -d ... +%s).
     np.testing.assert_array_equal(found.time, [1780308000.0, 1780308010.0, 1780308020.0])
@@ -115,7 +120,10 @@ def test_a_row_that_is_cut_off_before_its_time_is_dropped_and_counted(read):
 def test_rows_that_end_in_commas_or_have_one_in_a_word_are_read(read):
     assert read(table(*(f"{row},," for row in rows()))).dropped == {}
     head, row = LAYOUTS["danish"]
-    lines = [row.format(second, 57.0 + 1e-5 * second).replace("AIS", "OSLO, NO,AIS") for second in (0, 10, 20)]
+    lines = [
+        row.format(second, 57.0 + 1e-5 * second).replace("AIS", "OSLO, NO,AIS")
+        for second in (0, 10, 20)
+    ]
     assert len(read(table(*lines, head=head)).time) == 3
 
 
@@ -194,11 +202,15 @@ def sailed(*, knots=1.0, degrees=1.0, turned=0.0, swapped=False, interval=10, ra
         place = f"{57.0 + way.real / 111362.0:.6f}", f"{11.3 + way.imag / 60772.0:.6f}"
         first, second = reversed(place) if swapped else place
         time = f"2026-06-01T{10 + i * interval // 3600}:{i * interval // 60 % 60:02d}:{i * interval % 60:02d}Z"
-        lines.append(f"{time},219999001,{first},{second},{12.0 / knots:.3f},{course % 360.0 / degrees + turned:.3f}")
+        lines.append(
+            f"{time},219999001,{first},{second},{12.0 / knots:.3f},{course % 360.0 / degrees + turned:.3f}"
+        )
     return table(*lines)
 
 
-@pytest.mark.parametrize(("interval", "rate"), [(10, 0.0), (90, 0.0), (90, 0.1), (90, 0.5), (90, 2.0)])
+@pytest.mark.parametrize(
+    ("interval", "rate"), [(10, 0.0), (90, 0.0), (90, 0.1), (90, 0.5), (90, 2.0)]
+)
 def test_a_file_in_its_own_units_is_read_straight_or_in_turns(read, interval, rate):
     """At 0.1 deg/s and 90 s pairs of reports count as straight; at 2 deg/s she turns by 180 deg between two of them."""
     assert len(read(sailed(interval=interval, rate=rate)).time) == 30
@@ -208,14 +220,20 @@ def test_a_file_in_its_own_units_is_read_straight_or_in_turns(read, interval, ra
     ("made", "words"),
     [
         # A metre per second is 1/0.5144 kn; a kilometre per hour 1/1.852 kn.
-        (sailed(knots=1.0 / 0.514444), "reported speeds are 0.51 of those between places, in the median; they must be in knots"),
+        (
+            sailed(knots=1.0 / 0.514444),
+            "reported speeds are 0.51 of those between places, in the median; they must be in knots",
+        ),
         (
             sailed(knots=1.0 / 0.514444, interval=90),
             "reported speeds are 0.51 of those between places, in the median; they must be",
         ),
         (sailed(turned=180.0, interval=90), "reported courses are 180 deg off"),
         (sailed(knots=1.0 / 1.852), "reported speeds are 1.85 of those between places"),
-        (sailed(degrees=math.degrees(1.0)), "reported courses are 44 deg off those between places, in the median; they must be"),
+        (
+            sailed(degrees=math.degrees(1.0)),
+            "reported courses are 44 deg off those between places, in the median; they must be",
+        ),
         (sailed(turned=180.0), "reported courses are 180 deg off"),
         (sailed(swapped=True), "latitude and longitude are swapped"),
     ],
@@ -237,14 +255,27 @@ def test_a_file_that_cannot_be_read_is_refused(tmp_path):
 def test_nmea_sentences_are_decoded_with_the_time_before_them(read):
     encode = pytest.importorskip("pyais.encode", reason="pyais is an extra")
     lines = []
-    for second, prefix in ((0, "\\s:r1,c:1780308000*00\\"), (10, "2026-06-01T10:00:10Z "), (20, "1780308020 ")):
-        said = {"msg_type": 1, "mmsi": 219999001, "lat": 57.0 + 1e-4 * second, "lon": 11.3, "speed": 12.0, "course": 20.5}
+    for second, prefix in (
+        (0, "\\s:r1,c:1780308000*00\\"),
+        (10, "2026-06-01T10:00:10Z "),
+        (20, "1780308020 "),
+    ):
+        said = {
+            "msg_type": 1,
+            "mmsi": 219999001,
+            "lat": 57.0 + 1e-4 * second,
+            "lon": 11.3,
+            "speed": 12.0,
+            "course": 20.5,
+        }
         lines.append(prefix + encode.encode_dict(said, talker_id="AI")[0])
     lines.insert(1, "!AIVDM,1,1,,A,garbage,0*00")
     found = read("\n".join(lines) + "\n", name="ais.nmea")
     np.testing.assert_array_equal(found.time - found.time[0], [0.0, 10.0, 20.0])
     # In a sentence a place is a whole number of 1/10,000 minutes: rounded to 8e-7 deg.
-    np.testing.assert_allclose(np.degrees(found.latitude), [57.0, 57.001, 57.002], rtol=0.0, atol=9e-7)
+    np.testing.assert_allclose(
+        np.degrees(found.latitude), [57.0, 57.001, 57.002], rtol=0.0, atol=9e-7
+    )
     with pytest.raises(InputError, match="line 1: the sentence has no time"):
         read(lines[0].rpartition("\\")[2] + "\n", name="ais.nmea")
 
@@ -258,14 +289,22 @@ def test_nmea_sentences_of_which_none_is_read_are_refused_with_their_types(read)
     encode = pytest.importorskip("pyais.encode", reason="pyais is an extra")
     said = {"msg_type": 27, "mmsi": 219999001, "lat": 57.0, "lon": 11.3, "speed": 12, "course": 20}
     far = "1780308000 " + encode.encode_dict(said, talker_id="AI")[0] + "\n"
-    with pytest.raises(InputError, match="messages of type 27 alone; position reports of types 1, 2, 3, 18, 19 are read"):
+    with pytest.raises(
+        InputError,
+        match="messages of type 27 alone; position reports of types 1, 2, 3, 18, 19 are read",
+    ):
         read(far, name="ais.nmea")
     with pytest.raises(InputError, match="no sentence that can be decoded"):
         read("1780308000 !AIVDM,1,1,,A,garbage,0*00\n", 219999001, name="ais.nmea")
     # A date without its marks would be milliseconds in the year 2612.
     said |= {"msg_type": 1, "speed": 12.0, "course": 20.5}
-    with pytest.raises(InputError, match="line 1: the time 20260601100000 is beyond milliseconds since 1970, and no date without"):
-        read("20260601100000 " + encode.encode_dict(said, talker_id="AI")[0] + "\n", name="ais.nmea")
+    with pytest.raises(
+        InputError,
+        match="line 1: the time 20260601100000 is beyond milliseconds since 1970, and no date without",
+    ):
+        read(
+            "20260601100000 " + encode.encode_dict(said, talker_id="AI")[0] + "\n", name="ais.nmea"
+        )
 
 
 def test_the_files_that_come_with_the_project_are_those_that_are_made():

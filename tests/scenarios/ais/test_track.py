@@ -10,7 +10,12 @@ from scenarios.errors import InputError
 from scenarios.schema.load import CATALOG
 from scenarios.schema.sections.world import VesselConfig
 from scenarios.world.ais.made import MADE
-from scenarios.world.ais.smoothing import JERK_DENSITY, POSITION_SIGMA, VELOCITY_SIGMA, smooth_motion
+from scenarios.world.ais.smoothing import (
+    JERK_DENSITY,
+    POSITION_SIGMA,
+    VELOCITY_SIGMA,
+    smooth_motion,
+)
 from scenarios.world.ais.track import ais_vessel, usual_intervals
 from scenarios.world.vessel import largest_acceleration, sampled
 
@@ -24,13 +29,22 @@ def vessel(name="made_danish.csv", *, utc=None, duration=HOUR, **changes):
 
 def residuals(of):
     """Return report minus smooth track of each report within the flight: north, east, and their rates."""
-    return np.array([np.subtract(report[1:], of.motion(report.time)) for report in of.reports if report.time >= 0.0])
+    return np.array(
+        [
+            np.subtract(report[1:], of.motion(report.time))
+            for report in of.reports
+            if report.time >= 0.0
+        ]
+    )
 
 
 @pytest.mark.parametrize(
     ("name", "scatter"),
     # Errors of the made reports: 2.5 m and 0.8 m of each coordinate, and up to a second of their time at 6 m/s, 1.8 m rms.
-    [("made_danish.csv", math.sqrt(2.0) * math.hypot(2.5, 0.8, 1.3)), ("made_marine_cadastre.csv", 0.0)],
+    [
+        ("made_danish.csv", math.sqrt(2.0) * math.hypot(2.5, 0.8, 1.3)),
+        ("made_marine_cadastre.csv", 0.0),
+    ],
 )
 def test_the_track_keeps_to_the_reports_but_for_their_scatter(name, scatter):
     found = residuals(vessel(name))
@@ -87,9 +101,16 @@ def test_usual_intervals_leave_out_the_longest_gaps():
     [
         (
             {"duration": 5000.0},
-            ["go from 2026-06-01T10:00:00Z (line 2) to 2026-06-01T11:", "the longest flight goes", "flight.duration_max_s"],
+            [
+                "go from 2026-06-01T10:00:00Z (line 2) to 2026-06-01T11:",
+                "the longest flight goes",
+                "flight.duration_max_s",
+            ],
         ),
-        ({"utc": datetime(2026, 6, 1, 9, 0, tzinfo=UTC)}, ["goes from 2026-06-01T09:00:00Z", "place.utc"]),
+        (
+            {"utc": datetime(2026, 6, 1, 9, 0, tzinfo=UTC)},
+            ["goes from 2026-06-01T09:00:00Z", "place.utc"],
+        ),
         ({"gap_max_s": 15.0}, [", line ", "there is no report", "vessel.gap_max_s = 15 s"]),
     ],
 )
@@ -117,7 +138,11 @@ def test_smoothing_is_the_least_squares_solution_of_its_model():
             t = time[i] - time[i - 1]
             ahead = np.array([[1.0, t, 0.5 * t * t], [0.0, 1.0, t], [0.0, 0.0, 1.0]])
             noise = JERK_DENSITY * np.array(
-                [[t**5 / 20, t**4 / 8, t**3 / 6], [t**4 / 8, t**3 / 3, t**2 / 2], [t**3 / 6, t**2 / 2, t]]
+                [
+                    [t**5 / 20, t**4 / 8, t**3 / 6],
+                    [t**4 / 8, t**3 / 3, t**2 / 2],
+                    [t**3 / 6, t**2 / 2, t],
+                ]
             )
             root = np.linalg.inv(np.linalg.cholesky(noise))
             block = np.zeros((3, 36))
@@ -138,7 +163,11 @@ def test_smoothing_is_the_least_squares_solution_of_its_model():
 
 def thinned(path, rows, **changes):
     """Return the settings of a vessel of which some rows of a made file are known."""
-    lines = (CATALOG / "ais" / "made_marine_cadastre.csv").read_text(encoding="utf-8").splitlines(keepends=True)
+    lines = (
+        (CATALOG / "ais" / "made_marine_cadastre.csv")
+        .read_text(encoding="utf-8")
+        .splitlines(keepends=True)
+    )
     path.write_text("".join([lines[0], *(lines[1 + row] for row in rows)]), encoding="utf-8")
     return VesselConfig(track=str(path), **changes)
 
@@ -146,10 +175,22 @@ def thinned(path, rows, **changes):
 def test_the_last_report_before_a_flight_is_known_at_its_start_however_old_it_is(tmp_path):
     config = thinned(tmp_path / "thin.csv", range(0, 60, 2))
     # Reports each 119 s; the flight begins 70 s after one.
-    ship = ais_vessel(config, altitude=60.0, utc=datetime(2026, 6, 1, 10, 1, 10, tzinfo=UTC), duration=300.0, margin=5.0)
+    ship = ais_vessel(
+        config,
+        altitude=60.0,
+        utc=datetime(2026, 6, 1, 10, 1, 10, tzinfo=UTC),
+        duration=300.0,
+        margin=5.0,
+    )
     assert [round(report.time) for report in ship.reports] == [-70, 49, 168, 289]
     # Where a flight has a single report, those of the file say how often they come.
-    short = ais_vessel(config, altitude=60.0, utc=datetime(2026, 6, 1, 10, 2, 30, tzinfo=UTC), duration=80.0, margin=5.0)
+    short = ais_vessel(
+        config,
+        altitude=60.0,
+        utc=datetime(2026, 6, 1, 10, 2, 30, tzinfo=UTC),
+        duration=80.0,
+        margin=5.0,
+    )
     assert len(short.reports) == 1
     assert usual_intervals(short) == pytest.approx((119.0, 120.0), abs=1.1)
 

@@ -29,7 +29,10 @@ class Pursuit:
 
     def heading_rate(self, reference, to_north, to_east, course, speed):
         lead = self.lead_s * reference.speed
-        sight = math.atan2(to_east + lead * math.sin(reference.course), to_north + lead * math.cos(reference.course))
+        sight = math.atan2(
+            to_east + lead * math.sin(reference.course),
+            to_north + lead * math.cos(reference.course),
+        )
         return self.gain * math.remainder(sight - course, math.tau) + reference.heading_rate
 
 
@@ -72,7 +75,11 @@ class Clock:
 
 def test_a_law_as_an_object_brings_its_parameters():
     scenario = load(SHORT, law=Pursuit(gain=1.5))
-    assert (scenario["guidance.law"], scenario["guidance.gain"], scenario["guidance.lead_s"]) == ("Pursuit", 1.5, 1.0)
+    assert (scenario["guidance.law"], scenario["guidance.gain"], scenario["guidance.lead_s"]) == (
+        "Pursuit",
+        1.5,
+        1.0,
+    )
 
 
 def test_a_law_as_an_object_flies_as_the_one_of_the_file():
@@ -83,21 +90,31 @@ def test_a_law_as_an_object_flies_as_the_one_of_the_file():
 
 
 def test_a_law_of_the_project_keeps_its_name():
-    assert load(SHORT, law=LineOfSightLaw(gain_per_s=1.0)).changes == ('guidance.law="line_of_sight"', "guidance.gain_per_s=1.0")
+    assert load(SHORT, law=LineOfSightLaw(gain_per_s=1.0)).changes == (
+        'guidance.law="line_of_sight"',
+        "guidance.gain_per_s=1.0",
+    )
 
 
 def test_laws_are_compared_and_swept_in_other_processes():
-    laws = {"sweep.guidance.law": ["cascade", Pursuit], "comparison.variants": [{"name": "soft", "set": {"guidance.law": Pursuit}}]}
+    laws = {
+        "sweep.guidance.law": ["cascade", Pursuit],
+        "comparison.variants": [{"name": "soft", "set": {"guidance.law": Pursuit}}],
+    }
     study = run(SHORT, jobs=2, **laws)
     assert list(study.flights) == [
         "nu_0.50_law_cascade", "nu_0.50_law_Pursuit", "nu_0.50_law_cascade_soft", "nu_0.50_law_Pursuit_soft",
     ]  # fmt: skip
-    assert study.flights["nu_0.50_law_cascade_soft"].history.equals(study.flights["nu_0.50_law_Pursuit"].history)
+    assert study.flights["nu_0.50_law_cascade_soft"].history.equals(
+        study.flights["nu_0.50_law_Pursuit"].history
+    )
 
 
 def test_reports_that_are_read_already_are_a_track():
     path = load("ship_from_ais")["vessel.track"]
-    scenario = load("ship_from_ais", track=read_ais(path, mmsi=219999001), flight={"duration_max_s": 60.0})
+    scenario = load(
+        "ship_from_ais", track=read_ais(path, mmsi=219999001), flight={"duration_max_s": 60.0}
+    )
     assert (scenario["vessel.track"], scenario["vessel.mmsi"]) == (path, 219999001)
     # In a section as well, which has no mmsi of its own then.
     in_section = load("ship_from_ais", vessel={"track": read_ais(path, mmsi=219999001)})
@@ -110,7 +127,9 @@ def test_a_track_is_given_as_a_class_or_as_an_object_of_which_flights_take_copie
     assert track.asked == 0
     assert by_object.met
     # The class is called with 0.5 times the UAV's 19.42 m/s, which is the 9.71 m/s of the object to rounding.
-    np.testing.assert_allclose(by_object.history["vessel_north_m"], by_class.history["vessel_north_m"], rtol=1e-12)
+    np.testing.assert_allclose(
+        by_object.history["vessel_north_m"], by_class.history["vessel_north_m"], rtol=1e-12
+    )
 
 
 def test_a_shape_of_the_same_name_is_not_taken_for_the_one_before():
@@ -136,7 +155,9 @@ def test_a_part_is_known_to_its_flights_alone():
 
 
 def test_a_law_as_an_object_may_have_parameters_of_numpy():
-    assert load(SHORT, law=Pursuit(gain=np.float64(1.5), lead_s=np.int64(2))) == load(SHORT, law=Pursuit(gain=1.5, lead_s=2))
+    assert load(SHORT, law=Pursuit(gain=np.float64(1.5), lead_s=np.int64(2))) == load(
+        SHORT, law=Pursuit(gain=1.5, lead_s=2)
+    )
 
 
 def test_numbers_of_numpy_are_numbers():
@@ -155,17 +176,35 @@ def local_law():
 @pytest.mark.parametrize(
     ("keys", "words"),
     [
-        ({"law": object()}, "guidance.law is an object of class object, which is no dataclass; write @dataclass(frozen=True)"),
+        (
+            {"law": object()},
+            "guidance.law is an object of class object, which is no dataclass; write @dataclass(frozen=True)",
+        ),
         ({"law": Clock}, "steering law 'Clock' has no method heading_rate()"),
         ({"law": lambda: None}, "has no name; define it by class or def"),
         ({"law": local_law()}, "guidance.law: 'Hidden' cannot be sent to other processes"),
-        ({"laws": [Pursuit, Pursuit(gain=2.0)]}, "laws is an object of class Pursuit; give the class itself"),
-        ({"aircraft": replace(X8, title="Mine")}, "aircraft 'x8' is known already, and is not the object that was given"),
-        ({"aircraft": replace(X8, name="737")}, "aircraft is an object called '737', as one of JSBSim's own is"),
-        ({"aircraft": X8.envelope}, "aircraft 'Envelope' is of type Envelope; it must be an AircraftSpec"),
+        (
+            {"laws": [Pursuit, Pursuit(gain=2.0)]},
+            "laws is an object of class Pursuit; give the class itself",
+        ),
+        (
+            {"aircraft": replace(X8, title="Mine")},
+            "aircraft 'x8' is known already, and is not the object that was given",
+        ),
+        (
+            {"aircraft": replace(X8, name="737")},
+            "aircraft is an object called '737', as one of JSBSim's own is",
+        ),
+        (
+            {"aircraft": X8.envelope},
+            "aircraft 'Envelope' is of type Envelope; it must be an AircraftSpec",
+        ),
         ({"seed": object()}, "seed is an object; it takes a number, a word or a list"),
         ({"wind": {"speed_mps": None}}, "wind.speed_mps: value is None"),
-        ({"wind": {"sped_mps": 1.0}}, "unknown key 'wind.sped_mps'; did you mean 'wind.speed_mps'?"),
+        (
+            {"wind": {"sped_mps": 1.0}},
+            "unknown key 'wind.sped_mps'; did you mean 'wind.speed_mps'?",
+        ),
         ({"following": {"standoff_m": 50.0}}, "key 'following.standoff_m' has no effect here"),
         ({"guidance": {"prevew": True}}, "did you mean 'guidance.preview'?"),
         ({"nu": "fast"}, "nu is 'fast'; give a number, as in nu=0.5, or a list of numbers"),
@@ -193,5 +232,7 @@ def test_a_directory_that_is_taken_is_refused_in_the_words_of_a_program(tmp_path
     with pytest.raises(InputError) as refused:
         fly(SHORT, nu=0.5, out=tmp_path)
     assert str(refused.value).startswith("out: output directory '")
-    assert str(refused.value).endswith("holds another run; give the path of a directory that is new or empty")
+    assert str(refused.value).endswith(
+        "holds another run; give the path of a directory that is new or empty"
+    )
     assert "--" not in str(refused.value).replace(str(tmp_path), "")

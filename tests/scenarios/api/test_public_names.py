@@ -40,7 +40,17 @@ ATTRIBUTES = {
 
 
 def test_the_public_names_are_these():
-    assert scenarios.__all__ == ["Flight", "InputError", "Run", "Scenario", "Statistics", "fly", "load", "read_ais", "run"]
+    assert scenarios.__all__ == [
+        "Flight",
+        "InputError",
+        "Run",
+        "Scenario",
+        "Statistics",
+        "fly",
+        "load",
+        "read_ais",
+        "run",
+    ]
     assert set(scenarios.__all__) <= set(dir(scenarios))
 
 
@@ -49,13 +59,18 @@ def test_signatures_are_these(name):
     first, _, rest = name.partition(".")
     found = getattr(scenarios, first)
     found = getattr(found, rest) if rest else found
-    bare = [parameter.replace(annotation=inspect.Parameter.empty) for parameter in inspect.signature(found).parameters.values()]
+    bare = [
+        parameter.replace(annotation=inspect.Parameter.empty)
+        for parameter in inspect.signature(found).parameters.values()
+    ]
     assert str(inspect.Signature(bare)) == SIGNATURES[name]
 
 
 @pytest.mark.parametrize("name", ATTRIBUTES)
 def test_attributes_are_these(name):
-    assert {attribute for attribute in dir(getattr(scenarios, name)) if not attribute.startswith("_")} == ATTRIBUTES[name]
+    assert {
+        attribute for attribute in dir(getattr(scenarios, name)) if not attribute.startswith("_")
+    } == ATTRIBUTES[name]
 
 
 @pytest.mark.parametrize("name", scenarios.__all__)
@@ -75,7 +90,13 @@ def test_an_unknown_name_is_an_attribute_error():
 
 
 def python(code):
-    found = subprocess.run([sys.executable, "-c", code], cwd=Path(__file__).parents[3], capture_output=True, text=True, check=False)
+    found = subprocess.run(
+        [sys.executable, "-c", code],
+        cwd=Path(__file__).parents[3],
+        capture_output=True,
+        text=True,
+        check=False,
+    )
     assert (found.returncode, found.stderr) == (0, ""), found.stderr
 
 

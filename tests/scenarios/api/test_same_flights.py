@@ -43,7 +43,17 @@ def file(tmp_path_factory):
 @pytest.fixture(scope="module")
 def by_command(file):
     out = file.parent / "by_command"
-    ended = run_command("scenarios.run", file, "--out", out, "--set", "guidance.look_ahead_m=55", "--jobs", "1", "--no-report")
+    ended = run_command(
+        "scenarios.run",
+        file,
+        "--out",
+        out,
+        "--set",
+        "guidance.look_ahead_m=55",
+        "--jobs",
+        "1",
+        "--no-report",
+    )
     assert ended.status == 0, ended
     return out
 
@@ -55,11 +65,18 @@ def by_program(file):
 
 def rows(path):
     with path.open(encoding="utf-8", newline="") as table:
-        return [{name: cell for name, cell in row.items() if name != TIMED} for row in csv.DictReader(table)]
+        return [
+            {name: cell for name, cell in row.items() if name != TIMED}
+            for row in csv.DictReader(table)
+        ]
 
 
 def test_files_of_a_run_are_the_same(by_command, by_program):
-    names = {path.relative_to(by_command) for path in by_command.rglob("*") if path.suffix in (".csv", ".parquet")}
+    names = {
+        path.relative_to(by_command)
+        for path in by_command.rglob("*")
+        if path.suffix in (".csv", ".parquet")
+    }
     # Two swept speed ratios, and the comparison at one of them.
     assert sum(name.suffix == ".parquet" for name in names) == 3
     for name in names:
@@ -83,15 +100,30 @@ def test_a_single_flight_is_that_of_the_run(file, by_program, tmp_path, flight_i
     flight = fly(file, flight_id=flight_id, histories=0, guidance={"look_ahead_m": 55})
     its = by_program.flights[flight_id]
     pd.testing.assert_series_equal(flight.row.drop(TIMED), its.row.drop(TIMED), check_exact=True)
-    assert flight.export(tmp_path / "flight.parquet").read_bytes() == its.export(tmp_path / "its.parquet").read_bytes()
+    assert (
+        flight.export(tmp_path / "flight.parquet").read_bytes()
+        == its.export(tmp_path / "its.parquet").read_bytes()
+    )
     assert flight.crossings.equals(its.crossings)
     assert len(flight.crossings) == 4
 
 
 @pytest.mark.usefixtures("x8_design")
 def test_an_aircraft_flies_the_same_in_both(tmp_path):
-    arguments = ("--set", "sweep.nu=[0.6]", "--set", "flight.crossings=4", "--seed", "5", "--no-report", "--jobs", "1")
-    assert run_command("scenarios.run", "sweep_nu", "--out", tmp_path / "run", *arguments).status == 0
+    arguments = (
+        "--set",
+        "sweep.nu=[0.6]",
+        "--set",
+        "flight.crossings=4",
+        "--seed",
+        "5",
+        "--no-report",
+        "--jobs",
+        "1",
+    )
+    assert (
+        run_command("scenarios.run", "sweep_nu", "--out", tmp_path / "run", *arguments).status == 0
+    )
     flight = fly("sweep_nu", nu=0.6, flight={"crossings": 4}, seed=5)
     assert flight.met
     recorded = tmp_path / "run" / "flights" / "nu_0.60.parquet"
@@ -108,7 +140,12 @@ def test_a_scenario_is_changed_as_by_the_command_line(file):
     assert scenario.changes == ("sweep.nu=[0.4]", "wind.speed_mps=3.0", "guidance.rate_hz=10")
     assert scenario["wind.speed_mps"] == 3.0
     assert scenario["comparison.variants.0.name"] == "no_guard"
-    for unknown in ("wind.sped_mps", "comparison.variants.1.name", "comparison.variants.name", "title.0"):
+    for unknown in (
+        "wind.sped_mps",
+        "comparison.variants.1.name",
+        "comparison.variants.name",
+        "title.0",
+    ):
         with pytest.raises(InputError, match="unknown key"):
             scenario[unknown]
     assert load(file).changes == ()

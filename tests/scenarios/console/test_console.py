@@ -76,13 +76,25 @@ def test_a_run_is_flown_reported_and_exported(file, tmp_path):
     ]
     ended = console("export", out, "--to", "geojson,tracks_csv", "--flight", "nu_0.50")
     assert ended.out.count("export: ") == 2
-    assert json.loads((out / "export" / "short.nu_0.50.geojson").read_text(encoding="utf-8"))["type"] == "FeatureCollection"
+    assert (
+        json.loads((out / "export" / "short.nu_0.50.geojson").read_text(encoding="utf-8"))["type"]
+        == "FeatureCollection"
+    )
 
 
 def test_a_log_is_estimated_as_by_the_program_that_stands_alone(tmp_path, capsys):
-    log, config = ROOT / "docs" / "examples" / "example_flight.csv", ROOT / "docs" / "examples" / "example_instrument.toml"
+    log, config = (
+        ROOT / "docs" / "examples" / "example_flight.csv",
+        ROOT / "docs" / "examples" / "example_instrument.toml",
+    )
     ended = console("estimate", log, "--config", config, "--out", tmp_path / "one", "--no-report")
-    assert ended.status == estimate_logged([str(log), "--config", str(config), "--out", str(tmp_path / "two"), "--no-report"]) == 0
+    assert (
+        ended.status
+        == estimate_logged(
+            [str(log), "--config", str(config), "--out", str(tmp_path / "two"), "--no-report"]
+        )
+        == 0
+    )
     assert ended.out.replace("one", "two") == capsys.readouterr().out
     assert_refused(console("estimate", tmp_path / "none.csv"), "none.csv")
 
@@ -99,12 +111,20 @@ def test_a_log_is_estimated_as_by_the_program_that_stands_alone(tmp_path, capsys
         (("report", "."), ("holds no run",)),
         (("run", "sweep_nu", "--set", "title="), ("title: value is ''; give one word at least",)),
         (("design", "x9"), ("unknown aircraft 'x9'",)),
-        (("describe", "wind.sped_mps"), ("unknown key 'wind.sped_mps'; did you mean 'wind.speed_mps'?",)),
+        (
+            ("describe", "wind.sped_mps"),
+            ("unknown key 'wind.sped_mps'; did you mean 'wind.speed_mps'?",),
+        ),
         (
             ("describe", "guidance.lead_s"),
-            ("did you mean 'guidance.law'? A key of a part of your own (FILE.py:NAME) is described in",),
+            (
+                "did you mean 'guidance.law'? A key of a part of your own (FILE.py:NAME) is described in",
+            ),
         ),
-        (("describe", "gravity_of_the_situation"), ("unknown key", "plume-flight describe lists the sections")),
+        (
+            ("describe", "gravity_of_the_situation"),
+            ("unknown key", "plume-flight describe lists the sections"),
+        ),
         (("new", "mine.toml", "--from", "sweep_un"), ("did you mean 'sweep_nu'?",)),
         (("new", "missing/mine.toml"), ("'missing/mine.toml' cannot be written",)),
     ],
@@ -116,7 +136,9 @@ def test_bad_input_is_one_line(arguments, words, tmp_path, monkeypatch):
 
 
 def test_what_is_swept_is_described_as_the_key_that_it_is():
-    assert console("describe", "sweep.wind.speed_mps").out == console("describe", "wind.speed_mps").out
+    assert (
+        console("describe", "sweep.wind.speed_mps").out == console("describe", "wind.speed_mps").out
+    )
     assert console("describe", "sweep.nu").out == console("describe", "nu").out
 
 
@@ -139,7 +161,9 @@ def test_keys_of_entries_of_parts_and_of_other_studies_are_described():
     assert "guidance.law 'npfg'" in "".join(described("guidance.npfg_period_s"))
     assert "".join(described("seed")).count("studies") == 3
     assert "Keys, each with a list of values" in "".join(described("nu"))
-    assert "alphasense_a4 or alphasense_b4 or electrochemical or fast or laser" in "".join(described("payload.sensor"))
+    assert "alphasense_a4 or alphasense_b4 or electrochemical or fast or laser" in "".join(
+        described("payload.sensor")
+    )
 
 
 def test_sections_are_listed_and_described():
@@ -160,7 +184,11 @@ def test_a_base_is_described_though_it_is_no_key():
 
 def test_a_unit_follows_a_number_alone():
     """Of a criterion that is off the default is false, and 0 is a number that Python takes for false."""
-    defaults = {line.split()[0]: " ".join(line.split()[1:3]) for line in described("criteria") if line.startswith("  ")}
+    defaults = {
+        line.split()[0]: " ".join(line.split()[1:3])
+        for line in described("criteria")
+        if line.startswith("  ")
+    }
     assert defaults["tracking_error_rms_m"] == "1.5 m"
     assert defaults["tracking_error_end_m"] == "false Largest"
     assert any(line.split()[:3] == ["speed_mps", "0.0", "m/s"] for line in described("wind"))
@@ -179,7 +207,12 @@ def test_a_new_file_holds_every_key_with_its_meaning():
     for section in documented_sections(Scenario):
         for key in section.keys:
             name = key.key.rpartition(".")[2]
-            assert f"\n{name} = " in text or f"\n# {name} =" in text or f"#   {name}: " in text or name == "sweep", key.key
+            assert (
+                f"\n{name} = " in text
+                or f"\n# {name} =" in text
+                or f"#   {name}: " in text
+                or name == "sweep"
+            ), key.key
     assert max(map(len, (line for line in text.splitlines() if line.startswith("# ")))) <= 120
 
 
@@ -201,7 +234,9 @@ def test_a_new_file_says_what_the_scenario_says_that_it_is_made_from(name, tmp_p
         'study = "falsify"\nextends = false\nvessel = { speed_ratio = 0.3 }\n',
     ],
 )
-def test_a_new_file_of_a_study_with_a_base_of_its_own_has_no_other_base_than_its_source(text, tmp_path):
+def test_a_new_file_of_a_study_with_a_base_of_its_own_has_no_other_base_than_its_source(
+    text, tmp_path
+):
     source, path = tmp_path / "source.toml", tmp_path / "mine.toml"
     draws = '[[draws]]\nkey = "start.range_m"\nuniform = [400.0, 900.0]\n'
     source.write_text(f'title = "Mine"\n{text}{draws}', encoding="utf-8")
@@ -215,7 +250,11 @@ def test_a_new_file_of_a_study_with_a_base_of_its_own_has_no_other_base_than_its
 def _leaves(values, before=""):
     leaves = {}
     for key, value in values.items():
-        leaves |= _leaves(value, f"{before}{key}.") if isinstance(value, dict) and value else {f"{before}{key}": value}
+        leaves |= (
+            _leaves(value, f"{before}{key}.")
+            if isinstance(value, dict) and value
+            else {f"{before}{key}": value}
+        )
     return leaves
 
 
@@ -228,7 +267,9 @@ def test_a_new_file_flies_the_same(file, tmp_path):
 def test_a_new_file_flies_the_comparisons_of_its_source(swept, compared, tmp_path):
     # Those of sweep_nu are of 0.15 and 0.5; the first of these sources flies none, and the second at one ratio.
     source, path = tmp_path / "source.toml", tmp_path / "mine.toml"
-    source.write_text(f'title = "Own"\nextends = "sweep_nu"\nsweep = {{ nu = {swept} }}\n', encoding="utf-8")
+    source.write_text(
+        f'title = "Own"\nextends = "sweep_nu"\nsweep = {{ nu = {swept} }}\n', encoding="utf-8"
+    )
     assert console("new", path, "--from", source).status == 0
     for file in (source, path):
         points = points_of(load_study(str(file)))
@@ -243,7 +284,11 @@ def test_a_file_that_is_there_is_not_overwritten(file):
 def test_a_new_list_of_trials_has_the_keys_of_one():
     lines = template("sea_trial", "mine.toml").splitlines()
     written = {line.removeprefix("# ").partition(" =")[0] for line in lines if " =" in line}
-    assert written == {key.key.rpartition(".")[2] for section in documented_sections(TrialList) for key in section.keys}
+    assert written == {
+        key.key.rpartition(".")[2]
+        for section in documented_sections(TrialList)
+        for key in section.keys
+    }
 
 
 @pytest.mark.parametrize("command", [("report",), ("export", "--to", "kmz")])

@@ -46,7 +46,9 @@ class Squares:
         return Result(task=task, tables={TABLE: [row]}, files=files)
 
     def lost(self, task, reason):
-        return Result(task=task, tables={TABLE: [{"number": task.number, "reason": reason}]}, lost=True)
+        return Result(
+            task=task, tables={TABLE: [{"number": task.number, "reason": reason}]}, lost=True
+        )
 
 
 def begun(marks, number):
@@ -73,7 +75,12 @@ class SquareStudy:
     what = "squares"
 
     def __init__(self, work, batches=(range(8),), recorded=(), config_hash="a"):
-        self._work, self._batches, self._recorded, self.config_hash = work, batches, recorded, config_hash
+        self._work, self._batches, self._recorded, self.config_hash = (
+            work,
+            batches,
+            recorded,
+            config_hash,
+        )
         self.planned, self.beside = sum(map(len, batches)), 0
         self.seen = []
 
@@ -97,7 +104,9 @@ class SquareStudy:
 
     def summary(self, journal):
         done = journal.items()
-        return StudySummary(done=done, met=done == self.planned, lines=[], manifest={"squares_done": done})
+        return StudySummary(
+            done=done, met=done == self.planned, lines=[], manifest={"squares_done": done}
+        )
 
 
 def fly(study, out, *, resume=False, jobs=0, progress=lambda *_: None):

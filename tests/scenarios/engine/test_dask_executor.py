@@ -68,7 +68,11 @@ def dask(command, *words, cwd):
 
 def fly(out, *, progress=lambda *_: None, **executors):
     return run_study(
-        load_study("sea_wind", SETTINGS), "sea_wind", out, executor_factory=ExecutorFactory(**executors), progress=progress
+        load_study("sea_wind", SETTINGS),
+        "sea_wind",
+        out,
+        executor_factory=ExecutorFactory(**executors),
+        progress=progress,
     )
 
 
@@ -89,12 +93,15 @@ def test_a_study_that_loses_a_worker_in_the_middle_has_the_rows_of_a_local_one(t
                 killed.append(done)
                 os.killpg(first.pid, signal.SIGKILL)
 
-        result = fly(tmp_path / "dask", executor="dask", scheduler=address, progress=kill_in_the_middle)
+        result = fly(
+            tmp_path / "dask", executor="dask", scheduler=address, progress=kill_in_the_middle
+        )
     assert killed == [2]
     assert result.all_met
     for table in ("summary.csv", "crossings.csv", "interventions.csv", "draws.csv"):
         local, remote = (
-            pd.read_csv(tmp_path / run / table).drop(columns="wall_time_s", errors="ignore") for run in ("local", "dask")
+            pd.read_csv(tmp_path / run / table).drop(columns="wall_time_s", errors="ignore")
+            for run in ("local", "dask")
         )
         pd.testing.assert_frame_equal(local, remote, check_exact=True)
     for path in sorted((tmp_path / "local" / "flights").iterdir()):
@@ -128,13 +135,17 @@ def test_runs_that_share_a_worker_keep_models_of_their_own_until_they_end(tmp_pa
 
 
 def test_a_limit_of_memory_with_which_no_worker_lives_is_refused_in_one_line(tmp_path):
-    with pytest.raises(InputError, match=r"--memory-limit is 0\.30 GiB; a Dask worker needs 1 GiB: raise the limit"):
+    with pytest.raises(
+        InputError, match=r"--memory-limit is 0\.30 GiB; a Dask worker needs 1 GiB: raise the limit"
+    ):
         fly(tmp_path / "run", executor="dask", limits=Limits(memory=round(0.3 * 2**30)))
 
 
 def test_a_scheduler_that_is_not_there_is_named_in_one_line(tmp_path, monkeypatch):
     monkeypatch.setattr("scenarios.engine.dask_executor.CONNECT_TIMEOUT", 0.3)
-    with pytest.raises(InputError, match=r"--scheduler tcp://127\.0\.0\.1:\d+ does not answer") as refused:
+    with pytest.raises(
+        InputError, match=r"--scheduler tcp://127\.0\.0\.1:\d+ does not answer"
+    ) as refused:
         fly(tmp_path / "run", executor="dask", scheduler=f"tcp://127.0.0.1:{free_port()}")
     assert "\n" not in str(refused.value)
 
@@ -148,7 +159,9 @@ def test_a_worker_without_the_program_is_named_in_one_line(monkeypatch):
         run=lambda _, *, on_error: {"tcp://127.0.0.1:1": raised} if on_error == "return" else {},
         close=lambda: closed.append(True),
     )
-    monkeypatch.setattr("scenarios.engine.dask_executor.distributed.Client", lambda *_, **__: client)
+    monkeypatch.setattr(
+        "scenarios.engine.dask_executor.distributed.Client", lambda *_, **__: client
+    )
     executor = ExecutorFactory(executor="dask", scheduler="tcp://127.0.0.1:2")(Reading(Path()))
     words = r"Dask worker tcp://127\.0\.0\.1:1 cannot run this program \(ModuleNotFoundError.*\); install it there"
     with pytest.raises(InputError, match=words), executor:

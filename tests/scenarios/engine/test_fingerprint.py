@@ -23,8 +23,15 @@ def imported(path):
 
 
 def test_every_package_that_a_flight_imports_is_in_the_hash():
-    found = {name for package in SOURCE for path in (ROOT / package).rglob("*.py") for name in imported(path)}
-    assert {name for name in found if (ROOT / name / "__init__.py").is_file()} - SHOWS == set(SOURCE)
+    found = {
+        name
+        for package in SOURCE
+        for path in (ROOT / package).rglob("*.py")
+        for name in imported(path)
+    }
+    assert {name for name in found if (ROOT / name / "__init__.py").is_file()} - SHOWS == set(
+        SOURCE
+    )
 
 
 @pytest.mark.parametrize(

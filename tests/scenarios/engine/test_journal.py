@@ -37,7 +37,9 @@ def journal(tmp_path):
 
 
 def result(number, *rows, lost=False, items=1, **tables):
-    return Result(task=Task(number=number), tables={"rows.csv": list(rows)} | tables, lost=lost, items=items)
+    return Result(
+        task=Task(number=number), tables={"rows.csv": list(rows)} | tables, lost=lost, items=items
+    )
 
 
 def rows(journal, table="rows.csv", **places):
@@ -52,7 +54,14 @@ def exported(journal, *columns):
 
 def test_rows_come_back_exactly(journal):
     # A sum that is no short decimal, the smallest and the largest numbers, and what there is beside numbers.
-    row = {"sum": 0.1 + 0.2, "small": 5e-324, "large": 1.7976931348623157e308, "whole": 2**60, "word": 'ψ, "β"\n', "yes": True}
+    row = {
+        "sum": 0.1 + 0.2,
+        "small": 5e-324,
+        "large": 1.7976931348623157e308,
+        "whole": 2**60,
+        "word": 'ψ, "β"\n',
+        "yes": True,
+    }
     journal.add(result(0, row | {"nothing": None, "endless": -math.inf}))
     assert rows(journal) == [row | {"nothing": None, "endless": -math.inf}]
     assert type(rows(journal)[0]["yes"]) is bool
@@ -66,7 +75,13 @@ def test_what_is_not_a_number_comes_back_as_such(journal):
 
 
 def test_figures_of_numpy_come_back_as_pythons_own(journal):
-    figures = {"a": np.float64(0.1), "b": np.float32(0.1), "c": np.int64(7), "d": np.bool_(False), "e": np.float64("nan")}
+    figures = {
+        "a": np.float64(0.1),
+        "b": np.float32(0.1),
+        "c": np.int64(7),
+        "d": np.bool_(False),
+        "e": np.float64("nan"),
+    }
     journal.add(result(0, figures))
     (row,) = rows(journal)
     # The nearest double to a float32 of 0.1, by IEEE 754.
@@ -77,7 +92,9 @@ def test_figures_of_numpy_come_back_as_pythons_own(journal):
 def test_rows_are_in_the_order_of_their_tasks_whatever_the_order_in_which_they_came(journal):
     for number in (7, 0, 10, 2):
         journal.add(result(number, {"n": number, "i": 0}, {"n": number, "i": 1}))
-    assert [(row["n"], row["i"]) for row in rows(journal)] == [(n, i) for n in (0, 2, 7, 10) for i in (0, 1)]
+    assert [(row["n"], row["i"]) for row in rows(journal)] == [
+        (n, i) for n in (0, 2, 7, 10) for i in (0, 1)
+    ]
     some = journal.numbered("rows.csv", first=2, below=10)
     assert [(number, row["n"]) for number, row in some] == [(2, 2), (2, 2), (7, 7), (7, 7)]
     assert [row["n"] for row in rows(journal, below=1)] == [0, 0]
@@ -145,12 +162,17 @@ def test_what_was_added_is_there_when_it_is_opened_again(tmp_path):
 def test_a_second_program_is_refused_in_a_line_until_the_first_is_gone(tmp_path):
     path = tmp_path / "journal.sqlite"
     holder = subprocess.Popen(
-        [sys.executable, "-c", HOLDS, str(path)], cwd=ROOT, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True
+        [sys.executable, "-c", HOLDS, str(path)],
+        cwd=ROOT,
+        stdin=subprocess.PIPE,
+        stdout=subprocess.PIPE,
+        text=True,
     )
     with holder:
         assert holder.stdout.readline() == "held\n"
         with pytest.raises(
-            InputError, match=r"another program is writing to .*; wait until it has ended, or choose another --out"
+            InputError,
+            match=r"another program is writing to .*; wait until it has ended, or choose another --out",
         ) as refused:
             Journal(path)
         assert "\n" not in str(refused.value)
@@ -249,7 +271,9 @@ def tampered(path, statement, *values):
     ],
 )
 @pytest.mark.parametrize("reading", [False, True])
-def test_a_result_that_is_not_as_it_was_added_is_refused_in_a_line(tmp_path, statement, values, reading):
+def test_a_result_that_is_not_as_it_was_added_is_refused_in_a_line(
+    tmp_path, statement, values, reading
+):
     path = tmp_path / "journal.sqlite"
     journal = Journal(path)
     for number in range(3):
@@ -262,7 +286,9 @@ def test_a_result_that_is_not_as_it_was_added_is_refused_in_a_line(tmp_path, sta
         assert journal.is_empty()
         journal.close()
         return
-    with pytest.raises(InputError, match=r"journal\.sqlite' is (damaged|not a journal of this version)") as refused:
+    with pytest.raises(
+        InputError, match=r"journal\.sqlite' is (damaged|not a journal of this version)"
+    ) as refused:
         Journal(path, reading=reading)
     assert "\n" not in str(refused.value)
 
@@ -282,7 +308,9 @@ def test_reading_writes_nothing_beside_it(journal, tmp_path):
     tmp_path.chmod(0o500)
     journal = Journal(path, reading=True)
     assert rows(journal) == [{"a": 1}]
-    assert [each.name for each in tmp_path.iterdir()] == ["journal.sqlite"]  # as it closes, SQLite would remove its own
+    assert [each.name for each in tmp_path.iterdir()] == [
+        "journal.sqlite"
+    ]  # as it closes, SQLite would remove its own
     journal.close()
     tmp_path.chmod(0o700)
     assert [each.name for each in tmp_path.iterdir()] == ["journal.sqlite"]

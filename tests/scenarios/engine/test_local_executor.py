@@ -67,9 +67,13 @@ def alone(tmp_path_factory):
 
 
 @pytest.mark.parametrize("jobs", [2, 7])
-def test_every_task_is_done_once_with_the_same_result_whatever_the_number_of_processes(alone, jobs, tmp_path):
+def test_every_task_is_done_once_with_the_same_result_whatever_the_number_of_processes(
+    alone, jobs, tmp_path
+):
     # A few milliseconds each, so that none is through with all before another has begun.
-    work = Squares(marks=tmp_path, does=dict.fromkeys(range(6), functools.partial(time.sleep, 0.005)))
+    work = Squares(
+        marks=tmp_path, does=dict.fromkeys(range(6), functools.partial(time.sleep, 0.005))
+    )
     assert fly(work, range(6), jobs=jobs) == alone
     assert [begun(tmp_path, number) for number in range(6)] == [1] * 6
     # Not in this process, and no more of them than were asked for.
@@ -161,23 +165,35 @@ def test_a_task_that_hangs_is_ended_and_lost(tmp_path):
 def memory():
     """Return what this process has of what is limited [bytes]."""
     status = Path("/proc/self/status").read_text(encoding="utf-8")
-    return 1024 * int(next(line.split()[1] for line in status.splitlines() if line.startswith("VmData")))
+    return 1024 * int(
+        next(line.split()[1] for line in status.splitlines() if line.startswith("VmData"))
+    )
 
 
-@pytest.mark.skipif(sys.platform != "linux", reason="other systems do not hold a process to its limit of data")
+@pytest.mark.skipif(
+    sys.platform != "linux", reason="other systems do not hold a process to its limit of data"
+)
 def test_a_task_that_runs_out_of_memory_is_lost_and_says_why(tmp_path):
     limit = memory() + 2**28
     # Four times what is left: refused at once, so that nothing of it is ever there.
-    results = fly(Squares(marks=tmp_path, does={2: functools.partial(bytearray, 2**30)}), range(6), limits=Limits(memory=limit))
+    results = fly(
+        Squares(marks=tmp_path, does={2: functools.partial(bytearray, 2**30)}),
+        range(6),
+        limits=Limits(memory=limit),
+    )
     assert_lost(results[2], f"ran out of memory; its limit is {limit / 2**20:.0f} MiB")
     assert_done(results, {*range(6)} - {2})
     assert begun(tmp_path, 2) == MAX_ATTEMPTS
     # Where there is no limit there is no lack.
-    assert not fly(Squares(marks=tmp_path, does={2: functools.partial(bytearray, 2**28)}), [2])[0].lost
+    assert not fly(Squares(marks=tmp_path, does={2: functools.partial(bytearray, 2**28)}), [2])[
+        0
+    ].lost
 
 
 def test_an_interrupt_ends_processes_at_once(tmp_path):
-    work = Squares(marks=tmp_path, does=dict.fromkeys(range(1, 9), functools.partial(time.sleep, LONG)))
+    work = Squares(
+        marks=tmp_path, does=dict.fromkeys(range(1, 9), functools.partial(time.sleep, LONG))
+    )
 
     def interrupted():
         with LocalExecutor(work, jobs=2, limits=Limits()) as executor:
@@ -247,5 +263,8 @@ def test_processes_whose_parent_is_killed_end_by_themselves(pause, later, tmp_pa
 
 
 def test_a_limit_of_memory_that_nothing_can_keep_is_refused_in_a_line(tmp_path):
-    with pytest.raises(InputError, match=r"--memory-limit is 0\.00 GiB; a process uses \d\.\d\d GiB before its first flight"):
+    with pytest.raises(
+        InputError,
+        match=r"--memory-limit is 0\.00 GiB; a process uses \d\.\d\d GiB before its first flight",
+    ):
         LocalExecutor(Squares(marks=tmp_path), jobs=1, limits=Limits(memory=2**20)).__enter__()

@@ -16,7 +16,11 @@ from tests.run_tables import change_manifest, manifest_of
 def state_of(out):
     """Return content, number and time of every file, and when it was written."""
     return {
-        path.relative_to(out).as_posix(): (path.read_bytes(), path.stat().st_ino, path.stat().st_mtime_ns)
+        path.relative_to(out).as_posix(): (
+            path.read_bytes(),
+            path.stat().st_ino,
+            path.stat().st_mtime_ns,
+        )
         for path in sorted(out.rglob("*"))
         if path.is_file()
     }
@@ -67,7 +71,9 @@ def test_the_duration_of_a_run_is_that_of_all_its_sessions(marks, out):
 
 
 @pytest.mark.parametrize("resume", [False, True])
-def test_a_run_that_was_killed_between_journal_and_manifest_is_begun_anew(marks, out, whole, monkeypatch, resume):
+def test_a_run_that_was_killed_between_journal_and_manifest_is_begun_anew(
+    marks, out, whole, monkeypatch, resume
+):
     study = SquareStudy(Squares(marks=marks))
     with monkeypatch.context() as patch:
         patch.setattr(RunDirectory, "write_json", lambda *_: os._exit(9))
@@ -92,7 +98,9 @@ def test_results_without_a_manifest_are_neither_overwritten_nor_believed(marks, 
     (out / "files").rmdir()
     before = state_of(out)
     for resume in (False, True):
-        with pytest.raises(InputError, match=r"has results without a manifest\.json; choose another --out"):
+        with pytest.raises(
+            InputError, match=r"has results without a manifest\.json; choose another --out"
+        ):
             fly(study, out, resume=resume)
     assert state_of(out) == before
 
@@ -103,7 +111,9 @@ def test_results_that_are_of_no_such_study_are_refused_in_a_line(marks, out):
             assert all(row["cube"] for row in journal.rows(TABLE))
 
     fly(SquareStudy(Squares(marks=marks)), out)
-    with pytest.raises(InputError, match=r"has results that do not fit its study \(KeyError: 'cube'\)"):
+    with pytest.raises(
+        InputError, match=r"has results that do not fit its study \(KeyError: 'cube'\)"
+    ):
         fly(Reads(Squares(marks=marks)), out, resume=True)
     # In a new run that is a fault of the program, and no line hides it.
     with pytest.raises(KeyError):
@@ -124,12 +134,20 @@ def test_of_two_that_resume_at_once_one_is_refused_in_a_line(marks, out, whole):
     fly(SquareStudy(work), out, progress=interrupt_at(2))
     context = multiprocessing.get_context("fork")
     barrier, results = context.Barrier(2), context.Queue()
-    both = [context.Process(target=resume, args=(SquareStudy(work), out, barrier, results)) for _ in range(2)]
+    both = [
+        context.Process(target=resume, args=(SquareStudy(work), out, barrier, results))
+        for _ in range(2)
+    ]
     for process in both:
         process.start()
-    refused, done = sorted((results.get(timeout=30), results.get(timeout=30)), key=lambda text: text == "True")
+    refused, done = sorted(
+        (results.get(timeout=30), results.get(timeout=30)), key=lambda text: text == "True"
+    )
     for process in both:
         process.join()
     assert done == "True"
-    assert refused == f"another program is writing to '{out}'; wait until it has ended, or choose another --out"
+    assert (
+        refused
+        == f"another program is writing to '{out}'; wait until it has ended, or choose another --out"
+    )
     assert (out / TABLE).read_bytes() == whole

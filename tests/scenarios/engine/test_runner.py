@@ -16,8 +16,15 @@ from tests.run_tables import manifest_of, rows_of, write_manifest
 
 def test_a_run_has_its_table_its_files_and_says_how_it_ended(marks, out):
     told = []
-    result = fly(SquareStudy(Squares(marks=marks)), out, progress=lambda *report: told.append(report))
-    assert (result.all_met, result.interrupted, result.planned, result.summary.done) == (True, False, 8, 8)
+    result = fly(
+        SquareStudy(Squares(marks=marks)), out, progress=lambda *report: told.append(report)
+    )
+    assert (result.all_met, result.interrupted, result.planned, result.summary.done) == (
+        True,
+        False,
+        8,
+        8,
+    )
     assert (result.what, result.directory) == ("squares", out)
     assert rows_of(out, TABLE) == [{"number": i, "square": float(i**2)} for i in range(8)]
     assert sorted(path.name for path in (out / "files").iterdir()) == [f"{i}.txt" for i in range(8)]
@@ -51,7 +58,9 @@ def test_an_interrupted_run_goes_on_where_it_was_and_comes_to_the_same(marks, ou
     assert (out / TABLE).read_bytes() == whole
 
 
-def test_results_stand_in_the_table_though_what_follows_from_them_fails_and_the_run_goes_on(marks, out, whole, monkeypatch):
+def test_results_stand_in_the_table_though_what_follows_from_them_fails_and_the_run_goes_on(
+    marks, out, whole, monkeypatch
+):
     def fail(*_):
         raise ZeroDivisionError("of a statistic")
 
@@ -71,7 +80,11 @@ def test_a_run_that_was_killed_before_its_tables_were_written_goes_on_too(marks,
     # As kill -9 leaves it: what was being written lies about, and nothing says that it has ended.
     (out / TABLE).unlink()
     write_manifest(out, study.initial_manifest() | {"state": "running"})
-    parts = [out / f".{TABLE}.123.part", out / ".probe-0a1b.part", out / "files" / ".5.txt.123.part"]
+    parts = [
+        out / f".{TABLE}.123.part",
+        out / ".probe-0a1b.part",
+        out / "files" / ".5.txt.123.part",
+    ]
     for part in parts:
         part.write_bytes(b"half")
     assert fly(study, out, resume=True).all_met
@@ -101,7 +114,9 @@ def test_tasks_that_are_recorded_are_flown_for_their_files_alone(marks, out, who
     assert [done for doing, done, _ in told if doing == "flying"] == list(range(9))
 
 
-def test_a_task_whose_process_was_lost_is_a_row_and_is_tried_again_when_the_run_goes_on(marks, out, whole):
+def test_a_task_whose_process_was_lost_is_a_row_and_is_tried_again_when_the_run_goes_on(
+    marks, out, whole
+):
     def dies():
         os.kill(os.getpid(), signal.SIGKILL)
 
@@ -186,12 +201,16 @@ def test_any_other_trouble_with_files_is_not_taken_for_a_full_disk(marks, out, m
         raise PermissionError(errno.EACCES, os.strerror(errno.EACCES))
 
     monkeypatch.setattr(RunDirectory, "write_bytes", denied)
-    with pytest.raises(InputError, match=rf"'{re.escape(str(out))}' cannot be used: Permission denied; fix that") as refused:
+    with pytest.raises(
+        InputError, match=rf"'{re.escape(str(out))}' cannot be used: Permission denied; fix that"
+    ) as refused:
         fly(SquareStudy(Squares(marks=marks)), out)
     assert "\n" not in str(refused.value)
 
 
-def test_a_journal_that_cannot_be_opened_is_refused_in_a_line_and_the_run_continues_once_it_can(marks, out, whole):
+def test_a_journal_that_cannot_be_opened_is_refused_in_a_line_and_the_run_continues_once_it_can(
+    marks, out, whole
+):
     study = SquareStudy(Squares(marks=marks))
     fly(study, out, progress=interrupt_at(3))
     # A directory in the place of SQLite's log refuses every user, root too, as a file system without write access does.
@@ -209,7 +228,9 @@ def test_a_journal_that_cannot_be_opened_is_refused_in_a_line_and_the_run_contin
 def test_a_journal_that_cannot_be_opened_to_be_read_is_refused_in_a_line_too(marks, out):
     fly(SquareStudy(Squares(marks=marks)), out)
     (out / "journal.sqlite-wal").mkdir()
-    with pytest.raises(InputError, match=r"cannot be used: unable to open .* writable, then try again$") as refused:
+    with pytest.raises(
+        InputError, match=r"cannot be used: unable to open .* writable, then try again$"
+    ) as refused:
         Journal(out / "journal.sqlite", reading=True)
     assert "\n" not in str(refused.value)
 
@@ -274,6 +295,8 @@ def test_a_journal_that_is_damaged_further_in_is_refused_in_a_line(marks, out):
     # The first page says what there is, the second holds it.
     content[4096:8192] = b"\xff" * 4096
     (out / "journal.sqlite").write_bytes(content)
-    with pytest.raises(InputError, match=r"journal\.sqlite' is damaged; start a new run") as refused:
+    with pytest.raises(
+        InputError, match=r"journal\.sqlite' is damaged; start a new run"
+    ) as refused:
         fly(study, out, resume=True)
     assert "\n" not in str(refused.value)

@@ -41,7 +41,14 @@ def fly(path, out, reports=None):
 
     resume = (out / "manifest.json").is_file()
     executor_factory = ExecutorFactory(jobs=2)
-    run_study(load_study(str(path)), path.stem, out, executor_factory=executor_factory, resume=resume, progress=progress)
+    run_study(
+        load_study(str(path)),
+        path.stem,
+        out,
+        executor_factory=executor_factory,
+        resume=resume,
+        progress=progress,
+    )
 
 
 def await_reports(reports, count):
@@ -76,7 +83,12 @@ def wall_times(out):
 def children(pid):
     """Return the processes that a process has started."""
     try:
-        return [int(child) for child in Path(f"/proc/{pid}/task/{pid}/children").read_text(encoding="ascii").split()]
+        return [
+            int(child)
+            for child in Path(f"/proc/{pid}/task/{pid}/children")
+            .read_text(encoding="ascii")
+            .split()
+        ]
     except OSError:
         return []
 
@@ -123,7 +135,9 @@ def assert_nobody_is_left(group):
     pytest.fail("processes outlived their parent")
 
 
-def test_killed_at_nine_random_moments_it_ends_as_if_nothing_had_happened(trial, undisturbed, tmp_path):
+def test_killed_at_nine_random_moments_it_ends_as_if_nothing_had_happened(
+    trial, undisturbed, tmp_path
+):
     out, random = tmp_path / "run", np.random.default_rng(20261121)
     context = multiprocessing.get_context("fork")
     done: list[dict] = []
@@ -151,13 +165,20 @@ def test_killed_at_nine_random_moments_it_ends_as_if_nothing_had_happened(trial,
     for flights in done:
         assert flights.items() <= final.items()
     for table in ("summary.csv", "crossings.csv", "interventions.csv", "draws.csv"):
-        whole, pieced = (pd.read_csv(run / table).drop(columns="wall_time_s", errors="ignore") for run in (undisturbed, out))
+        whole, pieced = (
+            pd.read_csv(run / table).drop(columns="wall_time_s", errors="ignore")
+            for run in (undisturbed, out)
+        )
         pd.testing.assert_frame_equal(whole, pieced, check_exact=True)
     names = sorted(path.name for path in (undisturbed / "flights").iterdir())
     # An even sample of ten; and the closest and the median flight, where they are not among them.
     assert 10 <= len(names) <= 13
     assert sorted(path.name for path in (out / "flights").iterdir()) == names
     for name in names:
-        assert (out / "flights" / name).read_bytes() == (undisturbed / "flights" / name).read_bytes()
+        assert (out / "flights" / name).read_bytes() == (
+            undisturbed / "flights" / name
+        ).read_bytes()
     # Nor is anything left lying about.
-    assert sorted(path.name for path in out.iterdir()) == sorted(path.name for path in undisturbed.iterdir())
+    assert sorted(path.name for path in out.iterdir()) == sorted(
+        path.name for path in undisturbed.iterdir()
+    )

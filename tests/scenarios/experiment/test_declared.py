@@ -16,7 +16,12 @@ SPEED = 19.42
 
 def scenario(**changes):
     """Return a kinematic scenario of a vessel at 8 m/s."""
-    base = {"title": "test", "fidelity": "kinematic", "vessel": {"speed_mps": 8.0}, "guidance": {"mission": "follow"}}
+    base = {
+        "title": "test",
+        "fidelity": "kinematic",
+        "vessel": {"speed_mps": 8.0},
+        "guidance": {"mission": "follow"},
+    }
     return Scenario.model_validate(base | changes)
 
 
@@ -25,7 +30,10 @@ def manoeuvring(at_s, **second):
     turn = {"at_s": 50.0, "turn_deg": 90.0, "turn_rate_deg_s": 1.0}
     braking = {"at_s": at_s, "speed_mps": 2.0, "acceleration_mps2": 0.2} | second
     return scenario(
-        vessel={"speed_mps": 10.0, "manoeuvres": [turn | braking] if at_s == turn["at_s"] else [turn, braking]},
+        vessel={
+            "speed_mps": 10.0,
+            "manoeuvres": [turn | braking] if at_s == turn["at_s"] else [turn, braking],
+        },
         following={"vessel_acceleration_mps2": 0.25},
         draws=[{"key": "wind.speed_mps", "uniform": [0.0, 1.0]}],
     )
@@ -38,16 +46,22 @@ def test_changes_of_speed_and_of_course_count_together():
     # Of a table of 0.05 s, in which the speed has fallen by 0.01 m/s, and of what is allowed for rounding, 0.001.
     assert beyond_declared(manoeuvring(50.0), [0.0]) == pytest.approx(excess, abs=2e-3)
     assert beyond_declared(manoeuvring(200.0, acceleration_mps2=0.25), [0.0]) == 0.0
-    assert beyond_declared(manoeuvring(200.0, acceleration_mps2=0.3), [0.0]) == pytest.approx(0.2, abs=2e-3)
+    assert beyond_declared(manoeuvring(200.0, acceleration_mps2=0.3), [0.0]) == pytest.approx(
+        0.2, abs=2e-3
+    )
 
 
 def test_without_a_declared_acceleration_any_is_within():
-    free = manoeuvring(50.0, acceleration_mps2=0.9).model_copy(update={"following": scenario().following})
+    free = manoeuvring(50.0, acceleration_mps2=0.9).model_copy(
+        update={"following": scenario().following}
+    )
     assert beyond_declared(free, [0.0]) == 0.0
 
 
 def test_speed_ratios_are_within_their_limits():
-    still = scenario(speed_ratio=(0.3, 0.5), draws=[{"key": "vessel.speed_mps", "uniform": [0.0, 2.0 * SPEED]}])
+    still = scenario(
+        speed_ratio=(0.3, 0.5), draws=[{"key": "vessel.speed_mps", "uniform": [0.0, 2.0 * SPEED]}]
+    )
     # nu is twice the coordinate.
     found = [beyond_declared(still, [coordinate]) for coordinate in (0.1, 0.2, 0.4)]
     assert found == pytest.approx([0.1, 0.0, 0.3])
@@ -55,9 +69,15 @@ def test_speed_ratios_are_within_their_limits():
 
 def test_values_that_contradict_each_other_are_beyond():
     times = [{"key": f"vessel.manoeuvres.{i}.at_s", "uniform": [0.0, 100.0]} for i in (0, 1)]
-    both = scenario(vessel={"manoeuvres": [{"at_s": 10.0, "turn_deg": 5.0}, {"at_s": 30.0}]}, draws=times)
+    both = scenario(
+        vessel={"manoeuvres": [{"at_s": 10.0, "turn_deg": 5.0}, {"at_s": 30.0}]}, draws=times
+    )
     # In their order, in the wrong one, and the second before the first one's ten seconds are over.
-    assert [beyond_declared(both, point) for point in ([0.2, 0.8], [0.8, 0.2], [0.2, 0.25])] == [0.0, 1.0, 1.0]
+    assert [beyond_declared(both, point) for point in ([0.2, 0.8], [0.8, 0.2], [0.2, 0.25])] == [
+        0.0,
+        1.0,
+        1.0,
+    ]
 
 
 def test_the_space_knows_choices_times_directions_and_noise():

@@ -29,15 +29,23 @@ def below(distribution, within):
         ({"normal": (8.0, 2.0), "within": (5.0, 9.0)}, stats.truncnorm(-1.5, 0.5, 8.0, 2.0).ppf),
         # Cut off on one side of its mean.
         ({"normal": (8.0, 2.0), "within": (10.0, 14.0)}, stats.truncnorm(1.0, 3.0, 8.0, 2.0).ppf),
-        ({"weibull": (2.0, 8.0), "within": (3.0, 12.0)}, below(stats.weibull_min(2.0, scale=8.0), (3.0, 12.0))),
+        (
+            {"weibull": (2.0, 8.0), "within": (3.0, 12.0)},
+            below(stats.weibull_min(2.0, scale=8.0), (3.0, 12.0)),
+        ),
         # Nothing of it lies below 0.
-        ({"weibull": (2.0, 8.0), "within": (-5.0, 12.0)}, below(stats.weibull_min(2.0, scale=8.0), (0.0, 12.0))),
+        (
+            {"weibull": (2.0, 8.0), "within": (-5.0, 12.0)},
+            below(stats.weibull_min(2.0, scale=8.0), (0.0, 12.0)),
+        ),
     ],
 )
 def test_a_value_is_the_quantile_of_its_share(values, quantile):
     draw = DrawConfig(key="wind.speed_mps", **values)
     # Both invert by series that are good to some 1e-14 of the quantile; a share near 1 has 1e-16/1e-6 of its complement.
-    assert [value_at(draw, share) for share in SHARES] == pytest.approx([float(quantile(share)) for share in SHARES], rel=1e-9)
+    assert [value_at(draw, share) for share in SHARES] == pytest.approx(
+        [float(quantile(share)) for share in SHARES], rel=1e-9
+    )
 
 
 @pytest.mark.parametrize(
@@ -66,7 +74,14 @@ def test_a_choice_takes_as_much_of_its_distribution_as_it_weighs():
     weighed = DrawConfig(key="fault.kind", choice=("a", "b", "c"), weights=(2.0, 0.0, 2.0))
     assert [value_at(weighed, share) for share in (0.0, 0.49, 0.5, 1.0)] == ["a", "a", "c", "c"]
     alike = DrawConfig(key="fault.kind", choice=("a", "b", "c"))
-    assert [value_at(alike, share) for share in (0.0, 0.33, 0.34, 0.66, 0.67, 1.0)] == ["a", "a", "b", "b", "c", "c"]
+    assert [value_at(alike, share) for share in (0.0, 0.33, 0.34, 0.66, 0.67, 1.0)] == [
+        "a",
+        "a",
+        "b",
+        "b",
+        "c",
+        "c",
+    ]
 
 
 @pytest.mark.parametrize(
@@ -74,13 +89,25 @@ def test_a_choice_takes_as_much_of_its_distribution_as_it_weighs():
     [
         ({}, "has none of uniform, normal, weibull and choice; give one"),
         ({"uniform": [0.0, 1.0], "normal": [0.0, 1.0]}, "has uniform and normal of uniform"),
-        ({"uniform": [1.0, 0.0]}, "uniform of the draw of 'wind.speed_mps' is .* its first value must not exceed"),
+        (
+            {"uniform": [1.0, 0.0]},
+            "uniform of the draw of 'wind.speed_mps' is .* its first value must not exceed",
+        ),
         ({"normal": [5.0, 1.0], "within": [6.0, 4.0]}, "within of the draw of 'wind.speed_mps' is"),
-        ({"uniform": [0.0, 1.0], "within": [0.0, 1.0]}, "has within beside uniform; it cuts off a normal or a weibull"),
+        (
+            {"uniform": [0.0, 1.0], "within": [0.0, 1.0]},
+            "has within beside uniform; it cuts off a normal or a weibull",
+        ),
         ({"normal": [5.0, 0.0]}, "greater than 0"),
         ({"weibull": [0.0, 8.0]}, "greater than 0"),
-        ({"choice": [1.0, 2.0], "weights": [1.0]}, "has weights .* give each choice one, with a sum above 0"),
-        ({"choice": [1.0, 2.0], "weights": [1e308, 1e308]}, "give each choice one, with a sum above 0"),
+        (
+            {"choice": [1.0, 2.0], "weights": [1.0]},
+            "has weights .* give each choice one, with a sum above 0",
+        ),
+        (
+            {"choice": [1.0, 2.0], "weights": [1e308, 1e308]},
+            "give each choice one, with a sum above 0",
+        ),
         ({"choice": [1.0, 2.0], "weights": [0.0, 0.0]}, "give each choice one, with a sum above 0"),
         ({"choice": [1.0, 2.0], "weights": [-1.0, 2.0]}, "greater than or equal to 0"),
         ({"normal": [5.0, 1.0], "weights": [1.0]}, "has weights .* give each choice one"),

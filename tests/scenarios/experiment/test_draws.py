@@ -14,7 +14,9 @@ SPEED = 19.42
 
 def scenario(**changes):
     """Return a kinematic scenario: a vessel at 8 m/s in calm air unless ``changes`` say otherwise."""
-    return Scenario.model_validate({"title": "test", "fidelity": "kinematic", "vessel": {"speed_mps": 8.0}} | changes)
+    return Scenario.model_validate(
+        {"title": "test", "fidelity": "kinematic", "vessel": {"speed_mps": 8.0}} | changes
+    )
 
 
 WINDS = (
@@ -36,7 +38,10 @@ def test_a_flight_is_drawn_by_the_trials_seed_its_name_and_its_number_alone():
     ]
     assert len({drawn.scenario.wind.from_deg for drawn in [again, *others]}) == 4
     assert len({drawn.seed for drawn in [again, *others]}) == 4
-    assert sampled_flight("trial", scenario(draws=WINDS, flights=1000), 5).scenario.wind == again.scenario.wind
+    assert (
+        sampled_flight("trial", scenario(draws=WINDS, flights=1000), 5).scenario.wind
+        == again.scenario.wind
+    )
     # What was drawn is what was set.
     assert again.values == {
         "wind.speed_mps": again.scenario.wind.speed_mps,
@@ -51,20 +56,29 @@ def test_draws_stay_within_their_ranges_and_choices_are_dealt_equally():
     speeds = [flight.wind.speed_mps for flight in flights]
     assert 2.0 <= min(speeds) < 3.0
     assert 5.0 < max(speeds) <= 6.0
-    assert Counter(flight.fault.kind for flight in flights) == {"none": 20, "vessel_data": 20, "satellite_navigation": 20}
+    assert Counter(flight.fault.kind for flight in flights) == {
+        "none": 20,
+        "vessel_data": 20,
+        "satellite_navigation": 20,
+    }
 
 
 def test_a_flight_knows_its_speed_ratio():
     # 8 m/s north against 4 m/s from the north: 12 m/s through the air.
     flight = scenario(wind={"speed_mps": 4.0, "from_deg": 0.0})
-    assert speed_ratios(sampled_flight("trial", flight, 0).scenario) == pytest.approx((12.0 / SPEED, 12.0 / SPEED))
+    assert speed_ratios(sampled_flight("trial", flight, 0).scenario) == pytest.approx(
+        (12.0 / SPEED, 12.0 / SPEED)
+    )
 
 
 def test_flights_keep_to_their_speed_ratios_also_after_a_manoeuvre():
     trial = scenario(
         speed_ratio=[0.3, 0.5],
         draws=[{"key": "wind.speed_mps", "uniform": [0.0, 10.0]}],
-        vessel={"speed_mps": 8.0, "manoeuvres": [{"at_s": 100.0, "turn_deg": 180.0, "turn_rate_deg_s": 1.0}]},
+        vessel={
+            "speed_mps": 8.0,
+            "manoeuvres": [{"at_s": 100.0, "turn_deg": 180.0, "turn_rate_deg_s": 1.0}],
+        },
     )
     for number in range(5):
         drawn = sampled_flight("trial", trial, number)
@@ -78,7 +92,9 @@ def test_flights_keep_to_their_speed_ratios_also_after_a_manoeuvre():
 def test_speed_ratios_that_no_draw_has_are_refused_in_a_line():
     draws = [{"key": "wind.from_deg", "uniform": [0.0, 360.0]}]
     trial = scenario(speed_ratio=[0.8, 0.9], draws=draws, flight={"duration_max_s": 10.0})
-    with pytest.raises(InputError, match=r"trial 'trial': 1000 samples .* within 0.8 to 0.9; .* widen speed_ratio"):
+    with pytest.raises(
+        InputError, match=r"trial 'trial': 1000 samples .* within 0.8 to 0.9; .* widen speed_ratio"
+    ):
         sampled_flight("trial", trial, 0)
 
 
@@ -89,12 +105,18 @@ def test_speed_ratios_that_no_draw_has_are_refused_in_a_line():
         ({"key": "vessel.speed_mps", "uniform": [5.0, 500.0]}, "vessel.speed_mps is 500.0"),
         ({"key": "vessel.speed_mps", "uniform": [-5.0, 10.0]}, "vessel.speed_mps is -5.0"),
         # Only the third flight would have met it.
-        ({"key": "plume.direction", "choice": ["given", "apparent_wind", "up"]}, "plume.direction: value is 'up'"),
+        (
+            {"key": "plume.direction", "choice": ["given", "apparent_wind", "up"]},
+            "plume.direction: value is 'up'",
+        ),
         ({"key": "title.first", "choice": ["a"]}, "'title' is a value, not a section"),
         # 8 m/s on average, but a normal distribution has no end.
         ({"key": "vessel.speed_mps", "normal": [8.0, 2.0]}, "vessel.speed_mps is -"),
         # Some 4e-12 of it lies beyond 41 m/s: rounding takes a little from the limit.
-        ({"key": "wind.speed_mps", "weibull": [2.0, 8.0], "within": [0.0, 41.0]}, "wind.speed_mps is 40.9999"),
+        (
+            {"key": "wind.speed_mps", "weibull": [2.0, 8.0], "within": [0.0, 41.0]},
+            "wind.speed_mps is 40.9999",
+        ),
         (
             {"key": "vessel.manoeuvres.0.turn_deg", "uniform": [-90.0, 90.0]},
             r"vessel\.manoeuvres has no entries; add one with --set 'vessel\.manoeuvres=\[\{at_s=100, turn_deg=-90\.0\}\]'",
@@ -131,17 +153,26 @@ def test_what_is_drawn_is_distributed_as_was_said():
 
 
 def test_choices_with_weights_come_as_often_as_they_weigh():
-    draw = {"key": "fault.kind", "choice": ["none", "vessel_data", "satellite_navigation", "engine"], "weights": [6, 3, 1, 0]}
+    draw = {
+        "key": "fault.kind",
+        "choice": ["none", "vessel_data", "satellite_navigation", "engine"],
+        "weights": [6, 3, 1, 0],
+    }
     trial = scenario(draws=[draw], flight={"duration_max_s": 300.0})
     count = 600
-    drawn = Counter(sampled_flight("trial", trial, number).values["fault.kind"] for number in range(count))
+    drawn = Counter(
+        sampled_flight("trial", trial, number).values["fault.kind"] for number in range(count)
+    )
     for kind, weight in zip(draw["choice"], draw["weights"], strict=True):
         share = weight / 10.0
         # Four standard deviations of a binomial count; what has no weight never comes.
         assert abs(drawn[kind] - count * share) <= 4.0 * math.sqrt(count * share * (1.0 - share))
 
 
-MANOEUVRES = {"speed_mps": 8.0, "manoeuvres": [{"at_s": 50.0, "turn_deg": 10.0}, {"at_s": 150.0, "turn_deg": 20.0}]}
+MANOEUVRES = {
+    "speed_mps": 8.0,
+    "manoeuvres": [{"at_s": 50.0, "turn_deg": 10.0}, {"at_s": 150.0, "turn_deg": 20.0}],
+}
 
 
 def test_a_key_within_a_list_is_drawn_and_the_rest_of_the_list_stays():
@@ -163,14 +194,20 @@ def test_a_key_within_a_list_can_be_set_like_any_other():
     both = ["vessel.manoeuvres=[{at_s = 10.0, turn_deg = 20.0}]", "vessel.manoeuvres.0.turn_deg=35"]
     (manoeuvre,) = load_study("sea_wind", both).vessel.manoeuvres
     assert (manoeuvre.at_s, manoeuvre.turn_deg) == (10.0, 35.0)
-    with pytest.raises(InputError, match=r"vessel.manoeuvres has 1 entry, numbered from 0, and '1' is not one of them"):
+    with pytest.raises(
+        InputError,
+        match=r"vessel.manoeuvres has 1 entry, numbered from 0, and '1' is not one of them",
+    ):
         load_study("sea_wind", [both[0], "vessel.manoeuvres.1.turn_deg=35"])
 
 
 def test_an_index_beyond_the_list_is_refused_before_anything_is_flown():
-    trial = scenario(vessel=MANOEUVRES, draws=[{"key": "vessel.manoeuvres.2.turn_deg", "uniform": [30.0, 60.0]}])
+    trial = scenario(
+        vessel=MANOEUVRES, draws=[{"key": "vessel.manoeuvres.2.turn_deg", "uniform": [30.0, 60.0]}]
+    )
     with pytest.raises(
-        InputError, match=r"unknown key 'vessel.manoeuvres.2.turn_deg'; vessel.manoeuvres has 2 entries, numbered from 0"
+        InputError,
+        match=r"unknown key 'vessel.manoeuvres.2.turn_deg'; vessel.manoeuvres has 2 entries, numbered from 0",
     ):
         check_draws("trial", trial)
 
@@ -180,8 +217,14 @@ def test_an_index_beyond_the_list_is_refused_before_anything_is_flown():
     [
         ("aircraft", "draws has 'aircraft', the same for all flights"),
         ("guidance.airspeed_mps", "are worked out once for it: give each value a run of its own"),
-        ("plume.source_height_m", "worked out once for the altitude at the start.*: give flight.altitude_m, or each value"),
-        ("flight.altitude_min_m", "worked out once for the altitude at the start.*: give flight.altitude_m, or each value"),
+        (
+            "plume.source_height_m",
+            "worked out once for the altitude at the start.*: give flight.altitude_m, or each value",
+        ),
+        (
+            "flight.altitude_min_m",
+            "worked out once for the altitude at the start.*: give flight.altitude_m, or each value",
+        ),
     ],
 )
 def test_a_key_for_which_the_autopilot_is_designed_cannot_be_drawn(key, words):
@@ -190,7 +233,9 @@ def test_a_key_for_which_the_autopilot_is_designed_cannot_be_drawn(key, words):
 
 
 @pytest.mark.parametrize("section", ["sweep", "draws"])
-def test_limits_of_the_altitude_differ_from_flight_to_flight_where_that_of_the_design_is_given(section):
+def test_limits_of_the_altitude_differ_from_flight_to_flight_where_that_of_the_design_is_given(
+    section,
+):
     varied = {
         "sweep": {"flight.altitude_max_m": [60.0, 80.0]},
         "draws": [{"key": "flight.altitude_max_m", "uniform": [60.0, 80.0]}],
@@ -211,7 +256,9 @@ def test_a_point_says_where_each_key_is_in_its_distribution():
     drawn = sampled_flight("trial", trial, 5, (0.5, 0.25, 0.9))
     assert drawn.values == {
         # The median of what is below 9 m/s, by hand: 4 (-ln(1 - F(9)/2))^(1/2), F(9) = 1 - exp(-(9/4)^2).
-        "wind.speed_mps": pytest.approx(4.0 * math.sqrt(-math.log(1.0 - 0.5 * (1.0 - math.exp(-((9.0 / 4.0) ** 2))))), rel=1e-12),
+        "wind.speed_mps": pytest.approx(
+            4.0 * math.sqrt(-math.log(1.0 - 0.5 * (1.0 - math.exp(-((9.0 / 4.0) ** 2))))), rel=1e-12
+        ),
         "wind.from_deg": 90.0,
         "fault.kind": "satellite_navigation",
     }
@@ -221,7 +268,11 @@ def test_a_point_says_where_each_key_is_in_its_distribution():
 
 
 def test_a_point_outside_the_range_of_speed_ratios_is_sampled_again_at_random():
-    trial = scenario(draws=[{"key": "wind.from_deg", "uniform": [0.0, 360.0]}], wind={"speed_mps": 6.0}, speed_ratio=[0.5, 0.75])
+    trial = scenario(
+        draws=[{"key": "wind.from_deg", "uniform": [0.0, 360.0]}],
+        wind={"speed_mps": 6.0},
+        speed_ratio=[0.5, 0.75],
+    )
     inside, outside = (sampled_flight("trial", trial, 3, (share,)) for share in (0.0, 0.5))
     # 8 m/s north with 6 m/s against it are 14, with it 2: 0.72 and 0.10 of 19.42.
     assert inside.values == {"wind.from_deg": 0.0}
@@ -235,4 +286,7 @@ def test_flights_with_a_seed_of_their_own_share_it():
     trial = scenario(draws=WINDS, flight_seed=17)
     assert [sampled_flight("trial", trial, number).seed for number in range(3)] == [17] * 3
     # What is drawn is not a part of it.
-    assert len({sampled_flight("trial", trial, number).scenario.wind.from_deg for number in range(3)}) == 3
+    assert (
+        len({sampled_flight("trial", trial, number).scenario.wind.from_deg for number in range(3)})
+        == 3
+    )

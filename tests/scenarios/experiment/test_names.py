@@ -10,7 +10,9 @@ MANOEUVRES = [{"at_s": 100.0, "turn_deg": 20.0}, {"at_s": 200.0, "turn_deg": -20
 
 
 def names(**keys):
-    return Experiment("own", Scenario.model_validate({"title": "own", "guidance": {"mission": "follow"}, **keys})).names()
+    return Experiment(
+        "own", Scenario.model_validate({"title": "own", "guidance": {"mission": "follow"}, **keys})
+    ).names()
 
 
 def test_swept_keys_that_end_alike_are_told_apart_by_as_many_of_their_last_parts_as_that_takes():
@@ -21,7 +23,10 @@ def test_swept_keys_that_end_alike_are_told_apart_by_as_many_of_their_last_parts
         "wind_speed_mps_5_vessel_speed_mps_6",
     ]
     # A third key whose end is its own keeps its name.
-    assert names(sweep=SPEEDS | {"keepout.radius_m": [150.0]})[0] == "wind_speed_mps_0_vessel_speed_mps_3_radius_m_150"
+    assert (
+        names(sweep=SPEEDS | {"keepout.radius_m": [150.0]})[0]
+        == "wind_speed_mps_0_vessel_speed_mps_3_radius_m_150"
+    )
 
 
 def test_entries_of_a_list_are_told_apart_by_the_number_and_the_name_of_the_list():

@@ -16,7 +16,9 @@ def test_a_point_depends_on_its_number_and_the_studys_seed_alone(sampling):
     whole = points(sampling, 600)
     # Asked for one by one and backwards, as tasks come from processes in any order.
     other = Points(sampling, dimension=5, flights=1024, seed=3)
-    assert [other.at(number) for number in (599, 3, 256, 255)] == [tuple(whole[number]) for number in (599, 3, 256, 255)]
+    assert [other.at(number) for number in (599, 3, 256, 255)] == [
+        tuple(whole[number]) for number in (599, 3, 256, 255)
+    ]
     assert not np.array_equal(whole, points(sampling, 600, seed=4))
 
 

@@ -33,7 +33,12 @@ def requests_of(**keys):
     [
         ({"wind.speed_mps": 0.0}, {"wind.speed_mps"}, lambda s: s.wind.speed_mps, 0.0),
         ({"wind.from_deg": 45.0}, {"wind.from_deg"}, lambda s: s.wind.from_deg, 45.0),
-        ({"vessel.manoeuvres": []}, {"vessel.manoeuvres.0.turn_deg"}, lambda s: s.vessel.manoeuvres, ()),
+        (
+            {"vessel.manoeuvres": []},
+            {"vessel.manoeuvres.0.turn_deg"},
+            lambda s: s.vessel.manoeuvres,
+            (),
+        ),
         ({"vessel.speed_ratio": 0.5}, {"vessel.speed_mps"}, lambda s: s.vessel_speed, 0.5 * 19.42),
         (
             {"wind": {"speed_mps": 2.0}},
@@ -43,7 +48,9 @@ def requests_of(**keys):
         ),
     ],
 )
-def test_what_a_comparison_or_a_case_sets_wins_over_a_sample_and_others_keep_theirs(values, gone, value_of, expected):
+def test_what_a_comparison_or_a_case_sets_wins_over_a_sample_and_others_keep_theirs(
+    values, gone, value_of, expected
+):
     plain = requests_of()
     compared = requests_of(comparison={"variants": [{"name": "own", "set": values}]})
     cases = requests_of(cases=[{"name": "own", "set": values}])
@@ -57,17 +64,25 @@ def test_what_a_comparison_or_a_case_sets_wins_over_a_sample_and_others_keep_the
 
 def test_a_flight_of_a_comparison_is_sampled_again_where_the_flight_beside_it_is():
     # In calm air other samples than the study's would have a speed ratio within these.
-    narrow = {"speed_ratio": [0.2, 0.7], "comparison": {"variants": [{"name": "calm", "set": {"wind.speed_mps": 0.0}}]}}
+    narrow = {
+        "speed_ratio": [0.2, 0.7],
+        "comparison": {"variants": [{"name": "calm", "set": {"wind.speed_mps": 0.0}}]},
+    }
     flights = requests_of(**narrow)
     for study, calm in zip(flights[:6], flights[6:], strict=True):
-        assert calm.inputs == {key: value for key, value in study.inputs.items() if key != "wind.speed_mps"}
+        assert calm.inputs == {
+            key: value for key, value in study.inputs.items() if key != "wind.speed_mps"
+        }
         assert calm.scenario.wind.speed_mps == 0.0
 
 
 def test_a_sample_that_gives_way_keeps_its_place_in_a_spread_sample_too():
     scenario = Scenario.model_validate(BASE)
     at = (0.1, 0.5, 0.3, 0.7)
-    every, without = (sampled_flight("t", scenario, 0, at, given=given).values for given in ((), ("wind.speed_mps",)))
+    every, without = (
+        sampled_flight("t", scenario, 0, at, given=given).values
+        for given in ((), ("wind.speed_mps",))
+    )
     assert without == {key: value for key, value in every.items() if key != "wind.speed_mps"}
 
 
@@ -81,14 +96,19 @@ def test_what_a_condition_of_an_arena_sets_wins_over_a_sample():
         "arena": {"tracking": ["cascade"], "window_s": 30.0, "evaluations": 0, "tuning_duration_s": 40.0, "conditions": conditions},
     }  # fmt: skip
     study = study_of(load_study(BASE | arena), "t")
-    winds = {name: [of.request(i).scenario.wind.speed_mps for i in range(3)] for name, of in study.experiments.items()}
+    winds = {
+        name: [of.request(i).scenario.wind.speed_mps for i in range(3)]
+        for name, of in study.experiments.items()
+    }
     assert min(winds["drawn"]) >= 3.0
     assert winds["calm"] == [0.0] * 3
     assert [draw.key for draw in study.trials["calm"].draws] == KEYS[1:]
 
 
 def test_what_is_set_of_the_flights_that_laws_are_tuned_in_wins_over_a_sample():
-    scenario = Scenario.model_validate(BASE | {"arena": {"tracking": ["cascade"], "tuning_set": {"wind": {"speed_mps": 5.0}}}})
+    scenario = Scenario.model_validate(
+        BASE | {"arena": {"tracking": ["cascade"], "tuning_set": {"wind": {"speed_mps": 5.0}}}}
+    )
     assert draws_left(scenario, {"flight.crossings": 3}) == {}
     (entrant,), _ = entrants_of(scenario)
     tuned = Tuner(scenario=scenario, arena=scenario.arena, lag=0.0)._scenario(entrant, {})

@@ -18,7 +18,10 @@ from scenarios.schema.scenario import Scenario
 )
 def test_each_choice_that_the_tracking_in_turbulence_depends_on_is_a_setting(key, choices):
     air = {"guidance": {"mission": "follow"}, "turbulence": {"level": "light"}, "flights": 2}
-    experiment = Experiment("t", Scenario.model_validate({"title": "t", **air, "draws": [{"key": key, "choice": choices}]}))
+    experiment = Experiment(
+        "t",
+        Scenario.model_validate({"title": "t", **air, "draws": [{"key": key, "choice": choices}]}),
+    )
     section, name = key.split(".")
     assert [getattr(getattr(of, section), name) for of in experiment.settings()] == choices
     flown = [experiment.request(number).scenario for number in range(2)]
@@ -28,7 +31,9 @@ def test_each_choice_that_the_tracking_in_turbulence_depends_on_is_a_setting(key
 def test_a_choice_that_gives_way_to_a_case_is_no_setting_of_it():
     draws = [{"key": "turbulence.level", "choice": ["none", "light"]}]
     cases = [{"name": "calm", "set": {"turbulence.level": "none"}}]
-    experiment = Experiment("t", Scenario.model_validate({"title": "t", "draws": draws, "cases": cases}))
+    experiment = Experiment(
+        "t", Scenario.model_validate({"title": "t", "draws": draws, "cases": cases})
+    )
     assert [of.turbulence.level for of in experiment.settings()] == ["none"]
 
 
@@ -41,7 +46,9 @@ def test_a_choice_that_gives_way_to_a_case_is_no_setting_of_it():
         ({"key": "following.climb_gradient", "uniform": [0.1, 0.3]}, 0.3),
     ],
 )
-def test_the_aircraft_is_measured_for_the_steepest_turn_and_climb_that_may_be_sampled(draw, largest):
+def test_the_aircraft_is_measured_for_the_steepest_turn_and_climb_that_may_be_sampled(
+    draw, largest
+):
     follow = {"guidance": {"mission": "follow"}, "emission": {"ship": "container"}}
     experiment = Experiment("t", Scenario.model_validate({"title": "t", **follow, "draws": [draw]}))
     section, name = draw["key"].split(".")
@@ -50,6 +57,11 @@ def test_the_aircraft_is_measured_for_the_steepest_turn_and_climb_that_may_be_sa
 
 def test_a_turn_that_may_be_sampled_as_steep_as_you_like_is_refused():
     draws = [{"key": "guidance.bank_deg", "normal": [40.0, 3.0]}]
-    experiment = Experiment("t", Scenario.model_validate({"title": "t", "guidance": {"mission": "follow"}, "draws": draws}))
-    with pytest.raises(InputError, match=r"'guidance.bank_deg' is sampled .* give the draw one with within"):
+    experiment = Experiment(
+        "t",
+        Scenario.model_validate({"title": "t", "guidance": {"mission": "follow"}, "draws": draws}),
+    )
+    with pytest.raises(
+        InputError, match=r"'guidance.bank_deg' is sampled .* give the draw one with within"
+    ):
         list(experiment.steepest())

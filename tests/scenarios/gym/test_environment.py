@@ -53,16 +53,23 @@ def test_gymnasium_finds_it_in_a_process_of_its_own_as_the_page_says():
     # By its module and name alone; the other tests' environments are made after an import, the page's other way.
     name = f"scenarios.gym:{ENVIRONMENT}"
     script = f"import gymnasium; print(gymnasium.make({name!r}, keys={{'fidelity': 'kinematic'}}).spec.id)"
-    found = subprocess.run([sys.executable, "-c", script], cwd=PROJECT, capture_output=True, text=True, check=False)
+    found = subprocess.run(
+        [sys.executable, "-c", script], cwd=PROJECT, capture_output=True, text=True, check=False
+    )
     assert (found.stdout.split(), found.returncode) == ([ENVIRONMENT], 0), found.stderr
     page = (PROJECT / "docs" / "howto" / "gym.md").read_text(encoding="utf-8")
-    assert all(words in page for words in (name, f'"{ENVIRONMENT}"', "import gymnasium", "import scenarios.gym"))
+    assert all(
+        words in page
+        for words in (name, f'"{ENVIRONMENT}"', "import gymnasium", "import scenarios.gym")
+    )
 
 
 def test_it_passes_gymnasiums_check(kinematic):
     with warnings.catch_warnings():
         # Actions are in SI, not normalised: docs/howto/gym.md says how to rescale them.
-        warnings.filterwarnings("ignore", message=".*we recommend using a symmetric and normalized space")
+        warnings.filterwarnings(
+            "ignore", message=".*we recommend using a symmetric and normalized space"
+        )
         check_env(kinematic.unwrapped, skip_render_check=True)
 
 
@@ -74,7 +81,15 @@ def test_the_papers_guidance_as_a_policy_flies_the_flight_of_a_run_to_the_last_b
     env.step(env.action_space.high)
     total, info, terminated = followed(env, "nu_0.30")
     flown = fly("sweep_nu", flight_id="nu_0.30", **SHORT)
-    for name in ("time_s", "north_m", "east_m", "altitude_m", "roll_rad", "heading_rate_command_rad_s", "airspeed_command_mps"):
+    for name in (
+        "time_s",
+        "north_m",
+        "east_m",
+        "altitude_m",
+        "roll_rad",
+        "heading_rate_command_rad_s",
+        "airspeed_command_mps",
+    ):
         assert np.array_equal(column(env, name), flown.history[name].to_numpy()), name
     assert terminated
     assert info["settled"]
@@ -125,10 +140,14 @@ def test_an_observation_is_what_the_flight_is_in_the_frame_of_the_plume(kinemati
     # The vessel starts at the origin, and her plume trails to the south: astern of a ship that sails north.
     assert seen["along_m"] == pytest.approx(-plan.start.north)
     assert seen["across_m"] == pytest.approx(-plan.start.east)
-    assert seen["clearance_m"] == pytest.approx(math.hypot(plan.start.north, plan.start.east) - 200.0)
+    assert seen["clearance_m"] == pytest.approx(
+        math.hypot(plan.start.north, plan.start.east) - 200.0
+    )
     # nu = 0.3 of 19.42 m/s, to the north.
     assert seen["vessel_along_mps"] == pytest.approx(-0.3 * 19.42)
-    assert math.hypot(seen["velocity_along_mps"], seen["velocity_across_mps"]) == pytest.approx(19.42, abs=1e-9)
+    assert math.hypot(seen["velocity_along_mps"], seen["velocity_across_mps"]) == pytest.approx(
+        19.42, abs=1e-9
+    )
     assert math.hypot(seen["reference_cos"], seen["reference_sin"]) == pytest.approx(1.0)
 
 
@@ -140,7 +159,9 @@ def test_flying_at_the_vessel_ends_in_the_keepout_area_with_its_reward(kinematic
         seen = dict(zip(names, observed, strict=True))
         course = math.atan2(seen["velocity_across_mps"], seen["velocity_along_mps"])
         turn = math.remainder(math.atan2(-seen["across_m"], -seen["along_m"]) - course, math.tau)
-        observed, reward, terminated, truncated, _ = kinematic.step(np.array([np.clip(turn, -limit, limit), 19.42]))
+        observed, reward, terminated, truncated, _ = kinematic.step(
+            np.array([np.clip(turn, -limit, limit), 19.42])
+        )
         assert not truncated
         rewards.append(reward)
     assert rewards[-1] <= VIOLATION + 1.0
@@ -152,7 +173,14 @@ def test_flying_at_the_vessel_ends_in_the_keepout_area_with_its_reward(kinematic
 
 
 def test_a_crossing_is_worth_the_keepout_radius_over_its_distance_and_weaving_or_passing_ahead_nothing():
-    path = [(300.0, -50.0), (300.0, -1.0), (300.0, 1.0), (310.0, 25.0), (320.0, 60.0), (150.0, -60.0)]
+    path = [
+        (300.0, -50.0),
+        (300.0, -1.0),
+        (300.0, 1.0),
+        (310.0, 25.0),
+        (320.0, 60.0),
+        (150.0, -60.0),
+    ]
     reward = CrossingReward(200.0)
     # Nearer than the radius it is worth no more.
     assert [reward.update(*place) for place in path] == [0.0, 0.0, 200.0 / 300.0, 0.0, 0.0, 1.0]
@@ -177,7 +205,12 @@ def test_actions_outside_the_space_are_cut_and_the_guidance_knows_what_was_flown
 
 def test_flights_with_other_limits_are_flown_within_their_own():
     # The first flight turns at most at half the rate of the second one: its limit is none of the others'.
-    keys = {"fidelity": "kinematic", "sweep": {"guidance.bank_deg": [25.0, 45.0]}, "vessel.speed_ratio": 0.4, "flight.crossings": 2}
+    keys = {
+        "fidelity": "kinematic",
+        "sweep": {"guidance.bank_deg": [25.0, 45.0]},
+        "vessel.speed_ratio": 0.4,
+        "flight.crossings": 2,
+    }
     env = make(**keys)
     own = [9.81 * math.tan(math.radians(bank)) / 19.42 for bank in (25.0, 45.0)]
     assert env.action_space.high[0] == -env.action_space.low[0] == pytest.approx(own[1], rel=1e-3)
@@ -185,7 +218,10 @@ def test_flights_with_other_limits_are_flown_within_their_own():
         _, info, terminated = followed(env, flight_id)
         assert terminated
         assert info["crossings"] >= 2
-        assert np.array_equal(column(env, "east_m"), fly("sweep_nu", flight_id=flight_id, **keys).history["east_m"].to_numpy())
+        assert np.array_equal(
+            column(env, "east_m"),
+            fly("sweep_nu", flight_id=flight_id, **keys).history["east_m"].to_numpy(),
+        )
         env.reset(options={"flight_id": flight_id})
         env.step(env.action_space.high)
         assert env.unwrapped._episode.loop.vehicle.motion()[4] == pytest.approx(limit, rel=1e-3)
@@ -194,25 +230,42 @@ def test_flights_with_other_limits_are_flown_within_their_own():
 @pytest.mark.parametrize(
     ("options", "words"),
     [
-        ({"flightid": "nu_0.30"}, "unknown option 'flightid' of reset; the only one is 'flight_id'"),
+        (
+            {"flightid": "nu_0.30"},
+            "unknown option 'flightid' of reset; the only one is 'flight_id'",
+        ),
         ({"flight_id": "nu_0.5"}, r"no flight 'nu_0\.5'; its flights are nu_0\.30, nu_0\.60"),
     ],
 )
-def test_an_unknown_option_and_an_unknown_flight_are_refused_with_the_known_ones(kinematic, options, words):
+def test_an_unknown_option_and_an_unknown_flight_are_refused_with_the_known_ones(
+    kinematic, options, words
+):
     with pytest.raises(InputError, match=words):
         kinematic.reset(options=options)
 
 
 def test_the_space_holds_the_limits_that_flights_at_random_may_have():
-    draws = [{"key": "guidance.bank_deg", "uniform": [20.0, 40.0]}, {"key": "vessel.speed_mps", "uniform": [5.0, 8.0]}]
+    draws = [
+        {"key": "guidance.bank_deg", "uniform": [20.0, 40.0]},
+        {"key": "vessel.speed_mps", "uniform": [5.0, 8.0]},
+    ]
     keys = {"fidelity": "kinematic", "flights": 3, "draws": draws, "comparison.variants": []}
     env = gymnasium.make(ENVIRONMENT, scenario="plume_search", keys=keys)
-    assert env.action_space.high[0] == pytest.approx(9.81 * math.tan(math.radians(40.0)) / 19.42, rel=1e-3)
+    assert env.action_space.high[0] == pytest.approx(
+        9.81 * math.tan(math.radians(40.0)) / 19.42, rel=1e-3
+    )
 
 
 def test_a_flight_whose_time_is_up_is_truncated_and_not_terminated_even_where_it_completes():
     # Without a number of crossings a flight that has crossed completes when its time is up.
-    env = make(**{"fidelity": "kinematic", "sweep.nu": [0.3], "flight.crossings": 0, "flight.duration_max_s": 90.0})
+    env = make(
+        **{
+            "fidelity": "kinematic",
+            "sweep.nu": [0.3],
+            "flight.crossings": 0,
+            "flight.duration_max_s": 90.0,
+        }
+    )
     _, info, terminated = followed(env, "nu_0.30")
     assert env.unwrapped.record.outcome.name == "COMPLETED"
     assert info["crossings"] > 0
@@ -223,7 +276,12 @@ def test_a_flight_whose_time_is_up_is_truncated_and_not_terminated_even_where_it
     ("keys", "words"),
     [
         (
-            KINEMATIC | {"guidance.command_limit": False, "guidance.approach": False, "guidance.keepout_guard": False},
+            KINEMATIC
+            | {
+                "guidance.command_limit": False,
+                "guidance.approach": False,
+                "guidance.keepout_guard": False,
+            },
             "command_limit is false; an environment needs a limit",
         ),
         ({"sweep.nv": [0.3]}, "unknown key 'nv'"),
@@ -270,7 +328,9 @@ def test_every_entry_of_the_observation_is_documented_with_its_unit():
 
 def test_without_its_extra_the_package_names_it_in_a_line():
     code = "import sys; sys.modules['gymnasium'] = None; import scenarios.gym"
-    ended = subprocess.run([sys.executable, "-c", code], cwd=PROJECT, capture_output=True, text=True, check=False)
+    ended = subprocess.run(
+        [sys.executable, "-c", code], cwd=PROJECT, capture_output=True, text=True, check=False
+    )
     needed = "scenarios.gym needs gymnasium; install the extra: in the clone, pip install -c constraints.txt -e '.[gym]'"
     assert ended.stderr.splitlines()[-1] == f"ImportError: {needed}"
     assert "During handling" not in ended.stderr

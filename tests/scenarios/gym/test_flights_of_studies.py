@@ -10,7 +10,10 @@ from scenarios.gym import ENVIRONMENT
 
 
 def test_flights_of_a_monte_carlo_study_have_the_points_that_the_run_has():
-    draws = [{"key": "wind.speed_mps", "uniform": [1.0, 8.0]}, {"key": "start.range_m", "uniform": [400.0, 800.0]}]
+    draws = [
+        {"key": "wind.speed_mps", "uniform": [1.0, 8.0]},
+        {"key": "start.range_m", "uniform": [400.0, 800.0]},
+    ]
     scenario = {
         "study": "monte_carlo", "title": "sampled", "fidelity": "kinematic", "flights": 4, "wind": {"speed_mps": 3.0},
         "vessel": {"speed_mps": 6.0}, "flight": {"duration_max_s": 20.0, "crossings": 0}, "draws": draws,
@@ -32,12 +35,17 @@ def test_flights_of_a_monte_carlo_study_have_the_points_that_the_run_has():
 
 
 def test_comparisons_of_a_trial_take_no_flight_away_from_those_after_it(tmp_path):
-    kinds = {"one": "[comparison]\nvariants = [{ name = 'los', set = { 'guidance.law' = 'line_of_sight' } }]\n", "two": ""}
+    kinds = {
+        "one": "[comparison]\nvariants = [{ name = 'los', set = { 'guidance.law' = 'line_of_sight' } }]\n",
+        "two": "",
+    }
     for name, comparison in kinds.items():
         text = f"title = '{name}'\nfidelity = 'kinematic'\nflights = 2\nvessel = {{ speed_ratio = 0.4 }}\n{comparison}"
         (tmp_path / f"{name}.toml").write_text(text, encoding="utf-8")
     trials = [str(tmp_path / f"{name}.toml") for name in kinds]
-    env = gymnasium.make(ENVIRONMENT, scenario={"study": "trials", "title": "list", "trials": trials})
+    env = gymnasium.make(
+        ENVIRONMENT, scenario={"study": "trials", "title": "list", "trials": trials}
+    )
     assert env.unwrapped.flight_ids == ("one_00000", "one_00001", "two_00000", "two_00001")
     _, info = env.reset(options={"flight_id": "two_00001"})
     assert info["flight_id"] == "two_00001"

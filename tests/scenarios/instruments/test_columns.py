@@ -28,20 +28,31 @@ class Look(Own):
 
 @pytest.mark.parametrize(
     ("names", "column", "other"),
-    [(("Own", "Same"), "so2_ppb", "instrument"), (("Time",), "time_s", "the flight itself"), (("Look",), "delta_m", "the flight")],
+    [
+        (("Own", "Same"), "so2_ppb", "instrument"),
+        (("Time",), "time_s", "the flight itself"),
+        (("Look",), "delta_m", "the flight"),
+    ],
 )
-def test_an_instrument_that_fills_a_column_that_is_filled_already_is_a_row_with_its_name(names, column, other, tmp_path):
+def test_an_instrument_that_fills_a_column_that_is_filled_already_is_a_row_with_its_name(
+    names, column, other, tmp_path
+):
     (tmp_path / "own.py").write_text(INSTRUMENTS, encoding="utf-8")
     parts = [f"{tmp_path / 'own.py'}:{name}" for name in names]
     row = fly(payload={"instruments": parts}, flight={"duration_max_s": 5.0, "crossings": 0}).row
     assert row["outcome"] == "failed"
-    assert row["message"].startswith(f"payload: instrument '{parts[-1]}' fills the column '{column}', which {other}")
+    assert row["message"].startswith(
+        f"payload: instrument '{parts[-1]}' fills the column '{column}', which {other}"
+    )
     assert "\n" not in row["message"]
 
 
 def test_instruments_with_columns_of_their_own_fly_together(tmp_path):
     (tmp_path / "own.py").write_text(INSTRUMENTS, encoding="utf-8")
-    result = fly(payload={"instruments": [f"{tmp_path / 'own.py'}:Own"]}, flight={"duration_max_s": 5.0, "crossings": 0})
+    result = fly(
+        payload={"instruments": [f"{tmp_path / 'own.py'}:Own"]},
+        flight={"duration_max_s": 5.0, "crossings": 0},
+    )
     assert result.history["so2_ppb"].tolist() == [1.0] * len(result.history)
 
 
@@ -134,16 +145,30 @@ def evaluated(folder, *names):
 @pytest.mark.parametrize(
     ("names", "words"),
     [
-        (("Safe",), "Safe' fills the figure 'keepout_violations', which the flight itself fills already; call it otherwise"),
-        (("Replaced",), "Replaced' fills the table 'crossings.csv', which the run itself fills already; call it otherwise"),
+        (
+            ("Safe",),
+            "Safe' fills the figure 'keepout_violations', which the flight itself fills already; call it otherwise",
+        ),
+        (
+            ("Replaced",),
+            "Replaced' fills the table 'crossings.csv', which the run itself fills already; call it otherwise",
+        ),
         (("Peak", "Also"), "Also' fills the figure 'y_peak_ppb', which instrument '"),
         (("Renamed",), "Renamed' fills the column 'flight_id', which the run itself fills already"),
-        (("Folder",), "Folder' has '../y.csv'; give a file's name that ends in .csv, without a folder"),
+        (
+            ("Folder",),
+            "Folder' has '../y.csv'; give a file's name that ends in .csv, without a folder",
+        ),
         (("Text",), "Text' is the text 'y_peak_ppb'; give a tuple of names, as in ('y_peak_ppb',)"),
-        (("Nameless",), "Nameless' has no COLUMNS, the names of the columns of the time history that it fills; give it a tuple"),
+        (
+            ("Nameless",),
+            "Nameless' has no COLUMNS, the names of the columns of the time history that it fills; give it a tuple",
+        ),
     ],
 )
-def test_figures_and_tables_of_the_flight_and_of_others_are_refused_before_any_flight(names, words, tmp_path):
+def test_figures_and_tables_of_the_flight_and_of_others_are_refused_before_any_flight(
+    names, words, tmp_path
+):
     (tmp_path / "own.py").write_text(EVALUATED, encoding="utf-8")
     parts = ",".join(f'"{tmp_path / "own.py"}:{name}"' for name in names)
     with pytest.raises(InputError) as refused:
@@ -155,8 +180,14 @@ def test_figures_and_tables_of_the_flight_and_of_others_are_refused_before_any_f
 
 def test_an_instrument_that_is_evaluated_needs_no_figures_and_no_tables(tmp_path):
     result = evaluated(tmp_path, "Bare")
-    assert (result.row["outcome"], result.history["y_ppb"].unique().tolist()) == ("not_settled", [1.0])
-    study = study_of(load_study("sweep_nu", ["fidelity=kinematic", f'payload=["{tmp_path / "own.py"}:Bare"]']), "own")
+    assert (result.row["outcome"], result.history["y_ppb"].unique().tolist()) == (
+        "not_settled",
+        [1.0],
+    )
+    study = study_of(
+        load_study("sweep_nu", ["fidelity=kinematic", f'payload=["{tmp_path / "own.py"}:Bare"]']),
+        "own",
+    )
     assert "y.csv" not in study.tables
 
 
@@ -166,24 +197,43 @@ def test_an_object_may_have_columns_of_its_own(tmp_path):
     check_without_design(load_study("sweep_nu", [f'payload=["{tmp_path / "own.py"}:OfItsOwn"]']))
 
 
-def test_a_figure_that_is_declared_and_not_returned_is_empty_and_a_row_of_a_table_keeps_its_flight(tmp_path):
+def test_a_figure_that_is_declared_and_not_returned_is_empty_and_a_row_of_a_table_keeps_its_flight(
+    tmp_path,
+):
     result = evaluated(tmp_path, "Peak")
     assert result.row["y_peak_ppb"] == 3.0
     assert "y_low_ppb" not in result.row
-    assert [(row["flight_id"], row["y_ppb"]) for row in result.tables["y.csv"]] == [(result.row["flight_id"], 1.0)]
+    assert [(row["flight_id"], row["y_ppb"]) for row in result.tables["y.csv"]] == [
+        (result.row["flight_id"], 1.0)
+    ]
 
 
 @pytest.mark.parametrize(
     ("name", "words"),
     [
-        ("Undeclared", ": evaluate() returned the figure 'y_peak_ppb', which FIGURES does not name; add it there"),
-        ("UndeclaredTable", ": evaluate() returned the table 'y.csv', which TABLES does not name; add it there"),
-        ("Short", ": evaluate() returned columns of shape (3, 1); it has to be (51, 1): a row for each sample of the flight"),
-        ("Pair", ": figure 'y_peak_ppb' of evaluate() returned array([1., 1.]); it has to return a number, a truth value, text or"),
+        (
+            "Undeclared",
+            ": evaluate() returned the figure 'y_peak_ppb', which FIGURES does not name; add it there",
+        ),
+        (
+            "UndeclaredTable",
+            ": evaluate() returned the table 'y.csv', which TABLES does not name; add it there",
+        ),
+        (
+            "Short",
+            ": evaluate() returned columns of shape (3, 1); it has to be (51, 1): a row for each sample of the flight",
+        ),
+        (
+            "Pair",
+            ": figure 'y_peak_ppb' of evaluate() returned array([1., 1.]); it has to return a number, a truth value, text or",
+        ),
         ("Words", "it has to return columns of numbers"),
         ("Plain", ": evaluate() returned [1.0]; it has to return an Evaluation"),
         ("Late", " failed in evaluate(): ValueError: late (own.py:27)"),
-        ("Misspelt", " the flight's record has no column 'times_s'; did you mean 'time_s'? (own.py:29)"),
+        (
+            "Misspelt",
+            " the flight's record has no column 'times_s'; did you mean 'time_s'? (own.py:29)",
+        ),
     ],
 )
 def test_what_fails_after_the_flight_leaves_what_is_known_of_it(name, words, tmp_path):
@@ -195,7 +245,9 @@ def test_what_fails_after_the_flight_leaves_what_is_known_of_it(name, words, tmp
 
 
 @pytest.mark.parametrize(("outcome", "kept_out"), [("diverged", False), ("aircraft_lost", True)])
-def test_an_aircraft_that_is_gone_is_gone_whatever_fails_after_it(outcome, kept_out, tmp_path, monkeypatch):
+def test_an_aircraft_that_is_gone_is_gone_whatever_fails_after_it(
+    outcome, kept_out, tmp_path, monkeypatch
+):
     figures_of = flight.flight_figures
 
     def gone(plan, record):

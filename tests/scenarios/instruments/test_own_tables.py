@@ -58,13 +58,27 @@ def test_the_page_shows_the_example_as_it_is():
 
 
 def test_its_flight_is_replayed_and_its_run_resumed(run):
-    replayed = run_command("scenarios.run", run / "flights" / "own_ship_00000", "--out", run.parent / "again", "--no-report")
+    replayed = run_command(
+        "scenarios.run",
+        run / "flights" / "own_ship_00000",
+        "--out",
+        run.parent / "again",
+        "--no-report",
+    )
     assert "every value of its row agrees to the last bit" in replayed.out
     keys = [word for key in QUICK for word in ("--set", key)]
     resumed = run_command("scenarios.run", EXAMPLE, *keys, "--out", run, "--resume", "--no-report")
     assert resumed.status == 0, resumed
     other = run_command(
-        "scenarios.run", EXAMPLE, *keys, "--set", "emission.ship.speed_max=10", "--out", run, "--resume", "--no-report"
+        "scenarios.run",
+        EXAMPLE,
+        *keys,
+        "--set",
+        "emission.ship.speed_max=10",
+        "--out",
+        run,
+        "--resume",
+        "--no-report",
     )
     assert other.status == 2
     assert "emission.ship" in other.errors
@@ -73,7 +87,9 @@ def test_its_flight_is_replayed_and_its_run_resumed(run):
 def test_a_table_with_the_figures_of_a_preset_is_that_preset():
     container = ship_preset("container")
     table = {name: getattr(container, name) for name in Ship.__dataclass_fields__ if name != "name"}
-    given, named = (load_study("sulphur", [f"emission.ship={ship}"]) for ship in (toml(table), "container"))
+    given, named = (
+        load_study("sulphur", [f"emission.ship={ship}"]) for ship in (toml(table), "container")
+    )
     assert emission(given, speed=12.0) == emission(named, speed=12.0)
     assert ship_of(table).title == container.title
 
@@ -87,9 +103,16 @@ def test_keys_of_a_table_are_set_and_swept_like_others():
     assert load_study(EXAMPLE, ["emission.ship.stack_height=30"]).source_height == 30.0
     assert load_study(EXAMPLE, ["payload.sensor=fast"]).payload.model_extra == {"sensor": "fast"}
     assert load_study(EXAMPLE, ["emission.ship=tanker"]).source_height == 30.0
-    swept = load_study(EXAMPLE, ["flight.altitude_m=30", "sweep.emission.ship.stack_height=[15,25]"])
+    swept = load_study(
+        EXAMPLE, ["flight.altitude_m=30", "sweep.emission.ship.stack_height=[15,25]"]
+    )
     assert [point.scenario.source_height for point in points_of(swept)] == [15.0, 25.0]
-    named = load_study(EXAMPLE, ['sweep.payload.sensor=["fast",{title="CO2 alone",channels={co2={t90_s=3,delay_s=0,noise=1}}}]'])
+    named = load_study(
+        EXAMPLE,
+        [
+            'sweep.payload.sensor=["fast",{title="CO2 alone",channels={co2={t90_s=3,delay_s=0,noise=1}}}]'
+        ],
+    )
     assert [point.label for point in points_of(named)] == ["sensor_fast", "sensor_CO2_alone"]
 
 
@@ -100,15 +123,36 @@ def test_keys_of_a_table_are_set_and_swept_like_others():
             "emission.ship.stak_height=3",
             "ship 'ferry of 5 MW' has the key 'stak_height'; did you mean 'stack_height'? it may have title, stroke",
         ),
-        ("emission.ship.stroke=3", "emission.ship: stroke of ferry of 5 MW is 3; an engine has 2 or 4"),
-        ("emission.ship.stroke=2.5", "emission.ship: stroke of ferry of 5 MW is 2.5; an engine has 2 or 4"),
-        ("emission.ship.power_max=inf", "emission.ship: power_max of ferry of 5 MW is inf; give a finite value above 0"),
-        ("emission.ship.stack_height=high", "stack_height of ship 'ferry of 5 MW' is 'high'; it must be a number"),
-        ('emission.ship={title="X"}', "emission.ship: ship 'X' has no stroke; give all of stroke, nox_tier, power_max"),
+        (
+            "emission.ship.stroke=3",
+            "emission.ship: stroke of ferry of 5 MW is 3; an engine has 2 or 4",
+        ),
+        (
+            "emission.ship.stroke=2.5",
+            "emission.ship: stroke of ferry of 5 MW is 2.5; an engine has 2 or 4",
+        ),
+        (
+            "emission.ship.power_max=inf",
+            "emission.ship: power_max of ferry of 5 MW is inf; give a finite value above 0",
+        ),
+        (
+            "emission.ship.stack_height=high",
+            "stack_height of ship 'ferry of 5 MW' is 'high'; it must be a number",
+        ),
+        (
+            'emission.ship={title="X"}',
+            "emission.ship: ship 'X' has no stroke; give all of stroke, nox_tier, power_max",
+        ),
         ("emission.ship=5", "emission.ship: value is 5; give the name of a ship, or a table"),
         # Heights of the scenario's own plume: 10 to 200 m.
-        ("emission.ship.stack_height=5", "stack_height of emission.ship is 5 m; a plume begins at 10 m at least"),
-        ("emission.ship.stack_height=300", "stack_height of emission.ship is 300 m beside emission.ship"),
+        (
+            "emission.ship.stack_height=5",
+            "stack_height of emission.ship is 5 m; a plume begins at 10 m at least",
+        ),
+        (
+            "emission.ship.stack_height=300",
+            "stack_height of emission.ship is 300 m beside emission.ship",
+        ),
         ("payload.sensor=5", "payload.sensor is 5; give the name of a preset, or a table"),
         (
             "payload.sensor.channels.so2.t90=3",
@@ -118,7 +162,10 @@ def test_keys_of_a_table_are_set_and_swept_like_others():
             "payload.sensor={channels={so2={t90_s=3}}}",
             "t90, delay or noise of so2 is not known; give its t90_s, delay_s and noise",
         ),
-        ("payload.sensor={}", "payload.sensor is a table of no use: instrument 'own sniffer' has no channels"),
+        (
+            "payload.sensor={}",
+            "payload.sensor is a table of no use: instrument 'own sniffer' has no channels",
+        ),
         (
             "payload.sensor={channels={so2={t90_s=3,delay_s=0,noise=1}}}",
             "payload.sensor is a table of no use: its channels are so2, and co2, which shows the plume, is not among them: add the"
@@ -147,5 +194,9 @@ def test_a_sniffer_without_so2_is_flown_but_not_until_a_verdict(scenario):
 
 def test_a_sniffer_from_a_table_has_a_name_or_its_title():
     table = {"title": "My cells", "channels": {"co2": {"t90_s": 3.0}}}
-    assert [sensor_of(table).name, sensor_of(table, "log").name, sensor_of(table, "log").title] == ["My cells", "log", "My cells"]
+    assert [sensor_of(table).name, sensor_of(table, "log").name, sensor_of(table, "log").title] == [
+        "My cells",
+        "log",
+        "My cells",
+    ]
     assert sensor_of("fast").name == "fast"

@@ -18,7 +18,10 @@ CENTRES = (2.5, 12.5, 22.5, 32.5, 42.5, 52.5)
 
 def figures(peaks):
     """Return the figures of a flight whose passes have these peaks of concentration over that in the plume's centre."""
-    fraction = sum(peak * np.exp(-0.5 * ((TIME - at) / 0.5) ** 2) for at, peak in zip(CENTRES, peaks, strict=True))
+    fraction = sum(
+        peak * np.exp(-0.5 * ((TIME - at) / 0.5) ** 2)
+        for at, peak in zip(CENTRES, peaks, strict=True)
+    )
     return pass_figures(ACROSS, np.full(len(TIME), 3.0), fraction, 100.0 * fraction, time_step=0.1)
 
 
@@ -32,7 +35,11 @@ def test_a_crossing_above_or_beside_the_smoke_is_no_pass_through_smoke():
 
 def test_a_flight_that_never_met_the_smoke_has_crossings_and_no_passes_through_smoke():
     found = figures([0.9 * INSIDE] * 6)
-    assert (found["plume_axis_crossings"], found["smoke_passes"], found["seconds_in_plume_s"]) == (6, 0, 0.0)
+    assert (found["plume_axis_crossings"], found["smoke_passes"], found["seconds_in_plume_s"]) == (
+        6,
+        0,
+        0.0,
+    )
 
 
 def test_a_flight_beside_the_axis_has_neither():
@@ -43,4 +50,7 @@ def test_a_flight_beside_the_axis_has_neither():
 def test_no_column_calls_a_crossing_of_the_axis_a_pass_through_the_plume():
     meanings = MEANINGS["summary.csv"]
     assert "plume_passes" not in PASS_FIGURES
-    assert all("with smoke" in meanings[name] for name in ("plume_axis_crossings", "smoke_passes", "crossing_count"))
+    assert all(
+        "with smoke" in meanings[name]
+        for name in ("plume_axis_crossings", "smoke_passes", "crossing_count")
+    )

@@ -32,7 +32,12 @@ PERFECT = ("payload.sensor=laser", "payload.exact=true")
 
 def flown(*overrides, every_step=False):
     scenario = load_study("sulphur", (*QUICK, *overrides))
-    work = FlightWork(experiments=(Experiment("sulphur", scenario),), histories=1, setup=None, spreads=PredictedSpreads())
+    work = FlightWork(
+        experiments=(Experiment("sulphur", scenario),),
+        histories=1,
+        setup=None,
+        spreads=PredictedSpreads(),
+    )
     result = work.fly(Task(number=0, every_step=every_step))
     (row,) = result.tables["summary.csv"]
     return row, history_in(result), result
@@ -100,7 +105,11 @@ def test_the_table_over_time_and_the_document_tell_the_same_result(slow):
     last = result.tables["sulphur.csv"][-1]
     assert last["flight_id"] == "sulphur_00000"
     document = json.loads(result.files["flights/sulphur_00000.json"])
-    assert document["estimate"]["fsc_percent"] == row["fsc_percent"] == pytest.approx(last["fsc_percent"], rel=0.05)
+    assert (
+        document["estimate"]["fsc_percent"]
+        == row["fsc_percent"]
+        == pytest.approx(last["fsc_percent"], rel=0.05)
+    )
     assert document["true_percent"] == row["fsc_expected_percent"]
     assert len(document["signals"]["time_s"]) > 50
 
@@ -122,10 +131,16 @@ def test_a_flight_without_payload_is_flown_alike(slow):
     ("override", "words"),
     [
         ("payload.sensor=nose", "payload.sensor is 'nose'; there are alphasense_a4"),
-        ("payload.sensor=laserr", "payload.sensor is 'laserr'; did you mean 'laser'? there are alphasense_a4"),
+        (
+            "payload.sensor=laserr",
+            "payload.sensor is 'laserr'; did you mean 'laser'? there are alphasense_a4",
+        ),
         ("payload.sensor=unspecified", "payload.sensor is 'unspecified'; there are alphasense_a4"),
         ("payload.limit_percent=0", "payload.limit_percent is 0"),
-        ("payload.limit_percent=0.1%", "payload.limit_percent is '0.1%'; it must be a number, e.g. limit_percent=0.1"),
+        (
+            "payload.limit_percent=0.1%",
+            "payload.limit_percent is '0.1%'; it must be a number, e.g. limit_percent=0.1",
+        ),
         ("payload.sensr=fast", "payload: key 'sensr' is not known; did you mean 'sensor'?"),
         ("emission.ship=canoe", "emission.ship: ship 'canoe' is not known; there are container"),
         ("emission.fuel=coal", "fuel 'coal' is not known; there are mgo"),
@@ -145,8 +160,14 @@ def test_bad_values_are_refused_in_one_line(override, words):
 @pytest.mark.parametrize(
     ("overrides", "words"),
     [
-        (("vessel.speed_mps=14", "wind.speed_mps=1"), "speed of container is 14 m/s; it makes 0 to 13.03"),
-        (("plume.model=straight", "plume.direction=apparent_wind"), "plume.model 'straight' has no smoke"),
+        (
+            ("vessel.speed_mps=14", "wind.speed_mps=1"),
+            "speed of container is 14 m/s; it makes 0 to 13.03",
+        ),
+        (
+            ("plume.model=straight", "plume.direction=apparent_wind"),
+            "plume.model 'straight' has no smoke",
+        ),
     ],
 )
 def test_what_shows_in_planning_is_a_row_with_its_reason(overrides, words):
@@ -157,5 +178,9 @@ def test_what_shows_in_planning_is_a_row_with_its_reason(overrides, words):
 
 def test_a_ship_that_hardly_emits_has_no_verdict():
     row, _, _ = flown("emission.load=0.001")
-    assert (row["outcome"], row["sulphur_quality"], row["sulphur_verdict"]) == ("completed", "C", "open")
+    assert (row["outcome"], row["sulphur_quality"], row["sulphur_verdict"]) == (
+        "completed",
+        "C",
+        "open",
+    )
     assert row["sulphur_reason"]

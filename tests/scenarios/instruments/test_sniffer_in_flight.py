@@ -10,7 +10,13 @@ from scenarios.schema.load import load_study
 from scenarios.vehicles.vehicle_setup import kinematic_setup
 from scenarios.world.noise import PAYLOAD, Noise, own_generator
 
-QUICK = ("fidelity=kinematic", "reports.interval_s=[0,0]", "sensors={}", "following={}", "flight.duration_max_s=60")
+QUICK = (
+    "fidelity=kinematic",
+    "reports.interval_s=[0,0]",
+    "sensors={}",
+    "following={}",
+    "flight.duration_max_s=60",
+)
 CO2 = GASES.index("co2")
 
 
@@ -43,7 +49,12 @@ def followed(instrument, columns):
     names = ("north_m", "east_m", "velocity_north_mps", "velocity_east_mps")
     for i, time in enumerate(columns["time_s"].tolist()):
         motion = (*(float(columns[name][i]) for name in names), 0.0)
-        sample = (float(columns["altitude_m"][i]), float(columns["airspeed_mps"][i]), 0.0, float(columns["climb_rate_mps"][i]))
+        sample = (
+            float(columns["altitude_m"][i]),
+            float(columns["airspeed_mps"][i]),
+            0.0,
+            float(columns["climb_rate_mps"][i]),
+        )
         read += instrument.follow(time, motion, sample)
     return np.array(read)
 
@@ -61,7 +72,13 @@ def test_the_same_seed_reads_the_same_in_flight_as_after_it(sensor):
     assert known.time[-1] - read[-1, 0] <= 1.0 + 1e-9
     assert np.ptp(read[:, 1]) > 5.0
     # The plume is computed in other parts, which differ by rounding.
-    assert np.allclose(during.evaluate(columns.__getitem__, settled_at).columns, expected, rtol=1e-9, atol=1e-9, equal_nan=True)
+    assert np.allclose(
+        during.evaluate(columns.__getitem__, settled_at).columns,
+        expected,
+        rtol=1e-9,
+        atol=1e-9,
+        equal_nan=True,
+    )
 
 
 def test_readings_come_within_a_second_and_in_their_order():
@@ -69,7 +86,12 @@ def test_readings_come_within_a_second_and_in_their_order():
     arrived = []
     for i, time in enumerate(columns["time_s"].tolist()):
         sample = (float(columns["altitude_m"][i]), 19.0, 0.0, 0.5)
-        arrived += [(time, at) for at, _ in instrument.follow(time, (-200.0, float(columns["east_m"][i]), 0.0, 12.0, 0.0), sample)]
+        arrived += [
+            (time, at)
+            for at, _ in instrument.follow(
+                time, (-200.0, float(columns["east_m"][i]), 0.0, 12.0, 0.0), sample
+            )
+        ]
     times = [at for _, at in arrived]
     # Ten seconds at the rate of the sensor, but for what is still on its way.
     assert len(times) > 8.0 * instrument.spec.rate_hz
@@ -77,7 +99,9 @@ def test_readings_come_within_a_second_and_in_their_order():
     assert all(0.0 < now - at < 1.0 for now, at in arrived)
 
 
-@pytest.mark.parametrize(("kind", "expected"), [("sniffer_dead", None), ("sniffer_saturated", 20000.0)])
+@pytest.mark.parametrize(
+    ("kind", "expected"), [("sniffer_dead", None), ("sniffer_saturated", 20000.0)]
+)
 def test_a_sniffer_that_fails_reads_on_without_saying_anything(kind, expected):
     read = followed(sniffer("payload.sensor=fast", f"fault.kind={kind}", "fault.at_s=20"), path())
     good, bad = read[read[:, 0] < 20.0, 1], read[read[:, 0] >= 20.0, 1]

@@ -17,12 +17,24 @@ from scenarios.margin.orbit_room import orbit_distance
 
 SPEED, HEADING_RATE_MAX, TIME_STEP, LAG, DELAY = 19.42, 0.505, 0.05, 0.2, 0.2
 GUARD = GuardParameters(
-    radius=200.0, heading_rate_max=HEADING_RATE_MAX, lag=LAG, delay=DELAY, slow_lag=DELAY + LAG, time_step=TIME_STEP
+    radius=200.0,
+    heading_rate_max=HEADING_RATE_MAX,
+    lag=LAG,
+    delay=DELAY,
+    slow_lag=DELAY + LAG,
+    time_step=TIME_STEP,
 )
 # AIS every 10 s, up to 2 s late, and looked at twice a second: a ship that brakes or turns by 0.25 m/s^2.
 AIS = tube(
     VesselReport(-12.5, 0.0, 0.0, 0.0, 0.0),
-    VesselLimits(acceleration=0.25, speed_max=math.inf, position_sigma=5.0, velocity_sigma=0.15, deviations=5.2, horizon=7.0),
+    VesselLimits(
+        acceleration=0.25,
+        speed_max=math.inf,
+        position_sigma=5.0,
+        velocity_sigma=0.15,
+        deviations=5.2,
+        horizon=7.0,
+    ),
     0.0,
 )
 EXACT = Tube(0.0, 0.0, 0.0, 0.0, 0.0)
@@ -46,15 +58,24 @@ def interventions(nu, distance, vessel):
     courses = np.unwrap(np.arctan2((right - y) / 1e-3, (ahead - x) / 1e-3 + mean))
     rates = np.gradient(courses, TIME_STEP)
     # What a vehicle with a lag is to be commanded.
-    commands = np.clip(rates + LAG * np.gradient(rates, TIME_STEP), -HEADING_RATE_MAX, HEADING_RATE_MAX)
+    commands = np.clip(
+        rates + LAG * np.gradient(rates, TIME_STEP), -HEADING_RATE_MAX, HEADING_RATE_MAX
+    )
     first = 200
-    state = (float(x[first]) - distance - along, float(y[first]), float(courses[first]), float(rates[first]))
+    state = (
+        float(x[first]) - distance - along,
+        float(y[first]),
+        float(courses[first]),
+        float(rates[first]),
+    )
     under_way = deque(commands[first - late : first].tolist())
     count = 0
     for step in range(round(2.0 * orbit.period / TIME_STEP)):
         time = step * TIME_STEP
         guard.tubes = (vessel._replace(time=time, north=mean * time, velocity_north=mean),)
-        own = KnownMotion(ground_north=state[0], ground_east=state[1], course=state[2], heading_rate=state[3])
+        own = KnownMotion(
+            ground_north=state[0], ground_east=state[1], course=state[2], heading_rate=state[3]
+        )
         # Asked afresh: it keeps nothing in mind but the commands under way.
         guard._kept_off, guard._free.steps = None, 0
         command = guard.limit(float(commands[first + step]), time, own, SPEED)

@@ -29,7 +29,13 @@ def declared(**values):
 def oldest(scenario, **changes):
     """Return what vessel and reports keep within, and the disc of a report that is as old as it becomes."""
     limits, reports = replace(vessel_limits(scenario, TURN), **changes), scenario.reports
-    return limits, tube(VesselReport(-PLAN_PERIOD - reports.interval_s[1] - reports.latency_max_s, 0.0, 0.0, 0.0, 0.0), limits, 0.0)
+    return limits, tube(
+        VesselReport(
+            -PLAN_PERIOD - reports.interval_s[1] - reports.latency_max_s, 0.0, 0.0, 0.0, 0.0
+        ),
+        limits,
+        0.0,
+    )
 
 
 def reaches(scenario, limits, hours):
@@ -41,13 +47,23 @@ def reaches(scenario, limits, hours):
         outage=(math.inf, math.inf),
         generator=np.random.default_rng(3),
     )
-    known, reach, found = VesselFilter(filter_parameters(scenario.reports)), ReachableSet(limits), []
+    known, reach, found = (
+        VesselFilter(filter_parameters(scenario.reports)),
+        ReachableSet(limits),
+        [],
+    )
     for (_, report), (until, _) in itertools.pairwise(received):
         known.report(report)
         reach.report(report)
         taken = known.at(until)
         north = taken.north + TURN * taken.velocity_north
-        found.append(min(disc.north + TURN * disc.velocity_north + disc.reach(TURN) for disc in reach.tubes(until)) - north)
+        found.append(
+            min(
+                disc.north + TURN * disc.velocity_north + disc.reach(TURN)
+                for disc in reach.tubes(until)
+            )
+            - north
+        )
     # With the first reports the filter knows less.
     return np.array(found[12:])
 
@@ -79,7 +95,12 @@ def test_reports_without_errors_do_not_scatter():
     limits, disc = oldest(scenario, position_sigma=0.0, velocity_sigma=0.0, acceleration=0.2)
     known, reports = filter_parameters(scenario.reports), scenario.reports
     found = scatter_allowance(
-        limits, known, reports.interval_s, reports.latency_max_s, plan_period=PLAN_PERIOD, planned=disc.reach(TURN)
+        limits,
+        known,
+        reports.interval_s,
+        reports.latency_max_s,
+        plan_period=PLAN_PERIOD,
+        planned=disc.reach(TURN),
     )
     assert found == 0.0
 

@@ -31,10 +31,18 @@ def seen_errors(tracking, hold, turn, speed, lag):
     """Return errors along and right that a vehicle sees whose position has noise of 1 m, on a circle, over time [m]."""
     step, noise, course, rate, faster = tracking.time_step, np.zeros(2), 0.0, turn, 0.0
     tracker = Tracker(
-        tracking, CirclingReference(ReferenceStart(north=0.0, east=0.0, course=0.0), speed=speed, heading_rate=turn, time_step=step)
+        tracking,
+        CirclingReference(
+            ReferenceStart(north=0.0, east=0.0, course=0.0),
+            speed=speed,
+            heading_rate=turn,
+            time_step=step,
+        ),
     )
     north, east, found = 0.0, 0.0, []
-    kept, answered, sped = (math.exp(-step * of) for of in (1.0 / NAVIGATION_TIME, 1.0 / lag, KINEMATIC_BANDWIDTH))
+    kept, answered, sped = (
+        math.exp(-step * of) for of in (1.0 / NAVIGATION_TIME, 1.0 / lag, KINEMATIC_BANDWIDTH)
+    )
     generator = np.random.default_rng(1)
     kicks = math.sqrt(1.0 - kept**2) * generator.standard_normal((round(60.0 * MINUTES / step), 2))
     for kick in kicks.tolist():
@@ -43,7 +51,9 @@ def seen_errors(tracking, hold, turn, speed, lag):
         cos, sin = math.cos(tracker.reference.course), math.sin(tracker.reference.course)
         off_north, off_east = tracker.reference.north - at_north, tracker.reference.east - at_east
         found.append((off_north * cos + off_east * sin, off_east * cos - off_north * sin))
-        command = tracker.step(at_north, at_east, math.remainder(course, 2.0 * math.pi), speed + faster, rate)
+        command = tracker.step(
+            at_north, at_east, math.remainder(course, 2.0 * math.pi), speed + faster, rate
+        )
         then = answered * rate + (1.0 - answered) * command
         middle = course + 0.25 * (rate + then) * step
         north += (speed + faster) * math.cos(middle) * step
@@ -56,9 +66,19 @@ def seen_errors(tracking, hold, turn, speed, lag):
 @pytest.mark.parametrize("turn", [1e-6, 0.3])
 def test_the_error_that_a_vehicle_sees_scatters_as_predicted(turn):
     scenario, setup = given()
-    tracking, hold, speed = tracking_parameters(scenario, setup), speed_hold(scenario, setup), scenario.guidance.airspeed_mps
+    tracking, hold, speed = (
+        tracking_parameters(scenario, setup),
+        speed_hold(scenario, setup),
+        scenario.guidance.airspeed_mps,
+    )
     predicted = position_scatter(
-        tracking, hold, [turn], speed=speed, lag=setup.lag, airspeed_bandwidth=KINEMATIC_BANDWIDTH, noise_time=NAVIGATION_TIME
+        tracking,
+        hold,
+        [turn],
+        speed=speed,
+        lag=setup.lag,
+        airspeed_bandwidth=KINEMATIC_BANDWIDTH,
+        noise_time=NAVIGATION_TIME,
     )
     found = seen_errors(tracking, hold, turn, speed, setup.lag)
     # 40 minutes are some 500 time constants of the loop, 4 to 5 s: one deviation of the deviation is 3 %.
@@ -75,7 +95,12 @@ def test_a_law_that_does_not_track_is_as_far_off_as_its_noise():
 
     tracking = replace(tracking_parameters(scenario, setup), law=Straight())
     hold, speed = speed_hold(scenario, setup), scenario.guidance.airspeed_mps
-    assert position_scatter(tracking, hold, [0.3], speed=speed, lag=0.4, airspeed_bandwidth=1.0, noise_time=60.0) == 1.0
+    assert (
+        position_scatter(
+            tracking, hold, [0.3], speed=speed, lag=0.4, airspeed_bandwidth=1.0, noise_time=60.0
+        )
+        == 1.0
+    )
 
 
 def test_the_allowance_is_exceeded_no_oftener_than_allowed():
@@ -86,13 +111,17 @@ def test_the_allowance_is_exceeded_no_oftener_than_allowed():
 
 def test_without_noise_nothing_is_allowed_for():
     assert satellite_noise(*given(), 0.4) == 0.0
-    quiet, loud = (satellite_noise(*given(**{"sensors.position_sigma_m": sigma}), 0.4) for sigma in (1.5, 3.0))
+    quiet, loud = (
+        satellite_noise(*given(**{"sensors.position_sigma_m": sigma}), 0.4) for sigma in (1.5, 3.0)
+    )
     assert 0.0 < quiet < loud == pytest.approx(2.0 * quiet)
     assert satellite_noise(*given(**{"sensors.velocity_sigma_mps": 0.1}), 0.4) > 0.0
 
 
 @pytest.mark.parametrize("mission", ["follow", "standoff"])
-def test_the_guard_does_not_act_on_an_orbit_beside_a_vessel_that_is_known_exactly_for_noise_of_the_own_position(mission):
+def test_the_guard_does_not_act_on_an_orbit_beside_a_vessel_that_is_known_exactly_for_noise_of_the_own_position(
+    mission,
+):
     # Without the allowance it acted again and again, each time until the UAV was up to 370 m off its orbit.
     vessel = {"draws": [], "wind.speed_mps": 0.0, "vessel.speed_mps": 14.0, "start.range_m": 600.0}
     noise = {"guidance.mission": mission, "sensors.position_sigma_m": 3.0}

@@ -33,29 +33,81 @@ def test_a_flight_at_every_limit_has_met_them():
 @pytest.mark.parametrize(
     ("changed", "criteria", "words"),
     [
-        ({"keepout_violations": 1, "keepout_depth_m": 10.0}, {}, "1 keep-out violation, the deepest by 10.00 m"),
+        (
+            {"keepout_violations": 1, "keepout_depth_m": 10.0},
+            {},
+            "1 keep-out violation, the deepest by 10.00 m",
+        ),
         ({"keepout_violations": 2}, {}, "2 keep-out violations"),
         ({"outcome": "not_settled"}, {}, "did not complete"),
-        ({"outcome": "diverged", "message": "it rolled over"}, {"settles": False}, "it rolled over"),
-        ({"outcome": "diverged", "fault": "left_elevon", "fault_time_s": 50.0}, {"settles": False}, "did not complete"),
+        (
+            {"outcome": "diverged", "message": "it rolled over"},
+            {"settles": False},
+            "it rolled over",
+        ),
+        (
+            {"outcome": "diverged", "fault": "left_elevon", "fault_time_s": 50.0},
+            {"settles": False},
+            "did not complete",
+        ),
         ({"settling_time_s": math.nan}, {}, "did not settle"),
         ({"crossing_clearance_min_m": -0.01}, {}, "crossed at 199.99 m"),
-        ({"tracking_error_rms_m": 1.51}, {}, "rms tracking error 1.51 m, above the limit of 1.5 m, in the 220 s since it settled"),
+        (
+            {"tracking_error_rms_m": 1.51},
+            {},
+            "rms tracking error 1.51 m, above the limit of 1.5 m, in the 220 s since it settled",
+        ),
         ({"tracking_error_rms_m": math.nan}, {}, "tracking error"),
         ({"airspeed_error_rms_mps": 0.31}, {}, "airspeed error"),
         ({"altitude_error_max_m": 1.6}, {}, "altitude error"),
-        ({"tracking_error_end_m": 1.1}, {"tracking_error_end_m": 1.0}, "tracking error at the end 1.10 m"),
+        (
+            {"tracking_error_end_m": 1.1},
+            {"tracking_error_end_m": 1.0},
+            "tracking error at the end 1.10 m",
+        ),
         ({"crossing_interval_mean_s": 10.11}, {}, "mean crossing interval 10.110 s"),
-        ({"crossing_interval_mean_s": 12.0}, {"crossing_interval_error": 0.02}, "mean crossing interval 12.000 s"),
-        ({"crossing_interval_mean_s": 10.05}, {"crossing_interval_s": (9.0, 10.0)}, "10.050 s outside 9 to 10 s"),
-        ({}, {"crossing_distance_m": (210.0, 214.0)}, "mean crossing distance 215.000 m outside 210 to 214 m"),
+        (
+            {"crossing_interval_mean_s": 12.0},
+            {"crossing_interval_error": 0.02},
+            "mean crossing interval 12.000 s",
+        ),
+        (
+            {"crossing_interval_mean_s": 10.05},
+            {"crossing_interval_s": (9.0, 10.0)},
+            "10.050 s outside 9 to 10 s",
+        ),
+        (
+            {},
+            {"crossing_distance_m": (210.0, 214.0)},
+            "mean crossing distance 215.000 m outside 210 to 214 m",
+        ),
         ({"heading_rate_command_max_rad_s": 0.5001}, {}, "commanded 0.5001 rad/s, above omega_max"),
-        ({"heading_rate_demand_max_rad_s": 0.51}, {"law_within_heading_rate_max": True}, "asked for 0.5100 rad/s, above omega_max"),
-        ({"heading_rate_demand_max_rad_s": 0.5}, {"law_beyond_heading_rate_max": True}, "asked for 0.5000 rad/s, within omega_max"),
-        ({"resume_periods": 2.1}, {"resumes_within_periods": 2.0}, "crossings resumed 2.10 periods"),
-        ({"outcome": "incomplete", "message": "flew 12 of 30 crossings"}, {"settles": False}, "flew 12 of 30 crossings"),
+        (
+            {"heading_rate_demand_max_rad_s": 0.51},
+            {"law_within_heading_rate_max": True},
+            "asked for 0.5100 rad/s, above omega_max",
+        ),
+        (
+            {"heading_rate_demand_max_rad_s": 0.5},
+            {"law_beyond_heading_rate_max": True},
+            "asked for 0.5000 rad/s, within omega_max",
+        ),
+        (
+            {"resume_periods": 2.1},
+            {"resumes_within_periods": 2.0},
+            "crossings resumed 2.10 periods",
+        ),
+        (
+            {"outcome": "incomplete", "message": "flew 12 of 30 crossings"},
+            {"settles": False},
+            "flew 12 of 30 crossings",
+        ),
         ({"mode_at_end": "outrun"}, {"modes_at_end": ("tracking", "holding off")}, "ended outrun"),
-        ({"time_to_find_s": 301.0}, {"time_to_find_s": 300.0}, "time to find the plume 301.00 s, above the limit of 300 s"),
+        (
+            {"time_to_find_s": 301.0},
+            {"time_to_find_s": 300.0},
+            "time to find the plume 301.00 s, above the limit of 300 s",
+        ),
         # A plume that was never detected has no time.
         ({}, {"time_to_find_s": 300.0}, "time to find the plume nan s"),
         ({"altitude_outside_s": 0.1}, {"within_altitudes": True}, "0.1 s outside"),
@@ -86,13 +138,27 @@ def test_criteria_can_be_met_and_left_out(changed, criteria):
     assert failed(changed, **criteria) == []
 
 
-@pytest.mark.parametrize("criteria", [{}, {"required": "keep_out", "settles": False, "modes_at_end": ("ditched",)}])
+@pytest.mark.parametrize(
+    "criteria", [{}, {"required": "keep_out", "settles": False, "modes_at_end": ("ditched",)}]
+)
 def test_a_flight_that_lost_its_aircraft_is_never_met(criteria):
-    lost = {"outcome": "aircraft_lost", "message": "it is lost", "mode_at_end": "ditched", "fault": "engine", "fault_time_s": 50.0}
+    lost = {
+        "outcome": "aircraft_lost",
+        "message": "it is lost",
+        "mode_at_end": "ditched",
+        "fault": "engine",
+        "fault_time_s": 50.0,
+    }
     assert failed(lost, **criteria) == ["it is lost"]
     # Given up before anything had failed, or where nothing of the aircraft fails: a false alarm.
-    assert failed(lost | {"fault_time_s": 1000.0}, **criteria) == ["it is lost", "nothing of the aircraft had failed"]
-    assert failed(lost | {"fault": "vessel_data"}, **criteria) == ["it is lost", "nothing of the aircraft had failed"]
+    assert failed(lost | {"fault_time_s": 1000.0}, **criteria) == [
+        "it is lost",
+        "nothing of the aircraft had failed",
+    ]
+    assert failed(lost | {"fault": "vessel_data"}, **criteria) == [
+        "it is lost",
+        "nothing of the aircraft had failed",
+    ]
 
 
 def test_a_flight_kept_out_if_it_is_known_to_its_end():

@@ -31,7 +31,11 @@ def plan():
 @pytest.fixture(scope="module")
 def tracking_plan():
     """A flight beside a steady vessel that is known exactly, in still air."""
-    return planned(Scenario.model_validate({"title": "test", "fidelity": "kinematic", "vessel": {"speed_mps": 8.0}}))
+    return planned(
+        Scenario.model_validate(
+            {"title": "test", "fidelity": "kinematic", "vessel": {"speed_mps": 8.0}}
+        )
+    )
 
 
 def weave(plan, *, duration=100.0, distance=230.0, **columns):
@@ -90,7 +94,9 @@ def column(history, name):
 def test_crossings_are_counted_and_timed(plan):
     row, crossings = figures(plan, weave(plan))
     # At 5, 15, ..., 95 s; a cubic of a sine sampled at 10 Hz errs by 60 (0.031)^4/384 m.
-    assert [crossing.time for crossing in crossings] == pytest.approx(np.arange(5.0, 100.0, INTERVAL), abs=1e-6)
+    assert [crossing.time for crossing in crossings] == pytest.approx(
+        np.arange(5.0, 100.0, INTERVAL), abs=1e-6
+    )
     assert row["crossing_count"] == 10
     assert row["crossing_interval_mean_s"] == pytest.approx(INTERVAL, abs=1e-6)
     assert row["crossing_interval_std_s"] == pytest.approx(0.0, abs=1e-6)
@@ -104,7 +110,9 @@ def test_a_crossing_keeps_out_of_a_sphere_by_its_distance_and_of_a_cylinder_by_t
         row, crossings = figures(plan, weave(plan, altitude_m=plan.source_height + 161.0))
         assert row["crossing_distance_min_m"] == pytest.approx(math.hypot(230.0, 161.0), abs=1e-3)
         assert row["crossing_clearance_min_m"] == pytest.approx(to_centre - 200.0, abs=1e-3)
-        assert [crossing.horizontal_distance for crossing in crossings] == pytest.approx(len(crossings) * [230.0], abs=1e-3)
+        assert [crossing.horizontal_distance for crossing in crossings] == pytest.approx(
+            len(crossings) * [230.0], abs=1e-3
+        )
 
 
 def test_crossings_count_from_settling_on(plan):
@@ -126,11 +134,18 @@ def test_an_axis_that_turns_is_crossed_where_it_is_by_then(plan):
     # The vehicle stands still 230 m astern, 20 m to the west of the vessel's wake; the axis sweeps over it at 0.01 rad/s.
     time = np.arange(0.0, 100.05, STEP)
     axis = math.pi + 0.01 * (time - 50.0)
-    history = weave(plan, plume_axis_rad=np.where(axis > math.pi, axis - 2.0 * math.pi, axis), velocity_east_mps=0.0, east_m=-20.0)
+    history = weave(
+        plan,
+        plume_axis_rad=np.where(axis > math.pi, axis - 2.0 * math.pi, axis),
+        velocity_east_mps=0.0,
+        east_m=-20.0,
+    )
     row, crossings = figures(plan, history)
     # South by west: pi + atan(20/230), later than 50 s by that over 0.01 rad/s. The axis is wrapped on the way. Its rate by central
     # differences is exact.
-    assert [crossing.time for crossing in crossings] == pytest.approx([50.0 + math.atan2(20.0, 230.0) / 0.01], abs=1e-4)
+    assert [crossing.time for crossing in crossings] == pytest.approx(
+        [50.0 + math.atan2(20.0, 230.0) / 0.01], abs=1e-4
+    )
     assert row["crossing_distance_min_m"] == pytest.approx(math.hypot(230.0, 20.0), abs=1e-3)
 
 
@@ -139,11 +154,15 @@ def test_a_keep_out_violation_is_counted_from_the_first_second_on(plan):
     time = np.arange(0.0, 100.05, STEP)
     phase = np.pi * np.clip((time - 10.0) / 20.0, 0.0, 1.0)
     distance, closing = 250.0 - 60.0 * np.sin(phase) ** 2, 60.0 * np.sin(2.0 * phase) * np.pi / 20.0
-    history = weave(plan, distance=distance, velocity_north_mps=8.0 + closing, east_m=0.0, velocity_east_mps=0.0)
+    history = weave(
+        plan, distance=distance, velocity_north_mps=8.0 + closing, east_m=0.0, velocity_east_mps=0.0
+    )
     row, _ = figures(plan, history, settled_at=50.0)
     assert row["keepout_violations"] == 1
     # Inside while 60 sin^2 exceeds 50 m; the cubic errs by h^4/384 of the fourth derivative, 2e-9 m.
-    assert row["keepout_time_s"] == pytest.approx(20.0 * (1.0 - 2.0 * math.asin(math.sqrt(5.0 / 6.0)) / math.pi), abs=1e-6)
+    assert row["keepout_time_s"] == pytest.approx(
+        20.0 * (1.0 - 2.0 * math.asin(math.sqrt(5.0 / 6.0)) / math.pi), abs=1e-6
+    )
     assert row["keepout_depth_m"] == pytest.approx(10.0, abs=1e-6)
 
 
@@ -171,7 +190,11 @@ def test_errors_are_measured_from_the_history(plan):
     # 3 m short along the wake, towards and away from the vessel in turn; the vessel is seen 4 m off, the wind 1 m/s.
     sign = np.where(np.arange(len(north)) % 2, 1.0, -1.0)
     history = weave(
-        plan, reference_north_m=north + 3.0 * sign, vessel_seen_east_m=4.0 * half, wind_north_mps=0.6, wind_east_mps=0.8
+        plan,
+        reference_north_m=north + 3.0 * sign,
+        vessel_seen_east_m=4.0 * half,
+        wind_north_mps=0.6,
+        wind_east_mps=0.8,
     )
     row, _ = figures(plan, history)
     assert row["tracking_error_rms_m"] == pytest.approx(3.0)
@@ -246,4 +269,9 @@ def test_both_kinds_of_flight_have_rows_of_the_same_columns(plan, tracking_plan)
     for row in rows:
         assert set(row) <= set(SUMMARY_COLUMNS)
     # What a steady vessel in still air has no use for: a margin, and manoeuvres to resume after.
-    assert set(rows[0]) - set(rows[1]) == {"keepout_margin_m", "spread_predicted_m", "resume_time_s", "resume_periods"}
+    assert set(rows[0]) - set(rows[1]) == {
+        "keepout_margin_m",
+        "spread_predicted_m",
+        "resume_time_s",
+        "resume_periods",
+    }

@@ -36,7 +36,11 @@ def history(*, first=100.0, above=6.0, believed=80.0, deviation=4.0, duration=30
         "co2_reading_ppm": np.roll(co2, 10),
     }
     if believed is not None:
-        frame |= {"axis_height_estimated_m": believed, "axis_height_deviation_m": deviation, "axis_measurable": 0.9}
+        frame |= {
+            "axis_height_estimated_m": believed,
+            "axis_height_deviation_m": deviation,
+            "axis_measurable": 0.9,
+        }
     return pd.DataFrame(frame)
 
 
@@ -86,7 +90,9 @@ def test_the_hit_rate_counts_passes_since_the_plume_was_found():
 def test_time_outside_of_the_limits_counts_but_not_that_of_a_vehicle_that_glides():
     assert figures(history())["altitude_outside_s"] == 0.0
     # All 3001 samples of 300 s.
-    assert figures(history(), altitude_max_m=60.0)["altitude_outside_s"] == pytest.approx(300.1, abs=1e-6)
+    assert figures(history(), altitude_max_m=60.0)["altitude_outside_s"] == pytest.approx(
+        300.1, abs=1e-6
+    )
     gliding = history()
     gliding["altitude_command_m"] = -1000.0
     assert figures(gliding, altitude_max_m=60.0)["altitude_outside_s"] == 0.0

@@ -9,7 +9,9 @@ from scenarios.metrics.keepout import closest_approach, keepout_figures
 def line(offset, speed=19.42, duration=40.0, step=0.1):
     """A straight path that passes ``offset`` metres beside the centre at half the duration."""
     time = np.arange(0.0, duration + step / 2, step)
-    position = np.column_stack([speed * (time - duration / 2), np.full(len(time), offset), 0.0 * time])
+    position = np.column_stack(
+        [speed * (time - duration / 2), np.full(len(time), offset), 0.0 * time]
+    )
     return time, position, np.tile([speed, 0.0, 0.0], (len(time), 1))
 
 
@@ -20,7 +22,9 @@ def turn(bearing, *, nearest=200.0, radius=38.6, speed=19.42, step=0.1):
     """
     time = np.arange(0.0, 10.0, step)
     angle = speed / radius * time - bearing
-    position = np.column_stack([nearest + radius * (1.0 - np.cos(angle)), radius * np.sin(angle), 0.0 * time])
+    position = np.column_stack(
+        [nearest + radius * (1.0 - np.cos(angle)), radius * np.sin(angle), 0.0 * time]
+    )
     velocity = speed * np.column_stack([np.sin(angle), np.cos(angle), 0.0 * time])
     return time, position, velocity
 
@@ -29,7 +33,9 @@ def turn(bearing, *, nearest=200.0, radius=38.6, speed=19.42, step=0.1):
 def test_time_inside_is_the_chord_over_the_speed(offset):
     # A chord at distance a of a circle of radius r has the length 2 sqrt(r^2 - a^2). Straight between samples, so exact.
     figures = keepout_figures(*line(offset), radius=200.0)
-    assert figures.time_inside == pytest.approx(2.0 * math.sqrt(200.0**2 - offset**2) / 19.42, rel=1e-9)
+    assert figures.time_inside == pytest.approx(
+        2.0 * math.sqrt(200.0**2 - offset**2) / 19.42, rel=1e-9
+    )
     assert figures.violations == 1
     assert figures.depth == pytest.approx(200.0 - offset, abs=1e-9)
 
@@ -54,7 +60,9 @@ def test_a_cylinder_is_as_wide_at_every_height():
     assert keepout_figures(time, position, velocity, radius=200.0, shape="sphere").violations == 0
     figures = keepout_figures(time, position, velocity, radius=200.0, shape="cylinder")
     assert (figures.violations, figures.distance_min) == (1, pytest.approx(100.0, abs=1e-9))
-    assert closest_approach(time, position[:, :2], velocity[:, :2]) == pytest.approx(100.0, abs=1e-9)
+    assert closest_approach(time, position[:, :2], velocity[:, :2]) == pytest.approx(
+        100.0, abs=1e-9
+    )
 
 
 @pytest.mark.parametrize("bearing", [1.0, 1.0 + 0.5 * 0.1 * 19.42 / 38.6])
@@ -78,7 +86,10 @@ def test_a_dip_between_two_samples_outside_is_seen():
 def test_separate_stays_are_counted_apart():
     time, position, velocity = line(100.0)
     there_and_back = np.concatenate([time, time[-1] + 0.1 + time])
-    both, rates = np.concatenate([position, position[::-1]]), np.concatenate([velocity, -velocity[::-1]])
+    both, rates = (
+        np.concatenate([position, position[::-1]]),
+        np.concatenate([velocity, -velocity[::-1]]),
+    )
     figures = keepout_figures(there_and_back, both, rates, radius=200.0)
     assert figures.violations == 2
 

@@ -25,5 +25,7 @@ def test_it_stays_within_the_altitudes_of_the_flight():
 
 
 def test_without_exhaust_it_is_the_elevation_that_is_given():
-    expected = axis_height(load_study("sea_wind", ["plume.elevation_deg=10"]), SteadyVessel(8.0, 0.0))
+    expected = axis_height(
+        load_study("sea_wind", ["plume.elevation_deg=10"]), SteadyVessel(8.0, 0.0)
+    )
     assert expected.at(200.0, 9.0) == pytest.approx(60.0 + 35.265, abs=1e-3)

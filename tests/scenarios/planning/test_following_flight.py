@@ -28,7 +28,9 @@ def test_such_a_flight_has_sensing_margin_and_health():
     assert flight.guidance.mission.centre.distance_min == pytest.approx(203.0)
 
 
-@pytest.mark.parametrize(("airspeed", "lack"), [(15.5, 0.06 * 15.5), (16.5, 0.06 * 16.5), (19.42, 0.55 * 4.42)])
+@pytest.mark.parametrize(
+    ("airspeed", "lack"), [(15.5, 0.06 * 15.5), (16.5, 0.06 * 16.5), (19.42, 0.55 * 4.42)]
+)
 def test_near_the_slowest_airspeed_a_gust_does_not_pass_for_lost_thrust(airspeed, lack):
     # The X8's is 15 m/s. Light turbulence takes up to 0.4 m/s from a sound aircraft, moderate up to 0.6.
     assert lost_thrust(airspeed, 15.0) == pytest.approx(lack)
@@ -45,7 +47,10 @@ def test_the_guard_reckons_with_the_airspeed_at_which_lost_thrust_is_detected():
     # Then it pushes over to a glide, which takes it off its turn: the guard keeps as much more.
     assert (guarded.radius, guarded.allowance) == (204.3, 4.3)
     # A throttle that sticks takes thrust, too; a surface that is stuck does not, and the aircraft leaves gliding all the same.
-    stuck = [plan(scenario(fault={"declared": [part]}), setup=setup).guidance.guard for part in ("throttle", "left_elevon")]
+    stuck = [
+        plan(scenario(fault={"declared": [part]}), setup=setup).guidance.guard
+        for part in ("throttle", "left_elevon")
+    ]
     assert [guard.allowance for guard in stuck] == [4.3, 4.3]
     assert [guard.slowest < math.inf for guard in stuck] == [True, False]
     # Only where it is declared: a list of trials has one setup.
@@ -54,7 +59,10 @@ def test_the_guard_reckons_with_the_airspeed_at_which_lost_thrust_is_detected():
     # Beside an orbit of its least margin there is room for that much, and not for ten times as much.
     deviations = (0.0, 4.3, 43.0)
     totals = [
-        plan(given, setup=replace(setup, failing_level=replace(failing, glide_deviation=of))).margin.total for of in deviations
+        plan(
+            given, setup=replace(setup, failing_level=replace(failing, glide_deviation=of))
+        ).margin.total
+        for of in deviations
     ]
     assert totals[0] == totals[1] == sound.margin.total
     assert totals[2] > sound.margin.total + 20.0
@@ -64,7 +72,9 @@ def test_the_guard_reckons_with_the_airspeed_at_which_lost_thrust_is_detected():
 def test_a_vehicle_that_may_only_turn_slowly_is_not_lost_in_turbulence(bank, rate):
     flight = plan(scenario(guidance={"bank_deg": bank, "airspeed_mps": SPEED}))
     assert flight.guidance.health.heading_rate_max == pytest.approx(rate, rel=1e-3)
-    assert flight.guidance.tracking.heading_rate_max == pytest.approx(9.80665 * math.tan(math.radians(bank)) / SPEED)
+    assert flight.guidance.tracking.heading_rate_max == pytest.approx(
+        9.80665 * math.tan(math.radians(bank)) / SPEED
+    )
 
 
 def test_reports_are_received_beforehand_and_the_filter_knows_their_errors():
@@ -80,19 +90,29 @@ def test_reports_are_received_beforehand_and_the_filter_knows_their_errors():
 
 def test_what_is_declared_of_the_vessel_is_what_its_discs_are_made_of():
     declared = {"vessel_acceleration_mps2": 0.1, "vessel_speed_max_mps": 12.0}
-    changes = {"reports": {"interval_s": (2.0, 10.0), "position_sigma_m": 4.0}, "sensors": {"position_sigma_m": 3.0}}
+    changes = {
+        "reports": {"interval_s": (2.0, 10.0), "position_sigma_m": 4.0},
+        "sensors": {"position_sigma_m": 3.0},
+    }
     limits = plan(scenario(following=declared, **changes)).guidance.vessel.limits
     # The UAV's own place is the vessel's too: 3-4-5.
-    assert (limits.acceleration, limits.speed_max, limits.position_sigma) == pytest.approx((0.1, 12.0, 5.0), rel=1e-12)
+    assert (limits.acceleration, limits.speed_max, limits.position_sigma) == pytest.approx(
+        (0.1, 12.0, 5.0), rel=1e-12
+    )
     assert plan(scenario()).guidance.vessel.limits.speed_max == math.inf
 
 
 def test_a_steady_vessel_that_is_faster_than_declared_is_refused():
     changes = {"reports": {"interval_s": (2.0, 10.0)}}
-    with pytest.raises(InfeasibleError, match=r"moves at up to 8 m/s .*vessel_speed_max_mps = 7, on which .* relies: declare"):
+    with pytest.raises(
+        InfeasibleError,
+        match=r"moves at up to 8 m/s .*vessel_speed_max_mps = 7, on which .* relies: declare",
+    ):
         plan(scenario(following={"vessel_speed_max_mps": 7.0}, **changes))
     # What is less by 0.05 % is not rounding: 1.2 m in 5 minutes. The speed that is given is what has to be declared.
-    with pytest.raises(InfeasibleError, match=r"moves at up to 8 m/s .*vessel_speed_max_mps = 7\.996"):
+    with pytest.raises(
+        InfeasibleError, match=r"moves at up to 8 m/s .*vessel_speed_max_mps = 7\.996"
+    ):
         plan(scenario(following={"vessel_speed_max_mps": 7.996}, **changes))
     plan(scenario(following={"vessel_speed_max_mps": 8.0}, **changes))
 
@@ -111,7 +131,8 @@ class Swerving:
 
 def test_a_track_of_ones_own_that_accelerates_more_than_is_declared_is_told_to_be_gentler_itself():
     with pytest.raises(
-        InfeasibleError, match=r"accelerates by 0\.4 m/s2.*: declare more, or manoeuvre more gently \(vessel\.track "
+        InfeasibleError,
+        match=r"accelerates by 0\.4 m/s2.*: declare more, or manoeuvre more gently \(vessel\.track ",
     ):
         check_declared(scenario(), Swerving())
 
@@ -130,20 +151,34 @@ class Faster:
 
 def test_a_track_of_ones_own_whose_velocity_is_a_little_wrong_is_refused():
     # 0.0199 m/s in the 200 s of the flight: kinematic flights of a law that flies at her came within r_min by 6 m in 300 s.
-    with pytest.raises(InfeasibleError, match=r"differ by up to 4 m; 0\.01 m are allowed.*: let the velocity be the derivative"):
+    with pytest.raises(
+        InfeasibleError,
+        match=r"differ by up to 4 m; 0\.01 m are allowed.*: let the velocity be the derivative",
+    ):
         check_declared(scenario(flight={"duration_max_s": 200.0}), Faster())
 
 
 def test_a_manoeuvre_beyond_what_is_declared_by_a_thousandth_is_refused():
-    braking = {"speed_mps": 8.0, "manoeuvres": [{"at_s": 40.0, "speed_mps": 0.0, "acceleration_mps2": 0.2502}]}
-    with pytest.raises(InfeasibleError, match=r"accelerates by 0\.2502 m/s2.*acceleration_mps2 = 0\.25, on"):
+    braking = {
+        "speed_mps": 8.0,
+        "manoeuvres": [{"at_s": 40.0, "speed_mps": 0.0, "acceleration_mps2": 0.2502}],
+    }
+    with pytest.raises(
+        InfeasibleError, match=r"accelerates by 0\.2502 m/s2.*acceleration_mps2 = 0\.25, on"
+    ):
         plan(scenario(vessel=braking, following={"vessel_acceleration_mps2": 0.25}))
     plan(scenario(vessel=braking, following={"vessel_acceleration_mps2": 0.2502}))
 
 
 def test_a_vessel_that_is_known_exactly_does_no_more_than_is_declared_either():
-    braking = {"speed_mps": 8.0, "manoeuvres": [{"at_s": 40.0, "speed_mps": 0.0, "acceleration_mps2": 0.25}]}
-    with pytest.raises(InfeasibleError, match=r"by 0\.25 m/s2.*acceleration_mps2 = 0, on.* gently \(vessel\.manoeuvres\)"):
+    braking = {
+        "speed_mps": 8.0,
+        "manoeuvres": [{"at_s": 40.0, "speed_mps": 0.0, "acceleration_mps2": 0.25}],
+    }
+    with pytest.raises(
+        InfeasibleError,
+        match=r"by 0\.25 m/s2.*acceleration_mps2 = 0, on.* gently \(vessel\.manoeuvres\)",
+    ):
         plan(scenario(vessel=braking))
     plan(scenario(vessel=braking, following={"vessel_acceleration_mps2": 0.25}))
     # Without a guard nothing relies on it.
@@ -158,8 +193,15 @@ def test_a_wind_that_changes_is_an_error_of_the_estimated_one(tmp_path):
     )
     changing = plan(scenario(wind={"table": str(table)}, following={"speed_error_mps": 0.5}))
     # 6 m/s in 600 s, for the 20.6 s that the estimate takes: 0.03 of 19.42 m/s each half second hide 0.02 m/s of wander.
-    assert changing.guidance.guard.speed_error == pytest.approx(0.5 + 0.01 * 0.03 * 19.42 * math.sqrt(0.5) / 0.02)
-    assert plan(scenario(wind={"speed_mps": 9.0}, following={"speed_error_mps": 0.5})).guidance.guard.speed_error == 0.5
+    assert changing.guidance.guard.speed_error == pytest.approx(
+        0.5 + 0.01 * 0.03 * 19.42 * math.sqrt(0.5) / 0.02
+    )
+    assert (
+        plan(
+            scenario(wind={"speed_mps": 9.0}, following={"speed_error_mps": 0.5})
+        ).guidance.guard.speed_error
+        == 0.5
+    )
 
 
 def test_a_start_is_judged_by_the_wind_at_its_own_height():
@@ -172,7 +214,9 @@ def test_a_start_is_judged_by_the_wind_at_its_own_height():
     wind = {"speed_mps": 9.0, "from_deg": 90.0, "roughness_m": 0.01}
     words = set()
     for height in (10.0, 60.0):
-        with pytest.raises(InfeasibleError, match="where the best turn away comes within") as refused:
+        with pytest.raises(
+            InfeasibleError, match="where the best turn away comes within"
+        ) as refused:
             plan(scenario(wind=wind, plume={"source_height_m": height}, **given))
         words.add(str(refused.value))
     assert len(words) == 1
@@ -180,7 +224,10 @@ def test_a_start_is_judged_by_the_wind_at_its_own_height():
 
 def test_dead_reckoning_is_reckoned_with_where_satellite_navigation_is_declared_to_fail():
     fault = {"kind": "satellite_navigation", "at_s": (80.0, 80.0)}
-    assert plan(scenario(following={"drift_rate_mps": 2.0}, fault=fault)).guidance.guard.drift_rate == 2.0
+    assert (
+        plan(scenario(following={"drift_rate_mps": 2.0}, fault=fault)).guidance.guard.drift_rate
+        == 2.0
+    )
     assert plan(scenario(following={"drift_rate_mps": 2.0})).guidance.guard.drift_rate == 0.0
 
 
@@ -192,7 +239,12 @@ def test_the_guard_keeps_the_deviation_that_is_declared():
 
 def test_a_vessel_data_fault_silences_its_reports():
     fault = {"kind": "vessel_data", "at_s": (100.0, 100.0), "vessel_data_s": 60.0}
-    times = [when for when, _ in plan(scenario(reports={"interval_s": (2.0, 4.0)}, fault=fault)).sensing.received]
+    times = [
+        when
+        for when, _ in plan(
+            scenario(reports={"interval_s": (2.0, 4.0)}, fault=fault)
+        ).sensing.received
+    ]
     assert not [when for when in times if 100.0 <= when < 160.0]
     assert [when for when in times if when >= 160.0]
 
@@ -207,7 +259,10 @@ def test_periods_are_those_of_the_speed_ratio():
 
 def test_the_plumes_elevation_makes_the_altitude_rise_with_distance():
     mission = plan(scenario(plume={"elevation_deg": 10.0})).guidance.mission
-    assert (mission.axis.height.climb, mission.axis.height.source) == (pytest.approx(math.tan(math.radians(10.0)), rel=1e-12), 60.0)
+    assert (mission.axis.height.climb, mission.axis.height.source) == (
+        pytest.approx(math.tan(math.radians(10.0)), rel=1e-12),
+        60.0,
+    )
 
 
 def test_following_can_do_without_the_keep_out_guard():
@@ -215,17 +270,29 @@ def test_following_can_do_without_the_keep_out_guard():
 
 
 @pytest.mark.parametrize(
-    ("level", "speed", "turned"), [("none", SPEED, 0.02), ("light", SPEED, 0.02), ("moderate", SPEED, 0.02), ("none", 100.0, 0.0)]
+    ("level", "speed", "turned"),
+    [
+        ("none", SPEED, 0.02),
+        ("light", SPEED, 0.02),
+        ("moderate", SPEED, 0.02),
+        ("none", 100.0, 0.0),
+    ],
 )
 def test_the_estimated_wind_follows_as_fast_as_the_guard_reckons_with(level, speed, turned):
     # A wind that rises by 0.1 m/s each second, which gusts hide, or beside a fast vehicle the error of its course, as it flies
     # straight across the wind: the filter lags by no more than its time.
-    flown = scenario(fidelity="six_dof", turbulence={"level": level}, guidance={"airspeed_mps": speed})
+    flown = scenario(
+        fidelity="six_dof", turbulence={"level": level}, guidance={"airspeed_mps": speed}
+    )
     p = navigation_parameters(flown, kinematic_setup(scenario()))
-    wind = WindFilter(airspeed_sigma=p.airspeed_sigma, course_sigma=p.course_sigma, drift=p.wind_drift)
+    wind = WindFilter(
+        airspeed_sigma=p.airspeed_sigma, course_sigma=p.course_sigma, drift=p.wind_drift
+    )
     behind, period = 0.0, p.wind_interval * p.time_step
     for n in range(2000):
         blown, course = 0.1 * n * period, 0.5 * math.pi + turned * n
-        wind.update(speed, course, blown + speed * math.cos(course), speed * math.sin(course), period)
+        wind.update(
+            speed, course, blown + speed * math.cos(course), speed * math.sin(course), period
+        )
         behind = max(behind, blown - wind.north)
     assert 0.5 * wind_followed(flown) < behind / 0.1 <= wind_followed(flown)

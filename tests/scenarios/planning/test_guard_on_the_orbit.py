@@ -28,13 +28,20 @@ SETUP = VehicleSetup(
 def planned(nu, *overrides):
     study = load_study("sweep_nu", list(overrides))
     return plan_flight(
-        with_values(study, {"vessel.speed_ratio": nu, "start.distance_m": (500.0, 500.0)}), flight_id="x", seed=1, setup=SETUP
+        with_values(study, {"vessel.speed_ratio": nu, "start.distance_m": (500.0, 500.0)}),
+        flight_id="x",
+        seed=1,
+        setup=SETUP,
     )
 
 
 def least_clearance(plan):
     """Return what the guard has left at the worst point of the orbit where it is placed [m]."""
-    guard, orbit, centre = KeepoutGuard(plan.guidance.guard), plan.oscillation, plan.guidance.mission.centre
+    guard, orbit, centre = (
+        KeepoutGuard(plan.guidance.guard),
+        plan.oscillation,
+        plan.guidance.mission.centre,
+    )
     guard.tubes = (Tube(0.0, 0.0, 0.0, orbit.nu * orbit.speed, 0.0),)
     times, piece = np.linspace(0.0, orbit.period, 240, endpoint=False), 1e-3 * orbit.period
     (x, y), (ahead, right), (farther, more) = (orbit.offset(times + i * piece) for i in range(3))
@@ -45,7 +52,12 @@ def least_clearance(plan):
     return min(
         guard.clearance(
             0.0,
-            KnownMotion(ground_north=centre.x + north, ground_east=centre.y + east, course=heading, heading_rate=turn),
+            KnownMotion(
+                ground_north=centre.x + north,
+                ground_east=centre.y + east,
+                course=heading,
+                heading_rate=turn,
+            ),
             orbit.speed,
         )
         for north, east, heading, turn in zip(x, y, course, rate / piece, strict=True)
@@ -77,9 +89,15 @@ def test_an_orbit_as_near_as_it_can_lie_is_nearer_than_the_papers(nu):
 @pytest.mark.parametrize("heading", [60, 90, -120])
 def test_the_guard_leaves_an_orbit_alone_wherever_the_plume_trails(shape, heading):
     # As if it trailed astern the guard was left 1.5 m too little abeam, and acted on the orbit 197 times.
-    assert least_clearance(planned(0.45, f"reference.shape={shape}", f"plume.heading_deg={heading}")) > 0.0
+    assert (
+        least_clearance(planned(0.45, f"reference.shape={shape}", f"plume.heading_deg={heading}"))
+        > 0.0
+    )
 
 
 @pytest.mark.parametrize("heading", [90, 270])
 def test_the_guard_leaves_a_circle_to_one_side_alone_wherever_the_plume_trails(heading):
-    assert least_clearance(planned(0.2, "reference.shape=loiter", f"plume.heading_deg={heading}")) > 0.0
+    assert (
+        least_clearance(planned(0.2, "reference.shape=loiter", f"plume.heading_deg={heading}"))
+        > 0.0
+    )

@@ -27,7 +27,9 @@ LOOSE = ["criteria.crossing_interval_error=0.1", "criteria.tracking_error_rms_m=
 
 
 def run(path, *overrides, name="sweep_nu"):
-    return run_study(load_study(name, [*SHORT, *overrides]), name, path, executor_factory=InProcessExecutor)
+    return run_study(
+        load_study(name, [*SHORT, *overrides]), name, path, executor_factory=InProcessExecutor
+    )
 
 
 def exit_status(path, *overrides):
@@ -70,7 +72,9 @@ def test_a_number_that_is_no_aircraft_is_refused_like_a_word(tmp_path):
         (AircraftError("aircraft 'x8' does not trim: not converged"), False),
     ],
 )
-def test_a_design_that_is_refused_is_rows_with_its_reason_and_exit_status_1(refuse, error, drawn, tmp_path, capsys, request):
+def test_a_design_that_is_refused_is_rows_with_its_reason_and_exit_status_1(
+    refuse, error, drawn, tmp_path, capsys, request
+):
     if not drawn:
         request.getfixturevalue("sketched")
     refuse(error)
@@ -85,7 +89,11 @@ def test_a_design_that_is_refused_is_rows_with_its_reason_and_exit_status_1(refu
     assert set(summary["message"]) == {str(error)}
     assert not summary["criteria_met"].any()
     manifest = manifest_of(out)
-    assert (manifest["state"], manifest["outcomes"]["trim_failed"], manifest["flights_met_criteria"]) == ("complete", 2, 0)
+    assert (
+        manifest["state"],
+        manifest["outcomes"]["trim_failed"],
+        manifest["flights_met_criteria"],
+    ) == ("complete", 2, 0)
     # The reports are built all the same, and say why nothing was flown.
     html = (out / "report.html").read_text(encoding="utf-8")
     assert "Nothing was flown" in html
@@ -98,7 +106,11 @@ def test_flights_that_were_refused_are_done_and_are_not_tried_again(refuse, tmp_
     run(tmp_path / "run")
     told = []
     again = run_study(
-        load_study("sweep_nu", SHORT), "sweep_nu", tmp_path / "run", resume=True, progress=lambda *report: told.append(report)
+        load_study("sweep_nu", SHORT),
+        "sweep_nu",
+        tmp_path / "run",
+        resume=True,
+        progress=lambda *report: told.append(report),
     )
     assert again.summary.done == 1
     assert [row["outcome"] for row in rows_of(tmp_path / "run")] == ["trim_failed"]
@@ -113,9 +125,14 @@ def test_the_kinematic_vehicle_flies_as_the_aircraft_that_is_named_would(designs
     flown = pd.read_parquet(out / "flights" / "nu_0.50.parquet")
     manifest = manifest_of(out)
     assert manifest["config"]["guidance"]["airspeed_mps"] == AEROSONDE.envelope.airspeed
-    assert flown["airspeed_mps"].iloc[-1] == pytest.approx(25.0, abs=1.3)  # its own airspeed, trimmed by up to 1.29 m/s
+    assert flown["airspeed_mps"].iloc[-1] == pytest.approx(
+        25.0, abs=1.3
+    )  # its own airspeed, trimmed by up to 1.29 m/s
     # omega_max of 45 degrees at 25 m/s.
-    assert flown["heading_rate_command_rad_s"].abs().max() <= 9.80665 * math.tan(math.radians(45.0)) / 25.0
+    assert (
+        flown["heading_rate_command_rad_s"].abs().max()
+        <= 9.80665 * math.tan(math.radians(45.0)) / 25.0
+    )
     # No autopilot takes part, and none lags: half a step of 20 Hz is all there is to preview.
     assert manifest["guidance_lag_s"] == 0.025
     assert not (out / "innerloop.json").exists()
@@ -135,7 +152,10 @@ def test_aircraft_that_differ_from_flight_to_flight_are_refused(designs, tmp_pat
 
 
 def test_the_range_of_airspeeds_is_named_where_it_is_left(tmp_path):
-    with pytest.raises(InputError, match=r"airspeed_mps is 31; Aerosonde flies 21\.0 to 30\.0 m/s: choose an airspeed in between"):
+    with pytest.raises(
+        InputError,
+        match=r"airspeed_mps is 31; Aerosonde flies 21\.0 to 30\.0 m/s: choose an airspeed in between",
+    ):
         run(tmp_path / "run", "aircraft=aerosonde", "guidance.airspeed_mps=31")
     assert not (tmp_path / "run").exists()
 

@@ -41,13 +41,17 @@ def test_what_is_known_of_the_ship_is_the_middle_and_the_spread_of_the_ranges():
     # Of a uniform distribution from 20 to 60 m: mean 40, deviation the range over the root of 12.
     assert axis.expected.source_height == 40.0
     assert axis.expected.source_deviation == pytest.approx(40.0 / math.sqrt(12.0), rel=1e-12)
-    assert axis.expected.buoyancy_flux == emission(scenario, speed=math.nan, load=0.55).buoyancy_flux
+    assert (
+        axis.expected.buoyancy_flux == emission(scenario, speed=math.nan, load=0.55).buoyancy_flux
+    )
     # The logarithm of a load that is uniform from 0.2 to 0.9 scatters by 0.4; fuel burnt goes almost with the load.
     assert axis.expected.load_deviation == pytest.approx(0.4, abs=0.05)
 
 
 def test_a_flight_that_is_given_the_axis_knows_the_same_height_before():
-    told, searched = (plume_axis(searching(f"following.plume={how}"), VESSEL) for how in ("told", "estimated"))
+    told, searched = (
+        plume_axis(searching(f"following.plume={how}"), VESSEL) for how in ("told", "estimated")
+    )
     assert isinstance(told, PredictedPlume)
     assert told.height == searched.height
 
@@ -60,7 +64,9 @@ def test_a_flight_that_is_given_the_axis_knows_the_same_height_before():
         (["payload={}"], "payload.instruments"),
     ],
 )
-def test_limits_that_leave_no_room_and_a_search_without_a_sniffer_are_refused_in_one_line(overrides, words):
+def test_limits_that_leave_no_room_and_a_search_without_a_sniffer_are_refused_in_one_line(
+    overrides, words
+):
     with pytest.raises(InfeasibleError) as refusal:
         plume_axis(searching(*overrides), VESSEL)
     assert words in str(refusal.value)
@@ -71,7 +77,9 @@ def test_ranges_are_in_their_order_and_heights_of_the_mouth_vary_only_with_an_al
     with pytest.raises(InputError, match="source_height_m"):
         searching("following.source_height_m=[60,20]")
     with pytest.raises(InputError, match=r"plume\.source_height_m"):
-        load_study("sulphur", ["flights=2", 'draws=[{key="plume.source_height_m", uniform=[20.0,60.0]}]'])
+        load_study(
+            "sulphur", ["flights=2", 'draws=[{key="plume.source_height_m", uniform=[20.0,60.0]}]']
+        )
 
 
 def test_the_flight_starts_at_its_altitude_and_keeps_out_of_the_sphere_about_the_mouth():
@@ -79,13 +87,19 @@ def test_the_flight_starts_at_its_altitude_and_keeps_out_of_the_sphere_about_the
     plan = plan_flight(scenario, flight_id="a", seed=1, setup=kinematic_setup(scenario))
     assert (plan.altitude, plan.source_height) == (80.0, 35.0)
     # The altitude may change on the way: level with the mouth the sphere is as wide as it is anywhere.
-    assert (plan.keepout_shape, plan.keepout_radius, plan.guidance.guard.radius) == ("sphere", 200.0, 200.0)
+    assert (plan.keepout_shape, plan.keepout_radius, plan.guidance.guard.radius) == (
+        "sphere",
+        200.0,
+        200.0,
+    )
 
 
 @pytest.mark.parametrize("sensor", ["fast", "electrochemical"])
 @pytest.mark.parametrize("wind", [4.0, 9.0, 16.0])
 def test_the_sulphur_is_known_best_from_as_near_as_may_be(sensor, wind):
-    scenario = load_study("sulphur", [f"payload.sensor={sensor}", "following.distance=best_measurement"])
+    scenario = load_study(
+        "sulphur", [f"payload.sensor={sensor}", "following.distance=best_measurement"]
+    )
     assert additional_distance(scenario, VESSEL, 220.0, wind) == 0.0
     # Flights at 500 m had up to three times the noise of those at 200 m (docs/explanation/sulphur.md).
     near, far = information(scenario, VESSEL, np.array([200.0, 500.0]), wind)
@@ -95,7 +109,12 @@ def test_the_sulphur_is_known_best_from_as_near_as_may_be(sensor, wind):
 def test_where_the_axis_is_below_the_limits_near_the_ship_it_is_measured_farther_off():
     low = load_study(
         "sulphur",
-        ["following.distance=best_measurement", "plume.source_height_m=15", "flight.altitude_m=80", "flight.altitude_min_m=55"],
+        [
+            "following.distance=best_measurement",
+            "plume.source_height_m=15",
+            "flight.altitude_m=80",
+            "flight.altitude_min_m=55",
+        ],
     )
     assert additional_distance(low, VESSEL, 220.0, 8.0) > 50.0
 

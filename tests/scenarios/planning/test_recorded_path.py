@@ -27,21 +27,36 @@ def flown(commands, *, speed, step, fine):
             turned = command * step * part / fine
             chord = np.array([math.sin(turned), 1.0 - math.cos(turned)]) / command
             cos, sin = math.cos(course[-part]), math.sin(course[-part])
-            place.append(place[-part] + speed * np.array([cos * chord[0] - sin * chord[1], sin * chord[0] + cos * chord[1]]))
+            place.append(
+                place[-part]
+                + speed
+                * np.array([cos * chord[0] - sin * chord[1], sin * chord[0] + cos * chord[1]])
+            )
             course.append(course[-part] + turned)
             time.append(time[-1] + step / fine)
-    return np.array(time), np.array(place), speed * np.column_stack([np.cos(course), np.sin(course)])
+    return (
+        np.array(time),
+        np.array(place),
+        speed * np.column_stack([np.cos(course), np.sin(course)]),
+    )
 
 
-@pytest.mark.parametrize(("log_rate", "fastest"), [(10.0, 0.505), (5.0, 6.0), (10.0, 6.0), (20.0, 6.0), (20.0, 30.0)])
+@pytest.mark.parametrize(
+    ("log_rate", "fastest"), [(10.0, 0.505), (5.0, 6.0), (10.0, 6.0), (20.0, 6.0), (20.0, 30.0)]
+)
 def test_no_turn_is_farther_from_its_cubic_than_the_bound(log_rate, fastest):
-    scenario, fine = kinematic(f"guidance.heading_rate_max_rad_s={fastest}", "flight.log_rate_hz=5"), 20
+    scenario, fine = (
+        kinematic(f"guidance.heading_rate_max_rad_s={fastest}", "flight.log_rate_hz=5"),
+        20,
+    )
     signs = np.random.default_rng(1).choice([-1.0, 1.0], size=400)
     time, position, velocity = flown(fastest * signs, speed=19.42, step=0.05, fine=fine)
     each = fine * round(20.0 / log_rate)
     points = bezier_points(time[::each], position[::each].T, velocity[::each].T)
     at = np.arange(each) / each
-    cubic = sum(math.comb(3, i) * points[i][:, :, None] * at**i * (1.0 - at) ** (3 - i) for i in range(4))
+    cubic = sum(
+        math.comb(3, i) * points[i][:, :, None] * at**i * (1.0 - at) ** (3 - i) for i in range(4)
+    )
     worst = np.hypot(*(cubic.reshape(2, -1) - position[:-1].T)).max()
     bound = path_error_max(scenario, log_rate)
     assert worst <= bound
@@ -54,14 +69,28 @@ def test_ordinary_flights_are_recorded_often_enough():
     assert path_error_max(kinematic(), 10.0) == pytest.approx(9.80665 * 0.1**2 / 16.0, rel=1e-12)
     check_recorded(kinematic("flight.log_rate_hz=5"))
     # Where every step is recorded, no command changes in between.
-    check_recorded(kinematic("guidance.rate_hz=5", "flight.log_rate_hz=5", "guidance.heading_rate_max_rad_s=3"))
+    check_recorded(
+        kinematic("guidance.rate_hz=5", "flight.log_rate_hz=5", "guidance.heading_rate_max_rad_s=3")
+    )
 
 
 @pytest.mark.parametrize(
     ("overrides", "words"),
     [
-        (["flight.log_rate_hz=5"], ["log_rate_hz is 5 Hz", "6 rad/s and 19.42 m/s", "wrong by 0.29 m", "0.05 m", "set it to 20"]),
-        (["flight.log_rate_hz=20", "guidance.heading_rate_max_rad_s=60"], ["wrong by 0.18 m", "guidance.rate_hz"]),
+        (
+            ["flight.log_rate_hz=5"],
+            [
+                "log_rate_hz is 5 Hz",
+                "6 rad/s and 19.42 m/s",
+                "wrong by 0.29 m",
+                "0.05 m",
+                "set it to 20",
+            ],
+        ),
+        (
+            ["flight.log_rate_hz=20", "guidance.heading_rate_max_rad_s=60"],
+            ["wrong by 0.18 m", "guidance.rate_hz"],
+        ),
     ],
 )
 def test_a_record_too_seldom_for_the_turns_is_refused_before_any_flight(overrides, words):

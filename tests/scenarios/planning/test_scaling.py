@@ -70,7 +70,12 @@ def aircraft(time, length):
     """Return an aircraft whose units are so many times the defaults': V = 19.42 length/time, and tan(bank) = omega_max V/g."""
     airspeed = SPEED * length / time
     rate = GRAVITY / SPEED / time
-    return Envelope(airspeed_min=1.0, airspeed_max=300.0, airspeed=airspeed, bank=math.atan(rate * airspeed / GRAVITY))
+    return Envelope(
+        airspeed_min=1.0,
+        airspeed_max=300.0,
+        airspeed=airspeed,
+        bank=math.atan(rate * airspeed / GRAVITY),
+    )
 
 
 def keys(scenario):
@@ -97,7 +102,9 @@ def test_units_are_those_of_the_turn():
     assert (double.time, double.length, double.speed) == pytest.approx((2.0, 4.0, 2.0), rel=1e-12)
     # At its own speed with tan(bank) = 1/2 it turns half as fast, over twice the length.
     shallow = units(dataclasses.replace(X8.envelope, bank=math.atan(0.5)))
-    assert (shallow.time, shallow.length, shallow.speed) == pytest.approx((2.0, 2.0, 1.0), rel=1e-12)
+    assert (shallow.time, shallow.length, shallow.speed) == pytest.approx(
+        (2.0, 2.0, 1.0), rel=1e-12
+    )
     # Aerosonde, 25 m/s and 45 degrees: 25/19.42, and its square.
     own = units(AEROSONDE.envelope)
     assert (own.time, own.length) == pytest.approx((1.28733, 1.65722), rel=1e-5)
@@ -133,7 +140,9 @@ def test_every_key_with_a_length_or_a_time_is_scaled_by_its_unit_or_said_not_to_
 
 
 def test_what_is_said_to_be_scaled_is_what_the_scenario_does_not_set():
-    given = load_study("sweep_nu", ["criteria.airspeed_error_rms_mps=0.5", "guidance.look_ahead_m=60"])
+    given = load_study(
+        "sweep_nu", ["criteria.airspeed_error_rms_mps=0.5", "guidance.look_ahead_m=60"]
+    )
     named = set(scaling.scaled_keys(given))
     before, after = keys(given), keys(scaled(given, aircraft(time=2.0, length=3.0)))
     own = {"guidance.airspeed_mps", "guidance.bank_deg"}
@@ -147,8 +156,12 @@ def test_keys_without_a_unit_in_their_names_have_no_length_and_no_time():
     scenario = load_study("sweep_nu")
     for name in keys(scenario):
         section, key = name.split(".")
-        unit = re.search(r"\[([^\]]+)\]", type(getattr(scenario, section)).model_fields[key].description or "")
-        assert (dimension(name) is not None) == (unit is not None and unit[1] not in ("-", "deg", "%", "% m/m", "degC")), name
+        unit = re.search(
+            r"\[([^\]]+)\]", type(getattr(scenario, section)).model_fields[key].description or ""
+        )
+        assert (dimension(name) is not None) == (
+            unit is not None and unit[1] not in ("-", "deg", "%", "% m/m", "degC")
+        ), name
 
 
 def scaled_keys():
@@ -175,7 +188,10 @@ def test_what_a_scenario_sets_itself_is_never_touched(share):
 
 def test_a_file_of_its_own_is_taken_at_its_word_too(tmp_path):
     path = tmp_path / "own.toml"
-    path.write_text('title = "own"\nsweep = { nu = [0.5] }\nguidance = { look_ahead_m = 60.0 }\n', encoding="utf-8")
+    path.write_text(
+        'title = "own"\nsweep = { nu = [0.5] }\nguidance = { look_ahead_m = 60.0 }\n',
+        encoding="utf-8",
+    )
     found = scaled(load_study(str(path)), aircraft(time=2.0, length=3.0))
     assert found.guidance.look_ahead_m == 60.0
     assert found.guidance.epsilon_per_m == pytest.approx(0.005 / 3.0, rel=1e-12)
@@ -183,7 +199,10 @@ def test_a_file_of_its_own_is_taken_at_its_word_too(tmp_path):
 
 def test_an_aircraft_that_the_scenario_cannot_be_scaled_to_is_refused_by_the_key():
     # So tight a turn that the nearest start, 400 m for the X8, lies inside of 200 m.
-    with pytest.raises(InputError, match=r"start\.distance_m begins at 180 m; it must exceed keepout\.radius_m, 200 m"):
+    with pytest.raises(
+        InputError,
+        match=r"start\.distance_m begins at 180 m; it must exceed keepout\.radius_m, 200 m",
+    ):
         scaled(load_study("sweep_nu"), aircraft(time=0.6, length=0.45))
 
 
@@ -208,7 +227,9 @@ def in_own_units(time, length, *overrides, nu, lag):
         "kinematic.heading_rate_lag_s": lag * time,
     }
     words = ["fidelity=kinematic", f"sweep.nu=[{nu}]", "comparison.variants=[]", *overrides]
-    settings = with_values(scaled(load_study("sweep_nu", words, refusing=False), aircraft(time, length)), by_hand)
+    settings = with_values(
+        scaled(load_study("sweep_nu", words, refusing=False), aircraft(time, length)), by_hand
+    )
     request = Experiment("sweep_nu", settings).request(0)
     setup = kinematic_setup(request.scenario)
     plan = plan_flight(request.scenario, flight_id="x", seed=request.seed, setup=setup)
@@ -236,7 +257,9 @@ FLIGHTS = pytest.mark.parametrize(
 
 
 @FLIGHTS
-def test_in_its_own_units_every_aircraft_flies_the_same_flight(kinematic_flight, nu, lag, overrides):
+def test_in_its_own_units_every_aircraft_flies_the_same_flight(
+    kinematic_flight, nu, lag, overrides
+):
     base = kinematic_flight(1.0, 1.0, *overrides, nu=nu, lag=lag)
     other = kinematic_flight(2.0, 4.0, *overrides, nu=nu, lag=lag)
     assert len(base) > 1000
@@ -245,10 +268,16 @@ def test_in_its_own_units_every_aircraft_flies_the_same_flight(kinematic_flight,
     np.testing.assert_array_equal(other, base)
 
 
-@pytest.mark.parametrize(("nu", "overrides"), [(0.0, []), (0.5, []), (0.7, ["guidance.law=lyapunov"])])
-def test_it_is_the_same_flight_at_another_bank_as_far_as_roundings_go(kinematic_flight, nu, overrides):
+@pytest.mark.parametrize(
+    ("nu", "overrides"), [(0.0, []), (0.5, []), (0.7, ["guidance.law=lyapunov"])]
+)
+def test_it_is_the_same_flight_at_another_bank_as_far_as_roundings_go(
+    kinematic_flight, nu, overrides
+):
     # tan(bank) = 2.4/1.5^2, 47 degrees. A reference that is limited by its roll rate would differ: with the bank, by gravity.
-    base, other = (kinematic_flight(*unit, *overrides, nu=nu, lag=0.3) for unit in ((1.0, 1.0), (1.5, 2.4)))
+    base, other = (
+        kinematic_flight(*unit, *overrides, nu=nu, lag=0.3) for unit in ((1.0, 1.0), (1.5, 2.4))
+    )
     assert base.shape == other.shape
     # Roundings of thousands of steps that contract towards the reference, of lengths up to 4 km; measured 3e-11.
     np.testing.assert_allclose(other, base, rtol=1e-8, atol=1e-8)

@@ -23,7 +23,16 @@ LEVELS = ("none", "light", "moderate")
 TABLED = SpreadTable(
     speed_ratios=(0.2, 0.6),
     spreads=tuple(
-        Spread(along=s, across=s, radial=s, radial_rate=s, airspeed=s, airspeed_rate=s, airspeed_limit=100.0) for s in (1.0, 2.0)
+        Spread(
+            along=s,
+            across=s,
+            radial=s,
+            radial_rate=s,
+            airspeed=s,
+            airspeed_rate=s,
+            airspeed_limit=100.0,
+        )
+        for s in (1.0, 2.0)
     ),
 )
 
@@ -31,7 +40,9 @@ TABLED = SpreadTable(
 def test_a_flight_has_the_spread_of_its_speed_ratio_and_none_in_still_air():
     # A quarter and three quarters of the way between 0.2 and 0.6; the nearest counts.
     for nu, sigma in ((0.3, 1.0), (0.5, 2.0)):
-        trial = scenario(fidelity="six_dof", turbulence={"level": "light"}, vessel={"speed_mps": 19.42 * nu})
+        trial = scenario(
+            fidelity="six_dof", turbulence={"level": "light"}, vessel={"speed_mps": 19.42 * nu}
+        )
         assert plan(trial, spreads=lambda _: TABLED).margin.tracking_sigma == sigma
         assert plan(trial).margin.tracking_sigma == CALM_AIR_SPREAD.radial == 0.0
 
@@ -41,7 +52,9 @@ def x8(designs, tmp_path_factory):
     """The design that other tests have too, and what flights need of it."""
     found = designs("x8")
     flown = gusty(level="none")
-    return found, aircraft_setup(found, flown, RunDirectory(tmp_path_factory.mktemp("x8")), settings=[flown])
+    return found, aircraft_setup(
+        found, flown, RunDirectory(tmp_path_factory.mktemp("x8")), settings=[flown]
+    )
 
 
 def gusty(**turbulence):
@@ -66,7 +79,9 @@ def test_an_experiment_that_samples_its_turbulence_plans_each_levels_own_margin(
     for number, level in enumerate(LEVELS):
         request = experiment.request(number)
         assert request.scenario.turbulence.level == level
-        margins[level] = plan(request.scenario, seed=request.seed, setup=setup, spreads=spreads).margin
+        margins[level] = plan(
+            request.scenario, seed=request.seed, setup=setup, spreads=spreads
+        ).margin
         # The same as of a scenario that has this turbulence in every flight.
         alone = gusty(level=level)
         own = predicted_spreads([alone], found, setup)
@@ -74,14 +89,18 @@ def test_an_experiment_that_samples_its_turbulence_plans_each_levels_own_margin(
         assert plan(alone, setup=setup, spreads=own).margin == margins[level]
     # MIL-F-8785C: twice the wind at 20 feet has twice the intensity, and the loop is linear; in still air the least is kept.
     assert margins["none"].tracking_sigma == 0.0
-    assert margins["moderate"].tracking_sigma == pytest.approx(2.0 * margins["light"].tracking_sigma, rel=1e-6)
+    assert margins["moderate"].tracking_sigma == pytest.approx(
+        2.0 * margins["light"].tracking_sigma, rel=1e-6
+    )
     assert margins["none"].total < margins["light"].total < margins["moderate"].total
     assert margins["none"].guard < margins["light"].guard < margins["moderate"].guard
 
 
 def test_a_shape_without_an_orbit_at_some_speed_ratios_is_planned_at_the_others(x8, monkeypatch):
     monkeypatch.setattr("scenarios.planning.spreads.SPREAD_RATIOS", SPREAD_RATIOS[2:4])
-    loiter = scenario(fidelity="six_dof", turbulence={"level": "light"}, reference={"shape": "loiter"})
+    loiter = scenario(
+        fidelity="six_dof", turbulence={"level": "light"}, reference={"shape": "loiter"}
+    )
     (table,) = predicted_spreads([loiter], *x8).tables.values()
     assert table.speed_ratios == (0.5,)
     # A flight of one that has none at all is refused for that reason, and the others are flown.
@@ -95,7 +114,13 @@ def test_a_flight_whose_spread_was_not_predicted_is_refused():
     # Neither that of another level nor none: it would fly with too small a margin.
     predicted = gusty(level="moderate")
     spreads = PredictedSpreads(
-        tables={("moderate", predicted.guidance.model_dump_json(), predicted.reference.model_dump_json()): TABLED}
+        tables={
+            (
+                "moderate",
+                predicted.guidance.model_dump_json(),
+                predicted.reference.model_dump_json(),
+            ): TABLED
+        }
     )
     assert spreads(gusty(level="moderate")) is TABLED
     with pytest.raises(InputError, match="sampled from a continuous distribution in turbulence"):
@@ -103,15 +128,22 @@ def test_a_flight_whose_spread_was_not_predicted_is_refused():
 
 
 @pytest.mark.parametrize("airspeed", [19.42, 60.0])
-def test_the_margin_of_another_law_is_planned_with_parameters_scaled_to_the_aircraft(airspeed, monkeypatch):
+def test_the_margin_of_another_law_is_planned_with_parameters_scaled_to_the_aircraft(
+    airspeed, monkeypatch
+):
     monkeypatch.setattr("scenarios.planning.spreads._spread_table", lambda *_: TABLED)
     envelope = replace(X8.envelope, airspeed=airspeed)
     found = SimpleNamespace(design=SimpleNamespace(schedule=SimpleNamespace(envelope=envelope)))
-    trial = scenario(fidelity="six_dof", turbulence={"level": "light"}, following={"margin_law": "cascade"})
+    trial = scenario(
+        fidelity="six_dof", turbulence={"level": "light"}, following={"margin_law": "cascade"}
+    )
     flown = scaled(trial, envelope)
     spreads = predicted_spreads([flown], found, SimpleNamespace())
     ((_, planned, _),) = spreads.tables
-    guidance, keys = json.loads(planned), ("look_ahead_m", "epsilon_per_m", "gain_per_s", "steering_max_rad_s")
+    guidance, keys = (
+        json.loads(planned),
+        ("look_ahead_m", "epsilon_per_m", "gain_per_s", "steering_max_rad_s"),
+    )
     # Those of the flight itself, whose law is the same.
     assert [guidance[key] for key in keys] == [getattr(flown.guidance, key) for key in keys]
     # R is 60 m for the X8, and grows with the square of the airspeed at the same bank.

@@ -20,7 +20,9 @@ def test_the_point_on_the_circle_moves_at_airspeed_through_the_air_and_returns_a
     # The table has 720 points: half a degree of a turn, over which the speed changes by nu times that, at most 1 %.
     assert through_air == pytest.approx(np.full(400, SPEED), rel=0.012)
     # The trapezoidal rule over a whole turn is exact to rounding; the closed form is an elliptic integral.
-    assert np.hypot(*circle.offset(circle.period) - np.array(circle.offset(0.0))) == pytest.approx(0.0, abs=1e-3)
+    assert np.hypot(*circle.offset(circle.period) - np.array(circle.offset(0.0))) == pytest.approx(
+        0.0, abs=1e-3
+    )
 
 
 def test_in_still_air_beside_a_vessel_at_rest_a_turn_takes_the_circumference_over_the_airspeed():
@@ -33,7 +35,10 @@ def test_in_still_air_beside_a_vessel_at_rest_a_turn_takes_the_circumference_ove
 def test_a_circle_that_is_too_tight_is_refused_with_the_radius_that_is_not():
     scenario = load_study("arena", ["reference.standoff_radius_m=50"], refusing=False)
     # omega_max = g tan 45 deg/V = 0.505 rad/s; (1 + 0.5)^2 V/omega_max = 86.5 m.
-    with pytest.raises(InfeasibleError, match=r"circle of 50 m .* widen it to 87 m \(reference\.standoff_radius_m\)"):
+    with pytest.raises(
+        InfeasibleError,
+        match=r"circle of 50 m .* widen it to 87 m \(reference\.standoff_radius_m\)",
+    ):
         vessel_circle(scenario, 0.5, 60.0)
     # Nor is one recommended that lies within the keep-out area and its margin.
     with pytest.raises(InfeasibleError, match="widen it to 203 m"):

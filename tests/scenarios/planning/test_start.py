@@ -36,13 +36,17 @@ def test_a_start_that_is_given_is_where_and_as_it_was_given(made):
     given = plan(made(start={"range_m": 500.0, "aspect_deg": 30.0, "course_deg": -70.0})).start
     bearing = math.radians(180.0 + 30.0)
     # Rounding of the vessel's track, a kilometre of it at most.
-    assert (given.north, given.east) == pytest.approx((500.0 * math.cos(bearing), 500.0 * math.sin(bearing)), abs=1e-9)
+    assert (given.north, given.east) == pytest.approx(
+        (500.0 * math.cos(bearing), 500.0 * math.sin(bearing)), abs=1e-9
+    )
     assert given.course == pytest.approx(math.radians(-70.0))
 
 
 @MISSIONS
 def test_a_place_ahead_and_right_of_the_vessel_may_be_given(made):
-    given = plan(made(vessel={"speed_mps": 8.0, "course_deg": 90.0}, start={"place_m": (-400.0, 30.0)})).start
+    given = plan(
+        made(vessel={"speed_mps": 8.0, "course_deg": 90.0}, start={"place_m": (-400.0, 30.0)})
+    ).start
     # Eastbound: astern is west, and right is south.
     assert (given.north, given.east) == pytest.approx((-30.0, -400.0), abs=1e-9)
 
@@ -71,7 +75,10 @@ def test_nothing_else_of_a_flight_changes_with_a_start_that_is_given(key, value,
     assert given.sensing.received == sampled.sensing.received
     assert given.world.fault == sampled.world.fault
     for step in (0, 1, 100):
-        one, other = (flight.sensing.errors.read(step, (0.0,) * 5, 0.0, 0.0, satellites=True) for flight in (sampled, given))
+        one, other = (
+            flight.sensing.errors.read(step, (0.0,) * 5, 0.0, 0.0, satellites=True)
+            for flight in (sampled, given)
+        )
         assert other == one
         assert one[0][0] != 0.0
 
@@ -90,8 +97,12 @@ def test_the_farthest_start_is_the_one_that_is_given_or_else_the_largest_distanc
 
 @MISSIONS
 def test_starts_that_are_not_given_lie_within_their_limits(made):
-    trial = made(start={"distance_m": [400.0, 500.0], "spread_deg": 20.0}, flight={"duration_max_s": 10.0})
-    distance, bearing, course = np.transpose([start_of(plan(trial, seed=seed)) for seed in range(40)])
+    trial = made(
+        start={"distance_m": [400.0, 500.0], "spread_deg": 20.0}, flight={"duration_max_s": 10.0}
+    )
+    distance, bearing, course = np.transpose(
+        [start_of(plan(trial, seed=seed)) for seed in range(40)]
+    )
     assert 400.0 <= distance.min() < 420.0
     assert 480.0 < distance.max() <= 500.0
     assert 160.0 <= bearing.min() < 170.0
@@ -117,16 +128,27 @@ def test_starts_depend_on_the_seed_and_nu_alone():
 def test_a_vehicle_that_lags_so_much_that_a_turn_away_does_not_lead_away_is_not_flown():
     # At 0.5 rad/s and 4 s late it overshoots by two radians: it came within 28 m of a ship to be kept 50 m from.
     with pytest.raises(
-        InfeasibleError, match=r"lags by 4 s overshoots, and then leaves at only -.* of its .*: slow the vessel, .* shorter lag"
+        InfeasibleError,
+        match=r"lags by 4 s overshoots, and then leaves at only -.* of its .*: slow the vessel, .* shorter lag",
     ):
         plan(tracking(kinematic={"heading_rate_lag_s": 4.0}))
     plan(tracking(kinematic={"heading_rate_lag_s": 0.4}))
 
 
 @pytest.mark.parametrize("reported", [19.95, 20.0, 25.0])
-def test_a_vessel_that_is_reported_to_be_as_fast_as_the_vehicle_or_faster_is_not_flown_beside(reported):
-    guard = GuardParameters(radius=200.0, heading_rate_max=0.49, lag=0.26, delay=0.26, slow_lag=0.39, time_step=0.05)
-    start, known = Start(north=300.0, east=0.0, course=0.0), {"wind": (0.0, 0.0), "airspeed": 20.0, "keepout_radius": 200.0}
-    with pytest.raises(InfeasibleError, match=f"leaves at only 19.8 of its 20.0 m/s, beside a vessel with {reported:.1f} m/s"):
+def test_a_vessel_that_is_reported_to_be_as_fast_as_the_vehicle_or_faster_is_not_flown_beside(
+    reported,
+):
+    guard = GuardParameters(
+        radius=200.0, heading_rate_max=0.49, lag=0.26, delay=0.26, slow_lag=0.39, time_step=0.05
+    )
+    start, known = (
+        Start(north=300.0, east=0.0, course=0.0),
+        {"wind": (0.0, 0.0), "airspeed": 20.0, "keepout_radius": 200.0},
+    )
+    with pytest.raises(
+        InfeasibleError,
+        match=f"leaves at only 19.8 of its 20.0 m/s, beside a vessel with {reported:.1f} m/s",
+    ):
         check_start(start, guard, [Tube(0.0, 0.0, 0.0, reported, 0.0)], **known)
     check_start(start, guard, [Tube(0.0, 0.0, 0.0, 19.0, 0.0)], **known)

@@ -6,7 +6,11 @@ from scipy.optimize import brentq
 
 from benchmarks.crossing_limit import designed
 from scenarios.planning.limits import omega_max
-from scenarios.planning.theory.speed_ratio import CROSSING_LIMITS, crossing_limit, theory_over_speed_ratio
+from scenarios.planning.theory.speed_ratio import (
+    CROSSING_LIMITS,
+    crossing_limit,
+    theory_over_speed_ratio,
+)
 from scenarios.schema.load import load_study
 from scenarios.schema.sections.guidance import GuidanceConfig
 
@@ -15,7 +19,11 @@ SOLVED = json.loads(CROSSING_LIMITS.read_text(encoding="utf-8"))
 
 
 def rows(name):
-    return [(nu, value / omega_max(GUIDANCE)) for nu, value in zip(SOLVED["nu"], SOLVED[name], strict=True) if value is not None]
+    return [
+        (nu, value / omega_max(GUIDANCE))
+        for nu, value in zip(SOLVED["nu"], SOLVED[name], strict=True)
+        if value is not None
+    ]
 
 
 @pytest.mark.parametrize(("name", "shape"), [("oscillating", "fastest"), ("going_round", "loiter")])
@@ -38,7 +46,13 @@ def test_no_solution_is_shorter_than_what_is_proven_for_an_infinite_roll_rate():
 def test_the_limit_is_that_of_the_loiter_beside_slow_vessels_and_of_the_oscillation_beside_others():
     limit = crossing_limit(GUIDANCE)
     shortest = dict(zip(limit["limit_nu"], limit["crossing_interval_limit_s"], strict=True))
-    for nu, shape in ((0.0, "loiter"), (0.25, "loiter"), (0.5, "fastest"), (0.75, "fastest"), (0.9, "fastest")):
+    for nu, shape in (
+        (0.0, "loiter"),
+        (0.25, "loiter"),
+        (0.5, "fastest"),
+        (0.75, "fastest"),
+        (0.9, "fastest"),
+    ):
         # As above.
         assert designed(GUIDANCE, shape, nu) == pytest.approx(shortest[nu], rel=2e-4)
         # The issue: flown within 3 % of the limit; the reserve of the flown reference takes 1.5 % of it.
@@ -61,5 +75,9 @@ def test_both_oscillations_are_shown_whichever_is_flown(shape):
     assert curves["crossing_interval_predicted_s"] == curves[f"crossing_interval_{shape}_s"]
     assert all(
         fast < slow
-        for fast, slow in zip(curves["crossing_interval_fastest_s"], curves["crossing_interval_sinusoid_s"], strict=True)
+        for fast, slow in zip(
+            curves["crossing_interval_fastest_s"],
+            curves["crossing_interval_sinusoid_s"],
+            strict=True,
+        )
     )

@@ -32,12 +32,20 @@ def plan(*overrides, nu=0.5, seed=1, setup=SETUP):
 
 def test_what_such_a_flight_has_no_use_for_is_absent():
     flight = plan()
-    assert (flight.sensing, flight.margin, flight.apparent_wind, flight.periods) == (None, None, None, ())
+    assert (flight.sensing, flight.margin, flight.apparent_wind, flight.periods) == (
+        None,
+        None,
+        None,
+        (),
+    )
     assert (flight.guidance.navigation, flight.guidance.health) == (None, None)
     assert flight.guidance.vessel == pytest.approx((0.5 * 19.42, 0.0))
     # A circle has no vessel either.
     circling = plan_flight(
-        load_study("paper", ["cases=[]", "study=flights", "reference.path=circle"]), flight_id="x", seed=1, setup=SETUP
+        load_study("paper", ["cases=[]", "study=flights", "reference.path=circle"]),
+        flight_id="x",
+        seed=1,
+        setup=SETUP,
     )
     assert (circling.world, circling.oscillation, circling.guidance.guard) == (None, None, None)
     assert math.isnan(circling.nu)
@@ -46,7 +54,9 @@ def test_what_such_a_flight_has_no_use_for_is_absent():
 def test_the_altitude_is_that_of_the_centre_of_oscillation():
     # Equation (9): z_CO = r_CO sin(alpha_P), above the funnel at 60 m.
     flight = plan("plume.elevation_deg=10")
-    assert flight.altitude == pytest.approx(60.0 + flight.centre_distance * math.sin(math.radians(10.0)), abs=1e-9)
+    assert flight.altitude == pytest.approx(
+        60.0 + flight.centre_distance * math.sin(math.radians(10.0)), abs=1e-9
+    )
     assert flight.source_height == 60.0
 
 
@@ -63,7 +73,12 @@ def test_the_airspeed_is_trimmed_within_what_the_vehicle_flies():
 
 
 def test_commands_may_be_left_uncut():
-    flight = plan("fidelity=kinematic", "guidance.command_limit=false", "guidance.approach=false", "guidance.keepout_guard=false")
+    flight = plan(
+        "fidelity=kinematic",
+        "guidance.command_limit=false",
+        "guidance.approach=false",
+        "guidance.keepout_guard=false",
+    )
     assert flight.guidance.tracking.heading_rate_max == math.inf
     # What they are judged by.
     assert flight.heading_rate_max == pytest.approx(9.80665 / 19.42, rel=1e-12)
@@ -71,9 +86,15 @@ def test_commands_may_be_left_uncut():
 
 def test_the_guard_and_an_orbit_that_is_joined_need_commands_that_are_cut():
     # At 5 Hz 5 of 6 flights of a law that flies at the vessel came within r_min, by up to 3 m.
-    with pytest.raises(InputError, match=r"command_limit is false; the keep-out guard .*, or guidance.keepout_guard to false"):
+    with pytest.raises(
+        InputError,
+        match=r"command_limit is false; the keep-out guard .*, or guidance.keepout_guard to false",
+    ):
         plan("fidelity=kinematic", "guidance.command_limit=false", "guidance.approach=false")
-    with pytest.raises(InputError, match=r"command_limit is false and guidance.approach true.*: set guidance.approach to false"):
+    with pytest.raises(
+        InputError,
+        match=r"command_limit is false and guidance.approach true.*: set guidance.approach to false",
+    ):
         plan("fidelity=kinematic", "guidance.command_limit=false")
 
 
@@ -89,7 +110,10 @@ def test_preview_and_airspeed_trim_can_be_switched_off():
 def test_a_start_from_which_no_command_keeps_out_is_refused():
     # 210 m astern of a vessel at rest, straight at it: a turn away takes 38 m, and its lag besides.
     start = ["start.place_m=[-210.0, 0.0]", "start.course_deg=0"]
-    with pytest.raises(InfeasibleError, match=r"the start lies 210\.0 m from the vessel on course 0 deg, where the best turn away"):
+    with pytest.raises(
+        InfeasibleError,
+        match=r"the start lies 210\.0 m from the vessel on course 0 deg, where the best turn away",
+    ):
         plan(*start, nu=0.0)
     # Away from it, or with no guard, it is flown.
     plan(start[0], "start.course_deg=180", nu=0.0)
@@ -118,7 +142,9 @@ def test_the_guard_keeps_the_disc_that_the_keep_out_sphere_cuts_out_at_the_heigh
     assert plan(*over_the_top).guidance.guard is None
     assert plan(*over_the_top, setup=sinking).guidance.guard.radius > 0.0
     # Above the whole sphere there is nothing to keep out of.
-    assert plan("plume.elevation_deg=60", "guidance.tracking_allowance_m=400").guidance.guard is None
+    assert (
+        plan("plume.elevation_deg=60", "guidance.tracking_allowance_m=400").guidance.guard is None
+    )
 
 
 @pytest.mark.parametrize(

@@ -37,7 +37,10 @@ def test_no_block_of_equipment_stands_twice():
     ("base", "names"),
     [
         ("winds", ["sea_wind", "sea_approach"]),
-        ("turbulent_winds", ["sea_turbulence_light", "sea_turbulence_moderate", "sea_turbulence_severe"]),
+        (
+            "turbulent_winds",
+            ["sea_turbulence_light", "sea_turbulence_moderate", "sea_turbulence_severe"],
+        ),
         ("ais", ["sea_manoeuvres"]),
         ("sensor_errors", ["sea_together", "sea_faults"]),
         ("random_conditions", ["monte_carlo", "falsify"]),
@@ -53,7 +56,9 @@ def test_files_share_a_base_and_are_operational_by_it(base, names):
 
 
 def test_what_extends_a_shared_base_has_its_equipment():
-    first, *others = shared = [load_study(name) for name in ("sea_together", "sea_faults", "monte_carlo", "falsify")]
+    first, *others = shared = [
+        load_study(name) for name in ("sea_together", "sea_faults", "monte_carlo", "falsify")
+    ]
     for scenario in others:
         assert scenario.reports == first.reports
         assert scenario.sensors == first.sensors
@@ -64,7 +69,10 @@ def test_what_extends_a_shared_base_has_its_equipment():
     # The vessel that manoeuvres is reported alike, and followed with another allowance, without sensor errors.
     manoeuvres = load_study("sea_manoeuvres")
     assert manoeuvres.reports == first.reports
-    assert (manoeuvres.following.vessel_acceleration_mps2, manoeuvres.following.speed_error_mps) == (0.17, 0.5)
+    assert (
+        manoeuvres.following.vessel_acceleration_mps2,
+        manoeuvres.following.speed_error_mps,
+    ) == (0.17, 0.5)
     assert manoeuvres.sensors.heading_bias_deg == 0.0
 
 
@@ -72,15 +80,25 @@ def test_a_file_of_an_earlier_version_is_read_as_the_operational_scenario_that_i
     path = tmp_path / "old.toml"
     path.write_text('study = "sea"\ntitle = "old"\n[wind]\nspeed_mps = 3.0\n', encoding="utf-8")
     old = load_study(str(path))
-    path.write_text('extends = "operational"\nstudy = "flights"\ntitle = "old"\n[wind]\nspeed_mps = 3.0\n', encoding="utf-8")
+    path.write_text(
+        'extends = "operational"\nstudy = "flights"\ntitle = "old"\n[wind]\nspeed_mps = 3.0\n',
+        encoding="utf-8",
+    )
     assert old == load_study(str(path))
-    assert (old.guidance.mission, old.start.spread_deg, old.criteria.altitude_error_max_m) == ("follow", 180.0, False)
+    assert (old.guidance.mission, old.start.spread_deg, old.criteria.altitude_error_max_m) == (
+        "follow",
+        180.0,
+        False,
+    )
 
 
 @pytest.mark.parametrize("study", ["monte_carlo", "falsify"])
 def test_a_study_of_an_earlier_version_without_a_base_is_operational(tmp_path, study):
     path = tmp_path / "old.toml"
-    path.write_text(f'study = "{study}"\ntitle = "old"\n[[draws]]\nkey = "wind.speed_mps"\nuniform = [0, 5]\n', encoding="utf-8")
+    path.write_text(
+        f'study = "{study}"\ntitle = "old"\n[[draws]]\nkey = "wind.speed_mps"\nuniform = [0, 5]\n',
+        encoding="utf-8",
+    )
     assert load_document(str(path))["guidance"] == {"mission": "follow"}
 
 

@@ -47,13 +47,25 @@ def test_every_number_has_a_unit_and_nothing_else_has():
         assert not re.search(rf"\[{re.escape(key.unit)}\]", key.meaning) or not key.unit
 
 
-UNITS = {"_m": "m", "_s": "s", "_mps": "m/s", "_deg": "deg", "_rad_s": "rad/s", "_hz": "Hz", "_per_s": "1/s"}
+UNITS = {
+    "_m": "m",
+    "_s": "s",
+    "_mps": "m/s",
+    "_deg": "deg",
+    "_rad_s": "rad/s",
+    "_hz": "Hz",
+    "_per_s": "1/s",
+}
 
 
 @pytest.mark.parametrize(("suffix", "unit"), UNITS.items())
 def test_units_are_those_of_the_names(suffix, unit):
     longer = ("_per_m", "_per_s", "_deg_s", "_rad_s", "_per_m_s", "_m_s")
-    found = [key for key in KEYS if key.key.endswith(suffix) and (suffix in longer or not key.key.endswith(longer))]
+    found = [
+        key
+        for key in KEYS
+        if key.key.endswith(suffix) and (suffix in longer or not key.key.endswith(longer))
+    ]
     assert found
     assert {key.unit for key in found} == {unit}
 
@@ -72,7 +84,12 @@ def test_defaults_are_those_of_an_empty_scenario():
     values = Scenario(title="own").model_dump(mode="json")
     for key in KEYS:
         section, _, name = key.key.rpartition(".")
-        if key.studies and set(key.studies) <= set(FLIGHT_STUDIES) and section in values and name in values[section]:
+        if (
+            key.studies
+            and set(key.studies) <= set(FLIGHT_STUDIES)
+            and section in values
+            and name in values[section]
+        ):
             assert key.default == values[section][name], key
 
 
@@ -90,14 +107,19 @@ def test_studies_are_those_in_which_a_key_can_act():
     assert BY_KEY["ensemble.samples"].studies == ("convergence",)
     # Those of one point refuse several; and beside the cases that a paper study needs there is no sweep.
     assert BY_KEY["sweep"].studies == ("flights", "monte_carlo")
-    assert BY_KEY["comparison.nu"].studies == BY_KEY["cases.0.name"].studies == ("flights", "paper", "monte_carlo")
+    assert (
+        BY_KEY["comparison.nu"].studies
+        == BY_KEY["cases.0.name"].studies
+        == ("flights", "paper", "monte_carlo")
+    )
     assert BY_KEY["share"].studies == ("trials",)
 
 
 def test_a_level_of_subset_simulation_takes_as_many_flights_as_is_said_with_the_default_probability():
     subset = {"conditional_probability": SubsetConfig().conditional_probability}
-    assert "At least 10 have to pass on: with the default subset.conditional_probability that takes 100." in (
-        BY_KEY["subset.flights_per_level"].meaning
+    assert (
+        "At least 10 have to pass on: with the default subset.conditional_probability that takes 100."
+        in (BY_KEY["subset.flights_per_level"].meaning)
     )
     assert SubsetConfig(flights_per_level=100, **subset).passing == 10
     with pytest.raises(ValueError, match=r"set subset\.flights_per_level to 100 or more"):
@@ -107,14 +129,21 @@ def test_a_level_of_subset_simulation_takes_as_many_flights_as_is_said_with_the_
 
 
 def test_conditions_say_what_uses_a_key():
-    assert BY_KEY["wind.from_deg"].conditions[-1].startswith("the mission that follows the vessel with estimates")
+    assert (
+        BY_KEY["wind.from_deg"]
+        .conditions[-1]
+        .startswith("the mission that follows the vessel with estimates")
+    )
     assert all("; here " not in condition for key in KEYS for condition in key.conditions)
 
 
 def test_keys_of_parts_say_which_part_has_them():
     found = {key.key: key for key in documented_keys()}
     assert found["guidance.npfg_period_s"].conditions == ("guidance.law 'npfg'",)
-    assert (found["guidance.npfg_period_s"].default, found["guidance.npfg_period_s"].unit) == (10.0, "s")
+    assert (found["guidance.npfg_period_s"].default, found["guidance.npfg_period_s"].unit) == (
+        10.0,
+        "s",
+    )
     assert found["payload.limit_percent"].conditions == ("payload.instruments 'sniffer'",)
     assert found["plume.meander"].range == "true or false"
     assert found["plume.structure_length"].range == "a number from 0.1 to 3"
@@ -124,12 +153,19 @@ def test_keys_of_parts_say_which_part_has_them():
         "a realisation of smoke: leave plume.mean out",
         "fluctuations within smoke: set plume.structure_intensity",
     )
-    assert all(math.isfinite(key.default) for key in found.values() if isinstance(key.default, float))
+    assert all(
+        math.isfinite(key.default) for key in found.values() if isinstance(key.default, float)
+    )
 
 
 @pytest.mark.parametrize(
     ("name", "meant"),
-    [("wind.sped_mps", "wind.speed_mps"), ("Wind", "wind"), ("previw", "guidance.preview"), ("gravity_of_the_situation", None)],
+    [
+        ("wind.sped_mps", "wind.speed_mps"),
+        ("Wind", "wind"),
+        ("previw", "guidance.preview"),
+        ("gravity_of_the_situation", None),
+    ],
 )
 def test_a_name_that_is_no_key_finds_the_one_that_is_meant(name, meant):
     assert similar_key(name) == meant

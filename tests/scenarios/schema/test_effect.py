@@ -22,11 +22,23 @@ def loaded(folder, text, *overrides):
 @pytest.mark.parametrize(
     ("text", "words"),
     [
-        (LAG, "key 'kinematic.heading_rate_lag_s' in sweep has no effect here: it is used by the kinematic vehicle"),
-        (DIRECTION, "key 'wind.from_deg' in draws has no effect here: it is used by wind: set wind.speed_mps"),
+        (
+            LAG,
+            "key 'kinematic.heading_rate_lag_s' in sweep has no effect here: it is used by the kinematic vehicle",
+        ),
+        (
+            DIRECTION,
+            "key 'wind.from_deg' in draws has no effect here: it is used by wind: set wind.speed_mps",
+        ),
         (f"[sweep]\n{GAIN}", "it is used by the steering law lyapunov: set guidance.law"),
-        ("[sweep]\nnu = [0.3]\nvessel.speed_mps = [2, 3]\n", "'vessel.speed_mps' in sweep has no effect here"),
-        ("[sweep]\nvessel.speed_ratio = [0.3]\nvessel.speed_mps = [2, 3]\n", "'vessel.speed_mps' in sweep has no effect here"),
+        (
+            "[sweep]\nnu = [0.3]\nvessel.speed_mps = [2, 3]\n",
+            "'vessel.speed_mps' in sweep has no effect here",
+        ),
+        (
+            "[sweep]\nvessel.speed_ratio = [0.3]\nvessel.speed_mps = [2, 3]\n",
+            "'vessel.speed_mps' in sweep has no effect here",
+        ),
         (
             'sweep.fidelity = ["kinematic"]\n',
             "key 'fidelity' has no effect in sweep; leave it out there, and set fidelity to 'both'",
@@ -50,7 +62,8 @@ def test_a_swept_or_sampled_key_that_no_flight_uses_is_refused(tmp_path, text, w
 )
 def test_a_key_of_another_law_than_flights_and_variants_have_is_refused(tmp_path, text):
     with pytest.raises(
-        InputError, match=r"has no effect here: it is used by the steering law (lyapunov|cascade or line_of_sight): set"
+        InputError,
+        match=r"has no effect here: it is used by the steering law (lyapunov|cascade or line_of_sight): set",
     ):
         loaded(tmp_path, text)
 
@@ -78,10 +91,16 @@ def test_a_swept_or_sampled_key_that_some_flights_use_is_accepted(tmp_path, text
         ("plume_search", [], "following.plume 'estimated'"),
         ("sulphur", ["flight.until=verdict"], "flight.until 'verdict'"),
         ("patrol", [], "following.plume 'estimated' and flight.until 'verdict'"),
-        ("plume_search", ["following.plume=told", "comparison.variants=[]"], "following.plume 'told'"),
+        (
+            "plume_search",
+            ["following.plume=told", "comparison.variants=[]"],
+            "following.plume 'told'",
+        ),
     ],
 )
-def test_a_circle_about_the_vessel_is_refused_where_exhaust_is_searched_for(scenario, overrides, words):
+def test_a_circle_about_the_vessel_is_refused_where_exhaust_is_searched_for(
+    scenario, overrides, words
+):
     with pytest.raises(InputError, match=words) as refused:
         load_study(scenario, ["guidance.mission=standoff", *overrides])
     assert "\n" not in str(refused.value)
@@ -93,7 +112,10 @@ def test_what_the_refusal_of_a_circle_tells_to_set_is_accepted():
 
 
 def test_what_places_an_oscillation_in_exhaust_names_the_mission_beside_a_circle():
-    with pytest.raises(InputError, match=r"'following\.distance' has no effect here.*set guidance\.mission to 'follow'"):
+    with pytest.raises(
+        InputError,
+        match=r"'following\.distance' has no effect here.*set guidance\.mission to 'follow'",
+    ):
         load_study("sulphur", ["guidance.mission=standoff", "following.distance=best_measurement"])
 
 
@@ -101,38 +123,61 @@ def test_what_places_an_oscillation_in_exhaust_names_the_mission_beside_a_circle
     ("scenario", "overrides", "words"),
     [
         ("sulphur", ["plume.structure_length=0.5"], "set plume.structure_intensity"),
-        ("sulphur", ["plume.meander=false", "plume.meander_length_up=1"], "leave plume.meander out"),
+        (
+            "sulphur",
+            ["plume.meander=false", "plume.meander_length_up=1"],
+            "leave plume.meander out",
+        ),
         ("sulphur", ["plume.mean=true", "plume.structure_intensity=0.3"], "leave plume.mean out"),
         ("sea_wind", ["plume.model=fluctuating", "plume.richardson=0.5"], "set emission.ship"),
     ],
 )
 def test_a_setting_of_smoke_that_other_settings_leave_idle_is_refused(scenario, overrides, words):
-    with pytest.raises(InputError, match=f"'{overrides[-1].partition('=')[0]}' has no effect here.*{words}"):
+    with pytest.raises(
+        InputError, match=f"'{overrides[-1].partition('=')[0]}' has no effect here.*{words}"
+    ):
         load_study(scenario, overrides)
 
 
 def test_a_setting_of_smoke_is_accepted_beside_what_it_needs():
-    overrides = ["plume.structure_length=0.5", "plume.structure_intensity=0.3", "plume.meander_length_up=1"]
+    overrides = [
+        "plume.structure_length=0.5",
+        "plume.structure_intensity=0.3",
+        "plume.meander_length_up=1",
+    ]
     assert load_study("sulphur", overrides).plume.model == "fluctuating"
-    assert load_study("sulphur", ["plume.structure_length=0.5", "sweep.plume.structure_intensity=[0.0,0.3]"])
+    assert load_study(
+        "sulphur", ["plume.structure_length=0.5", "sweep.plume.structure_intensity=[0.0,0.3]"]
+    )
 
 
 def test_the_height_of_the_wind_needs_a_profile_also_where_its_speed_is_sampled():
-    with pytest.raises(InputError, match=r"'wind\.height_m' has no effect here.*set wind\.roughness_m"):
+    with pytest.raises(
+        InputError, match=r"'wind\.height_m' has no effect here.*set wind\.roughness_m"
+    ):
         load_study("plume_search", ["wind.height_m=20"])
-    assert load_study("plume_search", ["wind.height_m=20", "wind.roughness_m=0.0002"]).wind.height_m == 20.0
+    assert (
+        load_study("plume_search", ["wind.height_m=20", "wind.roughness_m=0.0002"]).wind.height_m
+        == 20.0
+    )
 
 
-def test_a_key_of_the_file_may_lose_its_effect_by_an_override_but_one_of_the_override_must_have_one(tmp_path):
+def test_a_key_of_the_file_may_lose_its_effect_by_an_override_but_one_of_the_override_must_have_one(
+    tmp_path,
+):
     speed = '[[draws]]\nkey = "wind.speed_mps"\nuniform = [0.0, 5.0]\n'
     follows = 'guidance.mission = "follow"\n'
-    assert [draw.key for draw in loaded(tmp_path, follows + DIRECTION + speed, "wind.speed_mps=0").draws] == ["wind.from_deg"]
+    assert [
+        draw.key for draw in loaded(tmp_path, follows + DIRECTION + speed, "wind.speed_mps=0").draws
+    ] == ["wind.from_deg"]
     for override in (
         'sweep."wind.from_deg"=[0, 90]',
         "sweep.wind.from_deg=[0, 90]",
         'draws=[{key="wind.from_deg",uniform=[0, 9]}]',
     ):
-        with pytest.raises(InputError, match=r"key 'wind\.from_deg' in (sweep|draws) has no effect here"):
+        with pytest.raises(
+            InputError, match=r"key 'wind\.from_deg' in (sweep|draws) has no effect here"
+        ):
             loaded(tmp_path, follows, override)
 
 
@@ -150,15 +195,24 @@ TRACKS = "guidance.mission=track"
         ("sulphur", "emission.ship"),
     ],
 )
-def test_an_override_by_which_air_vessel_or_equipment_would_go_is_refused_with_the_mission(name, key):
+def test_an_override_by_which_air_vessel_or_equipment_would_go_is_refused_with_the_mission(
+    name, key
+):
     # Each of them has the key from its file, from a base or from its random variables.
     assert key in unsteady(load_study(name))
-    with pytest.raises(InputError, match=r"^key '[a-z_.]+' has no effect here: .* guidance\.mission 'track' is in still air"):
+    with pytest.raises(
+        InputError,
+        match=r"^key '[a-z_.]+' has no effect here: .* guidance\.mission 'track' is in still air",
+    ):
         load_study(name, [TRACKS])
 
 
-def test_a_mission_without_wind_is_refused_beside_a_base_with_wind_and_in_one_of_the_points(tmp_path):
-    words = r"key 'wind\.speed_mps' has no effect here: .* guidance\.mission 'track' is in still air"
+def test_a_mission_without_wind_is_refused_beside_a_base_with_wind_and_in_one_of_the_points(
+    tmp_path,
+):
+    words = (
+        r"key 'wind\.speed_mps' has no effect here: .* guidance\.mission 'track' is in still air"
+    )
     with pytest.raises(InputError, match=words):
         loaded(tmp_path, 'extends = "sea_wind"\nguidance.mission = "track"\n')
     points = '[[comparison.variants]]\nname = "paper"\nset = { guidance.mission = "track" }\n'

@@ -167,7 +167,10 @@ SEARCHING = (
 """Keys that act on a search."""
 
 MEASURING = tuple(
-    key for key in VALUES if key.startswith(("emission.", "flight.", "payload.", "plume.", "wind.")) and key != "flight.until"
+    key
+    for key in VALUES
+    if key.startswith(("emission.", "flight.", "payload.", "plume.", "wind."))
+    and key != "flight.until"
 )
 """Keys that act on what is measured, of a flight that is shorter than a verdict takes."""
 
@@ -198,7 +201,12 @@ BEYOND_OR_WITHIN = {"criteria.law_beyond_heading_rate_max", "criteria.law_within
 
 def flown(document, *overrides):
     scenario = load_study(document, overrides)
-    work = FlightWork(experiments=(Experiment("short", scenario),), histories=1, setup=None, spreads=PredictedSpreads())
+    work = FlightWork(
+        experiments=(Experiment("short", scenario),),
+        histories=1,
+        setup=None,
+        spreads=PredictedSpreads(),
+    )
     result = work.fly(Task(number=0))
     (row,) = result.tables["summary.csv"]
     return {key: repr(value) for key, value in row.items() if key != "wall_time_s"}, result
@@ -207,7 +215,9 @@ def flown(document, *overrides):
 @pytest.fixture(autouse=True)
 def unwritten(monkeypatch):
     """Hand over time histories as they are: to write each into a file takes a tenth of the time."""
-    monkeypatch.setattr("scenarios.flight.history_files", lambda _, history, *__, **___: {"history": history})
+    monkeypatch.setattr(
+        "scenarios.flight.history_files", lambda _, history, *__, **___: {"history": history}
+    )
 
 
 def same_history(result, other):
@@ -220,20 +230,33 @@ def written(value):
         return "{" + ", ".join(f"{key} = {written(below)}" for key, below in value.items()) + "}"
     if isinstance(value, list):
         return "[" + ", ".join(map(written, value)) + "]"
-    return str(value).lower() if isinstance(value, bool) else f'"{value}"' if isinstance(value, str) else repr(value)
+    return (
+        str(value).lower()
+        if isinstance(value, bool)
+        else f'"{value}"'
+        if isinstance(value, str)
+        else repr(value)
+    )
 
 
 def test_every_key_has_another_value_here():
     sections = {key.rpartition(".")[0] for key in known_keys(Scenario)}
     entries = ("cases.", "draws.", "comparison.v", "arena.conditions.")
-    keys = {key for key in known_keys(Scenario) if key not in sections | {"vessel.manoeuvres"} and not key.startswith(entries)}
+    keys = {
+        key
+        for key in known_keys(Scenario)
+        if key not in sections | {"vessel.manoeuvres"} and not key.startswith(entries)
+    }
     assert keys - ELSEWHERE == VALUES.keys() - {"vessel.manoeuvres"}
 
 
 def beginning_of(base):
     """Return what makes of a flight its beginning, which is enough to see most keys act."""
     duration = 10 if base in LOOKED_AT else 6
-    return (f"flight.duration_max_s={duration}", *(("fault.at_s=[2.0, 4.0]",) if "fault" in BASES[base] else ()))
+    return (
+        f"flight.duration_max_s={duration}",
+        *(("fault.at_s=[2.0, 4.0]",) if "fault" in BASES[base] else ()),
+    )
 
 
 def differ(one, other):
@@ -252,12 +275,19 @@ def test_with_another_value_of_any_key_the_flight_differs_or_the_key_is_refused(
         change = f"{key}={written(value)}"
         # What the beginning has no room for may act later, as most criteria do.
         with contextlib.suppress(InputError):
-            if not key.startswith("criteria.") and differ(flown(document, *begins, change), beginning):
+            if not key.startswith("criteria.") and differ(
+                flown(document, *begins, change), beginning
+            ):
                 continue
         try:
             silent += [] if differ(flown(document, change), whole) else [key]
         except InputError as refusal:
-            names = (key.rpartition(".")[2], key.partition(".")[0], "reference.path", "start.place_m")
+            names = (
+                key.rpartition(".")[2],
+                key.partition(".")[0],
+                "reference.path",
+                "start.place_m",
+            )
             unnamed += [] if any(name in str(refusal) for name in names) else [(key, str(refusal))]
     assert set(silent) <= LEVEL | BEYOND_OR_WITHIN | IN_SILENCE | DECLARED, silent
     assert len(BEYOND_OR_WITHIN & set(silent)) == (base not in LOOKED_AT)
@@ -265,7 +295,12 @@ def test_with_another_value_of_any_key_the_flight_differs_or_the_key_is_refused(
 
 
 def test_the_vessels_largest_speed_acts_where_little_is_received_of_her():
-    base = BASES["following"].replace("vessel_acceleration_mps2 = 0.15", "vessel_acceleration_mps2 = 0.5")
+    base = BASES["following"].replace(
+        "vessel_acceleration_mps2 = 0.15", "vessel_acceleration_mps2 = 0.5"
+    )
     document = tomllib.loads(SHORT + base + "reports.missing = 0.8\n")
-    (_, result), (_, changed) = flown(document), flown(document, *(f"{key}={VALUES[key]}" for key in IN_SILENCE))
+    (_, result), (_, changed) = (
+        flown(document),
+        flown(document, *(f"{key}={VALUES[key]}" for key in IN_SILENCE)),
+    )
     assert not same_history(result, changed)

@@ -75,7 +75,9 @@ def test_a_key_of_a_law_is_of_the_type_of_its_field(tmp_path, override, words):
 
 def test_an_arena_tunes_no_parameter_that_is_a_whole_number(tmp_path):
     (tmp_path / "own.py").write_text(OWN, encoding="utf-8")
-    scenario = load_study("arena", [f'arena.tracking=["{tmp_path}/own.py:Same"]', "arena.standoff=[]"])
+    scenario = load_study(
+        "arena", [f'arena.tracking=["{tmp_path}/own.py:Same"]', "arena.standoff=[]"]
+    )
     (entrant,), _ = entrants_of(scenario)
     assert entrant.defaults == {"gain_per_s": 1.5, "gain": 2.0}
 

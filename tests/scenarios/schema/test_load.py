@@ -10,7 +10,11 @@ def test_the_sweep_is_the_one_that_was_asked_for():
     # Issue: nu = 0, 0.05, ..., 0.95, r_min = 200 m, V_r = 19.42 m/s, 45 degrees of bank, 400-800 m astern, 30 crossings, 1,500 s.
     sweep = load_study("sweep_nu")
     assert sweep.sweep.nu == pytest.approx([0.05 * i for i in range(20)], abs=1e-12)
-    assert (sweep.keepout.radius_m, sweep.guidance.airspeed_mps, sweep.guidance.bank_deg) == (200.0, 19.42, 45.0)
+    assert (sweep.keepout.radius_m, sweep.guidance.airspeed_mps, sweep.guidance.bank_deg) == (
+        200.0,
+        19.42,
+        45.0,
+    )
     assert sweep.start.distance_m == (400.0, 800.0)
     assert (sweep.flight.crossings, sweep.flight.duration_max_s) == (30, 1500.0)
 
@@ -46,15 +50,32 @@ def test_what_is_wrong_in_a_file_names_the_file_and_what_is_wrong_in_an_override
         ("keepout.radius_m=nan", ["keepout.radius_m", "nan", "a finite number in m"]),
         ("keepout.radius_m=wide", ["keepout.radius_m", "'wide'", "number"]),
         ("keepout.radius_m.x=1", ["keepout.radius_m.x", "not a section"]),
-        ("criteria.crossing_interval_error=no", ["criteria.crossing_interval_error is 'no'", "number", ", or false"]),
-        ("wind.speed_mps=5kn", ["wind.speed_mps is '5kn'; it must be a number in m/s, e.g. wind.speed_mps=2.572"]),
-        ("wind.speed_mps=5 m/s", ["wind.speed_mps is '5 m/s'; it must be a number in m/s, e.g. wind.speed_mps=5"]),
-        ("emission.sulphur_percent=1000ppm", ["it must be a number in % m/m, e.g. emission.sulphur_percent=0.1"]),
+        (
+            "criteria.crossing_interval_error=no",
+            ["criteria.crossing_interval_error is 'no'", "number", ", or false"],
+        ),
+        (
+            "wind.speed_mps=5kn",
+            ["wind.speed_mps is '5kn'; it must be a number in m/s, e.g. wind.speed_mps=2.572"],
+        ),
+        (
+            "wind.speed_mps=5 m/s",
+            ["wind.speed_mps is '5 m/s'; it must be a number in m/s, e.g. wind.speed_mps=5"],
+        ),
+        (
+            "emission.sulphur_percent=1000ppm",
+            ["it must be a number in % m/m, e.g. emission.sulphur_percent=0.1"],
+        ),
         ("keepout.radius_m=200yd", ["keepout.radius_m is '200yd'; it must be a number in m"]),
         ("wind.speed_mps=50", ["wind.speed_mps is 50; it must be at most 40 m/s"]),
         ("emission.load=85", ["emission.load is 85; it must be at most 1: a fraction, e.g. 0.85"]),
         ("guidance.preview=maybe", ["guidance.preview is 'maybe'; it must be true or false"]),
-        ("wind=5", ["wind: value is 5; it is a section with keys of its own: set one of them, as in wind.speed_mps=..."]),
+        (
+            "wind=5",
+            [
+                "wind: value is 5; it is a section with keys of its own: set one of them, as in wind.speed_mps=..."
+            ],
+        ),
         ("guidance.law=magic", ["guidance.law", "'magic'", "cascade"]),
         ("guidance.rate_hz=50", ["rate_hz is 50 Hz", "must divide 120 Hz", "e.g. 40"]),
         # Nothing could be logged at so low a rate: flight.log_rate_hz divides it, and is at least 5.
@@ -68,20 +89,50 @@ def test_what_is_wrong_in_a_file_names_the_file_and_what_is_wrong_in_an_override
         ("guidance.preview", ["not of the form key=value"]),
         ("sweep.nu=[half]", ["sweep.nu=[half]", "not valid TOML", "quoted"]),
         ("reference.path=circle", ["reference.path is 'circle'", "a case of its own"]),
-        ("flight.duration_max_s=0.05", ["duration_max_s is 0.05 s; at log_rate_hz, 10 Hz", "fly 0.1 s or longer"]),
+        (
+            "flight.duration_max_s=0.05",
+            ["duration_max_s is 0.05 s; at log_rate_hz, 10 Hz", "fly 0.1 s or longer"],
+        ),
         ("flight.altitude_m=1", ["flight.altitude_m is 1; it must be at least 5 m"]),
         ("guidance.command_limit=false", ["command_limit is false", "set fidelity to 'kinematic'"]),
-        ("start.place_m=[-100, 0]", ["start.place_m lies at 100 m", "must exceed keepout.radius_m, 200 m"]),
-        ("guidance={tuning='bounded', law='lyapunov'}", ["tuning is 'bounded' with law 'lyapunov'", "set law to 'cascade'"]),
-        ("study=magic", ["study is 'magic'", "flights, paper, convergence, trials, monte_carlo, falsify"]),
+        (
+            "start.place_m=[-100, 0]",
+            ["start.place_m lies at 100 m", "must exceed keepout.radius_m, 200 m"],
+        ),
+        (
+            "guidance={tuning='bounded', law='lyapunov'}",
+            ["tuning is 'bounded' with law 'lyapunov'", "set law to 'cascade'"],
+        ),
+        (
+            "study=magic",
+            ["study is 'magic'", "flights, paper, convergence, trials, monte_carlo, falsify"],
+        ),
         ("study=paper", ["study is 'paper' without cases"]),
         (f"seed={'9' * 5000}", ["--set seed: value 99999999999999999999... has too many digits"]),
-        ("wind.speed_mps=1\nflights=1", ["--set wind.speed_mps: a line break, and 'flights' after it; give each key a --set"]),
-        (f"sweep.nu={'[' * 3000}{']' * 3000}", ["--set sweep.nu: value [[[[[[[[[[[[[[[[[[[[... has too many brackets"]),
-        ("place.utc=2026", ["place.utc: value is 2026, a number; give date and time, as in 2026-06-01T12:00:00Z"]),
-        ("place.utc=1965-06-01T12:00:00Z", ["value is 1965-06-01T12:00:00+00:00; give a time from 1970 to 2199"]),
-        (f"sweep.start.range_m=[{'9' * 400}]", ["start.range_m has a number of more than 308 digits"]),
-        ("criteria.resumes_within_periods=2", ["'criteria.resumes_within_periods' has no effect here", "a vessel that manoeuvres"]),
+        (
+            "wind.speed_mps=1\nflights=1",
+            ["--set wind.speed_mps: a line break, and 'flights' after it; give each key a --set"],
+        ),
+        (
+            f"sweep.nu={'[' * 3000}{']' * 3000}",
+            ["--set sweep.nu: value [[[[[[[[[[[[[[[[[[[[... has too many brackets"],
+        ),
+        (
+            "place.utc=2026",
+            ["place.utc: value is 2026, a number; give date and time, as in 2026-06-01T12:00:00Z"],
+        ),
+        (
+            "place.utc=1965-06-01T12:00:00Z",
+            ["value is 1965-06-01T12:00:00+00:00; give a time from 1970 to 2199"],
+        ),
+        (
+            f"sweep.start.range_m=[{'9' * 400}]",
+            ["start.range_m has a number of more than 308 digits"],
+        ),
+        (
+            "criteria.resumes_within_periods=2",
+            ["'criteria.resumes_within_periods' has no effect here", "a vessel that manoeuvres"],
+        ),
     ],
 )
 def test_bad_values_are_refused_in_one_line_that_names_them(override, words):
@@ -98,17 +149,24 @@ def test_bad_values_are_refused_in_one_line_that_names_them(override, words):
     [
         ("shares=0.1", "unknown key 'shares'; did you mean 'share'?"),
         ("wnd.speed_mps=5", "unknown key 'wnd'; did you mean 'wind'?"),
-        ("xyzzy=1", "known are study, title, description, trials, share, seed, histories, set, report, and the keys of each trial"),
+        (
+            "xyzzy=1",
+            "known are study, title, description, trials, share, seed, histories, set, report, and the keys of each trial",
+        ),
     ],
 )
-def test_an_unknown_key_of_a_list_of_trials_is_compared_with_its_own_keys_and_those_of_its_trials(override, words):
+def test_an_unknown_key_of_a_list_of_trials_is_compared_with_its_own_keys_and_those_of_its_trials(
+    override, words
+):
     with pytest.raises(InputError) as refusal:
         load_study("sea_trial", [override])
     assert words in str(refusal.value)
 
 
 def test_an_empty_list_is_refused_without_words_of_the_library():
-    with pytest.raises(InputError, match=r"^search\.methods: value is \[\]; give at least one value$"):
+    with pytest.raises(
+        InputError, match=r"^search\.methods: value is \[\]; give at least one value$"
+    ):
         load_study("falsify", ["search.methods=[]"])
 
 
@@ -140,13 +198,19 @@ def test_variants_are_checked_like_any_value():
 @pytest.mark.parametrize(
     ("cases", "words"),
     [
-        ('[[cases]]\nname = "a"\n[[cases]]\nname = "a"\n', ["cases are named a, a", "a name of its own"]),
+        (
+            '[[cases]]\nname = "a"\n[[cases]]\nname = "a"\n',
+            ["cases are named a, a", "a name of its own"],
+        ),
         (
             '[[cases]]\nname = "a"\nset = { "sweep.nu" = [0.3, 0.5] }\n',
             ["case 'a' has sweep.nu = [0.3, 0.5]; give it one speed ratio"],
         ),
         ('[[cases]]\nname = "a"\nset = { fidelity = "kinematic" }\n', ["case 'a' sets fidelity"]),
-        ('[[cases]]\nname = "a"\nset = { "guidance.gain" = 1.0 }\n', ["case 'a': unknown key 'guidance.gain'"]),
+        (
+            '[[cases]]\nname = "a"\nset = { "guidance.gain" = 1.0 }\n',
+            ["case 'a': unknown key 'guidance.gain'"],
+        ),
     ],
 )
 def test_cases_that_cannot_be_flown_are_refused_by_name(tmp_path, cases, words):
@@ -159,18 +223,27 @@ def test_cases_that_cannot_be_flown_are_refused_by_name(tmp_path, cases, words):
 
 
 def test_an_override_has_its_way_in_every_case():
-    experiment = Experiment("paper", load_study("paper", ["sweep.nu=[0.3]", "start.course_deg=45.0", "fidelity=kinematic"]))
+    experiment = Experiment(
+        "paper",
+        load_study("paper", ["sweep.nu=[0.3]", "start.course_deg=45.0", "fidelity=kinematic"]),
+    )
     requests = [experiment.request(number) for number in range(experiment.flights)]
-    assert [r.scenario.vessel.speed_ratio for r in requests if r.flight_id.startswith("sim3")] == [0.3]
+    assert [r.scenario.vessel.speed_ratio for r in requests if r.flight_id.startswith("sim3")] == [
+        0.3
+    ]
     assert {request.scenario.start.course_deg for request in requests} == {45.0}
 
 
-def test_a_trial_in_a_file_is_relative_to_the_list_and_in_an_override_to_the_current_directory(tmp_path, monkeypatch):
+def test_a_trial_in_a_file_is_relative_to_the_list_and_in_an_override_to_the_current_directory(
+    tmp_path, monkeypatch
+):
     for folder in ("lists", "elsewhere"):
         (tmp_path / folder).mkdir()
         (tmp_path / folder / "own.toml").write_text(f'title = "{folder}"\n', encoding="utf-8")
     path = tmp_path / "lists" / "list.toml"
-    path.write_text('study = "trials"\ntitle = "list"\ntrials = ["own.toml", "sea_wind"]\n', encoding="utf-8")
+    path.write_text(
+        'study = "trials"\ntitle = "list"\ntrials = ["own.toml", "sea_wind"]\n', encoding="utf-8"
+    )
     monkeypatch.chdir(tmp_path / "elsewhere")
     listed, overridden = load_study(str(path)), load_study(str(path), ['trials=["own.toml"]'])
     assert listed.trials == (str(tmp_path / "lists" / "own.toml"), "sea_wind")
@@ -185,10 +258,14 @@ def test_a_file_with_a_number_of_too_many_digits_is_refused(tmp_path):
         load_study(str(path))
 
 
-def test_instruments_that_are_listed_take_keys_of_their_own_from_overrides_and_from_files_that_extend_the_list(tmp_path):
+def test_instruments_that_are_listed_take_keys_of_their_own_from_overrides_and_from_files_that_extend_the_list(
+    tmp_path,
+):
     listed, own = tmp_path / "listed.toml", tmp_path / "own.toml"
     listed.write_text('title = "l"\nextends = "sulphur"\npayload = ["sniffer"]\n', encoding="utf-8")
-    own.write_text('title = "o"\nextends = "listed.toml"\npayload.sensor = "fast"\n', encoding="utf-8")
+    own.write_text(
+        'title = "o"\nextends = "listed.toml"\npayload.sensor = "fast"\n', encoding="utf-8"
+    )
     for study in (
         load_study(str(own)),
         load_study(str(listed), ["payload.sensor=fast"]),
@@ -199,21 +276,33 @@ def test_instruments_that_are_listed_take_keys_of_their_own_from_overrides_and_f
 
 
 def test_a_track_of_ones_own_may_have_manoeuvres_that_end(tmp_path):
-    (tmp_path / "track.py").write_text("class Turning:\n    manoeuvres_end = 30.0\n", encoding="utf-8")
+    (tmp_path / "track.py").write_text(
+        "class Turning:\n    manoeuvres_end = 30.0\n", encoding="utf-8"
+    )
     path = tmp_path / "own.toml"
-    path.write_text('title = "o"\nvessel.track = "track.py:Turning"\ncriteria.resumes_within_periods = 2.0\n', encoding="utf-8")
+    path.write_text(
+        'title = "o"\nvessel.track = "track.py:Turning"\ncriteria.resumes_within_periods = 2.0\n',
+        encoding="utf-8",
+    )
     assert load_study(str(path)).criteria.resumes_within_periods == 2.0
 
 
 def test_keeping_out_is_not_required_of_a_circle_which_has_no_vessel():
-    with pytest.raises(InputError, match=r"case 'sim1': criteria\.required is 'keep_out', and a circle has no area to keep out of"):
+    with pytest.raises(
+        InputError,
+        match=r"case 'sim1': criteria\.required is 'keep_out', and a circle has no area to keep out of",
+    ):
         Experiment("paper", load_study("paper", ["criteria.required=keep_out"]))
 
 
 @pytest.mark.parametrize(
     ("name", "override", "words"),
     [
-        ("sea_wind", "reports.interval_s=5", "reports.interval_s: value is 5; give a list in brackets, as in [5, 5]"),
+        (
+            "sea_wind",
+            "reports.interval_s=5",
+            "reports.interval_s: value is 5; give a list in brackets, as in [5, 5]",
+        ),
         ("sea_wind", "speed_ratio=low", "as in [400, 800]"),
         ("sweep_nu", "sweep.nu=0.5", "as in [0.5]"),
         ("sea_wind", "vessel.manoeuvres=3", "as in [{ at_s = 100 }]"),
@@ -238,9 +327,18 @@ def test_a_number_or_truth_value_in_the_place_of_text_is_refused_in_words(key, v
 @pytest.mark.parametrize(
     ("override", "words"),
     [
-        ("start.distance_m=[1,2,3]", "start.distance_m is [1, 2, 3]; it must have 2 values at most, and has 3"),
-        ('draws=[{key="wind.speed_mps",normal=[1,-5]}]', "draws.0.normal.1 is -5; it must be above 0"),
-        ('cases=[{name="My case"}]', "cases.0.name is 'My case'; it must be made of small letters, digits and _ alone"),
+        (
+            "start.distance_m=[1,2,3]",
+            "start.distance_m is [1, 2, 3]; it must have 2 values at most, and has 3",
+        ),
+        (
+            'draws=[{key="wind.speed_mps",normal=[1,-5]}]',
+            "draws.0.normal.1 is -5; it must be above 0",
+        ),
+        (
+            'cases=[{name="My case"}]',
+            "cases.0.name is 'My case'; it must be made of small letters, digits and _ alone",
+        ),
     ],
 )
 def test_what_a_value_must_be_is_said_in_words_and_in_no_unit_that_is_none(override, words):

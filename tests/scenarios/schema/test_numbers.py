@@ -10,21 +10,53 @@ from scenarios.schema.scenario import Scenario
 @pytest.mark.parametrize(
     ("name", "override", "words"),
     [
-        ("sea_wind", "wind.speed_mps=true", "wind.speed_mps is true; a truth value is no number: give a number"),
+        (
+            "sea_wind",
+            "wind.speed_mps=true",
+            "wind.speed_mps is true; a truth value is no number: give a number",
+        ),
         ("sweep_nu", "seed=true", "seed is true; a truth value is no number"),
         ("sweep_nu", "flights=false", "flights is false; a truth value is no number"),
-        ("sweep_nu", "start.distance_m=[true, 500]", "start.distance_m is [true, 500]; a truth value is no number"),
-        ("sweep_nu", "arena.limits=[[0.5, true]]", "arena.limits is [[0.5, true]]; a truth value is no number"),
-        ("plume_search", "payload.limit_percent=true", "payload.limit_percent is true; a truth value is no number"),
-        ("convergence", "ensemble.distance_max_m=true", "ensemble.distance_max_m is true; a truth value is no number"),
+        (
+            "sweep_nu",
+            "start.distance_m=[true, 500]",
+            "start.distance_m is [true, 500]; a truth value is no number",
+        ),
+        (
+            "sweep_nu",
+            "arena.limits=[[0.5, true]]",
+            "arena.limits is [[0.5, true]]; a truth value is no number",
+        ),
+        (
+            "plume_search",
+            "payload.limit_percent=true",
+            "payload.limit_percent is true; a truth value is no number",
+        ),
+        (
+            "convergence",
+            "ensemble.distance_max_m=true",
+            "ensemble.distance_max_m is true; a truth value is no number",
+        ),
         (
             "sweep_nu",
             "criteria.tracking_error_rms_m=true",
             "tracking_error_rms_m is true; a truth value is no number: give a number",
         ),
-        ("sweep_nu", "criteria.tracking_error_rms_m=0", "value is 0; give a limit above 0, or false where"),
-        ("sweep_nu", "criteria.crossing_distance_m=[300, 200]", "crossing_distance_m is [300.0, 200.0]; its first value must not"),
-        ("sweep_nu", 'criteria.modes_at_end=["traking"]', "'traking' is not a mode; did you mean 'tracking'? modes are approach,"),
+        (
+            "sweep_nu",
+            "criteria.tracking_error_rms_m=0",
+            "value is 0; give a limit above 0, or false where",
+        ),
+        (
+            "sweep_nu",
+            "criteria.crossing_distance_m=[300, 200]",
+            "crossing_distance_m is [300.0, 200.0]; its first value must not",
+        ),
+        (
+            "sweep_nu",
+            'criteria.modes_at_end=["traking"]',
+            "'traking' is not a mode; did you mean 'tracking'? modes are approach,",
+        ),
     ],
 )
 def test_what_would_count_as_another_number_is_refused_in_one_line(name, override, words):
@@ -35,7 +67,11 @@ def test_what_would_count_as_another_number_is_refused_in_one_line(name, overrid
 
 
 def test_truth_values_are_taken_where_they_belong():
-    words = ["criteria.tracking_error_rms_m=false", "guidance.preview=true", 'criteria.modes_at_end=["tracking", "ditched"]']
+    words = [
+        "criteria.tracking_error_rms_m=false",
+        "guidance.preview=true",
+        'criteria.modes_at_end=["tracking", "ditched"]',
+    ]
     scenario = load_study("sweep_nu", words)
     assert scenario.criteria.tracking_error_rms_m is False
     assert scenario.guidance.preview is True
@@ -54,6 +90,8 @@ def test_a_swept_truth_value_is_no_number_either():
     ],
 )
 def test_a_comparison_does_not_have_the_name_of_flights_that_count(keys):
-    with pytest.raises(ValueError, match="a comparison is called 'study', as flights that count are"):
+    with pytest.raises(
+        ValueError, match="a comparison is called 'study', as flights that count are"
+    ):
         Scenario(title="t", **keys)
     assert Scenario(title="t", cases=[{"name": "study"}]).cases[0].name == "study"

@@ -49,16 +49,34 @@ def test_the_short_word_for_the_speed_ratio_gets_the_key_that_sets_it(scenario, 
     [
         ("wind.form_deg=3", "unknown key 'wind.form_deg'; did you mean 'wind.from_deg'?"),
         ("wnd.speed_mps=3", "unknown key 'wnd'; did you mean 'wind'?"),
-        ("speed_mps=3", "unknown key 'speed_mps'; did you mean 'vessel.speed_mps' or 'wind.speed_mps'?"),
+        (
+            "speed_mps=3",
+            "unknown key 'speed_mps'; did you mean 'vessel.speed_mps' or 'wind.speed_mps'?",
+        ),
         ("wind.direction=3", "unknown key 'wind.direction'; known in wind are speed_mps, from_deg"),
         ("vessel.manoeuvres=[{at_s=1, turn_dg=3}]", "did you mean 'vessel.manoeuvres.0.turn_deg'?"),
-        ("turbulence.level=sever", "turbulence.level: value is 'sever'; did you mean 'severe'? it must be 'none', 'light'"),
-        ("guidance.law=lyapunow", "guidance.law: unknown steering law 'lyapunow'; did you mean 'lyapunov'? known are ardupilot_l1"),
-        ("guidance.law=mine.py", "steering law 'mine.py' names a file, and no part in it; give mine.py:NAME"),
-        ("study=monte_karlo", "study is 'monte_karlo'; did you mean 'monte_carlo'? it must be one of"),
+        (
+            "turbulence.level=sever",
+            "turbulence.level: value is 'sever'; did you mean 'severe'? it must be 'none', 'light'",
+        ),
+        (
+            "guidance.law=lyapunow",
+            "guidance.law: unknown steering law 'lyapunow'; did you mean 'lyapunov'? known are ardupilot_l1",
+        ),
+        (
+            "guidance.law=mine.py",
+            "steering law 'mine.py' names a file, and no part in it; give mine.py:NAME",
+        ),
+        (
+            "study=monte_karlo",
+            "study is 'monte_karlo'; did you mean 'monte_carlo'? it must be one of",
+        ),
         ("extends=sim3", "extends stands in a scenario file"),
         # A digit to Unicode that is no decimal.
-        ("vessel.manoeuvres.².turn_deg=5", "vessel.manoeuvres: value is {'²': {'turn_deg': 5}}; give a list"),
+        (
+            "vessel.manoeuvres.².turn_deg=5",
+            "vessel.manoeuvres: value is {'²': {'turn_deg': 5}}; give a list",
+        ),
     ],
 )
 def test_an_unknown_word_gets_the_nearest_known_one(override, words):
@@ -68,7 +86,10 @@ def test_an_unknown_word_gets_the_nearest_known_one(override, words):
 @pytest.mark.parametrize(
     ("name", "words"),
     [
-        ("sweep_mu", "unknown scenario 'sweep_mu'; did you mean 'sweep_nu'? give the path of a TOML file or one of: arena"),
+        (
+            "sweep_mu",
+            "unknown scenario 'sweep_mu'; did you mean 'sweep_nu'? give the path of a TOML file or one of: arena",
+        ),
         ("swep_nu.toml", "no scenario file 'swep_nu.toml'; did you mean 'sweep_nu'?"),
         ("xyz", "unknown scenario 'xyz'; give the path of a TOML file or one of: arena"),
     ],
@@ -79,9 +100,14 @@ def test_an_unknown_scenario_gets_the_nearest_known_one(name, words):
 
 def test_an_entry_of_an_empty_list_is_refused_with_how_to_add_one():
     message = refusal("sea_approach", "vessel.manoeuvres.0.turn_deg=90")
-    assert "vessel.manoeuvres has no entries; add one with --set 'vessel.manoeuvres=[{at_s=100, turn_deg=90}]'" in message
+    assert (
+        "vessel.manoeuvres has no entries; add one with --set 'vessel.manoeuvres=[{at_s=100, turn_deg=90}]'"
+        in message
+    )
     # And that is accepted.
-    (manoeuvre,) = load_study("sea_approach", ["vessel.manoeuvres=[{at_s=100, turn_deg=90}]"]).vessel.manoeuvres
+    (manoeuvre,) = load_study(
+        "sea_approach", ["vessel.manoeuvres=[{at_s=100, turn_deg=90}]"]
+    ).vessel.manoeuvres
     assert (manoeuvre.at_s, manoeuvre.turn_deg) == (100.0, 90.0)
 
 
@@ -98,12 +124,20 @@ def test_a_file_with_a_byte_order_mark_is_read(tmp_path):
 
 def test_known_keys_go_through_sections_and_lists_of_sections():
     keys = known_keys(Scenario)
-    assert {"wind", "wind.speed_mps", "vessel.manoeuvres", "vessel.manoeuvres.0.at_s", "draws.0.key"} <= set(keys)
+    assert {
+        "wind",
+        "wind.speed_mps",
+        "vessel.manoeuvres",
+        "vessel.manoeuvres.0.at_s",
+        "draws.0.key",
+    } <= set(keys)
     assert len(keys) == len(set(keys))
 
 
 def test_a_file_extends_a_scenario_of_the_catalog(tmp_path):
-    path = write(tmp_path, "own.toml", 'extends = "sea_wind"\ntitle = "own"\n[wind]\nspeed_mps = 3.0\n')
+    path = write(
+        tmp_path, "own.toml", 'extends = "sea_wind"\ntitle = "own"\n[wind]\nspeed_mps = 3.0\n'
+    )
     own, base = load_study(path), load_study("sea_wind")
     assert (own.title, own.wind.speed_mps) == ("own", 3.0)
     same = {"title", "description", "wind"}
@@ -112,9 +146,17 @@ def test_a_file_extends_a_scenario_of_the_catalog(tmp_path):
 
 def test_a_chain_of_files_is_resolved_relative_to_each_file(tmp_path):
     (tmp_path / "bases").mkdir()
-    write(tmp_path / "bases", "first.toml", 'study = "flights"\ntitle = "first"\n[wind]\nspeed_mps = 3.0\nfrom_deg = 10.0\n')
+    write(
+        tmp_path / "bases",
+        "first.toml",
+        'study = "flights"\ntitle = "first"\n[wind]\nspeed_mps = 3.0\nfrom_deg = 10.0\n',
+    )
     write(tmp_path / "bases", "second.toml", 'extends = "first.toml"\n[wind]\nspeed_mps = 4.0\n')
-    path = write(tmp_path, "third.toml", 'extends = "bases/second.toml"\ntitle = "third"\n[vessel]\nspeed_mps = 5.0\n')
+    path = write(
+        tmp_path,
+        "third.toml",
+        'extends = "bases/second.toml"\ntitle = "third"\n[vessel]\nspeed_mps = 5.0\n',
+    )
     third = load_study(path)
     assert third.title == "third"
     assert (third.wind.speed_mps, third.wind.from_deg, third.vessel.speed_mps) == (4.0, 10.0, 5.0)
@@ -122,7 +164,9 @@ def test_a_chain_of_files_is_resolved_relative_to_each_file(tmp_path):
 
 def test_a_description_is_of_the_scenario_that_gives_it_and_not_of_those_that_extend_it(tmp_path):
     assert load_study("sea_wind").description
-    second = write(tmp_path, "second.toml", 'extends = "sea_wind"\ntitle = "second"\ndescription = "Own."\n')
+    second = write(
+        tmp_path, "second.toml", 'extends = "sea_wind"\ntitle = "second"\ndescription = "Own."\n'
+    )
     third = write(tmp_path, "third.toml", 'extends = "second.toml"\ntitle = "third"\n')
     assert [load_study(path).description for path in (second, third)] == ["Own.", ""]
     assert load_study({"extends": "sea_wind", "title": "of a program"}).description == ""
@@ -131,7 +175,8 @@ def test_a_description_is_of_the_scenario_that_gives_it_and_not_of_those_that_ex
 
 
 @pytest.mark.parametrize(
-    ("document", "words"), [({1: 2}, "the scenario has the key 1"), ({"wind": {3: 4}}, "'wind' has the key 3")]
+    ("document", "words"),
+    [({1: 2}, "the scenario has the key 1"), ({"wind": {3: 4}}, "'wind' has the key 3")],
 )
 def test_a_mapping_whose_keys_are_no_text_is_refused(document, words):
     with pytest.raises(InputError, match=f"{words}, a value of int; keys are words in text"):
@@ -139,7 +184,11 @@ def test_a_mapping_whose_keys_are_no_text_is_refused(document, words):
 
 
 def test_overrides_come_after_what_a_file_extends(tmp_path):
-    write(tmp_path, "base.toml", 'study = "flights"\ntitle = "base"\n[[draws]]\nkey = "wind.speed_mps"\nuniform = [0.0, 5.0]\n')
+    write(
+        tmp_path,
+        "base.toml",
+        'study = "flights"\ntitle = "base"\n[[draws]]\nkey = "wind.speed_mps"\nuniform = [0.0, 5.0]\n',
+    )
     path = write(tmp_path, "own.toml", 'extends = "base.toml"\n')
     assert len(load_study(path).draws) == 1
     own = load_study(path, ["wind.speed_mps=2"])
@@ -178,14 +227,26 @@ def test_an_override_of_a_swept_key_ends_its_sweep(tmp_path, override, left):
 @pytest.mark.parametrize(
     ("override", "gone", "value_of", "expected"),
     [
-        ("vessel.manoeuvres=[{at_s=100,turn_deg=90}]", "vessel.manoeuvres.", lambda s: s.vessel.manoeuvres[0].turn_deg, 90.0),
-        ("wind={speed_mps=5,from_deg=20}", "wind.", lambda s: (s.wind.speed_mps, s.wind.from_deg), (5.0, 20.0)),
+        (
+            "vessel.manoeuvres=[{at_s=100,turn_deg=90}]",
+            "vessel.manoeuvres.",
+            lambda s: s.vessel.manoeuvres[0].turn_deg,
+            90.0,
+        ),
+        (
+            "wind={speed_mps=5,from_deg=20}",
+            "wind.",
+            lambda s: (s.wind.speed_mps, s.wind.from_deg),
+            (5.0, 20.0),
+        ),
         ("start.range_m=500", "start.range_m", lambda s: s.start.range_m, 500.0),
         ("vessel.speed_ratio=0.4", "vessel.speed_mps", lambda s: s.vessel.speed_ratio, 0.4),
         ("sweep.nu=[0.4]", "vessel.speed_mps", lambda s: s.vessel.speed_ratio, 0.4),
     ],
 )
-def test_an_override_ends_what_is_sampled_of_its_key_and_below_it(override, gone, value_of, expected):
+def test_an_override_ends_what_is_sampled_of_its_key_and_below_it(
+    override, gone, value_of, expected
+):
     study = load_study("monte_carlo", [override])
     every = [draw.key for draw in load_study("monte_carlo").draws]
     assert [draw.key for draw in study.draws] == [key for key in every if not key.startswith(gone)]
@@ -193,12 +254,21 @@ def test_an_override_ends_what_is_sampled_of_its_key_and_below_it(override, gone
     assert {value_of(experiment.request(number).scenario) for number in range(3)} == {expected}
 
 
-def test_an_override_of_a_speed_ends_a_sampled_speed_ratio_and_one_of_the_ratio_a_swept_speed(tmp_path):
-    drawn = write(tmp_path, "drawn.toml", 'title = "d"\n[[draws]]\nkey = "vessel.speed_ratio"\nuniform = [0.2, 0.5]\n')
+def test_an_override_of_a_speed_ends_a_sampled_speed_ratio_and_one_of_the_ratio_a_swept_speed(
+    tmp_path,
+):
+    drawn = write(
+        tmp_path,
+        "drawn.toml",
+        'title = "d"\n[[draws]]\nkey = "vessel.speed_ratio"\nuniform = [0.2, 0.5]\n',
+    )
     study = load_study(drawn, ["vessel.speed_mps=5"])
     assert (study.draws, study.vessel_speed) == ((), 5.0)
     swept = write(tmp_path, "speeds.toml", 'title = "s"\nsweep.vessel.speed_mps = [5, 6]\n')
-    assert [point.scenario.vessel_speed for point in points_of(load_study(swept, ["vessel.speed_ratio=0.5"]))] == [9.71]
+    assert [
+        point.scenario.vessel_speed
+        for point in points_of(load_study(swept, ["vessel.speed_ratio=0.5"]))
+    ] == [9.71]
     # Of a sweep of ratios, of which a run is made, the speed does not end anything.
     assert "'vessel.speed_mps' has no effect here" in refusal("sweep_nu", "vessel.speed_mps=5")
 
@@ -216,16 +286,30 @@ def test_an_override_of_a_speed_ends_a_sampled_speed_ratio_and_one_of_the_ratio_
             ["vessel.speed_mps=5", 'draws=[{key="vessel.speed_ratio",uniform=[0.1,0.5]}]'],
             "'vessel.speed_ratio' is swept or sampled in every flight",
         ),
-        ("monte_carlo", ["start.spread_deg=10"], "'start.aspect_deg' is swept or sampled in every flight"),
-        ("sweep_nu", ["sweep.start.range_m=[400, 500]", "start.distance_m=[300, 350]"], "'start.range_m' is swept or sampled"),
+        (
+            "monte_carlo",
+            ["start.spread_deg=10"],
+            "'start.aspect_deg' is swept or sampled in every flight",
+        ),
+        (
+            "sweep_nu",
+            ["sweep.start.range_m=[400, 500]", "start.distance_m=[300, 350]"],
+            "'start.range_m' is swept or sampled",
+        ),
         (
             "sea_approach",
-            ["vessel.manoeuvres=[{at_s=9}]", "sweep.vessel.manoeuvres=[[{at_s=9}]]", "vessel.manoeuvres.0.turn_deg=5"],
+            [
+                "vessel.manoeuvres=[{at_s=9}]",
+                "sweep.vessel.manoeuvres=[[{at_s=9}]]",
+                "vessel.manoeuvres.0.turn_deg=5",
+            ],
             "'vessel.manoeuvres' is swept or sampled in every flight",
         ),
     ],
 )
-def test_an_override_that_another_key_puts_aside_in_every_flight_is_refused(scenario, override, words):
+def test_an_override_that_another_key_puts_aside_in_every_flight_is_refused(
+    scenario, override, words
+):
     message = refusal(scenario, *override)
     assert "has no effect here" in message
     assert words in message
@@ -233,7 +317,9 @@ def test_an_override_that_another_key_puts_aside_in_every_flight_is_refused(scen
 
 def test_a_sweep_on_the_command_line_is_kept_beside_an_earlier_override(tmp_path):
     path = write(tmp_path, "swept.toml", SWEPT)
-    assert load_study(path, ["wind.speed_mps=9", "sweep.wind.speed_mps=[1, 3]"]).sweep.root["wind.speed_mps"] == (1, 3)
+    assert load_study(path, ["wind.speed_mps=9", "sweep.wind.speed_mps=[1, 3]"]).sweep.root[
+        "wind.speed_mps"
+    ] == (1, 3)
 
 
 def test_an_override_of_the_speed_ratio_has_its_way_in_cases_that_name_it_as_a_sweep_does():
@@ -251,24 +337,47 @@ def test_lists_are_replaced_and_tables_are_merged():
 @pytest.mark.parametrize(
     ("extends", "words"),
     [
-        ('"b.toml"', "a.toml: extends goes in a circle: b.toml -> a.toml -> b.toml; remove one of them"),
+        (
+            '"b.toml"',
+            "a.toml: extends goes in a circle: b.toml -> a.toml -> b.toml; remove one of them",
+        ),
         ('"sea_wnd"', "b.toml: extends: unknown scenario 'sea_wnd'; did you mean 'sea_wind'?"),
         ('"c.toml"', "b.toml: extends: no scenario file 'c.toml'"),
-        ("3", "b.toml: extends is 3; give one catalog name or one path of a TOML file, or false for no base"),
+        (
+            "3",
+            "b.toml: extends is 3; give one catalog name or one path of a TOML file, or false for no base",
+        ),
         ('["sea_wind", "sim3"]', "b.toml: extends is ['sea_wind', 'sim3']; give one catalog name"),
     ],
 )
 def test_what_cannot_be_extended_is_refused_in_one_line(tmp_path, extends, words):
     write(tmp_path, "a.toml", 'extends = "b.toml"\n')
-    path = write(tmp_path, "b.toml", f'title = "b"\nextends = {extends.replace("b.toml", "a.toml")}\n')
+    path = write(
+        tmp_path, "b.toml", f'title = "b"\nextends = {extends.replace("b.toml", "a.toml")}\n'
+    )
     assert words in refusal(path)
 
 
 def test_given_keys_are_those_of_the_file_its_base_and_the_overrides(tmp_path):
-    write(tmp_path, "base.toml", 'study = "flights"\ntitle = "base"\n[wind]\nspeed_mps = 3.0\n[sensors]\n')
-    path = write(tmp_path, "own.toml", 'extends = "base.toml"\n[[draws]]\nkey = "wind.from_deg"\nuniform = [0.0, 5.0]\n')
+    write(
+        tmp_path,
+        "base.toml",
+        'study = "flights"\ntitle = "base"\n[wind]\nspeed_mps = 3.0\n[sensors]\n',
+    )
+    path = write(
+        tmp_path,
+        "own.toml",
+        'extends = "base.toml"\n[[draws]]\nkey = "wind.from_deg"\nuniform = [0.0, 5.0]\n',
+    )
     document = load_document(path, ["guidance.preview=false"])
-    assert given_keys(document) == {"study", "title", "wind.speed_mps", "sensors", "draws", "guidance.preview"}
+    assert given_keys(document) == {
+        "study",
+        "title",
+        "wind.speed_mps",
+        "sensors",
+        "draws",
+        "guidance.preview",
+    }
 
 
 class Sweep(RootModel[dict[str, list[float]]]):

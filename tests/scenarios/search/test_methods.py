@@ -34,7 +34,13 @@ def least(methods, space, problem, *, seed=1, turns=TURNS, population=POPULATION
         return np.array(found[len(found) - len(points) :])
 
     settings = SearchSettings(population=population)
-    search_in_turns(methods_named(methods, space, settings, seed), space, attempt, population=population, turns=turns)
+    search_in_turns(
+        methods_named(methods, space, settings, seed),
+        space,
+        attempt,
+        population=population,
+        turns=turns,
+    )
     assert len(tried) <= turns * population
     return min(found), np.array(tried)
 
@@ -85,7 +91,9 @@ def rare(point):
 @pytest.mark.parametrize("seed", range(3))
 def test_methods_in_turn_find_two_events_at_one_time_with_one_of_the_choices(seed):
     time = Coordinate(time_range=(0.0, 100.0))
-    space = space_of(Coordinate(choices=THIRDS), *[Coordinate()] * 2, time, time, *[Coordinate()] * 10)
+    space = space_of(
+        Coordinate(choices=THIRDS), *[Coordinate()] * 2, time, time, *[Coordinate()] * 10
+    )
     # The least is 0. A random point has the choice in 1 of 3, both quantities in the last 5 % in 1 of 400, and times within 0.01 of
     # each other in 1 of 50.
     assert least_of_random(space, rare, seed) > 2.0
@@ -125,7 +133,9 @@ def test_a_search_around_a_point_that_has_found_a_violation_looks_for_another_on
     def depth(point, pit):
         return 100.0 * float(np.linalg.norm(point - pit)) - 10.0
 
-    _, tried = least((method,), space, lambda point: min(depth(point, pit) for pit in pits), turns=100)
+    _, tried = least(
+        (method,), space, lambda point: min(depth(point, pit) for pit in pits), turns=100
+    )
     violating = [[depth(point, pit) < 0.0 for point in tried] for pit in pits]
     assert all(any(of) for of in violating)
     # Once a pit is known no point of it is a start any more: it takes a few flights, not most of them.
@@ -157,7 +167,12 @@ def test_what_lies_beyond_the_declared_ranges_is_avoided_by_all_that_propose_fre
 
 
 def test_corners_take_every_choice_equally_often_and_put_quantities_at_their_ends():
-    space = space_of(Coordinate(choices=THIRDS), Coordinate(), Coordinate(circle=True), Coordinate(time_range=(0.0, 9.0)))
+    space = space_of(
+        Coordinate(choices=THIRDS),
+        Coordinate(),
+        Coordinate(circle=True),
+        Coordinate(time_range=(0.0, 9.0)),
+    )
     _, tried = least(("corners",), space, lambda _: 0.0, turns=15)
     values, counts = np.unique(tried[:, 0], return_counts=True)
     np.testing.assert_allclose(values, [1.0 / 6.0, 0.5, 5.0 / 6.0])
@@ -174,7 +189,12 @@ def test_cma_leaves_choices_as_they_are_and_has_nothing_to_search_without_two_qu
     assert len(np.unique(tried[:, 0])) == 1
     narrow = space_of(Coordinate(choices=THIRDS), Coordinate())
     methods = methods_named(("cma",), narrow, SearchSettings(population=16), 1)
-    assert len(search_in_turns(methods, narrow, lambda _, points: points[:, 0], population=16, turns=5)) == 0
+    assert (
+        len(
+            search_in_turns(methods, narrow, lambda _, points: points[:, 0], population=16, turns=5)
+        )
+        == 0
+    )
 
 
 def test_a_search_ends_when_its_time_is_over():
@@ -185,12 +205,22 @@ def test_a_search_ends_when_its_time_is_over():
         return points[:, 0]
 
     methods = methods_named(METHODS, BOWL, SearchSettings(population=POPULATION), 1)
-    search_in_turns(methods, BOWL, attempt, population=POPULATION, turns=None, within_time=lambda: len(batches) < 7)
+    search_in_turns(
+        methods,
+        BOWL,
+        attempt,
+        population=POPULATION,
+        turns=None,
+        within_time=lambda: len(batches) < 7,
+    )
     assert len(batches) == 7
 
 
 def test_an_unknown_method_is_refused_with_the_name_that_was_meant():
-    with pytest.raises(PluginError, match=r"unknown search method 'corner'; did you mean 'corners'\? known are cma, corners, diff"):
+    with pytest.raises(
+        PluginError,
+        match=r"unknown search method 'corner'; did you mean 'corners'\? known are cma, corners, diff",
+    ):
         SEARCH_METHODS.get("corner")
 
 
@@ -213,15 +243,22 @@ class Own:
 @pytest.mark.parametrize(
     ("method", "words"),
     [
-        (Own(*[0.5] * 5), "proposed points of shape (5, 10); it was asked for at most 4 of 10 coordinates each: let ask"),
+        (
+            Own(*[0.5] * 5),
+            "proposed points of shape (5, 10); it was asked for at most 4 of 10 coordinates each: let ask",
+        ),
         (Own(0.5, 1.5), "proposed a coordinate of 1.5; each lies from 0 to 1"),
         (Own(float("nan")), "proposed a coordinate of nan; each lies from 0 to 1"),
         (Own("far"), "failed in ask(): ValueError: could not convert"),
         (Own(0.5), "failed in tell(): ZeroDivisionError: no clearance"),
     ],
 )
-def test_what_a_method_of_ones_own_cannot_be_asked_for_is_said_in_one_line_with_its_name(method, words):
+def test_what_a_method_of_ones_own_cannot_be_asked_for_is_said_in_one_line_with_its_name(
+    method, words
+):
     with pytest.raises(PluginError) as refused:
-        search_in_turns({"own.py:Own": method}, BOWL, lambda _, points: points[:, 0], population=4, turns=2)
+        search_in_turns(
+            {"own.py:Own": method}, BOWL, lambda _, points: points[:, 0], population=4, turns=2
+        )
     assert str(refused.value).startswith(f"search method 'own.py:Own' {words}")
     assert "\n" not in str(refused.value)

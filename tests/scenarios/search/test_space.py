@@ -16,7 +16,12 @@ def point(*values):
 
 def test_a_choice_differs_wholly_or_not_at_all_and_noise_never():
     choice, noise = Coordinate(choices=HALVES), Coordinate(choices=HALVES, noise=True)
-    assert [choice.difference(0.1, other) for other in (0.0, 0.49, 0.5, 1.0)] == [0.0, 0.0, 1.0, 1.0]
+    assert [choice.difference(0.1, other) for other in (0.0, 0.49, 0.5, 1.0)] == [
+        0.0,
+        0.0,
+        1.0,
+        1.0,
+    ]
     assert noise.difference(0.0, 1.0) == 0.0
     assert choice.values == (0.25, 0.75)
     # A choice that has no weight is never taken.

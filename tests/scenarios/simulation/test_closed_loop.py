@@ -14,11 +14,17 @@ from scenarios.simulation.release import release
 from scenarios.vehicles.kinematic import KinematicVehicle
 from scenarios.vehicles.vehicle_setup import kinematic_setup
 
-SHORT = {"start": ASTERN, "flight": {"crossings": 0, "duration_max_s": 60.0}, "criteria": {"settles": False}}
+SHORT = {
+    "start": ASTERN,
+    "flight": {"crossings": 0, "duration_max_s": 60.0},
+    "criteria": {"settles": False},
+}
 
 
 def tracking(**changes):
-    return Scenario.model_validate({"title": "test", "fidelity": "kinematic", "vessel": {"speed_mps": 8.0}} | SHORT | changes)
+    return Scenario.model_validate(
+        {"title": "test", "fidelity": "kinematic", "vessel": {"speed_mps": 8.0}} | SHORT | changes
+    )
 
 
 def flown(given, instruments=(), **how):
@@ -26,7 +32,9 @@ def flown(given, instruments=(), **how):
     return closed_loop.fly(flight, release(flight, setup), instruments, **how)
 
 
-MISSIONS = pytest.mark.parametrize("given", [scenario(**SHORT), tracking()], ids=["following", "tracking"])
+MISSIONS = pytest.mark.parametrize(
+    "given", [scenario(**SHORT), tracking()], ids=["following", "tracking"]
+)
 
 
 @payload("distance_meter_of_this_test")
@@ -44,8 +52,12 @@ class DistanceMeter:
 
 
 def test_what_an_instrument_reads_is_in_the_time_history():
-    history, again = (fly(payload=("distance_meter_of_this_test",), **SHORT).history for _ in range(2))
-    distance = np.hypot(*(history[f"{axis}_m"] - history[f"vessel_{axis}_m"] for axis in ("north", "east")))
+    history, again = (
+        fly(payload=("distance_meter_of_this_test",), **SHORT).history for _ in range(2)
+    )
+    distance = np.hypot(
+        *(history[f"{axis}_m"] - history[f"vessel_{axis}_m"] for axis in ("north", "east"))
+    )
     np.testing.assert_allclose(history["reading_m"], distance, rtol=1e-14)  # the last bit of a root
     # Its own random numbers, by the flight's seed; and nothing else of the flight changes with them.
     assert history["noise_ppb"].nunique() == len(history)
@@ -61,7 +73,9 @@ def test_both_missions_record_the_same_columns(given):
     assert record.history.shape == (601, len(COLUMNS))
     # 10 samples a second, from the start to the end.
     np.testing.assert_allclose(record.column("time_s"), 0.1 * np.arange(601), rtol=0.0, atol=1e-9)
-    own = [name for name in COLUMNS[: COLUMNS.index("altitude_m")] if not name.startswith("centre_")]
+    own = [
+        name for name in COLUMNS[: COLUMNS.index("altitude_m")] if not name.startswith("centre_")
+    ]
     assert all(np.isfinite(record.column(name)).all() for name in own if name != "speed_ratio")
 
 
@@ -80,25 +94,40 @@ def test_every_column_has_a_meaning_and_a_unit():
         "s", "m", "rad/s", "m/s", "1",
     ]  # fmt: skip
     # A unit of two words is not its last one.
-    names = ("dose_per_pass_ppm_s", "plume_s_per_minute", "crossings_per_minute", "served_per_hour", "l1_integrator_per_s")
+    names = (
+        "dose_per_pass_ppm_s",
+        "plume_s_per_minute",
+        "crossings_per_minute",
+        "served_per_hour",
+        "l1_integrator_per_s",
+    )
     assert [unit_of(name) for name in names] == ["ppm s", "s/min", "1/min", "1/h", "1/s"]
 
 
 def test_a_kinematic_vehicle_is_released_at_the_start_of_its_plan_in_its_wind():
-    given = scenario(wind={"speed_mps": 5.0, "from_deg": 180.0}, start=ASTERN | {"course_deg": 90.0})
+    given = scenario(
+        wind={"speed_mps": 5.0, "from_deg": 180.0}, start=ASTERN | {"course_deg": 90.0}
+    )
     flight = plan(given)
     vehicle = release(flight, kinematic_setup(given))
     assert isinstance(vehicle, KinematicVehicle)
     # Eastbound at its airspeed, in a wind that blows to the north.
-    assert vehicle.motion() == pytest.approx((flight.start.north, flight.start.east, 5.0, SPEED, 0.0), abs=1e-12)
+    assert vehicle.motion() == pytest.approx(
+        (flight.start.north, flight.start.east, 5.0, SPEED, 0.0), abs=1e-12
+    )
     assert vehicle.sample()[0] == flight.altitude == 60.0
 
 
 def test_a_following_flight_in_a_rising_plume_is_commanded_to_the_height_of_its_centre(monkeypatch):
     commanded = []
-    monkeypatch.setattr(KinematicVehicle, "command_altitude", lambda _, altitude: commanded.append(altitude))
+    monkeypatch.setattr(
+        KinematicVehicle, "command_altitude", lambda _, altitude: commanded.append(altitude)
+    )
     record = flown(scenario(plume={"elevation_deg": 10.0}, **SHORT))
-    centre, seen = ([record.column(f"{of}_{axis}_m") for axis in ("north", "east")] for of in ("centre", "vessel_seen"))
+    centre, seen = (
+        [record.column(f"{of}_{axis}_m") for axis in ("north", "east")]
+        for of in ("centre", "vessel_seen")
+    )
     to_centre = np.hypot(*np.subtract(centre, seen))
     # Above the funnel's 60 m as the axis rises to the centre of oscillation.
     expected = 60.0 + math.tan(math.radians(10.0)) * to_centre

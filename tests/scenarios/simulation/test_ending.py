@@ -34,13 +34,29 @@ def ended(
     fault_at=math.inf,
 ):
     """Return how a flight ended at 300 s."""
-    world = SimpleNamespace(fault=TimedFault(kind="engine", begins=fault_at, ends=math.inf)) if vessel else None
-    plan = SimpleNamespace(crossings=asked, after_settling=after, duration_max=300.0, world=world, settling_period=19.0)
+    world = (
+        SimpleNamespace(fault=TimedFault(kind="engine", begins=fault_at, ends=math.inf))
+        if vessel
+        else None
+    )
+    plan = SimpleNamespace(
+        crossings=asked, after_settling=after, duration_max=300.0, world=world, settling_period=19.0
+    )
     vehicle = SimpleNamespace(fault=lambda _: trouble)
-    guidance = SimpleNamespace(monitor=SimpleNamespace(fault=fault), mission=SimpleNamespace(mode=mode))
+    guidance = SimpleNamespace(
+        monitor=SimpleNamespace(fault=fault), mission=SimpleNamespace(mode=mode)
+    )
     guidance.target = SimpleNamespace(north=0.0, east=0.0)
-    judge = SimpleNamespace(enough=enough, over=lambda *_: True, words=f"{enough and enough.value}: it left") if enough else None
-    settling = SimpleNamespace(at=settled, crossings=flown, tracked=tracked, centre_error=centre_error, centre_band=15.0)
+    judge = (
+        SimpleNamespace(
+            enough=enough, over=lambda *_: True, words=f"{enough and enough.value}: it left"
+        )
+        if enough
+        else None
+    )
+    settling = SimpleNamespace(
+        at=settled, crossings=flown, tracked=tracked, centre_error=centre_error, centre_band=15.0
+    )
     ending = Ending(plan, vehicle, guidance, settling, judge)
     ending.guarded, ending.saturated = guarded, saturated
     ending.reached(300.0, (0.0, 0.0, 0.0, 0.0, 0.0), sample, complete=0 < asked <= flown)
@@ -89,13 +105,21 @@ def ended(
             Outcome.NOT_SETTLED,
             "may be enough, and the keep-out guard may hold it off its orbit",
         ),
-        ({"settled": math.nan, "mode": Mode.OUTRUN}, Outcome.NOT_SETTLED, "did not settle within 300 s, and ended outrun"),
+        (
+            {"settled": math.nan, "mode": Mode.OUTRUN},
+            Outcome.NOT_SETTLED,
+            "did not settle within 300 s, and ended outrun",
+        ),
         ({"flown": 0}, Outcome.INCOMPLETE, "flew 0 crossings after settling within 300 s"),
         ({"asked": 30}, Outcome.INCOMPLETE, "flew 12 of 30 crossings after settling within 300 s"),
         ({"after": 220.0}, Outcome.COMPLETED, ""),
         ({"after": 220.0, "mode": Mode.NO_PLUME}, Outcome.COMPLETED, ""),
         ({"after": 300.0}, Outcome.INCOMPLETE, "flew 220 of 300 s after settling within 300 s"),
-        ({"after": 100.0, "asked": 30}, Outcome.INCOMPLETE, "flew 12 of 30 crossings after settling within 300 s"),
+        (
+            {"after": 100.0, "asked": 30},
+            Outcome.INCOMPLETE,
+            "flew 12 of 30 crossings after settling within 300 s",
+        ),
         ({"mode": Mode.OUTRUN}, Outcome.INCOMPLETE, "ended outrun after 12 crossings"),
         ({"mode": Mode.NO_PLUME}, Outcome.INCOMPLETE, "ended no plume after 12 crossings"),
         (
@@ -103,8 +127,16 @@ def ended(
             Outcome.AIRCRAFT_LOST,
             "it came down on the sea at 300.0 s, after 12 of 30 crossings",
         ),
-        ({"mode": Mode.GLIDING, "flown": 0}, Outcome.AIRCRAFT_LOST, "it was still gliding towards the sea at 300.0 s"),
-        ({"mode": Mode.TERMINATING, "settled": math.nan}, Outcome.AIRCRAFT_LOST, "before it had settled"),
+        (
+            {"mode": Mode.GLIDING, "flown": 0},
+            Outcome.AIRCRAFT_LOST,
+            "it was still gliding towards the sea at 300.0 s",
+        ),
+        (
+            {"mode": Mode.TERMINATING, "settled": math.nan},
+            Outcome.AIRCRAFT_LOST,
+            "before it had settled",
+        ),
         (
             {"mode": Mode.GLIDING, "settled": math.nan, "fault_at": 281.5},
             Outcome.AIRCRAFT_LOST,
@@ -112,9 +144,21 @@ def ended(
         ),
         # A verdict is what such a flight is for, also where it has not settled for as long as is asked for.
         ({"enough": Enough.BELOW, "after": 400.0, "mode": Mode.DEPARTING}, Outcome.COMPLETED, ""),
-        ({"enough": Enough.OUT_OF_REACH, "mode": Mode.DEPARTING}, Outcome.INCOMPLETE, "plume out of reach"),
-        ({"enough": Enough.SENSOR, "settled": math.nan, "mode": Mode.DEPARTING}, Outcome.INCOMPLETE, "sensor failed"),
-        ({"enough": Enough.ABOVE, "mode": Mode.GLIDING, "flown": 0}, Outcome.AIRCRAFT_LOST, "gliding"),
+        (
+            {"enough": Enough.OUT_OF_REACH, "mode": Mode.DEPARTING},
+            Outcome.INCOMPLETE,
+            "plume out of reach",
+        ),
+        (
+            {"enough": Enough.SENSOR, "settled": math.nan, "mode": Mode.DEPARTING},
+            Outcome.INCOMPLETE,
+            "sensor failed",
+        ),
+        (
+            {"enough": Enough.ABOVE, "mode": Mode.GLIDING, "flown": 0},
+            Outcome.AIRCRAFT_LOST,
+            "gliding",
+        ),
         ({"trouble": "bank reached 90 deg"}, Outcome.DIVERGED, "bank reached 90 deg at 300.0 s"),
     ],
 )
@@ -131,6 +175,9 @@ def test_a_flight_completes_only_with_its_aircraft_and_its_mission(flight, outco
 def test_a_law_that_asks_for_too_much_all_the_time_is_named_as_the_cause():
     ending = ended(settled=math.nan, flown=0, saturated=0.98)
     assert ending.outcome is Outcome.NOT_SETTLED
-    assert "in 98 % of the steps; check that it returns rad/s, positive to the right (guidance.law)" in ending.message
+    assert (
+        "in 98 % of the steps; check that it returns rad/s, positive to the right (guidance.law)"
+        in ending.message
+    )
     # To fly longer is no remedy.
     assert "more time" not in ending.message

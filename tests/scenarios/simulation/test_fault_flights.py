@@ -14,7 +14,12 @@ from tests.run_tables import rows_of
 
 KINDS = ("engine", "throttle", "left_elevon", "right_elevon")
 FAILS, ENDS = 55.0, 130.0
-ENDS_IN = {"engine": DITCHED, "throttle": Mode.TRACKING.value, "left_elevon": DITCHED, "right_elevon": DITCHED}
+ENDS_IN = {
+    "engine": DITCHED,
+    "throttle": Mode.TRACKING.value,
+    "left_elevon": DITCHED,
+    "right_elevon": DITCHED,
+}
 
 
 @pytest.fixture(scope="module")
@@ -37,13 +42,18 @@ def flown(designs, tmp_path_factory):
         # The design of the other tests, for 60 m.
         patch.setattr("scenarios.studies.flight_study.design_of", lambda *_: (designs("x8"), ""))
         run_study(flights, "faults", path, executor_factory=InProcessExecutor)
-    return {row["fault"]: (row, pd.read_parquet(path / "flights" / f"{row['flight_id']}.parquet")) for row in rows_of(path)}
+    return {
+        row["fault"]: (row, pd.read_parquet(path / "flights" / f"{row['flight_id']}.parquet"))
+        for row in rows_of(path)
+    }
 
 
 @pytest.mark.parametrize("kind", KINDS)
 def test_whatever_fails_the_flight_ends_outside_in_its_mode(flown, kind):
     row, history = flown[kind]
-    assert row["outcome"] == ("aircraft_lost" if row["mode_at_end"] == DITCHED else "completed"), row["message"]
+    assert row["outcome"] == ("aircraft_lost" if row["mode_at_end"] == DITCHED else "completed"), (
+        row["message"]
+    )
     assert (row["kept_out"], row["criteria_met"]) == (True, kind == "throttle")
     assert row["keepout_violations"] == 0
     assert row["mode_at_end"] == ENDS_IN[kind]
@@ -56,7 +66,9 @@ def test_whatever_fails_the_flight_ends_outside_in_its_mode(flown, kind):
 def test_a_stuck_elevon_is_found_within_seconds_and_the_flight_leads_away_from_then_on(flown, kind):
     _, history = flown[kind]
     since = history[history["mode"] == list(Mode).index(Mode.TERMINATING)]
-    assert FAILS < since["time_s"].iloc[0] < FAILS + 5.0  # once it has been told to go elsewhere for as long as it may take
+    assert (
+        FAILS < since["time_s"].iloc[0] < FAILS + 5.0
+    )  # once it has been told to go elsewhere for as long as it may take
     north, east = (since[f"{axis}_m"] - since[f"vessel_{axis}_m"] for axis in ("north", "east"))
     distance = np.hypot(north, east).to_numpy()
     # Two turn radii V^2/g at 45 degrees of bank: as much nearer as a turn away may come from any course.
@@ -65,11 +77,20 @@ def test_a_stuck_elevon_is_found_within_seconds_and_the_flight_leads_away_from_t
 
 
 @pytest.mark.parametrize(("required", "status"), [("criteria", False), ("keep_out", True)])
-def test_an_aircraft_that_is_lost_before_its_last_crossing_is_not_met_and_decides_the_exit_status(tmp_path, required, status):
+def test_an_aircraft_that_is_lost_before_its_last_crossing_is_not_met_and_decides_the_exit_status(
+    tmp_path, required, status
+):
     # Issue: an engine that fails in sea_wind ended in the sea, with "met every criterion" and exit status 0.
-    keys = ["flights=1", "fault.kind=engine", "fault.at_s=[20, 20]", f"criteria.required={required}"]
+    keys = [
+        "flights=1",
+        "fault.kind=engine",
+        "fault.at_s=[20, 20]",
+        f"criteria.required={required}",
+    ]
     study = load_study("sea_wind", keys)
-    result = run_study(study, "sea_wind", tmp_path / "run", executor_factory=InProcessExecutor, overrides=keys)
+    result = run_study(
+        study, "sea_wind", tmp_path / "run", executor_factory=InProcessExecutor, overrides=keys
+    )
     (row,) = rows_of(tmp_path / "run")
     assert (row["outcome"], row["criteria_met"], row["kept_out"]) == ("aircraft_lost", False, True)
     assert row["message"].startswith("it came down on the sea at ")
@@ -78,4 +99,7 @@ def test_an_aircraft_that_is_lost_before_its_last_crossing_is_not_met_and_decide
         "flights: 1 planned, 1 flown, 0 completed, 0 met every criterion, 1 lost the aircraft;"
     )
     about = "kept out" if required == "keep_out" else "met every criterion"
-    assert f"exit status {int(not status)}: {int(status)} of 1 flight {about}, which is required of it" in result.summary.lines
+    assert (
+        f"exit status {int(not status)}: {int(status)} of 1 flight {about}, which is required of it"
+        in result.summary.lines
+    )

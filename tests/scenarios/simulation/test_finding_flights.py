@@ -34,7 +34,12 @@ QUICK = (
 
 def flown(*overrides):
     scenario = load_study("sulphur", (*QUICK, *overrides))
-    work = FlightWork(experiments=(Experiment("sulphur", scenario),), histories=1, setup=None, spreads=PredictedSpreads())
+    work = FlightWork(
+        experiments=(Experiment("sulphur", scenario),),
+        histories=1,
+        setup=None,
+        spreads=PredictedSpreads(),
+    )
     result = work.fly(Task(number=0))
     (row,) = result.tables["summary.csv"]
     return row, history_in(result)
@@ -86,7 +91,12 @@ def test_what_is_believed_stands_beside_the_truth_in_the_time_history(until_verd
 
 
 def test_a_sniffer_that_dies_is_recognised_and_the_flight_leaves_without_a_verdict():
-    row, history = flown("flight.until=verdict", "emission.sulphur_percent=0.1", "fault.kind=sniffer_dead", "fault.at_s=60")
+    row, history = flown(
+        "flight.until=verdict",
+        "emission.sulphur_percent=0.1",
+        "fault.kind=sniffer_dead",
+        "fault.at_s=60",
+    )
     assert row["outcome"] == "incomplete"
     assert row["enough"] == "sensor failed"
     assert "sensor failed" in row["message"]
@@ -97,7 +107,9 @@ def test_a_sniffer_that_dies_is_recognised_and_the_flight_leaves_without_a_verdi
 def test_a_flight_that_is_given_the_axis_crosses_it_at_its_height():
     row, history = flown("following.plume=told")
     assert row["outcome"] == "completed"
-    settled = (history["time_s"] > row["settling_time_s"] + 30.0) & (history["plume_across_m"].abs() < 10.0)
+    settled = (history["time_s"] > row["settling_time_s"] + 30.0) & (
+        history["plume_across_m"].abs() < 10.0
+    )
     # The height is that at the centre of oscillation; the orbit crosses a little nearer or farther.
     assert np.abs(history["plume_above_m"][settled]).max() < 3.0
     assert row["hit_rate_found"] > 0.7

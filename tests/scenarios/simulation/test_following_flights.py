@@ -14,7 +14,9 @@ REPORTS = {"interval_s": (2.0, 10.0), "latency_max_s": 2.0, "missing": 0.1}
 
 def apart(history, one, other):
     """Return the horizontal distance between two of the places that a history holds [m]; the vehicle's own has no name."""
-    return np.hypot(*(history[f"{one}{axis}_m"] - history[f"{other}{axis}_m"] for axis in ("north", "east")))
+    return np.hypot(
+        *(history[f"{one}{axis}_m"] - history[f"{other}{axis}_m"] for axis in ("north", "east"))
+    )
 
 
 @pytest.fixture(scope="module")
@@ -34,7 +36,9 @@ def test_a_flight_in_wind_tracks_and_crosses_at_the_interval_of_the_apparent_win
     assert row["nu"] == pytest.approx(math.hypot(north, east) / SPEED, rel=1e-9)
     # Crossings count from the first moment within the band of 8 m, up to 0.4 s early or late at 19 m/s: 1 % of five
     # intervals of 8.5 s. Measured 0.3 %.
-    assert row["crossing_interval_mean_s"] == pytest.approx(row["crossing_interval_predicted_s"], rel=1e-2)
+    assert row["crossing_interval_mean_s"] == pytest.approx(
+        row["crossing_interval_predicted_s"], rel=1e-2
+    )
     assert row["crossing_count"] == len(result.tables["crossings.csv"]) == 6
     assert row["keepout_violations"] == 0
     # Exact sensors.
@@ -45,7 +49,9 @@ def test_what_a_flight_records_is_what_the_tables_have_columns_for(windy):
     result, _ = windy
     assert set(result.row) <= set(SUMMARY_COLUMNS)
     assert set(result.tables["crossings.csv"][0]) == set(CROSSING_COLUMNS)
-    assert np.all(np.diff([crossing["time_s"] for crossing in result.tables["crossings.csv"]]) > 0.0)
+    assert np.all(
+        np.diff([crossing["time_s"] for crossing in result.tables["crossings.csv"]]) > 0.0
+    )
 
 
 def test_crossings_lie_on_the_plumes_axis_beyond_the_keep_out_radius(windy):
@@ -74,14 +80,21 @@ def test_the_reference_is_recorded_for_the_time_of_the_vehicle(windy):
 
 def test_from_ahead_it_goes_round_the_keep_out_area():
     # This seed starts it nearly straight ahead of the vessel, which comes towards it.
-    result = fly(start={"distance_m": (600.0, 700.0), "spread_deg": 180.0}, seed=25, flight={"crossings": 1})
+    result = fly(
+        start={"distance_m": (600.0, 700.0), "spread_deg": 180.0}, seed=25, flight={"crossings": 1}
+    )
     history = result.history
     assert abs(result.row["start_aspect_deg"]) > 170.0
     assert [mode for mode, _ in modes(history)] == [Mode.APPROACH, Mode.TRACKING]
     assert result.row["outcome"] == "completed"
     assert apart(history, "", "vessel_").min() > 200.0
     # Seen from the vessel it passes abeam: on the way to the other side, its bearing goes round, and not through the middle.
-    bearing = np.unwrap(np.arctan2(history["east_m"] - history["vessel_east_m"], history["north_m"] - history["vessel_north_m"]))
+    bearing = np.unwrap(
+        np.arctan2(
+            history["east_m"] - history["vessel_east_m"],
+            history["north_m"] - history["vessel_north_m"],
+        )
+    )
     assert np.ptp(bearing) > math.radians(120.0)
 
 
@@ -110,7 +123,10 @@ def test_while_nothing_is_received_from_the_vessel_it_holds_off_and_then_resumes
 def test_vessel_data_fail_also_where_they_are_exact():
     result = fly(
         fault={"kind": "vessel_data", "at_s": (0.0, 0.0), "vessel_data_s": 30.0},
-        vessel={"speed_mps": 8.0, "manoeuvres": [{"at_s": 5.0, "turn_deg": 90.0, "turn_rate_deg_s": 3.0}]},
+        vessel={
+            "speed_mps": 8.0,
+            "manoeuvres": [{"at_s": 5.0, "turn_deg": 90.0, "turn_rate_deg_s": 3.0}],
+        },
         # 8 m/s at 3 deg/s: 0.42 m/s2.
         following={"vessel_acceleration_mps2": 0.5},
         start=ASTERN,
@@ -131,7 +147,11 @@ def test_vessel_data_fail_also_where_they_are_exact():
 def test_without_satellites_it_reckons_and_stays_outside():
     result = fly(
         wind={"speed_mps": 6.0, "from_deg": 70.0},
-        fault={"kind": "satellite_navigation", "at_s": (80.0, 80.0), "satellite_navigation_s": 20.0},
+        fault={
+            "kind": "satellite_navigation",
+            "at_s": (80.0, 80.0),
+            "satellite_navigation_s": 20.0,
+        },
         start=ASTERN,
         flight={"crossings": 0, "duration_max_s": 150.0},
         criteria={"settles": False},
@@ -144,22 +164,37 @@ def test_without_satellites_it_reckons_and_stays_outside():
 
 
 @pytest.mark.parametrize(
-    "changes", [{"wind": {"speed_mps": 5.0, "from_deg": 30.0}}, {"plume": {"direction": "given", "heading_deg": 180.0}}]
+    "changes",
+    [
+        {"wind": {"speed_mps": 5.0, "from_deg": 30.0}},
+        {"plume": {"direction": "given", "heading_deg": 180.0}},
+    ],
 )
-def test_a_vessel_at_rest_in_wind_can_be_flown_and_one_without_any_where_the_plume_is_given(changes):
+def test_a_vessel_at_rest_in_wind_can_be_flown_and_one_without_any_where_the_plume_is_given(
+    changes,
+):
     result = fly(
         vessel={"speed_mps": 0.0}, start=ASTERN, flight={"crossings": 0, "duration_max_s": 60.0},
         criteria={"settles": False}, **changes,
     )  # fmt: skip
     # A minute is too short to have settled, and long enough to fly.
-    assert (result.row["outcome"], result.row["keepout_violations"]) == ("not_settled", 0), result.row["message"]
+    assert (result.row["outcome"], result.row["keepout_violations"]) == ("not_settled", 0), (
+        result.row["message"]
+    )
 
 
 def test_a_given_plume_of_a_vessel_at_rest_is_crossed_where_it_is():
     # With a reference that began on a course to the north its orbit stayed 107 m beside the plume.
     given = {"direction": "given", "heading_deg": 180.0}
-    result = fly(vessel={"speed_mps": 0.0, "course_deg": 200.0}, plume=given, start=ASTERN, flight={"crossings": 6})
-    assert (result.row["outcome"], result.row["keepout_violations"]) == ("completed", 0), result.row["message"]
+    result = fly(
+        vessel={"speed_mps": 0.0, "course_deg": 200.0},
+        plume=given,
+        start=ASTERN,
+        flight={"crossings": 6},
+    )
+    assert (result.row["outcome"], result.row["keepout_violations"]) == ("completed", 0), (
+        result.row["message"]
+    )
     assert result.row["crossing_count"] == 6
 
 

@@ -17,7 +17,11 @@ class Axis(SearchedAxis):
 
     def __init__(self, *, sensor=SensorState.WORKING, measurable=1.0, mode=Mode.SEARCHING):
         self.mode = mode
-        self.sensor, self.estimate, self._measurable = sensor, PlumeEstimate(height=131.0, height_deviation=8.0), measurable
+        self.sensor, self.estimate, self._measurable = (
+            sensor,
+            PlumeEstimate(height=131.0, height_deviation=8.0),
+            measurable,
+        )
 
     __slots__ = ("_measurable",)
 
@@ -48,7 +52,11 @@ def judged(monkeypatch, verdicts, *, axis=None, settled=0.0):
 
 def looks(judge, number, distance=230.0):
     """Let as many looks go by, sampled ten times a second; return the times at which it was over."""
-    return [t for t in (0.1 * i for i in range(round(10 * number * INTERVAL) + 1)) if judge.over(t, distance)]
+    return [
+        t
+        for t in (0.1 * i for i in range(round(10 * number * INTERVAL) + 1))
+        if judge.over(t, distance)
+    ]
 
 
 def test_a_verdict_counts_from_the_second_look_that_agrees(monkeypatch):

@@ -33,7 +33,9 @@ def test_what_a_law_raises_in_several_lines_is_told_in_one():
         raise RuntimeError("first line\n  second \x1b[31m")
     except RuntimeError as error:
         told = failure(error)["message"]
-    assert told.startswith("RuntimeError: first line second \\x1b[31m (test_laws_without_an_answer.py:")
+    assert told.startswith(
+        "RuntimeError: first line second \\x1b[31m (test_laws_without_an_answer.py:"
+    )
 
 
 @dataclass(frozen=True)
@@ -103,7 +105,14 @@ MUST = "its method heading_rate(reference, to_north, to_east, course, speed) has
         (ArrayOfOne, ("steering law 'ArrayOfOne' returned [0.1]: ", MUST)),
         (ArrayOfTwo, ("steering law 'ArrayOfTwo' returned [[0.1] [0.2]]: ", MUST)),
         (ComplexNumber, ("steering law 'ComplexNumber' returned (0.1+0j): ", MUST)),
-        (TooFew, ("steering law 'TooFew' cannot be called (", "takes 2 positional arguments but 6 were given", MUST)),
+        (
+            TooFew,
+            (
+                "steering law 'TooFew' cannot be called (",
+                "takes 2 positional arguments but 6 were given",
+                MUST,
+            ),
+        ),
         # An error inside the law is told where it is.
         (Wrong, ("TypeError: ", "(test_laws_without_an_answer.py:")),
         (Frozen, ("FrozenInstanceError: ", "(test_laws_without_an_answer.py:")),
@@ -112,7 +121,9 @@ MUST = "its method heading_rate(reference, to_north, to_east, course, speed) has
 def test_a_law_without_an_answer_ends_its_flight_with_a_reason_that_names_it(mission, law, words):
     with STEERING_LAWS.lent("own", law):
         flown = fly(
-            guidance={"law": "own", "mission": mission, "keepout_guard": False}, start=ASTERN, flight={"duration_max_s": 20.0}
+            guidance={"law": "own", "mission": mission, "keepout_guard": False},
+            start=ASTERN,
+            flight={"duration_max_s": 20.0},
         )
     assert (flown.row["outcome"], flown.row["criteria_met"]) == ("failed", False)
     for word in words:
@@ -120,7 +131,12 @@ def test_a_law_without_an_answer_ends_its_flight_with_a_reason_that_names_it(mis
     assert "tracker.py" not in flown.row["message"]
 
 
-NUMBERS = {"float": 0.1, "scalar": np.float64(0.1), "array": np.array(0.1), "where": np.where(True, 0.1, 0.2)}
+NUMBERS = {
+    "float": 0.1,
+    "scalar": np.float64(0.1),
+    "array": np.array(0.1),
+    "where": np.where(True, 0.1, 0.2),
+}
 
 
 @dataclass(frozen=True)
@@ -137,7 +153,10 @@ def test_a_law_may_return_a_number_of_numpy(mission, kind):
     guidance = {"law": "own", "mission": mission, "keepout_guard": False}
     with STEERING_LAWS.lent("own", Steady):
         rows = [
-            fly(guidance=guidance | {"kind": given}, start=ASTERN, flight={"duration_max_s": 20.0}).row for given in (kind, "float")
+            fly(
+                guidance=guidance | {"kind": given}, start=ASTERN, flight={"duration_max_s": 20.0}
+            ).row
+            for given in (kind, "float")
         ]
     assert rows[0]["outcome"] == "not_settled"
     assert rows[0]["min_distance_m"] == rows[1]["min_distance_m"]

@@ -117,7 +117,9 @@ def test_without_a_number_of_crossings_there_is_no_end():
 
 
 @pytest.mark.parametrize(("crossings", "end"), [(0, 60.5), (20, 60.5), (40, 100.5)])
-def test_a_flight_that_goes_on_after_settling_ends_when_both_its_time_and_its_crossings_are_flown(crossings, end):
+def test_a_flight_that_goes_on_after_settling_ends_when_both_its_time_and_its_crossings_are_flown(
+    crossings, end
+):
     settling = make(crossings=crossings, after=60.0)
     # It settles with the first sample, and crosses every 2.5 s from then on.
     done = [sample(settling, 0.5 * step, across=5.0 * (-1.0) ** (step // 5)) for step in range(300)]

@@ -25,7 +25,11 @@ def flown(place, start_course, wind=(1e-9, 0.0), turned=0.0):
     wind_north, wind_east = turn @ wind
     over_ground = turn @ [THROUGH_AIR, 0.0] + [wind_north, wind_east]
     course = math.atan2(over_ground[1], over_ground[0])
-    from_bow = np.array([[math.cos(course), math.sin(course)], [-math.sin(course), math.cos(course)]]) @ turn @ place
+    from_bow = (
+        np.array([[math.cos(course), math.sin(course)], [-math.sin(course), math.cos(course)]])
+        @ turn
+        @ place
+    )
     settings = {
         "vessel.course_deg": math.degrees(course) % 360.0,
         "wind.speed_mps": math.hypot(wind_north, wind_east),
@@ -60,7 +64,11 @@ def test_left_and_right_are_alike(start):
             "sweep_nu",
             fidelity="kinematic",
             nu=0.5,
-            **{"start.place_m": [ahead, side * right], "start.course_deg": side * course, "flight.duration_max_s": 60.0},
+            **{
+                "start.place_m": [ahead, side * right],
+                "start.course_deg": side * course,
+                "flight.duration_max_s": 60.0,
+            },
         ).history
         for side in (1.0, -1.0)
     ]

@@ -12,12 +12,21 @@ from scenarios.engine.task import Result, Task
 from scenarios.simulation.time_history import as_parquet, history_files, keeps_history
 from tests.run_tables import history_in
 
-MET, UNMET = {"outcome": "completed", "criteria_met": True}, {"outcome": "failed", "criteria_met": False}
+MET, UNMET = (
+    {"outcome": "completed", "criteria_met": True},
+    {"outcome": "failed", "criteria_met": False},
+)
 
 
-@pytest.mark.parametrize(("planned", "asked"), [(1, 1), (7, 3), (100, 7), (20, 20), (5, 200), (1000, 1), (10, 0)])
+@pytest.mark.parametrize(
+    ("planned", "asked"), [(1, 1), (7, 3), (100, 7), (20, 20), (5, 200), (1000, 1), (10, 0)]
+)
 def test_as_many_are_kept_as_are_asked_for_evenly_among_all(planned, asked):
-    kept = [number for number in range(planned) if keeps_history(Task(number=number), planned=planned, kept=asked, row=MET)]
+    kept = [
+        number
+        for number in range(planned)
+        if keeps_history(Task(number=number), planned=planned, kept=asked, row=MET)
+    ]
     assert len(kept) == min(planned, asked)
     if len(kept) > 1:
         # Every so many: two gaps differ by one at most.
@@ -53,7 +62,9 @@ def test_a_history_comes_back_from_its_file_exactly():
     result = Result(
         task=Task(number=0),
         tables={},
-        files=history_files(Task(number=0), history, {"fsc": 0.1}, planned=1, kept=1, row=MET | {"flight_id": "a"}),
+        files=history_files(
+            Task(number=0), history, {"fsc": 0.1}, planned=1, kept=1, row=MET | {"flight_id": "a"}
+        ),
     )
     assert list(result.files) == ["flights/a.parquet", "flights/a.json"]
     assert json.loads(result.files["flights/a.json"]) == {"fsc": 0.1}

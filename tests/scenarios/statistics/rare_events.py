@@ -58,7 +58,9 @@ def noisy(probability, *, seed_share, blend_share):
 
     def hashed(seeds):
         """Return a standard normal number of each seed: that of the generator's first number would take too long."""
-        mixed = (np.asarray(seeds).astype(np.uint64) + np.uint64(0x9E3779B97F4A7C15)) & np.uint64(2**64 - 1)
+        mixed = (np.asarray(seeds).astype(np.uint64) + np.uint64(0x9E3779B97F4A7C15)) & np.uint64(
+            2**64 - 1
+        )
         for shift, factor in ((30, 0xBF58476D1CE4E5B9), (27, 0x94D049BB133111EB)):
             mixed = (mixed ^ (mixed >> np.uint64(shift))) * np.uint64(factor)
         return ndtri(((mixed ^ (mixed >> np.uint64(31))).astype(np.float64) + 0.5) / 2.0**64)
@@ -72,7 +74,9 @@ def noisy(probability, *, seed_share, blend_share):
         blend = np.add.reduceat(hashed(parts[::2]) * parts[1::2], begins)
         shares = (1.0 - seed_share - blend_share, seed_share, blend_share)
         parts = zip(shares, (inputs, seed, blend), strict=True)
-        return -ndtri(probability) - np.sum([math.sqrt(share) * part for share, part in parts], axis=0)
+        return -ndtri(probability) - np.sum(
+            [math.sqrt(share) * part for share, part in parts], axis=0
+        )
 
     return value
 

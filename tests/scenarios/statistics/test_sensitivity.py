@@ -14,7 +14,9 @@ def words_and_noise(flights=400):
     """Return a category that moves a uniform figure by more than its width, an input that does nothing, and the figure."""
     generator = np.random.default_rng(5)
     level = generator.choice(["light", "severe"], flights)
-    inputs = pd.DataFrame({"turbulence.level": level, "wind.from_deg": generator.uniform(0.0, 360.0, flights)})
+    inputs = pd.DataFrame(
+        {"turbulence.level": level, "wind.from_deg": generator.uniform(0.0, 360.0, flights)}
+    )
     return inputs, 2.0 * (level == "severe") + generator.uniform(size=flights)
 
 
@@ -31,7 +33,9 @@ def found():
     return sensitivity_indices(*words_and_noise(), confidence=0.95, seed=1)
 
 
-def test_a_category_that_parts_the_figure_in_two_has_the_indices_that_follow_from_their_definitions(found):
+def test_a_category_that_parts_the_figure_in_two_has_the_indices_that_follow_from_their_definitions(
+    found,
+):
     driver, _ = found.inputs
     assert driver.key == "turbulence.level"
     # Two densities that do not meet, each 1 wide: either is 1/2 away from their mean over both supports, so delta is 1/2. The
@@ -43,7 +47,12 @@ def test_a_category_that_parts_the_figure_in_two_has_the_indices_that_follow_fro
 
 def test_a_sum_of_two_inputs_has_their_shares_of_the_variance():
     generator = np.random.default_rng(6)
-    inputs = pd.DataFrame({"wind.speed_mps": generator.uniform(size=800), "vessel.speed_mps": generator.uniform(size=800)})
+    inputs = pd.DataFrame(
+        {
+            "wind.speed_mps": generator.uniform(size=800),
+            "vessel.speed_mps": generator.uniform(size=800),
+        }
+    )
     found = sensitivity_indices(inputs, inputs.to_numpy() @ [2.0, 1.0], confidence=0.95, seed=1)
     assert [index.key for index in found.inputs] == ["wind.speed_mps", "vessel.speed_mps"]
     # Variances are 4/12 and 1/12. Classes, six of 133 flights here, hide 1/36 of an input's variance and add 1/133 of the other's;
@@ -54,7 +63,11 @@ def test_a_sum_of_two_inputs_has_their_shares_of_the_variance():
 def test_what_does_nothing_does_not_rise_above_the_noise_floor_and_what_drives_does(found):
     driver, idle = found.inputs
     assert idle.delta - idle.delta_error < found.delta_floor < driver.delta - driver.delta_error
-    assert idle.first_order - idle.first_order_error < found.first_order_floor < driver.first_order - driver.first_order_error
+    assert (
+        idle.first_order - idle.first_order_error
+        < found.first_order_floor
+        < driver.first_order - driver.first_order_error
+    )
 
 
 def test_the_names_of_categories_and_the_order_of_flights_given_do_not_matter_to_who_drives():
@@ -78,7 +91,10 @@ def test_the_same_seed_gives_the_same_indices_and_leaves_everybody_elses_random_
 def test_an_input_that_is_another_in_one_flight_alone_drives_nothing():
     inputs, figure = words_and_noise(250)
     inputs["turbulence.gusts"] = np.where(np.arange(250) == 3, 1, 0)
-    found = {index.key: index for index in sensitivity_indices(inputs, figure, confidence=0.95, seed=1).inputs}
+    found = {
+        index.key: index
+        for index in sensitivity_indices(inputs, figure, confidence=0.95, seed=1).inputs
+    }
     # One flight in 250.
     assert abs(found["turbulence.gusts"].delta) < 0.01
 
@@ -106,12 +122,21 @@ def test_inputs_that_say_nothing_are_left_out_with_the_reason_and_the_others_sta
 @pytest.mark.parametrize(
     ("change", "message"),
     [
-        (lambda inputs, figure: (inputs.head(199), figure[:199]), "199 flights have this figure; indices take 200 at least"),
+        (
+            lambda inputs, figure: (inputs.head(199), figure[:199]),
+            "199 flights have this figure; indices take 200 at least",
+        ),
         (lambda inputs, figure: (inputs, figure * np.nan), "0 flights have this figure"),
-        (lambda inputs, figure: (inputs, figure * 0.0 + 3.7), "the figure is the same in every flight"),
+        (
+            lambda inputs, figure: (inputs, figure * 0.0 + 3.7),
+            "the figure is the same in every flight",
+        ),
         (lambda inputs, figure: (inputs[[]], figure), "no input differs between flights"),
         # A single flight apart: some bootstrap sample misses it, and has no density.
-        (lambda inputs, figure: (inputs, np.where(figure == figure.max(), 1.0, 0.0)), "too few flights differ in this figure"),
+        (
+            lambda inputs, figure: (inputs, np.where(figure == figure.max(), 1.0, 0.0)),
+            "too few flights differ in this figure",
+        ),
     ],
 )
 def test_where_there_are_no_indices_the_reason_is_given(change, message):
@@ -128,13 +153,20 @@ def test_flights_of_one_sample_do_not_make_an_input_without_effect_a_driver():
         # 100 samples at each of four points, which hardly differ: 400 flights, and no input has any effect.
         inputs = pd.DataFrame(np.tile(generator.random((100, 3)), (4, 1)), columns=["a", "b", "c"])
         figure = np.tile(generator.normal(size=100), 4) + 0.05 * generator.normal(size=400)
-        found = sensitivity_indices(inputs, figure, confidence=0.95, seed=seed, samples=np.arange(400) % 100)
+        found = sensitivity_indices(
+            inputs, figure, confidence=0.95, seed=seed, samples=np.arange(400) % 100
+        )
         above += sum(index.delta > found.delta_floor for index in found.inputs)
     # Each exceeds the largest of five dummies one time in six, so that more than 5 of 12 have a probability of 1 %; all of them
     # did where each flight was taken for a sample of its own.
     assert above <= 5
 
 
-def test_flights_that_are_samples_of_their_own_have_the_indices_that_they_have_without_saying_so(found):
+def test_flights_that_are_samples_of_their_own_have_the_indices_that_they_have_without_saying_so(
+    found,
+):
     inputs, figure = words_and_noise()
-    assert sensitivity_indices(inputs, figure, confidence=0.95, seed=1, samples=np.arange(len(figure))) == found
+    assert (
+        sensitivity_indices(inputs, figure, confidence=0.95, seed=1, samples=np.arange(len(figure)))
+        == found
+    )

@@ -55,8 +55,18 @@ def test_violations_are_bounded_exactly_and_each_flight_counts_once(study):
 
 def test_flights_without_a_measurement_are_named_and_count_as_violations_where_the_worst_is_assumed():
     rows, inputs = study_rows(100)
-    rows.loc[[0, 1], ["outcome", "min_distance_m", "keepout_violations", "mode_at_end"]] = ["infeasible", math.nan, math.nan, None]
-    rows.loc[2, ["outcome", "min_distance_m", "keepout_violations", "mode_at_end"]] = ["failed", math.nan, math.nan, None]
+    rows.loc[[0, 1], ["outcome", "min_distance_m", "keepout_violations", "mode_at_end"]] = [
+        "infeasible",
+        math.nan,
+        math.nan,
+        None,
+    ]
+    rows.loc[2, ["outcome", "min_distance_m", "keepout_violations", "mode_at_end"]] = [
+        "failed",
+        math.nan,
+        math.nan,
+        None,
+    ]
     # Out of control: one that entered before, and one of which nobody knows where it would have gone.
     rows.loc[3, ["outcome", "keepout_violations"]] = ["diverged", 1]
     rows.loc[5, "outcome"] = "diverged"
@@ -94,11 +104,18 @@ def test_quantiles_are_those_of_the_flights_that_have_the_figure(study, no_indic
     known = rows["settling_time_s"].dropna().to_numpy()
     interval = quantile_interval(known, 0.95, 0.95)
     (quantile,) = (q for q in settling["quantiles"] if q["probability"] == 0.95)
-    assert quantile == {"probability": 0.95, "value": np.quantile(known, 0.95), "low": interval.low, "high": interval.high}
+    assert quantile == {
+        "probability": 0.95,
+        "value": np.quantile(known, 0.95),
+        "low": interval.low,
+        "high": interval.high,
+    }
     # The interval's error is relative, and that of the clearance counts from r_min.
     error = rows["crossing_interval_mean_s"].to_numpy() / PREDICTED - 1.0
     assert figures["crossing_interval_error"]["quantiles"][2]["value"] == np.quantile(error, 0.5)
-    distance, clearance = (figures[name]["quantiles"][0]["value"] for name in ("min_distance_m", "clearance_m"))
+    distance, clearance = (
+        figures[name]["quantiles"][0]["value"] for name in ("min_distance_m", "clearance_m")
+    )
     # Differences of figures near 200 are good to 3e-14.
     assert distance - RADIUS == pytest.approx(clearance, abs=1e-12)
 
@@ -110,14 +127,20 @@ def test_a_tail_of_a_thousandth_is_stated_only_where_there_are_flights_enough(no
     assert [q["probability"] for q in enough] == [0.001, 0.01, 0.05, 0.5, 0.95, 0.99, 0.999]
     assert [q["probability"] for q in few] == [0.01, 0.05, 0.5, 0.95, 0.99]
     # An interval that is open on one side says so: 0.99^n is at most 0.025 from n = 367.04 on.
-    assert statistics_of(*study_rows(368))["figures"]["clearance_m"]["quantiles"][0]["low"] is not None
+    assert (
+        statistics_of(*study_rows(368))["figures"]["clearance_m"]["quantiles"][0]["low"] is not None
+    )
     assert statistics_of(*study_rows(367))["figures"]["clearance_m"]["quantiles"][0]["low"] is None
 
 
 def test_intervals_at_a_look_are_as_wide_as_all_looks_together_need(study, statistics, no_indices):
     third = statistics_of(*study, look_number=3)
     level = confidence_at(3, 0.95)
-    assert (third["confidence"], third["look_number"], third["interval_confidence"]) == (0.95, 3, level)
+    assert (third["confidence"], third["look_number"], third["interval_confidence"]) == (
+        0.95,
+        3,
+        level,
+    )
     assert third["violation"]["measured"]["upper"] == upper_bound(0, FLIGHTS, level)
     assert (statistics["look_number"], statistics["interval_confidence"]) == (None, 0.95)
 
@@ -134,28 +157,48 @@ def test_what_drives_a_figure_is_found_whatever_order_the_inputs_are_in(study, s
 
 def test_a_study_of_nothing_but_failures_and_one_of_nothing_have_statistics_that_json_can_say():
     rows, inputs = study_rows(5)
-    figures = ["min_distance_m", "keepout_violations", "crossing_interval_mean_s", "crossing_distance_min_m"]
-    rows[[*figures, "crossing_clearance_min_m", "tracking_error_rms_m", "settling_time_s"]] = math.nan
+    figures = [
+        "min_distance_m",
+        "keepout_violations",
+        "crossing_interval_mean_s",
+        "crossing_distance_min_m",
+    ]
+    rows[[*figures, "crossing_clearance_min_m", "tracking_error_rms_m", "settling_time_s"]] = (
+        math.nan
+    )
     rows["outcome"] = "failed"
     for some in (rows, rows.head(0)):
         found = statistics_of(some, inputs)
         assert json.loads(json.dumps(found, allow_nan=False)) == found
         assert found["violation"]["measured"]["upper"] == 1.0
         assert found["violation"]["measured"]["share"] is None
-        assert found["figures"]["clearance_m"]["quantiles"][0] == {"probability": 0.01, "value": None, "low": None, "high": None}
-        assert found["sensitivity"]["clearance_m"]["message"].startswith("0 flights have this figure")
+        assert found["figures"]["clearance_m"]["quantiles"][0] == {
+            "probability": 0.01,
+            "value": None,
+            "low": None,
+            "high": None,
+        }
+        assert found["sensitivity"]["clearance_m"]["message"].startswith(
+            "0 flights have this figure"
+        )
 
 
 @pytest.mark.parametrize(("events", "whole"), [(1, 0), (99, 0), (100, 1), (150, 1), (200, 2)])
-def test_the_lower_limit_of_flights_that_share_samples_takes_their_events_for_those_of_as_few_samples_as_can_be(events, whole):
+def test_the_lower_limit_of_flights_that_share_samples_takes_their_events_for_those_of_as_few_samples_as_can_be(
+    events, whole
+):
     found = share(events, 200, 0.95, per_sample=100)
     # 2 samples: events of one of them are up to 100, so that fewer need not be half of all.
     assert found["low"] == clopper_pearson(whole, 2, 0.95).low <= found["share"]
     assert found["high"] == clopper_pearson(min(events, 2), 2, 0.95).high
 
 
-@pytest.mark.parametrize(("per_sample", "expected"), [(1, [0, 1, 2, 3, 4, 5]), (3, [0, 1, 0, 1, 0, 1]), (6, None)])
-def test_what_drives_a_figure_is_judged_by_samples_of_which_each_point_has_one_flight(per_sample, expected, monkeypatch):
+@pytest.mark.parametrize(
+    ("per_sample", "expected"), [(1, [0, 1, 2, 3, 4, 5]), (3, [0, 1, 0, 1, 0, 1]), (6, None)]
+)
+def test_what_drives_a_figure_is_judged_by_samples_of_which_each_point_has_one_flight(
+    per_sample, expected, monkeypatch
+):
     judged = []
 
     def indices(*given, samples, **named):
@@ -164,5 +207,7 @@ def test_what_drives_a_figure_is_judged_by_samples_of_which_each_point_has_one_f
 
     monkeypatch.setattr("scenarios.statistics.estimates.sensitivity_indices", indices)
     statistics_of(*study_rows(6), per_sample=per_sample)
-    assert all((samples is None and expected is None) or samples.tolist() == expected for samples in judged)
+    assert all(
+        (samples is None and expected is None) or samples.tolist() == expected for samples in judged
+    )
     assert judged

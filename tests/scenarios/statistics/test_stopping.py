@@ -42,7 +42,9 @@ def stopped_wrongly(confidences, *, probability, asked, seed=20261121, studies=2
     events = np.cumsum(added, axis=1)
     bounds = np.empty(events.shape)
     for i, (number, confidence) in enumerate(zip(numbers, confidences, strict=True)):
-        table = np.array([upper_bound(e, number, confidence) for e in range(int(events[:, i].max()) + 1)])
+        table = np.array(
+            [upper_bound(e, number, confidence) for e in range(int(events[:, i].max()) + 1)]
+        )
         bounds[:, i] = table[events[:, i]]
     stops = bounds <= asked
     stops[:, -1] = True
@@ -54,7 +56,9 @@ def test_the_bound_at_the_stop_holds_as_often_as_stated_and_would_not_if_alpha_w
     # Just above what is asked for, so that every study that stops early is wrong.
     probability, asked, confidence = 0.0205, 0.02, 0.95
     numbers = range(1, len(looks(8192)) + 1)
-    spent = stopped_wrongly([confidence_at(k, confidence) for k in numbers], probability=probability, asked=asked)
+    spent = stopped_wrongly(
+        [confidence_at(k, confidence) for k in numbers], probability=probability, asked=asked
+    )
     naive = stopped_wrongly([confidence] * len(numbers), probability=probability, asked=asked)
     # A share of 20,000 has a deviation of at most 0.0025: three of them on either side.
     assert spent <= 0.05 + 0.0075
@@ -69,7 +73,12 @@ def test_a_study_stops_once_violations_are_bounded_as_asked():
     # At another look the same flights have another bound.
     assert not tight_enough(rows, look_number=3, confidence=0.95, violation_upper=bound)
     # One entry in 512 is bounded by more.
-    assert not tight_enough(rows_with(np.full(512, 210.0), entered=1), look_number=2, confidence=0.95, violation_upper=bound)
+    assert not tight_enough(
+        rows_with(np.full(512, 210.0), entered=1),
+        look_number=2,
+        confidence=0.95,
+        violation_upper=bound,
+    )
 
 
 @pytest.mark.parametrize(("distance", "outcome"), [(math.nan, "failed"), (210.0, "diverged")])
@@ -78,7 +87,12 @@ def test_flights_that_may_have_entered_do_not_let_a_study_stop(distance, outcome
     rows.loc[7, ["min_distance_m", "outcome"]] = [distance, outcome]
     bound = upper_bound(0, 512, confidence_at(1, 0.95))
     assert not tight_enough(rows, look_number=1, confidence=0.95, violation_upper=bound)
-    assert tight_enough(rows, look_number=1, confidence=0.95, violation_upper=upper_bound(1, 512, confidence_at(1, 0.95)))
+    assert tight_enough(
+        rows,
+        look_number=1,
+        confidence=0.95,
+        violation_upper=upper_bound(1, 512, confidence_at(1, 0.95)),
+    )
 
 
 def test_a_study_stops_once_a_quantile_of_the_closest_approach_is_known_as_well_as_asked():
@@ -102,7 +116,10 @@ def test_both_of_two_wishes_have_to_be_met():
 
 
 def test_a_stop_for_nothing_and_looks_that_cannot_be_are_refused():
-    with pytest.raises(ValueError, match="no interval is demanded; give violation_upper or distance_quantile_width_m"):
+    with pytest.raises(
+        ValueError,
+        match="no interval is demanded; give violation_upper or distance_quantile_width_m",
+    ):
         tight_enough(rows_with(np.full(3, 210.0)), look_number=1, confidence=0.95)
     with pytest.raises(ValueError, match="planned flights are 0; plan one at least"):
         looks(0)

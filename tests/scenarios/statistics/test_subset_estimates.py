@@ -10,7 +10,14 @@ import pytest
 from scipy.special import ndtri
 
 from common.intervals import upper_bound
-from scenarios.statistics.subset_estimates import curve, distance, input_shifts, near_event, noise_floor, rare_probability
+from scenarios.statistics.subset_estimates import (
+    curve,
+    distance,
+    input_shifts,
+    near_event,
+    noise_floor,
+    rare_probability,
+)
 from scenarios.statistics.subset_statistics import subset_statistics
 from tests.scenarios.statistics.rare_events import DIMENSION, linear, noisy, simulated
 from tests.scenarios.study_rows import study_rows
@@ -29,13 +36,18 @@ def repeats_of(value, first, **settings):
 )
 def test_intervals_hold_the_true_probability_as_often_as_they_claim(value, probability, noise):
     studies = 12 if noise else 20
-    found = [rare_probability(repeats_of(value, i, flights=200, noise=noise), 0.95) for i in range(studies)]
+    found = [
+        rare_probability(repeats_of(value, i, flights=200, noise=noise), 0.95)
+        for i in range(studies)
+    ]
     # Measured with 500 flights a level (docs/explanation/operational_conditions.md): 0.94 to 0.99. Fewer of 20 (12) than are
     # enough here would have a probability below 2 % at 0.95.
     enough = studies - 3
     assert sum(study.low <= probability <= study.high for study in found) >= enough
     assert sum(probability <= study.upper for study in found) >= enough
-    assert all(study.low < study.estimate < study.high and study.upper < study.high for study in found)
+    assert all(
+        study.low < study.estimate < study.high and study.upper < study.high for study in found
+    )
     # And they say something: a factor of a hundred at most, in the median.
     assert np.median([study.high / study.low for study in found]) < 100.0
 
@@ -52,7 +64,10 @@ def test_where_no_simulation_reaches_the_event_the_bound_says_what_is_left_open(
 
 def test_the_bound_where_nothing_was_reached_holds_though_chains_can_hardly_move():
     value = noisy(1e-4, seed_share=0.95, blend_share=0.02)
-    found = [rare_probability(repeats_of(value, i, flights=200, levels=3, noise=True), 0.95) for i in range(12)]
+    found = [
+        rare_probability(repeats_of(value, i, flights=200, levels=3, noise=True), 0.95)
+        for i in range(12)
+    ]
     bounds = [study.upper for study in found if not study.reached]
     assert len(bounds) >= 3
     # Of 300 such studies 159 reached nothing, and each of their bounds was true.
@@ -66,16 +81,26 @@ def test_chains_that_began_at_copies_of_one_state_count_as_one():
         last = simulation.levels[-1]
         at = np.arange(len(last.values))
         at[: last.chains.max() + 1] = 0
-        return replace(simulation, levels=(*simulation.levels[:-1], replace(last, points=last.points[at], values=last.values[at])))
+        return replace(
+            simulation,
+            levels=(
+                *simulation.levels[:-1],
+                replace(last, points=last.points[at], values=last.values[at]),
+            ),
+        )
 
     copies = [begun_at_one(one) for one in simulations]
-    begun, of_copies = ([one.levels[-1].beginnings for one in those] for those in (simulations, copies))
+    begun, of_copies = (
+        [one.levels[-1].beginnings for one in those] for those in (simulations, copies)
+    )
     assert all(10 <= count <= 20 for count in begun)
     assert of_copies == [1] * REPEATS
     found, without = rare_probability(copies, 0.95), rare_probability(simulations, 0.95)
     for bound, confidence in (("upper", 0.975), ("high", 0.9875)):
         left_open = [upper_bound(0, sum(counts), confidence) for counts in (of_copies, begun)]
-        assert getattr(found, bound) / getattr(without, bound) == pytest.approx(left_open[0] / left_open[1], rel=1e-9)
+        assert getattr(found, bound) / getattr(without, bound) == pytest.approx(
+            left_open[0] / left_open[1], rel=1e-9
+        )
 
 
 def test_a_simulation_that_reaches_nothing_beside_others_that_do_widens_the_interval_to_zero():
@@ -84,7 +109,9 @@ def test_a_simulation_that_reaches_nothing_beside_others_that_do_widens_the_inte
     found, without = rare_probability([*reached, stuck], 0.95), rare_probability(reached, 0.95)
     assert (found.low, found.reached) == (0.0, REPEATS)
     assert found.upper > without.upper
-    assert found.estimate == pytest.approx(np.mean([*(one.below(0.0)[0] for one in reached), 0.0]), rel=1e-12)
+    assert found.estimate == pytest.approx(
+        np.mean([*(one.below(0.0)[0] for one in reached), 0.0]), rel=1e-12
+    )
 
 
 def test_the_curve_follows_the_normal_distribution_over_the_whole_range_and_ends_where_the_event_begins():
@@ -109,9 +136,13 @@ def test_what_decides_is_apart_from_what_has_no_effect_by_the_noise_floor():
 
     simulations = repeats_of(first_counts, 5)
     first = np.concatenate([one.levels[0].points for one in simulations])
-    near = np.concatenate([one.levels[-1].points[chosen] for one, chosen in near_event(simulations)])
+    near = np.concatenate(
+        [one.levels[-1].points[chosen] for one, chosen in near_event(simulations)]
+    )
     names = [f"input_{i}" for i in range(DIMENSION)]
-    shifts = input_shifts(pd.DataFrame(first, columns=names), pd.DataFrame(near, columns=names), (first, near))
+    shifts = input_shifts(
+        pd.DataFrame(first, columns=names), pd.DataFrame(near, columns=names), (first, near)
+    )
     floor = noise_floor(simulations)
     assert shifts[0].key == "input_0"
     # All that fails has it above 0.999: the distributions hardly overlap.
@@ -123,10 +154,14 @@ def test_what_decides_is_apart_from_what_has_no_effect_by_the_noise_floor():
 
 
 def test_words_are_counted_and_numbers_are_put_into_classes():
-    declared = pd.DataFrame({"turbulence.level": ["none", "light"] * 50, "wind.speed_mps": np.arange(100.0)})
+    declared = pd.DataFrame(
+        {"turbulence.level": ["none", "light"] * 50, "wind.speed_mps": np.arange(100.0)}
+    )
     near = pd.DataFrame({"turbulence.level": ["light"] * 10, "wind.speed_mps": np.full(10, 99.0)})
     at = np.column_stack([np.tile([0.25, 0.75], 50), np.arange(100.0) / 100.0])
-    wind, level = input_shifts(declared, near, (at, np.column_stack([np.full(10, 0.75), np.full(10, 0.99)])))
+    wind, level = input_shifts(
+        declared, near, (at, np.column_stack([np.full(10, 0.75), np.full(10, 0.99)]))
+    )
     assert (wind.key, wind.median, wind.median_near) == ("wind.speed_mps", 49.5, 99.0)
     assert (level.names, level.declared, level.near) == (("light", "none"), (0.5, 0.5), (1.0, 0.0))
     assert level.distance == 0.5
@@ -145,7 +180,11 @@ def test_flights_of_unknown_end_raise_the_pessimistic_bound_by_their_own():
     assert known["violation"]["pessimistic"]["upper"] == known["violation"]["upper"]
     rows.loc[3, ["outcome", "min_distance_m", "keepout_violations"]] = ["failed", np.nan, np.nan]
     # One that is not of a first level says nothing of the distribution.
-    rows.loc[REPEATS * 100 + 5, ["outcome", "min_distance_m", "keepout_violations"]] = ["failed", np.nan, np.nan]
+    rows.loc[REPEATS * 100 + 5, ["outcome", "min_distance_m", "keepout_violations"]] = [
+        "failed",
+        np.nan,
+        np.nan,
+    ]
     found = subset_statistics(rows, simulations, [], confidence=0.95)
     assert found["violation"]["first_levels_unknown"] == 1
     # Clopper and Pearson's bound of 1 of 500 at 97.5 % is 1.11 %.
@@ -156,7 +195,9 @@ def test_flights_of_unknown_end_raise_the_pessimistic_bound_by_their_own():
 def test_estimates_that_scatter_by_decades_have_bounds_of_1_at_any_confidence():
     # Of a plane of probability 1e-2, and planes of 1e-6 and 1e-9: their logarithms deviate by 8, and Student's t of three repeats
     # at this confidence is 1,000: the bound's logarithm is beyond that of any number.
-    simulations = [simulated(linear(10.0**-power), [20261126, power], flights=200)[0] for power in (2, 6, 9)]
+    simulations = [
+        simulated(linear(10.0**-power), [20261126, power], flights=200)[0] for power in (2, 6, 9)
+    ]
     found = rare_probability(simulations, 0.999999)
     assert found.reached == 3
     assert (found.high, found.upper, found.low) == (1.0, 1.0, 0.0)

@@ -18,7 +18,9 @@ from tests.scenarios.statistics.rare_events import (
 
 
 def estimates(value, count, **settings):
-    return np.array([simulated(value, [20261201, i], **settings)[0].below(0.0) for i in range(count)])
+    return np.array(
+        [simulated(value, [20261201, i], **settings)[0].below(0.0) for i in range(count)]
+    )
 
 
 def standard_error(found):
@@ -70,7 +72,10 @@ def test_openturns_finds_the_same_with_the_same_effort():
         algorithm.run()
         return algorithm.getResult().getProbabilityEstimate()
 
-    for value, probability in ((linear(1e-5), 1e-5), (four_branches(4.0), four_branches_probability(4.0))):
+    for value, probability in (
+        (linear(1e-5), 1e-5),
+        (four_branches(4.0), four_branches_probability(4.0)),
+    ):
         theirs = np.array([openturns_estimate(value, seed) for seed in range(12)])
         ours = estimates(value, 15)[:, 0]
         assert abs(ours.mean() - theirs.mean()) < 0.15 * probability + 4.0 * math.hypot(
@@ -101,13 +106,20 @@ def test_the_same_noise_is_kept_while_inputs_move_and_a_renewal_moves_nothing_el
     simulated(value, 1, noise=True, levels=2)
     first, wave = seen[:2]
     known = {point[DIMENSION] for point in first}
-    blends, inputs = ({point[part] for point in first} for part in (slice(DIMENSION + 1, None), slice(DIMENSION)))
-    kinds = [(point[:DIMENSION] in inputs, point[DIMENSION] in known, point[DIMENSION + 1 :] in blends) for point in wave]
+    blends, inputs = (
+        {point[part] for point in first} for part in (slice(DIMENSION + 1, None), slice(DIMENSION))
+    )
+    kinds = [
+        (point[:DIMENSION] in inputs, point[DIMENSION] in known, point[DIMENSION + 1 :] in blends)
+        for point in wave
+    ]
     # Exactly one of inputs, seed and blend is new, and each of them in some of the moves.
     assert set(kinds) == {(False, True, True), (True, False, True), (True, True, False)}
     for point in wave:
         # Squares of the weights add up to 1: rounding of two products.
-        assert sum(weight**2 for weight in point[DIMENSION + 2 :: 2]) == pytest.approx(1.0, abs=1e-12)
+        assert sum(weight**2 for weight in point[DIMENSION + 2 :: 2]) == pytest.approx(
+            1.0, abs=1e-12
+        )
 
 
 def test_a_seed_that_nothing_depends_on_is_renewed_without_an_evaluation():
@@ -140,7 +152,9 @@ def test_points_that_are_not_allowed_are_never_evaluated_and_the_rest_is_as_decl
 
 def test_where_no_value_differs_and_where_none_exists_the_simulation_ends_and_says_so():
     for constant in (1.0, math.inf):
-        found, evaluated = simulated(lambda points, constant=constant: np.full(len(points), constant), 1)
+        found, evaluated = simulated(
+            lambda points, constant=constant: np.full(len(points), constant), 1
+        )
         assert found.stalled
         assert evaluated == 500
         assert found.below(0.0)[0] == 0.0
@@ -159,7 +173,9 @@ def test_an_event_that_is_not_rare_is_one_level_of_plain_sampling():
     assert (len(found.levels), evaluated) == (1, 500)
     probability, spread = found.below(0.0)
     assert probability == np.mean(found.levels[0].values < 0.0)
-    assert spread == pytest.approx(math.sqrt((1.0 - probability) / (500.0 * probability)), rel=1e-12)
+    assert spread == pytest.approx(
+        math.sqrt((1.0 - probability) / (500.0 * probability)), rel=1e-12
+    )
 
 
 def test_correlation_within_chains_widens_the_variation():

@@ -13,12 +13,23 @@ def rows(errors, *, deviation=0.02, sensor="electrochemical", fuel=0.1, verdicts
     found = expected + np.asarray(errors)
     table = pd.DataFrame(index=range(len(found)), columns=list(COLUMNS), dtype=object)
     table["flight_id"], table["seed"] = [f"a_{i}" for i in range(len(found))], range(len(found))
-    table["sensor"], table["fsc_fuel_percent"], table["fsc_expected_percent"] = sensor, fuel, expected
+    table["sensor"], table["fsc_fuel_percent"], table["fsc_expected_percent"] = (
+        sensor,
+        fuel,
+        expected,
+    )
     table["sulphur_limit_percent"] = 0.1
     table["sulphur_verdict"] = verdicts or ["open"] * len(found)
     table["verdict_2min"] = "open"
-    table["fsc_percent"], table["fsc_uncertainty_percent"], table["fsc_noise_percent"] = found, deviation, 0.5 * deviation
-    table["fsc_low_percent"], table["fsc_high_percent"] = found - 1.96 * deviation, found + 1.96 * deviation
+    table["fsc_percent"], table["fsc_uncertainty_percent"], table["fsc_noise_percent"] = (
+        found,
+        deviation,
+        0.5 * deviation,
+    )
+    table["fsc_low_percent"], table["fsc_high_percent"] = (
+        found - 1.96 * deviation,
+        found + 1.96 * deviation,
+    )
     return table
 
 
@@ -26,7 +37,11 @@ def test_bias_spread_and_coverage_are_those_of_the_errors():
     errors = np.array([0.01, -0.03, 0.05, 0.01])
     found = sulphur_statistics(rows(errors), confidence=0.95)
     (entry,) = found["accuracy"]
-    assert (entry["sensor"], entry["method"], entry["flights"]) == ("electrochemical", "regression", 4)
+    assert (entry["sensor"], entry["method"], entry["flights"]) == (
+        "electrochemical",
+        "regression",
+        4,
+    )
     assert entry["bias_percent"] == pytest.approx(0.01)
     assert entry["bias_relative"] == pytest.approx(0.01 / 0.0972)
     assert entry["spread_percent"] == pytest.approx(np.std(errors, ddof=1))
@@ -43,10 +58,20 @@ def test_sensors_are_apart_and_fuels_are_points_of_the_operating_curve():
         rows([0.0], sensor="fast", fuel=0.5, verdicts=["above"]),
     ])  # fmt: skip
     found = sulphur_statistics(table, confidence=0.9)
-    curve = {(entry["sensor"], entry["fsc_fuel_percent"]): (entry["above"], entry["open"]) for entry in found["operating_curve"]}
-    assert curve == {("electrochemical", 0.1): (0.0, 0.5), ("electrochemical", 0.5): (1.0, 0.0), ("fast", 0.5): (1.0, 0.0)}
+    curve = {
+        (entry["sensor"], entry["fsc_fuel_percent"]): (entry["above"], entry["open"])
+        for entry in found["operating_curve"]
+    }
+    assert curve == {
+        ("electrochemical", 0.1): (0.0, 0.5),
+        ("electrochemical", 0.5): (1.0, 0.0),
+        ("fast", 0.5): (1.0, 0.0),
+    }
     whole = [entry for entry in found["accuracy"] if entry["fsc_fuel_percent"] is None]
-    assert {entry["sensor"]: entry["flights"] for entry in whole} == {"electrochemical": 4, "fast": 1}
+    assert {entry["sensor"]: entry["flights"] for entry in whole} == {
+        "electrochemical": 4,
+        "fast": 1,
+    }
 
 
 def test_without_a_result_there_is_nothing_to_state():
@@ -63,12 +88,20 @@ def test_a_flight_whose_uncertainty_is_not_known_is_left_out():
 
 def test_a_fuel_without_sulphur_has_no_share_and_can_be_said_in_json():
     table = rows([0.0, 0.0], fuel=0.0)
-    for column in ("percent", "uncertainty_percent", "noise_percent", "low_percent", "high_percent"):
+    for column in (
+        "percent",
+        "uncertainty_percent",
+        "noise_percent",
+        "low_percent",
+        "high_percent",
+    ):
         table[f"areas_fsc_{column}"] = table[f"fsc_{column}"]
     table["areas_fsc_separate_percent"] = 0.0
     _, areas = sulphur_statistics(table, confidence=0.95)["accuracy"]
     assert areas["method"] == "areas"
-    assert [areas[name] for name in ("bias_relative", "share_read", "share_predicted")] == [None] * 3
+    assert [areas[name] for name in ("bias_relative", "share_read", "share_predicted")] == [
+        None
+    ] * 3
     assert areas["bias_percent"] == 0.0
 
 
@@ -78,21 +111,35 @@ def test_calls_above_one_limit_are_not_counted_with_those_above_another():
         for verdict, limit in (("above", 0.1), ("below", 0.5))
     )
     curve = sulphur_statistics(pd.concat([lax, strict]), confidence=0.95)["operating_curve"]
-    assert [(entry["limit_percent"], entry["flights"], entry["above"]) for entry in curve] == [(0.1, 2, 1.0), (0.5, 2, 0.0)]
+    assert [(entry["limit_percent"], entry["flights"], entry["above"]) for entry in curve] == [
+        (0.1, 2, 1.0),
+        (0.5, 2, 0.0),
+    ]
 
 
 def test_flights_of_one_seed_are_one_sample():
     errors = np.array([0.01, -0.03, 0.05, 0.01])
-    points = [rows(errors, fuel=fuel, verdicts=["above", "above", "open", "above"]) for fuel in (0.08, 0.1, 0.12)]
+    points = [
+        rows(errors, fuel=fuel, verdicts=["above", "above", "open", "above"])
+        for fuel in (0.08, 0.1, 0.12)
+    ]
     swept = sulphur_statistics(pd.concat(points, ignore_index=True), confidence=0.95)
     (alone,) = sulphur_statistics(points[0], confidence=0.95)["accuracy"]
     whole, *of_fuels = swept["accuracy"]
     # The same four sniffers at three fuels say no more of the method than at one; each fuel by itself says as much as before.
     for entry in (whole, *of_fuels):
-        assert entry["coverage_interval"] == alone["coverage_interval"] == pytest.approx([0.1941, 0.9937], abs=1e-4)
-        assert entry["bias_standard_error_percent"] == pytest.approx(alone["bias_standard_error_percent"])
+        assert (
+            entry["coverage_interval"]
+            == alone["coverage_interval"]
+            == pytest.approx([0.1941, 0.9937], abs=1e-4)
+        )
+        assert entry["bias_standard_error_percent"] == pytest.approx(
+            alone["bias_standard_error_percent"]
+        )
     assert (whole["flights"], whole["coverage"]) == (12, 0.75)
-    assert all(entry["above_interval"] == alone["coverage_interval"] for entry in swept["operating_curve"])
+    assert all(
+        entry["above_interval"] == alone["coverage_interval"] for entry in swept["operating_curve"]
+    )
 
 
 def test_a_seed_whose_flights_differ_counts_for_its_share_of_events():

@@ -18,7 +18,16 @@ from tests.in_process import assert_refused, run_command
 from tests.run_tables import manifest_of
 
 SCRIPT = Path(__file__).parents[3] / "docs" / "scripts" / "aircraft_directory.py"
-SWEEP = ["--set", "sweep.nu=[0.6]", "--set", "flight.crossings=4", "--set", "comparison.variants=[]", "--set", "histories=2"]
+SWEEP = [
+    "--set",
+    "sweep.nu=[0.6]",
+    "--set",
+    "flight.crossings=4",
+    "--set",
+    "comparison.variants=[]",
+    "--set",
+    "histories=2",
+]
 
 
 @pytest.fixture(scope="module")
@@ -33,12 +42,23 @@ def flown(heavy, heavy_design):
     """The run of a short sweep with it, and how the command ended."""
     out = heavy.parents[1] / "run"
     ended = run_command(
-        "scenarios.run", "sweep_nu", "--aircraft-dir", heavy.parent, *SWEEP, "--out", out, "--jobs", 1, "--no-report"
+        "scenarios.run",
+        "sweep_nu",
+        "--aircraft-dir",
+        heavy.parent,
+        *SWEEP,
+        "--out",
+        out,
+        "--jobs",
+        1,
+        "--no-report",
     )
     return out, ended
 
 
-def test_a_sweep_with_it_meets_every_criterion_and_names_it_in_report_and_manifest(flown, heavy, tmp_path):
+def test_a_sweep_with_it_meets_every_criterion_and_names_it_in_report_and_manifest(
+    flown, heavy, tmp_path
+):
     out, ended = flown
     assert ended.status == 0, ended
     rows = pd.read_csv(out / "summary.csv")
@@ -51,23 +71,50 @@ def test_a_sweep_with_it_meets_every_criterion_and_names_it_in_report_and_manife
     write_report(read_run(out), page := tmp_path / "report.html")
     assert "Heavy Cessna" in page.read_text(encoding="utf-8")
     # The run has the model that it flew, with its weight.
-    assert "1650" in (out / "model" / "aircraft" / "heavy" / "heavy.xml").read_text(encoding="utf-8")
+    assert "1650" in (out / "model" / "aircraft" / "heavy" / "heavy.xml").read_text(
+        encoding="utf-8"
+    )
 
 
-def test_it_is_resumed_and_replayed_as_it_was_and_where_it_is_now_but_not_changed(flown, heavy, tmp_path, monkeypatch):
+def test_it_is_resumed_and_replayed_as_it_was_and_where_it_is_now_but_not_changed(
+    flown, heavy, tmp_path, monkeypatch
+):
     out, _ = flown
     # Nothing is designed for what is refused; the design of what is flown is cached.
-    monkeypatch.setattr("innerloop.designs.designer.design_autopilot", lambda spec, _: pytest.fail(f"{spec.title} is designed for"))
-    same = ("scenarios.run", "sweep_nu", "--aircraft-dir", heavy.parent, *SWEEP, "--out", out, "--resume", "--no-report")
+    monkeypatch.setattr(
+        "innerloop.designs.designer.design_autopilot",
+        lambda spec, _: pytest.fail(f"{spec.title} is designed for"),
+    )
+    same = (
+        "scenarios.run",
+        "sweep_nu",
+        "--aircraft-dir",
+        heavy.parent,
+        *SWEEP,
+        "--out",
+        out,
+        "--resume",
+        "--no-report",
+    )
     assert run_command(*same).status == 0
     flight = out / "flights" / "nu_0.60"
     moved = shutil.copytree(heavy.parent, tmp_path / "moved")
-    again = run_command("scenarios.run", flight, "--aircraft-dir", moved, "--out", tmp_path / "again", "--no-report")
+    again = run_command(
+        "scenarios.run", flight, "--aircraft-dir", moved, "--out", tmp_path / "again", "--no-report"
+    )
     assert again.status == 0, again
     assert "agrees to the last bit" in again.out
     model = moved / "heavy" / "heavy.xml"
     model.write_text(model.read_text(encoding="utf-8").replace("1650", "1660"), encoding="utf-8")
-    changed = run_command("scenarios.run", flight, "--aircraft-dir", moved, "--out", tmp_path / "changed", "--no-report")
+    changed = run_command(
+        "scenarios.run",
+        flight,
+        "--aircraft-dir",
+        moved,
+        "--out",
+        tmp_path / "changed",
+        "--no-report",
+    )
     assert_refused(changed, "heavy' has changed since the run")
     shutil.copyfile(moved / "heavy" / "heavy.toml", tmp_path / "before")
     (heavy / "heavy.toml").write_text('title = "Heavier Cessna"', encoding="utf-8")
@@ -95,7 +142,9 @@ def test_the_directory_is_designed_for_and_listed(flown, heavy, tmp_path):
     assert_refused(run_command("innerloop.design", "--check", *place), "--check is for --list")
 
 
-def test_a_scenario_file_names_it_relative_to_itself_and_the_command_line_to_where_it_is(heavy, monkeypatch):
+def test_a_scenario_file_names_it_relative_to_itself_and_the_command_line_to_where_it_is(
+    heavy, monkeypatch
+):
     path = heavy.parents[1] / "own.toml"
     path.write_text('title = "own"\naircraft = "fleet/heavy"\nsweep.nu = [0.5]\n', encoding="utf-8")
     assert load_document(str(path))["aircraft"] == str(heavy)
@@ -110,7 +159,10 @@ def test_a_scenario_file_names_it_relative_to_itself_and_the_command_line_to_whe
     [
         (("--aircraft-dir", "none"), "aircraft directory 'none': there is no such directory"),
         (("--aircraft-dir", "empty"), "aircraft directory 'empty' holds no aircraft"),
-        (("--aircraft-dir", "two/a"), "'two/a' is the folder of an aircraft itself, 'a'; give the directory that it is in, '"),
+        (
+            ("--aircraft-dir", "two/a"),
+            "'two/a' is the folder of an aircraft itself, 'a'; give the directory that it is in, '",
+        ),
         (("--aircraft-dir", "two"), "holds 2 aircraft; name one of them: a, b"),
         (("--aircraft-dir", "two", "--set", "aircraft=c"), "holds no aircraft 'c'"),
         (("--aircraft-dir", "two", "--set", "aircraft=../two/a"), "'../two/a' is a path"),
@@ -121,7 +173,11 @@ def test_a_scenario_file_names_it_relative_to_itself_and_the_command_line_to_whe
 )
 def test_what_is_no_aircraft_is_refused_in_a_line(tmp_path, monkeypatch, arguments, words):
     monkeypatch.chdir(tmp_path)
-    for name, text in {"two/a": '<fdm_config name="a"/>', "two/b": '<fdm_config name="b"/>', "broken/x": "<fdm_config"}.items():
+    for name, text in {
+        "two/a": '<fdm_config name="a"/>',
+        "two/b": '<fdm_config name="b"/>',
+        "broken/x": "<fdm_config",
+    }.items():
         Path(name).mkdir(parents=True)
         Path(name, f"{Path(name).name}.xml").write_text(text, encoding="utf-8")
     Path("empty").mkdir()

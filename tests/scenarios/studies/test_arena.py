@@ -49,9 +49,19 @@ def record(run):
 
 def test_every_law_flies_every_task_that_it_can_in_every_condition_from_the_same_starts(run):
     rows = pd.DataFrame(rows_of(run))
-    cases = ["npfg", "park_l1_point", "pursuit", "npfg_standoff", "pursuit_standoff", "lgvf_standoff"]
+    cases = [
+        "npfg",
+        "park_l1_point",
+        "pursuit",
+        "npfg_standoff",
+        "pursuit_standoff",
+        "lgvf_standoff",
+    ]
     assert rows["flight_id"].tolist() == [
-        f"{trial}_{case}_kinematic_{i:05d}" for trial in ("calm", "wind") for case in cases for i in range(2)
+        f"{trial}_{case}_kinematic_{i:05d}"
+        for trial in ("calm", "wind")
+        for case in cases
+        for i in range(2)
     ]
     # Two starts in each condition, one for each flight of a law: seeds follow from condition and number alone.
     assert rows.groupby("trial")["seed"].nunique().tolist() == [2, 2]
@@ -78,14 +88,22 @@ def test_flights_have_the_tuned_parameters_and_the_manifest_says_them(run, recor
     tuned = {entrant["name"]: entrant["tuned"] for entrant in record["entrants"]}
     assert manifest["tuned"] == tuned
     for case in manifest["trials"]["calm"]["cases"]:
-        assert tuned[case["name"]].items() <= {k.removeprefix("guidance."): v for k, v in case["set"].items()}.items()
+        assert (
+            tuned[case["name"]].items()
+            <= {k.removeprefix("guidance."): v for k, v in case["set"].items()}.items()
+        )
     draws = pd.read_csv(run / "draws.csv").set_index("flight_id")
-    assert draws.loc["wind_npfg_kinematic_00001", "guidance.npfg_period_s"] == tuned["npfg"]["npfg_period_s"]
+    assert (
+        draws.loc["wind_npfg_kinematic_00001", "guidance.npfg_period_s"]
+        == tuned["npfg"]["npfg_period_s"]
+    )
 
 
 def test_laws_are_compared_within_a_task_and_crossings_over_both(record):
     def of(figure, condition="all"):
-        return [e for e in record["estimates"] if (e["figure"], e["condition"]) == (figure, condition)]
+        return [
+            e for e in record["estimates"] if (e["figure"], e["condition"]) == (figure, condition)
+        ]
 
     assert sum(estimate["best"] for estimate in of("error_rms_m")) == 2
     assert sum(estimate["best"] for estimate in of("crossings_per_minute")) == 1
@@ -99,11 +117,17 @@ def test_laws_are_compared_within_a_task_and_crossings_over_both(record):
 def test_every_flight_is_measured_over_its_end_and_what_a_minute_is_worth_is_compared(run, record):
     flights, windows = pd.read_csv(run / "summary.csv"), pd.read_csv(run / "window.csv")
     # The window of QUICK, whether the flight has settled or not.
-    assert windows["plume_s_per_minute"].to_numpy() == pytest.approx(flights["seconds_in_plume_s"].to_numpy() * 60.0 / 30.0)
+    assert windows["plume_s_per_minute"].to_numpy() == pytest.approx(
+        flights["seconds_in_plume_s"].to_numpy() * 60.0 / 30.0
+    )
     admitted = flights["sulphur_quality"] != "C"
     assert (windows["sulphur_information_per_minute"] > 0.0).tolist() == admitted.tolist()
     assert admitted.any()
-    compared = [e for e in record["estimates"] if (e["figure"], e["condition"]) == ("sulphur_information_per_minute", "all")]
+    compared = [
+        e
+        for e in record["estimates"]
+        if (e["figure"], e["condition"]) == ("sulphur_information_per_minute", "all")
+    ]
     assert len(compared) == len(record["entrants"])
     best = max(compared, key=lambda estimate: estimate["mean"])
     assert best["best"]
@@ -112,15 +136,28 @@ def test_every_flight_is_measured_over_its_end_and_what_a_minute_is_worth_is_com
 def test_the_exhaust_and_the_sniffer_are_those_of_the_flights_that_measure():
     of_arena, of_sulphur = load_study("arena"), load_study("sulphur")
     assert (of_arena.emission, of_arena.payload) == (of_sulphur.emission, of_sulphur.payload)
-    assert (of_arena.plume.model, of_arena.source_height) == (of_sulphur.plume.model, of_sulphur.source_height)
+    assert (of_arena.plume.model, of_arena.source_height) == (
+        of_sulphur.plume.model,
+        of_sulphur.source_height,
+    )
 
 
 def test_without_a_sniffer_laws_are_compared_by_crossings_alone(tmp_path):
-    keys = ('arena.conditions=[{name="calm",title="Calm"}]', "flights=1", 'arena.tracking=["npfg"]', "payload=[]")
-    run_study(
-        arena(*keys, "arena.standoff=[]", "arena.evaluations=0"), "arena", tmp_path / "run", executor_factory=InProcessExecutor
+    keys = (
+        'arena.conditions=[{name="calm",title="Calm"}]',
+        "flights=1",
+        'arena.tracking=["npfg"]',
+        "payload=[]",
     )
-    estimates = json.loads((tmp_path / "run" / "arena.json").read_text(encoding="utf-8"))["estimates"]
+    run_study(
+        arena(*keys, "arena.standoff=[]", "arena.evaluations=0"),
+        "arena",
+        tmp_path / "run",
+        executor_factory=InProcessExecutor,
+    )
+    estimates = json.loads((tmp_path / "run" / "arena.json").read_text(encoding="utf-8"))[
+        "estimates"
+    ]
     means = {estimate["figure"]: estimate["mean"] for estimate in estimates}
     assert means["crossings_per_minute"] > 0.0
     assert means["plume_s_per_minute"] is means["sulphur_information_per_minute"] is None
@@ -134,21 +171,39 @@ def test_a_law_without_an_adapter_for_a_task_is_named_with_its_reason(record):
 
 def test_a_resumed_arena_has_nothing_to_do_and_a_flight_replays_as_it_was(run, tmp_path, law):
     before = (run / "arena.json").read_bytes()
-    result = run_study(arena(f'laws=["{law}"]'), "arena", run, executor_factory=InProcessExecutor, resume=True)
+    result = run_study(
+        arena(f'laws=["{law}"]'), "arena", run, executor_factory=InProcessExecutor, resume=True
+    )
     assert not result.changed
     assert (run / "arena.json").read_bytes() == before
     flight = "wind_npfg_kinematic_00001"
-    ended = run_command("scenarios.run", run / "flights" / flight, "--out", tmp_path / "replay", "--no-report")
+    ended = run_command(
+        "scenarios.run", run / "flights" / flight, "--out", tmp_path / "replay", "--no-report"
+    )
     assert ended.status == 0, ended.errors
     (row,) = [row for row in rows_of(run) if row["flight_id"] == flight]
     (again,) = rows_of(tmp_path / "replay")
-    assert {k: v for k, v in again.items() if k != "wall_time_s"} == {k: v for k, v in row.items() if k != "wall_time_s"}
+    assert {k: v for k, v in again.items() if k != "wall_time_s"} == {
+        k: v for k, v in row.items() if k != "wall_time_s"
+    }
 
 
 def test_without_evaluations_laws_fly_their_defaults(tmp_path):
-    keys = ("arena.evaluations=0", 'arena.conditions=[{name="calm",title="Calm"}]', "flights=1", 'arena.tracking=["npfg"]')
-    run_study(arena(*keys, "arena.standoff=[]"), "arena", tmp_path / "run", executor_factory=InProcessExecutor)
-    (entrant,) = json.loads((tmp_path / "run" / "arena.json").read_text(encoding="utf-8"))["entrants"]
+    keys = (
+        "arena.evaluations=0",
+        'arena.conditions=[{name="calm",title="Calm"}]',
+        "flights=1",
+        'arena.tracking=["npfg"]',
+    )
+    run_study(
+        arena(*keys, "arena.standoff=[]"),
+        "arena",
+        tmp_path / "run",
+        executor_factory=InProcessExecutor,
+    )
+    (entrant,) = json.loads((tmp_path / "run" / "arena.json").read_text(encoding="utf-8"))[
+        "entrants"
+    ]
     assert (entrant["tuned"], entrant["evaluations"]) == (entrant["defaults"], 0)
 
 
@@ -157,17 +212,33 @@ class LosingTuner(InProcessExecutor):
 
     def fly(self, tasks):
         flights = self._work._ends[-1]
-        return (self._work.lost(task, "was killed") if task.number == flights else self._work.fly(task) for task in tasks)
+        return (
+            self._work.lost(task, "was killed") if task.number == flights else self._work.fly(task)
+            for task in tasks
+        )
 
 
-def test_a_law_whose_tuning_was_lost_is_not_compared_with_its_defaults_and_is_tuned_when_the_run_continues(tmp_path):
-    keys = ('arena.conditions=[{name="calm",title="Calm"}]', "flights=1", "arena.standoff=[]", "flight.duration_max_s=40")
+def test_a_law_whose_tuning_was_lost_is_not_compared_with_its_defaults_and_is_tuned_when_the_run_continues(
+    tmp_path,
+):
+    keys = (
+        'arena.conditions=[{name="calm",title="Calm"}]',
+        "flights=1",
+        "arena.standoff=[]",
+        "flight.duration_max_s=40",
+    )
     words = r"the tuning of 'npfg' was lost \(was killed\), and .*: continue with --resume, with a larger --time-limit"
     with pytest.raises(InputError, match=words) as refused:
         run_study(arena(*keys), "arena", tmp_path / "lost", executor_factory=LosingTuner)
     assert "\n" not in str(refused.value)
     for name, resume in (("lost", True), ("whole", False)):
-        run_study(arena(*keys), "arena", tmp_path / name, executor_factory=InProcessExecutor, resume=resume)
+        run_study(
+            arena(*keys),
+            "arena",
+            tmp_path / name,
+            executor_factory=InProcessExecutor,
+            resume=resume,
+        )
     lost, whole = tmp_path / "lost", tmp_path / "whole"
     assert (lost / "arena.json").read_bytes() == (whole / "arena.json").read_bytes()
     assert (lost / "draws.csv").read_bytes() == (whole / "draws.csv").read_bytes()
@@ -180,9 +251,17 @@ def test_a_law_whose_tuning_was_lost_is_not_compared_with_its_defaults_and_is_tu
     [
         ('laws=["npgf"]', ["laws: unknown steering law 'npgf'", "'npfg'"]),
         ('laws=["nofile.py:Law"]', ["nofile.py"]),
-        ('laws=["npfg"]', ["'npfg' is named 2 times for tracking; laws adds to arena.tracking: name each law once"]),
+        (
+            'laws=["npfg"]',
+            [
+                "'npfg' is named 2 times for tracking; laws adds to arena.tracking: name each law once"
+            ],
+        ),
         ("arena.conditions=[]", ["arena.conditions is empty"]),
-        ('arena.conditions=[{name="a",title="A",set={"wind.sped_mps"=1}}]', ["condition 'a'", "wind.sped_mps"]),
+        (
+            'arena.conditions=[{name="a",title="A",set={"wind.sped_mps"=1}}]',
+            ["condition 'a'", "wind.sped_mps"],
+        ),
         ("arena.window_s=400", ["arena.window_s is 400 s", "flight.duration_max_s"]),
         ("flight.measured_s=60", ["flight.measured_s is given", "arena.window_s"]),
         ("sweep.nu=[0.5]", ["study is 'arena' beside a sweep"]),
@@ -190,13 +269,20 @@ def test_a_law_whose_tuning_was_lost_is_not_compared_with_its_defaults_and_is_tu
 )
 def test_bad_input_is_one_line(override, words, tmp_path):
     arguments = [argument for key in (*QUICK, override) for argument in ("--set", key)]
-    assert_refused(run_command("scenarios.run", "arena", *arguments, "--out", tmp_path / "run"), *words)
+    assert_refused(
+        run_command("scenarios.run", "arena", *arguments, "--out", tmp_path / "run"), *words
+    )
 
 
 def test_a_law_that_cannot_do_the_task_of_a_flight_is_refused_in_one_line():
-    with pytest.raises(InputError, match=r"guidance\.law is 'lgvf': it flies a circle .* set guidance\.mission to 'standoff'"):
+    with pytest.raises(
+        InputError,
+        match=r"guidance\.law is 'lgvf': it flies a circle .* set guidance\.mission to 'standoff'",
+    ):
         load_study("sweep_nu", ["guidance.law=lgvf"])
-    with pytest.raises(InputError, match=r"guidance\.law is 'pure_pursuit': .* set guidance\.mission to 'follow'"):
+    with pytest.raises(
+        InputError, match=r"guidance\.law is 'pure_pursuit': .* set guidance\.mission to 'follow'"
+    ):
         load_study("sea_wind", ["guidance.law=pure_pursuit", "guidance.mission=standoff"])
 
 

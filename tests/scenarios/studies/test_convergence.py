@@ -16,13 +16,26 @@ from scenarios.engine.local_executor import LocalExecutor
 from scenarios.engine.task import Limits, Task
 from scenarios.errors import InputError
 from scenarios.studies.convergence.cases import REFERENCES, draw_case, references_of
-from scenarios.studies.convergence.ensemble import COLUMNS, convergence_blocks, convergence_table, counterexamples, trajectory_of
+from scenarios.studies.convergence.ensemble import (
+    COLUMNS,
+    convergence_blocks,
+    convergence_table,
+    counterexamples,
+    trajectory_of,
+)
 from scenarios.studies.convergence.study import ConvergenceWork
 
 # The paper's vehicle (reference/paper-notes.md) and the guidance of the catalogue's scenarios.
 SPEED, HEADING_RATE_MAX, BAND = 19.42, 0.503, 5.0
 LOOK_AHEAD = look_ahead(0.005, 60.0)
-VEHICLE = Vehicle(speed=SPEED, look_ahead=LOOK_AHEAD, gain=1.5, steering_max=0.4, k_1=0.001, heading_rate_max=HEADING_RATE_MAX)
+VEHICLE = Vehicle(
+    speed=SPEED,
+    look_ahead=LOOK_AHEAD,
+    gain=1.5,
+    steering_max=0.4,
+    k_1=0.001,
+    heading_rate_max=HEADING_RATE_MAX,
+)
 STUDY = {
     "trajectories": 30,
     "seed": 3,
@@ -71,12 +84,24 @@ def test_rows_are_in_order_and_have_the_columns_of_the_table(small):
     assert tuple(small.columns) == COLUMNS
     assert small["trajectory"].tolist() == [i for i in range(SMALL) for _ in range(2)]
     assert small["law"].tolist() == ["lyapunov", "cascade"] * SMALL
-    assert small["reference"].tolist() == [kind for _ in range(SMALL // 3) for kind in REFERENCES for _ in range(2)]
+    assert small["reference"].tolist() == [
+        kind for _ in range(SMALL // 3) for kind in REFERENCES for _ in range(2)
+    ]
     # Both laws start from the same states.
-    starts = small[["start_north_m", "start_east_m", "start_course_rad", "reference_course_rad", "reference_terms"]]
+    starts = small[
+        [
+            "start_north_m",
+            "start_east_m",
+            "start_course_rad",
+            "reference_course_rad",
+            "reference_terms",
+        ]
+    ]
     assert starts[::2].reset_index(drop=True).equals(starts[1::2].reset_index(drop=True))
     # The laws keep phi in different variables: rounding.
-    assert small["start_phi_rad"][::2].to_numpy() == pytest.approx(small["start_phi_rad"][1::2].to_numpy(), abs=1e-14)
+    assert small["start_phi_rad"][::2].to_numpy() == pytest.approx(
+        small["start_phi_rad"][1::2].to_numpy(), abs=1e-14
+    )
 
 
 def test_half_of_all_trajectories_settle_close_to_the_averaged_motions_time(small):
@@ -94,7 +119,12 @@ def test_under_law_24_distance_never_exceeds_what_v_2_allows(small):
 
 def test_the_same_seed_gives_the_same_rows_bit_for_bit_in_this_process_and_in_two_others():
     # From close by, for time's sake; the cut law flies where it takes no longer.
-    few = {"trajectories": 3, "distance_max": 20.0, "laws": ("lyapunov", "cascade", "cascade_cut"), "seed": 11}
+    few = {
+        "trajectories": 3,
+        "distance_max": 20.0,
+        "laws": ("lyapunov", "cascade", "cascade_cut"),
+        "seed": 11,
+    }
     one = study(**few)
     assert one.equals(study(in_two_processes, **few))
     # And a law flies the same without the others.
@@ -125,7 +155,12 @@ def test_an_interrupted_study_ends_its_processes_at_once():
             raise KeyboardInterrupt
 
     # Half a minute of work, interrupted half a second after its processes are there at the latest.
-    flying = results(trajectories=60, distance_max=5000.0, laws=("lyapunov", "cascade", "cascade_cut"), factory=in_two_processes)
+    flying = results(
+        trajectories=60,
+        distance_max=5000.0,
+        laws=("lyapunov", "cascade", "cascade_cut"),
+        factory=in_two_processes,
+    )
     earlier = signal.signal(signal.SIGALRM, interrupt)
     signal.setitimer(signal.ITIMER_REAL, 0.5, 0.5)
     began = time.perf_counter()
@@ -169,10 +204,21 @@ def of_each_kind():
 
 @pytest.mark.parametrize(
     ("law", "trajectory"),
-    [("lyapunov", 0), ("lyapunov", 1), ("lyapunov", 2), ("cascade", 1), ("cascade_cut", 0), ("cascade_cut", 2)],
+    [
+        ("lyapunov", 0),
+        ("lyapunov", 1),
+        ("lyapunov", 2),
+        ("cascade", 1),
+        ("cascade_cut", 0),
+        ("cascade_cut", 2),
+    ],
 )
 def test_a_row_flown_again_ends_where_it_ended(law, trajectory, of_each_kind):
-    (row,) = (row for _, row in of_each_kind.iterrows() if (row["law"], row["trajectory"]) == (law, trajectory))
+    (row,) = (
+        row
+        for _, row in of_each_kind.iterrows()
+        if (row["law"], row["trajectory"]) == (law, trajectory)
+    )
     track = trajectory_of(row, vehicle=VEHICLE, settling_band=BAND)
     first, last = track.iloc[0], track.iloc[-1]
     assert first[["north_m", "east_m"]].tolist() == row[["start_north_m", "start_east_m"]].tolist()
@@ -202,7 +248,11 @@ def test_starts_fill_the_disc_and_references_stay_within_their_bounds():
     assert distance.max() <= 5000.0
     # Uniform over a disc: half of all within 1/sqrt(2) of its radius; of 900, five standard deviations are 0.083.
     assert np.mean(distance < 5000.0 / math.sqrt(2.0)) == pytest.approx(0.5, abs=0.083)
-    for kind, bounds in (("circle", (0.05, 0.5)), ("oscillation", (0.1, HEADING_RATE_MAX)), ("random", (0.1, 0.5))):
+    for kind, bounds in (
+        ("circle", (0.05, 0.5)),
+        ("oscillation", (0.1, HEADING_RATE_MAX)),
+        ("random", (0.1, 0.5)),
+    ):
         rates = references_of([case for case in cases if case.kind == kind]).heading_rate_bound
         assert rates.min() >= bounds[0] * (1.0 - 1e-12)
         assert rates.max() <= bounds[1] * (1.0 + 1e-12)
@@ -210,17 +260,28 @@ def test_starts_fill_the_disc_and_references_stay_within_their_bounds():
 
 
 def test_a_draw_depends_on_its_seed_and_number_alone():
-    assert draw_case(1, 17, 5000.0, SPEED, HEADING_RATE_MAX) == draw_case(1, 17, 5000.0, SPEED, HEADING_RATE_MAX)
-    assert draw_case(1, 17, 5000.0, SPEED, HEADING_RATE_MAX) != draw_case(2, 17, 5000.0, SPEED, HEADING_RATE_MAX)
-    assert draw_case(1, 17, 5000.0, SPEED, HEADING_RATE_MAX).north != draw_case(1, 20, 5000.0, SPEED, HEADING_RATE_MAX).north
+    assert draw_case(1, 17, 5000.0, SPEED, HEADING_RATE_MAX) == draw_case(
+        1, 17, 5000.0, SPEED, HEADING_RATE_MAX
+    )
+    assert draw_case(1, 17, 5000.0, SPEED, HEADING_RATE_MAX) != draw_case(
+        2, 17, 5000.0, SPEED, HEADING_RATE_MAX
+    )
+    assert (
+        draw_case(1, 17, 5000.0, SPEED, HEADING_RATE_MAX).north
+        != draw_case(1, 20, 5000.0, SPEED, HEADING_RATE_MAX).north
+    )
 
 
 def test_the_rows_hold_what_the_prediction_is_made_from(small):
     row = small.iloc[4]
     terms = json.loads(row["reference_terms"])
-    refs = references_of([draw_case(STUDY["seed"], 2, STUDY["distance_max"], SPEED, HEADING_RATE_MAX)])
+    refs = references_of(
+        [draw_case(STUDY["seed"], 2, STUDY["distance_max"], SPEED, HEADING_RATE_MAX)]
+    )
     assert terms["amplitude"] == refs.amplitude[:, 0].tolist()
-    assert sum(map(abs, terms["amplitude"])) == pytest.approx(row["reference_heading_rate_max_rad_s"], rel=1e-12)
+    assert sum(map(abs, terms["amplitude"])) == pytest.approx(
+        row["reference_heading_rate_max_rad_s"], rel=1e-12
+    )
     begin = [[-row["start_north_m"]], [-row["start_east_m"]]]
     assert averaged_settling_time(LOOK_AHEAD, SPEED, refs, begin, BAND) == pytest.approx(
         [row["settling_time_predicted_s"]], rel=1e-9
@@ -230,7 +291,10 @@ def test_the_rows_hold_what_the_prediction_is_made_from(small):
 @pytest.mark.parametrize(
     ("changes", "words"),
     [
-        ({"laws": ("pursuit",)}, "law 'pursuit' is unknown; choose from lyapunov, cascade, cascade_cut"),
+        (
+            {"laws": ("pursuit",)},
+            "law 'pursuit' is unknown; choose from lyapunov, cascade, cascade_cut",
+        ),
         ({"trajectories": 0}, "trajectories is 0; it must be above 0"),
         (
             {"vehicle": replace(VEHICLE, heading_rate_max=0.4)},

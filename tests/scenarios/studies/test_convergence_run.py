@@ -26,7 +26,9 @@ def study(*overrides):
 
 
 def run(scenario, path, *, resume=False, progress=lambda *_: None, factory=InProcessExecutor):
-    return run_study(scenario, "convergence", path, executor_factory=factory, resume=resume, progress=progress)
+    return run_study(
+        scenario, "convergence", path, executor_factory=factory, resume=resume, progress=progress
+    )
 
 
 @pytest.fixture(scope="module")
@@ -100,7 +102,9 @@ def test_an_interrupted_study_resumes_to_the_same_rows(directory, tmp_path):
     assert manifest_of(path)["state"] == "interrupted"
     again = run(study(), path, resume=True)
     assert again.summary.done == again.planned == 24
-    pd.testing.assert_frame_equal(pd.read_csv(path / "summary.csv"), pd.read_csv(directory / "summary.csv"), check_exact=True)
+    pd.testing.assert_frame_equal(
+        pd.read_csv(path / "summary.csv"), pd.read_csv(directory / "summary.csv"), check_exact=True
+    )
     with pytest.raises(InputError, match="another configuration"):
         run(study("seed=3"), path, resume=True)
 
@@ -122,8 +126,12 @@ def test_a_study_goes_on_with_the_blocks_that_are_left(tmp_path):
     assert run(few, tmp_path / "broken", progress=interrupt).summary.done == 6
     told.clear()
     assert run(few, tmp_path / "broken", resume=True, progress=tell).all_met
-    assert [report for report in told if report[0] == "flying"] == [("flying", done, 12) for done in (6, 8, 10, 12)]
-    assert (tmp_path / "broken" / "summary.csv").read_bytes() == (tmp_path / "whole" / "summary.csv").read_bytes()
+    assert [report for report in told if report[0] == "flying"] == [
+        ("flying", done, 12) for done in (6, 8, 10, 12)
+    ]
+    assert (tmp_path / "broken" / "summary.csv").read_bytes() == (
+        tmp_path / "whole" / "summary.csv"
+    ).read_bytes()
     told.clear()
     assert run(few, tmp_path / "whole", resume=True, progress=tell).all_met
     assert [report for report in told if report[0] == "flying"] == [("flying", 12, 12)]
@@ -131,7 +139,10 @@ def test_a_study_goes_on_with_the_blocks_that_are_left(tmp_path):
 
 def test_a_study_of_cut_commands_alone_is_no_verdict_on_the_theory(tmp_path):
     # Every circle but those at the very limit converges; none of these 3 references, from near by, is one of them.
-    run(study('guidance.laws=["cascade_cut"]', "ensemble.trajectories=3", "ensemble.samples=1"), tmp_path / "run")
+    run(
+        study('guidance.laws=["cascade_cut"]', "ensemble.trajectories=3", "ensemble.samples=1"),
+        tmp_path / "run",
+    )
     page = page_of(tmp_path / "run", tmp_path / "report.html")
     assert "3 of 3 trajectories converged, under laws that no theory covers" in page
 
@@ -142,7 +153,9 @@ def test_a_study_that_is_done_can_be_resumed_all_the_same(jobs, directory, tmp_p
     assert run(study(), copy, resume=True, factory=ExecutorFactory(jobs=jobs)).all_met
 
 
-def test_an_interrupt_while_time_histories_are_kept_leaves_a_run_that_can_be_resumed(tmp_path, monkeypatch):
+def test_an_interrupt_while_time_histories_are_kept_leaves_a_run_that_can_be_resumed(
+    tmp_path, monkeypatch
+):
     few = study("ensemble.trajectories=3", "ensemble.distance_max_m=60")
 
     def interrupt(*_, **__):
@@ -164,7 +177,10 @@ def test_an_interrupt_while_time_histories_are_kept_leaves_a_run_that_can_be_res
         ("guidance.laws=cascade", ["guidance.laws", "'cascade'", "list in brackets"]),
         ('guidance.laws=["magic"]', ["guidance.laws.0", "'magic'", "lyapunov"]),
         ("ensemble.trajectories=0", ["ensemble.trajectories is 0; it must be at least 1"]),
-        ("guidance.heading_rate_max_rad_s=0.4", ["heading_rate_max_rad_s", "0.4", "above 0.5 rad/s"]),
+        (
+            "guidance.heading_rate_max_rad_s=0.4",
+            ["heading_rate_max_rad_s", "0.4", "above 0.5 rad/s"],
+        ),
         ("fidelity=six_dof", ["fidelity", "'six_dof'", "kinematic"]),
         ("keepout.radius_m=200", ["unknown key 'keepout'"]),
     ],

@@ -17,7 +17,14 @@ BOTH_LAWS = '[{name="line_of_sight", set={"guidance.law"="line_of_sight"}}, {nam
 
 def flown(out, name, *overrides, outcome="completed", **beside):
     """Fly a study; return its rows, all with one outcome and outside the keep-out area."""
-    run_study(load_study(name, overrides), name, out, overrides=overrides, executor_factory=InProcessExecutor, **beside)
+    run_study(
+        load_study(name, overrides),
+        name,
+        out,
+        overrides=overrides,
+        executor_factory=InProcessExecutor,
+        **beside,
+    )
     rows = rows_of(out)
     for row in rows:
         assert (row["outcome"], row["keepout_violations"]) == (outcome, 0), row["message"]
@@ -29,14 +36,23 @@ def x8(tmp_path_factory):
     """One flight of the X8 with a rising plume, in wind and light turbulence."""
     out = tmp_path_factory.mktemp("x8") / "run"
     keys = ["sweep.nu=[0.5]", "comparison.variants=[]", "flight.crossings=4"]
-    air = ["wind.speed_mps=5", "wind.from_deg=90", "turbulence.level=light", "plume.elevation_deg=10"]
+    air = [
+        "wind.speed_mps=5",
+        "wind.from_deg=90",
+        "turbulence.level=light",
+        "plume.elevation_deg=10",
+    ]
     (row,) = flown(out, "sweep_nu", *keys, *air)
     return row, pd.read_parquet(out / "flights" / "nu_0.50.parquet")
 
 
 def test_the_sweep_flies_in_wind_and_turbulence(x8):
     row, history = x8
-    assert (row["wind_speed_mps"], row["turbulence"], row["mode_at_end"]) == (5.0, "light", "tracking")
+    assert (row["wind_speed_mps"], row["turbulence"], row["mode_at_end"]) == (
+        5.0,
+        "light",
+        "tracking",
+    )
     # The vessel goes north at 0.5 V_r, the wind comes from abeam: by Pythagoras, nu of the motion through the air.
     assert row["nu"] == pytest.approx((0.5**2 + (5.0 / 19.42) ** 2) ** 0.5, rel=1e-9)
     assert row["vessel_speed_mps"] == pytest.approx(0.5 * 19.42)
@@ -76,20 +92,37 @@ def test_any_key_may_be_swept(tmp_path, key):
 @pytest.mark.parametrize("key", ["wind.speed_mps = [0, 2]", '"wind.speed_mps" = [0, 2]'])
 def test_a_file_names_a_swept_key_with_and_without_quotes(tmp_path, key):
     path = tmp_path / "own.toml"
-    path.write_text(f'title = "own"\n[sweep]\nkeepout.radius_m = [150, 200]\n{key}\n', encoding="utf-8")
-    assert load_study(str(path)).sweep.root == {"keepout.radius_m": (150, 200), "wind.speed_mps": (0, 2)}
+    path.write_text(
+        f'title = "own"\n[sweep]\nkeepout.radius_m = [150, 200]\n{key}\n', encoding="utf-8"
+    )
+    assert load_study(str(path)).sweep.root == {
+        "keepout.radius_m": (150, 200),
+        "wind.speed_mps": (0, 2),
+    }
 
 
 def test_a_sweep_over_two_keys_flies_each_combination(tmp_path):
     keys = ["sweep.nu=[0.3, 0.5]", "sweep.keepout.radius_m=[150, 200]"]
     rows = flown(tmp_path / "run", "sweep_nu", *KINEMATIC, *keys)
-    assert [(row["nu"], row["keepout_radius_m"]) for row in rows] == [(0.3, 150), (0.3, 200), (0.5, 150), (0.5, 200)]
+    assert [(row["nu"], row["keepout_radius_m"]) for row in rows] == [
+        (0.3, 150),
+        (0.3, 200),
+        (0.5, 150),
+        (0.5, 200),
+    ]
     for row in rows:
         assert row["min_distance_m"] >= row["keepout_radius_m"]
 
 
 def test_lists_are_swept_as_numbers_are_and_equal_ones_flown_once():
-    study = load_study("sweep_nu", ["sweep.start.distance_m=[[400, 500], [600, 700], [400, 500]]", "sweep.nu=[0.5]", *KINEMATIC])
+    study = load_study(
+        "sweep_nu",
+        [
+            "sweep.start.distance_m=[[400, 500], [600, 700], [400, 500]]",
+            "sweep.nu=[0.5]",
+            *KINEMATIC,
+        ],
+    )
     starts = [point.scenario.start.distance_m for point in Experiment("sweep_nu", study).points]
     assert starts == [(400.0, 500.0), (600.0, 700.0)]
 
@@ -97,7 +130,9 @@ def test_lists_are_swept_as_numbers_are_and_equal_ones_flown_once():
 def test_a_value_that_cannot_be_swept_is_refused(tmp_path):
     with pytest.raises(ValueError, match=r"'guidance\.airspeed_mps' varies from flight to flight"):
         load_study("sweep_nu", ["sweep.guidance.airspeed_mps=[18, 19]"])
-    with pytest.raises(ValueError, match=r"unknown key 'wind\.sped_mps'; did you mean 'wind\.speed_mps'"):
+    with pytest.raises(
+        ValueError, match=r"unknown key 'wind\.sped_mps'; did you mean 'wind\.speed_mps'"
+    ):
         flown(tmp_path / "run", "sweep_nu", *KINEMATIC, "sweep.wind.sped_mps=[0, 5]")
 
 
@@ -107,7 +142,10 @@ def test_a_value_that_cannot_be_swept_is_refused(tmp_path):
         ("sweep.seed=[1, 2, 3]", r"sweep has 'seed'.*sweep flight_seed instead, or set flights"),
         ('sweep.title=["a", "b"]', r"sweep has 'title', which sets nothing of a flight"),
         ("sweep.flights=[5, 10]", r"sweep has 'flights', which sets nothing of a flight"),
-        ("sweep.criteria.tracking_error_rms_m=[1.0, 2.0]", r"sweep has 'criteria\.tracking_error_rms_m', which sets nothing"),
+        (
+            "sweep.criteria.tracking_error_rms_m=[1.0, 2.0]",
+            r"sweep has 'criteria\.tracking_error_rms_m', which sets nothing",
+        ),
     ],
 )
 def test_keys_on_which_no_flight_depends_are_not_swept(override, words):
@@ -132,7 +170,15 @@ def test_operational_scenarios_are_compared_with_variants_of_the_same_seeds(tmp_
     variants = rows_of(tmp_path / "run", "comparison.csv")
     assert [row["variant"] for row in rows] == ["study"] * 3
     assert [row["variant"] for row in variants] == ["line_of_sight"] * 2 + ["lyapunov"] * 2
-    same = ["seed", "nu", "wind_speed_mps", "wind_from_deg", "vessel_speed_mps", "start_distance_m", "start_aspect_deg"]
+    same = [
+        "seed",
+        "nu",
+        "wind_speed_mps",
+        "wind_from_deg",
+        "vessel_speed_mps",
+        "start_distance_m",
+        "start_aspect_deg",
+    ]
     for number, variant in enumerate(variants):
         assert [variant[name] for name in same] == [rows[number % 2][name] for name in same]
         assert variant["flight_id"] == f"{variant['variant']}_{number % 2:05d}"
@@ -141,10 +187,19 @@ def test_operational_scenarios_are_compared_with_variants_of_the_same_seeds(tmp_
     manifest = manifest_of(tmp_path / "run")
     assert manifest["flights_planned"] == 3
     study = load_study(given[0], given[1:])
-    again = run_study(study, "sea_wind", tmp_path / "run", overrides=given[1:], executor_factory=InProcessExecutor, resume=True)
+    again = run_study(
+        study,
+        "sea_wind",
+        tmp_path / "run",
+        overrides=given[1:],
+        executor_factory=InProcessExecutor,
+        resume=True,
+    )
     for line, pair in zip(again.summary.lines[1:], (variants[:2], variants[2:]), strict=False):
         done = sum(row["outcome"] == "completed" for row in pair)
-        assert line.startswith(f"  comparison {pair[0]['variant']}, not counted above: 2 planned, 2 flown, {done} completed")
+        assert line.startswith(
+            f"  comparison {pair[0]['variant']}, not counted above: 2 planned, 2 flown, {done} completed"
+        )
 
 
 SAMPLED = (*SLOW_STEPS, "turbulence={}", "flights=4", "flight.duration_max_s=10", "histories=0")
@@ -154,20 +209,35 @@ WIND = '{key="wind.speed_mps", uniform=[0, 5]}'
 
 def test_monte_carlo_samples_steering_laws_at_random(tmp_path):
     laws = '{key="guidance.law", choice=["cascade", "lyapunov"]}'
-    rows = flown(tmp_path / "run", "monte_carlo", *SAMPLED, f"draws=[{WIND}, {laws}]", outcome=TOO_SHORT)
+    rows = flown(
+        tmp_path / "run", "monte_carlo", *SAMPLED, f"draws=[{WIND}, {laws}]", outcome=TOO_SHORT
+    )
     inputs = rows_of(tmp_path / "run", "draws.csv")
     assert [row["flight_id"] for row in inputs] == [row["flight_id"] for row in rows]
     # A Sobol sequence halves every range evenly.
-    assert sorted(row["guidance.law"] for row in inputs) == ["cascade", "cascade", "lyapunov", "lyapunov"]
+    assert sorted(row["guidance.law"] for row in inputs) == [
+        "cascade",
+        "cascade",
+        "lyapunov",
+        "lyapunov",
+    ]
     assert (tmp_path / "run" / "statistics.json").is_file()
 
 
 def test_monte_carlo_compares_steering_laws_at_the_same_points(tmp_path):
     compared = f"comparison.variants={BOTH_LAWS}"
-    rows = flown(tmp_path / "run", "monte_carlo", *SAMPLED, f"draws=[{WIND}]", compared, outcome=TOO_SHORT)
+    rows = flown(
+        tmp_path / "run", "monte_carlo", *SAMPLED, f"draws=[{WIND}]", compared, outcome=TOO_SHORT
+    )
     variants = rows_of(tmp_path / "run", "comparison.csv")
     assert len(rows) == 4
     for name in ("line_of_sight", "lyapunov"):
         of_variant = [row for row in variants if row["variant"] == name]
-        assert [(row["seed"], row["wind_speed_mps"]) for row in of_variant] == [(r["seed"], r["wind_speed_mps"]) for r in rows]
-    assert {row["variant"] for row in rows_of(tmp_path / "run", "draws.csv")} == {"study", "line_of_sight", "lyapunov"}
+        assert [(row["seed"], row["wind_speed_mps"]) for row in of_variant] == [
+            (r["seed"], r["wind_speed_mps"]) for r in rows
+        ]
+    assert {row["variant"] for row in rows_of(tmp_path / "run", "draws.csv")} == {
+        "study",
+        "line_of_sight",
+        "lyapunov",
+    }

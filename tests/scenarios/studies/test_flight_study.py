@@ -24,7 +24,9 @@ def written(directory):
         (directory / f"{name}.toml").write_text(TRIAL, encoding="utf-8")
     path = directory / "list.toml"
     trials = [str(directory / "one.toml"), str(directory / "two.toml")]
-    path.write_text(f'study = "trials"\ntitle = "two"\ntrials = {json.dumps(trials)}\n', encoding="utf-8")
+    path.write_text(
+        f'study = "trials"\ntitle = "two"\ntrials = {json.dumps(trials)}\n', encoding="utf-8"
+    )
     return path
 
 
@@ -48,7 +50,15 @@ def quiet(doing, done, total):
 
 def run(path, out, *overrides, factory=InProcessExecutor, resume=False, progress=quiet):
     study = load_study(str(path), overrides)
-    return run_study(study, path.stem, out, executor_factory=factory, resume=resume, progress=progress, overrides=overrides)
+    return run_study(
+        study,
+        path.stem,
+        out,
+        executor_factory=factory,
+        resume=resume,
+        progress=progress,
+        overrides=overrides,
+    )
 
 
 def tables(directory):
@@ -64,7 +74,9 @@ def same(one, other):
 
 def test_flights_are_named_by_their_trials_and_differ_from_trial_to_trial(whole):
     summary, _ = tables(whole)
-    assert list(summary["flight_id"]) == [f"{trial}_{i:05d}" for trial in ("one", "two") for i in range(4)]
+    assert list(summary["flight_id"]) == [
+        f"{trial}_{i:05d}" for trial in ("one", "two") for i in range(4)
+    ]
     # Same scenario and seed, another name: other flights.
     assert summary["wind_speed_mps"].nunique() == 8
 
@@ -87,7 +99,11 @@ def test_a_key_of_the_trials_is_set_in_every_one(listed, tmp_path):
     assert {trial["keepout"]["radius_m"] for trial in manifest["trials"].values()} == {150.0}
     assert manifest["flights_planned"] == 2
     # 4 s are too short to settle, which is not required of these trials.
-    assert [manifest[f"flights_{count}"] for count in ("kept_out", "passed", "met_criteria")] == [2, 2, 0]
+    assert [manifest[f"flights_{count}"] for count in ("kept_out", "passed", "met_criteria")] == [
+        2,
+        2,
+        0,
+    ]
 
 
 def test_a_run_that_is_to_keep_no_history_keeps_those_that_tell_most(listed, whole, tmp_path):
@@ -99,11 +115,19 @@ def test_a_run_that_is_to_keep_no_history_keeps_those_that_tell_most(listed, who
     for _, flights in pd.read_csv(whole / "summary.csv").groupby("trial"):
         nearest_first = list(flights.sort_values("min_distance_m")["flight_id"])
         # Of four, the median is taken to be the third: half of all are nearer.
-        told |= {f"{nearest_first[0]}.parquet", f"{nearest_first[2]}.parquet", f"{flights['flight_id'].iloc[0]}.parquet"}
+        told |= {
+            f"{nearest_first[0]}.parquet",
+            f"{nearest_first[2]}.parquet",
+            f"{flights['flight_id'].iloc[0]}.parquet",
+        }
     kept = tmp_path / "run" / "flights"
     assert {path.name for path in kept.iterdir()} == told
     for name in told:
-        pd.testing.assert_frame_equal(pd.read_parquet(kept / name), pd.read_parquet(whole / "flights" / name), check_exact=True)
+        pd.testing.assert_frame_equal(
+            pd.read_parquet(kept / name),
+            pd.read_parquet(whole / "flights" / name),
+            check_exact=True,
+        )
 
 
 def test_what_was_drawn_for_each_flight_is_a_table(whole):
@@ -122,7 +146,10 @@ def test_a_run_is_resumed_with_the_same_trials_only(tmp_path):
         run(listed, tmp_path / "run", "share=0.1", resume=True)
     # The list does not change with what it lists.
     one.write_text(TRIAL + "[keepout]\nradius_m = 190.0\n", encoding="utf-8")
-    with pytest.raises(InputError, match=r"configuration: keepout\.radius_m of one was 200\.0, and is 190\.0 now; resume"):
+    with pytest.raises(
+        InputError,
+        match=r"configuration: keepout\.radius_m of one was 200\.0, and is 190\.0 now; resume",
+    ):
         run(listed, tmp_path / "run", "share=0.1", resume=True)
 
 
@@ -135,7 +162,10 @@ def test_a_run_is_resumed_with_the_same_trials_only(tmp_path):
         ('trials = ["sea_wind", "sea_wind"]', "two are called 'sea_wind'; list each once"),
         ("trials = []", "trials: value is"),
         ('trials = ["sea_wind"]\nset = 5', "set: value is 5; give a list in brackets"),
-        ('trials = ["sea_wind"]\nset = "share=1"', "set: value is 'share=1'; give a list in brackets"),
+        (
+            'trials = ["sea_wind"]\nset = "share=1"',
+            "set: value is 'share=1'; give a list in brackets",
+        ),
         ('trials = ["sea_wind"]\nset = ["colour"]', "'colour' is not of the form key=value"),
         ('trials = ["sea_wind"]\nset = ["vessel.colour=1"]', "unknown key 'vessel.colour'"),
         ('trials = ["sea_wind"]\nshare = 0.0', "share is 0.0"),
@@ -143,8 +173,14 @@ def test_a_run_is_resumed_with_the_same_trials_only(tmp_path):
             'trials = ["sea_wind"]\nset = ["fidelity=kinematic", "fault.kind=engine"]',
             "fault.kind is 'engine'; .*what can fail is none, satellite_navigation, sniffer_dead, sniffer_saturated, vessel_data",
         ),
-        ('trials = ["sea_wind"]\nset = ["fault.at_s=[300, 100]"]', r"at_s is \[300.0, 100.0\]; its first value must not exceed"),
-        ('trials = ["sea_wind"]\nset = ["speed_ratio=[0.9, 0.1]"]', r"speed_ratio is \[0.9, 0.1\]; its first value"),
+        (
+            'trials = ["sea_wind"]\nset = ["fault.at_s=[300, 100]"]',
+            r"at_s is \[300.0, 100.0\]; its first value must not exceed",
+        ),
+        (
+            'trials = ["sea_wind"]\nset = ["speed_ratio=[0.9, 0.1]"]',
+            r"speed_ratio is \[0.9, 0.1\]; its first value",
+        ),
         (
             'trials = ["sea_turbulence_light"]\nset = ["flight.altitude_m=400"]',
             "turbulence.level is 'light': .*altitude is 400 m; it holds up to 304.8 m; fly lower",
@@ -173,8 +209,13 @@ def test_what_the_aircraft_cannot_do_is_reported_in_one_line(listed, tmp_path, m
 
 def test_trials_that_need_different_autopilots_are_refused(tmp_path):
     listed = written(tmp_path)
-    (tmp_path / "two.toml").write_text(TRIAL + "[plume]\nsource_height_m = 80.0\n", encoding="utf-8")
-    with pytest.raises(InputError, match=r"flights differ in .*the funnel of emission.ship\); give each a run of its own"):
+    (tmp_path / "two.toml").write_text(
+        TRIAL + "[plume]\nsource_height_m = 80.0\n", encoding="utf-8"
+    )
+    with pytest.raises(
+        InputError,
+        match=r"flights differ in .*the funnel of emission.ship\); give each a run of its own",
+    ):
         run(listed, tmp_path / "run")
 
 
@@ -182,15 +223,23 @@ def test_a_share_of_a_trial_has_no_flight_that_only_rounding_adds():
     # In double precision 0.07 * 200 is 14.000000000000002.
     settings = ["trials=['sea_wind']", "fidelity=kinematic"]
     shares = {"0.07": 14, "0.0701": 15, "0.001": 1, "1.0": 200}
-    studies = {share: study_of(load_study("sea_trial", [*settings, f"share={share}"]), "sea_trial") for share in shares}
+    studies = {
+        share: study_of(load_study("sea_trial", [*settings, f"share={share}"]), "sea_trial")
+        for share in shares
+    }
     assert {share: study.planned for share, study in studies.items()} == shares
 
 
 def test_what_happened_is_reported_in_lines(listed, tmp_path):
-    lines = run(listed, tmp_path / "run", "share=0.1", "vessel.speed_mps=19.4", "speed_ratio=[0, 9]").summary.lines
+    lines = run(
+        listed, tmp_path / "run", "share=0.1", "vessel.speed_mps=19.4", "speed_ratio=[0, 9]"
+    ).summary.lines
     assert lines[:3] == [
         "flights: 2 planned, 0 flown, 0 completed, 0 met every criterion",
-        *(f"  {trial}: 1 planned, 0 flown, 0 completed, 0 met every criterion" for trial in ("one", "two")),
+        *(
+            f"  {trial}: 1 planned, 0 flown, 0 completed, 0 met every criterion"
+            for trial in ("one", "two")
+        ),
     ]
     assert lines[3] == "exit status 1: 0 of 2 flights kept out, which is required of each"
     assert lines[4].startswith("    one_00000: infeasible: the vessel moves at up to")
@@ -199,17 +248,30 @@ def test_what_happened_is_reported_in_lines(listed, tmp_path):
 def test_manoeuvres_that_overlap_in_every_flight_are_refused_before_any_is_flown(tmp_path):
     path = tmp_path / "two.toml"
     turns = "[{ at_s = 10.0, turn_deg = 90.0 }, { at_s = 60.0, turn_deg = 90.0 }]"
-    path.write_text(f'title = "two"\nfidelity = "kinematic"\n[vessel]\nmanoeuvres = {turns}\n', encoding="utf-8")
-    with pytest.raises(InputError, match=r"vessel\.manoeuvres\.1 begins at 60 s, before an earlier one has ended, at 190 s"):
+    path.write_text(
+        f'title = "two"\nfidelity = "kinematic"\n[vessel]\nmanoeuvres = {turns}\n', encoding="utf-8"
+    )
+    with pytest.raises(
+        InputError,
+        match=r"vessel\.manoeuvres\.1 begins at 60 s, before an earlier one has ended, at 190 s",
+    ):
         run(path, tmp_path / "run")
     assert not (tmp_path / "run").exists()
 
 
-@pytest.mark.parametrize("level", ["turbulence.level=light", 'draws.1={key="turbulence.level", choice=["none", "light"]}'])
-def test_guidance_that_is_sampled_continuously_beside_turbulence_is_refused_before_any_is_flown(level, tmp_path):
+@pytest.mark.parametrize(
+    "level",
+    ["turbulence.level=light", 'draws.1={key="turbulence.level", choice=["none", "light"]}'],
+)
+def test_guidance_that_is_sampled_continuously_beside_turbulence_is_refused_before_any_is_flown(
+    level, tmp_path
+):
     # Each flight with turbulence failed instead, and counted as a violation.
     draw = 'draws=[{key="guidance.look_ahead_m", uniform=[20.0, 30.0]}, {key="wind.speed_mps", uniform=[3.0, 5.0]}]'
-    with pytest.raises(InputError, match=r"'guidance\.look_ahead_m' is sampled from a continuous distribution beside turbulence"):
+    with pytest.raises(
+        InputError,
+        match=r"'guidance\.look_ahead_m' is sampled from a continuous distribution beside turbulence",
+    ):
         run(Path("sea_wind"), tmp_path / "run", draw, level, "flights=2")
     assert not (tmp_path / "run").exists()
 
@@ -222,27 +284,36 @@ def test_a_manoeuvre_after_the_end_of_the_flight_is_warned_of(tmp_path):
         encoding="utf-8",
     )
     lines = run(path, tmp_path / "run").summary.lines
-    assert lines[-1].startswith("warning: in 1 flight a manoeuvre of the vessel begins after the end of the flight")
+    assert lines[-1].startswith(
+        "warning: in 1 flight a manoeuvre of the vessel begins after the end of the flight"
+    )
 
 
 def state_of(directory):
     """Return content and time of every file."""
     files = (path for path in sorted(directory.rglob("*")) if path.is_file())
-    return {path.relative_to(directory).as_posix(): (path.read_bytes(), path.stat().st_mtime_ns) for path in files}
+    return {
+        path.relative_to(directory).as_posix(): (path.read_bytes(), path.stat().st_mtime_ns)
+        for path in files
+    }
 
 
 def test_a_table_that_somebody_has_changed_is_written_again(listed, whole, tmp_path):
     shutil.copytree(whole, tmp_path / "run")
     before = state_of(tmp_path / "run")
     summary = tmp_path / "run" / "summary.csv"
-    summary.write_text(summary.read_text(encoding="utf-8").replace("completed", "ditched"), encoding="utf-8")
+    summary.write_text(
+        summary.read_text(encoding="utf-8").replace("completed", "ditched"), encoding="utf-8"
+    )
     run(listed, tmp_path / "run", resume=True)
     after = state_of(tmp_path / "run")
     assert after["summary.csv"][0] == before["summary.csv"][0]
     assert {name for name in before if after[name] != before[name]} == {"summary.csv"}
 
 
-def test_time_histories_that_were_deleted_or_cut_are_made_again_to_the_last_bit(listed, whole, tmp_path):
+def test_time_histories_that_were_deleted_or_cut_are_made_again_to_the_last_bit(
+    listed, whole, tmp_path
+):
     shutil.copytree(whole, tmp_path / "run")
     before = state_of(tmp_path / "run")
     deleted = [name for name in before if name.startswith("flights/")]
@@ -250,7 +321,9 @@ def test_time_histories_that_were_deleted_or_cut_are_made_again_to_the_last_bit(
     for number, name in enumerate(deleted):
         # Deleted, empty, or cut.
         path = tmp_path / "run" / name
-        path.unlink() if number < 4 else path.write_bytes(before[name][0][: 0 if number < 6 else -1])
+        path.unlink() if number < 4 else path.write_bytes(
+            before[name][0][: 0 if number < 6 else -1]
+        )
     # Killed in between, it still knows which there were.
     flown = []
 

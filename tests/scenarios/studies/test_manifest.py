@@ -45,8 +45,16 @@ def test_a_part_whose_file_is_gone_is_refused_in_one_line(tmp_path, key, name, w
 @pytest.mark.parametrize(
     ("text", "part", "code"),
     [
-        ('[[draws]]\nkey = "payload.instruments"\nchoice = [[], ["own.py:Sniffer"]]\n', "own.py:Sniffer", INSTRUMENT),
-        ('following.margin_law = "own.py:Pursuit"\nturbulence.level = "light"\n', "own.py:Pursuit", LAW),
+        (
+            '[[draws]]\nkey = "payload.instruments"\nchoice = [[], ["own.py:Sniffer"]]\n',
+            "own.py:Sniffer",
+            INSTRUMENT,
+        ),
+        (
+            'following.margin_law = "own.py:Pursuit"\nturbulence.level = "light"\n',
+            "own.py:Pursuit",
+            LAW,
+        ),
         (
             'turbulence.level = "light"\n[[draws]]\nkey = "following.margin_law"\nchoice = ["own.py:Pursuit"]\n',
             "own.py:Pursuit",
@@ -114,8 +122,13 @@ def test_every_key_of_a_ship_and_a_sniffer_of_ones_own_has_its_unit_and_meaning(
         "payload.sensor.channels.so2.gain_sd": "",
     }
     assert {key: listed[key]["unit"] for key in units} == units
-    assert listed["emission.ship.stack_height"]["meaning"] == "Height of the funnel's mouth above the sea."
-    own = [of for key, of in listed.items() if key.startswith(("emission.ship.", "payload.sensor."))]
+    assert (
+        listed["emission.ship.stack_height"]["meaning"]
+        == "Height of the funnel's mouth above the sea."
+    )
+    own = [
+        of for key, of in listed.items() if key.startswith(("emission.ship.", "payload.sensor."))
+    ]
     # 10 of the ship, 2 of the sniffer, and 6, 4, 3 and 3 of its channels.
     assert len(own) == 28
     assert all(of["meaning"] for of in own)

@@ -36,15 +36,22 @@ SHORT = [
 
 def run(out, *overrides, factory=InProcessExecutor, resume=False, progress=lambda *_: None):
     scenario = load_study("monte_carlo", [*SHORT, *overrides])
-    return run_study(scenario, "monte_carlo", out, executor_factory=factory, resume=resume, progress=progress)
+    return run_study(
+        scenario, "monte_carlo", out, executor_factory=factory, resume=resume, progress=progress
+    )
 
 
 def bound_of(out):
-    return json.loads((out / "statistics.json").read_text(encoding="utf-8"))["violation"]["pessimistic"]["upper"]
+    return json.loads((out / "statistics.json").read_text(encoding="utf-8"))["violation"][
+        "pessimistic"
+    ]["upper"]
 
 
 def tables(out):
-    return [pd.read_csv(out / name).drop(columns="wall_time_s", errors="ignore") for name in ("summary.csv", "draws.csv")]
+    return [
+        pd.read_csv(out / name).drop(columns="wall_time_s", errors="ignore")
+        for name in ("summary.csv", "draws.csv")
+    ]
 
 
 @pytest.fixture(scope="module")
@@ -61,11 +68,17 @@ def test_what_is_drawn_follows_the_declared_distributions_at_the_points_of_a_sob
     aspect = draws["start.aspect_deg"].to_numpy()[:32]
     assert np.histogram(aspect, bins=32, range=(-180.0, 180.0))[0].tolist() == [1] * 32
     assert summary["wind_from_deg"].equals(draws["wind.from_deg"])
-    assert summary["start_aspect_deg"].to_numpy() == pytest.approx(draws["start.aspect_deg"].to_numpy(), abs=1e-9)
-    assert summary["start_distance_m"].to_numpy() == pytest.approx(draws["start.range_m"].to_numpy(), rel=1e-12)
+    assert summary["start_aspect_deg"].to_numpy() == pytest.approx(
+        draws["start.aspect_deg"].to_numpy(), abs=1e-9
+    )
+    assert summary["start_distance_m"].to_numpy() == pytest.approx(
+        draws["start.range_m"].to_numpy(), rel=1e-12
+    )
 
 
-def test_the_same_seed_gives_the_same_rows_whatever_the_number_of_processes_and_of_flights(whole, tmp_path):
+def test_the_same_seed_gives_the_same_rows_whatever_the_number_of_processes_and_of_flights(
+    whole, tmp_path
+):
     # Of the whole study two processes flew 40.
     run(tmp_path / "fewer", "flights=16")
     for one, other in zip(tables(whole), tables(tmp_path / "fewer"), strict=True):
@@ -98,13 +111,18 @@ def test_what_drives_a_figure_is_asked_of_the_random_variables_alone(whole, monk
     assert all(keys == [draw.key for draw in scenario.draws] for keys in asked)
 
 
-def test_the_console_says_the_bound_of_the_statistics_in_which_a_lost_flight_counts_as_a_violation(whole, tmp_path):
+def test_the_console_says_the_bound_of_the_statistics_in_which_a_lost_flight_counts_as_a_violation(
+    whole, tmp_path
+):
     result = run(tmp_path / "run", "flights=40", factory=losing(7))
     upper = bound_of(tmp_path / "run")
     # 1 of 40 at 95 %: the larger root of 40 p (1 - p)^39 + (1 - p)^40 = 0.05.
     assert 40.0 * upper * (1.0 - upper) ** 39 + (1.0 - upper) ** 40 == pytest.approx(0.05, rel=1e-9)
     (line,) = [line for line in result.summary.lines if line.startswith("keep-out violations: ")]
-    assert "none known in 40 flights (0.0325 h simulated), unknown in 1, which counts as violated; at most 11.3 % of" in line
+    assert (
+        "none known in 40 flights (0.0325 h simulated), unknown in 1, which counts as violated; at most 11.3 % of"
+        in line
+    )
 
 
 @pytest.fixture
@@ -113,21 +131,42 @@ def frequent_looks(monkeypatch):
     monkeypatch.setattr("scenarios.statistics.stopping.FIRST_LOOK", 8)
 
 
-def test_a_study_stops_by_itself_where_the_interval_it_was_asked_for_is_tight_enough(frequent_looks, tmp_path):
+def test_a_study_stops_by_itself_where_the_interval_it_was_asked_for_is_tight_enough(
+    frequent_looks, tmp_path
+):
     # 0 of n at the confidence of look k: 1 - (0.05/(k (k + 1)))^(1/n) is 0.37, 0.26, 0.15 at 8, 16, 32.
     result = run(tmp_path / "run", "flights=100", "statistics.violation_upper=0.2")
     assert result.summary.done == 32
     assert result.all_met
-    assert result.summary.lines[-1] == "stopped after 32 of 100 flights: the intervals are as narrow as demanded"
+    assert (
+        result.summary.lines[-1]
+        == "stopped after 32 of 100 flights: the intervals are as narrow as demanded"
+    )
     manifest = manifest_of(tmp_path / "run")
     assert manifest["flights_planned"] == 32
-    assert json.loads((tmp_path / "run" / "statistics.json").read_text(encoding="utf-8"))["look_number"] == 3
+    assert (
+        json.loads((tmp_path / "run" / "statistics.json").read_text(encoding="utf-8"))[
+            "look_number"
+        ]
+        == 3
+    )
     # The bound of the third look: 1 - (0.05/12)^(1/32) = 15.7 %, and not 8.94 %.
-    assert bound_of(tmp_path / "run") == pytest.approx(1.0 - (0.05 / 12.0) ** (1.0 / 32.0), rel=1e-9)
-    assert any("; at most 15.7 % of flights sampled as these were, at 95 % confidence" in line for line in result.summary.lines)
+    assert bound_of(tmp_path / "run") == pytest.approx(
+        1.0 - (0.05 / 12.0) ** (1.0 / 32.0), rel=1e-9
+    )
+    assert any(
+        "; at most 15.7 % of flights sampled as these were, at 95 % confidence" in line
+        for line in result.summary.lines
+    )
     # Once it has stopped there is nothing to go on with.
     flown = []
-    again = run(tmp_path / "run", "flights=100", "statistics.violation_upper=0.2", resume=True, progress=lambda *p: flown.append(p))
+    again = run(
+        tmp_path / "run",
+        "flights=100",
+        "statistics.violation_upper=0.2",
+        resume=True,
+        progress=lambda *p: flown.append(p),
+    )
     assert again.summary.done == 32
     assert [p for p in flown if p[0] == "flying"] == [("flying", 32, 100)]
 
@@ -140,7 +179,12 @@ def test_a_run_that_is_resumed_stops_at_no_look_before_what_it_has_flown(frequen
     assert again.all_met
     assert again.planned == again.summary.done == 16
     assert again.summary.lines[-1].startswith("stopped after 16 of 100 flights")
-    assert json.loads((tmp_path / "run" / "statistics.json").read_text(encoding="utf-8"))["look_number"] == 2
+    assert (
+        json.loads((tmp_path / "run" / "statistics.json").read_text(encoding="utf-8"))[
+            "look_number"
+        ]
+        == 2
+    )
     assert bound_of(tmp_path / "run") == pytest.approx(1.0 - (0.05 / 6.0) ** (1.0 / 16.0), rel=1e-9)
 
 
@@ -152,7 +196,10 @@ def test_a_study_that_never_knows_enough_flies_all_that_was_planned(frequent_loo
 
 def test_copies_of_flights_are_refused_as_no_probability_follows_from_them(tmp_path):
     chosen = 'draws=[{key="wind.speed_mps",choice=[0.2,0.5]}]'
-    with pytest.raises(InputError, match=r"flights is 8, and nothing random differs between them.*set study to 'flights'"):
+    with pytest.raises(
+        InputError,
+        match=r"flights is 8, and nothing random differs between them.*set study to 'flights'",
+    ):
         run(tmp_path / "run", "flights=8", "flight_seed=5", chosen)
     assert run(tmp_path / "one", "flights=1", "flight_seed=5", chosen).summary.done == 1
     assert run(tmp_path / "seeds", "flights=2", chosen).summary.done == 2

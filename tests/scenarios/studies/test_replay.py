@@ -31,17 +31,40 @@ def runs(tmp_path_factory):
     for name in ("one", "two"):
         (folder / f"{name}.toml").write_text(TRIAL, encoding="utf-8")
     trials = json.dumps([str(folder / "one.toml"), str(folder / "two.toml")])
-    (folder / "list.toml").write_text(f'study = "trials"\ntitle = "two"\ntrials = {trials}\n', encoding="utf-8")
-    run_study(load_study(str(folder / "list.toml")), "list", folder / "trials", executor_factory=InProcessExecutor)
-    sweep = ["fidelity=kinematic", "sweep.nu=[0.3, 0.5]", "comparison.nu=[0.5]", "flight.crossings=3"]
-    run_study(load_study("sweep_nu", sweep), "sweep_nu", folder / "sweep", executor_factory=InProcessExecutor)
+    (folder / "list.toml").write_text(
+        f'study = "trials"\ntitle = "two"\ntrials = {trials}\n', encoding="utf-8"
+    )
+    run_study(
+        load_study(str(folder / "list.toml")),
+        "list",
+        folder / "trials",
+        executor_factory=InProcessExecutor,
+    )
+    sweep = [
+        "fidelity=kinematic",
+        "sweep.nu=[0.3, 0.5]",
+        "comparison.nu=[0.5]",
+        "flight.crossings=3",
+    ]
+    run_study(
+        load_study("sweep_nu", sweep),
+        "sweep_nu",
+        folder / "sweep",
+        executor_factory=InProcessExecutor,
+    )
     # Neither is needed any more.
     (folder / "two.toml").unlink()
     return folder
 
 
 def replay(name, out):
-    return fly_study(Replay(str(name)), out, executor_factory=InProcessExecutor, resume=False, progress=lambda *_: None)
+    return fly_study(
+        Replay(str(name)),
+        out,
+        executor_factory=InProcessExecutor,
+        resume=False,
+        progress=lambda *_: None,
+    )
 
 
 @pytest.mark.parametrize(
@@ -53,7 +76,9 @@ def replay(name, out):
         ("sweep", "nu_0.50_no_preview", "comparison.csv"),
     ],
 )
-def test_a_flight_is_flown_again_identically_with_every_step_of_the_guidance(runs, tmp_path, run, flight_id, table):
+def test_a_flight_is_flown_again_identically_with_every_step_of_the_guidance(
+    runs, tmp_path, run, flight_id, table
+):
     result = replay(runs / run / "flights" / flight_id, tmp_path / "again")
     assert result.all_met
     assert result.summary.lines[-1].startswith("identical to the flight in")
@@ -68,7 +93,9 @@ def test_a_flight_is_flown_again_identically_with_every_step_of_the_guidance(run
     assert steps["time_s"].diff()[1:].to_numpy() == pytest.approx(0.05, abs=1e-9)
 
 
-@pytest.mark.parametrize(("run", "flight_id"), [("trials", "two_00001.parquet"), ("sweep", "nu_0.50_no_preview")])
+@pytest.mark.parametrize(
+    ("run", "flight_id"), [("trials", "two_00001.parquet"), ("sweep", "nu_0.50_no_preview")]
+)
 def test_a_report_of_one_flight_is_about_that_flight(runs, tmp_path, run, flight_id):
     replay(runs / run / "flights" / flight_id, tmp_path / "again")
     report = content(read_run(tmp_path / "again"))
@@ -95,7 +122,10 @@ def test_a_flight_that_goes_another_way_is_reported_with_what_has_changed(runs, 
 
 def test_a_flight_that_was_flown_again_is_not_flown_again_from_there(runs, tmp_path):
     replay(runs / "trials" / "flights" / "two_00001", tmp_path / "again")
-    with pytest.raises(InputError, match="is the run of a replay; give the flight as RUN_DIR/flights/ID of its original run"):
+    with pytest.raises(
+        InputError,
+        match="is the run of a replay; give the flight as RUN_DIR/flights/ID of its original run",
+    ):
         Replay(str(tmp_path / "again" / "flights" / "two_00001"))
 
 
@@ -111,7 +141,9 @@ def test_a_flight_is_named_by_any_of_its_files(suffix):
 
 
 def test_what_cannot_be_flown_again_is_refused_in_one_line(runs, tmp_path):
-    with pytest.raises(InputError, match=r"has no flight 'three_00000'; its summary\.csv lists them"):
+    with pytest.raises(
+        InputError, match=r"has no flight 'three_00000'; its summary\.csv lists them"
+    ):
         Replay(str(runs / "trials" / "flights" / "three_00000"))
     copy = shutil.copytree(runs / "trials", tmp_path / "copy")
     (copy / "journal.sqlite").unlink()
@@ -119,7 +151,10 @@ def test_what_cannot_be_flown_again_is_refused_in_one_line(runs, tmp_path):
         Replay(str(copy / "flights" / "one_00000"))
     shutil.copy(runs / "trials" / "journal.sqlite", copy)
     (copy / "manifest.json").write_text("{}", encoding="utf-8")
-    with pytest.raises(InputError, match=r"manifest\.json is not that of a run; give the directory of a complete run"):
+    with pytest.raises(
+        InputError,
+        match=r"manifest\.json is not that of a run; give the directory of a complete run",
+    ):
         Replay(str(copy / "flights" / "one_00000"))
     (copy / "manifest.json").write_text("{", encoding="utf-8")
     with pytest.raises(InputError, match=r"manifest\.json cannot be read"):
@@ -136,10 +171,16 @@ def tampered(run, change):
 
 
 def files_below(folder):
-    return {path.relative_to(folder).as_posix(): path.stat().st_mtime_ns for path in folder.rglob("*") if path.is_file()}
+    return {
+        path.relative_to(folder).as_posix(): path.stat().st_mtime_ns
+        for path in folder.rglob("*")
+        if path.is_file()
+    }
 
 
-@pytest.mark.parametrize("trial", ["../../../../pwned/x", "/pwned/x", "..", "a\\b", "a\nb", "", "x" * 201])
+@pytest.mark.parametrize(
+    "trial", ["../../../../pwned/x", "/pwned/x", "..", "a\\b", "a\nb", "", "x" * 201]
+)
 def test_a_run_whose_trial_is_no_name_of_a_file_is_not_replayed(runs, tmp_path, trial):
     copy = shutil.copytree(runs / "trials", tmp_path / "a" / "b" / "copy")
     manifest = manifest_of(copy)
@@ -147,7 +188,10 @@ def test_a_run_whose_trial_is_no_name_of_a_file_is_not_replayed(runs, tmp_path, 
     write_manifest(copy, manifest)
     tampered(copy, {"trial": trial, "flight_id": "planted"})
     before = files_below(tmp_path)
-    with pytest.raises(InputError, match=r"names a trial .*, which cannot be the name of a trial; do not use this run") as refused:
+    with pytest.raises(
+        InputError,
+        match=r"names a trial .*, which cannot be the name of a trial; do not use this run",
+    ) as refused:
         replay(copy / "flights" / "planted", tmp_path / "a" / "b" / "again")
     assert "\n" not in str(refused.value)
     assert files_below(tmp_path) == before
@@ -163,9 +207,16 @@ def test_a_replay_writes_nothing_into_the_run_that_it_is_of(runs, tmp_path):
 def test_a_flight_with_a_number_that_its_trial_does_not_have_is_refused(runs, tmp_path, number):
     copy = shutil.copytree(runs / "trials", tmp_path / "copy")
     journal = Journal(copy / "journal.sqlite")
-    journal.add(Result(task=Task(number=number), tables={"summary.csv": [{"flight_id": "planted", "trial": "one"}]}))
+    journal.add(
+        Result(
+            task=Task(number=number),
+            tables={"summary.csv": [{"flight_id": "planted", "trial": "one"}]},
+        )
+    )
     journal.close()
-    with pytest.raises(InputError, match=rf"flight 'planted' has number {number}; 'one' has no such flight"):
+    with pytest.raises(
+        InputError, match=rf"flight 'planted' has number {number}; 'one' has no such flight"
+    ):
         Replay(str(copy / "flights" / "planted"))
 
 
@@ -181,14 +232,22 @@ def test_a_manifest_that_is_not_that_of_a_run_is_refused_in_a_line(runs, tmp_pat
 @pytest.mark.parametrize(
     ("arguments", "words"),
     [
-        (["sweep_nu", "--flightgear", "localhost:5550"], "--flightgear shows the replay of a flight; give RUN_DIR/flights/ID"),
+        (
+            ["sweep_nu", "--flightgear", "localhost:5550"],
+            "--flightgear shows the replay of a flight; give RUN_DIR/flights/ID",
+        ),
         (["{flight}", "--flightgear", "localhost"], "--flightgear is 'localhost'; give HOST:PORT"),
         (["{flight}", "--flightgear", "local host:5550"], "give HOST:PORT"),
         (["{flight}", "--flightgear", "localhost:99999"], "give HOST:PORT"),
-        (["{flight}", "--flightgear", "localhost:5550"], "--flightgear shows aircraft in six degrees of freedom"),
+        (
+            ["{flight}", "--flightgear", "localhost:5550"],
+            "--flightgear shows aircraft in six degrees of freedom",
+        ),
     ],
 )
 def test_what_flightgear_cannot_show_is_refused(runs, tmp_path, arguments, words):
     flight = sorted((runs / "sweep" / "flights").glob("*.parquet"))[0].with_suffix("")
     arguments = [argument.replace("{flight}", str(flight)) for argument in arguments]
-    assert_refused(run_command("scenarios.run", *arguments, "--out", str(tmp_path / "again")), words)
+    assert_refused(
+        run_command("scenarios.run", *arguments, "--out", str(tmp_path / "again")), words
+    )

@@ -72,7 +72,14 @@ def rare(tmp_path_factory):
 
 
 def run(rare, out, *, factory=InProcessExecutor, resume=False, progress=lambda *_: None):
-    return run_study(load_study(str(rare)), "short", out, executor_factory=factory, resume=resume, progress=progress)
+    return run_study(
+        load_study(str(rare)),
+        "short",
+        out,
+        executor_factory=factory,
+        resume=resume,
+        progress=progress,
+    )
 
 
 @pytest.fixture(scope="module")
@@ -104,7 +111,12 @@ def test_every_flight_has_a_row_and_every_level_its_figures(whole):
     summary = pd.read_csv(out / "summary.csv")
     found = statistics_of(out)
     levels = [level for simulation in found["simulations"] for level in simulation["levels"]]
-    assert len(summary) == result.summary.done == sum(level["flights"] for level in levels) == result.planned
+    assert (
+        len(summary)
+        == result.summary.done
+        == sum(level["flights"] for level in levels)
+        == result.planned
+    )
     assert list(summary["flight_id"]) == [f"short_{i:05d}" for i in range(len(summary))]
     assert found["violation"]["first_levels"]["flights"] == 150
     for simulation in found["simulations"]:
@@ -144,7 +156,9 @@ def test_no_point_outside_the_declared_speed_ratios_is_flown(whole):
 
 def test_points_outside_of_the_speed_ratios_are_counted_on_the_console(whole):
     result, out = whole
-    outside = sum(simulation["levels"][0]["outside"] for simulation in statistics_of(out)["simulations"])
+    outside = sum(
+        simulation["levels"][0]["outside"] for simulation in statistics_of(out)["simulations"]
+    )
     # Of vessels at 4 to 10 m/s, between 0.21 and 0.51 of 19.42 m/s, a third.
     assert 40 <= outside <= 120
     line = f"{outside} of {150 + outside} points of the first levels were beyond speed_ratio and sampled again"
@@ -157,16 +171,22 @@ TURNING = [
 ]
 
 
-def test_flights_are_those_of_the_plain_study_also_beyond_what_is_declared_of_the_vessel(rare, tmp_path):
+def test_flights_are_those_of_the_plain_study_also_beyond_what_is_declared_of_the_vessel(
+    rare, tmp_path
+):
     # At 5 deg/s, from 2.5 degrees on, the second turn begins before the end of the first; and 0.05 s, a step, are allowed for.
     draw = 'draws=[{key="vessel.manoeuvres.0.turn_deg", uniform=[0.5, 5.0]}, {key="start.range_m", uniform=[215.0, 350.0]}]'
     scenario = load_study(str(rare), [*TURNING, draw])
     # At 8 m/s and 5 deg/s it accelerates by 0.7 m/s2.
-    gentle = study_of(load_study(str(rare), [*TURNING, draw, "following.vessel_acceleration_mps2=0.1"]), "short")
+    gentle = study_of(
+        load_study(str(rare), [*TURNING, draw, "following.vessel_acceleration_mps2=0.1"]), "short"
+    )
     assert beyond_declared(gentle.trials["short"], [0.1, 0.5]) > 1.0
     assert gentle._allowed(np.array([0.1, 0.5]))
     result = run_study(scenario, "short", tmp_path / "run", executor_factory=InProcessExecutor)
-    rows = pd.read_csv(tmp_path / "run" / "summary.csv").merge(pd.read_csv(tmp_path / "run" / "draws.csv"), on="flight_id")
+    rows = pd.read_csv(tmp_path / "run" / "summary.csv").merge(
+        pd.read_csv(tmp_path / "run" / "draws.csv"), on="flight_id"
+    )
     overlap = rows["vessel.manoeuvres.0.turn_deg"] > 2.75
     assert len(rows) == 150
     assert set(rows["outcome"][overlap]) == {"infeasible"}
@@ -179,12 +199,15 @@ def test_flights_are_those_of_the_plain_study_also_beyond_what_is_declared_of_th
     assert 50 <= unknown <= 100
     upper = found["violation"]["pessimistic"]["upper"]
     assert any(
-        line.startswith(f"of 150 flights of the first levels {unknown} are of unknown end") and f"at most {upper:.2g}" in line
+        line.startswith(f"of 150 flights of the first levels {unknown} are of unknown end")
+        and f"at most {upper:.2g}" in line
         for line in result.summary.lines
     )
 
 
-def test_the_same_seed_gives_the_same_rows_whatever_the_number_of_processes_and_where_it_was_interrupted(rare, whole, tmp_path):
+def test_the_same_seed_gives_the_same_rows_whatever_the_number_of_processes_and_where_it_was_interrupted(
+    rare, whole, tmp_path
+):
     def interrupt(doing, done, _):
         if done == 170:
             raise KeyboardInterrupt
@@ -194,17 +217,28 @@ def test_the_same_seed_gives_the_same_rows_whatever_the_number_of_processes_and_
     assert not (out / "statistics.json").exists()
     run(rare, out, resume=True)
     for name in ("summary.csv", "draws.csv"):
-        one, other = (pd.read_csv(of / name).drop(columns="wall_time_s", errors="ignore") for of in (whole[1], out))
+        one, other = (
+            pd.read_csv(of / name).drop(columns="wall_time_s", errors="ignore")
+            for of in (whole[1], out)
+        )
         pd.testing.assert_frame_equal(one, other, check_exact=True)
     assert statistics_of(out) == statistics_of(whole[1])
 
 
-def test_a_flight_of_a_late_level_is_replayed_to_the_last_bit_its_blended_noise_included(whole, tmp_path):
+def test_a_flight_of_a_late_level_is_replayed_to_the_last_bit_its_blended_noise_included(
+    whole, tmp_path
+):
     last = pd.read_csv(whole[1] / "summary.csv")["flight_id"].iloc[-1]
     replay = Replay(str(whole[1] / "flights" / last))
     from scenarios.engine.runner import fly_study
 
-    result = fly_study(replay, tmp_path / "replay", executor_factory=InProcessExecutor, resume=False, progress=lambda *_: None)
+    result = fly_study(
+        replay,
+        tmp_path / "replay",
+        executor_factory=InProcessExecutor,
+        resume=False,
+        progress=lambda *_: None,
+    )
     assert result.summary.met, result.summary.lines
 
 
@@ -218,15 +252,25 @@ def test_a_point_carries_its_noise(rare):
 @pytest.mark.usefixtures("x8_design")
 @pytest.mark.parametrize("level", ["none", "light"])
 def test_a_flight_depends_on_the_seed_beside_its_blend_in_turbulence_alone(tmp_path, level):
-    study = study_of(load_study("monte_carlo", ["method=subset", "flight.duration_max_s=10", "turbulence.gusts=1"]), "monte_carlo")
+    study = study_of(
+        load_study(
+            "monte_carlo", ["method=subset", "flight.duration_max_s=10", "turbulence.gusts=1"]
+        ),
+        "monte_carlo",
+    )
     run = RunDirectory(tmp_path / "run")
     run.open("a", resume=False)
     work, draws = study.work(run), study.trials["monte_carlo"].draws
     drawn = next(i for i, draw in enumerate(draws) if draw.key == "turbulence.level")
     inputs = [0.3] * len(draws)
-    inputs[drawn] = next(at for at in np.linspace(0.01, 0.99, 99) if value_at(draws[drawn], at) == level)
+    inputs[drawn] = next(
+        at for at in np.linspace(0.01, 0.99, 99) if value_at(draws[drawn], at) == level
+    )
     assert not beyond_declared(study.trials["monte_carlo"], inputs)
-    one, other = (work.fly(Task(number=0, point=(*inputs, seed, 5.0, 1.0))).tables["summary.csv"][0] for seed in (17.0, 18.0))
+    one, other = (
+        work.fly(Task(number=0, point=(*inputs, seed, 5.0, 1.0))).tables["summary.csv"][0]
+        for seed in (17.0, 18.0)
+    )
     assert one["min_distance_m"] > 0.0
     assert (one["min_distance_m"] == other["min_distance_m"]) is (level == "none")
     assert study._seeded(np.array(inputs)) is (level != "none")
@@ -239,9 +283,13 @@ def test_a_lost_flight_is_not_flown_again_once_others_depend_on_it(rare, whole, 
 
     out = shutil.copytree(whole[1], tmp_path / "copy")
     with sqlite3.connect(out / "journal.sqlite") as database:
-        (fields,) = database.execute("SELECT number, point, items, lost, tables FROM results WHERE number = 3").fetchall()
+        (fields,) = database.execute(
+            "SELECT number, point, items, lost, tables FROM results WHERE number = 3"
+        ).fetchall()
         lost = (*fields[:3], 1, fields[4])
-        database.execute("UPDATE results SET lost = 1, checksum = ? WHERE number = 3", (_checksum(*lost),))
+        database.execute(
+            "UPDATE results SET lost = 1, checksum = ? WHERE number = 3", (_checksum(*lost),)
+        )
     database.close()
     flown = []
     run(rare, out, resume=True, progress=lambda *p: flown.append(p))
@@ -266,18 +314,36 @@ def test_its_report_says_the_probability_and_shows_levels_and_inputs(whole, tmp_
     ("overrides", "words"),
     [
         (["method=subsett"], ["method", "'subsett'", "did you mean 'subset'"]),
-        (["method=subset", "sweep.nu=[0.3,0.4]"], ["method is 'subset'", "sweep", "set method to 'plain'"]),
+        (
+            ["method=subset", "sweep.nu=[0.3,0.4]"],
+            ["method is 'subset'", "sweep", "set method to 'plain'"],
+        ),
         (
             ["method=subset", "statistics.violation_upper=0.1"],
             ["method is 'subset'", "statistics.violation_upper", "leave them out"],
         ),
         (["method=subset", "flights=10"], ["'flights' has no effect", "subset.flights_per_level"]),
-        (["method=subset", "draws=[]"], ["method is 'subset'", "draws is empty", "set method to 'plain'"]),
-        (["method=subset", "sampling=random"], ["'sampling' has no effect", "set study to 'monte_carlo' and method to 'plain'"]),
-        (["method=subset", "subset.flights_per_level=60"], ["6 flights that pass on", "must be 10", "100 or more"]),
+        (
+            ["method=subset", "draws=[]"],
+            ["method is 'subset'", "draws is empty", "set method to 'plain'"],
+        ),
+        (
+            ["method=subset", "sampling=random"],
+            ["'sampling' has no effect", "set study to 'monte_carlo' and method to 'plain'"],
+        ),
+        (
+            ["method=subset", "subset.flights_per_level=60"],
+            ["6 flights that pass on", "must be 10", "100 or more"],
+        ),
         (["method=subset", "subset.repeats=2"], ["subset.repeats is 2; it must be at least 3"]),
-        (["method=subset", "subset.conditional_probability=0.7"], ["subset.conditional_probability", "0.7", "0.5"]),
-        (["subset.repeats=4"], ["'subset.repeats' has no effect", "set study to 'monte_carlo' and method to 'subset'"]),
+        (
+            ["method=subset", "subset.conditional_probability=0.7"],
+            ["subset.conditional_probability", "0.7", "0.5"],
+        ),
+        (
+            ["subset.repeats=4"],
+            ["'subset.repeats' has no effect", "set study to 'monte_carlo' and method to 'subset'"],
+        ),
     ],
 )
 def test_what_does_not_fit_is_refused_in_one_line(overrides, words):

@@ -39,10 +39,16 @@ def place(x8_schedule, x8_root):
 
 def test_it_starts_with_its_course_against_the_air_and_the_wind_on_top(place, x8_schedule):
     airspeed = x8_schedule.level(MIDDLE).airspeed
-    north, east, velocity_north, velocity_east, _ = place(Weather(wind=constant_wind(*WIND))).motion()
-    assert (north, east) == pytest.approx((10.0, -20.0), abs=0.1)  # of plumes and tracks of hundreds of metres
+    north, east, velocity_north, velocity_east, _ = place(
+        Weather(wind=constant_wind(*WIND))
+    ).motion()
+    assert (north, east) == pytest.approx(
+        (10.0, -20.0), abs=0.1
+    )  # of plumes and tracks of hundreds of metres
     ground = (airspeed * math.cos(0.7) + WIND[0], airspeed * math.sin(0.7) + WIND[1])
-    assert (velocity_north, velocity_east) == pytest.approx(ground, abs=1e-5)  # 1e-6 ft/s of north wind, and a globe's roundings
+    assert (velocity_north, velocity_east) == pytest.approx(
+        ground, abs=1e-5
+    )  # 1e-6 ft/s of north wind, and a globe's roundings
 
 
 def test_its_sensors_read_airspeed_heading_and_roll_against_the_air(place, x8_schedule):
@@ -58,7 +64,9 @@ def test_it_climbs_and_sinks_to_a_commanded_altitude(place):
     vehicle.command_altitude(65.0)
     for _ in range(400):
         vehicle.advance(0.0, 20.0)
-    assert vehicle.sample()[0] == pytest.approx(65.0, abs=0.1)  # 20 s, of a loop that settles within 10 (its design's record)
+    assert vehicle.sample()[0] == pytest.approx(
+        65.0, abs=0.1
+    )  # 20 s, of a loop that settles within 10 (its design's record)
 
 
 def test_its_parts_fail_by_name(place):
@@ -71,7 +79,9 @@ def test_its_parts_fail_by_name(place):
 
 
 @pytest.mark.parametrize("rate_hz", [5.0, 6.0, 8.0, 10.0, 20.0, 40.0])
-def test_sound_elevons_are_where_they_were_commanded_to_be_however_slow_the_guidance_is(place, rate_hz):
+def test_sound_elevons_are_where_they_were_commanded_to_be_however_slow_the_guidance_is(
+    place, rate_hz
+):
     flown = place(None, time_step=1.0 / rate_hz, failable=True)
     generator = np.random.default_rng(1)
 

@@ -23,7 +23,16 @@ SPEED = 19.42
 
 
 def make(lag=0.0, time_step=0.05, course=0.5, **wind):
-    return KinematicVehicle(north=10.0, east=-20.0, altitude=60.0, course=course, speed=SPEED, time_step=time_step, lag=lag, **wind)
+    return KinematicVehicle(
+        north=10.0,
+        east=-20.0,
+        altitude=60.0,
+        course=course,
+        speed=SPEED,
+        time_step=time_step,
+        lag=lag,
+        **wind,
+    )
 
 
 def request_of(name, *overrides):
@@ -32,7 +41,9 @@ def request_of(name, *overrides):
 
 
 def fly_scenario(*overrides, nu=0.5):
-    request = request_of("sweep_nu", "fidelity=kinematic", "comparison.variants=[]", f"sweep.nu=[{nu}]", *overrides)
+    request = request_of(
+        "sweep_nu", "fidelity=kinematic", "comparison.variants=[]", f"sweep.nu=[{nu}]", *overrides
+    )
     setup = kinematic_setup(request.scenario)
     plan = plan_flight(request.scenario, flight_id="x", seed=request.seed, setup=setup)
     return fly(plan, release(plan, setup))
@@ -41,7 +52,10 @@ def fly_scenario(*overrides, nu=0.5):
 def error_of_the_last_minute(record):
     """Return the largest distance to the reference in the last minute of a flight [m]."""
     late = record.column("time_s") > record.column("time_s")[-1] - 60.0
-    off = (record.column(f"reference_{axis}_m") - record.column(f"{axis}_m") for axis in ("north", "east"))
+    off = (
+        record.column(f"reference_{axis}_m") - record.column(f"{axis}_m")
+        for axis in ("north", "east")
+    )
     return float(np.max(np.hypot(*off)[late]))
 
 
@@ -82,7 +96,11 @@ def test_in_wind_it_flies_the_calm_path_carried_along(lag):
 
 def test_in_a_wind_that_changes_it_is_carried_by_what_blows_at_its_time_and_height():
     # From rest to 10 m/s northward within 10 s, and twice that at twice the height of 50 m.
-    wind = WindField([[[0.0, 0.0], [0.0, 0.0]], [[10.0, 0.0], [20.0, 0.0]]], times=(0.0, 10.0), heights=(50.0, 100.0))
+    wind = WindField(
+        [[[0.0, 0.0], [0.0, 0.0]], [[10.0, 0.0], [20.0, 0.0]]],
+        times=(0.0, 10.0),
+        heights=(50.0, 100.0),
+    )
     for height, speed in ((50.0, 10.0), (100.0, 20.0)):
         windy = make(wind=wind)
         windy.command_altitude(height)
@@ -101,7 +119,9 @@ def test_its_sensors_read_airspeed_heading_and_the_bank_of_a_coordinated_turn():
     vehicle.advance(0.3, SPEED)
     # tan(bank) = speed times heading rate over 9.80665 m/s^2; the heading after 0.05 s.
     expected = (SPEED, 0.5 + 0.3 * 0.05, math.atan(SPEED * 0.3 / 9.80665))
-    assert vehicle.air_data() == pytest.approx(expected, rel=1e-3)  # gravity to the three digits that paper and standard share
+    assert vehicle.air_data() == pytest.approx(
+        expected, rel=1e-3
+    )  # gravity to the three digits that paper and standard share
 
 
 def test_it_has_no_parts_that_fail():
@@ -135,13 +155,18 @@ def test_the_sweep_flies_with_it_too(nu):
 def test_a_lag_is_previewed_as_the_autopilots_is():
     # Preview by the lag and half a step of hold takes most of the error away, as with the aircraft (regression tests).
     lag = "kinematic.heading_rate_lag_s=0.3"
-    previewed, not_previewed = (error_of_the_last_minute(fly_scenario(lag, *words)) for words in ([], ["guidance.preview=false"]))
+    previewed, not_previewed = (
+        error_of_the_last_minute(fly_scenario(lag, *words))
+        for words in ([], ["guidance.preview=false"])
+    )
     assert previewed < 0.5 * not_previewed
 
 
 def test_the_guidance_is_the_same_for_both_vehicles():
     # Fidelity does not enter the plan: the same start and the same guidance, but for the lag, which is measured.
-    scenarios = [request_of("sim3", f"fidelity={fidelity}").scenario for fidelity in ("kinematic", "six_dof")]
+    scenarios = [
+        request_of("sim3", f"fidelity={fidelity}").scenario for fidelity in ("kinematic", "six_dof")
+    ]
     setup = kinematic_setup(scenarios[0])
     plans = [plan_flight(scenario, flight_id="x", seed=7, setup=setup) for scenario in scenarios]
     assert plans[0].start == plans[1].start

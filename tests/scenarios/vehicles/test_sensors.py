@@ -19,7 +19,9 @@ MOTION = (100.0, -50.0, 12.0, 3.0, 0.1)
 
 
 def errors(sensors=SENSORS, *, steps, seed=2, time_step=TIME_STEP):
-    return SensorErrors(sensors, steps=steps, time_step=time_step, generator=np.random.default_rng(seed))
+    return SensorErrors(
+        sensors, steps=steps, time_step=time_step, generator=np.random.default_rng(seed)
+    )
 
 
 def readings(made, steps):
@@ -32,7 +34,9 @@ def readings(made, steps):
 
 
 def test_without_errors_sensors_tell_the_truth():
-    position, airspeed, heading = errors(SensorsConfig(), steps=2).read(1, MOTION, 19.0, 0.5, satellites=True)
+    position, airspeed, heading = errors(SensorsConfig(), steps=2).read(
+        1, MOTION, 19.0, 0.5, satellites=True
+    )
     assert (position, airspeed, heading) == (MOTION[:4], 19.0, 0.5)
 
 
@@ -50,8 +54,12 @@ def test_noise_and_biases_are_as_large_as_they_say():
             expected = [0.1, 0.1, 0.3, math.radians(1.0)]
             np.testing.assert_allclose(found[:, 2:].std(axis=0), expected, rtol=0.045)
             # What the mean of a flight's airspeed is off by is its bias: 4 sigma of a mean of 4,000.
-            assert found[:, 4].mean() == pytest.approx(made.airspeed_bias, abs=4.0 * 0.3 / math.sqrt(4000))
-            assert abs(found[:, 5].mean()) <= math.radians(2.0) + 4.0 * math.radians(1.0) / math.sqrt(4000)
+            assert found[:, 4].mean() == pytest.approx(
+                made.airspeed_bias, abs=4.0 * 0.3 / math.sqrt(4000)
+            )
+            assert abs(found[:, 5].mean()) <= math.radians(2.0) + 4.0 * math.radians(
+                1.0
+            ) / math.sqrt(4000)
         biases.append(made.airspeed_bias)
     assert np.abs(biases).max() <= 0.5
     # Even over 1 m/s: deviation 0.289 m/s; of 60, known to 5 % or so (the kurtosis of a uniform is low), 4 sigma.
@@ -60,7 +68,9 @@ def test_noise_and_biases_are_as_large_as_they_say():
 
 def test_the_bias_of_the_heading_is_even_over_what_is_said():
     exact = SENSORS.model_copy(update={"heading_sigma_deg": 0.0})
-    biases = np.degrees([readings(errors(exact, steps=1, seed=seed), 1)[0, 5] for seed in range(600)])
+    biases = np.degrees(
+        [readings(errors(exact, steps=1, seed=seed), 1)[0, 5] for seed in range(600)]
+    )
     assert np.abs(biases).max() <= 2.0
     # Even over 4 degrees: deviation 4/sqrt(12); of 600 (the kurtosis of a uniform is 1.8) known to 1.8 %; 4 sigma.
     assert biases.std() == pytest.approx(4.0 / math.sqrt(12.0), rel=0.075)
@@ -84,5 +94,9 @@ def test_the_error_of_satellite_navigation_wanders_with_a_time_constant_of_a_min
 
 
 def test_the_same_generator_gives_the_same_errors():
-    assert np.array_equal(readings(errors(steps=50, seed=7), 50), readings(errors(steps=50, seed=7), 50))
-    assert not np.array_equal(readings(errors(steps=50, seed=7), 50), readings(errors(steps=50, seed=8), 50))
+    assert np.array_equal(
+        readings(errors(steps=50, seed=7), 50), readings(errors(steps=50, seed=7), 50)
+    )
+    assert not np.array_equal(
+        readings(errors(steps=50, seed=7), 50), readings(errors(steps=50, seed=8), 50)
+    )

@@ -70,7 +70,9 @@ def test_nothing_is_received_during_an_outage():
 
 def test_their_errors_are_as_large_as_they_say():
     arrivals = received(missing=0.0, interval_s=(2.0, 2.0))
-    errors = np.array([np.subtract(report[1:], VESSEL.motion(report.time)) for _, report in arrivals])
+    errors = np.array(
+        [np.subtract(report[1:], VESSEL.motion(report.time)) for _, report in arrivals]
+    )
     # 2,000 of each component: the deviation is known to 1.6 %, the mean to 2.2 % of it; 4 sigma.
     sigmas = np.array([5.0, 5.0, 0.15, 0.15])
     np.testing.assert_allclose(errors.std(axis=0), sigmas, rtol=0.065)

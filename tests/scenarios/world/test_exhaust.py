@@ -19,7 +19,9 @@ TIME = np.linspace(10.0, 110.0, 41)
 def smoke(wind, vessel, *overrides):
     scenario = load_study("sulphur", overrides)
     plume = plume_of(scenario, vessel)
-    return exhaust_of(scenario, vessel, plume, wind, duration=200.0, generator=np.random.default_rng(5))
+    return exhaust_of(
+        scenario, vessel, plume, wind, duration=200.0, generator=np.random.default_rng(5)
+    )
 
 
 def behind(exhaust, vessel, wind, *, distance, across=0.0):
@@ -40,9 +42,15 @@ def test_smoke_leaves_the_funnel_of_its_ship_unless_a_height_is_given():
     # of one of 35 m is not.
     means = {}
     for given in ("emission.load=0.5", "plume.source_height_m=35"):
-        exhaust = smoke(wind, vessel, "emission.ship=coaster", "vessel.speed_mps=6", "plume.mean=true", given)
+        exhaust = smoke(
+            wind, vessel, "emission.ship=coaster", "vessel.speed_mps=6", "plume.mean=true", given
+        )
         means[given] = [
-            float(exhaust.sample(TIME, 6.0 * TIME + aft[0], np.full_like(TIME, aft[1]), np.full_like(TIME, up)).dilution.mean())
+            float(
+                exhaust.sample(
+                    TIME, 6.0 * TIME + aft[0], np.full_like(TIME, aft[1]), np.full_like(TIME, up)
+                ).dilution.mean()
+            )
             for up in (20.0, 39.0)
         ]
     (own_low, own_high), (given_low, given_high) = means.values()
@@ -56,7 +64,8 @@ def test_a_plume_trails_by_the_wind_at_the_funnel_of_its_ship():
     own, same, other = (
         plume_of(scenario, vessel_of(scenario)).axis(0.0)
         for scenario in (
-            load_study("sulphur", [*keys, *more]) for more in ((), ("plume.source_height_m=16",), ("plume.source_height_m=35",))
+            load_study("sulphur", [*keys, *more])
+            for more in ((), ("plume.source_height_m=16",), ("plume.source_height_m=35",))
         )
     )
     assert own == same
@@ -76,7 +85,14 @@ def test_a_velocity_that_ship_and_air_share_changes_nothing(common):
         emitted, air = emission(scenario, speed=10.0), MarineAir(wind_speed=4.0, temperature=288.15)
         settings = scenario.plume.settings(plume)
         dispersion = plume.dispersion(
-            emitted, air, vessel=vessel, wind=wind, duration=200.0, source_height=height, settings=settings, seed=5
+            emitted,
+            air,
+            vessel=vessel,
+            wind=wind,
+            duration=200.0,
+            source_height=height,
+            settings=settings,
+            seed=5,
         )
         return Exhaust(
             fuel=fuel_of(scenario),
@@ -86,7 +102,9 @@ def test_a_velocity_that_ship_and_air_share_changes_nothing(common):
         )
 
     here = behind(of(vessel, constant_wind(*wind)), vessel, wind, distance=220.0, across=6.0)
-    there = behind(of(moved, constant_wind(*(wind + common))), moved, wind + common, distance=220.0, across=6.0)
+    there = behind(
+        of(moved, constant_wind(*(wind + common))), moved, wind + common, distance=220.0, across=6.0
+    )
     # Within the smoke at all times: its axis has some 1e-5 s/mol there.
     assert here.min() > 1e-7
     # Rounding of places of a kilometre.
@@ -94,7 +112,10 @@ def test_a_velocity_that_ship_and_air_share_changes_nothing(common):
 
 
 def test_excess_of_a_gas_is_its_rate_times_the_dilution_whatever_the_gas():
-    exhaust, dilution = smoke(constant_wind(0.0, 4.0), SteadyVessel(10.0, 0.3)), np.array([1e-6, 3e-6])
+    exhaust, dilution = (
+        smoke(constant_wind(0.0, 4.0), SteadyVessel(10.0, 0.3)),
+        np.array([1e-6, 3e-6]),
+    )
     so2, co2, no, no2 = exhaust.emission.rates
     # Mole fractions in ppb, and that of CO2 in ppm.
     expected = np.outer(dilution, [1e9 * so2, 1e6 * co2, 1e9 * no, 1e9 * no2])
@@ -143,9 +164,17 @@ def test_wind_that_turns_bends_the_plume():
     exhaust = smoke(turning, vessel, "plume.meander=false")
     # Emitted at 10 s, at (80, 0); until 60 s it is carried by the integral of the wind.
     moved = [
-        d[0] for d in (np.subtract(turning.displacement(np.array([60.0]), 35.0), turning.displacement(np.array([10.0]), 35.0)))
+        d[0]
+        for d in (
+            np.subtract(
+                turning.displacement(np.array([60.0]), 35.0),
+                turning.displacement(np.array([10.0]), 35.0),
+            )
+        )
     ]
-    found = exhaust.sample(np.array([60.0]), np.array([80.0 + moved[0]]), np.array([moved[1]]), np.array([65.0]))
+    found = exhaust.sample(
+        np.array([60.0]), np.array([80.0 + moved[0]]), np.array([moved[1]]), np.array([65.0])
+    )
     assert found.age[0] == pytest.approx(50.0, abs=0.5)
     assert abs(found.across[0]) < 0.5
     assert found.dilution[0] > 0.0
@@ -153,12 +182,15 @@ def test_wind_that_turns_bends_the_plume():
 
 def test_exhaust_rises_less_in_warmer_air():
     cold, usual, warm = (
-        emission(load_study("sulphur", [f"wind.temperature_c={celsius}"]), speed=10.0) for celsius in (-10.0, 15.0, 40.0)
+        emission(load_study("sulphur", [f"wind.temperature_c={celsius}"]), speed=10.0)
+        for celsius in (-10.0, 15.0, 40.0)
     )
     # F = g w d^2/4 (1 - Ta/Ts), with the same exhaust in each.
     assert cold.buoyancy_flux > usual.buoyancy_flux > warm.buoyancy_flux
     of = usual.exhaust_temperature
-    assert warm.buoyancy_flux / cold.buoyancy_flux == pytest.approx((of - 313.15) / (of - 263.15), rel=1e-12)
+    assert warm.buoyancy_flux / cold.buoyancy_flux == pytest.approx(
+        (of - 313.15) / (of - 263.15), rel=1e-12
+    )
     # 15 degC is the standard atmosphere's, which is taken where no air is given.
     assert emission(load_study("sulphur"), speed=10.0) == usual
 

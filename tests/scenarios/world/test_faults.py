@@ -23,14 +23,22 @@ def test_a_passing_fault_lasts_from_its_beginning_to_its_end(kind, lasts):
     assert 100.0 <= fault.begins <= 250.0
     assert fault.ends == fault.begins + lasts
     assert not fault.of_aircraft()
-    found = [fault.lasts(kind, t) for t in (fault.begins - 0.01, fault.begins, fault.ends - 0.01, fault.ends)]
+    found = [
+        fault.lasts(kind, t)
+        for t in (fault.begins - 0.01, fault.begins, fault.ends - 0.01, fault.ends)
+    ]
     assert found == [False, True, True, False]
     assert not fault.lasts(SATELLITES if kind == VESSEL_DATA else VESSEL_DATA, fault.begins)
 
 
 def test_one_number_is_the_time_of_a_fault():
     assert FaultConfig.model_validate({"at_s": 120}).at_s == (120.0, 120.0)
-    assert sampled_fault(FaultConfig.model_validate({"kind": SATELLITES, "at_s": 120.5}), generator()).begins == 120.5
+    assert (
+        sampled_fault(
+            FaultConfig.model_validate({"kind": SATELLITES, "at_s": 120.5}), generator()
+        ).begins
+        == 120.5
+    )
 
 
 def test_a_part_fails_for_good():
@@ -44,6 +52,10 @@ def test_a_part_fails_for_good():
 @pytest.mark.parametrize("name", sorted({*NOT_OF_AIRCRAFT, ENGINE}))
 def test_no_actuator_may_have_the_name_of_another_fault(name):
     with pytest.raises(AircraftError, match=f"'{name}' is no name of an actuator"):
-        check_spec(replace(X8, own_actuators=(Actuator(name=name, commands=X8.input("throttle").commands),)))
+        check_spec(
+            replace(
+                X8, own_actuators=(Actuator(name=name, commands=X8.input("throttle").commands),)
+            )
+        )
     # Any other that an aircraft may have, a scenario can name.
     assert FaultConfig(kind="Left-elevon.1").kind == "Left-elevon.1"

@@ -28,8 +28,13 @@ def test_blended_numbers_are_distributed_as_those_of_one_seed():
     noise = Noise(1, ((2, 0.6), (3, 0.8)))
     # With fixed seeds a test at 1 % passes always or never; 0.6^2 + 0.8^2 = 1.
     assert kstest(normals(noise), "norm").pvalue > 0.01
-    assert kstest(streams(noise).reports.uniform(2.0, 10.0, 2000), "uniform", args=(2.0, 8.0)).pvalue > 0.01
-    assert kstest(streams(noise).world.normal(5.0, 2.0, 2000), "norm", args=(5.0, 2.0)).pvalue > 0.01
+    assert (
+        kstest(streams(noise).reports.uniform(2.0, 10.0, 2000), "uniform", args=(2.0, 8.0)).pvalue
+        > 0.01
+    )
+    assert (
+        kstest(streams(noise).world.normal(5.0, 2.0, 2000), "norm", args=(5.0, 2.0)).pvalue > 0.01
+    )
 
 
 def test_a_small_step_of_the_blend_changes_every_number_by_little_and_a_new_seed_none_of_them():

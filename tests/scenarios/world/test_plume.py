@@ -16,7 +16,9 @@ DURATION = 600.0
 def behind(vessel, *, wind=(0.0, 0.0), heading_deg=None):
     """Return the plume behind a vessel; by the wind, or at an angle from its bow."""
     config = PlumeConfig() if heading_deg is None else PlumeConfig(heading_deg=heading_deg)
-    return StraightPlume(config, vessel, constant_wind(*wind), DURATION, by_wind=heading_deg is None)
+    return StraightPlume(
+        config, vessel, constant_wind(*wind), DURATION, by_wind=heading_deg is None
+    )
 
 
 def steady(speed, course_deg=0.0):
@@ -24,15 +26,21 @@ def steady(speed, course_deg=0.0):
 
 
 def manoeuvring(*manoeuvres, speed=8.0, course_deg=0.0):
-    config = VesselConfig.model_validate({"speed_mps": speed, "course_deg": course_deg, "manoeuvres": manoeuvres})
+    config = VesselConfig.model_validate(
+        {"speed_mps": speed, "course_deg": course_deg, "manoeuvres": manoeuvres}
+    )
     return ManoeuvringVessel(config, speed, DURATION)
 
 
-@pytest.mark.parametrize("vessel", [steady(6.0), manoeuvring(speed=6.0)], ids=["steady", "without manoeuvres"])
+@pytest.mark.parametrize(
+    "vessel", [steady(6.0), manoeuvring(speed=6.0)], ids=["steady", "without manoeuvres"]
+)
 def test_the_plume_trails_behind_the_motion_through_the_air(vessel):
     # Course north at 6 m/s in a wind to the east at 6 m/s: through the air it goes north-west, and the smoke south-east.
     axis = behind(vessel, wind=(0.0, 6.0)).axis(10.0)
-    assert math.remainder(axis - math.radians(135.0), 2.0 * math.pi) == pytest.approx(0.0, abs=1e-12)
+    assert math.remainder(axis - math.radians(135.0), 2.0 * math.pi) == pytest.approx(
+        0.0, abs=1e-12
+    )
 
 
 def test_a_given_plume_keeps_its_angle_from_the_bow_of_a_steady_vessel_whatever_the_wind():
@@ -42,12 +50,16 @@ def test_a_given_plume_keeps_its_angle_from_the_bow_of_a_steady_vessel_whatever_
 
 def test_a_given_plume_turns_with_the_vessel():
     vessel = manoeuvring({"at_s": 0.0, "turn_deg": 90.0, "turn_rate_deg_s": 1.0})
-    assert behind(vessel, heading_deg=180.0).axis(45.0) == pytest.approx(math.pi + math.radians(45.0), abs=1e-9)
+    assert behind(vessel, heading_deg=180.0).axis(45.0) == pytest.approx(
+        math.pi + math.radians(45.0), abs=1e-9
+    )
 
 
 def test_the_plumes_course_never_jumps_where_its_angle_is_wrapped():
     # Behind a vessel that turns right round, seen from the air: a full turn in all.
-    plume = behind(manoeuvring({"at_s": 10.0, "turn_deg": 360.0, "turn_rate_deg_s": 2.0}), wind=(3.0, 0.0))
+    plume = behind(
+        manoeuvring({"at_s": 10.0, "turn_deg": 360.0, "turn_rate_deg_s": 2.0}), wind=(3.0, 0.0)
+    )
     axis = np.array([plume.axis(t) for t in np.arange(0.0, 300.0, 0.1)])
     # 2 deg/s over the ground, by up to 8/(8 - 3) as much through the air, in 0.1 s.
     assert np.abs(np.diff(axis)).max() < math.radians(0.2 * 8.0 / 5.0) * 1.01
@@ -55,7 +67,9 @@ def test_the_plumes_course_never_jumps_where_its_angle_is_wrapped():
 
 
 def test_the_plume_of_a_vessel_that_stops_in_still_air_stays_where_it_was():
-    vessel = manoeuvring({"at_s": 10.0, "speed_mps": 0.0, "acceleration_mps2": 0.5}, course_deg=30.0)
+    vessel = manoeuvring(
+        {"at_s": 10.0, "speed_mps": 0.0, "acceleration_mps2": 0.5}, course_deg=30.0
+    )
     # No direction follows from no motion at all: it is that of the last, 210 degrees.
     axis = behind(vessel).axis(100.0)
     assert math.remainder(axis - math.radians(210.0), 2.0 * math.pi) == pytest.approx(0.0, abs=1e-9)

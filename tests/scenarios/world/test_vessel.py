@@ -26,16 +26,26 @@ def track(vessel, duration=600.0):
 
 def test_a_steady_turn_is_a_circle():
     # From north, to the right, all the way round at 1 deg/s: radius 8/0.01745 m, centred to starboard.
-    vessel = track({"speed_mps": 8.0, "manoeuvres": [{"at_s": 0.0, "turn_deg": 360.0, "turn_rate_deg_s": 1.0}]}, 400.0)
+    vessel = track(
+        {
+            "speed_mps": 8.0,
+            "manoeuvres": [{"at_s": 0.0, "turn_deg": 360.0, "turn_rate_deg_s": 1.0}],
+        },
+        400.0,
+    )
     rate = math.radians(1.0)
     radius = 8.0 / rate
     for time in (0.0, 33.33, 90.0, 200.017, 360.0):
         angle = rate * time
         north, east, v_north, v_east = vessel.motion(time)
         # The trapezoidal rule over 0.05 s: h^2/12 of the acceleration's change, 0.28 m/s^2 at most, 6e-5 m.
-        assert (north, east) == pytest.approx((radius * math.sin(angle), radius * (1.0 - math.cos(angle))), abs=1e-4)
+        assert (north, east) == pytest.approx(
+            (radius * math.sin(angle), radius * (1.0 - math.cos(angle))), abs=1e-4
+        )
         # Velocity linear in between: h^2/8 of 8 rate^2, 8e-7 m/s.
-        assert (v_north, v_east) == pytest.approx((8.0 * math.cos(angle), 8.0 * math.sin(angle)), abs=1e-6)
+        assert (v_north, v_east) == pytest.approx(
+            (8.0 * math.cos(angle), 8.0 * math.sin(angle)), abs=1e-6
+        )
     assert vessel.manoeuvres_end == pytest.approx(360.0)
 
 
@@ -49,7 +59,12 @@ def test_a_change_of_speed_is_a_parabola(speed, end):
     sign = math.copysign(0.1, speed - 8.0)
     for since in (0.0, 10.0, takes, takes + 30.0):
         accelerating = min(since, takes)
-        way = 400.0 + 8.0 * since + 0.5 * sign * accelerating**2 + sign * takes * (since - accelerating)
+        way = (
+            400.0
+            + 8.0 * since
+            + 0.5 * sign * accelerating**2
+            + sign * takes * (since - accelerating)
+        )
         # The trapezoidal rule is exact but for the two corners, which lie on points of the table.
         assert vessel.motion(50.0 + since)[1] == pytest.approx(way, abs=1e-6)
     assert vessel.motion(50.0 + takes + 1.0)[3] == pytest.approx(end, abs=1e-12)
@@ -64,7 +79,9 @@ def test_manoeuvres_follow_each_other():
     assert (v_north, v_east) == pytest.approx((0.0, 8.0), abs=1e-9)
     _, _, v_north, v_east = vessel.motion(300.0)
     course = math.radians(60.0)
-    assert (v_north, v_east) == pytest.approx((5.0 * math.cos(course), 5.0 * math.sin(course)), abs=1e-9)
+    assert (v_north, v_east) == pytest.approx(
+        (5.0 * math.cos(course), 5.0 * math.sin(course)), abs=1e-9
+    )
     # The slower of both parts: 30/0.5 s, against 3/0.1 s.
     assert vessel.manoeuvres_end == pytest.approx(260.0)
 
@@ -92,7 +109,10 @@ def test_a_track_goes_on_somewhat_beyond_its_duration():
 @pytest.mark.parametrize(
     ("second", "words"),
     [
-        ({"at_s": 99.0, "turn_deg": 90.0}, "begins at 99 s, before an earlier one has ended, at 190 s"),
+        (
+            {"at_s": 99.0, "turn_deg": 90.0},
+            "begins at 99 s, before an earlier one has ended, at 190 s",
+        ),
         # From 11 m/s, which the first one ends with, not from 8.
         ({"at_s": 195.0, "speed_mps": 8.0}, None),
         ({"at_s": 190.0, "turn_deg": -90.0}, None),
@@ -118,7 +138,12 @@ class Weaving:
 
     def motion(self, time):
         east = 40.0 * (1.0 - math.cos(0.05 * time))
-        return 8.0 * time + self.drift * max(0.0, time - 100.0), east, 8.0, 2.0 * math.sin(0.05 * time)
+        return (
+            8.0 * time + self.drift * max(0.0, time - 100.0),
+            east,
+            8.0,
+            2.0 * math.sin(0.05 * time),
+        )
 
     def course(self, _time):
         return 0.0

@@ -13,16 +13,22 @@ from scenarios.world.weather import sampled_weather, wind_ned, wind_of
 
 
 def sampled(given, seed=9):
-    return sampled_weather(given, wind_of(given, given_place(given.place, 60.0)), np.random.default_rng(seed))
+    return sampled_weather(
+        given, wind_of(given, given_place(given.place, 60.0)), np.random.default_rng(seed)
+    )
 
 
 @pytest.mark.parametrize("roughness", [1e-8, 2e-4, 1.0])
 def test_a_wind_with_a_profile_is_the_one_given_at_its_height_whatever_the_roughness(roughness):
-    given = scenario(wind={"speed_mps": 10.0, "from_deg": 180.0, "roughness_m": roughness, "height_m": 20.0})
+    given = scenario(
+        wind={"speed_mps": 10.0, "from_deg": 180.0, "roughness_m": roughness, "height_m": 20.0}
+    )
     field = wind_of(given, given_place(given.place, 60.0))
     # Rounding of logarithms; and V(z) = V(h) ln(z/z0)/ln(h/z0).
     assert field.now(0.0, 20.0) == pytest.approx((10.0, 0.0), abs=1e-12)
-    assert field.now(0.0, 60.0)[0] == pytest.approx(10.0 * math.log(60.0 / roughness) / math.log(20.0 / roughness), rel=1e-12)
+    assert field.now(0.0, 60.0)[0] == pytest.approx(
+        10.0 * math.log(60.0 / roughness) / math.log(20.0 / roughness), rel=1e-12
+    )
 
 
 def test_a_roughness_too_small_for_a_profile_is_refused():
@@ -32,7 +38,9 @@ def test_a_roughness_too_small_for_a_profile_is_refused():
 
 def test_gusts_come_one_after_the_other_and_are_no_stronger_than_they_may():
     turbulence = {"gusts": 5, "gust_speed_mps": 8.0, "gust_length_s": 4.0}
-    weather = sampled(scenario(fidelity="six_dof", turbulence=turbulence, flight={"duration_max_s": 500.0}))
+    weather = sampled(
+        scenario(fidelity="six_dof", turbulence=turbulence, flight={"duration_max_s": 500.0})
+    )
     assert len(weather.gusts) == 5
     for i, gust in enumerate(weather.gusts):
         # A hundred seconds for each, of which it takes four to rise and four to fall.
@@ -45,7 +53,9 @@ def test_gusts_come_one_after_the_other_and_are_no_stronger_than_they_may():
 
 def test_the_seed_determines_the_air():
     turbulence = {"level": "light", "gusts": 2, "gust_speed_mps": 4.0}
-    blown = scenario(fidelity="six_dof", turbulence=turbulence, wind={"speed_mps": 5.0, "from_deg": 30.0})
+    blown = scenario(
+        fidelity="six_dof", turbulence=turbulence, wind={"speed_mps": 5.0, "from_deg": 30.0}
+    )
     assert sampled(blown) == sampled(blown)
     assert sampled(blown, 10) != sampled(blown)
     assert sampled(blown).wind.now(100.0, 60.0) == wind_ned(blown.wind)

@@ -24,7 +24,9 @@ HOURLY = """time_utc,speed_mps,from_deg
 START = 1780308000.0
 """2026-06-01T10:00:00Z (date -u -d ... +%s)."""
 
-KATTEGAT = Place(latitude=math.radians(57.2), longitude=math.radians(11.3), altitude=60.0, utc=START)
+KATTEGAT = Place(
+    latitude=math.radians(57.2), longitude=math.radians(11.3), altitude=60.0, utc=START
+)
 
 
 @pytest.fixture
@@ -56,7 +58,11 @@ def test_a_table_over_height_holds_at_all_times(table):
 
 
 def test_a_table_over_time_and_height_is_both(table):
-    rows = "".join(f"2026-06-01T{10 + hour}:00:00Z,{height},{hour + height / 10},180\n" for hour in (0, 1) for height in (10, 100))
+    rows = "".join(
+        f"2026-06-01T{10 + hour}:00:00Z,{height},{hour + height / 10},180\n"
+        for hour in (0, 1)
+        for height in (10, 100)
+    )
     field = wind(table("time_utc,height_m,speed_mps,from_deg\n" + rows))
     assert field.now(1800.0, 100.0) == pytest.approx((10.5, 0.0), abs=1e-12)
 
@@ -64,8 +70,12 @@ def test_a_table_over_time_and_height_is_both(table):
 def test_a_table_over_time_may_have_a_profile_over_height(table):
     field = wind(table(HOURLY), roughness_m=2e-4)
     assert field.now(0.0, 10.0) == pytest.approx((-4.0, 0.0), abs=1e-12)
-    assert field.now(0.0, 60.0)[0] == pytest.approx(-4.0 * math.log(60.0 / 2e-4) / math.log(10.0 / 2e-4), rel=1e-12)
-    assert wind(table(HOURLY), roughness_m=2e-4, height_m=60.0).now(0.0, 60.0) == pytest.approx((-4.0, 0.0), abs=1e-12)
+    assert field.now(0.0, 60.0)[0] == pytest.approx(
+        -4.0 * math.log(60.0 / 2e-4) / math.log(10.0 / 2e-4), rel=1e-12
+    )
+    assert wind(table(HOURLY), roughness_m=2e-4, height_m=60.0).now(0.0, 60.0) == pytest.approx(
+        (-4.0, 0.0), abs=1e-12
+    )
 
 
 @pytest.mark.parametrize(
@@ -111,9 +121,13 @@ def test_a_table_of_no_use_is_refused_in_one_line(table, text, changes, words):
         assert word in str(refusal.value)
 
 
-def test_a_table_is_relative_to_its_scenario_and_its_start_is_that_of_a_flight_without_a_time(table, tmp_path):
+def test_a_table_is_relative_to_its_scenario_and_its_start_is_that_of_a_flight_without_a_time(
+    table, tmp_path
+):
     table(HOURLY)
-    (tmp_path / "mine.toml").write_text('title = "mine"\nwind.table = "wind.csv"\nfidelity = "kinematic"\n', encoding="utf-8")
+    (tmp_path / "mine.toml").write_text(
+        'title = "mine"\nwind.table = "wind.csv"\nfidelity = "kinematic"\n', encoding="utf-8"
+    )
     given = load_study(str(tmp_path / "mine.toml"))
     assert given.follows
     assert place_of(given, vessel_of(given)).utc == START
@@ -128,19 +142,34 @@ def test_a_table_is_relative_to_its_scenario_and_its_start_is_that_of_a_flight_w
 def test_a_flight_in_a_wind_that_changes_knows_it_and_crosses_as_predicted(table):
     # From 4 m/s ahead to 8 m/s from abeam within 20 minutes.
     rows = "time_utc,speed_mps,from_deg\n2026-06-01T10:00:00Z,4.0,0\n2026-06-01T10:20:00Z,8.0,90\n"
-    flown = fly(wind={"table": table(rows)}, flight={"crossings": 0, "duration_max_s": 900.0}, start={"distance_m": (400.0, 400.0)})
-    assert (flown.row["outcome"], flown.row["keepout_violations"]) == ("completed", 0), flown.row["message"]
-    assert (flown.row["wind_speed_mps"], flown.row["wind_from_deg"]) == pytest.approx((4.0, 0.0), abs=1e-9)
+    flown = fly(
+        wind={"table": table(rows)},
+        flight={"crossings": 0, "duration_max_s": 900.0},
+        start={"distance_m": (400.0, 400.0)},
+    )
+    assert (flown.row["outcome"], flown.row["keepout_violations"]) == ("completed", 0), flown.row[
+        "message"
+    ]
+    assert (flown.row["wind_speed_mps"], flown.row["wind_from_deg"]) == pytest.approx(
+        (4.0, 0.0), abs=1e-9
+    )
     assert flown.row["nu_max"] > flown.row["nu_min"] + 0.05
     # The wind changes by up to 9 m/s in 1200 s; the filter follows 20 s behind at most.
     assert flown.row["wind_error_rms_mps"] < 0.15
-    assert flown.row["crossing_interval_mean_s"] == pytest.approx(flown.row["crossing_interval_predicted_s"], rel=0.02)
+    assert flown.row["crossing_interval_mean_s"] == pytest.approx(
+        flown.row["crossing_interval_predicted_s"], rel=0.02
+    )
     # The plume turns with the wind: behind the vessel's motion north at 8 m/s through the air.
-    field = mean_wind(given := scenario(wind={"table": table(rows)}, flight={"duration_max_s": 900.0}), vessel_of(given))
+    field = mean_wind(
+        given := scenario(wind={"table": table(rows)}, flight={"duration_max_s": 900.0}),
+        vessel_of(given),
+    )
     for time in (10.0, 500.0, 890.0):
         north, east = field.now(time, 60.0)
         axis = flown.history["plume_axis_rad"].iloc[round(10 * time)]
-        assert math.remainder(axis - math.atan2(east, north - 8.0), math.tau) == pytest.approx(0.0, abs=1e-4)
+        assert math.remainder(axis - math.atan2(east, north - 8.0), math.tau) == pytest.approx(
+            0.0, abs=1e-4
+        )
 
 
 def test_netcdf_of_era5_is_interpolated_at_the_place(tmp_path):
@@ -154,7 +183,12 @@ def test_netcdf_of_era5_is_interpolated_at_the_place(tmp_path):
     north[1] += 1.0
     dims = ("valid_time", "latitude", "longitude")
     data = xarray.Dataset(
-        {"u10": (dims, east), "v10": (dims, north), "u100": (dims, 2.0 * east), "v100": (dims, 2.0 * north)},
+        {
+            "u10": (dims, east),
+            "v10": (dims, north),
+            "u100": (dims, 2.0 * east),
+            "v100": (dims, 2.0 * north),
+        },
         coords={"valid_time": hours, "latitude": latitude, "longitude": longitude},
     )
     data.to_netcdf(tmp_path / "era5.nc", engine="h5netcdf")
@@ -181,7 +215,10 @@ def with_longitudes(path, longitudes, at):
     xarray = pytest.importorskip("xarray", reason="xarray is an extra")
     pytest.importorskip("h5netcdf", reason="h5netcdf is an extra")
     east = np.broadcast_to((longitudes - at + 180.0) % 360.0 - 180.0, (1, 2, len(longitudes)))
-    dims, hours = ("valid_time", "latitude", "longitude"), np.array(["2026-06-01T10:00"], dtype="datetime64[ns]")
+    dims, hours = (
+        ("valid_time", "latitude", "longitude"),
+        np.array(["2026-06-01T10:00"], dtype="datetime64[ns]"),
+    )
     data = xarray.Dataset(
         {"u10": (dims, east), "v10": (dims, np.ones_like(east))},
         coords={"valid_time": hours, "latitude": np.array([57.0, 58.0]), "longitude": longitudes},
@@ -207,19 +244,30 @@ def test_netcdf_has_the_wind_of_a_longitude_however_its_grid_counts_it(longitude
 
 def test_netcdf_is_read_by_its_units_names_and_dimensions(tmp_path):
     xarray = pytest.importorskip("xarray", reason="xarray is an extra")
-    with xarray.open_dataset(with_longitudes(tmp_path / "era5.nc", np.array([11.0, 12.0]), 11.5)) as opened:
+    with xarray.open_dataset(
+        with_longitudes(tmp_path / "era5.nc", np.array([11.0, 12.0]), 11.5)
+    ) as opened:
         data = opened.load()
 
     def read(name, changed):
-        changed.to_netcdf(tmp_path / name, engine="h5netcdf", encoding={"valid_time": {"units": "seconds since 1970-01-01"}})
+        changed.to_netcdf(
+            tmp_path / name,
+            engine="h5netcdf",
+            encoding={"valid_time": {"units": "seconds since 1970-01-01"}},
+        )
         return read_netcdf(tmp_path / name, 57.2, 11.2)
 
     expected = read_netcdf(tmp_path / "era5.nc", 57.2, 11.2)[2]
-    two = xarray.concat([data, data.assign_coords(valid_time=data["valid_time"] - np.timedelta64(1, "h"))], "valid_time")
+    two = xarray.concat(
+        [data, data.assign_coords(valid_time=data["valid_time"] - np.timedelta64(1, "h"))],
+        "valid_time",
+    )
     times, _, wind = read("backwards.nc", two)
     assert times[1] - times[0] == 3600.0
     assert wind[1] == pytest.approx(expected[0])
-    assert read("short.nc", data.rename(latitude="lat", longitude="lon"))[2] == pytest.approx(expected)
+    assert read("short.nc", data.rename(latitude="lat", longitude="lon"))[2] == pytest.approx(
+        expected
+    )
     in_metres = data.assign(u10=data["u10"].assign_attrs(units="m s**-1"))
     assert read("metres.nc", in_metres)[2] == pytest.approx(expected)
     knots = data.assign(v10=data["v10"].assign_attrs(units="knots"))
@@ -230,17 +278,26 @@ def test_netcdf_is_read_by_its_units_names_and_dimensions(tmp_path):
             data.expand_dims(number=2),
             "u10 has the dimension 'number' beside time and place; select one of its 2 values",
         ),
-        ("empty.nc", data.isel(valid_time=slice(0)), "it has no times; give a file with the time of the flight"),
+        (
+            "empty.nc",
+            data.isel(valid_time=slice(0)),
+            "it has no times; give a file with the time of the flight",
+        ),
     ):
         with pytest.raises(InputError, match=words):
             read(name, changed)
     # Numbers were taken for milliseconds since 1970.
     data.assign_coords(valid_time=[12.0]).to_netcdf(tmp_path / "numbers.nc", engine="h5netcdf")
-    with pytest.raises(InputError, match="its times have no unit and origin, as 'hours since 2026-06-01'; give valid_time such"):
+    with pytest.raises(
+        InputError,
+        match="its times have no unit and origin, as 'hours since 2026-06-01'; give valid_time such",
+    ):
         read_netcdf(tmp_path / "numbers.nc", 57.2, 11.2)
 
 
 @pytest.mark.parametrize("longitudes", [np.array([11.0, 12.0]), np.arange(0.0, 350.0, 0.25)])
 def test_netcdf_without_a_longitude_is_refused_by_it(longitudes, tmp_path):
-    with pytest.raises(InputError, match=r"longitudes go from .* deg, and the flight begins at -5\.000"):
+    with pytest.raises(
+        InputError, match=r"longitudes go from .* deg, and the flight begins at -5\.000"
+    ):
         read_netcdf(with_longitudes(tmp_path / "era5.nc", longitudes, -5.0), 57.2, -5.0)

@@ -101,7 +101,9 @@ def test_absence_moves_the_estimate_away_from_the_flown_height() -> None:
     assert estimator.detection(60.0) < 0.3 * chance
     # What is left lies above and below, and the best height to fly with it.
     altitudes = np.linspace(20.0, 120.0, 51)
-    best = altitudes[int(np.argmax([estimator.detection(float(altitude)) for altitude in altitudes]))]
+    best = altitudes[
+        int(np.argmax([estimator.detection(float(altitude)) for altitude in altitudes]))
+    ]
     assert abs(best - 60.0) > 8.0
 
 
@@ -111,7 +113,9 @@ def test_absence_in_next_to_no_apparent_wind_says_what_it_says_in_one_of_a_metre
         for i in range(600):
             estimator.predict(0.05)
             reading = 420.0 + SENSOR.noise * math.sin(1.7 * i) if i % 4 == 0 else math.nan
-            estimator.update(230.0, 60.0 * math.cos(math.pi * i / 180.0), 65.0, reading, apparent_wind=wind)
+            estimator.update(
+                230.0, 60.0 * math.cos(math.pi * i / 180.0), 65.0, reading, apparent_wind=wind
+            )
         assert estimator.passes == 3
         return estimator
 
@@ -190,20 +194,31 @@ def test_the_interval_leaves_a_fortieth_on_either_side() -> None:
 
 @pytest.mark.parametrize("altitude", [45.0, 65.0, 90.0])
 def test_the_chance_of_a_detection_is_that_of_centres_drawn_at_random(altitude: float) -> None:
-    estimator, generator, count = estimated(MadePlume(height=68.0, peak=20.0), [65.0]), np.random.default_rng(3), 200_000
+    estimator, generator, count = (
+        estimated(MadePlume(height=68.0, peak=20.0), [65.0]),
+        np.random.default_rng(3),
+        200_000,
+    )
     grid, shape = estimator.grid, estimator.cells.shape
-    spread, height, strength = np.unravel_index(generator.choice(estimator.cells.size, count, p=estimator.cells.ravel()), shape)
+    spread, height, strength = np.unravel_index(
+        generator.choice(estimator.cells.size, count, p=estimator.cells.ravel()), shape
+    )
     off = estimator._heights[height] + PRIOR.meander_z * generator.standard_normal(count) - altitude
     read = grid.strength[strength] * np.exp(-0.5 * (off / grid.sigma_z[spread, height]) ** 2)
     # One look, at the cells' own distance. Steps of 0.5 in the logarithm of strength blur the least that is detected.
-    assert estimator.detection(altitude) == pytest.approx(np.mean(read > estimator._least), abs=0.01)
+    assert estimator.detection(altitude) == pytest.approx(
+        np.mean(read > estimator._least), abs=0.01
+    )
     assert 0.1 < estimator.detection(altitude) < 0.999
 
 
 @pytest.mark.parametrize(
-    ("broken", "state"), [(431.5, SensorState.STUCK), (5000.0, SensorState.SATURATED), (math.nan, SensorState.SILENT)]
+    ("broken", "state"),
+    [(431.5, SensorState.STUCK), (5000.0, SensorState.SATURATED), (math.nan, SensorState.SILENT)],
 )
-def test_a_sensor_that_does_not_work_is_recognised_and_says_nothing(broken: float, state: SensorState) -> None:
+def test_a_sensor_that_does_not_work_is_recognised_and_says_nothing(
+    broken: float, state: SensorState
+) -> None:
     estimator = PlumeEstimator(replace(PRIOR, sensor=replace(SENSOR, saturated=5000.0)))
     before = estimator.cells.copy()
     MadePlume(height=65.0).fly(estimator, [65.0] * 4, broken=broken)
@@ -221,7 +236,12 @@ def test_a_pass_in_which_the_sensor_failed_says_nothing() -> None:
         estimator.predict(0.1)
         stuck = (0.1 * i) % 9.0 > 6.0
         reading = 520.0 if stuck else 420.0 + SENSOR.noise * generator.standard_normal()
-        estimator.update(230.0, 60.0 * math.cos(math.pi * 0.1 * i / 9.0), 65.0, reading if i % 2 == 0 else math.nan)
+        estimator.update(
+            230.0,
+            60.0 * math.cos(math.pi * 0.1 * i / 9.0),
+            65.0,
+            reading if i % 2 == 0 else math.nan,
+        )
     assert estimator.passes > 4
     assert estimator.state is PlumeState.SEARCHING
     # Only the drift of a minute is left.
@@ -247,7 +267,11 @@ def test_a_background_that_drifts_while_nothing_is_read_is_no_plume(unread: str)
             away = 40.0 < time < 100.0
             along = -230.0 if away and unread == "ahead of the ship" else 230.0
             reads = i % 4 == 0 and not (away and unread == "silent")
-            reading = 420.0 + BACKGROUND_DRIFT * time + SENSOR.noise * generator.standard_normal() if reads else math.nan
+            reading = (
+                420.0 + BACKGROUND_DRIFT * time + SENSOR.noise * generator.standard_normal()
+                if reads
+                else math.nan
+            )
             estimator.predict(0.05)
             estimator.update(along, 60.0 * math.cos(math.pi * time / 9.0), 65.0, reading)
         assert estimator.state is PlumeState.SEARCHING

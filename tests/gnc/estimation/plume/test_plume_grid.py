@@ -25,7 +25,9 @@ def test_the_prior_has_the_moments_that_it_was_given() -> None:
     assert 0.97 * PRIOR.height_deviation < deviation < 1.001 * PRIOR.height_deviation
     assert GRID.bearing_prior.sum() == pytest.approx(1.0)
     # The sum over steps of a quarter of a deviation is the integral; cut at three, a Gaussian keeps 98.7 %.
-    assert np.sqrt(GRID.bearing_prior @ GRID.bearing**2) == pytest.approx(0.987 * PRIOR.bearing_deviation, rel=0.005)
+    assert np.sqrt(GRID.bearing_prior @ GRID.bearing**2) == pytest.approx(
+        0.987 * PRIOR.bearing_deviation, rel=0.005
+    )
 
 
 def test_a_funnel_whose_height_has_a_range_is_as_likely_anywhere_in_it() -> None:
@@ -41,14 +43,18 @@ def test_a_funnel_whose_height_is_known_leaves_the_rise_alone() -> None:
     # As likely as a normal distribution of the rise's 4 m, cut at three deviations.
     grid = PlumeGrid(replace(PRIOR, height_deviation=4.0, source_deviation=0.0))
     of_heights = grid.prior.sum(axis=(0, 2))
-    assert np.sqrt(of_heights @ (grid.height - PRIOR.height) ** 2) == pytest.approx(0.987 * 4.0, rel=0.005)
+    assert np.sqrt(of_heights @ (grid.height - PRIOR.height) ** 2) == pytest.approx(
+        0.987 * 4.0, rel=0.005
+    )
 
 
 @pytest.mark.parametrize("looks", [1, 3])
 def test_fading_is_that_of_centres_drawn_at_random(looks: int) -> None:
     altitude, i = 70.0, len(GRID.height) // 2
     fading = GRID.fading(GRID.height - altitude, looks)[MIDDLE, i]
-    centres = GRID.height[i] + PRIOR.meander_z * np.random.default_rng(1).standard_normal((looks, 200_000))
+    centres = GRID.height[i] + PRIOR.meander_z * np.random.default_rng(1).standard_normal(
+        (looks, 200_000)
+    )
     off = np.abs(centres - altitude).min(axis=0)
     steps = np.rint(0.5 * (off / GRID.sigma_z[MIDDLE, i]) ** 2 / STRENGTH_STEP).astype(int)
     drawn = np.bincount(steps, minlength=len(fading))[: len(fading)] / 200_000
@@ -97,7 +103,9 @@ def test_a_pass_is_never_expected_to_widen_the_height() -> None:
     """The law of total variance."""
     weights, heights = GRID.coarse(GRID.prior), GRID.coarse_heights(GRID.height)
     altitudes = np.array([-500.0, 40.0, 65.0, 90.0, 500.0])
-    expected = GRID.expected_deviation(weights, heights, heights - altitudes[:, np.newaxis], 1.0, SPREAD)
+    expected = GRID.expected_deviation(
+        weights, heights, heights - altitudes[:, np.newaxis], 1.0, SPREAD
+    )
     of_heights = weights.sum(axis=1)
     now = float(np.sqrt(of_heights @ heights**2 - (of_heights @ heights) ** 2))
     assert np.all(expected <= now + 1e-9)
@@ -115,20 +123,25 @@ def test_a_plume_that_rises_more_is_wider_and_weaker() -> None:
 def test_without_an_uncertain_stack_the_whole_difference_is_rise() -> None:
     sure = replace(PRIOR, source_deviation=0.0)
     assert sure.rise_of(90.0) == pytest.approx(90.0 - PRIOR.source_height)
-    assert replace(PRIOR, source_deviation=PRIOR.height_deviation).rise_of(90.0) == pytest.approx(25.0)
+    assert replace(PRIOR, source_deviation=PRIOR.height_deviation).rise_of(90.0) == pytest.approx(
+        25.0
+    )
 
 
 def test_what_a_pass_is_expected_to_read_adds_up_to_its_chance_of_anything() -> None:
     fading = GRID.fading(GRID.height - 70.0, 1.5)
     read = GRID.over_faint(GRID.prior, fading)
     # By spread, height and step; what a pass misses is the rest to 1.
-    assert read.sum() == pytest.approx(float((GRID.prior.sum(axis=2)[..., np.newaxis] * fading).sum()), rel=1e-12)
+    assert read.sum() == pytest.approx(
+        float((GRID.prior.sum(axis=2)[..., np.newaxis] * fading).sum()), rel=1e-12
+    )
     # Against the definition: each strength, fainter by each step.
     one = np.zeros_like(GRID.prior)
     one[MIDDLE, 20, 5] = 1.0
     expected = np.zeros(len(GRID.faint))
     nearest = [
-        int(np.abs(np.log(GRID.faint / GRID.strength[5]) + STRENGTH_STEP * step).argmin()) for step in range(fading.shape[2])
+        int(np.abs(np.log(GRID.faint / GRID.strength[5]) + STRENGTH_STEP * step).argmin())
+        for step in range(fading.shape[2])
     ]
     expected[nearest] = fading[MIDDLE, 20]
     assert GRID.over_faint(one, fading)[MIDDLE] == pytest.approx(expected)
@@ -139,4 +152,6 @@ def test_a_pass_looks_as_wide_as_its_plume_or_less_likely_otherwise() -> None:
     assert of_widths.sum(axis=1) == pytest.approx(1.0)
     beside = (of_widths.shape[1] - len(of_widths)) // 2
     assert of_widths.argmax(axis=1).tolist() == [beside + w for w in range(len(of_widths))]
-    assert GRID.widths[beside : -beside or None] == pytest.approx(PRIOR.sigma_y * GRID.sigma_y[:, 22] / GRID.sigma_y[MIDDLE, 22])
+    assert GRID.widths[beside : -beside or None] == pytest.approx(
+        PRIOR.sigma_y * GRID.sigma_y[:, 22] / GRID.sigma_y[MIDDLE, 22]
+    )

@@ -46,7 +46,9 @@ PLACES, SPREADS = np.linspace(-40.0, 40.0, 17), np.array([6.0, 9.0, 13.0])
 
 def test_a_pulse_is_found_where_and_as_strong_as_it_is() -> None:
     clean = _path()
-    evidence = PassReader(SENSOR).read(_path(_pulse(clean.read_at, 80.0, place=10.0, spread=9.0)), PLACES, SPREADS)
+    evidence = PassReader(SENSOR).read(
+        _path(_pulse(clean.read_at, 80.0, place=10.0, spread=9.0)), PLACES, SPREADS
+    )
     assert evidence is not None
     assert PLACES[evidence.at] == pytest.approx(10.0)
     assert SPREADS[evidence.spread] == 9.0
@@ -93,7 +95,9 @@ def test_clean_air_after_a_plume_is_clean_air(place: float) -> None:
     for seed in range(5):
         reader = PassReader(SENSOR)
         there = reader.read(path(0.0, 0.5, duration + tail, 1.0, seed), places, SPREADS)
-        back = reader.read(path(duration, duration + tail + 0.1, 2.0 * duration, -1.0, 100 + seed), places, SPREADS)
+        back = reader.read(
+            path(duration, duration + tail + 0.1, 2.0 * duration, -1.0, 100 + seed), places, SPREADS
+        )
         assert there is not None
         assert there.significance > 100.0
         assert back is not None
@@ -104,7 +108,9 @@ def test_clean_air_after_a_plume_is_clean_air(place: float) -> None:
 
 @pytest.mark.parametrize("strength", [0.0, 80.0])
 @pytest.mark.parametrize("rate", [-0.2, 0.0, 0.2])
-def test_the_background_at_the_end_of_a_pass_is_what_its_pulse_leaves(rate: float, strength: float) -> None:
+def test_the_background_at_the_end_of_a_pass_is_what_its_pulse_leaves(
+    rate: float, strength: float
+) -> None:
     off = []
     for seed in range(20):
         reader, clean = PassReader(SENSOR), _path(seed=seed)
@@ -135,7 +141,9 @@ def test_slope_and_bend_are_those_of_the_whole_covariance() -> None:
     variance = SENSOR.noise**2 + (0.15 * (y - np.median(y)).max()) ** 2
     inverse = np.linalg.inv(variance * np.eye(len(y)) + background.T @ background)
     assert evidence.slope.ravel() == pytest.approx(templates @ inverse @ y, rel=1e-5, abs=1e-8)
-    assert evidence.bend.ravel() == pytest.approx(np.einsum("km,mn,kn->k", templates, inverse, templates), rel=1e-5)
+    assert evidence.bend.ravel() == pytest.approx(
+        np.einsum("km,mn,kn->k", templates, inverse, templates), rel=1e-5
+    )
 
 
 def test_a_place_that_was_not_flown_to_says_nothing() -> None:
@@ -146,7 +154,14 @@ def test_a_place_that_was_not_flown_to_says_nothing() -> None:
 
 def test_readings_without_noise_are_not_believed() -> None:
     path = _path()
-    still = Path(path.time, path.along, path.across, path.altitude, path.read_at, np.full_like(path.readings, 421.0))
+    still = Path(
+        path.time,
+        path.along,
+        path.across,
+        path.altitude,
+        path.read_at,
+        np.full_like(path.readings, 421.0),
+    )
     assert PassReader(SENSOR).read(still, PLACES, SPREADS) is None
 
 

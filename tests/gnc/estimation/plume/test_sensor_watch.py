@@ -10,7 +10,14 @@ from gnc.estimation.plume.sensor_watch import SensorState, SensorWatch, equal_re
 
 
 def _sensor(noise: float = 1.0, resolution: float = 0.1) -> GasSensor:
-    return GasSensor(interval=1.0, delay=0.0, time_constant=1.0, noise=noise, saturated=5000.0, resolution=resolution)
+    return GasSensor(
+        interval=1.0,
+        delay=0.0,
+        time_constant=1.0,
+        noise=noise,
+        saturated=5000.0,
+        resolution=resolution,
+    )
 
 
 def _watch() -> SensorWatch:
@@ -57,7 +64,9 @@ def test_a_reading_at_the_end_of_the_range_is_saturated() -> None:
 
 
 @pytest.mark.parametrize("noise", [0.2, 0.3, 0.5])
-def test_readings_that_are_coarser_than_their_noise_are_those_of_a_working_sensor(noise: float) -> None:
+def test_readings_that_are_coarser_than_their_noise_are_those_of_a_working_sensor(
+    noise: float,
+) -> None:
     """Clean air at a multiple of the step, where readings of noise 0.3 are the same in 90 % of all cases: 10 in a row are usual."""
     watch, generator = SensorWatch(_sensor(noise, 1.0)), np.random.default_rng(1)
     for reading in np.round(420.0 + noise * generator.standard_normal(10_000)):

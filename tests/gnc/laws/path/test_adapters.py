@@ -14,12 +14,16 @@ from gnc.vectors import along, course_of, norm, plus, scaled
 SPEED = 19.42
 LAWS = STEERING_LAWS.names()
 FEED_FORWARD = ["cascade", "look_ahead_line_of_sight", "lyapunov", "npfg", "vector_field"]
-CIRCLES = [name for name in LAWS if ON_OSCILLATION in getattr(STEERING_LAWS.get(name), "cannot", {})]
+CIRCLES = [
+    name for name in LAWS if ON_OSCILLATION in getattr(STEERING_LAWS.get(name), "cannot", {})
+]
 POINTS = [name for name in LAWS if ON_CIRCLE in getattr(STEERING_LAWS.get(name), "cannot", {})]
 
 
 def reference(course=0.3, heading_rate=0.15, speed=SPEED):
-    return SimpleNamespace(north=0.0, east=0.0, course=course, heading_rate=heading_rate, speed=speed)
+    return SimpleNamespace(
+        north=0.0, east=0.0, course=course, heading_rate=heading_rate, speed=speed
+    )
 
 
 def surroundings(wind=(0.0, 0.0), frame=(0.0, 0.0)):
@@ -27,7 +31,9 @@ def surroundings(wind=(0.0, 0.0), frame=(0.0, 0.0)):
 
 
 def commanded(name, point, to, course, wind=(0.0, 0.0), frame=(0.0, 0.0)):
-    return begun(STEERING_LAWS.get(name)(), surroundings(wind, frame), 0.05).heading_rate(point, *to, course, SPEED)
+    return begun(STEERING_LAWS.get(name)(), surroundings(wind, frame), 0.05).heading_rate(
+        point, *to, course, SPEED
+    )
 
 
 def states(count=20):
@@ -50,17 +56,30 @@ def test_a_mirrored_state_has_the_mirrored_command(name):
         east = [(north, -east) for north, east in (to, wind, frame)]
         # The same operations with other signs: rounding of sums in which metres cancel.
         there = commanded(name, mirrored, east[0], -course, *east[1:])
-        assert there == pytest.approx(-commanded(name, point, to, course, wind, frame), rel=1e-9, abs=1e-9)
+        assert there == pytest.approx(
+            -commanded(name, point, to, course, wind, frame), rel=1e-9, abs=1e-9
+        )
 
 
 @pytest.mark.parametrize("name", LAWS)
 def test_a_state_turned_as_a_whole_has_the_same_command(name):
     for point, to, course, wind, frame in states():
         for turn in (1.0, -2.5):
-            turned = [scaled(along(course_of(vector) + turn), norm(vector)) for vector in (to, wind, frame)]
-            there = commanded(name, reference(point.course + turn, point.heading_rate), turned[0], course + turn, *turned[1:])
+            turned = [
+                scaled(along(course_of(vector) + turn), norm(vector))
+                for vector in (to, wind, frame)
+            ]
+            there = commanded(
+                name,
+                reference(point.course + turn, point.heading_rate),
+                turned[0],
+                course + turn,
+                *turned[1:],
+            )
             # Rounding of the turn, 1e-16 of 100 m, in laws that divide by a distance.
-            assert there == pytest.approx(commanded(name, point, to, course, wind, frame), rel=1e-7, abs=1e-8)
+            assert there == pytest.approx(
+                commanded(name, point, to, course, wind, frame), rel=1e-7, abs=1e-8
+            )
 
 
 @pytest.mark.parametrize("wind", [(0.0, 0.0), (4.0, -3.0)])
@@ -95,7 +114,9 @@ def test_on_a_circle_a_law_for_circles_commands_what_keeps_it_there(name, frame)
         assert rate == pytest.approx(wanted.get(name, 0.15), rel=1e-6)
     else:
         # ROSplane feeds V_a^2/(R cos(crab)) forward, with g = 9.81 on both sides: right in still air.
-        assert rate == pytest.approx(SPEED * motion.curvature / math.cos(point.course - course_of(motion.velocity)), rel=1e-9)
+        assert rate == pytest.approx(
+            SPEED * motion.curvature / math.cos(point.course - course_of(motion.velocity)), rel=1e-9
+        )
 
 
 def test_the_path_of_a_reference_in_wind_is_that_of_its_velocity_over_the_ground():
@@ -105,7 +126,9 @@ def test_the_path_of_a_reference_in_wind_is_that_of_its_velocity_over_the_ground
         return plus(wind, scaled(along(course), SPEED))
 
     motion = path_motion(point, 0.0, 0.0, 0.0, SPEED, surroundings(wind))
-    turn = (course_of(ground(0.3 + 0.15 * step)) - course_of(ground(0.3 - 0.15 * step))) / (2.0 * step)
+    turn = (course_of(ground(0.3 + 0.15 * step)) - course_of(ground(0.3 - 0.15 * step))) / (
+        2.0 * step
+    )
     # Curvature is the turn of the velocity over the distance; a central difference, good to the square of 1e-5 rad.
     assert motion.curvature == pytest.approx(turn / norm(ground(0.3)), rel=1e-8)
     assert course_of(motion.tangent) == pytest.approx(course_of(ground(0.3)), abs=1e-12)
@@ -136,10 +159,14 @@ class BeginsInVain(BeginsNothing):
 
 def test_a_law_that_begins_with_no_law_is_named():
     with pytest.raises(
-        LawError, match=r"'BeginsNothing' returned None from begin\(\): its method begin\(surroundings, time_step\) has"
+        LawError,
+        match=r"'BeginsNothing' returned None from begin\(\): its method begin\(surroundings, time_step\) has",
     ):
         begun(BeginsNothing(), surroundings(), 0.05)
-    with pytest.raises(LawError, match=r"'BeginsAtOnce' cannot be called .*: its method begin\(surroundings, time_step\) has to"):
+    with pytest.raises(
+        LawError,
+        match=r"'BeginsAtOnce' cannot be called .*: its method begin\(surroundings, time_step\) has to",
+    ):
         begun(BeginsAtOnce(), surroundings(), 0.05)
     # What fails inside the law names its own line.
     with pytest.raises(TypeError, match="unsupported operand"):

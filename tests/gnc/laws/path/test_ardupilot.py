@@ -21,7 +21,16 @@ def test_beside_a_line_it_captures():
 def test_the_first_call_integrates_nothing_and_later_ones_within_five_degrees_do():
     def call(state, time_step=0.1, gain=0.02):
         parameters = L1Parameters(integrator_gain=gain)
-        return update_waypoint((0.0, 2.0), (20.0, 0.0), 0.0, START, END, time_step=time_step, state=state, parameters=parameters)[1]
+        return update_waypoint(
+            (0.0, 2.0),
+            (20.0, 0.0),
+            0.0,
+            START,
+            END,
+            time_step=time_step,
+            state=state,
+            parameters=parameters,
+        )[1]
 
     first = call(FRESH)
     second = call(first)
@@ -36,7 +45,9 @@ def test_the_first_call_integrates_nothing_and_later_ones_within_five_degrees_do
 
 def test_flying_backwards_it_goes_by_its_heading_at_a_tenth_of_a_metre_per_second():
     # Section 2.1, step 2: L = zeta T 0.1/pi, 0.40585 m; a line 20 m to the left is captured at asin(0.7071), from heading east.
-    acceleration, _ = update_waypoint((0.0, 20.0), (0.0, -5.0), 0.5 * math.pi, START, END, time_step=0.1)
+    acceleration, _ = update_waypoint(
+        (0.0, 20.0), (0.0, -5.0), 0.5 * math.pi, START, END, time_step=0.1
+    )
     distance = 0.3183099 * 0.75 * 17.0 * 0.1
     # -asin(0.7071) and -pi/2 together are beyond a quarter of a turn: the sine is 1.
     assert acceleration == pytest.approx(-2.25 * 0.01 / distance, rel=1e-6)
@@ -49,7 +60,9 @@ def test_behind_the_start_and_beyond_the_end_it_turns_to_these_points(position, 
     acceleration, _ = update_waypoint(position, (20.0, 0.0), 0.0, START, END, time_step=0.1)
     nu = math.atan2(-10.0, (START[0] if turns_to > 0.0 else END[0]) - position[0])
     limited = max(-1.5708, min(1.5708, nu))
-    assert acceleration == pytest.approx(2.25 * 400.0 / (0.3183099 * 0.75 * 17.0 * 20.0) * math.sin(limited), rel=1e-9)
+    assert acceleration == pytest.approx(
+        2.25 * 400.0 / (0.3183099 * 0.75 * 17.0 * 20.0) * math.sin(limited), rel=1e-9
+    )
 
 
 def test_with_the_target_behind_it_keeps_to_the_side_it_turned_to():
@@ -60,11 +73,16 @@ def test_with_the_target_behind_it_keeps_to_the_side_it_turned_to():
 
 
 def test_one_place_for_start_and_end_is_a_waypoint():
-    here, state = update_waypoint((0.0, 0.0), (20.0, 0.0), 0.0, (0.0, 50.0), (0.0, 50.0), time_step=0.1)
+    here, state = update_waypoint(
+        (0.0, 0.0), (20.0, 0.0), 0.0, (0.0, 50.0), (0.0, 50.0), time_step=0.1
+    )
     # Nothing lies across a line from the vehicle to the point; the course is a quarter of a turn off it.
     assert state.last_angle == pytest.approx(0.5 * math.pi, abs=1e-12)
     assert here == pytest.approx(2.25 * 400.0 / (0.3183099 * 0.75 * 17.0 * 20.0), rel=1e-9)
-    assert update_waypoint((0.0, 50.0), (20.0, 0.0), 0.0, (0.0, 50.0), (0.0, 50.0), time_step=0.1)[0] == 0.0
+    assert (
+        update_waypoint((0.0, 50.0), (20.0, 0.0), 0.0, (0.0, 50.0), (0.0, 50.0), time_step=0.1)[0]
+        == 0.0
+    )
     assert state == L1State(0.0, 0.02, state.last_angle)
 
 

@@ -39,7 +39,9 @@ def test_blown_backwards_it_heads_against_the_wind_and_towards_its_bearing():
     command = npfg((0.0, 30.0), (-5.0, 0.0), (-20.0, 0.0), ORIGIN, NORTH, 0.0)
     # Section 1.8, against(V) without regulation: along b sqrt(w^2 - V^2) - w, of 20 m/s from the north and 15 m/s.
     least = math.sqrt(20.0**2 - 15.0**2)
-    heading = math.atan2(least * math.sin(command.bearing), least * math.cos(command.bearing) + 20.0)
+    heading = math.atan2(
+        least * math.sin(command.bearing), least * math.cos(command.bearing) + 20.0
+    )
     assert command.heading == pytest.approx(heading, abs=1e-12)
     assert -0.5 * math.pi < command.bearing < command.heading < 0.0
 
@@ -54,10 +56,15 @@ def test_a_tight_turn_in_wind_shortens_the_period():
 
 def test_the_error_bound_is_continuous_at_a_ground_speed_of_one():
     # Section 1.4: v tau above 1 m/s, tau (v^2 + 1)/2 below; both are tau at 1 m/s.
-    assert track_error_bound(1.0, 7.0) == pytest.approx(track_error_bound(math.nextafter(1.0, 2.0), 7.0), rel=1e-12)
+    assert track_error_bound(1.0, 7.0) == pytest.approx(
+        track_error_bound(math.nextafter(1.0, 2.0), 7.0), rel=1e-12
+    )
 
 
-@pytest.mark.parametrize(("wind", "feasible"), [((-14.0, 0.0), 0.75), ((0.0, 15.0), 0.0), ((0.0, 13.5), 1.0), ((14.0, 0.0), 1.0)])
+@pytest.mark.parametrize(
+    ("wind", "feasible"),
+    [((-14.0, 0.0), 0.75), ((0.0, 15.0), 0.0), ((0.0, 13.5), 1.0), ((14.0, 0.0), 1.0)],
+)
 def test_a_bearing_is_feasible_as_far_as_airspeed_exceeds_what_blows_against_it(wind, feasible):
     # Section 1.3 at 15 m/s: sin^2(pi/2 min((V - c)/1.5, 1)); 1 m/s left of 1.5 is sin^2(60 deg) = 3/4. Rounding.
     assert bearing_feasibility(NORTH, wind, 15.0) == pytest.approx(feasible, abs=1e-15)
@@ -66,9 +73,17 @@ def test_a_bearing_is_feasible_as_far_as_airspeed_exceeds_what_blows_against_it(
 def test_every_state_has_a_finite_command():
     generator = np.random.default_rng(18)
     for _ in range(500):
-        position, velocity, wind = (tuple(float(x) for x in generator.normal(0.0, s, 2)) for s in (100.0, 12.0, 12.0))
-        course, curvature = generator.uniform(-math.pi, math.pi), float(generator.choice([0.0, generator.normal(0.0, 0.1)]))
+        position, velocity, wind = (
+            tuple(float(x) for x in generator.normal(0.0, s, 2)) for s in (100.0, 12.0, 12.0)
+        )
+        course, curvature = (
+            generator.uniform(-math.pi, math.pi),
+            float(generator.choice([0.0, generator.normal(0.0, 0.1)])),
+        )
         tangent = (math.cos(course), math.sin(course))
         parameters = NpfgParameters(period=float(generator.uniform(3.0, 30.0)))
         command = npfg(position, velocity, wind, ORIGIN, tangent, curvature, parameters)
-        assert all(math.isfinite(x) for x in (command.lateral_acceleration, command.heading, command.period))
+        assert all(
+            math.isfinite(x)
+            for x in (command.lateral_acceleration, command.heading, command.period)
+        )

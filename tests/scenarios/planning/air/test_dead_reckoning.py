@@ -34,14 +34,20 @@ def test_an_aircraft_reckons_no_better_than_to_two_per_cent_of_its_airspeed_what
     exact = {"drift_rate_mps": 0.0}
     assert rate(following=exact) == pytest.approx(0.02 * scenario().guidance.airspeed_mps)
     # What sensors add comes on top of it.
-    assert rate(following=exact, sensors={"airspeed_bias_mps": 0.5}) == pytest.approx(rate(following=exact) + 1.0)
+    assert rate(following=exact, sensors={"airspeed_bias_mps": 0.5}) == pytest.approx(
+        rate(following=exact) + 1.0
+    )
 
 
 def test_in_a_climb_it_reckons_with_the_airspeed_along_it_which_leads_ahead_by_its_cosine():
     exact = {"drift_rate_mps": 0.0, "climb_gradient": 0.3}
-    climbing = rate(following=exact, emission={"ship": "container"}) - rate(following={"drift_rate_mps": 0.0})
+    climbing = rate(following=exact, emission={"ship": "container"}) - rate(
+        following={"drift_rate_mps": 0.0}
+    )
     # Once in the wind, and once, after half a turn, in what is reckoned with it.
-    assert climbing == pytest.approx(2.0 * (1.0 - math.cos(math.atan(0.3))) * scenario().guidance.airspeed_mps)
+    assert climbing == pytest.approx(
+        2.0 * (1.0 - math.cos(math.atan(0.3))) * scenario().guidance.airspeed_mps
+    )
 
 
 def test_guard_and_mission_reckon_with_the_same_rate():
@@ -52,13 +58,19 @@ def test_guard_and_mission_reckon_with_the_same_rate():
 def test_a_wind_that_changes_adds_its_largest_change_in_an_outage_and_until_its_estimate_has_followed():
     # 0.1 m/s each second for 300 s: in 60 s and the 20.6 s before 8.06 m/s.
     changing = WindField([[[0.0, 0.0]], [[30.0, 0.0]]], times=(0.0, 300.0))
-    assert rate(changing) == pytest.approx(1.0 + 0.1 * (60.0 + 0.03 * 19.42 * math.sqrt(0.5) / 0.02))
+    assert rate(changing) == pytest.approx(
+        1.0 + 0.1 * (60.0 + 0.03 * 19.42 * math.sqrt(0.5) / 0.02)
+    )
 
 
-@pytest.mark.parametrize(("speed", "rise", "count"), [(8.0, 4.0, 7), (5.0, 10.0, 3), (8.0, 30.0, 1)])
+@pytest.mark.parametrize(
+    ("speed", "rise", "count"), [(8.0, 4.0, 7), (5.0, 10.0, 3), (8.0, 30.0, 1)]
+)
 def test_gusts_displace_by_no_more_than_is_reckoned_with(speed, rise, count):
     time = np.linspace(0.0, OUTAGE, 6001)
-    gust = np.where(time <= 2.0 * rise * count, 0.5 * speed * (1.0 - np.cos(math.pi * time / rise)), 0.0)
+    gust = np.where(
+        time <= 2.0 * rise * count, 0.5 * speed * (1.0 - np.cos(math.pi * time / rise)), 0.0
+    )
     moved = np.concatenate([[0.0], np.cumsum(0.5 * (gust[1:] + gust[:-1]) * np.diff(time))])
     added = in_air(gusts=count, gust_speed_mps=speed, gust_length_s=rise)
     for begins in range(0, 6000, 100):
@@ -69,14 +81,21 @@ def test_gusts_displace_by_no_more_than_is_reckoned_with(speed, rise, count):
 
 
 @pytest.mark.parametrize("level", ["light", "moderate"])
-def test_turbulence_displaces_by_more_than_is_reckoned_with_about_as_often_as_three_deviations(level):
+def test_turbulence_displaces_by_more_than_is_reckoned_with_about_as_often_as_three_deviations(
+    level,
+):
     height, speed, step = 60.0, scenario().guidance.airspeed_mps, 0.1
-    sigma, correlated = intensities(height, TURBULENCE[level].wind_at_20ft)[0], scale_lengths(height)[0] / speed
+    sigma, correlated = (
+        intensities(height, TURBULENCE[level].wind_at_20ft)[0],
+        scale_lengths(height)[0] / speed,
+    )
     noise, kept = np.random.default_rng(1), math.exp(-step / correlated)
     velocity, moved, exceeded = sigma * noise.standard_normal(20_000), np.zeros(20_000), []
     added = in_air(level=level)
     for n in range(1, round(OUTAGE / step) + 1):
-        velocity = kept * velocity + sigma * math.sqrt(1.0 - kept**2) * noise.standard_normal(velocity.size)
+        velocity = kept * velocity + sigma * math.sqrt(1.0 - kept**2) * noise.standard_normal(
+            velocity.size
+        )
         moved += step * velocity
         exceeded.append(np.mean(np.abs(moved) > added * (n * step + TURN)))
     # Of a normal distribution 0.27 % lie beyond three deviations: so many at the worst age, and fewer at any other.
@@ -86,11 +105,17 @@ def test_turbulence_displaces_by_more_than_is_reckoned_with_about_as_often_as_th
 @pytest.mark.parametrize("sigma_deg", [5.0, 15.0])
 def test_a_compass_with_noise_makes_it_go_wrong_by_no_more_than_planned(sigma_deg):
     # Twenty flights that weave in a wind for 300 s, and then for 60 s without satellites.
-    flown = scenario(fault=FAULT, sensors={"heading_sigma_deg": sigma_deg}, following={"drift_rate_mps": 0.0})
+    flown = scenario(
+        fault=FAULT, sensors={"heading_sigma_deg": sigma_deg}, following={"drift_rate_mps": 0.0}
+    )
     # Without what an aircraft adds to it, which is none.
     planned = drift_rate(flown, CALM, TURN) - rate(following={"drift_rate_mps": 0.0})
     generator = np.random.default_rng(int(sigma_deg))
-    speed, time_step, (w_north, w_east) = flown.guidance.airspeed_mps, 1.0 / flown.guidance.rate_hz, (3.0, -4.0)
+    speed, time_step, (w_north, w_east) = (
+        flown.guidance.airspeed_mps,
+        1.0 / flown.guidance.rate_hz,
+        (3.0, -4.0),
+    )
     for _ in range(20):
         navigation = Navigation(navigation_parameters(flown, kinematic_setup(flown)))
         phase, north, east = float(generator.uniform(0.0, 2.0 * math.pi)), 0.0, 0.0
@@ -100,7 +125,9 @@ def test_a_compass_with_noise_makes_it_go_wrong_by_no_more_than_planned(sigma_de
             course = phase + 1.5 * math.sin(0.33 * time)
             v_north, v_east = speed * math.cos(course) + w_north, speed * math.sin(course) + w_east
             lost = time >= 300.0
-            navigation.update(None if lost else (north, east, v_north, v_east), speed, course + error, 0.0)
+            navigation.update(
+                None if lost else (north, east, v_north, v_east), speed, course + error, 0.0
+            )
             north, east = north + time_step * v_north, east + time_step * v_east
             if lost:
                 age = navigation.lost

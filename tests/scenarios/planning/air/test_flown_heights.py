@@ -50,7 +50,10 @@ def test_no_height_is_commanded_beyond_those_that_are_looked_at(tmp_path):
 def test_a_vessel_that_outruns_the_vehicle_where_it_climbs_to_is_refused(tmp_path):
     flown, vessel = scenario(tmp_path, FASTER_ALOFT, **CIRCLE)
     # At the funnel she moves at 14 m/s through the air; at 60 + 150 m at 4 + 10 + 16 * ln(210/60)/ln(250/60) = 28 m/s.
-    with pytest.raises(InfeasibleError, match=r"height of 210 m, which is flown, the vessel moves at up to 28\.\d m/s"):
+    with pytest.raises(
+        InfeasibleError,
+        match=r"height of 210 m, which is flown, the vessel moves at up to 28\.\d m/s",
+    ):
         check_not_outrun(flown, vessel, mean_wind(flown, vessel), 150.0)
     check_not_outrun(flown, vessel, mean_wind(flown, vessel), 10.0)
 
@@ -62,7 +65,8 @@ def test_winds_below_count_where_the_aircraft_may_have_to_glide(tmp_path, fault)
     assert wind_change(sound, mean_wind(sound, vessel), 0.0) == 0.0
     declared = with_values(sound, {"fault.declared": [fault]})
     with pytest.raises(
-        InfeasibleError, match=r"height of 4\d m, to which it glides if a part of it fails, the vessel moves at up to 28"
+        InfeasibleError,
+        match=r"height of 4\d m, to which it glides if a part of it fails, the vessel moves at up to 28",
     ):
         check_not_outrun(declared, vessel, mean_wind(declared, vessel), 250.0)
     assert wind_change(declared, mean_wind(declared, vessel), 0.0) == pytest.approx(15.0)

@@ -6,7 +6,12 @@ from types import SimpleNamespace
 import pandas as pd
 
 from scenarios.studies.falsification import study as falsification
-from scenarios.studies.falsification.results import UNFLOWN, SearchedFlight, search_lines, search_manifest
+from scenarios.studies.falsification.results import (
+    UNFLOWN,
+    SearchedFlight,
+    search_lines,
+    search_manifest,
+)
 from tests.run_tables import manifest_of
 from tests.scenarios.losing_executor import losing
 from tests.scenarios.short_search import CONFIRMATIONS, KEPT, POPULATION, run, same_tables, tables
@@ -18,7 +23,9 @@ TURNS = "search.generations=4"
 def clock(monkeypatch):
     """Have the search's time advance by a second whenever it is looked at."""
     ticks = itertools.count()
-    monkeypatch.setattr(falsification, "time", SimpleNamespace(monotonic=lambda: float(next(ticks))))
+    monkeypatch.setattr(
+        falsification, "time", SimpleNamespace(monotonic=lambda: float(next(ticks)))
+    )
 
 
 def test_a_search_is_resumed_after_a_lost_flight_on_which_others_depend(search, tmp_path):
@@ -44,13 +51,25 @@ def test_a_search_is_resumed_after_a_lost_flight_on_which_others_depend(search, 
 
 
 def test_a_method_of_one_flight_without_a_measurement_has_no_nearest():
-    lost = SearchedFlight(number=0, flight_id="a", method="corners", confirms="", clearance=UNFLOWN, violates=False)
+    lost = SearchedFlight(
+        number=0, flight_id="a", method="corners", confirms="", clearance=UNFLOWN, violates=False
+    )
     said = search_manifest([lost], [])
-    assert said["methods"]["corners"] == {"flights": 1, "measured": 0, "violations": 0, "worst_clearance_m": None}
+    assert said["methods"]["corners"] == {
+        "flights": 1,
+        "measured": 0,
+        "violations": 0,
+        "worst_clearance_m": None,
+    }
     assert list(search_lines(said)) == ["  corners: 1 flight, 0 violated, none measured"]
-    flown = SearchedFlight(number=1, flight_id="b", method="corners", confirms="", clearance=5.0, violates=False)
+    flown = SearchedFlight(
+        number=1, flight_id="b", method="corners", confirms="", clearance=5.0, violates=False
+    )
     (line,) = search_lines(search_manifest([lost, flown, flown], []))
-    assert line == "  corners: 3 flights (2 could be flown and measured), 0 violated, nearest 5.00 m outside of r_min"
+    assert (
+        line
+        == "  corners: 3 flights (2 could be flown and measured), 0 violated, nearest 5.00 m outside of r_min"
+    )
 
 
 def test_a_lost_flight_on_which_no_other_depends_is_tried_again(search, tmp_path):
@@ -59,11 +78,16 @@ def test_a_lost_flight_on_which_no_other_depends_is_tried_again(search, tmp_path
     last = len(tables(found)[0]) - 1
     run(search, tmp_path / "run", TURNS, factory=losing(last))
     assert run(search, tmp_path / "run", TURNS, resume=True).all_met
-    same = [pd.read_csv(out / "summary.csv").drop(columns="wall_time_s") for out in (found, tmp_path / "run")]
+    same = [
+        pd.read_csv(out / "summary.csv").drop(columns="wall_time_s")
+        for out in (found, tmp_path / "run")
+    ]
     pd.testing.assert_frame_equal(*(rows[: last + 1] for rows in same), check_exact=True)
 
 
-def test_a_search_by_time_ends_after_it_and_a_resumed_one_continues_for_as_long(search, tmp_path, monkeypatch):
+def test_a_search_by_time_ends_after_it_and_a_resumed_one_continues_for_as_long(
+    search, tmp_path, monkeypatch
+):
     clock(monkeypatch)
     out = tmp_path / "run"
     assert run(search, out, "search.time_s=4").all_met

@@ -58,7 +58,9 @@ def test_every_flight_says_which_method_proposed_it(found):
         rows = pd.concat([searched, repeats])
         rows = rows[rows["search_method"] == name]
         assert (of["flights"], of["violations"]) == (len(rows), 0)
-        assert of["worst_clearance_m"] == pytest.approx(rows["min_distance_m"].min() - 200.0, rel=1e-12)
+        assert of["worst_clearance_m"] == pytest.approx(
+            rows["min_distance_m"].min() - 200.0, rel=1e-12
+        )
     assert said["violations"] == []
     assert said["proposed"] == len(searched)
 
@@ -91,7 +93,9 @@ def test_the_worst_flights_are_repeated_with_fresh_noise(found):
         (first,) = searched[searched["flight_id"] == entry["flight_id"]][keys].to_numpy()
         assert (again[keys].to_numpy() == first).all()
         assert (entry["confirmations"], entry["confirmations_violating"]) == (CONFIRMATIONS, 0)
-        assert entry["confirmations_nearest_m"] == pytest.approx(again["min_distance_m"].min() - 200.0, rel=1e-12)
+        assert entry["confirmations_nearest_m"] == pytest.approx(
+            again["min_distance_m"].min() - 200.0, rel=1e-12
+        )
 
 
 def test_the_worst_flights_are_kept_as_scenarios_that_fly_again_to_the_last_bit(found, tmp_path):
@@ -101,7 +105,9 @@ def test_the_worst_flights_are_kept_as_scenarios_that_fly_again_to_the_last_bit(
     assert searched[kept[0].stem[3:]] == searched.min()
     for path in kept:
         out, flight_id = tmp_path / path.stem, path.stem[3:]
-        result = run_study(load_study(str(path)), path.stem, out, executor_factory=InProcessExecutor)
+        result = run_study(
+            load_study(str(path)), path.stem, out, executor_factory=InProcessExecutor
+        )
         assert result.all_met
         assert pd.read_csv(out / "summary.csv")["min_distance_m"].tolist() == [searched[flight_id]]
         first = pd.read_parquet(found / "flights" / f"{flight_id}.parquet")
@@ -126,7 +132,9 @@ def test_flights_of_a_search_are_replayed_identically(found, tmp_path):
         assert result.summary.manifest == {"identical": True}, result.summary.lines
 
 
-def test_the_search_goes_the_same_way_whatever_the_number_of_processes_and_where_it_was_interrupted(search, found, tmp_path):
+def test_the_search_goes_the_same_way_whatever_the_number_of_processes_and_where_it_was_interrupted(
+    search, found, tmp_path
+):
     out = tmp_path / "run"
     # In the second turn of a method, in the last one, and among the flights that repeat the worst.
     searched = len(tables(found)[0])
@@ -161,10 +169,23 @@ def test_a_method_of_ones_own_takes_its_turns(search, tmp_path):
     (tmp_path / "own.py").write_text(OWN_METHOD, encoding="utf-8")
     name = str(tmp_path / "own.py:Centre")
     out = tmp_path / "run"
-    run(search, out, f'search.methods=["corners","{name}"]', "search.generations=3", "search.confirmations=0")
+    run(
+        search,
+        out,
+        f'search.methods=["corners","{name}"]',
+        "search.generations=3",
+        "search.confirmations=0",
+    )
     searched, repeats = tables(out)
-    assert searched["search_method"].value_counts().to_dict() == {"corners": 2 * POPULATION, name: 2 * POPULATION}
-    assert searched[searched["search_method"] == name]["start.range_m"].between(400.0 + 0.4 * 800.0, 400.0 + 0.6 * 800.0).all()
+    assert searched["search_method"].value_counts().to_dict() == {
+        "corners": 2 * POPULATION,
+        name: 2 * POPULATION,
+    }
+    assert (
+        searched[searched["search_method"] == name]["start.range_m"]
+        .between(400.0 + 0.4 * 800.0, 400.0 + 0.6 * 800.0)
+        .all()
+    )
     assert not len(repeats)
     assert list(manifest_of(out)["plugins"]) == [name]
 
@@ -178,7 +199,13 @@ def test_its_report_says_what_was_found(found, tmp_path):
     text = page.read_text(encoding="utf-8")
     least = pd.read_csv(found / "summary.csv")["min_distance_m"].min() - 200.0
     assert f"The closest that it found stayed {least:.1f} m outside the keep-out area." in text
-    for words in ("corner sampling", "differential evolution", "local climb", "CMA-ES", "repeated with fresh noise"):
+    for words in (
+        "corner sampling",
+        "differential evolution",
+        "local climb",
+        "CMA-ES",
+        "repeated with fresh noise",
+    ):
         assert words in text
     worst = manifest_of(found)["search"]["worst"]
     assert all(entry["flight_id"] in text for entry in worst)
@@ -186,8 +213,15 @@ def test_its_report_says_what_was_found(found, tmp_path):
     assert manifest_of(found)["worst_clearance_m"] == pytest.approx(least, rel=1e-12)
 
 
-def test_how_well_sulphur_is_measured_is_not_stated_from_flights_that_were_searched_for(search, tmp_path):
-    sniffing = ('payload.instruments=["sniffer"]', "emission.ship=container", "plume.model=fluctuating", "search.generations=0")
+def test_how_well_sulphur_is_measured_is_not_stated_from_flights_that_were_searched_for(
+    search, tmp_path
+):
+    sniffing = (
+        'payload.instruments=["sniffer"]',
+        "emission.ship=container",
+        "plume.model=fluctuating",
+        "search.generations=0",
+    )
     assert run(search, tmp_path / "run", *sniffing).summary.done
     assert "fsc_percent" in pd.read_csv(tmp_path / "run" / "summary.csv")
     assert not (tmp_path / "run" / "sulphur.json").exists()

@@ -61,27 +61,39 @@ def refused(directory, *overrides):
 def test_a_search_by_time_ends_where_no_point_is_within_the_declared_ranges(tmp_path, monkeypatch):
     # The search's time advances by a second whenever it is looked at.
     ticks = itertools.count()
-    monkeypatch.setattr(falsification, "time", SimpleNamespace(monotonic=lambda: float(next(ticks))))
+    monkeypatch.setattr(
+        falsification, "time", SimpleNamespace(monotonic=lambda: float(next(ticks)))
+    )
     (tmp_path / "beyond.py").write_text(BEYOND, encoding="utf-8")
     # A turn of 4.5 deg/s at 8 m/s is 0.63 m/s2, whatever is sampled. Of turns that are not, the study would be refused at once.
     turns = (
         "vessel.manoeuvres=[{at_s=1.0,turn_deg=60.0}]", "following.vessel_acceleration_mps2=0.05",
         'draws=[{key="vessel.manoeuvres.0.turn_rate_deg_s",uniform=[4.5,5.0]}]',
     )  # fmt: skip
-    line = refused(tmp_path, "search.time_s=6", f'search.methods=["{tmp_path / "beyond.py"}:Centre"]', *turns)
+    line = refused(
+        tmp_path, "search.time_s=6", f'search.methods=["{tmp_path / "beyond.py"}:Centre"]', *turns
+    )
     assert line.startswith("none of the ")
-    assert "within speed_ratio and following.vessel_acceleration_mps2, and none was flown: widen these" in line
+    assert (
+        "within speed_ratio and following.vessel_acceleration_mps2, and none was flown: widen these"
+        in line
+    )
 
 
 def test_a_search_by_a_method_that_cannot_search_the_draws_is_refused(tmp_path):
     # CMA-ES needs a covariance: two coordinates at the least.
     line = refused(tmp_path, "search.methods=['cma']")
-    assert line.startswith("search.methods ['cma'] proposed no flight (continuous draws: 1 of 1, search.population: 16): add")
+    assert line.startswith(
+        "search.methods ['cma'] proposed no flight (continuous draws: 1 of 1, search.population: 16): add"
+    )
 
 
 @pytest.mark.parametrize(
     ("name", "words"),
-    [("Unmade", "failed when it was made: KeyError: 'mutations'"), ("Raising", "failed in ask(): RuntimeError: boom")],
+    [
+        ("Unmade", "failed when it was made: KeyError: 'mutations'"),
+        ("Raising", "failed in ask(): RuntimeError: boom"),
+    ],
 )
 def test_a_method_of_ones_own_that_raises_is_named_with_its_file(tmp_path, name, words):
     made = "    def __init__(self, *_):\n        {}['mutations']\n"
@@ -94,7 +106,12 @@ def test_a_method_of_ones_own_that_raises_is_named_with_its_file(tmp_path, name,
 
 
 def test_a_number_of_flights_is_refused_with_what_a_search_flies():
-    keys = ["search.generations=2", "search.population=16", "search.kept=3", "search.confirmations=2"]
+    keys = [
+        "search.generations=2",
+        "search.population=16",
+        "search.kept=3",
+        "search.confirmations=2",
+    ]
     with pytest.raises(InputError) as refused:
         load_study("falsify", ["flights=5"])
     assert (
@@ -112,14 +129,23 @@ def test_a_search_without_anything_to_search_is_refused(tmp_path):
 @pytest.mark.parametrize(
     ("override", "words"),
     [
-        ("search.generations=5", r"'search\.generations' has no effect here: .*: leave search\.time_s out"),
+        (
+            "search.generations=5",
+            r"'search\.generations' has no effect here: .*: leave search\.time_s out",
+        ),
         ("search.methods=['locl']", r"unknown search method 'locl'; did you mean 'local'\?"),
         ("search.methods=[]", r"search\.methods: value is \[\]"),
         ("search.methods=['local','local']", "name each method once"),
         ("search.mutation=[1.0,0.5]", "its first value must not exceed its second"),
-        ("search={population=10000, generations=100}", "make 1010000 flights, with search.confirmations of each numbered up to"),
+        (
+            "search={population=10000, generations=100}",
+            "make 1010000 flights, with search.confirmations of each numbered up to",
+        ),
         ("search.time_s=0", r"search\.time_s"),
     ],
 )
 def test_a_search_that_cannot_be_is_refused_in_one_line(tmp_path, override, words):
-    assert re.search(words, refused(tmp_path, override, *(["search.time_s=60"] if "generations=5" in override else [])))
+    assert re.search(
+        words,
+        refused(tmp_path, override, *(["search.time_s=60"] if "generations=5" in override else [])),
+    )

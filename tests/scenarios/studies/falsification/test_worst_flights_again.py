@@ -46,15 +46,28 @@ def found(tmp_path_factory):
 
 
 @pytest.mark.parametrize("fault", ["none", "vessel_data", "satellite_navigation"])
-def test_a_worst_flight_keeps_the_margin_that_allows_for_the_faults_of_the_whole_search(found, tmp_path, fault):
+def test_a_worst_flight_keeps_the_margin_that_allows_for_the_faults_of_the_whole_search(
+    found, tmp_path, fault
+):
     searched = pd.read_csv(found / "summary.csv").set_index("flight_id")
-    path = next(path for path in sorted((found / "worst").iterdir()) if searched.loc[path.stem[3:], "fault"] == fault)
+    path = next(
+        path
+        for path in sorted((found / "worst").iterdir())
+        if searched.loc[path.stem[3:], "fault"] == fault
+    )
     # What is said of the search is not said of one of its flights.
     assert "description" not in path.read_text(encoding="utf-8")
     flown(path, tmp_path / "again")
     (again,) = pd.read_csv(tmp_path / "again" / "summary.csv").to_dict("records")
     row = searched.loc[path.stem[3:]]
-    for figure in ("fault", "seed", "keepout_margin_m", "min_distance_m", "guard_interventions", "guard_time_s"):
+    for figure in (
+        "fault",
+        "seed",
+        "keepout_margin_m",
+        "min_distance_m",
+        "guard_interventions",
+        "guard_time_s",
+    ):
         assert again[figure] == row[figure]
     first = pd.read_parquet(found / "flights" / f"{row.name}.parquet")
     second = pd.read_parquet(tmp_path / "again" / "flights" / f"{path.stem}_00000.parquet")
@@ -62,4 +75,7 @@ def test_a_worst_flight_keeps_the_margin_that_allows_for_the_faults_of_the_whole
     # Without the declaration it would not: the margin of a flight that can lose no satellites is 1 m smaller here.
     if fault != "satellite_navigation":
         flown(path, tmp_path / "other", "fault.declared=[]")
-        assert pd.read_csv(tmp_path / "other" / "summary.csv")["keepout_margin_m"].item() < row["keepout_margin_m"] - 0.5
+        assert (
+            pd.read_csv(tmp_path / "other" / "summary.csv")["keepout_margin_m"].item()
+            < row["keepout_margin_m"] - 0.5
+        )

@@ -46,7 +46,13 @@ def run(tmp_path_factory):
 def test_both_ships_are_served_with_the_right_verdict_and_the_run_is_met(run):
     result, out = run
     (row,) = rows_of(out)
-    assert (row["ships"], row["served"], row["correct"], row["wrong"], row["oracle_verdicts"]) == (2, 2, 2, 0, 2)
+    assert (row["ships"], row["served"], row["correct"], row["wrong"], row["oracle_verdicts"]) == (
+        2,
+        2,
+        2,
+        0,
+        2,
+    )
     assert row["kept_out"]
     assert row["keepout_violations"] == 0
     assert result.all_met
@@ -58,7 +64,11 @@ def test_both_ships_are_served_with_the_right_verdict_and_the_run_is_met(run):
     assert sorted(ship["position"] for ship in ships) == [0, 1]
     for ship in ships:
         # The catalog's limit between compliant fuel and the others.
-        assert ship["verdict"] == ship["truth"] == ("above" if ship["fsc_fuel_percent"] > 0.15 else "below")
+        assert (
+            ship["verdict"]
+            == ship["truth"]
+            == ("above" if ship["fsc_fuel_percent"] > 0.15 else "below")
+        )
         # r_min of the keep-out sphere, by default.
         assert min(ship["min_distance_m"], ship["others_distance_min_m"]) > 200.0
 
@@ -66,7 +76,9 @@ def test_both_ships_are_served_with_the_right_verdict_and_the_run_is_met(run):
 def test_a_patrol_of_the_summary_is_no_flight_to_replay(run):
     _, out = run
     (row,) = rows_of(out)
-    with pytest.raises(InputError, match="is a study of patrol; only single flights can be replayed"):
+    with pytest.raises(
+        InputError, match="is a study of patrol; only single flights can be replayed"
+    ):
         Replay(str(out / "flights" / row["flight_id"]))
 
 
@@ -74,7 +86,11 @@ def test_stretches_follow_each_other_in_time_and_place_and_fit_into_the_enduranc
     _, out = run
     phases = pd.read_csv(out / "phases.csv")
     assert phases["begins_s"].iloc[0] == 0.0
-    for end, begin in (("ends_s", "begins_s"), ("to_north_m", "from_north_m"), ("to_east_m", "from_east_m")):
+    for end, begin in (
+        ("ends_s", "begins_s"),
+        ("to_north_m", "from_north_m"),
+        ("to_east_m", "from_east_m"),
+    ):
         # Each stretch begins with the very sample that the one before it ends with; a flight at the place that its start is
         # turned into and back: rounding.
         assert np.allclose(phases[end].iloc[:-1], phases[begin].iloc[1:], rtol=0.0, atol=1e-6), end
@@ -90,9 +106,14 @@ def test_a_flight_begins_where_the_way_to_the_ship_ends(run):
         leg = own[own["phase"] == "transit"].iloc[-1]
         course = math.radians(ship["vessel_course_deg"])
         way = ship["vessel_speed_mps"] * ship["reached_s"]
-        north, east = ship["north_m"] + way * math.cos(course), ship["east_m"] + way * math.sin(course)
+        north, east = (
+            ship["north_m"] + way * math.cos(course),
+            ship["east_m"] + way * math.sin(course),
+        )
         # start.distance_m ends at 800 m; tables have all digits.
-        assert math.hypot(leg["to_north_m"] - north, leg["to_east_m"] - east) == pytest.approx(800.0, abs=1e-6)
+        assert math.hypot(leg["to_north_m"] - north, leg["to_east_m"] - east) == pytest.approx(
+            800.0, abs=1e-6
+        )
 
 
 def test_the_same_patrol_is_flown_again_to_the_last_bit_in_this_process_or_another(tmp_path):
@@ -100,7 +121,10 @@ def test_the_same_patrol_is_flown_again_to_the_last_bit_in_this_process_or_anoth
     short = patrol("patrol.patience_s=30")
     run_study(short, "patrol", tmp_path / "one")
     run_study(short, "patrol", tmp_path / "again", executor_factory=InProcessExecutor)
-    assert [ship["ended_s"] > 0.0 for ship in rows_of(tmp_path / "one", "ships.csv")] == [True, True]
+    assert [ship["ended_s"] > 0.0 for ship in rows_of(tmp_path / "one", "ships.csv")] == [
+        True,
+        True,
+    ]
     for name in ("ships.csv", "phases.csv"):
         assert (tmp_path / "again" / name).read_bytes() == (tmp_path / "one" / name).read_bytes()
 
@@ -111,11 +135,19 @@ def test_a_complete_run_that_is_resumed_flies_nothing(run):
 
 
 def test_ships_stay_apart_in_one_wind_and_every_patrol_has_others():
-    scenario = patrol("patrol.ships=6", "patrol.area_m=40000", "patrol.endurance_s=5400", "patrol.separation_m=3000")
+    scenario = patrol(
+        "patrol.ships=6",
+        "patrol.area_m=40000",
+        "patrol.endurance_s=5400",
+        "patrol.separation_m=3000",
+    )
     first, second = (sampled_patrol("patrol", scenario, number) for number in (0, 1))
     assert first.movers != second.movers
     assert first == sampled_patrol("patrol", scenario, 0)
-    assert len({(ship.scenario.wind.speed_mps, ship.scenario.wind.from_deg) for ship in first.ships}) == 1
+    assert (
+        len({(ship.scenario.wind.speed_mps, ship.scenario.wind.from_deg) for ship in first.ships})
+        == 1
+    )
     assert len({ship.scenario.flight_seed for ship in first.ships}) == 6
     for i, ship in enumerate(first.movers):
         # The range of the catalog's speed_ratio.
@@ -135,7 +167,9 @@ def test_ways_are_flown_in_the_wind_at_their_height_and_ships_have_the_speed_rat
     assert wind_row(found) == {"wind_speed_mps": given.speed_mps, "wind_from_deg": given.from_deg}
     for i, ship in enumerate(found.ships):
         # By the wind at the funnel's mouth, as of any flight.
-        flown = mean_wind(ship.scenario, vessel_of(ship.scenario)).now(0.0, ship.scenario.source_height)
+        flown = mean_wind(ship.scenario, vessel_of(ship.scenario)).now(
+            0.0, ship.scenario.source_height
+        )
         nu = abs(ship.mover.velocity - complex(*flown)) / found.air.speed
         assert ship_row(found, i, 0.15)["nu"] == pytest.approx(nu, rel=1e-12)
 
@@ -143,7 +177,12 @@ def test_ways_are_flown_in_the_wind_at_their_height_and_ships_have_the_speed_rat
 def test_a_patrol_that_fails_is_a_row_with_its_reason():
     # Two ships that are to stay farther apart than the square is wide, found when the patrol is flown.
     scenario = with_values(patrol(), {"patrol.separation_m": 20_000.0})
-    work = PatrolWork(experiments=(Experiment("patrol", scenario),), histories=1, setup=None, spreads=PredictedSpreads())
+    work = PatrolWork(
+        experiments=(Experiment("patrol", scenario),),
+        histories=1,
+        setup=None,
+        spreads=PredictedSpreads(),
+    )
     (row,) = work.fly(Task(number=0)).tables["summary.csv"]
     assert (row["outcome"], row["criteria_met"]) == ("failed", False)
     assert row["message"].startswith("patrol.separation_m is 20000 m")
@@ -151,8 +190,24 @@ def test_a_patrol_that_fails_is_a_row_with_its_reason():
 
 def ship(number, **values):
     """Return the row of a ship that was served, with other values."""
-    row = {"ship": number, "position": number, "verdict": "below", "correct": True, "outcome": "completed", "message": ""}
-    return row | {"keepout_violations": 0, "kept_out": True, "min_distance_m": 250.0, "others_distance_min_m": 900.0} | values
+    row = {
+        "ship": number,
+        "position": number,
+        "verdict": "below",
+        "correct": True,
+        "outcome": "completed",
+        "message": "",
+    }
+    return (
+        row
+        | {
+            "keepout_violations": 0,
+            "kept_out": True,
+            "min_distance_m": 250.0,
+            "others_distance_min_m": 900.0,
+        }
+        | values
+    )
 
 
 def figures(*ships):
@@ -160,8 +215,14 @@ def figures(*ships):
 
 
 def test_what_comes_within_r_min_of_another_ship_is_a_violation_with_its_reason():
-    found = figures(ship(0, others_distance_min_m=120.0), ship(1, others_distance_min_m=180.0), ship(2))
-    assert (found["keepout_violations"], found["kept_out"], found["criteria_met"]) == (2, False, False)
+    found = figures(
+        ship(0, others_distance_min_m=120.0), ship(1, others_distance_min_m=180.0), ship(2)
+    )
+    assert (found["keepout_violations"], found["kept_out"], found["criteria_met"]) == (
+        2,
+        False,
+        False,
+    )
     assert found["message"] == "came within 120 m of another ship"
     assert figures(ship(0), ship(1, others_distance_min_m=200.0))["message"] == ""
 
@@ -172,7 +233,10 @@ def test_what_comes_within_r_min_of_another_ship_is_a_violation_with_its_reason(
         ({"outcome": "failed", "message": "no gain", "kept_out": False}, "ship 1: failed: no gain"),
         ({"outcome": "aircraft_lost", "message": "stalled"}, "ship 1: aircraft lost: stalled"),
         ({"keepout_violations": 2, "kept_out": False}, "ship 1: 2 keep-out violations"),
-        ({"outcome": "not_settled", "keepout_violations": 1, "kept_out": False}, "ship 1: not settled: 1 keep-out violation"),
+        (
+            {"outcome": "not_settled", "keepout_violations": 1, "kept_out": False},
+            "ship 1: not settled: 1 keep-out violation",
+        ),
     ],
 )
 def test_a_patrol_says_which_ship_it_failed_at_and_why(values, message):
@@ -181,26 +245,42 @@ def test_a_patrol_says_which_ship_it_failed_at_and_why(values, message):
 
 
 def test_a_ship_beside_which_nothing_was_flown_is_not_served():
-    refused = {"ship": 1, "position": 1, "verdict": "open", "correct": False, "outcome": "infeasible", "message": "too near"}
+    refused = {
+        "ship": 1,
+        "position": 1,
+        "verdict": "open",
+        "correct": False,
+        "outcome": "infeasible",
+        "message": "too near",
+    }
     found = figures(ship(0), refused, ship(2))
     assert (found["ships"], found["served"], found["open"], found["kept_out"]) == (3, 2, 0, True)
 
 
 def test_a_study_that_never_took_off_is_not_met(tmp_path):
     # The ship is kilometres away, and there are 5 s more than a flight beside her takes.
-    far = ("patrol.ships=1", "patrol.area_m=60000", "patrol.endurance_s=170", "patrol.patience_s=30")
+    far = (
+        "patrol.ships=1",
+        "patrol.area_m=60000",
+        "patrol.endurance_s=170",
+        "patrol.patience_s=30",
+    )
     result = run_study(patrol(*far), "patrol", tmp_path / "run", executor_factory=InProcessExecutor)
     (row,) = rows_of(tmp_path / "run")
     assert (row["served"], row["criteria_met"]) == (0, True)
     assert not result.all_met
     told = "\n".join(result.summary.lines)
     assert "(–, required 80 %)" in told
-    assert told.endswith("exit status 1: 1 of 1 patrols kept out and brought their aircraft through; no ship was served")
+    assert told.endswith(
+        "exit status 1: 1 of 1 patrols kept out and brought their aircraft through; no ship was served"
+    )
 
 
 def test_a_study_without_any_verdict_of_an_oracle_either_is_not_met(tmp_path):
     short = ("patrol.ships=1", "patrol.patience_s=10")
-    result = run_study(patrol(*short), "patrol", tmp_path / "run", executor_factory=InProcessExecutor)
+    result = run_study(
+        patrol(*short), "patrol", tmp_path / "run", executor_factory=InProcessExecutor
+    )
     (row,) = rows_of(tmp_path / "run")
     assert (row["served"], row["oracle_verdicts"], row["criteria_met"]) == (1, 0, True)
     assert not result.all_met
@@ -213,26 +293,54 @@ def test_a_study_without_any_verdict_of_an_oracle_either_is_not_met(tmp_path):
         ("patrol.ships=0", ("patrol.ships is 0; it must be at least 1",)),
         ("patrol.endurance_s=60", ("patrol.endurance_s is 60 s", "patrol.service_s = 165 s")),
         ("patrol.separation_m=9000", ("patrol.separation_m is 9000 m", "patrol.area_m")),
-        ("patrol.separation_m=0", ("patrol.separation_m is 0 m", "800 m", "start.distance_m", "give 1000 m or more")),
+        (
+            "patrol.separation_m=0",
+            ("patrol.separation_m is 0 m", "800 m", "start.distance_m", "give 1000 m or more"),
+        ),
         ("flight.until=flown", ("flight.until is 'flown'", "'verdict'")),
         ("sweep.keepout.radius_m=[200,210]", ("beside a sweep",)),
         ("vessel.manoeuvres=[{at_s=20.0,turn_deg=30.0}]", ("vessel.manoeuvres",)),
-        ("start.range_m=500", ("beside start.range_m; a flight beside a ship begins where the way to her ends",)),
+        (
+            "start.range_m=500",
+            ("beside start.range_m; a flight beside a ship begins where the way to her ends",),
+        ),
         ("start.place_m=[-500,10]", ("beside start.place_m",)),
         ('draws=[{key="start.aspect_deg",uniform=[0.0,30.0]}]', ("beside start.aspect_deg",)),
-        ("patrol.clearance_m=700", ("are 900 m together, more than start.distance_m, whose end is 800 m",)),
-        ("flight.duration_max_s=900", ("'flight.duration_max_s' has no effect here", "patrol.patience_s")),
-        ("criteria.required=keep_out", ("'criteria.required' has no effect here", "judged by patrol.oracle_share_min and")),
-        ("criteria.settles=false", ("'criteria.settles' has no effect here", "patrol.wrong_share_max: set these")),
-        ("histories=4", ("'histories' has no effect here", "a patrol keeps no time histories: leave it out")),
+        (
+            "patrol.clearance_m=700",
+            ("are 900 m together, more than start.distance_m, whose end is 800 m",),
+        ),
+        (
+            "flight.duration_max_s=900",
+            ("'flight.duration_max_s' has no effect here", "patrol.patience_s"),
+        ),
+        (
+            "criteria.required=keep_out",
+            ("'criteria.required' has no effect here", "judged by patrol.oracle_share_min and"),
+        ),
+        (
+            "criteria.settles=false",
+            ("'criteria.settles' has no effect here", "patrol.wrong_share_max: set these"),
+        ),
+        (
+            "histories=4",
+            ("'histories' has no effect here", "a patrol keeps no time histories: leave it out"),
+        ),
     ],
 )
 def test_what_is_no_patrol_is_refused_in_one_line(override, words, tmp_path):
     overrides = [part for given in (*QUICK, override) for part in ("--set", given)]
-    assert_refused(run_command("scenarios.run", "patrol", *overrides, "--out", tmp_path / "run", "--no-report"), *words)
+    assert_refused(
+        run_command(
+            "scenarios.run", "patrol", *overrides, "--out", tmp_path / "run", "--no-report"
+        ),
+        *words,
+    )
 
 
-def test_flights_of_a_patrol_know_the_plume_as_the_scenario_says_and_those_of_the_oracle_are_told(monkeypatch, tmp_path):
+def test_flights_of_a_patrol_know_the_plume_as_the_scenario_says_and_those_of_the_oracle_are_told(
+    monkeypatch, tmp_path
+):
     known = []
 
     def recorded(scenario, values):

@@ -7,8 +7,24 @@ import math
 import numpy as np
 import pytest
 
-from scenarios.studies.patrol.legs import Air, Leg, Mover, keeps_clear, nearest_on, route, straight_leg, time_to_reach
-from scenarios.studies.patrol.order import EXACT_MAX, Prospect, best_order, ends_of, exact_order, inserted_order
+from scenarios.studies.patrol.legs import (
+    Air,
+    Leg,
+    Mover,
+    keeps_clear,
+    nearest_on,
+    route,
+    straight_leg,
+    time_to_reach,
+)
+from scenarios.studies.patrol.order import (
+    EXACT_MAX,
+    Prospect,
+    best_order,
+    ends_of,
+    exact_order,
+    inserted_order,
+)
 
 V_R = 20.0
 RADIUS = 800.0
@@ -29,13 +45,22 @@ def ships(seed, count, *, side=4e4, air=None):
 
 def airs(count):
     generator = np.random.default_rng(5)
-    return [Air(cmath.rect(generator.uniform(0.0, 12.0), generator.uniform(-math.pi, math.pi)), V_R) for _ in range(count)]
+    return [
+        Air(cmath.rect(generator.uniform(0.0, 12.0), generator.uniform(-math.pi, math.pi)), V_R)
+        for _ in range(count)
+    ]
 
 
 def prospect(of, air, *, endurance=5400.0, service=165.0, deviation=40.0):
     count = len(of)
     return Prospect(
-        ships=of, service=[service] * count, deviation=deviation, chance=[1.0] * count, radius=RADIUS, air=air, endurance=endurance
+        ships=of,
+        service=[service] * count,
+        deviation=deviation,
+        chance=[1.0] * count,
+        radius=RADIUS,
+        air=air,
+        endurance=endurance,
     )
 
 
@@ -48,7 +73,9 @@ def test_a_leg_ends_at_the_radius_from_the_ship_and_is_flown_at_the_airspeed(air
         assert abs(leg.velocity - air.wind) == pytest.approx(V_R, rel=1e-9)
         # It points at the ship where the way ends: no other straight way is as quick.
         to_ship = ship.at(leg.ends) - leg.end
-        assert math.remainder(leg.course(air) - cmath.phase(to_ship), math.tau) == pytest.approx(0.0, abs=1e-9)
+        assert math.remainder(leg.course(air) - cmath.phase(to_ship), math.tau) == pytest.approx(
+            0.0, abs=1e-9
+        )
 
 
 @pytest.mark.parametrize("air", airs(3))
@@ -98,7 +125,10 @@ def test_a_way_past_ships_keeps_clear_of_all_of_them_and_costs_little():
                 times = np.linspace(leg.begins, leg.ends, 400)
                 track = leg.start + leg.velocity * (times - leg.begins)
                 assert nearest_on(times, track, other) > CLEARANCE - 1e-3
-        assert all(one.end == other.start and one.ends == other.begins for one, other in itertools.pairwise(legs))
+        assert all(
+            one.end == other.start and one.ends == other.begins
+            for one, other in itertools.pairwise(legs)
+        )
         # Round three octagons of 541 m: with each at most half her circumference more than through her, 3 (pi/2 - 1) 2 x 541 m,
         # at the UAV's advance over the ships of 0.1 V_R at least.
         assert straight.ends < legs[-1].ends < straight.ends + 3.0 * 0.571 * 1082.0 / (0.1 * V_R)
@@ -123,15 +153,28 @@ def test_a_mirrored_way_is_the_mirror_image():
     other = Mover(straight.velocity * at + 100j - (1 - 2j) * at, 1 - 2j)
     legs = route(0j, 0.0, goal, RADIUS, air=air, ships=[goal, other], clearance=CLEARANCE)
     mirrored = [Mover(ship.place.conjugate(), ship.velocity.conjugate()) for ship in (goal, other)]
-    image = route(0j, 0.0, mirrored[0], RADIUS, air=Air(air.wind.conjugate(), V_R), ships=mirrored, clearance=CLEARANCE)
+    image = route(
+        0j,
+        0.0,
+        mirrored[0],
+        RADIUS,
+        air=Air(air.wind.conjugate(), V_R),
+        ships=mirrored,
+        clearance=CLEARANCE,
+    )
     assert len(legs) > 1
     # 1e-6 m: rounding, as above.
-    assert np.allclose([leg.end for leg in image], [leg.end.conjugate() for leg in legs], rtol=0.0, atol=1e-6)
+    assert np.allclose(
+        [leg.end for leg in image], [leg.end.conjugate() for leg in legs], rtol=0.0, atol=1e-6
+    )
 
 
 def test_a_ship_that_cannot_be_caught_has_no_way():
     air = Air(0j, V_R)
-    assert route(0j, 0.0, Mover(5000 + 0j, 21 + 0j), RADIUS, air=air, ships=[], clearance=CLEARANCE) is None
+    assert (
+        route(0j, 0.0, Mover(5000 + 0j, 21 + 0j), RADIUS, air=air, ships=[], clearance=CLEARANCE)
+        is None
+    )
 
 
 @pytest.mark.parametrize("count", [1, 3, 5])
@@ -143,7 +186,9 @@ def test_insertion_expects_nearly_as_many_verdicts_as_the_best_of_all_orders(cou
         # No order is better than the exact one; insertion may stop at ships of which less than 0.02 verdicts are expected each.
         assert served.score_of(found) <= served.score_of(best) + 1e-12
         assert found.verdicts > best.verdicts - 0.1
-        assert found.ends == pytest.approx(ends_of(served, 0j, 0.0, found.ships)[-1] if found.ships else 0.0)
+        assert found.ends == pytest.approx(
+            ends_of(served, 0j, 0.0, found.ships)[-1] if found.ships else 0.0
+        )
 
 
 def test_exact_is_the_best_of_orders_tried_one_by_one():
@@ -172,22 +217,36 @@ def test_ships_ahead_on_a_line_are_served_as_they_come_and_those_out_of_reach_ar
     assert exact_order(prospect(of, air), 0j, 0.0, range(4)).ships == (1, 2, 0)
     # The one way to 9,000 m, 800 m of each way saved and made up for by flying on from the ship herself, and three services.
     ends = ends_of(prospect(of, air), 0j, 0.0, (1, 2, 0))
-    assert ends == pytest.approx([2200.0 / V_R + 165.0, 4400.0 / V_R + 330.0, 6600.0 / V_R + 495.0], rel=1e-12)
+    assert ends == pytest.approx(
+        [2200.0 / V_R + 165.0, 4400.0 / V_R + 330.0, 6600.0 / V_R + 495.0], rel=1e-12
+    )
 
 
 def test_without_time_for_any_ship_the_order_is_empty():
     air = Air(0j, V_R)
     served = prospect([Mover(9000 + 0j, 0j)], air, endurance=100.0)
-    assert inserted_order(served, 0j, 0.0, [0]).ships == exact_order(served, 0j, 0.0, [0]).ships == ()
+    assert (
+        inserted_order(served, 0j, 0.0, [0]).ships == exact_order(served, 0j, 0.0, [0]).ships == ()
+    )
 
 
 def test_of_few_ships_every_order_is_tried_and_of_many_some(monkeypatch):
     air = Air(6 - 2j, V_R)
     # Four ships of which insertion misses the best order.
-    few, many = prospect(ships(2, 4, air=air), air, endurance=2500.0), prospect(ships(6, EXACT_MAX + 1, air=air), air)
-    assert best_order(few, 0j, 0.0, range(4)) == exact_order(few, 0j, 0.0, range(4)) != inserted_order(few, 0j, 0.0, range(4))
+    few, many = (
+        prospect(ships(2, 4, air=air), air, endurance=2500.0),
+        prospect(ships(6, EXACT_MAX + 1, air=air), air),
+    )
+    assert (
+        best_order(few, 0j, 0.0, range(4))
+        == exact_order(few, 0j, 0.0, range(4))
+        != inserted_order(few, 0j, 0.0, range(4))
+    )
     expected = inserted_order(many, 0j, 0.0, range(EXACT_MAX + 1))
-    monkeypatch.setattr("scenarios.studies.patrol.order.exact_order", lambda *_: pytest.fail("every order of many is tried"))
+    monkeypatch.setattr(
+        "scenarios.studies.patrol.order.exact_order",
+        lambda *_: pytest.fail("every order of many is tried"),
+    )
     assert best_order(many, 0j, 0.0, range(EXACT_MAX + 1)) == expected
 
 
