@@ -1,4 +1,6 @@
-"""What can go wrong with an aircraft, each error naming the thing, its value, the limit and the remedy."""
+"""What can go wrong with an aircraft, each error naming the thing, its value, the limit and the
+remedy.
+"""
 
 
 class AircraftError(ValueError):

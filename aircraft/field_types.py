@@ -1,4 +1,6 @@
-"""Whether the fields of a dataclass from a file of the user are of the types that it declares: Python itself does not look."""
+"""Whether the fields of a dataclass from a file of the user are of the types that it declares:
+Python itself does not look.
+"""
 
 import dataclasses
 import functools
@@ -11,13 +13,15 @@ from typing import Any
 
 
 def type_fault(value: Any, prefix: str = "") -> str:
-    """Return what is wrong with the first field of another type than declared, and the remedy; empty if there is none.
+    """Return what is wrong with the first field of another type than declared, and the remedy;
+    empty if there is none.
 
     A list will do for a tuple of any length, and any real number for a float.
 
     Parameters
     ----------
-    value : a dataclass of text, numbers, paths, other dataclasses, tuples of these, and what may be None
+    value : a dataclass of text, numbers, paths, other dataclasses, tuples of these, and what may be
+        None
     prefix : of the names of its fields, such as ``envelope.``
     """
     kind: Any = type(value)

@@ -1,4 +1,6 @@
-"""The files of a JSBSim model: where they are found, its own folder and the folders that models share, and their XML."""
+"""The files of a JSBSim model: where they are found, its own folder and the folders that models
+share, and their XML.
+"""
 
 import xml.etree.ElementTree as ET
 from dataclasses import dataclass
@@ -34,7 +36,8 @@ class ModelFiles:
     ----------
     model : its name
     folder : with the model file, ``MODEL.xml``
-    roots : JSBSim roots whose engines and systems the model may name; the first that has a file is taken
+    roots : JSBSim roots whose engines and systems the model may name; the first that has a file is
+        taken
     """
 
     model: str
@@ -47,7 +50,9 @@ class ModelFiles:
         return self.folder / f"{self.model}.xml"
 
     def find(self, element: ET.Element) -> Path | None:
-        """Return the file that an element of the model names, searched as JSBSim does; None if there is none."""
+        """Return the file that an element of the model names, searched as JSBSim does; None if
+        there is none.
+        """
         if not (file := element.get("file")):
             return None
         name = file if file.endswith(".xml") else f"{file}.xml"
@@ -58,7 +63,8 @@ class ModelFiles:
 
 
 def read_model(files: ModelFiles) -> "ET.ElementTree[ET.Element]":
-    """Return the XML of a model, in which each section that is a file of its own stands in its place, as JSBSim reads it.
+    """Return the XML of a model, in which each section that is a file of its own stands in its
+    place, as JSBSim reads it.
 
     A section whose file is missing stays as it is.
 

@@ -1,4 +1,6 @@
-"""What the project has to know about a JSBSim aircraft beyond its model files: the contract of an aircraft."""
+"""What the project has to know about a JSBSim aircraft beyond its model files: the contract of an
+aircraft.
+"""
 
 import bisect
 import math
@@ -30,10 +32,11 @@ class ControlInput:
     Attributes
     ----------
     name : the input's name in linear models, e.g. ``elevator``
-    commands : JSBSim properties that take the command, one for each engine or surface that shares it [-]
+    commands : JSBSim properties that take the command, one for each engine or surface that shares
+        it [-]
     lower, upper : range of the command [-]
-    effectiveness : points (effect, command) of a surface that is commanded by its effect, ascending; the range is then
-        that of the effect
+    effectiveness : points (effect, command) of a surface that is commanded by its effect,
+        ascending; the range is then that of the effect
     """
 
     name: str
@@ -43,7 +46,9 @@ class ControlInput:
     effectiveness: tuple[tuple[float, float], ...] = ()
 
     def command(self, value: float) -> float:
-        """Return the command to JSBSim for a value of this input: an effect, if its effectiveness is known [-]."""
+        """Return the command to JSBSim for a value of this input: an effect, if its effectiveness
+        is known [-].
+        """
         if not self.effectiveness:
             return value
         i = min(max(bisect.bisect(self.effectiveness, (value,)), 1), len(self.effectiveness) - 1)
@@ -68,13 +73,14 @@ class Feedback:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Actuator:
-    """A device that moves one surface or every engine's throttle, and can stick (``aircraft.simulation.faults``).
+    """A device that moves one surface or every engine's throttle, and can stick
+    (``aircraft.simulation.faults``).
 
     Attributes
     ----------
     name : as the user types it, e.g. ``left_elevon``
-    commands : JSBSim properties that command it: those of a control input, or one that an ``<actuator>``
-        reads
+    commands : JSBSim properties that command it: those of a control input, or one that an
+        ``<actuator>`` reads
     feedback : what it reports, if its command is not one of a control input's own
     """
 
@@ -85,7 +91,8 @@ class Actuator:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class DrivenState:
-    """A state outside the rigid body that follows one input: a servo's deflection, a propeller's speed.
+    """A state outside the rigid body that follows one input: a servo's deflection, a propeller's
+    speed.
 
     Attributes
     ----------
@@ -130,7 +137,9 @@ class Envelope:
 
     @property
     def fault(self) -> str:
-        """Return why no autopilot can be designed for these airspeeds, or this bank, and the remedy; empty if one can."""
+        """Return why no autopilot can be designed for these airspeeds, or this bank, and the
+        remedy; empty if one can.
+        """
         if not 0.0 < self.airspeed_min < self.airspeed < self.airspeed_max <= _AIRSPEED_MAX:
             return (
                 f"airspeed is {self.airspeed:g} m/s; it must lie between airspeed_min, {self.airspeed_min:g}, and airspeed_max,"
@@ -158,7 +167,8 @@ class Envelope:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class AircraftSpec:
-    """An aircraft: what a file in ``aircraft/fleet``, an entry point or a Python file of the user has to provide.
+    """An aircraft: what a file in ``aircraft/fleet``, an entry point or a Python file of the user
+    has to provide.
 
     Attributes
     ----------
@@ -168,13 +178,17 @@ class AircraftSpec:
     model : JSBSim model name
     folder : of the model file, if it is not ``root/aircraft/model``
     other_roots : further JSBSim roots whose engines and systems the model may name
-    inputs : control inputs: ``elevator``, ``aileron`` and ``throttle``, perhaps ``rudder``, and no others
+    inputs : control inputs: ``elevator``, ``aileron`` and ``throttle``, perhaps ``rudder``, and no
+        others
     own_actuators : only if they are not one for each control input, such as a flying wing's elevons
-    driven_states : servo and propeller states that have a property of their own, one of an input; other lags are measured
-    envelope : as published by its maker or its model's author; None if it is to be found by trimming
+    driven_states : servo and propeller states that have a property of their own, one of an input;
+        other lags are measured
+    envelope : as published by its maker or its model's author; None if it is to be found by
+        trimming
     configuration : JSBSim properties and their values in every flight, such as a retracted gear
     engine_flags : JSBSim properties that are 1 while an engine runs
-    alpha_max : largest angle of attack of an equilibrium, up to which the model is right; not a number if not known [rad]
+    alpha_max : largest angle of attack of an equilibrium, up to which the model is right; not a
+        number if not known [rad]
     settle_time : in which servos and engines come to rest while the aircraft is held [s]
     source : of the model's numbers
     """
@@ -223,7 +237,9 @@ class AircraftSpec:
 
 
 def surface(name: str) -> ControlInput:
-    """Return the command of a control surface by the name that JSBSim gives it: elevator, aileron, rudder."""
+    """Return the command of a control surface by the name that JSBSim gives it: elevator, aileron,
+    rudder.
+    """
     return ControlInput(name=name, commands=(f"fcs/{name}-cmd-norm",), lower=-1.0, upper=1.0)
 
 

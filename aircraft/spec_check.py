@@ -11,7 +11,9 @@ from aircraft.spec import NAME, SETTLE_TIMES, AircraftSpec
 _ACTUATOR_NAME = re.compile(
     r"(?!(engine|none|vessel_data|satellite_navigation|sniffer_(dead|saturated))$)[A-Za-z_][A-Za-z0-9_.\-]*"
 )
-"""What an actuator may be called: the name becomes part of a JSBSim property, and may not be that of another fault."""
+"""What an actuator may be called: the name becomes part of a JSBSim property, and may not be that
+of another fault.
+"""
 
 _INPUTS, _MORE_INPUTS = ("elevator", "aileron", "throttle"), ("rudder",)
 """Control inputs that the autopilot needs, and those that it uses if there are any."""
@@ -22,9 +24,9 @@ def check_spec(spec: AircraftSpec) -> None:
 
     Raises
     ------
-    AircraftError : a field is of another type; the name has other letters than ``NAME``; an input is missing, unknown, or there
-        twice; a driven state follows no input, or one that has a state; a range, an actuator, the settle time or the envelope
-        cannot be
+    AircraftError : a field is of another type; the name has other letters than ``NAME``; an input
+        is missing, unknown, or there twice; a driven state follows no input, or one that has a
+        state; a range, an actuator, the settle time or the envelope cannot be
     """
     if fault := type_fault(spec):
         raise AircraftError(f"aircraft '{spec.name}': {fault}; correct its spec")
@@ -43,7 +45,9 @@ def check_spec(spec: AircraftSpec) -> None:
 
 
 def _faults(spec: AircraftSpec) -> Iterator[str]:
-    """Yield what is wrong with states, ranges, actuators, the settle time and the envelope; perhaps an empty text."""
+    """Yield what is wrong with states, ranges, actuators, the settle time and the envelope; perhaps
+    an empty text.
+    """
     names, driven = [i.name for i in spec.inputs], [state.input for state in spec.driven_states]
     for i, state in enumerate(spec.driven_states):
         if state.input not in names or state.input in driven[:i]:

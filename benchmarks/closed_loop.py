@@ -1,10 +1,11 @@
 """``make bench``: computing time of the autopilot and the guidance, relative to JSBSim.
 
-Three loops over the same simulated time run in one process, in turn, for several rounds: JSBSim with the bare
-aircraft, JSBSim with the autopilot, and the full closed loop with guidance and record. The results are medians over
-the rounds; ratios are formed within a round, in which the speed of the machine is the same. The time of the full
-closed loop is printed beside its limits, and the time of the other parts of a flight: planning, aircraft and release,
-figures, time history. Then come guidance, engine and reports.
+Three loops over the same simulated time run in one process, in turn, for several rounds: JSBSim
+with the bare aircraft, JSBSim with the autopilot, and the full closed loop with guidance and
+record. The results are medians over the rounds; ratios are formed within a round, in which the
+speed of the machine is the same. The time of the full closed loop is printed beside its limits, and
+the time of the other parts of a flight: planning, aircraft and release, figures, time history. Then
+come guidance, engine and reports.
 """
 
 import statistics
@@ -38,7 +39,9 @@ SIMULATED_TIME = 400.0
 """Simulated time of each loop [s]."""
 
 FLIGHT_MAX, LOOP_MAX = 0.25, 1.7
-"""Limits of the time of a flight where a step of JSBSim alone takes ``REFERENCE_STEP`` [s], and of its ratio to JSBSim [-]."""
+"""Limits of the time of a flight where a step of JSBSim alone takes ``REFERENCE_STEP`` [s], and of
+its ratio to JSBSim [-].
+"""
 
 Timed = Callable[[], float]
 """Runs a part and returns its computing time [s]."""

@@ -1,7 +1,8 @@
 """``make fast``: compile what guidance and closed loop spend their time in by mypyc.
 
-A compiled module computes what its source does, to the last bit: a test compares flights. What is compiled takes numbers alone.
-What takes arrays, or what parts of a user's own extend, is left out. All is one library: calls within it cost least.
+A compiled module computes what its source does, to the last bit: a test compares flights. What is
+compiled takes numbers alone. What takes arrays, or what parts of a user's own extend, is left out.
+All is one library: calls within it cost least.
 """
 
 import os
@@ -42,7 +43,9 @@ _MYPY = ("--config-file=", "--ignore-missing-imports", "--follow-imports=silent"
 """Types are checked by `make check`, with what is installed; here they are only read."""
 
 _SAME_ARITHMETIC = "-ffp-contract=off"
-"""Compiler's option: a product and a sum stay two operations with a rounding each, on every kind of processor."""
+"""Compiler's option: a product and a sum stay two operations with a rounding each, on every kind of
+processor.
+"""
 
 
 def main() -> int:

@@ -1,13 +1,16 @@
-"""The shortest crossing interval of any periodic path with two crossings a period, by direct optimal control.
+"""The shortest crossing interval of any periodic path with two crossings a period, by direct
+optimal control.
 
-``python -m benchmarks.crossing_limit`` solves the problem with CasADi and IPOPT (of the ``dev`` extra), prints the table of
-docs/fastest_oscillation.md, and writes the limits that reports draw, ``scenarios/planning/theory/crossing_limits.json``, with
-``--write``, and the figure of the page with ``--figure FILE``.
+``python -m benchmarks.crossing_limit`` solves the problem with CasADi and IPOPT (of the ``dev``
+extra), prints the table of docs/fastest_oscillation.md, and writes the limits that reports draw,
+``scenarios/planning/theory/crossing_limits.json``, with ``--write``, and the figure of the page
+with ``--figure FILE``.
 
-A path is one of a point of constant speed whose bank, and whose roll rate, are limited. Seen from the vessel it is closed. It may
-turn to both sides as it likes; nothing is said of symmetry or of when it rolls. Two kinds of closed paths are solved for: those
-whose course comes back to itself, and those whose course has gone round once. Keeping out of the disc takes nothing from the rate:
-a closed path can be moved astern as a whole.
+A path is one of a point of constant speed whose bank, and whose roll rate, are limited. Seen from
+the vessel it is closed. It may turn to both sides as it likes; nothing is said of symmetry or of
+when it rolls. Two kinds of closed paths are solved for: those whose course comes back to itself,
+and those whose course has gone round once. Keeping out of the disc takes nothing from the rate: a
+closed path can be moved astern as a whole.
 """
 
 import argparse
@@ -34,13 +37,17 @@ RATIOS = tuple(round(0.05 * i, 2) for i in range(20))
 """Speed ratios of the limit line [-]."""
 
 ROUND_MAX = 0.5
-"""Largest speed ratio at which paths that go round are solved for: beyond, they take more than twice as long [-]."""
+"""Largest speed ratio at which paths that go round are solved for: beyond, they take more than
+twice as long [-].
+"""
 
 PIECES = 200
 """Pieces of a period, over each of which the roll rate is constant [-]."""
 
 STARTS = (0.4, 0.1, 1.2, 2.0)
-"""Phases at which first guesses begin, until the solver converges from one [rad]: none is symmetric."""
+"""Phases at which first guesses begin, until the solver converges from one [rad]: none is
+symmetric.
+"""
 
 SHAPES = {"sinusoid": "the paper's sinusoid", "fastest": "fastest oscillation", "loiter": "loiter"}
 """Shapes of the project, and their names in the figure."""
@@ -73,7 +80,9 @@ def shortest_period(nu: float, turns: int, *, bank: float, roll_rate: float) -> 
 
 
 def _solved(nu: float, turns: int, *, bank: float, roll_rate: float, start: float) -> float:
-    """Return the period that the solver finds from a first guess; parameters are those of ``shortest_period``."""
+    """Return the period that the solver finds from a first guess; parameters are those of
+    ``shortest_period``.
+    """
     import casadi as ca
 
     problem = ca.Opti()
@@ -133,7 +142,9 @@ def _guess(nu: float, turns: int, start: float) -> tuple[np.ndarray, float]:
 
 
 def limits(guidance: GuidanceConfig) -> dict[str, object]:
-    """Return the limits of an aircraft's bank and roll rate over the speed ratio, as they are written."""
+    """Return the limits of an aircraft's bank and roll rate over the speed ratio, as they are
+    written.
+    """
     rate = omega_max(guidance)
     bank = math.radians(guidance.bank_deg)
     ratio = math.radians(guidance.roll_rate_max_deg_s) / rate

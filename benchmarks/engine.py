@@ -1,7 +1,8 @@
-"""Computing time that the engine adds to the flights: speed-up by a second process, cost of starting a flight.
+"""Computing time that the engine adds to the flights: speed-up by a second process, cost of
+starting a flight.
 
-A whole study, with journal and tables, is flown by one process and by two, in turn, for several rounds. The cost of
-starting a flight is extrapolated from flights of two lengths to length zero.
+A whole study, with journal and tables, is flown by one process and by two, in turn, for several
+rounds. The cost of starting a flight is extrapolated from flights of two lengths to length zero.
 """
 
 import multiprocessing
@@ -20,7 +21,9 @@ from scenarios.schema.load import load_study
 from scenarios.studies.registry import study_of
 
 REFERENCE_STEP = 2.9e-6
-"""Time of a step of JSBSim alone, with the bare aircraft, on the machine for which limits are given [s]."""
+"""Time of a step of JSBSim alone, with the bare aircraft, on the machine for which limits are given
+[s].
+"""
 
 SECOND_MAX = 8e-4
 """Limit of the time of a simulated second over the sea on such a machine [s]."""
@@ -94,7 +97,9 @@ def _whole_study(jobs: int) -> float:
 
 
 def _bare(work: Work) -> float:
-    """Return the time of two processes that fly half of the same flights each, and store nothing [s]."""
+    """Return the time of two processes that fly half of the same flights each, and store nothing
+    [s].
+    """
     halves = [range(half, FLIGHTS, 2) for half in (0, 1)]
     processes = [
         multiprocessing.Process(target=_fly_each, args=(work, numbers)) for numbers in halves

@@ -1,9 +1,10 @@
 """Computing time of a step of the guidance, in both compositions, and with the search for a plume.
 
-Flights are flown and recorded at the rate of the guidance: one beside a steady vessel in still air, which has the
-paper's composition, one that follows a plume in wind, by sensors and reports, and that one again as it searches for its
-plume, beside a slow and a fast ship. What the guidance was given in each is then sent to another one, step by step, all in
-turn for several rounds: it commands what was flown. A search is compared with a flight that is given its plume.
+Flights are flown and recorded at the rate of the guidance: one beside a steady vessel in still air,
+which has the paper's composition, one that follows a plume in wind, by sensors and reports, and
+that one again as it searches for its plume, beside a slow and a fast ship. What the guidance was
+given in each is then sent to another one, step by step, all in turn for several rounds: it commands
+what was flown. A search is compared with a flight that is given its plume.
 """
 
 import io
@@ -60,7 +61,9 @@ FOLLOWING = Scenario(
 )
 
 _EVERY = 2
-"""Steps between those at which the search gets a position: of a flight that is recorded 10 times a second [-]."""
+"""Steps between those at which the search gets a position: of a flight that is recorded 10 times a
+second [-].
+"""
 
 _INTERVAL, _PARCEL = 4, 2
 """Steps between the readings of the fast sniffer, and readings that are passed on together [-]."""
@@ -79,7 +82,9 @@ Measured = Sequence[tuple[float, Any]]
 """Time, and what is measured then, in the form that the guidance takes."""
 
 PlumeReadings = Sequence[tuple[float, tuple[tuple[float, float], ...]] | None]
-"""For each step the altitude [m], and times [s] and CO2 [ppm] of the readings that have come; None where it gets nothing."""
+"""For each step the altitude [m], and times [s] and CO2 [ppm] of the readings that have come; None
+where it gets nothing.
+"""
 
 
 def report_guidance(rounds: int, setup: VehicleSetup) -> None:
@@ -111,7 +116,9 @@ def report_guidance(rounds: int, setup: VehicleSetup) -> None:
 
 
 def searching(vessel_speed: float, plume: str) -> Scenario:
-    """Return a flight beside a ship with exhaust, in wind from abeam, whose plume is ``estimated`` or ``predicted``."""
+    """Return a flight beside a ship with exhaust, in wind from abeam, whose plume is ``estimated``
+    or ``predicted``.
+    """
     return FOLLOWING.model_copy(
         update={
             "vessel": VesselConfig(speed_mps=vessel_speed),
@@ -131,7 +138,9 @@ def searching(vessel_speed: float, plume: str) -> Scenario:
 
 
 def _flown(scenario: Scenario, setup: VehicleSetup) -> tuple[FlightPlan, Measured, PlumeReadings]:
-    """Return the plan of a flight, what its guidance measures at each step, and what a search would get."""
+    """Return the plan of a flight, what its guidance measures at each step, and what a search would
+    get.
+    """
     work = FlightWork(
         experiments=(Experiment("bench", scenario),),
         histories=1,

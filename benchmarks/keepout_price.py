@@ -1,6 +1,8 @@
-"""What each declaration costs in distance: how far the orbit lies outside of r_min, for the X8 in operational conditions.
+"""What each declaration costs in distance: how far the orbit lies outside of r_min, for the X8 in
+operational conditions.
 
-``python -m benchmarks.keepout_price`` prints the table of docs/keepout_guard.md, and writes its figure with ``--figure FILE``.
+``python -m benchmarks.keepout_price`` prints the table of docs/keepout_guard.md, and writes its
+figure with ``--figure FILE``.
 """
 
 import argparse
@@ -37,7 +39,9 @@ TOGETHER = (
     "turbulence.gust_speed_mps=4",
     "guidance.reserve=0.1",
 )
-"""What ``sea_together`` declares, but for the ship's largest speed: that is 15 m/s there, and at 0.8 in still air she has 15.5."""
+"""What ``sea_together`` declares, but for the ship's largest speed: that is 15 m/s there, and at
+0.8 in still air she has 15.5.
+"""
 
 DECLARATIONS: dict[str, tuple[str, ...]] = {
     "everything known": (),

@@ -1,4 +1,5 @@
-"""Orders of ships by insertion beside the best of all orders: how often they expect as many verdicts, and how much later they end.
+"""Orders of ships by insertion beside the best of all orders: how often they expect as many
+verdicts, and how much later they end.
 
 Run with ``python -m benchmarks.patrol_orders [--patrols N] [--ships N]``. Nothing is flown.
 """

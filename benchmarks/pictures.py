@@ -1,6 +1,8 @@
-"""Pictures for the documentation: ``python -m benchmarks.pictures [NAME ...]`` makes the runs and draws page 1 of each report.
+"""Pictures for the documentation: ``python -m benchmarks.pictures [NAME ...]`` makes the runs and
+draws page 1 of each report.
 
-Each picture is ``docs/pictures/NAME.png``. The runs are made anew, in a directory that is removed; all of them take some minutes.
+Each picture is ``docs/pictures/NAME.png``. The runs are made anew, in a directory that is removed;
+all of them take some minutes.
 """
 
 import argparse

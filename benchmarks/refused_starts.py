@@ -1,8 +1,10 @@
-"""Whether a start that is refused has an escape after all: every constant and every bang-bang command is tried from it.
+"""Whether a start that is refused has an escape after all: every constant and every bang-bang
+command is tried from it.
 
-``python -m benchmarks.refused_starts`` plans the flights of ``starts_anywhere``, flies none, and searches from each start that
-is refused for the command that keeps farthest off the vessel. The vehicle follows its command after the dead time and with the
-lag that the guard reckons with, but does not deviate from that. Keys may be given: ``keepout.radius_m=50``.
+``python -m benchmarks.refused_starts`` plans the flights of ``starts_anywhere``, flies none, and
+searches from each start that is refused for the command that keeps farthest off the vessel. The
+vehicle follows its command after the dead time and with the lag that the guard reckons with, but
+does not deviate from that. Keys may be given: ``keepout.radius_m=50``.
 """
 
 import argparse
@@ -102,7 +104,8 @@ def refused_starts(keys: list[str]) -> Iterator[Refused | None]:
 def farthest(start: Refused, *, full_throttle: bool) -> float:
     """Return the closest approach under the best of all commands tried [m].
 
-    At full throttle the airspeed goes to the aircraft's highest, and the heading rate is limited by the bank.
+    At full throttle the airspeed goes to the aircraft's highest, and the heading rate is limited by
+    the bank.
     """
     guidance, setup = start.scenario.guidance, start.setup
     first, second, third, until, until_second = _commands()
@@ -134,7 +137,9 @@ def farthest(start: Refused, *, full_throttle: bool) -> float:
 
 
 def _commands() -> list[np.ndarray]:
-    """Return commands as shares of the largest: a first, a second and a third, and until when the first two are given [s]."""
+    """Return commands as shares of the largest: a first, a second and a third, and until when the
+    first two are given [s].
+    """
     pairs = [(until, second) for until in SWITCHES for second in SWITCHES if second >= until]
     sides = itertools.product((1.0, -1.0), (0.0, 1.0), (1.0, 0.0, -1.0))
     bangs = [

@@ -1,4 +1,6 @@
-"""Computing time of a study's reports: the sweep is flown once, and its reports are built several times."""
+"""Computing time of a study's reports: the sweep is flown once, and its reports are built several
+times.
+"""
 
 import os
 import statistics
@@ -16,7 +18,9 @@ from scenarios.studies.registry import study_of
 SWEEP = "sweep_nu"
 
 REPORT_MAX, HTML_MAX = 4.0, 6.0
-"""Limits of the time of the reports of the sweep [s], and of the size of the one for the screen [MB]."""
+"""Limits of the time of the reports of the sweep [s], and of the size of the one for the screen
+[MB].
+"""
 
 
 def report_reports(rounds: int) -> None:

@@ -1,7 +1,8 @@
-"""``python -m benchmarks.scaling``: cost of a study over flights, flight time and log rate; ten minutes.
+"""``python -m benchmarks.scaling``: cost of a study over flights, flight time and log rate; ten
+minutes.
 
-The results are in docs/explanation/scaling.md. Each is that of a whole study with journal, tables and time histories, in its own
-process, so that peak memory is that of the study alone.
+The results are in docs/explanation/scaling.md. Each is that of a whole study with journal, tables
+and time histories, in its own process, so that peak memory is that of the study alone.
 """
 
 import json
@@ -31,7 +32,9 @@ TASKS = 3_000
 """Number of empty tasks with which the throughput of the engine is measured."""
 
 Measured = tuple[float, float, float]
-"""Wall time of a run [s], peak memory of the main program [MiB], and size of the run directory [MiB]."""
+"""Wall time of a run [s], peak memory of the main program [MiB], and size of the run directory
+[MiB].
+"""
 
 
 def main() -> None:

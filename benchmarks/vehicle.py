@@ -10,7 +10,9 @@ from scenarios.vehicles.vehicle_setup import VehicleSetup, aircraft_setup, desig
 
 
 def x8_setup(scenario: Scenario, folder: Path) -> tuple[Designed, VehicleSetup]:
-    """Return the X8's autopilot, and what flights of a scenario need; write its model into ``folder``."""
+    """Return the X8's autopilot, and what flights of a scenario need; write its model into
+    ``folder``.
+    """
     design, refusal = design_of(X8, scenario.source_height)
     if design is None:
         raise SystemExit(f"error: {refusal}")

@@ -1,1 +1,3 @@
-"""Shared by all rooms: registries, files, the layout of run directories, command lines, provenance; units and places."""
+"""Shared by all rooms: registries, files, the layout of run directories, command lines, provenance;
+units and places.
+"""

@@ -10,7 +10,9 @@ MARK = "'"
 
 
 def cell(value: object) -> object:
-    """Return a value as it is written into a cell: what is missing is empty, numbers are numbers, and no text is a formula."""
+    """Return a value as it is written into a cell: what is missing is empty, numbers are numbers,
+    and no text is a formula.
+    """
     if value is None or (isinstance(value, float) and math.isnan(value)):
         return ""
     return (

@@ -15,8 +15,8 @@ PROGRAM = "plume-flight"
 """Name of the console command."""
 
 BAD_INPUT, INTERRUPTED, UNREAD = 2, 130, 141
-"""Exit statuses: of input that is refused, and of a command that Ctrl-C ended or that lost the reader of its output: 128 and the
-number of the signal, as in a shell."""
+"""Exit statuses: of input that is refused, and of a command that Ctrl-C ended or that lost the
+reader of its output: 128 and the number of the signal, as in a shell."""
 
 _USAGE_ERROR: type[Exception] = typer.BadParameter.__bases__[0]
 """Base class of the errors that typer raises for bad options, which it does not export."""
@@ -56,7 +56,8 @@ def run_command(
 def _without_types(command: Any) -> Any:
     """Return a command, or all that it has, whose help names no types beside arguments and flags.
 
-    Typer writes <list[Path]> beside RUN_DIR, which says what it is, and <bool> beside flags, which take no value.
+    Typer writes <list[Path]> beside RUN_DIR, which says what it is, and <bool> beside flags, which
+    take no value.
     """
     for one in (command, *getattr(command, "commands", {}).values()):
         # With --help, which a command makes once it is asked for.
@@ -71,7 +72,9 @@ def _no_type(**_: object) -> None:
 
 
 def _with_value(error: Exception, message: str, given: Sequence[str]) -> str:
-    """Return what is wrong with an option, with its value: "--jobs is 0; it must be ..."; any other message as it is."""
+    """Return what is wrong with an option, with its value: "--jobs is 0; it must be ..."; any other
+    message as it is.
+    """
     names = getattr(getattr(error, "param", None), "opts", [])
     _, said, demanded = message.partition("Input should be ")
     values = [
@@ -84,14 +87,17 @@ def _with_value(error: Exception, message: str, given: Sequence[str]) -> str:
 
 
 class _Output(io.TextIOWrapper):
-    """An output whose reader may be gone before its end, as ``head`` is: the command then ends without a word.
+    """An output whose reader may be gone before its end, as ``head`` is: the command then ends
+    without a word.
 
     Not with an OSError, which commands take for a file that cannot be written.
     """
 
     @staticmethod
     def instead_of(stream: TextIO) -> TextIO:
-        """Return what to write to instead of a standard stream; the stream itself where a program or a test has replaced it."""
+        """Return what to write to instead of a standard stream; the stream itself where a program
+        or a test has replaced it.
+        """
         if not isinstance(stream, io.TextIOWrapper):
             return stream
         # Names may have letters that a terminal does not.
@@ -140,6 +146,8 @@ def _with_version(text: str) -> Callable[..., None]:
 
 
 def refuse(error: Exception | str) -> int:
-    """Print what is wrong with the input as one line, whatever names it quotes; return the exit status."""
+    """Print what is wrong with the input as one line, whatever names it quotes; return the exit
+    status.
+    """
     print(f"error: {one_line(str(error))}", file=sys.stderr)
     return BAD_INPUT

@@ -2,5 +2,7 @@
 
 
 def at_or_below(key: str, above: str) -> bool:
-    """Return whether a dotted key is another one, or below it: ``wind.speed_mps`` is below ``wind``."""
+    """Return whether a dotted key is another one, or below it: ``wind.speed_mps`` is below
+    ``wind``.
+    """
     return key == above or key.startswith(f"{above}.")

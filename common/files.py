@@ -35,8 +35,8 @@ def is_file(path: Path) -> bool:
 
 
 def write_whole(path: Path, write: Callable[[Path], object]) -> None:
-    """Call ``write`` with a temporary path beside ``path``, then rename the result; a file with the same content is left as it
-    is."""
+    """Call ``write`` with a temporary path beside ``path``, then rename the result; a file with the
+    same content is left as it is."""
     part = path.with_name(f".{path.name}.{os.getpid()}.part")
     try:
         write(part)
@@ -62,7 +62,9 @@ def json_text(value: Mapping[str, Any], *, indent: int | None) -> str:
 
 
 def plain_number(value: object) -> object:
-    """Return the number that one of NumPy's is, for JSON: such as a part of a user's own may answer."""
+    """Return the number that one of NumPy's is, for JSON: such as a part of a user's own may
+    answer.
+    """
     if callable(item := getattr(value, "item", None)):
         return item()
     raise TypeError(f"JSON has nothing for {type(value).__name__}")
@@ -74,7 +76,9 @@ def write_text(path: Path, text: str) -> None:
 
 
 def write_tree(source: Path, target: Path) -> None:
-    """Copy the files below ``source`` to ``target``; those with the same content are left as they are."""
+    """Copy the files below ``source`` to ``target``; those with the same content are left as they
+    are.
+    """
     for path in sorted(path for path in source.rglob("*") if path.is_file()):
         copy = target / path.relative_to(source)
         copy.parent.mkdir(parents=True, exist_ok=True)
@@ -82,7 +86,9 @@ def write_tree(source: Path, target: Path) -> None:
 
 
 def files_hash(root: Path, paths: Iterable[Path]) -> str:
-    """Return a SHA-256 of files below a folder, by their paths in it and their contents, in the order given."""
+    """Return a SHA-256 of files below a folder, by their paths in it and their contents, in the
+    order given.
+    """
     digest = hashlib.sha256()
     for path in paths:
         digest.update(path.relative_to(root).as_posix().encode())
@@ -91,7 +97,9 @@ def files_hash(root: Path, paths: Iterable[Path]) -> str:
 
 
 def remove_reports(directory: Path) -> None:
-    """Remove reports and exports of a run that continues, or of a design that is made again: they are no longer true."""
+    """Remove reports and exports of a run that continues, or of a design that is made again: they
+    are no longer true.
+    """
     for name in (REPORT_HTML, REPORT_PDF):
         (directory / name).unlink(missing_ok=True)
     shutil.rmtree(directory / EXPORT, ignore_errors=True)

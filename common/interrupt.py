@@ -7,7 +7,9 @@ import threading
 
 
 def follow_parent() -> None:
-    """Have this process end with its parent, however that ends, and ignore Ctrl-C: its parent handles it and keeps the results."""
+    """Have this process end with its parent, however that ends, and ignore Ctrl-C: its parent
+    handles it and keeps the results.
+    """
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     parent = multiprocessing.parent_process()
     if parent is not None:
@@ -15,6 +17,7 @@ def follow_parent() -> None:
 
 
 def _end_after(parent: multiprocessing.process.BaseProcess) -> None:
-    # This waits for the end of a pipe of which the parent holds the other end, so that SIGKILL is noticed as well.
+    # This waits for the end of a pipe of which the parent holds the other end, so that SIGKILL is
+    # noticed as well.
     parent.join()
     os._exit(1)

@@ -1,4 +1,6 @@
-"""Bounds and confidence intervals of probabilities and quantiles, for independent flights and any distribution."""
+"""Bounds and confidence intervals of probabilities and quantiles, for independent flights and any
+distribution.
+"""
 
 import math
 from dataclasses import dataclass
@@ -12,7 +14,9 @@ CONFIDENCE = 0.95
 """Confidence of a bound where nothing else is asked for [-]."""
 
 TELLING = 0.5
-"""Largest bound on a probability that is stated: a flight, or a handful of them, bounds it by nearly everything [-]."""
+"""Largest bound on a probability that is stated: a flight, or a handful of them, bounds it by
+nearly everything [-].
+"""
 
 TINY = 1e-5
 """Probabilities below are written as powers of ten: nobody reads zeros behind a point."""
@@ -23,9 +27,10 @@ _RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 def upper_bound(events: int, trials: int, confidence: float = CONFIDENCE) -> float:
     """Return the exact one-sided upper bound of a probability [-].
 
-    C. J. Clopper and E. S. Pearson, "The use of confidence or fiducial limits illustrated in the case of the binomial", Biometrika
-    26 (1934). Where trials differ in their probability, as the flights of a sweep do, it bounds their mean: W. Hoeffding, "On the
-    distribution of the number of successes in independent trials", Annals of Mathematical Statistics 27 (1956), theorem 4.
+    C. J. Clopper and E. S. Pearson, "The use of confidence or fiducial limits illustrated in the
+    case of the binomial", Biometrika 26 (1934). Where trials differ in their probability, as the
+    flights of a sweep do, it bounds their mean: W. Hoeffding, "On the distribution of the number of
+    successes in independent trials", Annals of Mathematical Statistics 27 (1956), theorem 4.
 
     Parameters
     ----------
@@ -36,7 +41,8 @@ def upper_bound(events: int, trials: int, confidence: float = CONFIDENCE) -> flo
     ------
     ValueError : ``events`` is not within 0 to ``trials``, or ``confidence`` not between 0 and 1
     """
-    # The beta distribution's quantile; scipy.stats, which calls the same function, takes a third of a second to import.
+    # The beta distribution's quantile; scipy.stats, which calls the same function, takes a third of
+    # a second to import.
     from scipy.special import betaincinv
 
     _check(confidence)
@@ -47,7 +53,9 @@ def upper_bound(events: int, trials: int, confidence: float = CONFIDENCE) -> flo
 
 @dataclass(frozen=True, slots=True)
 class Interval:
-    """An interval in the unit of its quantity; a limit for which the sample is too small is not a number."""
+    """An interval in the unit of its quantity; a limit for which the sample is too small is not a
+    number.
+    """
 
     low: float
     high: float
@@ -59,7 +67,8 @@ class Interval:
 
 
 def clopper_pearson(events: int, trials: int, confidence: float) -> Interval:
-    """Return the exact two-sided interval of a probability; each limit errs with (1 - confidence)/2 at most.
+    """Return the exact two-sided interval of a probability; each limit errs with (1 - confidence)/2
+    at most.
 
     It is made of two one-sided bounds.
 
@@ -80,9 +89,11 @@ def clopper_pearson(events: int, trials: int, confidence: float) -> Interval:
 def shared_interval(
     events: npt.NDArray[np.bool_], samples: npt.ArrayLike, confidence: float
 ) -> Interval:
-    """Return the interval of a probability, of trials of which some share their random sample and count as one.
+    """Return the interval of a probability, of trials of which some share their random sample and
+    count as one.
 
-    Where such trials differ, the share of them with an event counts, and each limit is that of the whole number beyond it.
+    Where such trials differ, the share of them with an event counts, and each limit is that of the
+    whole number beyond it.
 
     Parameters
     ----------
@@ -102,9 +113,10 @@ def shared_interval(
 def quantile_interval(values: Array, probability: float, confidence: float) -> Interval:
     """Return the confidence interval of a quantile from order statistics, for any distribution.
 
-    The number of values below the quantile is binomial. The l-th and the u-th smallest value enclose the quantile if
-    the probabilities of at most l - 1 values below it, and of at least u, are each (1 - confidence)/2 at most. H. A.
-    David and H. N. Nagaraja, "Order Statistics", 3rd ed. (2003), section 7.1.
+    The number of values below the quantile is binomial. The l-th and the u-th smallest value
+    enclose the quantile if the probabilities of at most l - 1 values below it, and of at least u,
+    are each (1 - confidence)/2 at most. H. A. David and H. N. Nagaraja, "Order Statistics", 3rd ed.
+    (2003), section 7.1.
 
     Parameters
     ----------
@@ -114,8 +126,8 @@ def quantile_interval(values: Array, probability: float, confidence: float) -> I
 
     Returns
     -------
-    interval : in the unit of ``values``; a limit is not a number if even the smallest or largest value does not reach
-        the confidence, as for quantiles near 0 or 1 of few values
+    interval : in the unit of ``values``; a limit is not a number if even the smallest or largest
+        value does not reach the confidence, as for quantiles near 0 or 1 of few values
 
     Raises
     ------
@@ -131,7 +143,8 @@ def quantile_interval(values: Array, probability: float, confidence: float) -> I
     if not len(values):
         return Interval(math.nan, math.nan)
     tail, count = 0.5 * (1.0 - confidence), len(values)
-    # ppf(p) is the smallest number with a cumulative probability of p or more: the largest l and the smallest u follow.
+    # ppf(p) is the smallest number with a cumulative probability of p or more: the largest l and
+    # the smallest u follow.
     low = int(binom.ppf(tail, count, probability))
     high = int(binom.ppf(1.0 - tail, count, probability)) + 1
     ordered = np.sort(values)
@@ -149,7 +162,8 @@ def _check(confidence: float) -> None:
 
 
 def percent(fraction: float) -> str:
-    """Return a fraction in per cent, to three digits, and to four where it is nearly all; below 1e-5 as a power of ten.
+    """Return a fraction in per cent, to three digits, and to four where it is nearly all; below
+    1e-5 as a power of ten.
 
     No line breaks before the sign.
     """

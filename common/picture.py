@@ -90,7 +90,9 @@ def _media_type(content: bytes) -> str | None:
 
 
 def _is_printed(svg: bytes) -> bool:
-    """Return whether the library that sets reports for print can draw an SVG: one without a size, or with links, it cannot."""
+    """Return whether the library that sets reports for print can draw an SVG: one without a size,
+    or with links, it cannot.
+    """
     import typst
 
     try:

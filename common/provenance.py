@@ -1,4 +1,6 @@
-"""Software and hosts of a run: recorded in its manifest, printed in its report. No name and no path of a machine is."""
+"""Software and hosts of a run: recorded in its manifest, printed in its report. No name and no path
+of a machine is.
+"""
 
 import functools
 import importlib.metadata
@@ -41,7 +43,8 @@ def without_folders(text: str) -> str:
 
 
 def command_line(module: str, given: Sequence[str]) -> str:
-    """Return a command line as a shell reads it, with no host and with absolute paths cut to their last name.
+    """Return a command line as a shell reads it, with no host and with absolute paths cut to their
+    last name.
 
     Parameters
     ----------

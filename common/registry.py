@@ -1,4 +1,6 @@
-"""Extension points: named parts of one kind, from the project, from installed packages, or from a Python file."""
+"""Extension points: named parts of one kind, from the project, from installed packages, or from a
+Python file.
+"""
 
 import functools
 import hashlib
@@ -19,24 +21,30 @@ from common.spelling import did_you_mean
 Part = TypeVar("Part")
 
 ENTRY_POINTS = "plume_flight_study"
-"""Packages announce parts in groups of this name and the registry's: ``plume_flight_study.steering_law``."""
+"""Packages announce parts in groups of this name and the registry's:
+``plume_flight_study.steering_law``.
+"""
 
 
 class PluginError(ValueError):
-    """A part that is unknown, or does not load, or is not what it should be. The message is one line."""
+    """A part that is unknown, or does not load, or is not what it should be. The message is one
+    line.
+    """
 
 
 class Registry(Generic[Part]):
     """The parts of one kind.
 
-    A part is known by its name where a module of ``folder`` registers it, or an installed package has an entry point of that name
-    in the group ``plume_flight_study.KIND``. It may also be named by its file, as in ``mylaw.py:MyLaw``.
+    A part is known by its name where a module of ``folder`` registers it, or an installed package
+    has an entry point of that name in the group ``plume_flight_study.KIND``. It may also be named
+    by its file, as in ``mylaw.py:MyLaw``.
 
     Parameters
     ----------
     kind : of the parts, as in "steering_law"
     folder : package whose modules register the project's own parts when they are imported
-    methods : that every part has to have, unless it is a function that makes one: those of its Protocol; of some, "this|that"
+    methods : that every part has to have, unless it is a function that makes one: those of its
+        Protocol; of some, "this|that"
     """
 
     def __init__(self, kind: str, *, folder: str, methods: Sequence[str] = ()) -> None:
@@ -61,7 +69,8 @@ class Registry(Generic[Part]):
 
     @contextmanager
     def lent(self, name: str, part: Part) -> Iterator[None]:
-        """Know a part by ``name`` inside the context: one that is given as an object, and not by its name.
+        """Know a part by ``name`` inside the context: one that is given as an object, and not by
+        its name.
 
         Raises
         ------
@@ -89,7 +98,9 @@ class Registry(Generic[Part]):
         return sorted({*self._known(), *self._entry_points()})
 
     def own_names(self) -> list[str]:
-        """Return the names of the project's own parts, in alphabetical order: those that modules of ``folder`` register."""
+        """Return the names of the project's own parts, in alphabetical order: those that modules of
+        ``folder`` register.
+        """
         return sorted(
             name
             for name, part in self._known().items()
@@ -97,7 +108,9 @@ class Registry(Generic[Part]):
         )
 
     def __contains__(self, name: str) -> bool:
-        """Return whether a part is known by ``name``; installed packages are asked last, which takes longest."""
+        """Return whether a part is known by ``name``; installed packages are asked last, which
+        takes longest.
+        """
         return name in self._known() or name in self._entry_points()
 
     def get(self, name: str) -> Part:
@@ -105,7 +118,8 @@ class Registry(Generic[Part]):
 
         Raises
         ------
-        PluginError : there is none, or it does not load, or it lacks a method, or is an object, of which no flight makes its own
+        PluginError : there is none, or it does not load, or it lacks a method, or is an object, of
+            which no flight makes its own
         """
         if name.endswith(".py:"):
             raise self._without_name(name)
@@ -191,12 +205,16 @@ def announced(kind: str) -> dict[str, importlib.metadata.EntryPoint]:
 def _points(
     group: str, find: Callable[..., importlib.metadata.EntryPoints], _: tuple[tuple[str, int], ...]
 ) -> importlib.metadata.EntryPoints:
-    """Return the entry points of a group, for which every installed package is looked into: once, as long as none is installed."""
+    """Return the entry points of a group, for which every installed package is looked into: once,
+    as long as none is installed.
+    """
     return find(group=group)
 
 
 def _places() -> tuple[tuple[str, int], ...]:
-    """Return where packages may lie, and when something was last installed or removed there [ns]; 0 where there is nothing."""
+    """Return where packages may lie, and when something was last installed or removed there [ns]; 0
+    where there is nothing.
+    """
     return tuple((place, _changed(place)) for place in sys.path)
 
 
@@ -259,7 +277,8 @@ def _module_in(path: Path, digest: str) -> Any:
     sys.modules[name] = module
     try:
         spec.loader.exec_module(module)
-    # A script that ends the process when it is read is no part, and must not end the command without a word.
+    # A script that ends the process when it is read is no part, and must not end the command
+    # without a word.
     except (Exception, SystemExit) as error:
         del sys.modules[name]
         raise PluginError(
@@ -269,7 +288,9 @@ def _module_in(path: Path, digest: str) -> Any:
 
 
 def _where(path: Path, error: BaseException) -> str:
-    """Return the line of a file at which its loading failed, if that is known; an error of its syntax says it itself."""
+    """Return the line of a file at which its loading failed, if that is known; an error of its
+    syntax says it itself.
+    """
     lines = [
         frame.lineno
         for frame in traceback.extract_tb(error.__traceback__)

@@ -6,7 +6,9 @@ MANIFEST = "manifest.json"
 """Configuration, software, and how the run ended."""
 
 FORMAT = 1
-"""Version of a run directory, the manifest's entry ``format``. It rises when what is read changes its meaning."""
+"""Version of a run directory, the manifest's entry ``format``. It rises when what is read changes
+its meaning.
+"""
 
 FILES = "files"
 """Entry of the manifest with the files that a run had when it ended."""
@@ -48,7 +50,9 @@ STATISTICS = "statistics.json"
 """Estimates of a Monte Carlo study."""
 
 SULPHUR_TABLE = "sulphur.csv"
-"""A row per flight with a sniffer, method and time after settling: what was known of the fuel by then."""
+"""A row per flight with a sniffer, method and time after settling: what was known of the fuel by
+then.
+"""
 
 SULPHUR = "sulphur.json"
 """Statistics of the flights with a sniffer."""
@@ -89,7 +93,9 @@ REPORT_HTML, REPORT_PDF = "report.html", "report.pdf"
 """The reports."""
 
 REPORT_SETTINGS = ("title", "author", "organisation", "logo")
-"""What a report says of itself: keys of a scenario's section ``report``, and of the manifest's entry of that name."""
+"""What a report says of itself: keys of a scenario's section ``report``, and of the manifest's
+entry of that name.
+"""
 
 LOGO = "logo"
 """Name of the file of the reports' logo; its suffix says what kind of picture it is."""
@@ -132,7 +138,9 @@ def evaluation_path(flight_id: str) -> str:
 
 
 def flight_of(path: str) -> str:
-    """Return the flight that a path ``RUN_DIR/flights/ID`` names, with or without the suffix of one of its files."""
+    """Return the flight that a path ``RUN_DIR/flights/ID`` names, with or without the suffix of one
+    of its files.
+    """
     return Path(path).name.removesuffix(HISTORY_SUFFIX).removesuffix(EVALUATION_SUFFIX)
 
 

@@ -1,4 +1,6 @@
-"""Names that are nearly right: the known name spelt most like an unknown one, names with another unit; and words in one line."""
+"""Names that are nearly right: the known name spelt most like an unknown one, names with another
+unit; and words in one line.
+"""
 
 import difflib
 from collections.abc import Iterable
@@ -17,7 +19,8 @@ def one_line(words: str) -> str:
 
 
 def nearest(name: str, known: Iterable[str]) -> str | None:
-    """Return the known name that is spelt most like ``name``, whatever its case, or None if none is similar.
+    """Return the known name that is spelt most like ``name``, whatever its case, or None if none is
+    similar.
 
     One that only has a letter more at its end comes before others that are as similar.
     """
@@ -36,7 +39,9 @@ def nearest(name: str, known: Iterable[str]) -> str | None:
 
 
 def other_units(heads: Iterable[str], columns: Iterable[str]) -> str:
-    """Return, as a remedy, which of ``heads`` are those of missing ``columns`` but for the unit at their end, or nothing."""
+    """Return, as a remedy, which of ``heads`` are those of missing ``columns`` but for the unit at
+    their end, or nothing.
+    """
     known = set(heads)
     missing = {
         column.rpartition("_")[0]: column
@@ -53,6 +58,8 @@ def other_units(heads: Iterable[str], columns: Iterable[str]) -> str:
 
 
 def did_you_mean(name: str, known: Iterable[str]) -> str:
-    """Return ``; did you mean 'x'?`` for the known name nearest to ``name``, or nothing if none is similar."""
+    """Return ``; did you mean 'x'?`` for the known name nearest to ``name``, or nothing if none is
+    similar.
+    """
     found = nearest(name, known)
     return f"; did you mean '{found}'?" if found else ""

@@ -1,4 +1,6 @@
-"""Configuration of the documentation: `make docs` builds it from what is installed, without a network."""
+"""Configuration of the documentation: `make docs` builds it from what is installed, without a
+network.
+"""
 
 import importlib.metadata
 import logging
@@ -50,5 +52,6 @@ autodoc_typehints_format = "short"
 autodoc_preserve_defaults = True
 
 nitpicky = True
-# Types in signatures are text where their module is not documented; what pages and docstrings refer to has to exist.
+# Types in signatures are text where their module is not documented; what pages and docstrings refer
+# to has to exist.
 nitpick_ignore_regex = [("py:(class|data|obj)", ".*")]

@@ -1,4 +1,6 @@
-"""Modules that `make fast` has compiled: they are run in place of their sources until one of these is edited."""
+"""Modules that `make fast` has compiled: they are run in place of their sources until one of these
+is edited.
+"""
 
 import json
 import os
@@ -19,7 +21,9 @@ FOLDER = ROOT / "build" / f"compiled-{sys.implementation.cache_tag}"
 """What was compiled for this Python: apart from the sources, so that no other commit finds it."""
 
 INDEX = FOLDER / "index.json"
-"""``sources``, their hash; ``modules``, names of modules and of files. Written last: without it there is nothing."""
+"""``sources``, their hash; ``modules``, names of modules and of files. Written last: without it
+there is nothing.
+"""
 
 _PACKAGES = ("aircraft", "common", "gnc", "innerloop", "scenarios")
 """Whose sources count: those of compiled modules, and what these import."""
@@ -51,7 +55,9 @@ def sources_hash() -> str:
 
 
 def compiled_modules() -> dict[str, Path]:
-    """Return the file of each compiled module by its name: none if one is missing, the sources are others by now, or asked for."""
+    """Return the file of each compiled module by its name: none if one is missing, the sources are
+    others by now, or asked for.
+    """
     if os.environ.get(SOURCES):
         return {}
     try:

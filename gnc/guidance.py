@@ -75,7 +75,8 @@ class Guidance:
         )
 
     def step(self, time: float, measurement: Any) -> None:
-        """Compute the commands from what is measured now, then move the reference on by one time step.
+        """Compute the commands from what is measured now, then move the reference on by one time
+        step.
 
         Parameters
         ----------
@@ -135,7 +136,9 @@ class Guidance:
             self.altitude_command = mission.altitude
 
     def overruled(self, heading_rate: float, airspeed: float) -> None:
-        """Take note of commands that are flown in place of the last ones [rad/s, m/s]: what is predicted follows them."""
+        """Take note of commands that are flown in place of the last ones [rad/s, m/s]: what is
+        predicted follows them.
+        """
         self.heading_rate_command, self.airspeed_command = heading_rate, airspeed
         self.mission.tracker.heading_rate_command = turning = heading_rate * self.own.air_ratio
         if self._keep_out is not None:

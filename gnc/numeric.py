@@ -25,7 +25,8 @@ def wrapped(angles: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
 
 
 def limited(value: float, limit: float) -> float:
-    """Return ``value`` kept within minus and plus ``limit``, which is above 0; what is not a number stays so.
+    """Return ``value`` kept within minus and plus ``limit``, which is above 0; what is not a number
+    stays so.
 
     It takes a third of the time of ``min`` and ``max``: the guidance calls it at every step.
     """

@@ -1,4 +1,6 @@
-"""What the guidance of a flight knows beforehand: frozen, and chosen in one place (``gnc.compose``)."""
+"""What the guidance of a flight knows beforehand: frozen, and chosen in one place
+(``gnc.compose``).
+"""
 
 from dataclasses import dataclass
 
@@ -37,11 +39,14 @@ class GuidanceParameters:
     speed, altitude : V_r, and the altitude to hold [m/s, m]
     tracking : of the tracker
     airspeed_law : keeps the vehicle beside its reference
-    airspeed_bandwidth, airspeed_overshoot : of the airspeed behind its command, and over a rise of it [rad/s, -]
+    airspeed_bandwidth, airspeed_overshoot : of the airspeed behind its command, and over a rise of
+        it [rad/s, -]
     navigation : of the estimated own motion; None where it is known exactly, in still air
-    vessel : how it is known from reports, or its velocity north and east where that is known exactly and steady [m/s]
+    vessel : how it is known from reports, or its velocity north and east where that is known
+        exactly and steady [m/s]
     guard : of the keep-out area
-    mission : following a plume, circling the vessel, or tracking a reference that is known in advance
+    mission : following a plume, circling the vessel, or tracking a reference that is known in
+        advance
     health : of the vehicle
     """
 

@@ -23,9 +23,11 @@ class TrackingParameters:
     Attributes
     ----------
     law : steering law
-    heading_rate_max : omega_max; no command exceeds it; infinite for a vehicle that can fly anything [rad/s]
+    heading_rate_max : omega_max; no command exceeds it; infinite for a vehicle that can fly
+        anything [rad/s]
     time_step : [s]
-    lag : of the vehicle's heading rate behind its command [s]; above 0 the law runs that much ahead of time
+    lag : of the vehicle's heading rate behind its command [s]; above 0 the law runs that much ahead
+        of time
     """
 
     law: SteeringLaw
@@ -59,8 +61,9 @@ AnyReference = TypeVar("AnyReference", bound=Reference)
 class Tracker(Generic[AnyReference]):
     """Tracks one reference point, stepped at a fixed rate.
 
-    Preview: a vehicle that answers ``lag`` seconds late is steered by the law as it will stand then. The reference is known in
-    advance; the vehicle's motion until then follows from its heading rate, which goes from the measured value to the last command.
+    Preview: a vehicle that answers ``lag`` seconds late is steered by the law as it will stand
+    then. The reference is known in advance; the vehicle's motion until then follows from its
+    heading rate, which goes from the measured value to the last command.
 
     Parameters
     ----------
@@ -71,9 +74,11 @@ class Tracker(Generic[AnyReference]):
     Attributes
     ----------
     reference : the reference point now
-    ahead : the reference point as far ahead of time as the preview looks; where it is steered, the reference follows
+    ahead : the reference point as far ahead of time as the preview looks; where it is steered, the
+        reference follows
     heading_rate_demand : what the law asked for last, before omega_max had its say [rad/s]
-    heading_rate_command : what was commanded last; whoever changes it on its way to the vehicle sets it [rad/s]
+    heading_rate_command : what was commanded last; whoever changes it on its way to the vehicle
+        sets it [rad/s]
     saturated : whether the last demand was cut at omega_max
     """
 

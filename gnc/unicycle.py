@@ -6,11 +6,13 @@ _HALF_SPAN = 0.5 * math.sqrt(0.6)
 _GAUSS = ((0.5 - _HALF_SPAN, 5.0 / 18.0), (0.5, 8.0 / 18.0), (0.5 + _HALF_SPAN, 5.0 / 18.0))
 """Nodes and weights of the three-point rule on 0 to 1."""
 _PIECES_MAX = 200
-"""Pieces of a move at most; a lag for which these are too long is over before it moves the vehicle."""
+"""Pieces of a move at most; a lag for which these are too long is over before it moves the vehicle.
+"""
 
 
 def unicycle_rates(speed: float, course: float, heading_rate: float) -> tuple[float, float, float]:
-    """Return north rate, east rate [m/s] and course rate [rad/s]: equation (1), and (13) for a reference.
+    """Return north rate, east rate [m/s] and course rate [rad/s]: equation (1), and (13) for a
+    reference.
 
     Parameters
     ----------
@@ -24,9 +26,11 @@ def unicycle_rates(speed: float, course: float, heading_rate: float) -> tuple[fl
 def unicycle_move(
     north: float, east: float, course: float, speed: float, heading_rate: float, duration: float
 ) -> tuple[float, float, float]:
-    """Return position [m] and course [rad] after ``duration`` [s] of constant speed and heading rate: equation (1) integrated.
+    """Return position [m] and course [rad] after ``duration`` [s] of constant speed and heading
+    rate: equation (1) integrated.
 
-    The chord of the arc has the length v T sin(a)/a and the course of the arc's middle, with a half the angle turned.
+    The chord of the arc has the length v T sin(a)/a and the course of the arc's middle, with a half
+    the angle turned.
     """
     half_turn = 0.5 * heading_rate * duration
     chord = speed * duration
@@ -50,10 +54,12 @@ def lagged_move(
     lag: float,
     duration: float,
 ) -> tuple[float, float, float, float]:
-    """Return position [m], course [rad] and heading rate [rad/s] after ``duration`` [s] of following a commanded heading rate.
+    """Return position [m], course [rad] and heading rate [rad/s] after ``duration`` [s] of
+    following a commanded heading rate.
 
-    Equation (1) with a first-order lag between command and heading rate. Course and heading rate are in closed form; position is
-    Gauss and Legendre's quadrature at three nodes, over pieces no longer than half the lag or 0.1 s.
+    Equation (1) with a first-order lag between command and heading rate. Course and heading rate
+    are in closed form; position is Gauss and Legendre's quadrature at three nodes, over pieces no
+    longer than half the lag or 0.1 s.
 
     Parameters
     ----------
@@ -93,7 +99,8 @@ def lag_ahead(
     command: float,
     lag: float,
 ) -> tuple[float, float, float]:
-    """Return position [m] and course [rad] after the lag, with a heading rate that goes from the measured value to the command.
+    """Return position [m] and course [rad] after the lag, with a heading rate that goes from the
+    measured value to the command.
 
     Parameters
     ----------

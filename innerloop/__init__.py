@@ -1,1 +1,3 @@
-"""The autopilot: designed with python-control from the linearised aircraft, flown as a JSBSim ``<system>``."""
+"""The autopilot: designed with python-control from the linearised aircraft, flown as a JSBSim
+``<system>``.
+"""

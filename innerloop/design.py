@@ -1,4 +1,6 @@
-"""Command line: ``python -m innerloop.design AIRCRAFT`` designs an autopilot, prints, reports and writes it for JSBSim."""
+"""Command line: ``python -m innerloop.design AIRCRAFT`` designs an autopilot, prints, reports and
+writes it for JSBSim.
+"""
 
 import json
 import os
@@ -83,7 +85,9 @@ def command(
         ),
     ] = False,
 ) -> None:
-    """Design the autopilot of an aircraft: trim, poles, margins, step responses; a report, and a JSBSim root that flies it."""
+    """Design the autopilot of an aircraft: trim, poles, margins, step responses; a report, and a
+    JSBSim root that flies it.
+    """
     from aircraft.errors import AircraftError
     from aircraft.fleet.folder import folder_path
     from reports.errors import ReportError
@@ -111,7 +115,9 @@ def command(
 
 
 def _file_refusal(error: OSError, out: Path) -> str:
-    """Return why a file cannot be used, by whether it belongs to the directory that is written, and the remedy."""
+    """Return why a file cannot be used, by whether it belongs to the directory that is written, and
+    the remedy.
+    """
     if error.filename is None:
         return f"a file cannot be written: {error.strerror}; check the space on disk"
     path, written = Path(str(error.filename)).absolute(), out.absolute()
@@ -199,7 +205,8 @@ def _design(
     out.mkdir(parents=True, exist_ok=True)
     found = designed(spec, altitude)
     record = found.record
-    # Of an older design, perhaps of another aircraft; the manifest comes last, when all that it stands for is there.
+    # Of an older design, perhaps of another aircraft; the manifest comes last, when all that it
+    # stands for is there.
     remove_reports(out)
     if (out / MANIFEST).exists():
         shutil.rmtree(out / MODEL, ignore_errors=True)
@@ -237,7 +244,9 @@ def _with_repeated_search(found: "Designed", root: Path, reversals: int) -> "Rec
 
 
 def _refuse_another_run(out: Path) -> None:
-    """Refuse a directory that holds flights: their manifest would be lost. An older design may be replaced."""
+    """Refuse a directory that holds flights: their manifest would be lost. An older design may be
+    replaced.
+    """
     from aircraft.errors import AircraftError
 
     try:

@@ -6,11 +6,15 @@ from typing import Any
 
 
 class MeasurementError(ValueError):
-    """The input cannot be used. The message is one line that names the quantity, its value, the limit and the remedy."""
+    """The input cannot be used. The message is one line that names the quantity, its value, the
+    limit and the remedy.
+    """
 
 
 def guess(name: str, known: Iterable[str]) -> str:
-    """Return what stands between an unknown name and the known ones: the nearest of these, if any is similar."""
+    """Return what stands between an unknown name and the known ones: the nearest of these, if any
+    is similar.
+    """
     close = difflib.get_close_matches(name.lower(), known, n=1)
     return f"; did you mean '{close[0]}'?" if close else ";"
 

@@ -33,27 +33,36 @@ CARBON_PER_CO2 = _CARBON / MOLAR_MASS["co2"]
 
 
 EXPECTED_PPB_PER_PPM = {"no": (18.0, 7.5), "no2": (2.0, 1.2)}
-"""Of a ship's NO and NO2 over its CO2 and its standard deviation, where they are not measured [ppb/ppm].
+"""Of a ship's NO and NO2 over its CO2 and its standard deviation, where they are not measured
+[ppb/ppm].
 
-Assumption: NOx tiers 0 to 3 of two- and four-stroke engines emit 4 to 27 ppb/ppm; 5 to 15 % of it is
-NO2, and ozone adds some.
+Assumption: NOx tiers 0 to 3 of two- and four-stroke engines emit 4 to 27 ppb/ppm; 5 to 15 % of it
+is NO2, and ozone adds some.
 """
 
 
 FUEL_SULPHUR_MOST = 5.0
-"""More sulphur than marine fuels have [% m/m]: their limit was 4.5 % until 2012 (MARPOL Annex VI, regulation 14)."""
+"""More sulphur than marine fuels have [% m/m]: their limit was 4.5 % until 2012 (MARPOL Annex VI,
+regulation 14).
+"""
 
 
 ASSUMED_LEAST = 0.0005
-"""Smallest correction for gases assumed, not measured, that is told [% m/m]: three decimals show no smaller one."""
+"""Smallest correction for gases assumed, not measured, that is told [% m/m]: three decimals show no
+smaller one.
+"""
 
 
 MASS_PERCENT = "% m/m"
-"""Unit of a sulphur content where it stands first; what follows it, as its interval and its limits, is in plain %."""
+"""Unit of a sulphur content where it stands first; what follows it, as its interval and its limits,
+is in plain %.
+"""
 
 
 def limit_words(limit_percent: float) -> str:
-    """Return a limit on the sulphur content [% m/m] as it is printed: with two decimals, or with as many as it has."""
+    """Return a limit on the sulphur content [% m/m] as it is printed: with two decimals, or with as
+    many as it has.
+    """
     return (
         f"{limit_percent:.2f} %"
         if round(limit_percent, 2) == limit_percent
@@ -64,7 +73,8 @@ def limit_words(limit_percent: float) -> str:
 def fsc_factor(carbon_fraction: float = CARBON_FRACTION) -> float:
     """Return the fuel sulphur content [% m/m] per SO2 over CO2 [ppb/ppm]: 0.2322 at 87 % carbon.
 
-    A part per billion over a part per million is a thousandth by mole, and the content is in per cent: hence 0.1.
+    A part per billion over a part per million is a thousandth by mole, and the content is in per
+    cent: hence 0.1.
 
     Parameters
     ----------

@@ -7,7 +7,9 @@ _OTHER_SEPARATORS = {";": "semicolons", "\t": "tabs"}
 
 
 def other_separator(head: str) -> str:
-    """Return that a table is not separated by commas, by its head line, and the remedy; an empty text for one that is."""
+    """Return that a table is not separated by commas, by its head line, and the remedy; an empty
+    text for one that is.
+    """
     for separator, name in _OTHER_SEPARATORS.items():
         if head.count(separator) > head.count(","):
             return f"is separated by {name}; separate its columns by commas, and write decimals with a point, as in 108.2"
@@ -15,7 +17,8 @@ def other_separator(head: str) -> str:
 
 
 def decimal_commas(row: Sequence[str], heads: Sequence[str], numbers: Iterable[int]) -> str:
-    """Return that a row seems to have decimal commas, which separate its columns, too, and the remedy; otherwise an empty text.
+    """Return that a row seems to have decimal commas, which separate its columns, too, and the
+    remedy; otherwise an empty text.
 
     Parameters
     ----------
@@ -23,7 +26,8 @@ def decimal_commas(row: Sequence[str], heads: Sequence[str], numbers: Iterable[i
     heads : names of the columns
     numbers : places of columns with numbers, of which one at least has decimals
 
-    Such a row has more values than there are columns, and none with a point. One that ends in commas has no more.
+    Such a row has more values than there are columns, and none with a point. One that ends in
+    commas has no more.
     """
     ends = next((i for i in range(len(row), 0, -1) if row[i - 1].strip()), 0)
     if ends <= len(heads) or any("." in row[i] for i in numbers):

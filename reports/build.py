@@ -1,4 +1,6 @@
-"""Command line: ``python -m reports.build RUN_DIR`` rebuilds a run's reports from what is on disk, or exports it."""
+"""Command line: ``python -m reports.build RUN_DIR`` rebuilds a run's reports from what is on disk,
+or exports it.
+"""
 
 import sys
 from collections.abc import Callable, Sequence
@@ -36,12 +38,15 @@ def build_reports(
     ----------
     directory : of the run
     all_flights : print every flight that can be picked on the screen, and not only a selection
-    settings : ``report.KEY=VALUE`` of title, author, organisation and logo, in place of those of the run
-    tell_missing : called with the path of each file of the run that is gone or cannot be read; the reports name it
+    settings : ``report.KEY=VALUE`` of title, author, organisation and logo, in place of those of
+        the run
+    tell_missing : called with the path of each file of the run that is gone or cannot be read; the
+        reports name it
 
     Raises
     ------
-    ReportError : the directory holds no run that can be reported on, or cannot be written; or a setting is none, or no picture
+    ReportError : the directory holds no run that can be reported on, or cannot be written; or a
+        setting is none, or no picture
     """
     from reports.registry import content
     from reports.render.html import write_html
@@ -78,12 +83,15 @@ def export_run(
     ----------
     directory : of the run
     name : of the exporter, or ``FILE.py:NAME``
-    flight_id : of the only flight to be written; all of them if not given, each into a file of its own where the format holds one
-    tell_missing : called with the path of each file of the run that is gone or cannot be read, and so is not in the export
+    flight_id : of the only flight to be written; all of them if not given, each into a file of its
+        own where the format holds one
+    tell_missing : called with the path of each file of the run that is gone or cannot be read, and
+        so is not in the export
 
     Raises
     ------
-    ReportError : the run cannot be read or written, has no such flight, or does not have what the format is about
+    ReportError : the run cannot be read or written, has no such flight, or does not have what the
+        format is about
     PluginError : there is no such exporter, or it does not load
     """
     from reports.errors import ReportError
@@ -121,7 +129,9 @@ def export_run(
 
 
 def _stem(run_name: str, flight_id: str) -> str:
-    """Return what the file of a flight is called: RUN.FLIGHT, or FLIGHT where that begins with the run's name or is long."""
+    """Return what the file of a flight is called: RUN.FLIGHT, or FLIGHT where that begins with the
+    run's name or is long.
+    """
     both = f"{run_name}.{flight_id}"
     return (
         flight_id
@@ -156,7 +166,8 @@ def made_exporter(name: str) -> "Exporter":
 def stream_run(
     directory: Path, address: str, flight_id: str | None = None
 ) -> tuple[str, int, float]:
-    """Send a flight of a run to ``udp://HOST:PORT`` in real time; return its name, the number of messages, its duration [s].
+    """Send a flight of a run to ``udp://HOST:PORT`` in real time; return its name, the number of
+    messages, its duration [s].
 
     Raises
     ------
@@ -253,7 +264,8 @@ def command(
         ),
     ] = False,
 ) -> None:
-    """Rebuild report.html and report.pdf of a run or of a design, without flying anything; or export a run.
+    """Rebuild report.html and report.pdf of a run or of a design, without flying anything; or
+    export a run.
 
     Exit status: 0 written, 1 written but pieces of the run are missing, 2 bad input.
     """

@@ -1,4 +1,6 @@
-"""What a program asks of a run in memory: the figure of a flight, the report as a file, a flight in another format."""
+"""What a program asks of a run in memory: the figure of a flight, the report as a file, a flight in
+another format.
+"""
 
 from collections.abc import Callable
 from pathlib import Path
@@ -89,16 +91,19 @@ def write_report(run: RunData, path: Path, *, all_flights: bool = False) -> None
 
 
 def write_flight(run: RunData, flight_id: str, path: Path) -> None:
-    """Write a flight in the format that the suffix of ``path`` names: its time history, or an export.
+    """Write a flight in the format that the suffix of ``path`` names: its time history, or an
+    export.
 
     Parameters
     ----------
     run, flight_id : the run, and the name of the flight
-    path : the file; .parquet, .arrow and .csv hold the time history, other suffixes are those of the exporters
+    path : the file; .parquet, .arrow and .csv hold the time history, other suffixes are those of
+        the exporters
 
     Raises
     ------
-    ReportError : no format has this suffix, or its packages are missing, or the flight has no time history or cannot be written
+    ReportError : no format has this suffix, or its packages are missing, or the flight has no time
+        history or cannot be written
     PluginError : an exporter does not load
     """
     if not run.has_history(flight_id):
@@ -124,7 +129,9 @@ def write_flight(run: RunData, flight_id: str, path: Path) -> None:
 
 
 def _exporters() -> "dict[str, type[Exporter]]":
-    """Return the exporters by their suffixes, the longest first; none is made yet, as packages of another may be missing."""
+    """Return the exporters by their suffixes, the longest first; none is made yet, as packages of
+    another may be missing.
+    """
     from reports.export import EXPORTERS
 
     found = [EXPORTERS.get(name) for name in EXPORTERS.names()]
@@ -138,7 +145,9 @@ def _as_parquet(source: Path, path: Path) -> None:
 
 
 def _as_arrow(source: Path, path: Path) -> None:
-    """Write a time history as an Arrow file, with the units of its columns; uncompressed, so that it can be mapped into memory."""
+    """Write a time history as an Arrow file, with the units of its columns; uncompressed, so that
+    it can be mapped into memory.
+    """
     import pyarrow.feather
     import pyarrow.parquet
 

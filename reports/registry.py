@@ -53,11 +53,13 @@ def content(run: RunData, settings: Mapping[str, str] | None = None) -> Content:
     Parameters
     ----------
     run : as read from disk
-    settings : title, author, organisation and logo that replace those of the run (``reports.run.letterhead``)
+    settings : title, author, organisation and logo that replace those of the run
+        (``reports.run.letterhead``)
 
     Raises
     ------
-    ReportError : the manifest names a study that has no report, or is of another version; or the logo is no picture
+    ReportError : the manifest names a study that has no report, or is of another version; or the
+        logo is no picture
     """
     study = run.manifest.get("study")
     if not isinstance(study, str) or not (
@@ -92,7 +94,9 @@ def content(run: RunData, settings: Mapping[str, str] | None = None) -> Content:
 
 
 def _description(words: str, changes: Sequence[str]) -> str:
-    """Return the description of a run's scenario; of one that was changed, that it is of what was there before."""
+    """Return the description of a run's scenario; of one that was changed, that it is of what was
+    there before.
+    """
     if not words or not changes or any(change.startswith("description=") for change in changes):
         return words
     return f"As the scenario describes it, before the changes below: {words}"

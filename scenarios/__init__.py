@@ -1,6 +1,8 @@
-"""From a scenario to results: the world, the closed loop, the studies; and the programming interface, ``docs/reference/api.md``.
+"""From a scenario to results: the world, the closed loop, the studies; and the programming
+interface, ``docs/reference/api.md``.
 
-``from scenarios import fly, run, load, read_ais, Scenario``. Names are loaded when they are asked for: importing it is light.
+``from scenarios import fly, run, load, read_ais, Scenario``. Names are loaded when they are asked
+for: importing it is light.
 """
 
 import importlib
@@ -35,7 +37,9 @@ __all__ = [
 
 
 class _Package(ModuleType):
-    """This package, in which ``run`` is the function: importing the command line ``scenarios.run`` would put its module there."""
+    """This package, in which ``run`` is the function: importing the command line ``scenarios.run``
+    would put its module there.
+    """
 
     def __setattr__(self, name: str, value: object) -> None:
         if not (name in __all__ and isinstance(value, ModuleType)):

@@ -1,4 +1,6 @@
-"""Flying one flight in a process of its own: plan, fly, measure, record. Every way that one can end is a row."""
+"""Flying one flight in a process of its own: plan, fly, measure, record. Every way that one can end
+is a row.
+"""
 
 import bisect
 import itertools
@@ -162,7 +164,8 @@ class FlightWork:
             failed = failed_criteria(row, request.scenario.criteria)
             row |= {"criteria_met": not failed, "message": "; ".join(failed)}
         except Exception as error:  # noqa: BLE001 - a flight that fails is a row with its reason, and the study goes on
-            # After its flight an aircraft stays lost, whatever fails then, and what was flown is not infeasible.
+            # After its flight an aircraft stays lost, whatever fails then, and what was flown is
+            # not infeasible.
             flown = (
                 {"outcome": row["outcome"] if row["outcome"] in _GONE else Outcome.FAILED.value}
                 if "outcome" in row
@@ -202,7 +205,9 @@ class FlightWork:
         record: FlightRecord,  # noqa: ARG002
         row: Row,  # noqa: ARG002
     ) -> _Tables:
-        """Return rows of tables that a study of its own adds to a flight's row, by the file name of the table."""
+        """Return rows of tables that a study of its own adds to a flight's row, by the file name of
+        the table.
+        """
         return {}
 
     def setup_of(self, request: FlightRequest) -> VehicleSetup:
@@ -258,7 +263,9 @@ def _request_row(request: FlightRequest) -> Row:
 
 
 def _never_flown(request: FlightRequest, figures: Row) -> Row:
-    """Return how many manoeuvres of the vessel begin after the end of the flight, of one that has any."""
+    """Return how many manoeuvres of the vessel begin after the end of the flight, of one that has
+    any.
+    """
     begins = [manoeuvre.at_s for manoeuvre in request.scenario.vessel.manoeuvres]
     return (
         {"manoeuvres_unflown": sum(at >= figures["duration_s"] for at in begins)} if begins else {}
@@ -266,7 +273,9 @@ def _never_flown(request: FlightRequest, figures: Row) -> Row:
 
 
 def _measured_from(request: FlightRequest, record: FlightRecord) -> float:
-    """Return when instruments begin to be evaluated, from settling on if nothing else is said; not a number if never [s]."""
+    """Return when instruments begin to be evaluated, from settling on if nothing else is said; not
+    a number if never [s].
+    """
     measured = request.scenario.flight.measured_s
     return record.settled_at if measured is None else float(record.column("time_s")[-1]) - measured
 
@@ -301,7 +310,9 @@ def reader_of(
 
 
 def _plain(values: Mapping[str, object]) -> Row:
-    """Return inputs as they go into a table: numbers and words, times in ISO 8601, anything else as JSON."""
+    """Return inputs as they go into a table: numbers and words, times in ISO 8601, anything else as
+    JSON.
+    """
     return {key: _cell(value) for key, value in values.items()}
 
 

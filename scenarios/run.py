@@ -1,4 +1,6 @@
-"""Command line: ``python -m scenarios.run NAME|FILE.toml``. Slow imports wait until they are needed."""
+"""Command line: ``python -m scenarios.run NAME|FILE.toml``. Slow imports wait until they are
+needed.
+"""
 
 import os
 import re
@@ -92,9 +94,9 @@ def command(
 ) -> None:
     """Fly a scenario and write a report.
 
-    Exit status: 0 every flight kept out, completed and met its criteria (or kept out, where the scenario requires no more; or
-    every trajectory converged), 1 some did not, 2 bad input, 130 interrupted. Of a flight that is replayed: 0 its row is identical,
-    1 it is not.
+    Exit status: 0 every flight kept out, completed and met its criteria (or kept out, where the
+    scenario requires no more; or every trajectory converged), 1 some did not, 2 bad input, 130
+    interrupted. Of a flight that is replayed: 0 its row is identical, 1 it is not.
     """
     from scenarios.engine.executors import ExecutorFactory
     from scenarios.engine.task import Limits
@@ -236,7 +238,9 @@ def _run(
 
 
 def _again(directory: Path, *, out: Path | None, resume: bool) -> str:
-    """Return the command that continues an interrupted run: what was typed, with the run's directory and --resume."""
+    """Return the command that continues an interrupted run: what was typed, with the run's
+    directory and --resume.
+    """
     from common.command_line import PROGRAM
 
     typed = (
@@ -265,7 +269,9 @@ def _viewer(address: str | None, *, replayed: bool) -> tuple[str, int] | None:
 
 
 def _report(directory: Path, *, changed: bool, wanted: bool) -> int:
-    """Write the reports, if they are wanted and not there as they are to be; return the exit status."""
+    """Write the reports, if they are wanted and not there as they are to be; return the exit
+    status.
+    """
     reports = [directory / name for name in (REPORT_HTML, REPORT_PDF)]
     there = [] if changed else [path for path in reports if path.is_file()]
     if not changed:
@@ -298,7 +304,8 @@ def _report(directory: Path, *, changed: bool, wanted: bool) -> int:
 
 def main() -> None:
     """Entry point."""
-    # A study runs in several processes; BLAS threads for their small matrices would only slow them down.
+    # A study runs in several processes; BLAS threads for their small matrices would only slow them
+    # down.
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
     run_command(command, "python -m scenarios.run")
 

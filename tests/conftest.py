@@ -1,6 +1,8 @@
-"""Fixtures that several test packages share: designs made once per run, the X8 bare and under its autopilot.
+"""Fixtures that several test packages share: designs made once per run, the X8 bare and under its
+autopilot.
 
-They import what they need when they are used: tests/gnc runs where neither JSBSim nor python-control is installed.
+They import what they need when they are used: tests/gnc runs where neither JSBSim nor
+python-control is installed.
 """
 
 from __future__ import annotations
@@ -17,9 +19,11 @@ import time
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-# Tests run in two processes; threads under each of their small matrices would only be in the way. Before numpy is imported.
+# Tests run in two processes; threads under each of their small matrices would only be in the way.
+# Before numpy is imported.
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
-# What `make fast` has compiled takes no stand-ins for its parts. PLUME_FLIGHT_SOURCES= tests that all the same.
+# What `make fast` has compiled takes no stand-ins for its parts. PLUME_FLIGHT_SOURCES= tests that
+# all the same.
 os.environ.setdefault("PLUME_FLIGHT_SOURCES", "1")
 
 import pytest
@@ -57,20 +61,26 @@ LONGEST = (
     "test_estimate_uncertainty.py", "test_monte_carlo_study.py", "test_robustness.py", "test_keepout_guard.py",
     "test_methods.py",
 )  # fmt: skip
-"""Files of tests that take longest, in this order: each is run by one process, and none may begin one when the others are done."""
+"""Files of tests that take longest, in this order: each is run by one process, and none may begin
+one when the others are done.
+"""
 
 
 SWEPT_ALTITUDE = 60.0
 """Altitude of the catalog's flights, at which designs are made for all tests [m]."""
 
 MEMORY, MEMORY_MIN = Path("/dev/shm"), 2 * 2**30
-"""Where Linux keeps files in memory, and how much of it has to be free for those of the tests [B]: a run leaves a tenth of it."""
+"""Where Linux keeps files in memory, and how much of it has to be free for those of the tests [B]:
+a run leaves a tenth of it.
+"""
 
 
 def pytest_configure() -> None:
-    """Leave what tests are collected from to stay: looking for garbage among it took a third of the time of collecting them.
+    """Leave what tests are collected from to stay: looking for garbage among it took a third of the
+    time of collecting them.
 
-    Bytecode is written whatever the shell says: without it each run, and each process that tests begin, compiles all modules anew.
+    Bytecode is written whatever the shell says: without it each run, and each process that tests
+    begin, compiles all modules anew.
     """
     gc.disable()
     os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
@@ -85,7 +95,9 @@ def pytest_configure() -> None:
 
 
 def pytest_collection_finish() -> None:
-    """Look for garbage again, but not among what was imported and collected, which stays, and seldom among what fixtures keep."""
+    """Look for garbage again, but not among what was imported and collected, which stays, and
+    seldom among what fixtures keep.
+    """
     gc.freeze()
     gc.set_threshold(7_000, 20, 50)
     gc.enable()
@@ -99,7 +111,9 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
 
 @pytest.fixture(scope="session", autouse=True)
 def cache_home(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
-    """A cache directory for this run and all its workers, so that tests neither read nor leave designs in the user's."""
+    """A cache directory for this run and all its workers, so that tests neither read nor leave
+    designs in the user's.
+    """
     base = tmp_path_factory.getbasetemp()
     home = (base.parent if "PYTEST_XDIST_WORKER" in os.environ else base) / "cache"
     home.mkdir(exist_ok=True)
@@ -114,7 +128,9 @@ def cache_home(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
 
 @pytest.fixture(scope="session")
 def designs(cache_home: Path) -> Callable[..., Designed]:
-    """A function from an aircraft and an altitude [m] to its design and record, made by whichever worker asks first: seconds."""
+    """A function from an aircraft and an altitude [m] to its design and record, made by whichever
+    worker asks first: seconds.
+    """
     from aircraft.fleet.find import find_spec
     from innerloop.designs.cache import designed
 
@@ -128,7 +144,9 @@ def designs(cache_home: Path) -> Callable[..., Designed]:
 
 @contextlib.contextmanager
 def _alone(lock: Path) -> Iterator[None]:
-    """Wait while another worker is at the same work, for two minutes at most: then it does not live any more."""
+    """Wait while another worker is at the same work, for two minutes at most: then it does not live
+    any more.
+    """
     for _ in range(2400):
         with contextlib.suppress(FileExistsError):
             lock.touch(exist_ok=False)
@@ -172,7 +190,8 @@ def x8_root(x8_schedule: Schedule, tmp_path_factory: pytest.TempPathFactory) -> 
 
 @pytest.fixture
 def sketched(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Have reports printed with an empty picture in the place of each figure: to draw them takes nearly all of their time.
+    """Have reports printed with an empty picture in the place of each figure: to draw them takes
+    nearly all of their time.
 
     For tests that ask what a report says, of a kind that another test has drawn.
     """

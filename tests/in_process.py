@@ -1,4 +1,6 @@
-"""Commands as a user types them, in the process of the test: a tenth of a second instead of one or two."""
+"""Commands as a user types them, in the process of the test: a tenth of a second instead of one or
+two.
+"""
 
 import contextlib
 import importlib
@@ -18,7 +20,9 @@ class Ended:
 
 
 def run_command(module, *arguments):
-    """Run ``python -m MODULE ARGUMENTS``; an error that it lets through is raised, where a user would see a traceback."""
+    """Run ``python -m MODULE ARGUMENTS``; an error that it lets through is raised, where a user
+    would see a traceback.
+    """
     out, errors = (io.TextIOWrapper(io.BytesIO(), encoding="utf-8") for _ in range(2))
     main = importlib.import_module(module).main
     status = 0

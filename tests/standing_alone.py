@@ -43,7 +43,9 @@ class StandingAlone:
         self.modules = sorted(".".join(file.parts).removesuffix(".__init__") for file in files)
 
     def run(self, script: str) -> "subprocess.CompletedProcess[str]":
-        """Run a script behind the bar, in the root of the checkout; a new interpreter has imported nothing yet."""
+        """Run a script behind the bar, in the root of the checkout; a new interpreter has imported
+        nothing yet.
+        """
         # Plugins that are installed have no part in collecting, and import much.
         return subprocess.run(
             [sys.executable, "-c", self._bar + script],

@@ -1,8 +1,9 @@
-"""Bits flipped, files missing, cut, empty and of the wrong kind, numbers of every size: a line and a documented exit status.
+"""Bits flipped, files missing, cut, empty and of the wrong kind, numbers of every size: a line and
+a documented exit status.
 
-Each example is a command in this process. Whatever it lets through would be a traceback, and fails the test; so does a file
-outside of its run directory. The environment variable FUZZ_DEPTH multiplies the number of examples, which
-are then others each time.
+Each example is a command in this process. Whatever it lets through would be a traceback, and fails
+the test; so does a file outside of its run directory. The environment variable FUZZ_DEPTH
+multiplies the number of examples, which are then others each time.
 """
 
 import contextlib
@@ -152,7 +153,9 @@ def bounded():
 
 @pytest.fixture(scope="module")
 def place(tmp_path_factory):
-    """A directory with a short trial, its run, and nothing else; examples leave it as it was but for their run directory."""
+    """A directory with a short trial, its run, and nothing else; examples leave it as it was but
+    for their run directory.
+    """
     place = tmp_path_factory.mktemp("fuzz")
     (place / "short.toml").write_text(short_trial(flights=FLIGHTS, duration=5.0), encoding="utf-8")
     with pytest.MonkeyPatch.context() as patch:
@@ -179,7 +182,9 @@ def files_in(place):
 
 
 def ended(place, module, *arguments):
-    """Run a command; check its status, its message, and that it left everything but ``run`` alone. Return how it ended."""
+    """Run a command; check its status, its message, and that it left everything but ``run`` alone.
+    Return how it ended.
+    """
     before = files_in(place)
     with bounded():
         found = run_command(module, *arguments)

@@ -21,8 +21,8 @@ _DIRECTION = ("X-velocity-ft_sec", "Y-velocity-ft_sec", "Z-velocity-ft_sec")
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Gust:
-    """A gust that rises as 1 - cosine, holds, and falls as it rose: the discrete gust of MIL-F-8785C, which has the
-    rise alone.
+    """A gust that rises as 1 - cosine, holds, and falls as it rose: the discrete gust of
+    MIL-F-8785C, which has the rise alone.
 
     Attributes
     ----------
@@ -68,8 +68,8 @@ def in_order(gusts: Sequence[Gust], time_step: float) -> list[Gust]:
 
     Raises
     ------
-    AircraftError : two of them blow at once, or within a ``time_step`` [s]: JSBSim has one cosine gust, which must be
-        over first
+    AircraftError : two of them blow at once, or within a ``time_step`` [s]: JSBSim has one cosine
+        gust, which must be over first
     """
     ordered = sorted(gusts, key=lambda gust: gust.start)
     for first, second in itertools.pairwise(ordered):
@@ -93,7 +93,8 @@ def gusty_run(fdm: Fdm, gusts: Sequence[Gust]) -> Callable[[], object]:
     -------
     callable : JSBSim's own ``run`` where there is no gust, so that no gusts cost no time
     """
-    # To resume a generator takes Python less time than to call a function: this is the innermost call of a flight.
+    # To resume a generator takes Python less time than to call a function: this is the innermost
+    # call of a flight.
     return _steps(fdm, in_order(gusts, fdm.time_step)).__next__ if gusts else fdm.run
 
 
@@ -105,7 +106,9 @@ def end_gust(fdm: Fdm) -> None:
 
 
 def _steps(fdm: Fdm, gusts: Sequence[Gust]) -> Iterator[None]:
-    """Advance the aircraft by a time step whenever asked, for ever; let each of the gusts, in order, begin when it is due."""
+    """Advance the aircraft by a time step whenever asked, for ever; let each of the gusts, in
+    order, begin when it is due.
+    """
     fdm.write("atmosphere/cosine-gust/frame", _LOCAL_FRAME)
     profile = [
         fdm.writable_node(f"atmosphere/cosine-gust/{name}") for name in (*_PROFILE, *_DIRECTION)

@@ -1,16 +1,17 @@
 """Low-altitude turbulence of MIL-F-8785C: how strong it is and how long its waves are.
 
-Source: MIL-F-8785C, figures 10 and 11: between 10 and 1,000 ft, with the height h [ft] and the wind at 20 ft,
-sigma_w = 0.1 W20, sigma_u = sigma_v = sigma_w / (0.177 + 0.000823 h)^0.4, L_w = h and L_u = L_v = h / (0.177 +
-0.000823 h)^1.2.
+Source: MIL-F-8785C, figures 10 and 11: between 10 and 1,000 ft, with the height h [ft] and the wind
+at 20 ft, sigma_w = 0.1 W20, sigma_u = sigma_v = sigma_w / (0.177 + 0.000823 h)^0.4, L_w = h and L_u
+= L_v = h / (0.177 + 0.000823 h)^1.2.
 
 JSBSim computes the same from the height above mean sea level, and shapes them with a filter that
-``atmosphere/turb-type`` chooses. Type 4 has the standard's Dryden spectra, across and vertical ones with their
-second-order denominators. Type 3 keeps the standard deviations and replaces those two spectra by first-order ones of
-half the time constant (MIL-STD-1797A as Yeager quotes it), which moves energy from slow waves to fast ones; so type 4
-is used here. One thing differs from the standard in both: JSBSim turns the waves along and across the wind by the
-wind's direction the wrong way. As the two are equally strong and long, only the shapes of their spectra change places,
-and not at all in a wind along one of the four cardinal directions.
+``atmosphere/turb-type`` chooses. Type 4 has the standard's Dryden spectra, across and vertical ones
+with their second-order denominators. Type 3 keeps the standard deviations and replaces those two
+spectra by first-order ones of half the time constant (MIL-STD-1797A as Yeager quotes it), which
+moves energy from slow waves to fast ones; so type 4 is used here. One thing differs from the
+standard in both: JSBSim turns the waves along and across the wind by the wind's direction the wrong
+way. As the two are equally strong and long, only the shapes of their spectra change places, and not
+at all in a wind along one of the four cardinal directions.
 """
 
 import math
@@ -31,10 +32,10 @@ class Turbulence:
 
     Attributes
     ----------
-    wind_at_20ft : mean wind 20 ft above the surface that stirs it, W20 [m/s]; it need not be the wind that the
-        aircraft drifts with
-    severity : curve of figure 7 of MIL-F-8785C, 1 to 7, which JSBSim goes by above 1,000 ft; below, any of them
-        switches it on
+    wind_at_20ft : mean wind 20 ft above the surface that stirs it, W20 [m/s]; it need not be the
+        wind that the aircraft drifts with
+    severity : curve of figure 7 of MIL-F-8785C, 1 to 7, which JSBSim goes by above 1,000 ft; below,
+        any of them switches it on
 
     Raises
     ------
@@ -60,12 +61,13 @@ TURBULENCE = {
     "moderate": Turbulence(wind_at_20ft=30.0 * METRES_PER_SECOND_PER_KNOT, severity=4),
     "severe": Turbulence(wind_at_20ft=45.0 * METRES_PER_SECOND_PER_KNOT, severity=6),
 }
-"""Turbulence by name: W20 of 15, 30 and 45 knots (MIL-F-8785C, figure 9), and the severities that JSBSim's manual
-gives them."""
+"""Turbulence by name: W20 of 15, 30 and 45 knots (MIL-F-8785C, figure 9), and the severities that
+JSBSim's manual gives them."""
 
 
 def intensities(altitude: float, wind_at_20ft: float) -> tuple[float, float, float]:
-    """Return the standard deviations sigma_u, sigma_v, sigma_w [m/s] of the wind along, across and down.
+    """Return the standard deviations sigma_u, sigma_v, sigma_w [m/s] of the wind along, across and
+    down.
 
     Parameters
     ----------
@@ -82,10 +84,11 @@ def intensities(altitude: float, wind_at_20ft: float) -> tuple[float, float, flo
 
 
 def scale_lengths(altitude: float) -> tuple[float, float, float]:
-    """Return the scale lengths L_u, L_v, L_w [m] of the wind along, across and down at an altitude [m].
+    """Return the scale lengths L_u, L_v, L_w [m] of the wind along, across and down at an altitude
+    [m].
 
-    They are MIL-F-8785C's; MIL-HDBK-1797 calls half of the last two by the same names and has its spectra make up for
-    it.
+    They are MIL-F-8785C's; MIL-HDBK-1797 calls half of the last two by the same names and has its
+    spectra make up for it.
 
     Raises
     ------

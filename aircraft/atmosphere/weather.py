@@ -43,10 +43,11 @@ class Weather:
 
 
 def begin_turbulence(fdm: Fdm, weather: Weather) -> None:
-    """Let the turbulence of ``weather`` rise from smooth air, if it has any; the same seed gives the same turbulence.
+    """Let the turbulence of ``weather`` rise from smooth air, if it has any; the same seed gives
+    the same turbulence.
 
-    It takes a few times ``scale_lengths()[0]`` over the airspeed to be as strong as it will be: some 30 s for 220 m at
-    20 m/s.
+    It takes a few times ``scale_lengths()[0]`` over the airspeed to be as strong as it will be:
+    some 30 s for 220 m at 20 m/s.
     """
     if weather.turbulence is None:
         return
@@ -61,7 +62,8 @@ def begin_turbulence(fdm: Fdm, weather: Weather) -> None:
 def end_weather(fdm: Fdm) -> None:
     """End turbulence and gusts and reset their models; the aircraft is to be placed next.
 
-    Turbulence has to end before: JSBSim places an aircraft with a time step of 0, by which its turbulence divides.
+    Turbulence has to end before: JSBSim places an aircraft with a time step of 0, by which its
+    turbulence divides.
     """
     fdm.write(f"{_MILSPEC}/severity", 0)
     end_gust(fdm)

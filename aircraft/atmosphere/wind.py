@@ -1,4 +1,6 @@
-"""The mean wind over time and height, which turbulence and gusts are about: one object for all who ask for it."""
+"""The mean wind over time and height, which turbulence and gusts are about: one object for all who
+ask for it.
+"""
 
 import itertools
 import math
@@ -18,20 +20,25 @@ _LOWEST = 1e-9
 """Height below which there is no wind of its own [m]: its logarithm goes to minus infinity."""
 
 _ROUNDING = 1e-9
-"""Part of a distance by which two points may be farther apart and count as near [-]: the sum of two numbers is rounded."""
+"""Part of a distance by which two points may be farther apart and count as near [-]: the sum of two
+numbers is rounded.
+"""
 
 _PROFILE_TOP = 1000.0
 """Height up to which a logarithmic profile goes on; above it the wind is that at it [m]."""
 
 
 class WindField:
-    """Velocity of the air over time and height: linear in time, and in the logarithm of height, between points of a grid.
+    """Velocity of the air over time and height: linear in time, and in the logarithm of height,
+    between points of a grid.
 
-    Beyond the grid it is that of the nearest point. A logarithmic profile is exact: it is a line between two heights.
+    Beyond the grid it is that of the nearest point. A logarithmic profile is exact: it is a line
+    between two heights.
 
     Parameters
     ----------
-    velocity : where the wind blows to, north and east, at each time and height, shape (n, m, 2) [m/s]
+    velocity : where the wind blows to, north and east, at each time and height, shape (n, m, 2)
+        [m/s]
     times : of the grid, rising, shape (n,) [s]
     heights : above the sea, rising, shape (m,) [m]
 
@@ -75,7 +82,9 @@ class WindField:
         return tuple(self._times), tuple(self._heights), self._velocity.tobytes()
 
     def now(self, time: float, height: float) -> tuple[float, float]:
-        """Return north and east velocity of the air at a time [s] and a height [m]: one look, without arrays."""
+        """Return north and east velocity of the air at a time [s] and a height [m]: one look,
+        without arrays.
+        """
         if self.constant:
             north, east = self._rows[0][0]
             return north, east
@@ -92,16 +101,20 @@ class WindField:
         return north, east
 
     def at(self, time: npt.ArrayLike, height: npt.ArrayLike) -> tuple[Array, Array]:
-        """Return north and east velocity of the air [m/s] at times [s] and heights [m], which are broadcast together."""
+        """Return north and east velocity of the air [m/s] at times [s] and heights [m], which are
+        broadcast together.
+        """
         return self._interpolated(self._velocity, time, height)
 
     def largest_change(self, interval: float, duration: float, heights: Sequence[float]) -> float:
-        """Return by how much the velocity of the air changes at most within an interval, between time 0 and a duration [m/s].
+        """Return by how much the velocity of the air changes at most within an interval, between
+        time 0 and a duration [m/s].
 
         Parameters
         ----------
         interval, duration : [s]
-        heights : at each of which it is looked at, and at those of the grid between the lowest and the highest [m]
+        heights : at each of which it is looked at, and at those of the grid between the lowest and
+            the highest [m]
         """
         if len(self._times) == 1:
             return 0.0
@@ -116,7 +129,8 @@ class WindField:
         )
 
     def largest_shear(self, apart: float, lowest: float, highest: float, duration: float) -> float:
-        """Return by how much the velocity of the air differs at most between two heights, at a time from 0 to a duration [m/s].
+        """Return by how much the velocity of the air differs at most between two heights, at a time
+        from 0 to a duration [m/s].
 
         Parameters
         ----------
@@ -131,9 +145,11 @@ class WindField:
         return _largest_step(heights, *self.at(times, heights[:, None]), apart)
 
     def displacement(self, time: npt.ArrayLike, height: npt.ArrayLike) -> tuple[Array, Array]:
-        """Return how far the air at some heights [m] has moved north and east from time 0 to some times [s], in metres.
+        """Return how far the air at some heights [m] has moved north and east from time 0 to some
+        times [s], in metres.
 
-        It is the exact integral of ``at`` over time, at a constant height. Times and heights are broadcast together.
+        It is the exact integral of ``at`` over time, at a constant height. Times and heights are
+        broadcast together.
         """
         north, east = (
             end - start
@@ -186,18 +202,21 @@ CALM = constant_wind(0.0, 0.0)
 def over_the_sea(
     wind: Array, times: Sequence[float], *, roughness: float, height: float
 ) -> WindField:
-    """Return a wind with a logarithmic profile, V(z) = V(h) ln(z/z_0)/ln(h/z_0), neutral air over the sea.
+    """Return a wind with a logarithmic profile, V(z) = V(h) ln(z/z_0)/ln(h/z_0), neutral air over
+    the sea.
 
     Parameters
     ----------
     wind : velocity at the height it is given for, north and east at each time, shape (n, 2) [m/s]
     times : [s]
-    roughness : length z_0: 2e-4 m over open sea (J. Wieringa, Boundary-Layer Meteorology 63:323, 1993), below the height [m]
+    roughness : length z_0: 2e-4 m over open sea (J. Wieringa, Boundary-Layer Meteorology 63:323,
+        1993), below the height [m]
     height : h that the wind is given for [m]
 
     Raises
     ------
-    AircraftError : the roughness is not below the height, or so small that the profile would be cut off above it
+    AircraftError : the roughness is not below the height, or so small that the profile would be cut
+        off above it
     """
     if not _LOWEST <= roughness < height:
         raise AircraftError(
@@ -237,7 +256,9 @@ def windy_run(fdm: Fdm, wind: WindField, run: Callable[[], object]) -> Callable[
 
 
 def _looked_at(nodes: Sequence[float], first: float, last: float, apart: float) -> Array:
-    """Return where a largest change within a distance begins or ends: between nodes it is steady, and at most as large."""
+    """Return where a largest change within a distance begins or ends: between nodes it is steady,
+    and at most as large.
+    """
     inner = np.array([node for node in nodes if first < node < last])
     return np.unique(
         np.clip(
@@ -249,7 +270,9 @@ def _looked_at(nodes: Sequence[float], first: float, last: float, apart: float) 
 
 
 def _largest_step(points: Array, north: Array, east: Array, apart: float) -> float:
-    """Return the largest change [m/s] of velocities at points, shape (n, m), between any two that are so near to each other."""
+    """Return the largest change [m/s] of velocities at points, shape (n, m), between any two that
+    are so near to each other.
+    """
     largest = 0.0
     for step in range(1, len(points)):
         near = points[step:] - points[:-step] <= apart + _ROUNDING * abs(apart)

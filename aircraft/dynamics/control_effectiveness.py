@@ -1,8 +1,8 @@
 """Linearising control effectiveness: the moment of each control surface over its command.
 
-Many aircraft's surfaces travel further one way than the other, and some stop before their command does; about such a
-kink no linear model holds. So the moment of each surface is measured over its command, and the autopilot then commands
-the effect, which is proportional to the moment.
+Many aircraft's surfaces travel further one way than the other, and some stop before their command
+does; about such a kink no linear model holds. So the moment of each surface is measured over its
+command, and the autopilot then commands the effect, which is proportional to the moment.
 """
 
 from dataclasses import replace
@@ -22,17 +22,20 @@ _STEPS = 8
 """Steps of the command from 0 to either end of its range, at which the moment is measured [-]."""
 
 _NONLINEARITY_MAX = 0.05
-"""Largest deviation of a moment from a straight line, over its span, for which the surface is left as it is [-]."""
+"""Largest deviation of a moment from a straight line, over its span, for which the surface is left
+as it is [-].
+"""
 
 _STOP_SLOPE = 0.05
 """Slope below which a surface counts as having reached its stop, over its mean slope [-]."""
 
 
 def with_linearised_controls(fdm: Fdm, level: Trim) -> AircraftSpec:
-    """Return the aircraft's spec with surfaces commanded by their effect, measured in the level flight of ``level``.
+    """Return the aircraft's spec with surfaces commanded by their effect, measured in the level
+    flight of ``level``.
 
-    The effect is 0 at the command 0, and spans 2 from stop to stop, within the range of the command. Surfaces that have an
-    effectiveness are left as they are.
+    The effect is 0 at the command 0, and spans 2 from stop to stop, within the range of the
+    command. Surfaces that have an effectiveness are left as they are.
 
     Raises
     ------
@@ -72,7 +75,9 @@ def _linearised(fdm: Fdm, level: Trim, control_input: ControlInput) -> ControlIn
 
 
 def _commands(control_input: ControlInput) -> npt.NDArray[np.float64]:
-    """Return the commands at which the moment is measured [-]: over the input's range, in whose middle one is 0."""
+    """Return the commands at which the moment is measured [-]: over the input's range, in whose
+    middle one is 0.
+    """
     below = np.linspace(control_input.lower, 0.0, _STEPS + 1)
     return np.concatenate([below, np.linspace(0.0, control_input.upper, _STEPS + 1)[1:]])
 
@@ -92,7 +97,9 @@ def _moments(
 
 
 def _travel(commands: npt.NDArray[np.float64], moment: npt.NDArray[np.float64]) -> tuple[int, int]:
-    """Return the indices of the first and the last command of the range about 0 in which the moment is monotonic."""
+    """Return the indices of the first and the last command of the range about 0 in which the moment
+    is monotonic.
+    """
     slopes = np.diff(moment) / np.diff(commands)
     mean = float(np.mean(slopes))
     moving = slopes / mean > _STOP_SLOPE

@@ -1,4 +1,6 @@
-"""The envelope of an aircraft: airspeeds between stall and the engines' limit, with a reserve for banked turns."""
+"""The envelope of an aircraft: airspeeds between stall and the engines' limit, with a reserve for
+banked turns.
+"""
 
 import math
 from collections.abc import Sequence
@@ -13,56 +15,72 @@ from aircraft.spec import BANK_RESERVE, AircraftSpec, Envelope
 from common.physics.units import KG_PER_SLUG, METRES_PER_FOOT, NEWTONS_PER_POUND
 
 BANK_LIMITS = ((150.0, 45.0), (5_670.0, 30.0), (math.inf, 25.0))
-"""Largest mass [kg] of a class and the bank it turns with [deg]: aircraft too small to carry people, light aeroplanes
-(up to 12,500 lb, where CS-23 drew the line), and larger ones, which bank as airliners do."""
+"""Largest mass [kg] of a class and the bank it turns with [deg]: aircraft too small to carry
+people, light aeroplanes (up to 12,500 lb, where CS-23 drew the line), and larger ones, which bank
+as airliners do."""
 
 TABLE_REACH = 1.1
-"""Largest bank of the autopilot's tables, over its bank limit [-]: an overshoot is then still inside the tables."""
+"""Largest bank of the autopilot's tables, over its bank limit [-]: an overshoot is then still
+inside the tables.
+"""
 
 _STALL_RESERVE = 1.3
-"""Least airspeed over stall in the same turn [-]: CS-23's reference landing speed, 1.3 times the stall speed."""
+"""Least airspeed over stall in the same turn [-]: CS-23's reference landing speed, 1.3 times the
+stall speed.
+"""
 
 _AIRSPEED_RATIO = 1.6
-"""Largest airspeed over the least [-]: dynamic pressure then varies by 2.6, which tables at five airspeeds follow."""
+"""Largest airspeed over the least [-]: dynamic pressure then varies by 2.6, which tables at five
+airspeeds follow.
+"""
 
 _AIRSPEED_RATIO_MIN = 1.12
-"""Narrowest range of airspeeds, largest over least [-]: the guidance varies the airspeed within it."""
+"""Narrowest range of airspeeds, largest over least [-]: the guidance varies the airspeed within it.
+"""
 
 _AIRSPEED_STEPS = 4
 """Steps from the least to the largest airspeed, of equal ratio, at which trims are tried."""
 
 _MACH_MAX = 0.6
-"""Largest Mach number [-]: above it compressibility matters, which a schedule over airspeed alone ignores."""
+"""Largest Mach number [-]: above it compressibility matters, which a schedule over airspeed alone
+ignores.
+"""
 
 _SPEED_OF_SOUND = 340.3
 _DENSITY = 1.225
-"""Speed of sound [m/s] and density [kg/m^3] of the ISO standard atmosphere at sea level, taken at every altitude: the true Mach
-number is up to 6 % above the largest at 5,000 m, the highest altitude of a design."""
+"""Speed of sound [m/s] and density [kg/m^3] of the ISO standard atmosphere at sea level, taken at
+every altitude: the true Mach number is up to 6 % above the largest at 5,000 m, the highest altitude
+of a design."""
 
 _BANK_FRACTIONS = (1.0, 0.75, 0.5)
 """Fractions of the bank of the aircraft's class that are tried, one after the other [-]."""
 
 _THROTTLE_RANGE = (0.03, 0.95)
-"""Throttles of an equilibrium that leave a reserve for control [-]; to slow down takes less than to climb."""
+"""Throttles of an equilibrium that leave a reserve for control [-]; to slow down takes less than to
+climb.
+"""
 
 _SURFACE_FRACTION = 0.9
 """Fraction of a surface's travel that an equilibrium may take [-], for the same reason."""
 
 _LIFT_STEP = math.radians(1.0)
 _ALPHA_MAX = 0.4
-"""Step and end of the angles of attack at which the largest lift is sought [rad]; wings without slots
-stall below 0.4 rad, 23 deg."""
+"""Step and end of the angles of attack at which the largest lift is sought [rad]; wings without
+slots stall below 0.4 rad, 23 deg."""
 
 _START_LIFT_COEFFICIENTS = (0.5, 0.35, 0.7, 0.25)
-"""Lift coefficients at which a first equilibrium is sought, one after the other [-]: those of cruising aircraft."""
+"""Lift coefficients at which a first equilibrium is sought, one after the other [-]: those of
+cruising aircraft.
+"""
 
 
 def find_envelope(fdm: Fdm, altitude: float) -> Envelope:
     """Return the envelope that the aircraft's spec states, or one found by trimming the aircraft.
 
-    The range found begins 1.3 times above stall in the steepest turn of the autopilot's tables, and ends where level
-    flight or that turn takes more than 95 % of the throttle or 90 % of a surface, at 1.6 times its beginning or at
-    204 m/s, which is Mach 0.6 at sea level. Where that leaves no range, the bank is cut to three quarters and to a half.
+    The range found begins 1.3 times above stall in the steepest turn of the autopilot's tables, and
+    ends where level flight or that turn takes more than 95 % of the throttle or 90 % of a surface,
+    at 1.6 times its beginning or at 204 m/s, which is Mach 0.6 at sea level. Where that leaves no
+    range, the bank is cut to three quarters and to a half.
 
     Parameters
     ----------
@@ -99,7 +117,8 @@ def find_envelope(fdm: Fdm, altitude: float) -> Envelope:
 
 
 def with_reserve_note(envelope: Envelope, trims: Sequence[Trim], spec: AircraftSpec) -> Envelope:
-    """Return an envelope with a note where equilibria in it lack the reserves that one that is found has.
+    """Return an envelope with a note where equilibria in it lack the reserves that one that is
+    found has.
 
     Parameters
     ----------
@@ -123,7 +142,8 @@ def bank_by_class(mass: float) -> float:
 
 
 def first_trim(fdm: Fdm, altitude: float) -> Trim:
-    """Return level flight at the airspeed of the spec's envelope, or at one with an ordinary lift coefficient.
+    """Return level flight at the airspeed of the spec's envelope, or at one with an ordinary lift
+    coefficient.
 
     Raises
     ------
@@ -158,8 +178,8 @@ def _why(t: Trim) -> str:
 
 
 def _stall_airspeed(fdm: Fdm, level: Trim) -> tuple[float, tuple[str, ...]]:
-    """Return the airspeed at which the largest lift carries the weight [m/s], by pitching the held aircraft up; and
-    notes."""
+    """Return the airspeed at which the largest lift carries the weight [m/s], by pitching the held
+    aircraft up; and notes."""
     weight = fdm.read("inertia/weight-lbs")
     lift = fdm.node("forces/fwz-aero-lbs")
     largest, alpha = 0.0, level.alpha
@@ -188,8 +208,8 @@ def _stall_airspeed(fdm: Fdm, level: Trim) -> tuple[float, tuple[str, ...]]:
 
 
 def _airspeeds(fdm: Fdm, level: Trim, stall: float, bank: float) -> tuple[list[float], str]:
-    """Return the airspeeds, ascending, at which level flight and steepest turns trim with reserve; and why they
-    end."""
+    """Return the airspeeds, ascending, at which level flight and steepest turns trim with reserve;
+    and why they end."""
     steepest = TABLE_REACH * (bank + BANK_RESERVE)
     slowest = _STALL_RESERVE * stall / math.sqrt(math.cos(steepest))
     fastest = min(_AIRSPEED_RATIO * slowest, _MACH_MAX * _SPEED_OF_SOUND)

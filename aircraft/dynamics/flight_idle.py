@@ -1,7 +1,8 @@
 """Flight idle: the throttle at which an aircraft decelerates most.
 
-A propeller on an electric motor brakes most while it still turns: without voltage JSBSim's motor holds it still, and a
-stopped propeller has half the drag of a windmilling one. To slow down, an autopilot must not go below that throttle.
+A propeller on an electric motor brakes most while it still turns: without voltage JSBSim's motor
+holds it still, and a stopped propeller has half the drag of a windmilling one. To slow down, an
+autopilot must not go below that throttle.
 """
 
 from dataclasses import replace
@@ -16,14 +17,17 @@ _STEP = 0.05
 """Steps of throttle in the search [-]."""
 
 _GAIN_MIN = 0.05
-"""Least gain in deceleration, over that with closed throttle, for which flight idle is above it [-]."""
+"""Least gain in deceleration, over that with closed throttle, for which flight idle is above it
+[-].
+"""
 
 _SETTLED = 1e-5
 """Change of acceleration a step below which the propeller counts as settled [m/s^2]."""
 
 
 def flight_idle(fdm: Fdm, trim: Trim) -> float:
-    """Return the throttle, from closed up to that of level flight, at which the aircraft decelerates most.
+    """Return the throttle, from closed up to that of level flight, at which the aircraft
+    decelerates most.
 
     Parameters
     ----------

@@ -1,7 +1,8 @@
-"""The linear model of an aircraft, of its autopilot, or of both: matrices, and the names of what they relate.
+"""The linear model of an aircraft, of its autopilot, or of both: matrices, and the names of what
+they relate.
 
-python-control analyses such models; they themselves need numpy alone, so that a flight whose autopilot is already designed does
-not wait for it to be imported.
+python-control analyses such models; they themselves need numpy alone, so that a flight whose
+autopilot is already designed does not wait for it to be imported.
 """
 
 from collections.abc import Sequence
@@ -15,7 +16,8 @@ Matrix = npt.NDArray[np.float64]
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class LinearModel:
-    """A linear system x' = A x + B u, y = C x + D u, whose attributes have the names that python-control gives them.
+    """A linear system x' = A x + B u, y = C x + D u, whose attributes have the names that
+    python-control gives them.
 
     Attributes
     ----------

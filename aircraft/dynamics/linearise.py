@@ -1,14 +1,17 @@
-"""Linear model about an equilibrium, by central differences on JSBSim itself, servos and propeller included.
+"""Linear model about an equilibrium, by central differences on JSBSim itself, servos and propeller
+included.
 
-JSBSim's own linearisation bypasses servo lags and leaves the simulation unusable, so the rigid body is held still
-(``Fdm.frozen``), one quantity at a time is moved both ways, and the accelerations are read once all else has settled.
-A servo or propeller cannot be set directly; it is moved by holding its input off trim, and its own pole is read from
-how it returns. The direct effect of an input, before servo or propeller has moved (a motor's torque on the airframe),
-is separated by reading after one step as well.
+JSBSim's own linearisation bypasses servo lags and leaves the simulation unusable, so the rigid body
+is held still (``Fdm.frozen``), one quantity at a time is moved both ways, and the accelerations are
+read once all else has settled. A servo or propeller cannot be set directly; it is moved by holding
+its input off trim, and its own pole is read from how it returns. The direct effect of an input,
+before servo or propeller has moved (a motor's torque on the airframe), is separated by reading
+after one step as well.
 
-Where the spec names no property that follows an input (for stock aircraft it is unknown), the input's lag is measured:
-the difference of the accelerations from their final value after a step has an area and a first moment in time, and
-those are the coefficients of a lag of first or second order (a piston engine's manifold pressure, then its speed).
+Where the spec names no property that follows an input (for stock aircraft it is unknown), the
+input's lag is measured: the difference of the accelerations from their final value after a step has
+an area and a first moment in time, and those are the coefficients of a lag of first or second order
+(a piston engine's manifold pressure, then its speed).
 """
 
 import math
@@ -24,7 +27,9 @@ from aircraft.simulation.fdm import Fdm
 from aircraft.simulation.state import body_velocity, course_rate, euler_rates, level
 
 BODY_STATES = ("airspeed", "alpha", "beta", "p", "q", "r", "roll", "pitch", "altitude")
-"""Rigid-body states: [m/s, rad, rad, rad/s, rad/s, rad/s, rad, rad, m]. Position and yaw do not act back."""
+"""Rigid-body states: [m/s, rad, rad, rad/s, rad/s, rad/s, rad, rad, m]. Position and yaw do not act
+back.
+"""
 
 EXTRA_OUTPUTS = ("heading_rate", "climb_rate")
 """Outputs beside the states: rate of the air-relative course [rad/s] and climb rate [m/s]."""
@@ -33,25 +38,35 @@ _AIRSPEED_STEP = 0.0025
 _ALTITUDE_STEP = 5.0
 _STEP = 0.002
 _INPUT_STEP = 0.01
-"""Steps of the differences: airspeed over itself [-], altitude [m], angles and body rates [rad, rad/s], inputs [-].
-They are large against what is left of settling, ``_SETTLED``, and small against the curvature of a model's tables."""
+"""Steps of the differences: airspeed over itself [-], altitude [m], angles and body rates
+[rad, rad/s], inputs [-]. They are large against what is left of settling, ``_SETTLED``, and small
+against the curvature of a model's tables.
+"""
 
 _LAG_STEP = {"throttle": 0.05}
-"""Input steps for measuring lags: a turbine spools at a steady rate, so a small step would show no lag [-]."""
+"""Input steps for measuring lags: a turbine spools at a steady rate, so a small step would show no
+lag [-].
+"""
 
 _SETTLED = 3e-8
-"""Change of acceleration a step below which engines count as settled: behind one as slow as a second, 4e-6 from the
-end, where the differences are 5e-3 and more."""
+"""Change of acceleration a step below which engines count as settled: behind one as slow as a
+second, 4e-6 from the end, where the differences are 5e-3 and more."""
 
 _LAG_STEPS_MAX = 2400
 _LAG_SETTLED = 0.002
-"""A lag is measured for this many time steps at most, 20 s, or until this fraction of the effect is left [-]."""
+"""A lag is measured for this many time steps at most, 20 s, or until this fraction of the effect is
+left [-].
+"""
 
 _SECOND_ORDER = 0.05
-"""Product of two time constants over the square of their sum below which the lag counts as of first order [-]."""
+"""Product of two time constants over the square of their sum below which the lag counts as of first
+order [-].
+"""
 
 _AT_ONCE = 1e-6
-"""A driven state that has no more than this of its way left one step after its input follows at once [-]; rounding leaves less."""
+"""A driven state that has no more than this of its way left one step after its input follows at
+once [-]; rounding leaves less.
+"""
 
 _NO_LAG = 0.6
 """A time constant below this many steps is the half step of holding an input, not a lag [-]."""
@@ -68,9 +83,10 @@ def linearise(fdm: Fdm, trim: Trim) -> LinearModel:
     Returns
     -------
     LinearModel
-        States: ``BODY_STATES`` followed by the aircraft's driven states, then ``INPUT_effect`` for each measured lag,
-        followed by ``INPUT_effect_rate`` where it is of second order. Inputs: the aircraft's control inputs [-].
-        Outputs: every state followed by ``EXTRA_OUTPUTS``. All are deviations from trim, in SI and radians.
+        States: ``BODY_STATES`` followed by the aircraft's driven states, then ``INPUT_effect`` for
+        each measured lag, followed by ``INPUT_effect_rate`` where it is of second order. Inputs:
+        the aircraft's control inputs [-]. Outputs: every state followed by ``EXTRA_OUTPUTS``. All
+        are deviations from trim, in SI and radians.
 
     Raises
     ------
@@ -81,7 +97,9 @@ def linearise(fdm: Fdm, trim: Trim) -> LinearModel:
 
 
 class _Differences:
-    """Everything is read settled, so a body state also moves a propeller that follows it; that part is subtracted."""
+    """Everything is read settled, so a body state also moves a propeller that follows it; that part
+    is subtracted.
+    """
 
     def __init__(self, fdm: Fdm, trim: Trim) -> None:
         self._fdm = fdm
@@ -160,7 +178,8 @@ class _Differences:
             lag, product = self._measured_lag(j)
             if lag <= _NO_LAG * self._fdm.time_step:
                 continue
-            # A smaller lag of less than a step is how JSBSim holds and averages an input, not a lag of the aircraft.
+            # A smaller lag of less than a step is how JSBSim holds and averages an input, not a lag
+            # of the aircraft.
             second = product > max(_SECOND_ORDER * lag, self._fdm.time_step) * lag
             model = model.with_lag(j, lag, product if second else 0.0)
             states += [f"{control_input.name}_effect", f"{control_input.name}_effect_rate"][
@@ -177,10 +196,11 @@ class _Differences:
         )
 
     def _measured_lag(self, j: int) -> tuple[float, float]:
-        """Return sum and product of the time constants between input j and the accelerations [s, s^2].
+        """Return sum and product of the time constants between input j and the accelerations
+        [s, s^2].
 
-        Behind two lags, the difference from the final value has the area T1 + T2 and the first moment T1^2 + T1 T2 +
-        T2^2.
+        Behind two lags, the difference from the final value has the area T1 + T2 and the first
+        moment T1^2 + T1 T2 + T2^2.
         """
         name, step = (
             self._spec.inputs[j].name,
@@ -220,7 +240,9 @@ class _Differences:
     def _read(
         self, body: int | None, control_input: int | None, step: float
     ) -> npt.NDArray[np.float64]:
-        """Return rates of body states, extra outputs and driven states, one quantity moved and all settled."""
+        """Return rates of body states, extra outputs and driven states, one quantity moved and all
+        settled.
+        """
         point, inputs = self._body.copy(), self._inputs.copy()
         if body is not None:
             point[body] += step
@@ -297,7 +319,9 @@ class _Differences:
         return np.array([*rates, course_rate(velocity, acceleration, roll, pitch), climb_rate])
 
     def _pole(self, i: int, j: int) -> float:
-        """Return the pole of driven state i from its return to rest, after the first step, which averages inputs."""
+        """Return the pole of driven state i from its return to rest, after the first step, which
+        averages inputs.
+        """
         self._hold(self._body, self._inputs)
         rest = self._driven()[i]
         self._read(None, j, _INPUT_STEP)
@@ -311,7 +335,9 @@ class _Differences:
         return math.log(second / first) / self._fdm.time_step
 
     def _follows_at_once(self, i: int) -> AircraftError:
-        """Return the error of a driven state whose way to its input is over, or beyond it, within a time step or two."""
+        """Return the error of a driven state whose way to its input is over, or beyond it, within a
+        time step or two.
+        """
         state = self._spec.driven_states[i]
         return AircraftError(
             f"aircraft '{self._spec.name}': '{state.position}' follows input '{state.input}' within a time step of"
@@ -331,7 +357,8 @@ class _Model:
     def with_lag(self, j: int, lag: float, product: float) -> "_Model":
         """Return the model in which input j acts through one or two states of its own.
 
-        The sum of their time constants is ``lag`` [s], their product ``product`` [s^2]; 0 for a single one.
+        The sum of their time constants is ``lag`` [s], their product ``product`` [s^2]; 0 for a
+        single one.
         """
         n, m = self.b.shape
         if product:

@@ -1,10 +1,10 @@
 """Equilibrium flight, straight or turning, level or climbing.
 
-JSBSim's own trim fails for small electric aircraft (its engine loop steps the propeller at 0.5 s), so equilibrium is
-sought here on the accelerations themselves: the rigid body is held still, servos and engines settle, and a solver
-drives the six accelerations to zero. Powell's hybrid method (MINPACK) finds the equilibrium within a dozen evaluations
-where there is one; where it does not, a bounded least-squares search gives the point of least acceleration, and the
-limits that it is at.
+JSBSim's own trim fails for small electric aircraft (its engine loop steps the propeller at 0.5 s),
+so equilibrium is sought here on the accelerations themselves: the rigid body is held still, servos
+and engines settle, and a solver drives the six accelerations to zero. Powell's hybrid method
+(MINPACK) finds the equilibrium within a dozen evaluations where there is one; where it does not, a
+bounded least-squares search gives the point of least acceleration, and the limits that it is at.
 """
 
 import math
@@ -52,7 +52,9 @@ def trim(
 
 
 def _remedy(spec: AircraftSpec) -> str:
-    """Return what to do where there is no equilibrium: an envelope that the user states may be what is wrong."""
+    """Return what to do where there is no equilibrium: an envelope that the user states may be what
+    is wrong.
+    """
     or_else = "" if spec.envelope is None else ", or state another one: its airspeeds and its bank"
     return f"choose a condition inside the flight envelope{or_else}; or correct the model"
 
@@ -60,7 +62,8 @@ def _remedy(spec: AircraftSpec) -> str:
 def level_trim(
     spec: AircraftSpec, airspeed: float, altitude: float, start: Trim | None = None
 ) -> Trim:
-    """Return the straight and level equilibrium of the bare aircraft at ``airspeed`` [m/s] and ``altitude`` [m].
+    """Return the straight and level equilibrium of the bare aircraft at ``airspeed`` [m/s] and
+    ``altitude`` [m].
 
     Parameters
     ----------
@@ -79,16 +82,17 @@ def search_trim(
     climb_angle: float = 0.0,
     start: Trim | None = None,
 ) -> Trim:
-    """Search for an equilibrium at ``airspeed`` [m/s] and ``altitude`` [m]; the outcome of the result says whether it
-    is one.
+    """Search for an equilibrium at ``airspeed`` [m/s] and ``altitude`` [m]; the outcome of the
+    result says whether it is one.
 
     Parameters
     ----------
     fdm : the aircraft; its state is changed
     airspeed : true airspeed [m/s], positive
     altitude : [m]
-    bank : 0 for straight flight (the small bank that balances the propeller's torque is then part of the solution),
-        otherwise the bank angle of a steady turn [rad], whose yaw rate is part of the solution
+    bank : 0 for straight flight (the small bank that balances the propeller's torque is then part
+        of the solution), otherwise the bank angle of a steady turn [rad], whose yaw rate is part of
+        the solution
     climb_angle : [rad]
     start : a known equilibrium nearby, from which the search begins
 

@@ -1,4 +1,6 @@
-"""The search for an equilibrium: accelerations as a function of unknowns, and the solvers that zero them."""
+"""The search for an equilibrium: accelerations as a function of unknowns, and the solvers that zero
+them.
+"""
 
 import math
 
@@ -14,40 +16,54 @@ TOLERANCE = 1e-5
 """Largest acceleration that counts as zero [m/s^2, rad/s^2]: a millionth of g."""
 
 _SETTLED = 2e-9
-"""Change of acceleration a step below which engines count as settled: 2e-6 from the end with a lag of ten seconds."""
+"""Change of acceleration a step below which engines count as settled: 2e-6 from the end with a lag
+of ten seconds.
+"""
 
 _SETTLE_STEPS = 2400
 """Largest number of time steps in which engines may settle: 20 s."""
 
 _GOOD = 0.05
-"""Acceleration at which a search ends, over ``TOLERANCE`` [-]: the rest is for the remaining settling."""
+"""Acceleration at which a search ends, over ``TOLERANCE`` [-]: the rest is for the remaining
+settling.
+"""
 
 _NEAR_LIMIT = 0.05
-"""Distance from a limit at which an unknown counts as at it, over its scale [-]: bounded searches stop short."""
+"""Distance from a limit at which an unknown counts as at it, over its scale [-]: bounded searches
+stop short.
+"""
 
 _ALPHA_MAX = 0.5
 _BETA_MAX = 0.3
 _BANK_MAX = 1.2
-"""Limits of the unknown angles [rad], wider than any flight: angle of attack beyond stall, 29 deg; sideslip, 17 deg;
-the bank that balances a propeller's torque in straight flight, 69 deg."""
+"""Limits of the unknown angles [rad], wider than any flight: angle of attack beyond stall, 29 deg;
+sideslip, 17 deg; the bank that balances a propeller's torque in straight flight, 69 deg."""
 
 _TURN_RATE_RATIO_MAX = 3.0
 """Limit of the unknown yaw rate, over that of a coordinated turn [-]."""
 
 _GUESSED_GRAVITY = 9.81
-"""Gravity in the guess of a turn's yaw rate, from which the search begins [m/s^2]; the true one varies by 0.5 %."""
+"""Gravity in the guess of a turn's yaw rate, from which the search begins [m/s^2]; the true one
+varies by 0.5 %.
+"""
 
 _SCALE = 0.1
 """Size of the unknowns [rad, -]; the yaw rate's is the turn's own."""
 
 _CONVERGENCE = 1e-10
-"""Relative change of the unknowns at which a solver ends [-]: so small that ``_GOOD`` nearly always ends it before."""
+"""Relative change of the unknowns at which a solver ends [-]: so small that ``_GOOD`` nearly always
+ends it before.
+"""
 
 _COST_CONVERGENCE = 1e-12
-"""Change of cost and of gradient at which the least squares end: below the square of ``TOLERANCE``, 1e-10."""
+"""Change of cost and of gradient at which the least squares end: below the square of ``TOLERANCE``,
+1e-10.
+"""
 
 _EVALUATIONS_MAX = 80
-"""Largest number of evaluations of Powell's method, which takes a dozen where there is an equilibrium."""
+"""Largest number of evaluations of Powell's method, which takes a dozen where there is an
+equilibrium.
+"""
 
 _ITERATIONS_MAX = 12
 """Largest number of iterations of the bounded least squares, each with a Jacobian of its own."""
@@ -60,12 +76,14 @@ _START_ALPHA = 0.05
 
 
 _START_THROTTLES = (0.75, 0.5, 0.95)
-"""Throttles from which the search begins, one after the other [-]. From too little throttle at high speed it can end
-where JSBSim's propeller barely turns."""
+"""Throttles from which the search begins, one after the other [-]. From too little throttle at high
+speed it can end where JSBSim's propeller barely turns."""
 
 
 class _FoundError(Exception):
-    """Ends a search at its first good point: MINPACK would seek digits that a settling engine does not have."""
+    """Ends a search at its first good point: MINPACK would seek digits that a settling engine does
+    not have.
+    """
 
     def __init__(self, unknowns: npt.NDArray[np.float64]) -> None:
         super().__init__()
@@ -73,8 +91,8 @@ class _FoundError(Exception):
 
 
 class TrimProblem:
-    """Unknowns: angle of attack, sideslip, bank or yaw rate, control inputs. A rudder adds the condition of no
-    sideslip."""
+    """Unknowns: angle of attack, sideslip, bank or yaw rate, control inputs. A rudder adds the
+    condition of no sideslip."""
 
     def __init__(
         self, fdm: Fdm, *, airspeed: float, altitude: float, bank: float, climb_angle: float
@@ -96,7 +114,9 @@ class TrimProblem:
         )
 
     def guesses(self, start: Trim | None) -> list[npt.NDArray[np.float64]]:
-        """Return the points from which to search: a known equilibrium nearby, then the default ones."""
+        """Return the points from which to search: a known equilibrium nearby, then the default
+        ones.
+        """
         inputs = self._fdm.spec.inputs
         blank = [
             np.array(
@@ -114,10 +134,13 @@ class TrimProblem:
         ]
 
     def solve(self, guess: npt.NDArray[np.float64], *, run_up: bool) -> Trim:
-        """Return the result of Powell's method from a guess; a solution beyond a limit is not an equilibrium."""
+        """Return the result of Powell's method from a guess; a solution beyond a limit is not an
+        equilibrium.
+        """
 
         def scaled(z: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
-            # MINPACK steps relative to an unknown, and sideslip is zero: so every unknown is near one.
+            # MINPACK steps relative to an unknown, and sideslip is zero: so every unknown is near
+            # one.
             unknowns = guess + self._scale * (z - 1.0)
             residual = self.residual(unknowns)
             if np.max(np.abs(residual)) < _GOOD * TOLERANCE:
@@ -143,7 +166,9 @@ class TrimProblem:
         return self._result(guess + self._scale * (np.asarray(solution) - 1.0))
 
     def _run_up(self, guess: npt.NDArray[np.float64]) -> None:
-        """Settle at full throttle first: an earlier guess may have left a governed propeller windmilling."""
+        """Settle at full throttle first: an earlier guess may have left a governed propeller
+        windmilling.
+        """
         full = [
             self._upper[3 + k] if i.name == "throttle" else guess[3 + k]
             for k, i in enumerate(self._fdm.spec.inputs)
@@ -151,7 +176,9 @@ class TrimProblem:
         self.residual(np.array([*guess[:3], *full]))
 
     def nearest(self, best: Trim) -> Trim:
-        """Return the point within all limits where the accelerations are least, or the best found without limits."""
+        """Return the point within all limits where the accelerations are least, or the best found
+        without limits.
+        """
         for guess in self.guesses(None):
             solution = least_squares(
                 self.residual,

@@ -1,4 +1,6 @@
-"""Find an aircraft by name: registered ones first, then those that come with JSBSim; or by the path of its folder."""
+"""Find an aircraft by name: registered ones first, then those that come with JSBSim; or by the path
+of its folder.
+"""
 
 from aircraft.errors import AircraftError
 from aircraft.fleet.folder import folder_spec
@@ -18,11 +20,13 @@ def aircraft_names() -> list[str]:
 
 
 def find_spec(name: str) -> AircraftSpec:
-    """Return the aircraft called ``name``, or that of a file, ``FILE.py:NAME``, or of a folder, ``DIR/NAME``.
+    """Return the aircraft called ``name``, or that of a file, ``FILE.py:NAME``, or of a folder,
+    ``DIR/NAME``.
 
     Raises
     ------
-    AircraftError : the name is unknown, the aircraft does not load, or an autopilot cannot fly it, with the reason
+    AircraftError : the name is unknown, the aircraft does not load, or an autopilot cannot fly it,
+        with the reason
     """
     if is_file_part(name) or name in AIRCRAFT:
         return _registered(name)

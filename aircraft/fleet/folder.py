@@ -1,4 +1,6 @@
-"""Aircraft of the user: a folder with a JSBSim model, ``DIR/NAME``, and perhaps a file of settings beside the model."""
+"""Aircraft of the user: a folder with a JSBSim model, ``DIR/NAME``, and perhaps a file of settings
+beside the model.
+"""
 
 from pathlib import Path, PurePosixPath, PureWindowsPath
 
@@ -43,11 +45,13 @@ def folder_names(directory: Path) -> list[str]:
 
 
 def folder_path(directory: Path, name: str | None) -> str:
-    """Return the path of the aircraft called ``name`` in ``directory``, or of the only one that is there.
+    """Return the path of the aircraft called ``name`` in ``directory``, or of the only one that is
+    there.
 
     Raises
     ------
-    AircraftError : there is no such directory, no such aircraft in it, or, without a name, more than one; the name is a path
+    AircraftError : there is no such directory, no such aircraft in it, or, without a name, more
+        than one; the name is a path
     """
     if name is not None and is_path(name):
         raise AircraftError(
@@ -70,13 +74,14 @@ def folder_path(directory: Path, name: str | None) -> str:
 def folder_spec(path: str) -> AircraftSpec:
     """Return the spec of the aircraft in a folder, ``DIR/NAME``.
 
-    Its model is ``NAME.xml``, or the only JSBSim model in the folder. Engines and systems that it names are looked for in
-    the folder, then in ``DIR/../engine`` and ``DIR/../systems``, then in JSBSim's own. ``NAME.toml`` after the model's name
-    may say more of it.
+    Its model is ``NAME.xml``, or the only JSBSim model in the folder. Engines and systems that it
+    names are looked for in the folder, then in ``DIR/../engine`` and ``DIR/../systems``, then in
+    JSBSim's own. ``NAME.toml`` after the model's name may say more of it.
 
     Raises
     ------
-    AircraftError : no such folder, no model in it, or several; a file is not as it should be; an autopilot cannot fly it
+    AircraftError : no such folder, no model in it, or several; a file is not as it should be; an
+        autopilot cannot fly it
     """
     folder = Path(path).absolute()
     if not folder.is_dir():
@@ -132,7 +137,9 @@ def _model(folder: Path) -> str:
 
 
 def _check(files: ModelFiles) -> None:
-    """Refuse a model with a file that is not XML, or that names a file which is missing or leads out of its folders."""
+    """Refuse a model with a file that is not XML, or that names a file which is missing or leads
+    out of its folders.
+    """
     checked: set[Path] = set()
     waiting = [files.file]
     while waiting:

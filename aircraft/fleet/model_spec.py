@@ -1,7 +1,7 @@
 """The spec of an aircraft, read from its JSBSim model.
 
-The files give engines and controls, and whether the model is an aeroplane at all. The envelope is found by trimming
-(``aircraft.dynamics.envelope``).
+The files give engines and controls, and whether the model is an aeroplane at all. The envelope is
+found by trimming (``aircraft.dynamics.envelope``).
 """
 
 import math
@@ -14,7 +14,8 @@ from aircraft.spec import AircraftSpec, ControlInput, numbered, surface, throttl
 
 _SURFACES = ("elevator", "aileron", "rudder")
 _RUNNING_ENGINES = ("piston_engine", "turbine_engine", "turboprop_engine")
-"""Kinds of engine that have to be started and then run; electric ones turn when they get current."""
+"""Kinds of engine that have to be started and then run; electric ones turn when they get current.
+"""
 
 _ELECTRIC = ("electric_engine", "brushless_dc_motor")
 _STAND_STILL = 20.0
@@ -31,7 +32,8 @@ def spec_of_model(
     files : of its model; the first root is that of the spec
     name : of the aircraft
     source : of the model's numbers
-    settings : what the user says of it beyond the model, who may say more; None if it is no model of the user
+    settings : what the user says of it beyond the model, who may say more; None if it is no model
+        of the user
 
     Raises
     ------
@@ -150,7 +152,9 @@ def _no_aeroplane(
 def _deaf(
     inputs: tuple[ControlInput, ...], config: ET.Element, files: ModelFiles, *, of_user: bool
 ) -> str:
-    """Return which commands no control of the model takes, and what a user may say of it then; or an empty text."""
+    """Return which commands no control of the model takes, and what a user may say of it then; or
+    an empty text.
+    """
     text = _text(config, files)
     surfaces = [control for control in inputs if control.name in _SURFACES]
     missing = [

@@ -1,4 +1,6 @@
-"""What a file beside a JSBSim model, NAME.toml, may say of the aircraft. What it leaves out is found."""
+"""What a file beside a JSBSim model, NAME.toml, may say of the aircraft. What it leaves out is
+found.
+"""
 
 import json
 import math
@@ -82,15 +84,22 @@ class ModelSettings(_Table):
     title: Annotated[str, Field(min_length=1, max_length=80)] | None = None
     """Name in reports; the model's own name for itself if it is not given."""
     elevator: Annotated[_Commands, Field(min_length=1)] | None = None
-    """JSBSim properties that take the elevator command, -1 to 1; fcs/elevator-cmd-norm if not given."""
+    """JSBSim properties that take the elevator command, -1 to 1; fcs/elevator-cmd-norm if not
+    given.
+    """
     aileron: Annotated[_Commands, Field(min_length=1)] | None = None
     """The same of the ailerons; fcs/aileron-cmd-norm if not given."""
     rudder: _Commands | None = None
-    """The same of the rudder; fcs/rudder-cmd-norm if not given, and false for an aircraft that has none."""
+    """The same of the rudder; fcs/rudder-cmd-norm if not given, and false for an aircraft that has
+    none.
+    """
     throttle: Annotated[_Commands, Field(min_length=1)] | None = None
-    """JSBSim properties that take the throttle command, 0 to 1; that of each engine if not given."""
+    """JSBSim properties that take the throttle command, 0 to 1; that of each engine if not given.
+    """
     settle_time_s: Annotated[float, Field(ge=SETTLE_TIMES[0], le=SETTLE_TIMES[1])] | None = None
-    """Time in which servos and engines come to rest while the aircraft is held; 20 s if not given [s]."""
+    """Time in which servos and engines come to rest while the aircraft is held; 20 s if not given
+    [s].
+    """
     envelope: EnvelopeSettings | None = None
     """Airspeeds and bank; found by trimming if not given."""
     properties: dict[_Property, float] = {}

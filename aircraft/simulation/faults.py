@@ -1,10 +1,12 @@
-"""Faults in flight: an actuator that goes to its trim position and sticks there, and the loss of the engines.
+"""Faults in flight: an actuator that goes to its trim position and sticks there, and the loss of
+the engines.
 
-An aircraft with faults flies from a copy of its JSBSim root in which a switch follows each actuator's command, after
-everything that writes it: behind the autopilot for the command of a control input, before the ``<actuator>`` that
-reads it for any other. Without a fault the switch passes the command on unchanged, so the copy flies exactly as the
-original does. JSBSim's own ``malfunction/fail_stuck`` would stop an actuator wherever it is at that time, and few of
-JSBSim's own models have an ``<actuator>``.
+An aircraft with faults flies from a copy of its JSBSim root in which a switch follows each
+actuator's command, after everything that writes it: behind the autopilot for the command of a
+control input, before the ``<actuator>`` that reads it for any other. Without a fault the switch
+passes the command on unchanged, so the copy flies exactly as the original does. JSBSim's own
+``malfunction/fail_stuck`` would stop an actuator wherever it is at that time, and few of JSBSim's
+own models have an ``<actuator>``.
 """
 
 import shutil
@@ -17,14 +19,17 @@ from aircraft.simulation.fdm import Fdm
 from aircraft.spec import Actuator, AircraftSpec
 
 ENGINE = "engine"
-"""Name of the loss of all thrust: the throttle's command is 0, and running engines are shut down."""
+"""Name of the loss of all thrust: the throttle's command is 0, and running engines are shut down.
+"""
 
 OF_THRUST = frozenset({ENGINE, "throttle"})
 """Parts by whose failure thrust is lost, or stays what it was."""
 
 _FAILED, _HELD = "fault/{}/failed", "fault/{}/held"
 _SHUT_DOWN = (("propulsion/magneto_cmd", 0.0), ("propulsion/cutoff_cmd", 1.0))
-"""Properties that shut engines down, if a model has them; with ``set-running`` alone a windmilling engine restarts."""
+"""Properties that shut engines down, if a model has them; with ``set-running`` alone a windmilling
+engine restarts.
+"""
 
 
 def fault_names(spec: AircraftSpec) -> tuple[str, ...]:
@@ -43,7 +48,8 @@ def failable_root(spec: AircraftSpec, root: Path, directory: Path) -> Path:
 
     Raises
     ------
-    AircraftError : an actuator's command is neither that of a control input nor read by an ``<actuator>`` of the model
+    AircraftError : an actuator's command is neither that of a control input nor read by an
+        ``<actuator>`` of the model
     """
     shutil.copytree(root, directory, dirs_exist_ok=True)
     model_file = directory / "aircraft" / spec.model / f"{spec.model}.xml"
@@ -136,7 +142,9 @@ class Faults:
                 self._fdm.write(property_name, value)
 
     def clear(self) -> None:
-        """Undo every fault before the aircraft is placed for another flight; placing it starts its engines."""
+        """Undo every fault before the aircraft is placed for another flight; placing it starts its
+        engines.
+        """
         for name in self.failed:
             self._fdm.write(_FAILED.format(name), 0.0)
         self.failed.clear()

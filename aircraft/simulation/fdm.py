@@ -35,13 +35,15 @@ from aircraft.spec import AircraftSpec
 from common.physics.units import METRES_PER_FOOT
 
 TIME_STEP = 1.0 / 120.0
-"""Integration step of JSBSim [s]; the autopilot inside it computes every one, two or three of them."""
+"""Integration step of JSBSim [s]; the autopilot inside it computes every one, two or three of them.
+"""
 
 _SETTLE_STRIDE = 4
 
 _PATIENCE, _HASTE = 120, 8
-"""Time steps after which what has not come to rest counts as slow, and by how much longer steps it is sped up [-]: they are still
-short against the second that a piston engine takes to change its speed."""
+"""Time steps after which what has not come to rest counts as slow, and by how much longer steps it
+is sped up [-]: they are still short against the second that a piston engine takes to change its
+speed."""
 
 _FLIGHTGEAR = '<output name="{host}" type="FLIGHTGEAR" port="{port}" protocol="UDP" rate="30"/>'
 """JSBSim's output of FlightGear's own packets."""
@@ -53,8 +55,9 @@ class Fdm(PropertyTree):
     Parameters
     ----------
     spec : the aircraft
-    root : JSBSim root to load it from unchanged, e.g. one with an autopilot written into it; by default a copy of the
-        aircraft's own model without autopilot, outputs, servo play and ground contacts
+    root : JSBSim root to load it from unchanged, e.g. one with an autopilot written into it; by
+        default a copy of the aircraft's own model without autopilot, outputs, servo play and ground
+        contacts
     time_step : integration step [s]
 
     Raises
@@ -86,7 +89,8 @@ class Fdm(PropertyTree):
             )
         ]
         self._engines_run = self.cranked = False
-        """Whether engines were started at all, and whether one of them had to be with its starter."""
+        """Whether engines were started at all, and whether one of them had to be with its starter.
+        """
         self.run: Callable[[], object] = self._exec.run
         """Advance one time step. Bound directly to JSBSim: the innermost call of every flight."""
 
@@ -113,9 +117,11 @@ class Fdm(PropertyTree):
         return executive
 
     def show(self, host: str, port: int) -> None:
-        """Send the aircraft to FlightGear by JSBSim's own output from now on, and run no faster than the clock.
+        """Send the aircraft to FlightGear by JSBSim's own output from now on, and run no faster
+        than the clock.
 
-        The flight itself is the same to the last bit. Place the aircraft next: JSBSim's outputs begin with its initial conditions.
+        The flight itself is the same to the last bit. Place the aircraft next: JSBSim's outputs
+        begin with its initial conditions.
         """
         with tempfile.TemporaryDirectory() as folder, silenced():
             path = Path(folder) / "flightgear.xml"
@@ -129,8 +135,8 @@ class Fdm(PropertyTree):
         self.run = paced(self._exec.run, self.time_step)
 
     def place(self, state: RigidBodyState, wind: tuple[float, float] | None = None) -> None:
-        """Put the aircraft into ``state``, configured as its spec says. Engines keep running; the first time they are
-        started.
+        """Put the aircraft into ``state``, configured as its spec says. Engines keep running; the
+        first time they are started.
 
         Parameters
         ----------
@@ -142,12 +148,16 @@ class Fdm(PropertyTree):
             self._initialise(state, wind)
 
     def renew(self) -> None:
-        """Reset every model of JSBSim, such as turbulence, gusts and engines, as it was loaded; place it next."""
+        """Reset every model of JSBSim, such as turbulence, gusts and engines, as it was loaded;
+        place it next.
+        """
         self._exec.reset_to_initial_conditions(RESET_ONLY)
         self._engines_run = False
 
     def revive(self) -> None:
-        """Let stopped engines start when the aircraft is placed next: too little throttle can stall them."""
+        """Let stopped engines start when the aircraft is placed next: too little throttle can stall
+        them.
+        """
         self._engines_run = self._engines_run and self._running()
 
     def _initialise(self, state: RigidBodyState, wind: tuple[float, float] | None) -> None:
@@ -180,9 +190,11 @@ class Fdm(PropertyTree):
             node.set_double_value(value)
 
     def _start_engines(self) -> bool:
-        """Start every engine, at once or as a pilot does, and run them up, the body held; return whether that took any time.
+        """Start every engine, at once or as a pilot does, and run them up, the body held; return
+        whether that took any time.
 
-        A governed propeller that comes from idle can stay at its fine stop, windmilling; from full throttle it governs.
+        A governed propeller that comes from idle can stay at its fine stop, windmilling; from full
+        throttle it governs.
         """
         self._engines_run = True
         for name, value in START_ENGINES:
@@ -228,7 +240,9 @@ class Fdm(PropertyTree):
 
     @contextlib.contextmanager
     def frozen(self) -> Iterator[None]:
-        """Hold the rigid body where it is while servos, propellers and forces go on, for trim and linearisation."""
+        """Hold the rigid body where it is while servos, propellers and forces go on, for trim and
+        linearisation.
+        """
         before = {name: self.read(name) for name in INTEGRATORS}
         for name in INTEGRATORS:
             self.write(name, 0.0)
@@ -241,7 +255,8 @@ class Fdm(PropertyTree):
     def hold(
         self, state: RigidBodyState, steps: int, wind: tuple[float, float] | None = None
     ) -> None:
-        """Place the aircraft and hold it for ``steps`` time steps, so that it is released in ``state`` with all else at rest.
+        """Place the aircraft and hold it for ``steps`` time steps, so that it is released in
+        ``state`` with all else at rest.
 
         Parameters
         ----------
@@ -255,9 +270,11 @@ class Fdm(PropertyTree):
             self.step(steps)
 
     def settle(self, tolerance: float = 1e-9, steps_max: int = 4800) -> bool:
-        """Step, inside ``frozen``, until no acceleration [m/s^2, rad/s^2] moves by more than ``tolerance`` a step.
+        """Step, inside ``frozen``, until no acceleration [m/s^2, rad/s^2] moves by more than
+        ``tolerance`` a step.
 
-        What takes longer than a second, such as the speed of a piston engine, is sped up by longer steps.
+        What takes longer than a second, such as the speed of a piston engine, is sped up by longer
+        steps.
 
         Returns
         -------
@@ -265,7 +282,8 @@ class Fdm(PropertyTree):
         """
         if self._comes_to_rest(tolerance, min(_PATIENCE, steps_max)):
             return True
-        # Where a slow engine comes to rest does not depend on the length of its steps. Whether it has, those of flight decide.
+        # Where a slow engine comes to rest does not depend on the length of its steps. Whether it
+        # has, those of flight decide.
         hasty = max(0, steps_max - _PATIENCE) // _HASTE
         self._exec.set_dt(_HASTE * self.time_step)
         try:
@@ -298,7 +316,9 @@ class Fdm(PropertyTree):
         return self._vector("velocities/{}-aero-fps", "uvw", METRES_PER_FOOT)
 
     def acceleration_body(self) -> tuple[float, float, float]:
-        """Return the rates of the body velocity components [m/s^2], as they stand after the last step."""
+        """Return the rates of the body velocity components [m/s^2], as they stand after the last
+        step.
+        """
         return self._vector(ACCELERATION, "uvw", METRES_PER_FOOT)
 
     def rates_body(self) -> tuple[float, float, float]:

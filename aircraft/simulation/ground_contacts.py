@@ -1,4 +1,6 @@
-"""Ground contacts, left out of copies of models that never land: wheels in the air cost up to a quarter of each time step."""
+"""Ground contacts, left out of copies of models that never land: wheels in the air cost up to a
+quarter of each time step.
+"""
 
 import re
 from pathlib import Path
@@ -11,9 +13,11 @@ _OF_CONTACTS = re.compile(r"(gear|contact)/(unit|num-units)|steer-pos-deg")
 
 
 def leave_out_ground_contacts(spec: AircraftSpec, root: Path) -> None:
-    """Remove the ground contacts of an aircraft's model from a JSBSim root, unless the model or the spec names their properties.
+    """Remove the ground contacts of an aircraft's model from a JSBSim root, unless the model or the
+    spec names their properties.
 
-    In the air forces and moments of contacts are exactly 0: an aircraft flies the same without them, to the last bit.
+    In the air forces and moments of contacts are exactly 0: an aircraft flies the same without
+    them, to the last bit.
     """
     # Whatever their encoding: in those of two bytes the other one is 0.
     files = (path for path in root.rglob("*.xml") if path.is_file())

@@ -1,7 +1,8 @@
-"""The one mapping between JSBSim's globe and local north and east metres: about latitude and longitude 0, where all flights fly.
+"""The one mapping between JSBSim's globe and local north and east metres: about latitude and
+longitude 0, where all flights fly.
 
-Where on earth a flight is meant to be (``common.physics.geodesy.LocalFrame``) changes nothing of how it is flown: at the equator
-local north stays true north, and JSBSim's axes have no pole.
+Where on earth a flight is meant to be (``common.physics.geodesy.LocalFrame``) changes nothing of
+how it is flown: at the equator local north stays true north, and JSBSim's axes have no pole.
 """
 
 from common.physics.geodesy import ECCENTRICITY_SQUARED, EQUATORIAL_RADIUS
@@ -12,15 +13,19 @@ _MERIDIAN_RADIUS = EQUATORIAL_RADIUS * (1.0 - ECCENTRICITY_SQUARED)
 _NORTH_BY_LATITUDE = 0.5 * ECCENTRICITY_SQUARED
 _NORTH_BY_LONGITUDE = 1.0 / (6.0 * (1.0 - ECCENTRICITY_SQUARED))
 _EAST_BY_LATITUDE = (1.0 - ECCENTRICITY_SQUARED) / 3.0
-"""By what a degree of latitude or longitude counts more, or less, per squared angle from the origin [-]."""
+"""By what a degree of latitude or longitude counts more, or less, per squared angle from the origin
+[-].
+"""
 
 
 class EquatorFrame:
-    """North and east metres about latitude and longitude 0, at a fixed altitude: azimuthal equidistant, to third order.
+    """North and east metres about latitude and longitude 0, at a fixed altitude: azimuthal
+    equidistant, to third order.
 
-    With s = M phi (1 + e^2 phi^2/2) the length of the meridian and u = a lambda that of the equator, and K = 1/(a M) the curvature
-    there, north is s (1 + K u^2/6) and east u (1 - K s^2/3). That is ``common.physics.geodesy.LocalFrame`` at the origin, to
-    0.1 mm within a distance of 20 km.
+    With s = M phi (1 + e^2 phi^2/2) the length of the meridian and u = a lambda that of the
+    equator, and K = 1/(a M) the curvature there, north is s (1 + K u^2/6) and east u (1 - K s^2/3).
+    That is ``common.physics.geodesy.LocalFrame`` at the origin, to 0.1 mm within a distance of 20
+    km.
 
     Parameters
     ----------

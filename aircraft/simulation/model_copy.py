@@ -15,11 +15,12 @@ _PLAY = ("hysteresis_width", "deadband_width")
 
 
 def copy_model(files: ModelFiles, directory: Path, *, play: bool = True) -> Path:
-    """Copy a model with all it refers to into a JSBSim root of its own, and return the copy's model file.
+    """Copy a model with all it refers to into a JSBSim root of its own, and return the copy's model
+    file.
 
-    Outputs and inputs (files, sockets) are left out. So is every autopilot: ``<autopilot>`` elements and systems that
-    are called one. Their properties stay, at rest: flight controls that add an autopilot's command to the pilot's then
-    add 0.
+    Outputs and inputs (files, sockets) are left out. So is every autopilot: ``<autopilot>``
+    elements and systems that are called one. Their properties stay, at rest: flight controls that
+    add an autopilot's command to the pilot's then add 0.
 
     Parameters
     ----------
@@ -75,7 +76,9 @@ def model_hash(files: ModelFiles) -> str:
 
 
 def _not_read(folder: str, names: list[str]) -> list[str]:
-    """Return the files that JSBSim does not read: pictures and sounds beside a model can be large, and links lead nowhere."""
+    """Return the files that JSBSim does not read: pictures and sounds beside a model can be large,
+    and links lead nowhere.
+    """
     return [name for name in names if not _is_read(Path(folder, name))]
 
 
@@ -96,8 +99,8 @@ def _take_out(config: ET.Element, files: ModelFiles) -> list[str]:
 
 
 def _of_another_program(config: ET.Element, files: ModelFiles) -> list[str]:
-    """Return the properties that the model reads from FlightGear's tree, such as ``/sim/model/pushback``: JSBSim alone
-    does not have them."""
+    """Return the properties that the model reads from FlightGear's tree, such as
+    ``/sim/model/pushback``: JSBSim alone does not have them."""
     parts = [
         config,
         *(_content(element, files) for element in config.iter() if element.get("file")),
@@ -148,8 +151,9 @@ def _properties_at_rest(names: list[str]) -> ET.Element:
 
 
 def _copy_referenced(config: ET.Element, files: ModelFiles, directory: Path) -> None:
-    """Copy the engines, thrusters and systems of the roots' common folders, and engines that stand beside the model itself, where
-    JSBSim does not look for them; the model's other files are copied already."""
+    """Copy the engines, thrusters and systems of the roots' common folders, and engines that stand
+    beside the model itself, where JSBSim does not look for them; the model's other files are copied
+    already."""
     for element in config.iter():
         if element.tag not in SHARED or not (found := files.find(element)):
             continue

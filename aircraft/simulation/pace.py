@@ -5,7 +5,8 @@ from collections.abc import Callable
 
 
 def paced(run: Callable[[], object], time_step: float) -> Callable[[], object]:
-    """Return what advances a simulation by a time step [s], and then waits for the clock where that is behind.
+    """Return what advances a simulation by a time step [s], and then waits for the clock where that
+    is behind.
 
     A simulation that falls behind catches up as fast as it can.
     """

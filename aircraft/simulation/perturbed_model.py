@@ -1,4 +1,6 @@
-"""An aircraft that is not quite as modelled: another mass, other moments of inertia, other effectiveness of its controls."""
+"""An aircraft that is not quite as modelled: another mass, other moments of inertia, other
+effectiveness of its controls.
+"""
 
 import re
 import xml.etree.ElementTree as ET
@@ -23,7 +25,8 @@ class Perturbation:
     ----------
     mass : of the empty aircraft, its point masses and its fuel [-]
     inertia : of every moment of the empty aircraft [-]
-    effectiveness : of every deflection as the aerodynamics have it, but where a table is read at it [-]
+    effectiveness : of every deflection as the aerodynamics have it, but where a table is read at it
+        [-]
     """
 
     mass: float = 1.0
@@ -39,7 +42,9 @@ PERTURBATIONS = {
     "inertia +20 %": Perturbation(inertia=1.2),
     "inertia -20 %": Perturbation(inertia=0.8),
 }
-"""As little as an aircraft is taken to be known: a design's margins and its search over reversals allow for it."""
+"""As little as an aircraft is taken to be known: a design's margins and its search over reversals
+allow for it.
+"""
 
 
 def perturb(model_file: Path, by: Perturbation) -> None:

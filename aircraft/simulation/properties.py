@@ -32,7 +32,8 @@ WIND = ("atmosphere/wind-north-fps", "atmosphere/wind-east-fps", "atmosphere/win
 """Properties of the steady wind: the velocity of the air."""
 
 NORTH_WIND_MIN = 1e-6
-"""Least wind northward [ft/s]: JSBSim does not turn its turbulence into the wind if the wind is 0."""
+"""Least wind northward [ft/s]: JSBSim does not turn its turbulence into the wind if the wind is 0.
+"""
 
 RESET_ONLY = 2
 """Resets every model of JSBSim to how it was loaded, without running it."""
@@ -46,7 +47,9 @@ STOP_CRANKING = (("propulsion/starter_cmd", 0.0),)
 """Properties that start an engine as a pilot does: both magnetos, and the starter."""
 
 RUN_UP_STEPS = 1200
-"""Time steps for cranking, where that is needed, and as many for running up before an aircraft is placed."""
+"""Time steps for cranking, where that is needed, and as many for running up before an aircraft is
+placed.
+"""
 
 
 def initial_conditions(state: RigidBodyState) -> list[tuple[str, float]]:
@@ -71,10 +74,11 @@ def initial_conditions(state: RigidBodyState) -> list[tuple[str, float]]:
 
 
 def before_hold(state: RigidBodyState, duration: float) -> RigidBodyState:
-    """Return where to place a body that is to be in ``state`` after it was held for ``duration`` [s].
+    """Return where to place a body that is to be in ``state`` after it was held for ``duration``
+    [s].
 
-    A held body stays fixed in inertial space while the earth turns under it, so it is placed as far east as it will
-    drift west.
+    A held body stays fixed in inertial space while the earth turns under it, so it is placed as far
+    east as it will drift west.
     """
     return replace(state, longitude=state.longitude + EARTH_RATE * duration)
 

@@ -10,7 +10,9 @@ from pathlib import Path
 
 @contextlib.contextmanager
 def silenced() -> Iterator[None]:
-    """Keep the banner and the warnings that JSBSim prints off standard output and standard error, also where these are files."""
+    """Keep the banner and the warnings that JSBSim prints off standard output and standard error,
+    also where these are files.
+    """
     _flush()
     saved = {stream: os.dup(stream) for stream in (1, 2)}
     try:

@@ -28,7 +28,9 @@ class RigidBodyState:
 
 
 def body_velocity(airspeed: float, alpha: float, beta: float) -> tuple[float, float, float]:
-    """Return forward, right and down velocity [m/s] for airspeed [m/s], angle of attack and sideslip [rad]."""
+    """Return forward, right and down velocity [m/s] for airspeed [m/s], angle of attack and
+    sideslip [rad].
+    """
     return (
         airspeed * math.cos(alpha) * math.cos(beta),
         airspeed * math.sin(beta),
@@ -39,7 +41,9 @@ def body_velocity(airspeed: float, alpha: float, beta: float) -> tuple[float, fl
 def level(
     vector: tuple[float, float, float], roll: float, pitch: float
 ) -> tuple[float, float, float]:
-    """Turn a body vector into the frame that is level and shares the body's yaw: ahead, right, down."""
+    """Turn a body vector into the frame that is level and shares the body's yaw: ahead, right,
+    down.
+    """
     x, y, z = vector
     sin_roll, cos_roll = math.sin(roll), math.cos(roll)
     sin_pitch, cos_pitch = math.sin(pitch), math.cos(pitch)
@@ -86,14 +90,15 @@ def course_rate(
     Parameters
     ----------
     velocity_body : velocity [m/s]
-    acceleration_body : acceleration against the earth, or specific force, which differs from it downwards only [m/s^2]
+    acceleration_body : acceleration against the earth, or specific force, which differs from it
+        downwards only [m/s^2]
     roll, pitch : Euler angles [rad]
 
     Notes
     -----
-    This is the rate of the horizontal direction of motion itself. psi + beta is often used in its place; at 45 degrees
-    of bank and an angle of attack of 0.08 rad the two differ by 0.06 rad, and so do their rates while the bank
-    changes.
+    This is the rate of the horizontal direction of motion itself. psi + beta is often used in its
+    place; at 45 degrees of bank and an angle of attack of 0.08 rad the two differ by 0.06 rad, and
+    so do their rates while the bank changes.
     """
     v_ahead, v_right, _ = level(velocity_body, roll, pitch)
     a_ahead, a_right, _ = level(acceleration_body, roll, pitch)
@@ -110,8 +115,8 @@ def euler_rates(
 
 
 def turn_rates(yaw_rate: float, roll: float, pitch: float) -> tuple[float, float, float]:
-    """Return the body rates p, q, r [rad/s] of a steady turn at ``yaw_rate`` [rad/s] with constant roll and pitch
-    [rad]."""
+    """Return the body rates p, q, r [rad/s] of a steady turn at ``yaw_rate`` [rad/s] with constant
+    roll and pitch [rad]."""
     return (
         -yaw_rate * math.sin(pitch),
         yaw_rate * math.cos(pitch) * math.sin(roll),

@@ -1,4 +1,6 @@
-"""A first look at an aircraft of the user, in a process of its own: JSBSim ends the whole process with some faulty models."""
+"""A first look at an aircraft of the user, in a process of its own: JSBSim ends the whole process
+with some faulty models.
+"""
 
 import itertools
 import os
@@ -30,7 +32,8 @@ _TRACEBACK = "Traceback (most recent call last):"
 def check_user_aircraft(spec: AircraftSpec) -> None:
     """See that JSBSim loads and runs an aircraft, and that it has the properties of its spec.
 
-    Models of the project and of JSBSim are known to: only those whose files stand elsewhere are looked at, however they are named.
+    Models of the project and of JSBSim are known to: only those whose files stand elsewhere are
+    looked at, however they are named.
 
     Raises
     ------

@@ -1,7 +1,8 @@
-"""How soon a plume is found, how well its height is known then, and what that costs, over cases that are drawn at random.
+"""How soon a plume is found, how well its height is known then, and what that costs, over cases
+that are drawn at random.
 
-``python -m benchmarks.plume.estimator`` flies a point that oscillates across simulated plumes, at the heights that a search
-demands, and prints the table of docs/finding_the_plume.md.
+``python -m benchmarks.plume.estimator`` flies a point that oscillates across simulated plumes, at
+the heights that a search demands, and prints the table of docs/finding_the_plume.md.
 """
 
 import argparse
@@ -67,7 +68,9 @@ def _hits(flights: list[Flight], after: float) -> float:
 
 
 def cost(spec: SnifferSpec) -> tuple[float, float]:
-    """Return the computing time of a reading, and of a pass with its decision [us], medians of a few flights."""
+    """Return the computing time of a reading, and of a pass with its decision [us], medians of a
+    few flights.
+    """
     single: list[float] = []
     passes: list[float] = []
 

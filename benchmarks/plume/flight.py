@@ -1,4 +1,6 @@
-"""Flights of a point that oscillates across a simulated plume behind a ship, at the height that a search demands."""
+"""Flights of a point that oscillates across a simulated plume behind a ship, at the height that a
+search demands.
+"""
 
 import math
 from collections.abc import Callable
@@ -39,7 +41,9 @@ STACKS, LOADS = (20.0, 60.0), (0.2, 0.9)
 """Heights of the funnel's mouth [m] and loads of the engine that are drawn from [-]."""
 
 WIND_ERROR = 0.6
-"""Standard deviation of each component of the wind that is estimated on board [m/s]: by biases of airspeed and heading."""
+"""Standard deviation of each component of the wind that is estimated on board [m/s]: by biases of
+airspeed and heading.
+"""
 
 _CO2 = GASES.index("co2")
 _STEP, _CHUNK = 0.05, 1.0
@@ -83,7 +87,9 @@ def draw_case(seed: int) -> Case:
 
 @dataclass
 class Flight:
-    """What happened; a row of ``passes`` is time, altitude, estimated height, its deviation, true height, peak over centre."""
+    """What happened; a row of ``passes`` is time, altitude, estimated height, its deviation, true
+    height, peak over centre.
+    """
 
     case: Case
     estimator: PlumeEstimator
@@ -248,7 +254,9 @@ class _Simulation:
     def advance(
         self, altitudes: Array, offset: float, *, knowing: bool
     ) -> tuple[Array, Array, Array, dict[int, float], Array]:
-        """Return times, along and across as they are believed, readings by step, and the concentration over the centre's."""
+        """Return times, along and across as they are believed, readings by step, and the
+        concentration over the centre's.
+        """
         steps: Array = self._samples + np.arange(1.0, len(altitudes) + 1.0)
         self._samples += len(altitudes)
         times: Array = _STEP * steps

@@ -1,4 +1,6 @@
-"""The plume estimate by particles, to compare the grid with: a regularised bootstrap filter over the same model."""
+"""The plume estimate by particles, to compare the grid with: a regularised bootstrap filter over
+the same model.
+"""
 
 import math
 
@@ -17,7 +19,8 @@ _SHRINK = 0.15
 
 
 class ParticleEstimator(PlumeEstimator):
-    """Particles of height, bearing, logarithm of strength and of spread. Figures and prospects are those of the cells they are in.
+    """Particles of height, bearing, logarithm of strength and of spread. Figures and prospects are
+    those of the cells they are in.
 
     Parameters
     ----------

@@ -1,4 +1,6 @@
-"""Places on the WGS 84 ellipsoid, which JSBSim's default planet is, and metres north and east of an origin on it."""
+"""Places on the WGS 84 ellipsoid, which JSBSim's default planet is, and metres north and east of an
+origin on it.
+"""
 
 import math
 
@@ -18,13 +20,15 @@ Array = npt.NDArray[np.float64]
 
 
 class LocalFrame:
-    """North and east metres about an origin anywhere: an azimuthal equidistant projection of the ellipsoid.
+    """North and east metres about an origin anywhere: an azimuthal equidistant projection of the
+    ellipsoid.
 
-    A place at a distance d on the ellipsoid, at an azimuth A from true north at the origin, is at d cos A north and d sin A east.
-    The line to it is taken as an arc with the ellipsoid's radius of curvature at the origin in that direction: within 20 km of the
-    origin, poles and date line included, places are true to 0.2 mm, within 100 km to 2 cm (against GeographicLib, C. F. F. Karney,
-    Algorithms for geodesics, J. Geodesy 87:43, 2013). Metres between two places that are both d away from the origin are long by up
-    to d^2/(6 R^2): 2e-6 at 20 km.
+    A place at a distance d on the ellipsoid, at an azimuth A from true north at the origin, is at d
+    cos A north and d sin A east. The line to it is taken as an arc with the ellipsoid's radius of
+    curvature at the origin in that direction: within 20 km of the origin, poles and date line
+    included, places are true to 0.2 mm, within 100 km to 2 cm (against GeographicLib, C. F. F.
+    Karney, Algorithms for geodesics, J. Geodesy 87:43, 2013). Metres between two places that are
+    both d away from the origin are long by up to d^2/(6 R^2): 2e-6 at 20 km.
 
     Parameters
     ----------
@@ -78,7 +82,8 @@ class LocalFrame:
         return _geodetic(self._origin + level - down[..., None] * self._up)
 
     def true_north(self, latitude: npt.ArrayLike, longitude: npt.ArrayLike) -> Array:
-        """Return where true north lies at places [rad], as an angle clockwise from the frame's north [rad].
+        """Return where true north lies at places [rad], as an angle clockwise from the frame's
+        north [rad].
 
         Meridians converge: a course from true north at a place is that angle more in this frame.
         """
@@ -90,7 +95,9 @@ class LocalFrame:
         return angle
 
     def _radius(self, north: Array, distance: Array) -> Array:
-        """Return the radius of curvature at the origin in the direction of places [m] (Euler's theorem)."""
+        """Return the radius of curvature at the origin in the direction of places [m] (Euler's
+        theorem).
+        """
         share = np.where(distance > 0.0, north / np.where(distance > 0.0, distance, 1.0), 1.0) ** 2
         radius: Array = 1.0 / (
             share / self._meridian_radius + (1.0 - share) / self._transverse_radius
@@ -114,7 +121,9 @@ def _axes(latitude: npt.ArrayLike, longitude: npt.ArrayLike) -> tuple[tuple[Arra
 
 
 def cartesian(latitude: Array | np.float64, longitude: Array | np.float64) -> Array:
-    """Return places [rad] on the ellipsoid in axes fixed to the earth, the last dimension being x, y, z [m]."""
+    """Return places [rad] on the ellipsoid in axes fixed to the earth, the last dimension being x,
+    y, z [m].
+    """
     radius = EQUATORIAL_RADIUS / np.sqrt(1.0 - ECCENTRICITY_SQUARED * np.sin(latitude) ** 2)
     level = radius * np.cos(latitude)
     z = (1.0 - ECCENTRICITY_SQUARED) * radius * np.sin(latitude)
@@ -124,7 +133,9 @@ def cartesian(latitude: Array | np.float64, longitude: Array | np.float64) -> Ar
 
 
 def _geodetic(place: Array) -> tuple[Array, Array]:
-    """Return latitude and longitude [rad] of places near the ellipsoid (B. R. Bowring, Survey Review 23:323, 1976)."""
+    """Return latitude and longitude [rad] of places near the ellipsoid (B. R. Bowring, Survey
+    Review 23:323, 1976).
+    """
     x, y, z = place[..., 0], place[..., 1], place[..., 2]
     polar_radius = EQUATORIAL_RADIUS * (1.0 - FLATTENING)
     level = np.hypot(x, y)

@@ -1,4 +1,6 @@
-"""Conversion factors, all in one place. Everything outside JSBSim's own properties is SI and radians."""
+"""Conversion factors, all in one place. Everything outside JSBSim's own properties is SI and
+radians.
+"""
 
 import math
 

@@ -1,4 +1,6 @@
-"""Sums over the patrols of a run, and how they are judged: the same for the study, its exit status and the report."""
+"""Sums over the patrols of a run, and how they are judged: the same for the study, its exit status
+and the report.
+"""
 
 import math
 from collections.abc import Mapping, Sequence
@@ -16,11 +18,13 @@ class PatrolCounts:
     ----------
     planned, done : patrols that are planned, and those that are done
     through, kept_out : patrols that kept out with their aircraft, those that kept out
-    ships, served, verdicts, correct, wrong, open : ships, those flown beside, and how these flights ended
+    ships, served, verdicts, correct, wrong, open : ships, those flown beside, and how these flights
+        ended
     oracle : verdicts of an oracle that knows everything
     violations : of keep-out areas
     hours : of all patrols [h]
-    oracle_share_min, wrong_share_max : least share of correct verdicts in the oracle's, largest one of wrong ones in all [-]
+    oracle_share_min, wrong_share_max : least share of correct verdicts in the oracle's, largest one
+        of wrong ones in all [-]
     """
 
     planned: int
@@ -84,7 +88,9 @@ class PatrolCounts:
 
     @property
     def holds(self) -> bool:
-        """Whether nothing happened that must not: some ship was served, and every patrol kept out and brought its aircraft back."""
+        """Whether nothing happened that must not: some ship was served, and every patrol kept out
+        and brought its aircraft back.
+        """
         return self.served > 0 and self.through == self.done
 
     @property

@@ -1,4 +1,6 @@
-"""Docstrings of the house as text: in ``north : position [m]`` what follows the colon is a description, not a type."""
+"""Docstrings of the house as text: in ``north : position [m]`` what follows the colon is a
+description, not a type.
+"""
 
 import re
 from collections.abc import Iterator, Sequence
@@ -17,8 +19,8 @@ _INDENT = "   "
 def as_text(lines: Sequence[str]) -> list[str]:
     """Return a docstring as reStructuredText.
 
-    Sections (a name over a line of dashes) become fields, each entry a term with its description. Characters that
-    reStructuredText would take for markup are escaped, but in literals.
+    Sections (a name over a line of dashes) become fields, each entry a term with its description.
+    Characters that reStructuredText would take for markup are escaped, but in literals.
 
     Parameters
     ----------
@@ -58,7 +60,9 @@ def _entries(lines: Sequence[str]) -> Iterator[str]:
 
 
 def _escaped(line: str) -> str:
-    """Return a line with the characters escaped that would be markup; the bullet of a list is meant."""
+    """Return a line with the characters escaped that would be markup; the bullet of a list is
+    meant.
+    """
     bullet = re.match(r"\s*\* ", line)
     start = bullet.end() if bullet else 0
     parts = _LITERAL.split(line[start:])

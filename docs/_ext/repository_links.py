@@ -1,4 +1,6 @@
-"""Links from pages to the repository: a file is handed to the reader, a folder is named, and a page is the page."""
+"""Links from pages to the repository: a file is handed to the reader, a folder is named, and a page
+is the page.
+"""
 
 import re
 from pathlib import Path

@@ -1,4 +1,6 @@
-"""What an airspeed law is: it says at which pace to fly, a speed over the mean air, and what airspeed to command for it."""
+"""What an airspeed law is: it says at which pace to fly, a speed over the mean air, and what
+airspeed to command for it.
+"""
 
 from typing import Protocol
 
@@ -9,7 +11,8 @@ class AirspeedLaw(Protocol):
     """What airspeed keeps the vehicle beside its reference."""
 
     def pace(self, along: float, /) -> float:
-        """Return the pace that brings the vehicle beside a reference that is so far ahead along its course [m/s].
+        """Return the pace that brings the vehicle beside a reference that is so far ahead along its
+        course [m/s].
 
         Parameters
         ----------

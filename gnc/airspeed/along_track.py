@@ -32,7 +32,9 @@ class AlongTrackTrim:
         object.__setattr__(self, "_most", min(self.speed + self.change_max, self.airspeed_max))
 
     def pace(self, along: float, /) -> float:
-        """Return the pace that brings the vehicle beside a reference that is so far ahead along its course [m/s]."""
+        """Return the pace that brings the vehicle beside a reference that is so far ahead along its
+        course [m/s].
+        """
         if not self.gain:
             return self.speed
         return clip(self.speed + self.gain * along, self._least, self._most)

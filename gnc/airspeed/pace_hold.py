@@ -1,7 +1,8 @@
 """Keeping pace with the reference in gusts: hold the speed over the mean air, not the airspeed.
 
-An autopilot that holds airspeed follows every gust along its path. Here it is asked for the airspeed that it has, and what the
-speed over the mean air lacks; gusts drop out of the sum, and the airspeed varies with them instead.
+An autopilot that holds airspeed follows every gust along its path. Here it is asked for the
+airspeed that it has, and what the speed over the mean air lacks; gusts drop out of the sum, and the
+airspeed varies with them instead.
 """
 
 import math
@@ -12,7 +13,9 @@ from gnc.errors import InfeasibleError
 from gnc.estimation.own_motion import OwnMotion
 
 _CRITICAL = 0.25
-"""Of a first-order loop's bandwidth, the gain of a position loop about it that has two equal poles: none faster, no overshoot."""
+"""Of a first-order loop's bandwidth, the gain of a position loop about it that has two equal poles:
+none faster, no overshoot.
+"""
 
 
 class SpeedHold(NamedTuple):
@@ -40,9 +43,9 @@ def design_speed_hold(
 ) -> SpeedHold:
     """Return the parameters for a vehicle and a look-ahead.
 
-    The steering law takes out an error across the path at the rate V_r/R. At the same rate along it, an error dies out on a
-    straight line, and it does not matter that the path turns meanwhile. A vehicle whose airspeed answers too slowly for that gets
-    a quarter of its bandwidth.
+    The steering law takes out an error across the path at the rate V_r/R. At the same rate along
+    it, an error dies out on a straight line, and it does not matter that the path turns meanwhile.
+    A vehicle whose airspeed answers too slowly for that gets a quarter of its bandwidth.
 
     Parameters
     ----------
@@ -53,7 +56,8 @@ def design_speed_hold(
 
     Raises
     ------
-    InfeasibleError : V_r is not between the airspeeds that the vehicle can fly, or one of the others is not above 0
+    InfeasibleError : V_r is not between the airspeeds that the vehicle can fly, or one of the
+        others is not above 0
     """
     if not airspeed_min < speed < airspeed_max:
         raise InfeasibleError(
@@ -73,7 +77,8 @@ class PaceHold:
     ----------
     speed : V_r [m/s]
     hold : parameters of the law
-    turn_speed : up to which the vehicle can turn at omega_max; not exceeded while the keep-out guard turns it away [m/s]
+    turn_speed : up to which the vehicle can turn at omega_max; not exceeded while the keep-out
+        guard turns it away [m/s]
     """
 
     speed: float
@@ -81,11 +86,14 @@ class PaceHold:
     turn_speed: float = math.inf
 
     def pace(self, along: float, /) -> float:
-        """Return the pace that brings the vehicle beside a reference that is so far ahead along its course [m/s]."""
+        """Return the pace that brings the vehicle beside a reference that is so far ahead along its
+        course [m/s].
+        """
         return self.hold.within(self.speed + self.hold.gain * along)
 
     def airspeed(self, pace: float, own: OwnMotion, guarding: bool, /) -> float:
-        """Return the airspeed to command for a pace [m/s]: the measured one, and what the speed over the mean air lacks.
+        """Return the airspeed to command for a pace [m/s]: the measured one, and what the speed
+        over the mean air lacks.
 
         Parameters
         ----------
@@ -98,10 +106,12 @@ class PaceHold:
 
 
 def air_turn(heading_rate: float, *, speed: float, airspeed: float) -> float:
-    """Return what to command [rad/s] of an autopilot that turns against the gusty air, for a turn of the motion over the mean air.
+    """Return what to command [rad/s] of an autopilot that turns against the gusty air, for a turn
+    of the motion over the mean air.
 
-    An autopilot knows the lateral acceleration and divides it by its airspeed. The same acceleration turns the motion over the mean
-    air by as much more as that is slower. The other way round, with speeds exchanged, it makes a measured turn one of that motion.
+    An autopilot knows the lateral acceleration and divides it by its airspeed. The same
+    acceleration turns the motion over the mean air by as much more as that is slower. The other way
+    round, with speeds exchanged, it makes a measured turn one of that motion.
 
     Parameters
     ----------

@@ -1,1 +1,3 @@
-"""Stability and bounds of the steering laws: Lyapunov functions, bounds on commands, ensembles of trajectories."""
+"""Stability and bounds of the steering laws: Lyapunov functions, bounds on commands, ensembles of
+trajectories.
+"""

@@ -15,12 +15,15 @@ def averaged_settling_time(
     to_reference: npt.ArrayLike,
     distance: float,
 ) -> Array:
-    """Return the time [s] after which d is down to ``distance``, shape (n,); 0 where it starts there, infinite on straight courses.
+    """Return the time [s] after which d is down to ``distance``, shape (n,); 0 where it starts
+    there, infinite on straight courses.
 
-    With phi = 0 and d well below delta, only the part of d across chi_r shrinks, at V/delta. Averaged over the reference's courses
-    the part along its mean course shrinks at V/(2 delta) (1 - m), that across it at V/(2 delta) (1 + m), with m the reference's
-    anisotropy; in the time tau of d tau = V/delta dt both decay exponentially. Of a circle, m = 0, the time from d_0 to d_1 is
-    [2 R ln(d_0/d_1) + epsilon (d_0^2 - d_1^2)]/V. A slow oscillation is not averaged, and near d = delta the expansion is rough.
+    With phi = 0 and d well below delta, only the part of d across chi_r shrinks, at V/delta.
+    Averaged over the reference's courses the part along its mean course shrinks at V/(2 delta) (1 -
+    m), that across it at V/(2 delta) (1 + m), with m the reference's anisotropy; in the time tau of
+    d tau = V/delta dt both decay exponentially. Of a circle, m = 0, the time from d_0 to d_1 is
+    [2 R ln(d_0/d_1) + epsilon (d_0^2 - d_1^2)]/V. A slow oscillation is not averaged, and near d =
+    delta the expansion is rough.
 
     Parameters
     ----------

@@ -1,6 +1,8 @@
-"""What the cascade law commands at most, over all states, and the fastest parameters that keep that within a limit.
+"""What the cascade law commands at most, over all states, and the fastest parameters that keep that
+within a limit.
 
-The abstract of the paper promises such conditions and its text omits them; docs/actuation_bounds.md derives what is computed here.
+The abstract of the paper promises such conditions and its text omits them; docs/actuation_bounds.md
+derives what is computed here.
 """
 
 import functools
@@ -59,10 +61,11 @@ def heading_rate_bound(
     steering_max: float,
     tolerance: float = _TOLERANCE,
 ) -> float:
-    """Return a heading rate [rad/s] that no command of the cascade law, equation (30), exceeds, whatever the state.
+    """Return a heading rate [rad/s] that no command of the cascade law, equation (30), exceeds,
+    whatever the state.
 
-    Both signs of omega_r are covered, and so is the law evaluated at predicted states. The bound is the largest command itself,
-    but for ``tolerance``, wherever h saturates well before phi is pi/2.
+    Both signs of omega_r are covered, and so is the law evaluated at predicted states. The bound is
+    the largest command itself, but for ``tolerance``, wherever h saturates well before phi is pi/2.
 
     Parameters
     ----------
@@ -74,7 +77,8 @@ def heading_rate_bound(
 
     Raises
     ------
-    InfeasibleError : a quantity is out of range, or R so close to 1/(4 epsilon) that the bound is worthless
+    InfeasibleError : a quantity is out of range, or R so close to 1/(4 epsilon) that the bound is
+        worthless
     """
     _check_positive(
         speed=(speed, "m/s"),
@@ -99,10 +103,12 @@ def heading_rate_bound_least(
     gain: float,
     steering_max: float,
 ) -> float:
-    """Return the largest command [rad/s] among states head on to the reference: no bound can be smaller. In closed form.
+    """Return the largest command [rad/s] among states head on to the reference: no bound can be
+    smaller. In closed form.
 
-    There d points against the reference's course, phi is -pi/2 for omega_r > 0, and omega = (V + delta omega_r)/(delta - d) +
-    h(pi/2), which is largest where lambda sigma u^2 + u = (1 + lambda) sigma: u = d sqrt(epsilon/R), lambda = omega_r R/V.
+    There d points against the reference's course, phi is -pi/2 for omega_r > 0, and omega = (V +
+    delta omega_r)/(delta - d) + h(pi/2), which is largest where lambda sigma u^2 + u = (1 + lambda)
+    sigma: u = d sqrt(epsilon/R), lambda = omega_r R/V.
 
     Parameters
     ----------
@@ -141,10 +147,12 @@ def convergence_time(
     gain: float,
     steering_max: float,
 ) -> float:
-    """Return the estimated time [s] in which the distance to the reference shrinks, from the worst course.
+    """Return the estimated time [s] in which the distance to the reference shrinks, from the worst
+    course.
 
-    First h brings phi from pi to 0.1 rad; how far the vehicle strays meanwhile is left out. Then d^2 shrinks by V d^2/delta, the
-    average about a reference that circles faster than V/(2 R). Slower ones take longer: on a straight one, along-track errors stay.
+    First h brings phi from pi to 0.1 rad; how far the vehicle strays meanwhile is left out. Then
+    d^2 shrinks by V d^2/delta, the average about a reference that circles faster than V/(2 R).
+    Slower ones take longer: on a straight one, along-track errors stay.
 
     Parameters
     ----------
@@ -176,11 +184,12 @@ def fastest_within(
     distance_to: float,
     gain: float,
 ) -> BoundedSteering:
-    """Return the parameters that converge fastest, by ``convergence_time``, while no command exceeds omega_max in any state.
+    """Return the parameters that converge fastest, by ``convergence_time``, while no command
+    exceeds omega_max in any state.
 
-    Sigma = 1/(2 sqrt(epsilon R)) and steering_max are chosen by the closed form for states head on to the reference, which costs
-    0.2 % of the time; the R that goes with them respects every state. It is kept at V/(2 omega_r) at least: a shorter one no longer
-    speeds up convergence.
+    Sigma = 1/(2 sqrt(epsilon R)) and steering_max are chosen by the closed form for states head on
+    to the reference, which costs 0.2 % of the time; the R that goes with them respects every state.
+    It is kept at V/(2 omega_r) at least: a shorter one no longer speeds up convergence.
 
     Parameters
     ----------
@@ -192,7 +201,8 @@ def fastest_within(
 
     Raises
     ------
-    InfeasibleError : the reference leaves nothing of omega_max, a quantity is out of range, or the search did not converge
+    InfeasibleError : the reference leaves nothing of omega_max, a quantity is out of range, or the
+        search did not converge
     """
     _check_positive(
         speed=(speed, "m/s"),
@@ -261,13 +271,16 @@ _FRACTIONS = np.linspace(0.05, 0.95, 19)
 
 
 def _design(fractions: _Array, task: _Task, least_radius: _LeastRadius) -> tuple[LookAhead, float]:
-    """Return look-ahead and steering_max for fractions, within 0 and 1, of the largest sigma and of the largest steering_max."""
+    """Return look-ahead and steering_max for fractions, within 0 and 1, of the largest sigma and of
+    the largest steering_max.
+    """
     sigma_fraction, steering_fraction = fractions.tolist()
     turning = task.reference_heading_rate_max
     steering_max = steering_fraction * min(task.limit - turning, task.gain * math.pi)
     room = task.limit - steering_max
     sigma = sigma_fraction * min(1.0 - turning / room, _SIGMA_MAX)
-    # With epsilon = 1/(4 sigma^2 R) the time has a minimum over R, this over sigma: a shorter R would only raise epsilon.
+    # With epsilon = 1/(4 sigma^2 R) the time has a minimum over R, this over sigma: a shorter R
+    # would only raise epsilon.
     quickest = math.sqrt(
         (task.distance_from**2 - task.distance_to**2)
         / (8.0 * math.log(task.distance_from / task.distance_to))
@@ -283,7 +296,9 @@ def _design(fractions: _Array, task: _Task, least_radius: _LeastRadius) -> tuple
 def _least_radius(
     sigma: float, speed: float, reference_heading_rate_max: float, room: float
 ) -> float:
-    """Return an R [m] with which |omega_rho| stays within ``room`` [rad/s], the least but for the tolerance."""
+    """Return an R [m] with which |omega_rho| stays within ``room`` [rad/s], the least but for the
+    tolerance.
+    """
 
     def radius(speed_factor: _Array, turn_factor: _Array) -> _Array:
         left = room - reference_heading_rate_max * turn_factor
@@ -297,7 +312,9 @@ def _least_radius(
 def _least_radius_head_on(
     sigma: float, speed: float, reference_heading_rate_max: float, room: float
 ) -> float:
-    """Return the least R [m] with which |omega_rho| stays within ``room`` [rad/s] head on to the reference. In closed form."""
+    """Return the least R [m] with which |omega_rho| stays within ``room`` [rad/s] head on to the
+    reference. In closed form.
+    """
     left = room - reference_heading_rate_max
     return speed * left / (left**2 - (sigma * room) ** 2)
 

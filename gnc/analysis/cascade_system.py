@@ -1,4 +1,6 @@
-"""The tracking problem as a cascade: the course error dies out on its own and drives the geometry (section IV.D)."""
+"""The tracking problem as a cascade: the course error dies out on its own and drives the geometry
+(section IV.D).
+"""
 
 import math
 from typing import NamedTuple
@@ -30,7 +32,8 @@ def driven_rates(
     speed: float,
     reference_heading_rate: float,
 ) -> DrivenState:
-    """Return the rates of the driven subsystem, whose input is phi: equation (31a), the first three lines of (21).
+    """Return the rates of the driven subsystem, whose input is phi: equation (31a), the first three
+    lines of (21).
 
     Parameters
     ----------
@@ -45,7 +48,9 @@ def driven_rates(
 
 
 def driving_rate(phi: float, gain: float, rate_max: float) -> float:
-    """Return the rate of phi [rad/s], the driving subsystem: equation (31b), (21) under law (30). Parameters as of ``h``."""
+    """Return the rate of phi [rad/s], the driving subsystem: equation (31b), (21) under law (30).
+    Parameters as of ``h``.
+    """
     return -h(phi, gain, rate_max)
 
 
@@ -54,7 +59,8 @@ def unforced_rates(
 ) -> DrivenState:
     """Return the rates of the driven subsystem at phi = 0, written out: equation (32).
 
-    Differs from the paper because its first line lacks the factor V_r that (21) has, and without which it is no speed.
+    Differs from the paper because its first line lacks the factor V_r that (21) has, and without
+    which it is no speed.
 
     Parameters
     ----------
@@ -79,7 +85,8 @@ def v_1_unforced_rate(driven: DrivenState, speed: float) -> float:
 
 
 def v_1_unforced_acceleration(driven: DrivenState, rates: DrivenState, speed: float) -> float:
-    """Return the second rate of V_1 [m^2/s^2] along (32): equation (34), bounded and so V_1's rate goes to zero.
+    """Return the second rate of V_1 [m^2/s^2] along (32): equation (34), bounded and so V_1's rate
+    goes to zero.
 
     Parameters
     ----------
@@ -94,7 +101,9 @@ def v_1_unforced_acceleration(driven: DrivenState, rates: DrivenState, speed: fl
 
 
 def v_1_rate_split(state: RelativeState, speed: float) -> float:
-    """Return the rate of V_1 [m^2/s] along (21): equation (35), (23) gathered so that |phi| <= |phi_r| makes no term positive."""
+    """Return the rate of V_1 [m^2/s] along (21): equation (35), (23) gathered so that |phi| <=
+    |phi_r| makes no term positive.
+    """
     delta, rho, phi_r, phi = state
     return -speed * (
         rho * (math.cos(phi) - math.cos(phi_r)) + delta * (1.0 - math.cos(phi - phi_r))
@@ -102,10 +111,12 @@ def v_1_rate_split(state: RelativeState, speed: float) -> float:
 
 
 def excursion_time(phi: float, gain: float, rate_max: float) -> float:
-    """Return the integral of 1 - cos(phi) over time [s] along (31b) from ``phi`` to rest. Parameters as of ``h``.
+    """Return the integral of 1 - cos(phi) over time [s] along (31b) from ``phi`` to rest.
+    Parameters as of ``h``.
 
-    Source: ``EQUATIONS.md``, "Why trajectories are bounded". Time is -dphi/h, so that h = gain phi leaves the entire cosine
-    integral of the angle where h stops being held, and h = rate_max an elementary one of the angle above that.
+    Source: ``EQUATIONS.md``, "Why trajectories are bounded". Time is -dphi/h, so that h = gain phi
+    leaves the entire cosine integral of the angle where h stops being held, and h = rate_max an
+    elementary one of the angle above that.
     """
     size = abs(phi)
     free = min(size, rate_max / gain)
@@ -119,10 +130,12 @@ def excursion_time(phi: float, gain: float, rate_max: float) -> float:
 def delta_bound(
     parameters: LookAhead, state: RelativeState, speed: float, gain: float, rate_max: float
 ) -> float:
-    """Return what delta [m] cannot exceed under law (30), ever, and whatever the reference does: it bounds d through (15).
+    """Return what delta [m] cannot exceed under law (30), ever, and whatever the reference does: it
+    bounds d through (15).
 
-    Source: ``EQUATIONS.md``, "Why trajectories are bounded", from equation (35). Differs from the paper because its own argument,
-    that d no longer rises from some time on, does not hold. Parameters as of ``driven_rates`` and ``h``.
+    Source: ``EQUATIONS.md``, "Why trajectories are bounded", from equation (35). Differs from the
+    paper because its own argument, that d no longer rises from some time on, does not hold.
+    Parameters as of ``driven_rates`` and ``h``.
     """
     rho_to_delta = 1.0 + 0.5 / math.sqrt(parameters.epsilon * parameters.radius)
     exponent = (

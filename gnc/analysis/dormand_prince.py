@@ -1,6 +1,8 @@
-"""Dormand and Prince's pair of Runge-Kutta formulae of orders 5 and 4, for many systems at once, each with its own time and step.
+"""Dormand and Prince's pair of Runge-Kutta formulae of orders 5 and 4, for many systems at once,
+each with its own time and step.
 
-"A family of embedded Runge-Kutta formulae", Journal of Computational and Applied Mathematics 6, 1980.
+"A family of embedded Runge-Kutta formulae", Journal of Computational and Applied Mathematics 6,
+1980.
 """
 
 from collections.abc import Callable
@@ -26,7 +28,8 @@ _ERROR = (71 / 57600, 0.0, -71 / 16695, 71 / 1920, -17253 / 339200, 22 / 525, -1
 def dormand_prince_step(
     rates: Callable[[Array, Array], Array], time: Array, state: Array, first: Array, step: Array
 ) -> tuple[Array, Array, Array]:
-    """Return state and rates after a step, and the error of the state: the difference of both orders.
+    """Return state and rates after a step, and the error of the state: the difference of both
+    orders.
 
     Parameters
     ----------

@@ -39,7 +39,9 @@ def equilibrium(parameters: LookAhead) -> RelativeState:
 
 
 def v_1(state: RelativeState) -> float:
-    """Return V_1 = d^2/2 [m^2]: equation (22). Positive definite about the equilibrium, where (15) holds, and not about 0."""
+    """Return V_1 = d^2/2 [m^2]: equation (22). Positive definite about the equilibrium, where (15)
+    holds, and not about 0.
+    """
     return 0.5 * distance_squared(state)
 
 
@@ -59,16 +61,20 @@ def v_2(state: RelativeState, k_2: float) -> float:
 
 
 def v_2_rate(state: RelativeState, speed: float) -> float:
-    """Return the rate of V_2 [m^2/s] under law (24) with k_1 k_2 = 1: equation (26). Never positive.
+    """Return the rate of V_2 [m^2/s] under law (24) with k_1 k_2 = 1: equation (26). Never
+    positive.
 
-    Any other product adds (1 - k_1 k_2) rho V_r (1 - cos phi), so V_2 never rises for larger ones either.
+    Any other product adds (1 - k_1 k_2) rho V_r (1 - cos phi), so V_2 never rises for larger ones
+    either.
     """
     delta, rho, phi_r, phi = state
     return -speed * (rho * (1.0 - math.cos(phi_r)) + delta * (1.0 - math.cos(phi_r - phi)))
 
 
 def v_2_acceleration(state: RelativeState, rates: RelativeState, speed: float) -> float:
-    """Return the second rate of V_2 [m^2/s^2] under law (24): equation (27), bounded and so V_2's rate goes to zero."""
+    """Return the second rate of V_2 [m^2/s^2] under law (24): equation (27), bounded and so V_2's
+    rate goes to zero.
+    """
     delta, rho, phi_r, phi = state
     return -speed * (
         rates.rho * (1.0 - math.cos(phi_r))

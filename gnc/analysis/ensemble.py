@@ -1,6 +1,7 @@
 """Fly thousands of vehicles after their references at once, each at its own time.
 
-Step size and acceptance are each trajectory's own; trajectories that finish give their place to the next.
+Step size and acceptance are each trajectory's own; trajectories that finish give their place to the
+next.
 """
 
 from collections.abc import Callable
@@ -25,7 +26,9 @@ _SAFETY, _SHRINK_MAX, _GROW_MAX = 0.9, 0.2, 5.0
 
 
 Observer = Callable[[npt.NDArray[np.int64], Array, Array, Array, Array], None]
-"""Called with index, time, state, phi and command of the trajectories that took a step; arrays of their number."""
+"""Called with index, time, state, phi and command of the trajectories that took a step; arrays of
+their number.
+"""
 
 
 def fly_ensemble(
@@ -43,12 +46,15 @@ def fly_ensemble(
 ) -> EnsembleResult:
     """Fly until each vehicle is on its reference, or its time is up.
 
-    A vehicle is on its reference once d and phi are within ``DISTANCE_CONVERGED`` and ``PHI_CONVERGED``. From there d stays small
-    for good under both laws of the paper. Under the Lyapunov law V_2 never rises, which lets d reach sqrt(d_0^2 + phi_0^2/k_1),
-    0.021 m at k_1 = 0.001. Under the cascade law the rate of d^2 is at most rho V phi^2 and phi decays exponentially, so that d^2
-    gains at most rho V phi_0^2/(2 gain), (0.004 m)^2 at 1.5 1/s and R = 60 m. With cut commands that holds if the reference leaves
-    a margin of 0.001 rad/s, for then nothing is cut: |omega - omega_r| is at most V (phi_r + phi)/R + 2 phi_r |omega_r| + gain phi,
-    with phi_r about d/R. Of cut commands about a reference that spends all of omega_max nothing is claimed but that it was reached.
+    A vehicle is on its reference once d and phi are within ``DISTANCE_CONVERGED`` and
+    ``PHI_CONVERGED``. From there d stays small for good under both laws of the paper. Under the
+    Lyapunov law V_2 never rises, which lets d reach sqrt(d_0^2 + phi_0^2/k_1), 0.021 m at k_1 =
+    0.001. Under the cascade law the rate of d^2 is at most rho V phi^2 and phi decays
+    exponentially, so that d^2 gains at most rho V phi_0^2/(2 gain), (0.004 m)^2 at 1.5 1/s and R =
+    60 m. With cut commands that holds if the reference leaves a margin of 0.001 rad/s, for then
+    nothing is cut: |omega - omega_r| is at most V (phi_r + phi)/R + 2 phi_r |omega_r| + gain phi,
+    with phi_r about d/R. Of cut commands about a reference that spends all of omega_max nothing is
+    claimed but that it was reached.
 
     Parameters
     ----------
@@ -59,12 +65,14 @@ def fly_ensemble(
     settling_band : distance below which a trajectory counts as settled [m]
     time_max : limit, for all or for each, shape () or (n,) [s]
     tolerances : of the integration
-    places : trajectories under way at once, begun in the order given: the longest first keep places busy to the end
+    places : trajectories under way at once, begun in the order given: the longest first keep places
+        busy to the end
     observe : called at the start and after every step
 
     Raises
     ------
-    InfeasibleError : starts that do not belong to the references or are not finite, limits that are not above 0
+    InfeasibleError : starts that do not belong to the references or are not finite, limits that are
+        not above 0
     """
     begin = np.array(to_reference, dtype=float)
     chi = np.array(course, dtype=float)
@@ -94,7 +102,9 @@ def fly_ensemble(
 
 
 class _Flight:
-    """The integration: ``_all`` holds every trajectory, as it starts or as it ended, ``_now`` those under way."""
+    """The integration: ``_all`` holds every trajectory, as it starts or as it ended, ``_now`` those
+    under way.
+    """
 
     def __init__(
         self,
@@ -115,7 +125,8 @@ class _Flight:
         self._all = _Fields(
             time=time,
             limit=limit.copy(),
-            # Short against the fastest motion there is, phi's under the Lyapunov law; steps grow fivefold from there.
+            # Short against the fastest motion there is, phi's under the Lyapunov law; steps grow
+            # fivefold from there.
             step=1e-2 / (1.0 + np.abs(rates[2:]).sum(axis=0)),
             state=state,
             rates=rates,
@@ -142,7 +153,9 @@ class _Flight:
         self._now = self._all.take(self.index)
 
     def step(self) -> None:
-        """Try one step of every trajectory under way, accept it where it is good enough, retire what is finished."""
+        """Try one step of every trajectory under way, accept it where it is good enough, retire
+        what is finished.
+        """
         now = self._now
         remaining = now.limit - now.time
         step = np.minimum(now.step, remaining)
@@ -185,7 +198,9 @@ class _Flight:
         return norm
 
     def _watch(self, step: Array, accepted: npt.NDArray[np.bool_]) -> None:
-        """Record what the step brought: distances, commands, and when the settling band was left for the inside."""
+        """Record what the step brought: distances, commands, and when the settling band was left
+        for the inside.
+        """
         now = self._now
         before, state = now.distance, now.state
         now.distance = np.sqrt(state[0] * state[0] + state[1] * state[1])
@@ -263,7 +278,9 @@ class _Flight:
 
 @dataclass(slots=True, kw_only=True)
 class _Fields:
-    """Where trajectories are, what is known of them, and the step to try next; trajectories along the last axis."""
+    """Where trajectories are, what is known of them, and the step to try next; trajectories along
+    the last axis.
+    """
 
     time: Array
     limit: Array

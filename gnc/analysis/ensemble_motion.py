@@ -1,7 +1,9 @@
-"""Motion of many vehicles relative to their references under each steering law, in variables that are not stiff.
+"""Motion of many vehicles relative to their references under each steering law, in variables that
+are not stiff.
 
-Positions are d = p_r - p, from the vehicle to its reference. The course is no state where the law cancels omega_rho: with
-chi = chi_rho + phi the rate of d needs chi_r, z and phi alone, and phi is known in closed form.
+Positions are d = p_r - p, from the vehicle to its reference. The course is no state where the law
+cancels omega_rho: with chi = chi_rho + phi the rate of d needs chi_r, z and phi alone, and phi is
+known in closed form.
 """
 
 from abc import ABC, abstractmethod
@@ -76,7 +78,9 @@ class Motion(ABC):
 
     @abstractmethod
     def start(self, to_reference: Array, course: Array) -> Array:
-        """Return the first state, shape (states, n), of d, shape (2, n) [m], and course chi, shape (n,) [rad]; remember phi."""
+        """Return the first state, shape (states, n), of d, shape (2, n) [m], and course chi, shape
+        (n,) [rad]; remember phi.
+        """
 
     @abstractmethod
     def take(self, which: npt.NDArray[Any]) -> Self:
@@ -84,7 +88,9 @@ class Motion(ABC):
 
     @abstractmethod
     def rates(self, time: Array, state: Array) -> Array:
-        """Return the rates of the states, shape (states, n), at each vehicle's own ``time``, shape (n,) [s]."""
+        """Return the rates of the states, shape (states, n), at each vehicle's own ``time``, shape
+        (n,) [s].
+        """
 
     @abstractmethod
     def phi(self, time: Array, state: Array) -> Array:
@@ -95,7 +101,9 @@ class Motion(ABC):
         """Return the heading rate commanded [rad/s], shape (n,), from a state and its rates."""
 
     def offset_error(self, state: Array, error: Array) -> Array | None:  # noqa: ARG002 - the laws without a third state have none
-        """Return how far [m] the vehicle gets off before the law corrects an ``error`` of a third state, or None without one."""
+        """Return how far [m] the vehicle gets off before the law corrects an ``error`` of a third
+        state, or None without one.
+        """
         return None
 
     def _view(self, time: Array, state: Array) -> _View:
@@ -120,7 +128,9 @@ class Motion(ABC):
     def _omega_rho(
         self, view: _View, state: Array, rates: Array, reference_heading_rate: Array
     ) -> Array:
-        """Return the rate of the course of z [rad/s], equation (18), from z and its rate (17) in the inertial frame."""
+        """Return the rate of the course of z [rad/s], equation (18), from z and its rate (17) in
+        the inertial frame.
+        """
         delta_rate = (
             2.0 * self._vehicle.look_ahead.epsilon * (state[0] * rates[0] + state[1] * rates[1])
         )
@@ -143,7 +153,8 @@ def phi_of_courses(view: _View, course: Array) -> Array:
 class CascadeMotion(Motion):
     """Law (30) with h(phi) = gain phi within a bound; states d.
 
-    phi runs off at the bound until gain phi is within it, and decays exponentially from there, whatever the reference does.
+    phi runs off at the bound until gain phi is within it, and decays exponentially from there,
+    whatever the reference does.
     """
 
     def start(self, to_reference: Array, course: Array) -> Array:
@@ -193,11 +204,13 @@ class CascadeMotion(Motion):
 
 
 class LyapunovMotion(Motion):
-    """Law (24); states d and s = k_1 V/2 times the integral of rho, with which sin(phi/2) = sin(phi_0/2) exp(-s).
+    """Law (24); states d and s = k_1 V/2 times the integral of rho, with which sin(phi/2) =
+    sin(phi_0/2) exp(-s).
 
-    In these variables nothing is singular at phi = pi. There the course leaves pi at once, by 2 sqrt(2 s) to first order, to the
-    side of phi_0's sign (to the right of exactly pi, where the law itself has no value and both sides solve the equation): only
-    the command is unbounded, as 1/(pi - |phi|), and for so short a time that the turn stays one of at most pi.
+    In these variables nothing is singular at phi = pi. There the course leaves pi at once, by 2
+    sqrt(2 s) to first order, to the side of phi_0's sign (to the right of exactly pi, where the law
+    itself has no value and both sides solve the equation): only the command is unbounded, as 1/(pi
+    - |phi|), and for so short a time that the turn stays one of at most pi.
     """
 
     def start(self, to_reference: Array, course: Array) -> Array:
@@ -218,7 +231,8 @@ class LyapunovMotion(Motion):
         """Return sine and cosine of phi/2."""
         decay = np.exp(-state[2])
         sine = self._sine_0 * decay
-        # cos^2 = cos_0^2 + sin_0^2 (1 - decay^2): no difference of nearly equal numbers towards phi = pi.
+        # cos^2 = cos_0^2 + sin_0^2 (1 - decay^2): no difference of nearly equal numbers towards phi
+        # = pi.
         return sine, np.sqrt(
             self._cosine_0_squared + self._sine_0 * self._sine_0 * ((1.0 - decay) * (1.0 + decay))
         )
@@ -248,7 +262,9 @@ class LyapunovMotion(Motion):
         return command
 
     def offset_error(self, state: Array, error: Array) -> Array | None:
-        """Return what an error of s does to sin(phi/2), times 2 for phi, times V and the law's time 2/(k_1 V R)."""
+        """Return what an error of s does to sin(phi/2), times 2 for phi, times V and the law's time
+        2/(k_1 V R).
+        """
         arm = 4.0 / (self._vehicle.k_1 * self._vehicle.look_ahead.radius)
         offset: Array = np.abs(arm * self._sine_0 * np.exp(-state[2]) * error[2])
         return offset
@@ -257,8 +273,9 @@ class LyapunovMotion(Motion):
 class CascadeCutMotion(Motion):
     """Law (30) as it is flown, its command cut at omega_max; states d and phi, not wrapped.
 
-    Of this motion the paper proves nothing: while the command is cut, phi moves at the rate that is left. While it is not, phi
-    decays as under the law itself, and has no part in how long a step may be.
+    Of this motion the paper proves nothing: while the command is cut, phi moves at the rate that is
+    left. While it is not, phi decays as under the law itself, and has no part in how long a step
+    may be.
     """
 
     def start(self, to_reference: Array, course: Array) -> Array:
@@ -276,7 +293,9 @@ class CascadeCutMotion(Motion):
         return wrapped(state[2])
 
     def rates(self, time: Array, state: Array) -> Array:
-        """Return the rates of d and phi, the heading rate of equation (30) cut at omega_max; shape (3, n)."""
+        """Return the rates of d and phi, the heading rate of equation (30) cut at omega_max; shape
+        (3, n).
+        """
         view = self._view(time, state)
         out = np.empty_like(state)
         self._position_rates(view, np.cos(state[2]), np.sin(state[2]), out)

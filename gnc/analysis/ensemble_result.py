@@ -50,7 +50,8 @@ class EnsembleResult:
     Attributes
     ----------
     outcome, message : and what it means
-    settling_time : when the distance was last at least the settling band, linear between steps [s]; NaN if it is at the end
+    settling_time : when the distance was last at least the settling band, linear between steps [s];
+        NaN if it is at the end
     duration : time until then [s]
     distance : at the end [m]
     distance_max : largest ever [m]

@@ -1,4 +1,6 @@
-"""References that circle, oscillate, wander or fly straight, many at once, with a course in closed form."""
+"""References that circle, oscillate, wander or fly straight, many at once, with a course in closed
+form.
+"""
 
 from typing import Any, Self
 
@@ -14,19 +16,22 @@ Array = npt.NDArray[np.float64]
 class TurningReferences:
     """The courses of n references whose heading rates are a constant and a sum of sinusoids.
 
-    omega_r = c + sum_k a_k sin(w_k t + p_k), so that chi_r = chi_r0 + c t - sum_k a_k/w_k (cos(w_k t + p_k) - cos p_k). A circle
-    has c alone, the oscillation of equation (2) one term a = -A, w = omega_0, p = phi_0, a wandering course several terms, and a
-    straight course nothing. The heading rate is bounded by |c| + sum |a_k|, its derivative by sum |a_k| w_k.
+    omega_r = c + sum_k a_k sin(w_k t + p_k), so that chi_r = chi_r0 + c t - sum_k a_k/w_k (cos(w_k
+    t + p_k) - cos p_k). A circle has c alone, the oscillation of equation (2) one term a = -A, w =
+    omega_0, p = phi_0, a wandering course several terms, and a straight course nothing. The heading
+    rate is bounded by |c| + sum |a_k|, its derivative by sum |a_k| w_k.
 
     Parameters
     ----------
     course : chi_r0, at time 0, shape (n,) [rad]
     rate : c, shape (n,) [rad/s]
-    amplitude, frequency, phase : a_k [rad/s], w_k [rad/s] and p_k [rad], shape (terms, n); frequencies above 0
+    amplitude, frequency, phase : a_k [rad/s], w_k [rad/s] and p_k [rad], shape (terms, n);
+        frequencies above 0
 
     Raises
     ------
-    InfeasibleError : shapes that do not belong together, values that are not finite, a frequency that is not above 0
+    InfeasibleError : shapes that do not belong together, values that are not finite, a frequency
+        that is not above 0
     """
 
     __slots__ = ("amplitude", "course", "frequency", "mean_course", "phase", "rate", "swing")
@@ -81,10 +86,11 @@ class TurningReferences:
 
     @property
     def anisotropy(self) -> Array:
-        """How much more the reference flies along its mean course than across it, shape (n,), from -1 to 1 [-].
+        """How much more the reference flies along its mean course than across it, shape (n,), from
+        -1 to 1 [-].
 
-        It is the mean of cos 2(chi_r - mean course): 0 of a circle, 1 of a straight course, and the product of J_0(2 a_k/w_k) over
-        terms whose frequencies have no common measure.
+        It is the mean of cos 2(chi_r - mean course): 0 of a circle, 1 of a straight course, and the
+        product of J_0(2 a_k/w_k) over terms whose frequencies have no common measure.
         """
         product: Array = np.prod(j0(2.0 * self.swing), axis=0)
         return np.where(self.rate == 0.0, product, 0.0)

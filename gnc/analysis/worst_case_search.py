@@ -15,16 +15,22 @@ _REFINED = 4
 """How many of the worst samples start a refinement."""
 
 _GATHERED = 0.5
-"""Fraction of the samples that gather where commands are largest; the others cover all geometries [-]."""
+"""Fraction of the samples that gather where commands are largest; the others cover all geometries
+[-].
+"""
 
 _GATHERED_SIGMA = 0.3
 """How widely they gather: standard deviation of the log of distance, and of course [-, rad]."""
 
 _LOG_DISTANCES = (-7.0, 5.0)
-"""Log of the others' distances over sqrt(R/epsilon) [-]: from 0.001, near the reference, to 150, where delta outgrows d."""
+"""Log of the others' distances over sqrt(R/epsilon) [-]: from 0.001, near the reference, to 150,
+where delta outgrows d.
+"""
 
 _LOG10_ANGLES = (-3.0, 0.0)
-"""Decimal log of the gathered samples' angles to head on [-]: from what the refinement takes over, 0.001 rad, to a right angle."""
+"""Decimal log of the gathered samples' angles to head on [-]: from what the refinement takes over,
+0.001 rad, to a right angle.
+"""
 
 
 def largest_heading_rate(
@@ -37,10 +43,12 @@ def largest_heading_rate(
     samples: int,
     generator: np.random.Generator,
 ) -> float:
-    """Return the largest |omega| [rad/s] of the cascade law that random states, refined by search, come to.
+    """Return the largest |omega| [rad/s] of the cascade law that random states, refined by search,
+    come to.
 
-    Half of the states spread over all geometries, half gather where commands are largest: at d = sqrt(R/epsilon), nearly head on to
-    the reference, and across z. A number found by search: the supremum may be larger.
+    Half of the states spread over all geometries, half gather where commands are largest: at d =
+    sqrt(R/epsilon), nearly head on to the reference, and across z. A number found by search: the
+    supremum may be larger.
 
     Parameters
     ----------
@@ -92,7 +100,8 @@ def largest_heading_rate(
             method="Nelder-Mead",
             options={"xatol": 1e-9, "fatol": 1e-10, "maxiter": 2000},
         )
-        # Any state's command is a lower bound of the largest, so a refinement that has not converged still counts.
+        # Any state's command is a lower bound of the largest, so a refinement that has not
+        # converged still counts.
         largest = max(largest, -float(refined.fun))
     return largest
 
@@ -109,9 +118,11 @@ def heading_rates(
     gain: float,
     steering_max: float,
 ) -> _Array:
-    """Return commands of the cascade law for arrays of states, from vectors alone: equations (14), (15), (17) and (30).
+    """Return commands of the cascade law for arrays of states, from vectors alone: equations (14),
+    (15), (17) and (30).
 
-    omega_rho is the cross product of z with its rate, over rho^2, instead of (18) in the frame of z.
+    omega_rho is the cross product of z with its rate, over rho^2, instead of (18) in the frame of
+    z.
 
     Parameters
     ----------
@@ -142,7 +153,9 @@ def heading_rates(
 
 
 def _random_states(parameters: LookAhead, samples: int, generator: np.random.Generator) -> _Array:
-    """Return log distance, direction of d against the reference's course, and the vehicle's course against it: three rows."""
+    """Return log distance, direction of d against the reference's course, and the vehicle's course
+    against it: three rows.
+    """
     critical = 0.5 * math.log(parameters.radius / parameters.epsilon)
     gathered = generator.random(samples) < _GATHERED
     near, anywhere = (
@@ -155,7 +168,8 @@ def _random_states(parameters: LookAhead, samples: int, generator: np.random.Gen
         [-1.0, 1.0], samples
     )
     direction = math.pi + np.where(gathered, nearly, generator.uniform(-math.pi, math.pi, samples))
-    # Head on to the reference z points along its course, so that courses across z are courses across the reference's.
+    # Head on to the reference z points along its course, so that courses across z are courses
+    # across the reference's.
     across = 0.5 * math.pi * generator.choice([-1.0, 1.0], samples) + generator.normal(
         0.0, _GATHERED_SIGMA, samples
     )

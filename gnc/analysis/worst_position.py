@@ -1,4 +1,6 @@
-"""The position from which the cascade law turns fastest: branch and bound over all of them; see docs/actuation_bounds.md."""
+"""The position from which the cascade law turns fastest: branch and bound over all of them; see
+docs/actuation_bounds.md.
+"""
 
 import math
 from collections.abc import Callable
@@ -15,10 +17,12 @@ _CELLS = 24
 def worst_case_over_positions(
     value: Callable[[_Array, _Array], _Array], sigma: float, tolerance: float
 ) -> float:
-    """Return an upper bound, at most ``tolerance`` high, of a value that rises with both factors, over all positions.
+    """Return an upper bound, at most ``tolerance`` high, of a value that rises with both factors,
+    over all positions.
 
-    Branch and bound: cells are quartered until none can hold a value above the largest met in the middle of a cell, but for the
-    tolerance. That ends because the bounds of ``factors_at_most`` close in on ``factors`` as cells shrink.
+    Branch and bound: cells are quartered until none can hold a value above the largest met in the
+    middle of a cell, but for the tolerance. That ends because the bounds of ``factors_at_most``
+    close in on ``factors`` as cells shrink.
     """
     edges = np.linspace(0.0, math.pi, _CELLS + 1)
     low, high = (
@@ -41,7 +45,8 @@ def worst_case_over_positions(
 
 
 def factors(sigma: float, alpha: _Array, beta: _Array) -> tuple[_Array, _Array]:
-    """Return what multiplies V/R and what multiplies omega_r in the largest |omega_rho| at a position, over all courses.
+    """Return what multiplies V/R and what multiplies omega_r in the largest |omega_rho| at a
+    position, over all courses.
 
     They are (R/rho)(|w_x| + |w|) and (delta/rho) cos(phi_r) of docs/actuation_bounds.md.
 
@@ -60,7 +65,9 @@ def factors(sigma: float, alpha: _Array, beta: _Array) -> tuple[_Array, _Array]:
 
 
 def factors_at_most(sigma: float, low: _Array, high: _Array) -> tuple[_Array, _Array]:
-    """Return upper bounds of both ``factors`` over cells: each term at the end of the cell where it is largest."""
+    """Return upper bounds of both ``factors`` over cells: each term at the end of the cell where it
+    is largest.
+    """
     (a_1, b_1), (a_2, b_2) = low, high
     s_1, s_2 = _sine_range(a_1, a_2)
     sin_b_1, sin_b_2 = _sine_range(b_1, b_2)
@@ -73,7 +80,8 @@ def factors_at_most(sigma: float, low: _Array, high: _Array) -> tuple[_Array, _A
     rho_squared_2 = np.maximum(
         (1.0 - x_1) ** 2 + 2.0 * x_1 * k_2, (1.0 - x_2) ** 2 + 2.0 * x_2 * k_2
     )
-    # sqrt(rho^2 - p)/rho^2 is the root of y - p y^2, y = 1/rho^2, a parabola whose vertex is 1/(2 p).
+    # sqrt(rho^2 - p)/rho^2 is the root of y - p y^2, y = 1/rho^2, a parabola whose vertex is 1/(2
+    # p).
     p = (s_1 * sin_b_1) ** 2
     y = np.clip(1.0 / np.maximum(2.0 * p, 1e-300), 1.0 / rho_squared_2, 1.0 / rho_squared_1)
     across = np.sqrt(np.maximum(y - p * y * y, 0.0))

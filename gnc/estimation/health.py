@@ -1,4 +1,6 @@
-"""Whether the vehicle still follows its commands, judged by its airspeed, its heading rate and its servos' reports."""
+"""Whether the vehicle still follows its commands, judged by its airspeed, its heading rate and its
+servos' reports.
+"""
 
 import math
 from enum import Enum
@@ -7,8 +9,9 @@ PATIENCE = 2.0
 """Time constant of the means by which a fault is found [s]."""
 
 STUCK, SERVO_PATIENCE = 0.1, 0.1
-"""Mean error of a control surface, over its travel [-], above which it counts as stuck, and time constant of that mean [s]: several
-lags of a servo. Of sound ones it is up to 0.03, in severe and in light turbulence."""
+"""Mean error of a control surface, over its travel [-], above which it counts as stuck, and time
+constant of that mean [s]: several lags of a servo. Of sound ones it is up to 0.03, in severe and in
+light turbulence."""
 
 
 class Fault(Enum):
@@ -23,9 +26,10 @@ class Fault(Enum):
 class Health:
     """Monitors airspeed, heading rate and servos. A fault, once detected, stays.
 
-    Thrust is lost when the airspeed stays below its command and does not rise. Control is lost when the heading rate stays away
-    from that of a vehicle with its lag under the same commands. An actuator is stuck when its control surface stays away from its
-    command; that is detected seconds before the heading rate shows it, and turbulence does not cause it.
+    Thrust is lost when the airspeed stays below its command and does not rise. Control is lost when
+    the heading rate stays away from that of a vehicle with its lag under the same commands. An
+    actuator is stuck when its control surface stays away from its command; that is detected seconds
+    before the heading rate shows it, and turbulence does not cause it.
 
     Parameters
     ----------

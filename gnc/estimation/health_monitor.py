@@ -6,7 +6,8 @@ from gnc.estimation.health import Fault, Health
 from gnc.estimation.own_motion import Readings
 
 UNCONTROLLED = 0.8
-"""Mean difference of heading rate from its command, over omega_max, at which control counts as lost [-].
+"""Mean difference of heading rate from its command, over omega_max, at which control counts as lost
+[-].
 
 Severe turbulence makes it up to 0.58, over 28 flights of 500 s that stayed in control.
 """
@@ -14,8 +15,8 @@ Severe turbulence makes it up to 0.58, over 28 flights of 500 s that stayed in c
 CHECK_INTERVAL = 0.2
 """Time between checks of the vehicle's health, a step of the guidance at least [s].
 
-One heading rate is compared with the mean of the commands in between, from which a vehicle without lag differs the more the
-longer that is.
+One heading rate is compared with the mean of the commands in between, from which a vehicle without
+lag differs the more the longer that is.
 """
 
 
@@ -27,7 +28,8 @@ class HealthParameters:
     ----------
     airspeed_error : mean lack of airspeed at which thrust counts as lost [m/s]
     speed : V_r; a vehicle that is still speeding up beyond it lacks nothing [m/s]
-    heading_rate_max : omega_max, or what a vehicle in turbulence may turn at without a command, if that is more [rad/s]
+    heading_rate_max : omega_max, or what a vehicle in turbulence may turn at without a command, if
+        that is more [rad/s]
     lag : of the heading rate behind its command [s]
     time_step : of the guidance [s]
     """
@@ -64,9 +66,11 @@ class HealthMonitor:
     def check(
         self, readings: Readings, airspeed_command: float, heading_rate_command: float
     ) -> bool:
-        """Return whether a fault is found now; called once per guidance step, with the last commands [m/s, rad/s]."""
-        # The mean of the commands since the last check: of one that changes its sign at every step, single ones would all have
-        # the same sign, and the vehicle would seem not to follow.
+        """Return whether a fault is found now; called once per guidance step, with the last
+        commands [m/s, rad/s].
+        """
+        # The mean of the commands since the last check: of one that changes its sign at every step,
+        # single ones would all have the same sign, and the vehicle would seem not to follow.
         self._commanded += heading_rate_command
         self._steps += 1
         if self._steps < self._interval:

@@ -1,4 +1,6 @@
-"""Where the vehicle is and how it moves, from its sensors; through a loss of satellite navigation by dead reckoning."""
+"""Where the vehicle is and how it moves, from its sensors; through a loss of satellite navigation
+by dead reckoning.
+"""
 
 import bisect
 import math
@@ -17,10 +19,12 @@ class NavigationParameters:
     Attributes
     ----------
     crab_banks, crab_offsets : course through the air minus heading, over bank, ascending [rad]
-    airspeed_sigma, course_sigma, wind_drift : of ``gnc.estimation.wind_filter.WindFilter`` [m/s, rad, m/s]
-    wind_noise, wind_error : largest errors by the noise of the sensors of a single measurement of the wind, and of its estimate in
-        the end, with which the guard reckons at all times [m/s]
-    first_wind_error : largest error of the first wind that is measured by the vehicle's own motion, as it rolls or climbs [m/s]
+    airspeed_sigma, course_sigma, wind_drift : of ``gnc.estimation.wind_filter.WindFilter``
+        [m/s, rad, m/s]
+    wind_noise, wind_error : largest errors by the noise of the sensors of a single measurement of
+        the wind, and of its estimate in the end, with which the guard reckons at all times [m/s]
+    first_wind_error : largest error of the first wind that is measured by the vehicle's own motion,
+        as it rolls or climbs [m/s]
     wind_interval : guidance steps between measurements of the wind
     time_step : of the guidance [s]
     """
@@ -40,8 +44,8 @@ class NavigationParameters:
 class Navigation:
     """Own motion over the ground and through the air.
 
-    The air mass has a frame of its own, which drifts with the estimated wind; in calm it is that of the ground. The guidance works
-    in it, for there the vehicle flies at its airspeed.
+    The air mass has a frame of its own, which drifts with the estimated wind; in calm it is that of
+    the ground. The guidance works in it, for there the vehicle flies at its airspeed.
 
     Attributes
     ----------
@@ -49,7 +53,8 @@ class Navigation:
     velocity_north, velocity_east : over the ground [m/s]
     drift_north, drift_east : how far the frame of the air mass has drifted [m]
     wind : the estimate
-    wind_error : by how much more it may be wrong than in the end, since it was measured seldom so far [m/s]
+    wind_error : by how much more it may be wrong than in the end, since it was measured seldom so
+        far [m/s]
     lost : for how long there has been no satellite navigation [s]
     """
 
@@ -95,7 +100,8 @@ class Navigation:
 
         Parameters
         ----------
-        position : north, east [m], north and east velocity over the ground [m/s] by satellite navigation, if there is any
+        position : north, east [m], north and east velocity over the ground [m/s] by satellite
+            navigation, if there is any
         airspeed : [m/s]
         heading, roll : of the body [rad]
         """
@@ -130,7 +136,8 @@ class Navigation:
         before_north, before_east = self.velocity_north, self.velocity_east
         self.velocity_north = wind.north + airspeed * math.cos(air_course)
         self.velocity_east = wind.east + airspeed * math.sin(air_course)
-        # By the mean of the velocities at both ends: by one of them half a turn would be wrong by the way of a step.
+        # By the mean of the velocities at both ends: by one of them half a turn would be wrong by
+        # the way of a step.
         self.north += 0.5 * time_step * (before_north + self.velocity_north)
         self.east += 0.5 * time_step * (before_east + self.velocity_east)
         self.lost += time_step

@@ -1,4 +1,6 @@
-"""Where the vehicle is and how it moves, in the frame of the air mass: as it is, or estimated from sensors."""
+"""Where the vehicle is and how it moves, in the frame of the air mass: as it is, or estimated from
+sensors.
+"""
 
 import math
 from dataclasses import dataclass
@@ -12,12 +14,15 @@ Motion = tuple[float, float, float, float, float]
 Readings = tuple[tuple[float, float, float, float] | None, float, float, float, float, float]
 """What sensors on board say.
 
-Position and velocity over the ground by satellite navigation, if there is any [m, m/s]; airspeed [m/s]; heading and roll [rad];
-rate of the course against the air [rad/s]; error of the control surface that is farthest from its command, over its travel [-].
+Position and velocity over the ground by satellite navigation, if there is any [m, m/s]; airspeed
+[m/s]; heading and roll [rad]; rate of the course against the air [rad/s]; error of the control
+surface that is farthest from its command, over its travel [-].
 """
 
 _SPEED_MIN = 1.0
-"""Speed below which the ratio of airspeed to speed over the mean air is not formed [m/s]: no vehicle flies as slowly."""
+"""Speed below which the ratio of airspeed to speed over the mean air is not formed [m/s]: no
+vehicle flies as slowly.
+"""
 
 
 class AirMotion(Protocol):
@@ -29,7 +34,8 @@ class AirMotion(Protocol):
     course : of the motion through the mean air, from -pi to pi [rad]
     heading_rate : of that course [rad/s]
     wind_north, wind_east : velocity of the air mass [m/s]
-    wind_error : by how much more than at all times that may be wrong, as long as it was measured seldom [m/s]
+    wind_error : by how much more than at all times that may be wrong, as long as it was measured
+        seldom [m/s]
     lost : for how long there has been no satellite navigation [s]
     speed : of the motion through the mean air [m/s]
     """
@@ -46,9 +52,11 @@ class AirMotion(Protocol):
 
 
 class OwnMotion(AirMotion, Protocol):
-    """The vehicle's motion, updated once per guidance step; attributes as of ``AirMotion``, and more.
+    """The vehicle's motion, updated once per guidance step; attributes as of ``AirMotion``, and
+    more.
 
-    The guidance works in the frame of the mean air, which drifts with the wind and is that of the ground in still air.
+    The guidance works in the frame of the mean air, which drifts with the wind and is that of the
+    ground in still air.
 
     Attributes
     ----------
@@ -110,9 +118,11 @@ class TrueNavigation:
 
 
 class EstimatedNavigation:
-    """The motion estimated from sensors, with an estimate of the wind; attributes as of ``OwnMotion``.
+    """The motion estimated from sensors, with an estimate of the wind; attributes as of
+    ``OwnMotion``.
 
-    An autopilot turns against the gusty air, the guidance over the mean air: ``gnc.airspeed.pace_hold.air_turn``.
+    An autopilot turns against the gusty air, the guidance over the mean air:
+    ``gnc.airspeed.pace_hold.air_turn``.
 
     Parameters
     ----------

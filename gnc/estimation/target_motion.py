@@ -8,7 +8,9 @@ from gnc.estimation.reachable_set import ReachableSet, Tube
 from gnc.estimation.vessel_filter import VesselFilter, VesselReport
 
 REPORTED_SCATTER = 0.03
-"""What the estimated acceleration of a steady vessel scatters by, where its reports have errors [m/s^2]."""
+"""What the estimated acceleration of a steady vessel scatters by, where its reports have errors
+[m/s^2].
+"""
 
 
 class TargetMotion(Protocol):
@@ -18,7 +20,8 @@ class TargetMotion(Protocol):
     ----------
     north, east : [m]
     velocity_north, velocity_east : [m/s]
-    acceleration_north, acceleration_east : when it was last planned, as much as is not the scatter of its reports [m/s^2]
+    acceleration_north, acceleration_east : when it was last planned, as much as is not the scatter
+        of its reports [m/s^2]
     tubes : discs that contain it, from when it was last planned on, the one known best first
     """
 
@@ -31,14 +34,17 @@ class TargetMotion(Protocol):
     tubes: Sequence[Tube]
 
     def update(self, time: float, planning: bool) -> None:
-        """Move on to ``time`` [s]; look anew at what is known of the vessel where the mission is ``planning``."""
+        """Move on to ``time`` [s]; look anew at what is known of the vessel where the mission is
+        ``planning``.
+        """
 
     def age(self, time: float) -> float:
         """Return how old the last report is at ``time`` [s]."""
 
 
 class SteadyTarget:
-    """A vessel at constant velocity from the origin, known exactly; attributes as of ``TargetMotion``.
+    """A vessel at constant velocity from the origin, known exactly; attributes as of
+    ``TargetMotion``.
 
     Parameters
     ----------
@@ -70,7 +76,8 @@ class SteadyTarget:
 
 
 class ReportedTarget:
-    """A vessel known from its reports through a filter, extrapolated between looks; attributes as of ``TargetMotion``.
+    """A vessel known from its reports through a filter, extrapolated between looks; attributes as
+    of ``TargetMotion``.
 
     Parameters
     ----------

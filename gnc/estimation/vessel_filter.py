@@ -1,4 +1,6 @@
-"""The vessel's motion, estimated from reports that arrive every few seconds, noisy, late, or not at all."""
+"""The vessel's motion, estimated from reports that arrive every few seconds, noisy, late, or not at
+all.
+"""
 
 import math
 from dataclasses import dataclass
@@ -63,11 +65,13 @@ class FilterParameters:
 
 
 class VesselFilter:
-    """Singer's model of a manoeuvring target, one Kalman filter for north and one for east, which share their covariance.
+    """Singer's model of a manoeuvring target, one Kalman filter for north and one for east, which
+    share their covariance.
 
-    Acceleration is a random process of standard deviation ``acceleration`` that forgets itself with the time constant ``memory``;
-    position is its double integral (R. A. Singer, IEEE Trans. AES 6:473, 1970; Bar-Shalom et al., Estimation with Applications to
-    Tracking and Navigation, 2001, section 8.2). A report that is older than the newest one is dropped; a late one is taken at the
+    Acceleration is a random process of standard deviation ``acceleration`` that forgets itself with
+    the time constant ``memory``; position is its double integral (R. A. Singer, IEEE Trans. AES
+    6:473, 1970; Bar-Shalom et al., Estimation with Applications to Tracking and Navigation, 2001,
+    section 8.2). A report that is older than the newest one is dropped; a late one is taken at the
     time at which it was true.
 
     Parameters
@@ -174,12 +178,15 @@ class VesselFilter:
         )
 
     def _noise(self, time: float) -> Covariance:
-        """Return what the random acceleration adds in ``time``: Singer's exact discrete process noise."""
+        """Return what the random acceleration adds in ``time``: Singer's exact discrete process
+        noise.
+        """
         m, t = self._memory, time
         e = math.exp(-t / m)
         scale = self._acceleration_variance
         if t < 0.005 * m:
-            # The closed forms cancel to nothing over short times; their leading terms are true to 0.5 %.
+            # The closed forms cancel to nothing over short times; their leading terms are true to
+            # 0.5 %.
             q = 2.0 * scale / m
             return (
                 q * t**5 / 20.0,

@@ -6,9 +6,11 @@ import math
 class WindFilter:
     """A Kalman filter for a wind that wanders slowly.
 
-    What is measured is the wind triangle, w = v_ground - V_a (cos chi_a, sin chi_a). Its error along chi_a is that of the airspeed,
-    across it V_a times that of the course; gusts are in both. They are taken one after the other, each as a scalar. The first
-    measurement is the first estimate: any wind that were taken to be likely before it would be in the estimate until more came.
+    What is measured is the wind triangle, w = v_ground - V_a (cos chi_a, sin chi_a). Its error
+    along chi_a is that of the airspeed, across it V_a times that of the course; gusts are in both.
+    They are taken one after the other, each as a scalar. The first measurement is the first
+    estimate: any wind that were taken to be likely before it would be in the estimate until more
+    came.
 
     Parameters
     ----------
@@ -18,7 +20,8 @@ class WindFilter:
 
     Attributes
     ----------
-    north, east : estimated velocity of the air mass, where it blows to; 0 before anything is measured [m/s]
+    north, east : estimated velocity of the air mass, where it blows to; 0 before anything is
+        measured [m/s]
     """
 
     __slots__ = (
@@ -43,7 +46,9 @@ class WindFilter:
 
     @property
     def sigma(self) -> float:
-        """Return the standard deviation of the estimate in its worst direction, once anything is measured [m/s]."""
+        """Return the standard deviation of the estimate in its worst direction, once anything is
+        measured [m/s].
+        """
         half = 0.5 * (self._p_nn - self._p_ee)
         return math.sqrt(0.5 * (self._p_nn + self._p_ee) + math.hypot(half, self._p_ne))
 

@@ -12,7 +12,8 @@ from gnc.reference.reference import Reference
 @steering_law("cascade")
 @dataclass(frozen=True, slots=True, kw_only=True)
 class CascadeLaw(DeltaLaw):
-    """The cascade law on the relative state of the delta formulation: course error and geometry one after the other.
+    """The cascade law on the relative state of the delta formulation: course error and geometry one
+    after the other.
 
     Attributes
     ----------

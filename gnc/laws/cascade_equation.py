@@ -5,7 +5,8 @@ from gnc.numeric import limited
 
 
 def h(phi: float, gain: float, rate_max: float) -> float:
-    """Return h(phi) [rad/s] of equation (30): gain phi, kept within ``rate_max``. It is 0 at 0 and has the sign of phi elsewhere.
+    """Return h(phi) [rad/s] of equation (30): gain phi, kept within ``rate_max``. It is 0 at 0 and
+    has the sign of phi elsewhere.
 
     Parameters
     ----------
@@ -17,7 +18,8 @@ def h(phi: float, gain: float, rate_max: float) -> float:
 
 
 def cascade_law(phi: float, omega_rho: float, gain: float, rate_max: float) -> float:
-    """Return omega [rad/s] by the cascade law, equation (30), with h = gain phi within ``rate_max``.
+    """Return omega [rad/s] by the cascade law, equation (30), with h = gain phi within
+    ``rate_max``.
 
     Parameters
     ----------

@@ -1,4 +1,6 @@
-"""The delta formulation: a look-ahead that grows with distance and takes the singularity out of line-of-sight tracking."""
+"""The delta formulation: a look-ahead that grows with distance and takes the singularity out of
+line-of-sight tracking.
+"""
 
 import math
 from typing import NamedTuple
@@ -87,9 +89,11 @@ def bare_state(
     reference_course: float,
     course: float,
 ) -> tuple[float, float, float, float]:
-    """Return delta, rho, phi_r and phi, the relative state without names: equations (14), (15), (16) and (19).
+    """Return delta, rho, phi_r and phi, the relative state without names: equations (14), (15),
+    (16) and (19).
 
-    Parameters are those of ``relative_state``. The guidance asks at every step, and the names cost as much as the numbers.
+    Parameters are those of ``relative_state``. The guidance asks at every step, and the names cost
+    as much as the numbers.
     """
     epsilon, radius = parameters
     delta = (
@@ -115,7 +119,8 @@ def distance_squared(state: RelativeState) -> float:
 def distance_squared_rate(state: RelativeState, reference_speed: float, speed: float) -> float:
     """Return the rate of d^2 [m^2/s]: equation (20), which is this with both speeds V_r.
 
-    Differs from the paper because a real aircraft's speed is V_r only on average: d . d-dot = d . (v_r - v), resolved along z.
+    Differs from the paper because a real aircraft's speed is V_r only on average: d . d-dot = d .
+    (v_r - v), resolved along z.
     """
     delta, rho, phi_r, phi = state
     cos_r, sin_r = math.cos(phi_r), math.sin(phi_r)
@@ -131,7 +136,8 @@ def relative_velocity(
     speed: float,
     reference_heading_rate: float,
 ) -> tuple[float, float]:
-    """Return the rates of rho [m/s] and of the course of z, omega_rho [rad/s]: equations (17) and (18).
+    """Return the rates of rho [m/s] and of the course of z, omega_rho [rad/s]: equations (17) and
+    (18).
 
     Parameters
     ----------
@@ -144,7 +150,8 @@ def relative_velocity(
     cos_r, sin_r = math.cos(phi_r), math.sin(phi_r)
     along = reference_speed * cos_r - speed * math.cos(phi)
     across = reference_speed * sin_r - speed * math.sin(phi)
-    # Equation (20) once more: calling distance_squared_rate would take every sine and cosine twice, at each step of the guidance.
+    # Equation (20) once more: calling distance_squared_rate would take every sine and cosine twice,
+    # at each step of the guidance.
     delta_rate = parameters.epsilon * (
         2.0 * ((rho - delta * cos_r) * along - delta * sin_r * across)
     )

@@ -1,4 +1,6 @@
-"""The line-of-sight law, the baseline of the paper's Sim. 2; elsewhere it is called proportional pursuit."""
+"""The line-of-sight law, the baseline of the paper's Sim. 2; elsewhere it is called proportional
+pursuit.
+"""
 
 import math
 from dataclasses import dataclass
@@ -12,10 +14,11 @@ from gnc.reference.reference import Reference
 def line_of_sight_law(
     to_reference_north: float, to_reference_east: float, course: float, gain: float
 ) -> float:
-    """Return omega [rad/s] that turns the course to the line of sight, proportionally: the baseline of the paper's Sim. 2.
+    """Return omega [rad/s] that turns the course to the line of sight, proportionally: the baseline
+    of the paper's Sim. 2.
 
-    Undefined on the reference itself, where it commands nothing; close by, the line of sight and so the command turn arbitrarily
-    fast.
+    Undefined on the reference itself, where it commands nothing; close by, the line of sight and so
+    the command turn arbitrarily fast.
     """
     if to_reference_north == 0.0 and to_reference_east == 0.0:
         return 0.0
@@ -25,7 +28,8 @@ def line_of_sight_law(
 @steering_law("line_of_sight")
 @dataclass(frozen=True, slots=True, kw_only=True)
 class LineOfSightLaw:
-    """Heading rate in proportion to the angle between course and line of sight. What it demands has no useful bound.
+    """Heading rate in proportion to the angle between course and line of sight. What it demands has
+    no useful bound.
 
     Attributes
     ----------

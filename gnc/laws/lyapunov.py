@@ -26,7 +26,8 @@ def lyapunov_law(state: RelativeState, speed: float, omega_rho: float, k_1: floa
 @steering_law("lyapunov")
 @dataclass(frozen=True, slots=True, kw_only=True)
 class LyapunovLaw(DeltaLaw):
-    """The Lyapunov-based law on the relative state of the delta formulation. What it demands has no bound.
+    """The Lyapunov-based law on the relative state of the delta formulation. What it demands has no
+    bound.
 
     Attributes
     ----------

@@ -29,21 +29,24 @@ NO_CIRCLE = "it steers at a point that moves on, and the nearest point of a circ
 class SteeringLaw(Protocol):
     """What heading rate to command, from where the reference is and how the vehicle moves.
 
-    A law is a frozen dataclass that is registered by a name in a file of its own. Its fields are the keys of a scenario's
-    ``[guidance]`` by the same names, in SI units, each with a default. A law that remembers something, or that needs wind, has a
-    method ``begin`` beside: see ``begun``. One that cannot do a task says so in ``cannot``, by the task, with the reason;
-    ``given`` says in words what of the reference and of the air a law makes use of.
+    A law is a frozen dataclass that is registered by a name in a file of its own. Its fields are
+    the keys of a scenario's ``[guidance]`` by the same names, in SI units, each with a default. A
+    law that remembers something, or that needs wind, has a method ``begin`` beside: see ``begun``.
+    One that cannot do a task says so in ``cannot``, by the task, with the reason; ``given`` says in
+    words what of the reference and of the air a law makes use of.
     """
 
     def heading_rate(
         self, reference: Reference, to_north: float, to_east: float, course: float, speed: float
     ) -> float:
-        """Return the demanded heading rate [rad/s], positive to the right, before any limit of the vehicle.
+        """Return the demanded heading rate [rad/s], positive to the right, before any limit of the
+        vehicle.
 
         Parameters
         ----------
-        reference : the point to track; its ``course`` [rad], ``heading_rate`` [rad/s] and ``speed`` V_r [m/s] are for the law,
-            its position may be given for another frame than ``to_north`` and ``to_east``
+        reference : the point to track; its ``course`` [rad], ``heading_rate`` [rad/s] and ``speed``
+            V_r [m/s] are for the law, its position may be given for another frame than ``to_north``
+            and ``to_east``
         to_north, to_east : from the vehicle to the reference [m]
         course : chi of the vehicle, clockwise from north [rad]
         speed : horizontal speed of the vehicle [m/s]
@@ -74,7 +77,8 @@ class Surroundings:
     Attributes
     ----------
     air : as it is known on board
-    path_north, path_east : velocity over the ground of the frame in which the reference's path is at rest [m/s]
+    path_north, path_east : velocity over the ground of the frame in which the reference's path is
+        at rest [m/s]
     """
 
     air: Air
@@ -96,7 +100,8 @@ _BEGINS = "its method begin(surroundings, time_step) has to return the law of on
 
 
 def begun(law: SteeringLaw, surroundings: Surroundings, time_step: float) -> SteeringLaw:
-    """Return the law of one flight: a law that has a state, or looks at its surroundings, has a method ``begin`` for it.
+    """Return the law of one flight: a law that has a state, or looks at its surroundings, has a
+    method ``begin`` for it.
 
     Parameters
     ----------
@@ -127,14 +132,16 @@ _MUST = "its method heading_rate(reference, to_north, to_east, course, speed) ha
 def within_limit(
     demand: Any, limit: float, law: str, given: Sequence[float]
 ) -> tuple[float, float]:
-    """Return what a law demanded, as a plain number, and that kept within minus and plus ``limit`` [rad/s].
+    """Return what a law demanded, as a plain number, and that kept within minus and plus ``limit``
+    [rad/s].
 
     Parameters
     ----------
     demand : what it returned
     limit : omega_max [rad/s]
     law : its name, for the error
-    given : what it was asked with; of what is not finite itself, as after an aircraft has diverged, it can make no number
+    given : what it was asked with; of what is not finite itself, as after an aircraft has diverged,
+        it can make no number
 
     Raises
     ------
@@ -143,21 +150,25 @@ def within_limit(
     if _is_number(demand) and (
         -limit <= demand <= limit or not math.isnan(demand) or not all(map(math.isfinite, given))
     ):
-        # A number of NumPy's would have all that follows computed in its own precision, or be changed in place.
+        # A number of NumPy's would have all that follows computed in its own precision, or be
+        # changed in place.
         return float(demand), float(limited(demand, limit))
     shown = repr(demand) if isinstance(demand, str) else " ".join(str(demand).split())
     raise LawError(f"steering law '{law}' returned {shown}: {_MUST}")
 
 
 def _is_number(demand: Any) -> bool:
-    """Return whether a demand is a real number, or an array of no dimensions with one in it, as ``numpy.where`` makes it."""
+    """Return whether a demand is a real number, or an array of no dimensions with one in it, as
+    ``numpy.where`` makes it.
+    """
     if isinstance(demand, np.ndarray) and demand.ndim == 0:
         demand = demand[()]
     return isinstance(demand, float | Real)
 
 
 def call_error(law: str, error: TypeError, must: str = _MUST) -> Exception:
-    """Return what to raise for an error of a call: the same where it comes from inside the law, where it names its place.
+    """Return what to raise for an error of a call: the same where it comes from inside the law,
+    where it names its place.
 
     Parameters
     ----------

@@ -12,16 +12,22 @@ COURSE_GAIN = 2.0
 """Heading rate per course error off the reference, in units of omega_max [-]."""
 
 _BLOCKED_WITHIN = 0.97
-"""A way that comes closer to the vessel than this fraction of the centre's distance is not blocked by the keep-out area [-]."""
+"""A way that comes closer to the vessel than this fraction of the centre's distance is not blocked
+by the keep-out area [-].
+"""
 
 _LEFT_AT = 1.5
 """Distance from the centre at which tracking is given up, over that at which it begins [-]."""
 
 _JOIN_ASPECT, _LEAVE_ASPECT = 1.2, 1.9
-"""Bearing from the plume's axis within which tracking begins, and beyond which it is given up [rad]."""
+"""Bearing from the plume's axis within which tracking begins, and beyond which it is given up
+[rad].
+"""
 
 LOST_TRACK = 3.0
-"""Distance from the reference at which it no longer counts as tracked, over that at which it does [-]."""
+"""Distance from the reference at which it no longer counts as tracked, over that at which it does
+[-].
+"""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -30,7 +36,8 @@ class ApproachParameters:
 
     Attributes
     ----------
-    blocked_radius, round_radius : a way to the centre that comes closer to the vessel than the first goes round by the second [m]
+    blocked_radius, round_radius : a way to the centre that comes closer to the vessel than the
+        first goes round by the second [m]
     join_distance : from the centre, within which the reference is tracked [m]
     tracked : distance from the reference that counts as tracked [m]
     airspeed : on the way [m/s]
@@ -50,7 +57,8 @@ class Approach:
     ----------
     parameters : of the way
     own, target : motion of the vehicle and of the vessel
-    speed, heading_rate_max, lag : V_r, omega_max, and lag of the vehicle's heading rate behind its command [m/s, rad/s, s]
+    speed, heading_rate_max, lag : V_r, omega_max, and lag of the vehicle's heading rate behind its
+        command [m/s, rad/s, s]
     time_step : of the guidance [s]
     """
 
@@ -78,7 +86,9 @@ class Approach:
         self._held, self._time_step, self._join_distance = 0.0, time_step, parameters.join_distance
 
     def course_ahead(self, last_command: float) -> float:
-        """Return the course that the vehicle will have when a command acts [rad], after its last command [rad/s]."""
+        """Return the course that the vehicle will have when a command acts [rad], after its last
+        command [rad/s].
+        """
         own = self._own
         return own.course + 0.5 * self._lag * (own.heading_rate + last_command)
 
@@ -93,9 +103,10 @@ class Approach:
     ) -> float:
         """Return the heading rate that leads to the centre, round the vessel [rad/s].
 
-        It turns to the nearer side. Where that leads through the course straight to the vessel, the keep-out guard may not let it
-        through, and hold the vehicle on a course beside a fast vessel until it has fallen behind. After a quarter of a turn of that
-        it flies abeam until it is as far off as it goes round the vessel, and turns then.
+        It turns to the nearer side. Where that leads through the course straight to the vessel, the
+        keep-out guard may not let it through, and hold the vehicle on a course beside a fast vessel
+        until it has fallen behind. After a quarter of a turn of that it flies abeam until it is as
+        far off as it goes round the vessel, and turns then.
 
         Parameters
         ----------
@@ -166,7 +177,9 @@ class Approach:
         return off < _LEFT_AT * p.join_distance and aspect < _LEAVE_ASPECT and not held_off
 
     def join_nearer(self) -> None:
-        """Let tracking begin from half as far as before: the keep-out guard has just ended it, and would do so again."""
+        """Let tracking begin from half as far as before: the keep-out guard has just ended it, and
+        would do so again.
+        """
         p = self._parameters
         self._join_distance = max(
             0.5 * self._join_distance, min(LOST_TRACK * p.tracked, p.join_distance)

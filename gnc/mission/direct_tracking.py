@@ -1,4 +1,6 @@
-"""The mission beside a steady vessel that is known exactly: track the paper's reference, on the way to it go round the vessel."""
+"""The mission beside a steady vessel that is known exactly: track the paper's reference, on the way
+to it go round the vessel.
+"""
 
 import copy
 import math
@@ -17,14 +19,17 @@ from gnc.safety.keepout_guard import KeepoutGuard
 from gnc.tracker import Tracker, TrackingParameters
 
 STANDOFF = 2.0
-"""How far outside its place the orbit is joined, over the distance from the reference that counts as tracked [-]."""
+"""How far outside its place the orbit is joined, over the distance from the reference that counts
+as tracked [-].
+"""
 
 CLOSING_RATE = 0.2
 """How fast it then closes in, over V_r [-]."""
 
 
 class SteadyCentre(NamedTuple):
-    """A centre of oscillation that keeps its place beside the vessel; not a number for a reference without a vessel.
+    """A centre of oscillation that keeps its place beside the vessel; not a number for a reference
+    without a vessel.
 
     Attributes
     ----------
@@ -79,12 +84,15 @@ class DirectParameters:
 
 
 class DirectTracking:
-    """Tracks a reference that is given for the whole flight; attributes as of ``gnc.mission.mission.Mission``.
+    """Tracks a reference that is given for the whole flight; attributes as of
+    ``gnc.mission.mission.Mission``.
 
-    Differs from the paper because its law knows nothing of the keep-out area: on the way to a far reference it leads through it,
-    and law and guard would undo each other's work for as long as the flight lasts. Here the vehicle goes round the vessel, and
-    joins the orbit somewhat outside of its place, at the phase that is nearest; once tracked, the orbit closes in. An orbit that
-    takes all of the heading rate is joined slowed down (``ReferenceShape.joining_share``), and joined anew where it is lost.
+    Differs from the paper because its law knows nothing of the keep-out area: on the way to a far
+    reference it leads through it, and law and guard would undo each other's work for as long as the
+    flight lasts. Here the vehicle goes round the vessel, and joins the orbit somewhat outside of
+    its place, at the phase that is nearest; once tracked, the orbit closes in. An orbit that takes
+    all of the heading rate is joined slowed down (``ReferenceShape.joining_share``), and joined
+    anew where it is lost.
 
     Parameters
     ----------
@@ -139,7 +147,9 @@ class DirectTracking:
         self.mode = Mode.APPROACH if self.overriding else Mode.TRACKING
 
     def plan(self, time: float) -> None:  # noqa: ARG002 - of the Protocol
-        """Decide whether to go on round the vessel, to track the reference, and whether its orbit may close in."""
+        """Decide whether to go on round the vessel, to track the reference, and whether its orbit
+        may close in.
+        """
         guarding = self._guarding
         watching = self.overriding or self._closing or guarding or self._losable
         if self._approach is None or self._joining is None or not watching:
@@ -172,7 +182,9 @@ class DirectTracking:
         self.mode = Mode.APPROACH if self.overriding else Mode.TRACKING
 
     def command(self, last_command: float) -> float:
-        """Return the heading rate that leads to where the orbit is joined, round the vessel [rad/s]; the law's without a way."""
+        """Return the heading rate that leads to where the orbit is joined, round the vessel
+        [rad/s]; the law's without a way.
+        """
         if self._approach is None:
             return self.tracker.heading_rate_command
         return self._approach.command(
@@ -180,7 +192,8 @@ class DirectTracking:
         )
 
     def leave(self, fault: Fault) -> None:
-        """Refuse to leave: this mission has no departure, and is not given a monitor that could demand it.
+        """Refuse to leave: this mission has no departure, and is not given a monitor that could
+        demand it.
 
         Raises
         ------

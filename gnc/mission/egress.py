@@ -6,14 +6,16 @@ from gnc.mission.approach import COURSE_GAIN
 from gnc.numeric import limited, wrap
 
 _EITHER_WAY = 0.95 * math.pi
-"""Course left to turn beyond which it is as far either way, and the turn that is flown already is the quicker one [rad]."""
+"""Course left to turn beyond which it is as far either way, and the turn that is flown already is
+the quicker one [rad].
+"""
 
 
 class Egress:
     """Leads away from the vessel.
 
-    From a course towards it either turn would do, and the vehicle keeps to the one that it has begun: to decide at every step would
-    lead straight on.
+    From a course towards it either turn would do, and the vehicle keeps to the one that it has
+    begun: to decide at every step would lead straight on.
 
     Parameters
     ----------

@@ -57,11 +57,14 @@ class Tracking(Protocol):
     def step(
         self, north: float, east: float, course: float, speed: float, heading_rate: float
     ) -> float:
-        """Return the heading rate to command [rad/s]; parameters are those of ``gnc.tracker.Tracker``."""
+        """Return the heading rate to command [rad/s]; parameters are those of
+        ``gnc.tracker.Tracker``.
+        """
 
 
 class Mission(Protocol):
-    """Plans every few steps where the reference goes; overrides the tracker where that would be the wrong way.
+    """Plans every few steps where the reference goes; overrides the tracker where that would be the
+    wrong way.
 
     Attributes
     ----------
@@ -103,7 +106,9 @@ class Mission(Protocol):
         """Look at own motion and target, and decide what to do."""
 
     def command(self, last_command: float) -> float:
-        """Return the heading rate to fly while overriding, after the last one that was flown [rad/s]."""
+        """Return the heading rate to fly while overriding, after the last one that was flown
+        [rad/s].
+        """
 
     def leave(self, fault: Fault) -> None:
         """Leave the vessel for good, because of a fault of the vehicle."""

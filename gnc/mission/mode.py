@@ -29,7 +29,9 @@ class Mode(Enum):
 
 
 LOST = (Mode.GLIDING, Mode.TERMINATING)
-"""Modes from which an aircraft does not come back: it glides, or flies away from the vessel, until it is down."""
+"""Modes from which an aircraft does not come back: it glides, or flies away from the vessel, until
+it is down.
+"""
 
 LEAVING = (*LOST, Mode.DEPARTING)
 """Modes in which the vehicle leaves for good, and tracks no reference."""

@@ -1,4 +1,6 @@
-"""Where a plume's axis is taken to be, and at which altitude it is crossed: by prediction, or as it is given."""
+"""Where a plume's axis is taken to be, and at which altitude it is crossed: by prediction, or as it
+is given.
+"""
 
 import math
 from dataclasses import dataclass
@@ -14,14 +16,15 @@ from gnc.reference.moving_centre import MovingCentre
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Climb:
-    """How the commanded altitude follows the one that is demanded: late and slowly, so that the autopilot follows it.
+    """How the commanded altitude follows the one that is demanded: late and slowly, so that the
+    autopilot follows it.
 
     Attributes
     ----------
     time : constant of the lag [s]
     gradient : steepest climb or descent over the vehicle's way [-]
-    reach : how far from the altitude that is flown the command may be [m]: an autopilot that has fallen behind by more may
-        integrate no longer, and come back slowly
+    reach : how far from the altitude that is flown the command may be [m]: an autopilot that has
+        fallen behind by more may integrate no longer, and come back slowly
     """
 
     time: float
@@ -78,7 +81,8 @@ class PlumeAxis(Protocol):
     ----------
     climb : how the altitude follows
     flown, demanded : altitude now, not a number where nobody says, and the one that is demanded [m]
-    bearing : of the centre of oscillation, to the right of where the vessel's motion through the air has the plume trail [rad]
+    bearing : of the centre of oscillation, to the right of where the vessel's motion through the
+        air has the plume trail [rad]
     mode : what is done while the reference is tracked
     """
 
@@ -105,7 +109,8 @@ class AxisParameters(Protocol):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PredictedPlume:
-    """A plume whose axis is predicted from wind, vessel and the rise of exhaust, or given to the flight.
+    """A plume whose axis is predicted from wind, vessel and the rise of exhaust, or given to the
+    flight.
 
     Attributes
     ----------
@@ -138,11 +143,15 @@ class PredictedAxis:
         self.bearing, self.flown, self.mode = 0.0, math.nan, Mode.TRACKING
 
     def set_true_axis(self, height: float, course: float) -> None:
-        """Take the height above the sea [m] and the course [rad] of the axis at the centre of oscillation."""
+        """Take the height above the sea [m] and the course [rad] of the axis at the centre of
+        oscillation.
+        """
         self._true_axis = height, course
 
     def plan(self, time: float, situation: Situation, *, tracking: bool) -> None:  # noqa: ARG002 - of the Protocol
-        """Take the given height, or the one predicted at the centre in the apparent wind, within the limits of the altitude."""
+        """Take the given height, or the one predicted at the centre in the apparent wind, within
+        the limits of the altitude.
+        """
         height, centre = self._height, situation.centre
         if self._true_axis is None:
             self.demanded = height.at(centre.distance, centre.speed_ratio * situation.speed)
@@ -153,7 +162,9 @@ class PredictedAxis:
 
 
 def trail(own: OwnMotion, target: TargetMotion) -> float:
-    """Return the course along which a plume trails behind the vessel's motion through the air, as it is estimated [rad]."""
+    """Return the course along which a plume trails behind the vessel's motion through the air, as
+    it is estimated [rad].
+    """
     north, east = apparent_wind(own, target)
     return math.atan2(east, north)
 

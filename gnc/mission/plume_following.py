@@ -1,4 +1,6 @@
-"""The mission over a moving vessel: approach round it, track a steered reference, hold off while it is uncertain, leave."""
+"""The mission over a moving vessel: approach round it, track a steered reference, hold off while it
+is uncertain, leave.
+"""
 
 import math
 from dataclasses import dataclass
@@ -19,10 +21,14 @@ from gnc.safety.keepout_guard import KeepoutGuard
 from gnc.tracker import Tracker, TrackingParameters
 
 MANOEUVRE_RANGE = 200.0
-"""Distance that the orbit is moved off per acceleration of the vessel [s^2]: the centre follows a manoeuvre late."""
+"""Distance that the orbit is moved off per acceleration of the vessel [s^2]: the centre follows a
+manoeuvre late.
+"""
 
 GLIDE_ALTITUDE = -1000.0
-"""Altitude that a gliding vehicle is commanded [m]: so far below that the autopilot holds its airspeed by pitch, and sinks."""
+"""Altitude that a gliding vehicle is commanded [m]: so far below that the autopilot holds its
+airspeed by pitch, and sinks.
+"""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -34,13 +40,16 @@ class FollowingParameters:
     centre : of the centre of oscillation
     reference_heading_rate : largest of the reference [rad/s]
     swing : courses of the reference, by its shape
-    joining_share : part of the heading rate that the reference takes as long as it is not tracked [-]
+    joining_share : part of the heading rate that the reference takes as long as it is not tracked
+        [-]
     speed_ratio_max : above it the vessel outruns the vehicle [-]
     approach : the way to the centre
     standoff : how much farther off the centre stays until the reference is tracked [m]
     glide_airspeed : while leaving without thrust or control [m/s]
-    stale : age of vessel data beyond which the keep-out margin no longer covers where the vessel may be [s]
-    reach, reach_time : how far the vessel may be, that time ahead, from where it is taken to be, while its reports come [m, s]
+    stale : age of vessel data beyond which the keep-out margin no longer covers where the vessel
+        may be [s]
+    reach, reach_time : how far the vessel may be, that time ahead, from where it is taken to be,
+        while its reports come [m, s]
     drift_rate : how fast dead reckoning goes wrong [m/s]
     plan_interval : guidance steps between plans
     axis : how the plume's axis is known, and so how high is flown
@@ -144,7 +153,9 @@ class PlumeFollowing:
         self.departing = True
 
     def command(self, last_command: float) -> float:
-        """Return the heading rate that leads to the centre of oscillation, round the vessel, or away from it [rad/s]."""
+        """Return the heading rate that leads to the centre of oscillation, round the vessel, or
+        away from it [rad/s].
+        """
         own, target, centre = self._own, self._target, self.centre
         if self.leaving or self.departing:
             x, y = own.ground_north - target.north, own.ground_east - target.east
@@ -198,7 +209,9 @@ class PlumeFollowing:
         return self._guard is not None and self._guard.intervening
 
     def _widen_margin(self) -> None:
-        """Keep farther off while the vessel may be farther from where it is taken to be than as long as its reports come."""
+        """Keep farther off while the vessel may be farther from where it is taken to be than as
+        long as its reports come.
+        """
         p, target, axis = self._parameters, self._target, self.centre.axis
         cos_a, sin_a = math.cos(axis), math.sin(axis)
         # Each disc in the direction of the plume, from where the vessel is taken to be.

@@ -19,16 +19,22 @@ _HORIZON = 8
 """Number of passes that the search plans ahead [-]."""
 
 _KNOWN = 0.3
-"""Deviation of the height over the spread of a pass [-], below which nothing is gained by flying anywhere else."""
+"""Deviation of the height over the spread of a pass [-], below which nothing is gained by flying
+anywhere else.
+"""
 
 _REACH, _PROBES = 1.6, np.linspace(0.0, 1.0, 9)
-"""How far off the estimated height is flown to, over its deviation, and heights that are weighed [-, -]."""
+"""How far off the estimated height is flown to, over its deviation, and heights that are weighed
+[-, -].
+"""
 
 _RUNG = 15.0
 """Between the heights of a ladder [m]."""
 
 _AHEAD = 3.0
-"""Passes over which the information of this one counts [-]: after those the later ones have given as much."""
+"""Passes over which the information of this one counts [-]: after those the later ones have given
+as much.
+"""
 
 
 class Search(Protocol):
@@ -46,15 +52,18 @@ class Search(Protocol):
 
 
 class HeightSearch:
-    """Maximises the probability of detection per time; once the plume is found, narrows its height down, and then stays.
+    """Maximises the probability of detection per time; once the plume is found, narrows its height
+    down, and then stays.
 
-    While it searches, each height is weighed by the passes that lie on the way to it and at it: the sum over them of the
-    probability that the plume has been detected by then is the largest for the height with the least expected time to find. Misses
-    that have a plume in common are not independent; given a cell of the estimate they are.
+    While it searches, each height is weighed by the passes that lie on the way to it and at it: the
+    sum over them of the probability that the plume has been detected by then is the largest for the
+    height with the least expected time to find. Misses that have a plume in common are not
+    independent; given a cell of the estimate they are.
 
     Parameters
     ----------
-    lowest, highest : altitudes that may be flown [m]: limits of the flight, of the terrain and of the keep-out area together
+    lowest, highest : altitudes that may be flown [m]: limits of the flight, of the terrain and of
+        the keep-out area together
     climb_rate : that the vehicle climbs and sinks at [m/s]
     """
 
@@ -73,7 +82,9 @@ class HeightSearch:
         return self._hitting(estimator)
 
     def _hitting(self, estimator: PlumeEstimator) -> float:
-        """Return the height with the most expected hits: now, and later by what the pass shows of the height."""
+        """Return the height with the most expected hits: now, and later by what the pass shows of
+        the height.
+        """
         height, deviation = estimator.height, estimator.height_deviation
         spread, meander = estimator.sigma_z, estimator.meander_z
         if deviation < _KNOWN * math.hypot(spread, meander):
@@ -88,7 +99,9 @@ class HeightSearch:
         return float(altitudes[int((estimator.hits(altitudes) + _AHEAD * later).argmax())])
 
     def _soonest(self, estimator: PlumeEstimator, altitude: float, climb: float) -> float:
-        """Return the height with the least expected time to find, where ``climb`` [m] is what a pass leaves time for."""
+        """Return the height with the least expected time to find, where ``climb`` [m] is what a
+        pass leaves time for.
+        """
         weights, chances = estimator.prospects(self._heights)
         missed = 1.0 - chances
         steps = climb * np.arange(1, _HORIZON + 1)
@@ -106,7 +119,8 @@ class HeightSearch:
 
 
 class LadderSearch:
-    """Goes up and down a ladder of heights, one after each pass, until the plume is found; then flies at the estimated height.
+    """Goes up and down a ladder of heights, one after each pass, until the plume is found; then
+    flies at the estimated height.
 
     Parameters
     ----------

@@ -19,13 +19,19 @@ _MODES = {
 }
 
 _BEARING_TIME = 15.0
-"""Time in which the centre of oscillation follows the bearing that is estimated [s]: it is swung round the vessel gently."""
+"""Time in which the centre of oscillation follows the bearing that is estimated [s]: it is swung
+round the vessel gently.
+"""
 
 _NOTED, _SILENT = 0.75, 2.0
-"""Time between readings beyond which the estimator gets a position in between, and beyond which it is informed of silence [s]."""
+"""Time between readings beyond which the estimator gets a position in between, and beyond which it
+is informed of silence [s].
+"""
 
 _DECIDED = 10.0
-"""Time for which a height that was chosen holds at least once the plume is found [s]: what is known of it changes more slowly."""
+"""Time for which a height that was chosen holds at least once the plume is found [s]: what is known
+of it changes more slowly.
+"""
 
 Place = tuple[float, float, float, float]
 """Time [s], place north and east of the vessel, altitude [m]."""
@@ -45,7 +51,8 @@ class SearchedPlume:
     climb : how the altitude follows
     expected : of ship and sensor
     climb_rate : that the vehicle climbs and sinks at [m/s]
-    ladder : whether a ladder of heights is flown until it is found, instead of the most informative height
+    ladder : whether a ladder of heights is flown until it is found, instead of the most informative
+        height
     """
 
     height: AxisHeight
@@ -89,7 +96,8 @@ class PlumeEstimate:
 
 
 class SearchedAxis:
-    """The axis as it is estimated from readings, once the reference is tracked; attributes as of ``PlumeAxis``, and more.
+    """The axis as it is estimated from readings, once the reference is tracked; attributes as of
+    ``PlumeAxis``, and more.
 
     Attributes
     ----------
@@ -123,11 +131,15 @@ class SearchedAxis:
         self.estimate, self.sensor = PlumeEstimate(), SensorState.WORKING
 
     def measurable(self) -> float:
-        """Return the probability that the plume can be crossed within the altitudes that are flown [-]; costly."""
+        """Return the probability that the plume can be crossed within the altitudes that are flown
+        [-]; costly.
+        """
         return self._estimator.measurable if self._estimator is not None else math.nan
 
     def take_readings(self, time: float, readings: Sequence[tuple[float, float]]) -> None:
-        """Take note of the place now, and of what was read since the last readings came, each with its own time [s]."""
+        """Take note of the place now, and of what was read since the last readings came, each with
+        its own time [s].
+        """
         situation = self._situation
         if self._estimator is None or situation is None:
             return
@@ -145,7 +157,9 @@ class SearchedAxis:
             self._note(time, math.nan)
 
     def plan(self, time: float, situation: Situation, *, tracking: bool) -> None:
-        """Begin to search where the reference is first tracked; follow the prediction on the way there."""
+        """Begin to search where the reference is first tracked; follow the prediction on the way
+        there.
+        """
         p, self._situation = self._parameters, situation
         wind = situation.centre.speed_ratio * situation.speed
         if self._estimator is None:
@@ -186,7 +200,8 @@ class SearchedAxis:
         if estimator.update(along, across, altitude, reading, apparent_wind=wind):
             self._pass_time += _PASS_MEMORY * (at - self._last_pass - self._pass_time)
             self._last_pass = at
-            # As seen from the funnel: the pass may have been nearer than the orbit's centre, or farther away.
+            # As seen from the funnel: the pass may have been nearer than the orbit's centre, or
+            # farther away.
             self._bearing = estimator.bearing
             self._take_note(estimator)
             if estimator.state is not PlumeState.FOUND or at >= self._decide_at:
@@ -205,7 +220,9 @@ class SearchedAxis:
 
 
 def _seen_along(situation: Situation, north: float, east: float) -> tuple[float, float]:
-    """Return where a place north and east of the vessel is along the predicted axis and to the right of it [m]."""
+    """Return where a place north and east of the vessel is along the predicted axis and to the
+    right of it [m].
+    """
     wind_north, wind_east = apparent_wind(situation.own, situation.target)
     speed = math.hypot(wind_north, wind_east) or 1.0
     return (north * wind_north + east * wind_east) / speed, (

@@ -1,8 +1,10 @@
-"""The mission on a circle about a moving vessel: the standoff orbits of the literature, for laws that know paths.
+"""The mission on a circle about a moving vessel: the standoff orbits of the literature, for laws
+that know paths.
 
-The reference is where a vehicle would be that flew the circle beside this one: the circle's point nearest to the vehicle, anew at
-every step, with the course and the heading rate through the air that keep to the circle. It has no clock, so that a law is free to
-lag along the circle; a law that reads a path from the reference (``gnc.laws.path.adapter``) finds the circle in the frame of the
+The reference is where a vehicle would be that flew the circle beside this one: the circle's point
+nearest to the vehicle, anew at every step, with the course and the heading rate through the air
+that keep to the circle. It has no clock, so that a law is free to lag along the circle; a law that
+reads a path from the reference (``gnc.laws.path.adapter``) finds the circle in the frame of the
 vessel (M2).
 """
 
@@ -59,7 +61,9 @@ class StandoffParameters:
 
 @dataclass(slots=True)
 class CirclePoint:
-    """A reference on the circle; attributes as of ``gnc.reference.reference.Reference``. It is moved by whoever has it."""
+    """A reference on the circle; attributes as of ``gnc.reference.reference.Reference``. It is
+    moved by whoever has it.
+    """
 
     speed: float
     north: float = 0.0
@@ -72,7 +76,8 @@ class CirclePoint:
 
         Parameters
         ----------
-        centre, drift : of the circle: its place [m] and its velocity through the air, below the vehicle's speed [m/s]
+        centre, drift : of the circle: its place [m] and its velocity through the air, below the
+            vehicle's speed [m/s]
         vehicle : its place [m]
         radius : of the circle [m]
         """
@@ -89,7 +94,8 @@ class CirclePoint:
 
 
 class CircleTracker:
-    """Steers to the circle, ahead of time by the vehicle's lag; attributes as of ``gnc.tracker.Tracker``.
+    """Steers to the circle, ahead of time by the vehicle's lag; attributes as of
+    ``gnc.tracker.Tracker``.
 
     Parameters
     ----------
@@ -127,7 +133,8 @@ class CircleTracker:
     def step(
         self, north: float, east: float, course: float, speed: float, heading_rate: float
     ) -> float:
-        """Return the heading rate to command [rad/s]; parameters are those of ``gnc.tracker.Tracker``.
+        """Return the heading rate to command [rad/s]; parameters are those of
+        ``gnc.tracker.Tracker``.
 
         Raises
         ------
@@ -169,7 +176,8 @@ class CircleTracker:
 
 
 class StandoffOrbit:
-    """Circles the vessel; attributes as of ``gnc.mission.mission.Mission``. The centre is the vessel.
+    """Circles the vessel; attributes as of ``gnc.mission.mission.Mission``. The centre is the
+    vessel.
 
     Parameters
     ----------

@@ -1,7 +1,8 @@
 """The way to a place beside a moving disc, round the disc where it stands in the way.
 
-Seen from the disc, the way is a straight line to the target or, where that is blocked, a tangent of a circle about the disc, on the
-side that is shorter. The vehicle heads so that its velocity relative to the disc lies along that way.
+Seen from the disc, the way is a straight line to the target or, where that is blocked, a tangent of
+a circle about the disc, on the side that is shorter. The vehicle heads so that its velocity
+relative to the disc lies along that way.
 """
 
 import math
@@ -9,9 +10,11 @@ import math
 from gnc.numeric import limited, wrap
 
 _OUTWARD = 0.6
-"""How far the way leans outwards for a vehicle a turn radius or more inside of the circle by which to go round [rad].
+"""How far the way leans outwards for a vehicle a turn radius or more inside of the circle by which
+to go round [rad].
 
-By less, a vehicle near the keep-out area would go along it all the way round, and the guard would turn it away all the time.
+By less, a vehicle near the keep-out area would go along it all the way round, and the guard would
+turn it away all the time.
 """
 
 
@@ -24,7 +27,8 @@ class Transit:
 
     Attributes
     ----------
-    side : 1 while the disc is passed clockwise as seen from above, -1 the other way, 0 while nothing is in the way
+    side : 1 while the disc is passed clockwise as seen from above, -1 the other way, 0 while
+        nothing is in the way
     """
 
     __slots__ = ("_turn_radius", "side")
@@ -53,9 +57,11 @@ class Transit:
         ----------
         x, y : of the vehicle, north and east of the disc's centre [m]
         target_x, target_y : of the target, which moves with the disc [m]
-        blocked_radius : a straight way that comes closer than this is blocked; below the target's distance [m]
+        blocked_radius : a straight way that comes closer than this is blocked; below the target's
+            distance [m]
         round_radius : of the circle by which to go round [m]
-        velocity_north, velocity_east : of the disc in the frame in which the vehicle flies at ``speed`` [m/s]
+        velocity_north, velocity_east : of the disc in the frame in which the vehicle flies at
+            ``speed`` [m/s]
         course, speed : of the vehicle [rad, m/s]; faster than the disc
         """
         if _way_is_clear(x, y, target_x, target_y, blocked_radius):
@@ -90,7 +96,9 @@ class Transit:
 
 
 def _way_is_clear(x: float, y: float, target_x: float, target_y: float, radius: float) -> bool:
-    """Return whether a straight way never comes closer to the origin than ``radius``, but for leaving from there outwards."""
+    """Return whether a straight way never comes closer to the origin than ``radius``, but for
+    leaving from there outwards.
+    """
     to_x, to_y = target_x - x, target_y - y
     inward = -(x * to_x + y * to_y)
     if inward <= 0.0:

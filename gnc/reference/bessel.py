@@ -19,7 +19,8 @@ def mean_speed_ratio(eta: float) -> float:
 
 
 def eta_for_speed_ratio(nu: float) -> float:
-    """Return eta [rad] such that the reference's mean speed is that of the vessel: equation (6), eta = J_0^-1(nu).
+    """Return eta [rad] such that the reference's mean speed is that of the vessel: equation (6),
+    eta = J_0^-1(nu).
 
     Parameters
     ----------

@@ -6,7 +6,8 @@ from gnc.reference.reference import ReferenceStart
 
 
 class CirclingReference:
-    """A reference that turns steadily, that of the paper's Simulation 1: equation (13) with a constant omega_r.
+    """A reference that turns steadily, that of the paper's Simulation 1: equation (13) with a
+    constant omega_r.
 
     Its motion is known in closed form; time comes from the step count.
 

@@ -6,7 +6,8 @@ from gnc.reference.reference import OscillatingPoint
 
 
 class ClosingReference:
-    """A reference that is moved outwards along the plume's axis; attributes as of ``gnc.reference.reference.Reference``.
+    """A reference that is moved outwards along the plume's axis; attributes as of
+    ``gnc.reference.reference.Reference``.
 
     Parameters
     ----------

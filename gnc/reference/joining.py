@@ -1,4 +1,6 @@
-"""A reference that a vehicle joins where it is nearest: of an orbit's phases, the one that costs the least to reach."""
+"""A reference that a vehicle joins where it is nearest: of an orbit's phases, the one that costs
+the least to reach.
+"""
 
 import math
 from dataclasses import dataclass
@@ -10,7 +12,9 @@ _PHASES = 72
 """Phases that are compared: 5 degrees apart."""
 
 _COURSE_COST = 1.5
-"""What a difference of course costs, in turn radii per radian [-]: the vehicle needs about its turn, and half of it back."""
+"""What a difference of course costs, in turn radii per radian [-]: the vehicle needs about its
+turn, and half of it back.
+"""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -32,7 +36,9 @@ class JoinedOrbit:
     def reference(
         self, phase: float, centre_north: float, centre_east: float, *, share: float = 1.0
     ) -> OscillatingPoint:
-        """Return the reference at a phase [rad] of the orbit about a centre [m], and the part of its heading rate that it takes."""
+        """Return the reference at a phase [rad] of the orbit about a centre [m], and the part of
+        its heading rate that it takes.
+        """
         start = start_reference(
             self.orbit,
             phase=phase,
@@ -55,7 +61,8 @@ class JoinedOrbit:
         course: float,
         turn_radius: float,
     ) -> OscillatingPoint:
-        """Return the reference of the orbit about a centre [m] that a vehicle reaches with the least effort, slowed down for it.
+        """Return the reference of the orbit about a centre [m] that a vehicle reaches with the
+        least effort, slowed down for it.
 
         Parameters
         ----------

@@ -1,8 +1,9 @@
 """What mean motion takes a reference's orbit to where it should be.
 
-It is that of the centre of oscillation, and a drift towards it. Along the centre's motion a drift changes the amplitude alone;
-across, it turns the mean course, which moves the orbit's centre by itself, the more the slower the orbit. So a slow orbit does not
-turn with each small swing of a plume whose direction is not known well, but with a swing that goes on.
+It is that of the centre of oscillation, and a drift towards it. Along the centre's motion a drift
+changes the amplitude alone; across, it turns the mean course, which moves the orbit's centre by
+itself, the more the slower the orbit. So a slow orbit does not turn with each small swing of a
+plume whose direction is not known well, but with a swing that goes on.
 """
 
 import math
@@ -11,32 +12,50 @@ from gnc.numeric import limited
 from gnc.reference.moving_centre import MovingCentre
 
 _CENTRE_GAIN = 0.1
-"""Demanded drift of the orbit's centre per distance from where it should be, in units of omega_max [-]."""
+"""Demanded drift of the orbit's centre per distance from where it should be, in units of omega_max
+[-].
+"""
 
 _ALONG_FRACTION = 0.3
-"""Largest fraction of V_r that such a drift takes along the centre's motion [-]; it changes the amplitude alone."""
+"""Largest fraction of V_r that such a drift takes along the centre's motion [-]; it changes the
+amplitude alone.
+"""
 
 _ACROSS_FRACTION = 0.4
-"""Largest fraction of the centre's speed that it takes across [-]: more would turn the orbit instead of moving it."""
+"""Largest fraction of the centre's speed that it takes across [-]: more would turn the orbit
+instead of moving it.
+"""
 
 _STILL = 0.05
-"""Speed ratio below which a centre's motion gives no direction to an orbit [-]: then it lies across the plume."""
+"""Speed ratio below which a centre's motion gives no direction to an orbit [-]: then it lies across
+the plume.
+"""
 
 _SLOW = 0.25
-"""Speed ratio below which that gain falls in proportion [-]: turning the mean course by a little moves a slow orbit by much."""
+"""Speed ratio below which that gain falls in proportion [-]: turning the mean course by a little
+moves a slow orbit by much.
+"""
 
 _SLOW_GAIN_MIN = 0.1
-"""Fraction of that gain which is kept at any speed ratio [-]: an orbit at rest across the plume has to be centred, too."""
+"""Fraction of that gain which is kept at any speed ratio [-]: an orbit at rest across the plume has
+to be centred, too.
+"""
 
 _SWING = 0.1
-"""Speed of an unsteady swing about the vessel, over V_r, of which a slow orbit follows half [-]: less is mostly scatter."""
+"""Speed of an unsteady swing about the vessel, over V_r, of which a slow orbit follows half [-]:
+less is mostly scatter.
+"""
 
 _SPEED_RATIO_MIN = 0.1
-"""Speed ratio that a mean motion has at least where it is turned [-]: a smaller one would be turned to any course by a drift."""
+"""Speed ratio that a mean motion has at least where it is turned [-]: a smaller one would be turned
+to any course by a drift.
+"""
 
 
 def motion_course(centre: MovingCentre) -> float:
-    """Return the course of a centre of oscillation [rad]; of one at rest that against the plume, across which its orbit lies."""
+    """Return the course of a centre of oscillation [rad]; of one at rest that against the plume,
+    across which its orbit lies.
+    """
     if centre.velocity_north == centre.velocity_east == 0.0:
         return math.atan2(-math.sin(centre.axis), -math.cos(centre.axis))
     return math.atan2(centre.velocity_east, centre.velocity_north)
@@ -45,7 +64,8 @@ def motion_course(centre: MovingCentre) -> float:
 def mean_motion(
     centre: MovingCentre, off_north: float, off_east: float, speed: float, heading_rate_max: float
 ) -> tuple[float, float]:
-    """Return the mean course [rad] and the mean speed over the speed [-] to demand of the reference.
+    """Return the mean course [rad] and the mean speed over the speed [-] to demand of the
+    reference.
 
     Parameters
     ----------
@@ -68,11 +88,12 @@ def mean_motion(
 def _ahead(
     centre: MovingCentre, north: float, east: float, speed: float
 ) -> tuple[float, float, float, float]:
-    """Return the direction (north, east) in which an orbit goes on whose centre has some velocity [m/s].
+    """Return the direction (north, east) in which an orbit goes on whose centre has some velocity
+    [m/s].
 
-    Also return the speed of whoever gives that direction, and that of the centre along it [m/s]. A centre that recedes faster than
-    its vessel moves reverses its motion: then the direction is the vessel's, and the orbit backs away. To turn it round would take
-    it far off.
+    Also return the speed of whoever gives that direction, and that of the centre along it [m/s]. A
+    centre that recedes faster than its vessel moves reverses its motion: then the direction is the
+    vessel's, and the orbit backs away. To turn it round would take it far off.
     """
     cos_a, sin_a = math.cos(centre.axis), math.sin(centre.axis)
     vessel_north, vessel_east = north - centre.receding * cos_a, east - centre.receding * sin_a
@@ -89,7 +110,9 @@ def _ahead(
 
 
 def _followed(centre: MovingCentre, speed: float) -> tuple[float, float]:
-    """Return the velocity of a centre, of a slow one without most of a small unsteady swing, north and east [m/s]."""
+    """Return the velocity of a centre, of a slow one without most of a small unsteady swing, north
+    and east [m/s].
+    """
     slow = centre.speed_ratio / _SLOW
     if slow >= 1.0:
         return centre.velocity_north, centre.velocity_east

@@ -1,8 +1,9 @@
 """The centre of oscillation of a vessel that manoeuvres: where it is, and how it moves.
 
-The centre lies on the plume's axis, at the distance from the vessel that keeps the whole orbit out of the keep-out area. The axis
-turns with the vessel, or with its motion through the air: a vessel that turns moves the centre by omega_V x r_CO (paper-notes, 11).
-Everything is in the frame of the air mass.
+The centre lies on the plume's axis, at the distance from the vessel that keeps the whole orbit out
+of the keep-out area. The axis turns with the vessel, or with its motion through the air: a vessel
+that turns moves the centre by omega_V x r_CO (paper-notes, 11). Everything is in the frame of the
+air mass.
 """
 
 import math
@@ -20,29 +21,44 @@ _IN_PLACE = 0.04
 """Distance from its place within which the centre counts as being there, over r_CO [-]."""
 
 _AXIS_SPEED_FRACTION = 0.7
-"""Fraction of the vehicle's speed at which the centre may be swung round the vessel [-]: it must be followed."""
+"""Fraction of the vehicle's speed at which the centre may be swung round the vessel [-]: it must be
+followed.
+"""
 
 _DISTANCE_GAIN = 0.12
-"""Rate of the centre's distance per difference from where it should be, in units of omega_max [-]."""
+"""Rate of the centre's distance per difference from where it should be, in units of omega_max [-].
+"""
 
 _DISTANCE_SPEED_FRACTION = 0.3
-"""Fraction of the speed that the vehicle has over the vessel at which the centre's distance may change [-]."""
+"""Fraction of the speed that the vehicle has over the vessel at which the centre's distance may
+change [-].
+"""
 
 _RECEDING_SPEED_FRACTION = 0.9
-"""Fraction of the vehicle's speed at which the centre may move while it has to recede from the vessel [-]: it must be followed."""
+"""Fraction of the vehicle's speed at which the centre may move while it has to recede from the
+vessel [-]: it must be followed.
+"""
 
 
 _VESSEL_SPEED_MIN = 0.1
-"""Speed over ground that a vessel is given at least where its turn is computed from it [m/s]: at rest it has no course."""
+"""Speed over ground that a vessel is given at least where its turn is computed from it [m/s]: at
+rest it has no course.
+"""
 
 _EXCESS_SPEED_MIN = 0.05
-"""Least fraction of V_r that the vehicle is taken to have over the vessel [-]: also outrun, it corrects the distance."""
+"""Least fraction of V_r that the vehicle is taken to have over the vessel [-]: also outrun, it
+corrects the distance.
+"""
 
 _SWING_MEMORY = 40.0
-"""Time over which a swing is averaged [s]: the scatter of a vessel's reports averages out, and a wind that turns does not."""
+"""Time over which a swing is averaged [s]: the scatter of a vessel's reports averages out, and a
+wind that turns does not.
+"""
 
 _CENTRE_SPEED_MIN = 0.01
-"""Speed that the centre is given at least where its direction is computed from it [m/s]: at rest it has none."""
+"""Speed that the centre is given at least where its direction is computed from it [m/s]: at rest it
+has none.
+"""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -53,10 +69,14 @@ class CentreParameters:
     ----------
     distance_min : that the orbit keeps from the vessel [m]
     speed_ratio_max : up to which the half-widths reach [-]
-    along, across : |d_x|max and |d_y|max of the orbit, equation (12), at equal steps of nu from 0 [m]
-    plume_heading : chi_P from the vessel's bow, or None where the plume trails behind the vessel's motion through the air [rad]
-    vessel_course : at the start, where the bow of a vessel at rest points; only with a plume heading [rad]
-    apparent_wind_min : below this the plume's direction counts as unknown, and so does the vessel's course over the ground [m/s]
+    along, across : |d_x|max and |d_y|max of the orbit, equation (12), at equal steps of nu from 0
+        [m]
+    plume_heading : chi_P from the vessel's bow, or None where the plume trails behind the vessel's
+        motion through the air [rad]
+    vessel_course : at the start, where the bow of a vessel at rest points; only with a plume
+        heading [rad]
+    apparent_wind_min : below this the plume's direction counts as unknown, and so does the vessel's
+        course over the ground [m/s]
     speed, heading_rate_max : V_r and omega_max [m/s, rad/s]
     """
 
@@ -183,7 +203,9 @@ class MovingCentre:
         self.velocity_east = air_east + recede * sin_a + turn * self.x
 
     def _target(self, velocity_north: float, velocity_east: float) -> float:
-        """Return r_CO by equations (10) and (11) for a centre of some velocity, across which the orbit lies [m]."""
+        """Return r_CO by equations (10) and (11) for a centre of some velocity, across which the
+        orbit lies [m].
+        """
         p = self._parameters
         last = len(p.along) - 1
         moving = math.hypot(velocity_north, velocity_east)

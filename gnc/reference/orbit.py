@@ -1,7 +1,8 @@
 """The reference's path about the centre of oscillation, in closed form.
 
-Seen from the centre of oscillation the reference flies a figure of eight: period T across the vessel's course, T/2 along it. The
-Jacobi-Anger expansion of cos and sin of [eta cos(theta)] turns its integrals into Fourier series that converge in a dozen terms.
+Seen from the centre of oscillation the reference flies a figure of eight: period T across the
+vessel's course, T/2 along it. The Jacobi-Anger expansion of cos and sin of [eta cos(theta)] turns
+its integrals into Fourier series that converge in a dozen terms.
 """
 
 import functools
@@ -34,14 +35,17 @@ def f_y(oscillation: Orbit, time: npt.ArrayLike) -> Array:
 
 @functools.lru_cache(maxsize=8)
 def _series(eta: float, omega_0: float) -> tuple[Array, Array]:
-    """Return the coefficients of both series [s], which to find where to join an orbit asks for again and again."""
+    """Return the coefficients of both series [s], which to find where to join an orbit asks for
+    again and again.
+    """
     along = (-1.0) ** _TERMS * jv(2 * _TERMS, eta) / (_TERMS * omega_0)
     across = 2.0 * (-1.0) ** (_TERMS - 1) * jv(_ODD, eta) / (_ODD * omega_0)
     return along, across
 
 
 def offset(oscillation: Orbit, time: npt.ArrayLike) -> tuple[Array, Array]:
-    """Return where the reference is from the centre of oscillation: along the vessel's course and to its right [m].
+    """Return where the reference is from the centre of oscillation: along the vessel's course and
+    to its right [m].
 
     ``time`` [s] counts from a passage through the centre with phi_0 = 0.
     """
@@ -52,7 +56,8 @@ def offset(oscillation: Orbit, time: npt.ArrayLike) -> tuple[Array, Array]:
 
 
 def half_widths(oscillation: Orbit) -> tuple[float, float]:
-    """Return |d_x|max and |d_y|max [m], the orbit's half-widths along and across the vessel's course: equation (12).
+    """Return |d_x|max and |d_y|max [m], the orbit's half-widths along and across the vessel's
+    course: equation (12).
 
     They are reached at t_x = arccos[arccos(nu)/eta]/omega_0 and t_y = pi/(2 omega_0).
     """

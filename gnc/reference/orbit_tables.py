@@ -9,19 +9,26 @@ from gnc.numeric import clip
 from gnc.reference.reference import Array
 
 SPEED_RATIO_MIN = -0.2
-"""Least mean speed over speed in the tables [-]: a reference may back away from its vessel at a fifth of its speed."""
+"""Least mean speed over speed in the tables [-]: a reference may back away from its vessel at a
+fifth of its speed.
+"""
 
 ETA_STEP = 0.005
-"""Step of the tables [rad], between whose rows values are linear: good to its square over 8, 3e-6, times a curvature up to 1."""
+"""Step of the tables [rad], between whose rows values are linear: good to its square over 8, 3e-6,
+times a curvature up to 1.
+"""
 
 
 class OrbitTables:
-    """Mean speed and orbit of the courses of a shape over their amplitude eta, which are those of their Fourier series.
+    """Mean speed and orbit of the courses of a shape over their amplitude eta, which are those of
+    their Fourier series.
 
     Parameters
     ----------
-    ratios : mean speed over speed at equal steps ``ETA_STEP`` of eta from 0, falling to below ``SPEED_RATIO_MIN``, shape (n,) [-]
-    series : coefficients of sin(theta), sin(2 theta), ... in the orbit, rightward and along in turn, shape (n, 2 terms)
+    ratios : mean speed over speed at equal steps ``ETA_STEP`` of eta from 0, falling to below
+        ``SPEED_RATIO_MIN``, shape (n,) [-]
+    series : coefficients of sin(theta), sin(2 theta), ... in the orbit, rightward and along in
+        turn, shape (n, 2 terms)
     """
 
     __slots__ = ("_eta_last", "_etas", "_missing", "_rows")
@@ -37,7 +44,9 @@ class OrbitTables:
         self._eta_last = ETA_STEP * (len(ratios) - 3)
 
     def eta(self, speed_ratio: float) -> float:
-        """Return eta [rad] for a mean speed over speed; ratios outside of the table are those of its nearest end."""
+        """Return eta [rad] for a mean speed over speed; ratios outside of the table are those of
+        its nearest end.
+        """
         missing, etas = self._missing, self._etas
         if speed_ratio >= 1.0:
             return 0.0
@@ -48,7 +57,8 @@ class OrbitTables:
         return etas[i - 1] + fraction * (etas[i] - etas[i - 1])
 
     def offset(self, eta: float, phase: float) -> tuple[float, float]:
-        """Return where the reference is from the orbit's centre, along the mean course and to its right.
+        """Return where the reference is from the orbit's centre, along the mean course and to its
+        right.
 
         Parameters
         ----------

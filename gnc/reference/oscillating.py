@@ -14,11 +14,13 @@ def start_reference(
     vessel_course: float,
     share: float = 1.0,
 ) -> ReferenceStart:
-    """Return the start of a reference at phase phi_0 [rad] whose orbit is centred on a CO at ``centre_north``, ``centre_east`` [m].
+    """Return the start of a reference at phase phi_0 [rad] whose orbit is centred on a CO at
+    ``centre_north``, ``centre_east`` [m].
 
-    The course is that of phi_0 from the vessel's: of the paper's orbit eta cos(phi_0), equation (7). Differs from equation (3),
-    which says A/omega_0 and so holds for phi_0 = 0 only, and from starting on the CO: with another phase that orbit would not be
-    centred on it. An orbit on which ``share`` of the heading rate is taken is as much larger, and meets the whole one at phase 0.
+    The course is that of phi_0 from the vessel's: of the paper's orbit eta cos(phi_0), equation
+    (7). Differs from equation (3), which says A/omega_0 and so holds for phi_0 = 0 only, and from
+    starting on the CO: with another phase that orbit would not be centred on it. An orbit on which
+    ``share`` of the heading rate is taken is as much larger, and meets the whole one at phase 0.
     """
     there, passage = oscillation.offset(phase / oscillation.omega_0), oscillation.offset(0.0)
     along, right = (
@@ -42,8 +44,9 @@ _STATE = (
 class OscillatingReference:
     """The reference point, moved in equal time steps: equations (2), (3) and (4).
 
-    Its course is known in closed form; its position is integrated by Simpson's rule, good to 1e-9 m a step at 20 Hz, and to 1e-5 m
-    where the roll rate of a shape jumps. Time comes from the step count.
+    Its course is known in closed form; its position is integrated by Simpson's rule, good to 1e-9 m
+    a step at 20 Hz, and to 1e-5 m where the roll rate of a shape jumps. Time comes from the step
+    count.
 
     Parameters
     ----------
@@ -133,7 +136,9 @@ class OscillatingReference:
         self._share_demand = share
 
     def _changed(self, angle: float) -> float:
-        """Return the phase at the end of a step, and go on from there as fast as is demanded, once phase 0 has been passed."""
+        """Return the phase at the end of a step, and go on from there as fast as is demanded, once
+        phase 0 has been passed.
+        """
         passage = 2.0 * math.pi * math.floor(angle / (2.0 * math.pi))
         if angle - self._omega_0 * self._time_step >= passage:
             return angle

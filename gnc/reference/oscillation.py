@@ -54,11 +54,15 @@ class Oscillation:
         return math.pi / self.omega_0
 
     def offset(self, time: npt.ArrayLike) -> tuple[Array, Array]:
-        """Return where the reference is from the centre of oscillation, by ``gnc.reference.orbit.offset`` [m]."""
+        """Return where the reference is from the centre of oscillation, by
+        ``gnc.reference.orbit.offset`` [m].
+        """
         return offset(self, time)
 
     def half_widths(self) -> tuple[float, float]:
-        """Return the orbit's half-widths along and across the vessel's course, by ``gnc.reference.orbit.half_widths`` [m]."""
+        """Return the orbit's half-widths along and across the vessel's course, by
+        ``gnc.reference.orbit.half_widths`` [m].
+        """
         return half_widths(self)
 
     def course(self, phase: float) -> float:
@@ -85,8 +89,8 @@ def design_oscillation(
 ) -> Oscillation:
     """Return the fastest oscillation that the vehicle can follow.
 
-    Equation (8) bounds omega_0 by the heading rate: eta omega_0 <= (1 - reserve) omega_max - |omega_V|. As nu approaches 1, eta
-    approaches 0 and that bound grows without limit, so omega_0 also respects the roll rate: near level flight g/V times the roll
+    Equation (8) bounds omega_0 by the heading rate: eta omega_0 <= (1 - reserve) omega_max -
+    |omega_V|. As nu approaches 1, eta approaches 0 and that bound grows without limit, so omega_0 also respects the roll rate: near level flight g/V times the roll
     rate is the heading acceleration, whose amplitude is eta omega_0^2.
 
     Parameters and errors are those of ``available_heading_rate``.
@@ -117,7 +121,8 @@ def available_heading_rate(
     vessel_heading_rate: float,
     roll_rate_max: float,
 ) -> float:
-    """Return what an oscillation may take of the heading rate, (1 - reserve) omega_max - |omega_V| [rad/s]: equation (8).
+    """Return what an oscillation may take of the heading rate, (1 - reserve) omega_max - |omega_V|
+    [rad/s]: equation (8).
 
     Parameters
     ----------
@@ -130,7 +135,8 @@ def available_heading_rate(
 
     Raises
     ------
-    InfeasibleError : nu below 0, or of 1 or more, a limit that is not above 0, or nothing left of omega_max
+    InfeasibleError : nu below 0, or of 1 or more, a limit that is not above 0, or nothing left of
+        omega_max
     """
     for name, value, unit in (
         ("speed", speed, "m/s"),

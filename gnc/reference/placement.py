@@ -1,4 +1,6 @@
-"""Where the centre of oscillation (CO) goes in the plume, so that the reference stays out of the keep-out area."""
+"""Where the centre of oscillation (CO) goes in the plume, so that the reference stays out of the
+keep-out area.
+"""
 
 import math
 from dataclasses import dataclass
@@ -28,7 +30,9 @@ class PlumeAxis:
 
 
 def centre_of_oscillation(distance: float, axis: PlumeAxis) -> tuple[float, float, float]:
-    """Return the CO at ``distance`` r_CO [m] on the axis: metres ahead of, right of and above the plume's origin. Equation (9)."""
+    """Return the CO at ``distance`` r_CO [m] on the axis: metres ahead of, right of and above the
+    plume's origin. Equation (9).
+    """
     horizontal = distance * math.cos(axis.elevation)
     return (
         horizontal * math.cos(axis.heading),
@@ -38,23 +42,29 @@ def centre_of_oscillation(distance: float, axis: PlumeAxis) -> tuple[float, floa
 
 
 def reach(orbit: Orbit, axis: PlumeAxis) -> float:
-    """Return d_max [m], the paper's estimate of how far the orbit reaches from the CO towards the vessel: equation (11)."""
+    """Return d_max [m], the paper's estimate of how far the orbit reaches from the CO towards the
+    vessel: equation (11).
+    """
     along, across = orbit.half_widths()
     return along + (across - along) * abs(math.sin(axis.heading))
 
 
 def distance_by_paper(orbit: Orbit, axis: PlumeAxis, distance_min: float) -> float:
-    """Return r_CO [m] by the paper's rule, equation (10), for a keep-out sphere of radius ``distance_min`` r_min [m]."""
+    """Return r_CO [m] by the paper's rule, equation (10), for a keep-out sphere of radius
+    ``distance_min`` r_min [m].
+    """
     _check(axis, distance_min)
     return distance_min + reach(orbit, axis) * math.cos(axis.elevation)
 
 
 def distance_exact(orbit: Orbit, axis: PlumeAxis, distance_min: float) -> float:
-    """Return the smallest r_CO [m] for which the whole orbit stays ``distance_min`` r_min [m] away from the plume's origin.
+    """Return the smallest r_CO [m] for which the whole orbit stays ``distance_min`` r_min [m] away
+    from the plume's origin.
 
-    For every point o of the orbit, |r_CO u + o| >= r_min bounds r_CO from below by the larger root of a quadratic; the result is
-    the largest bound. Differs from equation (10) because (11) overestimates the reach of all but an abeam plume: by up to 10 m for
-    a level plume and r_min = 200 m.
+    For every point o of the orbit, |r_CO u + o| >= r_min bounds r_CO from below by the larger root
+    of a quadratic; the result is the largest bound. Differs from equation (10) because (11)
+    overestimates the reach of all but an abeam plume: by up to 10 m for a level plume and r_min =
+    200 m.
 
     Raises
     ------

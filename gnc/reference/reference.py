@@ -14,7 +14,9 @@ Array = npt.NDArray[np.float64]
 Copied = TypeVar("Copied")
 
 ETA_FREQUENCY = 0.2
-"""Amplitude below which the frequency of a steered reference no longer rises [rad]: nearly straight flight needs none."""
+"""Amplitude below which the frequency of a steered reference no longer rises [rad]: nearly straight
+flight needs none.
+"""
 
 
 class Reference(Protocol):
@@ -108,7 +110,8 @@ class PeriodicPath(Protocol):
     def offset(self, time: npt.ArrayLike) -> tuple[Array, Array]:
         """Return where the reference is from the centre: along its course and to its right [m].
 
-        ``time`` [s] counts from the passage through the centre at the largest course offset to the right, which is phase 0.
+        ``time`` [s] counts from the passage through the centre at the largest course offset to the
+        right, which is phase 0.
         """
 
     def half_widths(self) -> tuple[float, float]:
@@ -120,22 +123,30 @@ class Orbit(PeriodicPath, Protocol):
 
     @property
     def symmetric(self) -> bool:
-        """Whether the second half of the orbit is the mirror image of the first one across the course of the centre."""
+        """Whether the second half of the orbit is the mirror image of the first one across the
+        course of the centre.
+        """
 
     def course(self, phase: float) -> float:
-        """Return the course offset from that of the centre at a phase, omega_0 times the time of ``offset`` [rad]."""
+        """Return the course offset from that of the centre at a phase, omega_0 times the time of
+        ``offset`` [rad].
+        """
 
     def heading_rate(self, phase: float) -> float:
         """Return the heading rate at a phase [rad/s]."""
 
     def sidebands(self, orders: npt.NDArray[np.int64]) -> Array:
-        """Return |c_n|^2 of the Fourier series of exp(i course) over the phase, for each n of ``orders`` [-]."""
+        """Return |c_n|^2 of the Fourier series of exp(i course) over the phase, for each n of
+        ``orders`` [-].
+        """
 
 
 class Swing(Protocol):
-    """The courses of a shape for every amplitude eta, of which a steered reference flies one after the other.
+    """The courses of a shape for every amplitude eta, of which a steered reference flies one after
+    the other.
 
-    A course is eta at phase 0, -eta half a period later, and the negative of itself half a period later everywhere.
+    A course is eta at phase 0, -eta half a period later, and the negative of itself half a period
+    later everywhere.
     """
 
     def eta(self, speed_ratio: float) -> float:
@@ -145,26 +156,35 @@ class Swing(Protocol):
         """Return the mean speed over speed of an amplitude [-]."""
 
     def frequency(self, eta: float, heading_rate: float) -> float:
-        """Return the largest omega_0 within a heading rate and the roll rate, no more than that at ``ETA_FREQUENCY`` [rad/s]."""
+        """Return the largest omega_0 within a heading rate and the roll rate, no more than that at
+        ``ETA_FREQUENCY`` [rad/s].
+        """
 
     def course(self, eta: float, phase: float) -> float:
         """Return the course offset from the mean course [rad]."""
 
     def slopes(self, eta: float, phase: float) -> tuple[float, float]:
-        """Return the slope of the course offset over eta, from -1 to 1, and that over the phase divided by eta [-]."""
+        """Return the slope of the course offset over eta, from -1 to 1, and that over the phase
+        divided by eta [-].
+        """
 
     def offset(self, eta: float, phase: float) -> tuple[float, float]:
-        """Return where the reference is from the orbit's centre, along the mean course and to its right [V_r/omega_0]."""
+        """Return where the reference is from the orbit's centre, along the mean course and to its
+        right [V_r/omega_0].
+        """
 
 
 class ReferenceShape(Protocol):
-    """A kind of orbit. A shape is a frozen dataclass that is registered by a name in a file of its own."""
+    """A kind of orbit. A shape is a frozen dataclass that is registered by a name in a file of its
+    own.
+    """
 
     @property
     def joining_share(self) -> float:
         """Part of its heading rate that a reference takes as long as it is not tracked [-].
 
-        What the reference takes is not left to whoever has to catch up with it, and its commands are cut at omega_max.
+        What the reference takes is not left to whoever has to catch up with it, and its commands
+        are cut at omega_max.
         """
 
     def design(
@@ -209,7 +229,9 @@ class ReferenceShape(Protocol):
 
 
 def with_state_of(reference: Any, other: Copied, names: Iterable[str]) -> Copied:
-    """Return another reference in the state of this one, of which these are the names: for copies that Python cannot make."""
+    """Return another reference in the state of this one, of which these are the names: for copies
+    that Python cannot make.
+    """
     for name in names:
         setattr(other, name, getattr(reference, name))
     return other

@@ -1,13 +1,16 @@
-"""A reference point whose mean velocity is steered, so that it can follow a centre of oscillation that manoeuvres.
+"""A reference point whose mean velocity is steered, so that it can follow a centre of oscillation
+that manoeuvres.
 
-The course is that of equation (3), chi_r = chi_m + eta cos(theta), or that of another shape of the same amplitude and phase, but
-the mean course chi_m, the amplitude eta and the frequency omega_0 change with time. Their rates share the heading rate that the
-vehicle can fly: whatever turning the mean course takes is taken from the frequency, so that |chi_m'| + |eta'| and the largest
-heading rate of the oscillation, eta omega_0 of the sinusoid, together never exceed it.
+The course is that of equation (3), chi_r = chi_m + eta cos(theta), or that of another shape of the
+same amplitude and phase, but the mean course chi_m, the amplitude eta and the frequency omega_0
+change with time. Their rates share the heading rate that the vehicle can fly: whatever turning the
+mean course takes is taken from the frequency, so that |chi_m'| + |eta'| and the largest heading
+rate of the oscillation, eta omega_0 of the sinusoid, together never exceed it.
 
-Where the orbit's centre is follows from the present parameters by a series, that of equation (12) of the sinusoid. Turning the mean
-course by dchi moves the centre by dchi times its distance from the reference, up to a hundred metres per radian, and so does a
-change of eta. Both therefore move mostly while the reference passes the centre.
+Where the orbit's centre is follows from the present parameters by a series, that of equation (12)
+of the sinusoid. Turning the mean course by dchi moves the centre by dchi times its distance from
+the reference, up to a hundred metres per radian, and so does a change of eta. Both therefore move
+mostly while the reference passes the centre.
 """
 
 import math
@@ -16,16 +19,22 @@ from gnc.numeric import limited, wrap
 from gnc.reference.reference import Swing, with_state_of
 
 _GATE = 0.2
-"""Fraction of their rates that mean course and amplitude keep where the reference is farthest from the centre [-]."""
+"""Fraction of their rates that mean course and amplitude keep where the reference is farthest from
+the centre [-].
+"""
 
 _RATE_GAIN = 0.8
-"""Rate of mean course and amplitude per difference from what is demanded, in units of the heading rate [-]."""
+"""Rate of mean course and amplitude per difference from what is demanded, in units of the heading
+rate [-].
+"""
 
 _RATE_FRACTION = 0.3
 """Fraction of the heading rate that either of them may take [-]."""
 
 _SMOOTHING = 0.25
-"""Time constant of their rates, over one through the heading rate [-]: that of a rolling aircraft does not jump."""
+"""Time constant of their rates, over one through the heading rate [-]: that of a rolling aircraft
+does not jump.
+"""
 
 _STATE = (
     "_available", "_cos_course", "_cos_phase", "_eta_demand", "_eta_rate", "_mean_demand", "_mean_rate", "_rate_gain",
@@ -110,12 +119,16 @@ class SteeredReference:
         return self.__copy__()
 
     def steer(self, mean_course: float, speed_ratio: float) -> None:
-        """Set the mean course [rad] and the mean speed over the speed [-] that are demanded from now on."""
+        """Set the mean course [rad] and the mean speed over the speed [-] that are demanded from
+        now on.
+        """
         self._mean_demand = mean_course
         self._eta_demand = self._swing.eta(speed_ratio)
 
     def spend(self, share: float) -> None:
-        """Set the part of its heading rate that it takes from its next passage through the centre on [-]."""
+        """Set the part of its heading rate that it takes from its next passage through the centre
+        on [-].
+        """
         self._share_demand = share
 
     def step(self) -> None:

@@ -1,1 +1,3 @@
-"""The keep-out guard: a filter that keeps the vehicle out of a moving disc whatever the steering law demands."""
+"""The keep-out guard: a filter that keeps the vehicle out of a moving disc whatever the steering
+law demands.
+"""

@@ -1,31 +1,40 @@
-"""How near a predicted turn comes to a disc: between two of its points, and if its speed changes elsewhere than predicted."""
+"""How near a predicted turn comes to a disc: between two of its points, and if its speed changes
+elsewhere than predicted.
+"""
 
 import math
 
 Place = tuple[float, float, float, float, float]
-"""x, y, course, the distance that is allowed for there [m], and the speed on the way there [m/s]."""
+"""x, y, course, the distance that is allowed for there [m], and the speed on the way there [m/s].
+"""
 
 Switch = tuple[float, float, float, float]
 """x, y, course, and by how much the vehicle has turned since the turn began [rad]."""
 
 _REFINED = 3
-"""Steps in which the closest approach between two points is found [-]: each squares the error of the one before."""
+"""Steps in which the closest approach between two points is found [-]: each squares the error of
+the one before.
+"""
 
 
 def leads_away(
     x: float, y: float, cos: float, sin: float, way: float, north: float, east: float
 ) -> bool:
-    """Return whether a vehicle flies away from a disc's centre, in the middle of its way and that of the disc [m]."""
+    """Return whether a vehicle flies away from a disc's centre, in the middle of its way and that
+    of the disc [m].
+    """
     return (x - 0.5 * north) * cos + (y - 0.5 * east) * sin + 0.5 * way > 0.0
 
 
 def nearer_by_switch(
     side: float, radii: float, then: Switch, x: float, y: float, course: float
 ) -> float:
-    """Return by how much nearer a turn comes that slows down a little before, or after, it is predicted to [m].
+    """Return by how much nearer a turn comes that slows down a little before, or after, it is
+    predicted to [m].
 
-    A vehicle is predicted to slow down where it begins to fly away from the disc's centre. It comes nearest in another direction;
-    seen in that, it began to fly away sooner, or later, by the course that lies between the two, if it turned as much.
+    A vehicle is predicted to slow down where it begins to fly away from the disc's centre. It comes
+    nearest in another direction; seen in that, it began to fly away sooner, or later, by the course
+    that lies between the two, if it turned as much.
 
     Parameters
     ----------
@@ -60,7 +69,8 @@ def least_of_late(
     *,
     first: bool,
 ) -> float:
-    """Return the least slack of late [m] at a point of a turn from which on it rises: before the last point, or since.
+    """Return the least slack of late [m] at a point of a turn from which on it rises: before the
+    last point, or since.
 
     Parameters
     ----------
@@ -86,8 +96,9 @@ def _least_between(
 ) -> float:
     """Return the least slack between two points of a turn [m], which are so long apart [s].
 
-    The path is the cubic through both places with the velocities there, which is true to 1e-6 turn radii. A disc may be smaller
-    than the way between the points: so distances there tell little of the closest approach.
+    The path is the cubic through both places with the velocities there, which is true to 1e-6 turn
+    radii. A disc may be smaller than the way between the points: so distances there tell little of
+    the closest approach.
     """
     velocity_north, velocity_east = velocity
     (x, y, course, allowed, _), (x_end, y_end, course_end, allowed_end, speed) = begin, end

@@ -1,15 +1,18 @@
-"""What the keep-out guard lets pass between two of its looks ahead: as much as the turn away that it found can lose."""
+"""What the keep-out guard lets pass between two of its looks ahead: as much as the turn away that
+it found can lose.
+"""
 
 _LESS = 0.5
-"""By how much commands may be less of that turn than the one that was judged, over omega_max [-]. The more, the more has to be kept
-for rolling; the less, the sooner a command is looked at."""
+"""By how much commands may be less of that turn than the one that was judged, over omega_max [-].
+The more, the more has to be kept for rolling; the less, the sooner a command is looked at."""
 
 
 class FreeCommands:
-    """Commands that leave the turn away safe that was found at the last look, in whatever order they come.
+    """Commands that leave the turn away safe that was found at the last look, in whatever order
+    they come.
 
-    A command that is less of the turn than omega_max takes course from it. How much the turn can lose is known; what is given is
-    counted.
+    A command that is less of the turn than omega_max takes course from it. How much the turn can
+    lose is known; what is given is counted.
 
     Parameters
     ----------
@@ -27,7 +30,8 @@ class FreeCommands:
 
     def __init__(self, heading_rate_max: float, time_step: float) -> None:
         self._rate, self._time_step = heading_rate_max, time_step
-        # Course of a step at omega_max; as much is kept beside it, for a command that is cut after it has passed.
+        # Course of a step at omega_max; as much is kept beside it, for a command that is cut after
+        # it has passed.
         self._whole = heading_rate_max * time_step
         self._kept = 2.0 * self._whole
         # Course that may be lost, and what of it a command spares per rad/s.
@@ -70,7 +74,8 @@ class FreeCommands:
         side : of the turn away; 0 where none was needed
         to_lose : course that the turn can lose [rad]
         command, last : that was judged, and at the look before [rad/s]
-        change : of all commands from the last on, over a full reversal, that is counted for the turn's deviation [-]
+        change : of all commands from the last on, over a full reversal, that is counted for the
+            turn's deviation [-]
         """
         self.steps, self._left, self._towards = (
             max(0, int(time / self._time_step) - 1),

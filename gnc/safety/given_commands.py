@@ -10,29 +10,35 @@ from common.physics.turn_tube import CHANGED, FORGOTTEN, LEAST_CHANGE, SLOW_LAG_
 from gnc.numeric import limited
 
 _WHOLE = 1e-6
-"""Of a step, by which a delay may exceed a whole number of them without counting as one more [-]."""
+"""Of a step, by which a delay may exceed a whole number of them without counting as one more [-].
+"""
 
 
 class GivenCommands:
-    """Heading-rate commands, one per time step, to a vehicle that follows with a dead time and a lag.
+    """Heading-rate commands, one per time step, to a vehicle that follows with a dead time and a
+    lag.
 
-    In the end a vehicle has turned by all of its commands. A prediction from its heading rate and the commands under way knows
-    of some course to come; an aircraft in the middle of a roll, or one whose autopilot makes up for course that
-    it lacks, has another course ahead of it. The difference is told. Of a vehicle with just that dead time and lag it is 0.
+    In the end a vehicle has turned by all of its commands. A prediction from its heading rate and
+    the commands under way knows of some course to come; an aircraft in the middle of a roll, or one
+    whose autopilot makes up for course that it lacks, has another course ahead of it. The
+    difference is told. Of a vehicle with just that dead time and lag it is 0.
 
     Parameters
     ----------
     lag, delay : of the heading rate behind its command [s]
-    slow_lag : by which the vehicle is behind slow commands; ``delay`` + ``lag`` where it has just those [s]
+    slow_lag : by which the vehicle is behind slow commands; ``delay`` + ``lag`` where it has just
+        those [s]
     time_step : for which a command is held [s]
     heading_rate_max : omega_max [rad/s]
 
     Attributes
     ----------
     under_way : commands that act within the delay, of the first perhaps a part [rad/s]
-    change : largest change of command of late, over a full reversal, which counts the less the older it is [-]
+    change : largest change of command of late, over a full reversal, which counts the less the
+        older it is [-]
     last : command at the last look [rad/s]
-    since, rates : commands since the last look, and the heading rate at each; whoever commands appends to them [rad/s]
+    since, rates : commands since the last look, and the heading rate at each; whoever commands
+        appends to them [rad/s]
     """
 
     __slots__ = (
@@ -60,8 +66,9 @@ class GivenCommands:
         self.change, self.last = LEAST_CHANGE, 0.0
         count, self._first = commands_under_way(delay, time_step)
         self._kept = math.exp(-time_step / (FORGOTTEN * lag)) if lag > 0.0 else 0.0
-        # Course turned in a step in which a lag follows one command, from the heading rates at its ends; and what is to be added
-        # where another command begins to act within the step. So it is exact for a vehicle with just that dead time and lag.
+        # Course turned in a step in which a lag follows one command, from the heading rates at its
+        # ends; and what is to be added where another command begins to act within the step. So it
+        # is exact for a vehicle with just that dead time and lag.
         self._at_end = self._changing = 0.0
         if lag > 0.0:
             turned = time_step / -math.expm1(-time_step / lag)
@@ -75,12 +82,13 @@ class GivenCommands:
         self.rates: list[float] = []
 
     def still_to_come(self, rate: float) -> float:
-        """Take in the commands since the last look; return what the heading rate lacks for the course that is to come [rad/s].
+        """Take in the commands since the last look; return what the heading rate lacks for the
+        course that is to come [rad/s].
 
         Parameters
         ----------
-        rate : of heading, now [rad/s]. Course is its sum, and not that of the motion over the mean air: what a gust or a better
-            estimate of the wind does to that no autopilot makes up for
+        rate : of heading, now [rad/s]. Course is its sum, and not that of the motion over the mean
+            air: what a gust or a better estimate of the wind does to that no autopilot makes up for
         """
         since, rates, under_way = self.since, self.rates, self.under_way
         if not (since or self._begun):
@@ -128,6 +136,8 @@ class GivenCommands:
 
 
 def commands_under_way(delay: float, time_step: float) -> tuple[int, float]:
-    """Return how many commands, each held for ``time_step`` [s], act within a delay, and for how long of it the first does [s]."""
+    """Return how many commands, each held for ``time_step`` [s], act within a delay, and for how
+    long of it the first does [s].
+    """
     count = math.ceil(delay / time_step - _WHOLE)
     return count, delay - (count - 1) * time_step

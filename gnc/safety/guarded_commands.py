@@ -1,4 +1,6 @@
-"""Commands that keep out: a heading rate by the keep-out guard, and a pace at which the vehicle can still turn away."""
+"""Commands that keep out: a heading rate by the keep-out guard, and a pace at which the vehicle can
+still turn away.
+"""
 
 import math
 
@@ -7,15 +9,18 @@ from gnc.safety.keepout_guard import KeepoutGuard
 from gnc.safety.speed_reckoning import SpeedReckoning
 
 _UNASKED = 0.05
-"""By how much the pace may exceed what the guard was asked about [m/s]: a turn away comes nearer by less than 0.1 m for it."""
+"""By how much the pace may exceed what the guard was asked about [m/s]: a turn away comes nearer by
+less than 0.1 m for it.
+"""
 
 
 class GuardedCommands:
     """A keep-out guard, and what follows from it for the pace, a speed over the mean air.
 
-    The vehicle flies faster only where the faster vehicle can turn away, too: a turn that was safe must remain so. And a vehicle
-    that catches up turns the wider: so V_r is flown while the guard acts. For a quarter of a turn after that it still is, since the
-    faster pace would make the guard act again, and so in turns.
+    The vehicle flies faster only where the faster vehicle can turn away, too: a turn that was safe
+    must remain so. And a vehicle that catches up turns the wider: so V_r is flown while the guard
+    acts. For a quarter of a turn after that it still is, since the faster pace would make the guard
+    act again, and so in turns.
 
     Parameters
     ----------
@@ -45,7 +50,8 @@ class GuardedCommands:
     def limit(
         self, command: float, pace: float, time: float, own: OwnMotion, *, leaving: bool
     ) -> tuple[float, float, bool]:
-        """Return heading rate [rad/s] and pace [m/s] to command, and whether the pace is held below the one demanded.
+        """Return heading rate [rad/s] and pace [m/s] to command, and whether the pace is held below
+        the one demanded.
 
         Parameters
         ----------
@@ -75,7 +81,9 @@ class GuardedCommands:
         return command, pace, held
 
     def overruled(self, heading_rate: float, pace: float | None = None) -> None:
-        """Take note of what is flown in place of the last commands: a heading rate [rad/s], and perhaps a pace [m/s]."""
+        """Take note of what is flown in place of the last commands: a heading rate [rad/s], and
+        perhaps a pace [m/s].
+        """
         self.guard.overruled(heading_rate)
         if pace is not None:
             self._reckoning.include(pace)

@@ -1,13 +1,18 @@
-"""The speeds that a vehicle may come to by what it was commanded: turns away are predicted with the fastest and the slowest."""
+"""The speeds that a vehicle may come to by what it was commanded: turns away are predicted with the
+fastest and the slowest.
+"""
 
 import math
 
 _LATE = 2.0
-"""For how many time constants of the airspeed what was commanded counts [-]: an overshoot lasts longer than a rise."""
+"""For how many time constants of the airspeed what was commanded counts [-]: an overshoot lasts
+longer than a rise.
+"""
 
 
 class SpeedReckoning:
-    """Between what speeds a vehicle stays whose airspeed follows its commands with a lag, and overshoots their changes.
+    """Between what speeds a vehicle stays whose airspeed follows its commands with a lag, and
+    overshoots their changes.
 
     A pace is a speed over the mean air. What is commanded no longer is forgotten little by little.
 
@@ -33,13 +38,17 @@ class SpeedReckoning:
         self.highest = self.lowest = self._crest = self._trough = speed
 
     def fastest(self, pace: float) -> float:
-        """Return the speed that it may rise to if a pace [m/s] were commanded now, and V_r after it [m/s]."""
+        """Return the speed that it may rise to if a pace [m/s] were commanded now, and V_r after it
+        [m/s].
+        """
         rise = pace if pace > self._speed else self._speed
         reached = rise + self._overshoot * (rise - (pace if pace < self.lowest else self.lowest))
         return reached if reached > self._crest else self._crest
 
     def slowest(self, pace: float) -> float:
-        """Return the speed that it may fall to if a pace [m/s] were commanded now, and V_r after it [m/s]."""
+        """Return the speed that it may fall to if a pace [m/s] were commanded now, and V_r after it
+        [m/s].
+        """
         fall = pace if pace < self._speed else self._speed
         reached = fall - self._overshoot * ((pace if pace > self.highest else self.highest) - fall)
         return reached if reached < self._trough else self._trough

@@ -1,4 +1,6 @@
-"""How a vehicle with a lag turns away from a moving disc, and how near it comes to it: docs/keepout_guard.md."""
+"""How a vehicle with a lag turns away from a moving disc, and how near it comes to it:
+docs/keepout_guard.md.
+"""
 
 import math
 from collections import deque
@@ -8,29 +10,38 @@ from gnc.safety.closest_approach import leads_away, least_of_late, nearer_by_swi
 from gnc.safety.given_commands import commands_under_way
 
 _TURN = 0.125
-"""Course turned between two points of a predicted turn, at most; half of it where the lag is shorter than that takes [rad]."""
+"""Course turned between two points of a predicted turn, at most; half of it where the lag is
+shorter than that takes [rad].
+"""
 _TURN_MAX = 2.5 * math.pi
-"""Course after which a turn away is over [rad]: once round, and what a turn the other way before it and the disc's motion add."""
+"""Course after which a turn away is over [rad]: once round, and what a turn the other way before it
+and the disc's motion add.
+"""
 _ROLLING = 3.0
-"""For how many times as long as commands take that are as far against the turn as they may be, what they add by rolling is kept."""
+"""For how many times as long as commands take that are as far against the turn as they may be, what
+they add by rolling is kept.
+"""
 
 Motion = tuple[float, float, float, float, float, float, float, float, float, float, float, float]
 """A vehicle's motion relative to a disc, and how the disc grows.
 
-North and east of the disc's centre [m]; the disc's velocity north and east in the air mass [m/s]; the vehicle's course and speed
-there, as fast as it may become, and its heading rate [rad, m/s, rad/s]; radius of the disc now [m], rate of its growth [m/s] and
-of that [m/s^2]; what the heading rate lacks for the course that is still to come of earlier commands [rad/s]; and the vehicle's
-speed as slow as it may become [m/s].
+North and east of the disc's centre [m]; the disc's velocity north and east in the air mass [m/s];
+the vehicle's course and speed there, as fast as it may become, and its heading rate
+[rad, m/s, rad/s]; radius of the disc now [m], rate of its growth [m/s] and of that [m/s^2]; what
+the heading rate lacks for the course that is still to come of earlier commands [rad/s]; and the
+vehicle's speed as slow as it may become [m/s].
 """
 Start = tuple[float, float, float, float]
 """x, y, course and heading rate."""
 
 
 class TurnPrediction:
-    """Turns of a vehicle whose heading rate follows its command with a lag, relative to a moving disc.
+    """Turns of a vehicle whose heading rate follows its command with a lag, relative to a moving
+    disc.
 
-    Its speed is somewhere between a fastest and a slowest. It is predicted at the fastest while it flies towards the disc, and at
-    the slowest while it flies away from one that closes in all the same: so it comes nearest.
+    Its speed is somewhere between a fastest and a slowest. It is predicted at the fastest while it
+    flies towards the disc, and at the slowest while it flies away from one that closes in all the
+    same: so it comes nearest.
 
     Parameters
     ----------
@@ -55,7 +66,8 @@ class TurnPrediction:
         self._rate, self._deviation, self._turn_speed = heading_rate_max, deviation, turn_speed
         self._lag, self._delay = lag, delay
         self._hold = _held(time_step, lag)
-        # Angle by which straight away is passed by a turn that ends there: by its lag, and a step of holding commands.
+        # Angle by which straight away is passed by a turn that ends there: by its lag, and a step
+        # of holding commands.
         self._beyond = min(heading_rate_max * (lag + time_step), 0.5 * math.pi)
         self._passed = math.sin(self._beyond)
         # Of the commands under way the first acts only for what of it lies within the delay.
@@ -67,7 +79,8 @@ class TurnPrediction:
         self._chord = math.sin(half) / half
 
     def when_acting(self, motion: Motion, under_way: deque[float]) -> Motion:
-        """Return the motion when a command given now begins to act: those before it cannot be taken back.
+        """Return the motion when a command given now begins to act: those before it cannot be taken
+        back.
 
         ``under_way`` holds those [rad/s] that act within the delay, the first perhaps in part.
         """
@@ -122,14 +135,17 @@ class TurnPrediction:
         floor: float,
         against: float = 1.0,
     ) -> tuple[float, float, float, float]:
-        """Return by how much a full turn away keeps the radius [m], and what commands before it cannot change that.
+        """Return by how much a full turn away keeps the radius [m], and what commands before it
+        cannot change that.
 
-        For how long [s] they are given, what course they may take from the turn [rad], and the change that its deviation counts, of
-        command or by rolling into it, over a full reversal [-].
+        For how long [s] they are given, what course they may take from the turn [rad], and the
+        change that its deviation counts, of command or by rolling into it, over a full reversal
+        [-].
 
-        It is over once the vehicle recedes and its turn makes it recede faster: by going on until it heads straight away, and
-        straight on then, it recedes for good. From a disc that closes in faster than it flies it turns no farther than that, and is
-        followed for as long as a turn takes. The search ends early below ``floor``.
+        It is over once the vehicle recedes and its turn makes it recede faster: by going on until
+        it heads straight away, and straight on then, it recedes for good. From a disc that closes
+        in faster than it flies it turns no farther than that, and is followed for as long as a turn
+        takes. The search ends early below ``floor``.
 
         Parameters
         ----------
@@ -167,7 +183,8 @@ class TurnPrediction:
             0.5 * acceleration,
             self._lag,
         )
-        # The farther the vehicle has to roll into the turn, or rolled of late, the more it deviates; where it is now not yet.
+        # The farther the vehicle has to roll into the turn, or rolled of late, the more it
+        # deviates; where it is now not yet.
         fixed += (
             deviation := self._deviation
             * (counted := max(change, 0.5 - 0.5 * side * heading_rate / self._rate))
@@ -180,7 +197,8 @@ class TurnPrediction:
             (x, y, course, allowed, speed),
         )
         late, then = now, (x, y, course, 0.0)
-        # A command against the turn enlarges the deviation by 1/lag of what that of such a change exceeds it by in each second.
+        # A command against the turn enlarges the deviation by 1/lag of what that of such a change
+        # exceeds it by in each second.
         lost = 2.0 * speed * self._rate * against / _ROLLING
         rolling = max(0.0, self._deviation * max(change, against) - deviation) / (
             lost * max(lag, self._hold[0])
@@ -233,7 +251,8 @@ class TurnPrediction:
                     and x * cos_m + y * sin_m > 0.0
                     and side * heading_rate > 0.0
                 ):
-                    # It heads straight away, and still the disc gains on it: nothing does better, and so it flies straight on.
+                    # It heads straight away, and still the disc gains on it: nothing does better,
+                    # and so it flies straight on.
                     heading_rate = ahead = gained = won = outward = 0.0
                     uneven = False
                 continue
@@ -261,8 +280,9 @@ class TurnPrediction:
     def _flown(self, side: float, speed: float) -> tuple[float, float, float, float, float, float]:
         """Return what is flown between two points of a full turn.
 
-        Way [m]; course to the middle, course turned [rad] and heading rate gained [rad/s] by the command, beside what the heading
-        rate brings; by how much longer than at omega_max it takes, at the largest bank [-]; and the speed [m/s].
+        Way [m]; course to the middle, course turned [rad] and heading rate gained [rad/s] by the
+        command, beside what the heading rate brings; by how much longer than at omega_max it takes,
+        at the largest bank [-]; and the speed [m/s].
         """
         duration, turned, mean, decay = self._interval
         # At the largest bank a turn is the slower the faster the vehicle flies.
@@ -279,7 +299,9 @@ class TurnPrediction:
         )
 
     def _outward(self, side: float, start: Start) -> float:
-        """Return how far outwards a turn leads [m]; 0 where it begins beyond straight away by no more than one that ends there."""
+        """Return how far outwards a turn leads [m]; 0 where it begins beyond straight away by no
+        more than one that ends there.
+        """
         x, y, course, _ = start
         cos, sin = math.cos(course), math.sin(course)
         outward = side * (y * cos - x * sin)
@@ -287,10 +309,12 @@ class TurnPrediction:
         return 0.0 if over else outward
 
     def _until_beyond(self, side: float, start: Start, motion: Motion) -> float:
-        """Return how soon the vehicle may be so far beyond straight away that a turn away to that side leads once round [s].
+        """Return how soon the vehicle may be so far beyond straight away that a turn away to that
+        side leads once round [s].
 
-        Its course turns at omega_max at most, and the direction in which the disc lies the other way, by what crosses it: all of
-        the disc's speed, and of the vehicle's what lies across while it has so far left to turn.
+        Its course turns at omega_max at most, and the direction in which the disc lies the other
+        way, by what crosses it: all of the disc's speed, and of the vehicle's what lies across
+        while it has so far left to turn.
         """
         x, y, course, _ = start
         left = side * math.remainder(math.atan2(y, x) - course, 2.0 * math.pi) + self._beyond
@@ -303,18 +327,23 @@ class TurnPrediction:
 
 
 def nearer_side(x: float, y: float, course: float) -> float:
-    """Return the side to which it is less far to head straight away from a disc: 1 to the right, -1 to the left."""
+    """Return the side to which it is less far to head straight away from a disc: 1 to the right, -1
+    to the left.
+    """
     return 1.0 if y * math.cos(course) >= x * math.sin(course) else -1.0
 
 
 def _held(duration: float, lag: float) -> tuple[float, float, float, float]:
-    """Return what a vehicle with a lag makes of a heading rate that it has, while a command is held.
+    """Return what a vehicle with a lag makes of a heading rate that it has, while a command is
+    held.
 
     Returns
     -------
     duration : of the command [s]
-    turned : course, per heading rate at the start [s]; the rest of the duration is course per command
-    mean : course on the mean of the duration, per heading rate at the start [s]; the rest of its half is per command
+    turned : course, per heading rate at the start [s]; the rest of the duration is course per
+        command
+    mean : course on the mean of the duration, per heading rate at the start [s]; the rest of its
+        half is per command
     decay : heading rate at the end, per heading rate at the start [-]; the rest of 1 is per command
     """
     if lag == 0.0:

@@ -17,7 +17,8 @@ class Margin:
     Attributes
     ----------
     loop : where the loop is opened
-    gain_db : least change of gain, up or down, that brings instability [dB]; infinite where none does
+    gain_db : least change of gain, up or down, that brings instability [dB]; infinite where none
+        does
     phase_deg : least change of phase that does [deg]; infinite where none does
     crossover : highest gain crossover [rad/s]; nan where the gain never crosses 1
     disk_gain_db, disk_phase_deg : guaranteed for simultaneous changes of gain and phase [dB, deg]
@@ -48,7 +49,9 @@ class Requirement:
 
 
 REQUIRED = Requirement()
-"""Nominal: MIL-F-9490D's 6 dB and 45 deg. A fifth of effectiveness is 1.6 to 1.9 dB, so 4 dB must remain."""
+"""Nominal: MIL-F-9490D's 6 dB and 45 deg. A fifth of effectiveness is 1.6 to 1.9 dB, so 4 dB must
+remain.
+"""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

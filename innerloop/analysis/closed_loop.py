@@ -1,4 +1,6 @@
-"""Aircraft, computing delay and autopilot, connected: the linear closed loop from commands and gusts."""
+"""Aircraft, computing delay and autopilot, connected: the linear closed loop from commands and
+gusts.
+"""
 
 import functools
 
@@ -15,9 +17,11 @@ def pade(delay: float) -> control.StateSpace:
 
 
 def closed_loop(aircraft: LinearModel, autopilot: LinearModel, delay: float) -> control.StateSpace:
-    """Return the closed loop from the autopilot's commands to every output of the aircraft and to the controls.
+    """Return the closed loop from the autopilot's commands to every output of the aircraft and to
+    the controls.
 
-    The aircraft's other inputs, such as gusts, follow the commands. The ``delay`` is that between measurement and servo [s].
+    The aircraft's other inputs, such as gusts, follow the commands. The ``delay`` is that between
+    measurement and servo [s].
     """
     controls = autopilot.output_labels
     others = [name for name in aircraft.input_labels if name not in controls]
@@ -55,7 +59,9 @@ def closed_loop(aircraft: LinearModel, autopilot: LinearModel, delay: float) -> 
 
 
 def _named(model: LinearModel, name: str) -> control.StateSpace:
-    """Return a linear model as python-control connects it, by its own name and those of its inputs and outputs."""
+    """Return a linear model as python-control connects it, by its own name and those of its inputs
+    and outputs.
+    """
     return control.ss(
         model.A,
         model.B,

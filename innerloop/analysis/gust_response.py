@@ -1,9 +1,10 @@
 """The linear aircraft in moving air, alone and under its autopilot.
 
-Air that moves acts through what the body's velocity against it makes: forces and moments of the air, and what the
-propeller sees. The linear model was made in still air, where that velocity is the body's own, so its columns hold
-more: how velocity components turn with the body (-omega x v), how they add up to climb, and how angles follow rates.
-Those are known in closed form and subtracted; the rest, times minus the air's velocity, is the effect of a gust.
+Air that moves acts through what the body's velocity against it makes: forces and moments of the
+air, and what the propeller sees. The linear model was made in still air, where that velocity is the
+body's own, so its columns hold more: how velocity components turn with the body (-omega x v), how
+they add up to climb, and how angles follow rates. Those are known in closed form and subtracted;
+the rest, times minus the air's velocity, is the effect of a gust.
 """
 
 import math
@@ -21,11 +22,14 @@ from innerloop.law.linear_controller import linear_controller
 from innerloop.synthesis.schedule import LEVEL_GAINS, Schedule
 
 GUSTS = ("gust_along", "gust_right", "gust_down", "gust_p", "gust_q", "gust_r")
-"""Velocity of the air along the trimmed course, right and down [m/s], and its rotation about these axes [rad/s]."""
+"""Velocity of the air along the trimmed course, right and down [m/s], and its rotation about these
+axes [rad/s].
+"""
 
 MOTION = ("speed", "course_rate")
-"""Motion against the mean air: horizontal speed [m/s] and rate of the course [rad/s]; ``airspeed``, ``alpha``,
-``beta`` and ``heading_rate`` are against the gusty air, as the autopilot measures them."""
+"""Motion against the mean air: horizontal speed [m/s] and rate of the course [rad/s]; ``airspeed``,
+``alpha``, ``beta`` and ``heading_rate`` are against the gusty air, as the autopilot measures
+them."""
 
 _AIR = ("airspeed", "alpha", "beta", "p", "q", "r")
 _RATES = ("p", "q", "r")
@@ -34,9 +38,11 @@ Array = npt.NDArray[np.float64]
 
 
 def gust_loop(schedule: Schedule, index: int, bank_index: int) -> control.StateSpace:
-    """Return aircraft and autopilot at airspeed ``index`` and gain bank ``bank_index``, from commands and gusts.
+    """Return aircraft and autopilot at airspeed ``index`` and gain bank ``bank_index``, from
+    commands and gusts.
 
-    Inputs are ``COMMANDS`` and ``GUSTS``; outputs those of ``aircraft_in_gusts`` and each control's command.
+    Inputs are ``COMMANDS`` and ``GUSTS``; outputs those of ``aircraft_in_gusts`` and each control's
+    command.
     """
     models = schedule.models[index]
     trim = schedule.gain_trim(index, bank_index)
@@ -55,15 +61,15 @@ def aircraft_in_gusts(model: LinearModel, trim: Trim, level_model: LinearModel) 
     Returns
     -------
     LinearModel
-        States as those of ``model``; the body's velocity is that against the mean air. Inputs: those of ``model``,
-        then ``GUSTS``. Outputs: those of ``model``, of which ``airspeed``, ``alpha``, ``beta`` and ``heading_rate``
-        are against the gusty air, then ``MOTION``.
+        States as those of ``model``; the body's velocity is that against the mean air. Inputs:
+        those of ``model``, then ``GUSTS``. Outputs: those of ``model``, of which ``airspeed``,
+        ``alpha``, ``beta`` and ``heading_rate`` are against the gusty air, then ``MOTION``.
 
     Notes
     -----
-    In a turn the rates' columns of moments hold the body's gyroscopic moments, which cannot be separated without its
-    inertia. Moments by rates are taken from level flight instead, where gyroscopic moments vanish; they hardly depend
-    on the angle of attack.
+    In a turn the rates' columns of moments hold the body's gyroscopic moments, which cannot be
+    separated without its inertia. Moments by rates are taken from level flight instead, where
+    gyroscopic moments vanish; they hardly depend on the angle of attack.
     """
     states, outputs = model.state_labels, model.output_labels
     air = [states.index(name) for name in _AIR]
@@ -86,8 +92,8 @@ def aircraft_in_gusts(model: LinearModel, trim: Trim, level_model: LinearModel) 
     reads[rate] = model.C[rate, air] @ against
     speed = np.zeros(len(states))
     speed[states.index("airspeed")] = 1.0
-    # The same acceleration turns a faster motion less: against the mean air the aircraft is faster by the gust along
-    # its course.
+    # The same acceleration turns a faster motion less: against the mean air the aircraft is faster
+    # by the gust along its course.
     course_rate = reads[rate] - np.eye(len(GUSTS))[0] * trim.yaw_rate / trim.airspeed
     return LinearModel(
         A=model.A,
@@ -107,7 +113,9 @@ def aircraft_in_gusts(model: LinearModel, trim: Trim, level_model: LinearModel) 
 
 
 def velocity_by_polar(airspeed: float, alpha: float, beta: float) -> Array:
-    """Return the rates of body velocity [m/s] by airspeed [m/s], angle of attack and sideslip [rad]: (3, 3)."""
+    """Return the rates of body velocity [m/s] by airspeed [m/s], angle of attack and sideslip
+    [rad]: (3, 3).
+    """
     (ca, sa), (cb, sb) = ((math.cos(x), math.sin(x)) for x in (alpha, beta))
     return np.array([
         [ca * cb, -airspeed * sa * cb, -airspeed * ca * sb],

@@ -22,7 +22,8 @@ class GustStatistics:
 
 
 def low_altitude_turbulence(altitude: float, wind_at_20ft: float) -> GustStatistics:
-    """Return the turbulence at an altitude [m] over a surface with a mean wind [m/s] 20 ft above it.
+    """Return the turbulence at an altitude [m] over a surface with a mean wind [m/s] 20 ft above
+    it.
 
     Raises
     ------

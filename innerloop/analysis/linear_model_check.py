@@ -1,4 +1,6 @@
-"""The linear aircraft against the aircraft itself: small doublets of each control, flown in JSBSim and predicted."""
+"""The linear aircraft against the aircraft itself: small doublets of each control, flown in JSBSim
+and predicted.
+"""
 
 from typing import Any
 
@@ -29,7 +31,9 @@ _SHOWN = {
     "rudder": ("beta", "r"),
     "throttle": ("airspeed",),
 }
-"""States that each control is meant to move: a relative error is of little use for a state that it hardly moves."""
+"""States that each control is meant to move: a relative error is of little use for a state that it
+hardly moves.
+"""
 
 _DURATION = 6.0
 _HALF = 1.0
@@ -38,17 +42,21 @@ _SIZE = 0.01
 
 
 _FINE = 8
-"""Substeps of a time step [-]: the linear model does not have JSBSim's first-order integration errors."""
+"""Substeps of a time step [-]: the linear model does not have JSBSim's first-order integration
+errors.
+"""
 
 _SETTLED = 1e-9
-"""Change of acceleration a substep below which servos and engines count as at rest: behind an engine as slow as a second, 1e-6
-from the end, where a doublet accelerates the aircraft by 1e-2 and more."""
+"""Change of acceleration a substep below which servos and engines count as at rest: behind an
+engine as slow as a second, 1e-6 from the end, where a doublet accelerates the aircraft by 1e-2 and
+more."""
 
 Array = npt.NDArray[np.float64]
 
 
 def verify_model(fdm: Fdm, model: LinearModel, level: Trim) -> list[dict[str, Any]]:
-    """Return the largest error of each prediction over the largest excursion flown, by control and state.
+    """Return the largest error of each prediction over the largest excursion flown, by control and
+    state.
 
     Parameters
     ----------

@@ -1,9 +1,11 @@
-"""Loop margins of the autopilot on the full linear aircraft: classical at each loop break, and disk margins.
+"""Loop margins of the autopilot on the full linear aircraft: classical at each loop break, and disk
+margins.
 
-Everything comes from two frequency responses, of the aircraft (with its servos, its engine and the computing delay, as
-the exact exponential) and of the autopilot. The delay allows for a computer on board (``innerloop.synthesis.rate``): in
-JSBSim the fast loops have more margin. With every loop closed, the sensitivity at a break is S = 1/(1 + L), where
-L is the loop opened there and closed elsewhere; so L = 1/S - 1 follows for all breaks from one inverse.
+Everything comes from two frequency responses, of the aircraft (with its servos, its engine and the
+computing delay, as the exact exponential) and of the autopilot. The delay allows for a computer on
+board (``innerloop.synthesis.rate``): in JSBSim the fast loops have more margin. With every loop
+closed, the sensitivity at a break is S = 1/(1 + L), where L is the loop opened there and closed
+elsewhere; so L = 1/S - 1 follows for all breaks from one inverse.
 """
 
 import copy
@@ -27,17 +29,23 @@ BREAK_NAMES = {"beta": "sideslip"}
 """Names of breaks in reports, where they differ from the model's."""
 
 _MU_STRIDE = 4
-"""Stride over the frequencies of the structured singular value, which takes a hundred times as long as a gain [-]; all
-frequencies about its peak are looked at."""
+"""Stride over the frequencies of the structured singular value, which takes a hundred times as long
+as a gain [-]; all frequencies about its peak are looked at."""
 
 _MU_ACCURACY = 1.01
-"""By how much a structured singular value may come out above a bound of it: it is found by iteration [-]."""
+"""By how much a structured singular value may come out above a bound of it: it is found by
+iteration [-].
+"""
 
 FREQUENCIES = np.logspace(-3.0, 2.4, 300)
-"""Frequencies at which loops are evaluated [rad/s]: from below any integral action to beyond any servo."""
+"""Frequencies at which loops are evaluated [rad/s]: from below any integral action to beyond any
+servo.
+"""
 
 _WELL_CONDITIONED = 1e7
-"""Condition number of the eigenvectors up to which they give frequency responses to nine digits [-]."""
+"""Condition number of the eigenvectors up to which they give frequency responses to nine digits
+[-].
+"""
 
 
 Array = npt.NDArray[np.float64]
@@ -79,7 +87,9 @@ class Loops:
         return loops
 
     def with_delay(self, delay: float) -> "Loops":
-        """Return the loops with another delay [s], the responses of aircraft and autopilot being known."""
+        """Return the loops with another delay [s], the responses of aircraft and autopilot being
+        known.
+        """
         loops = self._opened_copy()
         loops._delay = delay
         return loops
@@ -105,7 +115,9 @@ class Loops:
         return sensitivity, 1.0 - np.einsum("fik,fki->fi", plant @ sensitivity, law)
 
     def opened(self, name: str) -> Complex:
-        """Return the loop opened at a control or measurement, closed elsewhere, for negative feedback."""
+        """Return the loop opened at a control or measurement, closed elsewhere, for negative
+        feedback.
+        """
         if name in self.controls:
             i = self.controls.index(name)
             sensitivity = self._closed[0][:, i, i]
@@ -147,7 +159,9 @@ class Loops:
         return bool(np.all(self.poles().real < 0.0))
 
     def poles(self) -> Complex:
-        """Return the poles of the closed loop [1/s], the delay as a second-order Pade approximation."""
+        """Return the poles of the closed loop [1/s], the delay as a second-order Pade
+        approximation.
+        """
         plant, law = self._aircraft, self._autopilot
         # Law, delays, aircraft, one after the other; the aircraft's outputs come back to the law.
         chain = _series(
@@ -163,12 +177,15 @@ class Loops:
         return np.asarray(np.linalg.eigvals(a + b @ np.linalg.solve(np.eye(len(d)) - d, c)))
 
     def _disk_at_all_controls(self) -> tuple[float, float]:
-        """Return disk margins for independent changes in all controls, by the structured singular value."""
+        """Return disk margins for independent changes in all controls, by the structured singular
+        value.
+        """
         n = len(self.controls)
         one, complex_block = np.ones(n, dtype=int), np.full(n, 2)
         balanced = self._closed[0] - 0.5 * np.eye(n)
-        # The largest singular value bounds the structured one from above, whatever units controls have: below the largest that is
-        # found, none need be computed. Units that are good at one frequency are good at most.
+        # The largest singular value bounds the structured one from above, whatever units controls
+        # have: below the largest that is found, none need be computed. Units that are good at one
+        # frequency are good at most.
         bounds = np.linalg.norm(balanced, 2, axis=(1, 2))
         mu, peak = 0.0, 0
         coarse = np.arange(0, len(bounds), _MU_STRIDE)
@@ -216,7 +233,9 @@ def _disk(alpha: float) -> tuple[float, float]:
 
 
 def _response(system: LinearModel, frequencies: Array) -> Complex:
-    """Return C (jw - A)^-1 B + D over frequency, shape (frequencies, outputs, inputs), along the eigenvectors of A."""
+    """Return C (jw - A)^-1 B + D over frequency, shape (frequencies, outputs, inputs), along the
+    eigenvectors of A.
+    """
     values, vectors = np.linalg.eig(system.A)
     if np.linalg.cond(vectors) < _WELL_CONDITIONED:
         left, right = system.C @ vectors, np.linalg.solve(vectors, system.B.astype(np.complex128))
@@ -228,7 +247,8 @@ def _response(system: LinearModel, frequencies: Array) -> Complex:
 
 
 def loop_margins(names: Sequence[str], loops: Complex, frequencies: Array) -> list[Margin]:
-    """Return the margins of single loops known over frequency, their crossings interpolated between frequencies.
+    """Return the margins of single loops known over frequency, their crossings interpolated between
+    frequencies.
 
     Parameters
     ----------
@@ -275,7 +295,9 @@ def _loop_margin(
 
 
 def _gains_at_half_turns(logs: Array, phases: Array) -> list[list[float]]:
-    """Return the logarithmic gains of each loop where its unwrapped phase passes an odd multiple of pi."""
+    """Return the logarithmic gains of each loop where its unwrapped phase passes an odd multiple of
+    pi.
+    """
     turns = np.floor((phases - math.pi) / (2.0 * math.pi))
     before, after = turns[:, :-1], turns[:, 1:]
     at = np.nonzero(before != after)

@@ -1,4 +1,6 @@
-"""Perturbations of the aircraft under which margins are checked: effectiveness, mass, inertia, and a longer delay."""
+"""Perturbations of the aircraft under which margins are checked: effectiveness, mass, inertia, and
+a longer delay.
+"""
 
 import math
 from collections.abc import Callable
@@ -25,8 +27,9 @@ def _unchanged(model: LinearModel, trim: Trim) -> LinearModel:
 def _effectiveness(factor: float) -> Change:
     """Return a change of the effectiveness of every control.
 
-    That of the throttle is among them: thrust changes by the factor, too. In a perturbed model, which the search over reversals
-    flies, only surfaces change (``aircraft.simulation.perturbed_model``): less effectiveness leaves the throttle's loop less
+    That of the throttle is among them: thrust changes by the factor, too. In a perturbed model,
+    which the search over reversals flies, only surfaces change
+    (``aircraft.simulation.perturbed_model``): less effectiveness leaves the throttle's loop less
     margin there than here, where it also lowers the loop's gain.
     """
 
@@ -46,7 +49,9 @@ def _effectiveness(factor: float) -> Change:
 
 
 def _inertia(factor: float) -> Change:
-    """Return a change of all moments of inertia: angular accelerations by air and engine divide by it."""
+    """Return a change of all moments of inertia: angular accelerations by air and engine divide by
+    it.
+    """
 
     def change(model: LinearModel, trim: Trim) -> LinearModel:
         del trim
@@ -60,7 +65,9 @@ def _inertia(factor: float) -> Change:
 
 
 def _mass(factor: float) -> Change:
-    """Return a change of mass: accelerations by air and engine divide by it, those by gravity and turning do not."""
+    """Return a change of mass: accelerations by air and engine divide by it, those by gravity and
+    turning do not.
+    """
 
     def change(model: LinearModel, trim: Trim) -> LinearModel:
         a, b, c, d = (m.copy() for m in (model.A, model.B, model.C, model.D))
@@ -68,8 +75,9 @@ def _mass(factor: float) -> Change:
         kinematic = gravity_and_turning(trim, model.state_labels)
         a[rows] = kinematic + (a[rows] - kinematic) / factor
         b[rows] /= factor
-        # Rate of the course: side force over mass and speed, but for what attitude gives: an aircraft in equilibrium
-        # carries its weight whatever that is, so bank turns it by g/V as before.
+        # Rate of the course: side force over mass and speed, but for what attitude gives: an
+        # aircraft in equilibrium carries its weight whatever that is, so bank turns it by g/V as
+        # before.
         row = model.output_labels.index("heading_rate")
         columns = [i for i, name in enumerate(model.state_labels) if name not in ("roll", "pitch")]
         c[row, columns] /= factor
@@ -80,9 +88,11 @@ def _mass(factor: float) -> Change:
 
 
 def gravity_and_turning(trim: Trim, states: tuple[str, ...]) -> npt.NDArray[np.float64]:
-    """Return how airspeed, angle of attack and sideslip change without any force of air or engine, shape (3, states).
+    """Return how airspeed, angle of attack and sideslip change without any force of air or engine,
+    shape (3, states).
 
-    Differences of the rigid body's own equations: gravity along the body's axes, and the axes' turning.
+    Differences of the rigid body's own equations: gravity along the body's axes, and the axes'
+    turning.
     """
     names = ("airspeed", "alpha", "beta", "p", "q", "r", "roll", "pitch")
     point = np.array(
@@ -143,4 +153,6 @@ CASES: dict[str, tuple[Change, int]] = {
     **{name: (_changed(by), 0) for name, by in PERTURBATIONS.items()},
     "one more period of delay": (_unchanged, 1),
 }
-"""Each perturbation by name: the change of the linear aircraft, and by how many of its periods the autopilot is late."""
+"""Each perturbation by name: the change of the linear aircraft, and by how many of its periods the
+autopilot is late.
+"""

@@ -16,10 +16,11 @@ from innerloop.synthesis.schedule import GAIN_BANKS, TRIM_BANKS, Schedule
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class OperatingPoint:
-    """Where margins are computed: an equilibrium, the aircraft about it, and whether it lies between those of the
-    grid.
+    """Where margins are computed: an equilibrium, the aircraft about it, and whether it lies
+    between those of the grid.
 
-    ``bank`` is that of the grid [rad]: straight flight has 0, even if a small bank balances the propeller's torque.
+    ``bank`` is that of the grid [rad]: straight flight has 0, even if a small bank balances the
+    propeller's torque.
     """
 
     trim: Trim
@@ -29,11 +30,13 @@ class OperatingPoint:
 
 
 def operating_points(schedule: Schedule) -> list[OperatingPoint]:
-    """Return the points of the grid, those in the middle between them along airspeed and along bank, and those at the largest bank.
+    """Return the points of the grid, those in the middle between them along airspeed and along
+    bank, and those at the largest bank.
 
-    The largest bank that the autopilot commands lies beyond the gains', in the middle between the last of these and the end of the
-    tables, to a tenth of a degree. Between, the linear model is interpolated, and so is the equilibrium: both are smooth there.
-    Where two neighbours' measured lags are of different order there is nothing to interpolate, and the point is checked with
+    The largest bank that the autopilot commands lies beyond the gains', in the middle between the
+    last of these and the end of the tables, to a tenth of a degree. Between, the linear model is
+    interpolated, and so is the equilibrium: both are smooth there. Where two neighbours' measured
+    lags are of different order there is nothing to interpolate, and the point is checked with
     either aircraft.
     """
     columns = [TRIM_BANKS.index(share) for share in GAIN_BANKS]
@@ -105,10 +108,11 @@ def _between(first: LinearModel, second: LinearModel) -> list[LinearModel]:
 
 
 class ClosedPoint:
-    """An operating point and the loops that are closed there: as modelled, and with every changed aircraft that was asked for.
+    """An operating point and the loops that are closed there: as modelled, and with every changed
+    aircraft that was asked for.
 
-    What an aircraft is changed to and how it responds are independent of the autopilot's period: each is computed once, and so is
-    each check.
+    What an aircraft is changed to and how it responds are independent of the autopilot's period:
+    each is computed once, and so is each check.
     """
 
     def __init__(self, point: OperatingPoint, as_modelled: Loops) -> None:
@@ -159,7 +163,8 @@ def closed_loops(schedule: Schedule) -> ClosedLoops:
 
 
 def check_design(period: int, closed: ClosedLoops, *, changed: bool = True) -> list[Check]:
-    """Return the margins at every operating point, as modelled and, if ``changed``, with the perturbed aircraft.
+    """Return the margins at every operating point, as modelled and, if ``changed``, with the
+    perturbed aircraft.
 
     Parameters
     ----------
@@ -172,7 +177,8 @@ def check_design(period: int, closed: ClosedLoops, *, changed: bool = True) -> l
 
 
 def with_all_controls(period: int, closed: ClosedLoops, checks: Sequence[Check]) -> list[Check]:
-    """Return the checks of a design, to those of the grid's points as modelled added the disk margins at all controls at once.
+    """Return the checks of a design, to those of the grid's points as modelled added the disk
+    margins at all controls at once.
 
     Nothing is required of those, and they take as long as all other margins.
 

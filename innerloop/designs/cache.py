@@ -44,11 +44,12 @@ class _Entry:
 
 
 def designed(spec: AircraftSpec, altitude: float = 100.0) -> Designed:
-    """Return the design of an aircraft at ``altitude`` [m] and its record: from the cache if nothing it depends on has
-    changed.
+    """Return the design of an aircraft at ``altitude`` [m] and its record: from the cache if
+    nothing it depends on has changed.
 
-    It depends on the aircraft's spec and files, the altitude, the source of ``aircraft``, ``common`` and ``innerloop``,
-    and on the versions of Python, JSBSim and the numerical packages. A failed design is cached as well.
+    It depends on the aircraft's spec and files, the altitude, the source of ``aircraft``,
+    ``common`` and ``innerloop``, and on the versions of Python, JSBSim and the numerical packages.
+    A failed design is cached as well.
 
     Raises
     ------
@@ -71,12 +72,16 @@ def designed(spec: AircraftSpec, altitude: float = 100.0) -> Designed:
 
 
 def is_cached(spec: AircraftSpec, altitude: float) -> bool:
-    """Return whether ``designed`` has its answer in the cache, a design or a refusal; parameters are its own."""
+    """Return whether ``designed`` has its answer in the cache, a design or a refusal; parameters
+    are its own.
+    """
     return _cached(design_key(spec, altitude)) is not None
 
 
 def _at(spec: AircraftSpec, found: Designed) -> Designed:
-    """Return a design whose model is where that of ``spec`` is: the same files may have been elsewhere when it was made."""
+    """Return a design whose model is where that of ``spec`` is: the same files may have been
+    elsewhere when it was made.
+    """
     schedule = found.design.schedule
     placed = schedule.spec.placed(spec)
     if placed == schedule.spec:
@@ -100,7 +105,9 @@ def design_key(spec: AircraftSpec, altitude: float) -> str:
 
 @functools.cache
 def _program_hash() -> str:
-    """Return the hash of the program that designs, which stays what it is while a process runs: versions and source."""
+    """Return the hash of the program that designs, which stays what it is while a process runs:
+    versions and source.
+    """
     digest = hashlib.sha256()
     for text in (
         platform.python_version(),
@@ -134,7 +141,9 @@ def _design(spec: AircraftSpec, altitude: float) -> _Entry:
 
 
 def cache_directory() -> Path | None:
-    """Return the cache of designs: ``plume-flight-study`` in the user's cache directory; None for a user without a home."""
+    """Return the cache of designs: ``plume-flight-study`` in the user's cache directory; None for a
+    user without a home.
+    """
     base = os.environ.get("XDG_CACHE_HOME") or os.environ.get("LOCALAPPDATA")
     if not base:
         try:
@@ -150,7 +159,8 @@ def _cached(key: str) -> _Entry | None:
     if directory is None:
         return None
     try:
-        # In a damaged file the numbers might be those of another autopilot: the first line is the hash of the others.
+        # In a damaged file the numbers might be those of another autopilot: the first line is the
+        # hash of the others.
         digest, _, text = (directory / f"{key}{SUFFIX}").read_text(encoding="utf-8").partition("\n")
         return _restored(text) if digest == _digest(text) else None
     except (OSError, ValueError):
@@ -159,7 +169,9 @@ def _cached(key: str) -> _Entry | None:
 
 @functools.lru_cache(maxsize=4)
 def _restored(text: str) -> _Entry:
-    """Return the entry that a text holds: restored once, however many studies of a process fly with it."""
+    """Return the entry that a text holds: restored once, however many studies of a process fly with
+    it.
+    """
     return from_text(text, _Entry)
 
 

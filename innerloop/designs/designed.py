@@ -1,4 +1,6 @@
-"""A designed autopilot: its tables, its margins and the record of its design. What designs it is elsewhere."""
+"""A designed autopilot: its tables, its margins and the record of its design. What designs it is
+elsewhere.
+"""
 
 import functools
 from dataclasses import dataclass

@@ -1,4 +1,6 @@
-"""From an aircraft to its autopilot: trim, linearise, weigh, design, check; slow loops down, or refuse."""
+"""From an aircraft to its autopilot: trim, linearise, weigh, design, check; slow loops down, or
+refuse.
+"""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -36,10 +38,14 @@ _SLOWER = 0.8
 """Factor on the bandwidths of an axis with too little margin [-]."""
 
 _ATTEMPTS = 10
-"""Number of designs after which an aircraft is refused: the last is at 13 % of the first bandwidths."""
+"""Number of designs after which an aircraft is refused: the last is at 13 % of the first
+bandwidths.
+"""
 
 _PHASE_LOSS_MAX = 5.0
-"""Phase margin that any loop may lose because the autopilot does not compute at every time step [deg]."""
+"""Phase margin that any loop may lose because the autopilot does not compute at every time step
+[deg].
+"""
 
 _NO_CROSSOVER = 180.0
 """Phase margin that a loop counts as having if its gain never crosses 1 [deg]."""
@@ -69,8 +75,8 @@ class Grid:
 def design_autopilot(spec: AircraftSpec, altitude: float = 100.0) -> Design:
     """Design the autopilot of an aircraft at ``altitude`` [m].
 
-    Loops start as fast as the aircraft can follow and are slowed, one axis at a time, until every margin holds. The
-    autopilot then computes as seldom as no margin prevents.
+    Loops start as fast as the aircraft can follow and are slowed, one axis at a time, until every
+    margin holds. The autopilot then computes as seldom as no margin prevents.
 
     Raises
     ------
@@ -111,7 +117,8 @@ def linear_grid(spec: AircraftSpec, altitude: float) -> Grid:
     banks = table_banks(envelope, TRIM_BANKS)
     trims: list[tuple[Trim, ...]] = []
     models, edges = [], []
-    # An aircraft of its own: what was flown last is in the last bits of the next equilibrium, and so of gains and flights.
+    # An aircraft of its own: what was flown last is in the last bits of the next equilibrium, and
+    # so of gains and flights.
     beyond = Fdm(spec)
     near: Trim | None = None
     for airspeed in envelope.design_airspeeds:
@@ -167,10 +174,12 @@ def schedule_at(grid: Grid, bandwidths: LoopBandwidths) -> Schedule:
 
 
 def _checked(closed: ClosedLoops) -> tuple[int, list[Check]]:
-    """Return the longest of ``PERIODS`` that margins allow, and the margins with it; those with the shortest if they allow none.
+    """Return the longest of ``PERIODS`` that margins allow, and the margins with it; those with the
+    shortest if they allow none.
 
-    They allow it if each is as required, perturbed or not, and no loop has lost more than ``_PHASE_LOSS_MAX``. Most designs have
-    the longest: so perturbed aircraft, most of the work, are first checked with that.
+    They allow it if each is as required, perturbed or not, and no loop has lost more than
+    ``_PHASE_LOSS_MAX``. Most designs have the longest: so perturbed aircraft, most of the work, are
+    first checked with that.
     """
     often = check_design(PERIODS[0], closed, changed=False)
     if all(check.met for check in often):
@@ -183,7 +192,9 @@ def _checked(closed: ClosedLoops) -> tuple[int, list[Check]]:
 
 
 def phase_loss(before: Sequence[Check], after: Sequence[Check]) -> float:
-    """Return the largest loss of a loop's phase margin from the checks of one design to those of another [deg]."""
+    """Return the largest loss of a loop's phase margin from the checks of one design to those of
+    another [deg].
+    """
     return max(
         min(was.phase_deg, _NO_CROSSOVER) - min(now.phase_deg, _NO_CROSSOVER)
         for first, second in zip(before, after, strict=True)

@@ -1,4 +1,6 @@
-"""Which of all known aircraft can be flown, and why the others cannot: from their designs, cached or made for it."""
+"""Which of all known aircraft can be flown, and why the others cannot: from their designs, cached
+or made for it.
+"""
 
 import math
 import multiprocessing
@@ -33,7 +35,9 @@ class Discovered:
 
 
 def look_up(name: str, altitude: float) -> Discovered:
-    """Return whether one aircraft flies at ``altitude`` [m] as far as that is known without designing its autopilot."""
+    """Return whether one aircraft flies at ``altitude`` [m] as far as that is known without
+    designing its autopilot.
+    """
     try:
         spec = find_spec(name)
         known = is_cached(spec, altitude)
@@ -66,8 +70,8 @@ def discover(names: Sequence[str], altitude: float, jobs: int) -> Iterator[Disco
             except BrokenProcessPool:
                 yield _alone(name, altitude)
     finally:
-        # Interrupted, the list leaves what is being designed: an aircraft that does not trim can take a minute to say
-        # so.
+        # Interrupted, the list leaves what is being designed: an aircraft that does not trim can
+        # take a minute to say so.
         pool.shutdown(wait=False, cancel_futures=True)
         for process in multiprocessing.active_children():
             process.terminate()
@@ -111,7 +115,9 @@ def examine(name: str, altitude: float) -> Discovered:
 
 
 def _reason(name: str, message: str) -> str:
-    """Return the reason alone: which aircraft it is stands beside it, one of a directory by its path."""
+    """Return the reason alone: which aircraft it is stands beside it, one of a directory by its
+    path.
+    """
     called = f"aircraft '{Path(name).name}'"
     for prefix in (
         f"{called} cannot be flown: ",

@@ -16,7 +16,9 @@ from innerloop.flight.reversal_search import ReversalSearch, search_reversals
 from innerloop.flight.turn_reversal import TurnReversalResponse
 
 PART = 200
-"""Reversals that one flight consists of [-]: so many are lost at most where a search is interrupted."""
+"""Reversals that one flight consists of [-]: so many are lost at most where a search is
+interrupted.
+"""
 
 _PROCESSES = 2
 
@@ -26,7 +28,9 @@ Done = Callable[[int, float], None]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class _Part:
-    """A part of the search: with which aircraft and from where, how many reversals, and the seed of their random numbers."""
+    """A part of the search: with which aircraft and from where, how many reversals, and the seed of
+    their random numbers.
+    """
 
     spec: AircraftSpec
     root: Path
@@ -39,7 +43,8 @@ class _Part:
 
 
 def repeat_search(found: Designed, root: Path, reversals: int, *, done: Done) -> Record:
-    """Return the largest deviation that a search over so many reversals finds, of other random numbers than the design's own.
+    """Return the largest deviation that a search over so many reversals finds, of other random
+    numbers than the design's own.
 
     An interrupted search returns what it has found, if there is any.
 

@@ -9,7 +9,8 @@ from innerloop.designs.designed import Record
 
 
 def design_manifest(record: Record, *, wall_time: float, command: str = "") -> dict[str, Any]:
-    """Return the manifest of a design, from which its report takes title, description and provenance.
+    """Return the manifest of a design, from which its report takes title, description and
+    provenance.
 
     Parameters
     ----------

@@ -50,7 +50,8 @@ _CLIMB_ANGLES_DEG = (-3.0, -1.5, 1.5, 3.0)
 
 
 def design_record(design: Design, root: Path) -> Record:
-    """Compute trims, poles, margins, loop shapes and responses of a design, the responses also flown in JSBSim.
+    """Compute trims, poles, margins, loop shapes and responses of a design, the responses also
+    flown in JSBSim.
 
     Parameters
     ----------
@@ -108,7 +109,8 @@ def design_record(design: Design, root: Path) -> Record:
 def reversal_record(
     spec: AircraftSpec, root: Path, start: Trim, bank: float, slow_lag: float
 ) -> Record:
-    """Return how the heading rate follows a reversal of a turn at ``bank`` [rad], and the deviations that a search found.
+    """Return how the heading rate follows a reversal of a turn at ``bank`` [rad], and the
+    deviations that a search found.
 
     Parameters
     ----------
@@ -140,7 +142,9 @@ def reversal_record(
 
 
 def step_sizes(schedule: Schedule) -> dict[str, float]:
-    """Return the steps that are predicted and flown [rad/s, m/s, m]: half a study's turn, half the clipped errors."""
+    """Return the steps that are predicted and flown [rad/s, m/s, m]: half a study's turn, half the
+    clipped errors.
+    """
     turn = heading_rate_for_bank(schedule.envelope.bank, schedule.level(schedule.middle).airspeed)
     room = 0.25 * (schedule.envelope.airspeed_max - schedule.envelope.airspeed_min)
     sizes = {
@@ -164,7 +168,9 @@ def _envelope_record(envelope: Envelope) -> Record:
 
 
 def _input_record(control_input: ControlInput) -> Record:
-    """Return a control's range as the autopilot has it: its throttle closes no further than flight idle."""
+    """Return a control's range as the autopilot has it: its throttle closes no further than flight
+    idle.
+    """
     return {
         "name": control_input.name,
         "lower": control_input.lower,
@@ -174,8 +180,8 @@ def _input_record(control_input: ControlInput) -> Record:
 
 
 def _trim_record(t: Trim, bank: float) -> Record:
-    """Return an equilibrium; ``bank`` is the grid's [rad], 0 in straight flight, even if a small roll balances the
-    propeller's torque."""
+    """Return an equilibrium; ``bank`` is the grid's [rad], 0 in straight flight, even if a small
+    roll balances the propeller's torque."""
     return {
         "airspeed_mps": t.airspeed,
         "bank_rad": bank,

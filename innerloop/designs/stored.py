@@ -1,7 +1,8 @@
-"""Designs as JSON text: every number comes back to the last bit, and nothing in such a text is executed.
+"""Designs as JSON text: every number comes back to the last bit, and nothing in such a text is
+executed.
 
-A dataclass is written as an object of its fields, and read back by the declared types of those fields; anything else than
-what they declare is refused.
+A dataclass is written as an object of its fields, and read back by the declared types of those
+fields; anything else than what they declare is refused.
 """
 
 import dataclasses
@@ -23,7 +24,9 @@ _AS_THEY_ARE = (float, str, bool, int)
 
 
 def as_text(value: object) -> str:
-    """Return a dataclass as JSON text; "not a number" and infinity are written as Python's JSON does."""
+    """Return a dataclass as JSON text; "not a number" and infinity are written as Python's JSON
+    does.
+    """
     return json.dumps(value, default=_plain, separators=(",", ":"))
 
 
@@ -87,7 +90,9 @@ def _restored(found: Any, kind: Any) -> Any:
 
 
 def _of_parts(found: Any, origin: Any, arguments: tuple[Any, ...]) -> Any:
-    """Return a value of a type that is made of others: a tuple, a mapping, an array, or something that may be absent."""
+    """Return a value of a type that is made of others: a tuple, a mapping, an array, or something
+    that may be absent.
+    """
     if origin is np.ndarray:
         return _array(found)
     if origin in (typing.Union, types.UnionType):

@@ -33,13 +33,15 @@ class AutopilotedAircraft:
     ----------
     spec : the aircraft
     root : JSBSim root with the autopilot
-    failable : whether parts can fail in flight; the aircraft then flies from a prepared copy of ``root``
+    failable : whether parts can fail in flight; the aircraft then flies from a prepared copy of
+        ``root``
 
     Attributes
     ----------
     fdm : the simulation
     run : advances it by one time step, in the weather of its release
-    command_airspeed, command_altitude, command_heading_rate : setters of the commands [m/s, m, rad/s]
+    command_airspeed, command_altitude, command_heading_rate : setters of the commands
+        [m/s, m, rad/s]
     """
 
     def __init__(self, spec: AircraftSpec, root: Path, *, failable: bool = False) -> None:
@@ -76,8 +78,8 @@ class AutopilotedAircraft:
         ----------
         state : the equilibrium's state, against the air
         airspeed, altitude : commands [m/s, m]
-        weather : of the flight; None for still air. The wind blows from the start; turbulence begins with the
-            release, and the times of gusts count from it.
+        weather : of the flight; None for still air. The wind blows from the start; turbulence
+            begins with the release, and the times of gusts count from it.
         """
         if self._weathered or (self._faults and self._faults.failed):
             end_weather(self.fdm)
@@ -90,7 +92,8 @@ class AutopilotedAircraft:
         self.fdm.write(ELEVATOR_HELD, 0.0)
         self.fdm.write(RESET, -1.0)
         wind = weather.wind.now(0.0, altitude) if weather else None
-        # JSBSim counts the autopilot's steps on from one flight to the next. Its clock tells where in a period that ended.
+        # JSBSim counts the autopilot's steps on from one flight to the next. Its clock tells where
+        # in a period that ended.
         if remaining := -round(self.fdm.read(CLOCK) / self.fdm.time_step) % self._period:
             self.fdm.hold(state, remaining, wind)
         self.fdm.hold(state, hold_steps(self.fdm.spec, self._period), wind)
@@ -104,14 +107,16 @@ class AutopilotedAircraft:
             self.run = windy_run(self.fdm, weather.wind, gusty_run(self.fdm, weather.gusts))
 
     def hold_elevator(self) -> None:
-        """Hold the elevator at its position at the release; the aircraft's own stability then controls pitch.
+        """Hold the elevator at its position at the release; the aircraft's own stability then
+        controls pitch.
 
         The remaining controls after a failure then have one task instead of two conflicting ones.
         """
         self.fdm.write(ELEVATOR_HELD, 1.0)
 
     def fail(self, name: str) -> None:
-        """Let a part fail from the next time step on, by a name from ``aircraft.simulation.faults.fault_names``.
+        """Let a part fail from the next time step on, by a name from
+        ``aircraft.simulation.faults.fault_names``.
 
         Raises
         ------

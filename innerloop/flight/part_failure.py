@@ -1,4 +1,6 @@
-"""What an aircraft a part of which fails in a turn is measured for: how fast it loses airspeed, and how far its glide leads off."""
+"""What an aircraft a part of which fails in a turn is measured for: how fast it loses airspeed, and
+how far its glide leads off.
+"""
 
 import itertools
 import math
@@ -20,16 +22,22 @@ _SIDES = -1.0, 1.0
 """Of a turn: to the left, to the right."""
 
 _WATCHED, _OVER = 5.0, 1.0
-"""For how long the fall is watched, an engine may run down for seconds, and time over which it is taken [s]."""
+"""For how long the fall is watched, an engine may run down for seconds, and time over which it is
+taken [s].
+"""
 
 _CLIMBED, _STEP = 8.0, 0.5
 """For how long it climbs before, and time between commands of its altitude [s]."""
 
 _ROOM = 1000.0
-"""How much higher a glide begins than flights do, so that it does not end in the sea, and how much lower it is commanded [m]."""
+"""How much higher a glide begins than flights do, so that it does not end in the sea, and how much
+lower it is commanded [m].
+"""
 
 _KNOWN_AFTER = 2.0
-"""For how long the airspeed may go on to fall below the slowest commanded until the failure is known [s]."""
+"""For how long the airspeed may go on to fall below the slowest commanded until the failure is
+known [s].
+"""
 
 _FALLEN = 120.0
 """For how long its airspeed may take to fall before it is commanded to glide all the same [s]."""
@@ -41,8 +49,10 @@ class PartFailure:
 
     Attributes
     ----------
-    airspeed_fall : largest rate at which the airspeed falls until it is known that the engine has failed [m/s2]
-    glide_deviation : how far the turn is led off while the aircraft pushes over to its glide, after any failure [m]
+    airspeed_fall : largest rate at which the airspeed falls until it is known that the engine has
+        failed [m/s2]
+    glide_deviation : how far the turn is led off while the aircraft pushes over to its glide, after
+        any failure [m]
     """
 
     airspeed_fall: float
@@ -64,10 +74,11 @@ def measure_part_failure(
     airspeed_min: float,
     gradient: float = 0.0,
 ) -> PartFailure:
-    """Return what it does to the aircraft when a part of it fails in a settled turn, or as it has begun to climb in one.
+    """Return what it does to the aircraft when a part of it fails in a settled turn, or as it has
+    begun to climb in one.
 
-    Where the engine has failed the glide begins as slowly as that may have become; with a surface that is stuck it begins at once,
-    and with the engine's power it may be commanded to sink faster.
+    Where the engine has failed the glide begins as slowly as that may have become; with a surface
+    that is stuck it begins at once, and with the engine's power it may be commanded to sink faster.
 
     Parameters
     ----------
@@ -88,7 +99,9 @@ def measure_part_failure(
 
 
 def glide_airspeed(airspeed: float, airspeed_min: float) -> float:
-    """Return the airspeed that is commanded in a glide, by V_r and the slowest that is commanded [m/s]."""
+    """Return the airspeed that is commanded in a glide, by V_r and the slowest that is commanded
+    [m/s].
+    """
     return 0.5 * (airspeed + airspeed_min)
 
 
@@ -126,7 +139,9 @@ class _Turn:
             aircraft.run()
 
     def flown(self, *, failing: bool = True) -> Iterator[float]:
-        """Let it climb, its engine perhaps fail, and fly on as commanded; yield the airspeed before each time step then [m/s]."""
+        """Let it climb, its engine perhaps fail, and fly on as commanded; yield the airspeed before
+        each time step then [m/s].
+        """
         read, begun = (
             self.aircraft.fdm.node(_AIRSPEED).get_double_value,
             round(_CLIMBED / TIME_STEP),
@@ -149,13 +164,15 @@ def _airspeed_fall(turn: _Turn) -> float:
 
 
 def _glide_deviation(turn: _Turn, glide: float, begins: float) -> float:
-    """Return how far from the commanded turn the aircraft comes within half a turn [m], by its own airspeed.
+    """Return how far from the commanded turn the aircraft comes within half a turn [m], by its own
+    airspeed.
 
     Parameters
     ----------
     turn : in which a part fails
     glide : airspeed commanded in the glide [m/s]
-    begins : airspeed at which it begins, after the engine has failed; infinite at once, with its power [m/s]
+    begins : airspeed at which it begins, after the engine has failed; infinite at once, with its
+        power [m/s]
     """
     for airspeed in itertools.islice(
         turn.flown(failing=math.isfinite(begins)), round(_FALLEN / TIME_STEP)

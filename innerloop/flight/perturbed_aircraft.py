@@ -1,4 +1,6 @@
-"""The aircraft that a search over reversals flies: as modelled, and those with which the design's margins are checked."""
+"""The aircraft that a search over reversals flies: as modelled, and those with which the design's
+margins are checked.
+"""
 
 import math
 import shutil
@@ -36,6 +38,8 @@ def _flying(spec: AircraftSpec, root: Path, case: Perturbation) -> AutopilotedAi
 
 
 def deviations_by_case(searches: Sequence[ReversalSearch]) -> dict[str, float]:
-    """Return the largest deviation of each aircraft that flew a reversal in one of the searches [m]."""
+    """Return the largest deviation of each aircraft that flew a reversal in one of the searches
+    [m].
+    """
     found = {case: max(search.deviations[i] for search in searches) for i, case in enumerate(CASES)}
     return {case: deviation for case, deviation in found.items() if math.isfinite(deviation)}

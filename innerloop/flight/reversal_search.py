@@ -1,13 +1,16 @@
-"""How far an aircraft strays from its turn-reversal response: a search over reversals from whatever it was doing before.
+"""How far an aircraft strays from its turn-reversal response: a search over reversals from whatever
+it was doing before.
 
-The guidance's keep-out guard predicts turns by a dead time, a lag and the course that is still to come of earlier commands
-(docs/keepout_guard.md). Rolling, airspeed lost in the turn and integrators of the autopilot make the aircraft's path another
-one. What counts is by how much it comes nearer to what it turns away from: the deviation against the direction in which the
-turn leads, as long as the guard may rely on it, in proportion to the change of heading rate, or of command of late if that is
+The guidance's keep-out guard predicts turns by a dead time, a lag and the course that is still to
+come of earlier commands (docs/keepout_guard.md). Rolling, airspeed lost in the turn and integrators
+of the autopilot make the aircraft's path another one. What counts is by how much it comes nearer to
+what it turns away from: the deviation against the direction in which the turn leads, as long as the
+guard may rely on it, in proportion to the change of heading rate, or of command of late if that is
 larger. The aircraft is flown as modelled and perturbed.
 
-A turn away from what is at rest comes closest to it within a quarter of a turn; from what closes in as fast as the sine of an
-angle over the aircraft's own speed, later by that angle. So the directions lean, and the turn is flown on by the largest.
+A turn away from what is at rest comes closest to it within a quarter of a turn; from what closes in
+as fast as the sine of an angle over the aircraft's own speed, later by that angle. So the
+directions lean, and the turn is flown on by the largest.
 """
 
 import math
@@ -28,7 +31,9 @@ from innerloop.flight.turn_reversal import TurnReversalResponse
 from innerloop.jsbsim.properties import HEADING_RATE
 
 _SEARCHED = (20, 150)
-"""Fewest and most reversals of the search that is part of every design [-]; the command's ``--reversals`` flies more."""
+"""Fewest and most reversals of the search that is part of every design [-]; the command's
+``--reversals`` flies more.
+"""
 
 _SEARCHED_FOR = 1000.0
 """Flight time of that search, within those limits [s]."""
@@ -40,7 +45,9 @@ _WORST = 2
 """Of the worst so far, any of which a reversal's commands may be near [-]."""
 
 _CHANGE = 0.15
-"""Standard deviation by which these are changed: of a command over omega_max, and of the logarithm of its duration [-]."""
+"""Standard deviation by which these are changed: of a command over omega_max, and of the logarithm
+of its duration [-].
+"""
 
 _HELD = (0.1, 3.0)
 """Shortest and longest time for which a command is held before the turn, over 1/omega_max [-]."""
@@ -49,14 +56,17 @@ _BEFORE = 3
 """Commands before the turn [-]."""
 
 _SETTLED = 3.0
-"""Time for which the turn is held out of which those to the other side begin, over 1/omega_max [-]."""
+"""Time for which the turn is held out of which those to the other side begin, over 1/omega_max [-].
+"""
 
 _ROLLING, _BACK = (1.0, 1.5, 2.0), (0.2, 2.0, 3.0, 4.0)
-"""For how long the aircraft turns to the other side, and has turned back since, over dead time and lag [-]: in the middle of a roll
-it turns on; and heading rates oscillate for as long after it."""
+"""For how long the aircraft turns to the other side, and has turned back since, over dead time and
+lag [-]: in the middle of a roll it turns on; and heading rates oscillate for as long after it."""
 
 _LEANING = np.radians([0.0, 30.0, 60.0])
-"""How far the direction away leans forward of abeam [rad]: more, the faster that moves from which the aircraft turns away."""
+"""How far the direction away leans forward of abeam [rad]: more, the faster that moves from which
+the aircraft turns away.
+"""
 
 Array = npt.NDArray[np.float64]
 
@@ -72,9 +82,11 @@ class ReversalSearch:
     deviations : largest of each aircraft [m]; minus infinity of one that flew none
     unguided : of the reversals, those that did not follow the worst so far [-]
     usual : least deviation that at most one in a hundred of these exceeds [m]
-    command_before : heading-rate command just before the worst, over omega_max to the side of the turn [-]
+    command_before : heading-rate command just before the worst, over omega_max to the side of the
+        turn [-]
     airspeed_before : airspeed at its beginning [m/s]
-    altitude_error : largest difference of the altitude from the one that is held, in all of the flight [m]
+    altitude_error : largest difference of the altitude from the one that is held, in all of the
+        flight [m]
     """
 
     reversals: int
@@ -88,7 +100,9 @@ class ReversalSearch:
 
 
 def reversals_of_a_design(bank: float, airspeed: float) -> int:
-    """Return how many reversals are flown for the record of a design, by its bank [rad] and airspeed [m/s]."""
+    """Return how many reversals are flown for the record of a design, by its bank [rad] and
+    airspeed [m/s].
+    """
     quarter = 0.5 * math.pi / heading_rate_for_bank(bank, airspeed)
     return min(max(round(0.5 * _SEARCHED_FOR / quarter), _SEARCHED[0]), _SEARCHED[1])
 
@@ -104,11 +118,13 @@ def search_reversals(
     seed: int = 0,
     settled: bool = False,
 ) -> ReversalSearch:
-    """Return the largest deviation of ``aircraft`` from their response in so many reversals, one after the other.
+    """Return the largest deviation of ``aircraft`` from their response in so many reversals, one
+    after the other.
 
-    The aircraft take turns. The first reversals begin after a roll to the other side, the next after a few full turns to random
-    sides for random durations; before every second one of these, a command is less than full. Those of the second half climb:
-    aircraft and commands are those of one of the worst so far, the commands changed at random.
+    The aircraft take turns. The first reversals begin after a roll to the other side, the next
+    after a few full turns to random sides for random durations; before every second one of these, a
+    command is less than full. Those of the second half climb: aircraft and commands are those of
+    one of the worst so far, the commands changed at random.
 
     Parameters
     ----------
@@ -170,7 +186,9 @@ def search_reversals(
 
 @dataclass(frozen=True, slots=True)
 class _Before:
-    """What is flown before a reversal: commands over omega_max, for how long over 1/omega_max each; and the side turned to."""
+    """What is flown before a reversal: commands over omega_max, for how long over 1/omega_max each;
+    and the side turned to.
+    """
 
     commands: tuple[tuple[float, float], ...]
     side: float
@@ -182,7 +200,9 @@ _SETTLED_TURNS = tuple(_Before(((-side, _SETTLED),), side) for side in (1.0, -1.
 
 @dataclass(frozen=True, slots=True)
 class _Found:
-    """A reversal: deviation over its change of heading rate [m], which aircraft flew it, what before, at what airspeed [m/s]."""
+    """A reversal: deviation over its change of heading rate [m], which aircraft flew it, what
+    before, at what airspeed [m/s].
+    """
 
     deviation: float
     which: int
@@ -200,7 +220,9 @@ def _rolls(late: float) -> list[_Before]:
 
 
 def _random(generator: np.random.Generator, *, full: bool) -> _Before:
-    """Return random commands and a random side: full turns, of which one is a part of one unless all are ``full``."""
+    """Return random commands and a random side: full turns, of which one is a part of one unless
+    all are ``full``.
+    """
     shares = generator.choice([-1.0, 1.0], _BEFORE)
     if not full:
         shares[generator.integers(_BEFORE)] = generator.uniform(-1.0, 1.0)
@@ -226,7 +248,8 @@ def _changed(before: _Before, generator: np.random.Generator) -> _Before:
 
 
 class _Flight:
-    """An aircraft under way, the heading-rate commands that it was given at each time step, and what is to come of them.
+    """An aircraft under way, the heading-rate commands that it was given at each time step, and
+    what is to come of them.
 
     With it, the largest difference of its altitude from that of its release [m].
     """
@@ -257,7 +280,9 @@ class _Flight:
         return math.hypot(self._north(), self._east()) * METRES_PER_FOOT
 
     def fly(self, heading_rate: float, duration: float) -> Array:
-        """Return the path from here [m], shape (steps, 2), under a command that is held for ``duration`` [s]."""
+        """Return the path from here [m], shape (steps, 2), under a command that is held for
+        ``duration`` [s].
+        """
         self._aircraft.command_heading_rate(heading_rate)
         steps = max(1, round(duration / TIME_STEP))
         run, north, east, rate, height = (
@@ -281,9 +306,11 @@ class _Flight:
     def predicted(
         self, turn: float, duration: float, speed: float, rate: float
     ) -> tuple[Array, float]:
-        """Return the path [m], shape (steps, 2), of a vehicle of that response that is commanded to turn from here on.
+        """Return the path [m], shape (steps, 2), of a vehicle of that response that is commanded to
+        turn from here on.
 
-        With it, by how much its heading rate changes from when the command acts, over a full reversal.
+        With it, by how much its heading rate changes from when the command acts, over a full
+        reversal.
 
         Parameters
         ----------
@@ -316,7 +343,9 @@ class _Flight:
         return np.asarray(path), max(LEAST_CHANGE, self._change / (2.0 * rate), change)
 
     def _take_in(self, heading_rate: float, flown: Array) -> None:
-        """Take in what was commanded and flown: the course that the aircraft has turned less than its response to the commands."""
+        """Take in what was commanded and flown: the course that the aircraft has turned less than
+        its response to the commands.
+        """
         steps = len(flown) - 1
         self._change = (
             max(abs(heading_rate - self.commands[-1]), self._change) * self._fading**steps

@@ -1,8 +1,9 @@
 """Whether the control surfaces follow their commands, from what their servos report.
 
-A sound servo trails its command by its lag and its limited speed, from stop to stop when a turn is reversed; a stuck
-one stays where it is while its commands change. What distinguishes them without a model of the servo is time: wherever
-a sound servo is, its command was there, or beyond, within the last few tenths of a second.
+A sound servo trails its command by its lag and its limited speed, from stop to stop when a turn is
+reversed; a stuck one stays where it is while its commands change. What distinguishes them without a
+model of the servo is time: wherever a sound servo is, its command was there, or beyond, within the
+last few tenths of a second.
 """
 
 from collections import deque
@@ -12,15 +13,15 @@ from aircraft.spec import Feedback
 from innerloop.jsbsim.properties import commanded_property
 
 _TRAVEL_TIME = 0.4
-"""Longest time a sound surface may trail its command [s]: the X8's takes 0.30 s from stop to stop and lags by 25
-ms."""
+"""Longest time a sound surface may trail its command [s]: the X8's takes 0.30 s from stop to stop
+and lags by 25 ms."""
 
 
 class ServoMonitor:
     """Monitors every control surface of one aircraft in flight.
 
-    The throttle is not monitored, for no surface moves with it. A control input without a servo model is taken to be
-    at its command, as it is behind the switch of a fault.
+    The throttle is not monitored, for no surface moves with it. A control input without a servo
+    model is taken to be at its command, as it is behind the switch of a fault.
 
     Parameters
     ----------
@@ -59,13 +60,16 @@ class ServoMonitor:
             recent.append(command())
 
     def error(self) -> float:
-        """Take note of the commands, and return the largest distance of a surface from the recent ones, over its travel [-]."""
+        """Take note of the commands, and return the largest distance of a surface from the recent
+        ones, over its travel [-].
+        """
         worst = 0.0
         for command, position, travel, recent in self._surfaces:
             now, at = command(), position() / travel
             recent.append(now)
             oldest = recent[0]
-            # Between the oldest and the newest of its commands a surface is at no distance from them.
+            # Between the oldest and the newest of its commands a surface is at no distance from
+            # them.
             if not (oldest <= at <= now or now <= at <= oldest):
                 off = at - max(recent) if at > now else min(recent) - at
                 worst = off if off > worst else worst

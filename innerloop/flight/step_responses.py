@@ -30,7 +30,8 @@ CHANNELS: dict[str, tuple[str, float]] = {
     "aileron_command": ("autopilot/aileron-command", 1.0),
     "throttle_command": ("autopilot/throttle-command", 1.0),
 }
-"""Recorded quantities, by their name in the closed loop: JSBSim property and SI value of its unit."""
+"""Recorded quantities, by their name in the closed loop: JSBSim property and SI value of its unit.
+"""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -117,11 +118,11 @@ def flown_step(
 
 
 def measure_lag(aircraft: AutopilotedAircraft, start: Trim, bank: float) -> float:
-    """Return how long the flown heading rate lags its command [s]: the phase of a sinusoid, fitted over two periods
-    after two.
+    """Return how long the flown heading rate lags its command [s]: the phase of a sinusoid, fitted
+    over two periods after two.
 
-    Half the heading rate of a turn at ``bank`` [rad] is the sinusoid's amplitude, and its frequency is that heading
-    rate itself, near which those of the guidance lie.
+    Half the heading rate of a turn at ``bank`` [rad] is the sinusoid's amplitude, and its frequency
+    is that heading rate itself, near which those of the guidance lie.
     """
     frequency = heading_rate_for_bank(bank, start.airspeed)
     amplitude = 0.5 * frequency

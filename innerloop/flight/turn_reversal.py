@@ -1,4 +1,6 @@
-"""The turn-reversal response: how the heading rate follows the guidance's largest change of command."""
+"""The turn-reversal response: how the heading rate follows the guidance's largest change of
+command.
+"""
 
 import math
 from dataclasses import dataclass
@@ -22,7 +24,8 @@ _LEAD_FRACTION = 0.01
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class TurnReversalResponse:
-    """A dead time followed by a first-order lag, which displace the aircraft as its own heading-rate response does.
+    """A dead time followed by a first-order lag, which displace the aircraft as its own
+    heading-rate response does.
 
     Attributes
     ----------
@@ -37,13 +40,13 @@ class TurnReversalResponse:
 def measure_turn_reversal(
     aircraft: AutopilotedAircraft, start: Trim, bank: float
 ) -> TurnReversalResponse:
-    """Return the dead time and lag of a reversal from a settled turn at ``bank`` [rad] to the left to one to the
-    right.
+    """Return the dead time and lag of a reversal from a settled turn at ``bank`` [rad] to the left
+    to one to the right.
 
-    The measure is the displacement of the aircraft, the integral of its course error. Dead time and lag are equal, and
-    the shortest for which the model is nowhere ahead of the aircraft over a quarter of a turn, except for 1 % of the
-    final displacement. The lag of slow commands, ``measure_lag``, is shorter: the aircraft rolls through twice the
-    bank.
+    The measure is the displacement of the aircraft, the integral of its course error. Dead time and
+    lag are equal, and the shortest for which the model is nowhere ahead of the aircraft over a
+    quarter of a turn, except for 1 % of the final displacement. The lag of slow commands,
+    ``measure_lag``, is shorter: the aircraft rolls through twice the bank.
 
     Parameters
     ----------
@@ -89,7 +92,9 @@ def measure_turn_reversal(
 
 
 def displacement(time: Array, reversal: TurnReversalResponse) -> Array:
-    """Return the integral of the course error [s2] per change of commanded heading rate, ``time`` [s] after it."""
+    """Return the integral of the course error [s2] per change of commanded heading rate, ``time``
+    [s] after it.
+    """
     after = np.maximum(time - reversal.delay, 0.0)
     lag = reversal.lag
     late = np.minimum(time, reversal.delay)

@@ -9,7 +9,9 @@ HEADING_RATE_COMMAND = "autopilot/heading-rate-command-rad_sec"
 HEADING_RATE = "autopilot/heading-rate-rad_sec"
 BANK_COMMAND = "autopilot/bank-command-rad"
 CONTROL_COMMAND = "autopilot/{}-command"
-"""Pattern of the properties that hold the command of a control [-], by its name in the linear model."""
+"""Pattern of the properties that hold the command of a control [-], by its name in the linear
+model.
+"""
 
 RESET = "autopilot/reset"
 """Negative to hold every integrator at 0, otherwise 0."""
@@ -22,10 +24,11 @@ ELEVATOR_HELD, HELD_ELEVATOR = "autopilot/elevator-held", "autopilot/held-elevat
 
 
 def hold_steps(spec: AircraftSpec, period: int) -> int:
-    """Return for how many time steps a body is held before its release, while servos and engines settle.
+    """Return for how many time steps a body is held before its release, while servos and engines
+    settle.
 
-    These are whole periods of the autopilot, so that it computes in the last of them: what guidance and record read a
-    whole number of periods later is of that very moment.
+    These are whole periods of the autopilot, so that it computes in the last of them: what guidance
+    and record read a whole number of periods later is of that very moment.
 
     Parameters
     ----------
@@ -42,7 +45,9 @@ def system_name(spec: AircraftSpec) -> str:
 
 
 def commanded_property(control_input: ControlInput) -> str:
-    """Return the property of the command that the autopilot gives to JSBSim for a control input [-]."""
+    """Return the property of the command that the autopilot gives to JSBSim for a control input
+    [-].
+    """
     return (
         f"autopilot/{control_input.name}-surface-command"
         if control_input.effectiveness

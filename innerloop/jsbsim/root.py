@@ -11,11 +11,11 @@ from innerloop.synthesis.schedule import Schedule
 
 
 def write_root(schedule: Schedule, directory: Path) -> Path:
-    """Write a JSBSim root directory with a copy of the aircraft, its engine files and the autopilot; return the
-    directory.
+    """Write a JSBSim root directory with a copy of the aircraft, its engine files and the
+    autopilot; return the directory.
 
-    Any JSBSim started on this root flies the aircraft under the autopilot. The model's own outputs and autopilot are
-    left out (``aircraft.simulation.model_copy``); its servos keep their play.
+    Any JSBSim started on this root flies the aircraft under the autopilot. The model's own outputs
+    and autopilot are left out (``aircraft.simulation.model_copy``); its servos keep their play.
     """
     spec = schedule.spec
     model_file = copy_model(spec.files, directory)

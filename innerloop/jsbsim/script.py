@@ -75,11 +75,12 @@ class Command:
 
 
 def demonstration(envelope: Envelope, start: Trim) -> tuple[Command, ...]:
-    """Return commands that demonstrate the autopilot: turn right, climb, change speed, undo both, turn left.
+    """Return commands that demonstrate the autopilot: turn right, climb, change speed, undo both,
+    turn left.
 
-    The turns are flown at a quarter of the heading rate of the largest commanded bank. The altitude changes by the distance flown
-    in half a second, and the airspeed by a tenth or by half the distance to the farther end of the envelope, whichever is less,
-    towards that end.
+    The turns are flown at a quarter of the heading rate of the largest commanded bank. The altitude
+    changes by the distance flown in half a second, and the airspeed by a tenth or by half the
+    distance to the farther end of the envelope, whichever is less, towards that end.
 
     Parameters
     ----------
@@ -116,11 +117,11 @@ def demonstration(envelope: Envelope, start: Trim) -> tuple[Command, ...]:
 
 
 def write_script(schedule: Schedule, root: Path) -> Path:
-    """Write a JSBSim script of ``demonstration``, and the initialisation file it starts from, into a root of
-    ``innerloop.jsbsim.root.write_root``.
+    """Write a JSBSim script of ``demonstration``, and the initialisation file it starts from, into
+    a root of ``innerloop.jsbsim.root.write_root``.
 
-    The script releases the aircraft as ``AutopilotedAircraft.release`` does, at 0 s of its clock, from level flight at
-    the middle design airspeed.
+    The script releases the aircraft as ``AutopilotedAircraft.release`` does, at 0 s of its clock,
+    from level flight at the middle design airspeed.
 
     Parameters
     ----------
@@ -195,8 +196,8 @@ def _preparations(fdm: Fdm, period: int) -> tuple[int, list[str]]:
 
 
 def columns(fdm: Fdm) -> list[str]:
-    """Return the properties that the script's output file has as columns, after ``Time``: motion, commands, controls,
-    engines.
+    """Return the properties that the script's output file has as columns, after ``Time``: motion,
+    commands, controls, engines.
 
     Parameters
     ----------
@@ -222,8 +223,8 @@ def columns(fdm: Fdm) -> list[str]:
 
 
 def _before(start: Trim, held: float) -> str:
-    """Return the properties that are set before JSBSim runs its initial state, for a body that is then ``held``
-    [s]."""
+    """Return the properties that are set before JSBSim runs its initial state, for a body that is
+    then ``held`` [s]."""
     values = (
         *initial_conditions(before_hold(start.state(), held)),
         (AIRSPEED_COMMAND, start.airspeed),
@@ -235,10 +236,11 @@ def _before(start: Trim, held: float) -> str:
 
 
 def _event(note: str, step: int, values: Sequence[tuple[str, float]]) -> str:
-    """Return an event that sets values when ``step`` time steps from release are complete, before the next one.
+    """Return an event that sets values when ``step`` time steps from release are complete, before
+    the next one.
 
-    JSBSim advances its clock before it looks at events, and adds up rounding in it: the half step is far from both
-    neighbours.
+    JSBSim advances its clock before it looks at events, and adds up rounding in it: the half step
+    is far from both neighbours.
     """
     lines = "\n".join(
         f'      <set name="{name}" value="{float(value)!r}"/>' for name, value in values

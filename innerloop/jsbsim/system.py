@@ -1,9 +1,11 @@
 """The autopilot written out as a JSBSim ``<system>``.
 
-The commands are ``AIRSPEED_COMMAND`` [m/s], ``ALTITUDE_COMMAND`` [m] and ``HEADING_RATE_COMMAND`` [rad/s].
+The commands are ``AIRSPEED_COMMAND`` [m/s], ``ALTITUDE_COMMAND`` [m] and ``HEADING_RATE_COMMAND``
+[rad/s].
 
-A component costs JSBSim more than a table does, and some forty of them were a third of its time step. So a value has
-one of its own only if it is read from outside, a state, looked up in a table, or expensive to compute twice.
+A component costs JSBSim more than a table does, and some forty of them were a third of its time
+step. So a value has one of its own only if it is read from outside, a state, looked up in a table,
+or expensive to compute twice.
 """
 
 import math
@@ -94,7 +96,9 @@ def _by_point(schedule: Schedule, gain: Callable[[Gains], float]) -> str:
 
 
 def _by_bank(schedule: Schedule, quantity: str, bank: str = _ROLL) -> str:
-    """Turn compensation: a trim quantity over bank, by default the actual one, and commanded airspeed."""
+    """Turn compensation: a trim quantity over bank, by default the actual one, and commanded
+    airspeed.
+    """
     return table_2d(
         bank, _SCHEDULE, schedule.banks, schedule.airspeeds, schedule.over_bank(quantity)
     )
@@ -144,8 +148,8 @@ def _measurements(schedule: Schedule) -> list[str]:
         ),
     )
     return [
-        # At least 1 m/s: JSBSim runs the system once without a speed, and integrators keep what a division by zero
-        # gives.
+        # At least 1 m/s: JSBSim runs the system once without a speed, and integrators keep what a
+        # division by zero gives.
         function(_AIRSPEED, operation("max", times(read("velocities/vt-fps"), foot), number(1.0))),
         function(_CLIMB_RATE, times(read("velocities/h-dot-fps"), foot)),
         function(
@@ -153,7 +157,8 @@ def _measurements(schedule: Schedule) -> list[str]:
         ),
         function("autopilot/speed-ahead-fps", ahead(*velocity)),
         function("autopilot/speed-right-fps", right(*velocity[1:])),
-        # Rate of the horizontal air-relative course, from accelerometers and attitude (state.course_rate).
+        # Rate of the horizontal air-relative course, from accelerometers and attitude
+        # (state.course_rate).
         function(HEADING_RATE, operation("quotient", moment, inertia)),
     ]
 
@@ -191,8 +196,9 @@ def _longitudinal(schedule: Schedule) -> list[str]:
             strict=True,
         )
     )
-    # A larger error demands a steady climb or acceleration; integrated on the way there, it would overshoot by as much again. An
-    # altitude that still moves away is integrated beyond the limit, too: its integral may be what takes it there, for ever.
+    # A larger error demands a steady climb or acceleration; integrated on the way there, it would
+    # overshoot by as much again. An altitude that still moves away is integrated beyond the limit,
+    # too: its integral may be what takes it there, for ever.
     near = within(read(altitude_error), weights.altitude_error_max)
     leaving = operation("lt", times(read(altitude_error), read(_CLIMB_RATE)), number(0.0))
     integrated = (
@@ -209,7 +215,8 @@ def _longitudinal(schedule: Schedule) -> list[str]:
         ]
         held = operation("ifthen", read(ELEVATOR_HELD), read(HELD_ELEVATOR), read(unlimited))
         parts += [
-            # The integral of the last step enters here; back-calculation then holds it to what the control can give.
+            # The integral of the last step enters here; back-calculation then holds it to what the
+            # control can give.
             function(unlimited, total(_by_bank(schedule, name), read(integral), *feedback)),
             *_commanded(schedule.spec.input(name), held if name == "elevator" else read(unlimited)),
             function(

@@ -70,7 +70,9 @@ def table_2d(
 
 
 def function(name: str, expression: str, outputs: Sequence[str] = ()) -> str:
-    """Return a component that writes an expression to property ``name``, and to ``outputs`` as well."""
+    """Return a component that writes an expression to property ``name``, and to ``outputs`` as
+    well.
+    """
     extra = "".join(f"<output>{output}</output>" for output in outputs)
     return f'<fcs_function name="{name}"><function>{expression}</function>{extra}</fcs_function>'
 
@@ -81,10 +83,11 @@ def channel(name: str, period: int, components: Sequence[str]) -> str:
 
 
 def integrator(name: str, source: str, reset: str) -> str:
-    """Return a component that integrates property ``source`` by the trapezoidal rule, held at 0 while ``reset`` is
-    negative.
+    """Return a component that integrates property ``source`` by the trapezoidal rule, held at 0
+    while ``reset`` is negative.
 
-    JSBSim's own ``<integrator>`` can be held but not reset, so this is a ``<pid>`` with its integral alone.
+    JSBSim's own ``<integrator>`` can be held but not reset, so this is a ``<pid>`` with its
+    integral alone.
     """
     gains = '<kp>0</kp><ki type="trap">1</ki><kd>0</kd>'
     return f'<pid name="{name}"><input>{source}</input>{gains}<trigger>{reset}</trigger></pid>'

@@ -1,6 +1,8 @@
-"""The control law in Python, term by term as ``innerloop.jsbsim.system`` writes it for JSBSim, to be linearised.
+"""The control law in Python, term by term as ``innerloop.jsbsim.system`` writes it for JSBSim, to
+be linearised.
 
-Limits and saturations are left out: they are part of the autopilot in JSBSim, not of its linear model.
+Limits and saturations are left out: they are part of the autopilot in JSBSim, not of its linear
+model.
 """
 
 import bisect
@@ -26,24 +28,31 @@ STATES = (
     "model_rate",
     "model_acceleration",
 )
-"""States of the autopilot: integrals, and the reference model's heading rate and its rate [rad/s, rad/s^2]."""
+"""States of the autopilot: integrals, and the reference model's heading rate and its rate
+[rad/s, rad/s^2].
+"""
 
 Array = npt.NDArray[np.float64]
 
 
 def measurements(schedule: Schedule) -> tuple[str, ...]:
-    """Return the measured quantities, named as in the linear model; sideslip only where a rudder acts on it."""
+    """Return the measured quantities, named as in the linear model; sideslip only where a rudder
+    acts on it.
+    """
     lateral = LATERAL if "rudder" in schedule.controls else LATERAL[:-1]
     return (*LONGITUDINAL, *lateral, "heading_rate")
 
 
 class ControlLaw:
-    """The autopilot between its tables' edges, as a function of commands, measurements and its own states."""
+    """The autopilot between its tables' edges, as a function of commands, measurements and its own
+    states.
+    """
 
     def __init__(self, schedule: Schedule) -> None:
         self.schedule = schedule
         self._airspeeds = np.array(schedule.airspeeds)
-        # One table for all trim quantities and one for all gains: an interpolator's call costs more than its values.
+        # One table for all trim quantities and one for all gains: an interpolator's call costs more
+        # than its values.
         self._quantities = ["pitch", "q", "r", *schedule.controls]
         tables = np.stack([schedule.over_bank(name) for name in self._quantities], axis=-1)
         self._over_bank = _table(schedule.banks, self._airspeeds, tables)
@@ -71,17 +80,23 @@ class ControlLaw:
         )
 
     def gains(self, bank: float, airspeed: float) -> Array:
-        """Return the gains at a bank [rad] and commanded airspeed [m/s], as ``gain_vector`` orders them."""
+        """Return the gains at a bank [rad] and commanded airspeed [m/s], as ``gain_vector`` orders
+        them.
+        """
         low, high = self._gain_banks
         return self._gains(min(max(bank, low), high), airspeed)
 
     def model_bank(self, heading_rate: float, measured_airspeed: float, airspeed: float) -> float:
-        """Return the bank that turns at a heading rate [rad/s] with a measured and a commanded airspeed [m/s]."""
+        """Return the bank that turns at a heading rate [rad/s] with a measured and a commanded
+        airspeed [m/s].
+        """
         turn = heading_rate * measured_airspeed / STANDARD_GRAVITY
         return self._bank_for_turn(turn, airspeed)
 
     def bank_slope(self, bank: float, measured_airspeed: float, airspeed: float) -> float:
-        """Return the bank rate per rate of heading rate [s] about a bank: cos^2(bank) V/g, more if it slips."""
+        """Return the bank rate per rate of heading rate [s] about a bank: cos^2(bank) V/g, more if
+        it slips.
+        """
         slope = float(np.interp(airspeed, self._airspeeds, self._slopes))
         return math.cos(bank) ** 2 * slope * measured_airspeed / STANDARD_GRAVITY
 
@@ -95,7 +110,8 @@ class ControlLaw:
 
         Parameters
         ----------
-        commands, measured, states : by the names of ``COMMANDS``, ``measurements`` and ``STATES``, absolute values
+        commands, measured, states : by the names of ``COMMANDS``, ``measurements`` and ``STATES``,
+            absolute values
         """
         weights, airspeed = self.schedule.weights, commands["airspeed_command"]
         at_bank = self.trim_tables(measured["roll"], airspeed)
@@ -196,7 +212,9 @@ def _scalar_table(
 
 
 def _cells(points: Sequence[float] | Array) -> Callable[[float], tuple[int, float]]:
-    """Return a function from a coordinate to its cell among ascending ``points``: index, and share of the cell below it."""
+    """Return a function from a coordinate to its cell among ascending ``points``: index, and share
+    of the cell below it.
+    """
     at = [float(point) for point in points]
     last = len(at) - 2
 
@@ -234,6 +252,8 @@ class _Named:
 
 
 def bank_slopes(schedule: Schedule) -> list[float]:
-    """Return tan(bank) over dimensionless turn V omega/g near level flight, by airspeed: 1 in coordinated turns."""
+    """Return tan(bank) over dimensionless turn V omega/g near level flight, by airspeed: 1 in
+    coordinated turns.
+    """
     low, high = schedule.bank_for_turn(np.array([-0.2, 0.2]))
     return [(math.tan(b) - math.tan(a)) / 0.4 for a, b in zip(low, high, strict=True)]

@@ -1,4 +1,6 @@
-"""The autopilot as a linear system about an equilibrium: what margins and predicted responses are computed from."""
+"""The autopilot as a linear system about an equilibrium: what margins and predicted responses are
+computed from.
+"""
 
 from collections.abc import Mapping
 
@@ -9,14 +11,17 @@ from aircraft.dynamics.linear_model import LinearModel
 from innerloop.law.control_law import COMMANDS, STATES, ControlLaw, measurements
 
 _STEP = 1e-4
-"""Step of differences [SI]: the law has products and piecewise linear tables, so only rounding limits it."""
+"""Step of differences [SI]: the law has products and piecewise linear tables, so only rounding
+limits it.
+"""
 
 
 def linear_controller(law: ControlLaw, trim: Trim) -> LinearModel:
     """Return the autopilot, linear about an equilibrium of the aircraft.
 
-    Inputs are ``COMMANDS`` and the measurements, outputs are the control inputs, all as deviations from trim. States
-    are ``STATES``. At an edge between two pieces of a table the slope is the mean of both.
+    Inputs are ``COMMANDS`` and the measurements, outputs are the control inputs, all as deviations
+    from trim. States are ``STATES``. At an edge between two pieces of a table the slope is the mean
+    of both.
     """
     point = operating_point(law, trim)
     measured_names = measurements(law.schedule)
@@ -47,10 +52,11 @@ def linear_controller(law: ControlLaw, trim: Trim) -> LinearModel:
 
 
 def operating_point(law: ControlLaw, trim: Trim) -> dict[str, float]:
-    """Return commands, measurements and the autopilot's states while the aircraft flies an equilibrium under it.
+    """Return commands, measurements and the autopilot's states while the aircraft flies an
+    equilibrium under it.
 
-    In straight flight it counts as level: propeller and ailerons bank it by a tenth of a degree or so, which is beyond the edge of
-    the tables at 0, and it turns to both sides from there.
+    In straight flight it counts as level: propeller and ailerons bank it by a tenth of a degree or
+    so, which is beyond the edge of the tables at 0, and it turns to both sides from there.
     """
     roll = trim.roll if trim.yaw_rate else 0.0
     model_bank = law.model_bank(trim.yaw_rate, trim.airspeed, trim.airspeed)
@@ -75,5 +81,7 @@ def operating_point(law: ControlLaw, trim: Trim) -> dict[str, float]:
 def evaluate_at(
     law: ControlLaw, point: Mapping[str, float]
 ) -> tuple[dict[str, float], dict[str, float]]:
-    """Return the result of ``ControlLaw.evaluate`` at a point of commands, measurements and states by name."""
+    """Return the result of ``ControlLaw.evaluate`` at a point of commands, measurements and states
+    by name.
+    """
     return law.evaluate(point, point, point)

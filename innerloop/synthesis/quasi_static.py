@@ -29,7 +29,9 @@ def quasi_static(model: LinearModel) -> LinearModel:
 
 
 def state_lag(model: LinearModel, control_input: str) -> float:
-    """Return the lag of a control input [s]: the area above the step response of the slowest state that follows it."""
+    """Return the lag of a control input [s]: the area above the step response of the slowest state
+    that follows it.
+    """
     driven = [i for i, name in enumerate(model.state_labels) if name not in BODY_STATES]
     if not driven:
         return 0.0

@@ -1,4 +1,6 @@
-"""The autopilot's tables over airspeed and bank: equilibria (turn compensation), linear models, and gains."""
+"""The autopilot's tables over airspeed and bank: equilibria (turn compensation), linear models, and
+gains.
+"""
 
 import math
 from collections.abc import Sequence
@@ -41,7 +43,8 @@ class Schedule:
     airspeeds : shape (n,) [m/s], ascending
     trims : equilibria by airspeed, then by bank in the order of ``TRIM_BANKS``
     models : linear models by airspeed, then by bank in the order of ``GAIN_BANKS``
-    edges : linear models by airspeed, at the least and the largest bank of ``TRIM_BANKS``, for which no gains are designed
+    edges : linear models by airspeed, at the least and the largest bank of ``TRIM_BANKS``, for
+        which no gains are designed
     gains : as ``models``
     period : time steps from one computation of the autopilot to the next
     """
@@ -93,16 +96,20 @@ class Schedule:
     def over_bank(self, quantity: str) -> Array:
         """Return a trim quantity over bank and airspeed, shape (banks, airspeeds).
 
-        ``quantity`` is ``pitch``, ``yaw_rate``, ``p``, ``q``, ``r`` [rad, rad/s] or the name of a control input [-].
+        ``quantity`` is ``pitch``, ``yaw_rate``, ``p``, ``q``, ``r`` [rad, rad/s] or the name of a
+        control input [-].
         """
         return np.array([[trim_quantity(t, quantity) for t in row] for row in self.trims]).T
 
     def gain_over_bank(self, values: Sequence[Sequence[float]]) -> Array:
-        """Return a gain given by airspeed and gain bank over gain bank and airspeed, as ``over_bank`` does."""
+        """Return a gain given by airspeed and gain bank over gain bank and airspeed, as
+        ``over_bank`` does.
+        """
         return np.array(values, dtype=np.float64).T
 
     def bank_for_turn(self, turns: Array) -> Array:
-        """Return the bank [rad] that gives the dimensionless turn V omega/g = ``turns``, shape (turns, airspeeds).
+        """Return the bank [rad] that gives the dimensionless turn V omega/g = ``turns``, shape
+        (turns, airspeeds).
 
         In a coordinated turn this is atan(turns). An aircraft without rudder slips, and needs more.
         """
@@ -115,7 +122,9 @@ class Schedule:
         return np.arctan(np.array(columns).T)
 
     def turns(self) -> Array:
-        """Return the dimensionless turns of the table of ``bank_for_turn``: up to the largest bank's, and beyond."""
+        """Return the dimensionless turns of the table of ``bank_for_turn``: up to the largest
+        bank's, and beyond.
+        """
         largest = 1.05 * math.tan(self.banks[-1])
         return np.linspace(-largest, largest, 29)
 
@@ -126,7 +135,9 @@ def table_banks(envelope: Envelope, fractions: Sequence[float]) -> tuple[float, 
 
 
 def _interpolate(x: Array, at: Array, angles: Array) -> Array:
-    """Interpolate angles linearly in their tangent over its nearly proportional argument, extended past the ends."""
+    """Interpolate angles linearly in their tangent over its nearly proportional argument, extended
+    past the ends.
+    """
     tangents = np.tan(angles)
     inside = np.interp(x, at, tangents)
     inside = np.where(x > at[-1], tangents[-1] * x / at[-1], inside)

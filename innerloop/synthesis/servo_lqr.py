@@ -1,13 +1,14 @@
 """Servo LQR at one airspeed and bank: gains from the linearisation, nothing pasted.
 
-Why a servo LQR: the plant is multivariable (elevator and throttle both move airspeed and altitude, aileron and rudder
-both roll and yaw), every state it feeds back is one that an autopilot measures, integral action comes with the design,
-and weights that follow from the aircraft's own frequencies carry over to the next aircraft.
+Why a servo LQR: the plant is multivariable (elevator and throttle both move airspeed and altitude,
+aileron and rudder both roll and yaw), every state it feeds back is one that an autopilot measures,
+integral action comes with the design, and weights that follow from the aircraft's own frequencies
+carry over to the next aircraft.
 
-Servo and engine states are left out of the feedback (a hobby servo's position is not measured) and out of the Riccati
-equation, where their static gain replaces them; the margins are then computed with them and with the computing delay.
-At a bank, longitudinal and lateral motion couple; the gains of each are computed as if the other were at rest, and the
-margins with both.
+Servo and engine states are left out of the feedback (a hobby servo's position is not measured) and
+out of the Riccati equation, where their static gain replaces them; the margins are then computed
+with them and with the computing delay. At a bank, longitudinal and lateral motion couple; the gains
+of each are computed as if the other were at rest, and the margins with both.
 """
 
 import math
@@ -72,7 +73,9 @@ def _longitudinal(
 def _lateral(
     plant: LinearModel, w: DesignWeights, controls: ControlWeights
 ) -> tuple[Matrix, float, float]:
-    """Return the gains from ``LATERAL``, and those from the integrals of heading-rate error and of sideslip."""
+    """Return the gains from ``LATERAL``, and those from the integrals of heading-rate error and of
+    sideslip.
+    """
     states = ("beta", "p", "r", "roll")
     if not _has_rudder(plant):
         a, b, c, d = plant.pick(states, ("aileron",), ("heading_rate",))
@@ -92,8 +95,8 @@ def _has_rudder(plant: LinearModel) -> bool:
 def _feedforward(plant: LinearModel, trim: Trim) -> tuple[Matrix, Matrix]:
     """Return aileron and rudder for a roll rate and for a roll acceleration.
 
-    The rudder cancels the yaw that rolling and aileron cause, and turns the nose with the turn: r grows by g
-    cos(bank)/V times p.
+    The rudder cancels the yaw that rolling and aileron cause, and turns the nose with the turn: r
+    grows by g cos(bank)/V times p.
     """
     axes, inputs = (
         (("p", "r"), ("aileron", "rudder")) if _has_rudder(plant) else (("p",), ("aileron",))

@@ -1,9 +1,10 @@
-"""Requirements of a design: the bandwidths that an aircraft's loops can have, by its linear model, and LQR weights for
-them.
+"""Requirements of a design: the bandwidths that an aircraft's loops can have, by its linear model,
+and LQR weights for them.
 
-Bryson's rule makes each weight one over the square of an acceptable deviation. What is acceptable follows from a
-frequency: the fastest that an aircraft's control authority, its servos and its lift can follow. So one set of numbers,
-none of them with a length or a time in it, designs a 3 kg flying wing and an airliner.
+Bryson's rule makes each weight one over the square of an acceptable deviation. What is acceptable
+follows from a frequency: the fastest that an aircraft's control authority, its servos and its lift
+can follow. So one set of numbers, none of them with a length or a time in it, designs a 3 kg flying
+wing and an airliner.
 """
 
 import math
@@ -16,27 +17,35 @@ from innerloop.synthesis.quasi_static import quasi_static, state_lag
 from innerloop.synthesis.rate import PERIODS, loop_delay
 
 _LAG_PHASE = 0.18
-"""Phase that a loop may lose to its servo and the computing delay at its frequency, if the autopilot computes at every
-time step [rad]: 10 degrees."""
+"""Phase that a loop may lose to its servo and the computing delay at its frequency, if the
+autopilot computes at every time step [rad]: 10 degrees."""
 
 _AUTHORITY_FRACTION = 0.5
-"""Fraction of the control authority that a step of a command may take [-]: the rest is for gusts and feedback."""
+"""Fraction of the control authority that a step of a command may take [-]: the rest is for gusts
+and feedback.
+"""
 
 _BANK_STEP_FRACTION = 0.5
-"""The step of bank that takes this authority, over the bank limit [-]: half-way into the steepest turn."""
+"""The step of bank that takes this authority, over the bank limit [-]: half-way into the steepest
+turn.
+"""
 
 _PITCH_STEP = 0.15
 """The step of pitch that takes this authority [rad]: half the acceptable deviation."""
 
 _MODEL_DAMPING = 0.9
-"""Damping of the heading-rate response [-]: it overshoots by 0.15 %, exp(-pi 0.9 / sqrt(1 - 0.9^2))."""
+"""Damping of the heading-rate response [-]: it overshoots by 0.15 %, exp(-pi 0.9 / sqrt(1 -
+0.9^2)).
+"""
 
 _PEAK_RATE = 0.42
-"""Largest rate of a second-order response to a unit step, over its frequency [-]: 0.39 with a damping of 0.9, and
-0.42 with one of 0.8, so there is a little to spare."""
+"""Largest rate of a second-order response to a unit step, over its frequency [-]: 0.39 with a
+damping of 0.9, and 0.42 with one of 0.8, so there is a little to spare."""
 
 _LIFT_FRACTION = 0.75
-"""Fastest altitude loop, over the rate -Z_alpha at which lift turns the flight path towards the nose [-]."""
+"""Fastest altitude loop, over the rate -Z_alpha at which lift turns the flight path towards the
+nose [-].
+"""
 
 _ENGINE_FRACTION = 0.3
 """Fastest airspeed loop, over one over the lag of engine and delay [-]: there the engine
@@ -46,10 +55,10 @@ _AIRSPEED_TO_ALTITUDE = 0.27
 """Fastest airspeed loop, over the altitude loop [-]: elevator and throttle both move both, so the
 frequencies are kept apart by a factor near 4."""
 
-# The deviations of Bryson's rule, in an aircraft's own units: one over a loop's bandwidth for time, V for climbing, g
-# for changes of airspeed, g/V for turning. They are the weights of the X8's first design, divided by its units, and
-# serve every aircraft: the margins and step responses of each design are computed, and a design without the required
-# margins is slowed down or refused.
+# The deviations of Bryson's rule, in an aircraft's own units: one over a loop's bandwidth for time,
+# V for climbing, g for changes of airspeed, g/V for turning. They are the weights of the X8's first
+# design, divided by its units, and serve every aircraft: the margins and step responses of each
+# design are computed, and a design without the required margins is slowed down or refused.
 _PITCH = 0.3
 _ROLL = 0.1
 _SIDESLIP = 0.05
@@ -57,26 +66,31 @@ _SIDESLIP = 0.05
 
 _PITCH_RATE = 0.5
 _ROLL_RATE = 3.3
-"""Acceptable rates of pitch and roll, over their angle a unit of time [-]; roll rate is hardly penalised."""
+"""Acceptable rates of pitch and roll, over their angle a unit of time [-]; roll rate is hardly
+penalised.
+"""
 
 _CLIMB_TIME = 0.5
 _SLOWDOWN_TIME = 2.0
-"""Time in which the acceptable pitch makes the acceptable deviation of altitude, by climbing, and of airspeed, by
-gravity [units of time]."""
+"""Time in which the acceptable pitch makes the acceptable deviation of altitude, by climbing, and
+of airspeed, by gravity [units of time]."""
 
 _AIRSPEED_HELD = 2.4
 _ALTITUDE_HELD = 12.0
 _HEADING_RATE_HELD = 14.0
 _SIDESLIP_HELD = 6.0
-"""How long an acceptable deviation may last, which gives the acceptable integral of it [units of time]. For the
-heading rate, the deviation is the rate at which the acceptable roll turns."""
+"""How long an acceptable deviation may last, which gives the acceptable integral of it
+[units of time]. For the heading rate, the deviation is the rate at which the acceptable roll
+turns."""
 
 _ERROR_MAX = 2.0
-"""Number of acceptable deviations beyond which an error of altitude or airspeed is clipped [-]: it then asks for a
-steady climb or acceleration."""
+"""Number of acceptable deviations beyond which an error of altitude or airspeed is clipped [-]: it
+then asks for a steady climb or acceleration."""
 
 _ANTI_WINDUP = 0.33
-"""Rate at which integrators follow a saturated control, over the longitudinal bandwidth [-]: three units of time."""
+"""Rate at which integrators follow a saturated control, over the longitudinal bandwidth [-]: three
+units of time.
+"""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -107,16 +121,18 @@ class LoopBandwidths:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class DesignWeights:
-    """Acceptable deviations and the response to a heading-rate command, at every airspeed of a design.
+    """Acceptable deviations and the response to a heading-rate command, at every airspeed of a
+    design.
 
     Attributes
     ----------
     airspeed, pitch, pitch_rate, altitude : longitudinal deviations [m/s, rad, rad/s, m]
     airspeed_integral, altitude_integral : of their time integrals [m, m s]
     roll, roll_rate, sideslip : lateral deviations [rad, rad/s, rad]
-    heading_integral, sideslip_integral : of the time integrals of heading-rate error and sideslip [rad, rad s]
-    model_frequency, model_damping : the second-order response to a heading-rate command that the lateral loop follows
-        [rad/s, -]
+    heading_integral, sideslip_integral : of the time integrals of heading-rate error and sideslip
+        [rad, rad s]
+    model_frequency, model_damping : the second-order response to a heading-rate command that the
+        lateral loop follows [rad/s, -]
     altitude_error_max : altitude error that still makes the elevator work harder [m]
     airspeed_error_max : airspeed error that still makes the throttle work harder [m/s]
     anti_windup_rate : how fast an integrator follows its saturated command [1/s]
@@ -142,7 +158,9 @@ class DesignWeights:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ControlWeights:
-    """Acceptable deviations of the controls at one airspeed [-]; the rudder's is NaN without a rudder."""
+    """Acceptable deviations of the controls at one airspeed [-]; the rudder's is NaN without a
+    rudder.
+    """
 
     elevator: float
     aileron: float
@@ -151,7 +169,9 @@ class ControlWeights:
 
 
 def reachable_bandwidths(models: Sequence[LinearModel], bank: float) -> LoopBandwidths:
-    """Return the bandwidths that every level linear model of an aircraft can follow, in turns up to ``bank`` [rad]."""
+    """Return the bandwidths that every level linear model of an aircraft can follow, in turns up to
+    ``bank`` [rad].
+    """
     each = [_reachable(model, bank) for model in models]
     longitudinal = min(bandwidths.longitudinal for bandwidths in each)
     engine = min(bandwidths.airspeed for bandwidths in each)
@@ -192,8 +212,9 @@ def _reachable(model: LinearModel, bank: float) -> LoopBandwidths:
 def design_weights(bandwidths: LoopBandwidths, airspeed: float) -> DesignWeights:
     """Return the weights for loops of these bandwidths at about ``airspeed`` [m/s].
 
-    Altitude follows pitch, and airspeed follows gravity along it; so with a time unit of one over the frequency,
-    deviations of altitude go with V, of airspeed with g, and integrals with the unit itself.
+    Altitude follows pitch, and airspeed follows gravity along it; so with a time unit of one over
+    the frequency, deviations of altitude go with V, of airspeed with g, and integrals with the unit
+    itself.
     """
     unit, turn = 1.0 / bandwidths.longitudinal, 1.0 / bandwidths.lateral
     altitude = _CLIMB_TIME * airspeed * _PITCH * unit
@@ -221,7 +242,9 @@ def design_weights(bandwidths: LoopBandwidths, airspeed: float) -> DesignWeights
 def control_weights(
     model: LinearModel, bandwidths: LoopBandwidths, weights: DesignWeights
 ) -> ControlWeights:
-    """Return the controls at one airspeed that move their axis at its frequency, against its own damping."""
+    """Return the controls at one airspeed that move their axis at its frequency, against its own
+    damping.
+    """
     plant = quasi_static(model)
 
     def authority(row: str, column: str) -> float:

@@ -15,21 +15,29 @@ GAS_CONSTANT = 8.314462618
 """Molar gas constant [J/(mol K)]."""
 
 AIR_TEMPERATURE, AIR_PRESSURE = 288.15, 101325.0
-"""Temperature [K] and pressure [Pa] of the air where none are given: the standard atmosphere at sea level."""
+"""Temperature [K] and pressure [Pa] of the air where none are given: the standard atmosphere at sea
+level.
+"""
 
 _EXHAUST_MOLAR_MASS = 28.8e-3
-"""Of exhaust [kg/mol]: lean exhaust is within 1 % of air. Derived from 4.5 % CO2 and 5 % water; an assumption."""
+"""Of exhaust [kg/mol]: lean exhaust is within 1 % of air. Derived from 4.5 % CO2 and 5 % water; an
+assumption.
+"""
 
 _KILOWATT_HOUR = 3.6e6
 
 _SFOC_G_KWH = {2: (185.0, 195.0), 4: (205.0, 215.0)}
-"""Baseline of the specific fuel consumption [g/kWh] by stroke, for distillates and residual fuels: USEPA Marine_Emissions_Tools."""
+"""Baseline of the specific fuel consumption [g/kWh] by stroke, for distillates and residual fuels:
+USEPA Marine_Emissions_Tools.
+"""
 
 _NOX_G_KWH = {
     2: ((17.0, 16.0, 14.4, 3.4), (18.1, 17.0, 15.3, 3.6)),
     4: ((13.2, 12.2, 10.5, 2.6), (13.2, 12.2, 10.5, 2.6)),
 }
-"""NOx as NO2 [g/kWh] by stroke, for distillates and residual fuels, by tier: USEPA Marine_Emissions_Tools. At any load."""
+"""NOx as NO2 [g/kWh] by stroke, for distillates and residual fuels, by tier: USEPA
+Marine_Emissions_Tools. At any load.
+"""
 
 NO2_SHARE = 0.10
 """Share of NO2 in NOx by mole [-], after entrained ozone has been used up.
@@ -38,7 +46,9 @@ An assumption: makers give about 5 % at the engine, the range is 5 to 15 %.
 """
 
 _LOAD_MIN = 0.05
-"""Least load of an engine under way [-]: dead slow; an assumption. The cubic law goes to nothing, engines do not."""
+"""Least load of an engine under way [-]: dead slow; an assumption. The cubic law goes to nothing,
+engines do not.
+"""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -82,17 +92,20 @@ def emission_of(
     Parameters
     ----------
     ship, fuel : who burns what
-    speed : [m/s], 0 to the ship's largest; the power is its cube's share, and at least 5 % (dead slow)
+    speed : [m/s], 0 to the ship's largest; the power is its cube's share, and at least 5 % (dead
+        slow)
     power : [W], above 0 to the ship's largest; give speed or power
     air_temperature : around the funnel [K]
 
     Raises
     ------
-    MeasurementError : speed, power or temperature out of range, both or neither of the first two, or air hotter than the exhaust
+    MeasurementError : speed, power or temperature out of range, both or neither of the first two,
+        or air hotter than the exhaust
 
-    Sources: P = P_max (v/v_max)^3, BSH library 188756, p. 17; consumption with load, STEAM2, ACP 12:2641 (2012); exhaust at part
-    load, MAN B&W project guide 198 43 20-3.3, figs. 6.04.11 and 6.04.12, applied to all ships and loads: dead slow, exhaust is by
-    131 K hotter than at full power, which nobody has checked there; fluxes, Briggs, as in AERMOD.
+    Sources: P = P_max (v/v_max)^3, BSH library 188756, p. 17; consumption with load, STEAM2, ACP
+    12:2641 (2012); exhaust at part load, MAN B&W project guide 198 43 20-3.3, figs. 6.04.11 and
+    6.04.12, applied to all ships and loads: dead slow, exhaust is by 131 K hotter than at full
+    power, which nobody has checked there; fluxes, Briggs, as in AERMOD.
     """
     check_air(air_temperature, AIR_PRESSURE)
     load = _load(ship, speed, power)

@@ -9,13 +9,15 @@ from measurement.gases import CARBON_FRACTION, CARBON_PER_CO2, SULPHUR_MASS
 _FILE = "fuels.toml"
 
 SULPHUR_AS_SO2 = 0.97753
-"""Sulphur of the fuel that leaves as SO2 [-], the rest as sulphate: IMO GHG4, eq. 15, as USEPA Marine_Emissions_Tools has it.
+"""Sulphur of the fuel that leaves as SO2 [-], the rest as sulphate: IMO GHG4, eq. 15, as USEPA
+Marine_Emissions_Tools has it.
 
 The literature spans losses of 1 to 19 %.
 """
 
 SULPHUR_MAX_PERCENT = 5.0
-"""Largest sulphur content that is taken for a fuel's [% m/m]; MARPOL's limit was 4.5 before 2012."""
+"""Largest sulphur content that is taken for a fuel's [% m/m]; MARPOL's limit was 4.5 before 2012.
+"""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -77,9 +79,11 @@ def fuel_preset(name: str, sulphur_percent: float | None = None) -> Fuel:
 
 
 def expected_fsc(fuel: Fuel) -> float:
-    """Return the FSC [% m/m] that a perfect instrument reads: without the sulphate, and with the carbon of ``CARBON_FRACTION``.
+    """Return the FSC [% m/m] that a perfect instrument reads: without the sulphate, and with the
+    carbon of ``CARBON_FRACTION``.
 
-    Gas oil of 0.1000 reads 0.0972, residual fuel of 0.5000 reads 0.5003: there the two errors cancel. An estimate is judged
-    against this; what is between it and the fuel's own is a bias of the method.
+    Gas oil of 0.1000 reads 0.0972, residual fuel of 0.5000 reads 0.5003: there the two errors
+    cancel. An estimate is judged against this; what is between it and the fuel's own is a bias of
+    the method.
     """
     return fuel.sulphur_percent * SULPHUR_AS_SO2 * CARBON_FRACTION / fuel.carbon_fraction

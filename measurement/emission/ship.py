@@ -30,7 +30,8 @@ _POSITIVE = (
 
 @dataclass(frozen=True, kw_only=True)
 class Ship:
-    """Engine and funnel of a ship. Several engines are one, and their pipes one funnel; auxiliary engines are left out.
+    """Engine and funnel of a ship. Several engines are one, and their pipes one funnel; auxiliary
+    engines are left out.
 
     Attributes
     ----------
@@ -42,8 +43,10 @@ class Ship:
     speed_max : speed that this power gives [m/s]
     stack_height : height of the funnel's mouth above the sea [m]
     stack_diameter : inner diameter of the funnel's mouth [m]
-    exhaust_per_energy_kg_kwh : exhaust per energy at maximum continuous rating; corrected for part load [kg/kWh]
-    exhaust_temperature_c : temperature of the exhaust at maximum continuous rating; corrected for part load [°C]
+    exhaust_per_energy_kg_kwh : exhaust per energy at maximum continuous rating; corrected for part
+        load [kg/kWh]
+    exhaust_temperature_c : temperature of the exhaust at maximum continuous rating; corrected for
+        part load [°C]
     wake_spread : initial spread of the plume in the superstructure's wake [m], 0 to 20
 
     Raises
@@ -96,7 +99,9 @@ def ship_preset(name: str) -> Ship:
 
 
 def ship_of(given: str | Mapping[str, Any]) -> Ship:
-    """Return a ship by its name, or from a table; one without a title is called ``OWN``. Errors as of the two."""
+    """Return a ship by its name, or from a table; one without a title is called ``OWN``. Errors as
+    of the two.
+    """
     return (
         ship_preset(given)
         if isinstance(given, str)
@@ -105,7 +110,8 @@ def ship_of(given: str | Mapping[str, Any]) -> Ship:
 
 
 def read_ship(table: Mapping[str, Any], name: str) -> Ship:
-    """Return a ship from a table with the fields of ``Ship``, of which its name and its title may be left out.
+    """Return a ship from a table with the fields of ``Ship``, of which its name and its title may
+    be left out.
 
     Raises
     ------
@@ -128,7 +134,8 @@ def read_ship(table: Mapping[str, Any], name: str) -> Ship:
 
 
 def funnel_height(given: float | None, ship: str | Mapping[str, Any] | None) -> float:
-    """Return the height of a funnel's mouth above the sea: as it is given, else the ship's own, else ``WITHOUT_SHIP`` [m].
+    """Return the height of a funnel's mouth above the sea: as it is given, else the ship's own,
+    else ``WITHOUT_SHIP`` [m].
 
     Raises
     ------

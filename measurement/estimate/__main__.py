@@ -1,4 +1,6 @@
-"""Command line: ``python -m measurement.estimate FLIGHT.csv`` estimates the fuel sulphur content of a logged flight."""
+"""Command line: ``python -m measurement.estimate FLIGHT.csv`` estimates the fuel sulphur content of
+a logged flight.
+"""
 
 import argparse
 import contextlib
@@ -93,7 +95,9 @@ def _naming(path: Path) -> Iterator[None]:
 
 
 def _command(arguments: list[str] | None) -> list[str]:
-    """Return the program and its arguments: those of the console command where that hands on to this one."""
+    """Return the program and its arguments: those of the console command where that hands on to
+    this one.
+    """
     console = Path(sys.argv[0]).stem == _CONSOLE
     return sys.argv if arguments is None or console else ["", *arguments]
 

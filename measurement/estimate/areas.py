@@ -21,7 +21,9 @@ _TAIL = 5.0
 """It ends so many of the slowest time constants after the pass."""
 
 _BASE = 15.0
-"""Length of the background on either side of the window, where no other pass is; one sample where there is no room [s]."""
+"""Length of the background on either side of the window, where no other pass is; one sample where
+there is no room [s].
+"""
 
 _SHARE_LEAST = 0.05
 """Share that remains of an area under which nothing follows from the rest."""
@@ -39,7 +41,8 @@ class Areas:
     ratio : SO2 over CO2 [ppb/ppm]
     noise : its standard deviation by the noise [ppb/ppm]
     share : of an area of SO2 that remains, as passes overlap in its channel [-]
-    separate : the ratio that areas of separate passes would read, by the share that remains of each gas [ppb/ppm]
+    separate : the ratio that areas of separate passes would read, by the share that remains of each
+        gas [ppb/ppm]
     interval_s : between passes, median [s]; not a number for one pass
     """
 
@@ -50,7 +53,8 @@ class Areas:
     interval_s: float
 
     def unread(self, t90_s: float) -> str:
-        """Return why areas hold too little of the SO2: passes overlap; a single one is cut off where the record or a part ends.
+        """Return why areas hold too little of the SO2: passes overlap; a single one is cut off
+        where the record or a part ends.
 
         Parameters
         ----------
@@ -69,7 +73,8 @@ class Areas:
 
 
 def area_ratio(record: Record, instrument: SnifferSpec, passes: Sequence[Pass]) -> Areas:
-    """Return the ratio of the areas of SO2, corrected for the gases that its cell responds to, and of CO2.
+    """Return the ratio of the areas of SO2, corrected for the gases that its cell responds to, and
+    of CO2.
 
     Areas are of the excess over the straight line between the means before and after a window.
     """
@@ -115,8 +120,8 @@ def _variance(weights: Array, channel: Channel, step: float) -> float:
 def _windows(record: Record, instrument: SnifferSpec, passes: Sequence[Pass]) -> dict[str, Array]:
     """Return the weights of each gas's samples in the areas of all passes together.
 
-    A window begins before its pass, and ends when the slowest channel has forgotten it or the next one begins. Each gas has its own
-    delay.
+    A window begins before its pass, and ends when the slowest channel has forgotten it or the next
+    one begins. Each gas has its own delay.
     """
     gases = used_gases(record)
     tail = _TAIL * max(instrument.known(gas).constants[0] for gas in gases)
@@ -149,10 +154,11 @@ def _all_windows(record: Record, windows: Sequence[tuple[float, float]], late: f
 
 
 def _puffs(record: Record, instrument: SnifferSpec, passes: Sequence[Pass], gas: str) -> Array:
-    """Return what a gas's channel reads of puffs with the dose of each pass, if it read CO2: sums of exponentials [ppm].
+    """Return what a gas's channel reads of puffs with the dose of each pass, if it read CO2: sums
+    of exponentials [ppm].
 
-    Each sample is the mean from half a step before it to half a step after it. At single moments, an area would depend on where
-    between two samples a puff arrives.
+    Each sample is the mean from half a step before it to half a step after it. At single moments,
+    an area would depend on where between two samples a puff arrives.
     """
     channel, co2 = instrument.known(gas), instrument.known("co2")
     arrivals = (
@@ -177,8 +183,8 @@ def _add_window(
 ) -> None:
     """Add to the samples' weights those of an area over a window and its background [s].
 
-    The background is the straight line between the means of the samples before and after the window: of those within ``_BASE``, as
-    far as they belong to no other pass.
+    The background is the straight line between the means of the samples before and after the
+    window: of those within ``_BASE``, as far as they belong to no other pass.
     """
     before = 0
     for time in record.times:

@@ -1,4 +1,6 @@
-"""Errors that do not average out: what each property of the instrument that is not known exactly does to the result."""
+"""Errors that do not average out: what each property of the instrument that is not known exactly
+does to the result.
+"""
 
 import math
 from collections.abc import Callable, Iterator
@@ -14,14 +16,17 @@ CARBON_SD = 0.015
 """Relative standard deviation of a fuel's carbon content [-] (assumption)."""
 
 SAMPLING_SD = 0.02
-"""Relative standard deviation by what lies between readings, over their interval in time constants of CO2 [-].
+"""Relative standard deviation by what lies between readings, over their interval in time constants
+of CO2 [-].
 
-Without noise, readings 0.6 to 4.6 time constants apart read 0.8 to 3.7 % too much, or 1.1 to 7.7 % where delays differ by half of
-their interval.
+Without noise, readings 0.6 to 4.6 time constants apart read 0.8 to 3.7 % too much, or 1.1 to 7.7 %
+where delays differ by half of their interval.
 """
 
 SULPHATE_SHARE = 0.0225
-"""Of the sulphur leaves as sulphate, not as SO2 [-] (IMO GHG4, eq. 15); 0.01 to 0.19 are reported. Stated, not corrected."""
+"""Of the sulphur leaves as sulphate, not as SO2 [-] (IMO GHG4, eq. 15); 0.01 to 0.19 are reported.
+Stated, not corrected.
+"""
 
 _CORRECTING = ("no", "no2")
 
@@ -29,7 +34,9 @@ _CORRECTING = ("no", "no2")
 def unmeasured(
     instrument: SnifferSpec, measured: tuple[str, ...], carbon: float
 ) -> dict[str, tuple[float, float]]:
-    """Return what NO and NO2 that are not measured add to the result, and its standard deviation, by gas [% m/m]."""
+    """Return what NO and NO2 that are not measured add to the result, and its standard deviation,
+    by gas [% m/m].
+    """
     so2, found = instrument.known("so2"), {}
     for gas in _CORRECTING:
         share, deviation = so2.cross.get(gas, 0.0), so2.cross_sd.get(gas, 0.0)
@@ -64,13 +71,15 @@ def common_errors(
 ) -> CommonErrors:
     """Return what gains, responses, delays and cross-sensitivities do that are not known exactly.
 
-    Each property is moved by its standard deviation, and the result found anew; those of a name add in squares.
+    Each property is moved by its standard deviation, and the result found anew; those of a name add
+    in squares.
 
     Parameters
     ----------
     instrument : as it is known, with response and delay of SO2 as they fit where they are not given
     measured : gases of the record
-    changes : by how much result and residuals differ from those of the instrument as it is known, for another one
+    changes : by how much result and residuals differ from those of the instrument as it is known,
+        for another one
     """
     squares: dict[str, float] = {}
     energy = 0.0
@@ -82,7 +91,9 @@ def common_errors(
 
 
 def _moved(instrument: SnifferSpec, measured: tuple[str, ...]) -> Iterator[tuple[str, SnifferSpec]]:
-    """Yield the name of an error and the instrument that has it. What is not given at all was found from the record."""
+    """Yield the name of an error and the instrument that has it. What is not given at all was found
+    from the record.
+    """
     for gas in measured:
         channel = instrument.known(gas)
         correcting = gas in _CORRECTING

@@ -41,7 +41,9 @@ CARBON_LEAST, CARBON_MOST = 0.5, 0.95
 """Of a fuel [-]; methanol has 0.375, which these factors are not made for."""
 
 OVERLAP_LEAST = 0.95
-"""Least share of the truth that areas must read, by how their passes overlap in the slow channel: 2.0 t90 between passes."""
+"""Least share of the truth that areas must read, by how their passes overlap in the slow channel:
+2.0 t90 between passes.
+"""
 
 EXPLAINED_LEAST = 0.5
 """Share of a misfit that another delay has to explain for it to be the true one."""
@@ -80,8 +82,9 @@ def estimate(
 
     Raises
     ------
-    MeasurementError : the readings cannot be those of a flight through a plume: no CO2, times, units or shapes; or a parameter is
-        out of range. What makes a record weak rather than wrong is a quality of C with its reason, and no verdict.
+    MeasurementError : the readings cannot be those of a flight through a plume: no CO2, times,
+        units or shapes; or a parameter is out of range. What makes a record weak rather than wrong
+        is a quality of C with its reason, and no verdict.
     """
     check_parameters(method, carbon, limits_percent)
     record = checked_record(readings, instrument)
@@ -205,16 +208,19 @@ def _regressed(record: Record, instrument: SnifferSpec) -> _Ratio:
 def _out_of_time(
     record: Record, instrument: SnifferSpec, misfit: float, samples: int
 ) -> tuple[str, ...]:
-    """Return the problem of SO2 and CO2 that do not fit in time, as where two loggers have two clocks.
+    """Return the problem of SO2 and CO2 that do not fit in time, as where two loggers have two
+    clocks.
 
-    Far from the true delay the slope is near 0 and changes little: an error that small steps of the delay do not show. So the
-    delay is sought over its whole range, as if it were not stated; where noise alone explains the residuals it is not needed.
+    Far from the true delay the slope is near 0 and changes little: an error that small steps of the
+    delay do not show. So the delay is sought over its whole range, as if it were not stated; where
+    noise alone explains the residuals it is not needed.
     """
     so2 = instrument.known("so2")
     if math.isinf(so2.delay_sd_s) or not misfit > 0.0 or noise_alone(misfit, samples):
         return ()
     free = align(record, instrument.with_channel(replace(so2, delay_sd_s=math.inf)))
-    # A clean fuel leaves what NO and NO2 were not corrected for, which may follow CO2 of another pass a little better than its own.
+    # A clean fuel leaves what NO and NO2 were not corrected for, which may follow CO2 of another
+    # pass a little better than its own.
     if not regress(make_signals(record, free.instrument)).misfit - 1.0 < (1.0 - EXPLAINED_LEAST) * (
         misfit - 1.0
     ):
@@ -235,7 +241,9 @@ def _delay(instrument: SnifferSpec) -> float:
 
 
 def _areas(record: Record, instrument: SnifferSpec, passes: Sequence[Pass]) -> _Ratio:
-    """Return the ratio of areas; passes that overlap in the slow channel add a common error as large as the closed form tells."""
+    """Return the ratio of areas; passes that overlap in the slow channel add a common error as
+    large as the closed form tells.
+    """
     alignment = stated(instrument)
     found = area_ratio(record, instrument, passes)
 
@@ -337,7 +345,9 @@ def _told(
 
 
 def _read_after(record: Record, end: float) -> float:
-    """Return which share was read of the time after the end of a pass [s] in which its SO2 may come."""
+    """Return which share was read of the time after the end of a pass [s] in which its SO2 may
+    come.
+    """
     after = record.time - end
     return min(
         1.0, np.count_nonzero((after > 0.0) & (after <= DELAY_MOST)) * record.step / DELAY_MOST

@@ -30,13 +30,15 @@ def over_time(
 ) -> pd.DataFrame:
     """Return what is known after each elapsed time within the record: a row per time.
 
-    Columns: ``elapsed_s``, ``fsc_percent``, ``noise_percent``, ``total_percent``, ``low_percent``, ``high_percent``, ``quality``,
-    ``passes``, and for each limit ``verdict_0.1`` and ``probability_above_0.1``. Times at which there is no estimate yet have a
-    quality of C and values that are not numbers.
+    Columns: ``elapsed_s``, ``fsc_percent``, ``noise_percent``, ``total_percent``, ``low_percent``,
+    ``high_percent``, ``quality``, ``passes``, and for each limit ``verdict_0.1`` and
+    ``probability_above_0.1``. Times at which there is no estimate yet have a quality of C and
+    values that are not numbers.
 
     Raises
     ------
-    MeasurementError : a parameter is out of range, or the whole record is not one of a flight, as for ``estimate``
+    MeasurementError : a parameter is out of range, or the whole record is not one of a flight, as
+        for ``estimate``
     """
     check_parameters(method, carbon, limits_percent)
     checked_record(readings, instrument)
@@ -74,7 +76,8 @@ def _row(
 
 
 def time_to_verdict(table: pd.DataFrame, limit_percent: float) -> float:
-    """Return the elapsed time from which on the verdict on a limit is no longer open and stays the same [s]; not a number if open.
+    """Return the elapsed time from which on the verdict on a limit is no longer open and stays the
+    same [s]; not a number if open.
 
     Parameters
     ----------

@@ -18,28 +18,30 @@ SNR_LEAST = 5.0
 """Signal to noise from which on a peak is a pass (Kattner et al., ACP 15:10087)."""
 
 _STEPS_LEAST = 3.5
-"""Steps of the CO2 readings that passes must be high, in the median: of lower ones too much is lost in rounding."""
+"""Steps of the CO2 readings that passes must be high, in the median: of lower ones too much is lost
+in rounding.
+"""
 
 _SAMPLES_LEAST = 4
 """Sample periods that passes must last, in the median.
 
-Simulated logs of 0.25 % in which they last longer read 0.25 to 0.28 % in the mean. Those in which they do not read 0.12 to 0.33 %,
-and the interval does not say so.
+Simulated logs of 0.25 % in which they last longer read 0.25 to 0.28 % in the mean. Those in which
+they do not read 0.12 to 0.33 %, and the interval does not say so.
 """
 
 _WHOLE = 0.01
 """Of a sample period, by which a pass may be shorter than whole ones: times are rounded."""
 
 _DITHERED = 4.0
-"""Standard deviations of the noise within a step of other gases up to which rounding is noise: it leaves a mean within a tenth of a
-step."""
+"""Standard deviations of the noise within a step of other gases up to which rounding is noise: it
+leaves a mean within a tenth of a step."""
 
 _WINDOW = 60.0
 """Length of the pieces of which the background is the low quantile [s]."""
 
 _QUANTILE, _QUANTILE_SIGMA = 0.05, 1.645
-"""Share of the samples, less than those outside the plume, above which the background lies, and by how many standard deviations of
-the noise: the normal distribution's quantile."""
+"""Share of the samples, less than those outside the plume, above which the background lies, and by
+how many standard deviations of the noise: the normal distribution's quantile."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -49,9 +51,11 @@ class Pass:
     Attributes
     ----------
     time_s, centre_s : of the CO2 reading's peak, and of the centre of its area [s]
-    start_s, end_s : where the CO2 reading leaves its background and is back, or the trough to the neighbour [s]
+    start_s, end_s : where the CO2 reading leaves its background and is back, or the trough to the
+        neighbour [s]
     height_ppm, snr : of the reading's peak over its background, and over its noise [-]
-    dose_ppm_s : area of the excess of CO2 in the air, with what the channel remembers at the end less that at the start [ppm s]
+    dose_ppm_s : area of the excess of CO2 in the air, with what the channel remembers at the end
+        less that at the start [ppm s]
     """
 
     time_s: float
@@ -64,9 +68,11 @@ class Pass:
 
 
 def readings_noise(record: Record, instrument: SnifferSpec) -> dict[str, float]:
-    """Return the standard deviation of each gas's readings: what is stated, with rounding to larger steps, or what they show.
+    """Return the standard deviation of each gas's readings: what is stated, with rounding to larger
+    steps, or what they show.
 
-    Rounding is noise, of a step over the root of 12, where noise or passes carry the readings through several steps.
+    Rounding is noise, of a step over the root of 12, where noise or passes carry the readings
+    through several steps.
     """
     noise = {}
     for gas in (gas for gas in GASES if gas in record.values[0]):
@@ -143,7 +149,9 @@ def find_passes(record: Record, channel: Channel) -> tuple[Pass, ...]:
 def _bounded(
     time: Array, excess: Array, peaks: npt.NDArray[np.int64], channel: Channel
 ) -> list[Pass]:
-    """Return the passes at these peaks, each between the troughs to its neighbours, where it is above the noise."""
+    """Return the passes at these peaks, each between the troughs to its neighbours, where it is
+    above the noise.
+    """
     noise, memory = channel.noise, sum(channel.constants)
     inner = [int(a + np.argmin(excess[a : b + 1])) for a, b in itertools.pairwise(peaks)]
     passes = []
@@ -152,7 +160,8 @@ def _bounded(
         start = max(low, int(below[below < peak].max(initial=low)))
         end = min(high, int(below[below > peak].min(initial=high)))
         height, inside = float(excess[peak]), slice(start, end + 1)
-        # The low quantile lies above the background where a plume is never far: then the troughs tell it better.
+        # The low quantile lies above the background where a plume is never far: then the troughs
+        # tell it better.
         level = min(0.0, 0.5 * float(excess[start] + excess[end]))
         weights = np.maximum(excess[inside], 0.0)
         area = float(

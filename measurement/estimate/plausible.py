@@ -15,24 +15,36 @@ from measurement.sniffer.sniffer import Readings
 from measurement.sniffer.spec import SnifferSpec
 
 OZONE_MOST = 50.0
-"""NO2 that ozone makes of the NO of a plume, at most [ppb] (assumption): all ozone of the air over the sea, which has 20 to 50."""
+"""NO2 that ozone makes of the NO of a plume, at most [ppb] (assumption): all ozone of the air over
+the sea, which has 20 to 50.
+"""
 
 _LOW, _HIGH, _SIGMAS = 0.05, 0.95, 3.29
-"""Shares of the readings below the level outside the plume, and below that in it; of noise alone they lie so many sigma apart."""
+"""Shares of the readings below the level outside the plume, and below that in it; of noise alone
+they lie so many sigma apart.
+"""
 
 
 _CUT_LEAST, _CUT_OVER, _CUT_STEPS = 8, 3.0, 5
-"""Readings at the last one, and how often as many as at any of the next steps before it, that show where readings are cut off."""
+"""Readings at the last one, and how often as many as at any of the next steps before it, that show
+where readings are cut off.
+"""
 
 _FASTER, _FASTEST = 0.5, 0.1
-"""Share of the stated t90 within which a sensor may fall, for uneven times and wrong figures; and where t90 is not well known."""
+"""Share of the stated t90 within which a sensor may fall, for uneven times and wrong figures; and
+where t90 is not well known.
+"""
 
 _FALL_SIGMAS = 10.0
-"""Standard deviations of the noise by which a reading is lower than the one before it allows, until noise is no explanation."""
+"""Standard deviations of the noise by which a reading is lower than the one before it allows, until
+noise is no explanation.
+"""
 
 
 def unlikely(record: Record, readings: Readings, instrument: SnifferSpec) -> list[str]:
-    """Return what is wrong with readings of CO2, SO2, and the gases of the record that the SO2 channel responds to."""
+    """Return what is wrong with readings of CO2, SO2, and the gases of the record that the SO2
+    channel responds to.
+    """
     so2 = instrument.known("so2")
     telling = [
         "so2",
@@ -59,7 +71,8 @@ def unlikely(record: Record, readings: Readings, instrument: SnifferSpec) -> lis
 def _cut_off(readings: Readings, channel: Channel) -> list[str]:
     """Return the problem of readings that end in a heap, at the largest or the least, if they do.
 
-    What lies beyond is lost, which makes a mean of SO2 or of CO2 too low, or too high. Saturation is told apart.
+    What lies beyond is lost, which makes a mean of SO2 or of CO2 too low, or too high. Saturation
+    is told apart.
     """
     column = readings.values[:, GASES.index(channel.gas)]
     known, step = column[np.isfinite(column)], shown_step(column)
@@ -86,16 +99,20 @@ def _cut_off(readings: Readings, channel: Channel) -> list[str]:
 
 
 def _heap(steps: Array) -> int:
-    """Return how many readings lie at 0 steps from the end, where these are a heap: noise and plumes end in fewer and fewer."""
+    """Return how many readings lie at 0 steps from the end, where these are a heap: noise and
+    plumes end in fewer and fewer.
+    """
     heap, *near = (int(np.sum(np.round(steps) == number)) for number in range(_CUT_STEPS + 1))
     return heap if heap >= _CUT_LEAST and heap > _CUT_OVER * max(near) else 0
 
 
 def _spikes(record: Record, readings: Readings, channel: Channel) -> list[str]:
-    """Return the problem of CO2 that falls faster than its sensor can, as it does after a spike, if it does.
+    """Return the problem of CO2 that falls faster than its sensor can, as it does after a spike, if
+    it does.
 
-    A reading falls towards that of the air, and no lower: a time constant later an e-th of its excess is left. One spike is
-    enough to draw the slope to 0, and where SO2 is noisy nothing else shows it.
+    A reading falls towards that of the air, and no lower: a time constant later an e-th of its
+    excess is left. One spike is enough to draw the slope to 0, and where SO2 is noisy nothing else
+    shows it.
     """
     column = readings.values[:, GASES.index("co2")]
     known = np.flatnonzero(np.isfinite(column))

@@ -20,27 +20,32 @@ PASSES_GOOD = 3
 AGREEMENT_LEAST = 0.01
 """Least probability that passes of one fuel differ as much, for class A.
 
-None is so small that it makes class C: it allows for noise and response, and not for corrections and drift that change from pass to
-pass: of 200 flights of ``sulphur_monte_carlo``, all of one fuel, one has 1e-4.
+None is so small that it makes class C: it allows for noise and response, and not for corrections
+and drift that change from pass to pass: of 200 flights of ``sulphur_monte_carlo``, all of one fuel,
+one has 1e-4.
 """
 
 NOISE_USUAL = 1.0
-"""Noise of a channel of SO2, NO or NO2 of which none is stated [ppb]: the presets have 0.3 to 7.5 ppb."""
+"""Noise of a channel of SO2, NO or NO2 of which none is stated [ppb]: the presets have 0.3 to 7.5
+ppb.
+"""
 
 QUIET_SHARE = 0.01
-"""Readings that scatter by less than this share of their noise are in another unit, or their sensor is dead.
+"""Readings that scatter by less than this share of their noise are in another unit, or their sensor
+is dead.
 
-In ppm it is a thousandth; a data sheet that states 2 sigma, or smoothing in the instrument, leaves a larger share. With
-``NOISE_USUAL`` it is 10 ppt: laser-induced fluorescence alone has less in a second (2 ppt in 10 s: Rollins et al., AMT 9:4601).
+In ppm it is a thousandth; a data sheet that states 2 sigma, or smoothing in the instrument, leaves
+a larger share. With ``NOISE_USUAL`` it is 10 ppt: laser-induced fluorescence alone has less in a
+second (2 ppt in 10 s: Rollins et al., AMT 9:4601).
 """
 
 STRANGE_SIGMA = 4.0
-"""By so many of its standard deviations each property of the instrument may differ, and the residuals by so many of theirs, until
-the instrument is not the one that is stated."""
+"""By so many of its standard deviations each property of the instrument may differ, and the
+residuals by so many of theirs, until the instrument is not the one that is stated."""
 
 ARRIVED_SIGMA, ARRIVED_SHARE = 3.0, 0.5
-"""A result above 0 by so many standard uncertainties is SO2 that has arrived; otherwise readings must follow this share of CO2 for
-as long as SO2 may take."""
+"""A result above 0 by so many standard uncertainties is SO2 that has arrived; otherwise readings
+must follow this share of CO2 for as long as SO2 may take."""
 
 NEGATIVE_SIGMA = 3.0
 """A result below 0 by so many standard uncertainties contradicts them."""
@@ -110,12 +115,14 @@ def judged_quality(
 
 
 def quiet(scatter: float, channel: Channel) -> tuple[str, ...]:
-    """Return the problem of a gas that scatters less than its sensor can, if it does: in clean air there is as much noise.
+    """Return the problem of a gas that scatters less than its sensor can, if it does: in clean air
+    there is as much noise.
 
     Parameters
     ----------
     scatter : standard deviation of the readings that they show themselves [ppb]
-    channel : of SO2, NO or NO2, as the analyst knows it; rounding to a step that is larger than its noise may hide that
+    channel : of SO2, NO or NO2, as the analyst knows it; rounding to a step that is larger than its
+        noise may hide that
     """
     stated = not math.isnan(channel.noise)
     noise = channel.noise if stated else NOISE_USUAL
@@ -140,12 +147,14 @@ def quiet(scatter: float, channel: Channel) -> tuple[str, ...]:
 def stranger(
     misfit: float, residual_energy: float, instrument_energy: float, samples: int
 ) -> tuple[str, ...]:
-    """Return the problem of residuals that neither noise nor the instrument's stated uncertainty explain, if they are such.
+    """Return the problem of residuals that neither noise nor the instrument's stated uncertainty
+    explain, if they are such.
 
     Parameters
     ----------
     misfit : mean square of the residuals over that of the stated noise
-    residual_energy, instrument_energy : sum of squares of the residuals, and what the instrument's uncertainty adds to it
+    residual_energy, instrument_energy : sum of squares of the residuals, and what the instrument's
+        uncertainty adds to it
     samples : of the record
     """
     if not misfit > 0.0 or residual_energy == 0.0:
@@ -161,16 +170,19 @@ def stranger(
 
 def noise_alone(misfit: float, samples: int) -> bool:
     """Return whether the noise of so many samples explains a misfit."""
-    # The mean square of white noise over so many samples has a relative standard deviation of sqrt(2/samples).
+    # The mean square of white noise over so many samples has a relative standard deviation of
+    # sqrt(2/samples).
     return misfit <= 1.0 + STRANGE_SIGMA * math.sqrt(2.0 / samples)
 
 
 def not_arrived(
     fsc: float, deviation: float, read: Sequence[float], doses: Sequence[float]
 ) -> tuple[str, ...]:
-    """Return the problem of SO2 whose delay is not stated, and which may not have arrived yet, if it may not.
+    """Return the problem of SO2 whose delay is not stated, and which may not have arrived yet, if
+    it may not.
 
-    SO2 that stands out has. Without it most of the CO2 must be followed by readings for as long as any delay.
+    SO2 that stands out has. Without it most of the CO2 must be followed by readings for as long as
+    any delay.
 
     Parameters
     ----------

@@ -18,20 +18,25 @@ from measurement.sniffer.sniffer import Readings
 from measurement.sniffer.spec import SnifferSpec
 
 CO2_LEAST, CO2_MOST = 250.0, 50_000.0
-"""Median CO2 of a record in air that can be breathed [ppm]: outside it the unit, or the background, is wrong."""
+"""Median CO2 of a record in air that can be breathed [ppm]: outside it the unit, or the background,
+is wrong.
+"""
 
 _OTHER_MOST = 1e6
 """Largest reading of the other gases [ppb]."""
 
 _STEP_LEAST, _STEP_MOST = 1e-3, 30.0
-"""Median interval between samples [s]: no sniffer reads faster, and the slowest cell of the presets has answered by the longest, in
-which an aircraft has crossed a plume and left it."""
+"""Median interval between samples [s]: no sniffer reads faster, and the slowest cell of the presets
+has answered by the longest, in which an aircraft has crossed a plume and left it."""
 
 BRIDGED = 2.5
-"""Gaps of up to so many sample periods are bridged by a straight line; longer ones part the record."""
+"""Gaps of up to so many sample periods are bridged by a straight line; longer ones part the record.
+"""
 
 _WHOLE = 1.75
-"""Between readings that are fewer sample periods apart none is missing, even if their times are uneven by three quarters."""
+"""Between readings that are fewer sample periods apart none is missing, even if their times are
+uneven by three quarters.
+"""
 
 SHORTEST = 8
 """Fewest samples of a segment: pieces between gaps that have fewer are left out."""
@@ -43,20 +48,26 @@ _SAME = 1e-9
 """Readings that differ by less, relative to the largest, are the same."""
 
 _CALM, _CALM_SIGMA = 0.1, 0.1257
-"""Share of the second differences that are noise alone, and the largest of them over their standard deviation: the quantile of the
-size of normal noise."""
+"""Share of the second differences that are noise alone, and the largest of them over their standard
+deviation: the quantile of the size of normal noise."""
 
 _EVEN = 0.5 * (math.sqrt(5.0) - 1.0)
-"""Multiples of the golden section, less their whole numbers, lie evenly within 0 to 1 however many there are."""
+"""Multiples of the golden section, less their whole numbers, lie evenly within 0 to 1 however many
+there are.
+"""
 
 _NEGATIVE_SIGMA = 8.0
 """A reading lower than zero by so many standard deviations of noise and zero is no reading."""
 
 _NOX_SIGMA = 3.0
-"""A ship that is not measured for NO or NO2 may emit the expected by so many standard deviations more."""
+"""A ship that is not measured for NO or NO2 may emit the expected by so many standard deviations
+more.
+"""
 
 _KEPT = 32
-"""What is worked out of a record and kept, at most: to move one property of the instrument changes little of it."""
+"""What is worked out of a record and kept, at most: to move one property of the instrument changes
+little of it.
+"""
 
 _T = TypeVar("_T")
 
@@ -70,7 +81,8 @@ class Record:
     step : between samples [s]
     times : of each segment, shape (n,) [s]
     values : of each segment, by gas, shape (n,) each
-    resolution : of the readings as they were logged, by gas: the smallest change from one to the next, 0 where none changes
+    resolution : of the readings as they were logged, by gas: the smallest change from one to the
+        next, 0 where none changes
     scatter : standard deviation of the readings that they show themselves, likewise
     problems : why there can be no verdict, a sentence each
     """
@@ -89,7 +101,9 @@ class Record:
         return np.concatenate(self.times)
 
     def once(self, key: Hashable, make: Callable[[], _T]) -> _T:
-        """Return what ``make`` makes of the record, kept from the last time that it was asked for by ``key``."""
+        """Return what ``make`` makes of the record, kept from the last time that it was asked for
+        by ``key``.
+        """
         made: _T = self._kept.pop(key) if key in self._kept else make()
         self._kept[key] = made
         if len(self._kept) > _KEPT:
@@ -107,11 +121,13 @@ class Record:
 
 
 def checked_record(readings: Readings, instrument: SnifferSpec) -> Record:
-    """Return the readings of SO2, CO2 and, where they and their channels exist, NO and NO2, on an even grid.
+    """Return the readings of SO2, CO2 and, where they and their channels exist, NO and NO2, on an
+    even grid.
 
     Raises
     ------
-    MeasurementError : no CO2 or SO2, too short, times that do not increase or are too far apart, or units that cannot be
+    MeasurementError : no CO2 or SO2, too short, times that do not increase or are too far apart, or
+        units that cannot be
     """
     time, values = (
         np.asarray(readings.time, dtype=np.float64),
@@ -186,7 +202,9 @@ def checked_record(readings: Readings, instrument: SnifferSpec) -> Record:
 def pieces(
     time: Array, rows: npt.NDArray[np.intp], step: float, periods: float = BRIDGED
 ) -> list[npt.NDArray[np.intp]]:
-    """Return the rows that have all readings, shape (n,), in pieces between gaps of so many periods of the log, ``step`` [s]."""
+    """Return the rows that have all readings, shape (n,), in pieces between gaps of so many periods
+    of the log, ``step`` [s].
+    """
     return np.split(rows, np.flatnonzero(np.diff(time[rows]) > periods * step) + 1)
 
 
@@ -208,7 +226,8 @@ def _used(values: Array, instrument: SnifferSpec) -> list[str]:
 
 
 def check_increasing(time: Array, path: Path | None = None) -> None:
-    """Refuse times that do not increase, shape (m,); of a file it is told where, by rows of which the head line is the first.
+    """Refuse times that do not increase, shape (m,); of a file it is told where, by rows of which
+    the head line is the first.
 
     Raises
     ------
@@ -253,7 +272,9 @@ def check_units(channel: Channel, values: Array) -> None:
 
 
 def shown_step(values: Array) -> float:
-    """Return the smallest change from one known reading to the next; what is rounding of floating-point numbers is no change."""
+    """Return the smallest change from one known reading to the next; what is rounding of
+    floating-point numbers is no change.
+    """
     known = values[np.isfinite(values)]
     changes = np.abs(np.diff(known))
     changes = changes[changes > _SAME * float(np.abs(known).max())]
@@ -268,7 +289,8 @@ def shown_scatter(segments: Sequence[Array], step: float) -> float:
     if not sum(len(segment) > 2 for segment in segments):
         return 0.5 * step
     second = np.concatenate([np.diff(segment, 2) for segment in segments])
-    # Whole numbers hide their noise: most of these differences are 0. Spread evenly over a step, they show it again.
+    # Whole numbers hide their noise: most of these differences are 0. Spread evenly over a step,
+    # they show it again.
     spread = step * ((_EVEN * np.arange(len(second))) % 1.0 - 0.5)
     # The variance of a second difference is 6 times that of a sample.
     shown = float(np.quantile(np.abs(second + spread), _CALM)) / _CALM_SIGMA / math.sqrt(6.0)
@@ -276,7 +298,8 @@ def shown_scatter(segments: Sequence[Array], step: float) -> float:
 
 
 def lowest_reading(gas: str, values: Array, instrument: SnifferSpec) -> float:
-    """Return how low a gas may read for its noise, its zero and what the cell makes of other gases; CO2 is in all air.
+    """Return how low a gas may read for its noise, its zero and what the cell makes of other gases;
+    CO2 is in all air.
 
     Parameters
     ----------
@@ -329,7 +352,9 @@ def _problems(
 
 
 def _cross_floor(cross: Mapping[str, float], values: Array, instrument: SnifferSpec) -> float:
-    """Return how far below zero a cell of gain 1 may truly read: what it makes of other gases, measured or as ships emit them."""
+    """Return how far below zero a cell of gain 1 may truly read: what it makes of other gases,
+    measured or as ships emit them.
+    """
     channels = [instrument.channel(gas) for gas in GASES]
     concentrations = values / [channel.gain if channel else 1.0 for channel in channels]
     lowest, co2 = 0.0, concentrations[:, GASES.index("co2")]

@@ -40,7 +40,8 @@ class Figures:
 
 @dataclass(frozen=True, kw_only=True)
 class FscEstimate:
-    """A fuel sulphur content with its uncertainty. Contents and uncertainties are in % m/m; what is not known is not a number.
+    """A fuel sulphur content with its uncertainty. Contents and uncertainties are in % m/m; what is
+    not known is not a number.
 
     Attributes
     ----------
@@ -48,10 +49,13 @@ class FscEstimate:
     fsc_percent : estimate; noise may make it negative
     noise_percent : standard uncertainty by noise, which falls with the number of passes
     common_percent : standard uncertainties by errors that do not average out, by name
-    overlap_percent : by how much areas of passes that do not overlap would read more; 0 by regression
-    assumed_percent : what of the estimate corrects SO2 for NO and NO2 that were not measured, as ships emit them on average
+    overlap_percent : by how much areas of passes that do not overlap would read more; 0 by
+        regression
+    assumed_percent : what of the estimate corrects SO2 for NO and NO2 that were not measured, as
+        ships emit them on average
     total_percent : standard uncertainty by both
-    low_percent, high_percent : 95 % interval, of the distribution that the verdicts' probabilities are of
+    low_percent, high_percent : 95 % interval, of the distribution that the verdicts' probabilities
+        are of
     sulphate_percent : mean error by sulphur that leaves as sulphate, stated and not corrected
     slope_ppb_per_ppm : SO2 over CO2
     misfit : mean square of the residuals over that of the stated noise [-]
@@ -59,11 +63,15 @@ class FscEstimate:
     verdicts : on each limit
     figures : what the record holds
     passes : through the plume
-    pass_percent, pass_deviation_percent : sulphur content of groups of neighbouring passes and its noise
+    pass_percent, pass_deviation_percent : sulphur content of groups of neighbouring passes and its
+        noise
     agreement : probability that groups of the same fuel differ as much as these
-    so2_t90_s, so2_t90_sd_s, delay_s, delay_sd_s : response of SO2 and its delay after CO2, as given or as they fit best [s]
-    instrument : as it was used: noise, and response and delay of SO2, as the record shows them where they were not given
-    signals : readings, equalised signals beside their background, fit and residual; a row per sample
+    so2_t90_s, so2_t90_sd_s, delay_s, delay_sd_s : response of SO2 and its delay after CO2, as given
+        or as they fit best [s]
+    instrument : as it was used: noise, and response and delay of SO2, as the record shows them
+        where they were not given
+    signals : readings, equalised signals beside their background, fit and residual; a row per
+        sample
     """
 
     method: Method

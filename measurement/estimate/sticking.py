@@ -11,30 +11,40 @@ from measurement.sniffer.lag import Array
 from measurement.sniffer.sniffer import Readings
 
 _CHANCE_MOST = 1e-6
-"""Probability of as many equal readings in a row, by noise alone and anywhere in the record, below which a sensor sticks."""
+"""Probability of as many equal readings in a row, by noise alone and anywhere in the record, below
+which a sensor sticks.
+"""
 
 _SHARE_MOST = 0.1
-"""Share of a record in which a sensor may stick, for no longer than its t90 at a time: as much may be missing."""
+"""Share of a record in which a sensor may stick, for no longer than its t90 at a time: as much may
+be missing.
+"""
 
 _FEWEST = 10
 """Readings in a row that are compared: fewer are no sign of a sensor that sticks."""
 
 _RISE_SIGMA = 10.0
-"""Another gas that rises by so many standard deviations of its noise has met the plume: white noise reaches 7 of them."""
+"""Another gas that rises by so many standard deviations of its noise has met the plume: white noise
+reaches 7 of them.
+"""
 
 _SMOOTHED = 0.1
-"""Least share of its stated noise that a sensor shows in clean air: data sheets state 2 sigma, and instruments smooth."""
+"""Least share of its stated noise that a sensor shows in clean air: data sheets state 2 sigma, and
+instruments smooth.
+"""
 
 _ROUNDING = 1e-6
-"""Of a step: readings that are a step apart may differ by a little more in floating-point numbers."""
+"""Of a step: readings that are a step apart may differ by a little more in floating-point numbers.
+"""
 
 
 def sticking(readings: Readings, channel: Channel) -> tuple[str, ...]:
     """Return the problem of a gas whose sensor sticks, if it does.
 
-    A living sensor shows its noise in clean air, too, unless that is below its resolution. Unless another gas rises in the
-    meantime, a tenth of the noise that is stated has to be too much, and readings of 0 do not tell: a sensor may cut off there
-    what is lower. A gas that reads the same throughout is left to ``quiet``.
+    A living sensor shows its noise in clean air, too, unless that is below its resolution. Unless
+    another gas rises in the meantime, a tenth of the noise that is stated has to be too much, and
+    readings of 0 do not tell: a sensor may cut off there what is lower. A gas that reads the same
+    throughout is left to ``quiet``.
 
     Parameters
     ----------
@@ -66,7 +76,9 @@ def sticking(readings: Readings, channel: Channel) -> tuple[str, ...]:
 
 
 def _equal(values: Array, step: float) -> list[range]:
-    """Return the rows of readings that are a step apart at most, as many in a row as are compared, shape (n,)."""
+    """Return the rows of readings that are a step apart at most, as many in a row as are compared,
+    shape (n,).
+    """
     step *= 1.0 + _ROUNDING
     near = np.concatenate([[False], np.abs(np.diff(values)) <= step, [False]])
     edges = np.flatnonzero(np.diff(near.astype(int)))
@@ -104,7 +116,9 @@ def _too_many(run: range, values: Array, step: float, noise: float) -> bool:
 
 
 def _repeats(values: Array) -> float:
-    """Return how often the log has a reading before the next one: more than once, where the logger is faster than the sensor."""
+    """Return how often the log has a reading before the next one: more than once, where the logger
+    is faster than the sensor.
+    """
     changes = np.flatnonzero(np.diff(values))
     return float(np.median(np.diff(changes))) if len(changes) > 1 else 1.0
 

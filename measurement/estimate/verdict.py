@@ -1,7 +1,9 @@
-"""Above a limit, below it, or open: by the probability that the fuel is above, with guard bands (JCGM 106).
+"""Above a limit, below it, or open: by the probability that the fuel is above, with guard bands
+(JCGM 106).
 
-Probabilities and the interval are of one distribution: the normal one of content and standard uncertainty, cut at 0, as no fuel has
-less. It is what a reading tells of a content of which nothing else is known than that it is not negative (ISO 11929-1).
+Probabilities and the interval are of one distribution: the normal one of content and standard
+uncertainty, cut at 0, as no fuel has less. It is what a reading tells of a content of which nothing
+else is known than that it is not negative (ISO 11929-1).
 """
 
 import math
@@ -34,7 +36,8 @@ class Verdict:
     ----------
     limit_percent : [% m/m]
     verdict : "above", "below" or "open"
-    probability_above : that the fuel's sulphur content is above the limit, given the reading and that it is not negative
+    probability_above : that the fuel's sulphur content is above the limit, given the reading and
+        that it is not negative
     """
 
     limit_percent: float
@@ -43,7 +46,9 @@ class Verdict:
 
 
 def probability_above(limit: float, fsc: float, deviation: float) -> float:
-    """Return the probability of a sulphur content above a limit [% m/m]: a normal distribution cut at 0, as no fuel has less."""
+    """Return the probability of a sulphur content above a limit [% m/m]: a normal distribution cut
+    at 0, as no fuel has less.
+    """
     if not (math.isfinite(fsc) and deviation > 0.0):
         return math.nan
     return math.exp(float(log_ndtr((fsc - limit) / deviation) - log_ndtr(fsc / deviation)))
@@ -52,8 +57,9 @@ def probability_above(limit: float, fsc: float, deviation: float) -> float:
 def judged(limit: float, fsc: float, deviation: float, *, admitted: bool) -> Verdict:
     """Return the verdict on a limit.
 
-    "above" asks for a reading beyond the limit by a guard band of 1.645 standard deviations, so that of fuels at the limit no more
-    than 5 % are called above; "below" for a probability of at most 5 %. Without ``admitted`` the verdict is open.
+    "above" asks for a reading beyond the limit by a guard band of 1.645 standard deviations, so
+    that of fuels at the limit no more than 5 % are called above; "below" for a probability of at
+    most 5 %. Without ``admitted`` the verdict is open.
     """
     probability = probability_above(limit, fsc, deviation)
     verdict = OPEN
@@ -66,10 +72,11 @@ def judged(limit: float, fsc: float, deviation: float, *, admitted: bool) -> Ver
 
 
 def interval(fsc: float, deviation: float) -> tuple[float, float]:
-    """Return the shortest interval that holds the sulphur content with 95 % [% m/m], of the distribution of ``probability_above``.
+    """Return the shortest interval that holds the sulphur content with 95 % [% m/m], of the
+    distribution of ``probability_above``.
 
-    Far from 0 it is the estimate with 1.960 standard uncertainties to either side. Where it begins at 0, the content is above its
-    end with 5 % (ISO 11929-1, shortest coverage interval).
+    Far from 0 it is the estimate with 1.960 standard uncertainties to either side. Where it begins
+    at 0, the content is above its end with 5 % (ISO 11929-1, shortest coverage interval).
     """
     if not (math.isfinite(fsc) and deviation > 0.0):
         return (

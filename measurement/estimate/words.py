@@ -37,7 +37,8 @@ def content_words(fsc_percent: float, low_percent: float, high_percent: float) -
 
     Parameters
     ----------
-    fsc_percent, low_percent, high_percent : the estimate, and the interval that its verdict rests on [% m/m]
+    fsc_percent, low_percent, high_percent : the estimate, and the interval that its verdict rests
+        on [% m/m]
     """
     content, interval = (
         f"{fsc_percent:z.3f}",
@@ -51,7 +52,8 @@ def content_words(fsc_percent: float, low_percent: float, high_percent: float) -
 def verdict_words(
     verdict: str, limit_percent: float, probability_above: float, quality: Quality | str = "A"
 ) -> str:
-    """Return a verdict with its limit and probability; for a record of quality C, that there is no verdict.
+    """Return a verdict with its limit and probability; for a record of quality C, that there is no
+    verdict.
 
     Parameters
     ----------
@@ -90,7 +92,8 @@ def next_step(
     ----------
     quality, passes : of the record
     undecided : whether a verdict is open
-    noise, errors : standard uncertainty by noise, and by each error that further passes leave as it is, by its words [% m/m]
+    noise, errors : standard uncertainty by noise, and by each error that further passes leave as it
+        is, by its words [% m/m]
     """
     if quality == _WITHOUT and not passes:
         return "Next: check the CO2 sensor, and measure again in the plume."

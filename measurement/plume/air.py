@@ -19,21 +19,26 @@ _VISCOSITY = 1.5e-5
 """Kinematic viscosity of air [m2/s] at 15 degC."""
 
 _CALM = 0.5
-"""Wind below which turbulence is that of this wind [m/s]: the logarithmic profile has no limit at calm; an assumption."""
+"""Wind below which turbulence is that of this wind [m/s]: the logarithmic profile has no limit at
+calm; an assumption.
+"""
 
 _WIND_MAX = 40.0
 """Largest wind [m/s]; no UAV flies in more, and the drag of the sea is not that of Charnock."""
 
 _ROUNDS = 60
-"""Rounds of the fixed point of the friction velocity; each takes at least half of what is left, and the last does not move it."""
+"""Rounds of the fixed point of the friction velocity; each takes at least half of what is left, and
+the last does not move it.
+"""
 
 
 @dataclass(frozen=True, kw_only=True)
 class MarineAir:
     """The air over the sea: neutral, or stable above.
 
-    u* = 0.4 U10/ln(10/z0) with z0 = alpha u*^2/g + 0.11 nu/u*; sigma_v = 1.9 u* and sigma_w = 1.3 u*, eps = u*^3/(0.4 z), and the
-    mechanical mixing height is 2300 u*^1.5. Turbulence belongs to the true wind, dilution to the apparent wind.
+    u* = 0.4 U10/ln(10/z0) with z0 = alpha u*^2/g + 0.11 nu/u*; sigma_v = 1.9 u* and sigma_w = 1.3
+    u*, eps = u*^3/(0.4 z), and the mechanical mixing height is 2300 u*^1.5. Turbulence belongs to
+    the true wind, dilution to the apparent wind.
 
     Attributes
     ----------
@@ -47,9 +52,9 @@ class MarineAir:
     ------
     MeasurementError : a value is out of its range
 
-    Sources: Charnock's alpha = 0.0144, J. R. Garratt, Monthly Weather Review 105 (1977); sigma_v^2 = 3.6 u*^2, AERMOD,
-    EPA-454/R-03-004, eq. 41, where 3 to 5 is the range (Panofsky and Dutton); sigma_w = 1.3 u*, there too, from memory. Both are
-    taken without their decay with height.
+    Sources: Charnock's alpha = 0.0144, J. R. Garratt, Monthly Weather Review 105 (1977); sigma_v^2
+    = 3.6 u*^2, AERMOD, EPA-454/R-03-004, eq. 41, where 3 to 5 is the range (Panofsky and Dutton);
+    sigma_w = 1.3 u*, there too, from memory. Both are taken without their decay with height.
     """
 
     wind_speed: float

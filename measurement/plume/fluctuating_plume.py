@@ -19,10 +19,13 @@ _CHUNK = 4096
 """Places that are computed at a time: their arrays stay in the processor's cache."""
 
 _EDGE = 4.0
-"""Spreads from the centre within which there are fluctuations of the plume's own [-]; beyond is 3e-4 of the axis."""
+"""Spreads from the centre within which there are fluctuations of the plume's own [-]; beyond is
+3e-4 of the axis.
+"""
 
 _FOLD = 0.5
-"""Least share of a parcel's length that a bend leaves on its inner side [-]: nearer to the centre of curvature the line folds.
+"""Least share of a parcel's length that a bend leaves on its inner side [-]: nearer to the centre
+of curvature the line folds.
 
 Against a sum of puffs this one is the best of 0.1 to 1.
 """
@@ -32,19 +35,25 @@ Against a sum of puffs this one is the best of 0.1 to 1.
 class PlumeSample:
     """The plume at places and times, arrays of shape (m,).
 
-    Where no parcel's cross-section goes through a place (upwind of the funnel, beyond the oldest parcel) the dilution is 0 and what
-    belongs to a parcel is NaN. Where several do, as behind a ship that has turned, their dilutions are added, and the other values
-    are those of the parcel that is nearest in its spreads.
+    Where no parcel's cross-section goes through a place (upwind of the funnel, beyond the oldest
+    parcel) the dilution is 0 and what belongs to a parcel is NaN. Where several do, as behind a
+    ship that has turned, their dilutions are added, and the other values are those of the parcel
+    that is nearest in its spreads.
 
     Attributes
     ----------
-    dilution : mole fraction of a gas over its emission [s/mol]: times ``emission.rates[j]`` it is the excess of gas j
-    axis_dilution : the same in the centre of this realisation's cross-section, without fluctuations within the plume
+    dilution : mole fraction of a gas over its emission [s/mol]: times ``emission.rates[j]`` it is
+        the excess of gas j
+    axis_dilution : the same in the centre of this realisation's cross-section, without fluctuations
+        within the plume
     age, distance : of the parcel [s], and along the line of parcels back to the funnel [m]
-    across : place relative to the mean axis, along the apparent wind turned +90 degrees north to east [m]
+    across : place relative to the mean axis, along the apparent wind turned +90 degrees north to
+        east [m]
     axis_height : of the mean axis above the sea [m]
-    centre_across, centre_height : of this realisation's centre, relative to the mean axis and above the sea [m]
-    sigma_y, sigma_z : spreads about the centre [m]; of the ensemble mean they are those about the axis
+    centre_across, centre_height : of this realisation's centre, relative to the mean axis and above
+        the sea [m]
+    sigma_y, sigma_z : spreads about the centre [m]; of the ensemble mean they are those about the
+        axis
     """
 
     dilution: Array
@@ -60,39 +69,46 @@ class PlumeSample:
 
 
 class FluctuatingPlume:
-    """Gifford's fluctuating plume: a Gaussian about a centre that leaves the mean axis, with deviations frozen at emission.
+    """Gifford's fluctuating plume: a Gaussian about a centre that leaves the mean axis, with
+    deviations frozen at emission.
 
-    In the frame of the air mass a parcel stays where the funnel left it, so that wind that changes, a ship that turns, and a
-    velocity that is common to all need nothing of their own. It rises and spreads with its age, in the turbulence of the true wind
-    and the apparent wind at its emission; its centre is off the axis by the standard deviation of the meander at its age, times a
-    process of the air that had passed the funnel before it. A place has the concentration of the nearest parcel of the line,
+    In the frame of the air mass a parcel stays where the funnel left it, so that wind that changes,
+    a ship that turns, and a velocity that is common to all need nothing of their own. It rises and
+    spreads with its age, in the turbulence of the true wind and the apparent wind at its emission;
+    its centre is off the axis by the standard deviation of the meander at its age, times a process
+    of the air that had passed the funnel before it. A place has the concentration of the nearest
+    parcel of the line,
 
         chi = Q/(2 pi U sigma_y sigma_z n) exp(-(y - y_c)^2/2 sigma_y^2)
               [exp(-(z - z_c)^2/2 sigma_z^2) + exp(-(z + z_c)^2/2 sigma_z^2)]
 
-    with n = p/RT, reflected at the sea; a centre below the sea is its mirror image. Where the line bends with a curvature k, U is
-    that of the place, U sqrt((1 - k y)(1 - k y_c)), as a sum of puffs has it.
+    with n = p/RT, reflected at the sea; a centre below the sea is its mirror image. Where the line
+    bends with a curvature k, U is that of the place, U sqrt((1 - k y)(1 - k y_c)), as a sum of
+    puffs has it.
 
-    More than 100 m behind a ship that turns about it differs from that sum by at most 1 to 5 % of the largest concentration where
-    the apparent wind is 4 m/s or more, and by up to 20 % where the line folds with a radius of little more than the spread. The
-    ratio of gases is exact everywhere.
+    More than 100 m behind a ship that turns about it differs from that sum by at most 1 to 5 % of
+    the largest concentration where the apparent wind is 4 m/s or more, and by up to 20 % where the
+    line folds with a radius of little more than the spread. The ratio of gases is exact everywhere.
 
     Parameters
     ----------
     emission : source; the concentration is per its rates
     air : turbulence, from the true wind
-    time : [s], increasing, shape (n,); from before the flight, because the plume ends with the first
-    north, east : place of the funnel in the frame of the air mass [m], shape (n,): place over ground minus the integral of the wind
+    time : [s], increasing, shape (n,); from before the flight, because the plume ends with the
+        first
+    north, east : place of the funnel in the frame of the air mass [m], shape (n,): place over
+        ground minus the integral of the wind
     source_height : of the funnel's mouth above the sea [m]
     settings : constants and options
     seed : of the realisation, at least 0; one seed, one plume
 
     Raises
     ------
-    MeasurementError : the track cannot be used, or the apparent wind is below 1 m/s anywhere on it, where a plume has no direction.
-        The spreads hold from 2 m/s on: see ``wind_min``
+    MeasurementError : the track cannot be used, or the apparent wind is below 1 m/s anywhere on it,
+        where a plume has no direction. The spreads hold from 2 m/s on: see ``wind_min``
 
-    Sources: F. A. Gifford, Advances in Geophysics 6:117 (1959); the modules of this package name those of rise and spreads.
+    Sources: F. A. Gifford, Advances in Geophysics 6:117 (1959); the modules of this package name
+    those of rise and spreads.
     """
 
     def __init__(
@@ -146,7 +162,8 @@ class FluctuatingPlume:
         return self._parcels.wind_min
 
     def sample(self, time: Array, north: Array, east: Array, up: Array) -> PlumeSample:
-        """Return the plume at times and places in any order; each place's result is its own, whatever the others are.
+        """Return the plume at times and places in any order; each place's result is its own,
+        whatever the others are.
 
         Parameters
         ----------
@@ -156,7 +173,8 @@ class FluctuatingPlume:
 
         Raises
         ------
-        MeasurementError : shapes differ, values are missing, a time is not within the track's, or a place is below the sea
+        MeasurementError : shapes differ, values are missing, a time is not within the track's, or a
+            place is below the sea
         """
         given = [np.asarray(values, dtype=np.float64) for values in (time, north, east, up)]
         self._check(*given)
@@ -167,12 +185,14 @@ class FluctuatingPlume:
         return PlumeSample(*values)
 
     def axis(self, time: float, age: Array) -> tuple[Array, Array, Array]:
-        """Return north and east in the frame of the air mass, and height above the sea, of the mean axis at a time [m].
+        """Return north and east in the frame of the air mass, and height above the sea, of the mean
+        axis at a time [m].
 
         Parameters
         ----------
         time : [s], within the track's
-        age : of the parcels [s], at least 0 and at most the time since the track's start, and the settings' ``age_max``
+        age : of the parcels [s], at least 0 and at most the time since the track's start, and the
+            settings' ``age_max``
 
         Raises
         ------
@@ -214,7 +234,9 @@ class FluctuatingPlume:
     def _concentration(
         self, parcels: Nearest, age: Array, passed: Array, up: Array
     ) -> tuple[Array, Array]:
-        """Fields of the sample for pairs of a place and a parcel, and the distance to the parcel's centre in spreads."""
+        """Fields of the sample for pairs of a place and a parcel, and the distance to the parcel's
+        centre in spreads.
+        """
         height, sigma_y, sigma_z, meander_y, meander_z = self._table.at(parcels.wind, age)
         centre, centre_height = np.zeros(len(age)), height
         if self._across is not None and self._up is not None:

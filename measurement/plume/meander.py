@@ -1,4 +1,6 @@
-"""Smooth random processes along the air that has passed the funnel: where the plume's centre is, in standard deviations."""
+"""Smooth random processes along the air that has passed the funnel: where the plume's centre is, in
+standard deviations.
+"""
 
 import math
 from itertools import accumulate
@@ -8,15 +10,19 @@ import numpy as np
 from measurement.plume.arrays import Array
 
 _STEPS = 8.0
-"""Steps of the grid per correlation length: the cubic between them is good to 1e-4 of a standard deviation."""
+"""Steps of the grid per correlation length: the cubic between them is good to 1e-4 of a standard
+deviation.
+"""
 
 
 class Meander:
-    """A Gaussian process of unit variance with covariance (1 + |l|/L) exp(-|l|/L) over a path l, whose integral scale is 2 L.
+    """A Gaussian process of unit variance with covariance (1 + |l|/L) exp(-|l|/L) over a path l,
+    whose integral scale is 2 L.
 
-    Matern's process of order 3/2: the solution of a linear equation with two states, value and slope, which is discretised exactly
-    and started in its stationary state. Between the steps it is the cubic with the values and slopes that are at hand, so that it
-    is had at any place and in any order, and has no corners.
+    Matern's process of order 3/2: the solution of a linear equation with two states, value and
+    slope, which is discretised exactly and started in its stationary state. Between the steps it is
+    the cubic with the values and slopes that are at hand, so that it is had at any place and in any
+    order, and has no corners.
 
     Parameters
     ----------
@@ -59,7 +65,8 @@ class Meander:
 def _states(count: int, step: float, generator: np.random.Generator) -> tuple[Array, Array]:
     """Value and slope at ``count`` steps, with the correlation length as unit of the path.
 
-    With w = value + slope both w and the value are first-order: dw = -w dl + noise, d value = (w - value) dl.
+    With w = value + slope both w and the value are first-order: dw = -w dl + noise, d value = (w -
+    value) dl.
     """
     decay = math.exp(-step)
     stationary = np.array([[1.0, 1.0], [1.0, 2.0]])

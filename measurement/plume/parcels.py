@@ -1,4 +1,6 @@
-"""The line of parcels behind a ship, in the frame of the air mass: where a parcel was left, there it stays."""
+"""The line of parcels behind a ship, in the frame of the air mass: where a parcel was left, there
+it stays.
+"""
 
 import math
 from dataclasses import dataclass, fields
@@ -13,18 +15,24 @@ WIND_MIN = 1.0
 """Least apparent wind [m/s]: below it a plume has no direction."""
 
 _TURN = 0.15
-"""Largest change of course of the apparent wind within a block [rad]; one block has one nearest parcel to a place."""
+"""Largest change of course of the apparent wind within a block [rad]; one block has one nearest
+parcel to a place.
+"""
 
 _CLOSE = 1e-7
-"""Emission times of nearest parcels are found to within this [s]: to a micrometre along the plume."""
+"""Emission times of nearest parcels are found to within this [s]: to a micrometre along the plume.
+"""
 
 _ROUNDS = 60
-"""Most rounds of the search. It takes 3 to 6; near a centre of curvature each round only halves what is left, of an hour in 35."""
+"""Most rounds of the search. It takes 3 to 6; near a centre of curvature each round only halves
+what is left, of an hour in 35.
+"""
 
 
 @dataclass(frozen=True)
 class Nearest:
-    """Parcels whose cross-section goes through a place, one entry for each pair of a place and such a parcel, shape (k,).
+    """Parcels whose cross-section goes through a place, one entry for each pair of a place and such
+    a parcel, shape (k,).
 
     Attributes
     ----------
@@ -32,7 +40,8 @@ class Nearest:
     emitted : time at which the parcel was emitted [s]
     wind : apparent wind at that time [m/s]
     path : air that had passed the funnel by then [m]
-    across : place relative to the parcel, along the apparent wind turned +90 degrees north to east [m]
+    across : place relative to the parcel, along the apparent wind turned +90 degrees north to east
+        [m]
     curvature : of the line of parcels [1/m], above 0 where its centre is on the positive side
     """
 
@@ -59,7 +68,8 @@ class Parcels:
 
     Raises
     ------
-    MeasurementError : shapes differ, values are missing, times do not increase, or the apparent wind is below 1 m/s
+    MeasurementError : shapes differ, values are missing, times do not increase, or the apparent
+        wind is below 1 m/s
     """
 
     def __init__(self, time: Array, north: Array, east: Array, interval: float) -> None:
@@ -105,16 +115,20 @@ class Parcels:
         return float(self.path(np.array([self.end]))[0])
 
     def at(self, emitted: Array) -> tuple[Array, Array, Array]:
-        """Return north, east [m] and apparent wind [m/s] of parcels by the time they were emitted, from start to end."""
+        """Return north, east [m] and apparent wind [m/s] of parcels by the time they were emitted,
+        from start to end.
+        """
         row, rest = self._row(emitted)
         speed = np.hypot(_slope(row[:4], rest), _slope(row[4:8], rest)) / self._step
         return _value(row[:4], rest), _value(row[4:8], rest), speed
 
     def nearest(self, north: Array, east: Array, oldest: float, newest: float) -> Nearest:
-        """Return the parcels nearest to places [m], shape (m,), among those emitted from ``oldest`` to ``newest`` [s].
+        """Return the parcels nearest to places [m], shape (m,), among those emitted from ``oldest``
+        to ``newest`` [s].
 
-        A parcel's cross-section is the line across its apparent wind. Where the line of parcels bends or folds, a place can be in
-        several cross-sections, or in none; only those are returned from which the distance grows both ways.
+        A parcel's cross-section is the line across its apparent wind. Where the line of parcels
+        bends or folds, a place can be in several cross-sections, or in none; only those are
+        returned from which the distance grows both ways.
         """
         first = max(0, int(np.searchsorted(self._ends, oldest, side="right")) - 1)
         last = min(len(self._ends) - 1, int(np.searchsorted(self._ends, newest)))
@@ -143,7 +157,9 @@ class Parcels:
     def _refined(
         self, place: Indices, north: Array, east: Array, emitted: Array, bracket: Array
     ) -> Nearest:
-        """Newton's method on the place's component along the parcel's axis, kept within brackets that shrink with every round."""
+        """Newton's method on the place's component along the parcel's axis, kept within brackets
+        that shrink with every round.
+        """
         found = np.empty((5, len(place)))
         left: Indices | slice = slice(None)
         for _ in range(_ROUNDS):
@@ -176,7 +192,9 @@ class Parcels:
         return Nearest(place, *found)
 
     def _row(self, time: Array) -> tuple[Array, Array]:
-        """Coefficients of the cubics at times, shape (12, n), and how far into their steps the times are [-]."""
+        """Coefficients of the cubics at times, shape (12, n), and how far into their steps the
+        times are [-].
+        """
         steps = (time - self.start) / self._step
         index = np.clip(steps.astype(np.intp), 0, len(self._rows) - 1)
         return self._rows.take(index, axis=0).T, steps - index
@@ -200,7 +218,9 @@ def _check_track(time: Array, north: Array, east: Array) -> None:
 
 
 def _cubics(values: Array, slopes: Array) -> Array:
-    """Coefficients of cubics through ``values`` with ``slopes`` per step, (4, ..., steps), of arrays whose last axis are nodes."""
+    """Coefficients of cubics through ``values`` with ``slopes`` per step, (4, ..., steps), of
+    arrays whose last axis are nodes.
+    """
     value, slope = values[..., :-1], slopes[..., :-1]
     rise, after = np.diff(values), slopes[..., 1:]
     return np.stack([value, slope, 3.0 * rise - 2.0 * slope - after, slope + after - 2.0 * rise])
@@ -222,7 +242,9 @@ def _bend(row: Array, rest: Array) -> Array:
 
 
 def _blocks(course: Array) -> list[int]:
-    """Nodes at which blocks end, first and last included: within a block courses differ by at most 0.15 rad, or it is one step."""
+    """Nodes at which blocks end, first and last included: within a block courses differ by at most
+    0.15 rad, or it is one step.
+    """
     ends, low, high = [0], course[0], course[0]
     for k in range(1, len(course)):
         low, high = min(low, course[k]), max(high, course[k])

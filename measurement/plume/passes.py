@@ -7,20 +7,24 @@ import numpy as np
 from measurement.plume.arrays import Array
 
 HIT = 0.6
-"""Concentration at the peak of a pass, over that on the plume's own axis, from which it counts as a hit [-]."""
+"""Concentration at the peak of a pass, over that on the plume's own axis, from which it counts as a
+hit [-].
+"""
 
 FOUND_WITHIN = 300.0
 """Time on the orbit within which the plume has to be found [s]."""
 
 
 def passes(across: Array) -> Iterator[slice]:
-    """Yield the samples of each pass: from half-way since the last change of sides to half-way to the next.
+    """Yield the samples of each pass: from half-way since the last change of sides to half-way to
+    the next.
 
     A last change at once after the one before it makes no pass: it has no sample of its own.
 
     Parameters
     ----------
-    across : distance from the plume's axis, positive on one side, not a number where there is no plume, shape (n,) [m]
+    across : distance from the plume's axis, positive on one side, not a number where there is no
+        plume, shape (n,) [m]
     """
     change = np.flatnonzero(across[:-1] * across[1:] < 0.0)
     if not len(change):

@@ -18,9 +18,9 @@ _FREQUENCY = 0.7
 def rise(emission: Emission, wind: Array, age: Array, brunt_vaisala: float = 0.0) -> Array:
     """Return how far the axis is above the stack [m], gradually: it has no end in neutral air.
 
-    With x = U t: dh^3 = 3 Fm x/(b^2 U^2) + 3 F x^2/(2 b^2 U^3), of which buoyancy alone is Briggs' 1.6 F^(1/3) x^(2/3)/U. In stable
-    air dh^3 = 2.66^3 [F/(N^2 U) (N' Fm/F sin N't + 1 - cos N't)], N' = 0.7 N, held from its crest on, and never above the neutral
-    rise.
+    With x = U t: dh^3 = 3 Fm x/(b^2 U^2) + 3 F x^2/(2 b^2 U^3), of which buoyancy alone is Briggs'
+    1.6 F^(1/3) x^(2/3)/U. In stable air dh^3 = 2.66^3 [F/(N^2 U) (N' Fm/F sin N't + 1 - cos N't)],
+    N' = 0.7 N, held from its crest on, and never above the neutral rise.
 
     Parameters
     ----------
@@ -45,9 +45,11 @@ def rise(emission: Emission, wind: Array, age: Array, brunt_vaisala: float = 0.0
 
 
 def downwash(emission: Emission, wind: Array) -> Array:
-    """Return how far the stack's tip draws the plume down [m]: 2 d (1.5 - w/U) where the exhaust is slower than 1.5 U, or 0.
+    """Return how far the stack's tip draws the plume down [m]: 2 d (1.5 - w/U) where the exhaust is
+    slower than 1.5 U, or 0.
 
-    Source: AERMOD, routine HSPRIM. The wake of the superstructure, which is not in it, is in the initial spread.
+    Source: AERMOD, routine HSPRIM. The wake of the superstructure, which is not in it, is in the
+    initial spread.
     """
     result: Array = (
         2.0 * emission.stack_diameter * np.maximum(0.0, 1.5 - emission.exhaust_speed / wind)

@@ -20,20 +20,26 @@ class PlumeSettings:
 
     Attributes
     ----------
-    mean : the ensemble mean (regulatory Gaussian) instead of a realisation: no meander, spreads with that of the meander
-    meander : whether the centre line of a realisation leaves the axis; without it a realisation is too high on the axis
-    downwash : whether the stack's tip draws the plume down where the exhaust is slower than 1.5 of the apparent wind (AERMOD)
-    richardson : C_r of the 4/3 law [-]; 0.08 to 0.1 follow from Richardson's g = 0.5 (Boffetta and Sokolov), and results depend on
-        it between 0.1 and 0.6
-    structure_intensity : standard deviation over mean of the fluctuations within the plume [-]; 0 leaves them out. About 0.4
-        on the axis of a buoyant plume, 0.2 to 0.8: an assumption
-    structure_length : length of the fluctuations within the plume, in relative spreads [-]; 0.5 to 1 are plausible: an assumption
-    meander_length_across : integral scale of the meander to the sides along the plume, in heights of the source [-]; 2 to 3 for
-        neutral air over sea, to a factor of 2 either way: an assumption
-    meander_length_up : integral scale of the meander in height along the plume, in heights of the source [-]; 0.5 for neutral air
-        over sea, to a factor of 2 either way: an assumption
-    dissipation_height : height at which the dissipation is taken, in heights of the source [-]. The specification says not
-        which; its worked table follows from 2, where the axis is some hundred metres behind
+    mean : the ensemble mean (regulatory Gaussian) instead of a realisation: no meander, spreads
+        with that of the meander
+    meander : whether the centre line of a realisation leaves the axis; without it a realisation is
+        too high on the axis
+    downwash : whether the stack's tip draws the plume down where the exhaust is slower than 1.5 of
+        the apparent wind (AERMOD)
+    richardson : C_r of the 4/3 law [-]; 0.08 to 0.1 follow from Richardson's g = 0.5 (Boffetta and
+        Sokolov), and results depend on it between 0.1 and 0.6
+    structure_intensity : standard deviation over mean of the fluctuations within the plume [-]; 0
+        leaves them out. About 0.4 on the axis of a buoyant plume, 0.2 to 0.8: an assumption
+    structure_length : length of the fluctuations within the plume, in relative spreads [-]; 0.5 to
+        1 are plausible: an assumption
+    meander_length_across : integral scale of the meander to the sides along the plume, in heights
+        of the source [-]; 2 to 3 for neutral air over sea, to a factor of 2 either way: an
+        assumption
+    meander_length_up : integral scale of the meander in height along the plume, in heights of the
+        source [-]; 0.5 for neutral air over sea, to a factor of 2 either way: an assumption
+    dissipation_height : height at which the dissipation is taken, in heights of the source [-]. The
+        specification says not which; its worked table follows from 2, where the axis is some
+        hundred metres behind
     age_max : age up to which there is a plume [s]; the spreads hold below about 300 s
     parcel_interval : time between parcels of the axis that is made of the ship's track [s]
 

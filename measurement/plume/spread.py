@@ -1,4 +1,6 @@
-"""Spreads of a plume over the sea: about its fixed axis, about its centre at one moment, and of the centre about the axis."""
+"""Spreads of a plume over the sea: about its fixed axis, about its centre at one moment, and of the
+centre about the axis.
+"""
 
 import functools
 import math
@@ -19,7 +21,9 @@ _BUOYANT = 0.4 / math.sqrt(2.0)
 """Spread that the rise makes, over the rise [-]: AERMOD's buoyancy-induced dispersion."""
 
 _BATCHELOR = 2.33
-"""(11/9) C2 6^(1/3) / 2 with Kolmogorov's C2 = 2.1 [-], which is from memory: reviews give 2.0 to 2.2."""
+"""(11/9) C2 6^(1/3) / 2 with Kolmogorov's C2 = 2.1 [-], which is from memory: reviews give 2.0 to
+2.2.
+"""
 
 _FINAL = 60.0
 """Age at which the axis' height is the one that the absolute spreads are computed with [s]."""
@@ -54,15 +58,20 @@ def spreads(
     age_max: float,
     settings: PlumeSettings,
 ) -> Spreads:
-    """Return axis and spreads at ages 0, 0.1, ... [s], from the turbulence of the true wind and the time in the apparent one.
+    """Return axis and spreads at ages 0, 0.1, ... [s], from the turbulence of the true wind and the
+    time in the apparent one.
 
-    With sigma_r^2 = sigma_0^2 + sigma_b^2 + sigma_t^2 (source, buoyancy, turbulence) each direction follows, from sigma_t = 0 on,
+    With sigma_r^2 = sigma_0^2 + sigma_b^2 + sigma_t^2 (source, buoyancy, turbulence) each direction
+    follows, from sigma_t = 0 on,
 
-        d sigma_t^2/dt = min[3 (C_r eps)^(1/3) sigma_r^(4/3), 2 t min(2.33 (eps sigma_r)^(2/3), sigma_w^2), d sigma_a^2/dt]:
+        d sigma_t^2/dt =
+        min[3 (C_r eps)^(1/3) sigma_r^(4/3), 2 t min(2.33 (eps sigma_r)^(2/3), sigma_w^2), d
+        sigma_a^2/dt]:
 
-    Richardson's 4/3 law, Batchelor's ballistic range, and never faster than about the fixed axis. The centre has the rest:
-    sigma_m^2 = sigma_a^2 - sigma_t^2, so that the ensemble mean is the regulatory Gaussian by construction. Each limit is a
-    standard one; taking the least of them is the specification's own.
+    Richardson's 4/3 law, Batchelor's ballistic range, and never faster than about the fixed axis.
+    The centre has the rest: sigma_m^2 = sigma_a^2 - sigma_t^2, so that the ensemble mean is the
+    regulatory Gaussian by construction. Each limit is a standard one; taking the least of them is
+    the specification's own.
 
     Parameters
     ----------
@@ -86,7 +95,9 @@ def _spreads(
     step: float,
     settings: PlumeSettings,
 ) -> Spreads:
-    """Return the same, kept for the next flights in the same wind: those of a comparison, or with another law or sensor."""
+    """Return the same, kept for the next flights in the same wind: those of a comparison, or with
+    another law or sensor.
+    """
     wind = np.array(winds)
     age: Array = step * np.arange(math.ceil(age_max / step) + 2, dtype=np.float64)
     column = wind[:, np.newaxis]
@@ -132,7 +143,9 @@ def _turbulent(
     sigma_w: float,
     richardson: float,
 ) -> Array:
-    """sigma_t^2 [m2], of the shape of ``absolute``, by Euler's rule; the time of the ballistic term is the step's middle."""
+    """sigma_t^2 [m2], of the shape of ``absolute``, by Euler's rule; the time of the ballistic term
+    is the step's middle.
+    """
     others = source.T[:, np.newaxis, :].copy()
     growth = np.diff(absolute, axis=-1).transpose(2, 0, 1)
     explosive = interval * 3.0 * (richardson * dissipation) ** (1.0 / 3.0)

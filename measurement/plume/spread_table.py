@@ -23,7 +23,8 @@ _COLUMNS = 5
 
 
 class SpreadTable:
-    """Height of the axis, relative spreads across and up, and those of the meander, by apparent wind and age.
+    """Height of the axis, relative spreads across and up, and those of the meander, by apparent
+    wind and age.
 
     Parameters
     ----------
@@ -65,7 +66,8 @@ class SpreadTable:
         )
 
     def at(self, wind: Array, age: Array) -> Array:
-        """Return height, sigma_ry, sigma_rz, sigma_my and sigma_mz [m], shape (5, n), linear in age and in the wind's logarithm.
+        """Return height, sigma_ry, sigma_rz, sigma_my and sigma_mz [m], shape (5, n), linear in age
+        and in the wind's logarithm.
 
         Parameters
         ----------

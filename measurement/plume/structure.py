@@ -16,10 +16,12 @@ _TURN = 2.0 * math.pi
 
 
 class Structure:
-    """exp(s g - s^2/2) with s^2 = ln(1 + i^2) and g a Gaussian field of unit variance: log-normal, of mean 1 and intensity i.
+    """exp(s g - s^2/2) with s^2 = ln(1 + i^2) and g a Gaussian field of unit variance: log-normal,
+    of mean 1 and intensity i.
 
-    g is a sum of 64 waves with covariance exp(-r^2/2 L^2). It is frozen at emission: its place along the plume is the path of air
-    that has passed the funnel, and across it is that from the centre. It does not touch the ratio of gases.
+    g is a sum of 64 waves with covariance exp(-r^2/2 L^2). It is frozen at emission: its place
+    along the plume is the path of air that has passed the funnel, and across it is that from the
+    centre. It does not touch the ratio of gases.
 
     Parameters
     ----------

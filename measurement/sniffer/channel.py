@@ -13,9 +13,10 @@ from measurement.sniffer.lag import time_constants
 class Channel:
     """A gas channel. Concentrations are in the unit of its gas: ppm of CO2, ppb of the others.
 
-    It reads ``gain (c + sum of cross k c_k) (1 + pressure_effect dp) + zero``, delayed, through its lag, with white noise and a
-    random walk, rounded and cut at its range. An ending ``_sd`` is the standard deviation with which
-    the analyst knows a property; infinite for t90 and delay of SO2 that are not known at all: they are estimated from the record.
+    It reads ``gain (c + sum of cross k c_k) (1 + pressure_effect dp) + zero``, delayed, through its
+    lag, with white noise and a random walk, rounded and cut at its range. An ending ``_sd`` is the
+    standard deviation with which the analyst knows a property; infinite for t90 and delay of SO2
+    that are not known at all: they are estimated from the record.
 
     Attributes
     ----------
@@ -25,8 +26,10 @@ class Channel:
     second_pole : second time constant over the first, 0 for a response with one pole [-]
     delay_s : delay of tube and pump [s]
     delay_sd_s : standard deviation of the delay [s]
-    noise : standard deviation of a reading; not a number where it is to be estimated from the record [unit]
-    random_walk : standard deviation of the zero's drift after one second, growing with the root of time [unit/s^0.5]
+    noise : standard deviation of a reading; not a number where it is to be estimated from the
+        record [unit]
+    random_walk : standard deviation of the zero's drift after one second, growing with the root of
+        time [unit/s^0.5]
     resolution : step of the readings, 0 for none [unit]
     range_low, range_high : end of what it can read [unit]
     gain : reading over concentration [-]

@@ -11,7 +11,8 @@ from measurement.errors import MeasurementError
 Array = npt.NDArray[np.float64]
 
 SECOND_POLE_MAX = 0.95
-"""Largest second time constant over the first: the parallel form of two equal poles has no weights."""
+"""Largest second time constant over the first: the parallel form of two equal poles has no weights.
+"""
 
 
 @functools.lru_cache(maxsize=256)
@@ -22,7 +23,8 @@ def time_constants(t90: float, second_pole: float) -> tuple[float, ...]:
 
     Raises
     ------
-    MeasurementError : ``t90`` is not positive, or ``second_pole`` is not in 0 to ``SECOND_POLE_MAX``
+    MeasurementError : ``t90`` is not positive, or ``second_pole`` is not in 0 to
+        ``SECOND_POLE_MAX``
     """
     if not 0.0 < t90 < math.inf:
         raise MeasurementError(
@@ -49,7 +51,9 @@ def time_constants(t90: float, second_pole: float) -> tuple[float, ...]:
 
 
 def parallel(constants: tuple[float, ...]) -> tuple[tuple[float, float], ...]:
-    """Return weight and time constant [s] of the first-order lags whose weighted sum is the lag with these time constants."""
+    """Return weight and time constant [s] of the first-order lags whose weighted sum is the lag
+    with these time constants.
+    """
     if len(constants) == 1:
         return ((1.0, constants[0]),)
     first, second = constants
@@ -57,10 +61,11 @@ def parallel(constants: tuple[float, ...]) -> tuple[tuple[float, float], ...]:
 
 
 def weights(step: Array | float, constant: float) -> tuple[Array, Array, Array]:
-    """Return what a first-order lag's output after a step is of its output, its input before and its input after [-].
+    """Return what a first-order lag's output after a step is of its output, its input before and
+    its input after [-].
 
-    With r = step/constant, a = e^-r and m = (1 - a)/r these are a, m - a and 1 - m: exact where the input is linear
-    over the step.
+    With r = step/constant, a = e^-r and m = (1 - a)/r these are a, m - a and 1 - m: exact where the
+    input is linear over the step.
     """
     r = np.asarray(step, dtype=np.float64) / constant
     a = np.exp(-r)
@@ -84,7 +89,8 @@ def lag(
     signal : input, shape (n,) or (n, k), linear between samples
     step : between samples [s]
     constant : time constant [s]
-    before : output and input a step before the first sample; without it the lag is at rest at the first sample
+    before : output and input a step before the first sample; without it the lag is at rest at the
+        first sample
     """
     from scipy.signal import lfilter
 

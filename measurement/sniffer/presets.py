@@ -53,16 +53,20 @@ _UNKNOWN: dict[str, dict[str, Any]] = {
         "zero_sd": 10.0,
     },
 }
-"""What is taken of a channel where its table says nothing (assumptions): times of SO2 are then estimated from the record.
+"""What is taken of a channel where its table says nothing (assumptions): times of SO2 are then
+estimated from the record.
 
-Of the presets' SO2 channels the response to NO is 0 to 3 %, and that to NO2 0, -16 % with a filter, and -160 % without one.
+Of the presets' SO2 channels the response to NO is 0 to 3 %, and that to NO2 0, -16 % with a filter,
+and -160 % without one.
 """
 
 OWN = "own sniffer"
 """What a sniffer from a table is called that has no title."""
 
 _CROSS_KNOWN = 0.2
-"""Relative standard deviation of a response to another gas that is given without one, as of the electrochemical preset's to NO2."""
+"""Relative standard deviation of a response to another gas that is given without one, as of the
+electrochemical preset's to NO2.
+"""
 
 
 def sensor_presets() -> tuple[str, ...]:
@@ -93,7 +97,9 @@ def sensor_preset(name: str) -> SnifferSpec:
 
 
 def sensor_of(given: str | Mapping[str, Any], name: str = "") -> SnifferSpec:
-    """Return a sniffer by its name, or from a table, called ``name`` or else by its title. Errors as of the two."""
+    """Return a sniffer by its name, or from a table, called ``name`` or else by its title. Errors
+    as of the two.
+    """
     return (
         sensor_preset(given)
         if isinstance(given, str)
@@ -102,10 +108,12 @@ def sensor_of(given: str | Mapping[str, Any], name: str = "") -> SnifferSpec:
 
 
 def read_spec(table: Mapping[str, Any], name: str) -> SnifferSpec:
-    """Return a sniffer from a table with ``title``, ``rate_hz``, ``source`` and a table per gas in ``channels``.
+    """Return a sniffer from a table with ``title``, ``rate_hz``, ``source`` and a table per gas in
+    ``channels``.
 
-    Keys of a channel are the fields of ``Channel`` without its gas. Those that are left out are taken as not known. Where there
-    is a ``cross`` the channel responds to no other gases than those.
+    Keys of a channel are the fields of ``Channel`` without its gas. Those that are left out are
+    taken as not known. Where there is a ``cross`` the channel responds to no other gases than
+    those.
 
     Raises
     ------
@@ -142,7 +150,8 @@ def _channel(gas: str, table: Any, name: str) -> Channel:
             f"{where} has the key '{unknown[0]}'{guess(unknown[0], keys)} it may have {', '.join(sorted(keys))}"
         )
     given: dict[str, Any] = dict(_UNKNOWN[gas])
-    # A time that is given without its deviation is taken to be known to 10 %, a delay to 0.5 s (assumptions).
+    # A time that is given without its deviation is taken to be known to 10 %, a delay to 0.5 s
+    # (assumptions).
     given |= {"t90_sd": 0.1} if "t90_s" in table else {}
     given |= {"delay_sd_s": 0.5} if "delay_s" in table else {}
     for key, value in table.items():

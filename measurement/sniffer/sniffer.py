@@ -22,7 +22,8 @@ class Readings:
     Attributes
     ----------
     time : of the readings, shape (m,) [s]
-    values : shape (m, 4), in the order of ``GASES`` (ppb, ppm, ppb, ppb); not a number where there is no channel
+    values : shape (m, 4), in the order of ``GASES`` (ppb, ppm, ppb, ppb); not a number where there
+        is no channel
     """
 
     time: Array
@@ -33,7 +34,8 @@ class Readings:
 
 
 class Sniffer:
-    """A sniffer in flight, advanced by the air at its inlet; in parts of any length with the same readings as in one.
+    """A sniffer in flight, advanced by the air at its inlet; in parts of any length with the same
+    readings as in one.
 
     Parameters
     ----------
@@ -63,8 +65,10 @@ class Sniffer:
 
         Parameters
         ----------
-        concentrations : with the background, shape (n, 4), in the order of ``GASES``; a step after those before
-        pressure_error_hpa : pressure in the sensors less that of their calibration, shape (n,); none is 0
+        concentrations : with the background, shape (n, 4), in the order of ``GASES``; a step after
+            those before
+        pressure_error_hpa : pressure in the sensors less that of their calibration, shape (n,);
+            none is 0
 
         Raises
         ------

@@ -91,11 +91,13 @@ class SnifferSpec:
                 )
 
     def drawn(self, generator: np.random.Generator) -> "SnifferSpec":
-        """Return the instrument of one flight: each property sampled within its standard deviation, and then known exactly.
+        """Return the instrument of one flight: each property sampled within its standard deviation,
+        and then known exactly.
 
         Raises
         ------
-        MeasurementError : a property has an infinite standard deviation, from which nothing can be sampled
+        MeasurementError : a property has an infinite standard deviation, from which nothing can be
+            sampled
         """
         self.check_known()
         return replace(

@@ -1,4 +1,6 @@
-"""Figures of an arena: error against effort, crossings per minute against what is possible, and tracks."""
+"""Figures of an arena: error against effort, crossings per minute against what is possible, and
+tracks.
+"""
 
 import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
@@ -40,7 +42,9 @@ _BEYOND = 1.08
 
 
 def effort_charts(arena: Arena) -> list[Chart]:
-    """Return tracking error against control effort with one mark a law: over all conditions, and a panel for each."""
+    """Return tracking error against control effort with one mark a law: over all conditions, and a
+    panel for each.
+    """
     entrants = arena.in_task(tracking=True)
     together = Chart(
         name="effort",
@@ -68,7 +72,9 @@ def effort_charts(arena: Arena) -> list[Chart]:
 def _effort_panel(
     arena: Arena, entrants: Sequence[Entrant], condition: str, word: tuple[float, float]
 ) -> Panel:
-    """Return a mark a law; of those that are nearer to each other than ``word``, over the panel's sizes, numbers are together."""
+    """Return a mark a law; of those that are nearer to each other than ``word``, over the panel's
+    sizes, numbers are together.
+    """
     efforts = {entrant.name: arena.of(EFFORT, entrant, condition).mean for entrant in entrants}
     errors = {
         entrant.name: math.log10(max(arena.of(ERROR, entrant, condition).mean, 1e-3))
@@ -114,11 +120,13 @@ def _effort_panel(
 def clusters(
     marks: Mapping[int, tuple[float, float]], word: tuple[float, float]
 ) -> Iterator[tuple[list[int], tuple[float, float]]]:
-    """Yield marks whose numbers would hide each other, together: their numbers, and the place of their words.
+    """Yield marks whose numbers would hide each other, together: their numbers, and the place of
+    their words.
 
     Parameters
     ----------
-    marks : place of each by its number, over the width and the height of the panel; some may be not a number
+    marks : place of each by its number, over the width and the height of the panel; some may be not
+        a number
     word : width and height of a number, as the places
     """
     left = sorted(
@@ -158,7 +166,9 @@ def _family(entrant: Entrant) -> str:
 
 
 def crossing_chart(arena: Arena) -> Chart:
-    """Return the crossings per minute of every law, a panel for each condition, with the limit where it is known."""
+    """Return the crossings per minute of every law, a panel for each condition, with the limit
+    where it is known.
+    """
     entrants = arena.ranked(CROSSINGS, arena.entrants)
     reach = _BEYOND * max(_most(arena, CROSSINGS, arena.conditions), *arena.limits.values(), 0.0)
     panels = [
@@ -271,7 +281,9 @@ def _most(arena: Arena, figure: Figure, conditions: Iterable[str]) -> float:
 
 
 def track_charts(arena: Arena, *, tracking: bool) -> list[Chart]:
-    """Return the end of the first flight of each law in the first condition, seen from the vessel with its plume up the page."""
+    """Return the end of the first flight of each law in the first condition, seen from the vessel
+    with its plume up the page.
+    """
     ranked = arena.ranked(ERROR, arena.in_task(tracking=tracking))
     panels = [
         panel

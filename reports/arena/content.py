@@ -236,7 +236,9 @@ def _headline(arena: Arena, best: list[tuple[bool, Entrant]]) -> str:
 
 
 def _unflown(arena: Arena) -> list[str]:
-    """Return a line for each law of which flights could not be flown: how many, and why the first of them could not."""
+    """Return a line for each law of which flights could not be flown: how many, and why the first
+    of them could not.
+    """
     lines = []
     for entrant in arena.entrants:
         rows, lacking = entrant.rows, entrant.unflown

@@ -28,8 +28,10 @@ class Estimate:
     Attributes
     ----------
     mean, low, high : of the figure
-    best, as_good : whether no other law's mean is better, and whether the flights do not show that another law is better
-    whole : whether it is of every flight of which any law has the figure; otherwise it is not compared with the others
+    best, as_good : whether no other law's mean is better, and whether the flights do not show that
+        another law is better
+    whole : whether it is of every flight of which any law has the figure; otherwise it is not
+        compared with the others
     flights : number of flights that it is of
     """
 
@@ -98,7 +100,8 @@ class Arena:
     conditions : titles by name
     flights : of each entrant in each condition
     refused : laws that do not take part in a task: law, task, reason
-    limits : most crossings per minute that any path allows, by condition, where they are known [1/min]
+    limits : most crossings per minute that any path allows, by condition, where they are known
+        [1/min]
     """
 
     run: RunData
@@ -132,7 +135,9 @@ class Arena:
         return [entrant for entrant in self.entrants if entrant.tracks == tracking]
 
     def ranked(self, figure: Figure, entrants: Iterable[Entrant]) -> list[Entrant]:
-        """Return entrants by the mean of a figure over all conditions, the best first; last those not compared, or without one."""
+        """Return entrants by the mean of a figure over all conditions, the best first; last those
+        not compared, or without one.
+        """
 
         def place(entrant: Entrant) -> tuple[bool, bool, float]:
             found = self.of(figure, entrant, self.together)
@@ -145,7 +150,9 @@ class Arena:
         return sorted(entrants, key=place)
 
     def best(self, figure: Figure, entrants: Iterable[Entrant]) -> Entrant | None:
-        """Return the entrant with the best mean of a figure over all conditions, of those that are compared; none without one."""
+        """Return the entrant with the best mean of a figure over all conditions, of those that are
+        compared; none without one.
+        """
         return next(
             (
                 first
@@ -207,7 +214,9 @@ def _named(rows: pd.DataFrame) -> Iterable[tuple[Any, Any]]:
 
 
 def _of_case(flight: str, trial: str, case: str, fidelity: str) -> bool:
-    """Return whether a flight is one of a case: its name has the trial's, the case's and the vehicle's, and perhaps a number."""
+    """Return whether a flight is one of a case: its name has the trial's, the case's and the
+    vehicle's, and perhaps a number.
+    """
     rest = flight.removeprefix(f"{trial}_")
     return rest == f"{case}_{fidelity}" or rest.rpartition("_")[0] == f"{case}_{fidelity}"
 

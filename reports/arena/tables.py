@@ -145,7 +145,9 @@ def _interval(estimate: Estimate, figure: Figure) -> str:
 
 
 def few(arena: Arena, estimate: Estimate, condition: str) -> str:
-    """Return of how many flights a mean is, to stand beside it: nothing where it is of all, or there is none."""
+    """Return of how many flights a mean is, to stand beside it: nothing where it is of all, or
+    there is none.
+    """
     planned = arena.flights_of(condition)
     return f", {estimate.flights} of {planned}" if 0 < estimate.flights < planned else ""
 
@@ -185,7 +187,9 @@ def by_condition_table(arena: Arena, figure: Figure, *, tracking: bool | None = 
 
 
 def given_table(arena: Arena) -> Table:
-    """Return what each law was given: its way to the reference, its parameters, and what either set costs the tuner."""
+    """Return what each law was given: its way to the reference, its parameters, and what either set
+    costs the tuner.
+    """
     rows = []
     for entrant in arena.entrants:
         tuned = entrant.tuned

@@ -17,7 +17,9 @@ if TYPE_CHECKING:
     from reports.compare.runs import Run
 
 _NAME_MAX = 38
-"""Letters of a run's name in that of the directory that is made beside it: six of them fit into the name of a directory."""
+"""Letters of a run's name in that of the directory that is made beside it: six of them fit into the
+name of a directory.
+"""
 
 _HASH_LETTERS = 8
 """Letters of the hash that tells runs apart whose names alone do not."""
@@ -36,7 +38,8 @@ def compare_runs(paths: list[Path], out: Path | None) -> list[Path]:
 
     Raises
     ------
-    ReportError : a run cannot be compared, none of its flights is in the first, or nothing can be written there
+    ReportError : a run cannot be compared, none of its flights is in the first, or nothing can be
+        written there
     """
     from reports.compare.content import compare, comparison_content
     from reports.compare.runs import read_runs
@@ -61,7 +64,9 @@ def compare_runs(paths: list[Path], out: Path | None) -> list[Path]:
 
 
 def _beside(paths: list[Path]) -> Path:
-    """Return the directory beside the first run that is named by all of them, of which no other runs have the same."""
+    """Return the directory beside the first run that is named by all of them, of which no other
+    runs have the same.
+    """
     names = [path.name[:_NAME_MAX] for path in paths]
     if any(path != paths[0].parent / name for path, name in zip(paths, names, strict=True)):
         names.append(
@@ -135,7 +140,8 @@ def command(
         ),
     ] = None,
 ) -> None:
-    """Compare runs with the first one: configuration, figures, and the flights that they have in common.
+    """Compare runs with the first one: configuration, figures, and the flights that they have in
+    common.
 
     Writes compare.html, compare.pdf and differences.csv. Exit status: 0 written, 2 bad input.
     """

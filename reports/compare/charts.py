@@ -26,7 +26,9 @@ _FIGURES_MAX = 2
 
 
 def pair_charts(pairs: Pairs, found: dict[str, Difference]) -> list[Chart]:
-    """Return, figure by figure, one run over the first, and beside it the differences; nothing where no figure differs."""
+    """Return, figure by figure, one run over the first, and beside it the differences; nothing
+    where no figure differs.
+    """
     known = [found[name] for name in _SHOWN if name in found and not found[name].is_none]
     shown = [difference for difference in known if len(difference.known) >= _PAIRS_MIN]
     groups, over = _groups(pairs), _inputs(pairs)
@@ -76,7 +78,9 @@ def _groups(pairs: Pairs) -> list[Group]:
 
 
 def _marks(x: Array, y: Array, groups: list[Group]) -> list[Line]:
-    """Return markers as ``points`` does; those of flights met in one run alone are told apart in grey, too."""
+    """Return markers as ``points`` does; those of flights met in one run alone are told apart in
+    grey, too.
+    """
     return [
         replace(line, style="diamonds") if line.label.endswith(" alone") else line
         for line in points(x, y, groups)
@@ -99,7 +103,9 @@ def _scatter(difference: Difference, groups: list[Group], pairs: Pairs) -> Panel
 
 
 def _inputs(pairs: Pairs) -> tuple[Array, str] | None:
-    """Return the values of the key that the flights were swept over and its name; None unless it is one key of numbers."""
+    """Return the values of the key that the flights were swept over and its name; None unless it is
+    one key of numbers.
+    """
     trials = {trial.key: trial for trial in pairs.first.trials}
     flown = [trials[str(trial)] for trial in dict.fromkeys(pairs.before["trial"])]
     if len(flown) != 1 or len(flown[0].swept) != 1:
@@ -129,7 +135,9 @@ def _changes(difference: Difference, x: Array, x_label: str, groups: list[Group]
 
 
 def _ranked(difference: Difference, groups: list[Group]) -> Panel:
-    """Return the differences in rising order, from the pair with the least to the one with the greatest."""
+    """Return the differences in rising order, from the pair with the least to the one with the
+    greatest.
+    """
     change = difference.change
     share = np.full(len(change), np.nan)
     order = np.argsort(change)[: len(difference.known)]

@@ -28,7 +28,9 @@ Values = tuple[str, ...]
 
 
 def configuration_table(runs: Sequence[Run]) -> Table | None:
-    """Return each key that differs between runs, with its value in each of them, or None if none does."""
+    """Return each key that differs between runs, with its value in each of them, or None if none
+    does.
+    """
     rows = []
     about = _meanings(runs)
     for (key, values), trials in _differing(runs).items():
@@ -48,7 +50,9 @@ def configuration_table(runs: Sequence[Run]) -> Table | None:
 
 
 def trials_apart(runs: Sequence[Run]) -> list[str]:
-    """Return a sentence for each run that has trials which others do not have; none where each run has one trial alone."""
+    """Return a sentence for each run that has trials which others do not have; none where each run
+    has one trial alone.
+    """
     if _single(runs):
         return []
     shared = set.intersection(*({trial.key for trial in run.trials} for run in runs))
@@ -67,7 +71,9 @@ def _single(runs: Sequence[Run]) -> bool:
 
 
 def _differing(runs: Sequence[Run]) -> dict[tuple[str, Values], list[str]]:
-    """Return the trials, by key and its values, in which they differ; runs of one trial each are compared whatever it is called."""
+    """Return the trials, by key and its values, in which they differ; runs of one trial each are
+    compared whatever it is called.
+    """
     found: dict[tuple[str, Values], list[str]] = {}
     single = _single(runs)
     trials = [{"" if single else trial.key: trial for trial in run.trials} for run in runs]
@@ -90,7 +96,9 @@ def _differing(runs: Sequence[Run]) -> dict[tuple[str, Values], list[str]]:
 
 
 def _settings(trial: Trial) -> dict[str, Any]:
-    """Return the values of a trial's configuration by dotted keys: a sampled key’s distribution; cases and variants by name."""
+    """Return the values of a trial's configuration by dotted keys: a sampled key’s distribution;
+    cases and variants by name.
+    """
     config = {key: value for key, value in trial.config.items() if key not in (*_WORDS, "draws")}
     sampled = {draw["key"]: distribution(draw, str(config.get("study"))) for draw in trial.sampled}
     return leaves(_named(config)) | sampled
@@ -111,7 +119,9 @@ def _named(value: Any) -> Any:
 
 
 def _in_words(key: str, values: Sequence[Any]) -> Values:
-    """Return values as they are printed: long lists by their number and range, unless that hides in what they differ."""
+    """Return values as they are printed: long lists by their number and range, unless that hides in
+    what they differ.
+    """
     different = len({json.dumps(value) for value in values})
     for words in (_brief, _whole):
         written = tuple(words(value, key) for value in values)
@@ -135,7 +145,9 @@ def _brief(value: Any, key: str) -> str:
 
 
 def _meanings(runs: Sequence[Run]) -> dict[str, tuple[str, str]]:
-    """Return meaning and unit of each key that acts in some run, or has there another value than its default."""
+    """Return meaning and unit of each key that acts in some run, or has there another value than
+    its default.
+    """
     return {
         str(parameter["key"]): (str(parameter["meaning"]), str(parameter["unit"]))
         for run in runs

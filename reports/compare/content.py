@@ -170,7 +170,9 @@ def _pair_section(compared: Compared, tracks: Chart | None) -> Section:
 
 
 def pairing_sentences(pairs: Pairs) -> list[str]:
-    """Return how many flights are paired, how many have no partner, and whether what was sampled agrees."""
+    """Return how many flights are paired, how many have no partner, and whether what was sampled
+    agrees.
+    """
     first, other = pairs.first, pairs.other
     sentences = [
         f"{len(pairs):,} flight{'s are' if len(pairs) > 1 else ' is'} paired: the same point or case, number and seed."
@@ -281,12 +283,16 @@ def headline(compared: Sequence[Compared]) -> str:
 
 
 def _turned(pairs: Pairs) -> tuple[Mask, Mask, Mask]:
-    """Return the flights that are no longer met, those that newly are, and those that are worse without having been met."""
+    """Return the flights that are no longer met, those that newly are, and those that are worse
+    without having been met.
+    """
     return pairs.no_longer_met, pairs.newly_met, pairs.no_longer & ~pairs.no_longer_met
 
 
 def _new(pairs: Pairs) -> int:
-    """Return how many flights violate the keep-out area or lose their aircraft in the other run alone."""
+    """Return how many flights violate the keep-out area or lose their aircraft in the other run
+    alone.
+    """
     bad = [violated(rows) | lost(rows) for rows in (pairs.before, pairs.after)]
     return count(~bad[0] & bad[1])
 

@@ -14,7 +14,9 @@ from reports.monte_carlo.names import FIGURES, Figure
 from reports.run.columns import Array, clearance, column, interval_error
 
 PAIRS_MIN = 6
-"""Pairs from which on a median has an interval: of fewer, all lie on one side of it more often than in 5 %."""
+"""Pairs from which on a median has an interval: of fewer, all lie on one side of it more often than
+in 5 %.
+"""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -97,8 +99,9 @@ class Difference:
     ----------
     figure : which one
     before, after : of each flight, in the first run and in the other, in the figure's unit
-    median, low, high : of the differences, and the exact interval of their median; not a number of fewer than ``PAIRS_MIN``. Pairs
-        that share their random sample, such as those at the points of a sweep, count as one, with the mean of their differences
+    median, low, high : of the differences, and the exact interval of their median; not a number of
+        fewer than ``PAIRS_MIN``. Pairs that share their random sample, such as those at the points
+        of a sweep, count as one, with the mean of their differences
     """
 
     figure: Figure
@@ -132,7 +135,9 @@ class Difference:
 
 
 def differences(pairs: Pairs) -> dict[str, Difference]:
-    """Return how each figure differs that both flights of some pair have, and that is not 0 in all of them."""
+    """Return how each figure differs that both flights of some pair have, and that is not 0 in all
+    of them.
+    """
     found = {}
     for name, measure in MEASURES.items():
         before, after = (
@@ -145,7 +150,8 @@ def differences(pairs: Pairs) -> dict[str, Difference]:
         ):
             means = pd.Series(change[known]).groupby(pairs.samples[known]).mean()
             samples = np.asarray(means, dtype=np.float64)
-            # The exact interval of order statistics: for any distribution, however few flights and many ties.
+            # The exact interval of order statistics: for any distribution, however few flights and
+            # many ties.
             interval = quantile_interval(samples, 0.5, CONFIDENCE)
             found[name] = Difference(
                 figure=measure.figure,

@@ -1,4 +1,6 @@
-"""Which flights of two runs are the same: of the same point or case, with the same number and the same seed."""
+"""Which flights of two runs are the same: of the same point or case, with the same number and the
+same seed.
+"""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
@@ -34,7 +36,8 @@ class Pairs:
     ----------
     first, other : the runs
     before, after : rows of their summaries; the flights of row i are the same
-    same_name : flights without a partner of which the other run has one of the same name, with another seed
+    same_name : flights without a partner of which the other run has one of the same name, with
+        another seed
     """
 
     first: Run
@@ -66,7 +69,9 @@ class Pairs:
 
     @property
     def samples(self) -> npt.NDArray[np.int64]:
-        """Number of each pair's random sample: pairs of a trial that have one seed share it, and one without a seed is alone."""
+        """Number of each pair's random sample: pairs of a trial that have one seed share it, and
+        one without a seed is alone.
+        """
         alone = np.where(self.before["seed"].isna(), np.arange(len(self)), -1)
         numbers = self.before.groupby(["trial", "seed", alone], dropna=False).ngroup()
         return np.asarray(numbers, dtype=np.int64)
@@ -88,7 +93,9 @@ class Pairs:
 
     @property
     def in_first_alone(self) -> dict[str, Mask]:
-        """Flights that met every criterion, are known to keep out, or completed their mission in the first run alone."""
+        """Flights that met every criterion, are known to keep out, or completed their mission in
+        the first run alone.
+        """
         return {words: state(self.before) & ~state(self.after) for words, state in _STATES.items()}
 
     @property
@@ -103,9 +110,11 @@ class Pairs:
         return worse
 
     def differing_inputs(self) -> dict[str, int]:
-        """Return the keys that were sampled or swept in both runs with another value in some pairs, and in how many.
+        """Return the keys that were sampled or swept in both runs with another value in some pairs,
+        and in how many.
 
-        ``SPEED_RATIO`` is among them where it differs, though it is that of the flight: paired flights have the same swept one.
+        ``SPEED_RATIO`` is among them where it differs, though it is that of the flight: paired
+        flights have the same swept one.
         """
         tables = [run.data.draws.set_index("flight_id") for run in (self.first, self.other)]
         shared = [name for name in tables[0] if name in tables[1] and name not in _NAMING]
@@ -119,7 +128,9 @@ class Pairs:
         return {name: count for name, count in counts.items() if count}
 
     def differing_figures(self, *, apart: Sequence[str] = ()) -> list[str]:
-        """Return the columns in which any pair differs in the least, but for those ``apart``; one that a run lacks differs."""
+        """Return the columns in which any pair differs in the least, but for those ``apart``; one
+        that a run lacks differs.
+        """
         columns = [name for name in dict.fromkeys([*self.before, *self.after]) if name not in apart]
         return [
             str(name)
@@ -140,7 +151,8 @@ def paired(first: Run, other: Run) -> Pairs:
     rows = (first.data.summary, other.data.summary)
     left = [_identities(table) for table in rows]
     found: list[pd.DataFrame] = []
-    # Trials of other names, as of a run of one trial and of a list; and flights whose process was lost before the seed was known.
+    # Trials of other names, as of a run of one trial and of a list; and flights whose process was
+    # lost before the seed was known.
     for keys in (["trial", "name", "seed"], ["name", "seed"], ["trial", "name"]):
         matched = _matched(left[0], left[1], keys)
         found.append(matched[["place_x", "place_y"]])
@@ -165,7 +177,9 @@ def paired(first: Run, other: Run) -> Pairs:
 
 
 def _why_none(one: pd.DataFrame, two: pd.DataFrame, same: int) -> str:
-    """Return why no flight is in both runs, and what to do; ``same`` is the number of names that are."""
+    """Return why no flight is in both runs, and what to do; ``same`` is the number of names that
+    are.
+    """
     if not same:
         return "no name is in both"
     what = f"{same} agree{'s' * (same == 1)} in name but not in seed"
@@ -179,7 +193,9 @@ def _why_none(one: pd.DataFrame, two: pd.DataFrame, same: int) -> str:
 
 
 def _identities(rows: pd.DataFrame) -> pd.DataFrame:
-    """Return what flights are told by, and their places: the name is that within the trial, which several put before it."""
+    """Return what flights are told by, and their places: the name is that within the trial, which
+    several put before it.
+    """
     if not len(rows):
         return pd.DataFrame({"trial": [], "name": [], "seed": [], "place": []})
     named = zip(rows["flight_id"].astype(str), rows["trial"].astype(str), strict=True)
@@ -196,7 +212,9 @@ def _identities(rows: pd.DataFrame) -> pd.DataFrame:
 
 
 def _matched(one: pd.DataFrame, two: pd.DataFrame, keys: list[str]) -> pd.DataFrame:
-    """Return the flights of both that agree in ``keys``, where no other flight of the same run does."""
+    """Return the flights of both that agree in ``keys``, where no other flight of the same run
+    does.
+    """
     by_seed = "seed" in keys
     tables = [table[table["seed"].notna()] if by_seed else table for table in (one, two)]
     found = (

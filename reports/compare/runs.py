@@ -74,7 +74,8 @@ def read_runs(paths: Sequence[Path]) -> list[Run]:
 
     Raises
     ------
-    ReportError : there are too few or too many, one is named twice, or one is none with flights of this version that has ended
+    ReportError : there are too few or too many, one is named twice, or one is none with flights of
+        this version that has ended
     """
     if not 2 <= len(paths) <= RUNS_MAX:
         raise ReportError(

@@ -14,7 +14,9 @@ _NAMES = ("run", "directory", "flight_id", "trial", "seed", "criteria_met_first"
 
 
 def write_differences(compared: Sequence[Compared], path: Path) -> None:
-    """Write a row per pair: names, and each figure in the first run, in the other, and its difference, empty where it has none."""
+    """Write a row per pair: names, and each figure in the first run, in the other, and its
+    difference, empty where it has none.
+    """
     names = [name for name in MEASURES if any(name in of.found for of in compared)]
     columns = [column for name in names for column in (f"{name}_first", name, f"{name}_difference")]
     with path.open("w", encoding="utf-8", newline="") as file:

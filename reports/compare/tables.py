@@ -1,4 +1,6 @@
-"""Tables of a comparison: figures of whole runs, differences of pairs, flights whose criteria changed."""
+"""Tables of a comparison: figures of whole runs, differences of pairs, flights whose criteria
+changed.
+"""
 
 import math
 from collections.abc import Callable, Sequence
@@ -45,7 +47,9 @@ _COUNTS: dict[str, Callable[[pd.DataFrame], Mask]] = {
 
 @dataclass(frozen=True, slots=True)
 class _Whole:
-    """A figure of a whole run: its words, the measure that it is of, and what is taken of the flights' figures."""
+    """A figure of a whole run: its words, the measure that it is of, and what is taken of the
+    flights' figures.
+    """
 
     words: str
     measure: str
@@ -70,7 +74,9 @@ _WHOLE = (
 
 
 def side_by_side(runs: Sequence[Run]) -> Table:
-    """Return figures of each run, of all of its flights, and their differences from the first where as many flights have them."""
+    """Return figures of each run, of all of its flights, and their differences from the first where
+    as many flights have them.
+    """
     tables = [run.data.summary for run in runs]
     sizes = [len(rows) for rows in tables]
     alike = [size == sizes[0] for size in sizes[1:]]
@@ -133,7 +139,9 @@ def _change(value: float | None, first: float | None, digits: int) -> str:
 
 
 def _digits(figure: Figure, values: Sequence[float | None]) -> int:
-    """Return how many digits after the point show two of the least value: of 0.003 and 0.006, not 0.00 and 0.01."""
+    """Return how many digits after the point show two of the least value: of 0.003 and 0.006, not
+    0.00 and 0.01.
+    """
     known = [abs(value) for value in values if value]
     if not known or not figure.digits:
         return figure.digits
@@ -141,7 +149,9 @@ def _digits(figure: Figure, values: Sequence[float | None]) -> int:
 
 
 def signed(value: float, digits: int) -> str:
-    """Return a difference with its sign: 0 where it is none at all, and two digits of one that is smaller than ``digits`` show."""
+    """Return a difference with its sign: 0 where it is none at all, and two digits of one that is
+    smaller than ``digits`` show.
+    """
     if value == 0.0:
         return "0"
     if abs(value) >= 0.5 * 10.0**-digits:
@@ -157,7 +167,9 @@ def _pattern(digits: int, sign: str = "") -> str:
 
 
 def difference_table(pairs: Pairs, found: dict[str, Difference]) -> Table:
-    """Return how figures differ between the flights of a pair, of those that do: median, its interval, least and greatest."""
+    """Return how figures differ between the flights of a pair, of those that do: median, its
+    interval, least and greatest.
+    """
     rows, bold = [], []
     for i, difference in enumerate(
         of for name, of in found.items() if name == "keepout_violations" or not of.is_none
@@ -213,7 +225,9 @@ def _in_one_alone(pairs: Pairs, i: int) -> str:
 
 
 def changed_table(pairs: Pairs) -> Table | None:
-    """Return the flights that met, kept out or completed in one run alone, those that are no longer met first; None without any."""
+    """Return the flights that met, kept out or completed in one run alone, those that are no longer
+    met first; None without any.
+    """
     worse, all_of_them = pairs.no_longer, changed(pairs)
     order = (pairs.no_longer_met, worse & ~pairs.no_longer_met, all_of_them & ~worse)
     places = [int(i) for mask in order for i in np.flatnonzero(mask)]

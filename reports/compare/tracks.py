@@ -41,10 +41,11 @@ _COLOURS = ("blue", "orange")
 
 
 def most_changed(pairs: Pairs, found: dict[str, Difference]) -> Chart | None:
-    """Return both flights of the pair that differs most, of those that have both time histories; None if nothing differs.
+    """Return both flights of the pair that differs most, of those that have both time histories;
+    None if nothing differs.
 
-    Flights whose criteria changed come first. Then it is the largest difference over the figure's median in the first run, of the
-    figures that most reports judge.
+    Flights whose criteria changed come first. Then it is the largest difference over the figure's
+    median in the first run, of the figures that most reports judge.
     """
     recorded = [
         pairs.first.data.has_history(before) and pairs.other.data.has_history(after)
@@ -66,7 +67,9 @@ def most_changed(pairs: Pairs, found: dict[str, Difference]) -> Chart | None:
 
 
 def _relative(difference: Difference) -> Array:
-    """Return how large each difference is over the median in the first run; 0 where it is not known [-]."""
+    """Return how large each difference is over the median in the first run; 0 where it is not known
+    [-].
+    """
     typical = float(np.nanmedian(np.abs(difference.before)))
     size: Array = (
         np.nan_to_num(np.abs(difference.change)) / typical
@@ -160,7 +163,9 @@ class _Flight:
 
 
 def _whole(flown: list[_Flight], about: Surroundings) -> Panel:
-    """Return both tracks about the ship of the first flight; where the other has another keep-out area, that as well."""
+    """Return both tracks about the ship of the first flight; where the other has another keep-out
+    area, that as well.
+    """
     lines = [flight.curve(*about_the_plume(flight.history)) for flight in flown]
     if (other := flown[1]).radius != about.radius:
         x, y = circle(other.radius)
@@ -172,7 +177,9 @@ def _whole(flown: list[_Flight], about: Surroundings) -> Panel:
 
 
 def _settled(flown: list[_Flight], about: Surroundings) -> Panel:
-    """Return the track of each flight from when it had settled; of one that never had, the second half."""
+    """Return the track of each flight from when it had settled; of one that never had, the second
+    half.
+    """
     settled = [float(flight.row["settling_time_s"]) for flight in flown]
     tracks = []
     for flight, begin in zip(flown, settled, strict=True):

@@ -23,7 +23,9 @@ BIN_TRAJECTORIES = 20
 PANEL_HEIGHT = 0.32
 HISTORIES_PER_LAW = 6
 DISTANCE_SHOWN_MIN_M, TIME_SHOWN_MIN_S, RATIO_SHOWN_MIN = 1e-3, 1.0, 1e-2
-"""Floors of logarithmic axes: distances go to zero, and a start inside the settling band is settled at once."""
+"""Floors of logarithmic axes: distances go to zero, and a start inside the settling band is settled
+at once.
+"""
 
 
 def settling_charts(data: ConvergenceData) -> list[Chart]:
@@ -37,7 +39,9 @@ def settling_charts(data: ConvergenceData) -> list[Chart]:
 def history_chart(
     data: ConvergenceData, name: str, caption: str, *, converged: bool
 ) -> Chart | None:
-    """Return distances over time, of some of the trajectories that were kept: of those that converged, or of those that did not."""
+    """Return distances over time, of some of the trajectories that were kept: of those that
+    converged, or of those that did not.
+    """
     lines = {law.name: _histories(data, law, converged=converged) for law in data.laws}
     limits = _around([line.y for drawn in lines.values() for line in drawn])
     panels = [
@@ -128,7 +132,9 @@ def _curves(
     x_label: str,
     y_label: str,
 ) -> list[Panel]:
-    """Return a panel per law with a cumulative curve per kind of reference, over logarithmic abscissae alike."""
+    """Return a panel per law with a cumulative curve per kind of reference, over logarithmic
+    abscissae alike.
+    """
     lines = {law.name: _law_curves(data, law, values) for law in laws}
     limits = _around([line.x for curves in lines.values() for line in curves])
     return [
@@ -163,7 +169,8 @@ def _law_curves(
 def cumulative(values: Array) -> tuple[Array, Array]:
     """Return some of the values in rising order, and which fraction of all is no larger.
 
-    What is not a number counts among all. The first value comes twice, first with 0, for the curve to rise from there.
+    What is not a number counts among all. The first value comes twice, first with 0, for the curve
+    to rise from there.
     """
     known = np.sort(values[np.isfinite(values)])
     ranks = _thinned(len(known), CURVE_POINTS)
@@ -220,7 +227,9 @@ def _thinned(count: int, most: int) -> npt.NDArray[np.int64]:
 
 
 def _around(curves: Sequence[Array]) -> tuple[float, float] | None:
-    """Return the powers of ten that lie around all values, as limits of a logarithmic axis; none without values."""
+    """Return the powers of ten that lie around all values, as limits of a logarithmic axis; none
+    without values.
+    """
     values = np.concatenate([*curves, np.empty(0)])
     known = values[np.isfinite(values)]
     if not len(known):

@@ -93,7 +93,9 @@ def _question(data: ConvergenceData) -> list[Block]:
 
 
 def _all_on_tight_circles(rows: pd.DataFrame, data: ConvergenceData) -> bool:
-    """Return whether there are such rows, and all are about circles that spend more than 98 % of omega_max."""
+    """Return whether there are such rows, and all are about circles that spend more than 98 % of
+    omega_max.
+    """
     limit = 0.98 * float(data.run.manifest["config"]["guidance"]["heading_rate_max_rad_s"])
     tight = (rows["reference"] == "circle") & (rows["reference_heading_rate_max_rad_s"] > limit)
     return len(rows) > 0 and bool(tight.all())

@@ -1,4 +1,6 @@
-"""Trajectories of a convergence study: which laws flew them, about which references, and how they ended."""
+"""Trajectories of a convergence study: which laws flew them, about which references, and how they
+ended.
+"""
 
 import math
 import re
@@ -38,13 +40,17 @@ REFERENCES: dict[str, tuple[str, str, Style]] = {
     "oscillation": ("oscillating", "orange", "dash"),
     "random": ("randomly turning", "green", "dot"),
 }
-"""Kinds of reference: what they are called, and colour and style of curves about them, which are told apart in grey, too."""
+"""Kinds of reference: what they are called, and colour and style of curves about them, which are
+told apart in grey, too.
+"""
 
 CONVERGED = "converged"
 """What a trajectory that did is called."""
 
 _LOST = "lost"
-"""What one is called whose process was lost: it was not flown, and says nothing of the theory; ``--resume`` flies it again."""
+"""What one is called whose process was lost: it was not flown, and says nothing of the theory;
+``--resume`` flies it again.
+"""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -118,7 +124,9 @@ def read_convergence(run: RunData) -> ConvergenceData:
 
 
 def predicted(rows: pd.DataFrame) -> pd.DataFrame:
-    """Return those of which a settling time is predicted: neither 0, of a start where it is settled, nor infinite."""
+    """Return those of which a settling time is predicted: neither 0, of a start where it is
+    settled, nor infinite.
+    """
     times = rows["settling_time_predicted_s"]
     return rows[(times > 0.0) & (times < math.inf)]
 

@@ -15,7 +15,9 @@ FAILURES_NAMED = 10
 
 
 def convergence_verdict(data: ConvergenceData) -> Verdict:
-    """Judge a study by the laws that the theory is about, if it flew any: it holds if every trajectory under them converged."""
+    """Judge a study by the laws that the theory is about, if it flew any: it holds if every
+    trajectory under them converged.
+    """
     rows, manifest = data.proven(), data.run.manifest
     proven = data.planned > 0
     state = manifest.get("state", "unfinished")

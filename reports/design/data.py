@@ -1,4 +1,6 @@
-"""A design record as reports use it: its margins as they count, and the questions that several figures ask."""
+"""A design record as reports use it: its margins as they count, and the questions that several
+figures ask.
+"""
 
 import math
 from collections.abc import Iterable
@@ -26,7 +28,8 @@ _HUNDRED = 100
 def complete(record: Record) -> Record:
     """Return a design record as reports judge it.
 
-    A row that says of itself that its loop is not stable has no margins, whatever distance to the critical point was measured.
+    A row that says of itself that its loop is not stable has no margins, whatever distance to the
+    critical point was measured.
     """
     return {
         **record,
@@ -39,7 +42,9 @@ def _judged(row: Record) -> Record:
 
 
 def is_effect(design: Record, name: str) -> bool:
-    """Return whether the figures of a control are its measured effect, by which it is commanded, and not its command."""
+    """Return whether the figures of a control are its measured effect, by which it is commanded,
+    and not its command.
+    """
     return any(row["is_effect"] for row in design["inputs"] if row["name"] == name)
 
 
@@ -49,7 +54,9 @@ def control_axis(design: Record, name: str) -> str:
 
 
 def bank_deg(row: Record) -> float:
-    """Return the bank of a row to a tenth of a degree, so that the rows of one bank are equal in it."""
+    """Return the bank of a row to a tenth of a degree, so that the rows of one bank are equal in
+    it.
+    """
     return round(math.degrees(row["bank_rad"]), 1) + 0.0
 
 
@@ -95,7 +102,9 @@ def loops_of(rows: Iterable[Record]) -> list[str]:
 
 
 def worst(rows: Iterable[Record], key: str) -> Record | None:
-    """Return the row whose ``key`` is least, or none where no row has a value; a margin without a value is unlimited."""
+    """Return the row whose ``key`` is least, or none where no row has a value; a margin without a
+    value is unlimited.
+    """
     return min(
         (row for row in rows if row.get(key) is not None),
         key=lambda row: float(row[key]),
@@ -109,7 +118,9 @@ def short_of(rows: Iterable[Record], key: str, required: float) -> list[Record]:
 
 
 def down(value: float | None) -> str:
-    """Return a margin rounded down, so that none looks as large as required that is not; one without a value is unlimited."""
+    """Return a margin rounded down, so that none looks as large as required that is not; one
+    without a value is unlimited.
+    """
     if value is None:
         return "∞"
     # The small fraction forgives what binary fractions lose: 5.7 stays 5.7.
@@ -147,14 +158,18 @@ def climb_trims(record: Record) -> list[Record]:
 
 
 def responses_of(record: Record, command: str) -> list[Record]:
-    """Return the step responses to ``command``, the prediction first and what was flown last, so that it is drawn on top."""
+    """Return the step responses to ``command``, the prediction first and what was flown last, so
+    that it is drawn on top.
+    """
     order = {"model": 0, "predicted": 1, "flown": 2}
     rows = (row for row in record["responses"] if row["command"] == command)
     return sorted(rows, key=lambda row: order.get(row["kind"], 0))
 
 
 def excess_overshoot(record: Record) -> float:
-    """Return how far a flown heading-rate step goes past its reference model, as a fraction of the step."""
+    """Return how far a flown heading-rate step goes past its reference model, as a fraction of the
+    step.
+    """
     overshoot = {
         row["kind"]: float(row["overshoot"]) for row in responses_of(record, "heading_rate")
     }

@@ -13,19 +13,27 @@ from reports.document.palette import Meaning
 from reports.run.columns import Array
 
 _NICHOLS_GAIN = (-30.0, 40.0)
-"""Gains that a Nichols panel shows [dB]: far above and below them a loop cannot come near the critical point."""
+"""Gains that a Nichols panel shows [dB]: far above and below them a loop cannot come near the
+critical point.
+"""
 
 _CRITICAL = -180.0
-"""Phase at which a gain of one makes the closed loop unstable [deg]; so does any whole turn from there."""
+"""Phase at which a gain of one makes the closed loop unstable [deg]; so does any whole turn from
+there.
+"""
 
 
 def loop_charts(design: Record) -> list[Chart]:
-    """Return the Bode and the Nichols figure of every loop of the record, or nothing where it has no loops."""
+    """Return the Bode and the Nichols figure of every loop of the record, or nothing where it has
+    no loops.
+    """
     return [_bode(design), _nichols(design)] if design["loops"] else []
 
 
 def turned(loop: Record) -> Array:
-    """Return a loop's phase [deg] by whole turns such that it is in (-360, 0] where the gain is nearest to one."""
+    """Return a loop's phase [deg] by whole turns such that it is in (-360, 0] where the gain is
+    nearest to one.
+    """
     gain, phase = np.array(loop["gain_db"]), np.array(loop["phase_deg"])
     middle = float(phase[np.argmin(np.abs(gain))])
     shifted: Array = phase - 360.0 * math.ceil(middle / 360.0)
@@ -33,11 +41,13 @@ def turned(loop: Record) -> Array:
 
 
 def disk_region(gain_margin_db: float) -> tuple[Array, Array]:
-    """Return phase [deg] and gain [dB] of the outline of the region that a disk margin keeps an open loop out of.
+    """Return phase [deg] and gain [dB] of the outline of the region that a disk margin keeps an
+    open loop out of.
 
-    Factors (1 + c d)/(1 - c d) with abs(d) <= 1 are those that the loop bears; c follows from the largest real one, which is the
-    disk's gain margin. The loop is unstable with a factor f where it is -1/f (Seiler, Packard and Gahinet, An introduction to
-    disk margins, IEEE Control Systems Magazine, 2020).
+    Factors (1 + c d)/(1 - c d) with abs(d) <= 1 are those that the loop bears; c follows from the
+    largest real one, which is the disk's gain margin. The loop is unstable with a factor f where it
+    is -1/f (Seiler, Packard and Gahinet, An introduction to disk margins, IEEE Control Systems
+    Magazine, 2020).
     """
     largest = 10.0 ** (gain_margin_db / 20.0)
     real, imaginary = circle((largest - 1.0) / (largest + 1.0))
@@ -155,7 +165,9 @@ def _nichols_panel(
 def _regions(
     critical: float, disk_gain_db: float | None, gain_db: float, phase_deg: float
 ) -> list[Line]:
-    """Return what a loop has to stay out of, what it does stay out of, and the critical point in both."""
+    """Return what a loop has to stay out of, what it does stay out of, and the critical point in
+    both.
+    """
     corners = np.array(
         [(-phase_deg, 0.0), (0.0, gain_db), (phase_deg, 0.0), (0.0, -gain_db), (-phase_deg, 0.0)]
     )

@@ -13,8 +13,8 @@ LOOP_STYLES: dict[str, tuple[str, Style]] = {
     "sideslip": ("plum", "dash"),
     "all controls": ("black", "solid"),
 }
-"""Colour and style by loop: a measurement has the colour of the control that mostly regulates it, dashed or
-dotted. Blue and green, which are alike in grey, have other styles."""
+"""Colour and style by loop: a measurement has the colour of the control that mostly regulates it,
+dashed or dotted. Blue and green, which are alike in grey, have other styles."""
 
 OTHER_LOOP: tuple[str, Style] = ("grey", "solid")
 """Of a loop that the table does not know."""

@@ -14,7 +14,9 @@ from reports.document.palette import Meaning
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class _Margin:
-    """A margin to draw: its field, its axis, what is required of it, and above what it no longer matters."""
+    """A margin to draw: its field, its axis, what is required of it, and above what it no longer
+    matters.
+    """
 
     key: str
     label: str

@@ -77,7 +77,9 @@ def _panel(design: Record, kind: str, title: str, reach: float) -> Panel:
 def _points(
     rows: Sequence[Record], kind: str, x_range: tuple[float, float], y_range: tuple[float, float]
 ) -> np.ndarray[tuple[int, int], np.dtype[np.float64]]:
-    """Return the poles of ``rows`` inside a panel, shape (n, 2); nan where there is none, so that the legend is complete."""
+    """Return the poles of ``rows`` inside a panel, shape (n, 2); nan where there is none, so that
+    the legend is complete.
+    """
     inside = [
         pole
         for poles in rows
@@ -116,7 +118,8 @@ def _rays(
             )
         )
         at = 0.88 * end
-        # To the left of a ray to the upper edge, where the limit of stability is not, and to the right of one to the left edge.
+        # To the left of a ray to the upper edge, where the limit of stability is not, and to the
+        # right of one to the left edge.
         upper = bool(end[0] > x_range[0])
         place = at + (-1.0 if upper else 1.0) * reach * np.array([0.03, 0.04])
         notes.append(

@@ -39,7 +39,9 @@ _CLIMB = {
     "airspeed": ("Airspeed step", ("airspeed", "altitude", "throttle")),
     "altitude": ("Altitude step", ("altitude", "airspeed", "elevator")),
 }
-"""Channels of the turn, and title and channels by the command of the other steps: the first is what was commanded."""
+"""Channels of the turn, and title and channels by the command of the other steps: the first is what
+was commanded.
+"""
 
 
 def response_charts(design: Record) -> list[Chart]:
@@ -49,7 +51,9 @@ def response_charts(design: Record) -> list[Chart]:
 
 
 def first_chart(design: Record) -> Chart | None:
-    """Return what page 1 shows: a turn, and steps of airspeed and altitude; None of a design without step responses."""
+    """Return what page 1 shows: a turn, and steps of airspeed and altitude; None of a design
+    without step responses.
+    """
     steps = [(responses_of(design, command), channel, title) for command, channel, title in _FIRST]
     panels = [
         _panel(design, responses, channel, title=title)

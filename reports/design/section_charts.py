@@ -68,7 +68,9 @@ def step_charts(design: Record) -> list[Chart]:
 
 
 def loop_charts(design: Record) -> list[Chart]:
-    """Return the other figures of a complete design record, of level flight alone: margins, loop shapes, poles."""
+    """Return the other figures of a complete design record, of level flight alone: margins, loop
+    shapes, poles.
+    """
     return [*_margins(design), _loops(design), _poles(design)]
 
 
@@ -198,6 +200,8 @@ def _poles(design: Record) -> Chart:
 
 
 def _reach(poles: list[list[float]]) -> float:
-    """Return how far the s-plane is shown [1/s]: to hold every pole that is not too fast, in its width and in its height."""
+    """Return how far the s-plane is shown [1/s]: to hold every pole that is not too fast, in its
+    width and in its height.
+    """
     sizes = [1.1 * max(-real, abs(imaginary) / 0.45) for real, imaginary in poles]
     return max((size for size in sizes if size <= FAST), default=FAST)

@@ -27,7 +27,9 @@ from reports.document.tables import minus, number, pairs_table
 
 
 def worst_margin_table(design: Record) -> Table:
-    """Return the least of each margin of each loop over the grid and between its points, and where that is."""
+    """Return the least of each margin of each loop over the grid and between its points, and where
+    that is.
+    """
     rows = []
     for loop in loops_of(design["margins"]):
         own = [row for row in design["margins"] if row["loop"] == loop]
@@ -93,7 +95,9 @@ def _perturbed(row: Record | None, name: str) -> list[str]:
 
 
 def extreme_trims(design: Record) -> list[Record]:
-    """Return the equilibria in level flight, at the largest banks, and in the steepest climb and descent."""
+    """Return the equilibria in level flight, at the largest banks, and in the steepest climb and
+    descent.
+    """
     grid = grid_trims(design)
     banks = sorted({bank_deg(t) for t in grid})
     chosen = [t for t in grid if bank_deg(t) in {banks[0], 0.0, banks[-1]}]
@@ -152,7 +156,9 @@ def _cell(trim: Record, title: str, key: str, scale: float) -> str:
 
 
 def pole_table(design: Record) -> Table:
-    """Return the slowest and the least damped pole, with and without the autopilot, and where they are."""
+    """Return the slowest and the least damped pole, with and without the autopilot, and where they
+    are.
+    """
     rows = []
     for kind, name in (("open_loop", "aircraft"), ("closed_loop", "under the autopilot")):
         poles = [
@@ -258,7 +264,9 @@ _WEIGHT_UNITS = {
 
 
 def weight_table(design: Record) -> Table:
-    """Return the acceptable deviations that the gains follow from, and what else the autopilot was designed with, as pairs."""
+    """Return the acceptable deviations that the gains follow from, and what else the autopilot was
+    designed with, as pairs.
+    """
     pairs = [[_weight(name), f"{value:.3g}"] for name, value in design["weights"].items()]
     if "model_frequency_rad_s" in design and "model_frequency" not in design["weights"]:
         pairs += [

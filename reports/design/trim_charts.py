@@ -20,7 +20,9 @@ from reports.document.palette import Meaning, series_colour
 from reports.document.tables import minus
 
 _NEAR_LIMIT = 0.4
-"""Fraction of a control's travel from which its limit is drawn: nearer to neutral it would only flatten the curves."""
+"""Fraction of a control's travel from which its limit is drawn: nearer to neutral it would only
+flatten the curves.
+"""
 
 _LIMIT, _FLIGHT_IDLE = "limit of a control", "flight idle"
 _STYLES: dict[str, Style] = {_LIMIT: "dash", _FLIGHT_IDLE: "dot"}
@@ -29,7 +31,9 @@ _STYLES: dict[str, Style] = {_LIMIT: "dash", _FLIGHT_IDLE: "dot"}
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class _Quantity:
-    """A quantity of an equilibrium: its field, its axis, the unit that it is shown in, its limits and what they are."""
+    """A quantity of an equilibrium: its field, its axis, the unit that it is shown in, its limits
+    and what they are.
+    """
 
     key: str
     label: str
@@ -43,7 +47,9 @@ _YAW_RATE = _Quantity(key="yaw_rate_rad_s", label="Yaw rate [rad/s]")
 
 
 def _control(design: Record, name: str) -> _Quantity:
-    """Return a control, between the limits that the autopilot has for it: its throttle stops at flight idle."""
+    """Return a control, between the limits that the autopilot has for it: its throttle stops at
+    flight idle.
+    """
     limits = [
         (
             (row["lower"], _FLIGHT_IDLE if name == "throttle" and row["lower"] > 0.0 else _LIMIT),
@@ -56,7 +62,9 @@ def _control(design: Record, name: str) -> _Quantity:
 
 
 def trim_charts(design: Record) -> list[Chart]:
-    """Return the equilibria of straight climbs and descents where the record has some, and the trim map."""
+    """Return the equilibria of straight climbs and descents where the record has some, and the trim
+    map.
+    """
     climbs = climb_trims(design)
     return [
         *(

@@ -19,11 +19,15 @@ from reports.design.data import (
 from reports.document.blocks import Card, Verdict
 
 _UNSTABLE = 1e-4
-"""Real part [1/s] from which a pole counts as unstable: less is what rounding makes of a pole at the origin."""
+"""Real part [1/s] from which a pole counts as unstable: less is what rounding makes of a pole at
+the origin.
+"""
 
 
 def design_verdict(design: Record) -> Verdict:
-    """Judge a design: it holds if it is stable at every point, and is complete if every margin is as required."""
+    """Judge a design: it holds if it is stable at every point, and is complete if every margin is
+    as required.
+    """
     unstable = _unstable(design)
     nominal, perturbed = _nominal_failures(design), _perturbed_failures(design)
     required = design["required"]
@@ -50,7 +54,9 @@ def design_verdict(design: Record) -> Verdict:
 
 
 def _unstable(design: Record) -> list[str]:
-    """Return the points at which the aircraft as modelled is unstable, by its poles or by what its margins say."""
+    """Return the points at which the aircraft as modelled is unstable, by its poles or by what its
+    margins say.
+    """
     poles = [
         point
         for point in design["poles"]

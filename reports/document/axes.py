@@ -23,7 +23,9 @@ _MARKS_MIN, _MARKS_MAX = 3, 8
 """Marks of a logarithmic axis."""
 
 _TINY, _ABOUT = 1e-3, 0.05
-"""Range of values, over the largest, below which an axis would mark their last digits; and how far it then reaches about them."""
+"""Range of values, over the largest, below which an axis would mark their last digits; and how far
+it then reaches about them.
+"""
 
 _LINES = 2
 """Lines of a label at most."""
@@ -33,7 +35,8 @@ _SPARE = 0.04
 
 
 def in_kilometres(panel: Panel) -> Panel:
-    """Return a panel with kilometres where metres would have five digits: on both axes if they are equally long.
+    """Return a panel with kilometres where metres would have five digits: on both axes if they are
+    equally long.
 
     A logarithmic axis stays in metres: its least marks are small.
     """
@@ -55,7 +58,8 @@ def in_kilometres(panel: Panel) -> Panel:
 
 
 def with_one_abscissa(chart: Chart) -> Chart:
-    """Return a chart whose panels share their abscissa with the same limits, in every column, for all of the same quantity.
+    """Return a chart whose panels share their abscissa with the same limits, in every column, for
+    all of the same quantity.
 
     Limits that a panel has are kept.
     """
@@ -77,9 +81,11 @@ def with_one_abscissa(chart: Chart) -> Chart:
 def log_axis(
     limits: tuple[float, float] | None, curves: Sequence[Array]
 ) -> tuple[tuple[float, float], list[float]]:
-    """Return limits of a logarithmic axis, by its curves if none are given, and the values at which it is marked.
+    """Return limits of a logarithmic axis, by its curves if none are given, and the values at which
+    it is marked.
 
-    Marks are powers of ten where there are three of them at least, and figures in between where there are not.
+    Marks are powers of ten where there are three of them at least, and figures in between where
+    there are not.
     """
     known = np.concatenate([curve[curve > 0.0] for curve in curves] or [np.empty(0)])
     if limits is None:
@@ -101,7 +107,9 @@ def log_axis(
 
 
 def about_values(curves: Sequence[Array]) -> tuple[float, float] | None:
-    """Return limits of a linear axis whose values are the same or nearly so, so that its marks have few digits; none for others."""
+    """Return limits of a linear axis whose values are the same or nearly so, so that its marks have
+    few digits; none for others.
+    """
     known = np.concatenate(
         [np.asarray(curve, dtype=np.float64) for curve in curves] or [np.empty(0)]
     )
@@ -114,7 +122,9 @@ def about_values(curves: Sequence[Array]) -> tuple[float, float] | None:
 
 
 def wrapped(label: str, room: float) -> list[str]:
-    """Return the lines of an axis' label: two of about the same length where it has more letters than there is room for."""
+    """Return the lines of an axis' label: two of about the same length where it has more letters
+    than there is room for.
+    """
     # Not within the brackets of a unit.
     words = re.split(r" (?![^\[]*\])", label)
     if len(label) <= room or len(words) < _LINES:
@@ -136,7 +146,9 @@ _RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 
 def cut_words(panels: Sequence[Panel]) -> str:
-    """Return which curves leave their panels above or below, as a sentence with a space before it; no word where none does."""
+    """Return which curves leave their panels above or below, as a sentence with a space before it;
+    no word where none does.
+    """
     cut: dict[str, None] = {}
     for panel in panels:
         values = np.concatenate([line.y for line in panel.lines] or [np.empty(0)])

@@ -77,7 +77,9 @@ class FlightContent:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class FlightPicker:
-    """Flights, one at a time: picked on the screen, and one after the other in print. A report has one at most."""
+    """Flights, one at a time: picked on the screen, and one after the other in print. A report has
+    one at most.
+    """
 
     flights: list[FlightContent]
 
@@ -107,7 +109,8 @@ class Section:
 
 
 class Card(NamedTuple):
-    """A figure that is judged or told: its name, its value, what is required of it, and whether that is met.
+    """A figure that is judged or told: its name, its value, what is required of it, and whether
+    that is met.
 
     No limit, and None for ``met``, where nothing is required.
     """
@@ -129,7 +132,9 @@ class Card(NamedTuple):
 
     @property
     def judgement(self) -> str:
-        """Return what its criterion says, in words and with a sign: colour alone says nothing in grey."""
+        """Return what its criterion says, in words and with a sign: colour alone says nothing in
+        grey.
+        """
         if self.met is None:
             return self.limit or "no criterion"
         return f"{'✓ met' if self.met else '✗ not met'}, required {self.limit}"
@@ -160,7 +165,9 @@ class UndecidedCard(Card):
 
     @property
     def tone(self) -> str:
-        """Return the colour of its tile: neither that of a figure that meets its limit nor that of one that does not."""
+        """Return the colour of its tile: neither that of a figure that meets its limit nor that of
+        one that does not.
+        """
         return "open"
 
 
@@ -234,7 +241,9 @@ class Verdict:
 
 
 class Fact(NamedTuple):
-    """What a reader has to know of a flight before its figures: what it is, and what is known of it."""
+    """What a reader has to know of a flight before its figures: what it is, and what is known of
+    it.
+    """
 
     name: str
     value: str

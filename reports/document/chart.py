@@ -12,10 +12,14 @@ from reports.run.columns import Array
 Style = Literal[
     "solid", "thin", "broad", "dash", "dot", "points", "dots", "diamonds", "ring", "square", "cross"
 ]
-"""Lines: thin ones over a track, broad ones below it. Marks: small dots, a ring where something begins, a square where it ends."""
+"""Lines: thin ones over a track, broad ones below it. Marks: small dots, a ring where something
+begins, a square where it ends.
+"""
 
 VARIANT_STYLES: tuple[Style, ...] = ("dash", "dot", "solid")
-"""Styles of comparisons, in their order: with their colours, curves are told apart in grey. The study's own is solid."""
+"""Styles of comparisons, in their order: with their colours, curves are told apart in grey. The
+study's own is solid.
+"""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -28,10 +32,12 @@ class Line:
     label : for the legend; the same label in several panels is one entry, and an empty one none
     colour : a key of ``palette.COLOURS``
     style : how it is drawn
-    error : half-height of error bars, shape (n,), or their lengths below and above, shape (2, n); or none
+    error : half-height of error bars, shape (n,), or their lengths below and above, shape (2, n);
+        or none
     fill : tint what the curve encloses
     opacity : of the tint
-    values : of each point, shape (n,), shown by its colour on the chart's scale; or none. Points without a number are not shown
+    values : of each point, shape (n,), shown by its colour on the chart's scale; or none. Points
+        without a number are not shown
     """
 
     x: Array
@@ -85,7 +91,8 @@ class Panel:
 
     Attributes
     ----------
-    x_label, y_label : "Quantity [unit]"; of what has no unit, as of names and counts, the quantity alone
+    x_label, y_label : "Quantity [unit]"; of what has no unit, as of names and counts, the quantity
+        alone
     lines : what is drawn, from back to front
     title : above the panel
     equal : one metre is as long both ways
@@ -128,7 +135,8 @@ class Chart:
     panels : in reading order
     columns : panels side by side
     panel_height : of each row, relative to a full text width of 1
-    last_height : of the last panel where that is alone in its row and as wide as the page, as ``panel_height``; 0 where it is not
+    last_height : of the last panel where that is alone in its row and as wide as the page, as
+        ``panel_height``; 0 where it is not
     share_x : panels of a column share their abscissa
     scale_label : "Quantity [unit]" of the colour scale, for lines with values
     number : "Figure 3"; given when the report is put together

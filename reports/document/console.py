@@ -13,7 +13,9 @@ _WIDTH = 140
 
 
 def wide_console() -> Console:
-    """Return a console on standard output that is as wide as the terminal, or as tables need where there is none."""
+    """Return a console on standard output that is as wide as the terminal, or as tables need where
+    there is none.
+    """
     return Console(width=None if sys.stdout.isatty() else _WIDTH)
 
 

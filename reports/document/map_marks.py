@@ -1,4 +1,5 @@
-"""What makes a map of a panel: a hull, arrows, a scale bar, north and wind, a plume; all in the panel's own metres.
+"""What makes a map of a panel: a hull, arrows, a scale bar, north and wind, a plume; all in the
+panel's own metres.
 
 An angle is clockwise from the top of the page, as a course is from north where north is up.
 """
@@ -25,13 +26,17 @@ _HULL = (
     (-0.5, 0.76),
     (-0.36, 0.9),
 )
-"""Outline of a hull seen from above, the bow first: to starboard over the beam, and ahead of the stern over the length."""
+"""Outline of a hull seen from above, the bow first: to starboard over the beam, and ahead of the
+stern over the length.
+"""
 
 SIZE_NOT_KNOWN = "size not known"
 """What a legend says of a ship that is drawn pale."""
 
 _STRIP, _STRIP_MAX = 0.13, 0.28
-"""Height of the strip above a map where bar and arrows are, over the whole height: of a map as high as wide, and of a flat one."""
+"""Height of the strip above a map where bar and arrows are, over the whole height: of a map as high
+as wide, and of a flat one.
+"""
 
 _ROOM = 0.04
 """Room about what a map shows, over its size."""
@@ -44,7 +49,9 @@ _BAR = 0.18
 
 
 def hull_line(hull: Hull, angle: float, x: float = 0.0, y: float = 0.0) -> Line:
-    """Return a ship, her funnel at a place and her bow at an angle: to scale, or pale and dotted where her size is not known."""
+    """Return a ship, her funnel at a place and her bow at an angle: to scale, or pale and dotted
+    where her size is not known.
+    """
     right, ahead = (np.array(side) for side in zip(*(*_HULL, _HULL[0]), strict=True))
     across, along = hull.beam * right, hull.length * (ahead - hull.funnel)
     return Line(
@@ -174,7 +181,9 @@ def on_map(
 
 
 def _within(values: Array, low: float, high: float) -> bool:
-    """Return whether a curve reaches into a range; one without any number does, as it hides nothing."""
+    """Return whether a curve reaches into a range; one without any number does, as it hides
+    nothing.
+    """
     known = values[np.isfinite(values)]
     return not len(known) or bool(known.max() >= low and known.min() <= high)
 
@@ -182,7 +191,9 @@ def _within(values: Array, low: float, high: float) -> bool:
 def _view(
     lines: Sequence[Line], notes: Sequence[Note], aspect: float, strip: float
 ) -> tuple[tuple[float, float], tuple[float, float]]:
-    """Return limits that hold all lines and words below a strip, which is a share of the height, of a panel of an aspect."""
+    """Return limits that hold all lines and words below a strip, which is a share of the height, of
+    a panel of an aspect.
+    """
     x, y = (
         np.concatenate([getattr(line, axis) for line in lines] or [np.empty(0)]) for axis in "xy"
     )

@@ -1,4 +1,6 @@
-"""Numbers of figures and tables, the same on the screen and in print, and the size of page 1's picture."""
+"""Numbers of figures and tables, the same on the screen and in print, and the size of page 1's
+picture.
+"""
 
 from collections.abc import Iterable
 from dataclasses import replace
@@ -8,16 +10,20 @@ from reports.document.blocks import Block, Heading, Section, Table
 from reports.document.chart import Chart
 
 PICTURE_HEIGHT = 0.7
-"""Height of the panels of page 1's picture, over its width: what a printed page has room for below the figures [-]."""
+"""Height of the panels of page 1's picture, over its width: what a printed page has room for below
+the figures [-].
+"""
 
 
 def numbered(
     picture: Chart | None, sections: Iterable[Section]
 ) -> tuple[Chart | None, list[Section]]:
-    """Return the picture of page 1 and sections with their figures and tables numbered in reading order.
+    """Return the picture of page 1 and sections with their figures and tables numbered in reading
+    order.
 
-    A table without a caption takes that of the heading right before it, which then is no heading any more, or else the last
-    heading's or its section's title. Flights of a picker are numbered by what prints them: only some are printed.
+    A table without a caption takes that of the heading right before it, which then is no heading
+    any more, or else the last heading's or its section's title. Flights of a picker are numbered by
+    what prints them: only some are printed.
     """
     figures, tables = count(1), count(1)
     if picture:

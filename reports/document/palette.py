@@ -14,15 +14,17 @@ COLOURS = {
     "grey": "#6e6e6e",
     "white": "#ffffff",
 }
-"""Okabe and Ito's palette, and the wine of Tol's muted one: colour-blind readers can tell them apart. White is the page's."""
+"""Okabe and Ito's palette, and the wine of Tol's muted one: colour-blind readers can tell them
+apart. White is the page's.
+"""
 
 
 @unique
 class Meaning(StrEnum):
     """What a colour stands for in figures of flights, each for one thing alone.
 
-    What has no meaning of its own (theory, a perfect instrument, an event) is black or grey, by its style; categories, as of laws,
-    sensors and loops, have the colours of ``SERIES``.
+    What has no meaning of its own (theory, a perfect instrument, an event) is black or grey, by its
+    style; categories, as of laws, sensors and loops, have the colours of ``SERIES``.
     """
 
     FLOWN = "blue"
@@ -30,7 +32,9 @@ class Meaning(StrEnum):
     ASKED = "orange"
     """What was asked of it: the reference, a command, a planned margin."""
     LIMIT = "vermillion"
-    """The keep-out area, r_min, any criterion or limit, what is beyond it, and how near to it was come."""
+    """The keep-out area, r_min, any criterion or limit, what is beyond it, and how near to it was
+    come.
+    """
     CROSSING = "green"
     """Crossings of the plume."""
     WIND = "sky"
@@ -52,7 +56,9 @@ VARIANTS = tuple(colour for colour in SERIES if colour != Meaning.FLOWN)
 """Colours of comparisons, in their order: not that of the study's own flights."""
 
 SCALE = "Cividis"
-"""Colour scale of values, light for the least: of even steps for all eyes. Matplotlib writes it in small letters."""
+"""Colour scale of values, light for the least: of even steps for all eyes. Matplotlib writes it in
+small letters.
+"""
 
 INK = "#4d4d4d"
 """Of words among curves."""

@@ -21,7 +21,8 @@ COUNTED_MIN = 5
 """Flights that are counted at least: fewer are seen one by one in a table."""
 
 _BINS = 24
-"""Bars of a histogram at most; of few flights there are twice as many as the root of their number."""
+"""Bars of a histogram at most; of few flights there are twice as many as the root of their number.
+"""
 
 _SPREAD = 0.32
 """Half-width of a row of markers that would hide each other, in rows."""
@@ -37,7 +38,8 @@ _SPARE = 1.15
 
 
 def classes(values: Array, bounds: Sequence[float], what: str, unit: str) -> list[Group]:
-    """Return which values lie in each class, its name and its colour. What is not a number lies in none.
+    """Return which values lie in each class, its name and its colour. What is not a number lies in
+    none.
 
     Parameters
     ----------
@@ -57,7 +59,9 @@ def classes(values: Array, bounds: Sequence[float], what: str, unit: str) -> lis
 
 
 def quartiles(values: Array, step: float) -> list[float]:
-    """Return three rising bounds that part the values into four about equal shares, each a multiple of ``step``."""
+    """Return three rising bounds that part the values into four about equal shares, each a multiple
+    of ``step``.
+    """
     known = values[np.isfinite(values)]
     found = np.round(np.quantile(known, [0.25, 0.5, 0.75]) / step) if len(known) else np.zeros(3)
     first, second, third = (float(v) for v in found)
@@ -78,7 +82,8 @@ def points(x: Array, y: Array, groups: Sequence[Group]) -> list[Line]:
 def capped(
     x: Array, y: Array, groups: Sequence[Group], limit: float, unit: str = "", what: str = ""
 ) -> tuple[list[Line], float]:
-    """Return markers as ``points`` does, those far above all others on the upper edge with their values, and where that is.
+    """Return markers as ``points`` does, those far above all others on the upper edge with their
+    values, and where that is.
 
     Panels of several figures share a legend, in which ``what`` tells whose values these are.
     """
@@ -107,7 +112,9 @@ def capped(
 
 
 def beyond_label(values: Array, unit: str, what: str = "") -> str:
-    """Return what the legend says of values that a panel has no room for: each of a few, else how far they reach."""
+    """Return what the legend says of values that a panel has no room for: each of a few, else how
+    far they reach.
+    """
     shown = (
         ", ".join(map(limit, np.sort(values)))
         if len(values) <= _NAMED
@@ -128,7 +135,9 @@ def level(x: Array, value: float, label: str, colour: str = Meaning.LIMIT) -> Li
 
 
 def around(x: Array) -> tuple[float, float] | None:
-    """Return limits of an axis with room to spare on both sides, also about a single value; None without any."""
+    """Return limits of an axis with room to spare on both sides, also about a single value; None
+    without any.
+    """
     known = x[np.isfinite(x)]
     if not len(known):
         return None
@@ -143,7 +152,8 @@ def histogram(
     upright: Sequence[tuple[float, str]] = (),
     upright_colour: str = Meaning.LIMIT,
 ) -> Panel | None:
-    """Return a panel that counts flights by a figure, or None if fewer than ``COUNTED_MIN`` have it.
+    """Return a panel that counts flights by a figure, or None if fewer than ``COUNTED_MIN`` have
+    it.
 
     Parameters
     ----------

@@ -1,4 +1,6 @@
-"""Where a run comes from: how it was made, of which source and input, with which software, on which kind of host."""
+"""Where a run comes from: how it was made, of which source and input, with which software, on which
+kind of host.
+"""
 
 from common.provenance import without_folders
 from reports.document.blocks import Section

@@ -22,11 +22,14 @@ class Scene:
     ----------
     start : of the first sample [s]
     interval : between samples, always the same [s]
-    columns : for each name of ``COLUMNS`` shape (n,): places of the vessel over the ground, those of UAV and reference north and
-        east of the vessel, altitude above the sea [m]; angles without jumps, clockwise from north where they are courses [rad]
-    guard : stretches in which the keep-out guard changed commands: from, to [s], and whether it held its radius
+    columns : for each name of ``COLUMNS`` shape (n,): places of the vessel over the ground, those
+        of UAV and reference north and east of the vessel, altitude above the sea [m]; angles
+        without jumps, clockwise from north where they are courses [rad]
+    guard : stretches in which the keep-out guard changed commands: from, to [s], and whether it
+        held its radius
     crossings : times at which the plume was crossed, shape (k,) [s]
-    distances : least and largest distance that its curve shows, of what the keep-out area is about [m]
+    distances : least and largest distance that its curve shows, of what the keep-out area is about
+        [m]
     keepout_radius : r_min [m]
     keepout_shape : "sphere" or "cylinder"
     source_height : of the funnel's mouth above the sea [m]

@@ -14,14 +14,18 @@ AREA, SHIP, PLUME = "keep-out area", "ship", "plume"
 """What a map is about, as legends begin and as captions name it."""
 
 _SEEN = 0.03
-"""Size of what a caption names at least, over the width of its panel: some five points, as of the marks on a track."""
+"""Size of what a caption names at least, over the width of its panel: some five points, as of the
+marks on a track.
+"""
 
 _POINTS = 500
 """Points of a line that are looked at."""
 
 
 def seen(panels: Sequence[Panel]) -> list[str]:
-    """Return which of ship, keep-out area and plume are large enough on any of some maps to be seen there."""
+    """Return which of ship, keep-out area and plume are large enough on any of some maps to be seen
+    there.
+    """
     return [
         what
         for what in (SHIP, AREA, PLUME)
@@ -30,7 +34,9 @@ def seen(panels: Sequence[Panel]) -> list[str]:
 
 
 def _is(line: Line, what: str) -> bool:
-    """Return whether a line is of the ship, the area or the plume: not the track of the ship, nor a place on the plume's axis."""
+    """Return whether a line is of the ship, the area or the plume: not the track of the ship, nor a
+    place on the plume's axis.
+    """
     return line.label.startswith((f"{what}, ", *(["plume's axis"] if what == PLUME else [])))
 
 
@@ -50,7 +56,9 @@ def _large(line: Line, panel: Panel) -> bool:
 
 
 def ship_lines(about: Surroundings, up: float, x: float = 0.0, y: float = 0.0) -> list[Line]:
-    """Return keep-out area, plume and ship, on a page on which the course ``up`` [rad] is up, with her funnel at a place."""
+    """Return keep-out area, plume and ship, on a page on which the course ``up`` [rad] is up, with
+    her funnel at a place.
+    """
     right, along = circle(about.radius)
     plume = about.plume
     return [
@@ -78,7 +86,8 @@ def ship_panel(
     Parameters
     ----------
     about : ship, plume, keep-out area and wind
-    lines, notes : seen from the ship, to the right of the plume's axis and along it [m]; the lines from back to front
+    lines, notes : seen from the ship, to the right of the plume's axis and along it [m]; the lines
+        from back to front
     title : above the panel
     shown, aspect : as of ``map_marks.on_map``
     """
@@ -102,7 +111,8 @@ def ship_words(*about: Surroundings, panels: Sequence[Panel] | None = None) -> s
     Parameters
     ----------
     about : of each
-    panels : the maps, where some of ship, keep-out area and plume may lie outside of them; None where all is inside
+    panels : the maps, where some of ship, keep-out area and plume may lie outside of them; None
+        where all is inside
     """
     shown = (SHIP, AREA, PLUME) if panels is None else seen(panels)
     shapes = " or ".join(dict.fromkeys(of.shape for of in about))

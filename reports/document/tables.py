@@ -17,14 +17,18 @@ from reports.run.run_data import RunData
 def pairs_table(
     rows: list[list[str]], *, widths: tuple[float, float] = (1.0, 4.0), **others: Any
 ) -> Table:
-    """Return a table without a head, of what things are called and what they are; parameters as of ``Table``."""
+    """Return a table without a head, of what things are called and what they are; parameters as of
+    ``Table``.
+    """
     return Table(
         head=["", ""], rows=rows, widths=list(widths), left_columns=2, prose=True, **others
     )
 
 
 def parameter_table(run: RunData, sampled: Mapping[str, str] | None = None) -> Table:
-    """Return every parameter of the run with its unit and meaning, and of those that are ``sampled`` how, by their keys."""
+    """Return every parameter of the run with its unit and meaning, and of those that are
+    ``sampled`` how, by their keys.
+    """
     known = sampled or {}
     rows = [
         [
@@ -58,7 +62,9 @@ def figure_table(verdict: Verdict) -> Table:
 
 
 def run_config(run: RunData) -> dict[str, Any]:
-    """Return the configuration of the run, or of its first trial: the vehicle is the same in all of them."""
+    """Return the configuration of the run, or of its first trial: the vehicle is the same in all of
+    them.
+    """
     return dict(next(iter(run.manifest.get("trials", {}).values()), run.manifest["config"]))
 
 
@@ -81,7 +87,8 @@ def limit(value: float) -> str:
 
 
 def approach(distance: float, radius: float, sign: str = "") -> str:
-    """Return a closest approach to 0.1 m; where that contradicts its judgement, rounded down, with as many digits as it takes.
+    """Return a closest approach to 0.1 m; where that contradicts its judgement, rounded down, with
+    as many digits as it takes.
 
     Parameters
     ----------
@@ -104,7 +111,9 @@ def approach(distance: float, radius: float, sign: str = "") -> str:
 
 
 def beside_limit(value: float, bound: float, digits: int = 3) -> str:
-    """Return a figure to as many digits as show it on that side of its bound on which it lies; no exponent."""
+    """Return a figure to as many digits as show it on that side of its bound on which it lies; no
+    exponent.
+    """
     for places in range(digits, 12):
         text = f"{float(f'{value:.{places}g}'):.{max(places, 6)}g}"
         if (float(text) > bound, float(text) < bound) == (value > bound, value < bound) or float(
@@ -178,7 +187,9 @@ _ADVICE = ": allow more time"
 
 
 def ending(row: "pd.Series[Any]") -> str:
-    """Return how a flight ended: every criterion that it failed, or why it was not completed, without the advice that follows."""
+    """Return how a flight ended: every criterion that it failed, or why it was not completed,
+    without the advice that follows.
+    """
     words = outcome(row)
     return (
         words if row["outcome"] == "completed" else re.split(f";|{_ADVICE}", words, maxsplit=1)[0]
@@ -210,7 +221,9 @@ def _in_braces(value: Any, key: str) -> str:
 
 
 def _entry_in_words(entry: Any) -> str:
-    """Return an entry of a list: of a table by its name, of a draw by the key that is drawn and how."""
+    """Return an entry of a list: of a table by its name, of a draw by the key that is drawn and
+    how.
+    """
     if not isinstance(entry, Mapping):
         return parameter_value(entry)
     if "name" in entry:

@@ -1,4 +1,6 @@
-"""Cesium: CZML of one flight, with positions over time (https://github.com/AnalyticalGraphicsInc/czml-writer/wiki)."""
+"""Cesium: CZML of one flight, with positions over time
+(https://github.com/AnalyticalGraphicsInc/czml-writer/wiki).
+"""
 
 import json
 from pathlib import Path
@@ -105,7 +107,9 @@ def _moving(
 
 
 def _readings(flight: GeographicFlight) -> dict[str, Any]:
-    """Return what the sniffer read, as properties of the UAV over time; nothing of a flight without one."""
+    """Return what the sniffer read, as properties of the UAV over time; nothing of a flight without
+    one.
+    """
     properties = {}
     for name, values in flight.readings.items():
         known = np.isfinite(values)

@@ -11,15 +11,17 @@ from reports.run.run_data import RunData
 
 
 class Exporter(Protocol):
-    """Writes a run in another format, made without arguments; one whose packages are missing says so when it is made.
+    """Writes a run in another format, made without arguments; one whose packages are missing says
+    so when it is made.
 
-    To add one, register its class in a module of this folder, announce it as an entry point in the group
-    ``plume_flight_study.exporter``, or name it by its file: ``--export FILE.py:NAME``.
+    To add one, register its class in a module of this folder, announce it as an entry point in the
+    group ``plume_flight_study.exporter``, or name it by its file: ``--export FILE.py:NAME``.
 
     Attributes
     ----------
     suffix : how the names of its files end, with the leading dot
-    one_flight : whether a file holds one flight alone; false if there is no such attribute. Each flight then has a file
+    one_flight : whether a file holds one flight alone; false if there is no such attribute. Each
+        flight then has a file
     """
 
     suffix: str
@@ -35,7 +37,8 @@ class Exporter(Protocol):
 
 
 def need_packages(exporter: str, *packages: str) -> None:
-    """Refuse an exporter, before it writes anything, whose packages of the extra ``export`` are not installed.
+    """Refuse an exporter, before it writes anything, whose packages of the extra ``export`` are not
+    installed.
 
     Raises
     ------

@@ -1,4 +1,6 @@
-"""What exporters for maps and globes take from a flight: where UAV, vessel and plume were on earth, and when."""
+"""What exporters for maps and globes take from a flight: where UAV, vessel and plume were on earth,
+and when.
+"""
 
 import math
 from collections.abc import Iterator, Mapping
@@ -24,10 +26,14 @@ _RING_POINTS = 48
 """Sides of the polygon that stands for a keep-out circle."""
 
 READINGS = {f"{gas}_reading_{UNITS[gas]}": f"{gas.upper()} reading [{UNITS[gas]}]" for gas in GASES}
-"""What a sniffer read: columns of time histories, and how they are labelled. A reading is held until the next."""
+"""What a sniffer read: columns of time histories, and how they are labelled. A reading is held
+until the next.
+"""
 
 NO_PLACE = (0.0, 0.0)
-"""Latitude and longitude of flights that no place is given for [deg]: on the equator, where JSBSim flies them."""
+"""Latitude and longitude of flights that no place is given for [deg]: on the equator, where JSBSim
+flies them.
+"""
 
 NO_TIME = datetime(2000, 1, 1, tzinfo=UTC).timestamp()
 """Start of flights that no time is given for, since 1970 [s]."""
@@ -77,8 +83,10 @@ class GeographicFlight:
     heading, pitch, roll : of the aircraft, heading from true north [deg]
     airspeed, climb_rate : [m/s]
     throttle : [-]
-    readings : of the sniffer at each sample, by the name of their column of ``READINGS``; none without a sniffer
-    vessel, vessel_heading : the ship, or none, and where her bow points from true north, at rest as before [deg]
+    readings : of the sniffer at each sample, by the name of their column of ``READINGS``; none
+        without a sniffer
+    vessel, vessel_heading : the ship, or none, and where her bow points from true north, at rest as
+        before [deg]
     plume_end : a point of the plume's axis, ``PLUME_LENGTH`` from the funnel, or none
     source_height : of the funnel above the sea [m]
     keepout_radius : r_min, not a number without a vessel [m]
@@ -114,7 +122,9 @@ class GeographicFlight:
         return utc_text(self.start + float(self.time[i]), milliseconds=True)
 
     def every(self, seconds: float) -> list[int]:
-        """Return the numbers of samples that are some time [s] apart, the first and the last among them."""
+        """Return the numbers of samples that are some time [s] apart, the first and the last among
+        them.
+        """
         step = max(
             1,
             round(
@@ -125,7 +135,9 @@ class GeographicFlight:
         return sorted({*range(0, len(self.time), step), len(self.time) - 1})
 
     def keepout_ring(self, i: int) -> list[tuple[float, float]]:
-        """Return longitude and latitude [deg] of a circle about the vessel at a sample, closed and counter-clockwise."""
+        """Return longitude and latitude [deg] of a circle about the vessel at a sample, closed and
+        counter-clockwise.
+        """
         if self.vessel is None:
             return []
         frame = LocalFrame(

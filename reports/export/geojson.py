@@ -1,4 +1,6 @@
-"""GeoJSON of RFC 7946: tracks of UAV and vessel, crossings, and the keep-out area at the end, of all flights."""
+"""GeoJSON of RFC 7946: tracks of UAV and vessel, crossings, and the keep-out area at the end, of
+all flights.
+"""
 
 import itertools
 import json
@@ -20,7 +22,9 @@ _CORNERS = 3
 
 @EXPORTERS.register("geojson")
 class GeoJson:
-    """A collection of features; what goes over the date line is cut there, as the standard asks for."""
+    """A collection of features; what goes over the date line is cut there, as the standard asks
+    for.
+    """
 
     suffix = ".geojson"
 
@@ -84,7 +88,9 @@ def _at(flight: GeographicFlight, time: float) -> Position:
 
 
 def _track(body: Body) -> dict[str, Any]:
-    """Return a line, several where it goes over the date line, or a point where there is one place alone."""
+    """Return a line, several where it goes over the date line, or a point where there is one place
+    alone.
+    """
     parts: list[list[Position]] = [[]]
     before: Position | None = None
     for longitude, latitude, altitude in zip(
@@ -109,7 +115,9 @@ def _track(body: Body) -> dict[str, Any]:
 
 
 def _area(ring: list[Position]) -> dict[str, Any]:
-    """Return a convex polygon, or the two parts of one that lies over the date line; the ring is in one piece, and closed."""
+    """Return a convex polygon, or the two parts of one that lies over the date line; the ring is in
+    one piece, and closed.
+    """
     edge = math.copysign(180.0, ring[0][0])
     beyond = [[x - 2.0 * edge, y] for x, y in _part(ring, edge, -math.copysign(1.0, edge))]
     parts = (_part(ring, edge, math.copysign(1.0, edge)), beyond)
@@ -120,7 +128,9 @@ def _area(ring: list[Position]) -> dict[str, Any]:
 
 
 def _part(ring: list[Position], edge: float, side: float) -> list[Position]:
-    """Return the part of a convex ring to one side of a meridian: 1 for the west, -1 for the east of it; closed, or empty."""
+    """Return the part of a convex ring to one side of a meridian: 1 for the west, -1 for the east
+    of it; closed, or empty.
+    """
     part: list[Position] = []
     for (x, y), (x_next, y_next) in itertools.pairwise(ring):
         inside, next_inside = side * (edge - x) >= 0.0, side * (edge - x_next) >= 0.0

@@ -28,7 +28,9 @@ _EPOCH = (1980, 1, 1, 0, 0, 0)
 
 @EXPORTERS.register("kmz")
 class Kmz:
-    """A folder for each flight: tracks of UAV and vessel, the plume's axis and the keep-out area over time."""
+    """A folder for each flight: tracks of UAV and vessel, the plume's axis and the keep-out area
+    over time.
+    """
 
     suffix = ".kmz"
 
@@ -108,7 +110,9 @@ def _track(
 
 
 def _schema(read: set[str]) -> ET.Element:
-    """Return the declaration of what sniffers read, with names and units for Google Earth's elevation profile."""
+    """Return the declaration of what sniffers read, with names and units for Google Earth's
+    elevation profile.
+    """
     schema = ET.Element(_kml("Schema"), id=_READINGS, name=_READINGS)
     for name, label in READINGS.items():
         if name in read:
@@ -121,7 +125,9 @@ def _schema(read: set[str]) -> ET.Element:
 
 
 def _append_readings(placemark: ET.Element, flight: GeographicFlight) -> None:
-    """Append what the sniffer read to the track of a placemark, a value for each of its times; an empty one where there is none."""
+    """Append what the sniffer read to the track of a placemark, a value for each of its times; an
+    empty one where there is none.
+    """
     track = placemark.find(_gx("Track"))
     if track is None:
         return

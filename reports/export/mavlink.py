@@ -1,4 +1,6 @@
-"""MAVLink 2 messages of a flight, packed as the protocol has them (https://mavlink.io/en/guide/serialization.html)."""
+"""MAVLink 2 messages of a flight, packed as the protocol has them
+(https://mavlink.io/en/guide/serialization.html).
+"""
 
 import math
 import struct
@@ -9,18 +11,22 @@ from reports.export.geographic import Body, GeographicFlight
 _MAGIC, _SYSTEM, _COMPONENT = 0xFD, 1, 1
 
 _FIXED_WING, _NO_AUTOPILOT, _ACTIVE, _ARMED, _VERSION = 1, 8, 4, 128, 3
-"""Of a heartbeat: MAV_TYPE, MAV_AUTOPILOT_INVALID, MAV_STATE, MAV_MODE_FLAG_SAFETY_ARMED, and the protocol's version."""
+"""Of a heartbeat: MAV_TYPE, MAV_AUTOPILOT_INVALID, MAV_STATE, MAV_MODE_FLAG_SAFETY_ARMED, and the
+protocol's version.
+"""
 
 _GEOMETRIC, _SURFACE_VEHICLE, _ADSB_VALID = 1, 18, 1 | 2 | 4 | 8
-"""Of an ADSB_VEHICLE: altitude by satellites, MAV's emitter type of a service vehicle on the surface, and which fields are valid:
-place, altitude, heading, velocity."""
+"""Of an ADSB_VEHICLE: altitude by satellites, MAV's emitter type of a service vehicle on the
+surface, and which fields are valid: place, altitude, heading, velocity."""
 
 _CARGO, _AIS_VALID, _VALID_COG = 70, 1 | 4 | 4096, 2
-"""Of an AIS_VESSEL: its type, and its AIS_FLAGS: POSITION_ACCURACY, VALID_VELOCITY, VALID_NAME; VALID_COG of one that moves. Turns
-are unknown."""
+"""Of an AIS_VESSEL: its type, and its AIS_FLAGS: POSITION_ACCURACY, VALID_VELOCITY, VALID_NAME;
+VALID_COG of one that moves. Turns are unknown."""
 
 _AT_REST = 0.05
-"""Speed below which a vessel has no course over the ground [m/s]; AIS gives speeds in steps of 0.05."""
+"""Speed below which a vessel has no course over the ground [m/s]; AIS gives speeds in steps of
+0.05.
+"""
 
 _MMSI = 999_999_999
 """Of a vessel whose MMSI is not recorded."""
@@ -37,7 +43,9 @@ _MESSAGES: dict[str, tuple[int, int, str]] = {
     "ADSB_VEHICLE": (246, 184, "<IiiiHHhHHB9sBB"),
     "AIS_VESSEL": (301, 243, "<IiiHHHHHHHbBBBB7s20s"),
 }
-"""Number, seed of the checksum, and fields in the order in which they are sent, of the common message set."""
+"""Number, seed of the checksum, and fields in the order in which they are sent, of the common
+message set.
+"""
 
 
 class Packer:
@@ -61,7 +69,9 @@ class Packer:
 
 
 def messages(flight: GeographicFlight) -> Iterator[tuple[float, bytes]]:
-    """Yield each message with its time since the start [s]: attitude and place of each sample, heartbeat and vessel each second."""
+    """Yield each message with its time since the start [s]: attitude and place of each sample,
+    heartbeat and vessel each second.
+    """
     packer, due = Packer(), -math.inf
     for i, time in enumerate(flight.time.tolist()):
         if time >= due - 1e-6:

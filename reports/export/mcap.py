@@ -1,4 +1,6 @@
-"""MCAP with Foxglove's well-known schemas, which Foxglove, Lichtblick and Rerun open; needs the extra ``export``."""
+"""MCAP with Foxglove's well-known schemas, which Foxglove, Lichtblick and Rerun open; needs the
+extra ``export``.
+"""
 
 import json
 import math
@@ -34,7 +36,9 @@ _SCHEMAS: dict[str, dict[str, Any]] = {
         ("airspeed_mps", "ground_speed_mps", "climb_rate_mps", "heading_deg", "pitch_deg", "roll_deg"), _NUMBER
     ),
 }  # fmt: skip
-"""Fields of each schema (https://docs.foxglove.dev/docs/visualization/message-schemas), and the project's own for plots."""
+"""Fields of each schema (https://docs.foxglove.dev/docs/visualization/message-schemas), and the
+project's own for plots.
+"""
 
 _TOPICS = {
     "/uav/fix": "foxglove.LocationFix", "/vessel/fix": "foxglove.LocationFix", "/uav/pose": "foxglove.PoseInFrame",

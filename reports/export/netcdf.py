@@ -1,4 +1,6 @@
-"""CF netCDF of trajectories, all flights one after the other; needs the extra ``export`` (xarray, h5netcdf)."""
+"""CF netCDF of trajectories, all flights one after the other; needs the extra ``export`` (xarray,
+h5netcdf).
+"""
 
 from pathlib import Path
 from typing import Any

@@ -1,4 +1,6 @@
-"""Telemetry log of ground stations, as Mission Planner and QGroundControl record it: MAVLink, each with its time."""
+"""Telemetry log of ground stations, as Mission Planner and QGroundControl record it: MAVLink, each
+with its time.
+"""
 
 import struct
 from pathlib import Path

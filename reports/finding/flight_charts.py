@@ -19,7 +19,9 @@ _REACH = 5.0
 
 
 def height_chart(view: SearchView, name: str) -> Chart:
-    """Return the height of the plume's axis as it was believed and as it was, and the altitude that was flown."""
+    """Return the height of the plume's axis as it was believed and as it was, and the altitude that
+    was flown.
+    """
     step = max(1, -(-len(view.time) // _POINTS_MAX))
     rows = view.history.iloc[::step]
     time, height, deviation = (
@@ -47,7 +49,9 @@ def height_chart(view: SearchView, name: str) -> Chart:
 
 
 def section_chart(view: SearchView, name: str) -> Chart | None:
-    """Return the readings in the plume's cross-section, with the plume as it was and as it was believed; none without a pass."""
+    """Return the readings in the plume's cross-section, with the plume as it was and as it was
+    believed; none without a pass.
+    """
     true, believed = view.true_plume(), view.estimated_plume()
     if true is None or believed is None:
         return None

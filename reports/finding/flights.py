@@ -1,4 +1,6 @@
-"""Sections on flights that searched for their plume: all of them beside their comparisons, and a typical and the worst one."""
+"""Sections on flights that searched for their plume: all of them beside their comparisons, and a
+typical and the worst one.
+"""
 
 from typing import Any
 
@@ -25,7 +27,9 @@ _NAMED_MAX = 12
 
 
 def finding_sections(run: RunData, trials: list[Trial], name: Name) -> list[Section]:
-    """Return the sections of a run whose flights searched for a plume, and none of any other; ``name`` is that of a flight."""
+    """Return the sections of a run whose flights searched for a plume, and none of any other;
+    ``name`` is that of a flight.
+    """
     found = [trial for trial in trials if len(searched(trial.rows))]
     whole = [block for trial in found for block in _whole(trial, name, only=len(found) == 1)]
     single = [block for trial in found for block in _single(run, trial, name)]

@@ -1,4 +1,6 @@
-"""One flight that searched for its plume: what was believed, and what was so, in the plume's cross-section."""
+"""One flight that searched for its plume: what was believed, and what was so, in the plume's
+cross-section.
+"""
 
 import math
 from typing import Any
@@ -22,7 +24,9 @@ ESTIMATED = "axis_height_estimated_m"
 _MODES = {
     "searching": "orange", "lost again": "plum", "sensor failed": "black", "departing": "green", "holding off": "grey",
 }  # fmt: skip
-"""Modes of a search other than that it has found the plume, and their colours: categories, and none that of the flight."""
+"""Modes of a search other than that it has found the plume, and their colours: categories, and none
+that of the flight.
+"""
 
 Ellipse = tuple[float, float, float, float]
 """Centre to the right and above the sea, and one spread across and up [m]."""
@@ -71,9 +75,11 @@ class SearchView:
         ]
 
     def readings(self) -> tuple[Array, Array, Array]:
-        """Return the place of each reading to the right of the ship's axis and above the sea [m], and its CO2 [ppm].
+        """Return the place of each reading to the right of the ship's axis and above the sea [m],
+        and its CO2 [ppm].
 
-        A reading stands where its air was taken in: earlier by the sensor's delay and its mean lag, as its data sheet has them.
+        A reading stands where its air was taken in: earlier by the sensor's delay and its mean lag,
+        as its data sheet has them.
         """
         right, _ = about_the_plume(self.history)
         taken = self.time - self._delay()
@@ -86,7 +92,9 @@ class SearchView:
         return across, height, column(self.history, "co2_reading_ppm")[known]
 
     def true_plume(self) -> Ellipse | None:
-        """Return the plume's mean axis at the last pass and the spread of one realisation; none of a flight without a pass."""
+        """Return the plume's mean axis at the last pass and the spread of one realisation; none of
+        a flight without a pass.
+        """
         if not len(self.crossings):
             return None
         last = int(self.crossings[-1])
@@ -107,7 +115,8 @@ class SearchView:
     def estimated_plume(self) -> Ellipse | None:
         """Return what was believed after the last pass; none of a flight without a pass.
 
-        The estimate is relative to the axis that the estimated wind lets expect, which is turned against the true one.
+        The estimate is relative to the axis that the estimated wind lets expect, which is turned
+        against the true one.
         """
         if not len(self.crossings):
             return None
@@ -128,7 +137,9 @@ class SearchView:
         return surroundings(self._config, self._row, self.history)
 
     def _delay(self) -> float:
-        """Return how much later the sensor reads than its air was taken in [s]; 0 of one that is not known."""
+        """Return how much later the sensor reads than its air was taken in [s]; 0 of one that is
+        not known.
+        """
         try:
             channel = sensor_of(
                 self._config.get("payload", {}).get("sensor") or str(self._row.get("sensor"))
@@ -139,7 +150,9 @@ class SearchView:
 
 
 def search_view(run: RunData, row: "pd.Series[Any]") -> SearchView | None:
-    """Return the search of a flight, given its row; none if it has no time history or never searched."""
+    """Return the search of a flight, given its row; none if it has no time history or never
+    searched.
+    """
     history = run.history(str(row["flight_id"]))
     if history is None or not np.isfinite(column(history, ESTIMATED)).any():
         return None

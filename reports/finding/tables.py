@@ -18,7 +18,9 @@ _TOLD = "told"
 
 
 def search_table(variants: list[Variant]) -> Table:
-    """Return how soon each variant found its plumes, how often it hit them, and what it measured of the fuel."""
+    """Return how soon each variant found its plumes, how often it hit them, and what it measured of
+    the fuel.
+    """
     told = next((variant for variant in variants if variant.name == _TOLD), None)
     return Table(
         caption="How soon plumes were found, how often they were hit, and what was measured of the sulphur. Over told: beside the"
@@ -48,7 +50,9 @@ def search_table(variants: list[Variant]) -> Table:
 
 
 def height_table(variants: list[Variant]) -> Table | None:
-    """Return how well the height of the axis was known after 3 minutes; none where no flight has an estimate then."""
+    """Return how well the height of the axis was known after 3 minutes; none where no flight has an
+    estimate then.
+    """
     rows = []
     for variant in variants:
         error, deviation = (

@@ -1,4 +1,6 @@
-"""Figures of the searches of a trial: how soon plumes were found, how often they were hit, and how well their height was known."""
+"""Figures of the searches of a trial: how soon plumes were found, how often they were hit, and how
+well their height was known.
+"""
 
 import numpy as np
 import pandas as pd
@@ -110,7 +112,9 @@ def _hits_panel(trial: Trial, variants: list[Variant]) -> Panel | None:
 
 
 def hits_over_time(trial: Trial, rows: pd.DataFrame) -> tuple[Array, Array]:
-    """Return the time of each pass since the orbit was reached [s], and 1 if it hit the plume, else 0; of flights with a record."""
+    """Return the time of each pass since the orbit was reached [s], and 1 if it hit the plume, else
+    0; of flights with a record.
+    """
     kept = rows[[trial.run.has_history(str(flight_id)) for flight_id in rows["flight_id"]]]
     times, hits = [], []
     for _, row in kept.iloc[:: max(1, -(-len(kept) // _HISTORIES_MAX))].iterrows():

@@ -12,7 +12,9 @@ from reports.run.columns import Array, column, study_flight
 from reports.run.trials import AS_IN_THE_STUDY, Trial
 
 _MARKERS: tuple[Style, ...] = ("diamonds", "square", "ring")
-"""Markers of comparisons, in their order: told apart in grey. Those of the study's own flights are points."""
+"""Markers of comparisons, in their order: told apart in grey. Those of the study's own flights are
+points.
+"""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -33,15 +35,21 @@ class Variant:
 
     @property
     def times(self) -> Array:
-        """Time to find of each flight from reaching its orbit [s], infinite where it never found the plume."""
+        """Time to find of each flight from reaching its orbit [s], infinite where it never found
+        the plume.
+        """
         return np.nan_to_num(column(self.rows, "time_to_find_s"), nan=math.inf)
 
     def share_found(self, within: float) -> float:
-        """Return the share of flights that found the plume within a time [s]; at least one flight is needed."""
+        """Return the share of flights that found the plume within a time [s]; at least one flight
+        is needed.
+        """
         return float(np.mean(self.times <= within))
 
     def beside(self, other: "Variant", name: str) -> Array:
-        """Return a figure over that of the same case in another variant, of the cases that both have; at least a pair each."""
+        """Return a figure over that of the same case in another variant, of the cases that both
+        have; at least a pair each.
+        """
         mine, theirs = (of.rows.set_index(study_flight(of.rows))[name] for of in (self, other))
         pairs = pd.concat([mine, theirs], axis=1, join="inner").dropna()
         ratio: Array = pairs.iloc[:, 0].to_numpy(dtype=np.float64) / pairs.iloc[:, 1].to_numpy(
@@ -51,7 +59,9 @@ class Variant:
 
 
 def variants_of(trial: Trial) -> list[Variant]:
-    """Return the study's own flights, and those of each comparison; none of a variant without a flight on its orbit."""
+    """Return the study's own flights, and those of each comparison; none of a variant without a
+    flight on its orbit.
+    """
     compared = trial.run.comparison
     names: list[str] = []
     if len(compared):

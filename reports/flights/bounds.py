@@ -1,4 +1,6 @@
-"""The bound on the probability of a keep-out violation that follows from flights, where it says anything."""
+"""The bound on the probability of a keep-out violation that follows from flights, where it says
+anything.
+"""
 
 import pandas as pd
 
@@ -9,10 +11,11 @@ from reports.run.trials import Trial
 
 
 def violation_bound(run: RunData, trials: list[Trial]) -> tuple[float, float] | None:
-    """Return the bound on the probability of a keep-out violation and its confidence; none where flights are no random sample.
+    """Return the bound on the probability of a keep-out violation and its confidence; none where
+    flights are no random sample.
 
-    A Monte Carlo study has its own, which allows for how often it was evaluated. Any other counts a flight that could not be
-    flown, or not be measured to its end, as a violation, as that one does.
+    A Monte Carlo study has its own, which allows for how often it was evaluated. Any other counts a
+    flight that could not be flown, or not be measured to its end, as a violation, as that one does.
     """
     if run.statistics is not None:
         return _telling(
@@ -22,7 +25,9 @@ def violation_bound(run: RunData, trials: list[Trial]) -> tuple[float, float] | 
 
 
 def counted_as_violations(rows: pd.DataFrame) -> str:
-    """Return, in a sentence, which flights the bound counts as violations though none is known of them; no word without such."""
+    """Return, in a sentence, which flights the bound counts as violations though none is known of
+    them; no word without such.
+    """
     unknown = _beside(rows)
     unknown = unknown[~kept_out(unknown) & ~violated(unknown)]
     unflown = count(~was_flown(unknown))
@@ -57,7 +62,9 @@ def _bound(trials: list[Trial]) -> tuple[float, float] | None:
 
 
 def _beside(rows: pd.DataFrame) -> pd.DataFrame:
-    """Return the flights beside a vessel, also those that were not flown: one about a circle has nothing to keep out of."""
+    """Return the flights beside a vessel, also those that were not flown: one about a circle has
+    nothing to keep out of.
+    """
     return rows[~was_flown(rows) | rows["min_distance_m"].notna()]
 
 

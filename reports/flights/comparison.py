@@ -29,7 +29,9 @@ from reports.run.time_history import tracking_error
 from reports.run.trials import AS_IN_THE_STUDY, Trial
 
 _SHOWN_TURNS = 45.5
-"""How much of a flight a panel shows after settling, over the time to turn by one radian at omega_max [-]."""
+"""How much of a flight a panel shows after settling, over the time to turn by one radian at
+omega_max [-].
+"""
 
 _SHOWN_BANDS = 1.2
 """Largest distance that a panel shows, over the settling band [-]."""
@@ -38,7 +40,9 @@ _LEAST_BANDS, _ROOM = 0.02, 1.05
 """The same at least, and a panel's height over the largest error in any [-]."""
 
 _HEIGHT = 1.1
-"""Height of all panels at most, over the width of the page: with heading and caption they stand on one."""
+"""Height of all panels at most, over the width of the page: with heading and caption they stand on
+one.
+"""
 
 _FLIGHTS_MAX = 4
 """Flights that have a panel with their comparisons."""
@@ -72,7 +76,9 @@ def comparison_section(run: RunData, trials: list[Trial]) -> Section:
 
 
 def _pairs(rows: pd.DataFrame, compared: pd.DataFrame) -> pd.DataFrame:
-    """Return compared flights and those of the study; ``base`` is the name of the study's flight of each pair."""
+    """Return compared flights and those of the study; ``base`` is the name of the study's flight of
+    each pair.
+    """
     bases = study_flight(compared)
     names = [
         str(variant).replace("_", " ").replace("keepout", "keep-out")
@@ -86,7 +92,9 @@ def _pairs(rows: pd.DataFrame, compared: pd.DataFrame) -> pd.DataFrame:
 
 
 def _chart(trial: Trial, pairs: pd.DataFrame) -> Chart | None:
-    """Return the tracking error of a few flights and of their comparisons over time since settling, or None."""
+    """Return the tracking error of a few flights and of their comparisons over time since settling,
+    or None.
+    """
     # The same part of the flight for a fast aircraft, which turns slowly, as for a slow one.
     turn = 1.0 / float(pairs["heading_rate_limit_rad_s"].max())
     shown = float(f"{_SHOWN_TURNS * turn:.2g}")
@@ -143,13 +151,17 @@ def _chart(trial: Trial, pairs: pd.DataFrame) -> Chart | None:
 
 
 def _shown_words(pairs: pd.DataFrame, shown: float) -> str:
-    """Return how much of the flights is drawn: what follows settling, or the first of it where any flight lasts longer."""
+    """Return how much of the flights is drawn: what follows settling, or the first of it where any
+    flight lasts longer.
+    """
     lasts = column(pairs, "duration_s") - column(pairs, "settling_time_s")
     return f"the first {shown:g} s after settling" if np.any(lasts > shown) else "from settling on"
 
 
 def _fitted(panels: Sequence[Panel], duration: float, band: float) -> list[Panel]:
-    """Return panels with the same axes: as long as the longest line, and as high as the largest error, up to the limits."""
+    """Return panels with the same axes: as long as the longest line, and as high as the largest
+    error, up to the limits.
+    """
     x, y = (
         np.concatenate(
             [getattr(line, axis) for panel in panels for line in panel.lines] or [np.empty(0)]

@@ -75,7 +75,9 @@ def flights_content(run: RunData) -> Findings:
 
 
 def _picture(sections: list[Section]) -> Chart | None:
-    """Return the first figure of a report without a time history: how near flights came, if it is that of a Monte Carlo study."""
+    """Return the first figure of a report without a time history: how near flights came, if it is
+    that of a Monte Carlo study.
+    """
     charts = (block for section in sections for block in section.blocks if isinstance(block, Chart))
     return next(charts, None)
 

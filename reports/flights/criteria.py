@@ -95,7 +95,9 @@ _MEASURES = {
 MEASURED = tuple(_MEASURES)
 
 _AFTER_SETTLING = ("tracking_error_rms_m", "airspeed_error_rms_mps", "altitude_error_max_m")
-"""Criteria on what is measured after settling: they are judged where ``criteria.settles`` is true, and nowhere else."""
+"""Criteria on what is measured after settling: they are judged where ``criteria.settles`` is true,
+and nowhere else.
+"""
 
 _BETWEEN = {
     "crossing_interval_s": _Measure(
@@ -130,7 +132,9 @@ _OUTSIDE = _Measure(
 
 
 def criteria_of(trial: Trial) -> list[Criterion]:
-    """Return the criteria of a trial beside the keep-out area: to complete its mission, and those of its configuration."""
+    """Return the criteria of a trial beside the keep-out area: to complete its mission, and those
+    of its configuration.
+    """
     listed = {key: value for key, value in trial.criteria.items() if value not in (None, False, [])}
     others = {
         "required",
@@ -145,7 +149,8 @@ def criteria_of(trial: Trial) -> list[Criterion]:
 
 
 def switched_off(trials: Sequence[Trial]) -> list[tuple[str, str]]:
-    """Return name and worst value of figures that criteria limit by default, and no criterion of these trials.
+    """Return name and worst value of figures that criteria limit by default, and no criterion of
+    these trials.
 
     Without the tracking error, which is a figure of its own whether or not it is limited.
     """
@@ -184,7 +189,9 @@ def _criterion(trial: Trial, key: str, value: Any) -> Criterion:
 
 
 def _judged(rows: pd.DataFrame, key: str) -> pd.DataFrame:
-    """Return the flights that a criterion is about: a vessel that ends no manoeuvre gives nothing to resume after."""
+    """Return the flights that a criterion is about: a vessel that ends no manoeuvre gives nothing
+    to resume after.
+    """
     return (
         rows[rows["manoeuvre_end_s"].notna()]
         if key == "resumes_within_periods" and "manoeuvre_end_s" in rows
@@ -265,7 +272,9 @@ def _failed(failed: Mask, rows: pd.DataFrame) -> _Failed:
 
 
 def _without(rows: pd.DataFrame) -> str:
-    """Return how many flights have no figure, and how they ended; an empty text if every flight has one."""
+    """Return how many flights have no figure, and how they ended; an empty text if every flight has
+    one.
+    """
     if not len(rows):
         return ""
     ended = zip(rows["outcome"], was_flown(rows), strict=True)

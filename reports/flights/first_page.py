@@ -1,4 +1,6 @@
-"""What page 1 says of flights: what was flown in a sentence, and the tracks of the closest flight and of a typical one."""
+"""What page 1 says of flights: what was flown in a sentence, and the tracks of the closest flight
+and of a typical one.
+"""
 
 from collections.abc import Mapping, Sequence
 
@@ -61,7 +63,9 @@ def flights_in_words(run: RunData, flown: pd.DataFrame) -> str:
 
 
 def simulated(flown: pd.DataFrame) -> str:
-    """Return how long all flights took together; less than an hour is told in minutes, less than two minutes in seconds."""
+    """Return how long all flights took together; less than an hour is told in minutes, less than
+    two minutes in seconds.
+    """
     time = total(flown, "duration_s") / SECONDS_PER_HOUR
     if 60.0 * time < _MINUTES_MIN:
         return f"{SECONDS_PER_HOUR * time:.0f} s simulated"
@@ -76,11 +80,12 @@ def _range(values: Array) -> str:
 
 
 def closest_and_typical(trials: Sequence[Trial]) -> Chart | None:
-    """Return the tracks of the flight that came closest and of the one with the median closest approach, if any has a record.
+    """Return the tracks of the flight that came closest and of the one with the median closest
+    approach, if any has a record.
 
-    The median is that of all flights that were flown: of those with a record, among which is every flight that failed, it would be
-    another. Where the flight at the median has none, the one nearest to it takes its place. Without a vessel there is no approach:
-    shown is the first flight.
+    The median is that of all flights that were flown: of those with a record, among which is every
+    flight that failed, it would be another. Where the flight at the median has none, the one
+    nearest to it takes its place. Without a vessel there is no approach: shown is the first flight.
     """
     flown = [(trial, beside_vessel(trial.rows)) for trial in trials]
     recorded = np.concatenate([trial.run.with_history(rows) for trial, rows in flown])
@@ -140,7 +145,9 @@ def _first_recorded(trials: Sequence[Trial]) -> Chart | None:
 
 
 def _told(recorded: Mask, names: Mapping[str, str], *, median: bool, beyond: bool) -> str:
-    """Return which flights are shown, with those names that are not empty, whether the typical one is the median, and of what."""
+    """Return which flights are shown, with those names that are not empty, whether the typical one
+    is the median, and of what.
+    """
     of = "" if recorded.all() else " of those with a time history"
     what = "least distance beyond its own r_min" if beyond else "closest approach"
     near = (

@@ -21,10 +21,14 @@ _GUARDED_MAX = 400
 """Points of all the guard's stretches on a track at most."""
 
 _DIAMONDS_MAX, _DIAMONDS_FAR = 60, 12
-"""Crossings that are marked by diamonds, more by dots: of a track that is near, and of one that is far away."""
+"""Crossings that are marked by diamonds, more by dots: of a track that is near, and of one that is
+far away.
+"""
 
 _BANDS_MAX = 30
-"""Stretches of the guard in a time history at most; those that are nearest to each other are drawn as one."""
+"""Stretches of the guard in a time history at most; those that are nearest to each other are drawn
+as one.
+"""
 
 _NARROWEST = 0.002
 """Width of a stretch of the guard at least, over the flight's duration, to be seen."""
@@ -34,7 +38,8 @@ Place = Callable[[pd.DataFrame], tuple[Array, Array]]
 
 
 class FlightView:
-    """A flight's record, thinned, but with its closest approach, its crossings and the guard's stretches.
+    """A flight's record, thinned, but with its closest approach, its crossings and the guard's
+    stretches.
 
     Attributes
     ----------
@@ -106,7 +111,9 @@ class FlightView:
         return late
 
     def marks(self, place: Place, *, far: bool = False) -> list[Line]:
-        """Return the crossings and the closest approach, where ``place`` has them, or has them from far away."""
+        """Return the crossings and the closest approach, where ``place`` has them, or has them from
+        far away.
+        """
         # Many diamonds would hide the track.
         style: Style = (
             "dots"

@@ -17,7 +17,9 @@ from reports.run.columns import column
 from reports.run.trials import Trial
 
 _SPEED_RATIO = "vessel.speed_ratio"
-"""Key that ``nu`` stands for where it is swept; in wind the column ``nu`` is another ratio, that through the air."""
+"""Key that ``nu`` stands for where it is swept; in wind the column ``nu`` is another ratio, that
+through the air.
+"""
 
 _SAME_RATIO = 0.005
 """Within which two speed ratios are written the same [-]."""
@@ -30,7 +32,9 @@ _BARE = ("none", "yes", "no", "not set")
 
 
 def flight_name(trial: Trial, row: "pd.Series[Any]") -> str:
-    """Return what a flight is called in its trial: by what was swept, or as in the files of the run."""
+    """Return what a flight is called in its trial: by what was swept, or as in the files of the
+    run.
+    """
     flight_id, values = str(row["flight_id"]), _values(trial, row)
     if not values:
         return flight_id
@@ -44,13 +48,17 @@ def flight_name(trial: Trial, row: "pd.Series[Any]") -> str:
 
 
 def told_name(trial: Trial, row: "pd.Series[Any]") -> str:
-    """Return what a flight is called among those of all trials: names of files tell these apart, swept values do not."""
+    """Return what a flight is called among those of all trials: names of files tell these apart,
+    swept values do not.
+    """
     several = trial.swept and len(trial.run.manifest["trials"]) > 1
     return f"{trial.title}, {flight_name(trial, row)}" if several else flight_name(trial, row)
 
 
 def swept_column(trial: Trial) -> tuple[str, Callable[["pd.Series[Any]"], str]]:
-    """Return head and cells of a column that says which flight a row is about: the values of one key, else whole names."""
+    """Return head and cells of a column that says which flight a row is about: the values of one
+    key, else whole names.
+    """
     if len(trial.swept) > 1 or _repeated(trial):
         return "Flight", partial(flight_name, trial)
     (key,) = trial.swept
@@ -63,7 +71,9 @@ def swept_column(trial: Trial) -> tuple[str, Callable[["pd.Series[Any]"], str]]:
 
 
 def swept_words(trial: Trial) -> dict[str, list[str]]:
-    """Return the values in each flown flight of every key that was swept over words, without the folders of files."""
+    """Return the values in each flown flight of every key that was swept over words, without the
+    folders of files.
+    """
     return {
         key: [_value(key, value).replace("_", " ") for value in of]
         for key, of in _words(trial).items()
@@ -71,9 +81,11 @@ def swept_words(trial: Trial) -> dict[str, list[str]]:
 
 
 def words_together(trial: Trial) -> list[str]:
-    """Return what each flown flight is called by all words that were swept, with the names of their keys where these say which.
+    """Return what each flown flight is called by all words that were swept, with the names of their
+    keys where these say which.
 
-    Of words that change nothing in the flights, as of sensors that only listen, markers would cover each other: they are left out.
+    Of words that change nothing in the flights, as of sensors that only listen, markers would cover
+    each other: they are left out.
     """
     words = {key: of for key, of in _words(trial).items() if changes_flights(trial, key)}
     called = [
@@ -83,7 +95,9 @@ def words_together(trial: Trial) -> list[str]:
 
 
 def changes_flights(trial: Trial, key: str) -> bool:
-    """Return whether flights that differ in a key that was swept, and in no other, differ in how near they came."""
+    """Return whether flights that differ in a key that was swept, and in no other, differ in how
+    near they came.
+    """
     ids = trial.flown["flight_id"]
     values = {
         of: trial.input(_SPEED_RATIO if of == "nu" else of).reindex(ids).astype(str).tolist()
@@ -97,7 +111,9 @@ def changes_flights(trial: Trial, key: str) -> bool:
 
 
 def flown_elsewhere(trial: Trial) -> bool:
-    """Return whether flights have another speed ratio than the one that was swept: in wind it is that through the air."""
+    """Return whether flights have another speed ratio than the one that was swept: in wind it is
+    that through the air.
+    """
     if "nu" not in trial.swept:
         return False
     swept = trial.input(_SPEED_RATIO).reindex(trial.flown["flight_id"])
@@ -112,7 +128,9 @@ def _repeated(trial: Trial) -> bool:
 
 
 def _values(trial: Trial, row: "pd.Series[Any]") -> dict[str, Any]:
-    """Return the values of a flight of what was swept; none of one that was lost with its process, before it wrote any."""
+    """Return the values of a flight of what was swept; none of one that was lost with its process,
+    before it wrote any.
+    """
     flight_id = str(row["flight_id"])
     if not (trial.rows["flight_id"] == flight_id).any():
         # A comparison's flight has the values of the study's own that it is compared with.
@@ -176,7 +194,9 @@ def _numbers(trial: Trial, key: str) -> tuple[float, ...]:
 
 @lru_cache
 def _digits(values: tuple[float, ...], kind: str, least: int) -> int:
-    """Return how many digits tell numbers apart, ``least`` of them at least: after the point ("f"), or significant ones ("g")."""
+    """Return how many digits tell numbers apart, ``least`` of them at least: after the point ("f"),
+    or significant ones ("g").
+    """
     counts = range(least, _DIGITS_MAX)
     return next(
         (n for n in counts if len({f"{value:.{n}{kind}}" for value in values}) == len(values)),
@@ -199,9 +219,11 @@ def manoeuvre_name(manoeuvres: list[dict[str, Any]]) -> str:
 
 
 def manoeuvres_flown(trial: Trial) -> list[str] | None:
-    """Return what the vessel did in each flight that was flown, in a few words; None where no table says all of it.
+    """Return what the vessel did in each flight that was flown, in a few words; None where no table
+    says all of it.
 
-    Where a part of a manoeuvre alone is swept or sampled, every flight has one of its own: a name for each groups nothing.
+    Where a part of a manoeuvre alone is swept or sampled, every flight has one of its own: a name
+    for each groups nothing.
     """
     key = "vessel.manoeuvres"
     if not trial.varies(key):

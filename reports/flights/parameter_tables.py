@@ -24,7 +24,9 @@ _ANY_RATIO = 1e9
 
 
 def parameter_blocks(run: RunData, trials: list[Trial]) -> list[Block]:
-    """Return every parameter of a run's only trial; of several, what each sets, and the others with their defaults."""
+    """Return every parameter of a run's only trial; of several, what each sets, and the others with
+    their defaults.
+    """
     blocks: list[Block] = []
     if len(trials) == 1 and trials[0].swept and len(trials[0].flown):
         blocks += [
@@ -72,7 +74,9 @@ def _table(rows: list[list[str]]) -> Table:
 
 
 def _rows(trial: Trial, *, every: bool) -> list[list[str]]:
-    """Return what a trial sweeps and samples, and every parameter or those that differ from their defaults."""
+    """Return what a trial sweeps and samples, and every parameter or those that differ from their
+    defaults.
+    """
     listed = {parameter["key"]: parameter for parameter in trial.parameters()}
     rows = [
         [
@@ -120,7 +124,9 @@ def _rows(trial: Trial, *, every: bool) -> list[list[str]]:
 
 
 def _meaning(key: str) -> str:
-    """Return the meaning of an input that is no key of its own: the speed ratio, or of an entry of a list."""
+    """Return the meaning of an input that is no key of its own: the speed ratio, or of an entry of
+    a list.
+    """
     if entry := re.fullmatch(r"vessel\.manoeuvres\.(\d+)\.(\w+)", key):
         return (
             f"Of the vessel's manoeuvre number {int(entry[1]) + 1}: {input_name(entry[2]).lower()}"

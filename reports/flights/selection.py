@@ -143,7 +143,8 @@ def _state(row: "pd.Series[Any]", why: str) -> str:
 
 
 def picked_flights(trials: list[Trial]) -> list[tuple[Trial, "pd.Series[Any]", str]]:
-    """Return the flights to be shown, at most ``PICKED_MAX``, in the trials' order, and why each of them is.
+    """Return the flights to be shown, at most ``PICKED_MAX``, in the trials' order, and why each of
+    them is.
 
     Every trial has its most important flight before any has its second, and so on.
     """

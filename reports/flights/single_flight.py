@@ -27,10 +27,14 @@ _HIDDEN = 0.2
 """Height within which a flight that stays there hides a level [m]."""
 
 _TWO_COLUMNS = 6
-"""Panels that stand in two columns; more are in three, so that each is higher than its label is long."""
+"""Panels that stand in two columns; more are in three, so that each is higher than its label is
+long.
+"""
 
 _LONG_S, _WITHIN_S, _TINT = 900.0, 30.0, 0.35
-"""Duration from which turns would fill a panel [s], time of which their range is shown then, some turns long [s], and its tint."""
+"""Duration from which turns would fill a panel [s], time of which their range is shown then, some
+turns long [s], and its tint.
+"""
 
 _TIME = "Time [s]"
 
@@ -138,7 +142,9 @@ class _Histories:
         return f" Distance is {where}, dashed r_min.{f' Distances above {far:.0f} m are not shown.' if farthest > far else ''}"
 
     def _gap_words(self) -> str:
-        """Return how long the flight did not cross the plume though it had settled; nothing where that was not long."""
+        """Return how long the flight did not cross the plume though it had settled; nothing where
+        that was not long.
+        """
         gap = crossing_gap(self._view.trial, self._view.row)
         return (
             f" No crossing for {gap_words(gap)}, before the vessel's last manoeuvre had ended."
@@ -176,7 +182,9 @@ class _Histories:
         return Panel(x_label=_TIME, y_label="Wind [m/s]", lines=lines)
 
     def _vessel_panel(self) -> Panel | None:
-        """Return how far the vessel is from where it is taken to be, or nothing if it is known exactly."""
+        """Return how far the vessel is from where it is taken to be, or nothing if it is known
+        exactly.
+        """
         north, east = (
             self._column(f"vessel_seen_{axis}_m") - self._column(f"vessel_{axis}_m")
             for axis in ("north", "east")
@@ -195,7 +203,9 @@ class _Histories:
         return Panel(x_label=_TIME, y_label="Rate [rad/s]", lines=lines)
 
     def _fast(self, name: str, label: str, colour: str, factor: float) -> list[Line]:
-        """Return a column that swings with every turn; of a long flight, whose turns would fill the panel, between which values."""
+        """Return a column that swings with every turn; of a long flight, whose turns would fill the
+        panel, between which values.
+        """
         if not self._long:
             return [self._line(factor * self._column(name), label, colour)]
         time, values = (column(self._view.whole, of) for of in ("time_s", name))
@@ -232,7 +242,9 @@ class _Histories:
         return Panel(x_label=_TIME, y_label="Airspeed [m/s]", lines=lines)
 
     def _altitude_panel(self) -> Panel:
-        """Return the altitude, with that of the funnel and, over a rising plume, of the centre of oscillation."""
+        """Return the altitude, with that of the funnel and, over a rising plume, of the centre of
+        oscillation.
+        """
         row, funnel = self._view.row, source_height(self._view.config)
         levels = {"funnel": (funnel, Meaning.SHIP)}
         rise = float(row.get("r_co_m", 0.0)) * math.sin(
@@ -241,7 +253,8 @@ class _Histories:
         if rise > 0.0:
             levels["centre of oscillation"] = (funnel + rise, Meaning.PLUME)
         altitude, highest = self._column("altitude_m"), max(height for height, _ in levels.values())
-        # The true wind is dashed. A level that nearly all of the flight lies upon would be in the legend alone.
+        # The true wind is dashed. A level that nearly all of the flight lies upon would be in the
+        # legend alone.
         lines = [
             self._level(height, label, colour, "thin")
             for label, (height, colour) in levels.items()
@@ -259,7 +272,9 @@ class _Histories:
         )
 
     def _mode_panel(self) -> Panel | None:
-        """Return the modes that occur, a row each, by name if the run has names; None for a flight in one mode."""
+        """Return the modes that occur, a row each, by name if the run has names; None for a flight
+        in one mode.
+        """
         mode, names = self._column("mode"), self._view.trial.run.manifest.get("modes", [])
         occurring = [float(m) for m in np.unique(mode[np.isfinite(mode)])]
         if len(occurring) < 2:

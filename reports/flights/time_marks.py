@@ -16,7 +16,8 @@ _OFF = 0.02
 """Distance of a word from its mark, over the same."""
 
 _PASSES_MAX = 1
-"""Curves that may go through a word; one that would hide or be hidden by more has no mark either."""
+"""Curves that may go through a word; one that would hide or be hidden by more has no mark either.
+"""
 
 _POINTS = 200
 """Points of a curve at least that are looked at: a straight line has two."""
@@ -25,7 +26,9 @@ _APART = 0.12
 """Distance of words in a row at least, over its length."""
 
 _UNDER = 0.012
-"""Distance of a word in a row from the end of the line that leads to it from its mark, over the length of the row."""
+"""Distance of a word in a row from the end of the line that leads to it from its mark, over the
+length of the row.
+"""
 
 TIMES = "time since the start"
 """What the legend calls the marks."""
@@ -82,7 +85,8 @@ def marks_beside(
 def marks_in_a_row(
     x: Array, y: Array, words: Sequence[str], height: float, length: float
 ) -> tuple[list[Line], list[Note]]:
-    """Return marks along a track that goes across the page, and their words at a height above it, as many as there is room for.
+    """Return marks along a track that goes across the page, and their words at a height above it,
+    as many as there is room for.
 
     A line leads from a mark to its word.
     """
@@ -138,7 +142,9 @@ def _passes(line: Line, word: _Word) -> int:
 
 
 def _filled(line: Line) -> tuple[Array, Array]:
-    """Return points of a curve, also between those of a coarse one; marks that stand alone are as they are."""
+    """Return points of a curve, also between those of a coarse one; marks that stand alone are as
+    they are.
+    """
     count = len(line.x)
     if line.style not in ("solid", "thin", "broad", "dash", "dot") or not 1 < count < _POINTS:
         return line.x, line.y

@@ -1,4 +1,6 @@
-"""Tracks of flights: about the ship with her plume up the page, at the plume from near, and over the ground."""
+"""Tracks of flights: about the ship with her plume up the page, at the plume from near, and over
+the ground.
+"""
 
 import math
 from collections.abc import Sequence
@@ -33,24 +35,29 @@ _NEAR_S = 60.0
 """The same of a flight without an oscillation [s]."""
 
 _NEARER = 0.5
-"""Size of what is shown from near, over that of the whole, up to which it has a panel of its own."""
+"""Size of what is shown from near, over that of the whole, up to which it has a panel of its own.
+"""
 
 _UPRIGHT, _LARGE, _BESIDE, _WIDE, _FLAT = 0.66, 1.05, 1.2, 1.9, 4.8
-"""Width over height: of one of two flights on page 1, of one of two of a flight there, of such on its own page, alone, and over
-the ground."""
+"""Width over height: of one of two flights on page 1, of one of two of a flight there, of such on
+its own page, alone, and over the ground."""
 
 _ABOVE = 0.08
 """Height of words above what is drawn over the ground, over the height of the panel."""
 
 _AWAY = 1.0
-"""Way of the ship over the size of the track about her, from which there is a panel over the ground."""
+"""Way of the ship over the size of the track about her, from which there is a panel over the
+ground.
+"""
 
 _FILLED, _HIGHER, _GROUND = 0.5, 1.5, 0.19
-"""Part of that panel's width that the tracks fill at least, or else it is higher, by this factor; and its height, over the width of
-the page."""
+"""Part of that panel's width that the tracks fill at least, or else it is higher, by this factor;
+and its height, over the width of the page."""
 
 _TURNED, _LEGS, _NORTH_UP = math.radians(10.0), 40, 0.34
-"""Change of the ship's course from which north is up over the ground, parts of the flight that have one, and that map's height."""
+"""Change of the ship's course from which north is up over the ground, parts of the flight that have
+one, and that map's height.
+"""
 
 _WAY = "ship's track"
 """What the legend calls the way of a ship over the ground."""
@@ -60,14 +67,17 @@ _PICTURE = "picture"
 
 
 def track_chart(view: FlightView) -> Chart:
-    """Return where one flight went: about the ship, her plume up the page, from near, and over the ground."""
+    """Return where one flight went: about the ship, her plume up the page, from near, and over the
+    ground.
+    """
     return _Tracks(view).chart()
 
 
 def track_picture(
     shown: Sequence[tuple[Trial, "pd.Series[Any]", str]], told: str = ""
 ) -> Chart | None:
-    """Return a large picture of flights side by side, each about its ship; all tracks of a flight that is alone.
+    """Return a large picture of flights side by side, each about its ship; all tracks of a flight
+    that is alone.
 
     Parameters
     ----------
@@ -155,7 +165,9 @@ class _Tracks:
         )
 
     def _near(self, about: Surroundings, aspect: float) -> Panel | None:
-        """Return the last of the flight from near; None where it never settled, or where the whole is no larger."""
+        """Return the last of the flight from near; None where it never settled, or where the whole
+        is no larger.
+        """
         view, rate = self.view, float(self.view.row.get("omega_0_rad_s", math.nan))
         last = _NEAR_PERIODS * math.tau / rate if rate > 0.0 else _NEAR_S
         begin = max(view.settled_at, float(view.ends[1]) - last)
@@ -175,7 +187,9 @@ class _Tracks:
         return ship_panel(about, lines, title=title, shown=[track, reference], aspect=aspect)
 
     def _below(self) -> tuple[Panel | None, float]:
-        """Return the flight over the ground, beside a ship that goes far, and its height; nothing of any other."""
+        """Return the flight over the ground, beside a ship that goes far, and its height; nothing
+        of any other.
+        """
         if not self._goes_far():
             return None, 0.0
         if self._way() is None:
@@ -188,7 +202,9 @@ class _Tracks:
         return self.ground(flat=_FLAT / _HIGHER), _GROUND * _HIGHER
 
     def ground(self, title: str = "", flat: float = _FLAT) -> Panel:
-        """Return the flight over the ground: flat, along the way of a ship that goes far and straight; else with north up."""
+        """Return the flight over the ground: flat, along the way of a ship that goes far and
+        straight; else with north up.
+        """
         view, about, way = self.view, self.about, self._way()
         up = way or 0.0
 
@@ -250,7 +266,9 @@ class _Tracks:
         return bool(np.hypot(north, east) >= _AWAY * size)
 
     def _way(self) -> float | None:
-        """Return the course that puts the ship's way across the page [rad]; None where she does not go far, or turns."""
+        """Return the course that puts the ship's way across the page [rad]; None where she does not
+        go far, or turns.
+        """
         if not self._goes_far():
             return None
         places = self._ship()
@@ -272,7 +290,9 @@ class _Tracks:
     def _times(
         self, place: Place, drawn: Sequence[Line], *, until: float, in_a_row: bool = False
     ) -> tuple[list[Line], list[Note]]:
-        """Return marks at round times up to some [s]: beside a track among what is drawn, or in a row above all of it."""
+        """Return marks at round times up to some [s]: beside a track among what is drawn, or in a
+        row above all of it.
+        """
         times = np.arange(self._step, until - 0.3 * self._step, self._step)
         (x, y), flown = place(self.view.at_times(times)), place(self.view.samples)
         words = [_duration(time) for time in times.tolist()]
@@ -285,7 +305,9 @@ class _Tracks:
 
 
 def _words(about: Sequence[Surroundings | None], panels: Sequence[Panel]) -> str:
-    """Return what the tracks of flights are seen from, for a caption, given what was about each, and the maps about the ship."""
+    """Return what the tracks of flights are seen from, for a caption, given what was about each,
+    and the maps about the ship.
+    """
     beside = [of for of in about if of is not None]
     return ship_words(*beside, panels=panels) if beside else "Over the ground."
 

@@ -57,7 +57,9 @@ _ERROR = "Tracking error, rms after settling"
 """Name of a figure, which goes on where it is of several flights."""
 
 _QUANTILE, _QUANTILE_OF = 0.99, 100
-"""Fraction of flights whose tracking error is no larger than the one that is shown, and flights of which there is one at least."""
+"""Fraction of flights whose tracking error is no larger than the one that is shown, and flights of
+which there is one at least.
+"""
 
 _LIMITED = " of the trials that limit it"
 """How the worst figure is named that is not that of all flights."""
@@ -66,9 +68,10 @@ _LIMITED = " of the trials that limit it"
 def flight_verdict(run: RunData, trials: list[Trial]) -> Verdict:
     """Judge a run by its summary.
 
-    It fails if no flight was flown, if one violated the keep-out area, if one lost its aircraft that was required to complete,
-    or if the fuel of an only flight is called above its limit.
-    It is complete if every planned flight met every criterion, and the fuel of an only flight is called below its limit.
+    It fails if no flight was flown, if one violated the keep-out area, if one lost its aircraft
+    that was required to complete, or if the fuel of an only flight is called above its limit.
+    It is complete if every planned flight met every criterion, and the fuel of an only flight is
+    called below its limit.
     """
     rows, flown = run.summary, flights_flown(run.summary)
     planned = int(run.manifest["flights_planned"])
@@ -126,7 +129,9 @@ def _headline(run: RunData, trials: list[Trial], flown: pd.DataFrame, planned: i
 
 
 def _keeping_out(run: RunData, trials: list[Trial], flown: pd.DataFrame) -> str:
-    """Return how the flights kept out of the keep-out area, and what bound follows; a flight about a circle has none."""
+    """Return how the flights kept out of the keep-out area, and what bound follows; a flight about
+    a circle has none.
+    """
     beside = beside_vessel(flown)
     flights, alone = _flights(beside), len(flown) - len(beside)
     if not len(beside):
@@ -201,7 +206,9 @@ def _detail(run: RunData, trials: list[Trial], flown: pd.DataFrame, planned: int
 
 
 def _closest(trials: list[Trial], beside: pd.DataFrame) -> str:
-    """Return how close the closest flight came, and to what: the shape of the keep-out area decides what a distance is."""
+    """Return how close the closest flight came, and to what: the shape of the keep-out area decides
+    what a distance is.
+    """
     closest = _nearest(beside)
     (trial,) = [trial for trial in trials if trial.key == closest["trial"]]
     name, shape = told_name(trial, closest), keepout_shape(trial.flight_config(closest))
@@ -335,9 +342,11 @@ def _tells_of_all(name: str, flights: int) -> bool:
 
 
 def _tracking(flown: pd.DataFrame, *, told: bool) -> list[Card]:
-    """Return the tracking error of nearly all flights that settled, whether or not a criterion asks for it.
+    """Return the tracking error of nearly all flights that settled, whether or not a criterion asks
+    for it.
 
-    Of few flights there is no such quantile, and the largest alone is shown, unless that has been told.
+    Of few flights there is no such quantile, and the largest alone is shown, unless that has been
+    told.
     """
     errors = column(flown, "tracking_error_rms_m")
     known = errors[np.isfinite(errors)]
@@ -352,7 +361,9 @@ def _tracking(flown: pd.DataFrame, *, told: bool) -> list[Card]:
 
 
 def _worst(criteria: list[Criterion], key: str) -> Card | None:
-    """Return the worst figure of a criterion among all trials: the largest fraction of its trial's limit."""
+    """Return the worst figure of a criterion among all trials: the largest fraction of its trial's
+    limit.
+    """
     known = [
         criterion
         for criterion in criteria
@@ -365,9 +376,11 @@ def _worst(criteria: list[Criterion], key: str) -> Card | None:
     missing = [
         criterion.missing for criterion in criteria if criterion.key == key and criterion.missing
     ]
-    # Flights that were flown and have no figure fail the criterion; of those that were not another tile tells.
+    # Flights that were flown and have no figure fail the criterion; of those that were not another
+    # tile tells.
     without = f" ({'; '.join(missing)})" if missing and worst.fraction <= 1.0 else ""
-    # The tracking error of every trial is a figure of its own, which may be larger where nothing limits it.
+    # The tracking error of every trial is a figure of its own, which may be larger where nothing
+    # limits it.
     everywhere = sum(criterion.key == key for criterion in criteria) == sum(
         criterion.key == "mission" for criterion in criteria
     )

@@ -1,4 +1,6 @@
-"""Figures of a measured fuel sulphur content: of a table of samples and of an estimate's record, wherever they come from."""
+"""Figures of a measured fuel sulphur content: of a table of samples and of an estimate's record,
+wherever they come from.
+"""
 
 import numpy as np
 import pandas as pd
@@ -46,7 +48,8 @@ _LONG = 4.0
 
 
 def over_time_chart(record: Record, since: str = SINCE) -> Chart | None:
-    """Return the sulphur content and its 95 % interval over time, with the limits; None where there never was an estimate.
+    """Return the sulphur content and its 95 % interval over time, with the limits; None where there
+    never was an estimate.
 
     Parameters
     ----------
@@ -145,7 +148,9 @@ def budget_chart(record: Record) -> Chart | None:
 
 
 def channels_chart(samples: pd.DataFrame, x_label: str = _TIME) -> Chart:
-    """Return readings over time, with the truth where it is known, and SO2 at the common response with what CO2 explains of it."""
+    """Return readings over time, with the truth where it is known, and SO2 at the common response
+    with what CO2 explains of it.
+    """
     rows = in_parts(thinned(samples, POINTS_MAX))
     time = column(rows, "time_s")
     panels = [
@@ -187,7 +192,9 @@ def _readings(rows: pd.DataFrame, time: Array, gas: str, unit: str) -> list[Line
 
 
 def regression_chart(samples: pd.DataFrame, record: Record) -> Chart | None:
-    """Return SO2 over CO2 at one response, with the slope, and the sulphur content of groups of passes."""
+    """Return SO2 over CO2 at one response, with the slope, and the sulphur content of groups of
+    passes.
+    """
     found = _by_regression(record)
     # A sample that is interpolated has no reading, and is no evidence.
     rows = thinned(samples[np.isfinite(column(samples, "co2_ppm"))], POINTS_MAX)
@@ -272,7 +279,9 @@ def _groups(record: Record) -> list[Panel]:
 
 
 def logged_track_chart(samples: pd.DataFrame) -> Chart | None:
-    """Return the CO2 reading along the track in plan, and in height over distance; None where the place is not known."""
+    """Return the CO2 reading along the track in plan, and in height over distance; None where the
+    place is not known.
+    """
     rows = _dense(samples)
     north, east, height, co2 = (
         column(rows, name) for name in ("north_m", "east_m", "height_m", "co2_ppm")
@@ -319,7 +328,8 @@ def logged_track_chart(samples: pd.DataFrame) -> Chart | None:
 
 
 def _dense(samples: pd.DataFrame) -> pd.DataFrame:
-    """Return ``POINTS_MAX`` rows between the samples, by which a track is a line, and not the dots of a stroboscope.
+    """Return ``POINTS_MAX`` rows between the samples, by which a track is a line, and not the dots
+    of a stroboscope.
 
     There is no row in a gap of the log.
     """

@@ -14,14 +14,16 @@ from reports.run.flight_config import flight_configs
 from reports.run.run_data import RunData
 
 Record = dict[str, Any]
-"""What ``estimate.json`` holds: ``estimate``, ``other``, ``over_time``, ``time_to_verdict_s``, ``instrument``, ``true_percent``,
-and of a logged flight ``flight``."""
+"""What ``estimate.json`` holds: ``estimate``, ``other``, ``over_time``, ``time_to_verdict_s``,
+``instrument``, ``true_percent``, and of a logged flight ``flight``."""
 
 METHODS = {"regression": "equalise and regress", "areas": "areas of passes"}
 """Methods of an estimate, in words."""
 
 _APART = 1.5
-"""Samples that are farther apart, over their period, have a gap between them: shorter ones are bridged."""
+"""Samples that are farther apart, over their period, have a gap between them: shorter ones are
+bridged.
+"""
 
 SINCE = "the record began"
 """What the time of an estimate is counted from, where nothing else is said."""
@@ -70,7 +72,9 @@ def over_time(record: Record) -> pd.DataFrame:
 
 
 def errors(record: Record) -> list[tuple[str, float]]:
-    """Return the parts of the uncertainty by their words, the largest first, noise among them [% m/m]."""
+    """Return the parts of the uncertainty by their words, the largest first, noise among them
+    [% m/m].
+    """
     found = record["estimate"]
     parts = {"noise": value(found, "noise_percent"), **found["common_percent"]}
     named = [
@@ -95,12 +99,16 @@ WORDS = {
 
 
 def share_read(found: Array, expected: Array) -> Array:
-    """Return what was found over what a perfect instrument reads [-]; not a number for a fuel without sulphur."""
+    """Return what was found over what a perfect instrument reads [-]; not a number for a fuel
+    without sulphur.
+    """
     return found / np.where(expected > 0.0, expected, np.nan)
 
 
 def measured_minutes(run: RunData, rows: pd.DataFrame) -> Array:
-    """Return for how long each flight's readings were evaluated [min]: its last ``flight.measured_s``, or since it had settled."""
+    """Return for how long each flight's readings were evaluated [min]: its last
+    ``flight.measured_s``, or since it had settled.
+    """
     duration = column(rows, "duration_s")
     windows = [config.get("flight", {}).get("measured_s") for config in flight_configs(run, rows)]
     window = np.array([np.nan if seconds is None else float(seconds) for seconds in windows])
@@ -112,7 +120,9 @@ def measured_minutes(run: RunData, rows: pd.DataFrame) -> Array:
 
 
 def after_gap(samples: pd.DataFrame) -> Mask:
-    """Return which samples follow a gap of the log: they are farther than others from the one before."""
+    """Return which samples follow a gap of the log: they are farther than others from the one
+    before.
+    """
     steps = np.diff(column(samples, "time_s"))
     return (
         np.concatenate([[False], steps > _APART * np.median(steps)])

@@ -1,4 +1,6 @@
-"""When, where, on which ship and with what the fuel was measured: what page 1 says before any figure."""
+"""When, where, on which ship and with what the fuel was measured: what page 1 says before any
+figure.
+"""
 
 from typing import Any
 
@@ -26,7 +28,9 @@ def position_words(latitude: float, longitude: float) -> str:
 
 
 def logged_facts(run: RunData, record: Record) -> list[Fact]:
-    """Return what an inspector has to know of a logged flight; of what nobody has told, that it is missing."""
+    """Return what an inspector has to know of a logged flight; of what nobody has told, that it is
+    missing.
+    """
     flight, manifest = record["flight"], run.manifest
     details = flight["details"]
     operator = [Fact("Operator", details["operator"] + _CONFIGURED)] if details["operator"] else []
@@ -79,7 +83,9 @@ def _ship_words(details: dict[str, Any]) -> str:
 
 
 def flown_facts(run: RunData) -> list[Fact]:
-    """Return which instruments simulated flights measured with, if any, and place and time where their scenario has them."""
+    """Return which instruments simulated flights measured with, if any, and place and time where
+    their scenario has them.
+    """
     rows, facts = flights_flown(run.summary), list[Fact]()
     if "sensor" in rows and len(measured := rows[rows["sensor"].notna()]):
         rows, sensors = measured, [_sensor_words(str(name)) for name in measured["sensor"].unique()]

@@ -1,4 +1,6 @@
-"""Figures of flights that measured the fuel: how the method does, and what a trajectory is worth to a sensor."""
+"""Figures of flights that measured the fuel: how the method does, and what a trajectory is worth to
+a sensor.
+"""
 
 import numpy as np
 import pandas as pd
@@ -29,13 +31,19 @@ _BARS_MAX = 60
 """Flights of a sensor up to which their 95 % intervals are drawn as error bars."""
 
 _WIDE = 10.0
-"""Largest sulphur content over the smallest from which on axes are logarithmic; of a fuel without any they are not."""
+"""Largest sulphur content over the smallest from which on axes are logarithmic; of a fuel without
+any they are not.
+"""
 
 _EDGE, _ASIDE = 1.12, 0.05
-"""Ordinate of results below the scale, over its lower limit; and how far flights of one fuel stand aside, over its content."""
+"""Ordinate of results below the scale, over its lower limit; and how far flights of one fuel stand
+aside, over its content.
+"""
 
 _FUELS_MIN, _OF_EACH_MIN = 3, 4
-"""Fuels of an operating curve at least, and flights of each in the median: intervals of fewer fill the panel."""
+"""Fuels of an operating curve at least, and flights of each in the median: intervals of fewer fill
+the panel.
+"""
 
 
 def error_chart(rows: pd.DataFrame) -> Chart:
@@ -55,7 +63,8 @@ def error_chart(rows: pd.DataFrame) -> Chart:
             found, low, high = (
                 column(group, f"{prefix}_{end}percent") for end in ("", "low_", "high_")
             )
-            # What lies below a logarithmic scale, as all that is not above 0, stands at its lower edge.
+            # What lies below a logarithmic scale, as all that is not above 0, stands at its lower
+            # edge.
             cut = found < limits[0] if limits else np.zeros(len(group), dtype=bool)
             found = np.where(cut, _EDGE * limits[0] if limits else found, found)
             error = (
@@ -103,7 +112,9 @@ def _positive(rows: pd.DataFrame, prefix: str) -> tuple[float, float]:
 
 
 def _side_by_side(expected: Array) -> Array:
-    """Return abscissae of one sensor's flights, those of one fuel beside each other in the order of their numbers."""
+    """Return abscissae of one sensor's flights, those of one fuel beside each other in the order of
+    their numbers.
+    """
     shown = expected.copy()
     for value in np.unique(expected):
         same = np.flatnonzero(expected == value)
@@ -113,7 +124,9 @@ def _side_by_side(expected: Array) -> Array:
 
 
 def operating_curve(statistics: Record) -> Chart | None:
-    """Return the share of ships called above the limit over their fuel's sulphur; none of few fuels, or of few flights of each."""
+    """Return the share of ships called above the limit over their fuel's sulphur; none of few
+    fuels, or of few flights of each.
+    """
     entries = pd.DataFrame(statistics["operating_curve"])
     if (
         not len(entries)
@@ -175,7 +188,9 @@ def operating_curve(statistics: Record) -> Chart | None:
 
 
 def trajectory_chart(run: RunData, rows: pd.DataFrame) -> Chart | None:
-    """Return the error of a minute over crossing interval and distance, where these were varied on purpose; otherwise None."""
+    """Return the error of a minute over crossing interval and distance, where these were varied on
+    purpose; otherwise None.
+    """
     if not {"guidance.bank_deg", "keepout.radius_m"} & set(map(str, run.draws)):
         return None
     interval, distance = "crossing_interval_mean_s", "crossing_distance_mean_m"
@@ -243,7 +258,8 @@ def _shares(rows: pd.DataFrame, x: str) -> Panel:
 
 
 def sulphur_track_chart(history: pd.DataFrame, about: Surroundings) -> Chart:
-    """Return the concentration along a flight by the colour of its track: seen from the ship, and in height over distance.
+    """Return the concentration along a flight by the colour of its track: seen from the ship, and
+    in height over distance.
 
     Parameters
     ----------

@@ -120,7 +120,9 @@ def calls_table(statistics: Record) -> Table:
 
 
 def hit_table(rows: pd.DataFrame) -> Table:
-    """Return figures of the passes: over all flights, median and the tenth that is worst on either side."""
+    """Return figures of the passes: over all flights, median and the tenth that is worst on either
+    side.
+    """
     named = {
         "plume_axis_crossings": (
             "Crossings of the plume's mean axis, with smoke or without",
@@ -150,7 +152,9 @@ def hit_table(rows: pd.DataFrame) -> Table:
 
 
 def best_table(run: RunData, rows: pd.DataFrame) -> Table:
-    """Return the trajectories that leave the least noise after a minute, for each sensor, and what each method reads on them."""
+    """Return the trajectories that leave the least noise after a minute, for each sensor, and what
+    each method reads on them.
+    """
     noise = (rows["fsc_noise_percent"] * measured_minutes(run, rows) ** 0.5).rename("minute")
     ranked = pd.concat([rows, noise], axis=1).sort_values("minute")
     best = pd.concat([group.head(_BEST) for _, group in ranked.groupby("sensor")])

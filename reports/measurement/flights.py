@@ -1,4 +1,6 @@
-"""What flights with a sniffer show of the fuel, and of the method: one flight as a client reads it, many as a method is judged."""
+"""What flights with a sniffer show of the fuel, and of the method: one flight as a client reads it,
+many as a method is judged.
+"""
 
 from typing import Any
 
@@ -46,7 +48,9 @@ _FEW = 8
 
 
 def sulphur_sections(run: RunData, name: Name) -> list[Section]:
-    """Return the sections of a run whose flights measured the fuel, and none of any other; ``name`` is that of a flight."""
+    """Return the sections of a run whose flights measured the fuel, and none of any other; ``name``
+    is that of a flight.
+    """
     measured = _measured(run)
     if not len(measured):
         return []
@@ -87,15 +91,19 @@ def sulphur_cards(run: RunData) -> list[Card]:
 
 
 def sulphur_above(run: RunData) -> bool:
-    """Return whether the only flight that measured the fuel called it above its limit, as red in a run as in an estimate."""
+    """Return whether the only flight that measured the fuel called it above its limit, as red in a
+    run as in an estimate.
+    """
     measured = _measured(run)
     return len(measured) == 1 and measured.iloc[0]["sulphur_verdict"] == "above"
 
 
 def sulphur_below(run: RunData) -> bool:
-    """Return whether nothing is left to be said of the fuel: the only flight that measured it called it below its limit.
+    """Return whether nothing is left to be said of the fuel: the only flight that measured it
+    called it below its limit.
 
-    Flights of a study are judged as a method, not by what their ships burn. Where all of them measured nothing, all is left.
+    Flights of a study are judged as a method, not by what their ships burn. Where all of them
+    measured nothing, all is left.
     """
     if "fsc_percent" not in run.summary:
         return True
@@ -106,7 +114,9 @@ def sulphur_below(run: RunData) -> bool:
 
 
 def sulphur_headline(run: RunData) -> str:
-    """Return what was measured of the fuel, with interval and verdict, in a sentence; no word of a run without a sniffer."""
+    """Return what was measured of the fuel, with interval and verdict, in a sentence; no word of a
+    run without a sniffer.
+    """
     measured, sniffed = _measured(run), flights_flown(run.summary)
     if "fsc_percent" not in run.summary:
         return ""
@@ -139,7 +149,9 @@ def _content(row: "pd.Series[Any]") -> str:
 
 
 def _bias_and_coverage(measured: pd.DataFrame) -> tuple[float, float]:
-    """Return the mean error [% m/m], and the fraction of flights whose stated interval holds what a perfect instrument reads."""
+    """Return the mean error [% m/m], and the fraction of flights whose stated interval holds what a
+    perfect instrument reads.
+    """
     expected, found = (column(measured, name) for name in ("fsc_expected_percent", "fsc_percent"))
     inside = (column(measured, "fsc_low_percent") <= expected) & (
         expected <= column(measured, "fsc_high_percent")

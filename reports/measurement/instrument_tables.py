@@ -96,7 +96,8 @@ def instrument_table(record: Record) -> Table:
 
 
 def _marked(cell: str, keys: Sequence[str], given: Sequence[str] | None) -> str:
-    """Return a cell with a word on what the configuration does not state of it; of a preset its source says that.
+    """Return a cell with a word on what the configuration does not state of it; of a preset its
+    source says that.
 
     Parameters
     ----------
@@ -133,7 +134,9 @@ def _t90(found: Record) -> Callable[[_Channel, _Channel], str]:
 
 
 def _delay(found: Record) -> Callable[[_Channel, _Channel], str]:
-    """Return what writes a delay; SO2 alone may have one that is not stated, which then is that after CO2."""
+    """Return what writes a delay; SO2 alone may have one that is not stated, which then is that
+    after CO2.
+    """
 
     def cell(stated: _Channel, _: _Channel) -> str:
         if stated["delay_sd_s"] is None:

@@ -45,7 +45,9 @@ def result_table(record: Record) -> Table:
 
 
 def over_time_table(record: Record, since: str = SINCE) -> Table | None:
-    """Return what was known after each of ``REPORTED_S``, and at the end; ``since`` says what the time is counted from."""
+    """Return what was known after each of ``REPORTED_S``, and at the end; ``since`` says what the
+    time is counted from.
+    """
     table = pd.DataFrame(record["over_time"])
     if not len(table):
         return None

@@ -14,7 +14,9 @@ CONTENT_NAME, INTERVAL_NAME = "Fuel sulphur content", "Fuel sulphur content, 95 
 
 
 def measurement_verdict(record: Record) -> Verdict:
-    """Judge by the lowest limit: it fails where the fuel is above, and is not complete where that is open."""
+    """Judge by the lowest limit: it fails where the fuel is above, and is not complete where that
+    is open.
+    """
     found = record["estimate"]
     verdicts = sorted(found["verdicts"], key=lambda verdict: float(verdict["limit_percent"]))
     first = verdicts[0]
@@ -80,7 +82,9 @@ def _short(share: float) -> str:
 
 
 def fuel_card(limit_percent: float, side: str, probability_above: float, quality: str) -> Card:
-    """Return the tile of a limit: how probable it is that the fuel is above it, and the verdict if there is one."""
+    """Return the tile of a limit: how probable it is that the fuel is above it, and the verdict if
+    there is one.
+    """
     limit = limit_words(limit_percent)
     name = f"Probability above the limit of {limit}"
     if quality == "C":

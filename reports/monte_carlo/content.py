@@ -1,4 +1,6 @@
-"""What a report shows of a Monte Carlo study: the bound on a keep-out violation, distributions and sensitivity."""
+"""What a report shows of a Monte Carlo study: the bound on a keep-out violation, distributions and
+sensitivity.
+"""
 
 from typing import Any
 
@@ -56,7 +58,9 @@ def _shown(statistics: dict[str, Any]) -> list[Block]:
 
 
 def bound_in_words(statistics: dict[str, Any]) -> str:
-    """Return the bound on the probability of a keep-out violation, with its confidence and what it assumes."""
+    """Return the bound on the probability of a keep-out violation, with its confidence and what it
+    assumes.
+    """
     confidence = percent(statistics["confidence"])
     measured, worst = statistics["violation"]["measured"], statistics["violation"]["pessimistic"]
     unknown = sum(found["flights"] for found in statistics["flights"]["unknown"].values())

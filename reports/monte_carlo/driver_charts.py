@@ -1,4 +1,6 @@
-"""Figures of what drives the flights of a Monte Carlo study: bars of the indices, and the clearance over the first inputs."""
+"""Figures of what drives the flights of a Monte Carlo study: bars of the indices, and the clearance
+over the first inputs.
+"""
 
 from collections.abc import Sequence
 from typing import Any
@@ -42,7 +44,9 @@ def driver_charts(statistics: dict[str, Any]) -> list[Chart]:
 
 
 def not_shown(more: int, measure: str) -> str:
-    """Return how many inputs a figure leaves out, whose measure is smaller than that of the others; empty if none."""
+    """Return how many inputs a figure leaves out, whose measure is smaller than that of the others;
+    empty if none.
+    """
     return (
         f" {more} {'input' if more == 1 else 'inputs'} with a smaller {measure} {'is' if more == 1 else 'are'} not shown."
         if more
@@ -122,7 +126,9 @@ def bar_line(values: Array, places: Array, label: str, colour: str) -> Line:
 
 
 def scatter_charts(run: RunData, statistics: dict[str, Any]) -> list[Chart]:
-    """Return the clearance over the inputs that drive it the most, words apart from figures; none if no input is known to."""
+    """Return the clearance over the inputs that drive it the most, words apart from figures; none
+    if no input is known to.
+    """
     keys = [
         index["key"] for index in statistics["sensitivity"]["clearance_m"]["inputs"][:SCATTERED]
     ]
@@ -191,7 +197,8 @@ def _strips(values: "pd.Series[Any]", near: Array, groups: Sequence[Group]) -> P
 
 
 def thinned(near: Array) -> npt.NDArray[np.int64]:
-    """Return which flights a scatter shows, in their order: the nearest, and of the others about one in so many, always the same.
+    """Return which flights a scatter shows, in their order: the nearest, and of the others about
+    one in so many, always the same.
 
     Parameters
     ----------

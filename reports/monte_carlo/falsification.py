@@ -1,4 +1,6 @@
-"""What a report shows of a search for the worst flight: how the search went, and the flights that it kept."""
+"""What a report shows of a search for the worst flight: how the search went, and the flights that
+it kept.
+"""
 
 from typing import Any
 
@@ -93,7 +95,8 @@ def _in_words(config: dict[str, Any], search: dict[str, Any], flights: pd.DataFr
         if settings["time_s"] is None
         else f"turns of {settings['population']} points for {settings['time_s']:g} s"
     )
-    # Of points within what is declared some may have no flight: they cannot be planned, or their process was lost.
+    # Of points within what is declared some may have no flight: they cannot be planned, or their
+    # process was lost.
     within = sum(of["flights"] for name, of in search["methods"].items() if name != _CONFIRMATION)
     unmeasured = within - len(searched)
     left_out = (
@@ -115,7 +118,9 @@ def _in_words(config: dict[str, Any], search: dict[str, Any], flights: pd.DataFr
 
 
 def _methods(asked: list[str], flown: set[str]) -> str:
-    """Return the methods of which points were flown, and those of which none was: they had no turn, or no point that could be."""
+    """Return the methods of which points were flown, and those of which none was: they had no turn,
+    or no point that could be.
+    """
     had = [method_name(name) for name in asked if name in flown]
     without = [method_name(name) for name in asked if name not in flown]
     if not had or not without:
@@ -149,7 +154,9 @@ def _about_worst(config: dict[str, Any], search: dict[str, Any]) -> str:
 
 
 def search_chart(flights: pd.DataFrame) -> Chart:
-    """Return how close to the keep-out area each flight came, by method in the order of the search, and the closest so far."""
+    """Return how close to the keep-out area each flight came, by method in the order of the search,
+    and the closest so far.
+    """
     number, distance = np.arange(len(flights), dtype=np.float64), clearance(flights)
     methods = list(dict.fromkeys(flights["search_method"]))
     shown = np.zeros(len(flights), dtype=np.bool_)

@@ -14,7 +14,9 @@ _UNITS = {
     "_rad_s": "rad/s", "_mps2": "m/s2", "_mps": "m/s", "_deg": "deg", "_rad": "rad", "_percent": MASS_PERCENT, "_hz": "Hz",
     "_c": "degC", "_m": "m", "_s": "s",
 }  # fmt: skip
-"""Units by the suffix of a key that names them, of keys that no parameter documents; the first that fits."""
+"""Units by the suffix of a key that names them, of keys that no parameter documents; the first that
+fits.
+"""
 
 Units = Mapping[str, str]
 """Units of inputs by their keys."""
@@ -62,7 +64,9 @@ FIGURES = {
 """By the keys of ``statistics.json``, in the order they are shown."""
 
 FROM_THE_CENTRE = ("min_distance_m", "crossing_distance_min_m")
-"""Figures that say little of flights with different r_min: those beyond it are shown in their place."""
+"""Figures that say little of flights with different r_min: those beyond it are shown in their
+place.
+"""
 
 CLEARANCE = FIGURES["clearance_m"].label
 """Label of an axis of clearances."""
@@ -84,7 +88,9 @@ def documented_units(manifest: Mapping[str, Any]) -> Units:
 
 
 def input_unit(key: str, units: Units = MappingProxyType({})) -> str:
-    """Return the unit of an input: the documented one, or that which its key names; an entry of a list has no other."""
+    """Return the unit of an input: the documented one, or that which its key names; an entry of a
+    list has no other.
+    """
     return units.get(key) or next(
         (unit for suffix, unit in _UNITS.items() if key.endswith(suffix)), "-"
     )

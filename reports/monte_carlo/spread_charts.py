@@ -1,4 +1,6 @@
-"""Figures of how the flights of a Monte Carlo study are spread. Thousands of flights become some hundred points."""
+"""Figures of how the flights of a Monte Carlo study are spread. Thousands of flights become some
+hundred points.
+"""
 
 from typing import Any
 
@@ -73,7 +75,9 @@ def _crossing(rows: pd.DataFrame) -> dict[str, Array]:
 
 
 def _within(values: Array, lowest: float = _SHOWN) -> Array:
-    """Return known values, a fraction of the ``lowest`` and ``_SHOWN`` of the highest moved to where the others end."""
+    """Return known values, a fraction of the ``lowest`` and ``_SHOWN`` of the highest moved to
+    where the others end.
+    """
     known = values[np.isfinite(values)]
     return np.clip(known, *np.quantile(known, [lowest, 1.0 - _SHOWN])) if len(known) else known
 
@@ -131,7 +135,9 @@ def _tail(near: Array, statistics: dict[str, Any]) -> Panel:
 
 
 def cumulative(values: Array) -> tuple[Array, Array]:
-    """Return rising values, all of the lowest and ever fewer of the others, and the fraction of all known up to each."""
+    """Return rising values, all of the lowest and ever fewer of the others, and the fraction of all
+    known up to each.
+    """
     known = np.sort(values[np.isfinite(values)])
     ranks = np.unique(np.geomspace(1.0, len(known), CURVE_POINTS).round().astype(np.int64))
     return known[ranks - 1], ranks / len(known)

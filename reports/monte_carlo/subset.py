@@ -1,4 +1,6 @@
-"""What a report shows of a subset simulation: the probability of a rare violation, its levels, and the inputs near it."""
+"""What a report shows of a subset simulation: the probability of a rare violation, its levels, and
+the inputs near it.
+"""
 
 from typing import Any
 
@@ -10,7 +12,9 @@ from reports.monte_carlo.subset_charts import curve_chart, distance_chart, input
 from reports.monte_carlo.tables import Record, ending_table
 
 FEW_RENEWALS = 0.05
-"""Fraction of accepted renewals below which the seed decides: intervals were too narrow in tests from there on."""
+"""Fraction of accepted renewals below which the seed decides: intervals were too narrow in tests
+from there on.
+"""
 
 
 def subset_sections(statistics: Record, units: Units) -> list[Section]:
@@ -44,7 +48,9 @@ def subset_sections(statistics: Record, units: Units) -> list[Section]:
 
 
 def subset_headline(statistics: Record) -> str:
-    """Return what a study by subset simulation bounds, in a sentence: not what its flights, which it leads, have in common."""
+    """Return what a study by subset simulation bounds, in a sentence: not what its flights, which
+    it leads, have in common.
+    """
     found, confidence = statistics["violation"], percent(statistics["confidence"])
     bound = f"at most {percent(found['pessimistic']['upper'])} at {confidence} confidence"
     if found["reached"]:
@@ -53,7 +59,9 @@ def subset_headline(statistics: Record) -> str:
 
 
 def plain_bound_in_words(statistics: Record) -> str:
-    """Return what the first levels alone bound, in a sentence: of few flights that may be less than the simulation does."""
+    """Return what the first levels alone bound, in a sentence: of few flights that may be less than
+    the simulation does.
+    """
     plain = statistics["violation"]["first_levels"]
     return (
         f"Its first levels alone, a plain random sample of {plain['flights']:,} flights with {plain['events']:,} violations, bound"

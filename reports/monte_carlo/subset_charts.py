@@ -1,4 +1,6 @@
-"""Figures of a subset simulation: the probability over the closest approach, and the inputs near a violation."""
+"""Figures of a subset simulation: the probability over the closest approach, and the inputs near a
+violation.
+"""
 
 from typing import Any
 
@@ -15,7 +17,9 @@ SHOWN = 4
 
 
 def curve_chart(statistics: dict[str, Any]) -> list[Chart]:
-    """Return the probability of coming closer than a distance, over that distance; none if no distance was reached by all."""
+    """Return the probability of coming closer than a distance, over that distance; none if no
+    distance was reached by all.
+    """
     points = statistics["curve"]
     if len(points) < 2:
         return []
@@ -96,7 +100,9 @@ def distance_chart(statistics: dict[str, Any]) -> list[Chart]:
 
 
 def input_charts(statistics: dict[str, Any], units: Units) -> list[Chart]:
-    """Return how the inputs with the largest distances are distributed, declared and near the event; words are in the table."""
+    """Return how the inputs with the largest distances are distributed, declared and near the
+    event; words are in the table.
+    """
     numbers = [entry for entry in statistics["inputs"] if entry["edges"]][:SHOWN]
     if not numbers:
         return []

@@ -73,7 +73,9 @@ def _flights(found: Record) -> str:
 
 
 def quantile_table(statistics: Record, *, several_radii: bool) -> Table:
-    """Return quantiles of each figure, each with its interval; distances are beyond r_min where the flights have several."""
+    """Return quantiles of each figure, each with its interval; distances are beyond r_min where the
+    flights have several.
+    """
     without = FROM_THE_CENTRE if several_radii else ("crossing_clearance_m",)
     figures = {
         figure: statistics["figures"][key] for key, figure in FIGURES.items() if key not in without
@@ -109,7 +111,8 @@ def left_out_rows(sensitivity: Record) -> list[str]:
     without: dict[str, list[str]] = {}
     for key, found in sensitivity.items():
         if found["message"]:
-            # One reason for figures of which other numbers of flights are known: only its end is the same.
+            # One reason for figures of which other numbers of flights are known: only its end is
+            # the same.
             reason = str(found["message"]).rpartition("; ")[2]
             flights = f"{found['flights']:,} flight{'s' * (found['flights'] != 1)}"
             without.setdefault(reason, []).append(f"{FIGURES[key].name} ({flights})")

@@ -45,7 +45,9 @@ def sim_1_charts(run: RunData) -> list[Chart]:
 
 
 def sim_2_charts(run: RunData) -> list[Chart]:
-    """Return figures 6 and 7, and the distance, which the paper does not show: line of sight against the delta formulation."""
+    """Return figures 6 and 7, and the distance, which the paper does not show: line of sight
+    against the delta formulation.
+    """
     cases = ["sim2_los", "sim2_delta"]
     return [
         _side_by_side(
@@ -125,7 +127,9 @@ def sim_3_charts(run: RunData) -> list[Chart]:
 
 
 def coincidences(flown: Flown) -> Array:
-    """Return the times at which phi_r = phi [s], linear between samples. Jumps by a turn do not count."""
+    """Return the times at which phi_r = phi [s], linear between samples. Jumps by a turn do not
+    count.
+    """
     gap = flown.column("phi_r_rad") - flown.column("phi_rad")
     at = np.nonzero((gap[:-1] * gap[1:] < 0.0) & (np.abs(np.diff(gap)) < math.pi))[0]
     fraction = gap[at] / (gap[at] - gap[at + 1])
@@ -148,7 +152,8 @@ def _side_by_side(
     columns: int = 2,
     panel_height: float = 0.4,
 ) -> Chart:
-    """Return a panel for each vehicle that has flown every case, up to ``shown_after`` [s] after the last of them has settled.
+    """Return a panel for each vehicle that has flown every case, up to ``shown_after`` [s] after
+    the last of them has settled.
 
     With an ``aspect``, width over height, they are maps.
     """
@@ -221,7 +226,9 @@ def _figure_5(flights: dict[str, Flown]) -> list[Line]:
 
 
 def _coincidence_marks(flown: Flown, curve: Array) -> list[Line]:
-    """Return marks on a curve over time where phi_r = phi: saddle points of the distance apart from its peaks and troughs."""
+    """Return marks on a curve over time where phi_r = phi: saddle points of the distance apart from
+    its peaks and troughs.
+    """
     times = coincidences(flown)
     saddle = np.abs(np.interp(times, flown.time, flown.column("phi_rad"))) < _PHI_GONE
     marks = (

@@ -1,4 +1,6 @@
-"""What the paper says of its simulations in numbers, checked against a run of them; and the verdict that follows."""
+"""What the paper says of its simulations in numbers, checked against a run of them; and the verdict
+that follows.
+"""
 
 import math
 from dataclasses import dataclass
@@ -25,7 +27,9 @@ _SHORT = {"kinematic": "kinematic", "six_dof": "six degrees of freedom"}
 
 @dataclass(frozen=True, slots=True)
 class Check:
-    """A statement: what it is about, the value found, what is required, and whether it holds; None if there is no value."""
+    """A statement: what it is about, the value found, what is required, and whether it holds; None
+    if there is no value.
+    """
 
     name: str
     value: str

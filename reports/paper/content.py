@@ -1,4 +1,6 @@
-"""The report of the paper's three simulations: each figure on both vehicles, and each published number beside ours."""
+"""The report of the paper's three simulations: each figure on both vehicles, and each published
+number beside ours.
+"""
 
 import json
 from collections.abc import Callable
@@ -170,7 +172,9 @@ def _number_table(run: RunData) -> Table:
     rows = rows_by_id(run)
 
     def both(case: str, show: Callable[["pd.Series[Any]"], str], key: str) -> list[str]:
-        """Return a cell per vehicle; a dash where there is no such flight, or its row has nothing under ``key``."""
+        """Return a cell per vehicle; a dash where there is no such flight, or its row has nothing
+        under ``key``.
+        """
         found = [rows.get(f"{case}_{fidelity}") for fidelity in VEHICLES]
         return ["–" if row is None or pd.isna(row[key]) else show(row) for row in found]
 
@@ -225,7 +229,9 @@ def _number_table(run: RunData) -> Table:
 
 
 def _rise_once_inside(run: RunData, flight_id: str) -> str:
-    """Return the largest rise of the distance between samples that both have |phi| < |phi_r|, eq. (35)."""
+    """Return the largest rise of the distance between samples that both have |phi| < |phi_r|, eq.
+    (35).
+    """
     flown = find_flight(run, flight_id)
     if flown is None:
         return "–"
@@ -258,7 +264,9 @@ def _case_table(run: RunData) -> Table:
 
 
 def _flights(run: RunData) -> FlightPicker:
-    """Return the flights with a vessel whose world is the run's own, which their figures are drawn in."""
+    """Return the flights with a vessel whose world is the run's own, which their figures are drawn
+    in.
+    """
     elsewhere = {
         case["name"]
         for case in run.manifest["config"]["cases"]

@@ -1,4 +1,6 @@
-"""The report of patrols: how many ships were served, with what verdicts, and what an oracle would have done."""
+"""The report of patrols: how many ships were served, with what verdicts, and what an oracle would
+have done.
+"""
 
 import math
 
@@ -92,7 +94,9 @@ def _verdict(patrols: Patrols) -> Verdict:
 
 
 def _figures(patrols: Patrols, counts: PatrolCounts) -> list[Card]:
-    """Return what the verdict rests on. What nothing was flown or judged for has no criterion: nothing would meet it."""
+    """Return what the verdict rests on. What nothing was flown or judged for has no criterion:
+    nothing would meet it.
+    """
     served, verdicts, oracle = counts.served, counts.verdicts, counts.oracle
     least, most = (
         f"≥ {100.0 * counts.oracle_share_min:g} %",
@@ -135,7 +139,9 @@ def _headline(counts: PatrolCounts) -> str:
 
 
 def _closest(patrols: Patrols, ship: str, figure: str) -> Card:
-    """Return how near any ship came, with the keep-out radius, which holds for one that was not served just then, too."""
+    """Return how near any ship came, with the keep-out radius, which holds for one that was not
+    served just then, too.
+    """
     name, distances = f"Closest approach to {ship}", column(patrols.run.summary, figure)
     if not np.isfinite(distances).any():
         return Card(name, "–")
@@ -144,7 +150,9 @@ def _closest(patrols: Patrols, ship: str, figure: str) -> Card:
 
 
 def _least(distances: Array) -> str:
-    """Return the least of some distances [m], of those that are known, rounded down: none is shown larger than it was."""
+    """Return the least of some distances [m], of those that are known, rounded down: none is shown
+    larger than it was.
+    """
     return (
         f"{math.floor(10.0 * np.nanmin(distances)) / 10.0:.1f} m"
         if np.isfinite(distances).any()

@@ -42,7 +42,9 @@ class Patrol:
         return float(self.row["wind_speed_mps"]), wind_towards(float(self.row["wind_from_deg"]))
 
     def track(self, ship: "pd.Series[Any]") -> tuple[Array, Array]:
-        """Return north and east of a ship at the start, and when she was measured or the patrol ended, shape (2,) each [m]."""
+        """Return north and east of a ship at the start, and when she was measured or the patrol
+        ended, shape (2,) each [m].
+        """
         ends = float(ship["ended_s"]) if pd.notna(ship["ended_s"]) else self.duration
         course, time = math.radians(float(ship["vessel_course_deg"])), np.array([0.0, ends])
         way = float(ship["vessel_speed_mps"]) * time

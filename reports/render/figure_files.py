@@ -1,4 +1,6 @@
-"""Figures of a printed report as files, drawn in as many processes as there are cores and figures for."""
+"""Figures of a printed report as files, drawn in as many processes as there are cores and figures
+for.
+"""
 
 import multiprocessing
 import os
@@ -24,11 +26,15 @@ _SVG: dict[Any, Any] = {"svg.fonttype": "path", "svg.hashsalt": "report"}
 """Letters are drawn as curves, and names within a file do not differ from time to time."""
 
 _to_draw: list[tuple[Chart, Path]] = []
-"""In a process of its own: what is drawn by all of them. A forked process inherits it, which is faster than to send it."""
+"""In a process of its own: what is drawn by all of them. A forked process inherits it, which is
+faster than to send it.
+"""
 
 
 def write_figures(charts: Mapping[str, Chart], directory: Path) -> None:
-    """Draw charts into files of the given names in a directory, as SVG, alike by any number of processes."""
+    """Draw charts into files of the given names in a directory, as SVG, alike by any number of
+    processes.
+    """
     figures = [(chart, directory / name) for name, chart in charts.items()]
     processes = min(os.cpu_count() or 1, len(figures) // _FIGURES_PER_PROCESS)
     # A process that is not forked would have to import first all that draws.

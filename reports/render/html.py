@@ -20,14 +20,19 @@ PLOTLY = Path(__file__).parent / "bundle" / "plotly-cartesian.min.js"
 
 
 _PANEL_HEIGHT = 0.64
-"""Height of panels of page 1 that stand beside each other, all rows together, over the width of the page [-]."""
+"""Height of panels of page 1 that stand beside each other, all rows together, over the width of the
+page [-].
+"""
 
 
 _PAPER = 1040
-"""Width of figures of a page that is printed [px]; the page is drawn as wide as that of a large screen."""
+"""Width of figures of a page that is printed [px]; the page is drawn as wide as that of a large
+screen.
+"""
 
 _LONG = 16
-"""Letters of a word from which it may go on over the next line, and of a cell beyond which it may."""
+"""Letters of a word from which it may go on over the next line, and of a cell beyond which it may.
+"""
 
 
 def write_html(report: Content, path: Path) -> None:
@@ -58,7 +63,9 @@ def write_html(report: Content, path: Path) -> None:
 
 
 def _breakable(words: str) -> Markup:
-    """Return words of which long keys may go on over the next line after a point or a stroke, and hashes after any 16 digits."""
+    """Return words of which long keys may go on over the next line after a point or a stroke, and
+    hashes after any 16 digits.
+    """
     keys = re.compile(rf"\S{{{_LONG},}}")
     text = keys.sub(
         lambda key: re.sub(r"([_.])(?=[a-z])|([0-9a-f]{16})(?=[0-9a-f])", r"\1\2<wbr>", key[0]),
@@ -68,12 +75,16 @@ def _breakable(words: str) -> Markup:
 
 
 def _is_figures(cell: str) -> bool:
-    """Return whether a cell of a table stays on one line: it is short, or figures alone with units of one letter."""
+    """Return whether a cell of a table stays on one line: it is short, or figures alone with units
+    of one letter.
+    """
     return len(cell) <= _LONG or not re.search(r"[^\W\d_]{2}", cell.replace(" to ", " "))
 
 
 def _panels(picture: Chart) -> list[Chart]:
-    """Return a chart for each panel of page 1's picture: beside each other in a wide window, below each other in a narrow one."""
+    """Return a chart for each panel of page 1's picture: beside each other in a wide window, below
+    each other in a narrow one.
+    """
     height = (
         picture.panel_height
         if picture.columns == 1

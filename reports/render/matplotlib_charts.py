@@ -32,7 +32,9 @@ _MARKS = 0.45
 """Room of the marks of an axis and of its label, beside a panel and below it [inches]."""
 
 _DEPTH = 2.0
-"""At which matplotlib draws lines: tints are drawn there, too, so that a panel's lines lie in their order."""
+"""At which matplotlib draws lines: tints are drawn there, too, so that a panel's lines lie in their
+order.
+"""
 
 _STYLE: dict[Any, Any] = {
     "font.family": "DejaVu Sans",
@@ -102,7 +104,8 @@ def draw(*charts: Chart) -> Figure:
         if any(panel.equal for chart in charts for panel in chart.panels) and (
             layout := figure.get_layout_engine()
         ):
-            # Room for labels is found where the last layout has put the panels: a map that becomes higher by it has them cut off.
+            # Room for labels is found where the last layout has put the panels: a map that becomes
+            # higher by it has them cut off.
             layout.execute(figure)
         return figure
 
@@ -120,7 +123,8 @@ def _draw_on(figure: Figure | SubFigure, chart: Chart) -> None:
     for ax in axes[len(chart.panels) :]:
         ax.set_axis_off()
     for ax in axes[max(0, len(chart.panels) - chart.columns) : len(chart.panels)]:
-        # The last of a column may not be in the last row, where figures are written beside a shared axis.
+        # The last of a column may not be in the last row, where figures are written beside a shared
+        # axis.
         ax.tick_params(labelbottom=True)
     if shaded is not None:
         figure.colorbar(shaded, ax=axes, label=chart.scale_label, shrink=0.85, pad=0.015)
@@ -149,7 +153,9 @@ def _axes(figure: Figure | SubFigure, chart: Chart) -> list[Any]:
 
 
 def _draw_marks(ax: Any, panel: Panel, handles: dict[str, Any], scale: Limits) -> Any:
-    """Draw lines and bands, add what the legend has of them, and return what a colour scale is made for, if there is anything."""
+    """Draw lines and bands, add what the legend has of them, and return what a colour scale is made
+    for, if there is anything.
+    """
     shaded = None
     for line in panel.lines:
         if line.values is not None and scale:
@@ -186,7 +192,9 @@ def _draw_line(ax: Any, line: Line) -> Any:
 
 
 def _draw_shaded(ax: Any, line: Line, values: Array, scale: tuple[float, float]) -> Any:
-    """Draw points with the colours of their values, the largest last, and return what a colour scale is made for."""
+    """Draw points with the colours of their values, the largest last, and return what a colour
+    scale is made for.
+    """
     order = np.argsort(values)
     order = order[np.isfinite(values[order])]
     colours = {"c": values[order], "cmap": f"{SCALE.lower()}_r", "vmin": scale[0], "vmax": scale[1]}

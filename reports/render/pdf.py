@@ -58,7 +58,8 @@ def _data(report: Content, directory: Path, figures: Figures, *, all_flights: bo
         if isinstance(block, FlightPicker)
     ]
     sections = [_section(section, figures) for section in _in_print(report.sections)]
-    # Flights have pages of their own before parameters and provenance, and their figures the numbers after all others.
+    # Flights have pages of their own before parameters and provenance, and their figures the
+    # numbers after all others.
     numbers = count(figures_in(report.picture, report.sections) + 1)
     flights = [
         flight for picker in pickers for flight in picker.flights if all_flights or flight.printed
@@ -92,7 +93,9 @@ def _data(report: Content, directory: Path, figures: Figures, *, all_flights: bo
 
 
 def _in_print(sections: Sequence[Section]) -> list[Section]:
-    """Return the sections with that of single flights right before the flights, which are printed before the last two."""
+    """Return the sections with that of single flights right before the flights, which are printed
+    before the last two.
+    """
     of_flights = [
         any(isinstance(block, FlightPicker) for block in section.blocks) for section in sections
     ]

@@ -1,4 +1,6 @@
-"""Charts as figures of Plotly, for the screen: what its library in the page is given, as plain data."""
+"""Charts as figures of Plotly, for the screen: what its library in the page is given, as plain
+data.
+"""
 
 import base64
 from collections.abc import Mapping
@@ -35,7 +37,9 @@ Data = dict[str, Any]
 
 
 def draw(chart: Chart) -> Data:
-    """Return the chart as ``data`` and ``layout`` of a Plotly figure; ``narrow`` is what the layout becomes on a narrow screen."""
+    """Return the chart as ``data`` and ``layout`` of a Plotly figure; ``narrow`` is what the layout
+    becomes on a narrow screen.
+    """
     traces: list[Data] = []
     seen, scale, shaded = {""}, chart.scale, False
     for i, panel in enumerate(chart.panels):
@@ -85,7 +89,9 @@ def _numbers(values: Array) -> Data | list[float]:
 
 
 def _shade(values: Array, scale: tuple[float, float], label: str) -> Data:
-    """Return what gives the points of a trace the colours of their values, and, with a label, a colour scale."""
+    """Return what gives the points of a trace the colours of their values, and, with a label, a
+    colour scale.
+    """
     marker: Data = {"color": _numbers(values), "colorscale": SCALE, "reversescale": True, "size": 4}
     marker |= {"cmin": scale[0], "cmax": scale[1]}
     if label:

@@ -1,6 +1,8 @@
-"""Where the panels of a chart lie on the screen, their axes and their words: the layout of a Plotly figure, as plain data.
+"""Where the panels of a chart lie on the screen, their axes and their words: the layout of a Plotly
+figure, as plain data.
 
-There are two: a wide one, and what of it changes on a narrow screen, where panels stand below each other.
+There are two: a wide one, and what of it changes on a narrow screen, where panels stand below each
+other.
 """
 
 import math
@@ -18,40 +20,54 @@ WIDTH, NARROW_WIDTH = 980, 460
 """Widths that the two layouts are made for [px]; figures shrink with the window."""
 
 _BAR, _LEGEND_ROW, _BOTTOM = 32, 30, 55
-"""Room for the mode bar, for each row of the legend above the panels, and for labels below them [px]."""
+"""Room for the mode bar, for each row of the legend above the panels, and for labels below them
+[px].
+"""
 
 _MARGINS = 90
 """Room left and right of the panels [px]."""
 
 _BESIDE, _TITLED = 0.09, 45.0
-"""Room between panels that stand side by side, over the width of all [-], and of it what no names of an ordinate may take [px]."""
+"""Room between panels that stand side by side, over the width of all [-], and of it what no names
+of an ordinate may take [px].
+"""
 
 _BELOW, _BELOW_LABELS, _TITLE = 14, 62, 28
-"""Room between panels that stand one below the other: with a shared abscissa, with labels between them, and for a title [px]."""
+"""Room between panels that stand one below the other: with a shared abscissa, with labels between
+them, and for a title [px].
+"""
 
 _TITLE_SIZE, _SMALL_TITLE_SIZE = 16, 12
 """Letters of the titles above panels, and above many side by side [px]."""
 
 _SYMBOL, _CHARACTER = 46.0, 6.6
-"""Width of an entry of the legend without its letters, its symbol and the room about it; and of a name's letter [px]."""
+"""Width of an entry of the legend without its letters, its symbol and the room about it; and of a
+name's letter [px].
+"""
 
 _NARROW, _BROAD, _OTHER = 4.5, 12.0, 8.0
 """Widths of the letters of an entry [px]: of narrow ones, of broad ones, and of all others."""
 
 _WIDTHS = dict.fromkeys(" ,.'fijlrt", _NARROW) | dict.fromkeys("mwMW%", _BROAD)
-"""Widths of letters by the letter: by their mean alone, "guard changed commands" is 26 px wider than thought."""
+"""Widths of letters by the letter: by their mean alone, "guard changed commands" is 26 px wider
+than thought.
+"""
 
 _LETTER, _LABEL_LINE = 8.0, 17
 """Width of a letter of an axis' label, and height of each of its lines [px]."""
 
 _ONE_BY_ONE = 3
-"""Panels side by side of which each has a row of its own on a narrow screen; of more two stay side by side."""
+"""Panels side by side of which each has a row of its own on a narrow screen; of more two stay side
+by side.
+"""
 
 _HIGHEST = 0.6
 """Height of a row on a narrow screen at most, over its width, where the panels are no maps."""
 
 _MAP, _UPRIGHT = 0.85, 1.1
-"""Width of a map that is alone in its row on a narrow screen, and height of its row at most, over that of the screen."""
+"""Width of a map that is alone in its row on a narrow screen, and height of its row at most, over
+that of the screen.
+"""
 
 _HALO = "rgba(255,255,255,0.7)"
 """Behind words among curves."""
@@ -89,7 +105,9 @@ def layout(chart: Chart) -> Data:
 
 
 def narrow(chart: Chart) -> Data:
-    """Return what of the layout changes on a narrow screen: entries that take the place of, or are merged into, its own."""
+    """Return what of the layout changes on a narrow screen: entries that take the place of, or are
+    merged into, its own.
+    """
     columns = 1 if chart.columns <= _ONE_BY_ONE else 2
     height = chart.panel_height * chart.columns / columns
     maps = [_upright(panel) for panel in chart.panels if panel.equal]
@@ -128,7 +146,9 @@ def narrow(chart: Chart) -> Data:
 
 
 class _Place:
-    """Where everything is, for a width [px]; ``below_labels`` leaves room for labels below every panel."""
+    """Where everything is, for a width [px]; ``below_labels`` leaves room for labels below every
+    panel.
+    """
 
     def __init__(self, chart: Chart, width: int, *, below_labels: bool = False) -> None:
         self._chart = chart
@@ -167,7 +187,9 @@ class _Place:
         ) / _LETTER
 
     def domains(self, index: int) -> tuple[list[float], list[float]]:
-        """Return where a panel lies, from left to right and from bottom to top, in shares of the room for all of them."""
+        """Return where a panel lies, from left to right and from bottom to top, in shares of the
+        room for all of them.
+        """
         chart, (row, column) = self._chart, divmod(index, self._chart.columns)
         gap = self._gap / self._inner
         rows = chart.rows + bool(chart.last_height)
@@ -189,7 +211,9 @@ def _number(index: int) -> str:
 
 
 def _legend_rows(labels: Sequence[str], width: float) -> int:
-    """Return how many rows a legend takes in a width [px]; none where a single entry would say nothing."""
+    """Return how many rows a legend takes in a width [px]; none where a single entry would say
+    nothing.
+    """
     if len(labels) < 2:
         return 0
     rows, used = 1, 0.0
@@ -211,7 +235,8 @@ def _axes(
     x: Data = {"anchor": f"y{number}", "showticklabels": show_x}
     if show_x:
         x["title"] = {"text": x_label, "standoff": 6}
-    # Figures of four digits and names are wide: the title stays clear of them only at a given distance.
+    # Figures of four digits and names are wide: the title stays clear of them only at a given
+    # distance.
     y: Data = {"anchor": f"x{number}", "title": {"text": y_label, "standoff": 8}}
     x_range, y_range = panel.x_range, panel.y_range
     if panel.equal:
@@ -324,7 +349,9 @@ def _bands(chart: Chart) -> list[Data]:
 
 
 def _equal_ranges(panel: Panel) -> tuple[tuple[float, float], tuple[float, float]]:
-    """Return ranges that hold every curve with a little to spare, and are not much narrower one way than the other."""
+    """Return ranges that hold every curve with a little to spare, and are not much narrower one way
+    than the other.
+    """
     x, y = (
         np.concatenate(curves)
         for curves in zip(*((line.x, line.y) for line in panel.lines), strict=True)

@@ -1,4 +1,6 @@
-"""What the page of a report holds for the replay of its flights: a library, scripts, and the scenes as plain data."""
+"""What the page of a report holds for the replay of its flights: a library, scripts, and the scenes
+as plain data.
+"""
 
 import base64
 from pathlib import Path
@@ -60,7 +62,9 @@ def colours() -> dict[str, str]:
 
 
 def has_replay(picker: FlightPicker) -> bool:
-    """Return whether any of the flights can be replayed: a page without one has no use for the library."""
+    """Return whether any of the flights can be replayed: a page without one has no use for the
+    library.
+    """
     return any(flight.scene for flight in picker.flights)
 
 
@@ -80,7 +84,9 @@ def scripts() -> str:
 
 
 def data(picker: FlightPicker) -> str:
-    """Return what the scripts of the replay read: the scenes of the flights that have one, and their colours."""
+    """Return what the scripts of the replay read: the scenes of the flights that have one, and
+    their colours.
+    """
     scenes = {
         flight.flight_id: draw_scene(flight.scene) for flight in picker.flights if flight.scene
     }
@@ -121,7 +127,9 @@ def _hull(hull: Hull) -> Data:
 
 
 def _sections(plume: PlumeShape) -> list[list[float]]:
-    """Return the cross-sections of a plume: distance from the funnel, height of the axis, half-width, half-height [m]."""
+    """Return the cross-sections of a plume: distance from the funnel, height of the axis,
+    half-width, half-height [m].
+    """
     rows: list[list[float]] = np.round(
         np.column_stack([plume.distance, plume.height, plume.half_width, plume.half_height]), 1
     ).tolist()
@@ -129,7 +137,9 @@ def _sections(plume: PlumeShape) -> list[list[float]]:
 
 
 def packed_column(values: Array, step: float) -> Data:
-    """Return a column of shape (n,) as the page has it: by its ends if it is straight, else to the nearest ``step``."""
+    """Return a column of shape (n,) as the page has it: by its ends if it is straight, else to the
+    nearest ``step``.
+    """
     first, last = float(values[0]), float(values[-1])
     if np.abs(values - np.linspace(first, last, len(values))).max() <= _STRAIGHT:
         return {"first": first, "last": last}
@@ -140,9 +150,11 @@ def packed_column(values: Array, step: float) -> Data:
 
 
 def _packed(numbers: npt.NDArray[np.int64]) -> bytes:
-    """Return whole numbers as bytes: 0, -1, 1, -2, ... as 0, 1, 2, 3, ..., seven bits to a byte, the lowest first.
+    """Return whole numbers as bytes: 0, -1, 1, -2, ... as 0, 1, 2, 3, ..., seven bits to a byte,
+    the lowest first.
 
-    The eighth bit of a byte says that more follow (LEB128, with the signs of Protocol Buffers' sint64).
+    The eighth bit of a byte says that more follow (LEB128, with the signs of Protocol Buffers'
+    sint64).
     """
     unsigned = (numbers << 1) ^ (numbers >> 63)
     count = 1 + np.sum([unsigned >> (7 * k) > 0 for k in range(1, 9)], axis=0)

@@ -6,5 +6,7 @@ from jinja2.utils import htmlsafe_json_dumps
 
 
 def for_script(value: Any) -> str:
-    """Return JSON for a script element: no text in it can end the element, nor begin a comment that hides its end."""
+    """Return JSON for a script element: no text in it can end the element, nor begin a comment that
+    hides its end.
+    """
     return htmlsafe_json_dumps(value, separators=(",", ":"))

@@ -20,14 +20,18 @@ _PLUME_LENGTH = 3.0
 """Length of the plume that is drawn, over r_min [-]."""
 
 _CHANGED, _SHAPES_MAX = 0.1, 25
-"""Change of the ship's speed or of the wind from which the plume is drawn anew [-], and how often at most in a flight."""
+"""Change of the ship's speed or of the wind from which the plume is drawn anew [-], and how often
+at most in a flight.
+"""
 
 _SLOW = 1.0
 """Speed below which changes count as those of this speed [m/s]."""
 
 
 def flight_scene(trial: Trial, row: "pd.Series[Any]", history: pd.DataFrame | None) -> Scene | None:
-    """Return the scene of one flight of a trial, given its row and its time history; None if that is short, or without a vessel."""
+    """Return the scene of one flight of a trial, given its row and its time history; None if that
+    is short, or without a vessel.
+    """
     if history is None or len(history) < 2 or not np.isfinite(row["keepout_radius_m"]):
         return None
     recorded = column(history, "time_s")
@@ -107,7 +111,9 @@ def flight_scene(trial: Trial, row: "pd.Series[Any]", history: pd.DataFrame | No
 def _plumes(
     config: Config, row: "pd.Series[Any]", history: pd.DataFrame
 ) -> list[tuple[float, PlumeShape]]:
-    """Return the plume's shapes in the course of a flight, each with the time from which it has it [s]."""
+    """Return the plume's shapes in the course of a flight, each with the time from which it has it
+    [s].
+    """
     time = column(history, "time_s")
     north, east = (column(history, f"vessel_velocity_{axis}_mps") for axis in ("north", "east"))
     wind_north, wind_east = true_wind(history, row)
@@ -125,7 +131,9 @@ def _plumes(
 
 
 def _changes(air: Array) -> list[int]:
-    """Return the first sample, and each at which a speed differs by ``_CHANGED`` or, if they were too many, by more."""
+    """Return the first sample, and each at which a speed differs by ``_CHANGED`` or, if they were
+    too many, by more.
+    """
     speeds = np.log(np.maximum(air, _SLOW))
     changed = _CHANGED
     while True:

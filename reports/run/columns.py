@@ -11,7 +11,8 @@ NOTICEABLE = 1e-3
 """Smallest error of a position [m] or speed [m/s] that is shown."""
 
 _COMPLETED, _LOST = "completed", ("aircraft_lost", "diverged")
-"""Outcomes of flights that completed their mission, and of those whose aircraft does not come back."""
+"""Outcomes of flights that completed their mission, and of those whose aircraft does not come back.
+"""
 
 
 def column(rows: pd.DataFrame, name: str) -> Array:
@@ -35,7 +36,9 @@ def least(values: Array) -> float | None:
 
 
 def study_flight(rows: pd.DataFrame) -> "pd.Series[str]":
-    """Return the name of the study's flight of each row: of a comparison's flight the one that it is beside, else its own."""
+    """Return the name of the study's flight of each row: of a comparison's flight the one that it
+    is beside, else its own.
+    """
     own = rows["flight_id"].astype(str)
     return (
         rows["beside"].where(rows["beside"].notna(), own).astype(str) if "beside" in rows else own
@@ -43,9 +46,11 @@ def study_flight(rows: pd.DataFrame) -> "pd.Series[str]":
 
 
 def was_flown(rows: pd.DataFrame) -> Mask:
-    """Return which flights were flown, with a vessel or without: those that lasted for any time, as the console counts them.
+    """Return which flights were flown, with a vessel or without: those that lasted for any time, as
+    the console counts them.
 
-    The outcome does not tell: a flight is ``failed`` as well where it was flown and an instrument could not be evaluated.
+    The outcome does not tell: a flight is ``failed`` as well where it was flown and an instrument
+    could not be evaluated.
     """
     return np.isfinite(column(rows, "duration_s"))
 
@@ -56,17 +61,23 @@ def flights_flown(rows: pd.DataFrame) -> pd.DataFrame:
 
 
 def beside_vessel(rows: pd.DataFrame) -> pd.DataFrame:
-    """Return the flights whose closest approach is known: those that were flown beside a vessel, and not about a circle."""
+    """Return the flights whose closest approach is known: those that were flown beside a vessel,
+    and not about a circle.
+    """
     return rows[rows["min_distance_m"].notna()]
 
 
 def clearance(rows: pd.DataFrame) -> Array:
-    """Return how far from the keep-out area each flight stayed at its closest, negative if it violated it [m]."""
+    """Return how far from the keep-out area each flight stayed at its closest, negative if it
+    violated it [m].
+    """
     return column(rows, "min_distance_m") - column(rows, "keepout_radius_m")
 
 
 def radii_differ(rows: pd.DataFrame) -> bool:
-    """Return whether flights have different r_min: what counts is then how far each stayed beyond its own."""
+    """Return whether flights have different r_min: what counts is then how far each stayed beyond
+    its own.
+    """
     return rows["keepout_radius_m"].nunique() > 1
 
 
@@ -114,7 +125,8 @@ def passed(rows: pd.DataFrame) -> Mask:
 
 
 def recorded_at(values: Array, recorded: Mask, rank: int) -> tuple[int, bool]:
-    """Return which flight is at a rank, or else is nearest to it of those with a time history, and whether its value is that one.
+    """Return which flight is at a rank, or else is nearest to it of those with a time history, and
+    whether its value is that one.
 
     Parameters
     ----------

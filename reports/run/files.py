@@ -11,7 +11,8 @@ from reports.errors import ReportError
 
 
 def refuse_running(directory: Path) -> None:
-    """Refuse a run that another program is writing to: it holds the journal locked. Nothing is written, not even a lock.
+    """Refuse a run that another program is writing to: it holds the journal locked. Nothing is
+    written, not even a lock.
 
     Raises
     ------

@@ -23,13 +23,15 @@ _NUMBERED = re.compile(r"_\d{5,}$")
 
 
 def flight_config(run: RunData, row: Row, trial: Config | None = None) -> Config:
-    """Return the configuration of a flight, with keys of its case, its comparison, the sweep and random variables.
+    """Return the configuration of a flight, with keys of its case, its comparison, the sweep and
+    random variables.
 
     Parameters
     ----------
     run : as read from disk
     row : of the flight, in the summary or among the comparisons
-    trial : the configuration of its trial, if it is not that of the manifest; one that is in neither has no key
+    trial : the configuration of its trial, if it is not that of the manifest; one that is in
+        neither has no key
     """
     own = run.draws[run.draws["flight_id"] == row["flight_id"]]
     return _own_config(run, row, _by_flight(own), trial)
@@ -52,7 +54,9 @@ def keepout_shape(config: Config) -> str:
 
 
 def wind_changes(config: Config) -> bool:
-    """Return whether the wind is from a table, so that what the summary says of it is of the start alone."""
+    """Return whether the wind is from a table, so that what the summary says of it is of the start
+    alone.
+    """
     return bool((config.get("wind") or {}).get("table"))
 
 
@@ -73,7 +77,8 @@ def _own_config(
     inputs = {key: _input(value) for key, value in cells.items() if _known(value)}
     sampled = {str(draw["key"]) for draw in config.get("draws") or []}
     of_case, of_comparison = _of_case(config, row), _of_comparison(config, row)
-    # A comparison changes what was swept; what is random is sampled in its flights, too, but for keys that it or a case sets.
+    # A comparison changes what was swept; what is random is sampled in its flights, too, but for
+    # keys that it or a case sets.
     values = (
         of_case
         | {key: value for key, value in inputs.items() if key not in sampled}
@@ -118,7 +123,9 @@ def _known(value: object) -> bool:
 
 
 def _input(value: object) -> object:
-    """Return a value as it was given: a table has what is neither a number nor a word as JSON, as lists are."""
+    """Return a value as it was given: a table has what is neither a number nor a word as JSON, as
+    lists are.
+    """
     try:
         return json.loads(value) if isinstance(value, str) else value
     except ValueError:
@@ -126,7 +133,9 @@ def _input(value: object) -> object:
 
 
 def _with_value(tree: Config, keys: list[str], value: object) -> Config:
-    """Return a tree with another value; places in lists, which nothing here asks for, stay as they are."""
+    """Return a tree with another value; places in lists, which nothing here asks for, stay as they
+    are.
+    """
     key, *below = keys
     if not below:
         return {**tree, key: value}

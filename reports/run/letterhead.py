@@ -24,7 +24,8 @@ class Letterhead:
     ----------
     run : name of the run
     when : date and time at which it began, in UTC, or that they were not recorded
-    done : what was done then, where the date is not to be taken for that of the flight, or of a report on several; else empty
+    done : what was done then, where the date is not to be taken for that of the flight, or of a
+        report on several; else empty
     author, organisation : as given, or empty
     logo : as given, or None
     """
@@ -52,7 +53,8 @@ def parse_settings(overrides: Sequence[str]) -> dict[str, str]:
 
     Raises
     ------
-    ReportError : an override is of another form, or of a key that reports do not have; or the logo is no picture
+    ReportError : an override is of another form, or of a key that reports do not have; or the logo
+        is no picture
     """
     settings = {}
     for override in overrides:
@@ -69,7 +71,8 @@ def parse_settings(overrides: Sequence[str]) -> dict[str, str]:
 
 
 def letterhead(run: RunData, settings: Mapping[str, str]) -> Letterhead:
-    """Return the letterhead of a run; ``settings`` replace those of the run, the path of a logo among them.
+    """Return the letterhead of a run; ``settings`` replace those of the run, the path of a logo
+    among them.
 
     Raises
     ------
@@ -94,7 +97,9 @@ def letterhead(run: RunData, settings: Mapping[str, str]) -> Letterhead:
 
 
 def title(run: RunData, settings: Mapping[str, str]) -> str:
-    """Return the title of a run's report: that of ``settings``, the one that the run was given, or the scenario's."""
+    """Return the title of a run's report: that of ``settings``, the one that the run was given, or
+    the scenario's.
+    """
     return (
         settings.get("title")
         or run.manifest.get("report", {}).get("title")
@@ -103,7 +108,9 @@ def title(run: RunData, settings: Mapping[str, str]) -> str:
 
 
 def _own_logo(run: RunData, name: str) -> Picture | None:
-    """Return the logo that the run keeps, or None if it is gone or damaged, which the report then says."""
+    """Return the logo that the run keeps, or None if it is gone or damaged, which the report then
+    says.
+    """
     try:
         return read_picture(run.path / name) if is_file_name(name) else None
     except PictureError:

@@ -19,7 +19,9 @@ LINE_HALF_WIDTH = 4.0
 """Half-width of a plume that is an axis alone, which has none: enough to be seen [m]."""
 
 SPREADS = 2.0
-"""Spreads from the axis to the edge that is drawn [-]: there the concentration is exp(-2) of that on the axis."""
+"""Spreads from the axis to the edge that is drawn [-]: there the concentration is exp(-2) of that
+on the axis.
+"""
 
 _SECTIONS = 25
 """Cross-sections of a plume."""
@@ -56,7 +58,8 @@ class PlumeShape:
 def plume_shape(
     config: Config, *, speed: float, wind: float, apparent_wind: float, length: float
 ) -> PlumeShape:
-    """Return the shape of a flight's plume: of smoke its mean over time, of an axis without smoke a thin tube.
+    """Return the shape of a flight's plume: of smoke its mean over time, of an axis without smoke a
+    thin tube.
 
     Parameters
     ----------

@@ -43,7 +43,8 @@ class RunData:
     ----------
     path : the run directory
     manifest : its configuration and provenance
-    summary : a row per flight of the study, or per trajectory and law; empty for a design, of which nothing is counted
+    summary : a row per flight of the study, or per trajectory and law; empty for a design, of which
+        nothing is counted
     comparison : a row per flight of the comparisons, possibly none
     crossings : a row per crossing
     innerloop : the autopilot's design record, or none if the run ended before
@@ -90,11 +91,15 @@ class RunData:
         )
 
     def recorded(self) -> list[str]:
-        """Return the names of the flights that have a time history, those of the study before those of its comparisons."""
+        """Return the names of the flights that have a time history, those of the study before those
+        of its comparisons.
+        """
         return [str(row["flight_id"]) for row in self.recorded_rows()]
 
     def recorded_rows(self) -> list[dict[str, object]]:
-        """Return the rows of the flights that have a time history, those of the study before those of its comparisons."""
+        """Return the rows of the flights that have a time history, those of the study before those
+        of its comparisons.
+        """
         # The rows of trajectories of a study of convergence name no flights.
         tables = [rows for rows in (self.summary, self.comparison) if "flight_id" in rows]
         rows = [
@@ -114,11 +119,15 @@ class RunData:
         return replace(self, **tables)
 
     def trajectory(self, law: str, number: int) -> pd.DataFrame | None:
-        """Return the time history of a trajectory of a convergence study, or None if none was kept that can be read."""
+        """Return the time history of a trajectory of a convergence study, or None if none was kept
+        that can be read.
+        """
         return self._parquet(trajectory_path(law, number)) if is_file_name(law) else None
 
     def missing(self) -> list[str]:
-        """Return the files that the run had when it ended, and that are gone or, as far as they were needed, cannot be read."""
+        """Return the files that the run had when it ended, and that are gone or, as far as they
+        were needed, cannot be read.
+        """
         listed = self.manifest.get(FILES)
         names = [str(name) for name in listed] if isinstance(listed, list) else []
         return sorted({*(name for name in names if not is_file(self.path / name)), *self.unread})
@@ -126,7 +135,8 @@ class RunData:
     def _parquet(self, name: str) -> pd.DataFrame | None:
         if not is_file(self.path / name):
             return None
-        # Of a file that is read whole, by itself and in one thread: pandas takes twice as long to ask for the same.
+        # Of a file that is read whole, by itself and in one thread: pandas takes twice as long to
+        # ask for the same.
         from pyarrow.parquet import ParquetFile
 
         try:
@@ -147,7 +157,8 @@ def read_run(path: Path) -> RunData:
 
     Raises
     ------
-    ReportError : it is not one, is of another version or damaged, holds nothing finished, lacks rows, or is being written
+    ReportError : it is not one, is of another version or damaged, holds nothing finished, lacks
+        rows, or is being written
     """
     if is_file(path):
         raise ReportError(f"'{path}' is a file; name the directory of its run, '{path.parent}'")

@@ -1,4 +1,6 @@
-"""How large the ship of a run is drawn: a scenario names her engine and funnel at most, never her hull."""
+"""How large the ship of a run is drawn: a scenario names her engine and funnel at most, never her
+hull.
+"""
 
 from collections.abc import Mapping
 from dataclasses import dataclass

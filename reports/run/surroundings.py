@@ -1,4 +1,6 @@
-"""What was about the aircraft at one moment of a flight: the ship, her plume, the keep-out area and the wind."""
+"""What was about the aircraft at one moment of a flight: the ship, her plume, the keep-out area and
+the wind.
+"""
 
 import math
 from dataclasses import dataclass

@@ -48,7 +48,8 @@ def read_table(path: Path, columns: list[str] | None = None) -> pd.DataFrame:
         ) from None
     if _last_row(path) < len(frame.columns):
         raise ReportError(f"the last line of '{path}' is cut off; {REMEDY}")
-    # Few tables hold a mark, and to look for one in each cell takes a quarter of the time. Columns of nothing are of numbers.
+    # Few tables hold a mark, and to look for one in each cell takes a quarter of the time. Columns
+    # of nothing are of numbers.
     marked = MARK in path.read_text(encoding="utf-8")
     for name in frame.select_dtypes(exclude=["number", "bool"]).columns:
         if marked or frame[name].isna().all():

@@ -17,11 +17,13 @@ ERROR_MIN = 0.1
 """Floor of logarithmic axes of the tracking error [m]."""
 
 _LOST = 2.0
-"""Value of the column ``guard`` where the guard cannot hold its own radius; it is 1 where it changes commands, and else 0."""
+"""Value of the column ``guard`` where the guard cannot hold its own radius; it is 1 where it
+changes commands, and else 0.
+"""
 
 _NEAR, _FAR, _ROOM, _USUAL = 0.95, 1.6, 1.05, 0.9
-"""Distances that curves over time show: nearest and farthest over r_min, farthest over the largest after settling, and the fraction
-of a flight that never settled whose distances are shown [-]."""
+"""Distances that curves over time show: nearest and farthest over r_min, farthest over the largest
+after settling, and the fraction of a flight that never settled whose distances are shown [-]."""
 
 _FLIGHT_POINTS, _LONG_POINTS = 1300, 4000
 """Points of a curve of a flight, and of one of an hour."""
@@ -41,13 +43,16 @@ def tracking_error(history: pd.DataFrame) -> Array:
 
 
 def floor_words(histories: Iterable[pd.DataFrame]) -> str:
-    """Return that small tracking errors are drawn at the floor of their axis, as a sentence with a space before it, if any are."""
+    """Return that small tracking errors are drawn at the floor of their axis, as a sentence with a
+    space before it, if any are.
+    """
     below = any(bool(np.any(tracking_error(history) < ERROR_MIN)) for history in histories)
     return f" Tracking errors below {ERROR_MIN:g} m are drawn at {ERROR_MIN:g} m." if below else ""
 
 
 def keepout_distance(history: pd.DataFrame, config: Config) -> Array:
-    """Return the distance that the keep-out area is about at every sample [m]; not a number without a vessel.
+    """Return the distance that the keep-out area is about at every sample [m]; not a number without
+    a vessel.
 
     It is measured from the funnel's mouth, or horizontally from the axis of a cylinder.
 
@@ -67,14 +72,17 @@ def keepout_distance(history: pd.DataFrame, config: Config) -> Array:
 
 
 def shown_distances(distance: Array, since_settling: Mask, radius: float) -> tuple[float, float]:
-    """Return the least and the largest distance that curves over time show [m]: r_min, and all that comes after settling.
+    """Return the least and the largest distance that curves over time show [m]: r_min, and all that
+    comes after settling.
 
-    How a flight begins, often far away, may lie outside: how near it comes would not be seen beside that.
+    How a flight begins, often far away, may lie outside: how near it comes would not be seen beside
+    that.
 
     Parameters
     ----------
     distance : what the keep-out area is about, of every sample [m]
-    since_settling : which samples come after settling; of a flight without any, what it has at most times is shown
+    since_settling : which samples come after settling; of a flight without any, what it has at most
+        times is shown
     radius : r_min [m]
     """
     settled, nearest = distance[since_settling & np.isfinite(distance)], float(np.nanmin(distance))
@@ -83,7 +91,9 @@ def shown_distances(distance: Array, since_settling: Mask, radius: float) -> tup
 
 
 def about_the_plume(history: pd.DataFrame, prefix: str = "") -> tuple[Array, Array]:
-    """Return metres right of and along the plume's axis, seen from the vessel, of the UAV or what a prefix names."""
+    """Return metres right of and along the plume's axis, seen from the vessel, of the UAV or what a
+    prefix names.
+    """
     north, east = (
         column(history, f"{prefix}{axis}_m") - column(history, f"vessel_{axis}_m")
         for axis in ("north", "east")
@@ -97,7 +107,9 @@ def turned(north: Array, east: Array, up: Array | float) -> tuple[Array, Array]:
 
 
 def flight_points(history: pd.DataFrame) -> int:
-    """Return how many samples curves of a flight show at most: more of a long one, that its turns do not become corners."""
+    """Return how many samples curves of a flight show at most: more of a long one, that its turns
+    do not become corners.
+    """
     time = column(history, "time_s")
     return round(
         min(max(_FLIGHT_POINTS, (float(time[-1]) - float(time[0])) / _TURNING), _LONG_POINTS)
@@ -110,7 +122,8 @@ def thinned(history: pd.DataFrame, points_max: int) -> pd.DataFrame:
 
 
 def vessel_heading(history: pd.DataFrame, course_deg: float) -> Array:
-    """Return where the vessel's bow points at each sample, without jumps [rad]: along its motion, at rest as it was before.
+    """Return where the vessel's bow points at each sample, without jumps [rad]: along its motion,
+    at rest as it was before.
 
     Parameters
     ----------
@@ -127,7 +140,8 @@ def vessel_heading(history: pd.DataFrame, course_deg: float) -> Array:
 
 
 def true_wind(history: pd.DataFrame, row: Row) -> tuple[Array, Array]:
-    """Return north and east velocity of the true mean wind at every sample [m/s]; where it is not recorded, that of the start.
+    """Return north and east velocity of the true mean wind at every sample [m/s]; where it is not
+    recorded, that of the start.
 
     Parameters
     ----------
@@ -146,7 +160,9 @@ def true_wind(history: pd.DataFrame, row: Row) -> tuple[Array, Array]:
 
 
 def guard_stretches(history: pd.DataFrame) -> list[tuple[int, int, bool]]:
-    """Return when the guard changed commands: the first sample, that after the last, and whether it held its radius."""
+    """Return when the guard changed commands: the first sample, that after the last, and whether it
+    held its radius.
+    """
     state = np.nan_to_num(column(history, "guard"))
     starts = np.concatenate([[0], np.flatnonzero(np.diff(state)) + 1])
     ends = np.append(starts[1:], len(state))

@@ -89,7 +89,9 @@ class Trial:
 
     @property
     def shape(self) -> str:
-        """Shape of the keep-out area in words: "sphere", "cylinder", or both where its flights differ in it."""
+        """Shape of the keep-out area in words: "sphere", "cylinder", or both where its flights
+        differ in it.
+        """
         return shape_words(self.rows) or keepout_shape(self.config)
 
     @property
@@ -98,7 +100,9 @@ class Trial:
         return measured_from(self.shape)
 
     def flight_config(self, row: "pd.Series[Any]") -> Config:
-        """Return the configuration of one of its flights, given its row: the trial's own but for what that flight alone has."""
+        """Return the configuration of one of its flights, given its row: the trial's own but for
+        what that flight alone has.
+        """
         return flight_config(self.run, row, self.config)
 
     @property
@@ -112,7 +116,9 @@ class Trial:
         return int(self.run.manifest.get("flights_per_sample", {}).get(self.key, 1))
 
     def theory(self, key: str, over: str = "nu") -> tuple[Array, Array] | None:
-        """Return speed ratios, by their name, and what theory says of a figure; None where flights differ in more than nu."""
+        """Return speed ratios, by their name, and what theory says of a figure; None where flights
+        differ in more than nu.
+        """
         curves = self.run.manifest.get("theory", {}).get(self.key, {})
         # In wind the speed ratio through the air is not the one that is swept.
         over_ground = column(self.flown, "vessel_speed_mps") / float(
@@ -123,7 +129,9 @@ class Trial:
         return np.array(curves[over]), np.array(curves[key])
 
     def setting(self, key: str, default: Any = None) -> Any:
-        """Return the configured value of a dotted key, or a default where its section or itself is not set."""
+        """Return the configured value of a dotted key, or a default where its section or itself is
+        not set.
+        """
         value: Any = self.config
         for part in key.split("."):
             value = value.get(part) if isinstance(value, Mapping) else None
@@ -134,7 +142,9 @@ class Trial:
         return list(self.run.manifest["trial_parameters"][self.key])
 
     def is_scaled(self, key: str) -> bool:
-        """Return whether the value of a key is its default scaled to the aircraft, and not the default itself."""
+        """Return whether the value of a key is its default scaled to the aircraft, and not the
+        default itself.
+        """
         keys = self.run.manifest.get("scaled_parameters", {}).get(self.key, [])
         return key in keys and any(
             of["value"] != of["default"] for of in self.parameters() if of["key"] == key
@@ -190,13 +200,17 @@ class Trial:
 
 
 def shape_words(rows: pd.DataFrame) -> str:
-    """Return the shapes of the keep-out areas of flights, as "sphere or cylinder"; no word where they are not known."""
+    """Return the shapes of the keep-out areas of flights, as "sphere or cylinder"; no word where
+    they are not known.
+    """
     known = set(rows["keepout_shape"].dropna()) if "keepout_shape" in rows else set()
     return " or ".join(shape for shape in SHAPES if shape in known)
 
 
 def measured_from(shape: str) -> str:
-    """Return what a distance is measured from, given the shape of the keep-out area, or shapes, in words."""
+    """Return what a distance is measured from, given the shape of the keep-out area, or shapes, in
+    words.
+    """
     return ", or ".join(words for name, words in SHAPES.items() if name in shape)
 
 

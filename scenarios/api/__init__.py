@@ -1,4 +1,6 @@
-"""The programming interface: fly a scenario from a script or a notebook. Its names are those of ``scenarios``."""
+"""The programming interface: fly a scenario from a script or a notebook. Its names are those of
+``scenarios``.
+"""
 
 from scenarios.api.flying import fly, run
 from scenarios.api.results import Flight, Run

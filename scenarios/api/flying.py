@@ -37,16 +37,19 @@ def fly(
 ) -> Flight:
     """Fly one flight of a scenario, in this process, and return it with its time history.
 
-    It is the flight that the command line flies, to the last bit. Nothing is written unless ``out`` is given: the files that
-    are needed on the way are in a temporary directory, which is removed together with what is returned.
+    It is the flight that the command line flies, to the last bit. Nothing is written unless ``out``
+    is given: the files that are needed on the way are in a temporary directory, which is removed
+    together with what is returned.
 
     Parameters
     ----------
-    scenario : a name of the catalog, the path of a TOML file, what such a file holds, as a mapping, or what ``load`` returned
+    scenario : a name of the catalog, the path of a TOML file, what such a file holds, as a mapping,
+        or what ``load`` returned
     flight_id : name of the flight, where the scenario has several
     out : run directory, which must be new or empty
     progress : show a progress bar on standard error
-    keys : to set, as of ``Scenario.set``: ``fly("sweep_nu", nu=0.5, **{"guidance.preview": False})``
+    keys : to set, as of ``Scenario.set``:
+        ``fly("sweep_nu", nu=0.5, **{"guidance.preview": False})``
 
     Raises
     ------
@@ -86,8 +89,9 @@ def run(
 ) -> Run:
     """Fly a whole study and return its results.
 
-    They are those of the command line, to the last bit. Nothing is written unless ``out`` is given: the files that are needed
-    on the way are in a temporary directory, which is removed together with what is returned.
+    They are those of the command line, to the last bit. Nothing is written unless ``out`` is given:
+    the files that are needed on the way are in a temporary directory, which is removed together
+    with what is returned.
 
     Parameters
     ----------
@@ -96,9 +100,10 @@ def run(
 
     Raises
     ------
-    InputError : the scenario cannot be flown, the directory cannot be used, or a part that was given as an object cannot be sent
-        to other processes; one line
-    KeyboardInterrupt : it was interrupted; in ``out`` finished flights are kept, and ``--resume`` of the command line goes on
+    InputError : the scenario cannot be flown, the directory cannot be used, or a part that was
+        given as an object cannot be sent to other processes; one line
+    KeyboardInterrupt : it was interrupted; in ``out`` finished flights are kept, and ``--resume``
+        of the command line goes on
     """
     from scenarios.engine.executors import ExecutorFactory
     from scenarios.studies.registry import run_study
@@ -193,7 +198,9 @@ Keeping = Callable[[object], None]
 
 @contextmanager
 def _directory(out: str | os.PathLike[str] | None) -> Iterator[tuple[Path, Keeping]]:
-    """Yield the run directory; one that is temporary is removed with what it is kept for, or if there is nothing."""
+    """Yield the run directory; one that is temporary is removed with what it is kept for, or if
+    there is nothing.
+    """
     if out is not None:
         _refuse_taken(Path(out))
         yield Path(out), lambda _: None

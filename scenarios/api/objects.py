@@ -1,4 +1,6 @@
-"""Parts that are given as objects: each gets a name, by which a scenario knows it while it is checked and flown."""
+"""Parts that are given as objects: each gets a name, by which a scenario knows it while it is
+checked and flown.
+"""
 
 import copy
 import pickle
@@ -72,7 +74,8 @@ def lent(parts: Parts) -> Iterator[None]:
             except PluginError as error:
                 raise InputError(f"{given.key}: {error}") from None
         if any(given.key == "reference.shape" for given in parts):
-            # They are remembered by the name of the shape, which may have been another one's before.
+            # They are remembered by the name of the shape, which may have been another one's
+            # before.
             orbits.cache_clear()
         yield
 
@@ -123,8 +126,9 @@ def check_picklable(parts: Parts) -> None:
 def named(given: Mapping[str, Any]) -> tuple[dict[str, Any], Parts]:
     """Return a table with names in place of objects, and the parts that the names stand for.
 
-    A steering law that is made already brings the keys of its fields: ``law=MyLaw(gain=2.0)`` sets ``gain`` beside ``law``. So do
-    reports that are read already, with their file and the vessel in it: ``track=read_ais("ais.csv", mmsi=219999001)``.
+    A steering law that is made already brings the keys of its fields: ``law=MyLaw(gain=2.0)`` sets
+    ``gain`` beside ``law``. So do reports that are read already, with their file and the vessel in
+    it: ``track=read_ais("ais.csv", mmsi=219999001)``.
 
     Parameters
     ----------
@@ -132,7 +136,8 @@ def named(given: Mapping[str, Any]) -> tuple[dict[str, Any], Parts]:
 
     Raises
     ------
-    InputError : an object where the scenario has no part, or one that is not of the kind; two that have one name
+    InputError : an object where the scenario has no part, or one that is not of the kind; two that
+        have one name
     """
     namer = _Namer()
     table = namer.table(given, "")
@@ -222,7 +227,9 @@ class _Namer:
 
 
 def _key(key: str, name: str, beside: Mapping[str, Any]) -> str:
-    """Return the dotted key that an entry of a table is about: of a random variable's choices that of the variable."""
+    """Return the dotted key that an entry of a table is about: of a random variable's choices that
+    of the variable.
+    """
     if name == "choice" and "key" in beside:
         return str(beside["key"])
     within = "" if key.rpartition(".")[2] in _OF_KEYS or not key else f"{key}."

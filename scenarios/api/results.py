@@ -33,13 +33,15 @@ _UNMEASURED = [
 class Run:
     """The results of a study. Made by ``run``.
 
-    Tables are data frames with the units of their columns in ``attrs["units"]``, as ``summary.attrs["units"]["min_distance_m"]``.
-    What is changed in them changes no flight and no report.
+    Tables are data frames with the units of their columns in ``attrs["units"]``, as
+    ``summary.attrs["units"]["min_distance_m"]``. What is changed in them changes no flight and no
+    report.
 
     Parameters
     ----------
     directory : of the run
-    met : whether every flight did what the scenario requires of it, as exit status 0 of the command line
+    met : whether every flight did what the scenario requires of it, as exit status 0 of the command
+        line
     lines : the result in lines of text
 
     Attributes
@@ -61,7 +63,9 @@ class Run:
 
     @functools.cached_property
     def summary(self) -> "pd.DataFrame":
-        """Return a row per flight of the study, or per trajectory and law of a study of convergence."""
+        """Return a row per flight of the study, or per trajectory and law of a study of
+        convergence.
+        """
         return _with_units(self._data.summary.copy())
 
     @functools.cached_property
@@ -95,12 +99,14 @@ class Run:
     def report(
         self, path: str | os.PathLike[str] | None = None, *, all_flights: bool = False
     ) -> str:
-        """Return the report as the text of an HTML page; with a path write it, as HTML or PDF by the suffix, and return the path.
+        """Return the report as the text of an HTML page; with a path write it, as HTML or PDF by
+        the suffix, and return the path.
 
         Parameters
         ----------
         path : of the file; nothing is written without one
-        all_flights : print every flight that can be picked on the screen, not only the most informative ones
+        all_flights : print every flight that can be picked on the screen, not only the most
+            informative ones
 
         Raises
         ------
@@ -167,7 +173,8 @@ class Flight:
 
     @functools.cached_property
     def history(self) -> "pd.DataFrame":
-        """Return its time history; units are in ``attrs["units"]``, what columns are in ``attrs["meanings"]``.
+        """Return its time history; units are in ``attrs["units"]``, what columns are in
+        ``attrs["meanings"]``.
 
         Raises
         ------
@@ -226,12 +233,13 @@ class Flight:
 
         Parameters
         ----------
-        path : of the file: .parquet, .arrow, .csv (its time history), .kmz, .acmi, .czml, .mcap, .nc, .tlog, .geojson, .tracks.csv,
-            and the suffixes of exporters that others add
+        path : of the file: .parquet, .arrow, .csv (its time history), .kmz, .acmi, .czml, .mcap,
+            .nc, .tlog, .geojson, .tracks.csv, and the suffixes of exporters that others add
 
         Raises
         ------
-        InputError : another suffix, a package that is missing, no time history, or the file cannot be written
+        InputError : another suffix, a package that is missing, no time history, or the file cannot
+            be written
         """
         from reports.output import write_flight
 

@@ -14,7 +14,9 @@ from scenarios.schema.load import AnyStudy, load_document, load_study, sweeps_sp
 from scenarios.schema.overrides import Document, as_toml
 
 Given = str | os.PathLike[str] | Mapping[str, Any]
-"""What a scenario is loaded from: a name of the catalog, the path of a TOML file, or what such a file holds."""
+"""What a scenario is loaded from: a name of the catalog, the path of a TOML file, or what such a
+file holds.
+"""
 
 _SHORT = {
     "law": "guidance.law",
@@ -54,16 +56,19 @@ class Scenario:
         return self.config.title
 
     def set(self, **keys: object) -> "Scenario":
-        """Return the scenario with keys set for every flight, as ``--set`` of the command line does.
+        """Return the scenario with keys set for every flight, as ``--set`` of the command line
+        does.
 
         Parameters
         ----------
-        keys : dotted keys (``**{"wind.speed_mps": 5.0}``), sections (``wind={"speed_mps": 5.0}``), keys without a section
-            (``seed=7``), and the words ``nu``, ``law``, ``shape``, ``track`` and ``plume``: ``docs/reference/api.md``
+        keys : dotted keys (``**{"wind.speed_mps": 5.0}``), sections (``wind={"speed_mps": 5.0}``),
+            keys without a section (``seed=7``), and the words ``nu``, ``law``, ``shape``, ``track``
+            and ``plume``: ``docs/reference/api.md``
 
         Raises
         ------
-        InputError : an unknown key, a value out of range, or a key that no part of the flights uses; one line
+        InputError : an unknown key, a value out of range, or a key that no part of the flights
+            uses; one line
         """
         if not keys:
             return self
@@ -72,7 +77,8 @@ class Scenario:
             nu = dotted.pop("nu")
             dotted = self._of_nu(nu) | dotted
         values, parts = named(dotted)
-        # A part that is given again, as from a cell that was run again, takes the place of the one before.
+        # A part that is given again, as from a cell that was run again, takes the place of the one
+        # before.
         kept = [
             given
             for given in self.parts
@@ -82,7 +88,9 @@ class Scenario:
         return replace(self, changes=(*self.changes, *changes), parts=(*kept, *parts))
 
     def _of_nu(self, nu: object) -> dict[str, object]:
-        """Return the key that sets the speed ratio: that of the sweep or of the cases, where they have one."""
+        """Return the key that sets the speed ratio: that of the sweep or of the cases, where they
+        have one.
+        """
         nu = nu.tolist() if hasattr(nu, "tolist") else nu
         if isinstance(nu, list | tuple):
             return {"sweep.nu": nu}
@@ -123,13 +131,15 @@ def load(scenario: Given | Scenario, /, *, name: str | None = None, **keys: obje
 
     Parameters
     ----------
-    scenario : a name of the catalog, the path of a TOML file, what such a file holds, as a mapping, or a scenario
+    scenario : a name of the catalog, the path of a TOML file, what such a file holds, as a mapping,
+        or a scenario
     name : of the scenario; that of the file, or "scenario", if not given
     keys : as of ``Scenario.set``
 
     Raises
     ------
-    InputError : no such scenario, an unknown key, a value out of range, or a key that no part of the flights uses; one line
+    InputError : no such scenario, an unknown key, a value out of range, or a key that no part of
+        the flights uses; one line
     """
     if isinstance(scenario, Scenario):
         made = replace(scenario, name=name) if name else scenario
@@ -155,7 +165,9 @@ def _change(key: str, value: object) -> str:
 
 
 def _dotted(keys: Mapping[str, object]) -> list[tuple[str, object]]:
-    """Return keys with dots in place of sections, and of the words that stand for keys; an empty section stays, and is set so."""
+    """Return keys with dots in place of sections, and of the words that stand for keys; an empty
+    section stays, and is set so.
+    """
     found: list[tuple[str, object]] = []
     for key, value in keys.items():
         if isinstance(value, Mapping) and value and "." not in key:

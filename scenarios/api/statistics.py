@@ -1,4 +1,6 @@
-"""The statistics of a Monte Carlo study as an object: what is in ``statistics.json``, with names and types."""
+"""The statistics of a Monte Carlo study as an object: what is in ``statistics.json``, with names
+and types.
+"""
 
 import math
 from collections.abc import Mapping
@@ -10,13 +12,15 @@ from scenarios.errors import InputError
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Probability:
-    """The probability of an event in a flight; limits that the flights do not give are not a number.
+    """The probability of an event in a flight; limits that the flights do not give are not a
+    number.
 
     Attributes
     ----------
     events, flights : number of flights with the event, and of all flights
     estimate : share of flights with the event, or the estimate of subset simulation [-]
-    low, high : two-sided interval, by Clopper and Pearson, or by the scatter of subset simulations [-]
+    low, high : two-sided interval, by Clopper and Pearson, or by the scatter of subset simulations
+        [-]
     upper : one-sided upper bound [-]
     """
 
@@ -56,7 +60,8 @@ class Statistics:
     outcomes : number of flights by their outcome
     violation : probability of a keep-out violation, from the flights that were measured
     violation_at_most : its one-sided upper bound if every flight of unknown end had one [-]
-    quantiles : quantiles of each figure, by its name with its unit, as "min_distance_m"; none of subset simulation
+    quantiles : quantiles of each figure, by its name with its unit, as "min_distance_m"; none of
+        subset simulation
     content : everything that ``statistics.json`` holds
     """
 
@@ -95,7 +100,9 @@ class Statistics:
 
 
 def statistics_of(content: Mapping[str, Any]) -> Statistics:
-    """Return the object for the content of ``statistics.json``, of plain sampling or of subset simulation."""
+    """Return the object for the content of ``statistics.json``, of plain sampling or of subset
+    simulation.
+    """
     violation = content["violation"]
     plain = violation.get("measured", violation)
     flights = content["flights"]

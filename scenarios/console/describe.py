@@ -31,7 +31,8 @@ def described(name: str | None = None) -> list[str]:
 
     Parameters
     ----------
-    name : a dotted key, as wind.speed_mps, or a section, as wind, or (top); the index of an entry of a list may be left out
+    name : a dotted key, as wind.speed_mps, or a section, as wind, or (top); the index of an entry
+        of a list may be left out
 
     Raises
     ------

@@ -1,4 +1,6 @@
-"""Console command: ``plume-flight run|design|estimate|report|export|compare|describe|new``. Each hands on to what does the work."""
+"""Console command: ``plume-flight run|design|estimate|report|export|compare|describe|new``. Each
+hands on to what does the work.
+"""
 
 import importlib
 import importlib.metadata
@@ -72,7 +74,9 @@ def estimate(
         bool, typer.Option("--no-report", help="Do not write report.html and report.pdf.")
     ] = False,
 ) -> None:
-    """Estimate the sulphur content of a ship's fuel from the log of a flight through her plume, and judge it."""
+    """Estimate the sulphur content of a ship's fuel from the log of a flight through her plume, and
+    judge it.
+    """
     from measurement.estimate.__main__ import main as estimate_logged
 
     options = [("--config", config), ("--out", out)]
@@ -92,7 +96,9 @@ def describe(
         ),
     ] = None,
 ) -> None:
-    """Say what a key of the scenario file means, its unit, range and default, and the studies that take it."""
+    """Say what a key of the scenario file means, its unit, range and default, and the studies that
+    take it.
+    """
     from scenarios.console.describe import described
     from scenarios.errors import InputError
 
@@ -115,9 +121,11 @@ def new(
         typer.Option("--from", metavar="NAME|FILE.toml", help="The scenario that it is made from."),
     ] = "sweep_nu",
 ) -> None:
-    """Write a scenario file with every key, its meaning, unit, range and default, and with the values of another scenario.
+    """Write a scenario file with every key, its meaning, unit, range and default, and with the
+    values of another scenario.
 
-    Its flights have other seeds, which follow from the name of the file, unless nu is swept or the file is called as the scenario.
+    Its flights have other seeds, which follow from the name of the file, unless nu is swept or the
+    file is called as the scenario.
     """
     from scenarios.console.template import write_template
     from scenarios.errors import InputError

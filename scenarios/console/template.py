@@ -1,4 +1,6 @@
-"""A complete scenario file with every key, its meaning, unit, range and default, made from another scenario."""
+"""A complete scenario file with every key, its meaning, unit, range and default, made from another
+scenario.
+"""
 
 import contextlib
 import textwrap
@@ -30,7 +32,8 @@ The seeds of flights follow from the name of this file, unless nu is swept: call
 
 
 def write_template(path: Path, name: str) -> None:
-    """Write a complete scenario file with the values of another scenario; a file that is there is left as it is.
+    """Write a complete scenario file with the values of another scenario; a file that is there is
+    left as it is.
 
     Parameters
     ----------
@@ -86,7 +89,9 @@ def template(name: str, file: str) -> str:
 
 
 def _at_swept_ratios(document: Document, config: Scenario) -> tuple[Document, Scenario]:
-    """Return both with those ratios of ``comparison.nu`` that are swept: of others a file of its own must not speak."""
+    """Return both with those ratios of ``comparison.nu`` that are swept: of others a file of its
+    own must not speak.
+    """
     swept = [nu for nu in config.comparison.nu if nu in config.sweep.nu]
     if not swept:
         return document, config

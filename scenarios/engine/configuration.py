@@ -12,7 +12,8 @@ _SHOWN = 60
 
 
 def changed_keys(before: Mapping[str, Any], now: Mapping[str, Any]) -> str:
-    """Return the first keys that differ, each with both values, in words; nothing if the manifests do not say which.
+    """Return the first keys that differ, each with both values, in words; nothing if the manifests
+    do not say which.
 
     Parameters
     ----------

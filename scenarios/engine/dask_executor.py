@@ -1,8 +1,9 @@
-"""Executes tasks on the workers of a Dask cluster: a running one, or one that is started on this machine.
+"""Executes tasks on the workers of a Dask cluster: a running one, or one that is started on this
+machine.
 
-The work is sent to every worker once, as a plugin, together with the aircraft's model: workers need the same code and
-packages, and files that the scenario names at the same paths, but no shared file system. If a worker dies, Dask itself
-gives its task to another.
+The work is sent to every worker once, as a plugin, together with the aircraft's model: workers need
+the same code and packages, and files that the scenario names at the same paths, but no shared file
+system. If a worker dies, Dask itself gives its task to another.
 """
 
 import faulthandler
@@ -29,13 +30,17 @@ WORKER_COUNT_INTERVAL = 1.0
 """Shortest time between two counts of the workers [s]: a count takes milliseconds."""
 
 WORKER_MEMORY_MIN = 2**30
-"""Least memory limit of a worker that is started here [bytes]; with less, Dask may restart it before its first flight."""
+"""Least memory limit of a worker that is started here [bytes]; with less, Dask may restart it
+before its first flight.
+"""
 
 CONNECT_TIMEOUT = 15.0
 """Time for the scheduler to answer, and for the first worker to register [s]."""
 
 _FLYING = threading.Lock()
-"""Threads can share neither JSBSim nor faulthandler's timer: a worker with several flies one flight at a time, of all its runs."""
+"""Threads can share neither JSBSim nor faulthandler's timer: a worker with several flies one flight
+at a time, of all its runs.
+"""
 
 
 class DaskExecutor:
@@ -44,9 +49,11 @@ class DaskExecutor:
     Parameters
     ----------
     work : what each worker does with a task
-    scheduler : address of a running scheduler; without one a cluster of ``jobs`` workers is started on this machine
+    scheduler : address of a running scheduler; without one a cluster of ``jobs`` workers is started
+        on this machine
     jobs : number of workers to start, if there is no scheduler
-    limits : time and memory limits of a task; the memory limit holds for workers that are started here
+    limits : time and memory limits of a task; the memory limit holds for workers that are started
+        here
 
     Raises
     ------
@@ -126,7 +133,9 @@ class DaskExecutor:
             self._cluster.close()
 
     def fly(self, tasks: Iterable[Task]) -> Iterator[Result]:
-        """Yield the result of every task as it arrives; a task that fails on a worker is tried once more."""
+        """Yield the result of every task as it arrives; a task that fails on a worker is tried once
+        more.
+        """
         waiting = iter(tasks)
         attempted: set[int] = set()
         running: dict[Any, Task] = {}
@@ -163,7 +172,9 @@ class DaskExecutor:
             yield from results
 
     def _count_workers(self) -> int:
-        """Return the number of workers, at most ``WORKER_COUNT_INTERVAL`` old: workers may join and leave."""
+        """Return the number of workers, at most ``WORKER_COUNT_INTERVAL`` old: workers may join and
+        leave.
+        """
         now = time.monotonic()
         if now - self._counted_at > WORKER_COUNT_INTERVAL:
             self._counted_at = now
@@ -185,7 +196,9 @@ def _fly(name: str, task: Task) -> Result:
 
 
 class _WorkPlugin(distributed.WorkerPlugin):
-    """Holds the work of a run on a worker, with its files in a directory of the run's name: a worker may have several runs."""
+    """Holds the work of a run on a worker, with its files in a directory of the run's name: a
+    worker may have several runs.
+    """
 
     def __init__(self, name: str, work: Work, time_limit: float) -> None:
         self.name = name
@@ -214,7 +227,8 @@ class _WorkPlugin(distributed.WorkerPlugin):
 
     def fly(self, task: Task) -> Result:
         with _FLYING:
-            # This timer ends the worker without Python's interpreter lock, which a flight that hangs in C++ may hold.
+            # This timer ends the worker without Python's interpreter lock, which a flight that
+            # hangs in C++ may hold.
             faulthandler.dump_traceback_later(self._time_limit, exit=True)
             try:
                 return self._work.fly(task)

@@ -10,7 +10,9 @@ MAX_ATTEMPTS = 2
 """How often a task is tried if its process is lost."""
 
 QUEUE_DEPTH = 2
-"""Tasks that a process holds at most: the current one and the next, so that it need not wait for it."""
+"""Tasks that a process holds at most: the current one and the next, so that it need not wait for
+it.
+"""
 
 
 class Executor(Protocol):

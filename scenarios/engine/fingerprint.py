@@ -1,4 +1,6 @@
-"""The software that results depend on: versions of packages, and the project's own source with its data."""
+"""The software that results depend on: versions of packages, and the project's own source with its
+data.
+"""
 
 import functools
 import importlib.metadata
@@ -10,7 +12,9 @@ from common.files import files_hash
 
 _PACKAGES = ("jsbsim", "numpy", "scipy", "control", "slycot", "pydantic", "cma")
 SOURCE = ("aircraft", "common", "gnc", "innerloop", "measurement", "scenarios")
-"""Packages of the project that results depend on: all that flies or measures; ``reports`` only shows it."""
+"""Packages of the project that results depend on: all that flies or measures; ``reports`` only
+shows it.
+"""
 
 _SUFFIXES = (".json", ".py", ".toml", ".xml")
 """Source, and the data that it reads: aircraft models, presets and tables."""
@@ -21,7 +25,9 @@ _CATALOG = "scenarios/catalog/"
 
 @functools.cache
 def fingerprint() -> dict[str, str]:
-    """Return the versions of Python and of the packages that results depend on, and a hash of the project's source."""
+    """Return the versions of Python and of the packages that results depend on, and a hash of the
+    project's source.
+    """
     versions = {package: importlib.metadata.version(package) for package in _PACKAGES}
     return {
         "python": platform.python_version(),
@@ -31,7 +37,9 @@ def fingerprint() -> dict[str, str]:
 
 
 def source_hash(project: Path) -> str:
-    """Return a hash of the files of a project that results depend on, by their paths in it and their contents."""
+    """Return a hash of the files of a project that results depend on, by their paths in it and
+    their contents.
+    """
     found = (
         path
         for package in SOURCE
@@ -45,5 +53,7 @@ def source_hash(project: Path) -> str:
 
 
 def differences(theirs: Mapping[str, str]) -> list[str]:
-    """Return the names of the entries in which another fingerprint differs from that of this program."""
+    """Return the names of the entries in which another fingerprint differs from that of this
+    program.
+    """
     return [name for name, mine in fingerprint().items() if theirs.get(name) != mine]

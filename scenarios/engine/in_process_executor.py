@@ -8,7 +8,8 @@ from scenarios.engine.task import Result, Task, Work
 
 
 class InProcessExecutor:
-    """For one flight, where a process of its own would be the greater part of the time; without limits of time and memory.
+    """For one flight, where a process of its own would be the greater part of the time; without
+    limits of time and memory.
 
     Parameters
     ----------

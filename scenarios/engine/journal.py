@@ -1,8 +1,9 @@
 """The journal: results of a study, stored on disk as they arrive.
 
-A result is either in the journal or not: whenever and however the program ends, the next one finds every result that
-was added. Tables are written from the journal in the order of the tasks, one row at a time: a study may have more rows
-than fit into memory. Every result has a checksum; a journal in which one does not agree is refused.
+A result is either in the journal or not: whenever and however the program ends, the next one finds
+every result that was added. Tables are written from the journal in the order of the tasks, one row
+at a time: a study may have more rows than fit into memory. Every result has a checksum; a journal
+in which one does not agree is refused.
 """
 
 import csv
@@ -27,7 +28,9 @@ _BUSY = (sqlite3.SQLITE_BUSY, sqlite3.SQLITE_LOCKED, sqlite3.SQLITE_PROTOCOL)
 """SQLite's codes of a file that another connection has."""
 
 _ATTEMPTS = 6
-"""Attempts to open a journal: of two programs that open one in the same millisecond, SQLite may refuse both."""
+"""Attempts to open a journal: of two programs that open one in the same millisecond, SQLite may
+refuse both.
+"""
 
 _WAIT = 0.05
 """Longest wait between two attempts [s]; drawn at random, so that the two do not meet again."""
@@ -58,7 +61,8 @@ class Journal:
 
     def __init__(self, path: Path, *, reading: bool = False) -> None:
         self._path = path
-        # A log beside it is of a program that was killed, or that is writing now: SQLite has to see to it.
+        # A log beside it is of a program that was killed, or that is writing now: SQLite has to see
+        # to it.
         closed = reading and not path.with_name(f"{path.name}-wal").exists()
         for attempt in range(1, _ATTEMPTS + 1):
             try:
@@ -109,7 +113,9 @@ class Journal:
         self._database.close()
 
     def add(self, result: Result) -> None:
-        """Store a result, replacing an earlier one of its task; from then on it survives any end of the program."""
+        """Store a result, replacing an earlier one of its task; from then on it survives any end of
+        the program.
+        """
         fields = (
             result.task.number,
             json.dumps(result.task.point),
@@ -159,7 +165,9 @@ class Journal:
     def numbered(
         self, table: str, *, first: int = 0, below: int = _LARGEST
     ) -> Iterator[tuple[int, Row]]:
-        """Yield task number and row of a table, by ascending task number from ``first`` to below ``below``."""
+        """Yield task number and row of a table, by ascending task number from ``first`` to below
+        ``below``.
+        """
         query = (
             "SELECT number, tables FROM results WHERE number >= ? AND number < ? ORDER BY number"
         )
@@ -173,7 +181,9 @@ class Journal:
         return (row for _, row in self.numbered(table, first=first, below=below))
 
     def export(self, table: str, columns: tuple[str, ...], file: IO[str]) -> int:
-        """Write a table as CSV with exactly ``columns``, missing values empty; return the number of rows."""
+        """Write a table as CSV with exactly ``columns``, missing values empty; return the number of
+        rows.
+        """
         writer = csv.writer(file, lineterminator="\n")
         writer.writerow(columns)
         count = 0
@@ -224,7 +234,9 @@ def is_damaged(error: sqlite3.DatabaseError) -> bool:
 
 
 def unusable(path: Path, error: sqlite3.DatabaseError, *, then: str = CONTINUE) -> InputError:
-    """Return the error to raise for a journal that SQLite cannot use; ``then`` is what to do once it can."""
+    """Return the error to raise for a journal that SQLite cannot use; ``then`` is what to do once
+    it can.
+    """
     if is_damaged(error):
         return damaged(path)
     return InputError(

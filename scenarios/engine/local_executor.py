@@ -1,8 +1,8 @@
 """Executes tasks in processes of this machine.
 
-Every process has its own pipe and shares no lock with the others, so that a process that dies at any moment loses its
-current task and nothing else. (Pools that share one channel do not survive that:
-github.com/noxdafox/pebble/issues/163; the pool of the standard library stops altogether.)
+Every process has its own pipe and shares no lock with the others, so that a process that dies at
+any moment loses its current task and nothing else. (Pools that share one channel do not survive
+that: github.com/noxdafox/pebble/issues/163; the pool of the standard library stops altogether.)
 """
 
 import multiprocessing
@@ -68,7 +68,9 @@ class LocalExecutor:
         self._workers.clear()
 
     def fly(self, tasks: Iterable[Task]) -> Iterator[Result]:
-        """Yield the result of every task as it arrives; a task whose process is lost is tried once more."""
+        """Yield the result of every task as it arrives; a task whose process is lost is tried once
+        more.
+        """
         waiting = iter(tasks)
         while self._dispatch(waiting):
             ready = wait(
@@ -112,7 +114,9 @@ class LocalExecutor:
         return max(0.0, deadline - time.monotonic())
 
     def _handle_lost_worker(self, worker: "WorkerProcess", reason: str) -> Iterator[Result]:
-        """Queue the tasks of a lost process again; yield the result of its current task after the last attempt."""
+        """Queue the tasks of a lost process again; yield the result of its current task after the
+        last attempt.
+        """
         worker.end(at_once=True)
         current, *queued = worker.tasks
         # The queued tasks had not been started: they do not count as attempted.
@@ -139,7 +143,8 @@ class WorkerProcess:
 
     def __init__(self, work: Work, limits: Limits, others: Sequence[Connection]) -> None:
         self.connection, theirs = multiprocessing.Pipe()
-        # A forked process inherits the ends of all pipes; if it kept them open, no process would see this program end.
+        # A forked process inherits the ends of all pipes; if it kept them open, no process would
+        # see this program end.
         inherited = [*others, self.connection]
         self._process: BaseProcess = multiprocessing.Process(
             target=_serve, args=(theirs, inherited, work, limits.memory), daemon=True
@@ -181,7 +186,9 @@ class WorkerProcess:
         self._process.kill()
 
     def end(self, *, at_once: bool) -> None:
-        """Close the pipe and wait until the process has ended; kill it first if ``at_once``, or if it does not end."""
+        """Close the pipe and wait until the process has ended; kill it first if ``at_once``, or if
+        it does not end.
+        """
         self.connection.close()
         if at_once:
             self._process.kill()

@@ -9,7 +9,8 @@ if sys.platform != "win32":
 
 
 def limit_memory(limit: int | None) -> None:
-    """Limit the data memory of this process to ``limit`` [bytes]; allocations beyond it raise MemoryError.
+    """Limit the data memory of this process to ``limit`` [bytes]; allocations beyond it raise
+    MemoryError.
 
     Without effect on systems that have no such limit.
     """

@@ -12,14 +12,18 @@ from scenarios.engine.runner import Progress
 from scenarios.errors import InputError
 
 REFRESH_INTERVAL = 0.1
-"""Shortest time between two updates of the bar [s]: results may arrive faster than a terminal can show them."""
+"""Shortest time between two updates of the bar [s]: results may arrive faster than a terminal can
+show them.
+"""
 
 
 @contextlib.contextmanager
 def progress_bar() -> Iterator[Progress]:
-    """Yield a function to call with the current activity, the number of finished items and their total.
+    """Yield a function to call with the current activity, the number of finished items and their
+    total.
 
-    The bar appears at the first call. If the input is refused it is removed, so that only the message is left.
+    The bar appears at the first call. If the input is refused it is removed, so that only the
+    message is left.
     """
     bar = Bar(
         TextColumn("{task.description}"),

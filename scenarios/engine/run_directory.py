@@ -53,7 +53,8 @@ class RunDirectory:
 
     Attributes
     ----------
-    gone : files that the run had when it ended, and that are deleted or cut since; known once it has been opened to be resumed
+    gone : files that the run had when it ended, and that are deleted or cut since; known once it
+        has been opened to be resumed
     """
 
     def __init__(self, path: Path) -> None:
@@ -73,7 +74,8 @@ class RunDirectory:
         resume: bool,
         manifest: Callable[[], Mapping[str, Any]] | None = None,
     ) -> dict[str, Any]:
-        """Open the directory and return the manifest of the run that is resumed, empty for a new one.
+        """Open the directory and return the manifest of the run that is resumed, empty for a new
+        one.
 
         Parameters
         ----------
@@ -83,11 +85,12 @@ class RunDirectory:
 
         Raises
         ------
-        InputError : the directory cannot be written; it is to be resumed and holds no run of this configuration and software,
-            or it is to be new and holds something
+        InputError : the directory cannot be written; it is to be resumed and holds no run of this
+            configuration and software, or it is to be new and holds something
         """
         try:
-            # A run that was killed before it had a manifest has nothing to continue, and is begun anew.
+            # A run that was killed before it had a manifest has nothing to continue, and is begun
+            # anew.
             if resume and (self.manifest.exists() or not self._is_begun()):
                 return self._open_existing(config_hash, manifest)
             self.refuse_taken()
@@ -97,7 +100,9 @@ class RunDirectory:
         return {}
 
     def plugins(self) -> dict[str, str]:
-        """Return the hash of each file that the run took parts from; none if it has no manifest that can be read."""
+        """Return the hash of each file that the run took parts from; none if it has no manifest
+        that can be read.
+        """
         try:
             return dict(json.loads(self.manifest.read_text(encoding="utf-8")).get("plugins", {}))
         except (ValueError, TypeError, AttributeError, OSError, RecursionError):
@@ -109,7 +114,9 @@ class RunDirectory:
         return bool(names) and all(_BEGUN.fullmatch(name) for name in names)
 
     def refuse_taken(self) -> None:
-        """Raise an InputError if the directory holds anything but the first files of a run that was killed."""
+        """Raise an InputError if the directory holds anything but the first files of a run that was
+        killed.
+        """
         try:
             if self.manifest.exists():
                 raise InputError(
@@ -161,12 +168,16 @@ class RunDirectory:
         return manifest
 
     def sweep(self) -> None:
-        """Remove partly written files of a program that was killed. No other program may be writing."""
+        """Remove partly written files of a program that was killed. No other program may be
+        writing.
+        """
         for part in self.path.rglob(".*.part"):
             part.unlink()
 
     def files(self) -> list[str]:
-        """Return the files of the run by their paths in the directory, without journal, manifest, reports and exports."""
+        """Return the files of the run by their paths in the directory, without journal, manifest,
+        reports and exports.
+        """
         names = (
             path.relative_to(self.path).as_posix()
             for path in self.path.rglob("*")

@@ -19,7 +19,9 @@ from scenarios.engine.task import Task, Work
 from scenarios.errors import InputError
 
 Progress = Callable[[str, int, int], None]
-"""Called with the current activity, the number of items that are done and the total number of items."""
+"""Called with the current activity, the number of items that are done and the total number of
+items.
+"""
 
 _COMPLETE, _INTERRUPTED = "complete", "interrupted"
 
@@ -37,7 +39,8 @@ class StudySummary:
     met : whether all planned items are done and met their criteria
     lines : the result in lines of text, for the console
     manifest : entries for the manifest of the run
-    beside_left : number of items of comparisons that are not done, which count neither as done nor as planned
+    beside_left : number of items of comparisons that are not done, which count neither as done nor
+        as planned
     """
 
     done: int
@@ -65,7 +68,9 @@ class Study(Protocol):
 
     @property
     def beside(self) -> int:
-        """Return how many results that are no items there are beside them, as of comparisons; progress counts them, too."""
+        """Return how many results that are no items there are beside them, as of comparisons;
+        progress counts them, too.
+        """
 
     def initial_manifest(self) -> dict[str, Any]:
         """Return the manifest as written before the first task."""
@@ -74,10 +79,11 @@ class Study(Protocol):
         """Return the work, after writing the files that it needs into the run directory."""
 
     def run(self, fly: Fly, run: RunDirectory, journal: Journal) -> None:
-        """Execute tasks, in one or several calls of ``fly``: their results are in the journal when it returns.
+        """Execute tasks, in one or several calls of ``fly``: their results are in the journal when
+        it returns.
 
-        Tasks whose results are in the journal are skipped, unless they are ``recorded``: those are repeated for their
-        files.
+        Tasks whose results are in the journal are skipped, unless they are ``recorded``: those are
+        repeated for their files.
         """
 
     def postprocess(self, run: RunDirectory, journal: Journal, progress: Progress) -> None:
@@ -138,7 +144,8 @@ def fly_study(
 
     Raises
     ------
-    InputError : the directory or its journal cannot be used, or the disk is full; finished results are kept
+    InputError : the directory or its journal cannot be used, or the disk is full; finished results
+        are kept
     """
     run = RunDirectory(directory)
     before = run.open(study.config_hash, resume=resume, manifest=study.initial_manifest)
@@ -191,7 +198,8 @@ class _Execution:
             before,
             progress,
         )
-        # A run that is resumed is as old as its first flight, and has taken as long as all of its sessions.
+        # A run that is resumed is as old as its first flight, and has taken as long as all of its
+        # sessions.
         began = before.get("begun_utc") or f"{datetime.now(UTC):%Y-%m-%dT%H:%M:%SZ}"
         first = {"command": before.get("command") or command, "begun_utc": began}
         self._wall_time = float(before.get("wall_time_s", 0.0))
@@ -218,7 +226,8 @@ class _Execution:
                 study.export(run, journal)
             raise
         changed = not self._is_as_before()
-        # Always: tables may have been changed by others, and those that have not are left as they are.
+        # Always: tables may have been changed by others, and those that have not are left as they
+        # are.
         study.export(run, journal)
         summary = study.summary(journal)
         if changed:
@@ -248,7 +257,9 @@ class _Execution:
         )
 
     def _begin(self) -> None:
-        """Say in the manifest that the run goes on, and remove what will be untrue; once, before anything is added."""
+        """Say in the manifest that the run goes on, and remove what will be untrue; once, before
+        anything is added.
+        """
         if not self._begun:
             self._begun = True
             remove_reports(self._run.path)
@@ -298,7 +309,9 @@ class _Execution:
 def write_tables(
     run: RunDirectory, journal: Journal, tables: Mapping[str, tuple[str, ...]]
 ) -> None:
-    """Write tables from the journal into the run directory; ``tables`` gives the columns of each file."""
+    """Write tables from the journal into the run directory; ``tables`` gives the columns of each
+    file.
+    """
     for name, columns in tables.items():
 
         def write(path: Path, name: str = name, columns: tuple[str, ...] = columns) -> None:

@@ -10,10 +10,14 @@ Row = dict[str, Any]
 """A row of a table: values by column."""
 
 TIME_RANGE = 1.0, 1e6
-"""Least and largest time limit of a task [s]: eleven days, which the clock of a wait can still count in milliseconds."""
+"""Least and largest time limit of a task [s]: eleven days, which the clock of a wait can still
+count in milliseconds.
+"""
 
 MEMORY_RANGE = 0.25, 1e6
-"""Least and largest memory limit of a process [GiB]: about a pebibyte, beyond what processors can address."""
+"""Least and largest memory limit of a process [GiB]: about a pebibyte, beyond what processors can
+address.
+"""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -23,11 +27,12 @@ class Task:
     Attributes
     ----------
     number : its index in the study, from 0
-    point : coordinates of its random variables in the unit cube, if the study chooses them; otherwise they follow from
-        the number
+    point : coordinates of its random variables in the unit cube, if the study chooses them;
+        otherwise they follow from the number
     recorded : whether its time history is written in any case
     every_step : whether the time history has every step of the guidance
-    seed : of its noise, if the study chooses it; otherwise it follows from the number and the random variables
+    seed : of its noise, if the study chooses it; otherwise it follows from the number and the
+        random variables
     labels : columns and values that the study adds to the table of inputs
     """
 
@@ -77,7 +82,9 @@ class Work(Protocol):
         """Return the same work with its files in another directory."""
 
     def fly(self, task: Task) -> Result:
-        """Do a task. Every failure becomes a row with its reason, except MemoryError, which is raised."""
+        """Do a task. Every failure becomes a row with its reason, except MemoryError, which is
+        raised.
+        """
 
     def lost(self, task: Task, reason: str) -> Result:
         """Return the result of a task whose process was lost."""

@@ -12,10 +12,12 @@ from scenarios.world.world import vessel_of
 
 
 def beyond_declared(scenario: Scenario, point: Sequence[float]) -> float:
-    """Return how far a flight leaves the declared speed ratios and the declared acceleration of the vessel [-].
+    """Return how far a flight leaves the declared speed ratios and the declared acceleration of the
+    vessel [-].
 
-    The acceleration counts relative to ``following.vessel_acceleration_mps2``, changes of speed and of course together, where
-    that is not 0. A flight whose values contradict each other, such as manoeuvres that overlap, counts as 1.
+    The acceleration counts relative to ``following.vessel_acceleration_mps2``, changes of speed and
+    of course together, where that is not 0. A flight whose values contradict each other, such as
+    manoeuvres that overlap, counts as 1.
 
     Parameters
     ----------

@@ -62,16 +62,19 @@ def sampled_flight(
     trial : its name
     scenario : the trial
     number : of the flight, from 0
-    point : position of each random variable in its distribution, from 0 to 1, in their order; at random if it is empty. Where
-        that has no speed ratio within ``scenario.speed_ratio``, the flight is sampled again at random. More numbers after these
-        are those of its noise (``Noise.at``); otherwise it has a seed of its own.
-    given : keys that the scenario sets for each of its flights: the samples that give way to them keep their places, so that all
-        others are what they are without them
-    beside : makes the flight whose speed ratio says whether to sample again, of the samples; the flight itself if not given
+    point : position of each random variable in its distribution, from 0 to 1, in their order; at
+        random if it is empty. Where that has no speed ratio within ``scenario.speed_ratio``, the
+        flight is sampled again at random. More numbers after these are those of its noise
+        (``Noise.at``); otherwise it has a seed of its own.
+    given : keys that the scenario sets for each of its flights: the samples that give way to them
+        keep their places, so that all others are what they are without them
+    beside : makes the flight whose speed ratio says whether to sample again, of the samples; the
+        flight itself if not given
 
     Raises
     ------
-    InputError : a sampled key does not exist or is out of range, or no sample has a speed ratio within ``scenario.speed_ratio``
+    InputError : a sampled key does not exist or is out of range, or no sample has a speed ratio
+        within ``scenario.speed_ratio``
     """
     sequence = np.random.SeedSequence([scenario.seed, zlib.crc32(trial.encode()), number])
     inputs, of_noise = point[: len(scenario.draws)], point[len(scenario.draws) :]
@@ -106,7 +109,9 @@ def speed_ratios(flight: Scenario) -> tuple[float, float]:
 
 
 def has_speed_ratio(flight: Scenario) -> bool:
-    """Return whether a flight's speed ratios lie within those that are declared: otherwise it is sampled again."""
+    """Return whether a flight's speed ratios lie within those that are declared: otherwise it is
+    sampled again.
+    """
     (low, high), (least, most) = flight.speed_ratio, speed_ratios(flight)
     return low <= least and most <= high
 
@@ -160,14 +165,16 @@ def _tried(
             if draw.choice is None or draw.weights is not None or point:
                 values[draw.key] = value_at(draw, float(generator.random()))
             else:
-                # Several choices are taken like the digits of a number: every combination comes equally often.
+                # Several choices are taken like the digits of a number: every combination comes
+                # equally often.
                 remainder, i = divmod(remainder, len(draw.choice))
                 values[draw.key] = draw.choice[i]
         yield values
 
 
 def check_draws(trial: str, scenario: Scenario, given: Collection[str] = ()) -> None:
-    """Check every choice, and both ends of each range, before any flight; parameters are those of ``sampled_flight``.
+    """Check every choice, and both ends of each range, before any flight; parameters are those of
+    ``sampled_flight``.
 
     Raises
     ------

@@ -1,4 +1,6 @@
-"""The points of an experiment: which flights there are, by sweep, cases, comparisons and random variables."""
+"""The points of an experiment: which flights there are, by sweep, cases, comparisons and random
+variables.
+"""
 
 import itertools
 from collections.abc import Iterable, Iterator, Mapping, Sequence
@@ -26,7 +28,8 @@ class Point:
     nu : speed ratio that is swept, or none [-]
     inputs : swept keys and their values
     flights : number of flights
-    beside : number of the study's point whose flights a comparison has with some keys set otherwise; None of others
+    beside : number of the study's point whose flights a comparison has with some keys set
+        otherwise; None of others
     given : keys that its case and its comparison set: what is random of these keeps what they set
     """
 
@@ -45,7 +48,8 @@ def points_of(scenario: Scenario) -> list[Point]:
 
     Raises
     ------
-    InputError : a case, a comparison or the sweep sets a key that does not exist or a value out of range
+    InputError : a case, a comparison or the sweep sets a key that does not exist or a value out of
+        range
     """
     points = list(_cases(scenario) if scenario.cases else _grid(scenario))
     points.sort(key=lambda point: point.variant != STUDY)
@@ -86,7 +90,9 @@ def _grid(scenario: Scenario) -> Iterator[Point]:
 
 
 def without_repetitions(values: Sequence[object]) -> list[object]:
-    """Return the values without repetitions, by comparison: lists and tables may be swept, too, and 5 equals 5.0."""
+    """Return the values without repetitions, by comparison: lists and tables may be swept, too, and
+    5 equals 5.0.
+    """
     return [value for i, value in enumerate(values) if value not in values[:i]]
 
 
@@ -158,7 +164,9 @@ def _varied(point: Point, name: str, values: Values, flights: int | None, *, bes
 
 
 def _names_of(keys: Iterable[str]) -> dict[str, str]:
-    """Return what swept keys are called in the names of flights: by their last part, or by as many as tell them apart."""
+    """Return what swept keys are called in the names of flights: by their last part, or by as many
+    as tell them apart.
+    """
     parts = {key: key.split(".") for key in keys}
     return {
         key: "_".join(own[-_parts_apart(own, [of for of in parts.values() if of is not own]) :])
@@ -167,7 +175,9 @@ def _names_of(keys: Iterable[str]) -> dict[str, str]:
 
 
 def _parts_apart(own: list[str], others: list[list[str]]) -> int:
-    """Return how many of the last parts of a key tell it apart from others; the first of them is not the number of an entry."""
+    """Return how many of the last parts of a key tell it apart from others; the first of them is
+    not the number of an entry.
+    """
     apart = (
         n
         for n in range(1, len(own))

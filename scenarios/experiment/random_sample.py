@@ -1,4 +1,6 @@
-"""Whether flights of an experiment are a random sample, from which a bound on a probability follows."""
+"""Whether flights of an experiment are a random sample, from which a bound on a probability
+follows.
+"""
 
 import math
 from collections.abc import Collection
@@ -9,14 +11,17 @@ from scenarios.schema.sections.equipment import SensorsConfig
 from scenarios.schema.sections.experiment import DrawConfig
 
 _READ = ("payload.", "emission.")
-"""Sections that change what is read in a flight, and its path only where that follows the readings."""
+"""Sections that change what is read in a flight, and its path only where that follows the readings.
+"""
 
 
 def is_random_sample(scenario: Scenario) -> bool:
-    """Return whether flights are a random sample: of the random variables, or of what follows from seeds of their own.
+    """Return whether flights are a random sample: of the random variables, or of what follows from
+    seeds of their own.
 
-    Those of a search and of subset simulation are not: each depends on what was flown before. Nor are copies of a flight,
-    which come where nothing random tells flights apart: values that are swept, or chosen in turn, come again and again.
+    Those of a search and of subset simulation are not: each depends on what was flown before. Nor
+    are copies of a flight, which come where nothing random tells flights apart: values that are
+    swept, or chosen in turn, come again and again.
     """
     if scenario.study == "falsify" or scenario.method == "subset" or scenario.cases:
         return False
@@ -34,7 +39,8 @@ def is_random_sample(scenario: Scenario) -> bool:
         return True
     listed = {*scenario.sweep.root, *in_turn}
     if "flight_seed" in listed:
-        # Of what is chosen in turn the first is another one in each flight; a seed behind it comes again, beside other values.
+        # Of what is chosen in turn the first is another one in each flight; a seed behind it comes
+        # again, beside other values.
         first = next(iter(in_turn), "")
         different = len(in_turn[first]) if first == "flight_seed" else 1
         return scenario.flights <= different and _depends_on_seed(scenario, listed)
@@ -42,10 +48,12 @@ def is_random_sample(scenario: Scenario) -> bool:
 
 
 def flights_per_sample(scenario: Scenario) -> int:
-    """Return how many flights have the same seed and random variables: a bound on a probability counts them as one.
+    """Return how many flights have the same seed and random variables: a bound on a probability
+    counts them as one.
 
-    Those of all points of a sweep have, and those of two vehicles; but for speed ratios of one flight each, and swept seeds, where
-    there are no random variables, of which all points have the same sample.
+    Those of all points of a sweep have, and those of two vehicles; but for speed ratios of one
+    flight each, and swept seeds, where there are no random variables, of which all points have the
+    same sample.
     """
     sweep = scenario.sweep.root
     apart = (
@@ -64,14 +72,18 @@ def flights_per_sample(scenario: Scenario) -> int:
 
 
 def _varies(draw: DrawConfig) -> bool:
-    """Return whether a random variable has several values: a range of no width, or one choice of some weight, has one."""
+    """Return whether a random variable has several values: a range of no width, or one choice of
+    some weight, has one.
+    """
     if draw.uniform is not None:
         return draw.uniform[0] < draw.uniform[1]
     return draw.weights is None or sum(weight > 0.0 for weight in draw.weights) > 1
 
 
 def _depends_on_seed(scenario: Scenario, listed: Collection[str]) -> bool:
-    """Return whether every flight depends on its seed, by its start or by noise, beside the keys whose values are listed."""
+    """Return whether every flight depends on its seed, by its start or by noise, beside the keys
+    whose values are listed.
+    """
 
     def given(key: str) -> bool:
         return f"start.{key}" in listed or getattr(scenario.start, key) is not None

@@ -1,4 +1,6 @@
-"""The flights of an experiment, by number: each with its scenario and its seed, from the experiment and the number alone."""
+"""The flights of an experiment, by number: each with its scenario and its seed, from the experiment
+and the number alone.
+"""
 
 import bisect
 import itertools
@@ -22,7 +24,9 @@ from scenarios.schema.sections.experiment import STUDY
 from scenarios.world.noise import Noise
 
 _PLANNED_FOR = ("guidance.", "turbulence.level", "reference.shape", "following.margin_law")
-"""Beginnings of keys for each choice of which the tracking in turbulence is worked out before any flight."""
+"""Beginnings of keys for each choice of which the tracking in turbulence is worked out before any
+flight.
+"""
 
 _MEASURED_FOR = ("guidance.bank_deg", "guidance.heading_rate_max_rad_s", "following.climb_gradient")
 """Keys for the largest values of which the aircraft is measured before any flight."""
@@ -66,7 +70,8 @@ class Experiment:
     ----------
     name : of the scenario, the trial's in a list
     scenario : scaled to its aircraft
-    alone : whether it is the only one of its run: then its name is not part of the names of swept flights
+    alone : whether it is the only one of its run: then its name is not part of the names of swept
+        flights
 
     Raises
     ------
@@ -112,14 +117,18 @@ class Experiment:
         return "_".join(parts), point.variant
 
     def beside(self, number: int) -> str:
-        """Return the name of the study's flight that a comparison's flight is beside; no word for other flights."""
+        """Return the name of the study's flight that a comparison's flight is beside; no word for
+        other flights.
+        """
         point, index = self._point(number)
         if point.beside is None:
             return ""
         return self.named(self._ends[point.beside] - self.points[point.beside].flights + index)[0]
 
     def names(self) -> list[str]:
-        """Return the name of one flight of each point: those of the others differ in their number alone."""
+        """Return the name of one flight of each point: those of the others differ in their number
+        alone.
+        """
         return [self.named(end - 1)[0] for end in self._ends]
 
     def index(self, number: int) -> int:
@@ -164,7 +173,9 @@ class Experiment:
         )
 
     def settings(self) -> Iterator[Scenario]:
-        """Yield every kind of flight, as far as autopilot and margins depend on it: by points and by choices."""
+        """Yield every kind of flight, as far as autopilot and margins depend on it: by points and
+        by choices.
+        """
         for point in self.points:
             choices = [
                 [(draw.key, value) for value in draw.choice]
@@ -203,7 +214,9 @@ class Experiment:
         return self.points[i], number - (self._ends[i - 1] if i else 0)
 
     def _sampled(self, point: Point, index: int, at: Sequence[float]) -> SampledFlight:
-        """Return a flight with its samples; one of a comparison has those of the study's flight that it is beside."""
+        """Return a flight with its samples; one of a comparison has those of the study's flight
+        that it is beside.
+        """
         if point.beside is None:
             return sampled_flight(self.name, point.scenario, index, at, given=point.given)
         study = self.points[point.beside]
@@ -216,7 +229,9 @@ class Experiment:
         )
 
     def _seed(self, point: Point, index: int) -> int:
-        """Return the seed of a flight, which depends on nu alone where it is swept: variants start alike."""
+        """Return the seed of a flight, which depends on nu alone where it is swept: variants start
+        alike.
+        """
         if point.nu is not None and point.flights == 1:
             entropy = [self.scenario.seed, round(point.nu * 1e6)]
         else:

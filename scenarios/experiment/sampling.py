@@ -14,7 +14,8 @@ class Points:
 
     Parameters
     ----------
-    sampling : ``sobol``, scrambled; ``latin_hypercube`` of as many strata as there are flights; ``random`` for no points at all
+    sampling : ``sobol``, scrambled; ``latin_hypercube`` of as many strata as there are flights;
+        ``random`` for no points at all
     dimension : number of keys that are sampled
     flights, seed : of the study
     """
@@ -29,7 +30,9 @@ class Points:
         self._block = functools.lru_cache(maxsize=4)(self._made)
 
     def at(self, number: int) -> tuple[float, ...]:
-        """Return the point of a flight, which depends on its number and the parameters alone; empty if it has none."""
+        """Return the point of a flight, which depends on its number and the parameters alone; empty
+        if it has none.
+        """
         if self._sampling == "random" or not self._dimension:
             return ()
         if self._sampling == "latin_hypercube":

@@ -8,13 +8,15 @@ from scenarios.schema.sections.experiment import SweepConfig
 def scenario_file(request: FlightRequest, *, title: str) -> bytes:
     """Return a scenario that replays a flight, to the last bit.
 
-    But where an experiment varies the bank beyond the design's, or the climb with a part that may fail: the vehicle is measured
-    for the steepest of all its flights, and here for that of this one.
+    But where an experiment varies the bank beyond the design's, or the climb with a part that may
+    fail: the vehicle is measured for the steepest of all its flights, and here for that of this
+    one.
     """
     import tomli_w
 
     document = request.scenario.model_dump(mode="json", exclude_none=True)
-    # The margin is planned for every fault that the experiment may bring, also for those that this flight does not have.
+    # The margin is planned for every fault that the experiment may bring, also for those that this
+    # flight does not have.
     document["fault"]["declared"] = sorted(
         request.scenario.declared_faults - {request.scenario.fault.kind}
     )

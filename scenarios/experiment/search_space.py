@@ -9,7 +9,9 @@ from scenarios.search.coordinate import Coordinate
 from scenarios.search.space import Space
 
 _DIRECTIONS = ("course_deg", "from_deg", "aspect_deg", "heading_deg")
-"""Ends of the keys of directions, which are the same after a full circle [deg]; a turn is none: it has a side."""
+"""Ends of the keys of directions, which are the same after a full circle [deg]; a turn is none: it
+has a side.
+"""
 
 
 def search_space(scenario: Scenario) -> Space:

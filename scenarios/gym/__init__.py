@@ -1,7 +1,9 @@
-"""``gymnasium.make("PlumeCrossing-v0")``: flights as an environment for reinforcement learning. Needs the extra ``gym``.
+"""``gymnasium.make("PlumeCrossing-v0")``: flights as an environment for reinforcement learning.
+Needs the extra ``gym``.
 
-Importing this package makes the environment known. Gymnasium has no entry points since its version 1.0: a package registers
-what it has when it is imported, by the user or by ``gymnasium.make("scenarios.gym:PlumeCrossing-v0")``.
+Importing this package makes the environment known. Gymnasium has no entry points since its version
+1.0: a package registers what it has when it is imported, by the user or by
+``gymnasium.make("scenarios.gym:PlumeCrossing-v0")``.
 """
 
 from common.extras import install_words

@@ -18,7 +18,8 @@ from scenarios.vehicles.vehicle_setup import VehicleSetup
 
 
 def action_box(work: FlightWork) -> "spaces.Box[np.float64]":
-    """Return heading rates [rad/s] and airspeeds [m/s] that flights of a scenario may be commanded, of all of them together.
+    """Return heading rates [rad/s] and airspeeds [m/s] that flights of a scenario may be commanded,
+    of all of them together.
 
     Raises
     ------
@@ -41,13 +42,17 @@ def action_box(work: FlightWork) -> "spaces.Box[np.float64]":
 
 
 def limits_of(plan: FlightPlan, setup: VehicleSetup) -> tuple[Array, Array]:
-    """Return the least and the largest heading rate [rad/s] and airspeed [m/s] of one flight, shape (2,) each."""
+    """Return the least and the largest heading rate [rad/s] and airspeed [m/s] of one flight, shape
+    (2,) each.
+    """
     turn = plan.guidance.tracking.heading_rate_max
     return np.array([-turn, setup.airspeed_min]), np.array([turn, setup.airspeed_max])
 
 
 def _settings(work: FlightWork) -> Iterator[Scenario]:
-    """Yield scenarios among which every flight's guidance is, or has its largest and least heading rates."""
+    """Yield scenarios among which every flight's guidance is, or has its largest and least heading
+    rates.
+    """
     for experiment in work.experiments:
         for setting in experiment.settings():
             ranges = [

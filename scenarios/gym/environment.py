@@ -1,4 +1,6 @@
-"""Flights of a scenario as a gymnasium environment: the agent commands heading rate and airspeed in place of the guidance."""
+"""Flights of a scenario as a gymnasium environment: the agent commands heading rate and airspeed in
+place of the guidance.
+"""
 
 import math
 import shutil
@@ -86,11 +88,13 @@ class _Episode:
 
 
 class PlumeCrossing(gymnasium.Env[Array, Array]):
-    """A vessel, her plume, and a vehicle that is to cross it near her and to keep out of the area around her.
+    """A vessel, her plume, and a vehicle that is to cross it near her and to keep out of the area
+    around her.
 
-    Actions are heading rate [rad/s] and airspeed [m/s] that the autopilot is commanded for one step of the guidance; observations
-    are those of ``scenarios.gym.observation.MEANINGS``, rewards those of ``scenarios.gym.reward``. An episode is terminated when
-    the keep-out area is entered, the aircraft is lost, or every crossing is flown; it is truncated when its time is up.
+    Actions are heading rate [rad/s] and airspeed [m/s] that the autopilot is commanded for one step
+    of the guidance; observations are those of ``scenarios.gym.observation.MEANINGS``, rewards those
+    of ``scenarios.gym.reward``. An episode is terminated when the keep-out area is entered, the
+    aircraft is lost, or every crossing is flown; it is truncated when its time is up.
 
     Parameters
     ----------
@@ -99,7 +103,8 @@ class PlumeCrossing(gymnasium.Env[Array, Array]):
 
     Raises
     ------
-    InputError : the scenario cannot be flown, has no vessel, or objects as parts, or commands without a limit; one line
+    InputError : the scenario cannot be flown, has no vessel, or objects as parts, or commands
+        without a limit; one line
     """
 
     metadata = {"render_modes": []}  # noqa: RUF012 - as gymnasium has it
@@ -155,14 +160,16 @@ class PlumeCrossing(gymnasium.Env[Array, Array]):
 
         Parameters
         ----------
-        seed : of which flight it is, of its start, its air and its errors; further episodes follow from it
-        options : ``{"flight_id": ...}`` begins that flight of the scenario with the seed that a run of it has, in a simulation of
-            its own, so that it is the run's to the last bit; other episodes use one simulation again, which is true to 1e-9 m
+        seed : of which flight it is, of its start, its air and its errors; further episodes follow
+            from it
+        options : ``{"flight_id": ...}`` begins that flight of the scenario with the seed that a run
+            of it has, in a simulation of its own, so that it is the run's to the last bit; other
+            episodes use one simulation again, which is true to 1e-9 m
 
         Raises
         ------
-        InputError : an option is unknown, the scenario has no flight of this name, or it cannot be flown; or none of many at random
-            can be; one line
+        InputError : an option is unknown, the scenario has no flight of this name, or it cannot be
+            flown; or none of many at random can be; one line
         """
         super().reset(seed=seed)
         if unknown := [str(key) for key in options or {} if key != _FLIGHT_ID]:
@@ -182,7 +189,9 @@ class PlumeCrossing(gymnasium.Env[Array, Array]):
         return self._episode.observer.observe(0.0), self._info()
 
     def step(self, action: Array) -> tuple[Array, SupportsFloat, bool, bool, dict[str, Any]]:
-        """Fly one step of the guidance with an action; one outside of what this flight may be commanded is cut."""
+        """Fly one step of the guidance with an action; one outside of what this flight may be
+        commanded is cut.
+        """
         episode = self._episode
         if episode.over:
             raise InputError("the episode is over; reset the environment")
@@ -223,7 +232,9 @@ class PlumeCrossing(gymnasium.Env[Array, Array]):
         self._aircraft.clear()
 
     def _own_flights(self) -> Iterator[tuple[str, int]]:
-        """Yield name and number of each flight of the study; those of comparisons have numbers between them."""
+        """Yield name and number of each flight of the study; those of comparisons have numbers
+        between them.
+        """
         first = 0
         for experiment in self._work.experiments:
             for number in range(experiment.flights):
@@ -252,7 +263,9 @@ class PlumeCrossing(gymnasium.Env[Array, Array]):
         raise InputError(f"{_TRIES} flights at random had no solution; the last one: {reason}")
 
     def _begin(self, request: FlightRequest) -> "_Episode":
-        """Place the vehicle at the start of a flight, and have the guidance compute its first commands."""
+        """Place the vehicle at the start of a flight, and have the guidance compute its first
+        commands.
+        """
         plan, setup = self._work.plan(request), self._work.setup_of(request)
         if plan.world is None:
             raise InputError(f"flight '{plan.flight_id}' has no vessel; an environment needs one")

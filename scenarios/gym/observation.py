@@ -1,4 +1,6 @@
-"""What the agent observes: the vehicle beside the vessel and her plume, and the guidance's reference, in the frame of the plume."""
+"""What the agent observes: the vehicle beside the vessel and her plume, and the guidance's
+reference, in the frame of the plume.
+"""
 
 import math
 
@@ -54,7 +56,9 @@ MEANINGS: dict[str, tuple[str, str, float]] = {
     "reference_sin": ("sine of the reference's course through the air, from the plume's", "1", 1.0),
     "elapsed": ("time since the start over the longest that the flight may last", "1", 1.0),
 }
-"""Entries of the observation in order, each with meaning, unit, and the bound of its size. Motion is true."""
+"""Entries of the observation in order, each with meaning, unit, and the bound of its size. Motion
+is true.
+"""
 
 
 def observation_space() -> "spaces.Box[np.float64]":

@@ -1,4 +1,6 @@
-"""The air along a flight, sampled at even times between its samples: the same in parts, while it goes on, as at once."""
+"""The air along a flight, sampled at even times between its samples: the same in parts, while it
+goes on, as at once.
+"""
 
 import math
 from dataclasses import dataclass, fields
@@ -14,10 +16,14 @@ from scenarios.world.exhaust import Exhaust
 Array = npt.NDArray[np.float64]
 
 TIME_STEP = 0.05
-"""Between the places at which the air is sampled [s]: a metre at 20 m/s, a tenth of the narrowest plume."""
+"""Between the places at which the air is sampled [s]: a metre at 20 m/s, a tenth of the narrowest
+plume.
+"""
 
 CLEAN_AIR = {"so2": 0.2, "co2": 420.0, "no": 0.1, "no2": 1.0}
-"""Gases in clean air over the sea, in the units of readings; assumptions. They are far below the noise, but for CO2."""
+"""Gases in clean air over the sea, in the units of readings; assumptions. They are far below the
+noise, but for CO2.
+"""
 
 PLACE_COLUMNS = ("north_m", "east_m", "altitude_m")
 RATE_COLUMNS = ("velocity_north_mps", "velocity_east_mps", "climb_rate_mps")
@@ -63,7 +69,8 @@ class AirSamples:
 
 
 class AirSampler:
-    """Samples the air along a path that is given in parts. Between two places the path is the cubic through them and their rates.
+    """Samples the air along a path that is given in parts. Between two places the path is the cubic
+    through them and their rates.
 
     Parameters
     ----------

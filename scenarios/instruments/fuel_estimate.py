@@ -1,4 +1,6 @@
-"""What a sniffer's readings say of the fuel: figures of a flight, a table over time, and what a report draws."""
+"""What a sniffer's readings say of the fuel: figures of a flight, a table over time, and what a
+report draws.
+"""
 
 import math
 from collections.abc import Mapping

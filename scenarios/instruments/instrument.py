@@ -21,7 +21,8 @@ payload = PAYLOADS.register
 
 @runtime_checkable
 class Instrument(Protocol):
-    """An instrument that is read in flight, made fresh for each flight with its scenario and world and a random generator.
+    """An instrument that is read in flight, made fresh for each flight with its scenario and world
+    and a random generator.
 
     Attributes
     ----------
@@ -50,7 +51,8 @@ class Evaluation:
     columns : values of ``COLUMNS``, shape (samples, columns)
     figures : of the flight's row in the summary
     tables : rows by file
-    document : what a report shows beside all this, or none; it is written as JSON beside the time history
+    document : what a report shows beside all this, or none; it is written as JSON beside the time
+        history
     """
 
     columns: Array
@@ -61,10 +63,12 @@ class Evaluation:
 
 @runtime_checkable
 class EvaluatedInstrument(Protocol):
-    """An instrument whose readings are computed after the flight, all at once; otherwise as ``Instrument``.
+    """An instrument whose readings are computed after the flight, all at once; otherwise as
+    ``Instrument``.
 
-    It may have ``FIGURES``, the columns of the summary that it fills, and ``TABLES``, the columns of the tables that it fills, by
-    file, beside those that name the flight. A figure that it does not return is empty.
+    It may have ``FIGURES``, the columns of the summary that it fills, and ``TABLES``, the columns
+    of the tables that it fills, by file, beside those that name the flight. A figure that it does
+    not return is empty.
 
     Attributes
     ----------
@@ -79,7 +83,8 @@ class EvaluatedInstrument(Protocol):
         Parameters
         ----------
         column : returns a column of the flight's record by name, shape (samples,)
-        since : when the measurement begins: where the flight has settled; not a number if it never does [s]
+        since : when the measurement begins: where the flight has settled; not a number if it never
+            does [s]
         """
 
 
@@ -102,7 +107,8 @@ class GasReader(Protocol):
     def follow(
         self, time: float, motion: Motion, sample: tuple[float, ...], /
     ) -> Sequence[tuple[float, float]]:
-        """Return times [s] and CO2 [ppm] of the readings that have come; called for each row of the flight's record.
+        """Return times [s] and CO2 [ppm] of the readings that have come; called for each row of the
+        flight's record.
 
         Parameters are those of ``Instrument.read``.
         """
@@ -118,13 +124,16 @@ def figures_of(instrument: Any) -> tuple[str, ...]:
 
 
 def tables_of(instrument: Any) -> Mapping[str, tuple[str, ...]]:
-    """Return the columns of the tables that an instrument, or a class of instruments, fills, by file."""
+    """Return the columns of the tables that an instrument, or a class of instruments, fills, by
+    file.
+    """
     tables: Mapping[str, tuple[str, ...]] = getattr(instrument, "TABLES", {})
     return tables
 
 
 def evaluated_instruments(scenarios: Iterable[Scenario]) -> list[Any]:
-    """Return the instruments of scenarios that are evaluated after their flights, as classes, each once.
+    """Return the instruments of scenarios that are evaluated after their flights, as classes, each
+    once.
 
     Raises
     ------

@@ -11,7 +11,9 @@ from measurement.plume.passes import HIT, passes
 Array = npt.NDArray[np.float64]
 
 INSIDE = math.exp(-2.0)
-"""Concentration over that of the axis from which a place counts as inside the plume [-]: two spreads from the axis."""
+"""Concentration over that of the axis from which a place counts as inside the plume [-]: two
+spreads from the axis.
+"""
 
 
 PASS_FIGURES = (
@@ -22,7 +24,9 @@ PASS_FIGURES = (
 
 
 def fraction_of_axis(plume: PlumeSample) -> Array:
-    """Return the concentration over that in the centre of the plume's cross-section; 0 where there is no plume."""
+    """Return the concentration over that in the centre of the plume's cross-section; 0 where there
+    is no plume.
+    """
     inside = plume.axis_dilution > 0.0
     return np.divide(
         plume.dilution, plume.axis_dilution, out=np.zeros_like(plume.dilution), where=inside
@@ -34,9 +38,10 @@ def pass_figures(
 ) -> dict[str, float]:
     """Return figures of the passes of a flight.
 
-    A change of sides of the plume's mean axis, seen from above, is a crossing, with smoke there or without: the UAV may be above or
-    below the plume, and the plume may have meandered away. Of these passes those count as passes through smoke in which the UAV was
-    inside the plume, as ``INSIDE`` says, at one sample at least.
+    A change of sides of the plume's mean axis, seen from above, is a crossing, with smoke there or
+    without: the UAV may be above or below the plume, and the plume may have meandered away. Of
+    these passes those count as passes through smoke in which the UAV was inside the plume, as
+    ``INSIDE`` says, at one sample at least.
 
     Parameters
     ----------

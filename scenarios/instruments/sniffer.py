@@ -1,4 +1,6 @@
-"""A sniffer on board: what it reads of the exhaust, in flight or after it, and what that says of the fuel."""
+"""A sniffer on board: what it reads of the exhaust, in flight or after it, and what that says of
+the fuel.
+"""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
@@ -38,7 +40,9 @@ CO2 = GASES.index("co2")
 """Its column."""
 
 _PASSED_ON = 0.45
-"""Time between readings that are passed on in flight, at least [s]: those of a faster sniffer come together."""
+"""Time between readings that are passed on in flight, at least [s]: those of a faster sniffer come
+together.
+"""
 
 
 _NOT_FLOWN = "unspecified"
@@ -70,10 +74,12 @@ class SnifferSettings:
     Attributes
     ----------
     sensor : a preset of measurement/sniffer/presets, or a table of one's own with the keys of these
-    exact : whether the instrument is as its data sheet says; otherwise gains, zeros, responses and cross-sensitivities are sampled
-        within what is stated
-    limit_percent : sulphur content that the verdict is on [% m/m]: 0.1 in an emission control area, 0.5 elsewhere
-    dynamic_pressure_fraction : fraction of the dynamic pressure that the inlet passes on to the sensors [-]
+    exact : whether the instrument is as its data sheet says; otherwise gains, zeros, responses and
+        cross-sensitivities are sampled within what is stated
+    limit_percent : sulphur content that the verdict is on [% m/m]: 0.1 in an emission control area,
+        0.5 elsewhere
+    dynamic_pressure_fraction : fraction of the dynamic pressure that the inlet passes on to the
+        sensors [-]
     """
 
     sensor: Annotated[str | dict[str, Any], BeforeValidator(_name_or_table)] = field(
@@ -152,7 +158,8 @@ class SnifferOnBoard:
         self._full, self._stuck = (
             np.array([value.get(gas, np.nan) for gas in GASES]) for value in (ends, {})
         )
-        # What is known of the flight since the air was last sampled: time, place, rates and airspeed.
+        # What is known of the flight since the air was last sampled: time, place, rates and
+        # airspeed.
         self._path: list[tuple[float, ...]] = []
         self._count = 0
 
@@ -171,7 +178,8 @@ class SnifferOnBoard:
     def follow(
         self, time: float, motion: Motion, sample: tuple[float, ...]
     ) -> Sequence[tuple[float, float]]:
-        """Return the times [s] and the CO2 [ppm] of the readings that have come; called for each row of the flight's record.
+        """Return the times [s] and the CO2 [ppm] of the readings that have come; called for each
+        row of the flight's record.
 
         Parameters are those of ``scenarios.instruments.instrument.Instrument.read``.
         """
@@ -195,7 +203,9 @@ class SnifferOnBoard:
         return new
 
     def _failed(self, read: Readings) -> Readings:
-        """Return readings as a fault leaves them: a dead sniffer repeats its last one, a saturated one reads its range's end."""
+        """Return readings as a fault leaves them: a dead sniffer repeats its last one, a saturated
+        one reads its range's end.
+        """
         kind, values = self._fault.kind, read.values
         good = read.time < self._fault.begins
         if kind == SNIFFER_SATURATED:

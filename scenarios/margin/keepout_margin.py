@@ -1,4 +1,6 @@
-"""The keep-out margin of a flight in operational conditions: where its orbit lies, and what the keep-out guard keeps off."""
+"""The keep-out margin of a flight in operational conditions: where its orbit lies, and what the
+keep-out guard keeps off.
+"""
 
 import math
 from dataclasses import dataclass
@@ -13,10 +15,13 @@ from scenarios.schema.sections.equipment import VesselReportsConfig
 from scenarios.vehicles.sensors import NAVIGATION_TIME
 
 VESSEL_ACCELERATION, VESSEL_MEMORY = 0.02, 40.0
-"""Standard deviation [m/s^2] and time constant [s] of the acceleration that the vessel's filter reckons with: a ship's."""
+"""Standard deviation [m/s^2] and time constant [s] of the acceleration that the vessel's filter
+reckons with: a ship's.
+"""
 
 _ROUNDS = 10
-"""In which k is found that its own rarity depends on: each leaves a tenth of the error or less [-]."""
+"""In which k is found that its own rarity depends on: each leaves a tenth of the error or less [-].
+"""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -27,8 +32,10 @@ class KeepoutMargin:
     ----------
     tracking_sigma : predicted standard deviation of the tracking error towards the vessel [m]
     total : that the orbit keeps from the keep-out area [m]
-    guard : that the keep-out guard keeps beyond the keep-out area, of wherever the vessel may be [m]
-    reach : how far the vessel may be from where it is taken to be, as long as its reports are not overdue [m]
+    guard : that the keep-out guard keeps beyond the keep-out area, of wherever the vessel may be
+        [m]
+    reach : how far the vessel may be from where it is taken to be, as long as its reports are not
+        overdue [m]
     """
 
     tracking_sigma: float
@@ -50,7 +57,8 @@ def filter_parameters(reports: VesselReportsConfig) -> FilterParameters:
 def vessel_limits(scenario: Scenario, horizon: float) -> VesselLimits:
     """Return what the vessel and its reports keep within.
 
-    Errors are normally distributed and so have no limit; the one taken is exceeded as often as the keep-out area may be touched.
+    Errors are normally distributed and so have no limit; the one taken is exceeded as often as the
+    keep-out area may be touched.
 
     Parameters
     ----------
@@ -70,13 +78,15 @@ def vessel_limits(scenario: Scenario, horizon: float) -> VesselLimits:
 
 
 def _deviations(scenario: Scenario) -> float:
-    """Return how many standard deviations errors exceed as often as the keep-out area may be touched [-].
+    """Return how many standard deviations errors exceed as often as the keep-out area may be
+    touched [-].
 
-    A normal error in two dimensions exceeds k standard deviations with the probability p = exp(-k^2/2). That of a report, as it
-    ages, goes from that of her place to that of her velocity, and exceeds k at some age with p (1 + k sqrt(pi/8)) at most, by
-    Rice's formula over a quarter of a circle. That of the vehicle's own place wanders with a time constant T, and comes to exceed k
-    with a rate of p k^2/T at most (Kramers, "Brownian motion in a field of force and the diffusion model of chemical reactions",
-    Physica, 1940).
+    A normal error in two dimensions exceeds k standard deviations with the probability p =
+    exp(-k^2/2). That of a report, as it ages, goes from that of her place to that of her velocity,
+    and exceeds k at some age with p (1 + k sqrt(pi/8)) at most, by Rice's formula over a quarter of
+    a circle. That of the vehicle's own place wanders with a time constant T, and comes to exceed k
+    with a rate of p k^2/T at most (Kramers, "Brownian motion in a field of force and the diffusion
+    model of chemical reactions", Physica, 1940).
     """
     flight, reports = scenario.flight, scenario.reports
     # A flight begins with a report, however rare they are.
@@ -96,16 +106,19 @@ def _deviations(scenario: Scenario) -> float:
 def widest_tube(
     limits: VesselLimits, reports: VesselReportsConfig, *, plan_period: float, noise: float = 0.0
 ) -> Tube:
-    """Return the disc about a vessel whose newest report is as old as it becomes where none is missing, centre in the origin.
+    """Return the disc about a vessel whose newest report is as old as it becomes where none is
+    missing, centre in the origin.
 
-    It is as much larger as discs reach farther because reports scatter (``scenarios.margin.report_scatter``), or, about a vessel
-    that is known exactly, because the vehicle's own position and velocity do.
+    It is as much larger as discs reach farther because reports scatter
+    (``scenarios.margin.report_scatter``), or, about a vessel that is known exactly, because the
+    vehicle's own position and velocity do.
 
     Parameters
     ----------
     limits, reports : what vessel and reports keep within, and how often reports come
     plan_period : time between looks at them [s]
-    noise : how much nearer noise of satellite navigation takes the vehicle (``scenarios.margin.satellite_noise``) [m]
+    noise : how much nearer noise of satellite navigation takes the vehicle
+        (``scenarios.margin.satellite_noise``) [m]
     """
     age = plan_period + (0.0 if reports.exact else reports.interval_s[1] + reports.latency_max_s)
     oldest = tube(VesselReport(-age, 0.0, 0.0, 0.0, 0.0), limits, 0.0)
@@ -125,7 +138,9 @@ def widest_tube(
 def tracking_level(
     scenario: Scenario, spreads: SpreadTable | None, nu: float
 ) -> tuple[float, float]:
-    """Return the standard deviation of the tracking error towards the vessel, and what it exceeds as rarely as allowed [m]."""
+    """Return the standard deviation of the tracking error towards the vessel, and what it exceeds
+    as rarely as allowed [m].
+    """
     spread = spreads.at(nu) if spreads else CALM_AIR_SPREAD
     return spread.radial, planned_margin(
         spread, touches_per_hour=scenario.following.touches_per_hour

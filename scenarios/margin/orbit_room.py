@@ -14,13 +14,17 @@ from gnc.safety.guard_parameters import GuardParameters
 from gnc.safety.keepout_guard import KeepoutGuard
 
 _PHASES = 24
-"""Points of half an orbit from which a turn away is predicted; the other half is its mirror image, or has as many [-]."""
+"""Points of half an orbit from which a turn away is predicted; the other half is its mirror image,
+or has as many [-].
+"""
 
 ASTERN = (-1.0, 0.0)
 """Direction of a plume straight astern, ahead of the vessel and to its right [-]."""
 
 _ALIGNED = 1e-9
-"""Part to the right up to which a direction counts as along the vessel's course: then half an orbit tells it all [-]."""
+"""Part to the right up to which a direction counts as along the vessel's course: then half an orbit
+tells it all [-].
+"""
 
 _FAR = 3.0
 """Distance at which clearances are found first, over the radius to be kept [-]."""
@@ -29,7 +33,8 @@ _FAR = 3.0
 def orbit_distance(
     guard: GuardParameters, vessel: Tube, orbit: Orbit, direction: tuple[float, float] = ASTERN
 ) -> float:
-    """Return the smallest distance of an orbit from the vessel for which a turn away is always left to the guard [m].
+    """Return the smallest distance of an orbit from the vessel for which a turn away is always left
+    to the guard [m].
 
     It is that of its centre less its half-width along.
 
@@ -69,7 +74,8 @@ def orbit_distance(
 
 
 def circle_distance(guard: GuardParameters, vessel: Tube, speed: float, drift: float) -> float:
-    """Return the smallest radius of a circle about the vessel on which a turn away is always left to the guard [m].
+    """Return the smallest radius of a circle about the vessel on which a turn away is always left
+    to the guard [m].
 
     Parameters
     ----------
@@ -104,14 +110,17 @@ def _distance(
     speed: float,
     drift: float,
 ) -> float:
-    """Return the distance at which the nearest of the motions that belong to it leaves the guard nothing to do [m]."""
+    """Return the distance at which the nearest of the motions that belong to it leaves the guard
+    nothing to do [m].
+    """
     keeping = KeepoutGuard(guard)
     keeping.tubes = (
         vessel._replace(time=0.0, north=0.0, east=0.0, velocity_north=drift, velocity_east=0.0),
     )
     distance = _FAR * (guard.radius + vessel.radius)
     for _ in range(2):
-        # Clearances change as the distance does, but for the curvature of a disc: what is found is up to 0.3 m too large.
+        # Clearances change as the distance does, but for the curvature of a disc: what is found is
+        # up to 0.3 m too large.
         least = math.inf
         for motion in motions(distance):
             least = min(least, keeping.clearance(0.0, motion, speed, enough=least))

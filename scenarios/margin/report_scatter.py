@@ -1,7 +1,9 @@
-"""How much larger a vessel's disc has to be taken because her reports scatter: the guard keeps off where they say she may be.
+"""How much larger a vessel's disc has to be taken because her reports scatter: the guard keeps off
+where they say she may be.
 
-The orbit lies beside where the filter takes the vessel to be. The discs of ``gnc.estimation.reachable_set`` lie about what single
-reports say, which scatters more. So a disc that is no larger than planned may all the same reach farther towards the orbit.
+The orbit lies beside where the filter takes the vessel to be. The discs of
+``gnc.estimation.reachable_set`` lie about what single reports say, which scatters more. So a disc
+that is no larger than planned may all the same reach farther towards the orbit.
 """
 
 import functools
@@ -13,7 +15,9 @@ from gnc.estimation.reachable_set import KEPT, VesselLimits, radius_after
 from gnc.estimation.vessel_filter import FilterParameters, VesselFilter, VesselReport
 
 GUARDED_PER_HOUR = 1.0
-"""How often the discs of a vessel at constant velocity may reach farther than is allowed for here [1/h]."""
+"""How often the discs of a vessel at constant velocity may reach farther than is allowed for here
+[1/h].
+"""
 
 _HOURS, _SEED = 20.0, 20261122
 """Flight time over which reports are drawn [h], and the seed: the same for every flight."""
@@ -35,10 +39,12 @@ def scatter_allowance(
     plan_period: float,
     planned: float,
 ) -> float:
-    """Return by how much a disc reaches farther than planned, ``GUARDED_PER_HOUR`` times an hour [m].
+    """Return by how much a disc reaches farther than planned, ``GUARDED_PER_HOUR`` times an hour
+    [m].
 
-    Looked at just before each report, when its predecessors are oldest: of the newest discs the one counts that reaches least far
-    in a direction, from where the filter takes the vessel to be. Discs are compared at the end of a turn away.
+    Looked at just before each report, when its predecessors are oldest: of the newest discs the one
+    counts that reaches least far in a direction, from where the filter takes the vessel to be.
+    Discs are compared at the end of a turn away.
 
     Parameters
     ----------
@@ -65,12 +71,16 @@ def scatter_allowance(
 
 
 def mean_interval(intervals: tuple[float, float]) -> float:
-    """Return the mean interval [s] between reports, by the shortest and longest; looked at no oftener than once a second."""
+    """Return the mean interval [s] between reports, by the shortest and longest; looked at no
+    oftener than once a second.
+    """
     return max(_NO_OFTENER, 0.5 * sum(intervals))
 
 
 def _filter_sigma(known: FilterParameters, interval: float) -> float:
-    """Return the standard deviation of the vessel's place as the filter knows it, at the mean interval of her reports [m]."""
+    """Return the standard deviation of the vessel's place as the filter knows it, at the mean
+    interval of her reports [m].
+    """
     vessel = VesselFilter(known)
     for number in range(_SETTLED):
         vessel.report(VesselReport(number * interval, 0.0, 0.0, 0.0, 0.0))

@@ -1,13 +1,15 @@
-"""How much nearer the noise of satellite navigation takes a vehicle to a vessel that is known exactly, as its guidance sees it.
+"""How much nearer the noise of satellite navigation takes a vehicle to a vessel that is known
+exactly, as its guidance sees it.
 
-Where the vehicle takes itself to be wanders with the noise. It follows its reference there, late: what it has not yet made up for
-stands, for guidance and keep-out guard alike, between it and its reference. In axes along and across the reference's course, which
-turn at omega_r, the true error e and the error of the position n obey e_along' = -dV + omega_r e_right,
-e_right' = -V dchi - omega_r e_along and n' = -n/T + omega_r (n_right, -n_along) + noise of the density 2 sigma^2/T; the steering
+Where the vehicle takes itself to be wanders with the noise. It follows its reference there, late:
+what it has not yet made up for stands, for guidance and keep-out guard alike, between it and its
+reference. In axes along and across the reference's course, which turn at omega_r, the true error e
+and the error of the position n obey e_along' = -dV + omega_r e_right, e_right' = -V dchi - omega_r
+e_along and n' = -n/T + omega_r (n_right, -n_along) + noise of the density 2 sigma^2/T; the steering
 law and the airspeed act on e - n. Its covariance solves a Lyapunov equation.
 
-Noise of the velocity, new at each step, turns and stretches the predicted turn away: up to where it comes nearest, a quarter of a
-turn from where it begins.
+Noise of the velocity, new at each step, turns and stretches the predicted turn away: up to where it
+comes nearest, a quarter of a turn from where it begins.
 """
 
 import math
@@ -24,17 +26,21 @@ from scenarios.margin.report_scatter import GUARDED_PER_HOUR
 from scenarios.margin.steering_gains import STEERED_BY, steering_gains
 
 _ALONG, _RIGHT, _COURSE, _TURN, _FASTER, _NOISE_ALONG, _NOISE_RIGHT = range(7)
-"""Rows of the linear loop: true error [m], course [rad], heading rate [rad/s], speed [m/s], error of the position [m]."""
+"""Rows of the linear loop: true error [m], course [rad], heading rate [rad/s], speed [m/s], error
+of the position [m].
+"""
 
 Array = npt.NDArray[np.float64]
 
 
 def noise_allowance(seen: float, turned: float, *, time_step: float) -> float:
-    """Return what both errors together exceed no oftener than ``GUARDED_PER_HOUR``, as if they were new at each step [m].
+    """Return what both errors together exceed no oftener than ``GUARDED_PER_HOUR``, as if they were
+    new at each step [m].
 
     Parameters
     ----------
-    seen, turned : standard deviations of the error that is seen, and of the place where a turn away comes nearest [m]
+    seen, turned : standard deviations of the error that is seen, and of the place where a turn away
+        comes nearest [m]
     time_step : of the guidance [s]
     """
     looks = SECONDS_PER_HOUR / time_step / GUARDED_PER_HOUR
@@ -52,7 +58,8 @@ def position_scatter(
     airspeed_bandwidth: float,
     noise_time: float,
 ) -> float:
-    """Return the standard deviation of the error that is seen, per that of the noise, in the worst direction and turn [-].
+    """Return the standard deviation of the error that is seen, per that of the noise, in the worst
+    direction and turn [-].
 
     Parameters
     ----------
@@ -101,7 +108,9 @@ def _loop(
 
 
 def _seen(loop: Array) -> float:
-    """Return the deviation of the error seen; 1 where the law does not track, and the vehicle is where its noise is not."""
+    """Return the deviation of the error seen; 1 where the law does not track, and the vehicle is
+    where its noise is not.
+    """
     if np.linalg.eigvals(loop).real.max() >= 0.0:
         return 1.0
     kicks = np.zeros((7, 7))

@@ -1,4 +1,6 @@
-"""The steering law as it is flown, linear about a turn: by differences on ``Tracker`` itself, preview included."""
+"""The steering law as it is flown, linear about a turn: by differences on ``Tracker`` itself,
+preview included.
+"""
 
 from dataclasses import replace
 
@@ -11,8 +13,10 @@ from gnc.reference.reference import ReferenceStart
 from gnc.tracker import Tracker, TrackingParameters
 
 STEERED_BY = ("along", "right", "course", "speed", "airspeed", "heading_rate", "last")
-"""What the steering law depends on, as deviations from the reference's motion [m, m, rad, m/s, m/s, rad/s, rad/s]: the error, the
-motion over the mean air, airspeed and heading rate as measured against the gusty air, and the last command."""
+"""What the steering law depends on, as deviations from the reference's motion
+[m, m, rad, m/s, m/s, rad/s, rad/s]: the error, the motion over the mean air, airspeed and heading
+rate as measured against the gusty air, and the last command.
+"""
 
 _STEP = 1e-5
 _STRAIGHT = 1e-6
@@ -22,7 +26,8 @@ Array = npt.NDArray[np.float64]
 
 
 def steering_gains(guidance: TrackingParameters, turn: float, speed: float) -> Array:
-    """Return the commanded turn [rad/s] per unit of each of ``STEERED_BY``, on a reference that turns at ``turn`` [rad/s].
+    """Return the commanded turn [rad/s] per unit of each of ``STEERED_BY``, on a reference that
+    turns at ``turn`` [rad/s].
 
     Parameters
     ----------

@@ -1,8 +1,10 @@
-"""How gusts move the aircraft off its reference: the guidance, linear about a turn, closed around the linear aircraft.
+"""How gusts move the aircraft off its reference: the guidance, linear about a turn, closed around
+the linear aircraft.
 
-In axes along and across the reference's course, which turn at omega_r, the error e from aircraft to reference obeys
-e_along' = -dV + omega_r e_right and e_right' = -V dchi - omega_r e_along. The loop is closed frequency by frequency, with the
-hold of the commands and the step by which the last one is late.
+In axes along and across the reference's course, which turn at omega_r, the error e from aircraft to
+reference obeys e_along' = -dV + omega_r e_right and e_right' = -V dchi - omega_r e_along. The loop
+is closed frequency by frequency, with the hold of the commands and the step by which the last one
+is late.
 """
 
 import numpy as np
@@ -16,8 +18,8 @@ from innerloop.synthesis.schedule import Schedule
 from scenarios.margin.steering_gains import STEERED_BY, steering_gains
 
 RESPONSES = ("along", "right", "pace")
-"""Rows of ``tracking_response``: the error [m], and what the aircraft's own speed gives to keep pace, which is the commanded
-airspeed as far as it is followed [m/s]."""
+"""Rows of ``tracking_response``: the error [m], and what the aircraft's own speed gives to keep
+pace, which is the commanded airspeed as far as it is followed [m/s]."""
 
 _READ = ("course_rate", "speed", "airspeed", "heading_rate")
 
@@ -60,7 +62,8 @@ def tracking_response(
         0.5 * frequencies * guidance.time_step / np.pi
     )
 
-    # Four equations for the error along and right and for the commanded airspeed and turn: left @ unknowns = right @ gusts.
+    # Four equations for the error along and right and for the commanded airspeed and turn: left @
+    # unknowns = right @ gusts.
     held, per_course = hold_of_step[:, None], (speed / s)[:, None]
     left, right = (
         np.zeros((len(s), 4, 4), dtype=complex),

@@ -1,18 +1,23 @@
-"""How far from the keep-out area the orbit is planned, so that turbulence hardly ever carries the aircraft into it.
+"""How far from the keep-out area the orbit is planned, so that turbulence hardly ever carries the
+aircraft into it.
 
-Predicted from the linear closed loop and the spectrum of the turbulence: the spread of the tracking error, how fast it varies, and
-by Rice's formula (S. O. Rice, "Mathematical Analysis of Random Noise", 1944) how often it goes beyond a margin.
+Predicted from the linear closed loop and the spectrum of the turbulence: the spread of the tracking
+error, how fast it varies, and by Rice's formula (S. O. Rice, "Mathematical Analysis of Random
+Noise", 1944) how often it goes beyond a margin.
 
-Of the linear loop this is an upper bound: the orbit touches the keep-out area only where it comes closest, and is taken to be there
-all the time, at its largest bank, with its error in the worst direction.
+Of the linear loop this is an upper bound: the orbit touches the keep-out area only where it comes
+closest, and is taken to be there all the time, at its largest bank, with its error in the worst
+direction.
 
-Gusts that exceed the range of the aircraft's airspeeds carry it along as long as they last. A Gaussian process near a high peak
-L is L (1 - (nu t)^2/2), where nu is the ratio of its rate's deviation to its own; what of it exceeds a limit adds up to a distance
-in closed form, and that is added to the margin, with the peak that is passed as often as touches are allowed.
+Gusts that exceed the range of the aircraft's airspeeds carry it along as long as they last. A
+Gaussian process near a high peak L is L (1 - (nu t)^2/2), where nu is the ratio of its rate's
+deviation to its own; what of it exceeds a limit adds up to a distance in closed form, and that is
+added to the margin, with the peak that is passed as often as touches are allowed.
 
-Not in it is how hard the aircraft can brake. Where turbulence closes the throttle, the spread is larger than predicted: 1.4 to 2.9
-times on the X8 in moderate turbulence, which the second part of the margin made up for in 13 hours of flights. In severe turbulence
-an X8 can lose its reference, and no such margin holds.
+Not in it is how hard the aircraft can brake. Where turbulence closes the throttle, the spread is
+larger than predicted: 1.4 to 2.9 times on the X8 in moderate turbulence, which the second part of
+the margin made up for in 13 hours of flights. In severe turbulence an X8 can lose its reference,
+and no such margin holds.
 """
 
 import math
@@ -30,7 +35,9 @@ from innerloop.analysis.gust_statistics import GustStatistics
 from innerloop.synthesis.schedule import Schedule
 
 FREQUENCIES = np.logspace(-2.5, 1.9, 400)
-"""Where spectra are integrated [rad/s]: from far below the corner of a gust, V/L = 0.09, to beyond the hold of the commands."""
+"""Where spectra are integrated [rad/s]: from far below the corner of a gust, V/L = 0.09, to beyond
+the hold of the commands.
+"""
 
 _ORBIT_POINTS = 60
 
@@ -46,7 +53,8 @@ class Spread:
     ----------
     along, across : error along and across the reference's course, in the mean over the orbit [m]
     radial, radial_rate : towards the vessel, and its rate: upper bounds [m, m/s]
-    airspeed, airspeed_rate : of the airspeed that keeping pace takes, as fast as the aircraft gives it, and its rate [m/s, m/s^2]
+    airspeed, airspeed_rate : of the airspeed that keeping pace takes, as fast as the aircraft gives
+        it, and its rate [m/s, m/s^2]
     airspeed_limit : how far airspeed may go from the reference's speed, to the nearer side [m/s]
     """
 
@@ -100,7 +108,8 @@ def tracking_spreads(
     *,
     span: float,
 ) -> tuple[Spread, ...]:
-    """Return the spreads that the linear closed loop predicts at the design airspeed nearest to the references' speed.
+    """Return the spreads that the linear closed loop predicts at the design airspeed nearest to the
+    references' speed.
 
     Parameters
     ----------
@@ -189,9 +198,11 @@ def planned_margin(spread: Spread, *, touches_per_hour: float) -> float:
 
 
 def level_crossed(sigma: float, sigma_rate: float, per_hour: float) -> float:
-    """Return the level that a Gaussian process goes above so often; 0 if it does so less often even at its mean.
+    """Return the level that a Gaussian process goes above so often; 0 if it does so less often even
+    at its mean.
 
-    By Rice's formula it goes above a level L ``sigma_rate/(2 pi sigma) exp(-(L/sigma)^2/2)`` times a second.
+    By Rice's formula it goes above a level L ``sigma_rate/(2 pi sigma) exp(-(L/sigma)^2/2)`` times
+    a second.
 
     Parameters
     ----------
@@ -217,7 +228,9 @@ def level_crossed(sigma: float, sigma_rate: float, per_hour: float) -> float:
 
 
 def beyond_limits(spread: Spread, per_hour: float) -> float:
-    """Return how far gusts that the airspeed cannot make up carry the aircraft off its reference [m], so often [1/h]."""
+    """Return how far gusts that the airspeed cannot make up carry the aircraft off its reference
+    [m], so often [1/h].
+    """
     peak = level_crossed(spread.airspeed, spread.airspeed_rate, per_hour)
     excess = peak - spread.airspeed_limit
     if excess <= 0.0:
@@ -232,7 +245,9 @@ def _integral(density: Array) -> Array:
 
 
 def _over_turns(turns: Array, at: list[float], matrices: list[Array]) -> Array:
-    """Interpolate matrices, given at ascending heading rates [rad/s], at others, shape (turns, 3, 3); beyond, the last ones."""
+    """Interpolate matrices, given at ascending heading rates [rad/s], at others, shape (turns, 3,
+    3); beyond, the last ones.
+    """
     stacked = np.stack(matrices)
     columns = [np.interp(turns, at, stacked[:, i, j]) for i in range(3) for j in range(3)]
     return np.column_stack(columns).reshape(-1, 3, 3)

@@ -7,7 +7,8 @@ Array = npt.NDArray[np.float64]
 
 
 def bezier_points(time: Array, value: Array, rate: Array) -> Array:
-    """Return the Bernstein coefficients of the cubics through values and rates, which each cubic stays within.
+    """Return the Bernstein coefficients of the cubics through values and rates, which each cubic
+    stays within.
 
     Parameters
     ----------

@@ -38,4 +38,6 @@ INPUT_COLUMNS = (*FLIGHT_COLUMNS, "nu")
 """Of ``draws.csv``, before the keys that differ from flight to flight: a row per flight."""
 
 SEARCH_COLUMNS = ("search_method", "confirms")
-"""Of ``draws.csv`` of a search, between these: the method that proposed the flight, or the flight that it repeats."""
+"""Of ``draws.csv`` of a search, between these: the method that proposed the flight, or the flight
+that it repeats.
+"""

@@ -17,8 +17,8 @@ Check = tuple[bool, str]
 def failed_criteria(row: Row, criteria: CriteriaConfig) -> list[str]:
     """Return what a flight's row fails, each as a short sentence; empty when all is met.
 
-    Beside the criteria every flight has to keep out and to complete: an aircraft that is lost meets nothing, also where its fault
-    is flown on purpose.
+    Beside the criteria every flight has to keep out and to complete: an aircraft that is lost meets
+    nothing, also where its fault is flown on purpose.
     """
     checks = [_keeps_out(row)] if "keepout_violations" in row else []
     if row["outcome"] != Outcome.COMPLETED.value:
@@ -63,7 +63,8 @@ def _tracking_checks(row: Row, criteria: CriteriaConfig) -> list[Check]:
             # One that settled with its last sample has none of these figures, and shows nothing.
             if limit and math.isfinite(row["settling_time_s"]):
                 met, message = _at_most(name, row.get(key, math.nan), limit, unit)
-                # A flight is settled while errors still die out: in a short one they count for more.
+                # A flight is settled while errors still die out: in a short one they count for
+                # more.
                 checks.append((met, f"{message}, in the {since:.0f} s since it settled"))
     if criteria.tracking_error_end_m:
         checks.append(

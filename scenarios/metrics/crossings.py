@@ -25,9 +25,11 @@ class Crossing:
     ----------
     time : [s]
     axis_distance : along the axis from the plume's origin [m]
-    distance, horizontal_distance : to the plume's origin, three-dimensional, and seen from above [m]
+    distance, horizontal_distance : to the plume's origin, three-dimensional, and seen from above
+        [m]
     angle : between the path in the vessel's frame and the axis, 90 degrees for a square cut [rad]
-    height : above the straight axis from the plume's origin, which is level for smoke: that rises above it [m]
+    height : above the straight axis from the plume's origin, which is level for smoke: that rises
+        above it [m]
     """
 
     time: float
@@ -43,12 +45,14 @@ def find_crossings(
 ) -> list[Crossing]:
     """Return every crossing, in time.
 
-    The path between samples is the cubic through their positions and velocities; crossings are its roots, not samples.
+    The path between samples is the cubic through their positions and velocities; crossings are its
+    roots, not samples.
 
     Parameters
     ----------
     time : shape (n,) [s]
-    position : shape (n, 3), north, east and up from the plume's origin, which moves with the vessel [m]
+    position : shape (n, 3), north, east and up from the plume's origin, which moves with the vessel
+        [m]
     velocity : shape (n, 3), its rate [m/s]
     axis : unit vector along the plume, north and east
     elevation : alpha_P [rad]
@@ -83,7 +87,8 @@ def find_crossings(
 def _roots(time: Array, across: Array, rate: Array) -> Array:
     """Return when the cubic through values and their rates is 0 [s], in order; all shapes (n,).
 
-    Between samples a cubic stays within its Bernstein coefficients, and is asked for roots only where these have both signs.
+    Between samples a cubic stays within its Bernstein coefficients, and is asked for roots only
+    where these have both signs.
     """
     side, coefficients = CubicHermiteSpline(time, across, rate), bezier_points(time, across, rate)
     rounding = _ROUNDING * np.abs(coefficients).max(axis=0)
@@ -103,7 +108,9 @@ def _roots(time: Array, across: Array, rate: Array) -> Array:
 
 
 def crossing_rows(crossings: Sequence[Crossing]) -> list[dict[str, Any]]:
-    """Return a row for each crossing of a flight, numbered from 1; columns have units in their names."""
+    """Return a row for each crossing of a flight, numbered from 1; columns have units in their
+    names.
+    """
     return [
         {
             "crossing": i,

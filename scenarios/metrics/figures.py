@@ -91,8 +91,8 @@ def _place_row(place: Place) -> Row:
 def flight_figures(plan: FlightPlan, record: FlightRecord) -> tuple[Row, list[Crossing]]:
     """Measure a flight.
 
-    Keep-out, guard and limits count from the first second, and crossings from settling. Tracking, airspeed and altitude count from
-    settling until the vehicle leaves for good.
+    Keep-out, guard and limits count from the first second, and crossings from settling. Tracking,
+    airspeed and altitude count from settling until the vehicle leaves for good.
 
     Returns
     -------
@@ -146,7 +146,9 @@ def flight_figures(plan: FlightPlan, record: FlightRecord) -> tuple[Row, list[Cr
 
 
 def in_vessel_frame(record: FlightRecord, source_height: float) -> tuple[Array, Array]:
-    """Return position and velocity from the plume's origin, each shape (n, 3): north, east, up [m, m/s]."""
+    """Return position and velocity from the plume's origin, each shape (n, 3): north, east, up
+    [m, m/s].
+    """
     column = record.column
     position = [column(f"{axis}_m") - column(f"vessel_{axis}_m") for axis in ("north", "east")]
     velocity = [
@@ -224,7 +226,9 @@ def _vessel_error(record: FlightRecord) -> Array:
 
 
 def _spread(record: FlightRecord, beside: Mask, position: Array) -> float:
-    """Return the standard deviation of the tracking error towards the vessel, of a settled flight until it leaves [m]."""
+    """Return the standard deviation of the tracking error towards the vessel, of a settled flight
+    until it leaves [m].
+    """
     north, east = position[beside, 0], position[beside, 1]
     to_north, to_east = (
         record.column(f"reference_{axis}_m")[beside] - record.column(f"{axis}_m")[beside]
@@ -234,7 +238,9 @@ def _spread(record: FlightRecord, beside: Mask, position: Array) -> float:
 
 
 def _estimation_figures(plan: FlightPlan, record: FlightRecord, settled: Mask) -> Row:
-    """Measure what the guidance knows, and how often it had to be guarded, once the flight has settled."""
+    """Measure what the guidance knows, and how often it had to be guarded, once the flight has
+    settled.
+    """
 
     def column(name: str) -> Array:
         return record.column(name)[settled]
@@ -320,10 +326,11 @@ def _crossing_figures(plan: FlightPlan, record: FlightRecord, crossings: list[Cr
 
 
 def _predicted_interval(plan: FlightPlan, record: FlightRecord, first: float, last: float) -> float:
-    """Return the mean crossing interval over a vessel's changes of course and speed, from its first crossing to its last [s].
+    """Return the mean crossing interval over a vessel's changes of course and speed, from its first
+    crossing to its last [s].
 
-    Where the period changes with time, crossings come at a rate that is their number per period over it, omega_0/pi of an
-    oscillation: their number between two times is its integral.
+    Where the period changes with time, crossings come at a rate that is their number per period
+    over it, omega_0/pi of an oscillation: their number between two times is its integral.
     """
     time = np.linspace(first, last, max(2, math.ceil(last - first)))
     wind = (plan.world.weather.wind if plan.world else CALM).at(time, plan.source_height)

@@ -18,7 +18,9 @@ FINDING_FIGURES = (
     "orbit_at_s", "time_to_find_s", "found", "axis_height_3min_m", "axis_height_error_3min_m", "axis_height_deviation_3min_m",
     "hit_rate_found", "axis_height_end_m", "axis_deviation_end_m", "axis_measurable_end", "altitude_outside_s", "enough",
 )  # fmt: skip
-"""Columns of the summary of flights that search for the plume, are given its true axis, or end with a verdict."""
+"""Columns of the summary of flights that search for the plume, are given its true axis, or end with
+a verdict.
+"""
 
 SIGNAL_TO_NOISE = 5.0
 """Of a reading, from which the plume counts as detected [-] (Kattner 2015, of CO2)."""
@@ -99,7 +101,9 @@ def _hit_rate(history: pd.DataFrame, since: npt.NDArray[np.bool_]) -> float:
 
 
 def _height_known(history: pd.DataFrame, time: Array, at: float) -> Row:
-    """Return the estimated height of the axis at the crossing nearest to a time [s], and the true one."""
+    """Return the estimated height of the axis at the crossing nearest to a time [s], and the true
+    one.
+    """
     across, above = (
         np.asarray(history[name], dtype=np.float64) for name in ("plume_across_m", "plume_above_m")
     )

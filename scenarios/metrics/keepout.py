@@ -35,11 +35,14 @@ class KeepoutFigures:
 def keepout_figures(
     time: Array, position: Array, velocity: Array, radius: float, shape: Shape = "sphere"
 ) -> KeepoutFigures:
-    """Measure a path against a sphere about the origin, or a cylinder of any height about the vertical through it.
+    """Measure a path against a sphere about the origin, or a cylinder of any height about the
+    vertical through it.
 
-    Between samples the path is the cubic through their positions and velocities, and so is its closest approach: at 10 Hz and 45
-    degrees of bank true to a micrometre, where a chord would be optimistic by up to 1.2 cm, and to 6 mm where the turn is reversed
-    at once in between. ``check_recorded`` in ``scenarios.planning.limits`` refuses flights for which this is more than 5 cm.
+    Between samples the path is the cubic through their positions and velocities, and so is its
+    closest approach: at 10 Hz and 45 degrees of bank true to a micrometre, where a chord would be
+    optimistic by up to 1.2 cm, and to 6 mm where the turn is reversed at once in between.
+    ``check_recorded`` in ``scenarios.planning.limits`` refuses flights for which this is more than
+    5 cm.
 
     Parameters
     ----------
@@ -77,16 +80,21 @@ def keepout_figures(
 
 
 def closest_approach(time: Array, position: Array, velocity: Array) -> float:
-    """Return the least distance of a path from the origin [m], exact between samples; parameters of any number of dimensions."""
+    """Return the least distance of a path from the origin [m], exact between samples; parameters of
+    any number of dimensions.
+    """
     return math.sqrt(_least(_squared_distance(time, position, velocity)))
 
 
 def _squared_distance(time: Array, position: Array, velocity: Array) -> Array:
-    """Return the squared distance from the origin between samples: Bernstein coefficients of degree 6, shape (n - 1, 7).
+    """Return the squared distance from the origin between samples: Bernstein coefficients of degree
+    6, shape (n - 1, 7).
 
-    The cubic through positions and velocities is a Bezier curve, and the coefficients of its square bound it from both sides.
+    The cubic through positions and velocities is a Bezier curve, and the coefficients of its square
+    bound it from both sides.
     """
-    # A row for each component: to sum three numbers in each of a thousand rows takes longer than to add three rows.
+    # A row for each component: to sum three numbers in each of a thousand rows takes longer than to
+    # add three rows.
     points = bezier_points(time, np.ascontiguousarray(position.T), np.ascontiguousarray(velocity.T))
     products = {
         (i, j): np.sum(points[i] * points[j], axis=0) for i in range(4) for j in range(i, 4)

@@ -1,4 +1,5 @@
-"""What the columns of a run's tables mean, by table and name. Time histories have theirs in ``scenarios.simulation``.
+"""What the columns of a run's tables mean, by table and name. Time histories have theirs in
+``scenarios.simulation``.
 
 Units are the ends of the names. "Settled" is said of the flight from its settling time on.
 """
@@ -242,7 +243,9 @@ MEANINGS: Mapping[str, Mapping[str, str]] = {
         "wall_time_s": "computing time",
     },
 }
-"""Meanings by the file and the column, but for the studies of convergence and for the keys in ``draws.csv``."""
+"""Meanings by the file and the column, but for the studies of convergence and for the keys in
+``draws.csv``.
+"""
 
 CONVERGENCE_MEANINGS = {
     "trajectory": "number of the start",

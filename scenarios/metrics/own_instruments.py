@@ -1,4 +1,6 @@
-"""What instruments declare and answer: columns, figures and tables of their own, and none of the flight's or of each other's."""
+"""What instruments declare and answer: columns, figures and tables of their own, and none of the
+flight's or of each other's.
+"""
 
 from collections.abc import Callable, Collection, Iterable, Mapping
 from types import FunctionType
@@ -26,7 +28,8 @@ _FLIGHT, _RUN = "the flight itself", "the run itself"
 
 
 def check_instruments(named: Iterable[tuple[str, Any]]) -> None:
-    """Refuse instruments that fill what the flight or another one fills: a safety figure could be any number.
+    """Refuse instruments that fill what the flight or another one fills: a safety figure could be
+    any number.
 
     Parameters
     ----------
@@ -34,7 +37,8 @@ def check_instruments(named: Iterable[tuple[str, Any]]) -> None:
 
     Raises
     ------
-    InputError : one fills a column, a figure or a table that is filled already, or declares what are no names
+    InputError : one fills a column, a figure or a table that is filled already, or declares what
+        are no names
     """
     columns = dict.fromkeys((*MEANINGS, *PlumeBelief.COLUMNS), _FLIGHT)
     figures = dict.fromkeys((*SUMMARY_COLUMNS, *FINDING_FIGURES), _FLIGHT)
@@ -70,7 +74,9 @@ def check_instruments(named: Iterable[tuple[str, Any]]) -> None:
 
 
 def _is_of_each_object(kind: type) -> bool:
-    """Return whether objects of a class have COLUMNS of their own, by ``__init__`` or a property: they are checked later."""
+    """Return whether objects of a class have COLUMNS of their own, by ``__init__`` or a property:
+    they are checked later.
+    """
     made = vars(kind).get("__init__")
     named: tuple[str, ...] = made.__code__.co_names if isinstance(made, FunctionType) else ()
     return "COLUMNS" in named or isinstance(getattr(kind, "COLUMNS", None), property)

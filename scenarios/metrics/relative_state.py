@@ -1,4 +1,6 @@
-"""A flight's time history: its record, and the relative state of the delta formulation that follows from it."""
+"""A flight's time history: its record, and the relative state of the delta formulation that follows
+from it.
+"""
 
 import math
 
@@ -17,7 +19,9 @@ Array = npt.NDArray[np.float64]
 
 
 def flight_history(plan: FlightPlan, record: FlightRecord) -> pd.DataFrame:
-    """Return a row per sample; columns are those of the record, ``RELATIVE_COLUMNS``, and what there is of the others."""
+    """Return a row per sample; columns are those of the record, ``RELATIVE_COLUMNS``, and what
+    there is of the others.
+    """
     numbers = {name: i for i, name in enumerate(record.columns)}
 
     def column(name: str) -> Array:
@@ -60,7 +64,9 @@ def flight_history(plan: FlightPlan, record: FlightRecord) -> pd.DataFrame:
 def relative_states(
     look_ahead: LookAhead, to_north: Array, to_east: Array, reference_course: Array, course: Array
 ) -> tuple[Array, Array, Array, Array]:
-    """Return delta, rho [m], phi_r and phi [rad] of many samples at once; parameters as of ``gnc.laws.delta.relative_state``."""
+    """Return delta, rho [m], phi_r and phi [rad] of many samples at once; parameters as of
+    ``gnc.laws.delta.relative_state``.
+    """
     delta = look_ahead.epsilon * (to_north**2 + to_east**2) + look_ahead.radius
     z_north, z_east = (
         to_north + delta * np.cos(reference_course),

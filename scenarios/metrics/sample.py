@@ -5,5 +5,7 @@ import numpy.typing as npt
 
 
 def rms(values: npt.NDArray[np.float64]) -> float:
-    """Return the root of the mean square of ``values``, in their unit; not a number if there are none."""
+    """Return the root of the mean square of ``values``, in their unit; not a number if there are
+    none.
+    """
     return float(np.sqrt(np.mean(values**2)))

@@ -1,4 +1,6 @@
-"""Figures of the end of a flight, whether it has settled or not: by them laws are compared that may never settle."""
+"""Figures of the end of a flight, whether it has settled or not: by them laws are compared that may
+never settle.
+"""
 
 import math
 
@@ -26,8 +28,8 @@ _SECONDS_PER_MINUTE = 60.0
 def window_figures(plan: FlightPlan, record: FlightRecord, *, window: float) -> Row:
     """Measure the last ``window`` [s] of a flight beside a vessel.
 
-    Errors are distances to the reference; the effort is the heading rate that was commanded, and its excess is what it differs from
-    the reference's own.
+    Errors are distances to the reference; the effort is the heading rate that was commanded, and
+    its excess is what it differs from the reference's own.
     """
     column = record.column
     time = column("time_s")
@@ -74,13 +76,15 @@ def window_figures(plan: FlightPlan, record: FlightRecord, *, window: float) -> 
 
 
 def measured_figures(row: Row, *, window: float) -> Row:
-    """Return what a minute in the air was worth to the measurement, of what a sniffer has made of ``window`` [s], or of all of a
-    shorter flight.
+    """Return what a minute in the air was worth to the measurement, of what a sniffer has made of
+    ``window`` [s], or of all of a shorter flight.
 
-    The plume's is the time in which the concentration is above exp(-2) of that on its axis. Of the fuel's sulphur content it is the
-    information, 1/sigma^2 by noise, the part of the standard uncertainty that more time takes away; the gains and zeros of the
-    instrument are the same for everyone. Information adds up over time and over flights, and is 0 where a result is not admitted
-    (quality C) or lost with the aircraft, and not a number where the sniffer has no noise; its mean over flights, to the power of
+    The plume's is the time in which the concentration is above exp(-2) of that on its axis. Of the
+    fuel's sulphur content it is the information, 1/sigma^2 by noise, the part of the standard
+    uncertainty that more time takes away; the gains and zeros of the instrument are the same for
+    everyone. Information adds up over time and over flights, and is 0 where a result is not
+    admitted (quality C) or lost with the aircraft, and not a number where the sniffer has no noise;
+    its mean over flights, to the power of
     -1/2, is the standard uncertainty by noise of a minute.
     """
     if "seconds_in_plume_s" not in row:

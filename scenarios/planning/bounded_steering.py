@@ -1,4 +1,6 @@
-"""The look-ahead and the steering of a flight: given, or searched so that no state asks for more than omega_max."""
+"""The look-ahead and the steering of a flight: given, or searched so that no state asks for more
+than omega_max.
+"""
 
 import math
 from dataclasses import dataclass, replace
@@ -29,7 +31,9 @@ class Steering:
 
 
 def steering_law(guidance: GuidanceConfig, **searched: float) -> SteeringLaw:
-    """Return the steering law of a scenario, its parameters as given or, where they were searched, as found."""
+    """Return the steering law of a scenario, its parameters as given or, where they were searched,
+    as found.
+    """
     given = guidance.model_extra or {}
     law: Any = STEERING_LAWS.get(guidance.law)
     values = {
@@ -85,7 +89,8 @@ def plan_steering(
 def search_steering(
     scenario: Scenario, heading_rate_max: float, reference_heading_rate: float
 ) -> BoundedSteering:
-    """Return the steering that converges fastest from the farthest start, while no state asks for more than omega_max.
+    """Return the steering that converges fastest from the farthest start, while no state asks for
+    more than omega_max.
 
     Parameters and errors are those of ``plan_steering``.
     """

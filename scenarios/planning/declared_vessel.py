@@ -1,4 +1,6 @@
-"""Whether a vessel, and the reports of a file, keep to what is declared of them: the keep-out guard relies on it."""
+"""Whether a vessel, and the reports of a file, keep to what is declared of them: the keep-out guard
+relies on it.
+"""
 
 import math
 from dataclasses import replace
@@ -25,16 +27,21 @@ from scenarios.world.vessel import (
 _INCONSISTENCY_MAX = 0.01
 """By how much the way of a track of one's own may differ from the integral of its velocity [m].
 
-That is a sum: of curves and splines whose velocity is exact they differ by up to 0.6 mm in an hour."""
+That is a sum: of curves and splines whose velocity is exact they differ by up to 0.6 mm in an hour.
+"""
 
 _LOOKS = 10
-"""Points of a track from one look at it to the next [-], 0.5 s: in between its distance from a disc bends by millimetres."""
+"""Points of a track from one look at it to the next [-], 0.5 s: in between its distance from a disc
+bends by millimetres.
+"""
 
 Array = npt.NDArray[np.float64]
 
 
 def check_vessel(scenario: Scenario, vessel: VesselTruth, limits: VesselLimits) -> None:
-    """Raise an InfeasibleError for a vessel, or reports of a file, that are beyond what is declared to the keep-out guard."""
+    """Raise an InfeasibleError for a vessel, or reports of a file, that are beyond what is declared
+    to the keep-out guard.
+    """
     check_declared(scenario, vessel)
     if isinstance(vessel, AisVessel) and scenario.guidance.keepout_guard:
         # The error of the vehicle's own place is not part of the reports'.
@@ -45,7 +52,8 @@ def check_vessel(scenario: Scenario, vessel: VesselTruth, limits: VesselLimits) 
 def check_declared(scenario: Scenario, vessel: VesselTruth) -> None:
     """Raise an InfeasibleError for a vessel that does more than is declared to the keep-out guard.
 
-    Also where she is known exactly: what she does during a turn away is not known when the turn begins.
+    Also where she is known exactly: what she does during a turn away is not known when the turn
+    begins.
     """
     if not scenario.guidance.keepout_guard:
         return
@@ -89,9 +97,11 @@ def _at_least(value: float) -> str:
 
 
 def _check_reports(vessel: AisVessel, limits: VesselLimits, duration: float) -> None:
-    """Raise an InfeasibleError for reports of a file from which the guard would take the vessel to be elsewhere.
+    """Raise an InfeasibleError for reports of a file from which the guard would take the vessel to
+    be elsewhere.
 
-    The smooth track has to stay within the discs of each report to the end of the flight: all reports after it may be lost.
+    The smooth track has to stay within the discs of each report to the end of the flight: all
+    reports after it may be lost.
 
     Parameters
     ----------
@@ -119,7 +129,8 @@ def _check_reports(vessel: AisVessel, limits: VesselLimits, duration: float) -> 
         _check_within(vessel, report, age, way - age[:, None] * velocity, allowed, drifted)
         if limits.speed_max < math.inf:
             by_speed = radius_by_speed(limits, age)
-            # The guard keeps off it only where it is the smaller one. Nothing else checks the speed before the start.
+            # The guard keeps off it only where it is the smaller one. Nothing else checks the speed
+            # before the start.
             by_speed[by_speed >= allowed] = math.inf
             _check_within(
                 vessel,
@@ -160,10 +171,11 @@ def _check_within(
 
 
 def _within_for_good(report: VesselReport, vessel: AisVessel, limits: VesselLimits) -> bool:
-    """Return whether errors of a report are so small that a vessel that keeps to her acceleration never leaves its disc.
+    """Return whether errors of a report are so small that a vessel that keeps to her acceleration
+    never leaves its disc.
 
-    With errors e_p and e_v of place and velocity, (e_p/sigma_p)^2 + (e_v/sigma_v)^2 <= k^2, Cauchy and Schwarz have
-    e_p + e_v s <= k hypot(sigma_p, sigma_v s).
+    With errors e_p and e_v of place and velocity, (e_p/sigma_p)^2 + (e_v/sigma_v)^2 <= k^2, Cauchy
+    and Schwarz have e_p + e_v s <= k hypot(sigma_p, sigma_v s).
     """
     north, east, velocity_north, velocity_east = vessel.motion(report.time)
     place, velocity = (

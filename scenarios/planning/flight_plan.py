@@ -22,9 +22,11 @@ class Sensing:
 
     Attributes
     ----------
-    received : reports of the vessel and when each is received [s]; none where the vessel is known exactly
+    received : reports of the vessel and when each is received [s]; none where the vessel is known
+        exactly
     errors : of the sensors
-    reads_plume, knows_axis : whether a sniffer is read in flight, and whether the flight is given the plume's true axis
+    reads_plume, knows_axis : whether a sniffer is read in flight, and whether the flight is given
+        the plume's true axis
     """
 
     received: list[tuple[float, VesselReport]] | None
@@ -58,12 +60,14 @@ class FlightPlan:
     guidance : parameters of the outer loop
     steering : of the law's look-ahead, and the bound on its demand
     start : of the UAV
-    keepout_shape, keepout_radius : a sphere about the plume's origin or an upright cylinder through it, and its r_min [m]
+    keepout_shape, keepout_radius : a sphere about the plume's origin or an upright cylinder through
+        it, and its r_min [m]
     speed_ratio_max : up to which a vessel is followed [-]
     heading_rate_max : omega_max, whether commands are cut at it or not [rad/s]
     duration_max, crossings : when to stop [s, -]
     after_settling : how long to go on after settling, infinite for no end [s]
-    settling_band, settling_period : distance from the reference to stay within, and for how long, to be settled [m, s]
+    settling_band, settling_period : distance from the reference to stay within, and for how long,
+        to be settled [m, s]
     log_interval : of the record, in guidance steps
     payload : instruments on board
     until_verdict : whether it leaves as soon as a sniffer has enough
@@ -71,7 +75,8 @@ class FlightPlan:
     world : vessel, plume, air, faults; none where the reference circles without a vessel
     sensing : sensors and reports; none where everything is known exactly
     oscillation : of the reference at that ratio
-    periods : of the oscillation at equal steps of nu from 0 to ``speed_ratio_max``, where the reference is steered [s]
+    periods : of the oscillation at equal steps of nu from 0 to ``speed_ratio_max``, where the
+        reference is steered [s]
     centre_distance : r_CO where it is fixed, else not a number [m]
     margin : planned on top of r_min, where the reference is steered
     apparent_wind : of the vessel, where the reference is steered
@@ -148,7 +153,9 @@ class FlightPlan:
 
     @property
     def source_height(self) -> float:
-        """Return the height of the plume's origin above the sea, where the centre of a keep-out sphere lies [m]."""
+        """Return the height of the plume's origin above the sea, where the centre of a keep-out
+        sphere lies [m].
+        """
         return self.world.source_height if self.world else self.guidance.altitude
 
     def period(self, nu: float) -> float:

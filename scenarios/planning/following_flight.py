@@ -1,4 +1,6 @@
-"""Flights whose reference is steered: beside a vessel that manoeuvres, in wind, by sensors and reports."""
+"""Flights whose reference is steered: beside a vessel that manoeuvres, in wind, by sensors and
+reports.
+"""
 
 import math
 from collections.abc import Callable
@@ -70,7 +72,8 @@ from scenarios.world.world import (
 )
 
 Spreads = Callable[[Scenario], SpreadTable | None]
-"""Returns the predicted spread of the tracking error of a scenario in turbulence; none in calm air."""
+"""Returns the predicted spread of the tracking error of a scenario in turbulence; none in calm air.
+"""
 
 
 def following_flight(
@@ -84,7 +87,8 @@ def following_flight(
 
     Raises
     ------
-    InfeasibleError : the vessel outruns the UAV, its plume has no direction, or the flight starts where no command keeps it out
+    InfeasibleError : the vessel outruns the UAV, its plume has no direction, or the flight starts
+        where no command keeps it out
     """
     g, f, flight = scenario.guidance, scenario.following, scenario.flight
     generators = streams(noise)
@@ -153,7 +157,8 @@ def following_flight(
             scenario.reports, vessel, duration=duration, outage=outage, generator=generators.reports
         )
     guard = guarded if g.keepout_guard else None
-    # What the guard knows at the start: a report of a file may be minutes old by then, and any may be wrong.
+    # What the guard knows at the start: a report of a file may be minutes old by then, and any may
+    # be wrong.
     known = ReachableSet(limits)
     for report in first_reports(vessel, received):
         known.report(report)
@@ -204,7 +209,9 @@ def following_flight(
 
 
 def _nearest(scenario: Scenario, guard: GuardParameters, widest: Tube, oscillation: Orbit) -> float:
-    """Return the smallest distance of the orbit, or of the circle about the vessel, at which the guard does not act [m]."""
+    """Return the smallest distance of the orbit, or of the circle about the vessel, at which the
+    guard does not act [m].
+    """
     if scenario.stands_off:
         return circle_distance(guard, widest, oscillation.speed, oscillation.nu * oscillation.speed)
     return orbit_distance(guard, widest, oscillation)
@@ -218,8 +225,11 @@ def _following(
     further: float,
     drifting: float,
 ) -> tuple[tuple[float, ...], FollowingParameters]:
-    """Return the periods of the orbit over nu [s], and how the plume is followed, ``further`` off [m] and ``drifting`` [m/s]."""
-    # Before its orbits: a shape that cannot be steered says so, whatever else it cannot do beside a fast vessel.
+    """Return the periods of the orbit over nu [s], and how the plume is followed, ``further`` off
+    [m] and ``drifting`` [m/s].
+    """
+    # Before its orbits: a shape that cannot be steered says so, whatever else it cannot do beside a
+    # fast vessel.
     swing = swing_of(scenario.guidance, scenario.reference)
     periods, widths = orbits(
         scenario.guidance, scenario.reference, scenario.following.speed_ratio_max
@@ -270,7 +280,9 @@ def _guidance(
 
 
 def _with_intervals(scenario: Scenario, vessel: VesselTruth) -> Scenario:
-    """Return the scenario with the usual intervals of the reports of a track from a file, unless it gives others."""
+    """Return the scenario with the usual intervals of the reports of a track from a file, unless it
+    gives others.
+    """
     if not isinstance(vessel, AisVessel) or not scenario.reports.exact:
         return scenario
     reports = scenario.reports.model_copy(update={"interval_s": usual_intervals(vessel)})

@@ -37,35 +37,46 @@ TRANSIT_FRACTION = 0.5
 """Fraction of the airspeed beyond V_r that is used on the way to the reference [-]."""
 
 THRUST_LOST_FRACTION = 0.55
-"""Mean lack of airspeed at which thrust counts as lost, over what V_r lies above the slowest airspeed [-]."""
+"""Mean lack of airspeed at which thrust counts as lost, over what V_r lies above the slowest
+airspeed [-].
+"""
 
 LEAST_LACK = 0.06
-"""The same over V_r, at least [-]: near the slowest airspeed a gust would pass for an engine that has failed.
+"""The same over V_r, at least [-]: near the slowest airspeed a gust would pass for an engine that
+has failed.
 
-Moderate turbulence, and gusts of 8 m/s, make it up to 0.035 in flights at 15.5 to 19.4 m/s of an aircraft that stayed sound.
+Moderate turbulence, and gusts of 8 m/s, make it up to 0.035 in flights at 15.5 to 19.4 m/s of an
+aircraft that stayed sound.
 """
 
 CONTROLLED_BANK = math.radians(17.0)
-"""The heading rate at this bank counts for omega_max, if that is less, where control counts as lost by a share of it [rad].
+"""The heading rate at this bank counts for omega_max, if that is less, where control counts as lost
+by a share of it [rad].
 
-Moderate turbulence turns a sound aircraft at 0.07 rad/s, at 19 m/s, which is more than that share at 5 degrees of bank.
+Moderate turbulence turns a sound aircraft at 0.07 rad/s, at 19 m/s, which is more than that share
+at 5 degrees of bank.
 """
 
 ROUND_BY = 0.8
-"""By how many turn radii a way round the keep-out area stays farther off than what counts as blocked [-]."""
+"""By how many turn radii a way round the keep-out area stays farther off than what counts as
+blocked [-].
+"""
 
 
 def lost_thrust(airspeed: float, slowest: float) -> float:
-    """Return the mean lack of airspeed at which thrust counts as lost, by V_r and the slowest airspeed [m/s]."""
+    """Return the mean lack of airspeed at which thrust counts as lost, by V_r and the slowest
+    airspeed [m/s].
+    """
     return max(THRUST_LOST_FRACTION * (airspeed - slowest), LEAST_LACK * airspeed)
 
 
 def slowest_without_thrust(scenario: Scenario, setup: VehicleSetup) -> float:
-    """Return the airspeed to which the vehicle may fall in a turn at V_r before it is known that its engine has failed [m/s].
+    """Return the airspeed to which the vehicle may fall in a turn at V_r before it is known that
+    its engine has failed [m/s].
 
-    A throttle that is stuck takes less of the thrust, and counts as much. Infinite where neither is declared. While the airspeed
-    falls at a rate, its mean lack, of a time constant, is behind its lack by no more than the product of the two; and it is looked
-    at in intervals.
+    A throttle that is stuck takes less of the thrust, and counts as much. Infinite where neither is
+    declared. While the airspeed falls at a rate, its mean lack, of a time constant, is behind its
+    lack by no more than the product of the two; and it is looked at in intervals.
     """
     failure, airspeed = part_failure(scenario, setup), scenario.guidance.airspeed_mps
     if failure is None or not scenario.declared_faults & OF_THRUST:
@@ -75,7 +86,9 @@ def slowest_without_thrust(scenario: Scenario, setup: VehicleSetup) -> float:
 
 
 def part_failure(scenario: Scenario, setup: VehicleSetup) -> PartFailure | None:
-    """Return what the failure of a part does to the vehicle, or None where the scenario declares none."""
+    """Return what the failure of a part does to the vehicle, or None where the scenario declares
+    none.
+    """
     if not (scenario.follows and glides(scenario)):
         return None
     return setup.failing_climbing if climbs(scenario) else setup.failing_level
@@ -89,7 +102,9 @@ def controlled_heading_rate(guidance: GuidanceConfig) -> float:
 def tracking_parameters(
     scenario: Scenario, setup: VehicleSetup, steering: Steering | None = None
 ) -> TrackingParameters:
-    """Return how a scenario's reference is tracked; with the steering that is given unless another one was found."""
+    """Return how a scenario's reference is tracked; with the steering that is given unless another
+    one was found.
+    """
     g, time_step = scenario.guidance, 1.0 / scenario.guidance.rate_hz
     epsilon, radius = (steering or given_steering(g)).look_ahead
     steering_max = steering.steering_max if steering else g.steering_max_rad_s
@@ -105,7 +120,9 @@ def tracking_parameters(
 
 
 def guidance_lag(scenario: Scenario, setup: VehicleSetup) -> float:
-    """Return how late the vehicle's heading rate follows the guidance [s]: by its own lag, and half a step of holding commands."""
+    """Return how late the vehicle's heading rate follows the guidance [s]: by its own lag, and half
+    a step of holding commands.
+    """
     return setup.lag + 0.5 / scenario.guidance.rate_hz
 
 
@@ -144,7 +161,8 @@ def guard_parameters(
         delay=setup.reversal.delay,
         slow_lag=setup.lag,
         time_step=1.0 / scenario.guidance.rate_hz,
-        # A gust may begin at any moment; and one that blows turns with the vehicle in the prediction, but not in the air.
+        # A gust may begin at any moment; and one that blows turns with the vehicle in the
+        # prediction, but not in the air.
         speed_error=speed_error if scenario.follows else 0.0,
         drift_rate=drift_rate,
         allowance=allowance,
@@ -162,7 +180,9 @@ def turn_time(scenario: Scenario, reversal: TurnReversalResponse) -> float:
 
 
 def satellite_noise(scenario: Scenario, setup: VehicleSetup, fastest: float) -> float:
-    """Return how much nearer noise of satellite navigation takes a vehicle [m] whose reference turns at up to a rate [rad/s]."""
+    """Return how much nearer noise of satellite navigation takes a vehicle [m] whose reference
+    turns at up to a rate [rad/s].
+    """
     if not scenario.reports.exact:
         # Beside the scatter of reports it adds centimetres.
         return 0.0

@@ -1,4 +1,6 @@
-"""What the guidance may ask of an aircraft, whether that can be flown and recorded, and how often it plans."""
+"""What the guidance may ask of an aircraft, whether that can be flown and recorded, and how often
+it plans.
+"""
 
 import math
 
@@ -10,7 +12,9 @@ from scenarios.schema.scenario import Scenario
 from scenarios.schema.sections.guidance import GuidanceConfig
 
 PLAN_PERIOD = 0.5
-"""Time between plans, and between measurements of the wind, to the nearest step of the guidance [s]."""
+"""Time between plans, and between measurements of the wind, to the nearest step of the guidance
+[s].
+"""
 
 _PATH_ERROR_MAX = 0.05
 """Error of the recorded path between two samples above which a flight is refused [m]."""
@@ -29,7 +33,9 @@ def plan_interval(guidance: GuidanceConfig) -> int:
 
 
 def plan_period(guidance: GuidanceConfig) -> float:
-    """Return the time between plans, and between measurements of the wind, in whole steps of the guidance [s]."""
+    """Return the time between plans, and between measurements of the wind, in whole steps of the
+    guidance [s].
+    """
     return plan_interval(guidance) / guidance.rate_hz
 
 
@@ -50,11 +56,13 @@ def check_flyable(guidance: GuidanceConfig, title: str, envelope: Envelope) -> N
 
 
 def path_error_max(scenario: Scenario, log_rate: float) -> float:
-    """Return by how much the cubic between two samples may miss the path of a kinematic vehicle [m].
+    """Return by how much the cubic between two samples may miss the path of a kinematic vehicle
+    [m].
 
-    A cubic through positions and velocities is off by no more than dt^2/16 times what the acceleration differs from a constant
-    (the integral of the kernel of its error), and reproduces a constant one. Here that is the centripetal one, V omega_max, which
-    turns by omega_max dt, and is reversed by a command: at once where there is no lag, but not within a step of the guidance.
+    A cubic through positions and velocities is off by no more than dt^2/16 times what the
+    acceleration differs from a constant (the integral of the kernel of its error), and reproduces a
+    constant one. Here that is the centripetal one, V omega_max, which turns by omega_max dt, and is
+    reversed by a command: at once where there is no lag, but not within a step of the guidance.
 
     Parameters
     ----------
@@ -70,9 +78,11 @@ def path_error_max(scenario: Scenario, log_rate: float) -> float:
 
 
 def check_recorded(scenario: Scenario) -> None:
-    """Raise an InfeasibleError for kinematic flights that turn too fast for keep-out figures at the rate of their record.
+    """Raise an InfeasibleError for kinematic flights that turn too fast for keep-out figures at the
+    rate of their record.
 
-    An aircraft has to roll first: at 5 Hz and 60 degrees of bank even a reversal at once would be seen to 4.2 cm.
+    An aircraft has to roll first: at 5 Hz and 60 degrees of bank even a reversal at once would be
+    seen to 4.2 cm.
     """
     g, rate = scenario.guidance, scenario.flight.log_rate_hz
     if (

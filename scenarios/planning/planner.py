@@ -1,4 +1,6 @@
-"""From a scenario to one flight: everything it needs, resolved to SI, and the reason where it cannot be flown."""
+"""From a scenario to one flight: everything it needs, resolved to SI, and the reason where it
+cannot be flown.
+"""
 
 from scenarios.planning.flight_plan import FlightPlan
 from scenarios.planning.following_flight import Spreads, following_flight
@@ -29,8 +31,9 @@ def plan_flight(
 
     Raises
     ------
-    InfeasibleError : the flight has no solution, or starts where no command keeps it out of the keep-out area, or manoeuvres of
-        its vessel overlap, or it turns too fast for the rate at which it is recorded
+    InfeasibleError : the flight has no solution, or starts where no command keeps it out of the
+        keep-out area, or manoeuvres of its vessel overlap, or it turns too fast for the rate at
+        which it is recorded
     """
     check_recorded(scenario)
     check_manoeuvres(scenario.vessel, scenario.vessel_speed)

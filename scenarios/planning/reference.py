@@ -126,7 +126,8 @@ def swing_of(guidance: GuidanceConfig, reference: ReferenceConfig) -> Swing:
 def orbits(
     guidance: GuidanceConfig, reference: ReferenceConfig, speed_ratio_max: float
 ) -> tuple[tuple[float, ...], tuple[tuple[float, float], ...]]:
-    """Return periods [s] and half-widths along and across the course [m] at equal steps of nu from 0 to ``speed_ratio_max``.
+    """Return periods [s] and half-widths along and across the course [m] at equal steps of nu from
+    0 to ``speed_ratio_max``.
 
     Remembered: the flights of a trial share them.
     """
@@ -148,7 +149,9 @@ def distance_kept(
 
 
 def joined_orbit(scenario: Scenario, orbit: Orbit, course: float) -> JoinedOrbit:
-    """Return an orbit beside a vessel on a course [rad], of which a reference can be taken at any phase."""
+    """Return an orbit beside a vessel on a course [rad], of which a reference can be taken at any
+    phase.
+    """
     shape, time_step = shape_of(scenario.reference), 1.0 / scenario.guidance.rate_hz
     return JoinedOrbit(shape=shape, orbit=orbit, vessel_course=course, time_step=time_step)
 

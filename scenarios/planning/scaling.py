@@ -1,8 +1,10 @@
-"""A scenario scaled to an aircraft: keys that it does not set follow from the aircraft's airspeed and tightest turn.
+"""A scenario scaled to an aircraft: keys that it does not set follow from the aircraft's airspeed
+and tightest turn.
 
-The defaults of ``scenarios.schema.sections`` are numbers for an aircraft that flies 19.42 m/s and turns with 45 degrees of bank.
-One that flies V with omega_max = g tan(bank)/V has a unit of time, 1/omega_max, and one of length, V/omega_max; in these units
-every aircraft flies the same study. The vessel and its keep-out area keep their sizes.
+The defaults of ``scenarios.schema.sections`` are numbers for an aircraft that flies 19.42 m/s and
+turns with 45 degrees of bank. One that flies V with omega_max = g tan(bank)/V has a unit of time,
+1/omega_max, and one of length, V/omega_max; in these units every aircraft flies the same study. The
+vessel and its keep-out area keep their sizes.
 """
 
 import math
@@ -53,7 +55,9 @@ _SCALED: dict[str, Callable[[ScaleFactors], float]] = {
     "criteria.airspeed_error_rms_mps": lambda unit: unit.speed,
     "criteria.altitude_error_max_m": lambda unit: unit.speed,
 }
-"""Keys that are scaled, and by what their defaults are multiplied. Altitude follows pitch at a given speed, not the turn."""
+"""Keys that are scaled, and by what their defaults are multiplied. Altitude follows pitch at a
+given speed, not the turn.
+"""
 
 
 def scaled(scenario: Scenario, envelope: Envelope) -> Scenario:
@@ -83,14 +87,18 @@ def scaled(scenario: Scenario, envelope: Envelope) -> Scenario:
 
 
 def scaled_keys(scenario: Scenario) -> list[str]:
-    """Return the keys that ``scaled`` scales: those that the scenario does not set itself, of those with a length or a time."""
+    """Return the keys that ``scaled`` scales: those that the scenario does not set itself, of those
+    with a length or a time.
+    """
     return [
         key for key in _SCALED if _default(scenario, key) is not None and not _is_set(scenario, key)
     ]
 
 
 def scaled_law_defaults(envelope: Envelope) -> dict[str, float]:
-    """Return the defaults of the project's own steering laws by their dotted keys, in SI units, scaled to an aircraft."""
+    """Return the defaults of the project's own steering laws by their dotted keys, in SI units,
+    scaled to an aircraft.
+    """
     unit, defaults = units(envelope), GuidanceConfig()
     return {
         f"guidance.{name}": getattr(defaults, name) * _SCALED[f"guidance.{name}"](unit)

@@ -35,7 +35,8 @@ class PredictedSpreads:
     ----------
     tables : by level of turbulence, guidance and reference
     refused : why there is none, where guidance or reference cannot be flown
-    defaults : of the keys of the project's own steering laws, scaled to the aircraft, by their dotted names
+    defaults : of the keys of the project's own steering laws, scaled to the aircraft, by their
+        dotted names
     """
 
     tables: Mapping[Key, SpreadTable] = field(default_factory=dict)
@@ -65,7 +66,9 @@ class PredictedSpreads:
 def predicted_spreads(
     scenarios: Iterable[Scenario], found: Designed | None, setup: VehicleSetup | None
 ) -> PredictedSpreads:
-    """Return the predicted spread of each of some scenarios that has turbulence; of none without an aircraft."""
+    """Return the predicted spread of each of some scenarios that has turbulence; of none without an
+    aircraft.
+    """
     if found is None or setup is None:
         return PredictedSpreads()
     defaults = scaled_law_defaults(found.design.schedule.envelope)
@@ -93,7 +96,9 @@ def _key(scenario: Scenario, defaults: Mapping[str, float]) -> Key:
 
 
 def _planned_for(scenario: Scenario, defaults: Mapping[str, float]) -> Scenario:
-    """Return the scenario with the steering law that its margin is planned for: its own, or another with default parameters."""
+    """Return the scenario with the steering law that its margin is planned for: its own, or another
+    with default parameters.
+    """
     law = scenario.following.margin_law
     if law is None:
         return scenario
@@ -127,7 +132,9 @@ def _spread_table(scenario: Scenario, found: Designed, setup: VehicleSetup) -> S
 
 
 def _orbits(scenario: Scenario) -> Iterator[tuple[float, Orbit]]:
-    """Yield the orbit at each speed ratio at which the reference's shape has one, at the lowest if at any."""
+    """Yield the orbit at each speed ratio at which the reference's shape has one, at the lowest if
+    at any.
+    """
     for nu in SPREAD_RATIOS:
         try:
             yield nu, oscillation_at(scenario.guidance, scenario.reference, nu)

@@ -25,7 +25,8 @@ _POINTS = 720
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class VesselCircle:
-    """A circle about a vessel, flown clockwise at constant airspeed: an orbit whose centre is the vessel.
+    """A circle about a vessel, flown clockwise at constant airspeed: an orbit whose centre is the
+    vessel.
 
     Attributes
     ----------
@@ -44,8 +45,9 @@ class VesselCircle:
     def period(self) -> float:
         """Time of one turn about the vessel [s].
 
-        The speed relative to the vessel is V (sqrt(1 - nu^2 sin^2) - nu cos) of the angle between tangent and vessel's course; the
-        mean of its inverse over a turn is the complete elliptic integral E(nu^2) over pi/2 V (1 - nu^2).
+        The speed relative to the vessel is V (sqrt(1 - nu^2 sin^2) - nu cos) of the angle between
+        tangent and vessel's course; the mean of its inverse over a turn is the complete elliptic
+        integral E(nu^2) over pi/2 V (1 - nu^2).
         """
         return float(4.0 * self.radius * ellipe(self.nu**2) / (self.speed * (1.0 - self.nu**2)))
 
@@ -68,11 +70,15 @@ class VesselCircle:
 
     @property
     def amplitude(self) -> float:
-        """Largest heading rate through the air, flown against the vessel: (1 + nu)^2 times that in still air [rad/s]."""
+        """Largest heading rate through the air, flown against the vessel: (1 + nu)^2 times that in
+        still air [rad/s].
+        """
         return (1.0 + self.nu) ** 2 * self.speed / self.radius
 
     def offset(self, time: npt.ArrayLike) -> tuple[Array, Array]:
-        """Return where the reference is from the vessel, along its course and to its right [m], from right ahead on."""
+        """Return where the reference is from the vessel, along its course and to its right [m],
+        from right ahead on.
+        """
         bearing = np.linspace(0.0, 2.0 * np.pi, _POINTS + 1)
         tangent = bearing + 0.5 * np.pi
         slowness = (
@@ -92,7 +98,8 @@ class VesselCircle:
 
 
 def vessel_circle(scenario: Scenario, nu: float, least: float) -> VesselCircle:
-    """Return the circle of a scenario: of the radius that it gives, or of the ``least`` that keeps out [m].
+    """Return the circle of a scenario: of the radius that it gives, or of the ``least`` that keeps
+    out [m].
 
     Raises
     ------

@@ -48,7 +48,9 @@ def sampled_start(
 
 
 def placed(ahead: float, right: float, course: float) -> tuple[float, float]:
-    """Return north and east of a place ahead and right of a vessel at the origin on a course [m, rad]."""
+    """Return north and east of a place ahead and right of a vessel at the origin on a course
+    [m, rad].
+    """
     sin_c, cos_c = math.sin(course), math.cos(course)
     return ahead * cos_c - right * sin_c, ahead * sin_c + right * cos_c
 
@@ -56,7 +58,9 @@ def placed(ahead: float, right: float, course: float) -> tuple[float, float]:
 def first_reports(
     vessel: VesselTruth, received: list[tuple[float, VesselReport]] | None
 ) -> list[VesselReport]:
-    """Return the reports that the flight begins with; of a vessel that is known exactly, her motion."""
+    """Return the reports that the flight begins with; of a vessel that is known exactly, her
+    motion.
+    """
     if received is None:
         return [VesselReport(0.0, *vessel.motion(0.0))]
     return [report for at, report in received if at <= 0.0]
@@ -76,15 +80,18 @@ def check_start(
 
     Parameters
     ----------
-    start, guard : the start, and the guard that would have to keep out; any start is accepted without
+    start, guard : the start, and the guard that would have to keep out; any start is accepted
+        without
     vessel : discs in each of which it is for certain, at time 0
-    wind, wind_error : north and east, and by how much more than in the end its first measurement may be wrong [m/s]
+    wind, wind_error : north and east, and by how much more than in the end its first measurement
+        may be wrong [m/s]
     airspeed : of the UAV [m/s]
     keepout_radius : r_min [m]
 
     Raises
     ------
-    InfeasibleError : the best turn away comes too close, or the vehicle lags so much that it does not lead away
+    InfeasibleError : the best turn away comes too close, or the vehicle lags so much that it does
+        not lead away
     """
     if guard is None:
         return

@@ -1,4 +1,6 @@
-"""Flights that track the paper's reference, which is known in advance: beside a steady vessel in still air, or on a circle."""
+"""Flights that track the paper's reference, which is known in advance: beside a steady vessel in
+still air, or on a circle.
+"""
 
 import math
 
@@ -54,7 +56,8 @@ def tracking_flight(
 
     Raises
     ------
-    InfeasibleError : the vessel outruns the UAV, or the flight starts where no command keeps it out of the keep-out area
+    InfeasibleError : the vessel outruns the UAV, or the flight starts where no command keeps it out
+        of the keep-out area
     """
     g, radius = scenario.guidance, scenario.keepout.radius_m
     vessel = vessel_of(scenario)
@@ -73,7 +76,8 @@ def tracking_flight(
         scenario.start, start_generator(noise), course=course, axis=plume.axis(0.0)
     )
     guard = None
-    # The disc that the keep-out area cuts out at the height of the flight, or lower if the aircraft sinks in a turn.
+    # The disc that the keep-out area cuts out at the height of the flight, or lower if the aircraft
+    # sinks in a turn.
     lowest = max(0.0, abs(above) - setup.altitude_error)
     disc = (
         radius
@@ -83,7 +87,8 @@ def tracking_flight(
     if g.keepout_guard and disc > 0.0:
         guard = guard_parameters(scenario, setup, disc)
         known = Tube(0.0, 0.0, 0.0, v_north, v_east)
-        # The guard must leave the orbit alone, and what the UAV may stray from it: an orbit that lies nearer moves off.
+        # The guard must leave the orbit alone, and what the UAV may stray from it: an orbit that
+        # lies nearer moves off.
         nearest = math.hypot(ahead, right) - oscillation.half_widths()[0] - g.tracking_allowance_m
         needed = orbit_distance(
             guard, known, oscillation, (math.cos(axis.heading), math.sin(axis.heading))

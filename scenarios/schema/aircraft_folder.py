@@ -1,4 +1,6 @@
-"""The aircraft of a directory in a scenario: ``--aircraft-dir DIR`` says where the aircraft that it names is."""
+"""The aircraft of a directory in a scenario: ``--aircraft-dir DIR`` says where the aircraft that it
+names is.
+"""
 
 import json
 from collections.abc import Iterator, Sequence
@@ -15,8 +17,8 @@ KEY = "aircraft"
 
 
 def aircraft_from(directory: Path, name: str, overrides: Sequence[str]) -> list[str]:
-    """Return overrides that take the aircraft from ``directory``: that of ``--set aircraft=NAME``, else the scenario's if it is
-    there, else the only one there.
+    """Return overrides that take the aircraft from ``directory``: that of ``--set aircraft=NAME``,
+    else the scenario's if it is there, else the only one there.
 
     Parameters
     ----------
@@ -26,7 +28,8 @@ def aircraft_from(directory: Path, name: str, overrides: Sequence[str]) -> list[
 
     Raises
     ------
-    InputError : no such scenario, directory or aircraft, several to choose from, or one that is given by a path already
+    InputError : no such scenario, directory or aircraft, several to choose from, or one that is
+        given by a path already
     """
     keys = [parse_override(override) for override in overrides]
     demanded = next((str(value) for key, value in reversed(keys) if key == KEY), None)
@@ -40,7 +43,8 @@ def aircraft_from(directory: Path, name: str, overrides: Sequence[str]) -> list[
 
 
 def folder_of(directory: Path, name: str | None) -> str:
-    """Return the path of an aircraft in ``directory``: of the one called ``name``, or else of the only one.
+    """Return the path of an aircraft in ``directory``: of the one called ``name``, or else of the
+    only one.
 
     Raises
     ------

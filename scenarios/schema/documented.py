@@ -1,5 +1,5 @@
-"""Every key of the scenario files with its meaning, unit, range and default, taken from the schemas: the one source of what is
-said about keys."""
+"""Every key of the scenario files with its meaning, unit, range and default, taken from the
+schemas: the one source of what is said about keys."""
 
 import functools
 import re
@@ -54,18 +54,24 @@ _REFUSING = {
     "cases": tuple(ONE_POINT),
     "comparison": tuple(ONE_POINT),
 }
-"""Studies that refuse a section of several points; ``paper`` has cases, beside which there is no sweep."""
+"""Studies that refuse a section of several points; ``paper`` has cases, beside which there is no
+sweep.
+"""
 
 
 @functools.cache
 def documented_sections(kind: type[BaseModel] = Scenario) -> tuple[DocumentedSection, ...]:
-    """Return the sections of a kind of scenario file, in their order; first the keys outside of any section."""
+    """Return the sections of a kind of scenario file, in their order; first the keys outside of any
+    section.
+    """
     studies = dict(_KINDS)[kind]
     return tuple(_sections(kind, "", kind.__doc__ or "", studies, listed=False))
 
 
 def documented_keys() -> list[DocumentedKey]:
-    """Return every key of every kind of scenario file, in the order of the files, and then those that parts bring."""
+    """Return every key of every kind of scenario file, in the order of the files, and then those
+    that parts bring.
+    """
     of_schemas = [
         key for kind, _ in _KINDS for section in documented_sections(kind) for key in section.keys
     ]
@@ -78,7 +84,9 @@ def documented_keys() -> list[DocumentedKey]:
 
 
 def similar_key(name: str) -> str | None:
-    """Return the key or section that an unknown name stands for: one with a similar spelling, or with a similar last word."""
+    """Return the key or section that an unknown name stands for: one with a similar spelling, or
+    with a similar last word.
+    """
     documented = documented_keys()
     keys = [each.key for each in documented]
     of_flights = [each.key for each in documented if each.studies != ("convergence",)]
@@ -152,7 +160,8 @@ def _studies(key: str, studies: tuple[str, ...]) -> tuple[str, ...]:
     if refusing := _REFUSING.get(key.partition(".")[0]):
         return tuple(study for study in studies if study not in refusing)
     plain = {study: _plain_scenarios(study) for study in studies}
-    # A rule by which it acts in none of these is of something else that it needs, which every study may have.
+    # A rule by which it acts in none of these is of something else that it needs, which every study
+    # may have.
     rules = [
         rule
         for rule in RULES
@@ -168,7 +177,9 @@ def _studies(key: str, studies: tuple[str, ...]) -> tuple[str, ...]:
 
 @functools.cache
 def _plain_scenarios(study: str) -> tuple[Scenario, ...]:
-    """Return scenarios of a study without anything else, by both methods: a key may be of one of them alone."""
+    """Return scenarios of a study without anything else, by both methods: a key may be of one of
+    them alone.
+    """
     plain = Scenario(title=study, draws=(DrawConfig(key="wind.speed_mps", uniform=(0.0, 1.0)),))
     return tuple(
         plain.model_copy(update={"study": study, "method": method})

@@ -1,4 +1,6 @@
-"""What is known of a key; and the keys that parts bring: fields of steering laws, settings of plumes and instruments."""
+"""What is known of a key; and the keys that parts bring: fields of steering laws, settings of
+plumes and instruments.
+"""
 
 import functools
 import inspect
@@ -32,7 +34,8 @@ class DocumentedKey:
     default : in plain values; None where nothing is the default, or where it has to be given
     required : whether it has to be given
     studies : that take it
-    conditions : what it needs to have an effect, each by the part that uses it; empty if it always has one
+    conditions : what it needs to have an effect, each by the part that uses it; empty if it always
+        has one
     """
 
     key: str
@@ -58,7 +61,9 @@ PART_SECTIONS = tuple(key.partition(".")[0] for key in _REGISTRIES)
 
 @functools.cache
 def documented_part_keys() -> tuple[DocumentedKey, ...]:
-    """Return the keys that the project's own parts bring, as far as they are not those of the schema."""
+    """Return the keys that the project's own parts bring, as far as they are not those of the
+    schema.
+    """
     found: dict[tuple[str, str], tuple[DocumentedKey, list[str]]] = {}
     for key_of_part, registry in _REGISTRIES.items():
         section = key_of_part.partition(".")[0]
@@ -103,7 +108,9 @@ def _part_key(key: str, of: "Field[Any]", described: str) -> DocumentedKey:
 
 
 def described_fields(made: type[Any]) -> dict[str, tuple[str, str]]:
-    """Return meaning and unit of each field of a dataclass, by its docstring; the unit of a number without one is empty."""
+    """Return meaning and unit of each field of a dataclass, by its docstring; the unit of a number
+    without one is empty.
+    """
     told = {name: split_unit(described) for name, described in _described(made).items()}
     return {
         name: (_sentence(meaning), "" if unit == DIMENSIONLESS else unit)

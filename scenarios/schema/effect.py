@@ -1,4 +1,6 @@
-"""Which keys of a scenario act: one that no part of its flights uses is refused, with the part that would use it."""
+"""Which keys of a scenario act: one that no part of its flights uses is refused, with the part that
+would use it.
+"""
 
 import functools
 from collections.abc import Iterable, Iterator, Mapping
@@ -18,21 +20,25 @@ _DISPLACED_BY = {
 """Keys that other keys put aside, where flights have these."""
 
 _OF_LAW = ("guidance.law", "guidance.tuning")
-"""Keys of which it is looked at what they are set to; others count as making what depends on them act."""
+"""Keys of which it is looked at what they are set to; others count as making what depends on them
+act.
+"""
 
 
 def refuse_unused(
     scenario: Scenario, given: Iterable[str], *, overridden: Scenario | None = None
 ) -> None:
-    """Refuse keys that no part of a scenario's flights uses, those among them that are swept or sampled.
+    """Refuse keys that no part of a scenario's flights uses, those among them that are swept or
+    sampled.
 
     Parameters
     ----------
     scenario : as checked
     given : dotted keys that its file or the command line sets
-    overridden : where the command line sets them, what it changes. Then another key that is swept or sampled in every flight must
-        not put them aside, and they may turn off what made air or vessel unsteady; what a file says may be of other flights, such
-        as those of a base that it was made from
+    overridden : where the command line sets them, what it changes. Then another key that is swept
+        or sampled in every flight must not put them aside, and they may turn off what made air or
+        vessel unsteady; what a file says may be of other flights, such as those of a base that it
+        was made from
 
     Raises
     ------
@@ -59,7 +65,9 @@ def refuse_unused(
 
 
 def _put_aside_by(scenario: Scenario, key: str) -> str | None:
-    """Return the swept or sampled key that puts a dotted key aside in every flight: one above it, or one in its place."""
+    """Return the swept or sampled key that puts a dotted key aside in every flight: one above it,
+    or one in its place.
+    """
     varied = (*scenario.sweep.root, *(draw.key for draw in scenario.draws))
     return next(
         (
@@ -72,7 +80,9 @@ def _put_aside_by(scenario: Scenario, key: str) -> str | None:
 
 
 def unused(scenario: Scenario, key: str) -> str:
-    """Return the part that would use a dotted key, where no part of a scenario's flights does; otherwise nothing."""
+    """Return the part that would use a dotted key, where no part of a scenario's flights does;
+    otherwise nothing.
+    """
     # A mission that is given does not follow from the air, the vessel or the equipment.
     mission = ("guidance.mission", *(OPERATIONAL if scenario.guidance.mission is None else ()))
     for rule in _rules_of(key):
@@ -83,7 +93,9 @@ def unused(scenario: Scenario, key: str) -> str:
 
 
 def _acts_in_some(rule: Rule, scenario: Scenario, depends: tuple[str, ...]) -> bool:
-    """Return whether a rule's keys act in some flights, as what that depends on differs from flight to flight."""
+    """Return whether a rule's keys act in some flights, as what that depends on differs from flight
+    to flight.
+    """
     for values in differing(scenario):
         if not (other := {key: value for key, value in values.items() if named_by(key, depends)}):
             continue
@@ -118,7 +130,9 @@ def differing(scenario: Scenario) -> Iterator[Mapping[str, object]]:
 
 
 def compares(scenario: Scenario) -> bool:
-    """Return whether variants are flown at all: at every point, at one of a speed ratio that is swept, or in cases."""
+    """Return whether variants are flown at all: at every point, at one of a speed ratio that is
+    swept, or in cases.
+    """
     ratios = scenario.comparison.nu
     return not ratios or bool(scenario.cases) or not {*ratios}.isdisjoint(scenario.sweep.nu)
 
@@ -150,5 +164,7 @@ def _rules_of(key: str) -> tuple[Rule, ...]:
 
 
 def named_by(key: str, names: Iterable[str]) -> bool:
-    """Return whether a dotted key is among the names, of which those that end in a dot are beginnings of keys."""
+    """Return whether a dotted key is among the names, of which those that end in a dot are
+    beginnings of keys.
+    """
     return any(key == name or (name.endswith(".") and key.startswith(name)) for name in names)

@@ -1,4 +1,6 @@
-"""When keys of a scenario act: a rule for those that not every flight uses, with the part that would use them."""
+"""When keys of a scenario act: a rule for those that not every flight uses, with the part that
+would use them.
+"""
 
 from collections.abc import Callable
 from dataclasses import dataclass, fields
@@ -19,8 +21,10 @@ class Rule:
     keys : dotted keys, or the beginnings of keys that end in a dot
     acts : whether they do in a scenario
     user : the part that would use them, and how to have it
-    depends : keys on which that depends: where they differ from flight to flight, the keys count as acting
-    by_mission : whether that depends on the mission as well, and so on the keys from which it follows
+    depends : keys on which that depends: where they differ from flight to flight, the keys count as
+        acting
+    by_mission : whether that depends on the mission as well, and so on the keys from which it
+        follows
     """
 
     keys: tuple[str, ...]
@@ -56,7 +60,9 @@ def _trims(scenario: Scenario) -> bool:
 
 
 def _smoke(key: str) -> Test:
-    """Return whether the project's smoke has a setting, or another plume model has whatever a key of that name means there."""
+    """Return whether the project's smoke has a setting, or another plume model has whatever a key
+    of that name means there.
+    """
     return lambda s: bool(
         s.plume.model != "fluctuating"
         or (s.plume.model_extra or {}).get(key, getattr(PlumeSettings, key))
@@ -88,12 +94,15 @@ LAW_KEYS: tuple[tuple[str, str, Test], ...] = (
 )
 """Keys of the project's own steering laws, the laws that use them, and whether one of them does.
 
-A steered reference is kept pace with by the look-ahead, whatever the law (``gnc.airspeed.pace_hold``).
+A steered reference is kept pace with by the look-ahead, whatever the law
+(``gnc.airspeed.pace_hold``).
 """
 
 
 def _also_of_own_laws(key: str, used: Test) -> Test:
-    """Return whether one of the project's laws uses a key, or one that is added has a field of its name."""
+    """Return whether one of the project's laws uses a key, or one that is added has a field of its
+    name.
+    """
     return lambda s: (
         used(s)
         or (not _law("cascade", "lyapunov", "line_of_sight")(s) and key in s.guidance.law_keys)

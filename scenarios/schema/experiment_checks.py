@@ -1,4 +1,6 @@
-"""Whether the parts of a scenario go together: mission and world, what is sampled, what a search and subset simulation need."""
+"""Whether the parts of a scenario go together: mission and world, what is sampled, what a search
+and subset simulation need.
+"""
 
 from collections.abc import Collection, Iterator
 
@@ -19,7 +21,9 @@ _DESIGN_HEIGHT = (
     "flight.altitude_min_m",
     "flight.altitude_max_m",
 )
-"""The same where the altitude at the start follows from them: without ``flight.altitude_m``, and the second without the first."""
+"""The same where the altitude at the start follows from them: without ``flight.altitude_m``, and
+the second without the first.
+"""
 
 
 ONE_POINT = {
@@ -41,7 +45,9 @@ _WITHOUT_EFFECT = (
     "sweep.",
     "cases.",
 )
-"""Sections on which no flight depends: to sweep or sample them would count the same flights several times."""
+"""Sections on which no flight depends: to sweep or sample them would count the same flights several
+times.
+"""
 
 
 _SWEPT_BESIDE_SECTIONS = ("flight_seed", "fidelity")
@@ -49,8 +55,8 @@ _SWEPT_BESIDE_SECTIONS = ("flight_seed", "fidelity")
 
 
 _SET_ANYWHERE = ("aircraft.", "fidelity.", "flight_seed.", "criteria.")
-"""Keys outside of sections, and sections on which no flight depends, that may be set for some flights, or are refused elsewhere;
-each with a dot behind it.
+"""Keys outside of sections, and sections on which no flight depends, that may be set for some
+flights, or are refused elsewhere; each with a dot behind it.
 """
 
 
@@ -91,13 +97,17 @@ FOLLOWING = (
 
 
 def unsteady(scenario: ScenarioKeys) -> tuple[str, ...]:
-    """Return the keys by which air or vessel of a scenario, of each flight or as they vary, are not steady and known."""
+    """Return the keys by which air or vessel of a scenario, of each flight or as they vary, are not
+    steady and known.
+    """
     varied = (*scenario.sweep.root, *(draw.key for draw in scenario.draws))
     return (*scenario.unsteady_keys, *(key for key in varied if key.startswith(UNSTEADY)))
 
 
 def check_mission(scenario: ScenarioKeys) -> None:
-    """Refuse what a mission in still air, beside a steady vessel, would leave out, wherever the scenario has either from."""
+    """Refuse what a mission in still air, beside a steady vessel, would leave out, wherever the
+    scenario has either from.
+    """
     if scenario.guidance.mission == "track" and (keys := unsteady(scenario)):
         raise ValueError(f"key '{keys[0]}' has no effect here: it is used by {FOLLOWING}")
     if scenario.stands_off and scenario.finds:
@@ -115,7 +125,9 @@ def check_mission(scenario: ScenarioKeys) -> None:
 
 
 def check_source(scenario: ScenarioKeys) -> None:
-    """Refuse a funnel that is lower than any, or higher than the exhaust of the project's own plume may leave one."""
+    """Refuse a funnel that is lower than any, or higher than the exhaust of the project's own plume
+    may leave one.
+    """
     if scenario.emission.ship is None:
         return
     height = scenario.source_height
@@ -136,7 +148,9 @@ def check_source(scenario: ScenarioKeys) -> None:
 
 
 def check_start_altitude(scenario: ScenarioKeys) -> None:
-    """Refuse a start below or above the altitudes at which exhaust is crossed: it was flown outside of them until it got there."""
+    """Refuse a start below or above the altitudes at which exhaust is crossed: it was flown outside
+    of them until it got there.
+    """
     flight, altitude = scenario.flight, scenario.flight.altitude_m
     if (
         scenario.emission.ship is None
@@ -162,7 +176,9 @@ def check_one_point(scenario: ScenarioKeys) -> None:
 
 
 def check_tables(scenario: ScenarioKeys) -> None:
-    """Refuse comparisons that have the name of flights that count, and tables that set what no flight depends on."""
+    """Refuse comparisons that have the name of flights that count, and tables that set what no
+    flight depends on.
+    """
     apart = [of.name for of in scenario.comparison.variants] + [
         case.name for case in scenario.cases if case.comparison
     ]
@@ -275,7 +291,8 @@ def swept_key(name: str) -> str:
 
 
 def _check_varied(section: str, key: str, known: Collection[str]) -> None:
-    """Refuse to sweep or sample a key that is the same for all flights; an unknown one, and the vehicle, are refused elsewhere.
+    """Refuse to sweep or sample a key that is the same for all flights; an unknown one, and the
+    vehicle, are refused elsewhere.
 
     Parameters
     ----------

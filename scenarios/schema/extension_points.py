@@ -1,4 +1,6 @@
-"""Parts of a flight that others may add, by name: what a scenario file names and checks, and the world and the vehicles make."""
+"""Parts of a flight that others may add, by name: what a scenario file names and checks, and the
+world and the vehicles make.
+"""
 
 from collections.abc import Callable
 from typing import Any
@@ -8,7 +10,9 @@ from common.registry import Registry
 VESSEL_TRACKS: Registry[Callable[..., Any]] = Registry(
     "vessel_track", folder="scenarios.world", methods=("motion", "course")
 )
-"""Vessel tracks by name. Each is called with the ``[vessel]`` section, the speed [m/s] and the duration [s] to cover."""
+"""Vessel tracks by name. Each is called with the ``[vessel]`` section, the speed [m/s] and the
+duration [s] to cover.
+"""
 
 PLUME_MODELS: Registry[Callable[..., Any]] = Registry(
     "plume_model", folder="scenarios.world", methods=("axis",)
@@ -18,4 +22,5 @@ PLUME_MODELS: Registry[Callable[..., Any]] = Registry(
 PAYLOADS: Registry[Callable[..., Any]] = Registry(
     "payload", folder="scenarios.instruments", methods=("read|evaluate",)
 )
-"""Instruments by name. Each is called with the flight's scenario, its world and a random generator."""
+"""Instruments by name. Each is called with the flight's scenario, its world and a random generator.
+"""

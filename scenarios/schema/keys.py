@@ -22,7 +22,9 @@ _UNION_MEMBER = re.compile(r"constrained-\w+|literal\[.*\]|function-.*")
 
 
 def known_keys(kind: type[BaseModel]) -> list[str]:
-    """Return every dotted key of a schema, sections included; an entry of a list of sections has the index 0."""
+    """Return every dotted key of a schema, sections included; an entry of a list of sections has
+    the index 0.
+    """
     keys: list[str] = []
     if issubclass(kind, RootModel):
         return keys
@@ -34,7 +36,9 @@ def known_keys(kind: type[BaseModel]) -> list[str]:
 
 
 def key_parts(kind: type[BaseModel], dotted: str) -> list[str]:
-    """Return the parts of a dotted key; a section that has keys of other sections, such as sweep, takes the rest whole."""
+    """Return the parts of a dotted key; a section that has keys of other sections, such as sweep,
+    takes the rest whole.
+    """
     parts = dotted.split(".")
     model: type[BaseModel] = kind
     for depth, part in enumerate(parts[:-1], start=1):
@@ -49,19 +53,22 @@ def key_parts(kind: type[BaseModel], dotted: str) -> list[str]:
 
 
 def displaced(key: str, given: Iterable[str]) -> bool:
-    """Return whether what varies a dotted key gives way to given keys: to the key itself, to one above it, or, for the vessel's
-    speed and its speed ratio, to the other one of the two.
+    """Return whether what varies a dotted key gives way to given keys: to the key itself, to one
+    above it, or, for the vessel's speed and its speed ratio, to the other one of the two.
     """
     return any(at_or_below(key, of) or {key, of} == _SPEEDS for of in given)
 
 
 def suggestion(kind: type[BaseModel], key: str) -> str:
-    """Return the end of the message about an unknown key: the most similar known key, or the known keys of its section."""
+    """Return the end of the message about an unknown key: the most similar known key, or the known
+    keys of its section.
+    """
     *parents, last = key.split(".")
     section = ["0" if part.isdecimal() else part for part in parents]
     known = [name.split(".") for name in known_keys(kind)]
     siblings = [name[-1] for name in known if name[:-1] == section]
-    # A key without its section, such as speed_mps, is likelier than another key that is spelt similarly.
+    # A key without its section, such as speed_mps, is likelier than another key that is spelt
+    # similarly.
     found = (
         [".".join(name) for name in known if name[-1] == last and "0" not in name]
         if not parents
@@ -76,13 +83,17 @@ def suggestion(kind: type[BaseModel], key: str) -> str:
 
 
 def key_of(entry: ErrorDetails) -> str:
-    """Return the dotted key that an entry of a validation error is about, without pydantic's names for the types of a union."""
+    """Return the dotted key that an entry of a validation error is about, without pydantic's names
+    for the types of a union.
+    """
     parts = [str(part) for part in entry["loc"]]
     return ".".join(parts[:-1] if _UNION_MEMBER.fullmatch(parts[-1]) else parts) if parts else ""
 
 
 def explanation(error: ValidationError, kind: type[BaseModel]) -> str:
-    """Return what is wrong with a document in one line: the first key, its value, the limit, and how many other keys are wrong."""
+    """Return what is wrong with a document in one line: the first key, its value, the limit, and
+    how many other keys are wrong.
+    """
     entries = error.errors()
     key, more = key_of(entries[0]), len({key_of(entry) for entry in entries}) - 1
     # A criterion may be false: that it is not judged.
@@ -127,7 +138,9 @@ def _shown(value: object) -> str:
 
 
 def _own_words(key: str, text: str, section: object) -> str:
-    """Return what the project's own checks say of a section, after its key; that of a key in it if the text begins with one."""
+    """Return what the project's own checks say of a section, after its key; that of a key in it if
+    the text begins with one.
+    """
     if not key or text.startswith("unknown key"):
         return text
     word, found, _ = text.partition(" is ")
@@ -157,7 +170,8 @@ def _field(kind: type[BaseModel], parts: Sequence[str]) -> FieldInfo | None:
 
 
 def _list_example(kind: type[BaseModel], key: str, value: object) -> str:
-    """Return how a list is written: one of sections by what they need, one of two values, of words, or of numbers.
+    """Return how a list is written: one of sections by what they need, one of two values, of words,
+    or of numbers.
 
     Parameters
     ----------
@@ -217,7 +231,9 @@ def _example(kind: type[BaseModel], section: str) -> str:
 
 
 def entry_model(kind: type[BaseModel], parts: Sequence[str]) -> type[BaseModel] | None:
-    """Return the schema of the entries of the list that a key names; None if it is not a list of sections."""
+    """Return the schema of the entries of the list that a key names; None if it is not a list of
+    sections.
+    """
     field = _field(kind, parts)
     model, listed = next(models_in(field.annotation), (None, False)) if field else (None, False)
     return model if listed else None

@@ -53,12 +53,16 @@ FORMER_WORDS = {"sea": "flights", "sea_trial": "trials"}
 """What files made for earlier versions say of ``study``."""
 
 OPERATIONAL = "operational"
-"""The base that scenarios of these studies extend which name none; with ``extends = false`` they have none."""
+"""The base that scenarios of these studies extend which name none; with ``extends = false`` they
+have none.
+"""
 
 OPERATIONAL_STUDIES = ("sea", "monte_carlo", "falsify")
 
 CATALOG, BASES = Path(__file__).parents[1] / "catalog", "bases"
-"""The directory of the catalog, whose folders hold a kind of scenario each, and the one of them with bases."""
+"""The directory of the catalog, whose folders hold a kind of scenario each, and the one of them
+with bases.
+"""
 
 
 @functools.cache
@@ -81,16 +85,18 @@ def load_study(
 
     Parameters
     ----------
-    name : name in the catalog, path of a TOML file, or what such a file would hold; files in it are then relative to the current
-        directory
-    overrides : ``key=value`` with dotted keys and TOML values, e.g. ``guidance.preview=false``; a part's file, FILE.py:NAME, is
-        relative to the current directory, in a scenario file to that file
-    refusing : whether keys of the file and of overrides are refused where no part of the flights uses them
+    name : name in the catalog, path of a TOML file, or what such a file would hold; files in it are
+        then relative to the current directory
+    overrides : ``key=value`` with dotted keys and TOML values, e.g. ``guidance.preview=false``; a
+        part's file, FILE.py:NAME, is relative to the current directory, in a scenario file to that
+        file
+    refusing : whether keys of the file and of overrides are refused where no part of the flights
+        uses them
 
     Raises
     ------
-    InputError : no such scenario, unreadable TOML, an unknown key, a value out of range, a key without effect, or a logo that is no
-        picture
+    InputError : no such scenario, unreadable TOML, an unknown key, a value out of range, a key
+        without effect, or a logo that is no picture
     """
     document = load_document(name, overrides)
     try:
@@ -98,7 +104,8 @@ def load_study(
     except InputError as error:
         raise InputError(f"{_where_wrong(name, str(error))}{error}") from None
     if refusing and isinstance(scenario, Scenario):
-        # Keys of the file have to act in what the file alone says: an override may well put one of them aside.
+        # Keys of the file have to act in what the file alone says: an override may well put one of
+        # them aside.
         own, whole = _given(name)
         refuse_unused(alone := checked(whole, Scenario), given_keys(own))
         refuse_unused(
@@ -109,7 +116,9 @@ def load_study(
 
 
 def _where_wrong(name: str | Document, message: str) -> str:
-    """Return a user's file as the beginning of a message about a scenario, where the same is wrong without any override."""
+    """Return a user's file as the beginning of a message about a scenario, where the same is wrong
+    without any override.
+    """
     if not isinstance(name, str) or name in catalog():
         return ""
     _, alone = _given(name)
@@ -250,7 +259,9 @@ def _own(path: Path) -> tuple[Document, str | None]:
 
 
 def _resolved(given: Document, folder: Path, where: object) -> tuple[Document, str | None]:
-    """Return a document with absolute files and the present words, and the name of the scenario that it extends, if any."""
+    """Return a document with absolute files and the present words, and the name of the scenario
+    that it extends, if any.
+    """
     document: Document = with_absolute_files(given, folder)
     if isinstance(listed := document.get("set"), list):
         document["set"] = [_with_absolute_file(override, folder) for override in listed]
@@ -288,7 +299,9 @@ def _kind(document: Document) -> type[Any]:
 
 
 def checked(document: Mapping[str, Any], kind: type[Study]) -> Study:
-    """Return a scenario of some kind, or raise an InputError that names the key, its value and the limit."""
+    """Return a scenario of some kind, or raise an InputError that names the key, its value and the
+    limit.
+    """
     try:
         return kind.model_validate(document)
     except ValidationError as error:
@@ -328,7 +341,8 @@ def with_values(scenario: Scenario, values: Mapping[str, object]) -> Scenario:
         )
     document = scenario.model_dump()
     if "guidance.law" in values:
-        # Keys that only the other law has, such as those of a steering law that is added, go with it.
+        # Keys that only the other law has, such as those of a steering law that is added, go with
+        # it.
         for key in scenario.guidance.keys_lost_with(values["guidance.law"]):
             del document["guidance"][key]
     for name in ("plume", "payload"):

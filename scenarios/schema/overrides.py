@@ -1,4 +1,6 @@
-"""Changes to a scenario document: ``--set key=value`` with dotted keys, and which keys a document sets."""
+"""Changes to a scenario document: ``--set key=value`` with dotted keys, and which keys a document
+sets.
+"""
 
 import json
 import re
@@ -62,7 +64,8 @@ def parse_override(override: str) -> tuple[str, object]:
 
 
 def apply_override(document: Document, key: str, value: object, kind: type[BaseModel]) -> None:
-    """Set a key for every flight of a document: no case, no sweep and no random variable sets it, or what is below it, otherwise.
+    """Set a key for every flight of a document: no case, no sweep and no random variable sets it,
+    or what is below it, otherwise.
 
     A speed of the vessel beside a sweep of the speed ratio is left to ``effect``, which refuses it.
 
@@ -114,14 +117,18 @@ def _ends_sweep(key: str, swept: str) -> bool:
 
 
 def _gives_way(drawn: str, key: str) -> bool:
-    """Return whether the draw of a key gives way to a key that is set, or, of the vessel's speed, to a sweep of the other key."""
+    """Return whether the draw of a key gives way to a key that is set, or, of the vessel's speed,
+    to a sweep of the other key.
+    """
     if key.startswith("sweep."):
         return {drawn, swept_key(key.removeprefix("sweep."))} == {_SPEED, _RATIO}
     return displaced(drawn, [key])
 
 
 def _without(values: Document, left_out: Callable[[str], bool], before: str = "") -> Document:
-    """Return the values of a sweep without those of dotted keys that are left out, which may stand in tables of their own."""
+    """Return the values of a sweep without those of dotted keys that are left out, which may stand
+    in tables of their own.
+    """
     rest: Document = {}
     for name, value in values.items():
         if isinstance(value, dict):
@@ -133,7 +140,9 @@ def _without(values: Document, left_out: Callable[[str], bool], before: str = ""
 
 
 def tabled(document: Document) -> Document:
-    """Put the short form of the payload, a list of instruments, into a table, in place, so that other keys find room beside it."""
+    """Put the short form of the payload, a list of instruments, into a table, in place, so that
+    other keys find room beside it.
+    """
     if isinstance(names := document.get("payload"), list | tuple):
         document["payload"] = {"instruments": names}
     return document
@@ -144,7 +153,8 @@ def set_value(document: Document, dotted: str, value: object, kind: type[BaseMod
 
     Raises
     ------
-    InputError : the key goes through a value that is not a table, or to an entry that a list does not have
+    InputError : the key goes through a value that is not a table, or to an entry that a list does
+        not have
     """
     parts = key_parts(kind, dotted)
     section: Any = tabled(document)
@@ -235,7 +245,9 @@ def _toml_key(key: str) -> str:
 
 
 def merged(base: Mapping[str, Any], own: Mapping[str, Any]) -> Document:
-    """Return ``base`` extended by ``own``: tables are merged key by key, other values of ``own`` replace those of ``base``."""
+    """Return ``base`` extended by ``own``: tables are merged key by key, other values of ``own``
+    replace those of ``base``.
+    """
     result = dict(base)
     for key, value in own.items():
         below = result.get(key)
@@ -246,7 +258,9 @@ def merged(base: Mapping[str, Any], own: Mapping[str, Any]) -> Document:
 
 
 def given_keys(document: Mapping[str, Any]) -> set[str]:
-    """Return the dotted keys that a document itself sets; a list, and an empty table, count as one key."""
+    """Return the dotted keys that a document itself sets; a list, and an empty table, count as one
+    key.
+    """
     keys: set[str] = set()
     for key, value in document.items():
         below = given_keys(value) if isinstance(value, Mapping) else set()

@@ -30,7 +30,9 @@ _OVERRIDES = "set"
 
 
 def part_names(scenario: Scenario) -> Iterator[tuple[str, str]]:
-    """Yield the key and the name of each part of a scenario, those that its random variables may choose among them."""
+    """Yield the key and the name of each part of a scenario, those that its random variables may
+    choose among them.
+    """
     named: dict[str, object] = {
         _AIRCRAFT: scenario.aircraft,
         "study": scenario.study,
@@ -57,14 +59,15 @@ def part_names(scenario: Scenario) -> Iterator[tuple[str, str]]:
 
 
 def with_absolute_files(value: Any, folder: Path, key: str = "") -> Any:
-    """Return a document, or a value of one, in which the files of parts, data and trials, and folders of aircraft, have absolute
-    paths.
+    """Return a document, or a value of one, in which the files of parts, data and trials, and
+    folders of aircraft, have absolute paths.
 
     Parameters
     ----------
     value : the document, a table, a list or a single value
     folder : directory that the files are relative to
-    key : whose value it is; files of data are those of ``_DATA`` alone, and of pictures that of ``_PICTURE``
+    key : whose value it is; files of data are those of ``_DATA`` alone, and of pictures that of
+        ``_PICTURE``
 
     Raises
     ------
@@ -100,7 +103,8 @@ def with_absolute_files(value: Any, folder: Path, key: str = "") -> Any:
 
 
 def refuse_missing(key: str, value: Any, absolute: Any) -> None:
-    """Refuse a part whose file a program or the command line names relative to the current directory, where there is none.
+    """Refuse a part whose file a program or the command line names relative to the current
+    directory, where there is none.
 
     Parameters
     ----------

@@ -12,7 +12,9 @@ from scenarios.schema.sections.guidance import law_refusal
 from scenarios.schema.sections.section import check_divides, check_ordered
 
 POINTS_MAX = 10_000
-"""Most points of an experiment: all are checked before the first flight, in a millisecond and 20 kB each."""
+"""Most points of an experiment: all are checked before the first flight, in a millisecond and 20 kB
+each.
+"""
 
 
 class Scenario(ScenarioKeys):

@@ -1,4 +1,6 @@
-"""Keys of a scenario file: world, equipment, guidance, start, flight and criteria of its flights, and the experiment on them."""
+"""Keys of a scenario file: world, equipment, guidance, start, flight and criteria of its flights,
+and the experiment on them.
+"""
 
 from typing import Annotated, Literal
 
@@ -43,35 +45,47 @@ DEFAULT_AIRCRAFT = "x8"
 
 
 class ScenarioKeys(Section):
-    """The keys of a scenario file, and what follows from them; ``Scenario`` is where they go together."""
+    """The keys of a scenario file, and what follows from them; ``Scenario`` is where they go
+    together.
+    """
 
     study: str = "flights"
-    """flights; paper, with its bounds on commands; monte_carlo, with statistics; falsify, a search; arena, laws side by side;
-    patrol, several ships one after the other; or FILE.py:NAME."""
+    """flights; paper, with its bounds on commands; monte_carlo, with statistics; falsify, a search;
+    arena, laws side by side; patrol, several ships one after the other; or FILE.py:NAME."""
     title: Title
     """What reports and lists call it."""
     description: str = ""
     """One or two sentences at the top of the report."""
     aircraft: Annotated[str, Field(coerce_numbers_to_str=True)] = DEFAULT_AIRCRAFT
-    """The aircraft, by its name (plume-flight design --list), by the folder of its JSBSim model, DIR/NAME, or FILE.py:NAME."""
+    """The aircraft, by its name (plume-flight design --list), by the folder of its JSBSim model,
+    DIR/NAME, or FILE.py:NAME.
+    """
     fidelity: Literal["six_dof", "kinematic", "both"] = "six_dof"
     """Vehicle: the aircraft in six degrees of freedom, the paper's kinematic vehicle, or both."""
     seed: Seed = 1
     """Seed of the study, from which every flight's own seed follows [-]."""
     flights: Annotated[int, Field(ge=1, le=FLIGHTS_MAX)] = 1
-    """Flights of each point of the experiment, each with a seed and a sample of the random variables of its own [-]."""
+    """Flights of each point of the experiment, each with a seed and a sample of the random
+    variables of its own [-].
+    """
     flight_seed: Seed | None = None
-    """Seed of start, air and noise of every flight; if not given, each flight has its own, from seed, name and number [-]."""
+    """Seed of start, air and noise of every flight; if not given, each flight has its own, from
+    seed, name and number [-].
+    """
     histories: Annotated[int, Field(ge=0, le=100_000)] = 200
-    """Number of time histories to be kept, evenly spaced over the flights [-]. Those of flights that did not meet what is required
-    are kept as well; of missions that were not completed, that of the first of each trial."""
+    """Number of time histories to be kept, evenly spaced over the flights [-]. Those of flights
+    that did not meet what is required are kept as well; of missions that were not completed, that
+    of the first of each trial."""
     speed_ratio: Range = (0.0, 1e9)
-    """Flights whose nu leaves this range, at the start or after a manoeuvre, are sampled again [-]."""
+    """Flights whose nu leaves this range, at the start or after a manoeuvre, are sampled again [-].
+    """
     method: Literal["plain", "subset"] = "plain"
-    """How a Monte Carlo study samples: plain, or by subset simulation, towards rare keep-out violations."""
+    """How a Monte Carlo study samples: plain, or by subset simulation, towards rare keep-out
+    violations.
+    """
     sampling: Sampling = "sobol"
-    """How samples are spread: evenly over all random variables together (sobol), over each of them (latin_hypercube), or not at
-    all (random)."""
+    """How samples are spread: evenly over all random variables together (sobol), over each of them
+    (latin_hypercube), or not at all (random)."""
     sweep: SweepConfig = SweepConfig()
     cases: tuple[CaseConfig, ...] = ()
     draws: tuple[DrawConfig, ...] = ()
@@ -110,7 +124,9 @@ class ScenarioKeys(Section):
 
     @property
     def follows(self) -> bool:
-        """Return whether the mission follows what it estimates: where that says so, or air or vessel are not steady and known."""
+        """Return whether the mission follows what it estimates: where that says so, or air or
+        vessel are not steady and known.
+        """
         if self.guidance.mission is not None:
             return self.guidance.mission != "track"
         return (
@@ -121,7 +137,9 @@ class ScenarioKeys(Section):
 
     @property
     def unsteady_keys(self) -> tuple[str, ...]:
-        """Return the keys by which air or vessel are not steady and known, whatever is swept or sampled beside."""
+        """Return the keys by which air or vessel are not steady and known, whatever is swept or
+        sampled beside.
+        """
         air, sensors = self.turbulence, self.sensors.model_dump()
         given = {
             "wind.table": self.wind.table is not None,
@@ -154,7 +172,9 @@ class ScenarioKeys(Section):
 
     @property
     def source_height(self) -> float:
-        """Return the height of the funnel's mouth above the sea: as it is given, else that of the ship [m]."""
+        """Return the height of the funnel's mouth above the sea: as it is given, else that of the
+        ship [m].
+        """
         return funnel_height(self.plume.source_height_m, self.emission.ship)
 
     @property
@@ -199,8 +219,8 @@ class ScenarioKeys(Section):
 
     @property
     def several_points(self) -> bool:
-        """Return whether its experiment has points that differ otherwise than at random: by a sweep, cases, a comparison or two
-        vehicles."""
+        """Return whether its experiment has points that differ otherwise than at random: by a
+        sweep, cases, a comparison or two vehicles."""
         return (
             bool(self.sweep.root or self.cases or self.comparison.variants)
             or self.fidelity == "both"

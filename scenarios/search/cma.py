@@ -1,4 +1,6 @@
-"""CMA-ES (Hansen, arXiv:1604.00772), by the package ``cma``: steps whose covariance follows from those that succeeded."""
+"""CMA-ES (Hansen, arXiv:1604.00772), by the package ``cma``: steps whose covariance follows from
+those that succeeded.
+"""
 
 import math
 from typing import Any
@@ -14,7 +16,9 @@ _FIRST_STEP, _SHORTEST_STEP = 0.15, 0.005
 """Steps, one sigma of each coordinate [-]; a search ends below the shortest."""
 
 _STUCK = 12
-"""Generations in a row without a point that is better by a worthwhile amount, after which it begins anew."""
+"""Generations in a row without a point that is better by a worthwhile amount, after which it begins
+anew.
+"""
 
 _LEAST_COORDINATES = 2
 """Of a space that CMA-ES can search."""
@@ -22,7 +26,8 @@ _LEAST_COORDINATES = 2
 
 @search_method("cma")
 class CovarianceMatrixAdaptation:
-    """CMA-ES over the coordinates that take any value; choices stay those of the point from which it began.
+    """CMA-ES over the coordinates that take any value; choices stay those of the point from which
+    it began.
 
     Parameters
     ----------
@@ -77,7 +82,9 @@ class CovarianceMatrixAdaptation:
         )
 
     def tell(self, clearances: Array) -> None:
-        """Move and shape the distribution; begin anew after a violation, or where it is narrow or nothing gets better."""
+        """Move and shape the distribution; begin anew after a violation, or where it is narrow or
+        nothing gets better.
+        """
         self._strategy.tell(self._asked, clearances.tolist())
         i = int(np.argmin(clearances))
         self._stale = 0 if clearances[i] < self._least - WORTHWHILE else self._stale + 1

@@ -10,7 +10,8 @@ class Coordinate:
 
     Attributes
     ----------
-    choices : of a choice, where each of its values begins and, last, 1; empty for a coordinate that takes any value
+    choices : of a choice, where each of its values begins and, last, 1; empty for a coordinate that
+        takes any value
     time_range : of a time, its first and its last moment [s]; None for anything else
     circle : whether 0 and 1 are the same, as in a course
     noise : whether it is the choice of a realisation of noise
@@ -23,7 +24,9 @@ class Coordinate:
 
     @property
     def has_ends(self) -> bool:
-        """Return whether 0 and 1 are extremes of the quantity: not those of a time, a circle or a choice."""
+        """Return whether 0 and 1 are extremes of the quantity: not those of a time, a circle or a
+        choice.
+        """
         return not (self.choices or self.circle or self.time_range)
 
     @property
@@ -36,7 +39,9 @@ class Coordinate:
         )
 
     def difference(self, one: float, other: float) -> float:
-        """Return how much two values differ, from 0 to 1: of a choice, wholly or not at all; of noise, not at all."""
+        """Return how much two values differ, from 0 to 1: of a choice, wholly or not at all; of
+        noise, not at all.
+        """
         if self.noise:
             return 0.0
         if self.choices:

@@ -1,4 +1,6 @@
-"""Corner sampling: most quantities at an end of their range, every choice equally often, two events at the same time."""
+"""Corner sampling: most quantities at an end of their range, every choice equally often, two events
+at the same time.
+"""
 
 import numpy as np
 
@@ -7,7 +9,8 @@ from scenarios.search.method import SearchSettings, search_method
 from scenarios.search.space import Array, Space
 
 _SHARES_AT_END = (1.0, 0.8, 0.6)
-"""Shares of the quantities that are put at an end of their range [-]; one of them for each point."""
+"""Shares of the quantities that are put at an end of their range [-]; one of them for each point.
+"""
 
 _AT_ONE_TIME = 0.5
 """Share of the points that have two events at the same time [-]."""
@@ -15,7 +18,8 @@ _AT_ONE_TIME = 0.5
 
 @search_method("corners")
 class Corners:
-    """Points at random corners of the cube; times and courses, whose ends mean nothing, anywhere in their range.
+    """Points at random corners of the cube; times and courses, whose ends mean nothing, anywhere in
+    their range.
 
     Parameters
     ----------

@@ -1,4 +1,6 @@
-"""Differential evolution (Storn and Price, J. Glob. Optim. 11, 1997): a population that is recombined with its best."""
+"""Differential evolution (Storn and Price, J. Glob. Optim. 11, 1997): a population that is
+recombined with its best.
+"""
 
 import math
 
@@ -14,7 +16,8 @@ _STUCK = 15
 
 @search_method("differential_evolution")
 class DifferentialEvolution:
-    """The strategy best/1/bin, with a differential weight that is sampled for each generation; it begins with a Sobol sequence.
+    """The strategy best/1/bin, with a differential weight that is sampled for each generation; it
+    begins with a Sobol sequence.
 
     Parameters
     ----------

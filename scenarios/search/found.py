@@ -31,9 +31,11 @@ class Found:
         self._clearances += np.asarray(clearances, dtype=np.float64).tolist()
 
     def worst(self, apart_from: Sequence[Array] = ()) -> tuple[Array, float] | None:
-        """Return the point from which another violation may be near, and its clearance; None without one.
+        """Return the point from which another violation may be near, and its clearance; None
+        without one.
 
-        That is the one of least clearance that neither violates nor is like a point that does: what is found there is known.
+        That is the one of least clearance that neither violates nor is like a point that does: what
+        is found there is known.
 
         Parameters
         ----------

@@ -1,4 +1,6 @@
-"""A local climb to a violation: random steps from one of the worst points, longer after a success, shorter after a failure."""
+"""A local climb to a violation: random steps from one of the worst points, longer after a success,
+shorter after a failure.
+"""
 
 import math
 
@@ -16,10 +18,14 @@ _FIRST_STEP, _LONGEST_STEP, _SHORTEST_STEP = 0.2, 0.4, 0.01
 """Steps, one sigma of each coordinate [-]; a climb ends below the shortest."""
 
 _LONGER, _SHORTER = 1.3, 0.75
-"""Factors of the step after a batch with a point that is better by a worthwhile amount, and after one without."""
+"""Factors of the step after a batch with a point that is better by a worthwhile amount, and after
+one without.
+"""
 
 _MOVED = 0.25
-"""Share of the coordinates that a step changes [-]: a few at a time, or one that matters is lost among those that do not."""
+"""Share of the coordinates that a step changes [-]: a few at a time, or one that matters is lost
+among those that do not.
+"""
 
 _CHOSEN_ANEW = 0.05
 """Probability that a step takes a choice anew [-]."""
@@ -83,7 +89,9 @@ class LocalClimb:
         )
 
     def tell(self, clearances: Array) -> None:
-        """Go to the best of them if it is better; end the climb at a violation, or where steps have become short."""
+        """Go to the best of them if it is better; end the climb at a violation, or where steps have
+        become short.
+        """
         i = int(np.argmin(clearances))
         worthwhile = bool(clearances[i] < self._least - WORTHWHILE)
         if clearances[i] < self._least:

@@ -55,7 +55,9 @@ class SearchMethod(Protocol):
 SEARCH_METHODS: Registry[Callable[..., Any]] = Registry(
     "search_method", folder="scenarios.search", methods=("ask", "tell")
 )
-"""Search methods by name. Each is called with the space, the settings and a random generator, and returns a ``SearchMethod``."""
+"""Search methods by name. Each is called with the space, the settings and a random generator, and
+returns a ``SearchMethod``.
+"""
 
 search_method = SEARCH_METHODS.register
 """Decorator that registers a search method by a name."""

@@ -69,7 +69,9 @@ class Space:
         )
 
     def tried(self, propose: Callable[[], Array]) -> Array:
-        """Return the first of some proposals that lies within the declared ranges; after many, the last."""
+        """Return the first of some proposals that lies within the declared ranges; after many, the
+        last.
+        """
         point = propose()
         for _ in range(_TRIES):
             if not self.beyond(point):
@@ -78,7 +80,9 @@ class Space:
         return point
 
     def at_one_time(self, point: Array, generator: np.random.Generator) -> Array:
-        """Return the point with two of its times made equal, at a random time; unchanged where none overlap."""
+        """Return the point with two of its times made equal, at a random time; unchanged where none
+        overlap.
+        """
         if not self.time_pairs:
             return point
         pair = self.time_pairs[int(generator.integers(len(self.time_pairs)))]
@@ -92,6 +96,8 @@ class Space:
         return moved
 
     def alike(self, one: Array, other: Array) -> bool:
-        """Return whether two points are so close that they show the same; a realisation of noise does not count."""
+        """Return whether two points are so close that they show the same; a realisation of noise
+        does not count.
+        """
         pairs = zip(self.coordinates, one.tolist(), other.tolist(), strict=True)
         return sum(of.difference(a, b) ** 2 for of, a, b in pairs) < ALIKE**2 * self.dimension

@@ -1,4 +1,6 @@
-"""Where a method that searches around one point begins: at the worst that does not violate yet, each time at another."""
+"""Where a method that searches around one point begins: at the worst that does not violate yet,
+each time at another.
+"""
 
 import numpy as np
 
@@ -6,11 +8,14 @@ from scenarios.search.found import Found
 from scenarios.search.space import Array, Space
 
 _RANDOM_EVERY = 4
-"""Every how manieth start is a random point: what no method has found yet is found from there alone."""
+"""Every how manieth start is a random point: what no method has found yet is found from there
+alone.
+"""
 
 
 WORTHWHILE = 0.1
-"""Improvement below which a search around a point counts as stuck, and looks for another place [m]."""
+"""Improvement below which a search around a point counts as stuck, and looks for another place [m].
+"""
 
 
 class Starts:

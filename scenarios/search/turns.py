@@ -11,7 +11,9 @@ from scenarios.search.method import SEARCH_METHODS, SearchMethod, SearchSettings
 from scenarios.search.space import Array, Space
 
 Try = Callable[[str, Array], Array]
-"""Called with the name of a method and its points, shape (n, dimension); returns their clearances, shape (n,)."""
+"""Called with the name of a method and its points, shape (n, dimension); returns their clearances,
+shape (n,).
+"""
 
 _ROUNDING = 1e-9
 """By how much a coordinate may lie outside of the unit cube [-]."""
@@ -45,8 +47,8 @@ def search_in_turns(
 ) -> Found:
     """Search until the budget is spent or every method is exhausted.
 
-    Each turn adds ``population`` points to the budget of the method whose turn it is; what a batch of fixed size leaves of that
-    stays for the method's next turn.
+    Each turn adds ``population`` points to the budget of the method whose turn it is; what a batch
+    of fixed size leaves of that stays for the method's next turn.
 
     Parameters
     ----------
@@ -58,7 +60,8 @@ def search_in_turns(
 
     Raises
     ------
-    PluginError : a method raised an error, or proposed what are no points of the unit cube, or more than it was asked for
+    PluginError : a method raised an error, or proposed what are no points of the unit cube, or more
+        than it was asked for
     """
     found, budgets, turn = Found(space), dict.fromkeys(methods, 0), 0
     left = list(methods)

@@ -1,4 +1,6 @@
-"""The closed loop: a vehicle, what is sensed, the guidance at its own rate, and the record. It is closed here only."""
+"""The closed loop: a vehicle, what is sensed, the guidance at its own rate, and the record. It is
+closed here only.
+"""
 
 import math
 from collections.abc import Generator, Sequence
@@ -31,7 +33,8 @@ class ClosedLoop:
     plan, vehicle : the flight
     payload : instruments on board
     reader : sniffer that is read in flight, or none
-    every_step : whether every step of the guidance is recorded, beside the samples; it changes nothing of the flight
+    every_step : whether every step of the guidance is recorded, beside the samples; it changes
+        nothing of the flight
 
     Attributes
     ----------
@@ -68,10 +71,12 @@ class ClosedLoop:
         )
 
     def steps(self) -> Generator[Commands, Commands, FlightRecord]:
-        """Fly: yield at each step what the guidance commands, take what is to be flown for it, and return the record at the end.
+        """Fly: yield at each step what the guidance commands, take what is to be flown for it, and
+        return the record at the end.
 
-        The flight ends one sample after the last crossing that it is to fly, so that every crossing lies inside the record; when
-        its time is up; when it has left with a verdict; on the water; or out of control.
+        The flight ends one sample after the last crossing that it is to fly, so that every crossing
+        lies inside the record; when its time is up; when it has left with a verdict; on the water;
+        or out of control.
         """
         # Names of their own: this is the innermost loop of every flight.
         plan, guidance, sensing, recorder, ending = (
@@ -155,7 +160,9 @@ def fly(
     reader: GasReader | None = None,
     every_step: bool = False,
 ) -> FlightRecord:
-    """Fly ``plan`` with a vehicle that stands at its start as its guidance commands; parameters as of ``ClosedLoop``."""
+    """Fly ``plan`` with a vehicle that stands at its start as its guidance commands; parameters as
+    of ``ClosedLoop``.
+    """
     steps = ClosedLoop(plan, vehicle, payload, reader=reader, every_step=every_step).steps()
     follow = steps.send
     try:
@@ -171,7 +178,8 @@ def record_of(over: StopIteration) -> FlightRecord:
 
     Raises
     ------
-    RuntimeError : a part of the user's has ended them. Python itself says so (PEP 479), but not of compiled steps
+    RuntimeError : a part of the user's has ended them. Python itself says so (PEP 479), but not of
+        compiled steps
     """
     record = over.value
     if not isinstance(record, FlightRecord):

@@ -17,13 +17,16 @@ _ON_THE_WATER = 2.0
 """Altitude below which a gliding vehicle has come down [m]."""
 
 _SATURATED = 0.9
-"""Part of the steps of a flight in which its law asked for more than omega_max, above which the law is at fault [-].
+"""Part of the steps of a flight in which its law asked for more than omega_max, above which the law
+is at fault [-].
 
 Of 63,688 flights with the paper's law, whether they settled or not, it was 0.38 at most.
 """
 
 _GIVEN_UP = (Mode.OUTRUN, Mode.NO_PLUME)
-"""Modes in which the plume is no longer crossed; a flight that holds off resumes with the next report."""
+"""Modes in which the plume is no longer crossed; a flight that holds off resumes with the next
+report.
+"""
 
 
 class Ending:
@@ -36,7 +39,8 @@ class Ending:
 
     Attributes
     ----------
-    guarded : whether the keep-out guard changed a command in the flight; the loop says so at its end
+    guarded : whether the keep-out guard changed a command in the flight; the loop says so at its
+        end
     saturated : part of the steps in which the law asked for more than omega_max [-]; likewise
     outcome, message : in a word, and why in a sentence; nothing to say where it completed
     """
@@ -67,7 +71,9 @@ class Ending:
     def reached(
         self, time: float, motion: Motion, sample: tuple[float, ...], *, complete: bool
     ) -> bool:
-        """Return whether the flight is over at a sample; ``complete`` says whether it has all crossings that are asked for."""
+        """Return whether the flight is over at a sample; ``complete`` says whether it has all
+        crossings that are asked for.
+        """
         monitor, self._end = self._guidance.monitor, time
         self._ditched = (
             monitor is not None and monitor.fault is not Fault.NONE and sample[0] < _ON_THE_WATER
@@ -192,7 +198,9 @@ class Ending:
         return f"{what}: it tracked its reference for {tracked:.0f} s, but {self._orbit()}. {remedy.capitalize()}"
 
     def _orbit(self) -> str:
-        """Return how the orbit stood to its place at the end of a flight that tracked it and did not settle."""
+        """Return how the orbit stood to its place at the end of a flight that tracked it and did
+        not settle.
+        """
         off, most = self._settling.centre_error, self._settling.centre_band
         if off == math.inf:
             return "its orbit was still closing in on its place"

@@ -36,5 +36,7 @@ def failure(error: Exception | SystemExit) -> Row:
 
 
 def unflown(outcome: Outcome, message: str) -> Row:
-    """Return the outcome and the message, in one line, of a flight that was not flown or not to its end."""
+    """Return the outcome and the message, in one line, of a flight that was not flown or not to its
+    end.
+    """
     return {"outcome": outcome.value, "message": one_line(message), "criteria_met": False}

@@ -28,7 +28,8 @@ def interventions(
 
     Parameters
     ----------
-    guarding : of each step at which the guard changed the command: its number, the distance to the vessel [m], whether it was lost
+    guarding : of each step at which the guard changed the command: its number, the distance to the
+        vessel [m], whether it was lost
     time_step : of the guidance [s]
     """
     stretches: list[list[tuple[int, float, bool]]] = []

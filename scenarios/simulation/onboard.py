@@ -1,4 +1,6 @@
-"""What the guidance learns by sensors and reports, and what it passes on to the vehicle beside its commands."""
+"""What the guidance learns by sensors and reports, and what it passes on to the vehicle beside its
+commands.
+"""
 
 from gnc.estimation.health import Fault
 from gnc.estimation.own_motion import Motion, Readings
@@ -19,13 +21,15 @@ class OnboardSensing:
     ----------
     sensing : reports and errors
     world : what is true, and what fails
-    vehicle, guidance : under way; reports go straight to the filter of its target, at each plan where the vessel is known exactly
+    vehicle, guidance : under way; reports go straight to the filter of its target, at each plan
+        where the vessel is known exactly
     altitude : that the vehicle holds at the start [m]
     readings : passes on what is learnt of the plume, or none
 
     Attributes
     ----------
-    airspeed_error : of the last reading [m/s]; an autopilot that measures it flies that much past the command
+    airspeed_error : of the last reading [m/s]; an autopilot that measures it flies that much past
+        the command
     """
 
     __slots__ = (
@@ -64,7 +68,9 @@ class OnboardSensing:
         self.airspeed_error = 0.0
 
     def read(self, step: int, time: float, motion: Motion) -> Readings:
-        """Return what the sensors say at a step; hand on what reports have come, and let fail what fails now."""
+        """Return what the sensors say at a step; hand on what reports have come, and let fail what
+        fails now.
+        """
         airspeed, heading, roll = self._air_data()
         fault = self._fault
         if self._exact:
@@ -87,7 +93,9 @@ class OnboardSensing:
         return position, measured, measured_heading, roll, motion[4], self._servo_error()
 
     def act(self, step: int, time: float, motion: Motion) -> None:
-        """Pass on what the guidance has decided beside heading rate and airspeed, and to it what has been read."""
+        """Pass on what the guidance has decided beside heading rate and airspeed, and to it what
+        has been read.
+        """
         guidance = self._guidance
         if self._readings is not None:
             self._readings.pass_on(step, time, motion, guidance)

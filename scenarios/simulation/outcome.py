@@ -6,9 +6,10 @@ from enum import Enum
 class Outcome(Enum):
     """How a flight ended.
 
-    A flight completed if its aircraft came through, and its mission was flown: it settled, and crossed the plume as often as was
-    asked for, or once at least; one without a vessel only has to last. ``NOT_SETTLED`` and ``INCOMPLETE`` are missions that were
-    not flown; ``AIRCRAFT_LOST`` and ``DIVERGED`` are aircraft that do not come back.
+    A flight completed if its aircraft came through, and its mission was flown: it settled, and
+    crossed the plume as often as was asked for, or once at least; one without a vessel only has to
+    last. ``NOT_SETTLED`` and ``INCOMPLETE`` are missions that were not flown; ``AIRCRAFT_LOST`` and
+    ``DIVERGED`` are aircraft that do not come back.
     """
 
     COMPLETED = "completed"

@@ -1,4 +1,6 @@
-"""What the guidance learns of the plume in flight: readings of CO2, or the truth; and what it believes, for the record."""
+"""What the guidance learns of the plume in flight: readings of CO2, or the truth; and what it
+believes, for the record.
+"""
 
 import math
 
@@ -18,7 +20,8 @@ _SELDOM = 15.0
 
 
 class PlumeReadings:
-    """Passes on the readings of a sniffer, and the true axis of the plume to a flight that is given it.
+    """Passes on the readings of a sniffer, and the true axis of the plume to a flight that is given
+    it.
 
     Parameters
     ----------

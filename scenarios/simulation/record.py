@@ -65,7 +65,9 @@ MEANINGS = {
     "longitude_deg": "longitude of the UAV, true",
     "time_utc": "time in UTC",
 }
-"""Columns of a time history, in order, and what each is. A vehicle's own, from ``altitude_m`` on, may be not a number."""
+"""Columns of a time history, in order, and what each is. A vehicle's own, from ``altitude_m`` on,
+may be not a number.
+"""
 
 RELATIVE_COLUMNS = ("delta_m", "rho_m", "phi_r_rad", "phi_rad")
 """The states of equation (19), in its order: they follow from the others."""
@@ -99,8 +101,8 @@ class FlightRecord:
     history : shape (samples, len(columns))
     every_step : the same of every step of the guidance, if that was recorded; otherwise ``history``
     saturation_fraction : fraction of guidance steps whose demand was cut at omega_max [-]
-    heading_rate_demand_max, heading_rate_command_max : largest heading rate that the law asked for, and that was commanded, at any
-        step of the guidance [rad/s]
+    heading_rate_demand_max, heading_rate_command_max : largest heading rate that the law asked for,
+        and that was commanded, at any step of the guidance [rad/s]
     guard_time : for how long the guard changed commands, altogether [s]
     """
 

@@ -51,17 +51,21 @@ class Recorder:
         self._mission, self._guard = guidance.mission, guidance.guard
         instruments: Sequence[Any] = payload
         self._sample, self._payload, self._settled = vehicle.sample, instruments, settling.update
-        # A track, plume or instrument of a user's own may answer in other numbers than Python's, and in other rows than tuples.
+        # A track, plume or instrument of a user's own may answer in other numbers than Python's,
+        # and in other rows than tuples.
         self._vessel_at: Callable[[float], Any] = world.vessel.motion if world else _no_vessel
         self._axis_at: Callable[[float], Any] = world.plume.axis if world else _no_axis
         self.columns = COLUMNS + tuple(
             column for instrument in instruments for column in instrument.COLUMNS
         )
-        # As bytes: tuples would be numbers by the hundred thousand for Python to look after, and slow to make an array of.
+        # As bytes: tuples would be numbers by the hundred thousand for Python to look after, and
+        # slow to make an array of.
         self._rows, self._pack = list[bytes](), struct.Struct(f"{len(self.columns)}d").pack
 
     def reference(self) -> Place | None:
-        """Return where the reference is in the frame of the air mass; nothing before the mission has placed it."""
+        """Return where the reference is in the frame of the air mass; nothing before the mission
+        has placed it.
+        """
         if not self._mission.started:
             return None
         reference = self._mission.tracker.reference
@@ -70,7 +74,8 @@ class Recorder:
     def record(
         self, time: float, motion: Motion, reference: Place, *, judged: bool
     ) -> tuple[tuple[float, ...], bool]:
-        """Keep a row; return the vehicle's sample, and whether the flight has all its crossings, by ``judged`` samples.
+        """Keep a row; return the vehicle's sample, and whether the flight has all its crossings, by
+        ``judged`` samples.
 
         Parameters
         ----------

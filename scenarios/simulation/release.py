@@ -27,7 +27,8 @@ def release(
     ----------
     plan : the flight
     setup : of the aircraft, or of the kinematic vehicle
-    viewer : host and port of a FlightGear that is to show the aircraft, in real time; none if not given
+    viewer : host and port of a FlightGear that is to show the aircraft, in real time; none if not
+        given
     flown : an aircraft that has flown before, to be used again; a fresh one if not given
     """
     start, world = plan.start, plan.world

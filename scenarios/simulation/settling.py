@@ -3,14 +3,17 @@
 import math
 
 _CENTRE_BANDS = 3.0
-"""Distance of the orbit's centre from its place that counts as there, over the settling band: the vessel is not known exactly."""
+"""Distance of the orbit's centre from its place that counts as there, over the settling band: the
+vessel is not known exactly.
+"""
 
 
 class Settling:
     """Watches a flight, sample by sample.
 
-    A flight has settled from the first moment from which the vehicle stays near its reference, and the orbit near its place, for a
-    whole period. It stays settled: what turbulence or a manoeuvre do later belongs to the flight.
+    A flight has settled from the first moment from which the vehicle stays near its reference, and
+    the orbit near its place, for a whole period. It stays settled: what turbulence or a manoeuvre
+    do later belongs to the flight.
 
     Parameters
     ----------
@@ -23,9 +26,10 @@ class Settling:
     ----------
     at : when the flight had settled, not a number as long as that does not show [s]
     crossings : flown since
-    tracked : longest time for which the vehicle stayed near its reference before that, wherever the orbit was [s]
-    centre_error, centre_band : distance of the orbit's centre from its place at the last sample, infinite while it is still closing
-        in, and below what it counts as there [m]
+    tracked : longest time for which the vehicle stayed near its reference before that, wherever the
+        orbit was [s]
+    centre_error, centre_band : distance of the orbit's centre from its place at the last sample,
+        infinite while it is still closing in, and below what it counts as there [m]
     """
 
     __slots__ = (
@@ -68,13 +72,15 @@ class Settling:
         y: float,
         axis: float,
     ) -> bool:
-        """Take note of a sample; return whether the flight had flown all that it is to fly by the last one.
+        """Take note of a sample; return whether the flight had flown all that it is to fly by the
+        last one.
 
         Parameters
         ----------
         time : [s]
         tracking_error : distance to the reference [m]
-        centre_error : distance of the orbit's centre from its place, infinite while that is still closing in [m]
+        centre_error : distance of the orbit's centre from its place, infinite while that is still
+            closing in [m]
         x, y : north and east of the vessel [m]
         axis : course along which the plume trails [rad]
         """
@@ -98,7 +104,9 @@ class Settling:
         return complete
 
     def _flown(self, time: float) -> bool:
-        """Return whether it has settled for as long, and has the crossings, that are asked for; not where nothing is."""
+        """Return whether it has settled for as long, and has the crossings, that are asked for; not
+        where nothing is.
+        """
         crossed = 0 < self._demanded <= self.crossings
         if self._after == math.inf:
             return crossed

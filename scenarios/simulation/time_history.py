@@ -44,8 +44,9 @@ UNFINISHED = (Outcome.NOT_SETTLED.value, Outcome.INCOMPLETE.value)
 def keeps_history(task: Task, *, planned: int, kept: int, row: Row) -> bool:
     """Return whether the time history of a flight is kept.
 
-    Of all flights an even sample is, and every one that is not known to have kept out, or did not do what is required of it. Of
-    missions that were not completed there may be many: the study chooses among them.
+    Of all flights an even sample is, and every one that is not known to have kept out, or did not
+    do what is required of it. Of missions that were not completed there may be many: the study
+    chooses among them.
 
     Parameters
     ----------
@@ -70,7 +71,8 @@ def history_files(
     kept: int,
     row: Row,
 ) -> dict[str, bytes]:
-    """Return the time history of a flight as a Parquet file, by its path, if there is one and it is kept; and the document.
+    """Return the time history of a flight as a Parquet file, by its path, if there is one and it is
+    kept; and the document.
 
     Parameters
     ----------
@@ -87,8 +89,11 @@ def history_files(
 
 
 def as_parquet(history: pd.DataFrame) -> bytes:
-    """Return a time history as a Parquet file; unit and meaning of each column are in the metadata of its field."""
-    # In this thread: to begin others takes longer than to convert so few columns, and other flights have the other cores.
+    """Return a time history as a Parquet file; unit and meaning of each column are in the metadata
+    of its field.
+    """
+    # In this thread: to begin others takes longer than to convert so few columns, and other flights
+    # have the other cores.
     table, meanings = (
         pa.Table.from_pandas(history, preserve_index=False, nthreads=1),
         MEANINGS | INSTRUMENT_MEANINGS,

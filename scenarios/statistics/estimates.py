@@ -1,13 +1,14 @@
 """Estimates of a Monte Carlo study and their confidence intervals: ``statistics.json``.
 
-Intervals assume independent flights. Noise, turbulence and sensors are independent, because every flight has its own
-seeds; the random variables are independent in plain sampling only. In a Latin hypercube they are not, but the mean of
-a figure over n of its flights has at most n/(n - 1) times the variance of the mean over n independent flights, and
-usually less: A. B. Owen, "Monte Carlo variance of scrambled net quadrature", SIAM Journal on Numerical Analysis 34
-(1997). That covers probabilities, and quantiles, which are probabilities of lying below a value. So the same intervals
-are used for Latin hypercubes and tend to be too wide. A bound on a variance is not a bound on the tails of an
-interval: this is an argument, not a proof. For a scrambled Sobol' sequence the same paper bounds the ratio of the
-variances by e = 2.72, whatever the figure.
+Intervals assume independent flights. Noise, turbulence and sensors are independent, because every
+flight has its own seeds; the random variables are independent in plain sampling only. In a Latin
+hypercube they are not, but the mean of a figure over n of its flights has at most n/(n - 1) times
+the variance of the mean over n independent flights, and usually less: A. B. Owen, "Monte Carlo
+variance of scrambled net quadrature", SIAM Journal on Numerical Analysis 34 (1997). That covers
+probabilities, and quantiles, which are probabilities of lying below a value. So the same intervals
+are used for Latin hypercubes and tend to be too wide. A bound on a variance is not a bound on the
+tails of an interval: this is an argument, not a proof. For a scrambled Sobol' sequence the same
+paper bounds the ratio of the variances by e = 2.72, whatever the figure.
 """
 
 import math
@@ -28,7 +29,9 @@ PROBABILITIES = (0.01, 0.05, 0.5, 0.95, 0.99)
 """Probabilities of the quantiles that are given for every figure."""
 
 EXTREMES = (0.001, 0.999)
-"""Probabilities of quantiles that are given if their interval exists: from 3,688 flights at a confidence of 0.95."""
+"""Probabilities of quantiles that are given if their interval exists: from 3,688 flights at a
+confidence of 0.95.
+"""
 
 NAMED_MAX = 10
 """Largest number of flights that are named for each outcome; ``summary.csv`` has all."""
@@ -60,12 +63,14 @@ def study_statistics(
 
     Parameters
     ----------
-    rows : columns ``COLUMNS`` of the summary, a row per flight that is done, failed flights included, one point after the other
+    rows : columns ``COLUMNS`` of the summary, a row per flight that is done, failed flights
+        included, one point after the other
     inputs : of ``draws.csv`` ``flight_id`` and a column per random variable or swept key
     confidence : confidence of each interval, between 0 and 1; not of all of them together
     seed : seed of the random numbers for the sensitivity indices
-    look_number : number of the look at which the study stopped, from 1; intervals are widened for the looks before it
-        (``scenarios.statistics.stopping``). None for a study that is evaluated only at its end
+    look_number : number of the look at which the study stopped, from 1; intervals are widened for
+        the looks before it (``scenarios.statistics.stopping``). None for a study that is evaluated
+        only at its end
     per_sample : flights that share what is random, as those of the points of a sweep do [-]
     """
     level = interval_confidence(confidence, look_number)
@@ -102,20 +107,26 @@ def study_statistics(
 
 
 def interval_confidence(confidence: float, look_number: int | None) -> float:
-    """Return the confidence of each interval, by that of the study and its look, as of ``study_statistics``."""
+    """Return the confidence of each interval, by that of the study and its look, as of
+    ``study_statistics``.
+    """
     return confidence if look_number is None else confidence_at(look_number, confidence)
 
 
 def pessimistic_share(found: Violations, level: float, *, per_sample: int) -> Json:
-    """Return the share of flights with a keep-out violation as ``share`` does, if every unknown flight had one."""
+    """Return the share of flights with a keep-out violation as ``share`` does, if every unknown
+    flight had one.
+    """
     return share(found.events_at_most, found.flights, level, per_sample=per_sample)
 
 
 def study_figures(rows: pd.DataFrame) -> dict[str, Array]:
-    """Return the figures of each flight, shape (n,); not a number where a flight has no such figure.
+    """Return the figures of each flight, shape (n,); not a number where a flight has no such
+    figure.
 
-    Distances are in metres, and clearances are measured from r_min; the error of the mean crossing interval is
-    relative to the predicted interval [-]; the settling time is in seconds, and a flight that never settled has none.
+    Distances are in metres, and clearances are measured from r_min; the error of the mean crossing
+    interval is relative to the predicted interval [-]; the settling time is in seconds, and a
+    flight that never settled has none.
     """
 
     def column(name: str) -> Array:
@@ -143,15 +154,18 @@ def named(found: Violations) -> Json:
 
 
 def counted(words: "pd.Series[str]") -> dict[str, int]:
-    """Return how often each word occurs, the most frequent first; flights without a word are left out."""
+    """Return how often each word occurs, the most frequent first; flights without a word are left
+    out.
+    """
     return dict(Counter(str(word) for word in words.dropna()).most_common())
 
 
 def share(events: int, flights: int, level: float, *, per_sample: int = 1) -> Json:
     """Return the share of flights with an event, and the intervals of its probability.
 
-    Of flights that share what is random, so many ``per_sample``, each event may be of another sample, or all events of samples that
-    have nothing else: what does not make up a whole one says nothing of the lower limit.
+    Of flights that share what is random, so many ``per_sample``, each event may be of another
+    sample, or all events of samples that have nothing else: what does not make up a whole one says
+    nothing of the lower limit.
     """
     samples = flights // per_sample
     most, least = min(events, samples), events // per_sample
@@ -166,7 +180,9 @@ def share(events: int, flights: int, level: float, *, per_sample: int = 1) -> Js
 
 
 def _figure(values: Array, level: float, *, apart: bool) -> Json:
-    """Return the quantiles of a figure, with their intervals if every flight is a sample of its own."""
+    """Return the quantiles of a figure, with their intervals if every flight is a sample of its
+    own.
+    """
     known = values[np.isfinite(values)]
     quantiles = []
     for probability in sorted((*PROBABILITIES, *EXTREMES)):
@@ -187,7 +203,9 @@ def _figure(values: Array, level: float, *, apart: bool) -> Json:
 
 
 def without_nan(value: Any) -> Any:
-    """Return a nested value with None in place of every number that is not finite, which JSON cannot express."""
+    """Return a nested value with None in place of every number that is not finite, which JSON
+    cannot express.
+    """
     if isinstance(value, dict):
         return {key: without_nan(item) for key, item in value.items()}
     if isinstance(value, list | tuple):

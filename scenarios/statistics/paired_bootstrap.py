@@ -1,17 +1,21 @@
 """Means of several entrants over the same flights, and which may be the best: the paired bootstrap.
 
-Every entrant flies the same starts and the same air. Resampled are these, for all entrants together, so that what is common to all
-of them, such as a wind that is hard on everyone, does not count as a difference (B. Efron, R. J. Tibshirani, "An Introduction to
-the Bootstrap", 1993, chapters 8 and 13). Resamples of a few flights scatter too little: deviations from the mean of a stratum are
-larger by sqrt(n/(n - 1)) here, and by Student's t over the normal quantile.
+Every entrant flies the same starts and the same air. Resampled are these, for all entrants
+together, so that what is common to all of them, such as a wind that is hard on everyone, does not
+count as a difference (B. Efron, R. J. Tibshirani, "An Introduction to the Bootstrap", 1993,
+chapters 8 and 13). Resamples of a few flights scatter too little: deviations from the mean of a
+stratum are larger by sqrt(n/(n - 1)) here, and by Student's t over the normal quantile.
 
-The best mean is one of the same flights, and one of many. So an entrant counts as worse than the best only if some other is ahead
-of it by more than the largest lead that any would have of it if all had the mean that they have in expectation: multiple
-comparisons with the best (J. C. Hsu, "Multiple Comparisons", 1996, chapter 4), with leads over their own deviations. Of entrants
-that are equal, each is called worse in about one arena of twenty, however many there are; with two flights alone in one of ten.
+The best mean is one of the same flights, and one of many. So an entrant counts as worse than the
+best only if some other is ahead of it by more than the largest lead that any would have of it if
+all had the mean that they have in expectation: multiple comparisons with the best (J. C. Hsu,
+"Multiple Comparisons", 1996, chapter 4), with leads over their own deviations. Of entrants that are
+equal, each is called worse in about one arena of twenty, however many there are; with two flights
+alone in one of ten.
 
-Where no stratum has two flights, every resample is the same: there is no interval, and no difference is shown. An entrant that
-lacks the figure of a flight of which another has it has a mean over other flights, perhaps easier ones: it is not compared.
+Where no stratum has two flights, every resample is the same: there is no interval, and no
+difference is shown. An entrant that lacks the figure of a flight of which another has it has a mean
+over other flights, perhaps easier ones: it is not compared.
 """
 
 import math
@@ -34,10 +38,11 @@ class Estimate:
     Attributes
     ----------
     mean, low, high : mean over the flights, and its interval; not a number where there is none
-    whole : whether it has the figure of every flight of which any entrant has it; otherwise it is not compared
+    whole : whether it has the figure of every flight of which any entrant has it; otherwise it is
+        not compared
     best : whether it is compared, and the mean of no other that is compared is better
-    behind_low, behind_high : interval of the difference from the best entrant's mean; 0 for the best, not a number if not compared,
-        or if there is no interval
+    behind_low, behind_high : interval of the difference from the best entrant's mean; 0 for the
+        best, not a number if not compared, or if there is no interval
     flights : number of flights that have the figure
     as_good : whether it is compared, and the flights do not show that another is better
     """
@@ -66,8 +71,10 @@ def paired_estimates(
 
     Parameters
     ----------
-    values : shape (entrants, flights); the flights of a column share start and air; not a number where a flight has no figure
-    strata : shape (flights,): which flights are resampled among themselves, such as those of a condition
+    values : shape (entrants, flights); the flights of a column share start and air; not a number
+        where a flight has no figure
+    strata : shape (flights,): which flights are resampled among themselves, such as those of a
+        condition
     greater_is_better : which way is better
     resamples : number of resamples
     confidence : of the intervals
@@ -119,7 +126,9 @@ def paired_estimates(
 
 
 def _scattered(row: Array, strata: npt.NDArray[Any], confidence: float) -> Array:
-    """Return the figures of one entrant with deviations from the mean of each stratum as large as they have to be."""
+    """Return the figures of one entrant with deviations from the mean of each stratum as large as
+    they have to be.
+    """
     scattered, known = row.copy(), np.isfinite(row)
     if not (freedom := _freedom(strata[known])):
         return scattered
@@ -145,9 +154,11 @@ def _wider(freedom: int, level: float) -> float:
 def _may_be_best(
     worth: Array, sampled: Array, freedom: int, confidence: float
 ) -> npt.NDArray[np.bool_]:
-    """Return which entrants may be the best, with their worth, shape (n,), and its resamples, shape (n, resamples).
+    """Return which entrants may be the best, with their worth, shape (n,), and its resamples, shape
+    (n, resamples).
 
-    Those that are not compared, whose worth is not a number, may not; ``freedom`` is the number of degrees of it, of all strata.
+    Those that are not compared, whose worth is not a number, may not; ``freedom`` is the number of
+    degrees of it, of all strata.
     """
     found = np.isfinite(worth)
     for i in np.flatnonzero(found):
@@ -175,7 +186,9 @@ def _may_be_best(
 
 
 def _freedom(strata: npt.NDArray[Any]) -> int:
-    """Return the degrees of freedom of flights about the means of their strata; 0 where no two are of one stratum."""
+    """Return the degrees of freedom of flights about the means of their strata; 0 where no two are
+    of one stratum.
+    """
     return len(strata) - len(np.unique(strata))
 
 

@@ -1,15 +1,16 @@
 """Sensitivity of a figure to the random variables: Borgonovo's delta and the first-order index.
 
-Delta is half the mean distance between the figure's density and its density for a known input: 0 if the input does not
-matter, 1 if it determines the figure, in whatever form. E. Borgonovo, "A new uncertainty importance measure",
-Reliability Engineering & System Safety 92 (2007). The first-order index S1 is the fraction of the figure's variance
-that the input explains by itself. Both are estimated by SALib from given data: E. Plischke, E. Borgonovo and C. L.
-Smith, "Global sensitivity measures from given data", European Journal of Operational Research 226 (2013).
+Delta is half the mean distance between the figure's density and its density for a known input: 0 if
+the input does not matter, 1 if it determines the figure, in whatever form. E. Borgonovo, "A new
+uncertainty importance measure", Reliability Engineering & System Safety 92 (2007). The first-order
+index S1 is the fraction of the figure's variance that the input explains by itself. Both are
+estimated by SALib from given data: E. Plischke, E. Borgonovo and C. L. Smith, "Global sensitivity
+measures from given data", European Journal of Operational Research 226 (2013).
 
-In a finite sample the indices of an input without any effect are not 0. So the indices of some random inputs without
-effect are estimated as well, and the largest of them is the noise floor. Flights of one sample, as those at the points of
-a sweep are, have the same inputs and much the same figure: they share the values of these random inputs, too, and are
-resampled together.
+In a finite sample the indices of an input without any effect are not 0. So the indices of some
+random inputs without effect are estimated as well, and the largest of them is the noise floor.
+Flights of one sample, as those at the points of a sweep are, have the same inputs and much the same
+figure: they share the values of these random inputs, too, and are resampled together.
 """
 
 import math
@@ -22,13 +23,19 @@ import numpy.typing as npt
 import pandas as pd
 
 FLIGHTS_MIN = 200
-"""Least number of flights: with fewer, the classes of an input hold fewer than 50 each, too few for a density."""
+"""Least number of flights: with fewer, the classes of an input hold fewer than 50 each, too few for
+a density.
+"""
 
 FLIGHTS_MAX = 2000
-"""Largest number of flights that are used, sampled at random from more: an index then takes a tenth of a second."""
+"""Largest number of flights that are used, sampled at random from more: an index then takes a tenth
+of a second.
+"""
 
 RESAMPLES = 20
-"""Bootstrap samples for the interval of an index: they give its width to 16 %, 1/sqrt(2 19) for 20 values."""
+"""Bootstrap samples for the interval of an index: they give its width to 16 %, 1/sqrt(2 19) for 20
+values.
+"""
 
 DUMMIES = 5
 """Random inputs without effect: another one would exceed all of them one time in six."""
@@ -96,15 +103,19 @@ def sensitivity_indices(
 
     Parameters
     ----------
-    inputs : a row per flight, a column per input; numbers, or words, which are categories without an order
+    inputs : a row per flight, a column per input; numbers, or words, which are categories without
+        an order
     figure : figure of each flight, shape (n,); flights where it is not a number are left out
-    confidence : confidence of the intervals, between 0 and 1, of a normal distribution with the bootstrap's deviation
+    confidence : confidence of the intervals, between 0 and 1, of a normal distribution with the
+        bootstrap's deviation
     seed : seed of the choice of flights, the noise floor and the bootstrap
-    samples : number of the sample that each flight is of, shape (n,); each is one of its own if not given
+    samples : number of the sample that each flight is of, shape (n,); each is one of its own if not
+        given
     """
     generator = np.random.default_rng(seed)
     known = np.flatnonzero(np.isfinite(figure))
-    # In random order even if all are used: flights with equal inputs are put into classes by their order.
+    # In random order even if all are used: flights with equal inputs are put into classes by their
+    # order.
     chosen = generator.permutation(known)[:FLIGHTS_MAX]
     left_out = {str(key): why for key in inputs if (why := _unusable(inputs[key].iloc[chosen]))}
     codes = {str(key): _coded(inputs[key].iloc[chosen]) for key in inputs if key not in left_out}
@@ -173,7 +184,9 @@ def _coded(values: "pd.Series[float]") -> Array:
 def _indices(
     key: str, values: Array, figure: Array, resamples: Sequence[Indices], confidence: float
 ) -> InputIndices:
-    """Return the indices of one input, delta corrected for its bootstrap bias (Plischke et al., eq. 30)."""
+    """Return the indices of one input, delta corrected for its bootstrap bias (Plischke et al., eq.
+    30).
+    """
     from scipy.special import ndtri
 
     delta, first_order = _estimated(values, figure)
@@ -191,9 +204,9 @@ def _indices(
 def _estimated(values: Array, figure: Array) -> tuple[float, float]:
     """Return SALib's estimates of delta and S1 (Plischke et al., eq. 26 and below).
 
-    ``SALib.analyze.delta.analyze`` uses the same two functions. But its classes have equal size whatever the input, so
-    that some hold two categories and an input of two categories loses a fifth of its indices; and it uses numpy's
-    global generator.
+    ``SALib.analyze.delta.analyze`` uses the same two functions. But its classes have equal size
+    whatever the input, so that some hold two categories and an input of two categories loses a
+    fifth of its indices; and it uses numpy's global generator.
 
     Raises
     ------
@@ -204,7 +217,8 @@ def _estimated(values: Array, figure: Array) -> tuple[float, float]:
     grid = np.linspace(figure.min(), figure.max(), _GRID)
     bounds = _class_bounds(values)
     with warnings.catch_warnings():
-        # SALib warns of classes with a single figure, such as a rare category; they add nothing to delta.
+        # SALib warns of classes with a single figure, such as a rare category; they add nothing to
+        # delta.
         warnings.simplefilter("ignore")
         return float(calc_delta(figure, grid, values, bounds)), float(
             sobol_first(figure, values, bounds)
@@ -212,8 +226,8 @@ def _estimated(values: Array, figure: Array) -> tuple[float, float]:
 
 
 def _class_bounds(values: Array) -> Array:
-    """Return the number of flights below each class of an input, and of all flights: one class per value if there are
-    few values, else classes of equal size, as many as SALib uses."""
+    """Return the number of flights below each class of an input, and of all flights: one class per
+    value if there are few values, else classes of equal size, as many as SALib uses."""
     count = len(values)
     classes = min(
         math.ceil(count ** (2.0 / (7.0 + math.tanh((1500.0 - count) / 500.0)))), _CLASSES_MAX

@@ -1,12 +1,14 @@
-"""Stopping rule of a Monte Carlo study: it may stop when the demanded confidence intervals are narrow enough.
+"""Stopping rule of a Monte Carlo study: it may stop when the demanded confidence intervals are
+narrow enough.
 
-A study that evaluates its intervals repeatedly, and stops as soon as they look good, is wrong more often than their
-confidence says. Here intervals are evaluated only after fixed numbers of flights (looks), and the intervals of look k
-may be wrong with probability alpha/(k (k + 1)), where alpha is one minus the confidence. The sum over all looks is
-alpha, however many there are: with the stated confidence no look is wrong, and so neither is the one at which the
-study stops. The union bound over looks at geometrically growing numbers of flights is that of V. Mnih, C. Szepesvari
-and J.-Y. Audibert, "Empirical Bernstein stopping", ICML 2008; spending alpha over looks is that of K. K. G. Lan and D.
-L. DeMets, "Discrete sequential boundaries for clinical trials", Biometrika 70 (1983).
+A study that evaluates its intervals repeatedly, and stops as soon as they look good, is wrong more
+often than their confidence says. Here intervals are evaluated only after fixed numbers of flights
+(looks), and the intervals of look k may be wrong with probability alpha/(k (k + 1)), where alpha is
+one minus the confidence. The sum over all looks is alpha, however many there are: with the stated
+confidence no look is wrong, and so neither is the one at which the study stops. The union bound
+over looks at geometrically growing numbers of flights is that of V. Mnih, C. Szepesvari and J.-Y.
+Audibert, "Empirical Bernstein stopping", ICML 2008; spending alpha over looks is that of K. K. G.
+Lan and D. L. DeMets, "Discrete sequential boundaries for clinical trials", Biometrika 70 (1983).
 """
 
 import numpy as np
@@ -20,10 +22,11 @@ FIRST_LOOK = 256
 
 
 def looks(planned: int) -> list[int]:
-    """Return the numbers of flights at which a study is evaluated: 256, doubled each time, and all that are planned.
+    """Return the numbers of flights at which a study is evaluated: 256, doubled each time, and all
+    that are planned.
 
-    A look evaluates the first flights of the plan, not those that happened to be done first: the result does not
-    depend on the number of processes.
+    A look evaluates the first flights of the plan, not those that happened to be done first: the
+    result does not depend on the number of processes.
 
     Parameters
     ----------
@@ -40,7 +43,8 @@ def looks(planned: int) -> list[int]:
 
 
 def confidence_at(look_number: int, confidence: float) -> float:
-    """Return the confidence of the intervals of one look, such that all looks together hold with ``confidence``.
+    """Return the confidence of the intervals of one look, such that all looks together hold with
+    ``confidence``.
 
     A study without a stopping rule is evaluated once, at its end, with all of ``confidence``.
 
@@ -69,9 +73,10 @@ def tight_enough(
     ----------
     rows : rows of the summary of the first flights of the plan
     look_number, confidence : as in ``confidence_at``
-    violation_upper : demanded one-sided upper bound of the probability of a keep-out violation; flights for which that
-        is unknown count as violations [-]
-    distance_quantile_width_m : demanded width of the two-sided interval of a quantile of the closest approach [m]
+    violation_upper : demanded one-sided upper bound of the probability of a keep-out violation;
+        flights for which that is unknown count as violations [-]
+    distance_quantile_width_m : demanded width of the two-sided interval of a quantile of the
+        closest approach [m]
     distance_quantile : probability of that quantile
 
     Raises

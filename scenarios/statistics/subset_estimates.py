@@ -1,20 +1,24 @@
-"""What several subset simulations say together: probability and interval, the same over the threshold, and the inputs' shares.
+"""What several subset simulations say together: probability and interval, the same over the
+threshold, and the inputs' shares.
 
-Estimates of a simulation are skewed, about log-normal. So the mean of the distribution is estimated from their
-logarithms, with the interval of Cox for the mean of a log-normal distribution, which for few values takes Student's t:
-U. Olsson, "Confidence intervals for the mean of a log-normal distribution", Journal of Statistics Education 13 (2005).
-Its deviation is that between the repeats, or that which Au and Beck's formula gives within them (for correlated
-chains, levels independent), whichever is larger: neither a lucky agreement of few repeats nor chains that hide their
-correlation makes it narrow. Tests measure how often it holds what is true.
+Estimates of a simulation are skewed, about log-normal. So the mean of the distribution is estimated
+from their logarithms, with the interval of Cox for the mean of a log-normal distribution, which for
+few values takes Student's t: U. Olsson, "Confidence intervals for the mean of a log-normal
+distribution", Journal of Statistics Education 13 (2005). Its deviation is that between the repeats,
+or that which Au and Beck's formula gives within them (for correlated chains, levels independent),
+whichever is larger: neither a lucky agreement of few repeats nor chains that hide their correlation
+makes it narrow. Tests measure how often it holds what is true.
 
-Where a simulation has reached no event, its estimate is 0 and its logarithm does not exist. There the upper end is what
-it leaves open: with 0 of n chains of its last level in the event, 1 - (1 - confidence)^(1/n) of that level's
-probability, as Clopper and Pearson have it. States of one chain are alike, and so are chains that began at copies of one
-state: n is the number of different states that they began at. If no simulation has reached any, all are judged at the
-threshold that even the least of them has reached: where some came much nearer than others, the probability of that
+Where a simulation has reached no event, its estimate is 0 and its logarithm does not exist. There
+the upper end is what it leaves open: with 0 of n chains of its last level in the event, 1 - (1 -
+confidence)^(1/n) of that level's probability, as Clopper and Pearson have it. States of one chain
+are alike, and so are chains that began at copies of one state: n is the number of different states
+that they began at. If no simulation has reached any, all are judged at the threshold that even the
+least of them has reached: where some came much nearer than others, the probability of that
 threshold scatters, and the bound is the larger.
 
-What all simulations have in their first levels needs none of that: together these are a plain sample (Clopper and Pearson).
+What all simulations have in their first levels needs none of that: together these are a plain
+sample (Clopper and Pearson).
 """
 
 import math
@@ -128,7 +132,9 @@ def rare_probability(
 def _of_plain_samples(
     event: npt.NDArray[np.bool_], reached: int, confidence: float
 ) -> RareProbability:
-    """Return a probability that is not rare: first levels are plain samples, of which there is an exact interval."""
+    """Return a probability that is not rare: first levels are plain samples, of which there is an
+    exact interval.
+    """
     events, trials = int(np.count_nonzero(event)), len(event)
     interval = clopper_pearson(events, trials, confidence)
     return RareProbability(
@@ -145,7 +151,8 @@ def _left_open(
 ) -> float:
     """Return an upper bound where some simulations have not reached the event.
 
-    What may go wrong is shared equally between the probability of the last levels and the fraction of these.
+    What may go wrong is shared equally between the probability of the last levels and the fraction
+    of these.
     """
     half = 0.5 + 0.5 * confidence
     chains = [simulation.levels[-1].beginnings for simulation in simulations]
@@ -178,7 +185,9 @@ def _left_open(
 
 
 def _at_most_one(logarithm: float) -> float:
-    """Return the probability with this logarithm; estimates that scatter by decades have means and bounds beyond any number."""
+    """Return the probability with this logarithm; estimates that scatter by decades have means and
+    bounds beyond any number.
+    """
     return math.exp(min(0.0, logarithm))
 
 
@@ -199,7 +208,9 @@ def _t_quantile(probability: float, count: int) -> float:
 def curve(
     simulations: Sequence[Simulation], confidence: float
 ) -> list[tuple[float, RareProbability]]:
-    """Return the probability of values below each of some thresholds, from the lowest that all simulations have reached."""
+    """Return the probability of values below each of some thresholds, from the lowest that all
+    simulations have reached.
+    """
     lowest = max(float(simulation.levels[-1].values.min()) for simulation in simulations)
     first = np.concatenate([simulation.levels[0].values for simulation in simulations])
     known = first[np.isfinite(first)]
@@ -223,7 +234,9 @@ def curve(
 
 
 def near_event(simulations: Sequence[Simulation]) -> list[tuple[Simulation, Indices]]:
-    """Return of each simulation the indices of what its last level has below 0, or of all of it, if no simulation has any."""
+    """Return of each simulation the indices of what its last level has below 0, or of all of it, if
+    no simulation has any.
+    """
     inside = [np.flatnonzero(simulation.levels[-1].values < 0.0) for simulation in simulations]
     every = [np.arange(len(simulation.levels[-1].values)) for simulation in simulations]
     return list(
@@ -234,11 +247,13 @@ def near_event(simulations: Sequence[Simulation]) -> list[tuple[Simulation, Indi
 def input_shifts(
     declared: pd.DataFrame, near: pd.DataFrame, at: tuple[Array, Array]
 ) -> list[InputShift]:
-    """Return how the inputs near the event differ from those that are declared, the largest distance first.
+    """Return how the inputs near the event differ from those that are declared, the largest
+    distance first.
 
     Parameters
     ----------
-    declared, near : values of the inputs of the first levels and of those near the event, a column per input
+    declared, near : values of the inputs of the first levels and of those near the event, a column
+        per input
     at : the same in the unit cube, shapes (n, inputs)
     """
     shifts = [
@@ -249,7 +264,9 @@ def input_shifts(
 
 
 def noise_floor(simulations: Sequence[Simulation]) -> float:
-    """Return the largest distance of what has no effect at all: that of the dummies, which move with the same chains."""
+    """Return the largest distance of what has no effect at all: that of the dummies, which move
+    with the same chains.
+    """
     first = np.concatenate([simulation.levels[0].dummies for simulation in simulations])
     last = np.concatenate(
         [simulation.levels[-1].dummies[chosen] for simulation, chosen in near_event(simulations)]

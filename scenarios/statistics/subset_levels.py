@@ -20,7 +20,8 @@ class Counts:
     evaluated : number of points whose values were asked for
     moved, accepted : moves of the inputs, and those that were accepted
     blended, blended_accepted : moves of the blended noise, and those that were accepted
-    renewed, renewed_accepted : renewals of a seed on which the value depends, and those that were accepted
+    renewed, renewed_accepted : renewals of a seed on which the value depends, and those that were
+        accepted
     outside : moves to points that are not allowed, which were not evaluated
     """
 
@@ -42,7 +43,8 @@ class Level:
     ----------
     below : values of the sample are at or below this; infinite for the first level
     threshold : that of the next level; 0 for the last one
-    probability : fraction of the sample that passes ``threshold``: at or below it, and for the last level below 0 [-]
+    probability : fraction of the sample that passes ``threshold``: at or below it, and for the last
+        level below 0 [-]
     variation : coefficient of variation of ``probability``, with the correlation within chains [-]
     points : shape (n, inputs), in the unit cube: positions of the inputs in their distributions
     dummies : shape (n, ``DUMMIES``), likewise
@@ -66,7 +68,9 @@ class Level:
 
     @property
     def beginnings(self) -> int:
-        """Return from how many different states its chains began: of states that passed, some are copies of one that stayed."""
+        """Return from how many different states its chains began: of states that passed, some are
+        copies of one that stayed.
+        """
         _, first = np.unique(self.chains, return_index=True)
         return len(np.unique(np.column_stack([self.points[first], self.values[first]]), axis=0))
 
@@ -78,7 +82,8 @@ class Simulation:
     Attributes
     ----------
     levels : the first of them plain
-    stalled : whether no threshold below the last one could be found, because all of a level has one value
+    stalled : whether no threshold below the last one could be found, because all of a level has one
+        value
     """
 
     levels: tuple[Level, ...]
@@ -95,9 +100,11 @@ class Simulation:
         return math.sqrt(sum(level.variation**2 for level in self.levels[:-1]))
 
     def below(self, value: float) -> tuple[float, float]:
-        """Return the estimate of the probability of values below ``value``, and its coefficient of variation [-].
+        """Return the estimate of the probability of values below ``value``, and its coefficient of
+        variation [-].
 
-        The coefficient is that of Au and Beck (2001), as if levels were independent; infinite where none is below.
+        The coefficient is that of Au and Beck (2001), as if levels were independent; infinite where
+        none is below.
         """
         reached, squares = 1.0, 0.0
         for level in self.levels:
@@ -112,7 +119,8 @@ class Simulation:
 
 
 def variation(event: Mask, chains: Indices) -> float:
-    """Return the coefficient of variation of the fraction of a level that has an event [-], by Au and Beck (2001).
+    """Return the coefficient of variation of the fraction of a level that has an event [-], by Au
+    and Beck (2001).
 
     Parameters
     ----------

@@ -1,41 +1,48 @@
-"""Subset simulation: the probability of a rare event as a product of probabilities that are not rare.
+"""Subset simulation: the probability of a rare event as a product of probabilities that are not
+rare.
 
-S.-K. Au and J. L. Beck, "Estimation of small failure probabilities in high dimensions by subset simulation",
-Probabilistic Engineering Mechanics 16 (2001). The event is that a value, here the distance kept beyond r_min, is below
-0. The first level is a plain random sample. Its lowest tenth (``conditional_probability``) gives the threshold of the
-next level, whose sample are Markov chains that start there and never leave what lies at or below the threshold; and so
-on, until a tenth of a level is below 0. The probability is the product of the fractions that passed each threshold.
+S.-K. Au and J. L. Beck, "Estimation of small failure probabilities in high dimensions by subset
+simulation", Probabilistic Engineering Mechanics 16 (2001). The event is that a value, here the
+distance kept beyond r_min, is below
+0. The first level is a plain random sample. Its lowest tenth (``conditional_probability``) gives
+the threshold of the next level, whose sample are Markov chains that start there and never leave
+what lies at or below the threshold; and so on, until a tenth of a level is below 0. The probability
+is the product of the fractions that passed each threshold.
 
-The chains move in standard normal space by conditional sampling with adaptive steps: I. Papaioannou, W. Betz, K.
-Zwirglmaier, D. Straub, "MCMC algorithms for subset simulation", Probabilistic Engineering Mechanics 41 (2015). A
-proposal is distributed as declared, given the state; it is accepted if its value is at or below the threshold. Steps
-adapt after every wave of proposals to the acceptance rate that the same paper recommends, ever less: they depend on the
+The chains move in standard normal space by conditional sampling with adaptive steps: I.
+Papaioannou, W. Betz, K. Zwirglmaier, D. Straub, "MCMC algorithms for subset simulation",
+Probabilistic Engineering Mechanics 41 (2015). A proposal is distributed as declared, given the
+state; it is accepted if its value is at or below the threshold. Steps adapt after every wave of
+proposals to the acceptance rate that the same paper recommends, ever less: they depend on the
 chains' past, but the less the longer.
 
-Noise within a flight follows from seeds. If every proposal had others, the same point would have another value each
-time, and no chain could stay below a threshold. So the noise is part of the state, the event is one of inputs and noise
-together, and its probability is that of the plain study. It has two parts:
+Noise within a flight follows from seeds. If every proposal had others, the same point would have
+another value each time, and no chain could stay below a threshold. So the noise is part of the
+state, the event is one of inputs and noise together, and its probability is that of the plain
+study. It has two parts:
 
-- a blend: (seed, weight) pairs. Each seed stands for a whole series of independent standard normal numbers, and the
-  noise is their weighted sum. The squares of the weights add up to 1, so that the sum is standard normal, too. A move
-  takes all weights times sqrt(1 - step^2), and adds a new seed with the weight step: the same small steps as those of
-  the inputs, in as many dimensions as a flight has random numbers, at the price of one seed (preconditioned
-  Crank-Nicolson; S. L. Cotter, G. O. Roberts, A. M. Stuart, D. White, "MCMC methods for functions: modifying old
-  algorithms to make them faster", Statistical Science 28 (2013)).
-- a seed of its own, for what cannot be blended: JSBSim makes its turbulence from a seed alone. It is kept while the
-  others move (common random numbers), and some of the moves renew it alone, as one coordinate without neighbours,
-  sampled anew and accepted by the same rule. Where it decides, renewals are seldom accepted
-  (``Level.renewed_accepted`` says how often), chains depend on the few seeds that they began with, and the estimates
-  of repeated simulations scatter more, which their interval shows.
+- a blend: (seed, weight) pairs. Each seed stands for a whole series of independent standard normal
+  numbers, and the noise is their weighted sum. The squares of the weights add up to 1, so that the
+  sum is standard normal, too. A move takes all weights times sqrt(1 - step^2), and adds a new seed
+  with the weight step: the same small steps as those of the inputs, in as many dimensions as a
+  flight has random numbers, at the price of one seed (preconditioned Crank-Nicolson; S. L. Cotter,
+  G. O. Roberts, A. M. Stuart, D. White, "MCMC methods for functions: modifying old algorithms to
+  make them faster", Statistical Science 28 (2013)).
+- a seed of its own, for what cannot be blended: JSBSim makes its turbulence from a seed alone. It
+  is kept while the others move (common random numbers), and some of the moves renew it alone, as
+  one coordinate without neighbours, sampled anew and accepted by the same rule. Where it decides,
+  renewals are seldom accepted (``Level.renewed_accepted`` says how often), chains depend on the few
+  seeds that they began with, and the estimates of repeated simulations scatter more, which their
+  interval shows.
 
-Each move is one of the inputs, the blend or the seed, the others being kept: a flight bears steps of its wind or start
-that are many times as large as those of all its noise at once. Steps of inputs and blend adapt apart, and are never
-smaller than ``SCALE_MIN``. How near a flight comes is a rugged function of them, of which smaller steps are accepted
-hardly more often, and lead nowhere.
+Each move is one of the inputs, the blend or the seed, the others being kept: a flight bears steps
+of its wind or start that are many times as large as those of all its noise at once. Steps of inputs
+and blend adapt apart, and are never smaller than ``SCALE_MIN``. How near a flight comes is a rugged
+function of them, of which smaller steps are accepted hardly more often, and lead nowhere.
 
-A simulation is a generator: it yields the points of a whole wave, and is sent their values. So any number of processes
-can evaluate them, several simulations can go in step, and the result depends on the generator of the random numbers
-alone.
+A simulation is a generator: it yields the points of a whole wave, and is sent their values. So any
+number of processes can evaluate them, several simulations can go in step, and the result depends on
+the generator of the random numbers alone.
 """
 
 import math
@@ -54,31 +61,43 @@ FIRST_SCALE = 0.6
 """Scale of the steps before any adaptation, as in the same paper."""
 
 SCALE_MIN = 0.2
-"""Least scale of the steps: in 3,400 flights without a limit it fell to 0.01, and chains stood still at about 0.3 m."""
+"""Least scale of the steps: in 3,400 flights without a limit it fell to 0.01, and chains stood
+still at about 0.3 m.
+"""
 
 SCALE_MAX = 1e3
-"""Where all proposals are accepted the scale would grow without end; every step is at its largest, 1, long before."""
+"""Where all proposals are accepted the scale would grow without end; every step is at its largest,
+1, long before.
+"""
 
 RENEWALS, BLENDS = 0.2, 0.3
-"""Fractions of the moves that renew the seed, and that move the blend: of the nine of a chain about two, and three."""
+"""Fractions of the moves that renew the seed, and that move the blend: of the nine of a chain about
+two, and three.
+"""
 
 DUMMIES = 5
-"""Coordinates without any effect beside those of the inputs: what their distribution seems to show is chance."""
+"""Coordinates without any effect beside those of the inputs: what their distribution seems to show
+is chance.
+"""
 
 SEEDS = 2**32
 """Number of different seeds, as many as other flights have."""
 
 Point = tuple[float, ...]
-"""Positions of the inputs in their distributions, from 0 to 1; then, with noise, the seed, and seed and weight of each
-part of the blend."""
+"""Positions of the inputs in their distributions, from 0 to 1; then, with noise, the seed, and seed
+and weight of each part of the blend."""
 
 Simulating = Generator[list[Point], Array, Simulation]
-"""A simulation that runs: it yields points to be evaluated, is sent their values, and returns its result."""
+"""A simulation that runs: it yields points to be evaluated, is sent their values, and returns its
+result.
+"""
 
 
 @dataclass(slots=True, kw_only=True)
 class _States:
-    """States of chains: normal coordinates of inputs and dummies, what follows them in a point, and values."""
+    """States of chains: normal coordinates of inputs and dummies, what follows them in a point, and
+    values.
+    """
 
     normal: Array
     noise: list[Point]
@@ -117,8 +136,10 @@ class SubsetSimulation:
     flights : points of each level
     conditional_probability : fraction of a level that passes its threshold, about [-]
     levels_max : levels at most, the first one among them
-    allowed : whether inputs, shape (dimension,) in the unit cube, can be sampled: the distribution is the declared one among these
-    seeded : whether the value at such inputs depends on the seed; where it does not, a new seed is taken without an evaluation
+    allowed : whether inputs, shape (dimension,) in the unit cube, can be sampled: the distribution
+        is the declared one among these
+    seeded : whether the value at such inputs depends on the seed; where it does not, a new seed is
+        taken without an evaluation
     """
 
     dimension: int
@@ -130,7 +151,9 @@ class SubsetSimulation:
     seeded: Callable[[Array], bool] = field(default=lambda _: True)
 
     def run(self, generator: np.random.Generator) -> Simulating:
-        """Yield the points of a wave, take their values; infinite for a point that has none, which passes no threshold."""
+        """Yield the points of a wave, take their values; infinite for a point that has none, which
+        passes no threshold.
+        """
         counts, levels = Counts(), list[Level]()
         states, chains = (yield from self._first(generator, counts)), np.arange(self.flights)
         below, scales = math.inf, _Scales()
@@ -189,8 +212,11 @@ class SubsetSimulation:
         generator: np.random.Generator,
         counts: Counts,
     ) -> Generator[list[Point], Array, tuple[_States, Indices]]:
-        """Grow a chain from each seed, all in step, until they are as many states as a level has; return these and their chains."""
-        # In random order: the chains that get one state more than others are not always those of the same seeds.
+        """Grow a chain from each seed, all in step, until they are as many states as a level has;
+        return these and their chains.
+        """
+        # In random order: the chains that get one state more than others are not always those of
+        # the same seeds.
         states = seeds.at(generator.permutation(len(seeds.values)))
         spread = states.normal.std(axis=0)
         parts, missing = [states], self.flights - len(states.values)
@@ -286,8 +312,8 @@ class SubsetSimulation:
 def _threshold(values: Array, passing: int) -> float:
     """Return what so many values are at or below, half way to the next greater one.
 
-    Chains repeat states. A threshold at one of them, all of whose repetitions pass, would be too low for the fraction that
-    passes, by half of these.
+    Chains repeat states. A threshold at one of them, all of whose repetitions pass, would be too
+    low for the fraction that passes, by half of these.
     """
     least = float(np.sort(values)[passing - 1])
     above = float(np.min(values[values > least], initial=math.inf))

@@ -28,13 +28,14 @@ def subset_statistics(
 ) -> Json:
     """Return the content of ``statistics.json``; values that are not a number become None.
 
-    Flights of the first levels are a plain random sample, which gives a bound by itself. Of those that have no
-    measurement, or were lost without a violation, nobody knows where they would have gone: the pessimistic bound takes
-    their probability as that of violations, too.
+    Flights of the first levels are a plain random sample, which gives a bound by itself. Of those
+    that have no measurement, or were lost without a violation, nobody knows where they would have
+    gone: the pessimistic bound takes their probability as that of violations, too.
 
     Parameters
     ----------
-    rows : columns ``COLUMNS`` of the summary, a row per flight in the order in which they were flown
+    rows : columns ``COLUMNS`` of the summary, a row per flight in the order in which they were
+        flown
     simulations : the repeats, at least three
     shifts : of the inputs
     confidence : of each interval, between 0 and 1
@@ -86,7 +87,9 @@ def pessimistic_upper(
     flights: int,
     confidence: float,
 ) -> float:
-    """Return the bound if flights of unknown end were violations; what may go wrong is shared equally between the two."""
+    """Return the bound if flights of unknown end were violations; what may go wrong is shared
+    equally between the two.
+    """
     if not unknown:
         return found.upper
     half = 0.5 + 0.5 * confidence

@@ -1,7 +1,9 @@
-"""What flights with a sniffer show of the method: bias, spread, coverage of what is stated, and how ships are called.
+"""What flights with a sniffer show of the method: bias, spread, coverage of what is stated, and how
+ships are called.
 
-Flights of one seed, such as those at the points of a sweep, have the same sniffer in the same air: intervals and standard errors
-are those of as many samples as there are seeds, each with the mean over its flights.
+Flights of one seed, such as those at the points of a sweep, have the same sniffer in the same air:
+intervals and standard errors are those of as many samples as there are seeds, each with the mean
+over its flights.
 """
 
 from collections.abc import Iterator
@@ -17,7 +19,9 @@ METHODS = {"regression": "fsc", "areas": "areas_fsc"}
 """Methods, and what the columns of their figures begin with."""
 
 _FIGURES = ("", "low_", "high_", "uncertainty_", "noise_", "separate_")
-"""Of a result: what it is, its bounds, its parts, and what areas would read of passes that do not overlap."""
+"""Of a result: what it is, its bounds, its parts, and what areas would read of passes that do not
+overlap.
+"""
 
 COLUMNS = (
     "flight_id", "seed", "sensor", "fsc_fuel_percent", "fsc_expected_percent", "sulphur_limit_percent", "sulphur_verdict",
@@ -55,7 +59,9 @@ def sulphur_statistics(rows: pd.DataFrame, *, confidence: float) -> Json:
 
 
 def _accuracy_groups(rows: pd.DataFrame) -> Iterator[tuple[Json, pd.DataFrame]]:
-    """Yield the flights by sensor and method; and by the fuel's sulphur, where several flights share it."""
+    """Yield the flights by sensor and method; and by the fuel's sulphur, where several flights
+    share it.
+    """
     for sensor, of_sensor in rows.groupby("sensor"):
         for method, prefix in METHODS.items():
             figures = {f"{prefix}_{of}percent": f"{of}percent" for of in _FIGURES}
@@ -118,7 +124,9 @@ def _by_seed(values: "pd.Series[Any]", flights: pd.DataFrame) -> Array:
 
 
 def _interval(events: "pd.Series[bool]", flights: pd.DataFrame, confidence: float) -> list[float]:
-    """Return the interval of the probability of an event, of which flights of one seed have a share together."""
+    """Return the interval of the probability of an event, of which flights of one seed have a share
+    together.
+    """
     found = shared_interval(events.to_numpy(dtype=np.bool_), flights["seed"].to_numpy(), confidence)
     return [found.low, found.high]
 
@@ -129,7 +137,9 @@ def _share(part: Array, whole: Array) -> float | None:
 
 
 def _calls(flights: pd.DataFrame, confidence: float) -> Json:
-    """Return how often ships of one fuel were called above one limit: at the end, and after two minutes."""
+    """Return how often ships of one fuel were called above one limit: at the end, and after two
+    minutes.
+    """
     called: Json = {}
     for name, column in (("above", "sulphur_verdict"), ("above_2min", "verdict_2min")):
         above = flights[column] == "above"

@@ -17,8 +17,8 @@ class Violations:
     flights : number of all flights
     measured : number of flights with a measured distance
     events : number of measured flights with a keep-out violation
-    unknown : names of the flights without a recorded violation that were not measured to their end, by outcome:
-        flights without any measurement, and flights that went out of control
+    unknown : names of the flights without a recorded violation that were not measured to their end,
+        by outcome: flights without any measurement, and flights that went out of control
     """
 
     flights: int
@@ -37,7 +37,8 @@ def count_violations(rows: pd.DataFrame) -> Violations:
 
     Parameters
     ----------
-    rows : a row per flight with ``flight_id``, ``outcome``, ``min_distance_m`` and ``keepout_violations``
+    rows : a row per flight with ``flight_id``, ``outcome``, ``min_distance_m`` and
+        ``keepout_violations``
     """
     measured = np.isfinite(
         pd.to_numeric(rows["min_distance_m"], errors="coerce").to_numpy(dtype=np.float64)

@@ -50,9 +50,10 @@ def check_flights(experiments: Iterable[Experiment], envelope: Envelope | None) 
 
     Raises
     ------
-    InputError : flights that differ in what the autopilot is designed for, an airspeed or a bank that the aircraft cannot fly, a
-        fault that it cannot have, turbulence at an altitude for which it is not known, manoeuvres that overlap, a part that does
-        not exist, a key that cannot be sampled
+    InputError : flights that differ in what the autopilot is designed for, an airspeed or a bank
+        that the aircraft cannot fly, a fault that it cannot have, turbulence at an altitude for
+        which it is not known, manoeuvres that overlap, a part that does not exist, a key that
+        cannot be sampled
     """
     experiments = list(experiments)
     for experiment in experiments:
@@ -78,13 +79,14 @@ def check_flights(experiments: Iterable[Experiment], envelope: Envelope | None) 
 
 
 def check_without_design(scenario: Scenario) -> None:
-    """Check of flights what the aircraft's autopilot has no part in, so that nobody waits for its design to be refused.
+    """Check of flights what the aircraft's autopilot has no part in, so that nobody waits for its
+    design to be refused.
 
     Raises
     ------
-    InputError : a part that does not exist, exhaust without smoke, a fault that it cannot have, turbulence at an altitude for which
-        it is not known, limits of the altitude that leave no room, a record that is too seldom, files of a track or of wind that
-        are of no use
+    InputError : a part that does not exist, exhaust without smoke, a fault that it cannot have,
+        turbulence at an altitude for which it is not known, limits of the altitude that leave no
+        room, a record that is too seldom, files of a track or of wind that are of no use
     """
     _check_parts(scenario)
     _check_sniffer(scenario)
@@ -98,7 +100,9 @@ def check_without_design(scenario: Scenario) -> None:
 
 @contextmanager
 def plugins_explained(what: str, scenarios: Iterable[Scenario]) -> Iterator[None]:
-    """Turn what a part from a file raises before any flight into an InputError that begins with ``what``."""
+    """Turn what a part from a file raises before any flight into an InputError that begins with
+    ``what``.
+    """
     try:
         yield
     except InputError:
@@ -134,7 +138,9 @@ def _check_turbulence(scenario: Scenario) -> None:
 
 
 def _check_margins(scenario: Scenario) -> None:
-    """Refuse guidance that is sampled continuously where there may be turbulence: margins are planned before it is sampled."""
+    """Refuse guidance that is sampled continuously where there may be turbulence: margins are
+    planned before it is sampled.
+    """
     if scenario.fidelity == "kinematic":
         return
     levels = [draw.choice or () for draw in scenario.draws if draw.key == "turbulence.level"]
@@ -149,7 +155,9 @@ def _check_margins(scenario: Scenario) -> None:
 
 
 def _check_altitudes(scenario: Scenario) -> None:
-    """Refuse limits of the altitude that leave no room in any flight; where flights differ in them, each has its own result."""
+    """Refuse limits of the altitude that leave no room in any flight; where flights differ in them,
+    each has its own result.
+    """
     deciding = ["flight.", "following.", "emission.ship", "turbulence.level"]
     deciding += ["plume.source_height_m"] if scenario.flight.altitude_m is None else []
     sampled = any(draw.key.startswith(tuple(deciding)) for draw in scenario.draws)
@@ -162,7 +170,9 @@ def _check_altitudes(scenario: Scenario) -> None:
 
 
 def _check_sniffer(scenario: Scenario) -> None:
-    """Refuse a sniffer without SO2 in flights that end with a verdict; where flights differ in it, each has its own result."""
+    """Refuse a sniffer without SO2 in flights that end with a verdict; where flights differ in it,
+    each has its own result.
+    """
     if scenario.flight.until != "verdict" or "sniffer" not in scenario.payload.instruments:
         return
     if not any(draw.key.startswith(("payload.", "flight.until")) for draw in scenario.draws):
@@ -175,7 +185,9 @@ def _check_sniffer(scenario: Scenario) -> None:
 
 
 def _check_record(scenario: Scenario) -> None:
-    """Refuse a rate of the record that is too low in every flight; where flights differ, each has its own result."""
+    """Refuse a rate of the record that is too low in every flight; where flights differ, each has
+    its own result.
+    """
     if any(draw.key.startswith(("guidance.", "flight.", "kinematic.")) for draw in scenario.draws):
         return
     try:
@@ -211,7 +223,9 @@ def _check_vessel(scenario: Scenario) -> None:
 
 
 def _vessel_known(scenario: Scenario) -> bool:
-    """Return whether no flight has a vessel or a file of wind of its own; with one that is of no use, it is not flown."""
+    """Return whether no flight has a vessel or a file of wind of its own; with one that is of no
+    use, it is not flown.
+    """
     return not any(draw.key.startswith(("vessel.", "wind.table")) for draw in scenario.draws)
 
 

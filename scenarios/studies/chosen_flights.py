@@ -12,7 +12,9 @@ from scenarios.studies.flight_study import FlightStudy
 
 
 def clearance(row: Row, *, unmeasured: float) -> float:
-    """Return how far from the keep-out area a flight stayed at its closest, or ``unmeasured`` if that is not known [m]."""
+    """Return how far from the keep-out area a flight stayed at its closest, or ``unmeasured`` if
+    that is not known [m].
+    """
     return (
         float(row["min_distance_m"] - row["keepout_radius_m"])
         if "min_distance_m" in row
@@ -21,7 +23,8 @@ def clearance(row: Row, *, unmeasured: float) -> float:
 
 
 class ChosenFlightsStudy(FlightStudy):
-    """Flights of one trial, at points of its draws that the study chooses; what runs it appends their tasks.
+    """Flights of one trial, at points of its draws that the study chooses; what runs it appends
+    their tasks.
 
     Parameters
     ----------
@@ -60,14 +63,17 @@ class ChosenFlightsStudy(FlightStudy):
         return self._tasks[number]
 
     def depended_on(self, journal: Journal, *, below: int) -> bool:
-        """Return whether flights after those that are chosen so far, of numbers below ``below``, are in the journal.
+        """Return whether flights after those that are chosen so far, of numbers below ``below``,
+        are in the journal.
 
-        They were chosen by these. So a lost one among these is tried again only as long as there are none: otherwise a run that
-        is resumed would choose others.
+        They were chosen by these. So a lost one among these is tried again only as long as there
+        are none: otherwise a run that is resumed would choose others.
         """
         return (
             next(journal.numbered(SUMMARY, first=len(self._tasks), below=below), None) is not None
         )
 
     def postprocess(self, run: RunDirectory, journal: Journal, progress: Progress) -> None:
-        """Write nothing: flights that follow from others are not a sample that shows how well sulphur is measured."""
+        """Write nothing: flights that follow from others are not a sample that shows how well
+        sulphur is measured.
+        """

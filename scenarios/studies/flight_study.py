@@ -77,13 +77,16 @@ class FlightStudy:
 
     Raises
     ------
-    InputError : an unknown aircraft or fault, a key that cannot be sampled, or flights that need different autopilots
+    InputError : an unknown aircraft or fault, a key that cannot be sampled, or flights that need
+        different autopilots
     """
 
     what = "flights"
 
     chooses_flights = False
-    """Whether what is flown depends on what was flown before, so that no flight can be flown without the others."""
+    """Whether what is flown depends on what was flown before, so that no flight can be flown
+    without the others.
+    """
 
     def __init__(
         self,
@@ -189,13 +192,17 @@ class FlightStudy:
         return dict(trials)
 
     def name_by_trial(self) -> None:
-        """Have the names of flights begin with that of their trial, as those of a run of several trials do."""
+        """Have the names of flights begin with that of their trial, as those of a run of several
+        trials do.
+        """
         self.experiments = {
             trial: Experiment(trial, of, alone=False) for trial, of in self.trials.items()
         }
 
     def _sampled_at_random(self) -> dict[str, bool]:
-        """Return of which trials flights are a random sample, from which a bound on a probability follows."""
+        """Return of which trials flights are a random sample, from which a bound on a probability
+        follows.
+        """
         return {trial: is_random_sample(scenario) for trial, scenario in self.trials.items()}
 
     @property
@@ -220,12 +227,15 @@ class FlightStudy:
         return self._manifest | self._sizes()
 
     def _sizes(self) -> dict[str, Any]:
-        """Return the entries of the manifest on how many flights there are, which a study may find out as it goes."""
+        """Return the entries of the manifest on how many flights there are, which a study may find
+        out as it goes.
+        """
         trials = {trial: flown_config(scenario) for trial, scenario in self.trials.items()}
         return {"trials": trials, "trial_flights": self.flights, "flights_planned": self.planned}
 
     def work(self, run: RunDirectory) -> FlightWork:
-        """Return the work on its flights, after writing the logo and the aircraft's autopilot into the run directory.
+        """Return the work on its flights, after writing the logo and the aircraft's autopilot into
+        the run directory.
 
         Raises
         ------
@@ -269,8 +279,8 @@ class FlightStudy:
         fly(self.representative_flights(run, journal))
 
     def representative_flights(self, run: RunDirectory, journal: Journal) -> list[Task]:
-        """Return what is to be recorded of each trial: the closest flight, the median one, the first unfinished mission, and those
-        whose time history was deleted."""
+        """Return what is to be recorded of each trial: the closest flight, the median one, the
+        first unfinished mission, and those whose time history was deleted."""
         # Figures alone: a hundred thousand rows would be too many.
         distances = {trial: (array("d"), array("q")) for trial in self.trials}
         unfinished: dict[str, int] = {}
@@ -288,7 +298,9 @@ class FlightStudy:
         return self.unrecorded(chosen, run, journal)
 
     def unrecorded(self, numbers: Sequence[int], run: RunDirectory, journal: Journal) -> list[Task]:
-        """Return the tasks of those flights that have no time history yet, and of those that had one, to be recorded."""
+        """Return the tasks of those flights that have no time history yet, and of those that had
+        one, to be recorded.
+        """
         gone = set(run.gone)
         missing = {
             number
@@ -321,7 +333,9 @@ class FlightStudy:
         write_tables(run, journal, self.tables)
 
     def bound_line(self, counts: FlightCounts, samples: int, _journal: Journal) -> str:
-        """Return the line on keep-out violations and the bound on their probability, of flights that are a random sample."""
+        """Return the line on keep-out violations and the bound on their probability, of flights
+        that are a random sample.
+        """
         return counts.bound_line(samples)
 
     def summary(self, journal: Journal) -> StudySummary:

@@ -88,8 +88,8 @@ def write_logo(report: ReportConfig, run: RunDirectory) -> None:
 
 
 def plugins(scenarios: Iterable[Scenario]) -> dict[str, str]:
-    """Return a hash of each file, and of the files of each aircraft, that scenarios take parts from, by the part: a resumed run
-    and a replay have to find the same.
+    """Return a hash of each file, and of the files of each aircraft, that scenarios take parts
+    from, by the part: a resumed run and a replay have to find the same.
 
     Raises
     ------
@@ -110,7 +110,8 @@ def plugins(scenarios: Iterable[Scenario]) -> dict[str, str]:
 
 
 def refuse_changed(then: Mapping[str, str], now: Mapping[str, str]) -> None:
-    """Refuse to go on with a run whose parts are not what they were, before an autopilot is designed for them.
+    """Refuse to go on with a run whose parts are not what they were, before an autopilot is
+    designed for them.
 
     Parameters
     ----------
@@ -128,7 +129,9 @@ def refuse_changed(then: Mapping[str, str], now: Mapping[str, str]) -> None:
 
 
 def vessel_files(scenarios: Iterable[Scenario]) -> dict[str, AisReports]:
-    """Return the reports in each file that the vessels of scenarios take their tracks from, by its path and the vessel's MMSI."""
+    """Return the reports in each file that the vessels of scenarios take their tracks from, by its
+    path and the vessel's MMSI.
+    """
     found = (vessel_of(scenario) for scenario in scenarios if scenario.vessel.from_file)
     return {f"{v.source.path} {v.source.mmsi}": v.source for v in found if isinstance(v, AisVessel)}
 
@@ -136,7 +139,9 @@ def vessel_files(scenarios: Iterable[Scenario]) -> dict[str, AisReports]:
 def config_hash(
     *scenarios: BaseModel, files: Mapping[str, str] | None = None, names: Sequence[str] = ()
 ) -> str:
-    """Return a hash of scenarios, of their names where seeds depend on them, and of the files that they take parts from."""
+    """Return a hash of scenarios, of their names where seeds depend on them, and of the files that
+    they take parts from.
+    """
     documents: list[object] = [flown_config(scenario) for scenario in scenarios]
     text = "\n".join(
         json.dumps(document, sort_keys=True)
@@ -146,14 +151,18 @@ def config_hash(
 
 
 def parameters(scenario: BaseModel) -> list[dict[str, Any]]:
-    """Return every key of the scenario's sections that acts, with value, default if any, meaning and unit."""
+    """Return every key of the scenario's sections that acts, with value, default if any, meaning
+    and unit.
+    """
     listed = [of for of in _of_sections(scenario) if not _is_unused(scenario, of)]
     listed = [each for of in listed for each in (of, *_of_own_table(of))]
     return [*listed, *_varied_of_parts(scenario, {of["key"] for of in listed})]
 
 
 def unused_parameters(scenario: BaseModel) -> list[dict[str, Any]]:
-    """Return the same of the keys that do not act though they have not their defaults: an aircraft's, to which they are scaled."""
+    """Return the same of the keys that do not act though they have not their defaults: an
+    aircraft's, to which they are scaled.
+    """
     return [
         of
         for of in _of_sections(scenario)
@@ -191,7 +200,9 @@ def _of_sections(scenario: BaseModel) -> list[dict[str, Any]]:
 
 
 def _varied_of_parts(scenario: BaseModel, listed: Collection[str]) -> list[dict[str, Any]]:
-    """Return the keys of parts that are swept or sampled, and of laws of some flights, that are set nowhere else, with defaults."""
+    """Return the keys of parts that are swept or sampled, and of laws of some flights, that are set
+    nowhere else, with defaults.
+    """
     if not isinstance(scenario, Scenario):
         return []
     varied = dict.fromkeys([*scenario.sweep.root, *(draw.key for draw in scenario.draws)])
@@ -216,7 +227,9 @@ def _varied_of_parts(scenario: BaseModel, listed: Collection[str]) -> list[dict[
 
 
 def _of_parts(name: str, section: BaseModel) -> list[dict[str, Any]]:
-    """Return the keys of the parts that a section names, set or not: they say which instrument, law or plume was flown."""
+    """Return the keys of the parts that a section names, set or not: they say which instrument, law
+    or plume was flown.
+    """
     brought: dict[str, Any] = {}
     if isinstance(section, PartSection):
         brought = section.part_keys
@@ -243,7 +256,9 @@ def _of_parts(name: str, section: BaseModel) -> list[dict[str, Any]]:
 
 
 def _of_own_table(parameter: Mapping[str, Any]) -> Iterator[dict[str, Any]]:
-    """Yield the keys of a ship or a sniffer of a user's own, if a parameter is one, with their units."""
+    """Yield the keys of a ship or a sniffer of a user's own, if a parameter is one, with their
+    units.
+    """
     key, table = str(parameter["key"]), parameter["value"]
     if key not in _OWN_TABLES or not isinstance(table, Mapping):
         return
@@ -257,7 +272,9 @@ def _of_own_table(parameter: Mapping[str, Any]) -> Iterator[dict[str, Any]]:
 def _fields(
     key: str, table: Mapping[str, Any], made: type[Any], gas_unit: str = ""
 ) -> Iterator[dict[str, Any]]:
-    """Yield the keys of a table, which are fields of a class; ``gas_unit`` is what its docstring calls "unit"."""
+    """Yield the keys of a table, which are fields of a class; ``gas_unit`` is what its docstring
+    calls "unit".
+    """
     known = described_fields(made)
     for name, value in table.items():
         meaning, unit = known[name]

@@ -1,4 +1,6 @@
-"""The paper's simulations as a study: flights, and the bounds, worst states and price of a guarantee of their law."""
+"""The paper's simulations as a study: flights, and the bounds, worst states and price of a
+guarantee of their law.
+"""
 
 import math
 from typing import Any
@@ -23,11 +25,15 @@ from scenarios.studies.study import study
 from scenarios.vehicles.vehicle_setup import kinematic_setup
 
 SEARCH_STATES = 1_000_000
-"""Random states of each search for the largest command. 10,000 find the same twelve digits for the default look-ahead;
-a hundred times as many take half a second, and leave room for parameters whose worst states are rarer."""
+"""Random states of each search for the largest command. 10,000 find the same twelve digits for the
+default look-ahead; a hundred times as many take half a second, and leave room for parameters whose
+worst states are rarer.
+"""
 
 RESERVE_MAX_PERCENT, RESERVE_STEP_PERCENT = 60, 5
-"""Grid of reserves; at 60 % a guarantee converges in 2.3 times the time of the default look-ahead without one."""
+"""Grid of reserves; at 60 % a guarantee converges in 2.3 times the time of the default look-ahead
+without one.
+"""
 
 RESERVES = (
     0.0,
@@ -37,11 +43,14 @@ RESERVES = (
         for percent in range(RESERVE_STEP_PERCENT, RESERVE_MAX_PERCENT + 1, RESERVE_STEP_PERCENT)
     ),
 )
-"""Fractions of omega_max that the reference leaves unused: none, as in the paper, the default, and a grid [-]."""
+"""Fractions of omega_max that the reference leaves unused: none, as in the paper, the default, and
+a grid [-].
+"""
 
 
 def bounds_record(requests: list[FlightRequest], seed: int) -> dict[str, Any]:
-    """Return the bounds of a study's flights under law (30), and the price of a guarantee over the reserve.
+    """Return the bounds of a study's flights under law (30), and the price of a guarantee over the
+    reserve.
 
     Parameters
     ----------
@@ -51,10 +60,10 @@ def bounds_record(requests: list[FlightRequest], seed: int) -> dict[str, Any]:
     Returns
     -------
     guaranteed_for : speed, omega_max, and the distances between which convergence is estimated
-    flown : a row per distinct set of steering parameters: the bound, and the largest command that a search over states
-        finds
-    guaranteed : for the last flight with a vessel a row per reserve: the parameters that converge fastest while no
-        state demands more than omega_max, or why there are none
+    flown : a row per distinct set of steering parameters: the bound, and the largest command that a
+        search over states finds
+    guaranteed : for the last flight with a vessel a row per reserve: the parameters that converge
+        fastest while no state demands more than omega_max, or why there are none
     """
     missions = [request for request in requests if not request.scenario.circles]
     last = missions[-1].scenario if missions else None

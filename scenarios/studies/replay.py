@@ -39,7 +39,8 @@ class Replay(SingleFlight):
     ----------
     name : ``RUN_DIR/flights/ID``, with or without the suffix of one of its files
     viewer : host and port of a FlightGear that is to show it, in real time; none if not given
-    aircraft_dir : directory in which the folder of the user's own aircraft is now, if it was moved since
+    aircraft_dir : directory in which the folder of the user's own aircraft is now, if it was moved
+        since
 
     Raises
     ------
@@ -109,7 +110,9 @@ class Replay(SingleFlight):
         )
 
     def _moved(self, manifest: dict[str, Any], directory: Path) -> dict[str, Any]:
-        """Return the manifest with the aircraft of its flights where it is now, in ``directory``; the row says so, too."""
+        """Return the manifest with the aircraft of its flights where it is now, in ``directory``;
+        the row says so, too.
+        """
         then = str(manifest["trials"][self._row["trial"]]["aircraft"])
         if not names_folder("aircraft", then):
             raise InputError(
@@ -127,7 +130,8 @@ class Replay(SingleFlight):
     def _restored(self, manifest: dict[str, Any]) -> Study:
         """Return the study of the run, or of the one trial of it that the flight belongs to.
 
-        The trial comes from the manifest, scaled to its aircraft, and not from the catalog, which may have changed.
+        The trial comes from the manifest, scaled to its aircraft, and not from the catalog, which
+        may have changed.
         """
         if "study" not in manifest:
             raise InputError(

@@ -16,7 +16,8 @@ from scenarios.studies.summary import FlightCounts
 
 
 class SingleFlight:
-    """One flight of a study, as a study. Its row is in the summary, even if it is one of a comparison.
+    """One flight of a study, as a study. Its row is in the summary, even if it is one of a
+    comparison.
 
     Parameters
     ----------
@@ -75,7 +76,9 @@ class SingleFlight:
         """Do nothing: one flight has only tables and its time history."""
 
     def export(self, run: RunDirectory, journal: Journal) -> None:
-        """Write the tables; the row is in ``summary.csv`` even if the flight is one of a comparison."""
+        """Write the tables; the row is in ``summary.csv`` even if the flight is one of a
+        comparison.
+        """
         self._study.export(run, journal)
         if self._table != SUMMARY:
             (run.path / self._table).replace(run.path / SUMMARY)

@@ -10,8 +10,8 @@ STUDIES: Registry[Callable[..., Study]] = Registry(
 )
 """Studies by the word that a scenario file has for them.
 
-Each is called as ``scenarios.studies.flight_study.FlightStudy`` is: with the scenario, its name, the scenarios to fly by name, and
-the overrides.
+Each is called as ``scenarios.studies.flight_study.FlightStudy`` is: with the scenario, its name,
+the scenarios to fly by name, and the overrides.
 """
 
 study = STUDIES.register

@@ -15,7 +15,9 @@ from scenarios.simulation.outcome import Outcome
 from scenarios.world.faults import OF_SNIFFER
 
 NOT_MET_SHOWN = 20
-"""Flights that did not meet every criterion, or reasons why they measured nothing, that are named on the console, at most."""
+"""Flights that did not meet every criterion, or reasons why they measured nothing, that are named
+on the console, at most.
+"""
 
 _MEASURED_FROM = {
     "sphere": "from the centre of the keep-out sphere",
@@ -32,19 +34,24 @@ class FlightCounts:
     ----------
     planned : number of planned flights
     done, flown : number of flights that are done, and of those that were measured
-    kept_out : number of flights that kept out of the keep-out area to their end, as far as it is known
-    without_area : number of flights that completed without a vessel, and so without an area to keep out of
-    met : number of flights that met every criterion: they kept out, completed, and kept their aircraft
+    kept_out : number of flights that kept out of the keep-out area to their end, as far as it is
+        known
+    without_area : number of flights that completed without a vessel, and so without an area to keep
+        out of
+    met : number of flights that met every criterion: they kept out, completed, and kept their
+        aircraft
     passed : number of flights that did what exit status 0 requires of them
     outcomes : number of flights by their outcome
     required : number of flights by what exit status 0 requires of them
     violating : number of flights with a keep-out violation
     keepout_violations : number of keep-out violations
-    shapes : number of flights by the shape of their keep-out area, which distances are measured from
+    shapes : number of flights by the shape of their keep-out area, which distances are measured
+        from
     nearest : closest approach to the vessel, infinite if no flight is done [m]
     duration : of all flights [s]
     unflown_manoeuvres : number of flights that ended before a manoeuvre of their vessel began
-    beside_smoke : height above the plume's axis of each flight that crossed the plume, but never its smoke [m]
+    beside_smoke : height above the plume's axis of each flight that crossed the plume, but never
+        its smoke [m]
     not_met : rows of the first flights that did not meet every criterion
     sulphur : row of the first flight with a sulphur content of the fuel
     verdicts : number of such flights by verdict and quality
@@ -93,7 +100,8 @@ class FlightCounts:
         )
         self.outcomes[row["outcome"]] += 1
         self.required[required] += 1
-        # What failed after its flight, as an instrument may, has kept out, but does not count as done.
+        # What failed after its flight, as an instrument may, has kept out, but does not count as
+        # done.
         done = kept_out and row["outcome"] != Outcome.FAILED.value
         self.passed += done if required == "keep_out" else bool(row["criteria_met"])
         self.violating += row.get("keepout_violations", 0) > 0
@@ -124,7 +132,9 @@ class FlightCounts:
 
     @property
     def beside(self) -> int:
-        """Number of flights beside a vessel, those that could not be flown among them: others have nothing to keep out of."""
+        """Number of flights beside a vessel, those that could not be flown among them: others have
+        nothing to keep out of.
+        """
         return self.done - self.without_area
 
     @property
@@ -133,7 +143,9 @@ class FlightCounts:
         return self.outcomes[Outcome.AIRCRAFT_LOST.value] + self.outcomes[Outcome.DIVERGED.value]
 
     def line(self) -> str:
-        """Return the counts in a line: planned, flown, completed, met, and how the keep-out area was kept."""
+        """Return the counts in a line: planned, flown, completed, met, and how the keep-out area
+        was kept.
+        """
         lost = f", {self.lost} lost the aircraft" if self.lost else ""
         counts = f"{self.planned} planned, {self.flown} flown, {self.completed} completed, {self.met} met every criterion{lost}"
         if math.isinf(self.nearest):
@@ -149,7 +161,8 @@ class FlightCounts:
         return f"{counts}; {kept}, closest approach {self.nearest:.1f} m{about}"
 
     def sulphur_lines(self) -> list[str]:
-        """Return what was measured of the fuel: of one flight content and verdict, of several how many were called what.
+        """Return what was measured of the fuel: of one flight content and verdict, of several how
+        many were called what.
 
         And in how many flights the sniffer failed: nothing else on the console says so.
         """
@@ -179,13 +192,16 @@ class FlightCounts:
         return [f"fuel sulphur {content_words(row['fsc_percent'], low, high)}: {words}"]
 
     def bound_line(self, samples: int) -> str:
-        """Return in how many flights the keep-out area was violated, with the bound on the probability of that.
+        """Return in how many flights the keep-out area was violated, with the bound on the
+        probability of that.
 
-        It is one if flights are a random sample, and not those of a search. One that could not be flown counts as violated, too.
+        It is one if flights are a random sample, and not those of a search. One that could not be
+        flown counts as violated, too.
 
         Parameters
         ----------
-        samples : number of those that differ in what is random: of others each counts as one, and each violation as of another
+        samples : number of those that differ in what is random: of others each counts as one, and
+            each violation as of another
         """
         not_kept = self.beside - self.kept_out
         upper = upper_bound(min(not_kept, samples), samples)
@@ -208,13 +224,15 @@ class FlightCounts:
         *,
         samples: int,
     ) -> str:
-        """Return what is known of keep-out violations, and the bound on their probability if that says anything.
+        """Return what is known of keep-out violations, and the bound on their probability if that
+        says anything.
 
         Parameters
         ----------
         violating, unknown : number of flights with a violation, and of those of which nobody knows
         flights : number of all these flights
-        upper, confidence : bound on the probability, in which unknown flights count as violations [-]
+        upper, confidence : bound on the probability, in which unknown flights count as violations
+            [-]
         samples : number of flights that differ in what is random
         """
         hours = self.duration / SECONDS_PER_HOUR
@@ -240,11 +258,13 @@ class FlightCounts:
         return f"{line}; at most {bound} of flights sampled as these were, at {sure} confidence"
 
     def exit_line(self, *, left: int = 0) -> str:
-        """Return the exit status of a run that is done, and how many flights did what status 0 requires of each.
+        """Return the exit status of a run that is done, and how many flights did what status 0
+        requires of each.
 
         Parameters
         ----------
-        left : number of flights of comparisons that are still to be flown, without which no run is done
+        left : number of flights of comparisons that are still to be flown, without which no run is
+            done
         """
         about = {"criteria": "met every criterion", "keep_out": "kept out"}
         kinds = [about[kind] for kind in about if self.required[kind]] or ["met every criterion"]
@@ -255,7 +275,9 @@ class FlightCounts:
         return f"exit status {int(self.passed != self.planned)}: {did}"
 
     def warnings(self) -> list[str]:
-        """Return what of the scenario had no effect on flights, and where these missed what they were to measure."""
+        """Return what of the scenario had no effect on flights, and where these missed what they
+        were to measure.
+        """
         lines = []
         if count := self.unflown_manoeuvres:
             lines.append(
@@ -274,7 +296,9 @@ class FlightCounts:
         return lines
 
     def not_met_lines(self, indent: str) -> list[str]:
-        """Return a line for each of the first flights that did not meet every criterion, and one for the rest."""
+        """Return a line for each of the first flights that did not meet every criterion, and one
+        for the rest.
+        """
         lines = [
             f"{indent}{row['flight_id']}: {row['outcome']}: {row['message']}"
             for row in self.not_met

@@ -26,7 +26,8 @@ class TrialStudy(FlightStudy):
 
     Raises
     ------
-    InputError : a listed trial does not exist, or is not one of flights, or two have one name; and as of ``FlightStudy``
+    InputError : a listed trial does not exist, or is not one of flights, or two have one name; and
+        as of ``FlightStudy``
     """
 
     def __init__(self, study: TrialList, name: str, *, overrides: Sequence[str] = ()) -> None:

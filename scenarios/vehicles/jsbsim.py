@@ -1,4 +1,6 @@
-"""The aircraft in six degrees of freedom: JSBSim at 120 Hz with the autopilot at its own rate, 40 to 120 Hz, both in C++."""
+"""The aircraft in six degrees of freedom: JSBSim at 120 Hz with the autopilot at its own rate, 40
+to 120 Hz, both in C++.
+"""
 
 import itertools
 import math
@@ -14,14 +16,17 @@ from scenarios.vehicles.telemetry import Telemetry
 
 _BANK_LIMIT = 1.4
 _AIRSPEED_LIMITS = (8.0 / 15.0, 1.8)
-"""Out of control below and above these shares of the slowest and the fastest airspeed of the envelope [-]."""
+"""Out of control below and above these shares of the slowest and the fastest airspeed of the
+envelope [-].
+"""
 
 _ALTITUDE_MIN = 1.0
 _WATCH_STEP, _WATCH_INTERVAL = 0.05, 2
-"""Longest step of the guidance that shows enough of what control surfaces are commanded [s]; in a longer one it is looked at
-every so many steps of the simulation.
+"""Longest step of the guidance that shows enough of what control surfaces are commanded [s]; in a
+longer one it is looked at every so many steps of the simulation.
 
-At 10 Hz a surface that followed a command which came and went between two steps seemed stuck in 8 of 42 flights.
+At 10 Hz a surface that followed a command which came and went between two steps seemed stuck in 8
+of 42 flights.
 """
 
 
@@ -30,7 +35,8 @@ class JsbsimVehicle:
 
     Parameters
     ----------
-    aircraft : with its autopilot; whatever it flew before is over. What is to fail on the way takes one made ``failable``
+    aircraft : with its autopilot; whatever it flew before is over. What is to fail on the way takes
+        one made ``failable``
     start : straight and level equilibrium
     envelope : where the autopilot may fly it
     north, east, altitude : where it is released [m]
@@ -99,7 +105,9 @@ class JsbsimVehicle:
             run()
 
     def fault(self, sample: tuple[float, ...]) -> str:
-        """Return why the aircraft is out of control, or nothing. A value that is not a number is never within its limits."""
+        """Return why the aircraft is out of control, or nothing. A value that is not a number is
+        never within its limits.
+        """
         altitude, airspeed, roll = sample[:3]
         low, high = self._airspeed_limits
         if not abs(roll) < _BANK_LIMIT:

@@ -12,10 +12,11 @@ _NONE = (math.nan,) * (len(SAMPLE_COLUMNS) - 5)
 
 
 class KinematicVehicle:
-    """A vehicle that flies the commanded airspeed at once and turns at the commanded heading rate, at once or with a lag.
+    """A vehicle that flies the commanded airspeed at once and turns at the commanded heading rate,
+    at once or with a lag.
 
-    It takes a commanded altitude at once, and drifts with the wind. Its bank is that of a coordinated turn, for
-    comparison only: nothing bounds it.
+    It takes a commanded altitude at once, and drifts with the wind. Its bank is that of a
+    coordinated turn, for comparison only: nothing bounds it.
 
     Parameters
     ----------
@@ -52,7 +53,9 @@ class KinematicVehicle:
         self._wind_north, self._wind_east = wind.now(0.0, altitude)
 
     def motion(self) -> tuple[float, float, float, float, float]:
-        """Return north, east [m], north and east velocity over the ground [m/s] and heading rate against the air [rad/s]."""
+        """Return north, east [m], north and east velocity over the ground [m/s] and heading rate
+        against the air [rad/s].
+        """
         velocity_north = self._speed * math.cos(self._course) + self._wind_north
         velocity_east = self._speed * math.sin(self._course) + self._wind_east
         return self._north, self._east, velocity_north, velocity_east, self._heading_rate
@@ -109,7 +112,9 @@ class KinematicVehicle:
         )
 
     def fault(self, sample: tuple[float, ...]) -> str:
-        """Return nothing, unless the guidance commanded what is not a number: equation (1) is never out of control."""
+        """Return nothing, unless the guidance commanded what is not a number: equation (1) is never
+        out of control.
+        """
         return (
             ""
             if math.isfinite(sample[2] + self._north + self._east)

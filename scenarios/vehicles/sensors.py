@@ -1,4 +1,6 @@
-"""What the sensors of the UAV measure: the truth, with errors that are sampled for a whole flight at once."""
+"""What the sensors of the UAV measure: the truth, with errors that are sampled for a whole flight
+at once.
+"""
 
 import math
 from itertools import accumulate
@@ -11,7 +13,9 @@ NAVIGATION_TIME = 60.0
 """Time constant with which the error of satellite navigation wanders [s]."""
 
 Reading = tuple[tuple[float, float, float, float] | None, float, float]
-"""North, east [m], north and east velocity [m/s], or none while satellite navigation is lost; airspeed [m/s]; heading [rad]."""
+"""North, east [m], north and east velocity [m/s], or none while satellite navigation is lost;
+airspeed [m/s]; heading [rad].
+"""
 
 
 class SensorErrors:

@@ -51,8 +51,11 @@ class Telemetry:
         )
 
     def motion(self) -> tuple[float, float, float, float, float]:
-        """Return north, east [m], north and east velocity over the ground [m/s] and heading rate against the air [rad/s]."""
-        # To unpack two names takes a third of the time of a star in a tuple, in each step of every flight.
+        """Return north, east [m], north and east velocity over the ground [m/s] and heading rate
+        against the air [rad/s].
+        """
+        # To unpack two names takes a third of the time of a star in a tuple, in each step of every
+        # flight.
         north, east = self._to_local(self._latitude(), self._longitude())
         return (
             north,
@@ -63,7 +66,9 @@ class Telemetry:
         )
 
     def air_data(self) -> tuple[float, float, float]:
-        """Return true airspeed with turbulence and gusts [m/s], heading from 0 to 2 pi, and roll [rad]."""
+        """Return true airspeed with turbulence and gusts [m/s], heading from 0 to 2 pi, and roll
+        [rad].
+        """
         return self._airspeed() * METRES_PER_FOOT, self._heading(), self._roll()
 
     def sample(self) -> tuple[float, ...]:

@@ -1,4 +1,6 @@
-"""The vehicle in the closed loop, as the guidance sees it: six degrees of freedom in JSBSim, or the paper's kinematics."""
+"""The vehicle in the closed loop, as the guidance sees it: six degrees of freedom in JSBSim, or the
+paper's kinematics.
+"""
 
 from typing import Protocol
 
@@ -16,18 +18,24 @@ SAMPLE_COLUMNS = (
     "throttle",
     "rudder",
 )
-"""What a vehicle's ``sample`` returns, in order; not a number where it has no such thing. Controls are commands [-], or the effect
-by which a surface is commanded whose travel is unequal (``aircraft.dynamics.control_effectiveness``)."""
+"""What a vehicle's ``sample`` returns, in order; not a number where it has no such thing. Controls
+are commands [-], or the effect by which a surface is commanded whose travel is unequal
+(``aircraft.dynamics.control_effectiveness``).
+"""
 
 
 class Vehicle(Protocol):
     """A vehicle under way, stepped at the rate of the guidance."""
 
     def motion(self) -> tuple[float, float, float, float, float]:
-        """Return north, east [m], north and east velocity over the ground [m/s] and heading rate against the air [rad/s]."""
+        """Return north, east [m], north and east velocity over the ground [m/s] and heading rate
+        against the air [rad/s].
+        """
 
     def air_data(self) -> tuple[float, float, float]:
-        """Return what sensors on board measure: airspeed, gusts and all [m/s], heading, not wrapped, and roll [rad]."""
+        """Return what sensors on board measure: airspeed, gusts and all [m/s], heading, not
+        wrapped, and roll [rad].
+        """
 
     def sample(self) -> tuple[float, ...]:
         """Return ``SAMPLE_COLUMNS``."""
@@ -39,13 +47,19 @@ class Vehicle(Protocol):
         """Let it climb or sink to an altitude [m] from now on."""
 
     def servo_error(self) -> float:
-        """Return the largest distance of a control surface from its recent commands, over its travel [-]; once per step."""
+        """Return the largest distance of a control surface from its recent commands, over its
+        travel [-]; once per step.
+        """
 
     def hold_elevator(self) -> object:
-        """Leave pitch to the vehicle's own stability from now on, so that turning has all the control that is left."""
+        """Leave pitch to the vehicle's own stability from now on, so that turning has all the
+        control that is left.
+        """
 
     def fail(self, name: str) -> None:
-        """Let a part of it fail from now on; raises ValueError where there is no such part that can."""
+        """Let a part of it fail from now on; raises ValueError where there is no such part that
+        can.
+        """
 
     def fault(self, sample: tuple[float, ...]) -> str:
         """Return why a vehicle with this ``sample`` is out of control, or nothing."""

@@ -1,4 +1,6 @@
-"""What flights need of their vehicle beyond their scenario: an aircraft with its autopilot, or the kinematic vehicle."""
+"""What flights need of their vehicle beyond their scenario: an aircraft with its autopilot, or the
+kinematic vehicle.
+"""
 
 import math
 import tempfile
@@ -29,13 +31,19 @@ from scenarios.schema.scenario import Scenario
 from scenarios.schema.scenario_keys import DEFAULT_AIRCRAFT
 
 KINEMATIC_BANDWIDTH = 1.0
-"""Bandwidth of a kinematic vehicle's airspeed that its guidance reckons with; it follows at once [rad/s]."""
+"""Bandwidth of a kinematic vehicle's airspeed that its guidance reckons with; it follows at once
+[rad/s].
+"""
 
 _SAME_BANK = 1e-3
-"""By how much the guidance's bank may exceed that of the design before its reversal is measured anew [rad]."""
+"""By how much the guidance's bank may exceed that of the design before its reversal is measured
+anew [rad].
+"""
 
 _SAME_AIRSPEED = 0.05
-"""Difference of the airspeed flown from that of the design above which it is, too, over the latter [-]."""
+"""Difference of the airspeed flown from that of the design above which it is, too, over the latter
+[-].
+"""
 
 _KINEMATIC_AIRSPEEDS = 0.7, 1.3
 """Airspeeds between which a kinematic vehicle is flown, over V_r [-]."""
@@ -68,12 +76,17 @@ class VehicleSetup:
     reversal : how the heading rate follows a reversal of the turn
     response_error : how much nearer a full reversal may come than with that response [m]
     altitude_error : by which the altitude may differ from its command in a turn away [m]
-    airspeed_bandwidth, airspeed_min, airspeed_max : of the airspeed behind its command, and its range [rad/s, m/s]
+    airspeed_bandwidth, airspeed_min, airspeed_max : of the airspeed behind its command, and its
+        range [rad/s, m/s]
     airspeed_overshoot : of the airspeed over a step of its command [-]
-    failing_level, failing_climbing : what the failure of a part does in a turn, level, and also in a climb; none if not measured
-    altitude_reach : difference of the altitude from its command within which the autopilot removes it for certain [m]
-    turn_airspeeds, turn_rates : the slower turn at the autopilot's largest bank over airspeed; empty without a limit [m/s, rad/s]
-    crab_banks, crab_offsets : banks in steady turns, and course through the air minus heading at each [rad]
+    failing_level, failing_climbing : what the failure of a part does in a turn, level, and also in
+        a climb; none if not measured
+    altitude_reach : difference of the altitude from its command within which the autopilot removes
+        it for certain [m]
+    turn_airspeeds, turn_rates : the slower turn at the autopilot's largest bank over airspeed;
+        empty without a limit [m/s, rad/s]
+    crab_banks, crab_offsets : banks in steady turns, and course through the air minus heading at
+        each [rad]
     aircraft : in six degrees of freedom, or none for the kinematic vehicle
     """
 
@@ -95,10 +108,13 @@ class VehicleSetup:
     aircraft: Aircraft | None = None
 
     def turning_airspeed(self, heading_rate: float) -> float:
-        """Return the airspeed up to which a heading rate [rad/s] can be flown at the autopilot's largest bank [m/s]."""
+        """Return the airspeed up to which a heading rate [rad/s] can be flown at the autopilot's
+        largest bank [m/s].
+        """
         if not self.turn_airspeeds:
             return math.inf
-        # At one bank the time of a full turn is proportional to the airspeed, but for what the angle of attack changes.
+        # At one bank the time of a full turn is proportional to the airspeed, but for what the
+        # angle of attack changes.
         return float(
             np.interp(
                 1.0 / heading_rate, [1.0 / turn for turn in self.turn_rates], self.turn_airspeeds
@@ -107,11 +123,13 @@ class VehicleSetup:
 
 
 def spec_of(scenario: Scenario) -> AircraftSpec | None:
-    """Return a scenario's aircraft, or the one that kinematic flights of it are scaled to; none where there is neither.
+    """Return a scenario's aircraft, or the one that kinematic flights of it are scaled to; none
+    where there is neither.
 
     Raises
     ------
-    InputError : there is no such aircraft, or no autopilot can be designed for it, or JSBSim refuses the user's own
+    InputError : there is no such aircraft, or no autopilot can be designed for it, or JSBSim
+        refuses the user's own
     """
     if scenario.fidelity == "kinematic" and scenario.aircraft == DEFAULT_AIRCRAFT:
         return None
@@ -221,7 +239,9 @@ def aircraft_setup(
 
 
 def _slower_turns(schedule: Schedule) -> tuple[float, ...]:
-    """Return the heading rate of the slower of both turns at the autopilot's largest bank, at each airspeed [rad/s]."""
+    """Return the heading rate of the slower of both turns at the autopilot's largest bank, at each
+    airspeed [rad/s].
+    """
     tangent = math.tan(schedule.envelope.bank_max)
     return tuple(
         min(

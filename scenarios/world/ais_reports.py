@@ -1,4 +1,6 @@
-"""Reports of the vessel's motion, as they arrive on board: every few seconds, noisy, late, or not at all."""
+"""Reports of the vessel's motion, as they arrive on board: every few seconds, noisy, late, or not
+at all.
+"""
 
 import math
 
@@ -18,7 +20,8 @@ def received_reports(
     outage: tuple[float, float],
     generator: np.random.Generator,
 ) -> list[tuple[float, VesselReport]]:
-    """Return the reports that are received, with the time at which each is [s], in the order in which they are received.
+    """Return the reports that are received, with the time at which each is [s], in the order in
+    which they are received.
 
     The first one, at time 0, always is: a flight begins with a vessel that is known.
 
@@ -59,7 +62,9 @@ def _received_from_file(
     outage: tuple[float, float],
     generator: np.random.Generator,
 ) -> list[tuple[float, VesselReport]]:
-    """Return the file's own reports as they are received: late or missing where the scenario says so, but for those before."""
+    """Return the file's own reports as they are received: late or missing where the scenario says
+    so, but for those before.
+    """
     received = []
     for report in vessel.reports:
         late = float(generator.uniform(0.0, reports.latency_max_s))

@@ -79,7 +79,9 @@ class Exhaust:
         return self.dispersion.sample(time, north - moved_north, east - moved_east, up)
 
     def excess(self, dilution: Array) -> Array:
-        """Return the gases above clean air, shape (n, 4), in the order and the units of ``measurement.gases``."""
+        """Return the gases above clean air, shape (n, 4), in the order and the units of
+        ``measurement.gases``.
+        """
         return np.outer(dilution, self.emission.rates * _PARTS)
 
 
@@ -89,7 +91,8 @@ def fuel_of(scenario: Scenario) -> Fuel:
 
 
 def emission(scenario: Scenario, *, speed: float, load: float | None = None) -> Emission:
-    """Return what the vessel of a scenario emits at a speed [m/s], or at a load of its engine [-] where that is given.
+    """Return what the vessel of a scenario emits at a speed [m/s], or at a load of its engine [-]
+    where that is given.
 
     Raises
     ------
@@ -126,7 +129,8 @@ def exhaust_of(
     duration: float,
     generator: np.random.Generator,
 ) -> Exhaust | None:
-    """Return the exhaust of a vessel that has any, in some wind, over a duration [s]. It is that of her speed at the start.
+    """Return the exhaust of a vessel that has any, in some wind, over a duration [s]. It is that of
+    her speed at the start.
 
     Raises
     ------

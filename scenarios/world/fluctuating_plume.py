@@ -1,4 +1,6 @@
-"""A plume of smoke: the straight axis, about which it rises, disperses, meanders and bends with the vessel's own track."""
+"""A plume of smoke: the straight axis, about which it rises, disperses, meanders and bends with the
+vessel's own track.
+"""
 
 import math
 
@@ -13,7 +15,9 @@ from scenarios.world.plume import StraightPlume, plume_model
 from scenarios.world.vessel import VesselTruth
 
 _TRACK_INTERVAL = 0.5
-"""Time between the places of the vessel that the smoke comes from [s]: at 10 m/s a turn at 1 deg/s is a chord to 6 mm."""
+"""Time between the places of the vessel that the smoke comes from [s]: at 10 m/s a turn at 1 deg/s
+is a chord to 6 mm.
+"""
 
 
 @plume_model("fluctuating")

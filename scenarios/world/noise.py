@@ -1,10 +1,12 @@
-"""What is random within a flight: streams of random numbers, from one seed or from a blend of several.
+"""What is random within a flight: streams of random numbers, from one seed or from a blend of
+several.
 
-A blend is a weighted sum of the normal numbers of its parts. With squares of the weights that add up to 1 they are
-standard normal again, and uniform numbers are their distribution function. So a flight's noise can be changed by small
-steps, as Markov chains do that look for rare events (``scenarios.statistics.subset_simulation``): with another part of
-small weight reports, sensor errors and gusts are nearly those they were. What takes whole numbers, as JSBSim's
-turbulence does, follows from the seed alone.
+A blend is a weighted sum of the normal numbers of its parts. With squares of the weights that add
+up to 1 they are standard normal again, and uniform numbers are their distribution function. So a
+flight's noise can be changed by small steps, as Markov chains do that look for rare events
+(``scenarios.statistics.subset_simulation``): with another part of small weight reports, sensor
+errors and gusts are nearly those they were. What takes whole numbers, as JSBSim's turbulence does,
+follows from the seed alone.
 """
 
 from collections.abc import Sequence
@@ -19,7 +21,9 @@ Array = npt.NDArray[np.float64]
 _STREAMS = 3
 
 PAYLOAD, EXHAUST = 1, 2
-"""Numbers of streams beside those of ``Streams``: what uses them changes nothing of a flight that is without it."""
+"""Numbers of streams beside those of ``Streams``: what uses them changes nothing of a flight that
+is without it.
+"""
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,7 +41,9 @@ class Noise:
 
     @classmethod
     def at(cls, coordinates: Sequence[float]) -> "Noise":
-        """Return noise from numbers in a row: the seed, then seed and weight of each part of the blend."""
+        """Return noise from numbers in a row: the seed, then seed and weight of each part of the
+        blend.
+        """
         seed, *parts = coordinates
         return cls(
             int(seed),
@@ -66,8 +72,8 @@ class Streams:
 def streams(noise: Noise) -> Streams:
     """Return the streams of a flight, each from its first number.
 
-    From one seed, sensors go on where reports have ended. In a blend they have streams of their own: a report more
-    must not change all that comes after it.
+    From one seed, sensors go on where reports have ended. In a blend they have streams of their
+    own: a report more must not change all that comes after it.
     """
     if not noise.blend:
         world, others = (
@@ -96,7 +102,8 @@ def own_generator(noise: Noise, stream: int) -> np.random.Generator:
 
 
 class BlendedGenerator(np.random.Generator):
-    """Random numbers of a blend, as far as they are uniform or normal; all others are those of the seed.
+    """Random numbers of a blend, as far as they are uniform or normal; all others are those of the
+    seed.
 
     Parameters
     ----------

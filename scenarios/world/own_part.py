@@ -1,4 +1,6 @@
-"""Parts of a user's own: what they raise, and answers that are of no use, are told with the part, its method and the remedy."""
+"""Parts of a user's own: what they raise, and answers that are of no use, are told with the part,
+its method and the remedy.
+"""
 
 import math
 import sys
@@ -29,7 +31,8 @@ _TOLD = (
 """Errors that say themselves what is wrong, or do not come from the part."""
 
 _OTHERS = ("<", plain.__file__)
-"""Files of frames that are not of a part: text of dataclasses, and what passes calls on to a shape."""
+"""Files of frames that are not of a part: text of dataclasses, and what passes calls on to a shape.
+"""
 
 _SHOWN = 80
 """Letters of an answer that a message shows at most."""
@@ -102,7 +105,9 @@ def refuse_answer(part: str, method: str, answer: object, must: str) -> None:
 
 
 def is_number(answer: Any, *, finite: bool = True) -> bool:
-    """Return whether an answer is a number, of any kind that Python takes for one, and finite unless it may be not."""
+    """Return whether an answer is a number, of any kind that Python takes for one, and finite
+    unless it may be not.
+    """
     try:
         return math.isfinite(answer) or not finite
     except (TypeError, ValueError, OverflowError):

@@ -1,4 +1,6 @@
-"""Where the plume's axis really is: behind the vessel's motion through the air, or at a given angle from its bow."""
+"""Where the plume's axis really is: behind the vessel's motion through the air, or at a given angle
+from its bow.
+"""
 
 import math
 from typing import Protocol
@@ -38,7 +40,8 @@ class StraightPlume:
     vessel : its motion
     wind : velocity of the air mass; that at the plume's origin turns it
     duration : to be covered [s]
-    by_wind : whether it trails behind the vessel's motion through the air; otherwise at ``plume.heading_deg`` from the bow
+    by_wind : whether it trails behind the vessel's motion through the air; otherwise at
+        ``plume.heading_deg`` from the bow
     """
 
     __slots__ = ("_axis", "_steady")
@@ -84,6 +87,8 @@ class StraightPlume:
 
 
 def _last_moving(velocity: Array) -> npt.NDArray[np.intp]:
-    """Return which row of shape (n, 2) was the last that is not at rest, for each: in still air a plume stays in its place."""
+    """Return which row of shape (n, 2) was the last that is not at rest, for each: in still air a
+    plume stays in its place.
+    """
     moving = np.hypot(velocity[:, 0], velocity[:, 1]) > _AT_REST
     return np.maximum.accumulate(np.where(moving, np.arange(len(velocity)), 0))

@@ -15,7 +15,9 @@ TRACK_STEP = 0.05
 """Time step of a tabled track [s]; between its points the track is a parabola to 1e-5 m."""
 
 _ROUNDING = 1e-6
-"""Relative error of what is taken from a table of velocities [-]: 4e-13 of vessels at their limit; in 5 minutes, millimetres."""
+"""Relative error of what is taken from a table of velocities [-]: 4e-13 of vessels at their limit;
+in 5 minutes, millimetres.
+"""
 
 _COLUMNS = 5
 """Of the table: north, east, their rates, the course."""
@@ -30,7 +32,9 @@ class VesselTruth(Protocol):
         """Return north, east [m] and their rates [m/s] at a time [s]."""
 
     def course(self, time: float) -> float:
-        """Return the course, clockwise from north, without jumps [rad]; of a vessel at rest, where its bow points."""
+        """Return the course, clockwise from north, without jumps [rad]; of a vessel at rest, where
+        its bow points.
+        """
 
     @property
     def manoeuvres_end(self) -> float:
@@ -66,7 +70,8 @@ class SteadyVessel:
 
 
 class TabledVessel:
-    """A vessel whose velocity and course are tabled at ``track_times``; its place is their integral from the origin.
+    """A vessel whose velocity and course are tabled at ``track_times``; its place is their integral
+    from the origin.
 
     Parameters
     ----------
@@ -82,7 +87,9 @@ class TabledVessel:
 
     @property
     def samples(self) -> tuple[Array, Array]:
-        """Return velocity over the ground [m/s], shape (n, 2), and course [rad], shape (n,), at ``track_times``."""
+        """Return velocity over the ground [m/s], shape (n, 2), and course [rad], shape (n,), at
+        ``track_times``.
+        """
         return self._table[:, 2:4], self._table[:, 4]
 
     @property
@@ -122,7 +129,8 @@ class TabledVessel:
 
 @vessel_track("manoeuvres")
 class ManoeuvringVessel(TabledVessel):
-    """A vessel whose course and speed change at the steady rates of its manoeuvres, which do not overlap (``check_manoeuvres``).
+    """A vessel whose course and speed change at the steady rates of its manoeuvres, which do not
+    overlap (``check_manoeuvres``).
 
     Parameters
     ----------
@@ -179,7 +187,9 @@ def check_manoeuvres(vessel: VesselConfig, speed: float) -> None:
 
 
 def largest_acceleration(vessel: VesselTruth, duration: float) -> float:
-    """Return the largest acceleration of a vessel, along its course and across it together, less rounding [m/s^2]."""
+    """Return the largest acceleration of a vessel, along its course and across it together, less
+    rounding [m/s^2].
+    """
     velocity, _ = sampled(vessel, duration)
     return (1.0 - _ROUNDING) * float(np.hypot(*np.diff(velocity, axis=0).T).max()) / TRACK_STEP
 
@@ -191,9 +201,11 @@ def largest_speed(vessel: VesselTruth, duration: float) -> float:
 
 
 def largest_inconsistency(vessel: VesselTruth, duration: float) -> float:
-    """Return by how much, between any two times, the way of a track differs from the integral of its velocity at most [m].
+    """Return by how much, between any two times, the way of a track differs from the integral of
+    its velocity at most [m].
 
-    It is 0 where both come from one table, and otherwise exact to the trapezoidal rule: less than a millimetre in an hour.
+    It is 0 where both come from one table, and otherwise exact to the trapezoidal rule: less than a
+    millimetre in an hour.
     """
     if type(vessel) is SteadyVessel or isinstance(vessel, TabledVessel):
         return 0.0
@@ -210,14 +222,18 @@ def track_times(duration: float) -> Array:
 
 
 def _integral(velocity: Array) -> Array:
-    """Return the way since the first of the velocities at ``track_times`` [m], both of shape (n, 2)."""
+    """Return the way since the first of the velocities at ``track_times`` [m], both of shape (n,
+    2).
+    """
     way = np.zeros_like(velocity)
     way[1:] = np.cumsum(0.5 * TRACK_STEP * (velocity[1:] + velocity[:-1]), axis=0)
     return way
 
 
 def sampled(vessel: VesselTruth, duration: float) -> tuple[Array, Array]:
-    """Return velocity over the ground [m/s], shape (n, 2), and course [rad], shape (n,), at ``track_times``."""
+    """Return velocity over the ground [m/s], shape (n, 2), and course [rad], shape (n,), at
+    ``track_times``.
+    """
     if isinstance(vessel, TabledVessel):
         return vessel.samples
     times = track_times(duration).tolist()

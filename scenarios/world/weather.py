@@ -49,7 +49,8 @@ def sampled_weather(scenario: Scenario, wind: WindField, generator: np.random.Ge
     rise = turbulence.gust_length_s
     gusts: list[Gust] = []
     for i in range(turbulence.gusts):
-        # One gust in each equal part of the flight, and after the one before it: JSBSim takes one at a time.
+        # One gust in each equal part of the flight, and after the one before it: JSBSim takes one
+        # at a time.
         part = scenario.flight.duration_max_s / turbulence.gusts
         start = i * part + float(generator.uniform(0.0, max(0.0, part - 2.0 * rise)))
         start = max(start, gusts[-1].end + _BETWEEN) if gusts else start

@@ -1,4 +1,6 @@
-"""The wind of one place from netCDF, such as ERA5 of the Copernicus Climate Data Store, read by xarray."""
+"""The wind of one place from netCDF, such as ERA5 of the Copernicus Climate Data Store, read by
+xarray.
+"""
 
 import math
 from pathlib import Path
@@ -35,20 +37,25 @@ _METRES_PER_SECOND = {
 """Units of a wind that need no conversion, as netCDF files write them."""
 
 _CLOSED = 1e-3
-"""What a grid that goes round the earth may lack to 360 deg after its last step [deg]: its longitudes may be single precision."""
+"""What a grid that goes round the earth may lack to 360 deg after its last step [deg]: its
+longitudes may be single precision.
+"""
 
 
 def read_netcdf(
     path: Path, latitude_deg: float, longitude_deg: float
 ) -> tuple[tuple[float, ...], tuple[float, ...], Array]:
-    """Return times since 1970 [s], heights [m], and north and east velocity at each, shape (n, m, 2) [m/s].
+    """Return times since 1970 [s], heights [m], and north and east velocity at each, shape (n, m,
+    2) [m/s].
 
-    The wind is that of ``u10``, ``v10`` and ``u100``, ``v100``, or of ``u`` and ``v`` over a coordinate ``height`` in metres;
-    between points of the grid of ``latitude`` and ``longitude`` it is interpolated.
+    The wind is that of ``u10``, ``v10`` and ``u100``, ``v100``, or of ``u`` and ``v`` over a
+    coordinate ``height`` in metres; between points of the grid of ``latitude`` and ``longitude`` it
+    is interpolated.
 
     Raises
     ------
-    InputError : xarray is missing, the file cannot be read or has no such wind, or the place is beyond its grid
+    InputError : xarray is missing, the file cannot be read or has no such wind, or the place is
+        beyond its grid
     """
     try:
         import xarray
@@ -111,7 +118,9 @@ def _wind_at(
 
 
 def _check_wind(path: Path, data: Any, time: str, names: list[str]) -> None:
-    """Refuse a wind in another unit than m/s, without a time, or with dimensions that are neither time nor place."""
+    """Refuse a wind in another unit than m/s, without a time, or with dimensions that are neither
+    time nor place.
+    """
     for name in names:
         unit = str(data[name].attrs.get("units", "m/s")).strip()
         if unit not in _METRES_PER_SECOND:
@@ -155,7 +164,9 @@ def _at_place(path: Path, data: Any, latitude_deg: float, longitude_deg: float) 
 
 
 def _round_the_earth(data: Any, longitude_deg: float) -> tuple[Any, float]:
-    """Return the data, and a longitude as its grid counts it, such as from 0 to 360; a grid that goes round the earth is closed."""
+    """Return the data, and a longitude as its grid counts it, such as from 0 to 360; a grid that
+    goes round the earth is closed.
+    """
     east = np.sort(data["longitude"].values.astype(np.float64))
     if east[0] <= longitude_deg <= east[-1]:
         return data, longitude_deg

@@ -140,7 +140,9 @@ def _read_table(path: Path, _stamp: tuple[int, int]) -> TabledWind:
 def _rows(
     path: Path, cells: Iterator[list[str]]
 ) -> Iterator[tuple[int, float, float, float, float]]:
-    """Yield line, time [s], height [m], and where the wind blows to, north and east [m/s]; not a number for what has no column."""
+    """Yield line, time [s], height [m], and where the wind blows to, north and east [m/s]; not a
+    number for what has no column.
+    """
     lines = enumerate(cells, start=1)
     first, heads = next(
         (
@@ -195,7 +197,9 @@ def _rows(
 
 
 def _incomplete(heads: list[str], row: list[str]) -> str:
-    """Return what a row lacks, and the remedy; nothing of one with a number in each column of numbers."""
+    """Return what a row lacks, and the remedy; nothing of one with a number in each column of
+    numbers.
+    """
     shown = repr(",".join(row)[:80])
     numbers = [heads.index(column) for column in COLUMNS[1:] if column in heads]
     if words := decimal_commas(row, heads, numbers):

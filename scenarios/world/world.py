@@ -32,7 +32,9 @@ _ORIGIN_MAX = 0.01
 """By how much a track of a user's own may begin beside the origin, for rounding [m]."""
 
 _COURSE_MAX = math.radians(1.0)
-"""By how much its course may differ from the direction of its velocity [rad]: one to first order in a swing of 20 degrees does."""
+"""By how much its course may differ from the direction of its velocity [rad]: one to first order in
+a swing of 20 degrees does.
+"""
 
 _AT_REST = 0.1
 """Speed below which a vessel's course is that of her bow [m/s]."""
@@ -67,7 +69,8 @@ def vessel_of(scenario: Scenario) -> VesselTruth:
 
     Raises
     ------
-    PluginError : it has no such track, or it cannot be made, or its motion and its course are of no use
+    PluginError : it has no such track, or it cannot be made, or its motion and its course are of no
+        use
     InputError : its file cannot be read, or does not cover the longest flight
     """
     config, duration = scenario.vessel, scenario.flight.duration_max_s
@@ -99,7 +102,9 @@ def vessel_of(scenario: Scenario) -> VesselTruth:
 
 
 def _check_track(part: str, track: VesselTruth, duration: float) -> None:
-    """Raise a PluginError for a track of a user's own that is of no use; ``check_declared`` compares place and velocity."""
+    """Raise a PluginError for a track of a user's own that is of no use; ``check_declared``
+    compares place and velocity.
+    """
     if not is_number(getattr(track, "manoeuvres_end", None), finite=False):
         raise PluginError(
             f"{part} has no manoeuvres_end, the time at which its last manoeuvre ends [s]; give it one, math.nan without any"
@@ -138,7 +143,9 @@ def _check_track(part: str, track: VesselTruth, duration: float) -> None:
 
 
 def place_of(scenario: Scenario, vessel: VesselTruth) -> Place:
-    """Return where and when a flight begins, as far as that is known; without a time of its own when its wind does."""
+    """Return where and when a flight begins, as far as that is known; without a time of its own
+    when its wind does.
+    """
     if isinstance(vessel, AisVessel):
         return vessel.place
     place, table = given_place(scenario.place, scenario.source_height), scenario.wind.table
@@ -199,7 +206,9 @@ class ApparentWind:
 
 
 def apparent_wind(scenario: Scenario, vessel: VesselTruth) -> ApparentWind:
-    """Return how fast a vessel moves through the air at the height of her funnel, over the longest flight."""
+    """Return how fast a vessel moves through the air at the height of her funnel, over the longest
+    flight.
+    """
     duration = scenario.flight.duration_max_s + TRACK_MARGIN
     (past,) = winds_past(vessel, mean_wind(scenario, vessel), [scenario.source_height], duration)
     return past
@@ -208,7 +217,9 @@ def apparent_wind(scenario: Scenario, vessel: VesselTruth) -> ApparentWind:
 def winds_past(
     vessel: VesselTruth, wind: WindField, heights: Sequence[float], duration: float
 ) -> list[ApparentWind]:
-    """Return how fast a vessel moves through the air at each of some heights [m], over a duration [s]."""
+    """Return how fast a vessel moves through the air at each of some heights [m], over a duration
+    [s].
+    """
     if isinstance(vessel, SteadyVessel) and wind.constant:
         _, _, v_north, v_east = vessel.motion(0.0)
         wind_north, wind_east = wind.now(0.0, heights[0])

@@ -1,11 +1,14 @@
-"""Beard and McLain's equations of motion of the Aerosonde, written down from what they publish: what JSBSim is compared with.
+"""Beard and McLain's equations of motion of the Aerosonde, written down from what they publish:
+what JSBSim is compared with.
 
-Nothing here is imported from the packages under test. Source: Beard and McLain, "Small Unmanned Aircraft: Theory and Practice"
-(equations by number), and the parameter file they publish with it (byu-magicc/mavsim_public,
-mavsim_python/parameters/aerosonde_parameters.py at c08df563). Density and gravity are arguments, for theirs are not JSBSim's.
+Nothing here is imported from the packages under test. Source: Beard and McLain, "Small Unmanned
+Aircraft: Theory and Practice" (equations by number), and the parameter file they publish with it
+(byu-magicc/mavsim_public, mavsim_python/parameters/aerosonde_parameters.py at c08df563). Density
+and gravity are arguments, for theirs are not JSBSim's.
 
-Theirs are twelve states, surfaces that move at once and a propeller that turns as fast as it will at once. ``Lags`` adds what the
-flown model has besides: first-order servos and a rotor with inertia.
+Theirs are twelve states, surfaces that move at once and a propeller that turns as fast as it will
+at once. ``Lags`` adds what the flown model has besides: first-order servos and a rotor with
+inertia.
 """
 
 import math
@@ -67,7 +70,9 @@ class World:
 
 @dataclass(frozen=True)
 class Lags:
-    """What the flown model adds to the published one: servo pole [rad/s] and inertia of rotor and propeller [kg m^2]."""
+    """What the flown model adds to the published one: servo pole [rad/s] and inertia of rotor and
+    propeller [kg m^2].
+    """
 
     servo: float = 40.0
     rotor_inertia: float = 2.1e-3
@@ -90,7 +95,9 @@ def drag_coefficient(alpha: float, parasitic: float = CD_P) -> float:
 
 
 def aero(velocity, rates, surfaces, density, parasitic=CD_P):
-    """Body force [N] and moment [N m] of the air, equations 4.18 and 4.20 without propeller and weight."""
+    """Body force [N] and moment [N m] of the air, equations 4.18 and 4.20 without propeller and
+    weight.
+    """
     u, v, w = velocity
     airspeed = math.sqrt(u * u + v * v + w * w)
     alpha, beta = math.atan2(w, u), math.asin(v / airspeed)
@@ -135,7 +142,9 @@ def motor_torque(throttle: float, propeller_speed: float) -> float:
 
 
 def settled_propeller_speed(throttle: float, speed: float, density: float) -> float:
-    """Speed [rad/s] at which motor and air balance: the positive root of the supplement's quadratic."""
+    """Speed [rad/s] at which motor and air balance: the positive root of the supplement's
+    quadratic.
+    """
     a = density * PROPELLER_DIAMETER**5 * CQ_0 / (2.0 * math.pi) ** 2
     b = (
         density * PROPELLER_DIAMETER**4 * CQ_1 * speed / (2.0 * math.pi)
@@ -165,7 +174,9 @@ def angular_acceleration(rates, moment):
 
 
 def state_rates(state, surfaces, thrust_force, shaft_moment, world, parasitic=CD_P):
-    """Rates of ``STATES``, equations 3.14 to 3.17, from deflections [rad], thrust [N] and the propeller's moment [N m]."""
+    """Rates of ``STATES``, equations 3.14 to 3.17, from deflections [rad], thrust [N] and the
+    propeller's moment [N m].
+    """
     u, v, w, roll, pitch, _, p, q, r, altitude = (float(x) for x in state)
     sr, cr, sp, cp = math.sin(roll), math.cos(roll), math.sin(pitch), math.cos(pitch)
     force, moment = aero((u, v, w), (p, q, r), surfaces, world.density(altitude), parasitic)
@@ -187,8 +198,8 @@ def state_rates(state, surfaces, thrust_force, shaft_moment, world, parasitic=CD
 def trim_level(airspeed: float, altitude: float, world: World, parasitic: float = CD_P):
     """Straight, level equilibrium without sideslip.
 
-    Returns the state in the order of ``STATES``, deflections in the order of ``SURFACES`` [rad], the throttle [-] and the propeller
-    speed [rad/s].
+    Returns the state in the order of ``STATES``, deflections in the order of ``SURFACES`` [rad],
+    the throttle [-] and the propeller speed [rad/s].
     """
 
     def unpack(unknowns):
@@ -224,11 +235,13 @@ def trim_level(airspeed: float, altitude: float, world: World, parasitic: float 
 
 
 def flown_rates(y, commands, world: World, lags: Lags):
-    """Rates of ``FLOWN_STATES``: the published equations with ``lags``, under three commanded deflections [rad] and a throttle.
+    """Rates of ``FLOWN_STATES``: the published equations with ``lags``, under three commanded
+    deflections [rad] and a throttle.
 
-    A rotor with inertia turns the body with the motor's torque rather than the air's, and resists being turned: -omega x H. The
-    propeller turns clockwise seen from behind. With a rotor inertia of 0 the propeller is the published one: it turns as fast as it
-    will at once, whatever the last of ``FLOWN_STATES`` says, and does neither.
+    A rotor with inertia turns the body with the motor's torque rather than the air's, and resists
+    being turned: -omega x H. The propeller turns clockwise seen from behind. With a rotor inertia
+    of 0 the propeller is the published one: it turns as fast as it will at once, whatever the last
+    of ``FLOWN_STATES`` says, and does neither.
     """
     *deflections, throttle = commands
     body, surfaces, propeller = y[:10], y[10:13], float(y[13])
@@ -258,7 +271,8 @@ def fly(y, commands, breaks, world: World, lags: Lags, at):
 
     Parameters
     ----------
-    commands : function of time [s] to three deflections [rad] and throttle [-], constant between the times ``breaks`` [s]
+    commands : function of time [s] to three deflections [rad] and throttle [-], constant between
+        the times ``breaks`` [s]
     at : times of the answers [s], from 0
 
     Returns

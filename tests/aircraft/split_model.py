@@ -15,7 +15,9 @@ SECTIONS = {
 
 
 def split_model(name, folder):
-    """Write one of JSBSim's models into a folder of its own name in ``folder``, with sections in files; return that folder."""
+    """Write one of JSBSim's models into a folder of its own name in ``folder``, with sections in
+    files; return that folder.
+    """
     own = shutil.copytree(stock_root() / "aircraft" / name, folder / name)
     document = ET.parse(own / f"{name}.xml")
     config = document.getroot()

@@ -1,9 +1,11 @@
-"""The Skywalker X8 written down once more, from the published numbers alone: what JSBSim is compared with.
+"""The Skywalker X8 written down once more, from the published numbers alone: what JSBSim is
+compared with.
 
-Nothing here is imported from the packages under test. Aerodynamics: Gryte, Hann, Alam, Rohac, Johansen, Fossen, "Aerodynamic
-modeling of the Skywalker X8 Fixed-Wing Unmanned Aerial Vehicle", ICUAS 2018, with the parameter file its authors published.
-Inertia: the set that later work on the airframe uses. Propeller polynomials: Beard and McLain, "Small Unmanned Aircraft",
-supplement. Motor: the three-constant equations with the constants that the model file declares.
+Nothing here is imported from the packages under test. Aerodynamics: Gryte, Hann, Alam, Rohac,
+Johansen, Fossen, "Aerodynamic modeling of the Skywalker X8 Fixed-Wing Unmanned Aerial Vehicle",
+ICUAS 2018, with the parameter file its authors published. Inertia: the set that later work on the
+airframe uses. Propeller polynomials: Beard and McLain, "Small Unmanned Aircraft", supplement.
+Motor: the three-constant equations with the constants that the model file declares.
 """
 
 import math
@@ -48,7 +50,9 @@ MOTOR_NO_LOAD = 1.5  # A
 
 @dataclass(frozen=True)
 class Air:
-    """Motion through the air: airspeed [m/s], angles [rad], rates [rad/s], elevator and aileron deflection [rad]."""
+    """Motion through the air: airspeed [m/s], angles [rad], rates [rad/s], elevator and aileron
+    deflection [rad].
+    """
 
     airspeed: float
     alpha: float = 0.0
@@ -71,7 +75,9 @@ def drag_coefficient(air: Air) -> float:
 
 
 def aero_force(air: Air, density: float) -> np.ndarray:
-    """Body force [N], forward, right, down: lift and drag along the stability axes, side force along body y."""
+    """Body force [N], forward, right, down: lift and drag along the stability axes, side force
+    along body y.
+    """
     p_hat, r_hat = (rate * SPAN / (2.0 * air.airspeed) for rate in (air.p, air.r))
     lift, drag = lift_coefficient(air), drag_coefficient(air)
     side = CY_B * air.beta + CY_P * p_hat + CY_R * r_hat + CY_DA * air.aileron
@@ -137,7 +143,9 @@ def motor_torque(throttle: float, propeller_speed: float) -> float:
 
 
 def standard_density(altitude: float) -> float:
-    """Density [kg/m^3] of the U.S. Standard Atmosphere 1976 below 11 km, at a geometric altitude [m]."""
+    """Density [kg/m^3] of the U.S. Standard Atmosphere 1976 below 11 km, at a geometric altitude
+    [m].
+    """
     geopotential = 6356766.0 * altitude / (6356766.0 + altitude)
     temperature = 288.15 - 0.0065 * geopotential
     gas_constant = 8.31432 / 0.0289644
@@ -146,7 +154,9 @@ def standard_density(altitude: float) -> float:
 
 
 def equatorial_gravity(altitude: float) -> float:
-    """Normal gravity at the equator [m/s^2]: WGS 84's 9.7803253 less the free-air gradient; JSBSim flies there by default."""
+    """Normal gravity at the equator [m/s^2]: WGS 84's 9.7803253 less the free-air gradient; JSBSim
+    flies there by default.
+    """
     return 9.7803253 - 3.0877e-6 * altitude
 
 
@@ -161,9 +171,11 @@ RATES = (*STATES[:9], "propeller_speed", "heading_rate", "climb_rate")
 
 
 def state_rates(state: np.ndarray, throttle: float) -> np.ndarray:
-    """Newton and Euler over a flat earth: rates named in ``RATES`` from a state in the order of ``STATES``.
+    """Newton and Euler over a flat earth: rates named in ``RATES`` from a state in the order of
+    ``STATES``.
 
-    The propeller turns clockwise seen from behind, so the airframe feels minus the motor's torque in roll and minus omega x H.
+    The propeller turns clockwise seen from behind, so the airframe feels minus the motor's torque
+    in roll and minus omega x H.
     """
     airspeed, alpha, beta, p, q, r, roll, pitch, altitude, elevator, aileron, propeller = (
         float(x) for x in state

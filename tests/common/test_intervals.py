@@ -18,7 +18,8 @@ from common.intervals import (
 def test_no_event_in_ten_thousand_bounds_the_probability_by_the_root_of_what_confidence_leaves():
     # Without any event (1 - p)^n = 0.05 at the bound.
     assert upper_bound(0, 10_000, 0.95) == pytest.approx(1.0 - 0.05 ** (1.0 / 10_000), rel=1e-12)
-    # The rule of three, 3/n, is that of J. A. Hanley and A. Lippman-Hand, JAMA 249 (1983); -ln(0.05) is 2.9957.
+    # The rule of three, 3/n, is that of J. A. Hanley and A. Lippman-Hand, JAMA 249 (1983);
+    # -ln(0.05) is 2.9957.
     assert upper_bound(0, 10_000, 0.95) == pytest.approx(2.9957e-4, rel=2e-4)
 
 
@@ -31,7 +32,8 @@ def test_the_exact_interval_of_ten_in_a_hundred_is_the_one_that_r_gives():
 @pytest.mark.parametrize(("events", "trials"), [(1, 30), (7, 30), (29, 30), (3, 5000)])
 def test_at_each_end_what_was_seen_or_worse_has_half_of_what_confidence_leaves(events, trials):
     interval = clopper_pearson(events, trials, 0.9)
-    # The definition of Clopper and Pearson; a beta quantile is good to a few units of the eleventh digit.
+    # The definition of Clopper and Pearson; a beta quantile is good to a few units of the eleventh
+    # digit.
     assert binom.cdf(events, trials, interval.high) == pytest.approx(0.05, rel=1e-9)
     assert binom.sf(events - 1, trials, interval.low) == pytest.approx(0.05, rel=1e-9)
 
@@ -54,15 +56,16 @@ def test_trials_that_share_their_sample_count_as_one():
 
 
 def test_the_median_of_ten_lies_between_the_second_and_the_ninth():
-    # David and Nagaraja, section 7.1: P(2 <= B <= 8) of B(10, 1/2) is 1 - 22/1024, 0.9785; P(3 <= B <= 7) is 0.8906.
+    # David and Nagaraja, section 7.1: P(2 <= B <= 8) of B(10, 1/2) is 1 - 22/1024, 0.9785; P(3 <= B
+    # <= 7) is 0.8906.
     values = np.random.default_rng(1).permutation(np.arange(1.0, 11.0))
     assert quantile_interval(values, 0.5, 0.95) == Interval(2.0, 9.0)
     assert quantile_interval(values, 0.5, 0.89) == Interval(3.0, 8.0)
 
 
 def test_the_largest_of_59_bounds_the_95th_percentile_and_the_largest_of_58_does_not():
-    # S. S. Wilks, Annals of Mathematical Statistics 12 (1941): 59 values for 95 % of the population at 95 %. Two-sided 90 % has
-    # that confidence on each side.
+    # S. S. Wilks, Annals of Mathematical Statistics 12 (1941): 59 values for 95 % of the population
+    # at 95 %. Two-sided 90 % has that confidence on each side.
     assert quantile_interval(np.arange(59.0), 0.95, 0.9).high == 58.0
     assert math.isnan(quantile_interval(np.arange(58.0), 0.95, 0.9).high)
     assert math.isnan(quantile_interval(np.arange(58.0), 0.95, 0.9).width)
@@ -82,8 +85,8 @@ def test_quantiles_of_a_skewed_distribution_are_held_as_often_as_stated():
     for values in generator.exponential(size=(samples, 200)):
         interval = quantile_interval(values, 0.05, 0.9)
         held += interval.low <= true <= interval.high
-    # Order statistics come in steps, so that the interval holds for more than 0.9: P(5 <= B <= 15) of B(200, 0.05), 0.93. Three
-    # standard deviations of a share of 2000.
+    # Order statistics come in steps, so that the interval holds for more than 0.9: P(5 <= B <= 15)
+    # of B(200, 0.05), 0.93. Three standard deviations of a share of 2000.
     assert held / samples == pytest.approx(
         binom.cdf(15, 200, 0.05) - binom.cdf(4, 200, 0.05), abs=3 * math.sqrt(0.07 / samples)
     )

@@ -30,7 +30,8 @@ def test_the_list_of_names_is_not_empty():
     "room", ["aircraft", "gnc", "innerloop", "scenarios", "reports", "benchmarks"]
 )
 def test_no_other_file_spells_a_name_out_in_code(room):
-    # Docstrings, and help texts, may: they are read by people. So a name that is a whole string, or ends one, is looked for.
+    # Docstrings, and help texts, may: they are read by people. So a name that is a whole string, or
+    # ends one, is looked for.
     spelt = re.compile(rf"""["'/]({"|".join(map(re.escape, NAMES))})["']""")
     found = [
         f"{path.relative_to(PROJECT)}: {line.strip()}"

@@ -58,7 +58,9 @@ ROOMS = ("aircraft", "common", "gnc", "innerloop", "measurement", "reports", "sc
 
 
 def test_every_docstring_of_the_project_names_its_parameters_so():
-    """A line of these sections is an entry, ``name : description``, or goes on with one: else it would be lost among the text."""
+    """A line of these sections is an entry, ``name : description``, or goes on with one: else it
+    would be lost among the text.
+    """
     root = Path(__file__).parents[2]
     strange = []
     for path in sorted(path for room in ROOMS for path in (root / room).rglob("*.py")):

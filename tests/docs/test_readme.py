@@ -76,7 +76,9 @@ def test_every_link_and_picture_exists(page):
 
 @pytest.mark.parametrize("arguments", _commands("run"), ids=" ".join)
 def test_every_scenario_and_key_of_the_readme_is_taken(arguments):
-    """Reading a study refuses scenarios, keys and values that there are not, and keys that act nowhere."""
+    """Reading a study refuses scenarios, keys and values that there are not, and keys that act
+    nowhere.
+    """
     overrides = [word for flag, word in pairwise(arguments) if flag == "--set"]
     assert load_study(arguments[0], overrides).title
 
@@ -103,7 +105,9 @@ def test_the_pages_write_commands_in_one_form():
 
 @pytest.mark.parametrize("word", sorted(commands()))
 def test_every_command_takes_the_options_that_are_given(word, monkeypatch, capsys):
-    """Of the commands that the pages show; what is asked for is their help, so that nothing is flown."""
+    """Of the commands that the pages show; what is asked for is their help, so that nothing is
+    flown.
+    """
     monkeypatch.setattr(sys, "argv", ["plume-flight", word, "--help"])
     with pytest.raises(SystemExit):
         run_command(commands(), "plume-flight")

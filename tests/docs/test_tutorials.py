@@ -28,7 +28,8 @@ def test_every_tutorial_is_tested():
 
 @pytest.mark.parametrize("name", PRINTED)
 def test_the_cells_of_a_tutorial_run(name, designs, tmp_path, monkeypatch, capsys):
-    # At whatever altitude, with the autopilot that other tests have: to design another takes seconds.
+    # At whatever altitude, with the autopilot that other tests have: to design another takes
+    # seconds.
     monkeypatch.setattr(
         "scenarios.studies.flight_study.design_of", lambda spec, _: (designs(spec.name), "")
     )

@@ -1,4 +1,6 @@
-"""What was compiled is run until a source is edited, or sources are asked for; a part of it is not run alone."""
+"""What was compiled is run until a source is edited, or sources are asked for; a part of it is not
+run alone.
+"""
 
 import json
 import os

@@ -180,7 +180,8 @@ def test_a_guidance_that_follows_a_plume_can_do_without(part):
 
 
 def test_no_command_exceeds_its_bound_in_gusts_from_behind():
-    # A gust between two looks at the wind takes a fifth of the airspeed: the same acceleration turns the airframe the faster.
+    # A gust between two looks at the wind takes a fifth of the airspeed: the same acceleration
+    # turns the airframe the faster.
     guidance = reported(following())
     for step in range(50):
         airspeed = SPEED if step % PLAN_INTERVAL == 0 else 0.8 * SPEED
@@ -229,7 +230,8 @@ def test_the_altitude_commanded_rises_with_the_centres_distance_where_the_plume_
         for made in (guidance, level):
             made.step(step * TIME_STEP, readings(-900.0, 0.0))
         altitudes.append(guidance.altitude_command)
-    # From the funnel's 60 m towards the axis at the centre of oscillation, 36 m higher at least, no steeper than 5 %.
+    # From the funnel's 60 m towards the axis at the centre of oscillation, 36 m higher at least, no
+    # steeper than 5 %.
     assert guidance.mission.centre.distance > 203.0
     planned = np.array([60.0, *altitudes[::PLAN_INTERVAL]])
     assert np.diff(planned) == pytest.approx(0.05 * SPEED * PLAN_INTERVAL * TIME_STEP, rel=1e-12)
@@ -245,7 +247,8 @@ def test_a_vehicle_with_a_fault_leaves_and_sinks():
 
 
 def test_a_turn_away_is_flown_in_full_in_gusts_from_ahead():
-    # The vehicle is slower over the mean air: the guidance turns it the slower through the air, but not away from the vessel.
+    # The vehicle is slower over the mean air: the guidance turns it the slower through the air, but
+    # not away from the vessel.
     guidance = reported(following())
     turns = []
     for step in range(200):

@@ -29,7 +29,8 @@ FUNCTIONS = sorted(
 TEST = re.compile(r"`([^`]+::[^`]+)`")
 TESTS = sorted(set(TEST.findall(MAP)))
 
-# "equation (8)", "equations (2), (3) and (4)", "equation (1), and (13)"; also "law (24)", a bare "(11)", and "(31a)".
+# "equation (8)", "equations (2), (3) and (4)", "equation (1), and (13)"; also "law (24)", a bare
+# "(11)", and "(31a)".
 CITATION = re.compile(r"\((\d{1,2})[ab]?\)")
 
 
@@ -58,7 +59,9 @@ def docstrings():
 
 
 def names_used(file, function):
-    """Return the names that a test uses, and those that the helpers use which it uses, in its file and in gnc_cases.py."""
+    """Return the names that a test uses, and those that the helpers use which it uses, in its file
+    and in gnc_cases.py.
+    """
     trees = [tree_of("tests/gnc/cases/gnc_cases.py"), tree_of(file)]
     bodies = {
         node.name: node
@@ -126,7 +129,8 @@ def test_every_equation_cited_in_gnc_is_in_the_map():
         (file, int(number)) for file, text in docstrings() for number in CITATION.findall(text)
     }
     assert {(file, number) for file, number in cited if number not in ROWS} == set()
-    # The search does find citations: of all equations that have a function, which are all but the proof steps.
+    # The search does find citations: of all equations that have a function, which are all but the
+    # proof steps.
     assert {number for _, number in cited} >= set(ROWS) - {28, 29}
 
 

@@ -23,7 +23,8 @@ from gnc.laws.lyapunov import LyapunovLaw
 from gnc.reference.placement import PlumeAxis, distance_by_paper
 from gnc.safety.guard_parameters import GuardParameters
 
-# 0.75 of the tracking allowance of 1 m about its 200 m (scenarios/planning/tracking_flight.py). These vehicles answer at once.
+# 0.75 of the tracking allowance of 1 m about its 200 m (scenarios/planning/tracking_flight.py).
+# These vehicles answer at once.
 GUARD = GuardParameters(
     radius=200.75,
     heading_rate_max=HEADING_RATE_MAX,
@@ -91,7 +92,9 @@ def guarded_by(monkeypatch):
 
 
 def about_a_vessel(nu, *, guard):
-    """Return the guidance of a flight behind a vessel that goes north from the origin, as the paper places it about 200 m."""
+    """Return the guidance of a flight behind a vessel that goes north from the origin, as the paper
+    places it about 200 m.
+    """
     oscillation = paper_oscillation(nu, reserve=0.015)
     centre = (-distance_by_paper(oscillation, PlumeAxis(heading=math.pi), 201.0), 0.0)
     return make_guidance(
@@ -130,7 +133,8 @@ def test_no_command_exceeds_its_bound_whatever_the_state(law, lag, guard, motion
 @pytest.mark.parametrize(
     ("along", "right", "expected"),
     [
-        # Commanded airspeed is V_r plus 0.15/s of the way that the vehicle is behind, within 1 m/s (AlongTrackTrim).
+        # Commanded airspeed is V_r plus 0.15/s of the way that the vehicle is behind, within 1 m/s
+        # (AlongTrackTrim).
         (0.0, 30.0, SPEED),
         (-4.0, -30.0, SPEED + 0.6),
         (50.0, 0.0, SPEED - 1.0),
@@ -175,11 +179,13 @@ def test_the_guard_is_asked_about_the_motion_now_and_gets_a_disc_without_width(g
 
 
 def test_the_guard_reckons_with_the_airspeed_that_comes_back(guarded_by):
-    # Trimmed to less than V_r, the vehicle is back at V_r in a turn away; the guard takes it to be there.
+    # Trimmed to less than V_r, the vehicle is back at V_r in a turn away; the guard takes it to be
+    # there.
     guidance = guarded_by(RecordingGuard(0.0))
     guidance.step(0.0, motion(-300.0, 20.0, 0.7, SPEED - 1.0, 0.1))
     assert guidance.guard.asked[0][-1] == SPEED
-    # And to be as slow as it is, for against a disc that closes in the slower vehicle may come nearer.
+    # And to be as slow as it is, for against a disc that closes in the slower vehicle may come
+    # nearer.
     assert guidance.guard.slowest[0] == pytest.approx(SPEED - 1.0, rel=1e-14)
 
 
@@ -246,7 +252,8 @@ def test_it_catches_up_once_the_guard_has_been_free_for_a_quarter_of_a_turn(guar
 
 @pytest.mark.parametrize("nu", [0.1, 0.5, 0.8])
 def test_from_ahead_of_the_vessel_only_the_guard_keeps_the_vehicle_out(nu):
-    # paper-notes, care 13: nothing in the law avoids the keep-out area, and from ahead of the vessel the way leads through it.
+    # paper-notes, care 13: nothing in the law avoids the keep-out area, and from ahead of the
+    # vessel the way leads through it.
     unguarded, guarded = (
         np.min(
             fly(about_a_vessel(nu, guard=guard), (600.0, 30.0, math.pi), duration=400.0).to_vessel
@@ -262,7 +269,8 @@ def test_from_ahead_of_the_vessel_only_the_guard_keeps_the_vehicle_out(nu):
 @pytest.mark.parametrize("seed", range(4))
 @pytest.mark.parametrize("nu", [0.0, 0.1, 0.5])
 def test_from_astern_a_guarded_vehicle_settles_and_keeps_out(nu, seed):
-    # Starts as in scenarios/schema/sections/flight.py: 400 to 800 m away, within 30 degrees of astern, on any course.
+    # Starts as in scenarios/schema/sections/flight.py: 400 to 800 m away, within 30 degrees of
+    # astern, on any course.
     generator = np.random.default_rng(seed)
     distance, bearing = (
         generator.uniform(400.0, 800.0),

@@ -35,7 +35,8 @@ def test_wrapped_angles_lie_within_half_a_turn(angle):
 
 @pytest.mark.parametrize("turns", [-3, -2, -1, 0, 1, 2])
 def test_half_a_turn_either_way_wraps_to_minus_half_a_turn(turns):
-    # The interval is [-pi, pi), as wrap's docstring says. Exact: odd multiples of pi are fmod'ed without rounding.
+    # The interval is
+    # [-pi, pi), as wrap's docstring says. Exact: odd multiples of pi are fmod'ed without rounding.
     assert wrap((2 * turns + 1) * math.pi) == -math.pi
 
 

@@ -1,4 +1,6 @@
-"""gnc stands alone: its modules import and its tests are collected where only numpy, scipy, common, pytest and hypothesis are."""
+"""gnc stands alone: its modules import and its tests are collected where only numpy, scipy, common,
+pytest and hypothesis are.
+"""
 
 import ast
 

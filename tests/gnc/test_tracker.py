@@ -80,15 +80,17 @@ def test_with_lag_the_command_is_the_law_as_it_will_stand_then(heading_rate):
         reference.step()
     # Nearly towards the end of the look-ahead, where h is within its bound.
     command = tracker.step(-30.0, 10.0, 1.1, SPEED, heading_rate)
-    # No command yet, so the heading rate falls from the measured one to 0 at constant rate: integrated finely here.
+    # No command yet, so the heading rate falls from the measured one to 0 at constant rate:
+    # integrated finely here.
     north, east, course = -30.0, 10.0, 1.1
     pieces = 4000
     for piece in range(pieces):
         north += SPEED * math.cos(course) * lag / pieces
         east += SPEED * math.sin(course) * lag / pieces
         course += heading_rate * (1.0 - (piece + 0.5) / pieces) * lag / pieces
-    # The tracker goes straight along the mean course; the bend, half the variance of 3e-4 rad^2, shortens 7.8 m by 1 mm, which
-    # is 2e-5 of the look-ahead. Measured, 3e-6 rad/s, and as much from the pieces here.
+    # The tracker goes straight along the mean course; the bend, half the variance of 3e-4 rad^2,
+    # shortens 7.8 m by 1 mm, which is 2e-5 of the look-ahead. Measured, 3e-6 rad/s, and as much
+    # from the pieces here.
     demand = law_command(CascadeLaw(), reference, north, east, course, SPEED)
     assert command == pytest.approx(demand, rel=0.0, abs=2e-5)
     # Well within both bounds, of h and of the command.
@@ -107,16 +109,19 @@ def test_preview_makes_up_for_a_vehicle_that_answers_late(nu, law, delay):
         flight = fly(guidance, (-60.0, 40.0, 0.5), duration=120.0, delay=delay)
         errors.append(float(np.sqrt(np.mean(flight.distance[-1000:] ** 2))))
     without, with_preview = errors
-    # Late by delay, the heading rate is wrong by up to A omega_0 delay. Measured, preview reduces the error five to forty times.
+    # Late by delay, the heading rate is wrong by up to A omega_0 delay. Measured, preview reduces
+    # the error five to forty times.
     assert with_preview < without / 4.0
-    # What is left is the vehicle holding its command over a guidance step, half of which is another 0.025 s late.
+    # What is left is the vehicle holding its command over a guidance step, half of which is another
+    # 0.025 s late.
     assert with_preview < 0.3
 
 
 @LAWS
 @pytest.mark.parametrize("delay", [0.0, 0.3])
 def test_mirrored_flights_are_commanded_mirrored(law, delay):
-    # Without a guard: riding along its edge, the guard's choices hang on roundings. Its own mirror is in test_keepout_guard.py.
+    # Without a guard: riding along its edge, the guard's choices hang on roundings. Its own mirror
+    # is in test_keepout_guard.py.
     oscillation = paper_oscillation(0.5, reserve=0.1)
     flights = []
     # The mirror image of the course eta cos(omega_0 t + phi_0) is that with phi_0 + pi.
@@ -142,7 +147,8 @@ def test_a_kinematic_vehicle_settles_on_the_reference_at_20_hertz(nu, law):
         make_reference(paper_oscillation(nu, reserve=0.1), centre=(-214.0, 0.0)), law=law
     )
     flight = fly(guidance, (-300.0, 60.0, 2.0), duration=200.0)
-    # Held over a step of 0.05 s, the command is 0.025 s late; that leaves up to 0.6 m, measured at nu = 0.8 under the Lyapunov law.
+    # Held over a step of 0.05 s, the command is 0.025 s late; that leaves up to 0.6 m, measured at
+    # nu = 0.8 under the Lyapunov law.
     assert np.max(flight.distance[-1000:]) < 0.8
     assert flight.distance[0] > 100.0
 

@@ -54,21 +54,24 @@ def test_a_move_equals_the_integral_of_the_rates(heading_rate):
 def test_two_moves_make_one(course, speed, heading_rate, first, second):
     halfway = unicycle_move(0.0, 0.0, course, speed, heading_rate, first)
     end = unicycle_move(*halfway, speed, heading_rate, second)
-    # The straight-line limit below 1e-6 rad errs by 1e-12/6 of at most 4,800 m; roundings are smaller.
+    # The straight-line limit below 1e-6 rad errs by 1e-12/6 of at most 4,800 m; roundings are
+    # smaller.
     assert end == pytest.approx(
         unicycle_move(0.0, 0.0, course, speed, heading_rate, first + second), rel=0.0, abs=1e-8
     )
 
 
 def test_half_a_turn_ends_a_diameter_away_on_the_side_of_the_turn():
-    # Radius v/omega, from equation (1) with constant omega: 20/0.25 = 80 m; to the right, east of a northbound vehicle.
+    # Radius v/omega, from equation (1) with constant omega: 20/0.25 = 80 m; to the right, east of a
+    # northbound vehicle.
     assert unicycle_move(0.0, 0.0, 0.0, 20.0, 0.25, math.pi / 0.25) == pytest.approx(
         (0.0, 160.0, math.pi), abs=1e-12
     )
 
 
 def test_the_straight_line_is_the_limit_of_the_arc():
-    # On either side of the switch to the straight chord, half_turn = 1e-6: sin(a)/a is 1 - 1.7e-13 there.
+    # On either side of the switch to the straight chord, half_turn = 1e-6: sin(a)/a is 1 - 1.7e-13
+    # there.
     arc = unicycle_move(0.0, 0.0, 0.3, 20.0, 2.0002e-6, 1.0)
     line = unicycle_move(0.0, 0.0, 0.3, 20.0, 1.9998e-6, 1.0)
     # The courses differ by 2e-10 rad over 20 m.
@@ -93,8 +96,8 @@ def test_a_lagged_move_equals_the_integral_of_a_first_order_lag(lag, step):
     solution = solve_ivp(
         rates, (0.0, 2.0), [north, east, course, rate], rtol=1e-12, atol=1e-12, method="LSODA"
     )
-    # Quadrature over pieces of half a lag or 0.1 s errs by some 1e-7 m in the first lag, where the rate changes most; course and
-    # rate are in closed form, integration 1e-12 a step.
+    # Quadrature over pieces of half a lag or 0.1 s errs by some 1e-7 m in the first lag, where the
+    # rate changes most; course and rate are in closed form, integration 1e-12 a step.
     assert state[:2] == pytest.approx(solution.y[:2, -1], rel=0.0, abs=5e-7)
     assert state[2:] == pytest.approx(solution.y[2:, -1], rel=0.0, abs=1e-9)
 

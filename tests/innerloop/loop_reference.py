@@ -1,4 +1,6 @@
-"""Loops by another way than the package's: opened in a block diagram by python-control, the delay a rational function."""
+"""Loops by another way than the package's: opened in a block diagram by python-control, the delay a
+rational function.
+"""
 
 import control
 import numpy as np

@@ -32,7 +32,9 @@ def logged(tmp_path):
 
 @pytest.fixture
 def briefly(monkeypatch):
-    """Have the command estimate after one, two and five minutes, and not at fifteen times more for a curve: it takes a quarter."""
+    """Have the command estimate after one, two and five minutes, and not at fifteen times more for
+    a curve: it takes a quarter.
+    """
     monkeypatch.setattr(
         "measurement.estimate.__main__.analyse", functools.partial(analyse, points=0)
     )

@@ -1,4 +1,6 @@
-"""Air and readings of a flight that crosses a plume again and again, for the tests of sniffer and estimate."""
+"""Air and readings of a flight that crosses a plume again and again, for the tests of sniffer and
+estimate.
+"""
 
 from dataclasses import replace
 
@@ -11,7 +13,9 @@ BACKGROUND = np.array([1.0, 420.0, 0.2, 3.0])
 """SO2 [ppb], CO2 [ppm], NO [ppb], NO2 [ppb] of sea air."""
 
 NOX = np.array([20.7, 2.3])
-"""NO and NO2 per CO2 of a two-stroke engine of tier II, 14 g/kWh of NOx by EPA's ShipEF data, at 10 % of NO2 [ppb/ppm]."""
+"""NO and NO2 per CO2 of a two-stroke engine of tier II, 14 g/kWh of NOx by EPA's ShipEF data, at 10
+% of NO2 [ppb/ppm].
+"""
 
 
 def sniffer_of(*channels, rate_hz=1.0):
@@ -39,7 +43,9 @@ def crossings(
     seed=0,
     first=12.0,
 ):
-    """Return the air of passes every ``interval``: Gaussians of CO2 whose height and time vary with ``meander``."""
+    """Return the air of passes every ``interval``: Gaussians of CO2 whose height and time vary with
+    ``meander``.
+    """
     generator = np.random.default_rng(seed)
     time = np.arange(0.0, duration + step / 2.0, step)
     co2 = np.zeros(len(time))

@@ -1,4 +1,6 @@
-"""Plumes for tests: the ship of the worked example, straight and turning tracks, and a sum of puffs."""
+"""Plumes for tests: the ship of the worked example, straight and turning tracks, and a sum of
+puffs.
+"""
 
 from dataclasses import replace
 
@@ -13,7 +15,8 @@ from measurement.plume.parcels import Parcels
 from measurement.plume.settings import PlumeSettings
 from measurement.plume.spread_table import SpreadTable
 
-# The worked example of the specification, section 2: 10 MW, 20 m/s, 1.5 m, 250 degC, F = 49.6 m4/s3, Fm = 124 m4/s2.
+# The worked example of the specification, section 2: 10 MW, 20 m/s, 1.5 m, 250 degC, F = 49.6
+# m4/s3, Fm = 124 m4/s2.
 EMISSION = replace(
     emission_of(ship_preset("container"), fuel_preset("mgo"), power=10e6),
     buoyancy_flux=49.6,
@@ -29,7 +32,9 @@ def air(wind_speed, **options):
 
 
 def straight(wind, true_wind, *, since=-150.0, until=100.0, course=0.0, seed=1, **settings):
-    """A plume in a constant apparent wind: the funnel leaves the air mass behind on ``course``, from the origin at time 0."""
+    """A plume in a constant apparent wind: the funnel leaves the air mass behind on ``course``,
+    from the origin at time 0.
+    """
     time = np.array([since, until])
     return FluctuatingPlume(
         EMISSION,
@@ -44,7 +49,8 @@ def straight(wind, true_wind, *, since=-150.0, until=100.0, course=0.0, seed=1, 
 
 
 def turning(speed, wind, wind_to, *, rate=0.02, turn=np.pi, until=250.0):
-    """Times and places in the air mass of a ship that steams north until time 0 and then turns to the right, as a hull does.
+    """Times and places in the air mass of a ship that steams north until time 0 and then turns to
+    the right, as a hull does.
 
     A quarter of the turn goes by until it has its rate, and another until it has lost it.
     """
@@ -60,9 +66,11 @@ def turning(speed, wind, wind_to, *, rate=0.02, turn=np.pi, until=250.0):
 
 
 def puffs(track, true_wind, when, places, *, interval=0.1, **settings):
-    """Dilution [s/mol] of a sum of puffs, each with the axis and spreads of its age and isotropic in the plane.
+    """Dilution [s/mol] of a sum of puffs, each with the axis and spreads of its age and isotropic
+    in the plane.
 
-    Krause et al., AMT 16:1767 (2023), take puffs along the track of a ship; the spreads are those of the parcels.
+    Krause et al., AMT 16:1767 (2023), take puffs along the track of a ship; the spreads are those
+    of the parcels.
     """
     chosen = PlumeSettings(**settings)
     parcels = Parcels(*track, chosen.parcel_interval)

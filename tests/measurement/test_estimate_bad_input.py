@@ -103,14 +103,16 @@ def test_a_flight_that_met_no_plume_has_no_result():
 
 @pytest.mark.parametrize("sigma", [0.0, 0.1, 0.3, 0.5, 0.7, 1.0, 3.0])
 def test_clean_air_in_whole_numbers_has_no_verdict(sigma):
-    # Nothing is known of the noise, and rounding hides it: more than a tenth of the second differences are 0.
+    # Nothing is known of the noise, and rounding hides it: more than a tenth of the second
+    # differences are 0.
     verdicts, time = 0, np.arange(300.0)
     for seed in range(20):
         generator, values = np.random.default_rng(seed), np.full((300, 4), np.nan)
         for column, level in ((0, 2.0), (1, 420.0)):
             values[:, column] = np.round(level + sigma * generator.normal(size=300))
         verdicts += estimate(Readings(time, values), sensor_preset("unspecified")).quality != "C"
-    # Noise that is not rounded is taken for a pass in 1.5 % of such records: of 20 records one at most, 0.3 are expected.
+    # Noise that is not rounded is taken for a pass in 1.5 % of such records: of 20 records one at
+    # most, 0.3 are expected.
     assert verdicts <= 1
 
 
@@ -124,7 +126,8 @@ def test_the_noise_of_whole_numbers_is_that_before_rounding_and_of_rounding():
             ),
         )
         spec = sensor_preset("unspecified")
-        # Rounding to 1 adds a variance of 1/12. What is rounded is less normal the coarser it is: 7 % at 0.7.
+        # Rounding to 1 adds a variance of 1/12. What is rounded is less normal the coarser it is: 7
+        # % at 0.7.
         expected = math.hypot(sigma, 1.0 / math.sqrt(12.0))
         assert readings_noise(checked_record(readings, spec), spec)["co2"] == pytest.approx(
             expected, rel=0.1

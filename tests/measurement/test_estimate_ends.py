@@ -1,4 +1,6 @@
-"""Ends of a record and of its parts, where channels of different delays have not all read the same air."""
+"""Ends of a record and of its parts, where channels of different delays have not all read the same
+air.
+"""
 
 import math
 
@@ -29,7 +31,8 @@ def with_no(delay, **so2):
 
 
 def test_where_the_background_explains_all_that_is_known_there_is_no_result():
-    # Of parts of 32 s a channel that is 32 s late leaves less than the background takes up: 0 % was found, "below", quality A.
+    # Of parts of 32 s a channel that is 32 s late leaves less than the background takes up: 0 % was
+    # found, "below", quality A.
     spec = sniffer_of(
         Channel(gas="so2", t90_s=4.0, noise=0.5),
         Channel(gas="co2", t90_s=3.0, noise=0.5, delay_s=32.0),
@@ -117,7 +120,8 @@ def test_so2_that_may_still_come_is_named_with_what_to_do():
 
 
 def test_so2_that_may_have_come_in_a_gap_is_waited_for():
-    # Two passes, then a gap in which the SO2 came, and five minutes of clean air: 0.25 % was "below", quality B.
+    # Two passes, then a gap in which the SO2 came, and five minutes of clean air: 0.25 % was
+    # "below", quality B.
     spec = plain_sniffer(3.0, 2.0, so2_noise=1.0, co2_noise=0.5, delay_s=25.0)
     passes = crossings(0.25, duration=22.0, interval=12.0, meander=0.3, width=1.0, first=4.0)
     readings = read(spec, np.vstack([passes, np.tile(BACKGROUND, (3230, 1))]), seed=1)

@@ -1,4 +1,6 @@
-"""Records that read well and are wrong: other clocks, readings cut off, other units, an instrument of which nothing is said."""
+"""Records that read well and are wrong: other clocks, readings cut off, other units, an instrument
+of which nothing is said.
+"""
 
 import math
 
@@ -34,21 +36,24 @@ def later(readings, gas, seconds):
     [("electrochemical", 0.25, 3.0), ("electrochemical", 0.25, -3.0), ("fast", 0.1, 1.5)],
 )
 def test_columns_of_two_clocks_have_no_verdict(preset, fsc, seconds):
-    # Near half of the 9.5 s between passes the slope is near 0, and a small step of the delay changes nothing: with the deviation
-    # of the slope alone, a fuel of 0.25 % was called below 0.10 %. The preset's delay is known to 0.3 s, or 0.1 s.
+    # Near half of the 9.5 s between passes the slope is near 0, and a small step of the delay
+    # changes nothing: with the deviation of the slope alone, a fuel of 0.25 % was called below 0.10
+    # %. The preset's delay is known to 0.3 s, or 0.1 s.
     for seed in range(2):
         readings, spec = flight(preset, fsc, seed)
         assert not reasons(readings, spec)
         told = reasons(later(readings, 1, seconds), spec)
         shown, side = told.split("SO2 fits CO2 best ")[1].split()[::2][:2]
         assert side == ("earlier" if seconds > 0.0 else "later")
-        # To a third: each flight draws delays and responses of its instrument, which shape the passes and move the best fit.
+        # To a third: each flight draws delays and responses of its instrument, which shape the
+        # passes and move the best fit.
         assert float(shown) == pytest.approx(abs(seconds), rel=1.0 / 3.0)
 
 
 @pytest.mark.parametrize("preset", ["electrochemical", "fast"])
 def test_a_clean_fuel_is_not_taken_for_one_of_another_clock(preset):
-    # What NO and NO2 leave uncorrected may follow the CO2 of another pass a little better than its own.
+    # What NO and NO2 leave uncorrected may follow the CO2 of another pass a little better than its
+    # own.
     for seed in range(20):
         assert "SO2 fits CO2 best" not in reasons(*flight(preset, 0.0, seed, duration=150.0))
 
@@ -66,7 +71,8 @@ def test_readings_that_are_cut_off_below_the_stated_range_have_no_verdict(gas, m
 
 @pytest.mark.parametrize("noise", ["stated", "not stated"])
 def test_readings_that_are_cut_off_at_zero_have_no_verdict(noise):
-    # Clean air reads 0 and no less, which is too much in the mean: in weak plumes 0.124 was read for 0.15 %.
+    # Clean air reads 0 and no less, which is too much in the mean: in weak plumes 0.124 was read
+    # for 0.15 %.
     readings, spec = flight("electrochemical", 0.15, 1)
     values = readings.values.copy()
     values[:, 0] = np.maximum(values[:, 0] - np.quantile(values[:, 0], 0.3), 0.0)
@@ -102,7 +108,8 @@ def test_no_and_no2_in_ppm_have_no_verdict(column, gas):
 @pytest.mark.parametrize(("one", "other", "fsc"), [(2, 3, 0.25), (2, 3, 0.0), (0, 2, 0.0)])
 @pytest.mark.parametrize("preset", ["electrochemical", "fast"])
 def test_no2_that_exceeds_no_has_no_verdict_where_so2_responds_to_both(preset, one, other, fsc):
-    # Columns exchanged: NO and NO2, or SO2 and NO of a fuel without sulphur. The ship has nine times as much NO as NO2.
+    # Columns exchanged: NO and NO2, or SO2 and NO of a fuel without sulphur. The ship has nine
+    # times as much NO as NO2.
     readings, _ = flight(preset, fsc, 1)
     spec = sensor_preset("electrochemical")
     assert "exhaust has more NO than NO2" not in reasons(readings, spec)
@@ -138,7 +145,8 @@ def test_the_same_air_by_channels_of_other_gains_is_judged_alike(preset, method)
 
 
 def test_no2_that_ozone_makes_of_no_is_no_exchange_of_columns():
-    # All of 50 ppb of ozone, while the gas is there: the NO2 of a plume of 30 ppb of NOx, which has no NO left.
+    # All of 50 ppb of ozone, while the gas is there: the NO2 of a plume of 30 ppb of NOx, which has
+    # no NO left.
     readings, spec = flight("electrochemical", 0.25, 1)
     values = readings.values.copy()
     noise = np.random.default_rng(1).normal(size=(2, len(values)))
@@ -148,7 +156,8 @@ def test_no2_that_ozone_makes_of_no_is_no_exchange_of_columns():
 
 
 def test_a_cell_of_which_nothing_is_said_gives_no_wrong_verdict():
-    # An unfiltered cell reads NO2 as -160 % of SO2: fuel of 0.8 % seemed to be below 0.5 % in 18 of 40 flights.
+    # An unfiltered cell reads NO2 as -160 % of SO2: fuel of 0.8 % seemed to be below 0.5 % in 18 of
+    # 40 flights.
     for seed in range(8):
         readings, _ = flight("alphasense_a4", 0.8, seed)
         found = estimate(readings, sensor_preset("unspecified"))
@@ -199,7 +208,8 @@ def test_noise_is_shown_by_readings_and_not_by_what_is_interpolated():
     scatter = checked_record(
         Readings(np.flatnonzero(rows).astype(float), values[rows]), sensor_preset("unspecified")
     ).scatter
-    # A tenth of 12,000 second differences, neighbours of which share readings: good to 4 % (1 sigma).
+    # A tenth of 12,000 second differences, neighbours of which share readings: good to 4 % (1
+    # sigma).
     assert scatter == pytest.approx({"so2": 2.5, "co2": 1.0, "no": 7.0, "no2": 7.0}, rel=0.1)
 
 
@@ -211,7 +221,8 @@ def in_steps(readings, gas, step):
 
 
 def test_co2_in_steps_larger_than_its_noise_has_no_lower_content():
-    # Rounding to 20 ppm is noise of 5.8 ppm; taken for the 1 ppm that are stated it lowered the content by 5 % in the mean of six.
+    # Rounding to 20 ppm is noise of 5.8 ppm; taken for the 1 ppm that are stated it lowered the
+    # content by 5 % in the mean of six.
     spec, found = plain_sniffer(so2_noise=2.5, co2_noise=1.0), []
     for seed in range(6):
         estimated = estimate(
@@ -226,7 +237,8 @@ def test_co2_in_steps_larger_than_its_noise_has_no_lower_content():
 
 @pytest.mark.parametrize("step", [50.0, 100.0])
 def test_co2_in_steps_as_high_as_the_passes_has_no_verdict(step):
-    # A hundredth of a per cent by volume is 100 ppm: such a fuel of 0.25 % read 0.14 to 0.17 %, with quality A.
+    # A hundredth of a per cent by volume is 100 ppm: such a fuel of 0.25 % read 0.14 to 0.17 %,
+    # with quality A.
     spec = plain_sniffer(so2_noise=2.5, co2_noise=1.0)
     told = reasons(in_steps(read(spec, crossings(0.25)), 1, step), spec)
     assert "CO2" in told
@@ -250,7 +262,8 @@ def test_readings_of_two_values_only_have_an_estimate():
 
 @pytest.mark.parametrize("spike", [2000.0, 65535.0])
 def test_a_spike_of_co2_has_no_verdict_also_where_so2_is_noisy(spike):
-    # A t90 of 4 s leaves 56 % of an excess a second later, 32 % if it were 2 s. Such a fuel of 0.25 % was called below 0.10 %.
+    # A t90 of 4 s leaves 56 % of an excess a second later, 32 % if it were 2 s. Such a fuel of 0.25
+    # % was called below 0.10 %.
     spec = plain_sniffer(so2_noise=25.0, co2_noise=1.0)
     readings = read(spec, crossings(0.25, seed=1), seed=1)
     assert reasons(readings, spec) == ""
@@ -264,7 +277,8 @@ def test_a_spike_of_co2_has_no_verdict_also_where_so2_is_noisy(spike):
 @pytest.mark.parametrize("preset", ["electrochemical", "fast", "laser"])
 @pytest.mark.parametrize("analyst", ["itself", "unspecified"])
 def test_sensors_that_follow_a_plume_have_no_spikes(preset, analyst):
-    # The laser's CO2 has a t90 of 0.5 s, of which the unspecified instrument takes 3 s; times are uneven by a third of a period.
+    # The laser's CO2 has a t90 of 0.5 s, of which the unspecified instrument takes 3 s; times are
+    # uneven by a third of a period.
     readings, spec = flight(preset, 0.25, 3)
     uneven = np.random.default_rng(0).uniform(-0.3, 0.3, len(readings)) / spec.rate_hz
     for time in (readings.time, readings.time + uneven):

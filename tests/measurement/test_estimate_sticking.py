@@ -1,4 +1,6 @@
-"""Sensors that stick give no verdict, and what living sensors read in clean air is not taken for it."""
+"""Sensors that stick give no verdict, and what living sensors read in clean air is not taken for
+it.
+"""
 
 import math
 
@@ -19,7 +21,9 @@ def told(readings, spec):
 
 
 def frozen(readings, gases, start, end=301, toggle=0.0):
-    """Return readings, to a tenth, of which some gases read from a row to another what they read at first, or a digit more."""
+    """Return readings, to a tenth, of which some gases read from a row to another what they read at
+    first, or a digit more.
+    """
     values = readings.values.round(1)
     for gas in gases:
         rows = np.arange(start, end)
@@ -82,7 +86,9 @@ def test_a_logger_that_is_faster_than_the_sensors_is_no_stuck_sensor(analyst):
 
 
 def late_plume(fsc):
-    """Return the readings of a fast sniffer, with 200 s of clean air before passes through the plume of a ship."""
+    """Return the readings of a fast sniffer, with 200 s of clean air before passes through the
+    plume of a ship.
+    """
     spec = sensor_preset("fast")
     return read(spec, crossings(fsc, first=200.0, interval=20.0)), spec
 
@@ -90,7 +96,8 @@ def late_plume(fsc):
 @pytest.mark.parametrize("noise", ["stated", "not stated"])
 @pytest.mark.parametrize("step", [10.0, 20.0, 50.0])
 def test_clean_air_in_a_coarse_sensor_is_no_stuck_sensor(step, noise):
-    # Noise of 2 ppb of SO2, NO and NO2 is less than half a step: they read 0 for 200 s; so does CO2, of 0.5 ppm, in steps of 10.
+    # Noise of 2 ppb of SO2, NO and NO2 is less than half a step: they read 0 for 200 s; so does
+    # CO2, of 0.5 ppm, in steps of 10.
     readings, spec = late_plume(1.0)
     for gas in GASES:
         spec = changed(spec, gas, **({} if noise == "stated" else {"noise": math.nan}))

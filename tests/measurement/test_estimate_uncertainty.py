@@ -1,4 +1,6 @@
-"""Noise and its stated variance by Monte Carlo, coverage of the stated interval, response and delay that are not given."""
+"""Noise and its stated variance by Monte Carlo, coverage of the stated interval, response and delay
+that are not given.
+"""
 
 import math
 from dataclasses import replace
@@ -19,7 +21,9 @@ from measurement.sniffer import Readings, sensor_preset
 from measurement.sniffer.presets import read_spec
 
 REPEATS = 200
-"""They give a standard deviation to 5 %; a tenth, which is asked for, is twice that, and the seeds are always the same."""
+"""They give a standard deviation to 5 %; a tenth, which is asked for, is twice that, and the seeds
+are always the same.
+"""
 
 
 def repeated(spec, air, estimator):
@@ -53,7 +57,8 @@ def test_the_stated_noise_of_the_regression_is_its_scatter(spec):
 
     slopes, stated = repeated(spec, air, estimator)
     assert np.std(slopes) == pytest.approx(np.sqrt(np.mean(stated**2)), rel=0.1)
-    # Beside the noise that is expected; a drift is no part of it. The slope takes 1 of 110 degrees of freedom.
+    # Beside the noise that is expected; a drift is no part of it. The slope takes 1 of 110 degrees
+    # of freedom.
     drifts = spec.known("so2").random_walk > 0.0
     assert np.mean(misfits) > 2.0 if drifts else np.mean(misfits) == pytest.approx(1.0, abs=0.05)
 
@@ -72,8 +77,9 @@ def test_noise_in_co2_does_not_attenuate_the_slope():
     noise_energy = signals.noise("co2") ** 2 * signals.noise_energy("co2")
     attenuation = noise_energy / (float(co2 @ co2) - noise_energy)
     error = np.std(slopes) / math.sqrt(REPEATS)
-    # A quotient of noisy sums keeps a bias of second order, its relative variance; without the correction the slope would be
-    # attenuated by the noise's share of the CO2 energy, several times as much.
+    # A quotient of noisy sums keeps a bias of second order, its relative variance; without the
+    # correction the slope would be attenuated by the noise's share of the CO2 energy, several times
+    # as much.
     tolerance = 4.0 * error + np.var(slopes) / clean
     assert abs(np.mean(slopes) - clean) < tolerance
     assert attenuation * clean > 2.0 * tolerance
@@ -93,7 +99,8 @@ def test_the_stated_noise_of_areas_is_its_scatter():
 
 
 def test_one_pass_is_as_good_as_a_matched_filter_can_be():
-    # u(area) >= sigma sqrt(2 tau / f_s) with a known background (section 4.4); a background to be found costs more.
+    # u(area) >= sigma sqrt(2 tau / f_s) with a known background (section 4.4); a background to be
+    # found costs more.
     spec = plain_sniffer(20.0, 0.5, so2_noise=2.5, rate_hz=10.0)
     air = crossings(0.25, duration=200.0, interval=1000.0, first=60.0, width=0.3)
     found = regress(make_signals(checked_record(read(spec, air), spec), spec))
@@ -125,7 +132,8 @@ def test_noise_falls_with_the_root_of_passes_and_common_errors_do_not():
 
 @pytest.mark.parametrize(("preset", "largest"), [("electrochemical", 0.03), ("fast", 0.012)])
 def test_stated_intervals_cover_and_are_as_narrow_as_asked(preset, largest):
-    # 91 to 98 % are asked of 200 flights and more; of 40, 34 are fewer than 1 in 100 times fewer by chance where 95 % is true.
+    # 91 to 98 % are asked of 200 flights and more; of 40, 34 are fewer than 1 in 100 times fewer by
+    # chance where 95 % is true.
     flights = [flight(preset, 0.1, seed, duration=120.0) for seed in range(40)]
     found = [estimate(readings, spec) for readings, spec in flights]
     assert sum(e.low_percent <= 0.1 <= e.high_percent for e in found) >= 34
@@ -133,7 +141,8 @@ def test_stated_intervals_cover_and_are_as_narrow_as_asked(preset, largest):
     assert np.mean([e.fsc_percent for e in found]) == pytest.approx(
         0.1, abs=0.005 + 3.0 * largest / math.sqrt(40)
     )
-    # A simulation that states less than 0.01 % of an electrochemical sniffer misses an error (section 4.7).
+    # A simulation that states less than 0.01 % of an electrochemical sniffer misses an error
+    # (section 4.7).
     assert preset != "electrochemical" or min(e.total_percent for e in found) > 0.01
 
 
@@ -151,8 +160,9 @@ def test_response_and_delay_are_found_where_they_are_not_given():
 
 
 def test_response_and_delay_are_found_without_bias_where_other_gases_correct_so2():
-    # NO2 between samples has less noise than on them, 0.64 of its square halfway. Left out of account, that drew twelve flights to
-    # 18.0 s and 0.13 s in the mean, and their fuels to 0.187 %; each t90 is known to 1 s, each delay to 0.04 s.
+    # NO2 between samples has less noise than on them, 0.64 of its square halfway. Left out of
+    # account, that drew twelve flights to 18.0 s and 0.13 s in the mean, and their fuels to 0.187
+    # %; each t90 is known to 1 s, each delay to 0.04 s.
     spec = sensor_preset("electrochemical")
     for gas in GASES:
         cross = dict.fromkeys(spec.known(gas).cross_sd, 0.0)
@@ -189,7 +199,8 @@ def test_a_delay_before_co2_is_found_too():
 
 @pytest.mark.parametrize("late", [0.0, 0.5])
 def test_readings_that_are_far_apart_have_an_interval_that_holds_what_lies_between(late):
-    # Every second, 4.6 time constants of CO2 apart: up to 7.7 % too much, on which averaging over passes has no effect.
+    # Every second, 4.6 time constants of CO2 apart: up to 7.7 % too much, on which averaging over
+    # passes has no effect.
     exact = replace(
         plain_sniffer(5.0, 0.5, so2_noise=0.01, co2_noise=0.01, delay_s=late), rate_hz=1.0
     )
@@ -213,9 +224,9 @@ def test_gases_that_are_not_measured_widen_the_interval():
 
 @pytest.mark.parametrize(("emitted", "wider"), [(1.5, True), (0.25, False)])
 def test_without_a_stated_response_nox_shows_only_how_much_of_it_there_is(emitted, wider):
-    # The response is 0 with a standard deviation of 0.02: readings of NO correct nothing, and what they may have done is in
-    # proportion to them. 1.5 times the 20.7 ppb/ppm of this ship are more than 18 +- 7.5, which are taken where NO is not measured,
-    # and a quarter of them is less.
+    # The response is 0 with a standard deviation of 0.02: readings of NO correct nothing, and what
+    # they may have done is in proportion to them. 1.5 times the 20.7 ppb/ppm of this ship are more
+    # than 18 +- 7.5, which are taken where NO is not measured, and a quarter of them is less.
     spec = sensor_preset("unspecified")
     readings, _ = flight("electrochemical", 0.5, 5)
     measured = Readings(readings.time, readings.values * np.array([1.0, 1.0, emitted, emitted]))
@@ -232,7 +243,8 @@ def test_without_a_stated_response_nox_shows_only_how_much_of_it_there_is(emitte
 
 @pytest.mark.parametrize("seed", [0, 5, 7, 8])
 def test_a_response_that_is_not_given_is_not_taken_for_a_fast_one_where_so2_is_noisy(seed):
-    # Noise of 25 ppb, as much as passes raise SO2; a t90 of 0 would smooth it most, and read a quarter of the content.
+    # Noise of 25 ppb, as much as passes raise SO2; a t90 of 0 would smooth it most, and read a
+    # quarter of the content.
     readings = read(
         plain_sniffer(so2_noise=25.0, co2_noise=1.0), crossings(0.25, seed=seed), seed=seed
     )
@@ -247,7 +259,8 @@ def test_a_response_that_is_not_given_is_not_taken_for_a_fast_one_where_so2_is_n
 
 @pytest.mark.parametrize("co2_t90", [1.5, 4.5])
 def test_a_response_that_is_found_is_as_uncertain_as_that_of_co2_makes_it(co2_t90):
-    # Of CO2 3 s are stated, to 50 %. By noise alone t90 had 0.3 s and the delay 0.03 s, for errors of 2 and 0.5 s.
+    # Of CO2 3 s are stated, to 50 %. By noise alone t90 had 0.3 s and the delay 0.03 s, for errors
+    # of 2 and 0.5 s.
     readings = read(
         plain_sniffer(20.0, co2_t90, so2_noise=1.0, co2_noise=0.5, rate_hz=5.0, delay_s=3.0),
         crossings(0.25, interval=30.0, width=2.0, meander=0.0),

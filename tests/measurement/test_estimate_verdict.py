@@ -47,8 +47,9 @@ def test_fuels_at_the_limit_are_called_above_in_five_of_a_hundred_at_most():
 
 @pytest.mark.parametrize("fsc", [-3.0, -0.5, 0.0, 0.4, 1.0, 1.6, 1.7, 2.5, 4.0])
 def test_interval_and_probability_are_those_of_one_sampled_distribution(fsc):
-    # Contents that are not negative, of a reading with a standard uncertainty of 1: sampled by the inverse of a normal distribution
-    # cut at 0, scipy's. 400,000 samples know a share of 5 % to 0.034 %; four times that.
+    # Contents that are not negative, of a reading with a standard uncertainty of 1: sampled by the
+    # inverse of a normal distribution cut at 0, scipy's. 400,000 samples know a share of 5 % to
+    # 0.034 %; four times that.
     content = truncnorm.rvs(
         -fsc, np.inf, loc=fsc, size=400_000, random_state=np.random.default_rng(1)
     )
@@ -58,7 +59,8 @@ def test_interval_and_probability_are_those_of_one_sampled_distribution(fsc):
         assert probability_above(limit, fsc, 1.0) == pytest.approx(
             np.mean(content > limit), abs=0.004
         )
-    # No other interval that holds 95 % is shorter: those that begin at each of the samples' lowest 5 %.
+    # No other interval that holds 95 % is shorter: those that begin at each of the samples' lowest
+    # 5 %.
     ordered = np.sort(content)
     held = round(0.95 * len(ordered))
     assert high - low == pytest.approx(float(np.min(ordered[held:] - ordered[:-held])), rel=0.01)
@@ -74,10 +76,12 @@ def test_where_an_interval_begins_at_0_a_limit_outside_of_it_is_what_a_fuel_belo
 
 
 def test_an_interval_is_not_empty_and_not_negative():
-    # Five standard uncertainties from 0 it is that of the normal distribution, 1.960 to either side.
+    # Five standard uncertainties from 0 it is that of the normal distribution, 1.960 to either
+    # side.
     assert interval(0.1, 0.02) == pytest.approx((0.0608, 0.1392), abs=1e-4)
     assert interval(0.01, 0.02)[0] == 0.0
-    # Ten below 0 an exponential distribution of mean 0.02/10 is left, above 3.0 times which are 5 %; a second term takes 4 % of it.
+    # Ten below 0 an exponential distribution of mean 0.02/10 is left, above 3.0 times which are 5
+    # %; a second term takes 4 % of it.
     assert interval(-0.2, 0.02) == pytest.approx((0.0, 0.0059), abs=1e-4)
     assert interval(-20.0, 0.02)[1] == pytest.approx(-math.log(0.05) * 0.02 / 1000.0, rel=1e-3)
     assert interval(0.1, 0.0) == (0.1, 0.1)
@@ -86,8 +90,9 @@ def test_an_interval_is_not_empty_and_not_negative():
 
 @pytest.mark.parametrize("fuel", [0.0, 0.5, 1.0, 1.645, 2.5, 3.0, 5.0])
 def test_of_repeated_readings_of_one_fuel_93_to_97_5_percent_have_intervals_that_hold_it(fuel):
-    # An interval of a bounded mean holds it with 1/1.05 of 95 %, 90.5 %, at least (Roe and Woodroofe 2000, Phys. Rev. D 63,
-    # 013009). Of 4000 the share is known to 0.4 %; three times that.
+    # An interval of a bounded mean holds it with 1/1.05 of 95 %, 90.5 %, at least (Roe and
+    # Woodroofe 2000, Phys. Rev. D 63, 013009). Of 4000 the share is known to 0.4 %; three times
+    # that.
     found = fuel + np.random.default_rng(2).standard_normal(4000)
     ends = [interval(float(f), 1.0) for f in found]
     assert 0.93 - 0.012 < np.mean([low <= fuel <= high for low, high in ends]) < 0.975 + 0.012
@@ -166,8 +171,8 @@ def test_passes_and_doses_are_counted():
     spec = plain_sniffer(so2_noise=2.5, co2_noise=1.0)
     air = crossings(0.25, meander=0.0)
     figures = estimate(read(spec, air), spec).figures
-    # Passes from 12 s on every 9.5 s; a pass of 200 ppm and 0.6 s has a dose of 200 x 0.6 x sqrt(2 pi) = 301 ppm s,
-    # of which a background that is never clean takes some.
+    # Passes from 12 s on every 9.5 s; a pass of 200 ppm and 0.6 s has a dose of 200 x 0.6 x sqrt(2
+    # pi) = 301 ppm s, of which a background that is never clean takes some.
     assert figures.passes == 31
     assert figures.interval_s == pytest.approx(9.5, abs=0.1)
     assert figures.dose_ppm_s == pytest.approx(301.0, rel=0.1)

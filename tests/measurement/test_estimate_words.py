@@ -48,8 +48,8 @@ def test_a_record_without_a_verdict_says_so_and_prints_no_nan(logged, capsys, le
 
 
 def test_an_open_verdict_beyond_the_probability_names_the_guard_band():
-    # The knowledge that no fuel has less than 0 lifts the probability, and "above" asks for the guard band alone:
-    # the normal distribution's 0.9370 at 1.53, over its 0.9484 at 1.63.
+    # The knowledge that no fuel has less than 0 lifts the probability, and "above" asks for the
+    # guard band alone: the normal distribution's 0.9370 at 1.53, over its 0.9484 at 1.63.
     verdict = judged(0.01, 0.163, 0.1, admitted=True)
     assert verdict.verdict == "open"
     assert verdict.probability_above > 0.95

@@ -1,4 +1,6 @@
-"""What is worked out of a record and kept for the next instrument that is asked about is of its response, delays and windows."""
+"""What is worked out of a record and kept for the next instrument that is asked about is of its
+response, delays and windows.
+"""
 
 from crossings import changed, crossings, read
 

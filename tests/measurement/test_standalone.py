@@ -1,4 +1,6 @@
-"""measurement stands alone: its modules import, and its tests are collected, where only numpy, scipy, pandas and pytest are."""
+"""measurement stands alone: its modules import, and its tests are collected, where only numpy,
+scipy, pandas and pytest are.
+"""
 
 import pytest
 

@@ -1,6 +1,8 @@
-"""A steering law that flies at the ship whatever is demanded: how near it comes is up to the keep-out guard alone.
+"""A steering law that flies at the ship whatever is demanded: how near it comes is up to the
+keep-out guard alone.
 
-To be flown on a circle about her that is wider than its distance: the nearest point of that is the way she is not.
+To be flown on a circle about her that is wider than its distance: the nearest point of that is the
+way she is not.
 """
 
 import math

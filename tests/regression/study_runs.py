@@ -1,4 +1,6 @@
-"""Whole runs as the command flies them, in one process: of a catalog scenario, and of the sweep by an aircraft."""
+"""Whole runs as the command flies them, in one process: of a catalog scenario, and of the sweep by
+an aircraft.
+"""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -40,7 +42,9 @@ def flown(path, name, *overrides):
 
 
 def flown_once(path, name, keys, *overrides):
-    """Fly one flight of a catalog scenario, with nothing drawn but what keys say, and return its row."""
+    """Fly one flight of a catalog scenario, with nothing drawn but what keys say, and return its
+    row.
+    """
     words = [
         "draws=[]",
         "flights=1",
@@ -65,7 +69,8 @@ def assert_flown_as_the_issue_asks(row):
     assert row["keepout_violations"] == 0
     assert row["min_distance_m"] >= 200.0
     assert row["crossing_distance_min_m"] >= 200.0
-    # Issue: interval within 2 % of pi/omega_0, 1 % for the X8; measured 0.06 % at most over seven aircraft.
+    # Issue: interval within 2 % of pi/omega_0, 1 % for the X8; measured 0.06 % at most over seven
+    # aircraft.
     assert abs(row["crossing_interval_mean_s"] / row["crossing_interval_predicted_s"] - 1.0) <= 0.01
     assert row["heading_rate_command_max_rad_s"] <= row["heading_rate_limit_rad_s"]
     # The scenario's criteria: tracking, airspeed and altitude in the aircraft's units.

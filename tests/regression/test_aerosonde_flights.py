@@ -26,7 +26,8 @@ def test_it_flies_the_sweep_as_the_x8_does(run, nu):
     row = run.rows[nu]
     assert_flown_as_the_issue_asks(row)
     assert row["crossing_count"] >= CROSSINGS
-    # The X8's own limits, though the Aerosonde is given 1.66 times as much: it flies faster and turns wider.
+    # The X8's own limits, though the Aerosonde is given 1.66 times as much: it flies faster and
+    # turns wider.
     assert row["tracking_error_rms_m"] <= 1.5
     assert row["airspeed_error_rms_mps"] <= 0.3
     assert row["altitude_error_max_m"] <= 1.5
@@ -36,8 +37,9 @@ def test_it_flies_the_sweep_as_the_x8_does(run, nu):
 
 @pytest.mark.parametrize("nu", NUS)
 def test_its_rudder_keeps_it_from_slipping(run, nu):
-    # With its rudder at rest it slipped by 2.3 deg. Measured now: 0.05 and 0.11 deg once settled, 0.9 deg while it turns to
-    # its reference at omega_max. Asserted is twice that, which another machine's rounding will not reach.
+    # With its rudder at rest it slipped by 2.3 deg. Measured now: 0.05 and 0.11 deg once settled,
+    # 0.9 deg while it turns to its reference at omega_max. Asserted is twice that, which another
+    # machine's rounding will not reach.
     assert run.settled(nu)["sideslip_rad"].abs().max() < math.radians(0.25)
     assert run.history(nu)["sideslip_rad"].abs().max() < math.radians(1.8)
     # By working for it, not because there is nothing to do.
@@ -52,7 +54,8 @@ def test_its_controls_stay_off_their_stops(run):
 
 
 def test_the_guard_keeps_it_out_where_the_law_would_fly_in(tmp_path):
-    # The X8's start at nu = 0.15 (test_flights), in the Aerosonde's units, about a keep-out area that is as much larger.
+    # The X8's start at nu = 0.15 (test_flights), in the Aerosonde's units, about a keep-out area
+    # that is as much larger.
     words = [
         "guidance.approach=false",
         "keepout.radius_m=331.44",

@@ -1,6 +1,8 @@
-"""Corners of what scenarios declare in which the former keep-out guard let the aircraft in: each was found by a search.
+"""Corners of what scenarios declare in which the former keep-out guard let the aircraft in: each
+was found by a search.
 
-The guard kept off where the vessel was predicted; a report that moved her, a long silence, gusts and steep banks got the X8 in.
+The guard kept off where the vessel was predicted; a report that moved her, a long silence, gusts
+and steep banks got the X8 in.
 """
 
 import pytest
@@ -35,7 +37,9 @@ FAST = [
     "sea_wind", "guidance.law=constant_bearing", "flights=3", "speed_ratio=[0.3,0.7]", "flight.duration_max_s=130",
     "flight.crossings=0",
 ]  # fmt: skip
-"""A law that does not track: the aircraft falls behind, and is commanded an airspeed at which it cannot turn at omega_max."""
+"""A law that does not track: the aircraft falls behind, and is commanded an airspeed at which it
+cannot turn at omega_max.
+"""
 
 
 @pytest.mark.parametrize(
@@ -54,8 +58,8 @@ def test_corners_that_a_search_has_found_are_kept_out_of(settings, tmp_path):
 
 @pytest.mark.parametrize(("place", "fails"), [(421.05, 0.749), (463.85, 1.3425)])
 def test_an_aircraft_whose_engine_fails_before_it_turns_away_keeps_out(place, fails, tmp_path):
-    # Until that is detected it slows down from 19.4 m/s or more to 14.7. As long as the turn was predicted at the airspeed of the
-    # moment these two came in, by 0.7 and 0.5 m.
+    # Until that is detected it slows down from 19.4 m/s or more to 14.7. As long as the turn was
+    # predicted at the airspeed of the moment these two came in, by 0.7 and 0.5 m.
     keys = {
         "reference.standoff_radius_m": 9000,
         "vessel.speed_mps": 15, "start.range_m": place, "start.aspect_deg": 180, "start.course_deg": 180, "fault.kind": "engine",
@@ -82,8 +86,9 @@ def test_an_aircraft_whose_engine_fails_in_a_climb_keeps_out(tmp_path):
 
 
 def test_an_aircraft_that_is_gaining_speed_turns_away_as_predicted(tmp_path):
-    # Beside a vessel that is known exactly a search came within 0.05 m: the guard reckoned with the airspeed of the moment, and
-    # the aircraft was commanded 1.2 m/s more. Of the 3.1 m by which a reversal may deviate a steady turn is allowed a fifth.
+    # Beside a vessel that is known exactly a search came within 0.05 m: the guard reckoned with the
+    # airspeed of the moment, and the aircraft was commanded 1.2 m/s more. Of the 3.1 m by which a
+    # reversal may deviate a steady turn is allowed a fifth.
     keys = {
         "guidance.law": "park_l1", "vessel.speed_mps": 12.546, "wind.speed_mps": 2.1341, "wind.from_deg": 351.656,
         "start.range_m": 320, "start.aspect_deg": 87.511, "start.course_deg": 60.313, "flight_seed": 598176553,
@@ -107,8 +112,9 @@ def test_an_aircraft_that_is_gaining_speed_turns_away_as_predicted(tmp_path):
     ],
 )
 def test_a_vehicle_that_takes_on_any_airspeed_at_once_keeps_out(tmp_path, nu, flight_seed, keys):
-    # It has no deviation that the guard keeps. One came in by 2 cm, since airspeeds 0.5 m/s apart were predicted as one, and one
-    # by 9 cm, since the slower pace commanded for a step was not predicted.
+    # It has no deviation that the guard keeps. One came in by 2 cm, since airspeeds 0.5 m/s apart
+    # were predicted as one, and one by 9 cm, since the slower pace commanded for a step was not
+    # predicted.
     words = [
         "fidelity=kinematic",
         "keepout.radius_m=50",

@@ -1,6 +1,8 @@
-"""Corners of air and sensors in which flights came within r_min, as a sceptic found them: each was declared, and not reckoned with.
+"""Corners of air and sensors in which flights came within r_min, as a sceptic found them: each was
+declared, and not reckoned with.
 
-The commands are those of the search, each with one or two of the flights that had come in, until a little after they did.
+The commands are those of the search, each with one or two of the flights that had come in, until a
+little after they did.
 """
 
 import pytest
@@ -28,7 +30,8 @@ def flown(tmp_path, *overrides, table=None):
 
 @pytest.mark.parametrize("outage", [60, 150])
 def test_satellites_are_lost_while_the_wind_turns_round(tmp_path, outage):
-    # 12 of 12 flights had come in, as near as 57 and 4 m: dead reckoning went wrong by 4.7 m/s, and 1 m/s was allowed for.
+    # 12 of 12 flights had come in, as near as 57 and 4 m: dead reckoning went wrong by 4.7 m/s, and
+    # 1 m/s was allowed for.
     rows = flown(
         tmp_path, "flights=1", "vessel.speed_mps=4", "place.utc=2026-06-01T12:00:00Z", "fault.kind=satellite_navigation",
         f"fault.satellite_navigation_s={outage}", "fault.at_s=120", "flight.duration_max_s=200", table=REVERSED,
@@ -78,7 +81,8 @@ def test_dead_reckoning_goes_by_a_compass_with_noise(tmp_path):
     "noise", ["velocity_sigma_mps=1", "airspeed_sigma_mps=1"], ids=["velocity", "airspeed"]
 )
 def test_noise_of_the_own_velocity_does_not_make_commands_look_safe(tmp_path, noise):
-    # A law that circles within r_min: the guard decides at each step, and went by the lucky ones (185.8 and 198.8 m).
+    # A law that circles within r_min: the guard decides at each step, and went by the lucky ones
+    # (185.8 and 198.8 m).
     rows = flown(
         tmp_path, "flights=1", "flight.duration_max_s=80", "vessel.speed_mps=4", "wind.speed_mps=4", "guidance.mission=standoff",
         "reference.standoff_radius_m=120", "guidance.law=park_l1", f"sensors.{noise}",
@@ -94,7 +98,8 @@ def test_noise_of_the_own_velocity_does_not_make_commands_look_safe(tmp_path, no
 def test_satellites_are_lost_when_a_noisy_compass_has_measured_the_wind_once(
     tmp_path, flight_seed, wind, from_deg, vessel
 ):
-    # 5 of 60 had come in, by up to 126 m: the first measurement, 3.5 m/s wrong, was taken for the wind for 60 s.
+    # 5 of 60 had come in, by up to 126 m: the first measurement, 3.5 m/s wrong, was taken for the
+    # wind for 60 s.
     rows = flown(
         tmp_path, "fidelity=six_dof", "flights=1", f"flight_seed={flight_seed}", f"wind.speed_mps={wind}",
         f"wind.from_deg={from_deg}", f"vessel.speed_mps={vessel}", "fault.kind=satellite_navigation", "fault.at_s=0",
@@ -116,8 +121,9 @@ def test_satellites_are_lost_when_a_noisy_compass_has_measured_the_wind_once(
     ids=["turbulence", "a fast vehicle"],
 )  # fmt: skip
 def test_satellites_are_lost_at_the_start_in_a_strong_wind(tmp_path, keys):
-    # 2 of 4 and 1 of 4 had come in, by up to 77 and 223 m: the filter of the wind began with 10 m/s either way for likely, so
-    # that what gusts or a high speed hide was estimated too weak, and stayed so.
+    # 2 of 4 and 1 of 4 had come in, by up to 77 and 223 m: the filter of the wind began with 10 m/s
+    # either way for likely, so that what gusts or a high speed hide was estimated too weak, and
+    # stayed so.
     rows = flown(tmp_path, "flights=1", "fault.kind=satellite_navigation", "fault.at_s=0", *keys)
     assert (rows["min_distance_m"] >= rows["keepout_radius_m"]).all()
 
@@ -139,9 +145,10 @@ def test_satellites_are_lost_at_the_start_in_a_strong_wind(tmp_path, keys):
 def test_an_aircraft_whose_dead_reckoning_is_declared_better_than_its_own_keeps_out(
     changes, tmp_path
 ):
-    # Five minutes without satellites, exact sensors, and a law that flies at the ship. With the 0 m/s that are declared it came
-    # 57 m in: its turns change all the time, and the crab angles that it reckons with are those of steady ones. And 7 m, where
-    # the wind had been measured once, as it rolled in.
+    # Five minutes without satellites, exact sensors, and a law that flies at the ship. With the 0
+    # m/s that are declared it came 57 m in: its turns change all the time, and the crab angles that
+    # it reckons with are those of steady ones. And 7 m, where the wind had been measured once, as
+    # it rolled in.
     keys = {
         "reference.standoff_radius_m": 9000, "vessel.speed_mps": 14, "wind.speed_mps": 3, "wind.from_deg": 180,
         "start.range_m": 450, "start.aspect_deg": 180, "following.drift_rate_mps": 0, "fault.kind": "satellite_navigation",

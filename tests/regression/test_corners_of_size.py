@@ -1,4 +1,6 @@
-"""A keep-out area that is small beside the turn radius, and a law that flies at the ship: flights had come within r_min."""
+"""A keep-out area that is small beside the turn radius, and a law that flies at the ship: flights
+had come within r_min.
+"""
 
 import pytest
 import study_runs
@@ -12,7 +14,8 @@ def flown(tmp_path, *overrides):
 
 @pytest.mark.parametrize(("airspeed", "radius"), [(200, 200), (50, 10)])
 def test_a_turn_radius_of_twenty_times_r_min(tmp_path, airspeed, radius):
-    # 4 of 4 had come in, by up to 12 and 1.7 m: predicted turns led through the area between two of their points.
+    # 4 of 4 had come in, by up to 12 and 1.7 m: predicted turns led through the area between two of
+    # their points.
     turn = airspeed**2 / 9.81
     rows = flown(
         tmp_path, "fidelity=kinematic", "kinematic.heading_rate_lag_s=0.2", f"guidance.airspeed_mps={airspeed}", "flights=4",
@@ -26,7 +29,8 @@ def test_a_turn_radius_of_twenty_times_r_min(tmp_path, airspeed, radius):
 
 @pytest.mark.parametrize("seed", [1, 3])
 def test_a_vehicle_that_lags_and_slows_down_at_once_beside_a_small_area(tmp_path, seed):
-    # 3 of 4 had come in, by up to 0.33 m: a turn at V_r was predicted from where the fast vehicle is when the turn begins.
+    # 3 of 4 had come in, by up to 0.33 m: a turn at V_r was predicted from where the fast vehicle
+    # is when the turn begins.
     rows = flown(
         tmp_path, "fidelity=kinematic", "kinematic.heading_rate_lag_s=0.76", "guidance.rate_hz=5", "flight.log_rate_hz=5",
         "keepout.radius_m=40.2", "guidance.airspeed_mps=19.42", "reference.standoff_radius_m=840.4", "guidance.gain=2.0",

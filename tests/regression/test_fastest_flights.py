@@ -18,7 +18,8 @@ def test_the_sweep_keeps_to_its_criteria_and_crosses_more_often_than_the_sinusoi
         assert row["crossing_interval_mean_s"] == pytest.approx(
             row["crossing_interval_predicted_s"], rel=2e-3
         )
-    # The issue: <= 7.95 s at nu = 0.5, where the sinusoid takes 9.61 s; 11.57 s at 0.1, rounded, where it takes 14.01 s.
+    # The issue: <= 7.95 s at nu = 0.5, where the sinusoid takes 9.61 s; 11.57 s at 0.1, rounded,
+    # where it takes 14.01 s.
     assert rows[0.5]["crossing_interval_mean_s"] <= 7.95
     assert rows[0.1]["crossing_interval_mean_s"] == pytest.approx(11.57, abs=0.03)
 
@@ -49,7 +50,8 @@ def test_in_wind_a_slow_orbit_that_spends_all_of_the_heading_rate_is_joined_and_
 
 
 def test_a_start_abeam_of_a_slow_ship_joins_an_orbit_that_spends_all_of_the_heading_rate(tmp_path):
-    # One of 7 of 48 flights that never settled where the reference takes all of it from the first (docs/fastest_oscillation.md).
+    # One of 7 of 48 flights that never settled where the reference takes all of it from the first
+    # (docs/fastest_oscillation.md).
     words = ["start.place_m=[260.07,495.12]", "start.course_deg=-59.87", "flight.crossings=6"]
     (row,) = fly_study(tmp_path / "run", "x8", FASTEST, *words, nus=(0.1016,)).rows.values()
     assert_flown_as_the_issue_asks(row)
@@ -90,7 +92,8 @@ def test_beside_a_slow_vessel_the_loiter_crosses_more_often_than_any_oscillation
         tmp_path / "run", "x8", "reference.shape=loiter", "flight.crossings=8", nus=(0.1,)
     ).rows[0.1]
     assert_flown_as_the_issue_asks(row)
-    # pi/(omega_max (1 - nu)) = 6.913 s, and 1.5 % of reserve; the fastest oscillation takes 11.58 s.
+    # pi/(omega_max (1 - nu)) = 6.913 s, and 1.5 % of reserve; the fastest oscillation takes 11.58
+    # s.
     assert row["crossing_interval_mean_s"] == pytest.approx(7.02, abs=0.03)
 
 

@@ -31,17 +31,19 @@ def fly(tmp_path):
     ("nu", "crossings"), [(0.0, 10), (0.1, 10), (0.3, 10), (0.5, 30), (0.7, 10), (0.95, 16)]
 )
 def test_crossings_stay_outside_r_min_and_nothing_ever_enters_it(fly, nu, crossings):
-    # One flight has the study's 30 crossings; those of the others are as good from the first to the tenth, but for the fastest
-    # vessel's, whose first crossings have the rest of the way onto the orbit in their error.
+    # One flight has the study's 30 crossings; those of the others are as good from the first to the
+    # tenth, but for the fastest vessel's, whose first crossings have the rest of the way onto the
+    # orbit in their error.
     row, _ = fly(f"flight.crossings={crossings}", nu=nu)
     assert row["outcome"] == "completed"
     assert row["crossing_count"] >= crossings
-    # Issue: crossing distance >= r_min at every crossing, no keep-out violation over the whole flight.
+    # Issue: crossing distance >= r_min at every crossing, no keep-out violation over the whole
+    # flight.
     assert row["crossing_distance_min_m"] >= 200.0
     assert row["keepout_violations"] == 0
     assert row["min_distance_m"] >= 200.0
-    # Issue: interval within 1 % of pi/omega_0, tracking rms <= 1.5 m, airspeed rms <= 0.3 m/s, altitude <= 1.5 m, and no command
-    # above omega_max.
+    # Issue: interval within 1 % of pi/omega_0, tracking rms <= 1.5 m, airspeed rms <= 0.3 m/s,
+    # altitude <= 1.5 m, and no command above omega_max.
     assert row["crossing_interval_mean_s"] == pytest.approx(
         row["crossing_interval_predicted_s"], rel=0.01
     )
@@ -61,7 +63,8 @@ def assert_the_papers_two_numbers(row):
 
 
 def test_the_law_alone_flies_into_the_keep_out_area_where_the_guard_does_not(fly):
-    # The sweep's own start at nu = 0.15, tracked from the first step on as the paper does: 10 m inside without the guard.
+    # The sweep's own start at nu = 0.15, tracked from the first step on as the paper does: 10 m
+    # inside without the guard.
     without, _ = fly(
         "guidance.approach=false", "guidance.keepout_guard=false", "flight.crossings=3", nu=0.15
     )
@@ -98,7 +101,8 @@ def test_a_flight_that_needs_no_guard_flies_the_same_without_one_to_the_last_bit
     ],
 )
 def test_from_anywhere_about_the_ship_nothing_enters(fly, seed, nu, approach, duration):
-    # Starts from which the law alone, or a guard that takes the lag of slow commands for that of a reversal, got 3 to 7 m in.
+    # Starts from which the law alone, or a guard that takes the lag of slow commands for that of a
+    # reversal, got 3 to 7 m in.
     words = [
         "start.spread_deg=180",
         f"seed={seed}",
@@ -112,7 +116,8 @@ def test_from_anywhere_about_the_ship_nothing_enters(fly, seed, nu, approach, du
 
 
 def test_law_and_guard_do_not_hold_each_other_beside_a_fast_ship(fly):
-    # The law turned parallel to her 3 m outside, and the way to the orbit led through the course to her: for 58.5 s.
+    # The law turned parallel to her 3 m outside, and the way to the orbit led through the course to
+    # her: for 58.5 s.
     row, _ = fly("start.spread_deg=180", "seed=5", "flight.crossings=2", nu=0.9)
     assert row["keepout_violations"] == 0
     assert 0.0 < row["guard_time_s"] < 5.0
@@ -150,7 +155,8 @@ def test_preview_and_airspeed_trim_each_take_away_error(fly):
     no_trim = steady_error("guidance.airspeed_trim=false")
     no_preview = steady_error("guidance.preview=false")
     neither = steady_error("guidance.preview=false", "guidance.airspeed_trim=false")
-    # Measured 0.15, 0.24, 1.7 and 2.3 m; asserted is the order with room for another machine's rounding.
+    # Measured 0.15, 0.24, 1.7 and 2.3 m; asserted is the order with room for another machine's
+    # rounding.
     assert both < no_trim < no_preview < neither
     assert both < 0.5
 
@@ -159,15 +165,16 @@ def test_a_plume_that_rises_is_crossed_at_its_own_height(fly):
     row, history = fly("plume.elevation_deg=10", "flight.crossings=4")
     assert row["keepout_violations"] == 0
     assert row["crossing_distance_min_m"] >= 200.0
-    # Equation (9): z_CO = r_CO sin(alpha_P) above the funnel at 60 m; altitude within the issue's 1.5 m.
+    # Equation (9): z_CO = r_CO sin(alpha_P) above the funnel at 60 m; altitude within the issue's
+    # 1.5 m.
     assert history["altitude_m"].iloc[-1] == pytest.approx(
         60.0 + row["r_co_m"] * math.sin(math.radians(10.0)), abs=1.5
     )
 
 
 def test_the_compass_does_not_matter(fly):
-    # The same flight on another course differs by the earth's rotation and shape only. Starts are drawn in the vessel's frame but
-    # for the course, which is given here relative to the vessel's.
+    # The same flight on another course differs by the earth's rotation and shape only. Starts are
+    # drawn in the vessel's frame but for the course, which is given here relative to the vessel's.
     north, _ = fly("vessel.course_deg=0", "start.course_deg=20", "flight.crossings=4")
     east, _ = fly("vessel.course_deg=110", "start.course_deg=130", "flight.crossings=4")
     # Measured: 4e-6 s and 2 mm apart; the room is for another start.

@@ -1,4 +1,6 @@
-"""Flights with look-ahead and steering that no state can drive beyond omega_max (docs/actuation_bounds.md)."""
+"""Flights with look-ahead and steering that no state can drive beyond omega_max
+(docs/actuation_bounds.md).
+"""
 
 import pandas as pd
 import pytest
@@ -13,7 +15,8 @@ from scenarios.studies.registry import run_study
 
 @pytest.fixture(scope="module")
 def directory(tmp_path_factory):
-    # README, "Bounds", on the kinematic vehicle and at two speed ratios; comparisons are flown too, line of sight among them.
+    # README, "Bounds", on the kinematic vehicle and at two speed ratios; comparisons are flown too,
+    # line of sight among them.
     path = tmp_path_factory.mktemp("guaranteed") / "run"
     overrides = [
         "fidelity=kinematic",

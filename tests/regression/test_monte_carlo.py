@@ -1,4 +1,6 @@
-"""The Monte Carlo study as it comes, with few and short flights of the X8; thousands are flown by the command."""
+"""The Monte Carlo study as it comes, with few and short flights of the X8; thousands are flown by
+the command.
+"""
 
 import json
 

@@ -1,6 +1,8 @@
-"""The paper's three simulations (section V), on its kinematic vehicle and on the X8: the study ``paper``, flown once for this file.
+"""The paper's three simulations (section V), on its kinematic vehicle and on the X8: the study
+``paper``, flown once for this file.
 
-The paper prints neither gains nor starts; tested are the numbers it publishes and what it says of each figure.
+The paper prints neither gains nor starts; tested are the numbers it publishes and what it says of
+each figure.
 """
 
 import json
@@ -68,7 +70,8 @@ def test_every_flight_of_the_verdict_met_its_criteria(rows):
 def test_sim_3_crosses_every_9_5_s_at_214_m_and_never_enters_the_keep_out_area(
     rows, fidelity, share
 ):
-    # Section V, to the issue's 0.5 % kinematic and 2 % in six degrees of freedom. Figure 9: never inside 200 m.
+    # Section V, to the issue's 0.5 % kinematic and 2 % in six degrees of freedom. Figure 9: never
+    # inside 200 m.
     row = rows[f"sim3_{fidelity}"]
     assert row["crossing_interval_mean_s"] == pytest.approx(9.5, rel=share)
     assert row["crossing_distance_mean_m"] == pytest.approx(214.0, rel=share)
@@ -79,7 +82,8 @@ def test_sim_3_crosses_every_9_5_s_at_214_m_and_never_enters_the_keep_out_area(
 def test_both_vehicles_start_from_the_same_places(history):
     for case in ("sim1", "sim2_delta", "sim2_los", "sim3"):
         starts = [history(f"{case}_{fidelity}").iloc[0] for fidelity in ("kinematic", "six_dof")]
-        # Placed on JSBSim's globe and read back; the course by the aircraft's trim. Measured: 1e-6 m and 1e-6 rad.
+        # Placed on JSBSim's globe and read back; the course by the aircraft's trim. Measured: 1e-6
+        # m and 1e-6 rad.
         for name in ("north_m", "east_m"):
             assert starts[1][name] == pytest.approx(starts[0][name], rel=0.0, abs=1e-4)
         assert math.remainder(
@@ -89,7 +93,8 @@ def test_both_vehicles_start_from_the_same_places(history):
 
 @pytest.mark.parametrize("case", ["sim1", "sim2_delta"])
 def test_sims_1_and_2_end_on_the_reference(rows, case):
-    # Issue: below 0.1 m at the end, kinematic. The X8 gets there too: on a circle nothing changes any more.
+    # Issue: below 0.1 m at the end, kinematic. The X8 gets there too: on a circle nothing changes
+    # any more.
     assert rows[f"{case}_kinematic"]["tracking_error_end_m"] < 0.1
     assert rows[f"{case}_six_dof"]["tracking_error_end_m"] < 0.1
 
@@ -105,8 +110,9 @@ def test_sim_1_is_figures_4_and_5(history, fidelity):
     # The headings are opposite at first; phi goes to zero before phi_r and the distance do.
     assert phi[0] > 1.5
     assert np.nonzero(phi > 0.05)[0][-1] < np.nonzero(phi_r > 0.05)[0][-1]
-    # Equation (35): while |phi| <= |phi_r| the distance does not rise, before it does. With the X8 the relation is that of its
-    # actual course, which slips by its airspeed error, 0.05 m/s: over a sample of 0.1 s that is 5 mm.
+    # Equation (35): while |phi| <= |phi_r| the distance does not rise, before it does. With the X8
+    # the relation is that of its actual course, which slips by its airspeed error, 0.05 m/s: over a
+    # sample of 0.1 s that is 5 mm.
     rises = np.diff(d)
     inside = np.maximum(phi[:-1], phi[1:]) <= np.minimum(phi_r[:-1], phi_r[1:])
     assert np.max(rises[inside]) <= (1e-9 if fidelity == "kinematic" else 5e-3)
@@ -122,8 +128,8 @@ def test_sim_1_has_saddle_points_where_phi_and_phi_r_vanish_together(history):
         distance(settled),
     )
     zeros = np.nonzero(phi_r[:-1] * phi_r[1:] < 0.0)[0]
-    # Figure 5: a row of them. phi is gone by 60 s; the distance falls before and after, and its slope vanishes in between:
-    # V_1-dot = -V (rho + delta)(1 - cos phi_r), equation (33).
+    # Figure 5: a row of them. phi is gone by 60 s; the distance falls before and after, and its
+    # slope vanishes in between: V_1-dot = -V (rho + delta)(1 - cos phi_r), equation (33).
     assert np.max(np.abs(phi)) < 1e-3
     assert len(zeros) >= 5
     slope = np.gradient(d, settled["time_s"].to_numpy())
@@ -172,7 +178,8 @@ def test_bounds_stand_beside_the_worst_states_found(directory):
         if row["tuning"] == "bounded":
             assert row["bound_rad_s"] <= row["heading_rate_max_rad_s"]
     by_reserve = {row["reserve"]: row for row in record["guaranteed"]}
-    # A reference that spends all of omega_max leaves no bound; every reserve that does has a price that falls.
+    # A reference that spends all of omega_max leaves no bound; every reserve that does has a price
+    # that falls.
     assert "more of omega_max in reserve" in by_reserve[0.0]["message"]
     times = [
         row["convergence_time_s"] for row in record["guaranteed"] if "convergence_time_s" in row
@@ -229,7 +236,9 @@ def test_saddle_points_are_marked_where_the_relative_courses_meet(directory):
 
 @pytest.fixture
 def few_bounds(monkeypatch):
-    """Search few states and reserves, where a run's bounds are not what is tested: they take two thirds of its time."""
+    """Search few states and reserves, where a run's bounds are not what is tested: they take two
+    thirds of its time.
+    """
     monkeypatch.setattr(paper, "SEARCH_STATES", 1000)
     monkeypatch.setattr(paper, "RESERVES", (0.0, 0.4))
 
@@ -265,7 +274,8 @@ def test_the_kinematic_half_flies_alone(tmp_path, few_bounds):
     ],
 )
 def test_what_is_not_the_papers_is_not_called_reproduced(changes, headline, tmp_path, few_bounds):
-    # An override has its way in every case, also where the case sets that key; report and exit status then agree.
+    # An override has its way in every case, also where the case sets that key; report and exit
+    # status then agree.
     scenario = load_study(
         "paper", ["fidelity=kinematic", "guidance.rate_hz=10", "flight.crossings=10", *changes]
     )

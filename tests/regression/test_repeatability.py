@@ -12,7 +12,9 @@ title = "short"
 trials = ["sim3", "sea_together"]
 set = ["flights=2", "flight.duration_max_s=120", "flight.crossings=3", "turbulence={gusts=2, gust_speed_mps=4}", "histories=2"]
 """
-"""The paper's flight with gusts, and everything random at once: start, wind, vessel, reports, sensors, turbulence, gusts."""
+"""The paper's flight with gusts, and everything random at once: start, wind, vessel, reports,
+sensors, turbulence, gusts.
+"""
 
 TABLES = ("crossings.csv", "interventions.csv", "draws.csv")
 

@@ -8,7 +8,9 @@ from reports.document.chart import Chart, Panel
 
 @pytest.fixture
 def without_single_flights(monkeypatch):
-    """Have reports made without single flights, and with nothing in page 1's picture: both take most of the time."""
+    """Have reports made without single flights, and with nothing in page 1's picture: both take
+    most of the time.
+    """
     monkeypatch.setattr(
         "reports.flights.content.flight_section",
         lambda _: Section(anchor="flights", title="", blocks=[]),

@@ -1,4 +1,6 @@
-"""Run directories as a convergence study leaves them, with plausible numbers from a seeded generator instead of trajectories."""
+"""Run directories as a convergence study leaves them, with plausible numbers from a seeded
+generator instead of trajectories.
+"""
 
 import json
 
@@ -24,9 +26,11 @@ def write_convergence_run(
     planned=None,
     samples=1,
 ):
-    """Write a run directory, with the time histories of the first ``samples`` trajectories and of those that failed.
+    """Write a run directory, with the time histories of the first ``samples`` trajectories and of
+    those that failed.
 
-    ``failures`` are (law, trajectory, outcome); ``cut_failures`` so many more under the cut law, which run out of time.
+    ``failures`` are (law, trajectory, outcome); ``cut_failures`` so many more under the cut law,
+    which run out of time.
     """
     rng = np.random.default_rng(seed)
     rows = pd.concat([law_rows(law, trajectories, rng) for law in LAWS], ignore_index=True)
@@ -60,8 +64,8 @@ def law_rows(law, count, rng):
     phi = starts.uniform(-np.pi, np.pi, count)
     kind = np.arange(count) % 3
     predicted = distance * np.array([0.9, 1.0, 1.2])[kind]
-    # As a trial with gnc.analysis.ensemble: medians near a second per metre, a long tail about references that turn at random.
-    # They end at 20,000 s at the latest.
+    # As a trial with gnc.analysis.ensemble: medians near a second per metre, a long tail about
+    # references that turn at random. They end at 20,000 s at the latest.
     settling = np.minimum(
         predicted * rng.lognormal(0.0, np.array([0.2, 0.25, 0.35])[kind]), 19_000.0
     )

@@ -26,7 +26,9 @@ def flown(tmp_path_factory, scenario, overrides):
 
 
 def built(path):
-    """Build both reports of a run and return the HTML, once it is known to load nothing and to link to what it holds."""
+    """Build both reports of a run and return the HTML, once it is known to load nothing and to link
+    to what it holds.
+    """
     html, pdf = build_reports(path)
     text = html.read_text(encoding="utf-8")
     assert pdf.read_bytes().startswith(b"%PDF")
@@ -37,7 +39,9 @@ def built(path):
 
 
 def draw_all_but(monkeypatch, *names):
-    """Have the charts of these names printed as empty pictures: those of which another one of the report has all that is drawn."""
+    """Have the charts of these names printed as empty pictures: those of which another one of the
+    report has all that is drawn.
+    """
 
     def drawn(chart):
         return Figure(figsize=(1.0, 1.0)) if chart.name in names else matplotlib_charts.draw(chart)
@@ -64,7 +68,8 @@ def assert_axes_read_quantity_and_unit(charts):
                 (panel.x_label, panel.x_whole),
                 (panel.y_label, panel.y_whole or named),
             ):
-                # Names and counts have no unit; an ordinate of names may share its label with the panel to its left.
+                # Names and counts have no unit; an ordinate of names may share its label with the
+                # panel to its left.
                 assert re.fullmatch(r"[^\[]*" if bare else r".+ \[[^\]]+\]", label), (
                     chart.name,
                     label,

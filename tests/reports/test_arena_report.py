@@ -61,7 +61,8 @@ def test_both_reports_are_built_with_a_place_for_each_part(path):
 
 def test_the_best_mean_of_each_figure_is_bold_and_first_where_it_ranks(arena):
     table = tracking_table(arena, tracking=True)
-    # NPFG feeds the curvature forward; pure pursuit knows nothing of it (guidance-laws.md, section 8: 37 m and more).
+    # NPFG feeds the curvature forward; pure pursuit knows nothing of it (guidance-laws.md, section
+    # 8: 37 m and more).
     assert [row[1] for row in table.rows] == ["npfg", "pure pursuit"]
     assert (0, 2) in table.bold
     assert (1, 2) not in table.bold
@@ -139,7 +140,8 @@ def test_tracks_are_shown_of_each_law_from_the_same_start(arena):
 
 
 def test_numbers_that_would_hide_each_other_are_written_together():
-    # A number is as wide as a tenth of the panel: 3 touches 2, and 2 touches 1; 4 is far off, and 5 has no place.
+    # A number is as wide as a tenth of the panel: 3 touches 2, and 2 touches 1; 4 is far off, and 5
+    # has no place.
     places = {1: (0.5, 0.5), 2: (0.55, 0.52), 3: (0.62, 0.55), 4: (0.1, 0.9), 5: (math.nan, 0.1)}
     found = {tuple(numbers): place for numbers, place in clusters(places, (0.1, 0.1))}
     assert set(found) == {(1, 2, 3), (4,)}
@@ -194,7 +196,9 @@ def test_a_mean_without_an_interval_is_on_its_panel(arena, monkeypatch):
 
 
 def of_a_few_flights(run, path, missing):
-    """Return the report of a copy of an arena of which the flights that are named by what they contain could not be flown."""
+    """Return the report of a copy of an arena of which the flights that are named by what they
+    contain could not be flown.
+    """
     rows, record = (
         run.summary.copy(),
         json.loads((run.path / "arena.json").read_text(encoding="utf-8")),

@@ -21,7 +21,9 @@ from tests.scenarios.short_trial import short_trial
 
 @pytest.fixture(scope="module")
 def whole(tmp_path_factory):
-    """A run whose manifest says that it had a file of each kind; statistics and a design it has not, as if they were gone."""
+    """A run whose manifest says that it had a file of each kind; statistics and a design it has
+    not, as if they were gone.
+    """
     folder = tmp_path_factory.mktemp("runs")
     (folder / "short.toml").write_text(short_trial(flights=2, duration=8.0), encoding="utf-8")
     run_study(

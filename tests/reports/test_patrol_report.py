@@ -1,4 +1,6 @@
-"""What the report of patrols shows, of one of the kinematic vehicle with a ship that is served and one that cannot be."""
+"""What the report of patrols shows, of one of the kinematic vehicle with a ship that is served and
+one that cannot be.
+"""
 
 from dataclasses import replace
 

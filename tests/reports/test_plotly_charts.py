@@ -81,7 +81,8 @@ def test_panels_fill_the_room_row_by_row_and_do_not_overlap(count, columns, shar
 
 def test_panels_of_a_column_share_the_abscissa_of_the_lowest_which_alone_has_figures():
     layout = draw(a_chart(7, columns=2, share_x=True))["layout"]
-    # Seven panels in two columns: the last of the left one is the seventh, of the right one the sixth.
+    # Seven panels in two columns: the last of the left one is the seventh, of the right one the
+    # sixth.
     assert [layout[f"xaxis{n}"].get("matches") for n in ("", 2, 3, 4, 5)] == [
         "x7",
         "x6",
@@ -230,8 +231,8 @@ def test_a_legend_of_several_rows_stays_clear_of_the_bar_of_buttons():
     figure = draw(
         Chart(name="c", caption="", panels=[Panel(x_label="a [m]", y_label="b [m]", lines=lines)])
     )
-    # As measured in Chromium: the bar ends 28 px below the top of a figure, and a row of the legend, one for each entry here, is 30
-    # px high; the last is 6 px above the panel.
+    # As measured in Chromium: the bar ends 28 px below the top of a figure, and a row of the
+    # legend, one for each entry here, is 30 px high; the last is 6 px above the panel.
     assert figure["narrow"]["margin"]["t"] - 6 - 30 * len(labels) >= 28
 
 
@@ -251,12 +252,14 @@ def test_names_of_an_ordinate_leave_the_legend_fewer_entries_in_a_row():
         )["narrow"]
         for of in ((), names)
     )
-    # As measured in Chromium at 520 px: two rows beside numbers, and one for each entry beside these names.
+    # As measured in Chromium at 520 px: two rows beside numbers, and one for each entry beside
+    # these names.
     assert named["margin"]["t"] - plain["margin"]["t"] == 30
 
 
 def test_an_entry_of_the_legend_with_broad_letters_takes_more_of_its_row():
-    # As measured in Chromium: 178, 124, 175 and 217 px; the last two share no row of 390 px, nor do they with the first two.
+    # As measured in Chromium: 178, 124, 175 and 217 px; the last two share no row of 390 px, nor do
+    # they with the first two.
     labels = [
         "keep-out area, r_min",
         "plume's axis",

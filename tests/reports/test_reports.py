@@ -71,7 +71,8 @@ def charts_of(report):
 
 
 def test_both_reports_are_built_from_disk_alone(copy, monkeypatch):
-    # Those of single flights are drawn in the report of trials, and page 1's in its own tests; of steps and margins one is enough.
+    # Those of single flights are drawn in the report of trials, and page 1's in its own tests; of
+    # steps and margins one is enough.
     draw_all_but(monkeypatch, "first", "tracks", "histories", "step2", "step3", "leveldiskmargins")
     text = built(copy)
     assert "Sweep of the speed ratio" in text
@@ -149,7 +150,8 @@ def test_a_violation_is_in_the_headline(report, copy):
 
 
 def test_a_flight_of_a_comparison_is_drawn(run_path):
-    # It is not in the summary, which has what was swept; that was a KeyError, and the run was called damaged.
+    # It is not in the summary, which has what was swept; that was a KeyError, and the run was
+    # called damaged.
     run = read_run(run_path)
     assert len(flight_figure(run, str(run.comparison["flight_id"].iloc[0])).axes) > 1
 
@@ -211,7 +213,8 @@ def test_of_a_sweep_the_closest_flight_and_a_typical_one_are_printed_and_all_if_
     report, copy
 ):
     flights = {flight.flight_id: flight for flight in flights_of(report)}
-    # Of the three one cannot be flown, and is printed with its reason; of the two others one is the closest, one the median.
+    # Of the three one cannot be flown, and is printed with its reason; of the two others one is the
+    # closest, one the median.
     assert [flight_id for flight_id, flight in flights.items() if flight.printed] == list(flights)
     assert "closest approach" in flights["nu_0.90"].label
     (section,) = (section for section in report.sections if section.anchor == "flights")
@@ -244,7 +247,8 @@ def test_a_record_of_another_aircraft_over_airspeed_and_bank_is_shown_in_the_swe
 
 @pytest.mark.usefixtures("without_single_flights")
 def test_poles_are_shown_as_far_out_as_the_aircraft_has_them(copy):
-    # Else those of an airliner would be one dot at the origin. One at -80 1/s is a servo's, and off the figure.
+    # Else those of an airliner would be one dot at the origin. One at -80 1/s is a servo's, and off
+    # the figure.
     design = record()
     slow = [[-3.0, 1.0], [-3.0, -1.0], [-80.0, 0.0]]
     for poles in design["poles"]:

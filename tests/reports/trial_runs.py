@@ -11,7 +11,8 @@ from scenarios.engine.in_process_executor import InProcessExecutor
 from scenarios.schema.sections.experiment import TrialList
 from scenarios.studies.registry import run_study
 
-# Both settle and cross a few times, within some 150 s; after that the vessel of the second turns, which takes it 40 s at most.
+# Both settle and cross a few times, within some 150 s; after that the vessel of the second turns,
+# which takes it 40 s at most.
 STEADY = """
 study = "sea"
 title = "Steady"

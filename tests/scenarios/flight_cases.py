@@ -1,4 +1,6 @@
-"""What tests of flights share: scenarios in operational conditions, and the kinematic vehicle that flies them."""
+"""What tests of flights share: scenarios in operational conditions, and the kinematic vehicle that
+flies them.
+"""
 
 import tomllib
 from dataclasses import dataclass
@@ -23,7 +25,9 @@ ASTERN = {"distance_m": (400.0, 400.0), "spread_deg": 10.0}
 
 
 def scenario(**changes):
-    """Return a kinematic scenario that follows a vessel at 8 m/s in still air unless ``changes`` say otherwise."""
+    """Return a kinematic scenario that follows a vessel at 8 m/s in still air unless ``changes``
+    say otherwise.
+    """
     base = tomllib.loads(bases()[OPERATIONAL].read_text(encoding="utf-8"))
     values = {"title": "test", "fidelity": "kinematic", "vessel": {"speed_mps": 8.0}}
     return Scenario.model_validate(merged(base, values | changes))

@@ -113,7 +113,9 @@ start.spread_deg = 10.0
 
 
 def write_scenario(folder, lines, text=None):
-    """Write a sweep with some lines more, and beside it the parts, or ``own.py`` with ``text``; return the scenario's path."""
+    """Write a sweep with some lines more, and beside it the parts, or ``own.py`` with ``text``;
+    return the scenario's path.
+    """
     for file, content in ({"own.py": text} if text else FILES).items():
         (folder / file).write_text(content, encoding="utf-8")
     path = folder / "own.toml"

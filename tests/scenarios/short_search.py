@@ -12,7 +12,9 @@ METHODS = ("corners", "differential_evolution", "local", "cma")
 
 
 def short_flights(duration):
-    """Return the tables of flights that are quick to fly, of so many seconds, in which keeping out alone is required."""
+    """Return the tables of flights that are quick to fly, of so many seconds, in which keeping out
+    alone is required.
+    """
     return f"""
 [wind]
 speed_mps = 3.0
@@ -67,7 +69,9 @@ def run(search, out, *overrides, factory=InProcessExecutor, resume=False, progre
 
 
 def tables(out):
-    """Return a run's flights of the search, and those that repeat the worst, each with its row of inputs."""
+    """Return a run's flights of the search, and those that repeat the worst, each with its row of
+    inputs.
+    """
     rows = pd.read_csv(out / "summary.csv").merge(
         pd.read_csv(out / "draws.csv"), on="flight_id", validate="one_to_one"
     )

@@ -2,7 +2,9 @@
 
 
 def short_trial(*, flights, duration, histories=200, spread=10.0, rate=20.0):
-    """Return a scenario file; ``duration`` in s, ``spread`` of the starts in deg, ``rate`` of the guidance in Hz."""
+    """Return a scenario file; ``duration`` in s, ``spread`` of the starts in deg, ``rate`` of the
+    guidance in Hz.
+    """
     return f"""
 extends = "operational"
 study = "flights"

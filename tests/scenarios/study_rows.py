@@ -11,9 +11,11 @@ PREDICTED = 7.0
 
 
 def study_rows(flights, seed=20261121):
-    """Return rows and inputs of flights whose clearance falls with the wind, which it is the most, and with the turbulence.
+    """Return rows and inputs of flights whose clearance falls with the wind, which it is the most,
+    and with the turbulence.
 
-    Nobody enters: the clearance is 8 m less up to 4 m of the wind's and 1 m of the turbulence's, at least 2 m.
+    Nobody enters: the clearance is 8 m less up to 4 m of the wind's and 1 m of the turbulence's, at
+    least 2 m.
     """
     generator = np.random.default_rng(seed)
     wind = generator.uniform(0.0, 10.0, flights)
@@ -46,7 +48,9 @@ def study_rows(flights, seed=20261121):
 
 @contextlib.contextmanager
 def few_indices(*driven):
-    """Ask of some figures alone what drives them, with 3 bootstraps: that takes nearly all of the time of study_statistics."""
+    """Ask of some figures alone what drives them, with 3 bootstraps: that takes nearly all of the
+    time of study_statistics.
+    """
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr("scenarios.statistics.sensitivity.RESAMPLES", 3)
         patch.setattr("scenarios.statistics.estimates.DRIVEN", driven)

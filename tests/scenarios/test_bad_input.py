@@ -1,4 +1,6 @@
-"""Numbers of every size, names of every kind, machines without a home: one line and status 2, or it works."""
+"""Numbers of every size, names of every kind, machines without a home: one line and status 2, or it
+works.
+"""
 
 import csv
 import json
@@ -86,7 +88,9 @@ def test_the_other_commands_refuse_a_path_that_is_too_long_in_a_line_too(folder,
 
 
 class Scripts(HTMLParser):
-    """What a parser that knows the rules for script elements finds in them: text up to the first end tag that is one."""
+    """What a parser that knows the rules for script elements finds in them: text up to the first
+    end tag that is one.
+    """
 
     def __init__(self):
         super().__init__()

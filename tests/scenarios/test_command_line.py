@@ -1,4 +1,6 @@
-"""The commands as a user types them: in a process of their own where that is tested, else in this one, which has imported all."""
+"""The commands as a user types them: in a process of their own where that is tested, else in this
+one, which has imported all.
+"""
 
 import multiprocessing
 import os
@@ -23,7 +25,9 @@ SHORT = ["--set", "flight.crossings=2", "--set", "comparison.variants=[]", "--no
 
 @pytest.fixture
 def run_here(monkeypatch, capsys):
-    """Return a function that runs a command without a process: parsing, messages and exit status are the same."""
+    """Return a function that runs a command without a process: parsing, messages and exit status
+    are the same.
+    """
 
     def run_here(*arguments):
         monkeypatch.setattr(sys, "argv", ["scenarios.run", *map(str, arguments)])
@@ -36,7 +40,9 @@ def run_here(monkeypatch, capsys):
 
 
 def run_apart(arguments, errors):
-    """Run a command in the process that this is, in a group of its own; what it says of errors goes into a file."""
+    """Run a command in the process that this is, in a group of its own; what it says of errors goes
+    into a file.
+    """
     os.setsid()
     # Also where pytest itself was started to ignore it, as a script does behind ``&``.
     signal.signal(signal.SIGINT, signal.default_int_handler)
@@ -73,7 +79,9 @@ STEPS = {
     "from scenarios.console.describe import described; described('payload.sensor')": HEAVY,
     FLIGHTS: DESIGNING,
 }
-"""What help needs, what is said of a key, and flights: one after the other, with what none of them needs so far."""
+"""What help needs, what is said of a key, and flights: one after the other, with what none of them
+needs so far.
+"""
 
 
 @pytest.mark.usefixtures("x8_design")
@@ -303,7 +311,8 @@ def test_an_interrupted_run_keeps_what_is_done_and_resumes_to_the_same_result(tm
         target=run_apart, args=(arguments, tmp_path / "errors")
     )
     process.start()
-    # A time history is there just before its flight is done: once there are two, the first flight is.
+    # A time history is there just before its flight is done: once there are two, the first flight
+    # is.
     while len(list((broken / "flights").glob("*.parquet"))) < 2:
         assert process.exitcode is None
         time.sleep(0.01)
@@ -403,7 +412,8 @@ def test_an_interrupted_run_is_resumed_by_what_was_typed_with_its_directory(run_
 
 
 def test_a_list_of_trials_takes_its_own_keys_and_hands_on_those_of_the_trials(tmp_path, run_here):
-    # 0.005 of 200 flights, with the seed and the duration that the trials are told; too short to settle.
+    # 0.005 of 200 flights, with the seed and the duration that the trials are told; too short to
+    # settle.
     keys = [
         "trials=['sea_wind']",
         "share=0.005",

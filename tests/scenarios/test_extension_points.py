@@ -1,4 +1,6 @@
-"""Parts that a user adds, each by one file: they fly in a sweep, stand in its manifest, and are refused in one line."""
+"""Parts that a user adds, each by one file: they fly in a sweep, stand in its manifest, and are
+refused in one line.
+"""
 
 import importlib.metadata
 from dataclasses import replace
@@ -37,7 +39,9 @@ def refusal(path, out, *overrides, resume=False):
 
 @pytest.fixture
 def asked(monkeypatch, tmp_path, designs):
-    """The names of aircraft that an autopilot was asked for: each has the X8's, as a design of its own takes seconds."""
+    """The names of aircraft that an autopilot was asked for: each has the X8's, as a design of its
+    own takes seconds.
+    """
     # Before the cache is another one, in which there is none.
     made, names = designs("x8"), []
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
@@ -78,11 +82,13 @@ def test_parts_act_on_the_flight(tmp_path):
     )
     run(path, tmp_path / "run", "sweep.nu=[0.5]")
     (row,) = rows_of(tmp_path / "run")
-    # Of the slower aircraft, 19.1 m/s; of the plume's model, 190 deg from the bow, which points north at first.
+    # Of the slower aircraft, 19.1 m/s; of the plume's model, 190 deg from the bow, which points
+    # north at first.
     assert row["vessel_speed_mps"] == pytest.approx(9.55)
     assert row["plume_heading_deg"] == pytest.approx(190.0)
     history = pd.read_parquet(tmp_path / "run" / "flights" / "nu_0.50.parquet")
-    # The vessel weaves by 10 deg; the instrument reads its 100 ppb on the axis, and noise of 1 ppb off it.
+    # The vessel weaves by 10 deg; the instrument reads its 100 ppb on the axis, and noise of 1 ppb
+    # off it.
     assert history["vessel_velocity_east_mps"].max() == pytest.approx(9.55 * 0.1745, rel=1e-3)
     assert history["so2_ppb"].max() > 90.0
     assert -6.0 < history["so2_ppb"].min() < 1.0

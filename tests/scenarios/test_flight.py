@@ -85,7 +85,8 @@ def test_a_flight_that_has_not_all_its_crossings_in_time_says_so(duration, outco
             "not_settled",
             "did not settle within 40 s",
         ),
-        # Nothing is received from the vessel for a minute at its end: it holds off, until the next report.
+        # Nothing is received from the vessel for a minute at its end: it holds off, until the next
+        # report.
         ({"fault": {"kind": "vessel_data", "at_s": (130.0, 130.0)}}, "completed", ""),
     ],
 )
@@ -193,7 +194,8 @@ def test_beside_a_plume_that_rises_steeply_a_cylinder_is_kept_out_of_horizontall
         0,
         "cylinder",
     )
-    # Its distance is the horizontal one, and the orbit comes as near to r_min as over a level plume: within the margin.
+    # Its distance is the horizontal one, and the orbit comes as near to r_min as over a level
+    # plume: within the margin.
     assert cylinder["min_distance_m"] == cylinder["horizontal_distance_min_m"]
     assert 200.0 <= cylinder["min_distance_m"] < 230.0
     sphere = fly(**steep).row

@@ -1,4 +1,6 @@
-"""Parts of a user's own that are of no use: the flight is a row that names part, method and remedy; others go on."""
+"""Parts of a user's own that are of no use: the flight is a row that names part, method and remedy;
+others go on.
+"""
 
 import pytest
 from flight_cases import fly

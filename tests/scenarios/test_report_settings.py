@@ -1,4 +1,6 @@
-"""The section ``report``: it is in the manifest and in both reports, and has no effect on the flights."""
+"""The section ``report``: it is in the manifest and in both reports, and has no effect on the
+flights.
+"""
 
 import hashlib
 

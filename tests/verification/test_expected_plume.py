@@ -60,8 +60,9 @@ def test_height_spreads_and_peak_are_those_of_the_plume_model(
         "height", "relative_y", "relative_z", "meander_y", "meander_z")}  # fmt: skip
     # Rise and downwash are the same equations; the model's table has steps of 0.1 s.
     assert prior.height == pytest.approx(true["height"], abs=0.01)
-    # The share of a plume's own turbulence is a fit to 5 %, and the spread of the source is 4 m instead of 3 m. The meander in
-    # height is what is left of the spread about the axis, and of a low source in a weak apparent wind little is.
+    # The share of a plume's own turbulence is a fit to 5 %, and the spread of the source is 4 m
+    # instead of 3 m. The meander in height is what is left of the spread about the axis, and of a
+    # low source in a weak apparent wind little is.
     for expected, name, limit in (
         (prior.sigma_y, "relative_y", 0.15), (prior.sigma_z, "relative_z", 0.15), (prior.meander_y, "meander_y", 0.1)
     ):  # fmt: skip
@@ -80,7 +81,9 @@ def test_height_spreads_and_peak_are_those_of_the_plume_model(
 def test_a_plume_that_is_not_searched_for_is_followed_at_the_height_of_the_plume_model(
     apparent: float, source: float
 ) -> None:
-    """At a sixth of her power, whose slow exhaust the wake of the funnel draws down by up to 3.6 m, and never below the sea."""
+    """At a sixth of her power, whose slow exhaust the wake of the funnel draws down by up to 3.6 m,
+    and never below the sea.
+    """
     weak = emission_of(ship_preset("container"), fuel_preset("mgo", 0.1), power=2e6)
     height = AxisHeight(
         source=source, momentum_flux=weak.momentum_flux, buoyancy_flux=weak.buoyancy_flux, stack_diameter=weak.stack_diameter,
@@ -130,7 +133,8 @@ def test_spreads_and_meander_are_carried_to_another_distance(
         ratio = np.interp(near / apparent, ages, getattr(of, name)[0]) / np.interp(
             far / apparent, ages, getattr(of, name)[0]
         )
-        # One factor for four, that differ by as much from each other: behind a low source the sea stops the meander in height.
+        # One factor for four, that differ by as much from each other: behind a low source the sea
+        # stops the meander in height.
         assert prior.widened(near, apparent) == pytest.approx(float(ratio), rel=limit), name
 
 
@@ -157,7 +161,8 @@ def test_a_load_that_is_off_changes_the_peak_by_what_is_stated(load: float) -> N
         prior(middle, off).peak_deviation ** 2 - prior(middle, 0.0).peak_deviation ** 2
     )
     assert changed < 0.8 * off
-    # The share of buoyancy in the spreads is that at the middle load; and heat and gas of an engine do not go quite alike.
+    # The share of buoyancy in the spreads is that at the middle load; and heat and gas of an engine
+    # do not go quite alike.
     assert stated == pytest.approx(changed, rel=0.3)
 
 

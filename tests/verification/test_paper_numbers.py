@@ -1,4 +1,6 @@
-"""The numbers of the paper and of reference/paper-notes.md ("the notes"), each at the precision at which it is printed there."""
+"""The numbers of the paper and of reference/paper-notes.md ("the notes"), each at the precision at
+which it is printed there.
+"""
 
 import math
 
@@ -33,7 +35,8 @@ def oscillation_at(nu, **changes):
 @pytest.mark.parametrize(
     ("nu", "eta", "interval", "d_x", "d_y"),
     [
-        # The notes, "Facts to test against". Tolerances: half of the last digit printed there, in each column.
+        # The notes, "Facts to test against". Tolerances: half of the last digit printed there, in
+        # each column.
         (0.10, 2.2187, 13.86, 34.35, 104.63),
         (0.30, 1.8687, 11.67, 23.33, 89.32),
         (0.50, 1.5211, 9.50, 13.95, 68.40),
@@ -66,8 +69,9 @@ def test_the_two_numbers_of_sim_3_give_the_speed_and_heading_rate_that_the_paper
     assert eta == pytest.approx(1.521144, abs=5e-7)
     omega_max = eta * omega_0
     assert omega_max == pytest.approx(0.503, abs=5e-4)
-    # The orbit scales with V_r at given omega_0, so 14 m along gives V_r: 19.49 m/s for 14.000 m. The notes say 19.4; 14 m has but
-    # two digits, and at the 19.42 m/s that they settle on the orbit is 13.953 m.
+    # The orbit scales with V_r at given omega_0, so 14 m along gives V_r: 19.49 m/s for 14.000 m.
+    # The notes say 19.4; 14 m has but two digits, and at the 19.42 m/s that they settle on the
+    # orbit is 13.953 m.
     speed = brentq(
         lambda v: half_widths(oscillation_at(0.5, speed=v, heading_rate_max=omega_max))[0] - 14.0,
         5.0,
@@ -79,7 +83,8 @@ def test_the_two_numbers_of_sim_3_give_the_speed_and_heading_rate_that_the_paper
 
 
 def test_the_first_zero_of_j_0():
-    # Section III.C: 2.4048; the notes, care 6: 2.404825557695773. Half of the last digit, and rounding.
+    # Section III.C: 2.4048; the notes, care 6: 2.404825557695773. Half of the last digit, and
+    # rounding.
     assert eta_for_speed_ratio(0.0) == pytest.approx(2.4048, abs=5e-5)
     assert eta_for_speed_ratio(0.0) == pytest.approx(2.404825557695773, abs=1e-14)
     assert mean_speed_ratio(2.404825557695773) == pytest.approx(0.0, abs=1e-15)
@@ -111,7 +116,8 @@ def test_the_half_widths_are_reached_at_the_times_of_equation_12(nu):
     # Below equation (12). Rounding.
     assert abs(float(offset(oscillation, t_x)[0])) == pytest.approx(d_x, rel=1e-13)
     assert abs(float(offset(oscillation, t_y)[1])) == pytest.approx(d_y, rel=1e-13)
-    # And there the reference moves as the vessel does along, or along only: cos[chi_r] = nu and sin[chi_r] = 0.
+    # And there the reference moves as the vessel does along, or along only: cos[chi_r] = nu and
+    # sin[chi_r] = 0.
     course = [oscillation.eta * math.cos(oscillation.omega_0 * t) for t in (t_x, t_y)]
     assert math.cos(course[0]) == pytest.approx(nu, abs=1e-14)
     assert math.sin(course[1]) == pytest.approx(0.0, abs=1e-15)
@@ -126,7 +132,8 @@ def slack(nu, heading_deg):
 def test_equation_11_is_conservative_by_up_to_ten_metres():
     # The notes, care 4: 9.9 m at nu = 0.1 and 165 degrees. Half of the last digit.
     assert slack(0.1, 165.0) == pytest.approx(9.9, abs=0.05)
-    # The notes call that the largest; searched for more finely the largest is 9.985 m, at nu = 0.14 and 163.5 degrees.
+    # The notes call that the largest; searched for more finely the largest is 9.985 m, at nu = 0.14
+    # and 163.5 degrees.
     assert slack(0.14, 163.5) == pytest.approx(9.985, abs=5e-4)
     slacks = [
         slack(nu, heading)
@@ -147,20 +154,22 @@ def test_equation_10_keeps_a_sphere_with_a_margin_for_elevated_plumes(nu, elevat
     ahead, right, above = centre_of_oscillation(distance, axis)
     along, across = offset(oscillation, np.linspace(0.0, oscillation.period, 4001))
     closest = np.min(np.sqrt((ahead + along) ** 2 + (right + across) ** 2 + above**2))
-    # The notes, care 3: the margin left is sqrt(r_min^2 + d^2 sin^2 alpha_P) - r_min. Abeam the orbit's end is that point exactly,
-    # and one of the samples, at three quarters of the period. Rounding.
+    # The notes, care 3: the margin left is sqrt(r_min^2 + d^2 sin^2 alpha_P) - r_min. Abeam the
+    # orbit's end is that point exactly, and one of the samples, at three quarters of the period.
+    # Rounding.
     assert closest - 200.0 == pytest.approx(
         math.sqrt(200.0**2 + (d_y * math.sin(elevation)) ** 2) - 200.0, abs=1e-10
     )
-    # And the horizontal distance is r_CO cos alpha_P - d there, which a vertical cylinder of 200 m would not allow.
+    # And the horizontal distance is r_CO cos alpha_P - d there, which a vertical cylinder of 200 m
+    # would not allow.
     assert np.min(np.hypot(ahead + along, right + across)) == pytest.approx(
         distance * math.cos(elevation) - d_y, abs=1e-10
     )
 
 
 def test_the_reference_respects_the_roll_rate_where_equation_8_does_not():
-    # The notes, care 5: eta omega_0^2 is g/V times the roll rate near level. At nu = 0.95 equation (8) alone asks for
-    # 0.503^2/0.45 rad/s^2, which is 64 deg/s of roll.
+    # The notes, care 5: eta omega_0^2 is g/V times the roll rate near level. At nu = 0.95 equation
+    # (8) alone asks for 0.503^2/0.45 rad/s^2, which is 64 deg/s of roll.
     roll_rate = math.radians(40.0)
     free, limited = oscillation_at(0.95), oscillation_at(0.95, roll_rate_max=roll_rate)
     assert math.degrees(free.eta * free.omega_0**2 * SPEED / STANDARD_GRAVITY) == pytest.approx(
@@ -174,7 +183,8 @@ def test_the_reference_respects_the_roll_rate_where_equation_8_does_not():
 def test_a_reference_started_on_the_centre_at_another_phase_would_fly_off_centre():
     oscillation = oscillation_at(0.5)
     along, across = offset(oscillation, np.linspace(0.0, oscillation.period, 4000, endpoint=False))
-    # The notes, care 2. From phi_0 = pi/2 on, seen from where it starts, the orbit goes from 0 to -2 d_y across.
+    # The notes, care 2. From phi_0 = pi/2 on, seen from where it starts, the orbit goes from 0 to
+    # -2 d_y across.
     start = 0.5 * math.pi / oscillation.omega_0
     shifted = across - float(offset(oscillation, start)[1])
     _, d_y = half_widths(oscillation)

@@ -1,7 +1,9 @@
-"""The Skywalker X8's published trim: level flight at 18 m/s and 200 m with alpha = 0.0308 rad and 0.0370 rad of symmetric elevon.
+"""The Skywalker X8's published trim: level flight at 18 m/s and 200 m with alpha = 0.0308 rad and
+0.0370 rad of symmetric elevon.
 
-Source: Gryte, Hann, Alam, Rohac, Johansen, Fossen, "Aerodynamic modeling of the Skywalker X8 Fixed-Wing Unmanned Aerial Vehicle",
-ICUAS 2018, and the parameter file its authors published. Thrust in it is another model's, so only angles are compared.
+Source: Gryte, Hann, Alam, Rohac, Johansen, Fossen, "Aerodynamic modeling of the Skywalker X8
+Fixed-Wing Unmanned Aerial Vehicle", ICUAS 2018, and the parameter file its authors published.
+Thrust in it is another model's, so only angles are compared.
 """
 
 import math
@@ -29,7 +31,9 @@ EQUATORIAL_GRAVITY = 9.7803  # m/s^2, WGS 84 on the equator, where our trims are
 
 
 def balance(density, gravity):
-    """Angle of attack and elevon [rad] by hand: no pitching moment, and lift with thrust's share against the weight."""
+    """Angle of attack and elevon [rad] by hand: no pitching moment, and lift with thrust's share
+    against the weight.
+    """
 
     def elevon(alpha):
         return -(CM_0 + CM_A * alpha) / CM_DE  # C_m = 0
@@ -47,16 +51,17 @@ def balance(density, gravity):
 
 
 def test_alpha_at_18_mps_and_200_m_is_the_published_one_within_two_milliradians():
-    # Two milliradians, a ninth of a degree, is what wind-tunnel coefficients and two independent simulations can be asked for.
+    # Two milliradians, a ninth of a degree, is what wind-tunnel coefficients and two independent
+    # simulations can be asked for.
     assert trim(Fdm(X8), airspeed=AIRSPEED, altitude=ALTITUDE).alpha == pytest.approx(
         ALPHA, abs=2e-3
     )
 
 
 def test_elevon_at_18_mps_and_200_m_is_the_published_one_within_what_density_explains():
-    # 2.2 mrad, not 2: the published pair balances at sea-level density (below), and at 200 m there is 1.9 % less. The wing needs
-    # 1.2 mrad more there; the elevon answers with C_ma/C_mde = 2.0 times that, -2.5 mrad, of which JSBSim's lower gravity takes
-    # 0.4 back.
+    # 2.2 mrad, not 2: the published pair balances at sea-level density (below), and at 200 m there
+    # is 1.9 % less. The wing needs 1.2 mrad more there; the elevon answers with C_ma/C_mde = 2.0
+    # times that, -2.5 mrad, of which JSBSim's lower gravity takes 0.4 back.
     assert trim(Fdm(X8), airspeed=AIRSPEED, altitude=ALTITUDE).driven[
         "elevator_position"
     ] == pytest.approx(ELEVON, abs=2.2e-3)
@@ -64,7 +69,8 @@ def test_elevon_at_18_mps_and_200_m_is_the_published_one_within_what_density_exp
 
 def test_the_published_trim_balances_at_sea_level_density_and_not_at_that_of_200_m():
     alpha, elevon = balance(SEA_LEVEL_DENSITY, GRAVITY)
-    # Nothing of ours in this: the published numbers against each other. 0.1 mrad is twice the rounding of either.
+    # Nothing of ours in this: the published numbers against each other. 0.1 mrad is twice the
+    # rounding of either.
     assert alpha == pytest.approx(ALPHA, abs=2.0 * ROUNDING)
     assert elevon == pytest.approx(ELEVON, abs=2.0 * ROUNDING)
     thinner_alpha, thinner_elevon = balance(DENSITY_AT_200_M, GRAVITY)
@@ -80,7 +86,8 @@ def test_the_published_elevon_follows_from_the_published_alpha_whatever_the_dens
 def test_at_the_published_density_and_our_gravity_the_trim_is_that_of_hand_calculation():
     found = trim(Fdm(X8), airspeed=AIRSPEED, altitude=0.0)
     alpha, elevon = balance(SEA_LEVEL_DENSITY, EQUATORIAL_GRAVITY)
-    # 0.01 mrad: gravity's and density's last digits (5e-6 and less of 0.055 rad), sideslip and bank of half a milliradian squared.
+    # 0.01 mrad: gravity's and density's last digits (5e-6 and less of 0.055 rad), sideslip and bank
+    # of half a milliradian squared.
     assert found.alpha == pytest.approx(alpha, abs=1e-5)
     assert found.driven["elevator_position"] == pytest.approx(
         elevon, abs=2e-5
@@ -89,7 +96,8 @@ def test_at_the_published_density_and_our_gravity_the_trim_is_that_of_hand_calcu
 
 def test_at_the_published_density_the_trim_is_the_published_one_but_for_gravity():
     found = trim(Fdm(X8), airspeed=AIRSPEED, altitude=0.0)
-    # The textbook's gravity in place of the equator's, by the hand calculation that the trim agrees with: 0.2 mrad of alpha.
+    # The textbook's gravity in place of the equator's, by the hand calculation that the trim agrees
+    # with: 0.2 mrad of alpha.
     heavier, lighter = (
         balance(SEA_LEVEL_DENSITY, gravity) for gravity in (GRAVITY, EQUATORIAL_GRAVITY)
     )
@@ -97,6 +105,7 @@ def test_at_the_published_density_the_trim_is_the_published_one_but_for_gravity(
     assert found.driven["elevator_position"] + heavier[1] - lighter[1] == pytest.approx(
         ELEVON, abs=2e-4
     )
-    # Without that correction alpha still is, and the elevon is within C_ma/C_mde = 2.0 times 0.2 mrad.
+    # Without that correction alpha still is, and the elevon is within C_ma/C_mde = 2.0 times 0.2
+    # mrad.
     assert found.alpha == pytest.approx(ALPHA, abs=2e-4)
     assert found.driven["elevator_position"] == pytest.approx(ELEVON, abs=4e-4)

@@ -1,7 +1,9 @@
-"""Crossings, closest approach and intervals, recomputed from nothing but the time histories on disk.
+"""Crossings, closest approach and intervals, recomputed from nothing but the time histories on
+disk.
 
-Nothing of the packages under test is used for that: Parquet is read with pyarrow, the path between samples is scipy's polynomial
-through positions and velocities, and roots and minima are found by bracketing. The project finds them as roots of polynomials.
+Nothing of the packages under test is used for that: Parquet is read with pyarrow, the path between
+samples is scipy's polynomial through positions and velocities, and roots and minima are found by
+bracketing. The project finds them as roots of polynomials.
 """
 
 import numpy as np

@@ -1,4 +1,6 @@
-"""Designs of JSBSim's own aircraft: what is required of every design, on those that are designed in seconds."""
+"""Designs of JSBSim's own aircraft: what is required of every design, on those that are designed in
+seconds.
+"""
 
 import math
 
@@ -20,7 +22,8 @@ TURN = 0.5
 def stock(request, designs, tmp_path_factory):
     """A design, and the lag of its heading rate [s]."""
     if request.param == "737":
-        # No flight of other tests asks for its record, and the search over reversals is half of the time that this takes.
+        # No flight of other tests asks for its record, and the search over reversals is half of the
+        # time that this takes.
         design = design_autopilot(find_spec("737"), ALTITUDE)
         schedule = design.schedule
         aircraft = AutopilotedAircraft(
@@ -29,7 +32,8 @@ def stock(request, designs, tmp_path_factory):
         return design, measure_lag(
             aircraft, schedule.level(schedule.middle), schedule.envelope.bank
         )
-    # The Cessna is heavier by 150 lb: that of docs/scripts/aircraft_directory.py, which other tests need anyway.
+    # The Cessna is heavier by 150 lb: that of docs/scripts/aircraft_directory.py, which other tests
+    # need anyway.
     found = (
         request.getfixturevalue("heavy_design")
         if request.param == "c172p"
@@ -41,7 +45,8 @@ def stock(request, designs, tmp_path_factory):
 def test_margins_hold_at_every_grid_point_and_between_as_modelled_and_changed(stock):
     design, _ = stock
     checks = design.checks
-    # 25 points of the grid and 40 half-way between, the aircraft as modelled and changed in seven ways.
+    # 25 points of the grid and 40 half-way between, the aircraft as modelled and changed in seven
+    # ways.
     assert len(checks) == 75 * 8
     for check in checks:
         assert check.stable
@@ -74,7 +79,8 @@ def test_half_the_studys_turn_overshoots_its_model_by_less_than_a_tenth_and_slip
     # It gets there, and as quickly as its model within a fifth.
     assert flown.rise_time() == pytest.approx(model.rise_time(), rel=0.2)
     assert flown.channels["heading_rate"][-1] == pytest.approx(size, rel=0.02)
-    # Sideslip is what the rudder is for: under a degree and a half on the way into a bank of 15 degrees and more.
+    # Sideslip is what the rudder is for: under a degree and a half on the way into a bank of 15
+    # degrees and more.
     assert flown.largest("beta") < math.radians(1.5)
     # Altitude keeps to what a pilot is allowed in a turn, 100 ft.
     assert flown.largest("altitude") < 30.0
@@ -91,6 +97,7 @@ def test_the_envelope_that_was_found_leaves_room_for_the_study(stock):
     design, _ = stock
     envelope = design.schedule.envelope
     assert envelope.stall > 0.0
-    # 1.3 times above stall, more in the steepest turn; and at least 12 % from end to end, or there is nothing to schedule.
+    # 1.3 times above stall, more in the steepest turn; and at least 12 % from end to end, or there
+    # is nothing to schedule.
     assert envelope.airspeed_min > 1.3 * envelope.stall
     assert envelope.airspeed_max / envelope.airspeed_min > 1.12

@@ -1,4 +1,6 @@
-"""The keep-out guard's prediction of a turn away against the X8 in six degrees of freedom, in the middle of a roll."""
+"""The keep-out guard's prediction of a turn away against the X8 in six degrees of freedom, in the
+middle of a roll.
+"""
 
 import math
 
@@ -34,7 +36,9 @@ def record(designs):
 
 @pytest.fixture(scope="module")
 def rolled_back(x8_root, x8_schedule, record):
-    """Return, for each time of rolling to the left out of a turn to the right, what the guard was told, and the turn flown back."""
+    """Return, for each time of rolling to the left out of a turn to the right, what the guard was
+    told, and the turn flown back.
+    """
     level = x8_schedule.level(x8_schedule.middle)
     rate = STANDARD_GRAVITY * math.tan(X8.envelope.bank) / level.airspeed
     aircraft = AutopilotedAircraft(X8, x8_root)
@@ -77,7 +81,9 @@ def rolled_back(x8_root, x8_schedule, record):
 
 
 def lacking(flights, record, *, remembers):
-    """Return by how much nearer to discs each turn came than predicted [m], what is to come known (``remembers``) or not."""
+    """Return by how much nearer to discs each turn came than predicted [m], what is to come known
+    (``remembers``) or not.
+    """
     rate, speed, found = flights
     lacks = []
     for told, now, path in found:
@@ -162,5 +168,6 @@ def test_the_search_and_the_guard_mean_the_same_by_what_is_still_to_come(
         )
     own, others = np.array(lacks).T
     assert np.max(np.abs(own)) > 0.05
-    # The search takes the dead time to whole steps of the simulation, 4 ms at most, and the course, of which 0.5 rad/s make 2 mrad.
+    # The search takes the dead time to whole steps of the simulation, 4 ms at most, and the course,
+    # of which 0.5 rad/s make 2 mrad.
     np.testing.assert_allclose(own, others, rtol=0.0, atol=4e-3)

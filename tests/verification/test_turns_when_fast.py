@@ -1,4 +1,6 @@
-"""An aircraft that catches up may be told to keep out while it is fast: it slows down to V_r in the turn, and comes no nearer."""
+"""An aircraft that catches up may be told to keep out while it is fast: it slows down to V_r in the
+turn, and comes no nearer.
+"""
 
 import math
 
@@ -20,9 +22,10 @@ from innerloop.jsbsim.root import write_root
 
 STEP, RUNS = 0.1, 12
 
-# Disc: radius over the turn radius, speed over V_r, course; where it begins: distance over the turn radius, bearing. The law: where
-# it aims off the disc's centre [rad]; pace over V_r. This aircraft came 7.0, 2.5 and 0.9 m within the radius as long as turns away
-# were predicted at two constant speeds, at a turn radius of 407 m and V_r of 48 m/s.
+# Disc: radius over the turn radius, speed over V_r, course; where it begins: distance over the turn
+# radius, bearing. The law: where it aims off the disc's centre [rad]; pace over V_r. This aircraft
+# came 7.0, 2.5 and 0.9 m within the radius as long as turns away were predicted at two constant
+# speeds, at a turn radius of 407 m and V_r of 48 m/s.
 WORST = [
     (10.0, 0.751, -2.958, 14.262, -0.467, -0.876, 1.111),
     (2.0, 0.640, 0.529, 7.226, -3.101, -0.145, 1.106),
@@ -32,7 +35,9 @@ WORST = [
 
 @pytest.fixture(scope="module")
 def aircraft(heavy_design, tmp_path_factory):
-    """Return a heavy Cessna with its autopilot, level flight, omega_max, and what makes guarded commands for it, by a radius."""
+    """Return a heavy Cessna with its autopilot, level flight, omega_max, and what makes guarded
+    commands for it, by a radius.
+    """
     schedule, record = heavy_design.design.schedule, heavy_design.record
     level, envelope = schedule.level(schedule.middle), schedule.envelope
     reversal, rate = record["turn_reversal"], heading_rate_for_bank(envelope.bank, level.airspeed)

@@ -1,1 +1,3 @@
-"""Pages of the reference that are made from the program itself, each a function that returns Markdown."""
+"""Pages of the reference that are made from the program itself, each a function that returns
+Markdown.
+"""

@@ -16,7 +16,9 @@ _AXIS = math.radians(200.0)
 """Course along which the plume trails, of a ship to the north [rad]."""
 _SHIP = (380.0, 190.0)
 _KEEPOUT, _CENTRE, _END = 150.0, 240.0, 400.0
-"""Radius of the keep-out area, and how far the centre of oscillation and the end of the plume are from the funnel [pixels]."""
+"""Radius of the keep-out area, and how far the centre of oscillation and the end of the plume are
+from the funnel [pixels].
+"""
 _VEHICLE = 145
 """Place of the UAV among the points of the orbit."""
 _SCALE = 105.0
@@ -122,7 +124,9 @@ def _along_plume(distance: float, across: float = 0.0) -> Place:
 
 
 def _orbit() -> list[Place]:
-    """Return the reference's orbit about the centre of oscillation, as the ship sees it: equations (2) to (5)."""
+    """Return the reference's orbit about the centre of oscillation, as the ship sees it: equations
+    (2) to (5).
+    """
     phase = np.linspace(0.0, 2.0 * np.pi, 241)
     offset = eta_for_speed_ratio(_NU) * np.cos(phase)
     rates = np.stack([np.cos(offset) - _NU, np.sin(offset)])

@@ -6,7 +6,9 @@ from collections.abc import Iterator
 from types import ModuleType
 
 ROOMS = ("gnc", "measurement", "aircraft", "innerloop", "common")
-"""Rooms whose modules are of use by themselves; what is for users of ``scenarios`` stands in a page of its own."""
+"""Rooms whose modules are of use by themselves; what is for users of ``scenarios`` stands in a page
+of its own.
+"""
 
 
 def module_pages() -> Iterator[tuple[str, str]]:

@@ -1,4 +1,6 @@
-"""Where a plume is, how wide and how strong, from readings that show it and from readings that do not."""
+"""Where a plume is, how wide and how strong, from readings that show it and from readings that do
+not.
+"""
 
 import math
 from enum import Enum
@@ -19,13 +21,18 @@ __all__ = ["GasSensor", "PlumeEstimator", "PlumePrior", "PlumeState", "SensorSta
 Array = npt.NDArray[np.float64]
 
 SIGNAL_TO_NOISE = 5.0
-"""Peak of the readings over their noise from which a pass detects the plume [-] (Kattner 2015, of CO2)."""
+"""Peak of the readings over their noise from which a pass detects the plume [-] (Kattner 2015, of
+CO2).
+"""
 
 _FORGET = 6000.0
-"""Time in which a posterior falls back to the prior, if nothing is read [s]: a ship may change her load."""
+"""Time in which a posterior falls back to the prior, if nothing is read [s]: a ship may change her
+load.
+"""
 
 _DIFFUSED = 10.0
-"""Least time after which the axis is let wander anew [s]: in less it wanders by less than a cell."""
+"""Least time after which the axis is let wander anew [s]: in less it wanders by less than a cell.
+"""
 
 _LOST = 0.01
 """Chance of a row of misses below which a plume that was found is lost again [-]."""
@@ -34,10 +41,14 @@ _MEMORY = 10.0
 """Passes that the mean of the innovations is over [-]."""
 
 _CHANCE = 0.02
-"""Least chance of a hit or a miss that innovations are judged with [-]: models are not better than that."""
+"""Least chance of a hit or a miss that innovations are judged with [-]: models are not better than
+that.
+"""
 
 _BELIEVED = 0.75
-"""Share of what a pass says that is believed [-]: passes have errors in common. Where the heights of 80 flights were likeliest."""
+"""Share of what a pass says that is believed [-]: passes have errors in common. Where the heights
+of 80 flights were likeliest.
+"""
 
 HIT = 0.6
 """Concentration in a pass over that in the plume's centre from which it hits [-]."""
@@ -46,16 +57,22 @@ _UNLIKELY = 1e-5
 """Probability of a height below which it does not count where passes to come are weighed [-]."""
 
 _LOOK = 2.0
-"""Way along the plume to an independent centre, over the correlation length of the meander [-]: its integral scale."""
+"""Way along the plume to an independent centre, over the correlation length of the meander [-]: its
+integral scale.
+"""
 
 _NEAREST = 0.3
-"""Least distance behind the funnel at which a pass is believed, over the prior's [-]: nearer it is another plume."""
+"""Least distance behind the funnel at which a pass is believed, over the prior's [-]: nearer it is
+another plume.
+"""
 
 _NOMINAL_RESPONSE = 0.5
 """Largest reading over strength before a pass has shown it [-]."""
 
 _RESPONSE_MIN = 1e-6
-"""Least reading over strength that counts [-]: far from every place that the axis may have a pass has none, and detects nothing."""
+"""Least reading over strength that counts [-]: far from every place that the axis may have a pass
+has none, and detects nothing.
+"""
 
 
 class PlumeState(Enum):
@@ -71,7 +88,8 @@ class _Scene(NamedTuple):
 
     Attributes
     ----------
-    likelihood : of a pulse from a plume of each spread, at each place, of each strength, shape (w, j, p)
+    likelihood : of a pulse from a plume of each spread, at each place, of each strength, shape (w,
+        j, p)
     nothing : of no pulse
     """
 
@@ -80,10 +98,12 @@ class _Scene(NamedTuple):
 
 
 class PlumeEstimator:
-    """Bayes' rule on a grid of spread, height and strength, and on one of bearings, once for each pass over the axis.
+    """Bayes' rule on a grid of spread, height and strength, and on one of bearings, once for each
+    pass over the axis.
 
-    The frame is that of the *predicted* axis, which trails behind the funnel with the apparent wind as estimated on board: not that
-    of the axis that this filter estimates. The mathematics is in docs/finding_the_plume.md.
+    The frame is that of the *predicted* axis, which trails behind the funnel with the apparent wind
+    as estimated on board: not that of the axis that this filter estimates. The mathematics is in
+    docs/finding_the_plume.md.
 
     Parameters
     ----------
@@ -93,15 +113,20 @@ class PlumeEstimator:
     ----------
     prior, grid : what was expected, and the cells
     cells, bearings : probability of each, shapes (w, h, c) and (b,)
-    height, height_deviation : of the axis above the sea, at the distance and in the apparent wind of the last pass [m]
-    bearing, bearing_deviation : of the axis to the right of the predicted one [rad]; a bearing is to be added to its course
-    offset, offset_deviation : of the axis to the right of the predicted one, at the distance of the last pass [m]
-    sigma_y, sigma_z, meander_z : spreads of the plume at one moment, and its meander in height, at the last pass [m]
+    height, height_deviation : of the axis above the sea, at the distance and in the apparent wind
+        of the last pass [m]
+    bearing, bearing_deviation : of the axis to the right of the predicted one [rad]; a bearing is
+        to be added to its course
+    offset, offset_deviation : of the axis to the right of the predicted one, at the distance of the
+        last pass [m]
+    sigma_y, sigma_z, meander_z : spreads of the plume at one moment, and its meander in height, at
+        the last pass [m]
     state : whether the plume is searched for, found, or lost again
     signal_to_noise : peak of the readings over their noise, of the best pass so far [-]
-    found_at : time since the start at which the plume was found first [s]; not a number before; by it benchmarks/plume judges
-        searches
-    innovation : mean normalised innovation squared of the passes, 1 where the filter is consistent [-]
+    found_at : time since the start at which the plume was found first [s]; not a number before; by
+        it benchmarks/plume judges searches
+    innovation : mean normalised innovation squared of the passes, 1 where the filter is consistent
+        [-]
     passes : number of passes so far [-]
     """
 
@@ -130,7 +155,9 @@ class PlumeEstimator:
         return self._watch.state
 
     def predict(self, time_step: float) -> None:
-        """Let ``time_step`` [s] go by. What that does to the estimate is computed once for each pass."""
+        """Let ``time_step`` [s] go by. What that does to the estimate is computed once for each
+        pass.
+        """
         self._time += time_step
         self._watch.wait(time_step)
         if self._watch.state is not SensorState.WORKING:
@@ -145,16 +172,21 @@ class PlumeEstimator:
         *,
         apparent_wind: float | None = None,
     ) -> bool:
-        """Take note of the vehicle's place and of a reading; return whether a pass is over and the estimate is a new one.
+        """Take note of the vehicle's place and of a reading; return whether a pass is over and the
+        estimate is a new one.
 
-        To be called after ``predict``, for each reading, and in between as often as the place is to be known: each 0.5 s at least.
+        To be called after ``predict``, for each reading, and in between as often as the place is to
+        be known: each 0.5 s at least.
 
         Parameters
         ----------
-        along, across : of the vehicle, behind the funnel and to the right of the predicted axis, seen along it [m]
+        along, across : of the vehicle, behind the funnel and to the right of the predicted axis,
+            seen along it [m]
         altitude : above the sea [m]
-        reading : of CO2 [ppm], newly sampled; not a number where there is none. A constant background may be in it
-        apparent_wind : past the ship now [m/s], taken for 1 m/s at least; that of the prior unless given
+        reading : of CO2 [ppm], newly sampled; not a number where there is none. A constant
+            background may be in it
+        apparent_wind : past the ship now [m/s], taken for 1 m/s at least; that of the prior unless
+            given
         """
         if not math.isnan(reading):
             self._watch.read(reading)
@@ -172,7 +204,8 @@ class PlumeEstimator:
         along, altitude = path.at(self.offset)
         believed = along > _NEAREST * self.prior.distance and not self._spoilt
         if believed:
-            # Where the plume is met it has another spread, and another strength, than where the cells have theirs.
+            # Where the plume is met it has another spread, and another strength, than where the
+            # cells have theirs.
             self._distance, self._widened = along, self.prior.widened(along, self._wind)
         self._heights = self.prior.height_at(self.grid.height, self._distance, self._wind)
         evidence = (
@@ -195,12 +228,15 @@ class PlumeEstimator:
         return self.grid.fading((self._heights - altitude) / self._widened, self._looks)
 
     def _detected(self, read: Array) -> float:
-        """Return the probability that a pass detects the plume, of the one that it reads each strength with each spread (w, p)."""
+        """Return the probability that a pass detects the plume, of the one that it reads each
+        strength with each spread (w, p).
+        """
         above = np.log(self.grid.faint / self._least) / STRENGTH_STEP + 0.5
         return float(read.sum(axis=0) @ np.minimum(np.maximum(above, 0.0), 1.0))
 
     def prospects(self, altitudes: Array) -> tuple[Array, Array]:
-        """Return the probability of each of some cells, shape (h, c), and that a pass then detects the plume, shape (n, h, c).
+        """Return the probability of each of some cells, shape (h, c), and that a pass then detects
+        the plume, shape (n, h, c).
 
         Parameters
         ----------
@@ -213,7 +249,9 @@ class PlumeEstimator:
         )
 
     def expected_deviation(self, altitudes: Array) -> Array:
-        """Return what the standard deviation of the height is expected to be after a pass at each altitude [m], shape (n,)."""
+        """Return what the standard deviation of the height is expected to be after a pass at each
+        altitude [m], shape (n,).
+        """
         likely = self._weights.sum(axis=1) > _UNLIKELY
         heights = self.grid.coarse_heights(self._heights)[likely]
         off = (heights - altitudes[:, np.newaxis]) / self._widened
@@ -222,7 +260,9 @@ class PlumeEstimator:
         )
 
     def hits(self, altitudes: Array) -> Array:
-        """Return the probability that a pass at each altitude [m] hits the plume in height, shape (n,)."""
+        """Return the probability that a pass at each altitude [m] hits the plume in height, shape
+        (n,).
+        """
         off = self.grid.coarse_heights(self._heights) - altitudes[:, np.newaxis]
         result: Array = self.grid.hits(
             off / self._widened, self._looks, self._spread, HIT
@@ -243,7 +283,9 @@ class PlumeEstimator:
         self.bearings += forgotten * (grid.bearing_prior - self.bearings)
 
     def _correct(self, path: Path, evidence: Evidence, altitude: float) -> None:
-        """Take in what a pass says: of spread, height and strength with the bearing as it is believed, and the other way round."""
+        """Take in what a pass says: of spread, height and strength with the bearing as it is
+        believed, and the other way round.
+        """
         grid = self.grid
         likelihood, nothing = self._scene(path, evidence)
         beside = grid.beside(self._distance, self._widened, path.duration)
@@ -285,7 +327,9 @@ class PlumeEstimator:
         return _Scene(likelihood.reshape(exponent.shape), math.exp(-largest))
 
     def _judge(self, evidence: Evidence, chance: float) -> None:
-        """Compare what a pass showed with the chance of a hit that was expected of it: innovations, found, lost again."""
+        """Compare what a pass showed with the chance of a hit that was expected of it: innovations,
+        found, lost again.
+        """
         chance = clip(chance, _CHANCE, 1.0 - _CHANCE)
         signal_to_noise = evidence.peak / self.prior.sensor.noise
         hit = signal_to_noise > SIGNAL_TO_NOISE and evidence.significance > SIGNAL_TO_NOISE
@@ -328,7 +372,9 @@ class PlumeEstimator:
 
     @property
     def height_interval(self) -> tuple[float, float]:
-        """2.5 % and 97.5 % quantiles of the height [m]: what tests and benchmarks/plume hold against the truth."""
+        """2.5 % and 97.5 % quantiles of the height [m]: what tests and benchmarks/plume hold
+        against the truth.
+        """
         step = self._heights[1] - self._heights[0]
         below = np.concatenate([[0.0], np.cumsum(self._of_heights)])
         edges = np.concatenate([[self._heights[0] - 0.5 * step], self._heights + 0.5 * step])
@@ -337,7 +383,9 @@ class PlumeEstimator:
 
     @property
     def measurable(self) -> float:
-        """Probability that a pass at the best altitude within the limits detects the plume more often than not [-]."""
+        """Probability that a pass at the best altitude within the limits detects the plume more
+        often than not [-].
+        """
         best = np.clip(
             self.grid.coarse_heights(self._heights), self.prior.lowest, self.prior.highest
         )

@@ -12,13 +12,19 @@ from gnc.estimation.plume.prior import BUOYANT_SPREAD, PlumePrior
 Array = npt.NDArray[np.float64]
 
 STRENGTH_STEP = 0.5
-"""Step of the logarithm of strengths [-]: half of it is 25 %, about what the shape of a plume leaves open."""
+"""Step of the logarithm of strengths [-]: half of it is 25 %, about what the shape of a plume
+leaves open.
+"""
 
 _FADE = 13
-"""Steps of strength from the centre of a plume out to where it counts as nothing [-]: e^-6.3 of the centre."""
+"""Steps of strength from the centre of a plume out to where it counts as nothing [-]: e^-6.3 of the
+centre.
+"""
 
 _HEIGHTS, _BEARINGS, _PLACE_STEP = 35, 25, 0.5
-"""Cells over height and bearing, and step of places of the centre across at one moment, over the expected spread [-, -, -]."""
+"""Cells over height and bearing, and step of places of the centre across at one moment, over the
+expected spread [-, -, -].
+"""
 
 _REACH = 3.0
 """Standard deviations of the prior that the cells reach to [-]."""
@@ -27,26 +33,35 @@ _LOWEST = 5.0
 """Least height of an axis [m]."""
 
 _SPREADS, _SPREAD_STEP = 5, 0.8
-"""Cells of spread, an odd number, and their step in deviations of its logarithm [-]: together they have 0.94 of the deviation."""
+"""Cells of spread, an odd number, and their step in deviations of its logarithm [-]: together they
+have 0.94 of the deviation.
+"""
 
 _STRENGTH_ERROR, _STRENGTH_OBLIQUE = 0.25, 0.2
-"""Error of the strength of a pass, over itself: of one square to the plume, and how much a way along it over across adds [-].
+"""Error of the strength of a pass, over itself: of one square to the plume, and how much a way
+along it over across adds [-].
 
-Of 972 passes with known strength the scatter beyond that of the meander was 0.27 square to the plume, and 0.45 at 1 to 2.
+Of 972 passes with known strength the scatter beyond that of the meander was 0.27 square to the
+plume, and 0.45 at 1 to 2.
 """
 
 _WIDTH_ERROR, _WIDTH_OBLIQUE = 0.15, 0.25
-"""Error of the logarithm of the width of a pass: of one square to the plume, and how much a way along it over across adds [-].
+"""Error of the logarithm of the width of a pass: of one square to the plume, and how much a way
+along it over across adds [-].
 
-The centre moves while the vehicle crosses. Of the same passes the scatter was 0.14 square to the plume, 0.2 at 0.6 to 1, 0.32 at 1
-to 2 and 0.69 at 2 to 4.
+The centre moves while the vehicle crosses. Of the same passes the scatter was 0.14 square to the
+plume, 0.2 at 0.6 to 1, 0.32 at 1 to 2 and 0.69 at 2 to 4.
 """
 
 _MIDDLE, _COARSE = _SPREADS // 2, 2
-"""The expected spread among all, and cells of height that count as one where passes to come are weighed [-]."""
+"""The expected spread among all, and cells of height that count as one where passes to come are
+weighed [-].
+"""
 
 _RANGE_MIN = 1e-3
-"""Least deviation of the funnel's height over that of the rise [-]: of a range without a width the difference below is 0 by 0."""
+"""Least deviation of the funnel's height over that of the rise [-]: of a range without a width the
+difference below is 0 by 0.
+"""
 
 _TINY = 1e-300
 """Least probability that is divided by [-]."""
@@ -56,10 +71,11 @@ _SPREAD_MIN = 0.4
 
 
 class PlumeGrid:
-    """Cells of spread, height and strength, in this order: shape (w, h, c); and cells of bearing, shape (b,), independent of them.
+    """Cells of spread, height and strength, in this order: shape (w, h, c); and cells of bearing,
+    shape (b,), independent of them.
 
-    A strength is the concentration in the centre of one realisation. The meander in height is independent from pass to pass: it
-    forgets itself within 1 to 4 s.
+    A strength is the concentration in the centre of one realisation. The meander in height is
+    independent from pass to pass: it forgets itself within 1 to 4 s.
 
     Parameters
     ----------
@@ -70,7 +86,8 @@ class PlumeGrid:
     height, strength, bearing : of the cells, shapes (h,), (c,), (b,) [m, ppm, rad]
     sigma_y, sigma_z : of the cells, shape (w, h) [m]
     widths : spreads of pulses, at the expected height, shape (v,) [m]: as many as cells of spread
-    faint : strengths from the faintest that a cell may be read with up to the strongest, shape (p,) [ppm]
+    faint : strengths from the faintest that a cell may be read with up to the strongest, shape (p,)
+        [ppm]
     places : of the centre across at one moment, shape (j,) [m]
     prior, bearing_prior : probability of each cell, shapes (w, h, c) and (b,)
     """
@@ -124,7 +141,9 @@ class PlumeGrid:
         )
 
     def _of_heights(self) -> Array:
-        """Return how likely each height is, shape (h,): a funnel as likely anywhere in its range, and a rise that is normal."""
+        """Return how likely each height is, shape (h,): a funnel as likely anywhere in its range,
+        and a rise that is normal.
+        """
         prior = self._expected
         risen = math.sqrt(
             max(
@@ -140,7 +159,8 @@ class PlumeGrid:
         return result
 
     def of_widths(self, drawn_out: float) -> Array:
-        """Return how likely a pulse of a plume of each spread looks to be of each width, shape (w, v).
+        """Return how likely a pulse of a plume of each spread looks to be of each width, shape (w,
+        v).
 
         Parameters
         ----------
@@ -152,10 +172,12 @@ class PlumeGrid:
         return result
 
     def fading(self, off: Array, looks: float) -> Array:
-        """Return how likely a pass at an altitude reads a plume with so many steps less than its strength, shape (w, h, f).
+        """Return how likely a pass at an altitude reads a plume with so many steps less than its
+        strength, shape (w, h, f).
 
-        The centre is z_m above the axis with z_m ~ N(0, meander_z^2), and the pulse has exp(-(h + z_m - z)^2/2 sigma_z^2) of the
-        strength; of several looks at the plume the best counts. The rest to 1 is the chance of nothing.
+        The centre is z_m above the axis with z_m ~ N(0, meander_z^2), and the pulse has exp(-(h +
+        z_m - z)^2/2 sigma_z^2) of the strength; of several looks at the plume the best counts. The
+        rest to 1 is the chance of nothing.
 
         Parameters
         ----------
@@ -166,7 +188,8 @@ class PlumeGrid:
         return _between(self._within(reach, off[:, np.newaxis], looks))
 
     def chances(self, off: Array, looks: float, least: float, sigma_z: Array) -> Array:
-        """Return how likely a pass reads a strength of at least ``least`` [ppm], shape (..., h', c).
+        """Return how likely a pass reads a strength of at least ``least`` [ppm], shape (..., h',
+        c).
 
         Parameters
         ----------
@@ -178,14 +201,17 @@ class PlumeGrid:
         return self._within(reach * sigma_z[:, np.newaxis], off[..., np.newaxis], looks)
 
     def hits(self, off: Array, looks: float, sigma_z: Array, fraction: float) -> Array:
-        """Return how likely a pass reads a ``fraction`` of a plume's own strength at least, shape (..., h'); arguments as above."""
+        """Return how likely a pass reads a ``fraction`` of a plume's own strength at least, shape
+        (..., h'); arguments as above.
+        """
         return self._within(math.sqrt(-2.0 * math.log(fraction)) * sigma_z, off, looks)
 
     def beside(self, distance: float, widened: float, duration: float) -> Array:
-        """Return how likely the centre is at each place in a pass, given each bearing, shape (b, j).
+        """Return how likely the centre is at each place in a pass, given each bearing, shape (b,
+        j).
 
-        Meander that two passes have in common does not average out: its variance counts (1 + r)/(1 - r) times, with r its
-        correlation from pass to pass.
+        Meander that two passes have in common does not average out: its variance counts (1 + r)/(1
+        - r) times, with r its correlation from pass to pass.
 
         Parameters
         ----------
@@ -207,17 +233,23 @@ class PlumeGrid:
         return result
 
     def coarse(self, cells: Array) -> Array:
-        """Return the probability of each two heights together and each strength, shape (h', c), of cells (w, h, c)."""
+        """Return the probability of each two heights together and each strength, shape (h', c), of
+        cells (w, h, c).
+        """
         result: Array = np.add.reduceat(cells.sum(axis=0), self._pairs, axis=0)
         return result
 
     def coarse_heights(self, heights: Array) -> Array:
-        """Return the heights of ``coarse``, the mean of each two of the cells, shape (h',); or another quantity of them."""
+        """Return the heights of ``coarse``, the mean of each two of the cells, shape (h',); or
+        another quantity of them.
+        """
         result: Array = np.add.reduceat(heights, self._pairs) / self._paired
         return result
 
     def _within(self, reach: Array, off: Array, looks: float) -> Array:
-        """Return how likely the centre of the best look is nearer in height than ``reach`` [m], with the axis ``off`` [m]."""
+        """Return how likely the centre of the best look is nearer in height than ``reach`` [m],
+        with the axis ``off`` [m].
+        """
         meander = self._expected.meander_z
         far, middle = reach / meander, off / meander
         beyond: Array = ndtr(middle - far)
@@ -228,7 +260,8 @@ class PlumeGrid:
     def expected_deviation(
         self, weights: Array, heights: Array, off: Array, looks: float, sigma_z: Array
     ) -> Array:
-        """Return the standard deviation of the height that is expected after a pass whose strength is read [m], shape (n,).
+        """Return the standard deviation of the height that is expected after a pass whose strength
+        is read [m], shape (n,).
 
         Parameters
         ----------
@@ -240,7 +273,8 @@ class PlumeGrid:
         reach = self._edges * sigma_z[:, np.newaxis]
         fading = _between(self._within(reach, off[..., np.newaxis], looks))
         of_heights = weights.sum(axis=1)
-        # By height and reading, summed over the strengths that lead to it; nothing is read for the last.
+        # By height and reading, summed over the strengths that lead to it; nothing is read for the
+        # last.
         joint = np.empty((len(heights), len(off), len(self.faint) + 1))
         padded = np.zeros((len(heights), weights.shape[1] + 2 * (_FADE - 1)))
         padded[:, _FADE - 1 : 1 - _FADE] = weights
@@ -255,7 +289,9 @@ class PlumeGrid:
         return result
 
     def over_strengths(self, faint: Array) -> Array:
-        """Return values over ``faint``, shape (w, p), as they are for each step less than each strength, shape (w, f, c)."""
+        """Return values over ``faint``, shape (w, p), as they are for each step less than each
+        strength, shape (w, f, c).
+        """
         return faint.take(self._index, axis=1)
 
     def over_faint(self, cells: Array, fading: Array) -> Array:
@@ -272,13 +308,17 @@ class PlumeGrid:
 
 
 def _between(within: Array) -> Array:
-    """Return the differences of cumulated probabilities along the last axis, the first from 0; takes the array over."""
+    """Return the differences of cumulated probabilities along the last axis, the first from 0;
+    takes the array over.
+    """
     within[..., 1:] -= within[..., :-1].copy()
     return within
 
 
 def wandered(cells: Array, axis: int, steps: float) -> Array:
-    """Return probabilities after a random walk along an axis, of a variance of so many steps squared."""
+    """Return probabilities after a random walk along an axis, of a variance of so many steps
+    squared.
+    """
     result = cells.copy()
     moved = result.swapaxes(0, axis)
     # A round in which more than a quarter moved either way would turn a peak into a trough.
@@ -298,9 +338,11 @@ def normalised(cells: Array, prior: Array) -> Array:
 
 
 def over_nothing(slope: Array, bend: Array, strength: Array, drawn_out: float) -> Array:
-    """Return the log likelihood of each strength at each place less that of no pulse, shape (v, j, p).
+    """Return the log likelihood of each strength at each place less that of no pulse, shape (v, j,
+    p).
 
-    A pulse of strength P fits readings that have one of P (1 + e), e ~ N(0, error^2): e has been integrated out.
+    A pulse of strength P fits readings that have one of P (1 + e), e ~ N(0, error^2): e has been
+    integrated out.
 
     Parameters
     ----------

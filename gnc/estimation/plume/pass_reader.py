@@ -1,4 +1,6 @@
-"""What one pass over a plume's axis says: for each place of the axis, how well a pulse of each strength fits the readings."""
+"""What one pass over a plume's axis says: for each place of the axis, how well a pulse of each
+strength fits the readings.
+"""
 
 import math
 from dataclasses import dataclass
@@ -13,34 +15,45 @@ from gnc.estimation.plume.prior import BACKGROUND_DRIFT, GasSensor
 Array = npt.NDArray[np.float64]
 
 _SHAPE_ERROR = 0.15
-"""Error of a reading that a plume not of the expected shape makes, over the largest of the pass [-]: an assumption."""
+"""Error of a reading that a plume not of the expected shape makes, over the largest of the pass
+[-]: an assumption.
+"""
 
 _TAIL_ERROR = 0.3
-"""Error of what is left of the pass before in the sensor, over itself [-]: as the strength of a pass is known."""
+"""Error of what is left of the pass before in the sensor, over itself [-]: as the strength of a
+pass is known.
+"""
 
 _UNSEEN_DRIFT = 1.0
-"""Time of drift by which the level at the end of a pass is less sure than its fit says [s]: drift is no straight line."""
+"""Time of drift by which the level at the end of a pass is less sure than its fit says [s]: drift
+is no straight line.
+"""
 
 _FIRST_BACKGROUND = 1e3
 """Standard deviation of the background before anything is read [ppm]: clean air has some 400."""
 
 BEND_MIN = 1e-12
-"""Least curvature of a likelihood [1/ppm^2]: a place that the vehicle has not been to says nothing."""
+"""Least curvature of a likelihood [1/ppm^2]: a place that the vehicle has not been to says nothing.
+"""
 
 _STILL = 0.1
-"""Largest less least reading of a pass over the sensor's noise, below which they are not believed [-]."""
+"""Largest less least reading of a pass over the sensor's noise, below which they are not believed
+[-].
+"""
 
 
 @dataclass(frozen=True, slots=True)
 class Evidence:
-    """What a pass says of a pulse of strength P at place j with spread w: log likelihood P ``slope`` - P^2 ``bend``/2.
+    """What a pass says of a pulse of strength P at place j with spread w: log likelihood P
+    ``slope`` - P^2 ``bend``/2.
 
     It is the one of noise, background and shape error together, less that of no pulse at all.
 
     Attributes
     ----------
     slope, bend : shape (w, j) [1/ppm, 1/ppm^2]
-    response : largest reading that a pulse of strength 1 of the middle spread makes, where the axis is crossed best [-]
+    response : largest reading that a pulse of strength 1 of the middle spread makes, where the axis
+        is crossed best [-]
     strength, at, spread : of the pulse that fits best: its strength [ppm], and its indices j and w
     peak : largest reading above the background that this pulse makes [ppm]
     significance : strength of this pulse over its uncertainty by noise alone [-]
@@ -83,10 +96,12 @@ class _Match(NamedTuple):
 
 
 class PassReader:
-    """Compares readings with pulses: Gaussian in the place across, through the lag of the sensor, over a background that drifts.
+    """Compares readings with pulses: Gaussian in the place across, through the lag of the sensor,
+    over a background that drifts.
 
-    With T the response to a pulse of strength 1, N the columns of the background (level, slope, and what is left of the pass before
-    in the sensor) with prior deviations D, and Sigma = sigma^2 I + N D^2 N' the covariance of readings y without a pulse,
+    With T the response to a pulse of strength 1, N the columns of the background (level, slope, and
+    what is left of the pass before in the sensor) with prior deviations D, and Sigma = sigma^2 I +
+    N D^2 N' the covariance of readings y without a pulse,
 
         slope = T' Sigma^-1 y,    bend = T' Sigma^-1 T.
 
@@ -193,7 +208,9 @@ class PassReader:
 
 
 def _inner(background: Array, variance: float) -> Array:
-    """Return (variance I + N N')^-1 of a background (3, m), shape (3, 3): by cofactors, as LAPACK takes ten times as long."""
+    """Return (variance I + N N')^-1 of a background (3, m), shape (3, 3): by cofactors, as LAPACK
+    takes ten times as long.
+    """
     (a, b, c), (_, d, e), (_, _, f) = (background @ background.T).tolist()
     a, d, f = a + variance, d + variance, f + variance
     of_a, of_b, of_c = d * f - e * e, c * e - b * f, b * e - c * d
@@ -204,6 +221,8 @@ def _inner(background: Array, variance: float) -> Array:
 
 
 def _spread_of(values: Array) -> tuple[float, float, float]:
-    """Return the least, the median (of an even number the upper one) and the largest: of few values numpy takes longer."""
+    """Return the least, the median (of an even number the upper one) and the largest: of few values
+    numpy takes longer.
+    """
     ordered = sorted(values.tolist())
     return ordered[0], ordered[len(ordered) // 2], ordered[-1]

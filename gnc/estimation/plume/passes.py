@@ -11,16 +11,22 @@ import numpy.typing as npt
 Array = npt.NDArray[np.float64]
 
 _TURNED = 5.0
-"""Distance that the vehicle goes back across by which a pass is over [m]: more than its place is uncertain."""
+"""Distance that the vehicle goes back across by which a pass is over [m]: more than its place is
+uncertain.
+"""
 
 _LONGEST = 25.0
 """Time after which a pass is over without a turn [s]."""
 
 FINE = 0.25
-"""Step of the concentration along the path that the sensor's lag is computed from [s]: 5 m at 20 m/s, about a spread."""
+"""Step of the concentration along the path that the sensor's lag is computed from [s]: 5 m at 20
+m/s, about a spread.
+"""
 
 _BESIDE = 0.25
-"""Least way across over that along, where the vehicle turns within the plume [-]: the turn is short."""
+"""Least way across over that along, where the vehicle turns within the plume [-]: the turn is
+short.
+"""
 
 _READINGS_MIN = 4
 """Least readings of a pass [-]: with fewer, background and pulse cannot be told apart."""
@@ -46,7 +52,9 @@ class Path:
 
     @property
     def duration(self) -> float:
-        """Time from turn to turn, and for which the sensor still has what it read before the second one [s]."""
+        """Time from turn to turn, and for which the sensor still has what it read before the second
+        one [s].
+        """
         return float(self.time[-1] - self.time[0])
 
     def at(self, across: float) -> tuple[float, float]:
@@ -55,7 +63,8 @@ class Path:
         return float(self.along[nearest]), float(self.altitude[nearest])
 
     def drawn_out(self, across: float, apparent_wind: float) -> float:
-        """Return how far along the plume, over how far across it, the vehicle goes by the place nearest to ``across`` [-].
+        """Return how far along the plume, over how far across it, the vehicle goes by the place
+        nearest to ``across`` [-].
 
         Parameters
         ----------
@@ -86,7 +95,8 @@ class PassCollector:
 
     Parameters
     ----------
-    delay, tail : of the sensor, and how long after a turn what it reads belongs to the pass before [s]
+    delay, tail : of the sensor, and how long after a turn what it reads belongs to the pass before
+        [s]
     """
 
     __slots__ = (
@@ -103,7 +113,8 @@ class PassCollector:
 
     def __init__(self, *, delay: float, tail: float) -> None:
         self._delay, self._tail = delay, tail
-        # Of numbers that stand one behind the other numpy makes arrays at once: of places in order of time.
+        # Of numbers that stand one behind the other numpy makes arrays at once: of places in order
+        # of time.
         self._columns = array("d"), array("d"), array("d"), array("d")
         self._read_at, self._readings = array("d"), array("d")
         self._farthest = self._farthest_at = math.nan
@@ -113,7 +124,8 @@ class PassCollector:
     def add(
         self, time: float, along: float, across: float, altitude: float, reading: float
     ) -> Path | None:
-        """Take note of a place and of a reading, or of none; return the pass that is over, if one is.
+        """Take note of a place and of a reading, or of none; return the pass that is over, if one
+        is.
 
         Parameters
         ----------

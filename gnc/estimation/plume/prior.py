@@ -14,16 +14,22 @@ _ENTRAINMENT = 0.6
 """Briggs' entrainment coefficient of a plume that bends over in the wind [-]."""
 
 SPEED_MIN = 1.0
-"""Apparent wind that rise, spreads and strength are computed for at least [m/s]: below it a plume has no direction."""
+"""Apparent wind that rise, spreads and strength are computed for at least [m/s]: below it a plume
+has no direction.
+"""
 
 BUOYANT_SPREAD = 0.4 / math.sqrt(2.0)
 """Spread that the rise makes, over the rise [-]: AERMOD's buoyancy-induced dispersion."""
 
 _SIGMA_V, _SIGMA_W = 1.9, 1.3
-"""Standard deviations of the wind across and up, over the friction velocity [-]: neutral air, AERMOD."""
+"""Standard deviations of the wind across and up, over the friction velocity [-]: neutral air,
+AERMOD.
+"""
 
 _DRAG, _DRAG_SLOPE = 0.029, 0.0008
-"""Friction velocity over the wind at 10 m, in calm, and how it grows with the wind [-, s/m]: Charnock's law to 3 %, 3 to 15 m/s."""
+"""Friction velocity over the wind at 10 m, in calm, and how it grows with the wind [-, s/m]:
+Charnock's law to 3 %, 3 to 15 m/s.
+"""
 
 _WIND_MIN = 0.5
 """Least wind that makes turbulence [m/s]."""
@@ -32,29 +38,38 @@ _SURFACE_SCALE = 0.72
 """Length over height at which the sea stops the spread in height [-] (AERMOD, elevated part)."""
 
 _OWN_SHARE, _OWN_HEIGHT, _OWN_FRICTION = 0.42, 40.0, 0.3
-"""Spread about the moving centre over that about the axis, across and by turbulence [-], of a source that is so high [m] in wind of
-this friction velocity [m/s]; it goes with the root of the root of each, inversely. A fit to the plume model, to 5 % of it, at 240
-to 330 m behind sources of 20 to 60 m, in 3 to 12 m/s: dissipation is less higher up, and the 4/3 law lags behind the meander."""
+"""Spread about the moving centre over that about the axis, across and by turbulence [-], of a
+source that is so high [m] in wind of this friction velocity [m/s]; it goes with the root of the
+root of each, inversely. A fit to the plume model, to 5 % of it, at 240 to 330 m behind sources of
+20 to 60 m, in 3 to 12 m/s: dissipation is less higher up, and the 4/3 law lags behind the meander.
+"""
 
 _OWN_UP = 0.9
-"""The same in height is that across, but neither is more than so much of the spread about the axis [-]: eddies of the plume's own
-size are the same in each direction, and the sea stops the larger ones."""
+"""The same in height is that across, but neither is more than so much of the spread about the axis
+[-]: eddies of the plume's own size are the same in each direction, and the sea stops the larger
+ones."""
 
 _SOURCE_SPREAD = 4.0
-"""Spread at the funnel, in the wake of the superstructure [m]: 0 to 8 m, of which no measurement is known."""
+"""Spread at the funnel, in the wake of the superstructure [m]: 0 to 8 m, of which no measurement is
+known.
+"""
 
 _MEANDER_LENGTH, _MEANDER_HEIGHT = 2.5, 0.25
-"""Integral scale across, and correlation length in height, of the meander, over the height of the source [-]: neutral air over
-the sea, to a factor of 2."""
+"""Integral scale across, and correlation length in height, of the meander, over the height of the
+source [-]: neutral air over the sea, to a factor of 2."""
 
 _AIR_DENSITY = 42.3
 """Moles of air per volume [mol/m^3], at 15 degC."""
 
 _MODEL_ERROR, _SPREAD_ERROR, _BEARING_ERROR = 0.1, 0.25, 0.02
-"""Errors of the rise and of the spreads as computed, over themselves, and of the bearing [-, -, rad]: assumptions."""
+"""Errors of the rise and of the spreads as computed, over themselves, and of the bearing
+[-, -, rad]: assumptions.
+"""
 
 _GROWTH, _NEAR = 0.85, 0.2
-"""Power of the distance with which spreads and meander grow, and least distance over the prior's that it is taken for [-, -]."""
+"""Power of the distance with which spreads and meander grow, and least distance over the prior's
+that it is taken for [-, -].
+"""
 
 HEIGHT_DRIFT, BEARING_DRIFT = 0.1, 0.002
 """How far the axis wanders in a second [m, rad]; it grows with the root of time."""
@@ -86,7 +101,8 @@ def rise(
 
 
 def downwash(stack_diameter: float, exhaust_speed: float, apparent_wind: float) -> float:
-    """Return how far the funnel's tip draws the plume down [m]: 2 d (1.5 - w/U), not below 0 (AERMOD, HSPRIM).
+    """Return how far the funnel's tip draws the plume down [m]: 2 d (1.5 - w/U), not below 0
+    (AERMOD, HSPRIM).
 
     Parameters
     ----------
@@ -131,17 +147,20 @@ class PlumePrior:
 
     Attributes
     ----------
-    distance, apparent_wind : behind the funnel, and past the ship, that the other values are for [m, m/s]
+    distance, apparent_wind : behind the funnel, and past the ship, that the other values are for
+        [m, m/s]
     source_height, source_deviation : from where the plume rises, above the sea [m]
     height, height_deviation : of the axis above the sea, from stack, load and rise [m]
     bearing_deviation : of the axis from the one that the wind lets expect [rad]
     sigma_y, sigma_z : spreads about the centre at one moment, at the expected height [m]
-    sigma_deviation : of the logarithm of both spreads, which are too large or too small together [-]
+    sigma_deviation : of the logarithm of both spreads, which are too large or too small together
+        [-]
     meander_y, meander_z : standard deviation of the centre about the axis [m]
     meander_length : correlation length of the meander in height, along the plume [m]
     meander_time : integral scale of the lateral meander, as the ship meets it [s]
-    peak, peak_deviation : CO2 above the background in the centre at one moment [ppm], its median, and the deviation of
-        its logarithm [-]; both at the expected height and spread, so that the error of the spread is not in it
+    peak, peak_deviation : CO2 above the background in the centre at one moment [ppm], its median,
+        and the deviation of its logarithm [-]; both at the expected height and spread, so that the
+        error of the spread is not in it
     sensor : what reads it
     lowest, highest : altitudes that may be flown, above the sea [m]
     """
@@ -186,7 +205,8 @@ class PlumePrior:
                 )
 
     def rise_of(self, height: Array | float) -> Array:
-        """Return the expected rise of axes that are so high at the prior's distance and wind [m], at least 0.
+        """Return the expected rise of axes that are so high at the prior's distance and wind [m],
+        at least 0.
 
         Stack and rise share what an axis is off the expected height by as they share its variance.
 
@@ -203,8 +223,9 @@ class PlumePrior:
     def widened(self, distance: float, apparent_wind: float) -> float:
         """Return spreads and meander elsewhere over those at the prior's distance, in its wind [-].
 
-        Turbulence makes them grow with x/U, buoyancy with x^(2/3)/U, and the source has its own: within 7 % (rms) of the plume
-        model's from 250 to 460 m to 220 to 350 m. Arguments as of ``height_at``.
+        Turbulence makes them grow with x/U, buoyancy with x^(2/3)/U, and the source has its own:
+        within 7 % (rms) of the plume model's from 250 to 460 m to 220 to 350 m. Arguments as of
+        ``height_at``.
         """
         turbulent = max(0.0, self.sigma_y**2 - _SOURCE_SPREAD**2) + self.meander_y**2
         source = min(self.sigma_y, _SOURCE_SPREAD) ** 2
@@ -239,7 +260,8 @@ class Expectation:
     Attributes
     ----------
     source_height, source_deviation : of the funnel's mouth [m]
-    stack_diameter, exhaust_speed : of the funnel's mouth [m], and of the exhaust in it at the load that is expected [m/s]
+    stack_diameter, exhaust_speed : of the funnel's mouth [m], and of the exhaust in it at the load
+        that is expected [m/s]
     momentum_flux, buoyancy_flux, co2_rate : of the exhaust at that load [m^4/s^2, m^4/s^3, mol/s]
     load_deviation : of the logarithm of the two latter [-]
     wind_deviation : of each component of the apparent wind, as it is estimated on board [m/s]
@@ -266,16 +288,18 @@ def expected_plume(
 ) -> PlumePrior:
     """Return the plume that a ship of a class makes in some wind, over the sea in neutral air.
 
-    Spreads about a moving centre are those of source, buoyancy and turbulence; the meander has the rest of the turbulence. That the
-    first has so much of it is a fit to ``measurement.plume.spread`` at 200 to 500 m.
+    Spreads about a moving centre are those of source, buoyancy and turbulence; the meander has the
+    rest of the turbulence. That the first has so much of it is a fit to
+    ``measurement.plume.spread`` at 200 to 500 m.
 
     Parameters
     ----------
     expected : of ship and sensor
     distance : behind the funnel, where it is to be crossed [m]
     apparent_wind : past the ship [m/s]
-    wind_speed : over the sea at 10 m; where a wind that grows with height is taken from 60 to 110 m, the meander is up to 29 % too
-        large and the peak 17 % too low (8 m/s over a roughness of 0.2 mm), within the prior's deviations [m/s]
+    wind_speed : over the sea at 10 m; where a wind that grows with height is taken from 60 to 110
+        m, the meander is up to 29 % too large and the peak 17 % too low (8 m/s over a roughness of
+        0.2 mm), within the prior's deviations [m/s]
     """
     wind = max(apparent_wind, SPEED_MIN)
     climbed = rise(expected.momentum_flux, expected.buoyancy_flux, distance, wind)
@@ -297,7 +321,8 @@ def expected_plume(
     )
     own_up = min(own_across, _OWN_UP * up)
     sigma_y, sigma_z = math.hypot(own, own_across), math.hypot(own, own_up)
-    # Twice the load is twice the gas, and makes what buoyancy has of the spreads 2^(1/3) times as wide.
+    # Twice the load is twice the gas, and makes what buoyancy has of the spreads 2^(1/3) times as
+    # wide.
     by_load = 1.0 - (BUOYANT_SPREAD * climbed) ** 2 * (1.0 / sigma_y**2 + 1.0 / sigma_z**2) / 3.0
     return PlumePrior(
         distance=distance,

@@ -6,11 +6,15 @@ from enum import Enum
 from gnc.estimation.plume.prior import GasSensor
 
 _EQUAL, _EQUAL_BY_NOISE = 10, 1e-12
-"""Readings in a row that are one and the same, from which a sensor counts as stuck [-]: at least so many, and as many as noise
-makes equal with at most so small a probability, at any reading. Noise of 10 steps makes 9 equal with 3e-13."""
+"""Readings in a row that are one and the same, from which a sensor counts as stuck [-]: at least so
+many, and as many as noise makes equal with at most so small a probability, at any reading. Noise of
+10 steps makes 9 equal with 3e-13.
+"""
 
 _SILENT_INTERVALS, _SILENT_TIME = 5.0, 2.0
-"""A sensor counts as silent after so many intervals between its readings, and at least so long [-, s]."""
+"""A sensor counts as silent after so many intervals between its readings, and at least so long
+[-, s].
+"""
 
 
 class SensorState(Enum):
@@ -25,9 +29,10 @@ class SensorState(Enum):
 class SensorWatch:
     """Watches the readings of a sensor.
 
-    A sensor that is dead but still has the noise of one that works cannot be told from clean air. One whose noise is less than the
-    step of its readings repeats them in clean air, too: it takes longer to tell that it is stuck (at
-    half the step 73 readings, at a fifth 2,211), and is never told where its noise is less than a sixteenth of the step.
+    A sensor that is dead but still has the noise of one that works cannot be told from clean air.
+    One whose noise is less than the step of its readings repeats them in clean air, too: it takes
+    longer to tell that it is stuck (at half the step 73 readings, at a fifth 2,211), and is never
+    told where its noise is less than a sixteenth of the step.
 
     Parameters
     ----------
@@ -65,10 +70,12 @@ class SensorWatch:
 
 
 def equal_readings(sensor: GasSensor) -> float:
-    """Return the number of equal readings in a row from which a sensor counts as stuck [-]; infinite where noise never shows.
+    """Return the number of equal readings in a row from which a sensor counts as stuck [-];
+    infinite where noise never shows.
 
-    A reading is rounded to the step d, its noise is normal with the deviation s. It is most often the same where the air is at a
-    multiple of d: with the probability erf(d/(2 sqrt(2) s)) each time.
+    A reading is rounded to the step d, its noise is normal with the deviation s. It is most often
+    the same where the air is at a multiple of d: with the probability erf(d/(2 sqrt(2) s)) each
+    time.
     """
     same = math.erf(sensor.resolution / (2.0 * math.sqrt(2.0) * sensor.noise))
     if same in (0.0, 1.0):

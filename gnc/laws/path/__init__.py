@@ -1,4 +1,5 @@
-"""Steering laws of autopilots and of the literature, which know paths: each a pure function, and its adapter to a moving point.
+"""Steering laws of autopilots and of the literature, which know paths: each a pure function, and
+its adapter to a moving point.
 
 Importing the package registers all of them.
 """

@@ -1,8 +1,10 @@
-"""What puts a law for paths to a moving point: the path that the point stands for, in the frame in which that path is at rest.
+"""What puts a law for paths to a moving point: the path that the point stands for, in the frame in
+which that path is at rest.
 
-M1, tangent: the path is at rest over the ground; its point is the reference, anew at every step. M2, the frame of a centre: the
-path moves with the centre, and to the law it is a flight in wind less the centre's velocity. Both are one computation. M3, the
-point itself, needs no path: such a law takes the reference as it is.
+M1, tangent: the path is at rest over the ground; its point is the reference, anew at every step.
+M2, the frame of a centre: the path moves with the centre, and to the law it is a flight in wind
+less the centre's velocity. Both are one computation. M3, the point itself, needs no path: such a
+law takes the reference as it is.
 """
 
 import math
@@ -15,11 +17,14 @@ from gnc.reference.reference import Reference
 from gnc.vectors import Vector, along, cross, norm, plus, right_of, scaled
 
 SPEED_MIN = 0.1
-"""Speed of the reference over the ground below which its path has no direction there [m/s]: that through the air is taken."""
+"""Speed of the reference over the ground below which its path has no direction there [m/s]: that
+through the air is taken.
+"""
 
 
 class PathMotion(NamedTuple):
-    """The vehicle beside a path, in the frame in which the path is at rest. Positions are from the path's point.
+    """The vehicle beside a path, in the frame in which the path is at rest. Positions are from the
+    path's point.
 
     Attributes
     ----------
@@ -42,7 +47,9 @@ class PathMotion(NamedTuple):
 
     @property
     def circle(self) -> tuple[Vector, float, int]:
-        """Return centre [m], radius [m] and side (+1 clockwise) of the circle that the path is, at its point."""
+        """Return centre [m], radius [m] and side (+1 clockwise) of the circle that the path is, at
+        its point.
+        """
         return (
             scaled(right_of(self.tangent), 1.0 / self.curvature),
             1.0 / abs(self.curvature),
@@ -58,10 +65,11 @@ def path_motion(
     speed: float,
     surroundings: Surroundings,
 ) -> PathMotion:
-    """Return the vehicle beside the path that the reference stands for; parameters are those of ``SteeringLaw``.
+    """Return the vehicle beside the path that the reference stands for; parameters are those of
+    ``SteeringLaw``.
 
-    The reference moves at V_r through the air. Its velocity over the frame is the path's tangent, and the rate at which that turns
-    over its speed is the path's curvature.
+    The reference moves at V_r through the air. Its velocity over the frame is the path's tangent,
+    and the rate at which that turns over its speed is the path's curvature.
     """
     air, frame = surroundings.air, (surroundings.path_north, surroundings.path_east)
     wind = air.wind_north - frame[0], air.wind_east - frame[1]
@@ -108,7 +116,9 @@ class PathLaw(ABC):
     def heading_rate(
         self, reference: Reference, to_north: float, to_east: float, course: float, speed: float
     ) -> float:
-        """Return the demanded heading rate in still air [rad/s]; parameters are those of ``SteeringLaw``."""
+        """Return the demanded heading rate in still air [rad/s]; parameters are those of
+        ``SteeringLaw``.
+        """
         return self.rate(path_motion(reference, to_north, to_east, course, speed, STILL_AIR))
 
 
@@ -137,5 +147,7 @@ class BegunLaw:
 
 
 def turn_rate(acceleration: float, airspeed: float) -> float:
-    """Return the heading rate of a coordinated turn [rad/s] with a lateral acceleration [m/s2] at an airspeed [m/s]."""
+    """Return the heading rate of a coordinated turn [rad/s] with a lateral acceleration [m/s2] at
+    an airspeed [m/s].
+    """
     return acceleration / airspeed if airspeed > 0.0 else math.copysign(0.0, acceleration)

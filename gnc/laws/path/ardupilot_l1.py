@@ -1,4 +1,5 @@
-"""ArduPilot's L1 control towards a waypoint: Park's law with period and damping set, a capture angle and an integrator.
+"""ArduPilot's L1 control towards a waypoint: Park's law with period and damping set, a capture
+angle and an integrator.
 
 Written from a description of the law, not from ArduPilot's code, whose licence is another.
 """
@@ -20,7 +21,9 @@ _QUARTER = 1.5708
 _SPEED_MIN = 0.1
 """Ground speed below which the heading counts as course [m/s]."""
 _PAUSE, _STEP_MAX = 1.0, 0.1
-"""Time since the last call after which the integrator begins anew, and the most that it integrates over [s]."""
+"""Time since the last call after which the integrator begins anew, and the most that it integrates
+over [s].
+"""
 _INTEGRATE_WITHIN, _INTEGRAL_MAX = math.radians(5.0), 0.1
 """Capture angle within which the integrator runs, and its limit [rad]."""
 _CAPTURE_MAX = 0.7071
@@ -52,7 +55,8 @@ class L1State:
     Attributes
     ----------
     integral : of the capture angle [rad]
-    gain : the integrator's at the last call, by which a change is noticed; not a number before the first call [1/s]
+    gain : the integrator's at the last call, by which a change is noticed; not a number before the
+        first call [1/s]
     last_angle : between course and demanded direction at the last call [rad]
     """
 
@@ -76,7 +80,8 @@ def update_waypoint(
     state: L1State = FRESH,
     parameters: L1Parameters | None = None,
 ) -> tuple[float, L1State]:
-    """Return the lateral acceleration, positive to the right [m/s2], and the state for the next call. A pure function.
+    """Return the lateral acceleration, positive to the right [m/s2], and the state for the next
+    call. A pure function.
 
     Parameters
     ----------
@@ -118,7 +123,9 @@ def update_waypoint(
 
 
 def course_velocity(velocity: Vector, yaw: float) -> Vector:
-    """Return the velocity over the ground; a slow one along the heading where the vehicle flies backwards or stands [m/s]."""
+    """Return the velocity over the ground; a slow one along the heading where the vehicle flies
+    backwards or stands [m/s].
+    """
     if norm(velocity) < _SPEED_MIN or abs(wrap(course_of(velocity) - yaw)) >= 0.5 * math.pi:
         return scaled(along(yaw), _SPEED_MIN)
     return velocity
@@ -131,7 +138,8 @@ def unit(vector: Vector) -> Vector | None:
 
 
 def decided(angle: float, last: float, *, bearing: float, yaw: float) -> float:
-    """Return the angle to turn by, to the last side where the target is behind and both sides are as near [rad].
+    """Return the angle to turn by, to the last side where the target is behind and both sides are
+    as near [rad].
 
     Parameters
     ----------
@@ -153,7 +161,8 @@ def _angle_to(direction: Vector, velocity: Vector) -> float:
 
 
 _BEHIND, _AHEAD = -500.0, 5000.0
-"""Where the line that stands for the reference's tangent begins and ends, from the reference [m]."""
+"""Where the line that stands for the reference's tangent begins and ends, from the reference [m].
+"""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -176,7 +185,9 @@ class ArduPilotL1Law(PathLaw):
         raise NotImplementedError
 
     def step(self, motion: PathMotion, time_step: float, state: L1State) -> tuple[float, L1State]:
-        """Return the demanded heading rate [rad/s], and the state for the next step; the time step in s."""
+        """Return the demanded heading rate [rad/s], and the state for the next step; the time step
+        in s.
+        """
         acceleration, state = update_waypoint(
             motion.position,
             motion.velocity,
@@ -233,7 +244,9 @@ class ArduPilotL1TangentLaw(ArduPilotL1Law):
 @steering_law("ardupilot_l1_point")
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ArduPilotL1PointLaw(ArduPilotL1Law):
-    """ArduPilot's L1 with the reference itself as waypoint (M3); attributes as of ``ArduPilotL1Law``."""
+    """ArduPilot's L1 with the reference itself as waypoint (M3); attributes as of
+    ``ArduPilotL1Law``.
+    """
 
     given: ClassVar[str] = "the reference's place as waypoint (M3); velocity over the ground"
     cannot: ClassVar[dict[str, str]] = {ON_CIRCLE: NO_CIRCLE}

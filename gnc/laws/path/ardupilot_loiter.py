@@ -1,4 +1,5 @@
-"""ArduPilot's L1 control on a loiter circle: a capture angle from outside, proportional and derivative control on the circle.
+"""ArduPilot's L1 control on a loiter circle: a capture angle from outside, proportional and
+derivative control on the circle.
 
 Written from a description of the law, not from ArduPilot's code, whose licence is another.
 """
@@ -96,10 +97,11 @@ def update_loiter(
 @steering_law("ardupilot_loiter")
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ArduPilotLoiterLaw(PathLaw):
-    """ArduPilot's loiter about a moving centre as ArduPilot flies it: with the velocity over the ground.
+    """ArduPilot's loiter about a moving centre as ArduPilot flies it: with the velocity over the
+    ground.
 
-    The indecision of the law is left out: it matters where the centre lies exactly behind, and a memory of it would be all the
-    state that the law has.
+    The indecision of the law is left out: it matters where the centre lies exactly behind, and a
+    memory of it would be all the state that the law has.
 
     Attributes
     ----------
@@ -132,7 +134,8 @@ class ArduPilotLoiterLaw(PathLaw):
 @steering_law("ardupilot_loiter_relative")
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ArduPilotRelativeLoiterLaw(ArduPilotLoiterLaw):
-    """ArduPilot's loiter with the velocity relative to the centre (M2): an improvement of this project, not ArduPilot's.
+    """ArduPilot's loiter with the velocity relative to the centre (M2): an improvement of this
+    project, not ArduPilot's.
 
     Attributes are those of ``ArduPilotLoiterLaw``.
     """

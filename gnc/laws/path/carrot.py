@@ -1,6 +1,7 @@
 """Carrot chasing, and pure pursuit with line of sight, as Sujit, Saripalli and Sousa compare them.
 
-Source: P. B. Sujit, S. Saripalli, J. B. Sousa, "Unmanned Aerial Vehicle Path Following", IEEE Control Systems Magazine 34(1),
+Source: P. B. Sujit, S. Saripalli, J. B. Sousa, "Unmanned Aerial Vehicle Path Following", IEEE
+Control Systems Magazine 34(1),
 2014. The symbols for the gains are this project's.
 """
 
@@ -14,19 +15,25 @@ from gnc.vectors import Vector, along, course_of, cross, dot, minus, norm, plus
 
 
 def carrot_on_line(position: Vector, origin: Vector, tangent: Vector, ahead: float) -> Vector:
-    """Return the point of a line that is ``ahead`` [m] of the vehicle's nearest [m]; vectors in m, the tangent a unit vector."""
+    """Return the point of a line that is ``ahead`` [m] of the vehicle's nearest [m]; vectors in m,
+    the tangent a unit vector.
+    """
     return plus(origin, tangent, dot(minus(position, origin), tangent) + ahead)
 
 
 def carrot_on_circle(
     position: Vector, centre: Vector, radius: float, side: int, ahead: float
 ) -> Vector:
-    """Return the point of a circle that is an angle ``ahead`` [rad] of the vehicle's nearest [m]; side +1 is clockwise."""
+    """Return the point of a circle that is an angle ``ahead`` [rad] of the vehicle's nearest [m];
+    side +1 is clockwise.
+    """
     return plus(centre, along(course_of(minus(position, centre)) + side * ahead), radius)
 
 
 def chase(position: Vector, velocity: Vector, target: Vector, gain: float) -> float:
-    """Return a = gain V angle, positive to the right [m/s2], from position [m], velocity [m/s], the carrot [m], and gain [1/s]."""
+    """Return a = gain V angle, positive to the right [m/s2], from position [m], velocity [m/s], the
+    carrot [m], and gain [1/s].
+    """
     return gain * norm(velocity) * wrap(course_of(minus(target, position)) - course_of(velocity))
 
 
@@ -61,7 +68,8 @@ class CarrotLaw(PathLaw):
     Attributes
     ----------
     carrot_ahead_m : distance of the carrot ahead of the nearest point of the tangent [m]
-    carrot_gain_per_s : heading rate per angle between the course and the bearing of the carrot [1/s]
+    carrot_gain_per_s : heading rate per angle between the course and the bearing of the carrot
+        [1/s]
     """
 
     given: ClassVar[str] = "tangent of the path over the ground (M1)"
@@ -84,7 +92,8 @@ class CarrotOrbitLaw(PathLaw):
     Attributes
     ----------
     carrot_angle_rad : angle of the carrot ahead of the vehicle's bearing from the centre [rad]
-    carrot_gain_per_s : heading rate per angle between the course and the bearing of the carrot [1/s]
+    carrot_gain_per_s : heading rate per angle between the course and the bearing of the carrot
+        [1/s]
     """
 
     given: ClassVar[str] = "the circle in the frame of its centre (M2)"
@@ -103,13 +112,15 @@ class CarrotOrbitLaw(PathLaw):
 @steering_law("plos")
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PlosLaw(PathLaw):
-    """Pursuit of a point of the reference's tangent, with the distance from the tangent beside it (M1).
+    """Pursuit of a point of the reference's tangent, with the distance from the tangent beside it
+    (M1).
 
     Attributes
     ----------
     plos_ahead_m : distance of the pursued point ahead of the reference [m]
     plos_pursuit_per_s : gain k_1 of the pursuit, heading rate per angle to the pursued point [1/s]
-    plos_sight_per_m_s : gain k_2 of the line of sight, heading rate per cross-track distance [1/(m s)]
+    plos_sight_per_m_s : gain k_2 of the line of sight, heading rate per cross-track distance
+        [1/(m s)]
     """
 
     given: ClassVar[str] = "tangent of the path over the ground (M1)"

@@ -1,4 +1,6 @@
-"""Constant bearing: head for where the reference will be met, so that the line of sight keeps its direction."""
+"""Constant bearing: head for where the reference will be met, so that the line of sight keeps its
+direction.
+"""
 
 import math
 from dataclasses import dataclass
@@ -30,7 +32,8 @@ class ConstantBearingLaw:
 
     Attributes
     ----------
-    bearing_gain_per_s : heading rate per angle from the course to the course that meets the reference [1/s]
+    bearing_gain_per_s : heading rate per angle from the course to the course that meets the
+        reference [1/s]
     """
 
     given: ClassVar[str] = "the reference's place and velocity (M3)"

@@ -1,8 +1,9 @@
 """The Lyapunov guidance vector field: a standoff circle about a centre that moves, in wind.
 
-Sources: D. A. Lawrence, E. W. Frew, W. J. Pisano, "Lyapunov Vector Fields for Autonomous Unmanned Aircraft Flight Control",
-JGCD 31(5), 2008; E. W. Frew, D. A. Lawrence, S. Morris, "Coordinated Standoff Tracking of Moving Targets Using Lyapunov Guidance
-Vector Fields", JGCD 31(2), 2008. The wind and the feedback on the heading are additions of this project.
+Sources: D. A. Lawrence, E. W. Frew, W. J. Pisano, "Lyapunov Vector Fields for Autonomous Unmanned
+Aircraft Flight Control", JGCD 31(5), 2008; E. W. Frew, D. A. Lawrence, S. Morris, "Coordinated
+Standoff Tracking of Moving Targets Using Lyapunov Guidance Vector Fields", JGCD 31(2), 2008. The
+wind and the feedback on the heading are additions of this project.
 """
 
 import math
@@ -76,7 +77,8 @@ def lgvf(
 
 
 def heading_for(course: float, course_rate: float, airspeed: float, drift: Vector) -> HeadingField:
-    """Return the heading that gives a course relative to a centre, by the triangle of velocities, and its rate.
+    """Return the heading that gives a course relative to a centre, by the triangle of velocities,
+    and its rate.
 
     Parameters
     ----------
@@ -101,7 +103,9 @@ def heading_for(course: float, course_rate: float, airspeed: float, drift: Vecto
 
 
 def heading_rate(field: HeadingField, heading: float, gain: float) -> float:
-    """Return the heading rate that turns the vehicle into the field [rad/s], from its heading [rad] and a gain [1/s]."""
+    """Return the heading rate that turns the vehicle into the field [rad/s], from its heading [rad]
+    and a gain [1/s].
+    """
     return field.rate + gain * wrap(field.heading - heading)
 
 
@@ -120,7 +124,9 @@ class LgvfLaw(PathLaw):
     lgvf_gain_per_s: float = 1.0
 
     def rate(self, motion: PathMotion) -> float:
-        """Return the demanded heading rate [rad/s]; a centre that is as fast as the vehicle is followed, not circled."""
+        """Return the demanded heading rate [rad/s]; a centre that is as fast as the vehicle is
+        followed, not circled.
+        """
         if norm(motion.wind) >= motion.airspeed:
             return heading_rate(
                 HeadingField(course_of(motion.wind) + math.pi, 0.0),

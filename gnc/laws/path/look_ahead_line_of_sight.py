@@ -1,4 +1,6 @@
-"""Line-of-sight guidance of marine craft: a course towards the path's tangent, with the reference's turn fed forward."""
+"""Line-of-sight guidance of marine craft: a course towards the path's tangent, with the reference's
+turn fed forward.
+"""
 
 import math
 from dataclasses import dataclass

@@ -1,8 +1,10 @@
-"""NPFG, the fixed-wing path following of PX4: look-ahead by the track error, bearing feasibility in wind, adapted period.
+"""NPFG, the fixed-wing path following of PX4: look-ahead by the track error, bearing feasibility in
+wind, adapted period.
 
-Source: T. Stastny, R. Siegwart, "On Flying Backwards: Preventing Run-away of Small, Low-speed, Fixed-wing UAVs in Strong Winds",
-IROS 2019, and the law as PX4 flies it, release 1.15 (BSD-3-Clause). Written from equations, not from code. Differs in that the
-airspeed is not raised to keep a ground speed or to come back to the track: here it is left to whoever flies the law.
+Source: T. Stastny, R. Siegwart, "On Flying Backwards: Preventing Run-away of Small, Low-speed,
+Fixed-wing UAVs in Strong Winds", IROS 2019, and the law as PX4 flies it, release 1.15
+(BSD-3-Clause). Written from equations, not from code. Differs in that the airspeed is not raised to
+keep a ground speed or to come back to the track: here it is left to whoever flies the law.
 """
 
 import math
@@ -145,7 +147,9 @@ def _adapted_period(
     curvature: float,
     feasible: float,
 ) -> float:
-    """Return the period, kept to what the roll dynamics allow and the path's curvature in wind needs [s]."""
+    """Return the period, kept to what the roll dynamics allow and the path's curvature in wind
+    needs [s].
+    """
     if p.roll_time_constant <= _EPSILON:
         return p.period
     turn_rate = abs(curvature * airspeed)
@@ -176,7 +180,9 @@ def _adapted_period(
 def _air_velocity_reference(
     bearing: Vector, wind: Vector, wind_speed: float, airspeed: float
 ) -> Vector:
-    """Return the velocity through the air that gives the demanded bearing over the ground, as far as the wind lets it [m/s]."""
+    """Return the velocity through the air that gives the demanded bearing over the ground, as far
+    as the wind lets it [m/s].
+    """
     across, along = cross(wind, bearing), dot(wind, bearing)
     if abs(across) < airspeed and (along > 0.0 or wind_speed < airspeed):
         return plus(
@@ -193,7 +199,9 @@ def _air_velocity_reference(
 
 
 def _feedback(gain: float, air_velocity: Vector, airspeed: float, reference: Vector) -> float:
-    """Return the lateral acceleration that turns the velocity through the air to its reference [m/s2]."""
+    """Return the lateral acceleration that turns the velocity through the air to its reference
+    [m/s2].
+    """
     turn, length = cross(air_velocity, reference), norm(reference)
     if dot(air_velocity, reference) < 0.0:
         return gain * airspeed * (-1.0 if turn < 0.0 else 1.0)
@@ -203,7 +211,9 @@ def _feedback(gain: float, air_velocity: Vector, airspeed: float, reference: Vec
 def _feed_forward(
     tangent: Vector, velocity: Vector, wind: Vector, airspeed: float, error: float, curvature: float
 ) -> float:
-    """Return the lateral acceleration that the path's curvature needs, at the vehicle's distance from it [m/s2]."""
+    """Return the lateral acceleration that the path's curvature needs, at the vehicle's distance
+    from it [m/s2].
+    """
     here = (
         curvature / max(1.0 - curvature * error, abs(curvature) * _RADIUS_MIN)
         if curvature != 0.0
@@ -218,13 +228,15 @@ def _feed_forward(
 @steering_law("npfg")
 @dataclass(frozen=True, slots=True, kw_only=True)
 class NpfgLaw(PathLaw):
-    """NPFG on the reference's tangent and curvature (M1), or on a circle in the frame of its centre (M2), at constant airspeed.
+    """NPFG on the reference's tangent and curvature (M1), or on a circle in the frame of its centre
+    (M2), at constant airspeed.
 
     Attributes
     ----------
     npfg_period_s : period T_0 of the loop [s]
     npfg_damping : damping zeta of the loop [-]
-    npfg_roll_time_constant_s : time constant T_phi of the roll angle; 0 for no bounds on the period [s]
+    npfg_roll_time_constant_s : time constant T_phi of the roll angle; 0 for no bounds on the period
+        [s]
     """
 
     given: ClassVar[str] = (

@@ -1,7 +1,9 @@
-"""The law of Park, Deyst and How: a lateral acceleration towards a point of the path at a distance L1 ahead.
+"""The law of Park, Deyst and How: a lateral acceleration towards a point of the path at a distance
+L1 ahead.
 
-Source: S. Park, J. Deyst, J. P. How, "A New Nonlinear Guidance Logic for Trajectory Tracking", AIAA 2004-4900;
-"Performance and Lyapunov Stability of a Nonlinear Path-Following Guidance Method", JGCD 30(6), 2007.
+Source: S. Park, J. Deyst, J. P. How, "A New Nonlinear Guidance Logic for Trajectory Tracking", AIAA
+2004-4900; "Performance and Lyapunov Stability of a Nonlinear Path-Following Guidance Method", JGCD
+30(6), 2007.
 """
 
 import math
@@ -15,9 +17,11 @@ from gnc.vectors import Vector, along, course_of, cross, dot, minus, norm, plus,
 
 
 def park_l1(position: Vector, velocity: Vector, target: Vector, *, range_min: float = 0.0) -> float:
-    """Return the lateral acceleration, 2 v^2 sin(eta)/L1, positive to the right [m/s2]. A pure function.
+    """Return the lateral acceleration, 2 v^2 sin(eta)/L1, positive to the right [m/s2]. A pure
+    function.
 
-    Unlike the printed form it keeps eta within a quarter of a turn: as printed, the command falls off again behind the vehicle.
+    Unlike the printed form it keeps eta within a quarter of a turn: as printed, the command falls
+    off again behind the vehicle.
 
     Parameters
     ----------
@@ -34,7 +38,8 @@ def park_l1(position: Vector, velocity: Vector, target: Vector, *, range_min: fl
 
 
 def point_on_line(position: Vector, origin: Vector, course: float, distance: float) -> Vector:
-    """Return the point of a line at ``distance`` L1 ahead [m]; its nearest point where the line is farther off.
+    """Return the point of a line at ``distance`` L1 ahead [m]; its nearest point where the line is
+    farther off.
 
     Parameters
     ----------
@@ -54,7 +59,8 @@ def point_on_line(position: Vector, origin: Vector, course: float, distance: flo
 def point_on_circle(
     position: Vector, centre: Vector, radius: float, side: int, distance: float
 ) -> Vector:
-    """Return the point of a circle at ``distance`` L1 ahead [m]; its nearest point where there is none.
+    """Return the point of a circle at ``distance`` L1 ahead [m]; its nearest point where there is
+    none.
 
     Parameters
     ----------
@@ -116,7 +122,9 @@ class ParkL1TangentLaw(ParkL1Law):
 @steering_law("park_l1_ahead")
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ParkL1AheadLaw(ParkL1Law):
-    """Park's law towards a point L1 ahead of the reference, on its tangent (M3); attributes as of ``ParkL1Law``."""
+    """Park's law towards a point L1 ahead of the reference, on its tangent (M3); attributes as of
+    ``ParkL1Law``.
+    """
 
     given: ClassVar[str] = "a point ahead of the reference (M3); velocity over the ground"
     cannot: ClassVar[dict[str, str]] = {ON_CIRCLE: NO_CIRCLE}
@@ -129,7 +137,9 @@ class ParkL1AheadLaw(ParkL1Law):
 @steering_law("park_l1_point")
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ParkL1PointLaw(ParkL1Law):
-    """Park's law towards the reference itself (M3), with L1 as the floor of the range; attributes as of ``ParkL1Law``."""
+    """Park's law towards the reference itself (M3), with L1 as the floor of the range; attributes
+    as of ``ParkL1Law``.
+    """
 
     given: ClassVar[str] = "the reference's place (M3); velocity over the ground"
     cannot: ClassVar[dict[str, str]] = {ON_CIRCLE: NO_CIRCLE}

@@ -9,7 +9,8 @@ from gnc.vectors import Vector, along, cross, dot, minus, scaled
 
 
 def sight_rate(to_target: Vector, relative_velocity: Vector) -> float:
-    """Return the rate of the line of sight [rad/s]; 0 on the target, where there is none. A pure function.
+    """Return the rate of the line of sight [rad/s]; 0 on the target, where there is none. A pure
+    function.
 
     Parameters
     ----------
@@ -23,7 +24,8 @@ def sight_rate(to_target: Vector, relative_velocity: Vector) -> float:
 @steering_law("proportional_navigation")
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ProportionalNavigationLaw:
-    """Proportional navigation towards the reference itself (M3). What it demands has no bound close to the reference.
+    """Proportional navigation towards the reference itself (M3). What it demands has no bound close
+    to the reference.
 
     Attributes
     ----------

@@ -11,7 +11,8 @@ from gnc.vectors import Vector, course_of, norm
 
 
 def pure_pursuit(to_target: Vector, course: float, speed: float, *, range_min: float) -> float:
-    """Return omega = 2 V sin(angle)/distance [rad/s], with the angle kept within a quarter of a turn. A pure function.
+    """Return omega = 2 V sin(angle)/distance [rad/s], with the angle kept within a quarter of a
+    turn. A pure function.
 
     Parameters
     ----------

@@ -1,7 +1,8 @@
-"""Vector fields for lines and circles as ROSplane flies them: a course command, and a roll fed forward on a circle.
+"""Vector fields for lines and circles as ROSplane flies them: a course command, and a roll fed
+forward on a circle.
 
-Source: R. W. Beard, T. W. McLain, Small Unmanned Aircraft, chapter 10, with the parameters of ROSplane (BSD-3-Clause). Written
-from equations, not from code.
+Source: R. W. Beard, T. W. McLain, Small Unmanned Aircraft, chapter 10, with the parameters of
+ROSplane (BSD-3-Clause). Written from equations, not from code.
 """
 
 import math
@@ -59,14 +60,17 @@ def orbit_course(
 
 
 def orbit_roll(airspeed: float, radius: float, side: int, course: float, heading: float) -> float:
-    """Return ROSplane's roll feed-forward on a circle [rad], from airspeed [m/s], radius [m], side, course and heading [rad]."""
+    """Return ROSplane's roll feed-forward on a circle [rad], from airspeed [m/s], radius [m], side,
+    course and heading [rad].
+    """
     return side * math.atan(airspeed * airspeed / (_G * radius * math.cos(course - heading)))
 
 
 @steering_law("rosplane_field")
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RosplaneFieldLaw(PathLaw):
-    """ROSplane's course command for the reference's tangent (M1), with a heading rate in proportion to the course error.
+    """ROSplane's course command for the reference's tangent (M1), with a heading rate in proportion
+    to the course error.
 
     Attributes
     ----------
@@ -97,11 +101,13 @@ class RosplaneFieldLaw(PathLaw):
 @steering_law("rosplane_orbit")
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RosplaneOrbitLaw(PathLaw):
-    """ROSplane's course command for a circle in the frame of its centre (M2), with its roll fed forward.
+    """ROSplane's course command for a circle in the frame of its centre (M2), with its roll fed
+    forward.
 
     Attributes
     ----------
-    orbit_gain : k_orbit, how steeply the field turns with the distance from the circle, in radii [-]
+    orbit_gain : k_orbit, how steeply the field turns with the distance from the circle, in radii
+        [-]
     course_gain_per_s : k_chi, heading rate per course error [1/s]
     """
 

@@ -1,7 +1,9 @@
-"""Vector fields for lines and circles: a course for every place, and the law that turns the vehicle to it.
+"""Vector fields for lines and circles: a course for every place, and the law that turns the vehicle
+to it.
 
-Sources: D. R. Nelson, D. B. Barber, T. W. McLain, R. W. Beard, "Vector Field Path Following for Miniature Air Vehicles", IEEE
-TRO 23(3), 2007; R. W. Beard, T. W. McLain, Small Unmanned Aircraft, chapter 10.
+Sources: D. R. Nelson, D. B. Barber, T. W. McLain, R. W. Beard, "Vector Field Path Following for
+Miniature Air Vehicles", IEEE TRO 23(3), 2007; R. W. Beard, T. W. McLain, Small Unmanned Aircraft,
+chapter 10.
 """
 
 import math
@@ -41,7 +43,8 @@ def line_field(
     approach: float,
     line_rate: float = 0.0,
 ) -> Field:
-    """Return the field of a line that may turn about ``origin``, and its rate along the vehicle's way.
+    """Return the field of a line that may turn about ``origin``, and its rate along the vehicle's
+    way.
 
     Parameters
     ----------
@@ -64,7 +67,8 @@ def line_field(
 def orbit_field(
     position: Vector, velocity: Vector, centre: Vector, radius: float, side: int, *, gain: float
 ) -> Field:
-    """Return the field of a circle, the course of the velocity relative to its centre, and its rate along the vehicle's way.
+    """Return the field of a circle, the course of the velocity relative to its centre, and its rate
+    along the vehicle's way.
 
     Parameters
     ----------
@@ -141,7 +145,8 @@ class VectorFieldLaw:
 @steering_law("vector_field_orbit")
 @dataclass(frozen=True, slots=True, kw_only=True)
 class OrbitFieldLaw(PathLaw):
-    """The paper's law on a circle in the frame of its centre (M2): its field is a course relative to the centre.
+    """The paper's law on a circle in the frame of its centre (M2): its field is a course relative
+    to the centre.
 
     Attributes
     ----------
@@ -156,7 +161,9 @@ class OrbitFieldLaw(PathLaw):
     field_width_rad: float = 1.0
 
     def rate(self, motion: PathMotion) -> float:
-        """Return the demanded heading rate [rad/s]; a centre that is as fast as the vehicle is followed, not circled."""
+        """Return the demanded heading rate [rad/s]; a centre that is as fast as the vehicle is
+        followed, not circled.
+        """
         drift = scaled(motion.wind, -1.0)
         field = Field(course_of(drift), 0.0)
         if norm(drift) < motion.airspeed:

@@ -1,9 +1,11 @@
-"""Courses of an aircraft that rolls from one bank to the other and back, as hard as it may, and holds the bank in between.
+"""Courses of an aircraft that rolls from one bank to the other and back, as hard as it may, and
+holds the bank in between.
 
-From the passage through the centre, phase 0, bank falls from 0 at the roll rate p to -phi_max, is held, and is back at 0 half a
-period later; then the same to the other side. Turns are coordinated: omega = g/V tan(phi). While it rolls the course has changed by
-g/(V p) ln cos(p t), and while bank is held it changes evenly. A course that turns through less than rolling to phi_max and back
-takes is rolled through alone, with less bank.
+From the passage through the centre, phase 0, bank falls from 0 at the roll rate p to -phi_max, is
+held, and is back at 0 half a period later; then the same to the other side. Turns are coordinated:
+omega = g/V tan(phi). While it rolls the course has changed by g/(V p) ln cos(p t), and while bank
+is held it changes evenly. A course that turns through less than rolling to phi_max and back takes
+is rolled through alone, with less bank.
 """
 
 import functools
@@ -47,14 +49,17 @@ class BankSwing:
         self._per_tangent = STANDARD_GRAVITY / speed
         self._heading_rate, self._roll_rate = heading_rate, roll_rate_max
         bank_max = math.atan(heading_rate / self._per_tangent)
-        # Time in which bank comes to its largest value, and the course that is turned through meanwhile.
+        # Time in which bank comes to its largest value, and the course that is turned through
+        # meanwhile.
         self._ramp = bank_max / roll_rate_max
         self._rolling = self._per_tangent / roll_rate_max
         self._rolled = -self._rolling * math.log(math.cos(bank_max))
         self._tables: OrbitTables | None = None
 
     def half_period(self, eta: float) -> float:
-        """Return the time from one largest course offset to the other at full rates, the crossing interval [s]."""
+        """Return the time from one largest course offset to the other at full rates, the crossing
+        interval [s].
+        """
         return 2.0 * self._shape(eta)[0]
 
     def largest_heading_rate(self, eta: float) -> float:
@@ -70,7 +75,9 @@ class BankSwing:
         return self._series().eta(speed_ratio)
 
     def speed_ratio(self, eta: float) -> float:
-        """Return the mean speed over speed [-]: the mean of cos(course) over a quarter of the period."""
+        """Return the mean speed over speed [-]: the mean of cos(course) over a quarter of the
+        period.
+        """
         if eta < _ETA_MIN:
             return 1.0
         quarter, ramp, turning = self._shape(eta)
@@ -81,7 +88,9 @@ class BankSwing:
         return (0.5 * ramp * total + math.sin(turning * (quarter - ramp)) / turning) / quarter
 
     def frequency(self, eta: float, heading_rate: float) -> float:
-        """Return the largest omega_0 within a heading rate and the roll rate, no more than that at ``ETA_FREQUENCY`` [rad/s]."""
+        """Return the largest omega_0 within a heading rate and the roll rate, no more than that at
+        ``ETA_FREQUENCY`` [rad/s].
+        """
         eta = eta if eta > ETA_FREQUENCY else ETA_FREQUENCY
         if eta > self._rolled:
             quarter, largest = (
@@ -104,7 +113,8 @@ class BankSwing:
         else:
             quarter, rate = self._rolled_through(eta)
             held = 0.0
-        # Time from the middle of the way across, which is one half of the period before phase 0 and the other one after it.
+        # Time from the middle of the way across, which is one half of the period before phase 0 and
+        # the other one after it.
         off = quarter - quarter * _PER_QUARTER * abs(math.remainder(phase, _TURN))
         if -held <= off <= held or not self._ramp:
             return rate * off
@@ -121,7 +131,9 @@ class BankSwing:
         return -rate if angle > 0.0 else rate
 
     def slopes(self, eta: float, phase: float) -> tuple[float, float]:
-        """Return the slope of the course offset over eta, from -1 to 1, and that over the phase divided by eta [-]."""
+        """Return the slope of the course offset over eta, from -1 to 1, and that over the phase
+        divided by eta [-].
+        """
         if eta > self._rolled:
             rate = self._heading_rate
             held = (eta - self._rolled) / rate
@@ -133,7 +145,8 @@ class BankSwing:
             held = 0.0
         angle = math.remainder(phase, _TURN)
         off = quarter - quarter * _PER_QUARTER * abs(angle)
-        # A quarter of the period grows by 1 over the largest heading rate per unit of eta, whether bank is held or not.
+        # A quarter of the period grows by 1 over the largest heading rate per unit of eta, whether
+        # bank is held or not.
         if -held <= off <= held or not self._ramp:
             by_eta = off / quarter
         else:
@@ -147,17 +160,23 @@ class BankSwing:
         return by_eta, -by_phase if angle > 0.0 else by_phase
 
     def offset(self, eta: float, phase: float) -> tuple[float, float]:
-        """Return where the reference is from the orbit's centre, along the mean course and to its right [V_r/omega_0]."""
+        """Return where the reference is from the orbit's centre, along the mean course and to its
+        right [V_r/omega_0].
+        """
         return self._series().offset(eta, phase)
 
     def _rolled_through(self, eta: float) -> tuple[float, float]:
-        """Return a quarter of the period [s] and the largest heading rate [rad/s] of an amplitude that takes less than phi_max."""
+        """Return a quarter of the period [s] and the largest heading rate [rad/s] of an amplitude
+        that takes less than phi_max.
+        """
         # cos(bank) = exp(-eta/rolling): tan(bank)^2 = exp(2 eta/rolling) - 1.
         tangent = math.sqrt(math.expm1(2.0 * eta / self._rolling))
         return math.atan(tangent) / self._roll_rate, self._per_tangent * tangent
 
     def _shape(self, eta: float) -> tuple[float, float, float]:
-        """Return a quarter of the period, the time until bank is largest [s], and the heading rate then [rad/s]."""
+        """Return a quarter of the period, the time until bank is largest [s], and the heading rate
+        then [rad/s].
+        """
         if eta > self._rolled:
             return (
                 self._ramp + (eta - self._rolled) / self._heading_rate,
@@ -173,13 +192,15 @@ class BankSwing:
         return self._tables
 
     def _tabled(self) -> OrbitTables:
-        """Return the tables of orbits, up to two steps beyond the amplitude whose mean speed is the least of them."""
+        """Return the tables of orbits, up to two steps beyond the amplitude whose mean speed is the
+        least of them.
+        """
         ratios = [1.0]
         while len(ratios) < 3 or ratios[-3] > SPEED_RATIO_MIN:
             ratios.append(self.speed_ratio(ETA_STEP * len(ratios)))
         order = np.arange(1, 2 * _ORDERS + 1)
-        # The course is even in the phase, and its negative half a period later: of exp(i course) the cosine has even orders alone,
-        # and the sine odd ones.
+        # The course is even in the phase, and its negative half a period later: of exp(i course)
+        # the cosine has even orders alone, and the sine odd ones.
         series = [
             fourier_coefficients(functools.partial(self.course, ETA_STEP * i))[order]
             for i in range(len(ratios))
@@ -190,5 +211,7 @@ class BankSwing:
 
 @functools.lru_cache(maxsize=8)
 def bank_swing(speed: float, heading_rate: float, roll_rate_max: float) -> BankSwing:
-    """Return the courses within some limits, remembered with their tables; parameters are those of ``BankSwing``."""
+    """Return the courses within some limits, remembered with their tables; parameters are those of
+    ``BankSwing``.
+    """
     return BankSwing(speed=speed, heading_rate=heading_rate, roll_rate_max=roll_rate_max)

@@ -1,4 +1,6 @@
-"""The path of any periodic course, where there is no closed form: its Fourier series, and its place by a spline."""
+"""The path of any periodic course, where there is no closed form: its Fourier series, and its place
+by a spline.
+"""
 
 from collections.abc import Callable
 
@@ -12,14 +14,18 @@ Course = Callable[[float], float]
 """Course offset at a phase [rad], of period 2 pi but for whole turns."""
 
 _PIECES = 1024
-"""Pieces of a period [-]: a cubic over each is good to 1e-7 of V_r/omega_0, also where the roll rate jumps."""
+"""Pieces of a period [-]: a cubic over each is good to 1e-7 of V_r/omega_0, also where the roll
+rate jumps.
+"""
 
 _SAMPLES = 128
 """Of a Fourier series [-]: its coefficients fall with the third power, so that 1e-6 is left."""
 
 
 def fourier_coefficients(course: Course) -> npt.NDArray[np.complex128]:
-    """Return c_n of exp(i course) = sum of c_n exp(i n phase), in the order of ``numpy.fft.fft``, shape (128,)."""
+    """Return c_n of exp(i course) = sum of c_n exp(i n phase), in the order of ``numpy.fft.fft``,
+    shape (128,).
+    """
     phases = (2.0 * np.pi / _SAMPLES * np.arange(_SAMPLES)).tolist()
     return np.asarray(
         np.fft.fft(np.exp(1j * np.array([course(phase) for phase in phases]))) / _SAMPLES
@@ -27,7 +33,8 @@ def fourier_coefficients(course: Course) -> npt.NDArray[np.complex128]:
 
 
 class CoursePath:
-    """Where a point of unit speed is that flies a periodic course, seen from a point of its mean velocity.
+    """Where a point of unit speed is that flies a periodic course, seen from a point of its mean
+    velocity.
 
     Parameters
     ----------
@@ -53,12 +60,16 @@ class CoursePath:
         self._right = CubicHermiteSpline(knots, place.imag, slope.imag)
 
     def offset(self, phase: npt.ArrayLike) -> tuple[Array, Array]:
-        """Return the place at phases of any shape, along and to the right, from that of phase 0 [V_r/omega_0]."""
+        """Return the place at phases of any shape, along and to the right, from that of phase 0
+        [V_r/omega_0].
+        """
         within = np.mod(phase, 2.0 * np.pi)
         return np.asarray(self._along(within)), np.asarray(self._right(within))
 
     def half_widths(self) -> tuple[float, float]:
-        """Return how far the path reaches from the place of phase 0, along and across [V_r/omega_0]."""
+        """Return how far the path reaches from the place of phase 0, along and across
+        [V_r/omega_0].
+        """
         return _farthest(self._along), _farthest(self._right)
 
 

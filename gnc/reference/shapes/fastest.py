@@ -1,4 +1,6 @@
-"""The fastest oscillation: the reference turns as hard as it may, one way and then the other (docs/fastest_oscillation.md)."""
+"""The fastest oscillation: the reference turns as hard as it may, one way and then the other
+(docs/fastest_oscillation.md).
+"""
 
 import functools
 import math
@@ -16,17 +18,21 @@ from gnc.reference.shapes.course_path import CoursePath, fourier_coefficients
 JOINING_SHARE = 0.8
 """Part of the heading rate that such a reference takes as long as it is not tracked [-].
 
-Beside an orbit that takes nearly all of it, for most of the time, the cut commands of the steering law have limit cycles: of 48
-flights in still air from anywhere about the vessel 7 did not settle with 0.985 of omega_max, 5 with 0.95, and none with 0.9.
+Beside an orbit that takes nearly all of it, for most of the time, the cut commands of the steering
+law have limit cycles: of 48 flights in still air from anywhere about the vessel 7 did not settle
+with 0.985 of omega_max, 5 with 0.95, and none with 0.9.
 """
 
 _ETA_MAX = 3.2
-"""Amplitude whose mean speed is below 0 at any roll rate [rad]: sin(3.2)/3.2 = -0.02 at an infinite one."""
+"""Amplitude whose mean speed is below 0 at any roll rate [rad]: sin(3.2)/3.2 = -0.02 at an infinite
+one.
+"""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class FastestOscillation:
-    """The oscillation of shortest period within a bank and a roll rate; attributes as of ``gnc.reference.reference.Orbit``.
+    """The oscillation of shortest period within a bank and a roll rate; attributes as of
+    ``gnc.reference.reference.Orbit``.
 
     Attributes
     ----------
@@ -62,11 +68,15 @@ class FastestOscillation:
 
     @property
     def limit(self) -> str:
-        """Return ``heading rate`` where the largest bank is held, ``roll rate`` where it is not reached."""
+        """Return ``heading rate`` where the largest bank is held, ``roll rate`` where it is not
+        reached.
+        """
         return "heading rate" if self.courses.holds_bank(self.eta) else "roll rate"
 
     def offset(self, time: npt.ArrayLike) -> tuple[Array, Array]:
-        """Return where the reference is from the centre of oscillation, along its course and to its right, within 1e-5 m [m]."""
+        """Return where the reference is from the centre of oscillation, along its course and to its
+        right, within 1e-5 m [m].
+        """
         along, right = _path(self.courses, self.eta).offset(
             self.omega_0 * np.asarray(time, dtype=np.float64)
         )
@@ -95,9 +105,11 @@ class FastestOscillation:
 @reference_shape("fastest")
 @dataclass(frozen=True, slots=True)
 class Fastest:
-    """The reference whose bank is a trapezoid: the shortest crossing interval within the heading rate and the roll rate.
+    """The reference whose bank is a trapezoid: the shortest crossing interval within the heading
+    rate and the roll rate.
 
-    Differs from equation (2), whose heading rate is a sinusoid, because that reaches its limit for moments alone.
+    Differs from equation (2), whose heading rate is a sinusoid, because that reaches its limit for
+    moments alone.
     """
 
     @property
@@ -115,7 +127,9 @@ class Fastest:
         vessel_heading_rate: float,
         roll_rate_max: float,
     ) -> FastestOscillation:
-        """Return the fastest oscillation that the vehicle can follow; parameters are those of ``ReferenceShape``."""
+        """Return the fastest oscillation that the vehicle can follow; parameters are those of
+        ``ReferenceShape``.
+        """
         available = available_heading_rate(
             nu=nu,
             speed=speed,

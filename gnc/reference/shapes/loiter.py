@@ -1,9 +1,11 @@
-"""A loiter that moves with the vessel: a circle that meets the plume twice a turn, stretched along the vessel's course.
+"""A loiter that moves with the vessel: a circle that meets the plume twice a turn, stretched along
+the vessel's course.
 
-Below a speed ratio of 0.33 it crosses more often than any oscillation (docs/fastest_oscillation.md). It turns to the right at the
-largest bank, all the way round; where its course is that of the vessel bank falls at the roll rate and rises again, and it flies
-straight on for as long as the vessel needs to come along. It cannot be steered: beside a faster vessel it would have to become an
-oscillation.
+Below a speed ratio of 0.33 it crosses more often than any oscillation
+(docs/fastest_oscillation.md). It turns to the right at the largest bank, all the way round; where
+its course is that of the vessel bank falls at the roll rate and rises again, and it flies straight
+on for as long as the vessel needs to come along. It cannot be steered: beside a faster vessel it
+would have to become an oscillation.
 """
 
 import functools
@@ -30,7 +32,8 @@ _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(10)
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Loiter:
-    """One turn, from the middle of its straight leg: attributes as of ``gnc.reference.reference.Orbit``, phase 0 there.
+    """One turn, from the middle of its straight leg: attributes as of
+    ``gnc.reference.reference.Orbit``, phase 0 there.
 
     Attributes
     ----------
@@ -80,7 +83,9 @@ class Loiter:
         return "heading rate"
 
     def offset(self, time: npt.ArrayLike) -> tuple[Array, Array]:
-        """Return where the reference is from the point about which it crosses a plume along its course every half turn [m]."""
+        """Return where the reference is from the point about which it crosses a plume along its
+        course every half turn [m].
+        """
         path, side, unit = _path(self)
         along, right = path.offset(self.omega_0 * np.asarray(time, dtype=np.float64))
         return unit * along, unit * (right - side)
@@ -158,7 +163,8 @@ class Loiter:
 class LoiterShape:
     """The reference that circles with the vessel and meets its plume twice a turn.
 
-    Differs from equation (2) in that its course goes all the way round, because a slow vessel's plume is crossed more often so.
+    Differs from equation (2) in that its course goes all the way round, because a slow vessel's
+    plume is crossed more often so.
     """
 
     @property
@@ -176,12 +182,14 @@ class LoiterShape:
         vessel_heading_rate: float,
         roll_rate_max: float,
     ) -> Loiter:
-        """Return the fastest loiter that the vehicle can follow; parameters are those of ``ReferenceShape``.
+        """Return the fastest loiter that the vehicle can follow; parameters are those of
+        ``ReferenceShape``.
 
         Raises
         ------
-        InfeasibleError : as ``available_heading_rate``; or the vessel is so fast that the loiter stays on one side of its plume, or
-            the vehicle rolls so slowly that it has turned by more than half a turn before it has reached its bank
+        InfeasibleError : as ``available_heading_rate``; or the vessel is so fast that the loiter
+            stays on one side of its plume, or the vehicle rolls so slowly that it has turned by
+            more than half a turn before it has reached its bank
         """
         available = available_heading_rate(
             nu=nu,
@@ -240,7 +248,9 @@ def _checked(loiter: Loiter) -> Loiter:
 
 @functools.lru_cache(maxsize=128)
 def _path(loiter: Loiter) -> tuple[CoursePath, float, float]:
-    """Return the path, how far off the plume lies to its right in units of V_r/omega_0, and that unit [m]."""
+    """Return the path, how far off the plume lies to its right in units of V_r/omega_0, and that
+    unit [m].
+    """
     path = CoursePath(loiter.course)
     _, side = path.offset(0.5 * math.pi)
     return path, float(side), loiter.speed / loiter.omega_0

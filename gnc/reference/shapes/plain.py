@@ -1,4 +1,6 @@
-"""Plain numbers from a shape of a user's own: of NumPy's single precision all that follows would be computed in it."""
+"""Plain numbers from a shape of a user's own: of NumPy's single precision all that follows would be
+computed in it.
+"""
 
 from typing import Any
 
@@ -8,8 +10,8 @@ import numpy as np
 class Plain:
     """A shape of a user's own, or what it has made: with the same attributes and methods.
 
-    Each number that it answers with is a plain one, several of them are a tuple, and arrays are of double precision: compiled
-    guidance takes nothing else.
+    Each number that it answers with is a plain one, several of them are a tuple, and arrays are of
+    double precision: compiled guidance takes nothing else.
 
     Parameters
     ----------

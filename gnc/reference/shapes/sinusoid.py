@@ -13,7 +13,9 @@ from gnc.reference.oscillation import Oscillation, design_oscillation
 from gnc.reference.reference import ETA_FREQUENCY, Swing, reference_shape
 
 _ORDERS = 4
-"""Pairs of Bessel functions in the series of the orbit; what is left out is below 1e-4 of its width at the largest eta."""
+"""Pairs of Bessel functions in the series of the orbit; what is left out is below 1e-4 of its width
+at the largest eta.
+"""
 
 _ETA_MAX = 2.9
 """Largest amplitude in the tables [rad]: J_0(2.9) = -0.224 is beyond the least ratio."""
@@ -23,8 +25,9 @@ _ETA_MAX = 2.9
 class SinusoidSwing:
     """Courses eta cos(theta), as of ``gnc.reference.reference.Swing``.
 
-    Differs from ``gnc.reference.bessel`` in that eta comes from a table, because a steered reference needs it often, and may have
-    to back away: ratios down to -0.2 are those of eta beyond the first zero of J_0.
+    Differs from ``gnc.reference.bessel`` in that eta comes from a table, because a steered
+    reference needs it often, and may have to back away: ratios down to -0.2 are those of eta beyond
+    the first zero of J_0.
 
     Attributes
     ----------
@@ -36,19 +39,24 @@ class SinusoidSwing:
     acceleration: float
 
     def eta(self, speed_ratio: float) -> float:
-        """Return eta [rad] for a mean speed over speed, by a table of J_0: equation (6), within 1e-5."""
+        """Return eta [rad] for a mean speed over speed, by a table of J_0: equation (6), within
+        1e-5.
+        """
         return _tables().eta(speed_ratio)
 
     def speed_ratio(self, eta: float) -> float:
         """Return the mean speed over the speed, J_0(eta) [-]: equation (5)."""
-        # The power series of J_0 in (eta/2)^2, whose k-th term is -x/k^2 of the one before: good to 5e-7 up to eta = 2.4.
+        # The power series of J_0 in (eta/2)^2, whose k-th term is -x/k^2 of the one before: good to
+        # 5e-7 up to eta = 2.4.
         x = 0.25 * eta * eta
         return 1.0 - x * (
             1.0 - x / 4.0 * (1.0 - x / 9.0 * (1.0 - x / 16.0 * (1.0 - x / 25.0 * (1.0 - x / 36.0))))
         )
 
     def frequency(self, eta: float, heading_rate: float) -> float:
-        """Return omega_0 by the heading rate that is left and by the roll rate, as ``gnc.reference.oscillation`` does [rad/s]."""
+        """Return omega_0 by the heading rate that is left and by the roll rate, as
+        ``gnc.reference.oscillation`` does [rad/s].
+        """
         eta = eta if eta > ETA_FREQUENCY else ETA_FREQUENCY
         by_heading_rate = (
             heading_rate if heading_rate < self.heading_rate else self.heading_rate
@@ -65,7 +73,9 @@ class SinusoidSwing:
         return math.cos(phase), -math.sin(phase)
 
     def offset(self, eta: float, phase: float) -> tuple[float, float]:
-        """Return where the reference is from the orbit's centre, by the series of ``gnc.reference.orbit.offset`` [V_r/omega_0]."""
+        """Return where the reference is from the orbit's centre, by the series of
+        ``gnc.reference.orbit.offset`` [V_r/omega_0].
+        """
         return _tables().offset(eta, phase)
 
 
@@ -89,7 +99,9 @@ class Sinusoid:
         vessel_heading_rate: float,
         roll_rate_max: float,
     ) -> Oscillation:
-        """Return the fastest oscillation that the vehicle can follow; parameters are those of ``ReferenceShape``."""
+        """Return the fastest oscillation that the vehicle can follow; parameters are those of
+        ``ReferenceShape``.
+        """
         return design_oscillation(
             nu=nu,
             speed=speed,

@@ -1,4 +1,6 @@
-"""Response time and delay of SO2, found from the record where they are not given: those that fit best."""
+"""Response time and delay of SO2, found from the record where they are not given: those that fit
+best.
+"""
 
 import math
 from collections.abc import Sequence
@@ -40,8 +42,10 @@ class Alignment:
     Attributes
     ----------
     instrument : with the response and delay that fit, where they were not given
-    slope_deviation : standard deviation of the slope by what noise does to the fit; 0 where both were given [ppb/ppm]
-    t90_sd_s, delay_sd_s : standard deviations of t90 of SO2, and of its delay after CO2, without what lies between readings [s]
+    slope_deviation : standard deviation of the slope by what noise does to the fit; 0 where both
+        were given [ppb/ppm]
+    t90_sd_s, delay_sd_s : standard deviations of t90 of SO2, and of its delay after CO2, without
+        what lies between readings [s]
     """
 
     instrument: SnifferSpec
@@ -69,7 +73,8 @@ def stated(instrument: SnifferSpec) -> Alignment:
 
 
 def align(record: Record, instrument: SnifferSpec, start: SnifferSpec | None = None) -> Alignment:
-    """Return response and delay of SO2; of what is not given, the values with the least squared residuals.
+    """Return response and delay of SO2; of what is not given, the values with the least squared
+    residuals.
 
     Parameters
     ----------
@@ -98,7 +103,8 @@ def align(record: Record, instrument: SnifferSpec, start: SnifferSpec | None = N
 
 
 def widened(alignment: Alignment, known: SnifferSpec, others: Sequence[SnifferSpec]) -> Alignment:
-    """Return an alignment whose deviations have what errors of the instrument do to what was found from the record.
+    """Return an alignment whose deviations have what errors of the instrument do to what was found
+    from the record.
 
     Parameters
     ----------
@@ -131,7 +137,9 @@ def _place(instrument: SnifferSpec) -> Array:
 
 
 def _applied(instrument: SnifferSpec, place: Array) -> SnifferSpec:
-    """Return the instrument with log(t90) of SO2 and its delay after CO2 [s]; where that is negative, all others are later."""
+    """Return the instrument with log(t90) of SO2 and its delay after CO2 [s]; where that is
+    negative, all others are later.
+    """
     late = max(0.0, -float(place[1]) - instrument.known("co2").delay_s)
     if late:
         channels = tuple(
@@ -147,7 +155,9 @@ def _applied(instrument: SnifferSpec, place: Array) -> SnifferSpec:
 def _round(
     record: Record, instrument: SnifferSpec, place: Array, free: npt.NDArray[np.int64]
 ) -> tuple[Array, Array, float]:
-    """Return the Gauss-Newton step, the covariance of log(t90) and delay, and what it adds to the slope's deviation."""
+    """Return the Gauss-Newton step, the covariance of log(t90) and delay, and what it adds to the
+    slope's deviation.
+    """
     signals = make_signals(record, _applied(instrument, place))
     slope, residual = fitted(signals)
     if not math.isfinite(slope):
@@ -173,7 +183,9 @@ def _round(
 def _derivative(
     signals: Signals, instrument: SnifferSpec, place: Array, i: int, slope: float
 ) -> Array:
-    """Return what the residuals change by with log(t90) or delay, relative to the noise that SO2 has left."""
+    """Return what the residuals change by with log(t90) or delay, relative to the noise that SO2
+    has left.
+    """
     sides, noise, known = [], _noise(signals), signals.known
     for sign in (1.0, -1.0):
         moved = place.copy()
@@ -186,17 +198,20 @@ def _derivative(
 
 
 def _noise(signals: Signals) -> float:
-    """Return the mean square of the noise that SO2 has left, 1 where it has none, or too few samples are known.
+    """Return the mean square of the noise that SO2 has left, 1 where it has none, or too few
+    samples are known.
 
-    SO2 is smoothed where CO2 or a gas that corrects it is slower, the more the faster SO2 is taken for: where its noise is large,
-    the residuals would be least for a t90 of 0.
+    SO2 is smoothed where CO2 or a gas that corrects it is slower, the more the faster SO2 is taken
+    for: where its noise is large, the residuals would be least for a t90 of 0.
     """
     found = residual_variance(signals, 0.0)
     return found if found > 0.0 and signals.enough else 1.0
 
 
 def _searched(record: Record, instrument: SnifferSpec, free: npt.NDArray[np.int64]) -> Array:
-    """Return the place on the grid at which CO2 leaves least of SO2 unexplained, relative to the noise that SO2 has left."""
+    """Return the place on the grid at which CO2 leaves least of SO2 unexplained, relative to the
+    noise that SO2 has left.
+    """
     best, least = _place(instrument), math.inf
     given = float(best[1])
     for log_t90 in np.log(_T90_SEARCH) if 0 in free else best[:1]:

@@ -1,4 +1,6 @@
-"""What a record has beside the plume: a slow background of each channel, and the transient of each segment's start."""
+"""What a record has beside the plume: a slow background of each channel, and the transient of each
+segment's start.
+"""
 
 import math
 
@@ -19,7 +21,9 @@ _INDEPENDENT = 1e-6
 
 
 def background_basis(record: Record, common: Poles, known: Array) -> Array:
-    """Return an orthonormal basis of the background over all samples, shape (n, k); it is 0 where these are not ``known``."""
+    """Return an orthonormal basis of the background over all samples, shape (n, k); it is 0 where
+    these are not ``known``.
+    """
     time = record.time
     pieces = 1 if record.duration <= STRAIGHT_MAX else math.ceil(record.duration / KNOT_INTERVAL)
     place = (time - time[0]) / max(record.duration, 1e-9) * pieces

@@ -18,7 +18,9 @@ GROUPS_MAX = 8
 """Groups of passes at most: single passes overlap in a slow sensor, and tell little apart."""
 
 _TELLING = 0.1
-"""Size of a group's CO2 beside the background over the median's, from which on the group has a content of its own [-]."""
+"""Size of a group's CO2 beside the background over the median's, from which on the group has a
+content of its own [-].
+"""
 
 _INDEPENDENT = 1e-6
 """Least size of what is particular to a group, relative to all."""
@@ -31,7 +33,8 @@ class Groups:
     Attributes
     ----------
     slopes, deviations : of each group, and its noise [ppb/ppm]
-    agreement : probability that groups of one slope differ as much; not a number for fewer than two groups
+    agreement : probability that groups of one slope differ as much; not a number for fewer than two
+        groups
     """
 
     slopes: tuple[float, ...]
@@ -42,15 +45,16 @@ class Groups:
 def grouped(
     signals: Signals, passes: Sequence[Pass], slope: float, *, misfit: float, response: float
 ) -> Groups:
-    """Return the slopes of groups of passes, fitted together: each group's CO2 excess, equalised, is a signal of its own.
+    """Return the slopes of groups of passes, fitted together: each group's CO2 excess, equalised,
+    is a signal of its own.
 
     Parameters
     ----------
     signals : of the whole record
     passes : through the plume
     slope, misfit : of the whole record
-    response : standard deviation of the slope by response and delay [ppb/ppm]; groups may differ by as much, as a wrong response
-        distorts each of them in its own way
+    response : standard deviation of the slope by response and delay [ppb/ppm]; groups may differ by
+        as much, as a wrong response distorts each of them in its own way
     """
     nothing = Groups(slopes=(), deviations=(), agreement=math.nan)
     if len(passes) < 2 or not math.isfinite(slope):

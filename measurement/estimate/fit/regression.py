@@ -30,8 +30,8 @@ class Slope:
 def fitted(signals: Signals) -> tuple[float, Array]:
     """Return the slope and the residuals.
 
-    The slope is corrected for the noise of CO2, which would attenuate it; it is not a number where CO2 is noise alone, or too few
-    samples are known.
+    The slope is corrected for the noise of CO2, which would attenuate it; it is not a number where
+    CO2 is noise alone, or too few samples are known.
     """
     co2, so2 = signals.excess()
     energy = float(co2 @ co2) - _noise_energy(signals, 0.0, 1.0)
@@ -42,7 +42,8 @@ def fitted(signals: Signals) -> tuple[float, Array]:
 def regress(signals: Signals) -> Slope:
     """Return the slope with its noise.
 
-    The noise that the instrument's figures predict is widened by the root of the misfit where the residuals are larger than that.
+    The noise that the instrument's figures predict is widened by the root of the misfit where the
+    residuals are larger than that.
     """
     slope, residual = fitted(signals)
     co2, _ = signals.excess()
@@ -64,7 +65,9 @@ def regress(signals: Signals) -> Slope:
 
 
 def noise_covariance(signals: Signals, weights: Array, slope: float) -> Array:
-    """Return the covariance of weighted sums of ``so2 - slope co2`` by noise and drift, for weights of shape (n, k)."""
+    """Return the covariance of weighted sums of ``so2 - slope co2`` by noise and drift, for weights
+    of shape (n, k).
+    """
     covariance = np.zeros((weights.shape[1],) * 2)
     for gas, (in_so2, in_co2) in signals.shares.items():
         channel = signals.instrument.channel(gas)
@@ -77,7 +80,9 @@ def noise_covariance(signals: Signals, weights: Array, slope: float) -> Array:
 
 
 def _noise_energy(signals: Signals, so2: float, co2: float) -> float:
-    """Return the expected sum of squares of the noise of ``so2 SO2 + co2 CO2`` beside the background."""
+    """Return the expected sum of squares of the noise of ``so2 SO2 + co2 CO2`` beside the
+    background.
+    """
     return sum(
         (so2 * in_so2 + co2 * in_co2) ** 2 * signals.noise(gas) ** 2 * signals.noise_energy(gas)
         for gas, (in_so2, in_co2) in signals.shares.items()

@@ -87,11 +87,15 @@ class Signals:
 
     @property
     def enough(self) -> bool:
-        """Whether more samples are known than the background takes up: of as many all is explained, and only rounding is left."""
+        """Whether more samples are known than the background takes up: of as many all is explained,
+        and only rounding is left.
+        """
         return bool(self.count >= self.basis.shape[1] + _FREE_LEAST)
 
     def backwards(self, gas: str, weights: Array) -> Array:
-        """Return the weights of a gas's readings in a weighted sum of its equalised samples, shape (n,) or (n, k)."""
+        """Return the weights of a gas's readings in a weighted sum of its equalised samples, shape
+        (n,) or (n, k).
+        """
         ends = np.cumsum([len(segment) for segment in self.record.times])[:-1]
         parts = np.split(weights, ends)
         return np.concatenate(
@@ -99,7 +103,9 @@ class Signals:
         )
 
     def noise_energy(self, gas: str) -> float:
-        """Return the expected sum of squares, beside the background, of a gas's equalised noise of standard deviation 1."""
+        """Return the expected sum of squares, beside the background, of a gas's equalised noise of
+        standard deviation 1.
+        """
         key = "noise energy", self.poles(gas), self.common, self._weights(gas), self.ends
         return self.record.once(key, lambda: self._noise_energy(gas))
 
@@ -118,7 +124,9 @@ class Signals:
         )
 
     def noise_correlation(self, gas: str) -> float:
-        """Return the sum over all lags of the squared autocovariance of a gas's equalised noise of standard deviation 1."""
+        """Return the sum over all lags of the squared autocovariance of a gas's equalised noise of
+        standard deviation 1.
+        """
         response = self._impulse(gas, len(self.so2))
         return float(np.sum(np.correlate(response, response, mode="full") ** 2))
 
@@ -142,7 +150,9 @@ def used_gases(record: Record) -> tuple[str, ...]:
 
 
 def shares_of(instrument: SnifferSpec, gases: tuple[str, ...]) -> dict[str, tuple[float, float]]:
-    """Return what each gas's reading has to count for in SO2 and in CO2: the inverse of gains and cross-sensitivities."""
+    """Return what each gas's reading has to count for in SO2 and in CO2: the inverse of gains and
+    cross-sensitivities.
+    """
     channels = [instrument.known(gas) for gas in gases]
     response = np.array(
         [
@@ -160,8 +170,8 @@ def common_poles(
 ) -> Poles:
     """Return the poles of the common response.
 
-    They are the slowest of SO2 and CO2; a slower channel that corrects them joins in where bringing it to their response would make
-    its noise larger than that of SO2.
+    They are the slowest of SO2 and CO2; a slower channel that corrects them joins in where bringing
+    it to their response would make its noise larger than that of SO2.
     """
     main = [instrument.known(gas) for gas in ("so2", "co2")]
     poles = slowest([channel.constants for channel in main])
@@ -175,10 +185,11 @@ def common_poles(
 
 
 def make_signals(record: Record, instrument: SnifferSpec, ends: Ends = (0, 0)) -> Signals:
-    """Return the signals of a record, given the instrument's response, delays, gains and cross-sensitivities.
+    """Return the signals of a record, given the instrument's response, delays, gains and
+    cross-sensitivities.
 
-    Samples at the ends of segments count as not known where a channel that counts has no reading for them, and the first and the
-    last ``ends`` of each in any case.
+    Samples at the ends of segments count as not known where a channel that counts has no reading
+    for them, and the first and the last ``ends`` of each in any case.
     """
     gases = used_gases(record)
     shares = shares_of(instrument, gases)
@@ -236,10 +247,13 @@ def _brought(record: Record, gas: str, own: Poles, common: Poles, late: float) -
 
 
 def samples_of(signals: Signals, slope: float) -> tuple[pd.DataFrame, float]:
-    """Return readings, equalised excesses, fit and residual by sample, and the signal to noise of SO2."""
+    """Return readings, equalised excesses, fit and residual by sample, and the signal to noise of
+    SO2.
+    """
     record = signals.record
     (co2, so2), known = signals.excess(), signals.known > 0.0
-    # Beside the background both have a mean of 0; they are shown from the level that CO2 has outside the plume.
+    # Beside the background both have a mean of 0; they are shown from the level that CO2 has
+    # outside the plume.
     level = float(np.quantile(co2[known], _OUTSIDE)) if known.any() else 0.0
     fit = slope * co2
     signal, rest = (

@@ -1,4 +1,6 @@
-"""Everything that a flight's readings are asked for: both methods, over time, as one record for files and reports."""
+"""Everything that a flight's readings are asked for: both methods, over time, as one record for
+files and reports.
+"""
 
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass
@@ -17,7 +19,9 @@ from measurement.sniffer.sniffer import Readings
 from measurement.sniffer.spec import SnifferSpec
 
 POINTS = 15
-"""Elapsed times, beside those of ``ELAPSED_S``, at which the estimate is found for a figure over time."""
+"""Elapsed times, beside those of ``ELAPSED_S``, at which the estimate is found for a figure over
+time.
+"""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -40,7 +44,9 @@ class Analysis:
     carbon: float
 
     def record(self, true_percent: float | None = None) -> dict[str, Any]:
-        """Return what a report reads, for JSON; ``true_percent`` is what a perfect instrument reads, where that is known."""
+        """Return what a report reads, for JSON; ``true_percent`` is what a perfect instrument
+        reads, where that is known.
+        """
         verdicts = self.estimate.verdicts
         return {
             "estimate": self.estimate.record(),
@@ -59,7 +65,9 @@ class Analysis:
         }
 
     def _instrument(self) -> dict[str, Any]:
-        """Return the instrument as it was stated, and its channels as they were used, by gas; None is not stated, or no limit."""
+        """Return the instrument as it was stated, and its channels as they were used, by gas; None
+        is not stated, or no limit.
+        """
         stated, used = (
             {c.gas: plain(asdict(c)) for c in spec.channels}
             for spec in (self.instrument, self.estimate.instrument)
@@ -79,7 +87,8 @@ def analyse(
     limits_percent: Sequence[float] = LIMITS_PERCENT,
     points: int = POINTS,
 ) -> Analysis:
-    """Return the estimate by both methods, and over time at ``points`` even times and those of ``ELAPSED_S``.
+    """Return the estimate by both methods, and over time at ``points`` even times and those of
+    ``ELAPSED_S``.
 
     Raises
     ------

@@ -14,7 +14,9 @@ _DAY_ENDS = 240_000.0
 """End of a day by a clock without marks, HHMMSS."""
 
 _MINUTES_MIN = 2
-"""Changes of the minute that show such a clock: seconds leave out 60 to 99 of a hundred by chance once, and not time and again."""
+"""Changes of the minute that show such a clock: seconds leave out 60 to 99 of a hundred by chance
+once, and not time and again.
+"""
 
 
 def check_seconds(time: Array, name: str, path: Path) -> None:

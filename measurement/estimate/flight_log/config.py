@@ -25,7 +25,9 @@ COLUMNS = {
     "east": "east_m",
     "height": "height_m",
 }
-"""What a logged flight may hold, and what its columns are called unless the configuration says otherwise."""
+"""What a logged flight may hold, and what its columns are called unless the configuration says
+otherwise.
+"""
 
 DEFAULT_INSTRUMENT = "unspecified"
 """The instrument of a flight without a configuration."""
@@ -49,7 +51,8 @@ class LogConfig:
     Attributes
     ----------
     instrument : as the analyst knows it
-    stated : keys that the configuration has of each channel, by gas; None of a preset, whose file says what is assumed
+    stated : keys that the configuration has of each channel, by gas; None of a preset, whose file
+        says what is assumed
     carbon : mass share of the fuel [-]
     limits_percent : on which there are to be verdicts [% m/m]
     method : "regression" or "areas"
@@ -75,7 +78,8 @@ def read_config(path: Path) -> LogConfig:
 
     Raises
     ------
-    MeasurementError : it cannot be read, has a key that is not known, or a value that is not of its kind or out of range
+    MeasurementError : it cannot be read, has a key that is not known, or a value that is not of its
+        kind or out of range
     """
     try:
         table = tomllib.loads(path.read_text(encoding="utf-8"))
@@ -166,7 +170,9 @@ def _table(table: Mapping[str, Any], key: str, kind: Any, names: Any, path: Path
 
 
 def _check_once(names: Mapping[str, str], given: Mapping[str, str], path: Path) -> None:
-    """Refuse a column that is given for two quantities: readings of one would be taken for those of the other."""
+    """Refuse a column that is given for two quantities: readings of one would be taken for those of
+    the other.
+    """
     for key, name in given.items():
         if twice := [other for other, of in names.items() if of == name and other != key]:
             raise MeasurementError(

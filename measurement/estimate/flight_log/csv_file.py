@@ -25,7 +25,9 @@ from measurement.sniffer.sniffer import Readings
 from measurement.tables import other_separator
 
 _REQUIRED = ("time", "so2", "co2")
-"""Columns without which there is no estimate; any other may be left out, unless the configuration names it."""
+"""Columns without which there is no estimate; any other may be left out, unless the configuration
+names it.
+"""
 
 _HEAD_TOLD = 60
 """Letters of a head line that are told."""
@@ -34,7 +36,9 @@ _LONG_ROW = re.compile(r"Expected \d+ fields in line (\d+), saw \d+")
 """What pandas says of a row that is longer than the first ones."""
 
 _OPEN_QUOTE = re.compile(r"EOF inside string starting at row (\d+)")
-"""What pandas says of a quotation mark that is not closed, by a row of which the head line is row 0."""
+"""What pandas says of a quotation mark that is not closed, by a row of which the head line is row
+0.
+"""
 
 _NUMBER, _DECIMAL_COMMA = (
     re.compile(r"[-+]?[\d.]+(e[-+]?\d+)?(\.\d+)?", re.IGNORECASE),
@@ -43,7 +47,9 @@ _NUMBER, _DECIMAL_COMMA = (
 """A number, with what pandas adds to one that is there twice; and one with a decimal comma."""
 
 TRUE_COLUMNS = {f"{gas}_true_{UNITS[gas]}": gas for gas in GASES}
-"""Columns of the true concentrations, which a simulated flight may have; they are shown, and take no part in the estimate."""
+"""Columns of the true concentrations, which a simulated flight may have; they are shown, and take
+no part in the estimate.
+"""
 
 
 @dataclass(frozen=True)
@@ -53,7 +59,8 @@ class LoggedFlight:
     Attributes
     ----------
     readings : of the sniffer, each once where the log's rows are faster
-    place : ``time_s``, and of ``north_m``, ``east_m``, ``height_m`` and the true concentrations those that the file has
+    place : ``time_s``, and of ``north_m``, ``east_m``, ``height_m`` and the true concentrations
+        those that the file has
     about : which flight it is
     """
 
@@ -63,19 +70,22 @@ class LoggedFlight:
 
 
 def read_flight(path: Path, config: LogConfig) -> LoggedFlight:
-    """Return the flight in a CSV file with a row per reading, or with rows that are faster than the sensors.
+    """Return the flight in a CSV file with a row per reading, or with rows that are faster than the
+    sensors.
 
     Times are seconds, or dates and times that pandas reads. Rows may end in a comma.
 
     Raises
     ------
-    MeasurementError : the file cannot be read, has no readings, lacks a column or has it twice, has words in it or readings lower
-        than those of no gas or beyond the sensor's range, has times that do not increase, is separated by something else than
-        commas, has rows with more values than its head line has names, or places that no aircraft has
+    MeasurementError : the file cannot be read, has no readings, lacks a column or has it twice, has
+        words in it or readings lower than those of no gas or beyond the sensor's range, has times
+        that do not increase, is separated by something else than commas, has rows with more values
+        than its head line has names, or places that no aircraft has
     """
     try:
         head = _checked_head(path)
-        # Without ``index_col`` rows that end in a comma would move every column by one; what would be lost by it is refused.
+        # Without ``index_col`` rows that end in a comma would move every column by one; what would
+        # be lost by it is refused.
         with warnings.catch_warnings(action="error", category=pd.errors.ParserWarning):
             table = pd.read_csv(path, skipinitialspace=True, low_memory=False, index_col=False)
             # As they stand there: pandas gives the second of a name a number.
@@ -160,7 +170,9 @@ def read_flight(path: Path, config: LogConfig) -> LoggedFlight:
 
 
 def _fault(error: Exception, head: str) -> str:
-    """Return what pandas refuses in a table that is CSV or nearly so, and the remedy, given its head line as it is told."""
+    """Return what pandas refuses in a table that is CSV or nearly so, and the remedy, given its
+    head line as it is told.
+    """
     if isinstance(error, pd.errors.EmptyDataError):
         return "is empty; it needs a head line and a row per reading"
     if opened := _OPEN_QUOTE.search(str(error)):
@@ -176,7 +188,9 @@ def _fault(error: Exception, head: str) -> str:
 
 
 def _checked_head(path: Path) -> str:
-    """Return the head line as it is told in a refusal, empty for a packed log; refuse a log that is not separated by commas."""
+    """Return the head line as it is told in a refusal, empty for a packed log; refuse a log that is
+    not separated by commas.
+    """
     with path.open(encoding="utf-8-sig", errors="replace") as file:
         head = file.readline().strip()
     if not head.replace("\t", "").isprintable():
@@ -231,11 +245,14 @@ def _readings(table: pd.DataFrame, name: str, path: Path, config: LogConfig) -> 
 
 
 def _check_range(values: Array, config: LogConfig, path: Path) -> None:
-    """Refuse readings beyond the end of the channel's range, where the sensor itself would have stopped."""
+    """Refuse readings beyond the end of the channel's range, where the sensor itself would have
+    stopped.
+    """
     for gas in config.instrument.gases:
         channel, column = config.instrument.known(gas), values[:, GASES.index(gas)]
         if gas == "co2" and np.isfinite(column).any():
-            # In another unit, or without its background, none of it is right, and not a reading here or there.
+            # In another unit, or without its background, none of it is right, and not a reading
+            # here or there.
             check_units(channel, column)
         beyond = np.flatnonzero(column > channel.range_high + channel.resolution)
         if beyond.size:
@@ -248,7 +265,9 @@ def _check_range(values: Array, config: LogConfig, path: Path) -> None:
 
 
 def _check_negative(values: Array, readings: Readings, config: LogConfig, path: Path) -> None:
-    """Refuse values of rows that are lower than readings of clean air: marks for missing ones, calibrations, or a wrong sign."""
+    """Refuse values of rows that are lower than readings of clean air: marks for missing ones,
+    calibrations, or a wrong sign.
+    """
     for gas in config.instrument.gases:
         column, unit = values[:, GASES.index(gas)], UNITS[gas]
         if not np.isfinite(column).any():
@@ -272,7 +291,9 @@ def _check_negative(values: Array, readings: Readings, config: LogConfig, path: 
 def _time(
     table: pd.DataFrame, name: str, path: Path
 ) -> tuple[Array, tuple[datetime, datetime] | None]:
-    """Return the times [s], and of a log with dates and times those of its first and last row in UTC."""
+    """Return the times [s], and of a log with dates and times those of its first and last row in
+    UTC.
+    """
     column = table[name]
     if pd.api.types.is_numeric_dtype(column):
         seconds = column.to_numpy(dtype=np.float64)
@@ -295,7 +316,9 @@ def _time(
 
 
 def _unreadable(column: pd.Series) -> int:
-    """Return the first row whose time is not of the kind that most rows have: seconds, or dates and times."""
+    """Return the first row whose time is not of the kind that most rows have: seconds, or dates and
+    times.
+    """
     seconds = pd.to_numeric(column, errors="coerce").notna()
     dates = pd.to_datetime(column, utc=True, format="ISO8601", errors="coerce").notna()
     return int(np.argmin(seconds if seconds.sum() > dates.sum() else dates))

@@ -1,4 +1,6 @@
-"""Which flight a log is of: what the log itself says of date and place, and what its configuration adds."""
+"""Which flight a log is of: what the log itself says of date and place, and what its configuration
+adds.
+"""
 
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass
@@ -55,7 +57,8 @@ class FlightRecord:
     ----------
     readings : rows of the log
     details : of the configuration
-    first_utc, last_utc : of the first and the last reading, or None where neither log nor configuration has a time
+    first_utc, last_utc : of the first and the last reading, or None where neither log nor
+        configuration has a time
     utc_from : ``FROM_LOG``, ``FROM_CONFIGURATION`` or empty
     offset : whether the log's times have an offset from UTC; those without are taken as UTC
     first_position, last_position : first and last known place of the log, or None where it has none
@@ -128,7 +131,8 @@ def times_of(
 
     Raises
     ------
-    MeasurementError : log and configuration have different dates, or times that are a second or more apart
+    MeasurementError : log and configuration have different dates, or times that are a second or
+        more apart
     """
     if logged is None:
         if (start := details.start) is None:
@@ -181,7 +185,9 @@ def _words(value: Any, key: str, path: Path) -> str:
 
 
 def _imo(value: Any, path: Path) -> int | None:
-    """Return an IMO number: the last digit is that of the sum of the others times 7 to 2 (IMO resolution A.1117(30))."""
+    """Return an IMO number: the last digit is that of the sum of the others times 7 to 2 (IMO
+    resolution A.1117(30)).
+    """
     if value is None:
         return None
     digits = [int(digit) for digit in str(value)] if _is_number(value, 7) else []

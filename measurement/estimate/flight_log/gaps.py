@@ -63,7 +63,9 @@ class Gaps:
 
     @property
     def gap_words(self) -> str:
-        """How many gaps there are, how long, which part of them is interpolated, and what is left out beside them."""
+        """How many gaps there are, how long, which part of them is interpolated, and what is left
+        out beside them.
+        """
         told = []
         if self.gaps:
             start, end = max(self.gaps, key=lambda gap: gap[1] - gap[0])
@@ -86,7 +88,9 @@ class Gaps:
 
 
 def found_gaps(readings: Readings, signals: pd.DataFrame, log_rows: int) -> Gaps:
-    """Return what the readings of a log of so many rows lack, given the signals that an estimate made of them."""
+    """Return what the readings of a log of so many rows lack, given the signals that an estimate
+    made of them.
+    """
     used = _used(signals)
     known, period = np.isfinite(readings.values), _period(readings)
     complete = np.flatnonzero(known[:, used].all(axis=1))

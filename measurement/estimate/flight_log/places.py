@@ -17,13 +17,16 @@ EARTH_RADIUS_M = 6_371_000.0
 """Mean radius [m]: a track of a few kilometres is laid on a plane."""
 
 SPEED_MOST, _ERROR_M = 340.0, 100.0
-"""No aircraft that measures exhaust flies faster [m/s]: the speed of sound; and by how much a place may be in error [m]."""
+"""No aircraft that measures exhaust flies faster [m/s]: the speed of sound; and by how much a place
+may be in error [m].
+"""
 
 _NONE = np.empty(0, dtype=np.intp)
 
 
 def places_of(found: dict[str, Array], time: Array, path: Path) -> tuple[dict[str, Array], str]:
-    """Return columns of places without those of a receiver that had no fix, and a remark on these, or an empty text.
+    """Return columns of places without those of a receiver that had no fix, and a remark on these,
+    or an empty text.
 
     Parameters
     ----------
@@ -33,7 +36,8 @@ def places_of(found: dict[str, Array], time: Array, path: Path) -> tuple[dict[st
 
     Raises
     ------
-    MeasurementError : a latitude or a longitude is out of range, or a place is farther from the one before than an aircraft flies
+    MeasurementError : a latitude or a longitude is out of range, or a place is farther from the one
+        before than an aircraft flies
     """
     for name, most in (("latitude", 90.0), ("longitude", 360.0)):
         if name in found and (beyond := np.abs(found[name]) > most).any():
@@ -48,7 +52,9 @@ def places_of(found: dict[str, Array], time: Array, path: Path) -> tuple[dict[st
 
 
 def _with_fix(found: dict[str, Array]) -> tuple[dict[str, Array], str]:
-    """Return places without those of latitude and longitude 0, which receivers give that have no fix, and which rows these are."""
+    """Return places without those of latitude and longitude 0, which receivers give that have no
+    fix, and which rows these are.
+    """
     if not {"latitude", "longitude"} <= set(found):
         return found, ""
     without = (found["latitude"] == 0.0) & (found["longitude"] == 0.0)

@@ -1,4 +1,6 @@
-"""Logs whose rows are faster than the sensors: a row repeats a reading, or has none, until the next one is there."""
+"""Logs whose rows are faster than the sensors: a row repeats a reading, or has none, until the next
+one is there.
+"""
 
 from collections.abc import Sequence
 
@@ -14,11 +16,13 @@ _FEWEST = 10
 """Intervals between new readings by which it is told how many rows a reading has."""
 
 _LOW = 0.1
-"""Share of these intervals that are the shortest: readings that are equal by chance make others twice as long and longer."""
+"""Share of these intervals that are the shortest: readings that are equal by chance make others
+twice as long and longer.
+"""
 
 _OFF, _REGULAR = 0.25, 0.8
-"""How far an interval may be from a whole multiple of the sensor's own, over that, and the share of the intervals that are so near:
-half of those are that noise and rounding make."""
+"""How far an interval may be from a whole multiple of the sensor's own, over that, and the share of
+the intervals that are so near: half of those are that noise and rounding make."""
 
 
 _LARGER = 0.25
@@ -26,9 +30,11 @@ _LARGER = 0.25
 
 
 def new_readings(logged: Readings, gases: Sequence[str]) -> Readings:
-    """Return each reading of a log once, at the time of the first row that has it; a log with a row per reading as it is.
+    """Return each reading of a log once, at the time of the first row that has it; a log with a row
+    per reading as it is.
 
-    The times are those of the slowest of the gases; the others are interpolated between their own readings.
+    The times are those of the slowest of the gases; the others are interpolated between their own
+    readings.
 
     Parameters
     ----------
@@ -49,9 +55,11 @@ def new_readings(logged: Readings, gases: Sequence[str]) -> Readings:
 
 
 def rows_per_reading(column: Array) -> float:
-    """Return how many rows of a log a reading of a gas has, mean; 1 where they do not come at intervals of more than a row.
+    """Return how many rows of a log a reading of a gas has, mean; 1 where they do not come at
+    intervals of more than a row.
 
-    Readings in coarse steps may change as seldom and as evenly as passes come, and mostly by one step: they do not tell.
+    Readings in coarse steps may change as seldom and as evenly as passes come, and mostly by one
+    step: they do not tell.
 
     Parameters
     ----------
@@ -76,7 +84,9 @@ def _changes(column: Array) -> npt.NDArray[np.intp]:
 
 
 def _first_rows(column: Array, rows: float) -> npt.NDArray[np.intp]:
-    """Return the first row of each reading; where none is new for longer, at the sensor's own interval."""
+    """Return the first row of each reading; where none is new for longer, at the sensor's own
+    interval.
+    """
     starts = np.unique(np.concatenate([[0], _changes(column)]))
     parts = []
     for start, end in zip(starts, [*starts[1:], len(column)], strict=True):

@@ -75,7 +75,8 @@ _MODULE = "measurement.estimate"
 
 
 def refuse_another_run(directory: Path) -> None:
-    """Refuse a directory that holds a run of another kind: its manifest would be lost. An older estimate may be replaced.
+    """Refuse a directory that holds a run of another kind: its manifest would be lost. An older
+    estimate may be replaced.
 
     Raises
     ------
@@ -94,7 +95,8 @@ def refuse_another_run(directory: Path) -> None:
 
 
 def refuse_another_log(directory: Path, source: Path) -> None:
-    """Refuse a directory with the estimate of another log, which nobody asked to replace: logs of one name share the default.
+    """Refuse a directory with the estimate of another log, which nobody asked to replace: logs of
+    one name share the default.
 
     Parameters
     ----------
@@ -123,7 +125,8 @@ def write_run(
     config: Path | None,
     given: Sequence[str],
 ) -> None:
-    """Write manifest, estimate and samples of an analysis; reports and exports of an older one are removed.
+    """Write manifest, estimate and samples of an analysis; reports and exports of an older one are
+    removed.
 
     Parameters
     ----------
@@ -155,7 +158,9 @@ def write_run(
 
 
 def _remove_older(directory: Path) -> None:
-    """Remove the files of an older estimate, its manifest last; the new manifest is written when all files are there."""
+    """Remove the files of an older estimate, its manifest last; the new manifest is written when
+    all files are there.
+    """
     if (directory / MANIFEST).exists():
         for name in REPORTS:
             (directory / name).unlink(missing_ok=True)
@@ -169,7 +174,9 @@ def _record(flight: LoggedFlight, analysis: Analysis) -> dict[str, Any]:
 
 
 def samples(signals: pd.DataFrame, flight: LoggedFlight) -> pd.DataFrame:
-    """Return the signals of an estimate with place and truth at their times; what is interpolated is no reading, and left out."""
+    """Return the signals of an estimate with place and truth at their times; what is interpolated
+    is no reading, and left out.
+    """
     table, place = signals.copy(), flight.place
     readings = [name for name in (f"{gas}_{UNITS[gas]}" for gas in GASES) if name in table]
     table.loc[interpolated(flight.readings, signals), readings] = np.nan
@@ -181,7 +188,9 @@ def samples(signals: pd.DataFrame, flight: LoggedFlight) -> pd.DataFrame:
 
 
 def build_report(directory: Path) -> str:
-    """Have the reports of a directory built by the room ``reports``, where it is installed; return what there is to say."""
+    """Have the reports of a directory built by the room ``reports``, where it is installed; return
+    what there is to say.
+    """
     if importlib.util.find_spec("reports") is None:
         return "report: not built, as the package 'reports' is not installed; estimate.json has everything"
     outcome = subprocess.run(
@@ -241,7 +250,9 @@ def _version() -> str:
 
 
 def _told(given: Sequence[str]) -> tuple[str, str]:
-    """Return command and revision of the source as the project's other runs record them; without these, the arguments alone."""
+    """Return command and revision of the source as the project's other runs record them; without
+    these, the arguments alone.
+    """
     if importlib.util.find_spec("common") is None:
         return shlex.join(
             ["python", "-m", _MODULE, *(Path(argument).name or argument for argument in given[1:])]

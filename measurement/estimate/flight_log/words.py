@@ -66,7 +66,9 @@ def summary(analysis: Analysis, name: str) -> Iterator[str]:
 
 
 def lacking(flight: LoggedFlight, analysis: Analysis) -> Iterator[str]:
-    """Yield a line each on rows without a new reading, missing readings, gaps, and places that count as missing, if any."""
+    """Yield a line each on rows without a new reading, missing readings, gaps, and places that
+    count as missing, if any.
+    """
     gaps = found_gaps(flight.readings, analysis.estimate.signals, flight.about.readings)
     yield from (f"{what.lower()}: {words}" for what, words in gaps.told.items())
     if flight.about.place_remark:
@@ -74,7 +76,9 @@ def lacking(flight: LoggedFlight, analysis: Analysis) -> Iterator[str]:
 
 
 def unused(readings: Readings, instrument: SnifferSpec) -> Iterator[str]:
-    """Yield a line per gas that a flight has readings of, SO2 responds to, and the instrument has no channel for."""
+    """Yield a line per gas that a flight has readings of, SO2 responds to, and the instrument has
+    no channel for.
+    """
     so2 = instrument.known("so2")
     for i, gas in enumerate(GASES):
         known = instrument.channel(gas) or not np.isfinite(readings.values[:, i]).any()
@@ -90,7 +94,9 @@ def result(found: FscEstimate) -> str:
 
 
 def assumed_words(assumed_percent: float) -> str:
-    """Return how much of a result corrects for NO and NO2 that were not measured [% m/m]; nothing if none of it does."""
+    """Return how much of a result corrects for NO and NO2 that were not measured [% m/m]; nothing
+    if none of it does.
+    """
     if not abs(assumed_percent) >= ASSUMED_LEAST:
         return ""
     return f"of it {assumed_percent:+.3f} % correct SO2 for NO and NO2 that the log does not have, as ships emit them on average"

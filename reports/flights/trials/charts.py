@@ -38,7 +38,9 @@ _ROW = 3
 """Panels that stand in one row."""
 
 _OVER_THEORY = 2
-"""Figures of a sweep that show theory, too, and so are drawn of a single flight: the table says all that is in the others."""
+"""Figures of a sweep that show theory, too, and so are drawn of a single flight: the table says all
+that is in the others.
+"""
 
 _LIMIT_TOLD = (
     " The limit is the shortest that bank and roll rate allow any path with two crossings a period, by optimal control, with"
@@ -47,7 +49,9 @@ _LIMIT_TOLD = (
 """What a caption says of the shortest interval of any path, where that is drawn."""
 
 _NEVER = "never settled"
-"""What the legend calls flights that did not settle: black as the slowest to settle, and so of another shape."""
+"""What the legend calls flights that did not settle: black as the slowest to settle, and so of
+another shape.
+"""
 
 _R_MIN = (0.0, "r_min")
 _TRACKING = ("tracking_error_rms_m", "Tracking error, rms [m]")
@@ -96,7 +100,9 @@ def _chart(
 
 
 def _sweep(trial: Trial) -> list[Chart]:
-    """Return the figures over the keys that were swept: over several numbers in as many columns, over one in more detail."""
+    """Return the figures over the keys that were swept: over several numbers in as many columns,
+    over one in more detail.
+    """
     names = {
         key: f"{key.rsplit('.', 1)[-1]}{i}".replace("_", "")
         for i, key in enumerate(trial.swept, start=1)
@@ -314,7 +320,8 @@ def _starts(trial: Trial) -> list[Chart]:
 def _places(trial: Trial, farthest: float, marks: list[Line]) -> Panel:
     x, y = circle(trial.radius)
     reach = 1.08 * farthest
-    # Flights differ in where their ship heads, so that she is drawn as in calm air: the plume trails behind her.
+    # Flights differ in where their ship heads, so that she is drawn as in calm air: the plume
+    # trails behind her.
     lines = [
         Line(x=x, y=y, label="keep-out area, r_min", colour=Meaning.LIMIT, fill=True),
         *plume_lines(np.array([0.0, reach]), None),
@@ -367,7 +374,9 @@ def _faults(trial: Trial) -> list[Chart]:
 def _strips(
     trial: Trial, name: str, caption: str, kinds: list[str], y_label: str, figures: list[_Figure]
 ) -> Chart:
-    """Return panels beside each other with a row of markers per kind, of which the first names the rows."""
+    """Return panels beside each other with a row of markers per kind, of which the first names the
+    rows.
+    """
     known = [figure for figure in figures if np.isfinite(figure[0]).any()]
     panels = [
         strips(values, kinds, x_label, y_label, by_violation(trial), marks, named=i == 0)

@@ -1,7 +1,8 @@
-"""Flights that settled and then did not cross the plume for long, beside a vessel that still manoeuvred.
+"""Flights that settled and then did not cross the plume for long, beside a vessel that still
+manoeuvred.
 
-What is counted is crossings of the straight axis along the apparent wind at the vessel. Smoke trails behind where she was, so of
-flights with smoke nothing is told.
+What is counted is crossings of the straight axis along the apparent wind at the vessel. Smoke
+trails behind where she was, so of flights with smoke nothing is told.
 """
 
 import math
@@ -22,7 +23,9 @@ _LEFT = ("departing", "gliding", "terminating")
 
 
 def gap_lines(trial: Trial, *, only: bool = True) -> list[str]:
-    """Return in a line how many flights had such a gap, and the longest; ``only`` is whether it is the run's only trial."""
+    """Return in a line how many flights had such a gap, and the longest; ``only`` is whether it is
+    the run's only trial.
+    """
     flown = trial.flown
     crossings = trial.run.crossings
     times = (
@@ -48,7 +51,9 @@ def gap_lines(trial: Trial, *, only: bool = True) -> list[str]:
 
 
 def crossing_gap(trial: Trial, row: "pd.Series[Any]") -> tuple[float, float] | None:
-    """Return the longest gap of a flight, from and to [s], or None where there is none to be told of."""
+    """Return the longest gap of a flight, from and to [s], or None where there is none to be told
+    of.
+    """
     return _gap(row, column(trial.run.crossings_of(str(row["flight_id"])), "time_s"))
 
 

@@ -1,4 +1,6 @@
-"""Which flights failed a criterion, were not flown, or are to be noted without failing, in lines for page 1."""
+"""Which flights failed a criterion, were not flown, or are to be noted without failing, in lines
+for page 1.
+"""
 
 from collections.abc import Iterator
 from typing import Any
@@ -28,7 +30,9 @@ _WORDS = {"modes": "", "turbulence": "none"}
 
 
 def failure_lines(trial: Trial) -> list[str]:
-    """Return which flights of a trial failed a criterion, each of a few, else by criterion; and which were not flown."""
+    """Return which flights of a trial failed a criterion, each of a few, else by criterion; and
+    which were not flown.
+    """
     rows = trial.rows
     failed = rows[~met(rows)]
     begun = was_flown(failed)
@@ -115,7 +119,8 @@ def _in_flights(some: int, flown: int) -> str:
 
 
 def tracking_lines(trial: Trial, *, only: bool = True) -> list[str]:
-    """Return in a line which flights left the band again in which they had settled, and what happened after that.
+    """Return in a line which flights left the band again in which they had settled, and what
+    happened after that.
 
     It is about flights whose tracking error no criterion limits: of the others the criterion tells.
 
@@ -153,7 +158,9 @@ def tracking_lines(trial: Trial, *, only: bool = True) -> list[str]:
 
 
 def _told_apart(far: pd.DataFrame, others: pd.DataFrame) -> list[str]:
-    """Return what happened to flights that left the band, and to how many of them and of the others; not what happened to all."""
+    """Return what happened to flights that left the band, and to how many of them and of the
+    others; not what happened to all.
+    """
     happened = _after_settling(pd.concat([far, others]))
     if len(far) + len(others) == 1:
         return [words for words, mask in happened.items() if mask.any()]

@@ -1,4 +1,6 @@
-"""Panels of a trial's flights over a key that they differ in: the speed ratio, or any that was swept."""
+"""Panels of a trial's flights over a key that they differ in: the speed ratio, or any that was
+swept.
+"""
 
 import math
 
@@ -18,7 +20,9 @@ _OSCILLATIONS: tuple[tuple[str, str, str, Style], ...] = (
     ("sinusoid", "sinusoid", "grey", "dash"),
     ("fastest", "fastest oscillation", "black", "dash"),
 )
-"""Shapes whose crossing interval is shown where another one is flown: name, label, colour and style."""
+"""Shapes whose crossing interval is shown where another one is flown: name, label, colour and
+style.
+"""
 
 LIMIT_LABEL = "limit, two crossings a period"
 
@@ -45,7 +49,8 @@ def by_violation(trial: Trial) -> list[Group]:
 
 
 def by_words(trial: Trial) -> list[Group]:
-    """Return the flights in groups of the words that were swept, as laws, each of a colour; by violation where no word was swept.
+    """Return the flights in groups of the words that were swept, as laws, each of a colour; by
+    violation where no word was swept.
 
     Of more words than there are colours none has one of its own.
     """
@@ -61,13 +66,15 @@ def by_words(trial: Trial) -> list[Group]:
 
 
 class PanelsOver:
-    """Panels over one key, of the flights that were flown; each is None if no flight has its figure.
+    """Panels over one key, of the flights that were flown; each is None if no flight has its
+    figure.
 
     Parameters
     ----------
     trial, key : whose flights, and over what; a key of figures
     groups : in which markers are coloured
-    by_words : whether these are of words that were swept, so that what is measured of flights is coloured by them, too
+    by_words : whether these are of words that were swept, so that what is measured of flights is
+        coloured by them, too
     """
 
     def __init__(
@@ -81,7 +88,9 @@ class PanelsOver:
         self._label = ratio if key == "nu" else input_label(key)
 
     def figure(self, name: str, y_label: str) -> Panel | None:
-        """Return a panel of any figure, its criterion if it has one, and those far above all others at its edge."""
+        """Return a panel of any figure, its criterion if it has one, and those far above all others
+        at its edge.
+        """
         y, limit = column(self._rows, name), self.limit(name)
         words, _, unit = y_label.removesuffix("]").partition(" [")
         lines, top = capped(self._x, y, self._groups, limit, unit, words.partition(",")[0].lower())
@@ -102,7 +111,9 @@ class PanelsOver:
         )
 
     def interval(self) -> Panel | None:
-        """Return the crossing interval, with bars of one standard deviation, its prediction, and what else could be flown."""
+        """Return the crossing interval, with bars of one standard deviation, its prediction, and
+        what else could be flown.
+        """
         flown = self._points(
             "crossing_interval_mean_s", "flight", Meaning.FLOWN, error="crossing_interval_std_s"
         )
@@ -110,7 +121,9 @@ class PanelsOver:
         return self._panel("Crossing interval [s]", [*self._other_intervals(), theory, *flown])
 
     def _other_intervals(self) -> list[Line]:
-        """Return the intervals of the oscillations that were not flown, and the shortest of any path; none over other keys."""
+        """Return the intervals of the oscillations that were not flown, and the shortest of any
+        path; none over other keys.
+        """
         shape = str(self._trial.setting("reference.shape", ""))
         curves = [
             (self._trial.theory(f"crossing_interval_{other}_s"), label, colour, style)
@@ -159,7 +172,9 @@ class PanelsOver:
         )
 
     def margin(self) -> Panel | None:
-        """Return what of the planned margin was left, over the margin if flights differ in it by much."""
+        """Return what of the planned margin was left, over the margin if flights differ in it by
+        much.
+        """
         planned, kept = column(self._rows, "keepout_margin_m"), clearance(self._rows)
         if not np.isfinite(planned).any():
             return self._panel(
@@ -187,7 +202,9 @@ class PanelsOver:
     def _points(
         self, name: str, label: str, colour: str, style: Style = "points", error: str = ""
     ) -> list[Line]:
-        """Return what is measured of the flights, in its colour; of each word that was swept in the colour of that."""
+        """Return what is measured of the flights, in its colour; of each word that was swept in the
+        colour of that.
+        """
         bars, values = column(self._rows, error) if error else None, column(self._rows, name)
         if not self._parted:
             return [Line(x=self._x, y=values, label=label, colour=colour, style=style, error=bars)]
@@ -205,7 +222,9 @@ class PanelsOver:
         ]
 
     def _theory(self, name: str, label: str, colour: str) -> Line:
-        """Return what theory says: its curve over the speed ratio, however few flights there are; else a mark for each flight."""
+        """Return what theory says: its curve over the speed ratio, however few flights there are;
+        else a mark for each flight.
+        """
         curve = self._trial.theory(name) if self._key == "nu" else None
         if curve is None:
             return Line(

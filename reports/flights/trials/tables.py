@@ -61,10 +61,14 @@ OSCILLATION_COLUMNS = (
 
 
 _APART = 1.25
-"""Relative width of the column of distances beyond r_min, whose head would touch that of the one before it."""
+"""Relative width of the column of distances beyond r_min, whose head would touch that of the one
+before it.
+"""
 
 _WORDS_MAX, _NUMBER, _LETTER, _NAME_LETTER = 3.2, 0.9, 0.15, 0.13
-"""Relative widths of a table's columns: of words at most, of numbers at least, and of a letter of a heading and of a name [-]."""
+"""Relative widths of a table's columns: of words at most, of numbers at least, and of a letter of a
+heading and of a name [-].
+"""
 
 
 def flight_table(
@@ -84,7 +88,8 @@ def flight_table(
     head, name : of the first column, and what it says of a flight
     columns : title, name and pattern of the columns after the outcome
     caption : what the table shows
-    flown_ratio : whether a column says the speed ratio that was flown, where that is not the one that was swept
+    flown_ratio : whether a column says the speed ratio that was flown, where that is not the one
+        that was swept
     """
     if columns is _FLIGHT_COLUMNS and radii_differ(rows):
         rows = rows.assign(clearance_m=clearance(rows))
@@ -135,7 +140,9 @@ def _cell(row: "pd.Series[Any]", key: str, pattern: str) -> str:
 
 
 def nearest_cells(rows: pd.DataFrame) -> tuple[str, str]:
-    """Return the closest approach of some flights, and the closest one beyond the flight's own r_min; dashes without any."""
+    """Return the closest approach of some flights, and the closest one beyond the flight's own
+    r_min; dashes without any.
+    """
     distances, beyond = column(rows, "min_distance_m"), clearance(rows)
     if not np.isfinite(distances).any():
         return "–", "–"
@@ -146,7 +153,9 @@ def nearest_cells(rows: pd.DataFrame) -> tuple[str, str]:
 
 
 def trial_table(trials: list[Trial]) -> Table:
-    """Return a row per trial: flights as planned, flown, completed and met, how they kept out, and how they ended."""
+    """Return a row per trial: flights as planned, flown, completed and met, how they kept out, and
+    how they ended.
+    """
     rows = []
     for trial in trials:
         flown = trial.flown
@@ -178,11 +187,14 @@ def trial_table(trials: list[Trial]) -> Table:
 
 
 def criteria_table(trials: list[Trial]) -> Table:
-    """Return a row per criterion of each trial: its limit, as configured, and the worst that was measured."""
+    """Return a row per criterion of each trial: its limit, as configured, and the worst that was
+    measured.
+    """
     rows = []
     for trial in trials:
         listed = criteria_of(trial)
-        # Flights that were not flown are told beside the figure, as on page 1, and fail the mission alone.
+        # Flights that were not flown are told beside the figure, as on page 1, and fail the mission
+        # alone.
         failed = [c.failed if c.key == "mission" else c.flown_failed for c in listed]
         rows += [
             [trial.title, c.what, c.limit, "; ".join(filter(None, (c.worst, c.missing))), f"{n}"]
@@ -210,7 +222,9 @@ def criteria_table(trials: list[Trial]) -> Table:
 
 
 def fault_table(trial: Trial) -> Table:
-    """Return a row per kind of fault: how the flights ended, and how close they came from the fault on."""
+    """Return a row per kind of fault: how the flights ended, and how close they came from the fault
+    on.
+    """
     flown = trial.flown
     differ = radii_differ(flown)
     after = {
@@ -248,7 +262,9 @@ def fault_table(trial: Trial) -> Table:
 
 
 def _closest_after(trial: Trial, row: "pd.Series[Any]", *, beyond: bool) -> float | None:
-    """Return how close a flight came from its fault on [m], ``beyond`` its own r_min or not; None without fault or time history."""
+    """Return how close a flight came from its fault on [m], ``beyond`` its own r_min or not; None
+    without fault or time history.
+    """
     history = None if pd.isna(row["fault_time_s"]) else trial.run.history(str(row["flight_id"]))
     if history is None:
         return None
@@ -261,7 +277,9 @@ def _closest_after(trial: Trial, row: "pd.Series[Any]", *, beyond: bool) -> floa
 
 
 def failed_blocks(trials: Sequence[Trial]) -> list[Block]:
-    """Return the flights that failed a criterion, keep-out violations first, ``FAILED_MAX`` at most, each with its reason."""
+    """Return the flights that failed a criterion, keep-out violations first, ``FAILED_MAX`` at
+    most, each with its reason.
+    """
     by_key, summary = (
         {trial.key: trial for trial in trials},
         pd.concat([trial.rows for trial in trials]),

@@ -1,1 +1,3 @@
-"""What air and sensors make wrong in what the vehicle knows of its own motion: the estimated wind, and dead reckoning."""
+"""What air and sensors make wrong in what the vehicle knows of its own motion: the estimated wind,
+and dead reckoning.
+"""

@@ -1,7 +1,9 @@
-"""How far dead reckoning goes wrong in air that changes: while satellites are lost, the wind is taken to be as it was before.
+"""How far dead reckoning goes wrong in air that changes: while satellites are lost, the wind is
+taken to be as it was before.
 
-By how much it may go wrong in steady air, by errors of sensors and of the estimated wind, is declared, or follows from the sensors
-and the airspeed if that is more. Here is what the scenario's own air adds: of its mean wind, of its gusts, and of its turbulence.
+By how much it may go wrong in steady air, by errors of sensors and of the estimated wind, is
+declared, or follows from the sensors and the airspeed if that is more. Here is what the scenario's
+own air adds: of its mean wind, of its gusts, and of its turbulence.
 """
 
 import math
@@ -29,9 +31,11 @@ _DEVIATIONS = 3.0
 """Standard deviations of what turbulence displaces that are allowed for [-]."""
 
 _CHANGING_TURNS = 0.02
-"""Share of the airspeed by which dead reckoning goes wrong by itself [-]: its table of crab angles is that of steady turns.
+"""Share of the airspeed by which dead reckoning goes wrong by itself [-]: its table of crab angles
+is that of steady turns.
 
-Twice the largest of five aircraft that weave with periods of 3 to 40 s: 0.8 % of the X8, 1.0 % of the Aerosonde, 0.3 % of others.
+Twice the largest of five aircraft that weave with periods of 3 to 40 s: 0.8 % of the X8, 1.0 % of
+the Aerosonde, 0.3 % of others.
 """
 
 _AGES = 200
@@ -46,7 +50,8 @@ def drift_rate(
     Parameters
     ----------
     wind : mean wind of the flight
-    turn : time of a turn away, over which the guard reckons with an error of the velocity as large [s]
+    turn : time of a turn away, over which the guard reckons with an error of the velocity as large
+        [s]
     altitude_error : by which the altitude may differ from its command [m]
     """
     if not scenario.follows or SATELLITES not in scenario.declared_faults:
@@ -58,7 +63,8 @@ def drift_rate(
     covered = float(
         np.max((_by_gusts(scenario, age) + _by_turbulence(scenario, age)) / (age + turn))
     )
-    # An airspeed and a heading with biases are wrong in the estimated wind, and the other way round once the vehicle has turned.
+    # An airspeed and a heading with biases are wrong in the estimated wind, and the other way round
+    # once the vehicle has turned.
     sensed = (
         _by_noise(scenario, age, turn)
         + 2.0 * wind_bias(scenario)
@@ -69,11 +75,13 @@ def drift_rate(
 
 
 def _by_noise(scenario: Scenario, age: Array, turn: float) -> float:
-    """Return how fast dead reckoning goes wrong by the noise of the sensors, once the wind is known as well as it gets [m/s].
+    """Return how fast dead reckoning goes wrong by the noise of the sensors, once the wind is known
+    as well as it gets [m/s].
 
-    The wind is wrong by what its filter leaves. Readings that are wrong by another amount at each step add up to a random walk. And
-    a compass that is noisy makes the mean velocity over the mean air too low by V (1 - exp(-sigma^2/2)): once in the wind, and
-    once, after half a turn, in what is reckoned with it.
+    The wind is wrong by what its filter leaves. Readings that are wrong by another amount at each
+    step add up to a random walk. And a compass that is noisy makes the mean velocity over the mean
+    air too low by V (1 - exp(-sigma^2/2)): once in the wind, and once, after half a turn, in what
+    is reckoned with it.
     """
     noise, g = wind_noise(scenario), scenario.guidance
     walked = NOISE_DEVIATIONS * noise * np.sqrt(age / g.rate_hz)
@@ -88,10 +96,12 @@ def _by_noise(scenario: Scenario, age: Array, turn: float) -> float:
 
 
 def velocity_error(scenario: Scenario, drift: float) -> float:
-    """Return by how much noise or bias of its sensors may make the vehicle's own velocity wrong at a step [m/s].
+    """Return by how much noise or bias of its sensors may make the vehicle's own velocity wrong at
+    a step [m/s].
 
-    The guard is asked at each step, and goes by the one at which the noise makes a command look safe. Dead reckoning goes by
-    airspeed and heading as they are read; the guard reckons with its drift beside.
+    The guard is asked at each step, and goes by the one at which the noise makes a command look
+    safe. Dead reckoning goes by airspeed and heading as they are read; the guard reckons with its
+    drift beside.
 
     Parameters
     ----------
@@ -105,13 +115,17 @@ def velocity_error(scenario: Scenario, drift: float) -> float:
 
 
 def _gust_taken_for_wind(scenario: Scenario) -> float:
-    """Return how much of a gust may be in the estimated wind when it is over [m/s]: it has the area of its peak for its rise."""
+    """Return how much of a gust may be in the estimated wind when it is over [m/s]: it has the area
+    of its peak for its rise.
+    """
     air = scenario.turbulence
     return air.gust_speed_mps * -float(np.expm1(-air.gust_length_s / WIND_FOLLOWED))
 
 
 def _by_gusts(scenario: Scenario, age: Array) -> Array:
-    """Return how far gusts displace at most in an outage of some age [m]: one about its peak, and one after the other."""
+    """Return how far gusts displace at most in an outage of some age [m]: one about its peak, and
+    one after the other.
+    """
     air = scenario.turbulence
     about_the_peak = np.sin(np.minimum(0.5 * np.pi, 0.5 * np.pi * age / air.gust_length_s))
     return 0.5 * air.gust_speed_mps * (age + 2.0 * air.gust_length_s / np.pi * about_the_peak)
@@ -120,8 +134,9 @@ def _by_gusts(scenario: Scenario, age: Array) -> Array:
 def _by_turbulence(scenario: Scenario, age: Array) -> Array:
     """Return what turbulence displaces by in an outage of some age [m].
 
-    A component of an exponential correlation, of deviation sigma and time T = L/V, displaces by a deviation of
-    sigma sqrt(2 T (t - T (1 - exp(-t/T)))) in a time t (Taylor, "Diffusion by Continuous Movements", 1922).
+    A component of an exponential correlation, of deviation sigma and time T = L/V, displaces by a
+    deviation of sigma sqrt(2 T (t - T (1 - exp(-t/T)))) in a time t (Taylor, "Diffusion by
+    Continuous Movements", 1922).
     """
     if scenario.turbulence.level == "none":
         return np.zeros_like(age)

@@ -1,4 +1,6 @@
-"""The wind that the guidance estimates: how its filter is set, and by how much the wind changes until its estimate has followed."""
+"""The wind that the guidance estimates: how its filter is set, and by how much the wind changes
+until its estimate has followed.
+"""
 
 import math
 
@@ -11,22 +13,29 @@ from scenarios.schema.scenario import Scenario
 from scenarios.vehicles.vehicle_setup import VehicleSetup
 
 _AIRSPEED_SIGMA, _COURSE_SIGMA = 0.5, 0.03
-"""Least deviations of airspeed and course that the wind's filter takes for noise in still air [m/s, rad]."""
+"""Least deviations of airspeed and course that the wind's filter takes for noise in still air
+[m/s, rad].
+"""
 
 _FIRST_WIND = 0.04
-"""Share of the airspeed by which the first measurement of the wind is wrong by itself [-], by roll and climb: the most seen of 25
-starts each is 2.3 % of the X8, 2.2 % of the Aerosonde and 1.3 % of the c172p, and 3.3 % of an X8 that climbs.
+"""Share of the airspeed by which the first measurement of the wind is wrong by itself [-], by roll
+and climb: the most seen of 25 starts each is 2.3 % of the X8, 2.2 % of the Aerosonde and 1.3 % of
+the c172p, and 3.3 % of an X8 that climbs.
 """
 
 _WIND_DRIFT = 0.02
 """By how much the wind may change in the root of a second [m/s]."""
 
 WIND_FOLLOWED = 20.0
-"""Time within which the estimated wind follows a change [s]: of a wind that turns steadily it is behind by less."""
+"""Time within which the estimated wind follows a change [s]: of a wind that turns steadily it is
+behind by less.
+"""
 
 
 def navigation_parameters(scenario: Scenario, setup: VehicleSetup) -> NavigationParameters:
-    """Return what the navigation knows beforehand: how much gusts scatter what it measures the wind by."""
+    """Return what the navigation knows beforehand: how much gusts scatter what it measures the wind
+    by.
+    """
     g, time_step, gust = scenario.guidance, 1.0 / scenario.guidance.rate_hz, _gust_sigma(scenario)
     airspeed_sigma, course_sigma = _sensor_sigmas(scenario)
     return NavigationParameters(
@@ -44,7 +53,9 @@ def navigation_parameters(scenario: Scenario, setup: VehicleSetup) -> Navigation
 
 
 def wind_noise(scenario: Scenario) -> float:
-    """Return the deviation of the wind by the noise of airspeed and heading, as they are read at a step [m/s]."""
+    """Return the deviation of the wind by the noise of airspeed and heading, as they are read at a
+    step [m/s].
+    """
     return _wrong_by(
         scenario, scenario.sensors.airspeed_sigma_mps, scenario.sensors.heading_sigma_deg
     )
@@ -53,8 +64,8 @@ def wind_noise(scenario: Scenario) -> float:
 def wind_bias(scenario: Scenario) -> float:
     """Return by how much biases of airspeed and heading make the measured wind wrong at most [m/s].
 
-    The error turns with the vehicle: an estimate keeps that of the courses flown so far. In a climb the airspeed is read that is
-    flown along it, of which a little less leads ahead.
+    The error turns with the vehicle: an estimate keeps that of the courses flown so far. In a climb
+    the airspeed is read that is flown along it, of which a little less leads ahead.
     """
     climbing = (
         1.0 - 1.0 / math.hypot(1.0, scenario.following.climb_gradient) if climbs(scenario) else 0.0
@@ -64,13 +75,17 @@ def wind_bias(scenario: Scenario) -> float:
 
 
 def wind_noise_left(scenario: Scenario) -> float:
-    """Return the deviation of the estimated wind by that noise in the end [m/s]: sqrt(k/2) of it, by the filter's gain k."""
+    """Return the deviation of the estimated wind by that noise in the end [m/s]: sqrt(k/2) of it,
+    by the filter's gain k.
+    """
     gain = _WIND_DRIFT * math.sqrt(plan_period(scenario.guidance)) / _sensor_sigma(scenario)
     return math.sqrt(0.5 * gain) * wind_noise(scenario)
 
 
 def first_wind_error(scenario: Scenario, setup: VehicleSetup) -> float:
-    """Return by how much more than in the end the wind may be wrong that is measured at the start [m/s]."""
+    """Return by how much more than in the end the wind may be wrong that is measured at the start
+    [m/s].
+    """
     navigation = Navigation(navigation_parameters(scenario, setup))
     navigation.update(
         (0.0, 0.0, scenario.guidance.airspeed_mps, 0.0), scenario.guidance.airspeed_mps, 0.0, 0.0
@@ -79,9 +94,11 @@ def first_wind_error(scenario: Scenario, setup: VehicleSetup) -> float:
 
 
 def wind_change(scenario: Scenario, wind: WindField, altitude_error: float) -> float:
-    """Return by how much the wind that is flown in changes at most until its estimate has followed [m/s].
+    """Return by how much the wind that is flown in changes at most until its estimate has followed
+    [m/s].
 
-    It changes with time, and with the height of a vehicle that climbs to that of the plume, or differs from its command [m].
+    It changes with time, and with the height of a vehicle that climbs to that of the plume, or
+    differs from its command [m].
     """
     return largest_wind_change(scenario, wind, wind_followed(scenario), altitude_error)
 
@@ -89,7 +106,8 @@ def wind_change(scenario: Scenario, wind: WindField, altitude_error: float) -> f
 def largest_wind_change(
     scenario: Scenario, wind: WindField, interval: float, altitude_error: float
 ) -> float:
-    """Return by how much the wind that is flown in changes at most within an interval [s], by time and by height [m/s].
+    """Return by how much the wind that is flown in changes at most within an interval [s], by time
+    and by height [m/s].
 
     Parameters
     ----------
@@ -108,7 +126,8 @@ def largest_wind_change(
 def wind_followed(scenario: Scenario) -> float:
     """Return the time within which the estimated wind follows a change [s].
 
-    The filter is slower where gusts or noise hide the wind, and for a fast vehicle, of which an error of the course hides more.
+    The filter is slower where gusts or noise hide the wind, and for a fast vehicle, of which an
+    error of the course hides more.
     """
     across = scenario.guidance.airspeed_mps * _sensor_sigmas(scenario)[1]
     hidden_by = math.hypot(max(_sensor_sigma(scenario), across), _gust_sigma(scenario))
@@ -116,7 +135,9 @@ def wind_followed(scenario: Scenario) -> float:
 
 
 def _wrong_by(scenario: Scenario, airspeed: float, heading_deg: float) -> float:
-    """Return by how much errors of airspeed [m/s] and heading [deg] make a single measurement of the wind wrong [m/s]."""
+    """Return by how much errors of airspeed [m/s] and heading [deg] make a single measurement of
+    the wind wrong [m/s].
+    """
     return math.hypot(airspeed, scenario.guidance.airspeed_mps * math.radians(heading_deg))
 
 
@@ -126,7 +147,9 @@ def _measured_noise(scenario: Scenario) -> float:
 
 
 def _sensor_sigmas(scenario: Scenario) -> tuple[float, float]:
-    """Return the deviations of airspeed [m/s] and course [rad] that the wind's filter takes for noise of the sensors."""
+    """Return the deviations of airspeed [m/s] and course [rad] that the wind's filter takes for
+    noise of the sensors.
+    """
     sensors, velocity = scenario.sensors, scenario.sensors.velocity_sigma_mps
     course = math.hypot(
         math.radians(sensors.heading_sigma_deg), velocity / scenario.guidance.airspeed_mps
@@ -137,12 +160,16 @@ def _sensor_sigmas(scenario: Scenario) -> tuple[float, float]:
 
 
 def _sensor_sigma(scenario: Scenario) -> float:
-    """Return the deviation of single measurements of the wind by these [m/s]: the filter's own, or of the sensors if larger."""
+    """Return the deviation of single measurements of the wind by these [m/s]: the filter's own, or
+    of the sensors if larger.
+    """
     return max(_AIRSPEED_SIGMA, _measured_noise(scenario))
 
 
 def _gust_sigma(scenario: Scenario) -> float:
-    """Return the deviation of single measurements of the wind by turbulence [m/s], more for being correlated in time."""
+    """Return the deviation of single measurements of the wind by turbulence [m/s], more for being
+    correlated in time.
+    """
     if scenario.turbulence.level == "none":
         return 0.0
     g, height = scenario.guidance, scenario.source_height

@@ -13,8 +13,10 @@ from scenarios.world.vessel import VesselTruth
 from scenarios.world.world import TRACK_MARGIN, winds_past
 
 _RADII, _BEYOND, _TURN_RADII = 3.0, 1000.0, 4.0
-"""How far from the vessel an inclined plume is climbed along at most: keep-out radii [-], or beyond one so far [m] and as many turn
-radii [-], if that is more. Orbits lie nearer, unless their distance is given or a vessel has been silent for minutes."""
+"""How far from the vessel an inclined plume is climbed along at most: keep-out radii [-], or beyond
+one so far [m] and as many turn radii [-], if that is more. Orbits lie nearer, unless their distance
+is given or a vessel has been silent for minutes.
+"""
 
 _SEA = 1.0
 """Height at which a gliding aircraft has come down [m]: below it, it is down within a second."""
@@ -37,7 +39,9 @@ def climbed_along(scenario: Scenario) -> float:
 
 
 def flown_heights(scenario: Scenario) -> list[float]:
-    """Return the heights that are flown: at the start, the lowest and the highest, and the sea's if it may glide there [m]."""
+    """Return the heights that are flown: at the start, the lowest and the highest, and the sea's if
+    it may glide there [m].
+    """
     crossed = _crossed_heights(scenario, climbed_along(scenario))
     return [*crossed, _SEA] if glides(scenario) else crossed
 
@@ -53,7 +57,9 @@ def climbs(scenario: Scenario) -> bool:
 
 
 def _crossed_heights(scenario: Scenario, distance: float) -> list[float]:
-    """Return the height at the start, the lowest and the highest of a plume that is climbed along up to a distance [m]."""
+    """Return the height at the start, the lowest and the highest of a plume that is climbed along
+    up to a distance [m].
+    """
     flight, source = scenario.flight, scenario.source_height
     if scenario.emission.ship is not None:
         return [scenario.altitude, flight.altitude_min_m, flight.altitude_max_m]

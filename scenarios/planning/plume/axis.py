@@ -1,4 +1,6 @@
-"""What the guidance knows beforehand of a plume's axis: how high it is expected to be, how sure that is, and how it is found."""
+"""What the guidance knows beforehand of a plume's axis: how high it is expected to be, how sure
+that is, and how it is found.
+"""
 
 import math
 
@@ -20,7 +22,9 @@ from scenarios.world.exhaust import emission
 from scenarios.world.vessel import VesselTruth
 
 PREDICTED_TIME, KNOWN_TIME = 20.0, 4.0
-"""Time in which the altitude follows a height that is predicted from wind under estimation, and one that is known [s]."""
+"""Time in which the altitude follows a height that is predicted from wind under estimation, and one
+that is known [s].
+"""
 
 _ROOM = 10.0
 """Least room between the altitudes that are flown, to search in [m]."""
@@ -29,10 +33,14 @@ _LOADS = 9
 """Loads, evenly within their range, of which the deviation of what is emitted is taken."""
 
 _SOURCE_ERROR, _LOAD_ERROR = 2.0, 0.3
-"""Deviation of the mouth's height [m], and of the logarithm of what is emitted [-], where neither has a range."""
+"""Deviation of the mouth's height [m], and of the logarithm of what is emitted [-], where neither
+has a range.
+"""
 
 _WIND_ERROR = 0.3
-"""Deviation of each component of the apparent wind as it is estimated on board [m/s]: 0.29 in 24 flights as the search began."""
+"""Deviation of each component of the apparent wind as it is estimated on board [m/s]: 0.29 in 24
+flights as the search began.
+"""
 
 CO2 = GASES.index("co2")
 
@@ -50,7 +58,8 @@ def plume_axis(
     Raises
     ------
     MeasurementError : the ship has no such speed
-    InfeasibleError : the limits of the altitude leave no room to search in, or the flight starts outside of them
+    InfeasibleError : the limits of the altitude leave no room to search in, or the flight starts
+        outside of them
     """
     f = scenario.following
     gradient = f.climb_gradient
@@ -75,7 +84,8 @@ def plume_axis(
 
 
 def flown_altitudes(scenario: Scenario) -> tuple[float, float]:
-    """Return the lowest and the highest altitude that is flown while the plume is searched for and followed [m].
+    """Return the lowest and the highest altitude that is flown while the plume is searched for and
+    followed [m].
 
     Raises
     ------
@@ -100,7 +110,8 @@ def flown_altitudes(scenario: Scenario) -> tuple[float, float]:
 def axis_height(
     scenario: Scenario, vessel: VesselTruth, limits: tuple[float, float] | None = None
 ) -> AxisHeight:
-    """Return the height that the guidance expects: at the load that the speed takes, or in the middle of the ranges given.
+    """Return the height that the guidance expects: at the load that the speed takes, or in the
+    middle of the ranges given.
 
     Parameters
     ----------
@@ -133,7 +144,9 @@ def axis_height(
 
 
 def expected_emission(scenario: Scenario, vessel: VesselTruth, quantile: float) -> Emission:
-    """Return what is expected to be emitted, at a quantile of the load's range; at the load that the speed takes without one."""
+    """Return what is expected to be emitted, at a quantile of the load's range; at the load that
+    the speed takes without one.
+    """
     load = scenario.following.load
     if load is not None:
         return emission(scenario, speed=math.nan, load=load[0] + quantile * (load[1] - load[0]))

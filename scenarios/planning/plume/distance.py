@@ -1,9 +1,11 @@
-"""How far from the ship her exhaust is best measured: where the sulphur's uncertainty by noise falls fastest with time.
+"""How far from the ship her exhaust is best measured: where the sulphur's uncertainty by noise
+falls fastest with time.
 
-A pass at a height z off the centre of a Gaussian plume of spreads s_y, s_z, in an apparent wind U, at a speed v across it, has the
-dose A exp(-z^2/(2 s_z^2)), A = Q/(sqrt(2 pi) n U s_z v). A sensor with a time constant T makes of it a pulse whose square has the
-integral A^2/(2T) erfcx(s_y/(v T)), erfcx(x) = exp(x^2) erfc(x), by Parseval's theorem. The regression's uncertainty by noise falls
-with the root of the sum of these integrals. Their mean over a z of mean o and variance w^2 has the
+A pass at a height z off the centre of a Gaussian plume of spreads s_y, s_z, in an apparent wind U,
+at a speed v across it, has the dose A exp(-z^2/(2 s_z^2)), A = Q/(sqrt(2 pi) n U s_z v). A sensor
+with a time constant T makes of it a pulse whose square has the integral A^2/(2T) erfcx(s_y/(v T)),
+erfcx(x) = exp(x^2) erfc(x), by Parseval's theorem. The regression's uncertainty by noise falls with
+the root of the sum of these integrals. Their mean over a z of mean o and variance w^2 has the
 factor s_z/sqrt(s_z^2 + 2 w^2) exp(-o^2/(s_z^2 + 2 w^2)).
 """
 
@@ -42,7 +44,8 @@ _WIND_LEAST = 2.0
 def additional_distance(
     scenario: Scenario, vessel: VesselTruth, nearest: float, apparent_wind: float
 ) -> float:
-    """Return by how much farther than the nearest distance [m] the sulphur is known best after a minute [m].
+    """Return by how much farther than the nearest distance [m] the sulphur is known best after a
+    minute [m].
 
     Parameters
     ----------
@@ -69,9 +72,11 @@ def additional_distance(
 def information(
     scenario: Scenario, vessel: VesselTruth, distance: Array, apparent_wind: float
 ) -> Array:
-    """Return the mean integral of the squared pulse of a pass over that of all gas at once, shape as ``distance`` [m]: relative.
+    """Return the mean integral of the squared pulse of a pass over that of all gas at once, shape
+    as ``distance`` [m]: relative.
 
-    One over its root is the uncertainty of the sulphur by noise after a time, up to a factor that all distances have.
+    One over its root is the uncertainty of the sulphur by noise after a time, up to a factor that
+    all distances have.
     """
     wind = max(apparent_wind, _WIND_LEAST)
     height, emitted = axis_height(scenario, vessel), expected_emission(scenario, vessel, 0.5)

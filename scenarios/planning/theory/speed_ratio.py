@@ -18,13 +18,17 @@ from scenarios.schema.sections.guidance import GuidanceConfig, ReferenceConfig
 from scenarios.schema.sections.world import KeepoutConfig
 
 CROSSING_LIMITS = Path(__file__).parent / "crossing_limits.json"
-"""Shortest crossing intervals by optimal control, written by ``python -m benchmarks.crossing_limit --write``."""
+"""Shortest crossing intervals by optimal control, written by
+``python -m benchmarks.crossing_limit --write``.
+"""
 
 _RATIO_MAX, _POINTS = 0.99, 100
 """Largest speed ratio of a curve, and the number of its points."""
 
 _OTHERS = ("guidance.", "reference.", "keepout.", "plume.", "vessel.")
-"""Keys on which the curves depend as well: where one of them is swept, there is more than one curve."""
+"""Keys on which the curves depend as well: where one of them is swept, there is more than one
+curve.
+"""
 
 _OSCILLATIONS = ("sinusoid", "fastest")
 """Shapes whose crossing intervals are shown beside each other, whichever is flown."""
@@ -34,10 +38,12 @@ _SAME = 0.01
 
 
 def theory_over_speed_ratio(scenario: Scenario) -> dict[str, list[float]]:
-    """Return the crossing interval and r_CO over nu in still air, by names of columns; nothing unless nu alone is swept.
+    """Return the crossing interval and r_CO over nu in still air, by names of columns; nothing
+    unless nu alone is swept.
 
-    A reference that is known in advance alone has a fixed r_CO; that of a steered one depends on the margin of each flight. Beside
-    the flown shape's crossing interval there are those of the project's oscillations, and the shortest of any path.
+    A reference that is known in advance alone has a fixed r_CO; that of a steered one depends on
+    the margin of each flight. Beside the flown shape's crossing interval there are those of the
+    project's oscillations, and the shortest of any path.
     """
     if "nu" not in scenario.sweep.root or any(
         key.startswith(_OTHERS) for key in scenario.sweep.root
@@ -64,7 +70,9 @@ def theory_over_speed_ratio(scenario: Scenario) -> dict[str, list[float]]:
 def _points(
     guidance: GuidanceConfig, reference: ReferenceConfig, keepout: KeepoutConfig, axis: PlumeAxis
 ) -> tuple[tuple[float, ...], ...]:
-    """Return speed ratio, crossing interval, r_CO and the other crossing intervals, remembered for the next study of a process."""
+    """Return speed ratio, crossing interval, r_CO and the other crossing intervals, remembered for
+    the next study of a process.
+    """
     points: list[tuple[float, ...]] = []
     for nu in np.linspace(0.0, _RATIO_MAX, _POINTS).tolist():
         try:
@@ -80,16 +88,20 @@ def _points(
 
 @functools.lru_cache(maxsize=len(_OSCILLATIONS) * _POINTS)
 def _crossing_interval(guidance: GuidanceConfig, shape: str, nu: float) -> float:
-    """Return the crossing interval of one of the project's oscillations [s], remembered for the next study of a process."""
+    """Return the crossing interval of one of the project's oscillations [s], remembered for the
+    next study of a process.
+    """
     return oscillation_at(guidance, ReferenceConfig(shape=shape), nu).crossing_interval
 
 
 def crossing_limit(guidance: GuidanceConfig) -> dict[str, list[float]]:
-    """Return the shortest crossing interval of any path with two crossings a period, over the speed ratio.
+    """Return the shortest crossing interval of any path with two crossings a period, over the speed
+    ratio.
 
     Returns
     -------
-    curves : ``limit_nu`` [-] and ``crossing_interval_limit_s`` [s]; nothing where bank or roll rate are not those of the solution
+    curves : ``limit_nu`` [-] and ``crossing_interval_limit_s`` [s]; nothing where bank or roll rate
+        are not those of the solution
     """
     solved = json.loads(CROSSING_LIMITS.read_text(encoding="utf-8"))
     fastest = omega_max(guidance)

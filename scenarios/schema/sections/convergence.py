@@ -1,4 +1,6 @@
-"""What a scenario file of a convergence study may say. Units are in the names; bounds are checked here and nowhere else."""
+"""What a scenario file of a convergence study may say. Units are in the names; bounds are checked
+here and nowhere else.
+"""
 
 from typing import Annotated, Literal
 
@@ -14,26 +16,38 @@ class Ensemble(Section):
     """The initial states: the same for every law."""
 
     trajectories: Annotated[int, Field(ge=1, le=10_000_000)] = 10_000
-    """Initial states, each flown with every law; a third each about a circling, oscillating and randomly turning reference [-]."""
+    """Initial states, each flown with every law; a third each about a circling, oscillating and
+    randomly turning reference [-].
+    """
     distance_max_m: Annotated[float, Field(gt=0.0, le=100_000.0)] = 5000.0
-    """Largest distance of a start from the reference; starts are sampled uniformly over the disc [m]."""
+    """Largest distance of a start from the reference; starts are sampled uniformly over the disc
+    [m].
+    """
     time_max_s: Annotated[float, Field(gt=0.0, le=1_000_000.0)] = 20_000.0
-    """A pursuit counts as a counter-example after this time, or later where the averaged motion predicts slow convergence [s]."""
+    """A pursuit counts as a counter-example after this time, or later where the averaged motion
+    predicts slow convergence [s].
+    """
     settling_band_m: Positive = 5.0
     """A pursuit has settled once its distance to the reference stays below this [m]."""
     samples: Annotated[int, Field(ge=0, le=1000)] = 6
-    """Number of trajectories whose time histories are kept, in addition to those of the counter-examples [-]."""
+    """Number of trajectories whose time histories are kept, in addition to those of the
+    counter-examples [-].
+    """
 
 
 class EnsembleGuidance(Section):
     """The laws and their parameters."""
 
     laws: Annotated[tuple[LawName, ...], Field(min_length=1)] = ("lyapunov", "cascade")
-    """Steering laws: eq. (24); eq. (30); cascade_cut, which is (30) limited to omega_max: the theory does not cover it."""
+    """Steering laws: eq. (24); eq. (30); cascade_cut, which is (30) limited to omega_max: the
+    theory does not cover it.
+    """
     airspeed_mps: Annotated[float, Field(ge=1.0, le=1000.0)] = 19.42
     """V_r, speed of reference and vehicle [m/s]."""
     heading_rate_max_rad_s: Annotated[float, Field(gt=0.5)] = 0.503
-    """omega_max, to which commands are limited; circles turn at up to 0.5, oscillating references use all of it [rad/s]."""
+    """omega_max, to which commands are limited; circles turn at up to 0.5, oscillating references
+    use all of it [rad/s].
+    """
     epsilon_per_m: Positive = 0.005
     """epsilon of the look-ahead, eq. (15) [1/m]."""
     look_ahead_m: Positive = 60.0

@@ -1,4 +1,6 @@
-"""What a scenario file may say of equipment: the vessel's reports, sensors, faults, payload. What is absent is ideal."""
+"""What a scenario file may say of equipment: the vessel's reports, sensors, faults, payload. What
+is absent is ideal.
+"""
 
 from typing import Annotated, Any
 
@@ -9,7 +11,9 @@ from scenarios.schema.sections.part_section import PartSection
 from scenarios.schema.sections.section import NonNegative, Positive, Section, check_ordered
 
 REPORTS_MAX = 200_000
-"""Most reports in a flight: four times those of the longest flight by AIS, every 2 s at its fastest; with 0.4 kB each, 80 MB."""
+"""Most reports in a flight: four times those of the longest flight by AIS, every 2 s at its
+fastest; with 0.4 kB each, 80 MB.
+"""
 
 
 class VesselReportsConfig(Section):
@@ -41,7 +45,9 @@ class SensorsConfig(Section):
     """Errors of the UAV's sensors. Biases are sampled for each flight, within these limits."""
 
     position_sigma_m: NonNegative = 0.0
-    """Error of each coordinate of satellite navigation, one sigma; it drifts with a time constant of a minute [m]."""
+    """Error of each coordinate of satellite navigation, one sigma; it drifts with a time constant
+    of a minute [m].
+    """
     velocity_sigma_mps: NonNegative = 0.0
     """Noise of each velocity component of satellite navigation [m/s]."""
     airspeed_sigma_mps: NonNegative = 0.0
@@ -58,21 +64,28 @@ class FaultConfig(Section):
     """A fault in flight."""
 
     kind: Annotated[str, Field(pattern=r"^[A-Za-z0-9_.\-]+$")] = "none"
-    """Kind of fault: none, vessel_data, satellite_navigation, sniffer_dead, sniffer_saturated, engine, or the name of an actuator
-    of the aircraft (the error message for an unknown name lists them)."""
+    """Kind of fault: none, vessel_data, satellite_navigation, sniffer_dead, sniffer_saturated,
+    engine, or the name of an actuator of the aircraft (the error message for an unknown name lists
+    them)."""
     at_s: tuple[NonNegative, NonNegative] = (100.0, 250.0)
-    """Earliest and latest time of the fault, which is sampled in between; or one number, the time itself [s]."""
+    """Earliest and latest time of the fault, which is sampled in between; or one number, the time
+    itself [s].
+    """
     vessel_data_s: Positive = 60.0
     """How long vessel data are lost [s]."""
     satellite_navigation_s: Positive = 10.0
     """How long satellite navigation is lost [s]; any other fault lasts to the end of the flight."""
     declared: tuple[str, ...] = ()
-    """Kinds of fault that the keep-out guard and its margin allow for, besides the flight's own and those swept or sampled."""
+    """Kinds of fault that the keep-out guard and its margin allow for, besides the flight's own and
+    those swept or sampled.
+    """
 
     @field_validator("at_s", mode="before")
     @classmethod
     def _one_time(cls, given: Any) -> Any:
-        """Take a number for the range that holds it alone, so that a random variable can set the time."""
+        """Take a number for the range that holds it alone, so that a random variable can set the
+        time.
+        """
         return (
             (given, given)
             if isinstance(given, int | float) and not isinstance(given, bool)
@@ -89,7 +102,9 @@ class PayloadConfig(PartSection):
     """The instruments on board; each may add keys of its own."""
 
     instruments: tuple[str, ...] = ()
-    """Instruments, each by its name, such as sniffer, or FILE.py:NAME; their readings are columns of the time history."""
+    """Instruments, each by its name, such as sniffer, or FILE.py:NAME; their readings are columns
+    of the time history.
+    """
 
     @model_validator(mode="before")
     @classmethod

@@ -1,4 +1,6 @@
-"""What a scenario file may say of an experiment: sweeps, cases, comparisons, random variables, statistics, a search."""
+"""What a scenario file may say of an experiment: sweeps, cases, comparisons, random variables,
+statistics, a search.
+"""
 
 import math
 import sys
@@ -26,17 +28,24 @@ FLIGHTS_MAX = 1_000_000
 """Largest number of flights of one scenario [-]."""
 
 CHAINS_MIN = 10
-"""Least number of flights that pass on to the next level: with fewer, one exceptional flight would decide all that follows."""
+"""Least number of flights that pass on to the next level: with fewer, one exceptional flight would
+decide all that follows.
+"""
 
 STUDY = "study"
-"""Name of the variant of flights that count in the verdict, where others have that of a comparison."""
+"""Name of the variant of flights that count in the verdict, where others have that of a comparison.
+"""
 
 NU_MAX = 10.0
-"""Largest speed ratio of a sweep [-]; from 1 on there is no solution, and the flight is a row that says so."""
+"""Largest speed ratio of a sweep [-]; from 1 on there is no solution, and the flight is a row that
+says so.
+"""
 
 
 class SweepConfig(RootModel[dict[str, tuple[Any, ...]]]):
-    """Keys, each with a list of values; every combination is flown. ``nu`` stands for ``vessel.speed_ratio``."""
+    """Keys, each with a list of values; every combination is flown. ``nu`` stands for
+    ``vessel.speed_ratio``.
+    """
 
     root: dict[str, tuple[Any, ...]] = Field(default_factory=dict)
 
@@ -90,17 +99,23 @@ class VariantConfig(Section):
 
 
 class ComparisonConfig(Section):
-    """Extra flights that show the effect of a part. They are reported separately and do not count in the verdict."""
+    """Extra flights that show the effect of a part. They are reported separately and do not count
+    in the verdict.
+    """
 
     nu: tuple[Annotated[float, Field(ge=0.0, lt=1.0)], ...] = ()
     """Swept speed ratios at which the variants are flown; all of them if not given [-]."""
     flights: Annotated[int, Field(ge=1, le=1_000_000)] | None = None
-    """Number of flights at each point of the experiment that are flown with each variant; all of them if not given [-]."""
+    """Number of flights at each point of the experiment that are flown with each variant; all of
+    them if not given [-].
+    """
     variants: tuple[VariantConfig, ...] = ()
 
 
 class CaseConfig(Section):
-    """One flight of a study of cases, with its own values of some keys; flown with each vehicle that ``fidelity`` names."""
+    """One flight of a study of cases, with its own values of some keys; flown with each vehicle
+    that ``fidelity`` names.
+    """
 
     name: Annotated[str, Field(pattern=r"^[a-z0-9_]+$")]
     """Part of the names of its flights."""
@@ -116,7 +131,9 @@ class DrawConfig(Section):
     """A random variable: a key that is sampled for each flight from one distribution."""
 
     key: str
-    """Dotted key of the scenario; a number is an index into a list, as in vessel.manoeuvres.0.turn_deg."""
+    """Dotted key of the scenario; a number is an index into a list, as in
+    vessel.manoeuvres.0.turn_deg.
+    """
     uniform: Range | None = None
     """Lower and upper limit of a uniform distribution [unit of the key]."""
     normal: tuple[float, Positive] | None = None
@@ -126,7 +143,9 @@ class DrawConfig(Section):
     within: Range | None = None
     """Limits at which a normal or Weibull distribution is cut off [unit of the key]."""
     choice: Annotated[tuple[object, ...], Field(min_length=1)] | None = None
-    """List of values to choose from: each in turn, so that all occur equally often, or at random with the given weights."""
+    """List of values to choose from: each in turn, so that all occur equally often, or at random
+    with the given weights.
+    """
     weights: tuple[NonNegative, ...] | None = None
     """Weights of the choices; they need not add up to 1 [-]."""
 
@@ -172,9 +191,12 @@ class StatisticsConfig(Section):
     confidence: Fraction = 0.95
     """Confidence level of every interval [-]."""
     violation_upper: Fraction | None = None
-    """The study stops once the probability of a keep-out violation is shown to be at most this [-]."""
+    """The study stops once the probability of a keep-out violation is shown to be at most this [-].
+    """
     distance_quantile_width_m: Positive | None = None
-    """The study stops once the interval of the quantile of the closest approach is as narrow as this [m]."""
+    """The study stops once the interval of the quantile of the closest approach is as narrow as
+    this [m].
+    """
     distance_quantile: Fraction = 0.01
     """Quantile of the closest approach whose interval may stop the study [-]."""
 
@@ -188,8 +210,8 @@ class SubsetConfig(Section):
     """Subset simulation: levels of flights, each starting from the nearest of the level before."""
 
     flights_per_level: Annotated[int, Field(ge=50, le=1_000_000)] = 500
-    """Flights of a level, including those that pass on from the level before. At least 10 have to pass on: with the default
-    subset.conditional_probability that takes 100 [-]."""
+    """Flights of a level, including those that pass on from the level before. At least 10 have to
+    pass on: with the default subset.conditional_probability that takes 100 [-]."""
     conditional_probability: Annotated[float, Field(ge=0.01, le=0.5)] = 0.1
     """Fraction of a level's flights that pass on to the next: the nearest [-]."""
     levels_max: Annotated[int, Field(ge=1, le=50)] = 8
@@ -204,7 +226,9 @@ class SubsetConfig(Section):
 
     @property
     def flights_max(self) -> int:
-        """Return the number of flights of all simulations, if every level is flown and every move is."""
+        """Return the number of flights of all simulations, if every level is flown and every move
+        is.
+        """
         return self.repeats * (
             self.flights_per_level + (self.levels_max - 1) * (self.flights_per_level - self.passing)
         )
@@ -234,15 +258,21 @@ class SearchConfig(Section):
     generations: Annotated[int, Field(ge=0, le=10_000)] = 30
     """Number of turns after the first, summed over all methods [-]."""
     time_s: Positive | None = None
-    """Time after which no further batch is flown, instead of a number of generations [s]; in a resumed run it starts again at 0."""
+    """Time after which no further batch is flown, instead of a number of generations [s]; in a
+    resumed run it starts again at 0.
+    """
     restarts: Annotated[int, Field(ge=0, le=100_000)] = 100
-    """How often a method that no longer improves restarts, from another of the worst flights or from a random one [-]."""
+    """How often a method that no longer improves restarts, from another of the worst flights or
+    from a random one [-].
+    """
     mutation: tuple[Positive, Positive] = (0.5, 1.0)
     """Range of differential evolution's weight, which is sampled for each generation [-]."""
     recombination: Fraction = 0.7
     """Crossover probability of differential evolution: that a key is taken from the mutant [-]."""
     kept: Annotated[int, Field(ge=1, le=1000)] = 10
-    """Number of worst flights, unlike one another, that are kept as scenario files and confirmed [-]."""
+    """Number of worst flights, unlike one another, that are kept as scenario files and confirmed
+    [-].
+    """
     confirmations: Annotated[int, Field(ge=0, le=1000)] = 8
     """Number of flights with other noise that repeat each of the worst flights [-]."""
 
@@ -265,7 +295,9 @@ class SearchConfig(Section):
 
     @property
     def flights_max(self) -> int:
-        """Return the largest number of flights of the search, confirmations apart; those by time are numbered up to it."""
+        """Return the largest number of flights of the search, confirmations apart; those by time
+        are numbered up to it.
+        """
         if self.time_s is None:
             return self.population * (self.generations + 1)
         return FLIGHTS_MAX // (1 + self.confirmations)
@@ -292,25 +324,37 @@ class ArenaConfig(Section):
     conditions: tuple[ConditionConfig, ...] = ()
     """Conditions, each a trial, with the same starts, winds and turbulence for every law."""
     evaluations: Annotated[int, Field(ge=0, le=10_000)] = 12
-    """Number of settings that the tuner tries for each law, starting with its defaults; 0 to fly the defaults [-]."""
+    """Number of settings that the tuner tries for each law, starting with its defaults; 0 to fly
+    the defaults [-].
+    """
     tuning_flights: Annotated[int, Field(ge=1, le=1000)] = 4
-    """Number of tuning flights of each setting: kinematic vehicle, seeds that the comparison does not use [-]."""
+    """Number of tuning flights of each setting: kinematic vehicle, seeds that the comparison does
+    not use [-].
+    """
     tuning_duration_s: Positive = 200.0
     """Duration of a tuning flight [s]."""
     tuning_set: dict[str, object] = Field(default_factory=dict)
     """Keys of the tuning flights, and their values."""
     tuning_range: Annotated[float, Field(gt=1.0, le=1000.0)] = 4.0
-    """Factor of the range of every parameter: it is tried from its default divided by this to its default times this [-]."""
+    """Factor of the range of every parameter: it is tried from its default divided by this to its
+    default times this [-].
+    """
     effort_weight_m_s: NonNegative = 20.0
-    """Weight in the tuner's cost of the heading rate commanded in excess of the reference's, as a tracking error [m per rad/s]."""
+    """Weight in the tuner's cost of the heading rate commanded in excess of the reference's, as a
+    tracking error [m per rad/s].
+    """
     error_max_m: Positive = 100.0
     """Limit of the tracking error in the tuner's cost: a larger one costs no more [m]."""
     window_s: Positive = 150.0
-    """Time before the end of each flight over which it is evaluated, whether it has settled or not [s]."""
+    """Time before the end of each flight over which it is evaluated, whether it has settled or not
+    [s].
+    """
     resamples: Annotated[int, Field(ge=100, le=1_000_000)] = 2000
     """Number of resamples of the paired bootstrap [-]."""
     limits: tuple[tuple[float, float], ...] = ()
-    """Most crossings per minute that any path allows: pairs of nu [-] and crossings [1/min]; from the solved table if empty."""
+    """Most crossings per minute that any path allows: pairs of nu [-] and crossings [1/min]; from
+    the solved table if empty.
+    """
 
 
 class TrialList(Section):
@@ -323,7 +367,9 @@ class TrialList(Section):
     description: str = ""
     """One or two sentences at the top of the report."""
     trials: Annotated[tuple[str, ...], Field(min_length=1)]
-    """Scenarios of flights, by their names in the catalog or the paths of their files, relative to that of the list."""
+    """Scenarios of flights, by their names in the catalog or the paths of their files, relative to
+    that of the list.
+    """
     share: Annotated[float, Field(gt=0.0, le=1.0)] = 1.0
     """Fraction of each trial's flights that are flown, for a quick look [-]."""
     seed: Seed | None = None
@@ -331,5 +377,7 @@ class TrialList(Section):
     histories: Annotated[int, Field(ge=0, le=100_000)] = 350
     """Number of time histories to be kept [-]."""
     set: tuple[str, ...] = ()
-    """Keys to set in every trial, as key=value; overrides of the command line that are not keys of this list are added here."""
+    """Keys to set in every trial, as key=value; overrides of the command line that are not keys of
+    this list are added here.
+    """
     report: ReportConfig = ReportConfig()

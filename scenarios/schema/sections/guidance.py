@@ -1,4 +1,6 @@
-"""What a scenario file may say of the guidance: the reference, the steering law, following a vessel that is not known exactly."""
+"""What a scenario file may say of the guidance: the reference, the steering law, following a vessel
+that is not known exactly.
+"""
 
 import sys
 from collections.abc import Mapping
@@ -24,7 +26,9 @@ Share = Annotated[float, Field(gt=0.0, le=1.0)]
 
 
 def known_law(law: str) -> str:
-    """Return the name of a steering law, or raise a ValueError where there is none, or none with default parameters."""
+    """Return the name of a steering law, or raise a ValueError where there is none, or none with
+    default parameters.
+    """
     try:
         _law_keys(law)
     except PluginError as error:
@@ -36,13 +40,17 @@ class ReferenceConfig(Section):
     """The path of the reference point."""
 
     path: Literal["oscillation", "circle"] = "oscillation"
-    """Oscillate about a centre in the plume, eq. (2), or circle without a vessel, as in the paper's Sims. 1 and 2."""
+    """Oscillate about a centre in the plume, eq. (2), or circle without a vessel, as in the paper's
+    Sims. 1 and 2.
+    """
     shape: str = "sinusoid"
     """Shape of the oscillation: sinusoid, that of the paper, fastest, loiter, or FILE.py:NAME."""
     radius_m: Positive = 130.0
     """Radius of the circle, flown to the right [m]."""
     standoff_radius_m: Positive | None = None
-    """Radius of a standoff circle about the vessel [m]; if not given, the smallest on which the keep-out guard need not act."""
+    """Radius of a standoff circle about the vessel [m]; if not given, the smallest on which the
+    keep-out guard need not act.
+    """
 
 
 class GuidanceConfig(Section):
@@ -51,18 +59,21 @@ class GuidanceConfig(Section):
     model_config = ConfigDict(extra="allow")
 
     mission: Literal["track", "follow", "standoff"] | None = None
-    """Mission: track the paper's reference, known in advance; follow the vessel with a steered reference, an oscillation in her
-    plume; standoff, circle her at reference.standoff_radius_m, and cross her plume once a turn, without following.standoff_m.
+    """Mission: track the paper's reference, known in advance; follow the vessel with a steered
+    reference, an oscillation in her plume; standoff, circle her at reference.standoff_radius_m, and
+    cross her plume once a turn, without following.standoff_m.
 
     If not given: track in still air where the vessel is steady and known exactly, else follow.
     """
     law: str = "cascade"
-    """Steering law: cascade, eq. (30), lyapunov, eq. (24), line_of_sight, the baseline, those of docs/explanation/arena.md, or
-    FILE.py:NAME."""
+    """Steering law: cascade, eq. (30), lyapunov, eq. (24), line_of_sight, the baseline, those of
+    docs/explanation/arena.md, or FILE.py:NAME."""
     airspeed_mps: Annotated[float, Field(ge=5.0, le=300.0)] = 19.42
     """V_r, speed of the reference and of the UAV [m/s]; the aircraft's own if not given."""
     bank_deg: Annotated[float, Field(gt=0.0, le=60.0)] = 45.0
-    """Bank whose coordinated turn sets omega_max = g tan(bank)/V_r [deg]; the aircraft's own if not given."""
+    """Bank whose coordinated turn sets omega_max = g tan(bank)/V_r [deg]; the aircraft's own if not
+    given.
+    """
     heading_rate_max_rad_s: Positive | None = None
     """omega_max [rad/s]; overrides bank_deg."""
     reserve: Annotated[float, Field(ge=0.0, lt=1.0)] = 0.015
@@ -72,13 +83,19 @@ class GuidanceConfig(Section):
     phase_deg: Angle = 0.0
     """Oscillation phase phi_0 [deg]."""
     placement: Literal["paper", "exact"] = "paper"
-    """Rule for r_CO: eq. (10), or the smallest for which the whole orbit stays outside; farther where the guard would act on it."""
+    """Rule for r_CO: eq. (10), or the smallest for which the whole orbit stays outside; farther
+    where the guard would act on it.
+    """
     tracking_allowance_m: Annotated[float, Field(ge=0.0, le=10_000.0)] = 1.0
     """Allowance for tracking errors, added to r_min in the placement [m]."""
     tuning: Literal["given", "bounded"] = "given"
-    """Look-ahead and steering_max: given, or bounded, those that converge fastest while no state demands more than omega_max."""
+    """Look-ahead and steering_max: given, or bounded, those that converge fastest while no state
+    demands more than omega_max.
+    """
     bound_speed_margin_mps: NonNegative = 0.5
-    """Largest excess of the aircraft's speed over the largest commanded airspeed for which the bound on commands holds [m/s]."""
+    """Largest excess of the aircraft's speed over the largest commanded airspeed for which the
+    bound on commands holds [m/s].
+    """
     epsilon_per_m: Positive = 0.005
     """epsilon of the look-ahead, eq. (15) [1/m]."""
     look_ahead_m: Positive = 60.0
@@ -90,7 +107,9 @@ class GuidanceConfig(Section):
     lyapunov_gain_per_m2: Positive = 0.001
     """k_1 of eq. (24) [1/m2]."""
     command_limit: bool = True
-    """Limit commands to omega_max. Only a kinematic vehicle can do without: it turns as fast as it is commanded."""
+    """Limit commands to omega_max. Only a kinematic vehicle can do without: it turns as fast as it
+    is commanded.
+    """
     preview: bool = True
     """Evaluate the law ahead of time, by the inner loop's measured lag."""
     airspeed_trim: bool = True
@@ -102,8 +121,8 @@ class GuidanceConfig(Section):
     keepout_guard: bool = True
     """Guard the keep-out area: turn away from it, which the paper's law does not."""
     approach: bool = True
-    """Fly round the vessel to the orbit and join it at the phase that takes the least effort; the paper tracks its reference from
-    the first step on."""
+    """Fly round the vessel to the orbit and join it at the phase that takes the least effort; the
+    paper tracks its reference from the first step on."""
     rate_hz: Annotated[float, Field(ge=5.0, le=120.0)] = 20.0
     """Guidance rate [Hz]; must divide the 120 Hz of the simulation."""
 
@@ -144,7 +163,9 @@ class GuidanceConfig(Section):
 
     @property
     def law_types(self) -> dict[str, type[Any] | None]:
-        """Return the types of the keys of the steering law: bool, int, float, str, or None for others; errors as ``law_keys``."""
+        """Return the types of the keys of the steering law: bool, int, float, str, or None for
+        others; errors as ``law_keys``.
+        """
         keys, law = self.law_keys, STEERING_LAWS.get(self.law)
         return {of.name: _type_of(of.type, keys[of.name]) for of in _fields_of(law)}
 
@@ -160,7 +181,9 @@ class GuidanceConfig(Section):
 
 
 def law_refusal(law: str, task: str) -> str:
-    """Return why a steering law cannot do a task, ``gnc.laws.steering_law.ON_OSCILLATION`` or ``ON_CIRCLE``; nothing if it can."""
+    """Return why a steering law cannot do a task, ``gnc.laws.steering_law.ON_OSCILLATION`` or
+    ``ON_CIRCLE``; nothing if it can.
+    """
     return _reasons(law).get(task, "")
 
 
@@ -218,14 +241,18 @@ def _fields_of(law: Any) -> "list[DataclassField[Any]]":
 
 
 def _type_of(declared: Any, default: object) -> type[Any] | None:
-    """Return the plain type of a field: that which it declares, in words where annotations are, or that of its default."""
+    """Return the plain type of a field: that which it declares, in words where annotations are, or
+    that of its default.
+    """
     plain: dict[str, type[Any]] = {"bool": bool, "int": int, "float": float, "str": str}
     named = declared if isinstance(declared, str) else getattr(declared, "__name__", "")
     return plain.get(named, float if isinstance(default, float) else None)
 
 
 def _expected(of: type[Any] | None, value: Any) -> str | None:
-    """Return what a key of a type takes, in words, where a value is of another type; otherwise None."""
+    """Return what a key of a type takes, in words, where a value is of another type; otherwise
+    None.
+    """
     if of is float:
         # Whole numbers may be too large for a float.
         fits = type(value) in (int, float) and abs(value) <= sys.float_info.max
@@ -235,7 +262,9 @@ def _expected(of: type[Any] | None, value: Any) -> str | None:
 
 
 class FollowingConfig(Section):
-    """How the reference follows a vessel that manoeuvres, in wind that is estimated, from sensors and reports."""
+    """How the reference follows a vessel that manoeuvres, in wind that is estimated, from sensors
+    and reports.
+    """
 
     @field_validator("margin_law")
     @classmethod
@@ -243,7 +272,8 @@ class FollowingConfig(Section):
         return law and known_law(law)
 
     touches_per_hour: Annotated[float, Field(gt=0.0, lt=1.0)] = 1e-4
-    """Probability of touching r_min per flight hour for which the keep-out margin is planned [1/h]."""
+    """Probability of touching r_min per flight hour for which the keep-out margin is planned [1/h].
+    """
     margin_min_m: NonNegative = 3.0
     """Smallest keep-out margin, in calm air and with exact knowledge [m]."""
     speed_ratio_max: Annotated[float, Field(gt=0.0, lt=1.0)] = 0.97
@@ -251,37 +281,55 @@ class FollowingConfig(Section):
     apparent_wind_min_mps: Positive = 1.0
     """Apparent wind below which the direction of a plume is not known [m/s]."""
     standoff_m: Positive = 100.0
-    """Distance by which the oscillation in the plume waits farther out than r_CO until the UAV tracks it; then it closes in. No
-    radius about the vessel: to circle her, set guidance.mission to standoff, which does not use this key [m]."""
+    """Distance by which the oscillation in the plume waits farther out than r_CO until the UAV
+    tracks it; then it closes in. No radius about the vessel: to circle her, set guidance.mission to
+    standoff, which does not use this key [m].
+    """
     join_distance_m: Positive = 150.0
-    """Distance from the centre of oscillation at which the approach ends and tracking begins [m]."""
+    """Distance from the centre of oscillation at which the approach ends and tracking begins [m].
+    """
     tracked_m: Positive = 12.0
     """Distance from the reference that counts as tracked: the centre closes in [m]."""
     vessel_acceleration_mps2: NonNegative = 0.0
-    """Largest acceleration of the vessel between reports, along and across its course together [m/s2]."""
+    """Largest acceleration of the vessel between reports, along and across its course together
+    [m/s2].
+    """
     vessel_speed_max_mps: Positive | None = None
     """Largest speed of the vessel over the ground; without limit if not given [m/s]."""
     speed_error_mps: NonNegative = 0.0
-    """Largest error of the UAV's own velocity through the air and of the wind, together; those of sensors count if larger [m/s]."""
+    """Largest error of the UAV's own velocity through the air and of the wind, together; those of
+    sensors count if larger [m/s].
+    """
     margin_law: str | None = None
-    """Steering law, with its default parameters, whose tracking in turbulence the margin is planned for; if not given, the flight's
-    own."""
+    """Steering law, with its default parameters, whose tracking in turbulence the margin is planned
+    for; if not given, the flight's own."""
     drift_rate_mps: NonNegative = 1.0
-    """Largest growth of the position error per time in dead reckoning, without satellite navigation; errors of sensors count if
-    larger [m/s]."""
+    """Largest growth of the position error per time in dead reckoning, without satellite
+    navigation; errors of sensors count if larger [m/s]."""
     turn_deviation_m: NonNegative = 0.0
-    """Largest distance by which a reversal of the turn may come nearer than predicted; the autopilot's record may raise it [m]."""
+    """Largest distance by which a reversal of the turn may come nearer than predicted; the
+    autopilot's record may raise it [m].
+    """
     plume: Literal["predicted", "estimated", "told"] = "predicted"
-    """How the axis of exhaust is known: predicted from load, wind and vessel, estimated from a sniffer's readings, or told: the
-    true one. In a patrol, of its own flights; those of the oracle are told."""
+    """How the axis of exhaust is known: predicted from load, wind and vessel, estimated from a
+    sniffer's readings, or told: the true one. In a patrol, of its own flights; those of the oracle
+    are told."""
     search: Literal["information", "ladder"] = "information"
-    """How exhaust is searched for: at the most informative height, or up and down a ladder of heights."""
+    """How exhaust is searched for: at the most informative height, or up and down a ladder of
+    heights.
+    """
     distance: Literal["closest", "best_measurement"] = "closest"
-    """Where exhaust is crossed: as near as the keep-out area allows, or where the sulphur is known best after a minute."""
+    """Where exhaust is crossed: as near as the keep-out area allows, or where the sulphur is known
+    best after a minute.
+    """
     source_height_m: tuple[Positive, Positive] | None = None
-    """Lowest and highest possible height of the funnel's mouth, as it is known on board [m]; known exactly if not given."""
+    """Lowest and highest possible height of the funnel's mouth, as it is known on board [m]; known
+    exactly if not given.
+    """
     load: tuple[Share, Share] | None = None
-    """Lowest and highest possible load of the engine, as it is known on board; that at the vessel's speed if not given [-]."""
+    """Lowest and highest possible load of the engine, as it is known on board; that at the vessel's
+    speed if not given [-].
+    """
     climb_gradient: Annotated[float, Field(gt=0.0, le=0.3)] = 0.05
     """Largest gradient of climb and descent to another height of the plume [-]."""
 

@@ -16,7 +16,8 @@ from scenarios.schema.sections.wrong_value import must_be
 class PartSection(Section):
     """A section that allows the keys of the parts that it names.
 
-    A part that has keys of its own has a frozen dataclass ``SETTINGS``: its fields are the keys, with types and defaults.
+    A part that has keys of its own has a frozen dataclass ``SETTINGS``: its fields are the keys,
+    with types and defaults.
     """
 
     model_config = ConfigDict(extra="allow")
@@ -44,7 +45,9 @@ class PartSection(Section):
         )
 
     def __getattr__(self, name: str) -> Any:
-        """Say where the value of a part's key is, to a part that looks for it here: the section has those alone that are given."""
+        """Say where the value of a part's key is, to a part that looks for it here: the section has
+        those alone that are given.
+        """
         try:
             return super().__getattr__(name)  # type: ignore[misc]
         except AttributeError:
@@ -98,7 +101,9 @@ class PartSection(Section):
             raise ValueError(f"{key} is {first['input']!r}; {demanded}" if key else text) from None
 
     def keys_lost_with(self, changed: Mapping[str, object]) -> list[str]:
-        """Return the keys given here that no part takes any more when fields of the section are changed."""
+        """Return the keys given here that no part takes any more when fields of the section are
+        changed.
+        """
         given = self.model_extra or {}
         if not given:
             return []

@@ -14,7 +14,9 @@ Words = Annotated[str, Field(max_length=200, coerce_numbers_to_str=True)]
 
 
 class ReportConfig(Section):
-    """Title and sender of the reports. A run keeps its seed, and can be resumed, whatever stands here."""
+    """Title and sender of the reports. A run keeps its seed, and can be resumed, whatever stands
+    here.
+    """
 
     title: Words = ""
     """Title of the reports; that of the scenario if not given."""
@@ -23,7 +25,8 @@ class ReportConfig(Section):
     organisation: Words = ""
     """Organisation of the author."""
     logo: Annotated[str, Field(max_length=4096)] = ""
-    """A picture for page 1: a PNG, JPEG or SVG file, whose path is relative to the scenario file."""
+    """A picture for page 1: a PNG, JPEG or SVG file, whose path is relative to the scenario file.
+    """
 
 
 def read_logo(report: ReportConfig) -> Picture | None:
@@ -40,7 +43,8 @@ def read_logo(report: ReportConfig) -> Picture | None:
 
 
 def report_entry(report: ReportConfig) -> dict[str, Any]:
-    """Return what the manifest says of the reports: the logo by its name in the run directory and a hash of its content.
+    """Return what the manifest says of the reports: the logo by its name in the run directory and a
+    hash of its content.
 
     Raises
     ------

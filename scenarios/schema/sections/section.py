@@ -9,7 +9,9 @@ from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Fie
 
 
 class Section(BaseModel):
-    """Frozen; unknown keys, numbers that are not finite, and truth values in the place of numbers are refused."""
+    """Frozen; unknown keys, numbers that are not finite, and truth values in the place of numbers
+    are refused.
+    """
 
     model_config = ConfigDict(
         extra="forbid", frozen=True, allow_inf_nan=False, use_attribute_docstrings=True
@@ -24,7 +26,9 @@ class Section(BaseModel):
 
 
 def refuse_truth_values(kind: Any, given: Mapping[str, Any]) -> None:
-    """Raise a ValueError where a key that takes a number, of a section or of a part's settings, has ``true`` or ``false``."""
+    """Raise a ValueError where a key that takes a number, of a section or of a part's settings, has
+    ``true`` or ``false``.
+    """
     numbers = _number_keys(kind)
     for key, value in given.items():
         if (
@@ -39,7 +43,9 @@ def refuse_truth_values(kind: Any, given: Mapping[str, Any]) -> None:
 
 
 def _has_other_truth(value: object, words: tuple[bool, ...]) -> bool:
-    """Return whether a value is, or a list holds, a truth value that is not one of the words that the key takes."""
+    """Return whether a value is, or a list holds, a truth value that is not one of the words that
+    the key takes.
+    """
     if isinstance(value, list | tuple):
         return any(_has_other_truth(item, words) for item in value)
     return isinstance(value, bool) and value not in words
@@ -47,7 +53,9 @@ def _has_other_truth(value: object, words: tuple[bool, ...]) -> bool:
 
 @functools.cache
 def _number_keys(kind: Any) -> dict[str, tuple[bool, ...]]:
-    """Return the keys that take numbers, each with the truth values that it takes as words beside them."""
+    """Return the keys that take numbers, each with the truth values that it takes as words beside
+    them.
+    """
     fields = (
         {name: field.annotation for name, field in kind.model_fields.items()}
         if issubclass(kind, BaseModel)
@@ -113,6 +121,8 @@ def check_divides(name: str, rate: float, whole: float) -> None:
 
 
 def check_ordered(name: str, values: Range | None) -> None:
-    """Raise a ValueError if the first of ``values``, called ``name``, exceeds the second; None passes."""
+    """Raise a ValueError if the first of ``values``, called ``name``, exceeds the second; None
+    passes.
+    """
     if values is not None and values[0] > values[1]:
         raise ValueError(f"{name} is {list(values)}; its first value must not exceed its second")

@@ -1,4 +1,6 @@
-"""What a scenario file may say of the world: vessel, plume, wind, turbulence, keep-out area. What is absent is ideal."""
+"""What a scenario file may say of the world: vessel, plume, wind, turbulence, keep-out area. What
+is absent is ideal.
+"""
 
 from datetime import datetime
 from pathlib import Path
@@ -45,13 +47,18 @@ class VesselConfig(Section):
     speed_mps: Annotated[float, Field(ge=0.0, le=300.0)] = 8.0
     """Speed over the ground, before any manoeuvre [m/s]."""
     speed_ratio: Annotated[float, Field(ge=0.0, le=10.0)] | None = None
-    """Speed over the ground over the UAV's airspeed, nu in calm air [-]; replaces speed_mps if given."""
+    """Speed over the ground over the UAV's airspeed, nu in calm air [-]; replaces speed_mps if
+    given.
+    """
     course_deg: Angle = 0.0
     """Course, clockwise from north [deg]."""
     track: str = "manoeuvres"
-    """Track of the vessel: by its speed, course and manoeuvres, from a file of AIS reports (.csv, .nmea, .txt), or FILE.py:NAME."""
+    """Track of the vessel: by its speed, course and manoeuvres, from a file of AIS reports (.csv,
+    .nmea, .txt), or FILE.py:NAME.
+    """
     mmsi: Annotated[int, Field(ge=0, le=999_999_999)] | None = None
-    """MMSI of the vessel in a file of AIS reports; not needed if the file has only one vessel [-]."""
+    """MMSI of the vessel in a file of AIS reports; not needed if the file has only one vessel [-].
+    """
     gap_max_s: Positive = GAP_MAX
     """Longest gap between reports of a file over which the track is interpolated [s]."""
     manoeuvres: tuple[ManoeuvreConfig, ...] = ()
@@ -88,7 +95,9 @@ class PlaceConfig(Section):
     longitude_deg: Annotated[float, Field(ge=-180.0, le=180.0)] | None = None
     """Longitude of the vessel at the start, east of Greenwich [deg]."""
     utc: datetime | None = None
-    """Time of the start, as in 2026-06-01T12:00:00Z; for a track from a file, that of the first report if not given."""
+    """Time of the start, as in 2026-06-01T12:00:00Z; for a track from a file, that of the first
+    report if not given.
+    """
 
     @field_validator("utc", mode="before")
     @classmethod
@@ -123,23 +132,29 @@ class PlumeConfig(PartSection):
     """The smoke plume: its axis, a half-line from the funnel, and what its model adds."""
 
     model: str = "straight"
-    """straight: an axis without smoke; fluctuating: smoke that disperses, meanders and bends; or FILE.py:NAME."""
+    """straight: an axis without smoke; fluctuating: smoke that disperses, meanders and bends; or
+    FILE.py:NAME.
+    """
     direction: Literal["apparent_wind", "given"] | None = None
     """Behind the vessel's motion through the air, or, as in the paper, at heading_deg from the bow.
 
-    If not given: as in the paper in still air where the vessel is steady and known, else by the apparent wind.
+    If not given: as in the paper in still air where the vessel is steady and known, else by the
+    apparent wind.
     """
     heading_deg: Angle = 180.0
     """Direction chi_P, clockwise from the vessel's bow [deg]; 180 is straight astern."""
     elevation_deg: Annotated[float, Field(ge=0.0, le=60.0)] = 0.0
     """Elevation alpha_P above the horizon [deg]."""
     source_height_m: Annotated[float, Field(ge=SOURCE_HEIGHT_MIN, le=500.0)] | None = None
-    """Height of the funnel's mouth above the sea, where the axis starts; at most 200 for exhaust of the model fluctuating. If not
-    given, that of the funnel of emission.ship, or 60 without a ship [m]."""
+    """Height of the funnel's mouth above the sea, where the axis starts; at most 200 for exhaust of
+    the model fluctuating. If not given, that of the funnel of emission.ship, or 60 without a ship
+    [m]."""
 
     @property
     def source_height(self) -> float:
-        """Return the height where the axis starts, as the section has it; a plume model is given its flight's own [m]."""
+        """Return the height where the axis starts, as the section has it; a plume model is given
+        its flight's own [m].
+        """
         return funnel_height(self.source_height_m, None)
 
     def parts(self) -> dict[str, Any]:
@@ -162,14 +177,16 @@ class EmissionConfig(Section):
     """What comes out of the funnel."""
 
     ship: Annotated[str | dict[str, Any] | None, BeforeValidator(_known_ship)] = None
-    """The ship that emits the exhaust, one of measurement/emission/ships.toml, or a table of one's own with the keys of these; no
-    exhaust if not given."""
+    """The ship that emits the exhaust, one of measurement/emission/ships.toml, or a table of one's
+    own with the keys of these; no exhaust if not given."""
     fuel: str = "mgo"
     """Fuel of the ship, one of measurement/emission/fuels.toml."""
     sulphur_percent: Annotated[float, Field(ge=0.0, le=SULPHUR_MAX_PERCENT)] | None = None
     """Sulphur content of the fuel by mass; the usual one of that fuel if not given [% m/m]."""
     load: Annotated[float, Field(gt=0.0, le=1.0)] | None = None
-    """Load of the engine, a fraction as 0.85; if not given, that at the vessel's speed, which the guidance expects [-]."""
+    """Load of the engine, a fraction as 0.85; if not given, that at the vessel's speed, which the
+    guidance expects [-].
+    """
 
     @field_validator("fuel")
     @classmethod
@@ -179,16 +196,22 @@ class EmissionConfig(Section):
 
 
 class KeepoutConfig(Section):
-    """What the UAV must not enter: a sphere about the funnel's mouth, or an upright cylinder through it."""
+    """What the UAV must not enter: a sphere about the funnel's mouth, or an upright cylinder
+    through it.
+    """
 
     shape: Shape = "sphere"
-    """A sphere, as in the paper, which is narrower above and below; or a cylinder, as wide at every height."""
+    """A sphere, as in the paper, which is narrower above and below; or a cylinder, as wide at every
+    height.
+    """
     radius_m: Annotated[float, Field(ge=10.0, le=10_000.0)] = 200.0
     """r_min, radius of the keep-out area [m]."""
 
 
 class WindConfig(Section):
-    """The mean wind: constant, or from a table; the same at every height, or with a profile. And the air in which exhaust rises."""
+    """The mean wind: constant, or from a table; the same at every height, or with a profile. And
+    the air in which exhaust rises.
+    """
 
     speed_mps: Annotated[float, Field(ge=0.0, le=40.0)] = 0.0
     """Wind speed [m/s]."""
@@ -199,9 +222,12 @@ class WindConfig(Section):
     stability_per_s: Annotated[float, Field(ge=0.0, le=0.1)] = 0.0
     """Brunt-Vaisala frequency of the air in which exhaust rises; 0 for neutral air [1/s]."""
     table: str | None = None
-    """A file with the wind over time, height or both: a table (.csv), or netCDF as of ERA5 (.nc)."""
+    """A file with the wind over time, height or both: a table (.csv), or netCDF as of ERA5 (.nc).
+    """
     roughness_m: Annotated[float, Field(ge=1e-8, le=1.0)] | None = None
-    """Roughness length of a logarithmic profile over height, about 0.0002 over the sea; no profile if not given [m]."""
+    """Roughness length of a logarithmic profile over height, about 0.0002 over the sea; no profile
+    if not given [m].
+    """
     height_m: Annotated[float, Field(ge=2.0, le=500.0)] = 10.0
     """Height above the sea of the given wind, for a logarithmic profile [m]."""
 
@@ -222,7 +248,9 @@ class TurbulenceConfig(Section):
     """Turbulence of MIL-F-8785C, and discrete gusts."""
 
     level: Literal["none", "light", "moderate", "severe"] = "none"
-    """Severity of the turbulence; light, moderate and severe are 15, 30 and 45 knots of wind at 20 feet."""
+    """Severity of the turbulence; light, moderate and severe are 15, 30 and 45 knots of wind at 20
+    feet.
+    """
     gusts: Annotated[int, Field(ge=0, le=100)] = 0
     """Number of 1-cosine gusts, at random times and from random directions [-]."""
     gust_speed_mps: NonNegative = 0.0

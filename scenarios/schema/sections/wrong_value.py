@@ -1,4 +1,6 @@
-"""What the value of a key must be, in words: a number in its unit or within its limit, a truth value, a time."""
+"""What the value of a key must be, in words: a number in its unit or within its limit, a truth
+value, a time.
+"""
 
 import re
 from collections.abc import Mapping
@@ -55,7 +57,8 @@ _PERCENT, _SURELY_PERCENT = 100.0, 2.0
 def must_be(
     error: Mapping[str, Any], *, key: str, unit: str = "", default: object = None
 ) -> str | None:
-    """Return what a value must be, as "it must be at most 40 m/s"; None for an error of another kind.
+    """Return what a value must be, as "it must be at most 40 m/s"; None for an error of another
+    kind.
 
     Parameters
     ----------
@@ -102,7 +105,9 @@ def _letters(pattern: str) -> str:
 
 
 def _example(value: str, unit: str) -> str | None:
-    """Return the number of a text with a unit in that of the key, empty if the unit is another one; None without a number."""
+    """Return the number of a text with a unit in that of the key, empty if the unit is another one;
+    None without a number.
+    """
     found = _NUMBER_AND_UNIT.fullmatch(value)
     if found is None:
         return None

@@ -16,7 +16,9 @@ TRACKING, STANDOFF = "tracking", "standoff"
 """The tasks: to track the oscillating reference, and to circle the vessel."""
 
 TUNING = "tuning"
-"""Name of the trial whose flights the tuner flies: seeds follow from it, and are none of the comparison's."""
+"""Name of the trial whose flights the tuner flies: seeds follow from it, and are none of the
+comparison's.
+"""
 
 _NEEDS = {TRACKING: ON_OSCILLATION, STANDOFF: ON_CIRCLE}
 _MISSIONS = {TRACKING: "follow", STANDOFF: "standoff"}
@@ -64,8 +66,9 @@ class Refused:
 def entrants_of(scenario: Scenario) -> tuple[list[Entrant], list[Refused]]:
     """Return who takes part, and which law does not take part in which task.
 
-    A law that is added takes part in each task. The laws of the scenario take part where it lists them; of those that track the
-    reference and cannot circle, or the other way round, the reason is given.
+    A law that is added takes part in each task. The laws of the scenario take part where it lists
+    them; of those that track the reference and cannot circle, or the other way round, the reason is
+    given.
 
     Raises
     ------
@@ -114,11 +117,13 @@ def entrants_of(scenario: Scenario) -> tuple[list[Entrant], list[Refused]]:
 
 
 def conditions_of(scenario: Scenario, name: str, entrants: list[Entrant]) -> dict[str, Scenario]:
-    """Return the trials of an arena: a scenario for each condition, with a case for each entrant at its default parameters.
+    """Return the trials of an arena: a scenario for each condition, with a case for each entrant at
+    its default parameters.
 
     Raises
     ------
-    InputError : there is no condition, or one sets a key that does not exist or a value out of range
+    InputError : there is no condition, or one sets a key that does not exist or a value out of
+        range
     """
     conditions = scenario.arena.conditions
     if not conditions:
@@ -153,7 +158,9 @@ def conditions_of(scenario: Scenario, name: str, entrants: list[Entrant]) -> dic
 
 
 def draws_left(scenario: Scenario, values: Mapping[str, object]) -> dict[str, object]:
-    """Return the arena's random variables as a value to set: without those of keys that are set beside them."""
+    """Return the arena's random variables as a value to set: without those of keys that are set
+    beside them.
+    """
     left = tuple(draw.model_dump() for draw in scenario.draws if not displaced(draw.key, values))
     return {} if len(left) == len(scenario.draws) else {"draws": left}
 
@@ -169,7 +176,9 @@ def cases_of(
 
 
 def _defaults(law: str, guidance: GuidanceConfig) -> dict[str, float]:
-    """Return the parameters of a law that are numbers, whole ones apart: those that the scenario has, and its own defaults."""
+    """Return the parameters of a law that are numbers, whole ones apart: those that the scenario
+    has, and its own defaults.
+    """
     of = GuidanceConfig(law=law)
     types = of.law_types
     numbers = {

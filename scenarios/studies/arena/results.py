@@ -1,4 +1,6 @@
-"""What an arena has shown: means with intervals by condition and over all of them, and what each law was given."""
+"""What an arena has shown: means with intervals by condition and over all of them, and what each
+law was given.
+"""
 
 import json
 import math
@@ -37,7 +39,8 @@ _TRACKING_ONLY = ("error_rms_m", "effort_rms_rad_s", "excess_rms_rad_s", "satura
 
 
 def tuned_record(entrants: Sequence[Entrant], rows: Iterable[Row]) -> list[dict[str, Any]]:
-    """Return what each law was given: its parameters by default and as tuned, and what either costs the tuner.
+    """Return what each law was given: its parameters by default and as tuned, and what either costs
+    the tuner.
 
     A row without a cost stands for a tuning whose process was lost.
     """
@@ -74,7 +77,8 @@ def estimates(
     Parameters
     ----------
     entrants : of the arena
-    rows : for each condition figures of flights, those of an entrant after those of the one before, the same number for each
+    rows : for each condition figures of flights, those of an entrant after those of the one before,
+        the same number for each
     arena : number of resamples
     seed : of the resampling
     """
@@ -105,9 +109,11 @@ def estimates(
 def limits(
     rows: Mapping[str, Sequence[Row]], arena: ArenaConfig, guidance: GuidanceConfig
 ) -> dict[str, float]:
-    """Return the most crossings per minute that any path allows, in the mean over a condition's flights.
+    """Return the most crossings per minute that any path allows, in the mean over a condition's
+    flights.
 
-    They are those that the arena gives, or those of the optimum, where it was solved for the aircraft's bank and roll rate.
+    They are those that the arena gives, or those of the optimum, where it was solved for the
+    aircraft's bank and roll rate.
     """
     if arena.limits:
         ratios, most = (np.array(values) for values in zip(*sorted(arena.limits), strict=True))

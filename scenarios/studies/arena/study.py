@@ -1,4 +1,6 @@
-"""Steering laws side by side: each is tuned with the same budget, then all fly from the same starts in the same air."""
+"""Steering laws side by side: each is tuned with the same budget, then all fly from the same starts
+in the same air.
+"""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, fields, replace
@@ -35,7 +37,8 @@ TUNING_COLUMNS = (
 
 @study("arena")
 class ArenaStudy(FlightStudy):
-    """Laws in the tasks that they can do, each condition a trial and each law in a task a case of it.
+    """Laws in the tasks that they can do, each condition a trial and each law in a task a case of
+    it.
 
     Parameters
     ----------
@@ -90,7 +93,9 @@ class ArenaStudy(FlightStudy):
         return conditions_of(self._scenario, name, self.entrants)
 
     def work(self, run: RunDirectory) -> FlightWork:
-        """Return the work on its flights and on the tuning, after writing the aircraft's autopilot into the run directory."""
+        """Return the work on its flights and on the tuning, after writing the aircraft's autopilot
+        into the run directory.
+        """
         work = super().work(run)
         lag = work.setup.lag if work.setup else self._scenario.kinematic.heading_rate_lag_s
         tuner = Tuner(scenario=self._scenario, arena=self._arena, lag=lag)
@@ -126,7 +131,9 @@ class ArenaStudy(FlightStudy):
 
     @staticmethod
     def _refuse_untuned(journal: Journal) -> None:
-        """Raise an InputError if the process that tuned a law was lost: with its defaults it would not be compared fairly."""
+        """Raise an InputError if the process that tuned a law was lost: with its defaults it would
+        not be compared fairly.
+        """
         lost = {
             row["entrant"]: row["message"]
             for row in journal.rows(TUNING_TABLE)
@@ -141,7 +148,9 @@ class ArenaStudy(FlightStudy):
             )
 
     def _take_tuned(self, journal: Journal) -> None:
-        """Take the parameters that the tuner chose: cases of the trials have them, so that a replay of a flight has them too."""
+        """Take the parameters that the tuner chose: cases of the trials have them, so that a replay
+        of a flight has them too.
+        """
         record = tuned_record(self.entrants, journal.rows(TUNING_TABLE))
         self._chosen = {entry["name"]: entry["tuned"] for entry in record}
         cases = tuple(CaseConfig(**case) for case in cases_of(self.entrants, self._chosen))

@@ -1,7 +1,9 @@
-"""The tuner: the same budget and the same cost for every law, on flights that the comparison does not use.
+"""The tuner: the same budget and the same cost for every law, on flights that the comparison does
+not use.
 
-It flies the kinematic vehicle with the aircraft's lag: a thousand settings in the time that an aircraft would take for a hundred.
-Half of the budget is spread evenly over the ranges, the default first; the other half is Nelder and Mead's simplex about the best.
+It flies the kinematic vehicle with the aircraft's lag: a thousand settings in the time that an
+aircraft would take for a hundred. Half of the budget is spread evenly over the ranges, the default
+first; the other half is Nelder and Mead's simplex about the best.
 """
 
 import json
@@ -51,7 +53,9 @@ class Tuner:
     lag: float
 
     def rows(self, entrant: Entrant) -> Iterator[Row]:
-        """Yield a row for each setting that was tried, in their order: the parameters, and what they cost."""
+        """Yield a row for each setting that was tried, in their order: the parameters, and what
+        they cost.
+        """
         keys = list(entrant.defaults)
         tried: list[Row] = []
 
@@ -84,7 +88,9 @@ class Tuner:
         }
 
     def _flown(self, entrant: Entrant, parameters: Mapping[str, float]) -> Row:
-        """Return what a setting costs: the mean error of its flights, and what their excess of effort counts as."""
+        """Return what a setting costs: the mean error of its flights, and what their excess of
+        effort counts as.
+        """
         arena, errors, excesses = self.arena, [], []
         try:
             scenario = self._scenario(entrant, parameters)

@@ -28,7 +28,9 @@ RANDOM_FREQUENCIES = (0.05, 1.0)
 
 
 class Term(NamedTuple):
-    """A sinusoid of the reference's heading rate: amplitude [rad/s], frequency [rad/s] and phase [rad]."""
+    """A sinusoid of the reference's heading rate: amplitude [rad/s], frequency [rad/s] and phase
+    [rad].
+    """
 
     amplitude: float
     frequency: float

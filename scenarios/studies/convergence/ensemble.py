@@ -26,11 +26,15 @@ from scenarios.studies.convergence.cases import (
 BLOCK = 1250
 """Largest number of trajectories in a task."""
 TIME_FACTOR = 20.0
-"""Time limit of a trajectory over the prediction by averaged motion; the slowest of 20,000 took 7 times as long."""
+"""Time limit of a trajectory over the prediction by averaged motion; the slowest of 20,000 took 7
+times as long.
+"""
 TIME_FACTOR_CUT = 2.0
 """The same for cut commands, with which some trajectories never converge."""
 TIME_FACTOR_STRAIGHT = 10.0
-"""Least time limit for cut commands over the time of a straight flight, at the speed left by turning."""
+"""Least time limit for cut commands over the time of a straight flight, at the speed left by
+turning.
+"""
 
 COLUMNS = (
     "trajectory", "law", "reference", "reference_heading_rate_max_rad_s", "start_north_m", "start_east_m", "start_distance_m",
@@ -65,11 +69,12 @@ def convergence_blocks(
     time_max: float,
     laws: Sequence[str],
 ) -> list[Block]:
-    """Return a study's trajectories, one per start and law, in blocks that are integrated together; the longest first.
+    """Return a study's trajectories, one per start and law, in blocks that are integrated together;
+    the longest first.
 
-    Starts are uniform over the disc about the reference, their courses uniform; the references are a circle, an
-    oscillation and a random course in turn. The rows of a block depend neither on the other laws nor on the other
-    blocks, bit for bit.
+    Starts are uniform over the disc about the reference, their courses uniform; the references are
+    a circle, an oscillation and a random course in turn. The rows of a block depend neither on the
+    other laws nor on the other blocks, bit for bit.
 
     Parameters
     ----------
@@ -82,7 +87,8 @@ def convergence_blocks(
 
     Raises
     ------
-    InputError : unknown law, a number out of range, or a vehicle that cannot turn as fast as its references
+    InputError : unknown law, a number out of range, or a vehicle that cannot turn as fast as its
+        references
     """
     if unknown := [law for law in laws if law not in {known.value for known in Steering}]:
         raise InputError(
@@ -131,9 +137,9 @@ def trajectory_of(
 ) -> pd.DataFrame:
     """Return the time history of one row, integrated again with steps of at most ``step_max`` [s].
 
-    Columns: time_s, north_m, east_m, course_rad of the vehicle, the same of the reference (which starts at 0, 0),
-    distance_m, phi_rad and heading_rate_rad_s. It ends where the row ends, to within the tolerances of the
-    integration.
+    Columns: time_s, north_m, east_m, course_rad of the vehicle, the same of the reference (which
+    starts at 0, 0), distance_m, phi_rad and heading_rate_rad_s. It ends where the row ends, to
+    within the tolerances of the integration.
     """
     terms = json.loads(row["reference_terms"])
     references = TurningReferences(
@@ -197,7 +203,9 @@ def _course(references: TurningReferences, time: Array) -> Array:
 def _reference_track(
     references: TurningReferences, speed: float, time: Array
 ) -> tuple[Array, Array]:
-    """Return north and east [m] of one reference: its velocity integrated by Gauss's rule of three points."""
+    """Return north and east [m] of one reference: its velocity integrated by Gauss's rule of three
+    points.
+    """
     nodes, weights = np.polynomial.legendre.leggauss(3)
     step = np.diff(time)
     north, east = np.zeros_like(step), np.zeros_like(step)
@@ -213,7 +221,8 @@ def _blocks(
 ) -> Iterator[Block]:
     """Yield the trajectories in blocks of one kind of reference, the longest first.
 
-    A block takes as long as its longest trajectory, so trajectories of similar length share a block.
+    A block takes as long as its longest trajectory, so trajectories of similar length share a
+    block.
     """
     for kind in REFERENCES:
         chosen = [case for case in cases if case.kind == kind]
@@ -229,7 +238,8 @@ def _blocks(
         )
         limit *= TIME_FACTOR_CUT if law is Steering.CASCADE_CUT else TIME_FACTOR
         if law is Steering.CASCADE_CUT:
-            # Turning once at omega_max leaves 1 - omega_r/omega_max of the reference's time of turn to fly straight.
+            # Turning once at omega_max leaves 1 - omega_r/omega_max of the reference's time of turn
+            # to fly straight.
             straight = vehicle.speed * (1.0 - np.abs(references.rate) / vehicle.heading_rate_max)
             limit = np.maximum(limit, TIME_FACTOR_STRAIGHT * np.hypot(*to_reference) / straight)
         limit = np.maximum(limit, time_max)

@@ -33,7 +33,9 @@ _LOST = "lost"
 """Outcome of a trajectory whose process was lost."""
 
 _HISTORY_MAX = 10_000.0
-"""Longest time history that is written [s]; a trajectory can be a hundred times as long, with nothing new to see."""
+"""Longest time history that is written [s]; a trajectory can be a hundred times as long, with
+nothing new to see.
+"""
 
 _HISTORY_STEP = 2.0
 """Largest step between samples of a time history [s]."""

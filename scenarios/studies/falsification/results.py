@@ -15,7 +15,9 @@ CONFIRMATION = "confirmation"
 """What stands for the method of a flight that repeats one of the worst with fresh noise."""
 
 UNFLOWN = 1e6
-"""Clearance of a flight that has none, because it was not flown [m]: no optimum, and finite, as the search needs it."""
+"""Clearance of a flight that has none, because it was not flown [m]: no optimum, and finite, as the
+search needs it.
+"""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -40,7 +42,9 @@ class SearchedFlight:
 
     @property
     def measured(self) -> bool:
-        """Return whether its clearance is known: it is of no flight that could not be planned, or was lost."""
+        """Return whether its clearance is known: it is of no flight that could not be planned, or
+        was lost.
+        """
         return self.clearance < UNFLOWN
 
     def entry(self) -> dict[str, Any]:
@@ -77,7 +81,9 @@ def searched_flights(journal: Journal) -> list[SearchedFlight]:
 def worst_flights(
     flights: Sequence[SearchedFlight], space: Space, journal: Journal, kept: int
 ) -> list[SearchedFlight]:
-    """Return the flights of a search that came closest, no two of them alike; the rest by clearance where too few differ."""
+    """Return the flights of a search that came closest, no two of them alike; the rest by clearance
+    where too few differ.
+    """
     searched = [flight for flight in flights if flight.measured and not flight.confirms]
     order = sorted(searched, key=lambda flight: (flight.clearance, flight.number))
     points: dict[int, np.ndarray] = {}
@@ -96,7 +102,9 @@ def worst_flights(
 def search_manifest(
     flights: Sequence[SearchedFlight], worst: Sequence[SearchedFlight]
 ) -> dict[str, Any]:
-    """Return the entry of the manifest on a search: its methods, every violation, and the worst flights confirmed."""
+    """Return the entry of the manifest on a search: its methods, every violation, and the worst
+    flights confirmed.
+    """
     methods = dict.fromkeys(flight.method for flight in flights)
     return {
         "methods": {

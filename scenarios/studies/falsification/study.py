@@ -41,8 +41,9 @@ _SAME_POINT = 1e-9
 class FalsificationStudy(ChosenFlightsStudy):
     """Batches of flights that search methods propose; the worst are repeated with other noise.
 
-    Flights of the search are numbered from 0; after the largest number that one may have come the confirmations, in the order of
-    the flights that they repeat, so that a run that is resumed finds them whatever it has flown in between.
+    Flights of the search are numbered from 0; after the largest number that one may have come the
+    confirmations, in the order of the flights that they repeat, so that a run that is resumed finds
+    them whatever it has flown in between.
 
     Parameters as of any study; ``InputError`` as of ``FlightStudy``.
     """
@@ -117,7 +118,9 @@ class FalsificationStudy(ChosenFlightsStudy):
 
     @property
     def _has_room(self) -> bool:
-        """Return whether there are numbers for another batch of a search by time; one by generations has them."""
+        """Return whether there are numbers for another batch of a search by time; one by
+        generations has them.
+        """
         return (
             self._search.time_s is None
             or len(self._tasks) + self._search.population <= self._search.flights_max
@@ -169,7 +172,9 @@ class FalsificationStudy(ChosenFlightsStudy):
     def _keep(
         self, worst: Sequence[SearchedFlight], fly: Fly, run: RunDirectory, journal: Journal
     ) -> None:
-        """Write scenario files of the worst flights, and have those recorded that have no time history."""
+        """Write scenario files of the worst flights, and have those recorded that have no time
+        history.
+        """
         experiment = self.experiments[self._trial]
         for path in (run.path / WORST).glob("*.toml"):
             # Of a run that is resumed: what was among the worst may not be any more.
@@ -195,7 +200,8 @@ class FalsificationStudy(ChosenFlightsStudy):
             for flight in worst
             for i in range(repeats)
         ]
-        # Beside those that a run before this one has flown, of flights that are not among the worst any more.
+        # Beside those that a run before this one has flown, of flights that are not among the worst
+        # any more.
         numbers = {task.number for task in confirming} | {
             number for number in journal.done() if number >= first
         }
@@ -219,7 +225,8 @@ class FalsificationStudy(ChosenFlightsStudy):
 
 
 class _Timer:
-    """The time that a search may take: it runs from the first batch that is not wholly in the journal yet.
+    """The time that a search may take: it runs from the first batch that is not wholly in the
+    journal yet.
 
     Parameters
     ----------
@@ -234,7 +241,9 @@ class _Timer:
         self._began: float | None = None
 
     def before(self, first: int, tasks: Sequence[Task]) -> None:
-        """Take the tasks that are about to be flown, from number ``first`` on; none where no point can be flown."""
+        """Take the tasks that are about to be flown, from number ``first`` on; none where no point
+        can be flown.
+        """
         if self._began is None and (
             first > self._last or any(task.number not in self._done for task in tasks)
         ):

@@ -27,7 +27,8 @@ from scenarios.studies.summary import FlightCounts
 
 
 class MonteCarloStudy(FlightStudy):
-    """Flights sampled from declared distributions, until all are flown or every interval is as narrow as the scenario demands.
+    """Flights sampled from declared distributions, until all are flown or every interval is as
+    narrow as the scenario demands.
 
     Parameters
     ----------
@@ -37,7 +38,8 @@ class MonteCarloStudy(FlightStudy):
 
     Raises
     ------
-    InputError : as of ``FlightStudy``; a study of several points that is to stop by itself, or flights that are no random sample
+    InputError : as of ``FlightStudy``; a study of several points that is to stop by itself, or
+        flights that are no random sample
     """
 
     def __init__(
@@ -74,9 +76,11 @@ class MonteCarloStudy(FlightStudy):
         return Task(number=number, point=self._points.at(self._experiment.index(number)))
 
     def run(self, fly: Fly, run: RunDirectory, journal: Journal) -> None:
-        """Fly up to one look after the other, until one shows what was asked for; then the comparisons.
+        """Fly up to one look after the other, until one shows what was asked for; then the
+        comparisons.
 
-        A run that is resumed does not stop before what it has flown already: a lost flight, on which it went on, may be flown now.
+        A run that is resumed does not stop before what it has flown already: a lost flight, on
+        which it went on, may be flown now.
         """
         first, study = 0, self.planned
         stops = self._scenario.statistics.stops
@@ -124,7 +128,9 @@ class MonteCarloStudy(FlightStudy):
 
     @property
     def _look_number(self) -> int | None:
-        """Number of the look that intervals are of, the first where none was taken yet; None of a study without any."""
+        """Number of the look that intervals are of, the first where none was taken yet; None of a
+        study without any.
+        """
         return max(1, self._looks) if self._scenario.statistics.stops else None
 
     def bound_line(self, counts: FlightCounts, _samples: int, journal: Journal) -> str:
@@ -155,7 +161,9 @@ class MonteCarloStudy(FlightStudy):
 def monte_carlo_study(
     scenario: Scenario, name: str, trials: Mapping[str, Scenario], *, overrides: Sequence[str] = ()
 ) -> FlightStudy:
-    """Return the study by the scenario's method; parameters and errors are those of ``MonteCarloStudy``."""
+    """Return the study by the scenario's method; parameters and errors are those of
+    ``MonteCarloStudy``.
+    """
     if scenario.method == "subset":
         from scenarios.studies.monte_carlo.subset import SubsetStudy
 

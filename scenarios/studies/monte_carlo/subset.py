@@ -1,4 +1,6 @@
-"""Subset simulation: the probability of a keep-out violation where hardly any random flight has one."""
+"""Subset simulation: the probability of a keep-out violation where hardly any random flight has
+one.
+"""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
@@ -33,10 +35,12 @@ from scenarios.studies.rows import frame
 
 
 class SubsetStudy(ChosenFlightsStudy):
-    """Repeated subset simulations of the distance kept beyond r_min, in step: each wave of all of them is flown at once.
+    """Repeated subset simulations of the distance kept beyond r_min, in step: each wave of all of
+    them is flown at once.
 
-    Points whose speed ratio leaves the declared range are not flown: the distribution is the declared one within that
-    range, as in the plain study, which samples such flights again. A flight without a measurement passes no threshold.
+    Points whose speed ratio leaves the declared range are not flown: the distribution is the
+    declared one within that range, as in the plain study, which samples such flights again. A
+    flight without a measurement passes no threshold.
 
     Parameters as of any study; ``InputError`` as of ``FlightStudy``.
     """
@@ -97,8 +101,8 @@ class SubsetStudy(ChosenFlightsStudy):
     def _allowed(self, inputs: Array) -> bool:
         """Return whether the plain study would fly at these inputs, and not sample again.
 
-        It flies where values contradict each other, too, and where the vessel does more than is declared: if that cannot be
-        planned, the flight has no measurement and its end is unknown.
+        It flies where values contradict each other, too, and where the vessel does more than is
+        declared: if that cannot be planned, the flight has no measurement and its end is unknown.
         """
         try:
             return has_speed_ratio(
@@ -108,7 +112,9 @@ class SubsetStudy(ChosenFlightsStudy):
             return True
 
     def _seeded(self, inputs: Array) -> bool:
-        """Return whether a flight depends on its seed: turbulence, and what exhaust and payload read, cannot be blended."""
+        """Return whether a flight depends on its seed: turbulence, and what exhaust and payload
+        read, cannot be blended.
+        """
         drawn = values_at(self._scenario.draws, inputs.tolist())
         shaken = drawn.get("turbulence.level", self._scenario.turbulence.level) != "none"
         return (
@@ -118,7 +124,9 @@ class SubsetStudy(ChosenFlightsStudy):
         )
 
     def _clearances(self, points: Sequence[Point], fly: Fly, journal: Journal) -> Array:
-        """Return how far from the keep-out area flights at these points stay at their closest [m]; infinite if not measured."""
+        """Return how far from the keep-out area flights at these points stay at their closest [m];
+        infinite if not measured.
+        """
         first = len(self._tasks)
         self._tasks += [Task(number=first + i, point=point) for i, point in enumerate(points)]
         if not self.depended_on(journal, below=self._scenario.subset.flights_max):
@@ -168,7 +176,9 @@ class SubsetStudy(ChosenFlightsStudy):
         )
 
     def _first_lines(self, journal: Journal, found: RareProbability) -> list[str]:
-        """Return what of the first levels, which are a plain sample, was sampled again, and what is not known to its end."""
+        """Return what of the first levels, which are a plain sample, was sampled again, and what is
+        not known to its end.
+        """
         first = [simulation.levels[0] for simulation in self._simulations]
         flights, outside = (
             sum(len(level.values) for level in first),

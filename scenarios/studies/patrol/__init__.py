@@ -1,4 +1,6 @@
-"""A patrol: one UAV with an endurance, several ships on their ways, each measured until there is a verdict on her fuel."""
+"""A patrol: one UAV with an endurance, several ships on their ways, each measured until there is a
+verdict on her fuel.
+"""
 
 from scenarios.studies.patrol.study import PatrolStudy
 

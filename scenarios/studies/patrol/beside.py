@@ -1,4 +1,6 @@
-"""One flight beside a ship of a patrol: where it begins, its phases, and what is taken from its row."""
+"""One flight beside a ship of a patrol: where it begins, its phases, and what is taken from its
+row.
+"""
 
 import math
 from collections.abc import Iterator
@@ -19,7 +21,9 @@ _TAKEN = (
 
 
 def start_beside(ship: Mover, course: float, last: Leg, air: Air) -> dict[str, object]:
-    """Return where a flight beside a ship on a course [rad] begins, as keys of its scenario: at the end of the way to her."""
+    """Return where a flight beside a ship on a course [rad] begins, as keys of its scenario: at the
+    end of the way to her.
+    """
     place = (last.end - ship.at(last.ends)) * complex(math.cos(course), -math.sin(course))
     return {
         "start.place_m": (place.real, place.imag),

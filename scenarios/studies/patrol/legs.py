@@ -1,7 +1,9 @@
-"""Ways between ships: interception of a ship in wind, exactly, and the way round the keep-out areas of the others.
+"""Ways between ships: interception of a ship in wind, exactly, and the way round the keep-out areas
+of the others.
 
-A place is a complex number, north + i east [m], and so is a velocity [m/s]. Ships and wind are steady, so that with respect to the
-air every ship, and the UAV on every leg, moves on a straight line.
+A place is a complex number, north + i east [m], and so is a velocity [m/s]. Ships and wind are
+steady, so that with respect to the air every ship, and the UAV on every leg, moves on a straight
+line.
 """
 
 import heapq
@@ -94,20 +96,25 @@ class Leg:
 
 
 def least_distance(apart: complex, velocity: complex, duration: float) -> float:
-    """Return how near two points come that are ``apart`` [m] and part with a steady velocity [m/s] for a duration [s]."""
+    """Return how near two points come that are ``apart`` [m] and part with a steady velocity [m/s]
+    for a duration [s].
+    """
     square = abs(velocity) ** 2
     nearest = -(apart.real * velocity.real + apart.imag * velocity.imag) / square if square else 0.0
     return abs(apart + velocity * min(max(nearest, 0.0), duration))
 
 
 def time_to_reach(apart: complex, velocity: complex, speed: float, radius: float = 0.0) -> float:
-    """Return the least time in which a pursuer comes within a radius of a target [s], infinite where it never does.
+    """Return the least time in which a pursuer comes within a radius of a target [s], infinite
+    where it never does.
 
-    It is the first root of |p + v t| = V t + R: the pursuer flies straight to where the target will be, and R of that way remains.
+    It is the first root of |p + v t| = V t + R: the pursuer flies straight to where the target will
+    be, and R of that way remains.
 
     Parameters
     ----------
-    apart, velocity : place of the target as seen from the pursuer [m], and its velocity through the air [m/s]: p and v
+    apart, velocity : place of the target as seen from the pursuer [m], and its velocity through the
+        air [m/s]: p and v
     speed : of the pursuer through the air [m/s]: V
     radius : [m]: R
     """
@@ -117,13 +124,16 @@ def time_to_reach(apart: complex, velocity: complex, speed: float, radius: float
     closing = speed**2 - abs(velocity) ** 2
     half = apart.real * velocity.real + apart.imag * velocity.imag - speed * radius
     square = half**2 + closing * outside
-    # The root in a form that loses no digits, and that holds for targets as fast as the pursuer or faster, too.
+    # The root in a form that loses no digits, and that holds for targets as fast as the pursuer or
+    # faster, too.
     divisor = math.sqrt(square) - half if square >= 0.0 else 0.0
     return outside / divisor if divisor > 0.0 else math.inf
 
 
 def straight_leg(start: complex, time: float, goal: Mover, radius: float, air: Air) -> Leg | None:
-    """Return the quickest way from a place and a time [m, s] to within a radius [m] of a goal; none where it cannot be reached."""
+    """Return the quickest way from a place and a time [m, s] to within a radius [m] of a goal; none
+    where it cannot be reached.
+    """
     apart, drift = goal.at(time) - start, goal.velocity - air.wind
     takes = time_to_reach(apart, drift, air.speed, radius)
     if takes == math.inf:
@@ -135,7 +145,9 @@ def straight_leg(start: complex, time: float, goal: Mover, radius: float, air: A
 
 
 def keeps_clear(leg: Leg, ships: Iterable[Mover], distance: float) -> bool:
-    """Return whether a leg stays at a distance from ships [m], or, of one that it begins nearer to, comes no nearer than that."""
+    """Return whether a leg stays at a distance from ships [m], or, of one that it begins nearer to,
+    comes no nearer than that.
+    """
     return all(
         leg.distance(ship) >= min(distance, abs(leg.start - ship.at(leg.begins))) - _TOUCHES
         for ship in ships
@@ -152,10 +164,11 @@ def route(
     ships: Sequence[Mover],
     clearance: float,
 ) -> Sequence[Leg] | None:
-    """Return the way to within a radius of a goal that keeps clear of ships: straight, or by corners round them.
+    """Return the way to within a radius of a goal that keeps clear of ships: straight, or by
+    corners round them.
 
-    The corners move along with the ships. Of all ways by corners it is the quickest (Dijkstra; who leaves later arrives no sooner,
-    as the UAV is faster than every corner).
+    The corners move along with the ships. Of all ways by corners it is the quickest (Dijkstra; who
+    leaves later arrives no sooner, as the UAV is faster than every corner).
 
     Parameters
     ----------

@@ -1,4 +1,6 @@
-"""The order in which ships are served: the largest expected number of verdicts within the endurance."""
+"""The order in which ships are served: the largest expected number of verdicts within the
+endurance.
+"""
 
 import math
 from collections.abc import Iterator, Sequence
@@ -10,20 +12,26 @@ from scipy.special import ndtr
 from scenarios.studies.patrol.legs import Air, Mover, straight_leg
 
 _SOONER = 1e-3
-"""Verdicts that an end sooner by the whole endurance is worth: of orders with as many verdicts the quickest is taken."""
+"""Verdicts that an end sooner by the whole endurance is worth: of orders with as many verdicts the
+quickest is taken.
+"""
 
 _LATEST = 10.0
 """End that counts at most, over the endurance: a ship out of reach is never done."""
 
 EXACT_MAX = 8
-"""Ships of which every order is tried: it takes half a second at the most, and for fewer less than the insertion."""
+"""Ships of which every order is tried: it takes half a second at the most, and for fewer less than
+the insertion.
+"""
 
 _GAIN = 0.02
 """Least expected number of verdicts for which a ship is inserted [-]."""
 
 
 class _State(NamedTuple):
-    """A part of a patrol: place [m] and time [s] at its end, ships served, and the verdicts that are expected of them."""
+    """A part of a patrol: place [m] and time [s] at its end, ships served, and the verdicts that
+    are expected of them.
+    """
 
     place: complex
     time: float
@@ -32,7 +40,9 @@ class _State(NamedTuple):
 
 
 class Order(NamedTuple):
-    """Ships in the order in which they are served, the verdicts expected, and when the last one is done [s]."""
+    """Ships in the order in which they are served, the verdicts expected, and when the last one is
+    done [s].
+    """
 
     ships: tuple[int, ...]
     verdicts: float
@@ -63,7 +73,9 @@ class Prospect:
     endurance: float
 
     def after(self, state: _State, ship: int) -> _State:
-        """Return what one more ship makes of a part of a patrol; its end is infinite where she cannot be reached."""
+        """Return what one more ship makes of a part of a patrol; its end is infinite where she
+        cannot be reached.
+        """
         leg = straight_leg(state.place, state.time, self.ships[ship], self.radius, self.air)
         if leg is None:
             return _State(state.place, math.inf, state.served + 1, state.verdicts)
@@ -76,7 +88,9 @@ class Prospect:
         )
 
     def _in_time(self, ends: float, served: int) -> float:
-        """Return the probability that a number of services, expected to end at a time [s], do so within the endurance."""
+        """Return the probability that a number of services, expected to end at a time [s], do so
+        within the endurance.
+        """
         left, spread = self.endurance - ends, self.deviation * math.sqrt(served)
         return float(ndtr(left / spread)) if spread > 0.0 else float(left >= 0.0)
 
@@ -97,7 +111,9 @@ class Prospect:
 
 
 def best_order(prospect: Prospect, start: complex, time: float, ships: Sequence[int]) -> Order:
-    """Return the best of all orders from a place at a time [m, s]; of many ships a good one, by insertion."""
+    """Return the best of all orders from a place at a time [m, s]; of many ships a good one, by
+    insertion.
+    """
     return (exact_order if len(ships) <= EXACT_MAX else inserted_order)(
         prospect, start, time, ships
     )
@@ -106,9 +122,9 @@ def best_order(prospect: Prospect, start: complex, time: float, ships: Sequence[
 def inserted_order(prospect: Prospect, start: complex, time: float, ships: Sequence[int]) -> Order:
     """Return an order by insertion and improvement, from a place at a time [m, s].
 
-    From each ship as the first, the ship and the place in the order that gain most are inserted until none gains; then parts of up
-    to three ships are moved, parts turned round and ships exchanged for others as long as the order gets better. The best of these
-    orders is taken.
+    From each ship as the first, the ship and the place in the order that gain most are inserted
+    until none gains; then parts of up to three ships are moved, parts turned round and ships
+    exchanged for others as long as the order gets better. The best of these orders is taken.
     """
     best = prospect.judged(start, time, ())
     for first in ships:
@@ -125,7 +141,9 @@ def inserted_order(prospect: Prospect, start: complex, time: float, ships: Seque
 
 
 def exact_order(prospect: Prospect, start: complex, time: float, ships: Sequence[int]) -> Order:
-    """Return the best of all orders, of some ships or of all of them; the effort grows as the factorial of their number."""
+    """Return the best of all orders, of some ships or of all of them; the effort grows as the
+    factorial of their number.
+    """
     best = prospect.judged(start, time, ())
 
     def extend(state: _State, order: tuple[int, ...], left: frozenset[int]) -> None:
@@ -188,7 +206,9 @@ def _improved(
 
 
 def _neighbours(order: tuple[int, ...], ships: Sequence[int]) -> Iterator[tuple[int, ...]]:
-    """Yield the orders in which a part is turned round, up to three ships stand elsewhere, or one is exchanged for one left out."""
+    """Yield the orders in which a part is turned round, up to three ships stand elsewhere, or one
+    is exchanged for one left out.
+    """
     count = len(order)
     for i in range(count):
         for j in range(i + 2, count + 1):

@@ -80,8 +80,8 @@ def sampled_patrol(study: str, scenario: Scenario, number: int) -> Patrol:
 
     Raises
     ------
-    InputError : the ships do not find room beside each other, a sampled value is out of range, or no ship has an apparent wind
-        within ``scenario.speed_ratio``
+    InputError : the ships do not find room beside each other, a sampled value is out of range, or
+        no ship has an apparent wind within ``scenario.speed_ratio``
     """
     by_wind = tuple(draw for draw in scenario.draws if draw.key.startswith(_WIND))
     by_ship = tuple(draw for draw in scenario.draws if not draw.key.startswith(_WIND))

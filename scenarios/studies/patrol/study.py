@@ -34,9 +34,10 @@ class PatrolStudy(FlightStudy):
 
     Raises
     ------
-    InputError : as of ``FlightStudy``; flights that give no verdict, ships that are not steady, a place to begin at, ships that are
-        kept clear of by more than the way to them, or are so near to one another that a flight beside one enters the area of the
-        other, an endurance too short for any ship, or ships that find no room
+    InputError : as of ``FlightStudy``; flights that give no verdict, ships that are not steady, a
+        place to begin at, ships that are kept clear of by more than the way to them, or are so near
+        to one another that a flight beside one enters the area of the other, an endurance too short
+        for any ship, or ships that find no room
     """
 
     what = "patrols"
@@ -57,7 +58,9 @@ class PatrolStudy(FlightStudy):
         self.tables = {SUMMARY: PATROL_COLUMNS, SHIPS: SHIP_COLUMNS, PHASES: PHASE_COLUMNS}
 
     def work(self, run: RunDirectory) -> PatrolWork:
-        """Return the work on its patrols, after writing the aircraft's autopilot into the run directory."""
+        """Return the work on its patrols, after writing the aircraft's autopilot into the run
+        directory.
+        """
         work = super().work(run)
         return PatrolWork(**{field.name: getattr(work, field.name) for field in fields(work)})
 

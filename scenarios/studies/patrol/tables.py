@@ -20,7 +20,9 @@ PATROL_COLUMNS = (
     "keepout_violations", "min_distance_m", "others_distance_min_m", "kept_out", "aircraft_lost", "outcome", "message",
     "criteria_met", "wall_time_s",
 )  # fmt: skip
-"""Of ``summary.csv``: a row per patrol. Distances are those beside the ship that is served, and to every other ship."""
+"""Of ``summary.csv``: a row per patrol. Distances are those beside the ship that is served, and to
+every other ship.
+"""
 
 SHIP_COLUMNS = (
     "flight_id", "patrol", "ship", "position", "north_m", "east_m", "vessel_speed_mps", "vessel_course_deg",
@@ -30,7 +32,9 @@ SHIP_COLUMNS = (
     "told_verdict",
     "oracle_position", "oracle_ended_s",
 )  # fmt: skip
-"""Of ``ships.csv``: a row per ship. Times of the patrol are counted from its start, those of a flight from that of the flight."""
+"""Of ``ships.csv``: a row per ship. Times of the patrol are counted from its start, those of a
+flight from that of the flight.
+"""
 
 PHASE_COLUMNS = (
     "flight_id", "patrol", "ship", "phase", "begins_s", "ends_s", "from_north_m", "from_east_m", "to_north_m", "to_east_m",
@@ -44,7 +48,9 @@ TRANSIT, APPROACH, SEARCHING, MEASURING, LEAVING = (
     "measuring",
     "leaving",
 )
-"""Phases: the way to a ship; beside her to the orbit; until the plume is found; until there is a verdict; and away."""
+"""Phases: the way to a ship; beside her to the orbit; until the plume is found; until there is a
+verdict; and away.
+"""
 
 
 def ship_row(patrol: Patrol, number: int, limit: float) -> Row:

@@ -1,4 +1,6 @@
-"""The work of a patrol: ships are served one after the other, each by a flight of the closed loop; then what an oracle would do."""
+"""The work of a patrol: ships are served one after the other, each by a flight of the closed loop;
+then what an oracle would do.
+"""
 
 import io
 import math
@@ -63,10 +65,14 @@ class _Uav:
 
 @dataclass(frozen=True, kw_only=True)
 class PatrolWork(FlightWork):
-    """Flies patrols; attributes are those of ``FlightWork``, with one experiment of as many flights as there are patrols."""
+    """Flies patrols; attributes are those of ``FlightWork``, with one experiment of as many flights
+    as there are patrols.
+    """
 
     def fly(self, task: Task) -> Result:
-        """Fly a patrol, then a flight beside each of its ships with the true axis of her plume, and find the oracle's order."""
+        """Fly a patrol, then a flight beside each of its ships with the true axis of her plume, and
+        find the oracle's order.
+        """
         began = time.perf_counter()
         experiment = self.experiments[0]
         row: Row = {"flight_id": experiment.named(task.number)[0], "criteria_met": False}
@@ -119,7 +125,9 @@ class PatrolWork(FlightWork):
         *,
         deviation: float = 0.0,
     ) -> Prospect:
-        """Return what is expected of serving the ships, given how long each takes, and how likely a verdict is."""
+        """Return what is expected of serving the ships, given how long each takes, and how likely a
+        verdict is.
+        """
         return Prospect(
             ships=patrol.movers,
             service=service,
@@ -223,7 +231,9 @@ class PatrolWork(FlightWork):
         return _Flown(row, pd.read_parquet(io.BytesIO(histories[0])) if histories else None)
 
     def _oracle(self, patrol: Patrol, ships: list[Row]) -> Row:
-        """Complete the ships' rows by the oracle's order: it knows how long each ship takes, with and without the true axis."""
+        """Complete the ships' rows by the oracle's order: it knows how long each ship takes, with
+        and without the true axis.
+        """
         service, chance = [], []
         told = {
             "following.plume": "told",

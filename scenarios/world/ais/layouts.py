@@ -1,4 +1,6 @@
-"""Layouts of files of AIS reports, each recognised by its header, and the rows of one vessel in them."""
+"""Layouts of files of AIS reports, each recognised by its header, and the rows of one vessel in
+them.
+"""
 
 import csv
 import math
@@ -20,7 +22,8 @@ _NAMED = 5
 """Vessels of a file that a message names at most."""
 
 _COUNTED = 100_000
-"""Rows of a file in which other vessels are looked for, where it has none of the vessel asked for."""
+"""Rows of a file in which other vessels are looked for, where it has none of the vessel asked for.
+"""
 
 _SHOWN = 60
 """Letters of a header that a message quotes at most."""
@@ -37,7 +40,8 @@ class Layout:
     Attributes
     ----------
     name : of the layout
-    columns : heads of time, identity, latitude, longitude, speed [kt] and course [deg], in lower case
+    columns : heads of time, identity, latitude, longitude, speed [kt] and course [deg], in lower
+        case
     seconds : time since 1970 of what the first of them holds [s]
     time : how that is written
     """
@@ -67,8 +71,9 @@ LAYOUTS = (
         seconds_of,
     ),
 )
-"""The project's own; that of the Danish Maritime Authority ("# Timestamp,Type of mobile,MMSI,..."); and those of NOAA's Marine
-Cadastre ("MMSI,BaseDateTime,LAT,LON,...", and "mmsi,base_date_time,longitude,latitude,...")."""
+"""The project's own; that of the Danish Maritime Authority ("# Timestamp,Type of mobile,MMSI,...");
+and those of NOAA's Marine Cadastre ("MMSI,BaseDateTime,LAT,LON,...", and
+"mmsi,base_date_time,longitude,latitude,...")."""
 
 
 def rows_of(path: Path, mmsi: int | None) -> tuple[int, list[AisRow]]:

@@ -1,7 +1,7 @@
 """The two files of AIS reports that come with the project. No ship sent them: they are made here.
 
-``python -m scenarios.world.ais.made DIR`` writes both. The ships turn by 90 degrees and slow down; their reports are as late, as
-wrong and as incomplete as those of a receiver on the coast are.
+``python -m scenarios.world.ais.made DIR`` writes both. The ships turn by 90 degrees and slow down;
+their reports are as late, as wrong and as incomplete as those of a receiver on the coast are.
 """
 
 import math
@@ -23,7 +23,9 @@ _DURATION = 4200.0
 _START = datetime(2026, 6, 1, 10, 0, tzinfo=UTC).timestamp()
 
 _WANDERING, _WANDERING_TIME, _WHITE = 2.5, 60.0, 0.8
-"""Error of satellite navigation: a wandering part with its time constant, and a white one, one sigma of a coordinate [m, s, m]."""
+"""Error of satellite navigation: a wandering part with its time constant, and a white one, one
+sigma of a coordinate [m, s, m].
+"""
 
 _DANISH = (
     "# Timestamp,Type of mobile,MMSI,Latitude,Longitude,Navigational status,ROT,SOG,COG,Heading,IMO,Callsign,Name,Ship type,"
@@ -36,7 +38,9 @@ _MARINE_CADASTRE = (
 
 
 def danish_file() -> str:
-    """Return reports of a ship in the Kattegat: every 10 s, every 3 s while it turns, a tenth of them lost, and rows of no use."""
+    """Return reports of a ship in the Kattegat: every 10 s, every 3 s while it turns, a tenth of
+    them lost, and rows of no use.
+    """
     ship = _ship(speed_kn=12.0, course_deg=20.0, turn_deg=90.0)
     times = _report_times(ship, slow=10.0, fast=10.0 / 3.0, lost=0.1)
     rows = [
@@ -46,7 +50,8 @@ def danish_file() -> str:
             ship, times, place=(57.2, 11.3), seed=1
         )
     ]
-    # What real files have as well: a row twice, one out of order, values that say "not available", and another vessel.
+    # What real files have as well: a row twice, one out of order, values that say "not available",
+    # and another vessel.
     rows.insert(120, rows[119])
     rows.insert(200, rows[150])
     rows.insert(240, _with(rows[240], {7: "102.3", 8: "360.0"}))
@@ -104,7 +109,9 @@ def _report_times(ship: ManoeuvringVessel, *, slow: float, fast: float, lost: fl
 def _reports(
     ship: ManoeuvringVessel, times: list[float], *, place: tuple[float, float], seed: int
 ) -> list[tuple[float, float, float, float, float]]:
-    """Return time since 1970 in whole seconds, latitude, longitude [deg], speed [kt] and course [deg] of each report."""
+    """Return time since 1970 in whole seconds, latitude, longitude [deg], speed [kt] and course
+    [deg] of each report.
+    """
     generator = np.random.default_rng(seed)
     frame = LocalFrame(*map(math.radians, place))
     wandering, before = _WANDERING * generator.standard_normal(2), 0.0

@@ -1,4 +1,6 @@
-"""AIS sentences as received, ``!AIVDM,...``, each with its time of reception before it; decoded by pyais."""
+"""AIS sentences as received, ``!AIVDM,...``, each with its time of reception before it; decoded by
+pyais.
+"""
 
 import math
 import re
@@ -17,12 +19,14 @@ _POSITION_REPORTS = (1, 2, 3, 18, 19)
 """Message types with position, speed and course (ITU-R M.1371-5): class A, and class B."""
 
 _MILLISECONDS_FROM, _DATE_FROM = 100_000_000_000, 10_000_000_000_000
-"""Times since 1970 from which on they are milliseconds, of seconds from the year 5138 on; and from which on they are no time, but a
-date without its marks, as 20260601100000, of milliseconds from the year 2286 on."""
+"""Times since 1970 from which on they are milliseconds, of seconds from the year 5138 on; and from
+which on they are no time, but a date without its marks, as 20260601100000, of milliseconds from the
+year 2286 on."""
 
 
 def nmea_rows(lines: Iterable[str], path: Path) -> Iterator[tuple[int, AisRow]]:
-    """Yield the vessel's identity and the row of each position report; lines that cannot be decoded are passed over.
+    """Yield the vessel's identity and the row of each position report; lines that cannot be decoded
+    are passed over.
 
     Raises
     ------
@@ -72,7 +76,9 @@ def _value(said: dict[str, Any], name: str) -> float:
 
 
 def _time_of(head: str, path: Path, number: int) -> float:
-    """Return the time of reception: of the tag block, or a time in ISO 8601 or seconds since 1970 before the sentence."""
+    """Return the time of reception: of the tag block, or a time in ISO 8601 or seconds since 1970
+    before the sentence.
+    """
     found = _TAG_TIME.search(head)
     text = found[1] if found else head.strip(" \t,;")
     try:

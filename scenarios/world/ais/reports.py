@@ -28,7 +28,9 @@ _AT_REST_KN = 0.5
 """Speed below which a report needs no course: a vessel at rest has none [kt]."""
 
 _REACH_SPEED, _REACH = 50.0, 500.0
-"""How far from its neighbours a report may lie: as far as the fastest vessel goes, and errors of satellite navigation [m/s, m]."""
+"""How far from its neighbours a report may lie: as far as the fastest vessel goes, and errors of
+satellite navigation [m/s, m].
+"""
 
 NO_TIME, NO_PLACE, NO_SPEED, DUPLICATE, OUT_OF_ORDER, OUT_OF_REACH = (
     "without a time", "without a possible position", "without speed or course", "with the time of another", "out of order",
@@ -80,8 +82,8 @@ def read_ais(path: str | Path, mmsi: int | None = None) -> AisReports:
 
     Raises
     ------
-    InputError : the file cannot be read, its layout is unknown, fewer than two rows of the vessel are of use, or its units are
-        others; or ``mmsi`` is no whole number
+    InputError : the file cannot be read, its layout is unknown, fewer than two rows of the vessel
+        are of use, or its units are others; or ``mmsi`` is no whole number
     """
     path = Path(path)
     if mmsi is not None and (isinstance(mmsi, bool) or not isinstance(mmsi, Integral)):
@@ -132,7 +134,9 @@ def read_ais(path: str | Path, mmsi: int | None = None) -> AisReports:
 
 
 def _by_what_they_say(rows: Sequence[AisRow]) -> list[str]:
-    """Return why each row is of no use by its own values, empty where it is: ITU-R M.1371-5 has 91, 181, 102.3 and 360 for none."""
+    """Return why each row is of no use by its own values, empty where it is: ITU-R M.1371-5 has 91,
+    181, 102.3 and 360 for none.
+    """
     reasons = []
     for row in rows:
         place = abs(row.latitude) <= 90.0 and abs(row.longitude) <= 180.0
@@ -147,7 +151,9 @@ def _by_what_they_say(rows: Sequence[AisRow]) -> list[str]:
 
 
 def _by_their_times(rows: Sequence[AisRow]) -> list[str]:
-    """Return why each row is of no use by its time: the longest run of rows whose times rise is kept."""
+    """Return why each row is of no use by its time: the longest run of rows whose times rise is
+    kept.
+    """
     last: list[int] = []
     times: list[float] = []
     before = [-1] * len(rows)
@@ -174,7 +180,9 @@ def _by_their_times(rows: Sequence[AisRow]) -> list[str]:
 
 
 def _by_their_places(rows: Sequence[AisRow]) -> list[str]:
-    """Return why each row is of no use by its place: a vessel could not have come from the row before, nor gone to the next."""
+    """Return why each row is of no use by its place: a vessel could not have come from the row
+    before, nor gone to the next.
+    """
     _, time, latitude, longitude, _, _ = (
         (np.array(column) for column in zip(*rows, strict=True)) if rows else np.empty((6, 0))
     )

@@ -11,19 +11,21 @@ if TYPE_CHECKING:
 Array = npt.NDArray[np.float64]
 
 POSITION_SIGMA, VELOCITY_SIGMA = 5.0, 0.15
-"""Errors of a report that the motion is smoothed by, one sigma: satellite navigation on board, whose fix is up to a second old
-[m, m/s]."""
+"""Errors of a report that the motion is smoothed by, one sigma: satellite navigation on board,
+whose fix is up to a second old [m, m/s]."""
 
 JERK_DENSITY = 5e-4
-"""Density of the white noise that the rate of acceleration is taken for: in 20 s a ship's acceleration changes by 0.1 m/s^2 and
-more [m^2/s^5]."""
+"""Density of the white noise that the rate of acceleration is taken for: in 20 s a ship's
+acceleration changes by 0.1 m/s^2 and more [m^2/s^5]."""
 
 
 def smooth_motion(time: Array, place: Array, velocity: Array) -> "BPoly":
-    """Return place over time: of degree 5 between reports, with continuous velocity and acceleration.
+    """Return place over time: of degree 5 between reports, with continuous velocity and
+    acceleration.
 
-    It is the mean of a motion whose jerk is white noise, given all reports (H. E. Rauch, F. Tung, C. T. Striebel, AIAA J. 3:1445,
-    1965): between two reports that mean is the polynomial of degree 5 through both smoothed states.
+    It is the mean of a motion whose jerk is white noise, given all reports (H. E. Rauch, F. Tung,
+    C. T. Striebel, AIAA J. 3:1445, 1965): between two reports that mean is the polynomial of degree
+    5 through both smoothed states.
 
     Parameters
     ----------
@@ -63,7 +65,9 @@ def _transition(step: float) -> Array:
 
 
 def _noise(step: float) -> Array:
-    """Return the covariance that white jerk adds in a time step (Bar-Shalom et al., Estimation with Applications, 6.2.3)."""
+    """Return the covariance that white jerk adds in a time step (Bar-Shalom et al., Estimation with
+    Applications, 6.2.3).
+    """
     t = step
     return JERK_DENSITY * np.array(
         [

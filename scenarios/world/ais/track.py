@@ -24,7 +24,9 @@ _AROUND = 600.0
 """Reports of this time before a flight and after it have a part in its smooth track [s]."""
 
 _KNOWN_BEFORE = 60.0
-"""Reports of this time before a flight are known at its start [s], the last one before it in any case."""
+"""Reports of this time before a flight are known at its start [s], the last one before it in any
+case.
+"""
 
 _AT_REST = 0.3
 """Speed below which a vessel keeps the course that it had [m/s]."""
@@ -114,7 +116,9 @@ def ais_vessel(
 
 
 def _check_covered(reports: AisReports, begin: float, end: float, gap_max: float) -> None:
-    """Raise an InputError where reports do not cover a flight between two times [s], or have too long a gap in it [s]."""
+    """Raise an InputError where reports do not cover a flight between two times [s], or have too
+    long a gap in it [s].
+    """
     if not reports.time[0] <= begin < end <= reports.time[-1]:
         raise InputError(
             f"{reports.path}: reports of MMSI {reports.mmsi} go from {utc_text(reports.time[0])} (line {reports.line[0]:.0f}) to"
@@ -145,15 +149,17 @@ def _read(path: Path, _stamp: tuple[int, int], mmsi: int | None) -> AisReports:
 
 
 def usual_intervals(vessel: AisVessel) -> tuple[float, float]:
-    """Return the shortest time between reports, and the longest but for one in twenty [s]: of the file where a flight has one."""
+    """Return the shortest time between reports, and the longest but for one in twenty [s]: of the
+    file where a flight has one.
+    """
     times = [report.time for report in vessel.reports]
     gaps = np.diff(times if len(times) > 1 else vessel.source.time)
     return float(gaps.min()), float(np.quantile(gaps, 0.95))
 
 
 def _around(time: Array, begin: float, end: float) -> slice:
-    """Return which reports have a part in the track of a flight between two times [s]: the last before it and the first after it,
-    however long a gap they bound."""
+    """Return which reports have a part in the track of a flight between two times [s]: the last
+    before it and the first after it, however long a gap they bound."""
     first = min(np.searchsorted(time, begin - _AROUND), np.searchsorted(time, begin, "right") - 1)
     last = max(np.searchsorted(time, end + _AROUND, "right"), np.searchsorted(time, end) + 1)
     return slice(int(first), int(last))
@@ -162,7 +168,9 @@ def _around(time: Array, begin: float, end: float) -> slice:
 def _in_frame(
     frame: LocalFrame, latitude: Array, longitude: Array, speed: Array, course: Array
 ) -> tuple[Array, Array]:
-    """Return places and velocities in a frame, each shape (n, 2) [m, m/s]: courses are from true north at each place."""
+    """Return places and velocities in a frame, each shape (n, 2) [m, m/s]: courses are from true
+    north at each place.
+    """
     along = course + frame.true_north(latitude, longitude)
     return np.column_stack(frame.to_local(latitude, longitude)), speed[:, None] * np.column_stack(
         [np.cos(along), np.sin(along)]
@@ -184,7 +192,9 @@ def _course_of(velocity: Array) -> Array:
 
 
 def _manoeuvres_end(velocity: Array) -> float:
-    """Return when the vessel last changed its velocity as in a manoeuvre [s]; not a number if it never did."""
+    """Return when the vessel last changed its velocity as in a manoeuvre [s]; not a number if it
+    never did.
+    """
     window = round(_MANOEUVRE_TIME / TRACK_STEP)
     change = np.hypot(*(velocity[window:] - velocity[:-window]).T) / _MANOEUVRE_TIME
     manoeuvring = np.flatnonzero(change > _MANOEUVRE)

@@ -1,4 +1,6 @@
-"""Whether speeds and courses of a file of AIS reports are in the units that its layout has: by the places between them."""
+"""Whether speeds and courses of a file of AIS reports are in the units that its layout has: by the
+places between them.
+"""
 
 import math
 from pathlib import Path
@@ -13,19 +15,27 @@ from scenarios.schema.sections.world import GAP_MAX
 Array = npt.NDArray[np.float64]
 
 _PAIRS_MIN = 10
-"""Pairs of neighbouring reports from which on they are judged: of fewer, scattered places decide."""
+"""Pairs of neighbouring reports from which on they are judged: of fewer, scattered places decide.
+"""
 
 _WAY_MIN, _TIME_MAX = 30.0, 60.0
-"""Least way between the places of a pair [m], which scatter by some, and longest time [s]: in it she goes nearly straight."""
+"""Least way between the places of a pair [m], which scatter by some, and longest time [s]: in it
+she goes nearly straight.
+"""
 
 _TURN_MAX, _FASTER_MAX = math.radians(10.0), 1.2
-"""Change of course [rad], and larger over smaller speed [-], up to which she went straight and evenly in a longer time."""
+"""Change of course [rad], and larger over smaller speed [-], up to which she went straight and
+evenly in a longer time.
+"""
 
 _RATIO = (0.7, 1.4)
-"""Speeds over those between places, in the median [-]: metres per second for knots are 0.51, km/h are 1.85."""
+"""Speeds over those between places, in the median [-]: metres per second for knots are 0.51, km/h
+are 1.85.
+"""
 
 _CLOSE = 0.3
-"""Share of these that places which are swapped have to keep to: then they fit, and not by chance."""
+"""Share of these that places which are swapped have to keep to: then they fit, and not by chance.
+"""
 
 _OFF_MAX = 30.0
 """Difference of courses from those between places, in the median [deg]."""
@@ -34,7 +44,9 @@ _OFF_MAX = 30.0
 def check_units(
     path: Path, time: Array, latitude: Array, longitude: Array, speed: Array, course: Array
 ) -> None:
-    """Raise an InputError where speeds [m/s] or courses [rad] are not those between places [rad], in the median of all pairs."""
+    """Raise an InputError where speeds [m/s] or courses [rad] are not those between places [rad],
+    in the median of all pairs.
+    """
     judged = _against_places(time, latitude, longitude, speed, course)
     if judged is None or _agree(*judged):
         return
@@ -59,7 +71,9 @@ def check_units(
 def _against_places(
     time: Array, latitude: Array, longitude: Array, speed: Array, course: Array
 ) -> tuple[float, float] | None:
-    """Return the median ratio of speeds to those between places [-], and of differences of course [deg]; none of too few pairs."""
+    """Return the median ratio of speeds to those between places [-], and of differences of course
+    [deg]; none of too few pairs.
+    """
     way = np.diff(cartesian(latitude, longitude), axis=0)
     apart, passed = np.linalg.norm(way, axis=-1), np.diff(time)
     mean = 0.5 * (speed[1:] + speed[:-1])
@@ -84,7 +98,9 @@ def _against_places(
 
 
 def _straight(passed: Array, speed: Array, course: Array) -> npt.NDArray[np.bool_]:
-    """Return which pairs, shape (n - 1,), that a track bridges lie within a straight and even stretch, with both neighbours."""
+    """Return which pairs, shape (n - 1,), that a track bridges lie within a straight and even
+    stretch, with both neighbours.
+    """
     turned = np.abs(np.angle(np.exp(1j * np.diff(course))))
     slower, faster = np.minimum(speed[1:], speed[:-1]), np.maximum(speed[1:], speed[:-1])
     even = (passed <= GAP_MAX) & (turned <= _TURN_MAX) & (faster <= _FASTER_MAX * slower)
@@ -94,7 +110,9 @@ def _straight(passed: Array, speed: Array, course: Array) -> npt.NDArray[np.bool
 
 
 def _agree(ratio: float, off: float, share: float = 1.0) -> bool:
-    """Return whether speeds and courses are those between places, within a share of what is allowed."""
+    """Return whether speeds and courses are those between places, within a share of what is
+    allowed.
+    """
     return (
         1.0 + share * (_RATIO[0] - 1.0) <= ratio <= 1.0 + share * (_RATIO[1] - 1.0)
         and off <= share * _OFF_MAX

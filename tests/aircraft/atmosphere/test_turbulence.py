@@ -12,22 +12,27 @@ from aircraft.simulation.state import RigidBodyState
 
 FOOT = 0.3048
 SIGMAS = 3.0
-"""Tolerance of what is estimated from a sample, in its own standard deviations: the seed is fixed, so nothing fails by chance."""
+"""Tolerance of what is estimated from a sample, in its own standard deviations: the seed is fixed,
+so nothing fails by chance.
+"""
 
 
 def test_at_1000_feet_all_scale_lengths_are_1000_feet_and_all_intensities_a_tenth_of_the_wind():
-    # MIL-F-8785C, figures 10 and 11: the curves along and across meet those of the vertical at 1,000 ft. Tolerance: 0.177 + 0.823.
+    # MIL-F-8785C, figures 10 and 11: the curves along and across meet those of the vertical at
+    # 1,000 ft. Tolerance: 0.177 + 0.823.
     assert scale_lengths(1000.0 * FOOT) == pytest.approx([1000.0 * FOOT] * 3, rel=1e-12)
     assert intensities(1000.0 * FOOT, 20.0) == pytest.approx([2.0] * 3, rel=1e-12)
 
 
 def test_at_50_metres_scale_lengths_are_those_of_the_published_table():
-    # Beard and McLain, Small Unmanned Aircraft, table 4.1, low altitude: L_u = L_v = 200 m, L_w = 50 m; printed to two digits.
+    # Beard and McLain, Small Unmanned Aircraft, table 4.1, low altitude: L_u = L_v = 200 m, L_w =
+    # 50 m; printed to two digits.
     assert scale_lengths(50.0) == pytest.approx([200.0, 200.0, 50.0], rel=0.025)
 
 
 def test_light_moderate_and_severe_turbulence_shake_with_1_5_3_and_4_5_knots():
-    # MIL-F-8785C, figures 9 and 11: a tenth of the wind at 20 ft, which is 15, 30 and 45 knots; a knot is 1852 m an hour.
+    # MIL-F-8785C, figures 9 and 11: a tenth of the wind at 20 ft, which is 15, 30 and 45 knots; a
+    # knot is 1852 m an hour.
     shaking = [
         intensities(60.0, TURBULENCE[name].wind_at_20ft)[2]
         for name in ("light", "moderate", "severe")
@@ -60,7 +65,9 @@ def test_turbulence_out_of_range_is_refused(value, message):
 
 @pytest.fixture
 def blown(x8_fdm):
-    """A function from a weather to the turbulence that a held X8 meets, shape (steps, 3): north, east, down [m/s]."""
+    """A function from a weather to the turbulence that a held X8 meets, shape (steps, 3): north,
+    east, down [m/s].
+    """
 
     def blow(weather, steps, altitude, airspeed):
         x8_fdm.place(
@@ -94,18 +101,21 @@ def test_jsbsim_shakes_as_strongly_as_the_standard_says_and_has_the_spectra_of_d
     for measured, sigma, length in zip(
         log.std(axis=0), intensities(altitude, 10.0), scale_lengths(altitude), strict=True
     ):
-        # Of a process with the correlation exp(-t/tau), a standard deviation over T is known to sqrt(tau / 2T) of itself (Bendat
-        # and Piersol, Random Data, 8.2); those across and down forget sooner. The start from smooth air is within that.
+        # Of a process with the correlation exp(-t/tau), a standard deviation over T is known to
+        # sqrt(tau / 2T) of itself (Bendat and Piersol, Random Data, 8.2); those across and down
+        # forget sooner. The start from smooth air is within that.
         assert measured == pytest.approx(
             sigma, rel=SIGMAS * math.sqrt(0.5 * length / airspeed / duration)
         )
-    # And its spectra are those of Dryden: with wind toward the north, after x scale lengths the wind along has the correlation
-    # exp(-x), those across and down have exp(-x) (1 - x/2): transforms of the spectra of MIL-F-8785C. First-order filters, as of
-    # JSBSim's type 3, would have exp(-2x) there: at half a scale length 0.37 in place of 0.45.
+    # And its spectra are those of Dryden: with wind toward the north, after x scale lengths the
+    # wind along has the correlation exp(-x), those across and down have exp(-x) (1 - x/2):
+    # transforms of the spectra of MIL-F-8785C. First-order filters, as of JSBSim's type 3, would
+    # have exp(-2x) there: at half a scale length 0.37 in place of 0.45.
     for wind, length, factor in zip(log.T, scale_lengths(altitude), (1.0, 0.75, 0.75), strict=True):
         lag = round(0.5 * 120.0 * length / airspeed)
         correlation = np.mean(wind[:-lag] * wind[lag:]) / np.mean(wind**2)
-        # A correlation is known to about sqrt(tau / T) or better (Bendat and Piersol, 8.4): 0.03 along and across, 0.015 down.
+        # A correlation is known to about sqrt(tau / T) or better (Bendat and Piersol, 8.4): 0.03
+        # along and across, 0.015 down.
         tolerance = SIGMAS * math.sqrt(length / airspeed * 120.0 / steps)
         assert correlation == pytest.approx(factor * math.exp(-0.5), abs=tolerance)
 
@@ -119,7 +129,8 @@ def test_turbulence_has_its_axes_in_the_wind_wherever_it_blows(x8_fdm, wind, tow
         RigidBodyState(altitude=60.0, roll=0.0, pitch=0.0, velocity_body=(20.0, 0.0, 0.0)), wind
     )
     x8_fdm.step()
-    # JSBSim leaves its axes where they were in a wind that has no north at all; 1e-6 ft/s of it turn 7 m/s by 5e-8 rad.
+    # JSBSim leaves its axes where they were in a wind that has no north at all; 1e-6 ft/s of it
+    # turn 7 m/s by 5e-8 rad.
     assert x8_fdm.read("atmosphere/psiw-rad") == pytest.approx(math.radians(toward), abs=1e-7)
 
 

@@ -73,7 +73,8 @@ def test_its_largest_shear_is_that_of_every_pair_of_heights():
 def test_it_is_the_table_at_its_points_and_linear_between_them():
     assert CHANGING.now(100.0, 10.0) == (2.0, -1.0)
     assert CHANGING.now(200.0, 100.0) == (8.0, 5.0)
-    # Half-way in time; and at the geometric mean of the heights, half-way in the logarithm of height.
+    # Half-way in time; and at the geometric mean of the heights, half-way in the logarithm of
+    # height.
     assert CHANGING.now(150.0, 10.0) == pytest.approx((4.0, 0.0), abs=1e-12)
     assert CHANGING.now(100.0, math.sqrt(1000.0)) == pytest.approx((3.0, -2.0), abs=1e-12)
 
@@ -141,7 +142,8 @@ def test_over_the_sea_it_follows_the_logarithm_of_height():
 
 @pytest.mark.parametrize("roughness", [1e-10, 10.0, math.nan])
 def test_a_roughness_that_has_no_profile_is_refused(roughness):
-    # Below 1e-9 m heights are not told apart: at 10 m the wind of 1e-10 m was 0.98 of the one that is given there.
+    # Below 1e-9 m heights are not told apart: at 10 m the wind of 1e-10 m was 0.98 of the one that
+    # is given there.
     with pytest.raises(AircraftError, match="a roughness length of"):
         over_the_sea(np.array([[5.0, 0.0]]), [0.0], roughness=roughness, height=10.0)
 

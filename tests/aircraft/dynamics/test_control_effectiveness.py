@@ -1,4 +1,6 @@
-"""Control-effectiveness linearisation: a surface that travels further one way is commanded by its effect."""
+"""Control-effectiveness linearisation: a surface that travels further one way is commanded by its
+effect.
+"""
 
 from dataclasses import replace
 
@@ -24,7 +26,9 @@ KINKED = ControlInput(
 
 @pytest.fixture(scope="module")
 def twin():
-    """JSBSim's c310, whose elevator goes 14 degrees up and 4 down, in level flight, and its spec with linearised controls."""
+    """JSBSim's c310, whose elevator goes 14 degrees up and 4 down, in level flight, and its spec
+    with linearised controls.
+    """
     fdm = Fdm(find_spec("c310"))
     level = first_trim(fdm, ALTITUDE)
     return fdm, level, with_linearised_controls(fdm, level)
@@ -72,7 +76,8 @@ def test_the_twins_elevator_bends_as_jsbsim_has_it(twin):
             fdm.settle()
             found.append(fdm.angular_acceleration()[1])
     steep = np.abs(slopes(commands, found))
-    # 14 degrees one way and 4 the other, in its model file, for the same command; and moment is linear in deflection there.
+    # 14 degrees one way and 4 the other, in its model file, for the same command; and moment is
+    # linear in deflection there.
     assert steep.max() / steep.min() == pytest.approx(14.0 / 4.0, rel=0.01)
 
 
@@ -82,7 +87,8 @@ def test_the_effect_of_a_nonlinear_elevator_becomes_linear(twin):
     assert elevator.effectiveness
     values = np.linspace(elevator.lower, elevator.upper, 15)
     found = slopes(values, moments(spec, level, "elevator", values))
-    # Seventeen measured points with straight lines between: a few per cent where the surface itself bends between two of them.
+    # Seventeen measured points with straight lines between: a few per cent where the surface itself
+    # bends between two of them.
     assert np.ptp(found) < 0.12 * abs(found.mean())
 
 
@@ -113,7 +119,8 @@ def test_a_surface_is_commanded_within_the_range_that_its_spec_states(twin, lowe
     commands = [command for _, command in elevator.effectiveness]
     assert (commands[0], commands[-1]) == (lower, upper)
     assert (elevator.command(elevator.lower), elevator.command(elevator.upper)) == (lower, upper)
-    # The same surface: effects of the commands that both have are in proportion, but for a bend between two measured points.
+    # The same surface: effects of the commands that both have are in proportion, but for a bend
+    # between two measured points.
     both = (lower, 0.5 * lower, 0.5 * upper, upper)
     ratio = np.divide(
         *([effect_of(command, i) for command in both] for i in (elevator, whole.input("elevator")))

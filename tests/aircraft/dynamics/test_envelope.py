@@ -98,7 +98,8 @@ def test_a_model_without_weight_or_wing_area_is_refused_in_a_line(
 
 @pytest.mark.parametrize(
     ("mass", "bank_deg"),
-    # Small unmanned aircraft turn steeply; up to 12,500 lb (5670 kg), CS-23's limit, as light aeroplanes do; above as airliners.
+    # Small unmanned aircraft turn steeply; up to 12,500 lb (5670 kg), CS-23's limit, as light
+    # aeroplanes do; above as airliners.
     [
         (3.4, 45.0),
         (150.0, 45.0),
@@ -114,9 +115,10 @@ def test_the_bank_goes_with_the_class(mass, bank_deg):
 
 
 def test_the_stall_is_where_the_largest_lift_just_carries_the_weight(jet, envelope):
-    # Independently: at the stall airspeed itself, over all angles of attack, by steps ten times finer than the search's, lift just
-    # reaches the weight. Coefficients are the same at that speed (Mach 0.12 against 0.2); 1 degree of steps at the flat top of lift
-    # is 1 %, its root half of it.
+    # Independently: at the stall airspeed itself, over all angles of attack, by steps ten times
+    # finer than the search's, lift just reaches the weight. Coefficients are the same at that speed
+    # (Mach 0.12 against 0.2); 1 degree of steps at the flat top of lift is 1 %, its root half of
+    # it.
     lifts = []
     with jet.frozen():
         for alpha in np.radians(np.arange(0.0, 23.0, 0.1)):
@@ -156,6 +158,7 @@ def test_both_ends_fly_level_and_steepest_turns_with_reserve(jet, envelope):
 
 
 def test_an_aircraft_that_trims_nowhere_is_refused_with_what_holds_it():
-    # At 25 km there is a thirtieth of the air, which neither the T-37's wing nor its engines can live on.
+    # At 25 km there is a thirtieth of the air, which neither the T-37's wing nor its engines can
+    # live on.
     with pytest.raises(AircraftError, match=r"'T37' does not trim: .* at .* m/s"):
         first_trim(Fdm(find_spec("T37")), 25_000.0)

@@ -25,8 +25,8 @@ def deceleration(fdm, level, throttle):
 def test_an_electric_propeller_brakes_most_while_it_still_turns(cruise):
     fdm, level = cruise
     idle = flight_idle(fdm, level)
-    # Read at 5 s after each throttle, many times the propeller's 0.04 s: a twentieth of the way to either side brakes less, and
-    # closed throttle, where the propeller stands, by almost half.
+    # Read at 5 s after each throttle, many times the propeller's 0.04 s: a twentieth of the way to
+    # either side brakes less, and closed throttle, where the propeller stands, by almost half.
     at_idle = deceleration(fdm, level, idle)
     assert at_idle > deceleration(fdm, level, idle - 0.05)
     assert at_idle > deceleration(fdm, level, idle + 0.05)

@@ -12,7 +12,8 @@ N_PER_LBF = 4.4482216152605
 NM_PER_LBF_FT = 1.3558179483314
 KG_M3_PER_SLUG_FT3 = 515.37881839
 
-# Each derivative is met on its own and all together, with both signs, below the model's limit of 0.2 rad of angle of attack.
+# Each derivative is met on its own and all together, with both signs, below the model's limit of
+# 0.2 rad of angle of attack.
 STATES = [
     x8.Air(airspeed=18.0),
     *(x8.Air(airspeed=18.0, alpha=a) for a in (-0.1, 0.03, 0.18)),
@@ -39,7 +40,9 @@ STATES = [
 
 
 def hold(fdm, air, altitude=150.0):
-    """Hold the aircraft still in the air's motion with its elevons at rest; return JSBSim's density [kg/m^3]."""
+    """Hold the aircraft still in the air's motion with its elevons at rest; return JSBSim's density
+    [kg/m^3].
+    """
     fdm.command(
         {
             "elevator": air.elevator / x8.ELEVON_FULL,
@@ -68,8 +71,9 @@ def test_aerodynamic_forces_and_moments_are_those_of_the_published_coefficients(
         moment = (
             np.array([x8_fdm.read(f"moments/{axis}-aero-lbsft") for axis in "lmn"]) * NM_PER_LBF_FT
         )
-    # Source of the coefficients: x8_published. At JSBSim's own density (which has its own test) a part in a million is left for
-    # JSBSim's unit factors, which carry eight digits or so. Absolute: a millionth of what a coefficient of 0.01 gives at 20 m/s.
+    # Source of the coefficients: x8_published. At JSBSim's own density (which has its own test) a
+    # part in a million is left for JSBSim's unit factors, which carry eight digits or so. Absolute:
+    # a millionth of what a coefficient of 0.01 gives at 20 m/s.
     np.testing.assert_allclose(force, x8.aero_force(air, density), rtol=1e-6, atol=2e-6)
     np.testing.assert_allclose(moment, x8.aero_moment(air, density), rtol=1e-6, atol=2e-6)
 
@@ -78,12 +82,14 @@ def test_aerodynamic_forces_and_moments_are_those_of_the_published_coefficients(
 def test_density_is_that_of_the_standard_atmosphere(x8_fdm, altitude):
     with x8_fdm.frozen():
         density = hold(x8_fdm, x8.Air(airspeed=20.0), altitude)
-    # U.S. Standard Atmosphere 1976. JSBSim rounds the molar mass of air to 28.9645 g/mol and the earth's radius: 1e-5 or so.
+    # U.S. Standard Atmosphere 1976. JSBSim rounds the molar mass of air to 28.9645 g/mol and the
+    # earth's radius: 1e-5 or so.
     assert density == pytest.approx(x8.standard_density(altitude), rel=2e-5)
 
 
 def test_the_standard_atmosphere_of_this_test_has_its_tabulated_density():
-    # U.S. Standard Atmosphere 1976, table I: 1.2250 at sea level, 1.1117 kg/m^3 at 1000 m; tolerance: half the last digit.
+    # U.S. Standard Atmosphere 1976, table I: 1.2250 at sea level, 1.1117 kg/m^3 at 1000 m;
+    # tolerance: half the last digit.
     assert x8.standard_density(0.0) == pytest.approx(1.2250, abs=5e-5)
     assert x8.standard_density(1000.0) == pytest.approx(1.1117, abs=5e-5)
 
@@ -94,7 +100,8 @@ def test_mass_is_the_published_one(x8_fdm):
 
 
 def test_gravity_at_the_equator_is_that_of_wgs_84(x8_fdm):
-    # A body without aerodynamics to speak of, level and at rest in the air, falls with gravity alone.
+    # A body without aerodynamics to speak of, level and at rest in the air, falls with gravity
+    # alone.
     with x8_fdm.frozen():
         x8_fdm.command({"elevator": 0.0, "aileron": 0.0, "throttle": 0.0})
         x8_fdm.place(
@@ -102,5 +109,6 @@ def test_gravity_at_the_equator_is_that_of_wgs_84(x8_fdm):
         )
         x8_fdm.step(2)
         down = x8_fdm.acceleration_body()[2]
-    # Normal gravity of WGS 84, 9.7803253 m/s^2, less 3.09e-6 a metre. JSBSim keeps the oblateness term alone: 1e-5 of it.
+    # Normal gravity of WGS 84, 9.7803253 m/s^2, less 3.09e-6 a metre. JSBSim keeps the oblateness
+    # term alone: 1e-5 of it.
     assert down == pytest.approx(x8.equatorial_gravity(100.0), rel=2e-5)

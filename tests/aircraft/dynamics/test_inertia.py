@@ -9,10 +9,12 @@ from aircraft.simulation.state import RigidBodyState, body_velocity
 NM_PER_LBF_FT = 1.3558179483314
 KG_M2_PER_SLUG_FT2 = 1.3558179483314
 
-# JSBSim takes 1 lbf ft s^2 as 1.35594 kg m^2 where it is 1.35582: inertia is 9e-5 low and angular acceleration as much too high.
+# JSBSim takes 1 lbf ft s^2 as 1.35594 kg m^2 where it is 1.35582: inertia is 9e-5 low and angular
+# acceleration as much too high.
 JSBSIM_INERTIA_ERROR = 2e-4
 
-# Moments that roll and yaw differently, and rates that bring out the gyroscopic terms. Angles in rad, rates in rad/s.
+# Moments that roll and yaw differently, and rates that bring out the gyroscopic terms. Angles in
+# rad, rates in rad/s.
 CASES = [
     {"beta": 0.1, "aileron": 0.0, "rates": (0.0, 0.0, 0.0)},
     {"beta": 0.0, "aileron": 0.3, "rates": (0.0, 0.0, 0.0)},
@@ -77,7 +79,8 @@ def test_aileron_alone_rolls_and_yaws_as_coefficients_and_inertia_say(x8_fdm):
     density = x8.standard_density(100.0)
     air = (x8.Air(airspeed=20.0, alpha=0.03, aileron=a) for a in (deflection, 0.0))
     moment, none = (x8.aero_moment(a, density) for a in air)
-    # Nothing of this is read from JSBSim. Three quarters of the yaw to the left is the product of inertia, the rest C_nda.
+    # Nothing of this is read from JSBSim. Three quarters of the yaw to the left is the product of
+    # inertia, the rest C_nda.
     expected = np.linalg.solve(x8.INERTIA, moment - none)
     np.testing.assert_allclose(
         with_aileron - without, expected, rtol=JSBSIM_INERTIA_ERROR, atol=1e-5

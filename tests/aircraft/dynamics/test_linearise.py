@@ -48,7 +48,9 @@ def entry(model, output, source):
 
 
 def published_derivatives(found):
-    """Central differences of the published equations: rows of ``RATES``; columns of ``STATES``, then the throttle."""
+    """Central differences of the published equations: rows of ``RATES``; columns of ``STATES``,
+    then the throttle.
+    """
     body = [
         found.airspeed,
         found.alpha,
@@ -60,7 +62,8 @@ def published_derivatives(found):
     ]
     state = np.array([*body, *(found.driven[name] for name in DRIVEN)])
     throttle = found.inputs["throttle"]
-    # Smooth functions: steps of 1e-4 of each quantity's range leave 1e-8 of truncation and 1e-10 of rounding.
+    # Smooth functions: steps of 1e-4 of each quantity's range leave 1e-8 of truncation and 1e-10 of
+    # rounding.
     steps = np.array([0.01, *([1e-4] * 7), 1.0, 1e-4, 1e-4, 0.1])
     columns = [
         (x8.state_rates(state + step, throttle) - x8.state_rates(state - step, throttle))
@@ -102,11 +105,13 @@ def test_every_derivative_of_the_rigid_body_is_that_of_the_published_equations(
 ):
     expected = published_derivatives(trims[name])[x8.RATES.index(rate)]
     found = [entry(models[name], rate, source) for source in (*x8.STATES, "throttle")]
-    # Relative: JSBSim's inertia and density are off by 1e-4 and 1e-5 (test_inertia, test_forces); differences truncate less. Thrust
-    # has the slope of a table segment, where that of the polynomial differs by half a segment, 0.025, times the second
-    # derivative, 0.2158, of C_T: 3 % of a slope of 0.18. It enters the airspeed's rate by airspeed, angles and propeller speed.
+    # Relative: JSBSim's inertia and density are off by 1e-4 and 1e-5 (test_inertia, test_forces);
+    # differences truncate less. Thrust has the slope of a table segment, where that of the
+    # polynomial differs by half a segment, 0.025, times the second derivative, 0.2158, of C_T: 3 %
+    # of a slope of 0.18. It enters the airspeed's rate by airspeed, angles and propeller speed.
     tolerance = 3.5e-2 if rate == "airspeed" else 3e-4
-    # Absolute: the earth turns at 7.3e-5 rad/s, and twice that enters as Coriolis acceleration, 3e-3 m/s^2 per rad at 20 m/s.
+    # Absolute: the earth turns at 7.3e-5 rad/s, and twice that enters as Coriolis acceleration,
+    # 3e-3 m/s^2 per rad at 20 m/s.
     np.testing.assert_allclose(
         found, expected, rtol=tolerance, atol=3e-3 if rate == "airspeed" else 2e-4
     )
@@ -163,8 +168,8 @@ def analytic(found):
     ids=lambda pair: f"{pair[0]}-by-{pair[1]}",
 )
 def test_the_classic_derivatives_are_formulas_in_the_published_coefficients(trims, models, pair):
-    # Inertia 1e-4 (see above). The gyroscopic ones are a hundredth of the aerodynamic ones and carry the rounding of differences
-    # over 0.002 rad/s.
+    # Inertia 1e-4 (see above). The gyroscopic ones are a hundredth of the aerodynamic ones and
+    # carry the rounding of differences over 0.002 rad/s.
     assert entry(models["level"], *pair) == pytest.approx(analytic(trims["level"])[pair], rel=1e-3)
 
 
@@ -177,7 +182,8 @@ def test_the_other_sign_of_the_product_of_inertia_would_show_in_the_yaw_derivati
 
 
 def test_servo_poles_are_those_of_the_model_file(models):
-    # 40 rad/s. JSBSim's trapezoidal lag leaves (2 - a)/(2 + a) a step with a = 40/120: 40.38 rad/s in continuous time, 1 % more.
+    # 40 rad/s. JSBSim's trapezoidal lag leaves (2 - a)/(2 + a) a step with a = 40/120: 40.38 rad/s
+    # in continuous time, 1 % more.
     for name in ("elevator_position", "aileron_position"):
         assert entry(models["level"], name, name) == pytest.approx(-40.0, rel=0.02)
 
@@ -196,11 +202,12 @@ def test_servos_settle_at_full_deflection_times_command(models):
 def test_the_propellers_pole_is_that_of_motor_and_load_under_eulers_rule(trims, models, name):
     row = published_derivatives(trims[name])[x8.RATES.index("propeller_speed")]
     rate = -row[x8.STATES.index("propeller_speed")]
-    # JSBSim steps the propeller with Euler's rule, which turns a rate k into -ln(1 - k dt)/dt: 23 into 25. Tolerance: the slope of
-    # the torque's table segment, 1 % or so of the whole.
+    # JSBSim steps the propeller with Euler's rule, which turns a rate k into -ln(1 - k dt)/dt: 23
+    # into 25. Tolerance: the slope of the torque's table segment, 1 % or so of the whole.
     pole = entry(models[name], "propeller_speed", "propeller_speed")
     assert pole == pytest.approx(math.log(1.0 - rate * TIME_STEP) / TIME_STEP, rel=0.015)
-    # Where it settles does not depend on that: d(omega)/dV and d(omega)/d(throttle). Torque's slope by J: a few per cent, as above.
+    # Where it settles does not depend on that: d(omega)/dV and d(omega)/d(throttle). Torque's slope
+    # by J: a few per cent, as above.
     for source, column in (("airspeed", 0), ("throttle", 12)):
         assert entry(models[name], "propeller_speed", source) / pole == pytest.approx(
             row[column] / -rate, rel=0.05
@@ -214,10 +221,12 @@ def test_the_modes_are_where_textbooks_put_them(models):
     real = sorted(p.real for p in poles if abs(p.imag) <= 1e-6)
     density, v, pi = x8.standard_density(100.0), 20.0, math.pi
     force = 0.5 * density * v**2 * x8.WING_AREA
-    # Lanchester: the phugoid's period is pi sqrt(2) V/g, without drag and pitch damping; textbooks allow it a fifth.
+    # Lanchester: the phugoid's period is pi sqrt(2) V/g, without drag and pitch damping; textbooks
+    # allow it a fifth.
     assert abs(phugoid) == pytest.approx(2.0 * pi / (pi * math.sqrt(2.0) * v / 9.78), rel=0.2)
     assert 0.0 < -phugoid.real / abs(phugoid) < 0.5
-    # Short period: omega^2 = -M_alpha - M_q Z_alpha/(mV) in the two-state approximation, damping half of -(M_q + Z_alpha/(mV)).
+    # Short period: omega^2 = -M_alpha - M_q Z_alpha/(mV) in the two-state approximation, damping
+    # half of -(M_q + Z_alpha/(mV)).
     m_alpha = force * x8.CHORD * x8.CM_A / x8.JY
     m_q = force * x8.CHORD**2 * x8.CM_Q / (2.0 * v * x8.JY)
     z_alpha = -force * x8.CL_A / (x8.MASS * v)
@@ -229,11 +238,13 @@ def test_the_modes_are_where_textbooks_put_them(models):
     # Roll mode: L_p, changed by a few per cent by its coupling to yaw and sideslip.
     roll_rate = force * x8.SPAN**2 * x8.CR_P / (2.0 * v * x8.JX)
     assert min(abs(p - roll_rate) for p in real) < 0.05 * abs(roll_rate)
-    # Dutch roll: omega^2 = N_beta of a body that also rolls; between N_beta alone and three times it with this much dihedral.
+    # Dutch roll: omega^2 = N_beta of a body that also rolls; between N_beta alone and three times
+    # it with this much dihedral.
     n_beta = force * x8.SPAN * x8.CN_B / x8.JZ
     assert math.sqrt(n_beta) < abs(dutch_roll) < math.sqrt(3.0 * n_beta)
     assert dutch_roll.real < 0.0
-    # What is left: two servos, propeller, roll mode, spiral and height's weak return through density. All but those two are fast.
+    # What is left: two servos, propeller, roll mode, spiral and height's weak return through
+    # density. All but those two are fast.
     assert len(real) == 6
     assert all(-0.5 < p < 0.05 for p in real[-2:])
 
@@ -257,9 +268,11 @@ DOUBLETS = {
 
 
 def doublet_errors(found, name, time_step):
-    """Largest difference of each output between JSBSim and the linear model, as a share of the output's largest deviation.
+    """Largest difference of each output between JSBSim and the linear model, as a share of the
+    output's largest deviation.
 
-    The doublet has 1 % of full command, a quarter of a second each way, and is watched for a second.
+    The doublet has 1 % of full command, a quarter of a second each way, and is watched for a
+    second.
     """
     quarter = round(0.25 / time_step)
     inputs = 0.01 * np.concatenate([np.ones(quarter), -np.ones(quarter), np.zeros(2 * quarter)])
@@ -288,8 +301,8 @@ def doublet_errors(found, name, time_step):
 
 @pytest.mark.parametrize("name", DOUBLETS)
 def test_in_short_time_steps_a_small_doublet_is_flown_as_the_linear_model_predicts(trims, name):
-    # What is left at 1/1200 s is JSBSim's order of work, forces one step before motion (see below), and, for airspeed, thrust's
-    # change of slope from one table segment to the next.
+    # What is left at 1/1200 s is JSBSim's order of work, forces one step before motion (see below),
+    # and, for airspeed, thrust's change of slope from one table segment to the next.
     assert doublet_errors(trims["level"], name, 1.0 / 1200.0).max() < 0.025
 
 
@@ -298,15 +311,17 @@ def test_at_120_hertz_a_small_doublet_is_flown_as_predicted_but_for_the_step(tri
     coarse, fine = (
         doublet_errors(trims["level"], name, step).max() for step in (TIME_STEP, TIME_STEP / 4.0)
     )
-    # JSBSim moves the body with the forces of the step before and by rectangles: an error of first order in the step. For the
-    # quickest motions, 16 and 24 rad/s, that is 0.13 and 0.2 in a step, smoothed by the servo.
+    # JSBSim moves the body with the forces of the step before and by rectangles: an error of first
+    # order in the step. For the quickest motions, 16 and 24 rad/s, that is 0.13 and 0.2 in a step,
+    # smoothed by the servo.
     assert coarse < 0.18
-    # And of first order it is: four times less with a quarter of the step, down to thrust's change of slope (airspeed, 2 %).
+    # And of first order it is: four times less with a quarter of the step, down to thrust's change
+    # of slope (airspeed, 2 %).
     assert fine < max(0.3 * coarse, 0.03)
 
 
-# The X8's elevons without their lag of 40 rad/s, and with lags of whose way JSBSim's filter goes too far in a step: 400 rad/s
-# is more than two of 1/120 s.
+# The X8's elevons without their lag of 40 rad/s, and with lags of whose way JSBSim's filter goes
+# too far in a step: 400 rad/s is more than two of 1/120 s.
 @pytest.mark.parametrize("lag", ["", "<lag>400</lag>", "<lag>1e9</lag>"])
 def test_a_servo_that_follows_at_once_is_no_state(trims, tmp_path, lag):
     root = shutil.copytree(MODELS, tmp_path / "models")

@@ -1,4 +1,6 @@
-"""Propeller and motor of the X8 against the published polynomials and the three-constant motor equations."""
+"""Propeller and motor of the X8 against the published polynomials and the three-constant motor
+equations.
+"""
 
 import math
 
@@ -14,12 +16,13 @@ NM_PER_LBF_FT = 1.3558179483314
 KG_M3_PER_SLUG_FT3 = 515.37881839
 TIME_STEP = 1.0 / 120.0
 
-# Linear interpolation of a parabola in steps of h is off by h^2/8 times its second derivative at most: 0.2158 for C_T, 0.03328 for
-# C_Q; and the tables carry six decimals (C_P = 2 pi C_Q).
+# Linear interpolation of a parabola in steps of h is off by h^2/8 times its second derivative at
+# most: 0.2158 for C_T, 0.03328 for C_Q; and the tables carry six decimals (C_P = 2 pi C_Q).
 CT_ERROR = 0.05**2 / 8.0 * 0.2158 + 5e-7
 CQ_ERROR = 0.05**2 / 8.0 * 0.03328 + 5e-7 / (2.0 * math.pi)
 
-# Airspeed [m/s] and throttle [-]: from windmilling (J = 0.87) to full power, slow and fast; all with J inside the tables' 0 to 1.
+# Airspeed [m/s] and throttle [-]: from windmilling (J = 0.87) to full power, slow and fast; all
+# with J inside the tables' 0 to 1.
 CONDITIONS = [
     (14.0, 0.3),
     (20.0, 0.5),
@@ -32,7 +35,9 @@ CONDITIONS = [
 
 
 def settled(fdm, airspeed, throttle, rates=(0.0, 0.0, 0.0)):
-    """Hold the aircraft, moving straight ahead, until the propeller stands; return its speed [rad/s] and the density [kg/m^3]."""
+    """Hold the aircraft, moving straight ahead, until the propeller stands; return its speed
+    [rad/s] and the density [kg/m^3].
+    """
     fdm.command({"elevator": 0.0, "aileron": 0.0, "throttle": throttle})
     fdm.place(
         RigidBodyState(
@@ -81,7 +86,8 @@ def test_settled_speed_satisfies_the_three_constant_motor_equations(x8_fdm, airs
     with x8_fdm.frozen():
         speed, _ = settled(x8_fdm, airspeed, throttle)
         torque = shaft_torque(x8_fdm)
-    # V = I R + Kt omega and Q = Kt (I - I0). JSBSim's conversion from watts to ft lbf/s (745.7 W a horsepower) is 1.3e-5 off.
+    # V = I R + Kt omega and Q = Kt (I - I0). JSBSim's conversion from watts to ft lbf/s (745.7 W a
+    # horsepower) is 1.3e-5 off.
     assert torque == pytest.approx(x8.motor_torque(throttle, speed), rel=2e-5)
 
 
@@ -96,7 +102,8 @@ def test_the_speed_the_published_equations_settle_at_is_the_one_flown(x8_fdm, ai
             low = middle
         else:
             high = middle
-    # The interpolated torque's error over the stiffness of motor and propeller, at least Kt^2/R = 0.0082 N m s/rad.
+    # The interpolated torque's error over the stiffness of motor and propeller, at least Kt^2/R =
+    # 0.0082 N m s/rad.
     unit = density * (flown / (2.0 * math.pi)) ** 2 * x8.PROPELLER_DIAMETER**5
     stiffness = x8.MOTOR_KT**2 / x8.MOTOR_RESISTANCE
     assert flown == pytest.approx(0.5 * (low + high), abs=1.1 * CQ_ERROR * unit / stiffness)
@@ -114,16 +121,18 @@ def test_the_propeller_follows_the_throttle_with_the_time_constant_of_motor_and_
         assert x8_fdm.settle()
         end = propeller_speed(x8_fdm)
     share = (np.array(moved) - start) / (end - start)
-    # J d(omega)/dt = Kt ((V - Kt omega)/R - I0) - Q(omega): without load the time constant is J R/Kt^2 = 0.051 s, and the load's
-    # slope shortens it to 0.044 s. JSBSim steps this with Euler's rule: (1 - dt/T)^n of the step is left after n steps.
+    # J d(omega)/dt = Kt ((V - Kt omega)/R - I0) - Q(omega): without load the time constant is J
+    # R/Kt^2 = 0.051 s, and the load's slope shortens it to 0.044 s. JSBSim steps this with Euler's
+    # rule: (1 - dt/T)^n of the step is left after n steps.
     load = x8.propeller_torque(airspeed, start + 0.5, density) - x8.propeller_torque(
         airspeed, start - 0.5, density
     )
     rate = (x8.MOTOR_KT**2 / x8.MOTOR_RESISTANCE + load) / x8.PROPELLER_INERTIA
     assert 1.0 / rate == pytest.approx(0.0438, abs=0.0005)
     expected = 1.0 - (1.0 - TIME_STEP * rate) ** np.arange(1, 21)
-    # The load's slope between two table points is off by half a step of 0.05 times the second derivative of C_Q: 4 % of a
-    # load that is a seventh of the whole, which moves the curve by 0.3 % of the step.
+    # The load's slope between two table points is off by half a step of 0.05 times the second
+    # derivative of C_Q: 4 % of a load that is a seventh of the whole, which moves the curve by 0.3
+    # % of the step.
     np.testing.assert_allclose(share, expected, atol=0.003)
 
 
@@ -134,8 +143,8 @@ def test_the_airframe_feels_the_motors_torque_against_the_propellers_turn(x8_fdm
             x8_fdm.read(f"moments/{axis}-prop-lbsft") * NM_PER_LBF_FT for axis in "lmn"
         )
         torque = shaft_torque(x8_fdm)
-    # Clockwise seen from behind (sense 1): the reaction rolls left. The thrust line passes the centre of gravity. Exact but for
-    # rounding.
+    # Clockwise seen from behind (sense 1): the reaction rolls left. The thrust line passes the
+    # centre of gravity. Exact but for rounding.
     assert torque > 0.1
     assert (roll, pitch, yaw) == pytest.approx((-torque, 0.0, 0.0), abs=1e-9)
 
@@ -148,7 +157,9 @@ def test_the_turning_propeller_resists_like_a_gyroscope(x8_fdm):
             [x8_fdm.read(f"moments/{axis}-prop-lbsft") * NM_PER_LBF_FT for axis in "lmn"]
         )
         moment[0] += shaft_torque(x8_fdm)
-    # The airframe turns the rotor's angular momentum H, ahead for clockwise seen from behind, and feels -omega x H.
+    # The airframe turns the rotor's angular momentum H, ahead for clockwise seen from behind, and
+    # feels -omega x H.
     momentum = np.array([x8.PROPELLER_INERTIA * speed, 0.0, 0.0])
-    # JSBSim's kg m^2 is 9e-5 off (test_inertia), and a step passes between speed and moment: nothing once settled.
+    # JSBSim's kg m^2 is 9e-5 off (test_inertia), and a step passes between speed and moment:
+    # nothing once settled.
     np.testing.assert_allclose(moment, -np.cross(rates, momentum), rtol=2e-4, atol=1e-9)

@@ -1,4 +1,6 @@
-"""Equilibria of the X8 against Newton's and Euler's equations written down from the published numbers."""
+"""Equilibria of the X8 against Newton's and Euler's equations written down from the published
+numbers.
+"""
 
 import math
 from dataclasses import replace
@@ -54,8 +56,8 @@ def state_of(found):
 
 @pytest.mark.parametrize("name", CONDITIONS)
 def test_what_is_left_of_the_accelerations_is_a_millionth_of_g(trims, name):
-    # The solver converges quadratically and stops far below its limit; one part in a million of g would move the aircraft 1 mm in
-    # its first 15 s.
+    # The solver converges quadratically and stops far below its limit; one part in a million of g
+    # would move the aircraft 1 mm in its first 15 s.
     assert trims[name].residual < 1e-5
 
 
@@ -69,15 +71,18 @@ def test_the_published_equations_are_in_balance_at_every_trim(trims, name):
         x8.standard_density(found.altitude)
         * (found.driven["propeller_speed"] / (2.0 * math.pi)) ** 2
     )
-    # Thrust may be off by what linear interpolation in a table with steps of 0.05 is (see test_propulsion), 6.8e-5 in C_T.
+    # Thrust may be off by what linear interpolation in a table with steps of 0.05 is (see
+    # test_propulsion), 6.8e-5 in C_T.
     thrust_error = 6.8e-5 * unit * x8.PROPELLER_DIAMETER**4 / x8.MASS
-    # The earth turns and is round: 2 omega V = 3e-3 m/s^2 where motion is not north, V^2/R = 6e-5 m/s^2.
+    # The earth turns and is round: 2 omega V = 3e-3 m/s^2 where motion is not north, V^2/R = 6e-5
+    # m/s^2.
     coriolis = 2.0 * 7.292e-5 * found.airspeed
     assert rates["airspeed"] == pytest.approx(0.0, abs=thrust_error + coriolis)
     assert rates["alpha"] == pytest.approx(0.0, abs=coriolis / found.airspeed)
     assert rates["beta"] == pytest.approx(0.0, abs=coriolis / found.airspeed)
-    # rad/s^2, where one thousandth of an aileron's full deflection gives 0.07 and of the elevator's 0.06. What is left is density
-    # (1e-5) of moments that balance, and the earth's rate times rates.
+    # rad/s^2, where one thousandth of an aileron's full deflection gives 0.07 and of the elevator's
+    # 0.06. What is left is density (1e-5) of moments that balance, and the earth's rate times
+    # rates.
     assert (rates["p"], rates["q"], rates["r"]) == pytest.approx((0.0, 0.0, 0.0), abs=3e-4)
     # Definitions of a steady turn: exact but for rounding.
     assert (rates["roll"], rates["pitch"]) == pytest.approx((0.0, 0.0), abs=1e-12)
@@ -100,9 +105,11 @@ def test_in_level_flight_lift_and_thrust_carry_the_weight_and_thrust_meets_drag(
         found.airspeed * math.cos(found.alpha), found.driven["propeller_speed"], density
     )
     weight = x8.MASS * x8.equatorial_gravity(found.altitude)
-    # 33 N. Bank and sideslip of less than a milliradian leave their square; density and gravity are good to 1e-5 each.
+    # 33 N. Bank and sideslip of less than a milliradian leave their square; density and gravity are
+    # good to 1e-5 each.
     assert lift + pull * math.sin(found.alpha) == pytest.approx(weight, rel=5e-5)
-    # Side force in the source is along body y, which sideslip tilts: nothing at half a milliradian. Thrust: see above, 0.012 N.
+    # Side force in the source is along body y, which sideslip tilts: nothing at half a milliradian.
+    # Thrust: see above, 0.012 N.
     assert pull * math.cos(found.alpha) == pytest.approx(drag, abs=0.02)
 
 
@@ -124,7 +131,8 @@ def test_in_a_level_turn_the_horizontal_force_is_centripetal_and_the_vertical_on
     force[0] += x8.thrust(float(velocity[0]), found.driven["propeller_speed"], density)
     ahead, right, down = level(tuple(map(float, force)), found.roll, found.pitch)
     v_ahead, v_right, v_down = level(tuple(map(float, velocity)), found.roll, found.pitch)
-    # Newton: m V omega towards the middle of the circle, across the course; the course's own direction is (v_ahead, v_right).
+    # Newton: m V omega towards the middle of the circle, across the course; the course's own
+    # direction is (v_ahead, v_right).
     across = (v_ahead * right - v_right * ahead) / found.airspeed
     assert v_down == pytest.approx(0.0, abs=1e-9)
     assert across == pytest.approx(
@@ -147,7 +155,8 @@ def test_a_climb_trim_climbs_at_the_asked_angle_when_flown(x8_fdm, trims, name):
     x8_fdm.command(dict(found.inputs))
     x8_fdm.hold(found.state(), 240)
     x8_fdm.step(120)
-    # One second in equilibrium: V sin(gamma). The thousandth of a m/s^2 of the earth's rotation lets it go off by millimetres.
+    # One second in equilibrium: V sin(gamma). The thousandth of a m/s^2 of the earth's rotation
+    # lets it go off by millimetres.
     climbed = x8_fdm.read("position/h-sl-meters") - found.altitude
     assert climbed == pytest.approx(found.airspeed * math.sin(found.climb_angle), abs=0.01)
     assert x8_fdm.read("velocities/vt-fps") * 0.3048 == pytest.approx(found.airspeed, abs=0.01)
@@ -161,7 +170,8 @@ def test_the_course_offset_of_a_trim_is_course_less_yaw(trims):
     assert found.course_offset() == pytest.approx(
         math.atan2(east, north), abs=1e-12
     )  # rounding of one rotation
-    # Sideslip and angle of attack, seen from above: beta cos(bank) - alpha sin(bank) and the square of either.
+    # Sideslip and angle of attack, seen from above: beta cos(bank) - alpha sin(bank) and the square
+    # of either.
     small = found.beta * math.cos(found.roll) - found.alpha * math.sin(found.roll)
     assert found.course_offset() == pytest.approx(small, abs=3e-3)
 

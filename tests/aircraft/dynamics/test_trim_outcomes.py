@@ -1,4 +1,6 @@
-"""What a trim says of itself: how it ended, what is left, and which limits hold it; and trims of aircraft with a rudder."""
+"""What a trim says of itself: how it ended, what is left, and which limits hold it; and trims of
+aircraft with a rudder.
+"""
 
 import math
 
@@ -62,8 +64,9 @@ def test_jsbsims_own_forces_carry_the_weight_and_turn_the_aircraft(jet, trims, n
     ahead, right, down = level(force, found.roll, found.pitch)
     v_ahead, v_right, v_down = level(velocity, found.roll, found.pitch)
     mass = weight / 9.80665
-    # Newton: the vertical force carries what gravity pulls, and across the course it is m V_horizontal omega. The earth turns
-    # (2 omega V = 0.012 m/s^2) and is round (V^2/R = 0.001 m/s^2), and gravity at the equator is 0.3 % less than the standard.
+    # Newton: the vertical force carries what gravity pulls, and across the course it is m
+    # V_horizontal omega. The earth turns (2 omega V = 0.012 m/s^2) and is round (V^2/R = 0.001
+    # m/s^2), and gravity at the equator is 0.3 % less than the standard.
     assert -down == pytest.approx(mass * gravity, rel=6e-3)
     horizontal = math.hypot(v_ahead, v_right)
     across = (v_ahead * right - v_right * ahead) / horizontal
@@ -93,7 +96,8 @@ def test_sideslip_is_zero_only_where_a_rudder_makes_it_so(trims):
     assert abs(trims["turning right"].beta) < 1e-6
 
 
-# By hand: at 40 m/s drag is 14 N and full throttle gives nothing; a climb of 1 rad needs 28 N of thrust of 19.
+# By hand: at 40 m/s drag is 14 N and full throttle gives nothing; a climb of 1 rad needs 28 N of
+# thrust of 19.
 @pytest.mark.parametrize("condition", [{"airspeed": 40.0}, {"airspeed": 20.0, "climb_angle": 1.0}])
 def test_a_condition_that_takes_more_than_the_throttle_gives_says_so(x8_fdm, condition):
     found = search_trim(x8_fdm, altitude=100.0, **condition)
@@ -105,8 +109,8 @@ def test_a_condition_that_takes_more_than_the_throttle_gives_says_so(x8_fdm, con
         trim(x8_fdm, altitude=100.0, **condition)
 
 
-# By hand: 5 m/s needs a lift coefficient of 2.9, an angle of attack of 0.7 rad; a dive of 0.5 rad needs 16 N of drag at 20 m/s,
-# where there are 5 and what an idle propeller adds.
+# By hand: 5 m/s needs a lift coefficient of 2.9, an angle of attack of 0.7 rad; a dive of 0.5 rad
+# needs 16 N of drag at 20 m/s, where there are 5 and what an idle propeller adds.
 @pytest.mark.parametrize("condition", [{"airspeed": 5.0}, {"airspeed": 20.0, "climb_angle": -0.5}])
 def test_a_condition_far_from_any_equilibrium_says_how_far_within_all_limits(x8_fdm, condition):
     found = search_trim(x8_fdm, altitude=100.0, **condition)

@@ -1,4 +1,6 @@
-"""The Aerosonde's model in JSBSim, part by part, against what Beard and McLain publish: forces, propulsion, trims, linear model."""
+"""The Aerosonde's model in JSBSim, part by part, against what Beard and McLain publish: forces,
+propulsion, trims, linear model.
+"""
 
 import math
 
@@ -20,8 +22,8 @@ RAD_S_PER_RPM = math.pi / 30.0
 
 LAGS = bm.Lags()
 
-# Airspeed [m/s], alpha, beta [rad], rates [rad/s], elevator, aileron, rudder [rad]. Each derivative on its own, then all together,
-# attached and through the stall at 0.47 rad on both sides.
+# Airspeed [m/s], alpha, beta [rad], rates [rad/s], elevator, aileron, rudder [rad]. Each derivative
+# on its own, then all together, attached and through the stall at 0.47 rad on both sides.
 STILL = (0.0, 0.0, 0.0)
 CONDITIONS = [
     *(
@@ -47,7 +49,9 @@ def fdm():
 
 
 def hold(fdm, airspeed, alpha, beta, rates, surfaces, throttle=0.7):
-    """Hold the aircraft in this motion until servos and propeller stand; return the density [kg/m^3]."""
+    """Hold the aircraft in this motion until servos and propeller stand; return the density
+    [kg/m^3].
+    """
     commands = {
         name: deflection / bm.FULL_DEFLECTION
         for name, deflection in zip(bm.SURFACES, surfaces, strict=True)
@@ -78,8 +82,8 @@ def test_aerodynamic_forces_and_moments_are_those_of_the_published_coefficients(
     expected_force, expected_moment = bm.aero(
         body_velocity(airspeed, alpha, beta), rates, surfaces, density
     )
-    # JSBSim's unit factors carry eight digits or so; the blend multiplies those of its exponent by 50. Absolute: a millionth of
-    # what a coefficient of 0.05 gives at 25 m/s.
+    # JSBSim's unit factors carry eight digits or so; the blend multiplies those of its exponent by
+    # 50. Absolute: a millionth of what a coefficient of 0.05 gives at 25 m/s.
     np.testing.assert_allclose(force, expected_force, rtol=2e-6, atol=1e-5)
     np.testing.assert_allclose(moment, expected_moment, rtol=2e-6, atol=1e-5)
 
@@ -90,8 +94,8 @@ def test_lift_falls_past_the_stall(fdm):
         for alpha in (0.3, 0.45, 0.55):
             hold(fdm, 25.0, alpha, 0.0, STILL, STILL)
             lifts.append(fdm.read("aero/coefficient/CL"))
-    # By hand from equation 4.9: 0.23 + 5.61 * 0.3 = 1.91 attached; 2 sin^2(0.55) cos(0.55) = 0.466 as a flat plate, with 2 % of
-    # the linear 3.3 left at four widths of the blend.
+    # By hand from equation 4.9: 0.23 + 5.61 * 0.3 = 1.91 attached; 2 sin^2(0.55) cos(0.55) = 0.466
+    # as a flat plate, with 2 % of the linear 3.3 left at four widths of the blend.
     assert lifts[0] == pytest.approx(1.91, abs=0.01)
     assert lifts[1] > 1.5 > lifts[2]
     assert lifts[2] == pytest.approx(0.466 + 0.018 * (3.32 - 0.466), abs=0.01)
@@ -101,7 +105,8 @@ def test_mass_and_inertia_are_the_published_ones(fdm):
     with fdm.frozen():
         hold(fdm, 25.0, 0.05, 0.0, STILL, STILL)
     assert fdm.read("inertia/mass-slugs") * 14.593902937 == pytest.approx(bm.MASS, rel=1e-7)
-    # JSBSim's kg m^2 is 9e-5 off (test_inertia). The sign of Jxz shows in how it answers moments (the doublets of verification).
+    # JSBSim's kg m^2 is 9e-5 off (test_inertia). The sign of Jxz shows in how it answers moments
+    # (the doublets of verification).
     for name, published in (("ixx", bm.JX), ("iyy", bm.JY), ("izz", bm.JZ)):
         assert fdm.read(f"inertia/{name}-slugs_ft2") * NM_PER_LBF_FT == pytest.approx(
             published, rel=2e-4
@@ -123,7 +128,8 @@ def test_the_propeller_settles_where_the_published_quadratic_says_and_pulls_as_m
     fdm, airspeed, throttle
 ):
     density, speed, thrust = settled(fdm, airspeed, throttle)
-    # Interpolation in steps of 0.01 is 2.7e-6 of C_T and 0.4e-6 of C_Q off, and JSBSim's horsepower 1.3e-5 of the torque.
+    # Interpolation in steps of 0.01 is 2.7e-6 of C_T and 0.4e-6 of C_Q off, and JSBSim's horsepower
+    # 1.3e-5 of the torque.
     assert speed == pytest.approx(bm.settled_propeller_speed(throttle, airspeed, density), rel=1e-5)
     unit = density * (speed / (2.0 * math.pi)) ** 2 * bm.PROPELLER_DIAMETER**4
     assert thrust == pytest.approx(bm.thrust(airspeed, speed, density), abs=3e-6 * unit)
@@ -182,18 +188,20 @@ def test_the_published_equations_are_in_balance_at_every_trim(fdm, name):
     rates = dict(
         zip(bm.FLOWN_STATES, bm.flown_rates(*published_state(found), world, LAGS), strict=True)
     )
-    # The earth turns (2 omega V = 4e-3 m/s^2 where motion is not north, in turns) and is round (V^2/R = 1e-4 m/s^2).
+    # The earth turns (2 omega V = 4e-3 m/s^2 where motion is not north, in turns) and is round
+    # (V^2/R = 1e-4 m/s^2).
     coriolis = 2.0 * 7.292e-5 * found.airspeed
     assert (rates["u"], rates["v"], rates["w"]) == pytest.approx((0.0, 0.0, 0.0), abs=coriolis)
-    # A thousandth of full elevator gives 0.03 rad/s^2. What is left is density (2e-5) and inertia (9e-5) of moments that balance.
+    # A thousandth of full elevator gives 0.03 rad/s^2. What is left is density (2e-5) and inertia
+    # (9e-5) of moments that balance.
     assert (rates["p"], rates["q"], rates["r"]) == pytest.approx((0.0, 0.0, 0.0), abs=1e-3)
     assert (rates["roll"], rates["pitch"]) == pytest.approx((0.0, 0.0), abs=1e-12)  # rounding
     assert rates["yaw"] == pytest.approx(found.yaw_rate, abs=1e-12)
     assert rates["altitude"] == pytest.approx(
         found.airspeed * math.sin(found.climb_angle), abs=1e-9
     )
-    # rad/s^2. Interpolation in steps of 0.01 is 4e-7 of C_Q off, whose unit is 390 N m at 30 m/s, on a rotor of 2.1e-3 kg m^2; and
-    # JSBSim's horsepower is 1.3e-5 of 1 N m.
+    # rad/s^2. Interpolation in steps of 0.01 is 4e-7 of C_Q off, whose unit is 390 N m at 30 m/s,
+    # on a rotor of 2.1e-3 kg m^2; and JSBSim's horsepower is 1.3e-5 of 1 N m.
     assert rates["propeller_speed"] == pytest.approx(0.0, abs=0.09)
     assert found.beta == pytest.approx(0.0, abs=1e-9)  # what the rudder is for
     assert found.residual < 1e-5
@@ -222,7 +230,8 @@ def test_the_poles_of_the_linear_model_are_those_of_the_published_equations(bank
     found_poles = model.poles()
     for pole in expected:
         nearest = found_poles[np.argmin(np.abs(found_poles - pole))]
-        # The propeller's pole k (52 rad/s) is read from JSBSim's Euler steps as -ln(1 - k dt)/dt, 2.2 % more in steps of 1/1200 s.
-        # Otherwise inertia 9e-5, and 0.6 % of thrust's slope for the phugoid; the earth's rate, 7e-5 rad/s, for the slowest.
+        # The propeller's pole k (52 rad/s) is read from JSBSim's Euler steps as -ln(1 - k dt)/dt,
+        # 2.2 % more in steps of 1/1200 s. Otherwise inertia 9e-5, and 0.6 % of thrust's slope for
+        # the phugoid; the earth's rate, 7e-5 rad/s, for the slowest.
         assert abs(nearest - pole) < (0.025 if pole.real < -45.0 else 2e-3) * abs(pole) + 1e-3, pole
     assert len(found_poles) == len(expected)

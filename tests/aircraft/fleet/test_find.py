@@ -1,4 +1,6 @@
-"""Finding aircraft by name: those of this project, those of JSBSim, and why some of those cannot be flown."""
+"""Finding aircraft by name: those of this project, those of JSBSim, and why some of those cannot be
+flown.
+"""
 
 import re
 from dataclasses import replace
@@ -209,7 +211,8 @@ MAY = "; it needs elevator, aileron, throttle, may have rudder, and no others: c
             {"name": "A&B/C"},
             "'A&B/C' is no name of an aircraft; use letters, digits, '_', '-' and '.': correct its spec",
         ),
-        # Of other types than the spec declares: each was a traceback, or was taken for something else.
+        # Of other types than the spec declares: each was a traceback, or was taken for something
+        # else.
         ({"name": None}, "name is None, of type NoneType; it must be text; correct its spec"),
         (
             {"root": "models"},

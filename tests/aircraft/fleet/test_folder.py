@@ -1,4 +1,6 @@
-"""Aircraft of the user: a folder with a JSBSim model. What is found of it, what its settings say, and what is refused."""
+"""Aircraft of the user: a folder with a JSBSim model. What is found of it, what its settings say,
+and what is refused.
+"""
 
 import math
 import re
@@ -69,7 +71,8 @@ def test_jsbsim_flies_it_with_its_own_weight_and_with_engine_and_propeller_of_js
     ) == pytest.approx(150.0, abs=1e-9)
 
 
-# As JSBSim searches: the model's folder and its Engines, then the root beside it; JSBSim's own only where there is none.
+# As JSBSim searches: the model's folder and its Engines, then the root beside it; JSBSim's own only
+# where there is none.
 @pytest.mark.parametrize("place", ["fleet/heavy", "fleet/heavy/Engines", "engine"])
 def test_engines_are_found_in_the_folder_in_its_engines_and_beside_the_directory(
     heavy, tmp_path, place

@@ -1,4 +1,6 @@
-"""Aircraft that a Python file or an installed package adds are found, listed and trimmed; what is not an aircraft is refused."""
+"""Aircraft that a Python file or an installed package adds are found, listed and trimmed; what is
+not an aircraft is refused.
+"""
 
 import pytest
 

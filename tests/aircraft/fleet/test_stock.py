@@ -1,4 +1,6 @@
-"""JSBSim's own aircraft in the wrapper: engines run, gear is up, fuel stays, and places are reached again."""
+"""JSBSim's own aircraft in the wrapper: engines run, gear is up, fuel stays, and places are reached
+again.
+"""
 
 import pytest
 

@@ -1,4 +1,6 @@
-"""Faults of aircraft of other makes, flown by hand: what the autopilot does about them is in tests/innerloop."""
+"""Faults of aircraft of other makes, flown by hand: what the autopilot does about them is in
+tests/innerloop.
+"""
 
 import pytest
 
@@ -34,7 +36,8 @@ def failable(tmp_path):
 
 @pytest.mark.parametrize(
     ("name", "airspeed", "aileron", "play"),
-    # Half the hysteresis of the elevator's servo of JSBSim's Cessna, 0.05 rad in its file; this project's Aerosonde has none.
+    # Half the hysteresis of the elevator's servo of JSBSim's Cessna, 0.05 rad in its file; this
+    # project's Aerosonde has none.
     [
         ("aerosonde", 25.0, "fcs/aileron-pos-rad", 0.0),
         ("c172x", 55.0, "fcs/left-aileron-pos-rad", 0.025),

@@ -148,10 +148,12 @@ def test_hold_releases_at_the_asked_place_with_the_asked_yaw_and_motion(x8_fdm, 
     north, east = frame.to_local(
         x8_fdm.read("position/lat-geod-rad"), x8_fdm.read("position/long-gc-rad")
     )
-    # In two seconds the equator turns away by 930 m; 0.1 m is a thousandth of a percent of a plume crossing of kilometres.
+    # In two seconds the equator turns away by 930 m; 0.1 m is a thousandth of a percent of a plume
+    # crossing of kilometres.
     assert math.hypot(north, east) < 0.1
     assert x8_fdm.read("position/h-sl-meters") == pytest.approx(120.0, abs=0.1)
-    # The earth turns by 1.5e-4 rad meanwhile: an attitude held against the stars instead would be that far off.
+    # The earth turns by 1.5e-4 rad meanwhile: an attitude held against the stars instead would be
+    # that far off.
     off = x8_fdm.read("attitude/psi-rad") - yaw
     assert math.remainder(off, 2.0 * math.pi) == pytest.approx(0.0, abs=1e-6)
     assert x8_fdm.read("attitude/phi-rad") == pytest.approx(0.3, abs=1e-6)
@@ -163,7 +165,8 @@ def test_hold_releases_at_the_asked_place_with_the_asked_yaw_and_motion(x8_fdm, 
 def test_hold_lets_servos_and_propeller_come_to_rest(x8_fdm):
     x8_fdm.command({"elevator": 0.1, "aileron": 0.05, "throttle": 0.6})
     x8_fdm.hold(SOMEWHERE, 240)
-    # Elevons mix to command times 0.5236 rad (model file). Two seconds are 80 servo time constants: nothing is left.
+    # Elevons mix to command times 0.5236 rad (model file). Two seconds are 80 servo time constants:
+    # nothing is left.
     assert x8_fdm.read("fcs/elevator-pos-rad") == pytest.approx(0.05236, abs=1e-12)
     assert x8_fdm.read("fcs/aileron-pos-rad") == pytest.approx(0.02618, abs=1e-12)
     speed = x8_fdm.read("propulsion/engine/propeller-rpm")
@@ -223,7 +226,8 @@ def test_two_aircraft_do_not_share_state(x8_fdm):
 
 @pytest.mark.parametrize("throttle", [0.5, 0.9])
 def test_a_slow_engine_settles_where_it_would_at_its_own_pace(throttle):
-    # The Cessna's piston engine changes its speed in a second: from 0.7 of its throttle it takes a thousand steps and more.
+    # The Cessna's piston engine changes its speed in a second: from 0.7 of its throttle it takes a
+    # thousand steps and more.
     fdm = Fdm(find_spec("c172x"))
     fdm.command({"throttle": 0.7})
     fdm.place(
@@ -238,11 +242,13 @@ def test_a_slow_engine_settles_where_it_would_at_its_own_pace(throttle):
         steps, run = [], fdm.run
         fdm.run = lambda: steps.append(run())
         assert fdm.settle(2e-9)
-        # After 120 steps it is sped up eightfold: in less than half of the steps that the time takes.
+        # After 120 steps it is sped up eightfold: in less than half of the steps that the time
+        # takes.
         assert len(steps) < 0.5 * (fdm.read(CLOCK) - began) / TIME_STEP
         settled = fdm.acceleration_body()[0], fdm.read("propulsion/engine/engine-rpm")
         fdm.step(2400)
-        # Twenty seconds more change nothing: 2e-9 m/s^2 a step is 2e-7 from the end, of an acceleration that changed by 1e-1.
+        # Twenty seconds more change nothing: 2e-9 m/s^2 a step is 2e-7 from the end, of an
+        # acceleration that changed by 1e-1.
         assert abs(settled[0] - before) > 0.1
         assert fdm.acceleration_body()[0] == pytest.approx(settled[0], abs=2e-7)
         assert fdm.read("propulsion/engine/engine-rpm") == pytest.approx(settled[1], rel=1e-7)

@@ -32,12 +32,13 @@ def test_flightgears_packets_say_where_the_aircraft_is():
         fdm.place(SOMEWHERE)
         fdm.step(12)
         packet = receiver.recv(2048)
-    # FGNetFDM of FlightGear's net_fdm.hxx, version 24: 408 bytes, big-endian; version, padding, longitude, latitude, altitude
-    # [rad, rad, m].
+    # FGNetFDM of FlightGear's net_fdm.hxx, version 24: 408 bytes, big-endian; version, padding,
+    # longitude, latitude, altitude [rad, rad, m].
     assert len(packet) == 408
     assert struct.unpack(">I", packet[:4]) == (24,)
     longitude, latitude, altitude = struct.unpack(">ddd", packet[8:32])
-    # A tenth of a second at 20 m/s is 3e-7 rad; altitude is that of the centre of gravity, to a foot of its climb.
+    # A tenth of a second at 20 m/s is 3e-7 rad; altitude is that of the centre of gravity, to a
+    # foot of its climb.
     assert (latitude, longitude) == pytest.approx((0.01, -0.02), abs=1e-6)
     assert altitude == pytest.approx(120.0, abs=1.0)
 
@@ -78,7 +79,8 @@ def test_a_paced_simulation_waits_for_the_clock_and_catches_up(monkeypatch):
     run = paced(step, 1.0)
     for _ in range(4):
         run()
-    # The first step is 0.9 s early; the second ends 1.5 s late, the third 0.6 s; the fourth is 0.3 s early again.
+    # The first step is 0.9 s early; the second ends 1.5 s late, the third 0.6 s; the fourth is 0.3
+    # s early again.
     assert slept == pytest.approx([0.9, 0.3])
     assert now[0] == pytest.approx(104.0)
     assert math.isclose(sum(slept), 1.2)

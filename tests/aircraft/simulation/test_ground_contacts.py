@@ -1,4 +1,6 @@
-"""Copies of models without ground contacts: they fly the same, and a model that reads its contacts keeps them."""
+"""Copies of models without ground contacts: they fly the same, and a model that reads its contacts
+keeps them.
+"""
 
 from dataclasses import replace
 

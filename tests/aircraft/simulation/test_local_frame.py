@@ -31,15 +31,17 @@ def test_it_is_the_azimuthal_equidistant_frame_at_the_origin(distance, error):
     for azimuth in np.radians(range(0, 360, 10)):
         north, east = distance * math.cos(azimuth), distance * math.sin(azimuth)
         latitude, longitude = (float(angle) for angle in whole.to_geodetic(north, east))
-        # The other frame is good to 2e-4 m at 20 km, growing as the fifth power; this one is better.
+        # The other frame is good to 2e-4 m at 20 km, growing as the fifth power; this one is
+        # better.
         assert EquatorFrame(60.0).to_local(latitude, longitude) == pytest.approx(
             (north, east), abs=error
         )
 
 
 def test_a_degree_has_its_surveyed_length():
-    # WGS 84: near the equator a degree of latitude is 110 574 m, one of longitude 111 319 m (tables after NIMA TR8350.2, in whole
-    # metres). Tolerance: that rounding, and a length against a radius of curvature.
+    # WGS 84: near the equator a degree of latitude is 110 574 m, one of longitude 111 319 m (tables
+    # after NIMA TR8350.2, in whole metres). Tolerance: that rounding, and a length against a radius
+    # of curvature.
     frame, degree = EquatorFrame(), math.radians(1.0)
     assert frame.north_scale * degree == pytest.approx(110574.0, abs=1.0)
     assert frame.east_scale * degree == pytest.approx(111319.0, abs=1.0)
@@ -97,7 +99,8 @@ def test_local_metres_are_the_integral_of_ground_velocity_over_a_long_flight(
     local = np.array([frame.to_local(latitude, longitude) for latitude, longitude in log[:, 2:]])
     local -= local[0]
     distance = 20.0 * 60.0
-    # Altitude moves by centimetres, no more; JSBSim's own steps make 1e-5 of the distance, here 1 cm in 1.2 km.
+    # Altitude moves by centimetres, no more; JSBSim's own steps make 1e-5 of the distance, here 1
+    # cm in 1.2 km.
     assert np.abs(local - integral).max() < 1e-5 * distance
     # And the flight went somewhere: circles of 200 m radius, or kilometres.
     assert np.hypot(*local.T).max() > 390.0

@@ -43,12 +43,16 @@ UNREADABLE = [
     b'<?xml version="1.0" encoding="utf-7"?><system/>',
     b'<?xml version="1.0" encoding="punycode"?><system/>',
 ]
-"""Not closed, and in encodings that Python does not know, that it knows and its parser of XML does not, and that fits no file."""
+"""Not closed, and in encodings that Python does not know, that it knows and its parser of XML does
+not, and that fits no file.
+"""
 
 
 @pytest.fixture
 def probe(tmp_path):
-    """A root with a model that has one of everything that is left out, and a file for its autopilot."""
+    """A root with a model that has one of everything that is left out, and a file for its
+    autopilot.
+    """
     folder = tmp_path / "root" / "aircraft" / "probe"
     (folder / "Systems").mkdir(parents=True)
     (folder / "probe.xml").write_text(FLIGHT, encoding="utf-8")
@@ -99,7 +103,8 @@ def test_the_autopilots_properties_stay_at_rest_before_the_flight_controls_that_
     config = copied(probe, "probe", tmp_path / "copy")
     rest = config.findall("system")[-1]
     values = {p.text: float(p.get("value")) for p in rest}
-    # Declared ones, written ones, and components by the name that JSBSim gives them, from the model and from files.
+    # Declared ones, written ones, and components by the name that JSBSim gives them, from the model
+    # and from files.
     assert values == dict.fromkeys(
         (
             "ap/heading_hold",
@@ -190,8 +195,8 @@ def test_a_stock_aircrafts_own_autopilot_is_off(name):
 
 
 def test_a_copy_flies_under_the_stick_alone_as_the_original_does(tmp_path):
-    # The original with its autopilot off flies as the copy without one: the T-37 has none, so the two are the same model but for
-    # outputs. Its whole root is given to JSBSim as it stands.
+    # The original with its autopilot off flies as the copy without one: the T-37 has none, so the
+    # two are the same model but for outputs. Its whole root is given to JSBSim as it stands.
     spec = find_spec("T37")
     shutil.copytree(spec.root / "engine", tmp_path / "engine")
     shutil.copytree(spec.root / "aircraft" / "T37", tmp_path / "aircraft" / "T37")

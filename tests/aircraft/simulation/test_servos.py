@@ -32,8 +32,9 @@ def test_a_small_step_is_followed_with_a_lag_of_40_rad_a_second(x8_fdm, sign):
     # 0.05 of full deflection asks for 1.05 rad/s at most: well below the rate limit.
     size = sign * 0.05 * FULL
     share = step_answer(x8_fdm, {"elevator": sign * 0.05}, 24) / size
-    # JSBSim's lag takes the mean of old and new input over a step, which is half a step of delay; with dt/T = 1/3 the trapezoidal
-    # rule is then within 0.012 of the exponential (its series differs from order (dt/T)^3/12 on).
+    # JSBSim's lag takes the mean of old and new input over a step, which is half a step of delay;
+    # with dt/T = 1/3 the trapezoidal rule is then within 0.012 of the exponential (its series
+    # differs from order (dt/T)^3/12 on).
     time = TIME_STEP * (np.arange(1, 25) - 0.5)
     np.testing.assert_allclose(share, 1.0 - np.exp(-LAG * time), atol=0.012)
 
@@ -42,10 +43,12 @@ def test_a_small_step_is_followed_with_a_lag_of_40_rad_a_second(x8_fdm, sign):
 def test_a_large_step_is_followed_at_200_degrees_a_second(x8_fdm, sign):
     size = 0.8 * FULL
     positions = sign * step_answer(x8_fdm, {"elevator": sign * 0.8}, 60)
-    # JSBSim's actuator lags first and limits the rate of what comes out, so it goes at full rate until it meets the lagged command.
+    # JSBSim's actuator lags first and limits the rate of what comes out, so it goes at full rate
+    # until it meets the lagged command.
     time = TIME_STEP * np.arange(1, 61)
     lagged = size * (1.0 - np.exp(-LAG * (time - 0.5 * TIME_STEP)))
-    # Tolerance of the lag: as above. It is met at 0.12 s, when 1 % of the step is left, so the limit is what shows until then.
+    # Tolerance of the lag: as above. It is met at 0.12 s, when 1 % of the step is left, so the
+    # limit is what shows until then.
     np.testing.assert_allclose(positions, np.minimum(RATE_LIMIT * time, lagged), atol=0.012 * size)
     assert np.diff(positions).max() == pytest.approx(
         RATE_LIMIT * TIME_STEP, rel=1e-9
@@ -85,8 +88,8 @@ def test_elevator_and_aileron_are_the_symmetric_and_antisymmetric_part(x8_fdm):
 
 
 def test_positive_aileron_rolls_right_and_positive_elevator_pitches_down(x8_fdm):
-    # Trailing edge down is positive: C_mde < 0, and the left elevon down (C_lda > 0) lifts the left wing. The sizes have their own
-    # tests; C_m0 works against the elevator.
+    # Trailing edge down is positive: C_mde < 0, and the left elevon down (C_lda > 0) lifts the left
+    # wing. The sizes have their own tests; C_m0 works against the elevator.
     with x8_fdm.frozen():
         x8_fdm.command({"elevator": 0.3, "aileron": 0.2, "throttle": 0.5})
         x8_fdm.place(LEVEL)

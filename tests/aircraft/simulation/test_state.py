@@ -50,7 +50,8 @@ def test_level_follows_the_frames_definition():
 @given(airspeed=st.floats(0.1, 100.0), alpha=st.floats(-1.5, 1.5), beta=st.floats(-1.5, 1.5))
 def test_airspeed_and_its_angles_come_back_from_the_body_velocity(airspeed, alpha, beta):
     u, v, w = body_velocity(airspeed, alpha, beta)
-    # Definitions: V = |v|, tan(alpha) = w/u, sin(beta) = v/V. An arcsine near 1.5 rad loses a digit or two.
+    # Definitions: V = |v|, tan(alpha) = w/u, sin(beta) = v/V. An arcsine near 1.5 rad loses a digit
+    # or two.
     assert math.hypot(u, v, w) == pytest.approx(airspeed, rel=1e-14)
     assert math.atan2(w, u) == pytest.approx(alpha, abs=1e-12)
     assert math.asin(v / airspeed) == pytest.approx(beta, abs=1e-12)
@@ -72,7 +73,8 @@ def test_a_steady_turn_is_a_rotation_about_the_vertical(yaw_rate, roll, pitch):
 @given(rates=vectors, roll=rolls, pitch=pitches)
 def test_euler_rates_put_together_again_are_the_body_rates(rates, roll, pitch):
     roll_rate, pitch_rate, yaw_rate = euler_rates(rates, roll, pitch)
-    # omega = roll_rate x_body + pitch_rate y_between + yaw_rate z_down: the definition of 3-2-1 Euler angles.
+    # omega = roll_rate x_body + pitch_rate y_between + yaw_rate z_down: the definition of 3-2-1
+    # Euler angles.
     across = np.array([0.0, math.cos(roll), -math.sin(roll)])
     down = x8.body_from_ned(roll, pitch) @ np.array([0.0, 0.0, 1.0])
     np.testing.assert_allclose(
@@ -150,12 +152,13 @@ def test_course_rate_is_the_derivative_of_the_course_along_a_banking_turning_pat
 
 
 def test_while_the_bank_changes_the_course_rate_is_not_the_rate_of_yaw_and_sideslip():
-    # The note of course_rate: at 45 degrees of bank and alpha = 0.08 rad, course and psi + beta differ by about
-    # alpha sin(bank) = 0.06 rad. Tolerance: its one digit.
+    # The note of course_rate: at 45 degrees of bank and alpha = 0.08 rad, course and psi + beta
+    # differ by about alpha sin(bank) = 0.06 rad. Tolerance: its one digit.
     bank, velocity = math.radians(45.0), body_velocity(20.0, 0.08, 0.0)
     ahead, right, _ = level(velocity, bank, 0.06)
     assert abs(math.atan2(right, ahead)) == pytest.approx(0.06, abs=0.005)
-    # Rolling about its own axis, nose level, at 0.7 rad/s: yaw and sideslip stay, and the course turns by alpha cos(bank) of that.
+    # Rolling about its own axis, nose level, at 0.7 rad/s: yaw and sideslip stay, and the course
+    # turns by alpha cos(bank) of that.
     rates = (0.7, 0.0, 0.0)
     assert euler_rates(rates, bank, 0.0)[2] == 0.0
     turned = course_rate(velocity, tuple(float(a) for a in np.cross(rates, velocity)), bank, 0.0)

@@ -1,4 +1,6 @@
-"""The look at an aircraft whose files are the user's: however it is named, and not at those that come with project and JSBSim."""
+"""The look at an aircraft whose files are the user's: however it is named, and not at those that
+come with project and JSBSim.
+"""
 
 import shutil
 import subprocess

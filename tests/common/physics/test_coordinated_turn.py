@@ -8,7 +8,8 @@ from common.physics.coordinated_turn import bank_for_heading_rate, heading_rate_
 
 
 def test_a_coordinated_turn_balances_gravity():
-    # tan(bank) = V omega/g in a coordinated turn; at 45 degrees omega = g/V. Tolerances are roundings.
+    # tan(bank) = V omega/g in a coordinated turn; at 45 degrees omega = g/V. Tolerances are
+    # roundings.
     assert heading_rate_for_bank(math.radians(45.0), 20.0) == pytest.approx(
         9.80665 / 20.0, rel=1e-15
     )

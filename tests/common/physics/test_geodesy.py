@@ -20,7 +20,9 @@ PLACES = [
     (-90.0, 45.0),
     (1e-7, 180.0),
 ]
-"""Latitude and longitude [deg]: the equator, the Kattegat, the date line from both sides, near and on the poles."""
+"""Latitude and longitude [deg]: the equator, the Kattegat, the date line from both sides, near and
+on the poles.
+"""
 
 
 def along(azimuth, distance):
@@ -34,7 +36,8 @@ def test_places_within_20_km_are_where_the_geodesic_leads(latitude, longitude):
         for azimuth in range(0, 360, 15):
             there = Geodesic.WGS84.Direct(latitude, longitude, azimuth, distance)
             local = frame.to_local(math.radians(there["lat2"]), math.radians(there["lon2"]))
-            # Asked for is 1 cm; the arc's radius of curvature is the origin's: measured 0.11 mm at 20 km.
+            # Asked for is 1 cm; the arc's radius of curvature is the origin's: measured 0.11 mm at
+            # 20 km.
             assert math.dist([float(x) for x in local], along(azimuth, distance)) < 2e-4
             back = [
                 math.degrees(float(angle)) for angle in frame.to_geodetic(*along(azimuth, distance))
@@ -63,7 +66,8 @@ def test_true_north_is_where_the_geodesic_arrives_from(latitude, longitude):
 )
 def test_places_come_back(latitude, longitude, north, east):
     frame = LocalFrame(math.radians(latitude), math.radians(longitude))
-    # There and back the same radius is taken; rounding of 6.4e6 m is 1e-9 m. Bowring's latitude is good to 1e-11 rad here.
+    # There and back the same radius is taken; rounding of 6.4e6 m is 1e-9 m. Bowring's latitude is
+    # good to 1e-11 rad here.
     assert [float(x) for x in frame.to_local(*frame.to_geodetic(north, east))] == pytest.approx(
         [north, east], abs=0.02
     )

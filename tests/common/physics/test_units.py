@@ -8,13 +8,14 @@ from common.physics import units
 
 
 def test_a_nautical_mile_of_6076_feet_is_1852_metres():
-    # International nautical mile: 1852 m exactly (BIPM, SI brochure, 8th ed., table 8), or 6076.12 ft; tolerance: its last digit.
+    # International nautical mile: 1852 m exactly (BIPM, SI brochure, 8th ed., table 8), or 6076.12
+    # ft; tolerance: its last digit.
     assert pytest.approx(1852.0, abs=0.005 * 0.3048) == 6076.12 * units.METRES_PER_FOOT
 
 
 def test_a_knot_is_1_6878_feet_a_second():
-    # MIL-F-8785C gives the winds of its turbulence in knots; 1.68781 ft/s is the conversion of NIST SP 811, appendix B (half its
-    # last digit).
+    # MIL-F-8785C gives the winds of its turbulence in knots; 1.68781 ft/s is the conversion of NIST
+    # SP 811, appendix B (half its last digit).
     assert pytest.approx(1.68781 * 0.3048, abs=5e-6 * 0.3048) == units.METRES_PER_SECOND_PER_KNOT
 
 
@@ -49,6 +50,7 @@ def test_sixty_revolutions_a_minute_are_one_turn_a_second():
 
 
 def test_sea_level_density_in_slugs_per_cubic_foot_is_1_225_kilograms_per_cubic_metre():
-    # U.S. Standard Atmosphere 1976: 0.0023769 slug/ft^3 and 1.2250 kg/m^3; tolerance: half the last digit of the former.
+    # U.S. Standard Atmosphere 1976: 0.0023769 slug/ft^3 and 1.2250 kg/m^3; tolerance: half the last
+    # digit of the former.
     density = 0.0023769 * units.KG_PER_SLUG / units.METRES_PER_FOOT**3
     assert density == pytest.approx(1.2250, rel=5e-8 / 0.0023769)

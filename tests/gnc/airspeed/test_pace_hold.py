@@ -49,7 +49,8 @@ def test_the_gain_is_the_rate_of_the_steering_law_where_the_airspeed_is_quick_en
 def test_a_slow_airspeed_is_given_a_gain_that_does_not_overshoot():
     bandwidth = 0.4
     gain = design_speed_hold(**(X8 | {"bandwidth": bandwidth})).gain
-    # Position behind a first-order speed: s^2 + b s + b k has its poles together, where they are fastest, at k = b/4.
+    # Position behind a first-order speed: s^2 + b s + b k has its poles together, where they are
+    # fastest, at k = b/4.
     assert bandwidth**2 - 4.0 * bandwidth * gain == pytest.approx(0.0, abs=1e-12)
 
 
@@ -62,7 +63,8 @@ def test_what_cannot_be_held_is_refused(changed):
 
 
 def test_the_same_acceleration_turns_both_motions():
-    # 0.4 rad/s over the mean air at 20 m/s is 8 m/s^2, which at an airspeed of 16 m/s turns 0.5 rad/s.
+    # 0.4 rad/s over the mean air at 20 m/s is 8 m/s^2, which at an airspeed of 16 m/s turns 0.5
+    # rad/s.
     assert air_turn(0.4, speed=20.0, airspeed=16.0) == pytest.approx(0.5, rel=1e-12)
     assert air_turn(
         air_turn(0.4, speed=20.0, airspeed=16.0), speed=16.0, airspeed=20.0

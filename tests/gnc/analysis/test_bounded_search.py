@@ -55,8 +55,9 @@ def test_the_fastest_keeps_its_limit_and_with_a_shorter_look_ahead_would_not_or_
         found.look_ahead, steering_max=found.steering_max, **task
     )
     epsilon, radius = found.look_ahead
-    # At the same sigma; V/(2 omega_r) is the shortest R allowed. What tolerances leave unspent of the limit, 2e-4 of it, is less
-    # than what 10 % of R bring, V/R being some hundredth of the limit at least.
+    # At the same sigma; V/(2 omega_r) is the shortest R allowed. What tolerances leave unspent of
+    # the limit, 2e-4 of it, is less than what 10 % of R bring, V/R being some hundredth of the
+    # limit at least.
     shorter = look_ahead(epsilon / 0.9, 0.9 * radius)
     assert (
         shorter.radius < speed / (2.0 * turn)
@@ -76,7 +77,8 @@ def test_no_neighbour_of_the_fastest_is_faster_within_the_limit(reserve):
             for c in steps:
                 neighbour = look_ahead(a * found.look_ahead.epsilon, b * found.look_ahead.radius)
                 steering_max = c * found.steering_max
-                # The closed form may lead the search astray by 0.1 % of the time: docs, "The fastest parameters within a limit".
+                # The closed form may lead the search astray by 0.1 % of the time: docs, "The
+                # fastest parameters within a limit".
                 if time_of(neighbour, steering_max) < found.convergence_time * (1.0 - 0.0015):
                     faster.append((neighbour, steering_max))
     assert len(faster) > 20
@@ -110,15 +112,18 @@ def test_a_reference_that_spends_all_leaves_nothing_to_search():
 def test_the_look_ahead_is_not_made_shorter_than_a_slow_reference_damps():
     # A circle at 0.01 rad/s: V/(2 omega_r) = 971 m is critical damping. docs, "Convergence time".
     found = fastest(1.0 - 0.01 / LIMIT)
-    # The closed form of the search puts R there; the certain R is 0.1 % more, for it covers more states.
+    # The closed form of the search puts R there; the certain R is 0.1 % more, for it covers more
+    # states.
     assert SPEED / 0.02 * (1.0 - 1e-12) <= found.look_ahead.radius <= 1.005 * SPEED / 0.02
 
 
 def convergence(parameters, steering_max, turn, phi, *, distance=500.0, longest=1.5):
-    """Return when distance falls below 5 m to stay, from 16 directions, and the largest |omega|; ``longest`` is in estimates.
+    """Return when distance falls below 5 m to stay, from 16 directions, and the largest |omega|;
+    ``longest`` is in estimates.
 
-    The reference starts north, turning at ``turn(time)``; the vehicle starts with ``phi``. Runge-Kutta steps of a 500th of the
-    estimate, 0.2 s to 0.9 s, are some hundredths of a reference's turn.
+    The reference starts north, turning at ``turn(time)``; the vehicle starts with ``phi``.
+    Runge-Kutta steps of a 500th of the estimate, 0.2 s to 0.9 s, are some hundredths of a
+    reference's turn.
     """
     direction = np.linspace(0.0, 2.0 * math.pi, 16, endpoint=False)
     north, east = distance * np.cos(direction), distance * np.sin(direction)
@@ -162,7 +167,8 @@ def convergence(parameters, steering_max, turn, phi, *, distance=500.0, longest=
 
 def closing_time(parameters):
     """Return the estimate without the first turn, which a vehicle with phi = 0 does not make."""
-    # A steering so strong that it takes no time, but for the last part from 0.1 rad to itself: ln(1) = 0.
+    # A steering so strong that it takes no time, but for the last part from 0.1 rad to itself:
+    # ln(1) = 0.
     return time_of(parameters, 1e9) - math.log(math.pi / 0.1) / 1.5
 
 
@@ -174,7 +180,8 @@ def test_about_a_circling_reference_distance_closes_as_estimated_with_no_command
     since, largest = convergence(
         found.look_ahead, found.steering_max, lambda _: (1.0 - reserve) * LIMIT, 0.0
     )
-    # The estimate averages over the reference's circle; measured 0.95 to 1.03, the spread of where on the circle 5 m is crossed.
+    # The estimate averages over the reference's circle; measured 0.95 to 1.03, the spread of where
+    # on the circle 5 m is crossed.
     assert since == pytest.approx(closing_time(found.look_ahead), rel=0.07)
     assert largest <= found.bound <= LIMIT
 
@@ -190,7 +197,8 @@ def test_from_the_worst_course_the_estimate_holds_where_the_reference_turns_much
 
 
 def test_the_estimate_is_poor_where_the_reference_turns_slower_than_the_look_ahead_damps():
-    # omega_r = 0.05 rad/s against V/(2 R) = 0.16 rad/s: docs, "Convergence time". Some take thrice as long.
+    # omega_r = 0.05 rad/s against V/(2 R) = 0.16 rad/s: docs, "Convergence time". Some take thrice
+    # as long.
     since, _ = convergence(LOOK_AHEAD, 0.4, lambda _: 0.05, 0.0, longest=3.0)
     assert since.max() > 2.9 * closing_time(LOOK_AHEAD)
 

@@ -38,15 +38,17 @@ def test_omega_rho_is_that_of_the_derivation_and_the_distance_cancels_in_its_wei
     n = np.array([-z[1], z[0]]) / rho
     sin_r = n[0]
     w = n + 2.0 * epsilon * sin_r * e
-    # docs, step 2. The terms that cancel are of size 2 epsilon d sin(phi_r), at most 2 epsilon d^2/delta < 2, and rho comes from a
-    # difference that leaves 1 - sigma > 0.01 of it: roundings grow a hundredfold, twice.
+    # docs, step 2. The terms that cancel are of size 2 epsilon d sin(phi_r), at most 2 epsilon
+    # d^2/delta < 2, and rho comes from a difference that leaves 1 - sigma > 0.01 of it: roundings
+    # grow a hundredfold, twice.
     assert w @ w == pytest.approx(1.0 - 4.0 * epsilon * radius * sin_r**2, rel=0.0, abs=1e-10)
     assert abs(sin_r) <= distance / delta * (1.0 + 1e-12)
     closing = np.array([reference_speed - speed * math.cos(course), -speed * math.sin(course)])
     derived = (w @ closing + delta * turn * z[0] / rho) / rho
     state = relative_state(parameters, e[0], e[1], 0.0, course)
     _, omega_rho = relative_velocity(parameters, state, reference_speed, speed, turn)
-    # Roundings of delta-dot relative to its terms, 2 epsilon d V, divided by rho > 0.01 delta and met by sin(phi_r) <= d/delta.
+    # Roundings of delta-dot relative to its terms, 2 epsilon d V, divided by rho > 0.01 delta and
+    # met by sin(phi_r) <= d/delta.
     assert derived == pytest.approx(omega_rho, rel=1e-9, abs=1e-9)
 
 
@@ -79,7 +81,8 @@ def test_at_each_position_the_worst_course_and_turn_give_the_two_factors(
     speed_factor, turn_factor = (
         float(factor) for factor in factors(sigma, np.array(alpha), np.array(beta))
     )
-    # Courses every 0.1 degrees miss the crest of a cosine by (0.1 degrees)^2/8 = 4e-7 of its amplitude.
+    # Courses every 0.1 degrees miss the crest of a cosine by (0.1 degrees)^2/8 = 4e-7 of its
+    # amplitude.
     assert worst == pytest.approx(
         SPEED / parameters.radius * speed_factor + turn * turn_factor, rel=1e-6
     )
@@ -100,7 +103,8 @@ def test_no_point_of_a_cell_exceeds_the_cells_bounds_which_close_in(
     high = np.minimum(low + size, math.pi)
     at = low + np.array(inside)[:, None] * (high - low)
     for factor, at_most in zip(factors(sigma, *at), factors_at_most(sigma, low, high), strict=True):
-        # The bounds use the same sines and cosines: roundings, amplified by at most 1/(1 - sigma) = 1000 in rho.
+        # The bounds use the same sines and cosines: roundings, amplified by at most 1/(1 - sigma) =
+        # 1000 in rho.
         assert factor[0] <= at_most[0] * (1.0 + 1e-12)
     for factor, at_most in zip(factors(sigma, *low), factors_at_most(sigma, low, low), strict=True):
         # A root of the rounding of (1 - sigma)^-2 where the vehicle's factor vanishes.
@@ -151,7 +155,8 @@ def test_lengths_of_another_unit_have_the_same_bound(parameters, turn, steering_
     scaled = look_ahead(parameters.epsilon / scale, parameters.radius * scale)
     kept = {"reference_heading_rate_max": turn, "steering_max": steering_max, "tolerance": 0.01}
     bound = heading_rate_bound(parameters, speed=SPEED, **kept)
-    # Both lie within their tolerance of the same value, by the same cells; a rounding may add or drop one of those.
+    # Both lie within their tolerance of the same value, by the same cells; a rounding may add or
+    # drop one of those.
     assert heading_rate_bound(scaled, speed=scale * SPEED, **kept) == pytest.approx(bound, rel=0.01)
 
 
@@ -193,7 +198,8 @@ def test_the_least_bound_is_a_command_that_is_met_and_no_larger_one_is_met_head_
         steering_max=steering_max,
     )
     worst = distances_over[np.argmax(omega)]
-    # Steps of 1.5e-4 in alpha miss the crest by some (1.5e-4/(1 - sigma))^2/8 = 3e-5 at sigma = 0.99; elsewhere by far less.
+    # Steps of 1.5e-4 in alpha miss the crest by some (1.5e-4/(1 - sigma))^2/8 = 3e-5 at sigma =
+    # 0.99; elsewhere by far less.
     assert omega.max() == pytest.approx(least, rel=5e-5)
     assert omega.max() <= least * (1.0 + 1e-12)
     # The functions that fly command the same. Roundings, amplified by 1/(1 - sigma)^2 at most.
@@ -219,7 +225,8 @@ def test_states_head_on_come_close_to_the_worst_of_all(parameters, turn):
     least = heading_rate_bound_least(
         parameters, speed=SPEED, reference_heading_rate_max=turn, gain=1.5, steering_max=1e-9
     )
-    # docs, "In short": 0.75 % over sigma and omega_r R/V, measured; and 0.1 % by which the bound may lie high.
+    # docs, "In short": 0.75 % over sigma and omega_r R/V, measured; and 0.1 % by which the bound
+    # may lie high.
     assert worst <= 1.0085 * least
 
 
@@ -228,7 +235,8 @@ def test_states_head_on_come_close_to_the_worst_of_all(parameters, turn):
 def test_on_the_reference_itself_the_command_takes_the_references_turn_and_what_the_look_ahead_adds(
     parameters, turn, steering_max
 ):
-    # docs, "What is necessary": d = 0 makes rho = delta = R. So a reference that spends omega_max leaves no bound within it.
+    # docs, "What is necessary": d = 0 makes rho = delta = R. So a reference that spends omega_max
+    # leaves no bound within it.
     on_it = turn + SPEED / parameters.radius + min(steering_max, 0.75 * math.pi)
     assert command(parameters, 0.0, 0.0, -0.5 * math.pi, turn, 1.5, steering_max) == pytest.approx(
         on_it, rel=1e-12

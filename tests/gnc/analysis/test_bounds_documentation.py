@@ -56,7 +56,8 @@ def test_the_documentation_prints_the_costs_that_are_computed():
             continue
         found = fastest(1.0 - turn / LIMIT)
         epsilon, radius, steering_max, bound, duration = (float(cell) for cell in row[2:7])
-        # Printed to three or four digits; the search stops at 1e-4 of its shares, and time is flat there.
+        # Printed to three or four digits; the search stops at 1e-4 of its shares, and time is flat
+        # there.
         assert (epsilon, radius, steering_max) == pytest.approx(
             (*found.look_ahead, found.steering_max), rel=5e-3
         )

@@ -1,4 +1,6 @@
-"""Section IV.D by machine: the cascade of equations (31) to (35), and what is true of its argument for bounded trajectories."""
+"""Section IV.D by machine: the cascade of equations (31) to (35), and what is true of its argument
+for bounded trajectories.
+"""
 
 import math
 
@@ -34,14 +36,16 @@ from gnc.laws.delta import RelativeState, look_ahead, relative_velocity
 
 heading_rates = st.floats(-0.5, 0.5)
 speeds = st.floats(5.0, 40.0)
-# Any numbers, also those that no place of vehicle and reference has: as algebra the equations do not know of (15).
+# Any numbers, also those that no place of vehicle and reference has: as algebra the equations do
+# not know of (15).
 any_driven = st.builds(DrivenState, st.floats(60.0, 3000.0), st.floats(10.0, 3000.0), courses)
 
 
 @examples(200)
 @given(phi=courses, gain=gains, rate_max=rates_max)
 def test_h_has_the_sign_of_phi_and_is_proportional_within_its_bound(phi, gain, rate_max):
-    # Equation (30): h(0) = 0, phi h(phi) > 0 elsewhere, though the product itself may be too small for a floating-point number.
+    # Equation (30): h(0) = 0, phi h(phi) > 0 elsewhere, though the product itself may be too small
+    # for a floating-point number.
     assert math.copysign(1.0, h(phi, gain, rate_max)) == math.copysign(1.0, phi)
     # The shape is the code's own choice, and exact.
     assert abs(h(phi, gain, rate_max)) == min(gain * abs(phi), rate_max)
@@ -69,8 +73,8 @@ def test_under_law_30_the_system_21_is_the_cascade_31(
         reference_heading_rate,
         cascade_law(phi, omega_rho, gain, rate_max),
     )
-    # (31a) is exact: the same lines. In (31b) omega_rho cancels but for its rounding; it reaches some 1e4 rad/s where rho is short
-    # and delta long.
+    # (31a) is exact: the same lines. In (31b) omega_rho cancels but for its rounding; it reaches
+    # some 1e4 rad/s where rho is short and delta long.
     assert whole[:3] == driven_rates(LOOK_AHEAD, driven, phi, speed, reference_heading_rate)
     assert whole.phi == pytest.approx(
         driving_rate(phi, gain, rate_max), rel=0.0, abs=1e-15 * abs(omega_rho) + 1e-15
@@ -157,8 +161,8 @@ def test_equation_34_is_the_numerical_rate_of_33_along_the_unforced_system(start
     ahead, behind = (DrivenState(*moved(motion, time, here, way)) for way in (step, -step))
     numerical = (v_1_unforced_rate(ahead, SPEED) - v_1_unforced_rate(behind, SPEED)) / (2.0 * step)
     acceleration = v_1_unforced_acceleration(here, DrivenState(*motion(time, here)), SPEED)
-    # Over 3,000 random states it erred by 1.3e-5 m^2/s^2, a hundred times more at ten times the step; corners are allowed some ten
-    # times that. The second rate itself reaches 6e3.
+    # Over 3,000 random states it erred by 1.3e-5 m^2/s^2, a hundred times more at ten times the
+    # step; corners are allowed some ten times that. The second rate itself reaches 6e3.
     assert acceleration == pytest.approx(numerical, rel=0.0, abs=2e-4)
 
 
@@ -168,8 +172,9 @@ def test_distance_does_not_rise_where_phi_is_within_phi_r(start, share):
     # Turn the vehicle so that |phi| <= |phi_r|.
     there = relative(start)
     state = [*start[:5], start[5] - there.phi + share * there.phi_r]
-    # Equation (35): no term is positive there. First in Cartesian coordinates, where roundings reach 1e-16 of 424 m * 39 m/s and
-    # of the angles through z, 5e-16 of delta's 1 km times 39 m/s; then by the equation, without.
+    # Equation (35): no term is positive there. First in Cartesian coordinates, where roundings
+    # reach 1e-16 of 424 m * 39 m/s and of the angles through z, 5e-16 of delta's 1 km times 39 m/s;
+    # then by the equation, without.
     assert cartesian_v_1_rate(state) <= 1e-10
     assert v_1_rate_split(there._replace(phi=share * there.phi_r), SPEED) <= 0.0
 
@@ -179,8 +184,8 @@ def test_distance_does_not_rise_where_phi_is_within_phi_r(start, share):
 def test_distance_rises_right_behind_the_reference_as_soon_as_phi_is_not_zero(
     d, reference_course, beyond
 ):
-    # So the bound |phi| <= |phi_r| is tight: with phi_r = 0 and d behind the reference, rho - delta = d, and (35) becomes
-    # (rho - delta) V_r (1 - cos phi) = d V_r (1 - cos phi) > 0.
+    # So the bound |phi| <= |phi_r| is tight: with phi_r = 0 and d behind the reference, rho - delta
+    # = d, and (35) becomes (rho - delta) V_r (1 - cos phi) = d V_r (1 - cos phi) > 0.
     north, east = -d * math.cos(reference_course), -d * math.sin(reference_course)
     state = [0.0, 0.0, reference_course, north, east, reference_course + beyond]
     # Roundings of angles, 5e-16 of 300 m * 39 m/s; the least rise is 1 m * 19.42 m/s * 5e-5.
@@ -198,14 +203,16 @@ def test_along_flights_under_law_30_distance_does_not_rise_while_phi_is_within_p
         start, reference_heading_rate, gain=gain, rate_max=rate_max, duration=30.0, interval=0.02
     )
     within = np.array([abs(state.phi) <= abs(state.phi_r) for state in states])
-    # In 300 random flights it never rose by more than 1.3e-8 m from one such sample to the next, the integration's tolerance; in
-    # between phi_r may dip below phi, by the square of the interval. Where d does rise, it rises by up to 0.8 m a sample.
+    # In 300 random flights it never rose by more than 1.3e-8 m from one such sample to the next,
+    # the integration's tolerance; in between phi_r may dip below phi, by the square of the
+    # interval. Where d does rise, it rises by up to 0.8 m a sample.
     throughout = within[:-1] & within[1:]
     assert np.max(np.diff(distances)[throughout], initial=-1.0) <= 1e-6
 
 
 def test_the_distance_can_rise_again_after_phi_was_first_within_phi_r():
-    # Section IV.D says that it cannot, from the first such instant on. But phi_r passes through zero while phi still dies out.
+    # Section IV.D says that it cannot, from the first such instant on. But phi_r passes through
+    # zero while phi still dies out.
     start = [0.0, 0.0, OSCILLATION.eta, -150.0, 0.0, 2.0]
     times, states, distances = fly_law_30(
         start, oscillating, gain=0.1, rate_max=0.4, duration=40.0, interval=0.02
@@ -213,7 +220,8 @@ def test_the_distance_can_rise_again_after_phi_was_first_within_phi_r():
     within = np.array([abs(state.phi) <= abs(state.phi_r) for state in states])
     first = int(np.argmax(within))
     after = distances[first:]
-    # Measured once, to the tenth: phi is first within phi_r after 9.0 s, later outside again, and d rises by 1.5 m.
+    # Measured once, to the tenth: phi is first within phi_r after 9.0 s, later outside again, and d
+    # rises by 1.5 m.
     assert times[first] == pytest.approx(9.0, abs=0.1)
     assert np.count_nonzero(~within[first:]) > 0
     assert np.max(after - np.minimum.accumulate(after)) == pytest.approx(1.5, abs=0.1)

@@ -1,4 +1,6 @@
-"""The bound on the look-ahead delta along flights under law (30): EQUATIONS.md, "Why trajectories are bounded"."""
+"""The bound on the look-ahead delta along flights under law (30): EQUATIONS.md, "Why trajectories
+are bounded".
+"""
 
 import math
 
@@ -27,7 +29,8 @@ from gnc.laws.delta import look_ahead
 @examples(100)
 @given(phi=st.floats(-math.pi, math.pi), gain=gains, rate_max=rates_max)
 def test_the_excursion_time_is_the_integral_of_one_minus_cos_phi_along_31b(phi, gain, rate_max):
-    # Time runs as -dphi/h(phi) along (31b); the integrand is 0/0 at 0, where it goes to 0, and has a kink where h is held.
+    # Time runs as -dphi/h(phi) along (31b); the integrand is 0/0 at 0, where it goes to 0, and has
+    # a kink where h is held.
     expected, _ = quad(
         lambda angle: (1.0 - math.cos(angle)) / h(angle, gain, rate_max) if angle > 0.0 else 0.0,
         0.0,
@@ -41,7 +44,8 @@ def test_the_excursion_time_is_the_integral_of_one_minus_cos_phi_along_31b(phi, 
 
 
 def test_the_excursion_time_of_a_held_half_turn_and_of_a_small_angle():
-    # Held all the way at 0.5 rad/s, pi - sin(pi) over it; a small angle of a proportional law, phi^2/(4 gain) to phi^2/24.
+    # Held all the way at 0.5 rad/s, pi - sin(pi) over it; a small angle of a proportional law,
+    # phi^2/(4 gain) to phi^2/24.
     assert excursion_time(math.pi, 1e9, 0.5) == pytest.approx(2.0 * math.pi, rel=1e-8)
     assert excursion_time(0.01, 2.0, 1.0) == pytest.approx(0.01**2 / 8.0, rel=1e-5)
     assert excursion_time(0.0, 2.0, 1.0) == 0.0
@@ -52,8 +56,9 @@ def test_the_excursion_time_of_a_held_half_turn_and_of_a_small_angle():
 def test_delta_grows_no_faster_than_the_bound_says(start, epsilon, excess):
     parameters = look_ahead(epsilon, excess / (4.0 * epsilon))
     state = relative(start, parameters)
-    # EQUATIONS.md, "Why trajectories are bounded": delta-dot = 2 epsilon V_1-dot, V_1-dot <= rho V_r (1 - cos phi) by (35), and rho
-    # <= delta + d <= delta (1 + 1/(2 sqrt(epsilon R))). Relative roundings, of delta 100 times the least.
+    # EQUATIONS.md, "Why trajectories are bounded": delta-dot = 2 epsilon V_1-dot, V_1-dot <= rho
+    # V_r (1 - cos phi) by (35), and rho <= delta + d <= delta (1 + 1/(2 sqrt(epsilon R))). Relative
+    # roundings, of delta 100 times the least.
     share = 1.0 + 0.5 / math.sqrt(epsilon * parameters.radius)
     assert state.rho <= share * state.delta * (1.0 + 1e-14)
     rate = 2.0 * epsilon * cartesian_v_1_rate(start)
@@ -67,7 +72,8 @@ def test_rho_reaches_its_largest_share_of_delta_right_behind_the_reference(
     epsilon, excess, reference_course
 ):
     parameters = look_ahead(epsilon, excess / (4.0 * epsilon))
-    # d/(epsilon d^2 + R) is largest at d = sqrt(R/epsilon), and rho = delta + d with the vehicle right behind.
+    # d/(epsilon d^2 + R) is largest at d = sqrt(R/epsilon), and rho = delta + d with the vehicle
+    # right behind.
     d = math.sqrt(parameters.radius / epsilon)
     behind = [
         0.0,
@@ -91,18 +97,21 @@ def test_along_flights_under_law_30_delta_stays_below_its_bound(
     _, states, _ = fly_law_30(
         start, reference_heading_rate, gain=gain, rate_max=rate_max, duration=60.0, interval=0.25
     )
-    # At every instant, for what is left to come from there; 1e-6 for the integration's 1e-8 over some hundred steps.
+    # At every instant, for what is left to come from there; 1e-6 for the integration's 1e-8 over
+    # some hundred steps.
     left = np.array([delta_bound(LOOK_AHEAD, state, SPEED, gain, rate_max) for state in states])
     deltas = np.array([state.delta for state in states])
     ever_after = np.maximum.accumulate(deltas[::-1])[::-1]
     assert np.all(ever_after <= left * (1.0 + 1e-6))
-    # And the bound itself never rises along a flight, as it grows in delta and phi just as fast as they may.
+    # And the bound itself never rises along a flight, as it grows in delta and phi just as fast as
+    # they may.
     assert np.all(np.diff(left) <= 1e-6 * left[:-1])
 
 
 def test_a_flight_from_the_reference_on_the_opposite_course_and_its_bound():
-    # phi = pi is as far as phi goes, and I, the integral of 1 - cos phi, is Cin(0.2667)/1.5 + (pi - 0.2667 + sin 0.2667)/0.4 =
-    # 0.0118 + 7.8462 s. Exponent: 2 * 0.005/m * 19.42 m/s * (1 + 1/(2 sqrt(0.3))) * I = 0.37147/s * 7.858 s = 2.919; exp is 18.52.
+    # phi = pi is as far as phi goes, and I, the integral of 1 - cos phi, is Cin(0.2667)/1.5 + (pi -
+    # 0.2667 + sin 0.2667)/0.4 = 0.0118 + 7.8462 s. Exponent: 2 * 0.005/m * 19.42 m/s * (1 + 1/(2
+    # sqrt(0.3))) * I = 0.37147/s * 7.858 s = 2.919; exp is 18.52.
     start = [0.0, 0.0, OSCILLATION.eta, 0.0, 0.0, OSCILLATION.eta + 3.1]
     _, states, _ = fly_law_30(
         start, oscillating, gain=1.5, rate_max=0.4, duration=60.0, interval=0.25
@@ -111,5 +120,6 @@ def test_a_flight_from_the_reference_on_the_opposite_course_and_its_bound():
     assert delta_bound(LOOK_AHEAD, opposite, SPEED, 1.5, 0.4) == pytest.approx(
         60.0 * 18.52, rel=1e-3
     )
-    # The flight itself: d rises from 0 to 127 m, delta from 60 m to 141 m; measured once, to the metre.
+    # The flight itself: d rises from 0 to 127 m, delta from 60 m to 141 m; measured once, to the
+    # metre.
     assert max(state.delta for state in states) == pytest.approx(141.0, abs=1.0)

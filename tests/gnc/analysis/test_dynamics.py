@@ -1,4 +1,6 @@
-"""The nominal system, equations (19) to (21), and half the squared distance V_1, equations (22) and (23)."""
+"""The nominal system, equations (19) to (21), and half the squared distance V_1, equations (22) and
+(23).
+"""
 
 import math
 
@@ -56,7 +58,8 @@ def open_loop(state, omega_rho):
 def test_the_nominal_system_is_the_cartesian_motion_in_other_words(
     law, start, reference_heading_rate
 ):
-    # Equation (21) integrated on its own, with the integral of (35) beside it, against (1) and (13).
+    # Equation (21) integrated on its own, with the integral of (35) beside it, against (1) and
+    # (13).
     def nominal_rates(time, row):
         state, omega_r = RelativeState(*row[:4]), reference_heading_rate(time)
         _, omega_rho = relative_velocity(LOOK_AHEAD, state, SPEED, SPEED, omega_r)
@@ -73,8 +76,9 @@ def test_the_nominal_system_is_the_cartesian_motion_in_other_words(
     assert nominal.success
     expected, got = relative(cartesian.y[:, -1]), RelativeState(*nominal.y[:4, -1])
     north, east = cartesian.y[0, -1] - cartesian.y[3, -1], cartesian.y[1, -1] - cartesian.y[4, -1]
-    # Integrated to 1e-10 over some hundred steps; over 60 random starts of each law they came apart by 1.2e-9 of the lengths,
-    # 1.7e-9 rad and 1.6e-5 m^2 of up to 1e5. Some starts amplify more: where z is shortest and turns by 10 rad/s.
+    # Integrated to 1e-10 over some hundred steps; over 60 random starts of each law they came apart
+    # by 1.2e-9 of the lengths, 1.7e-9 rad and 1.6e-5 m^2 of up to 1e5. Some starts amplify more:
+    # where z is shortest and turns by 10 rad/s.
     assert (got.delta, got.rho) == pytest.approx((expected.delta, expected.rho), rel=1e-7)
     assert wrap(got.phi_r - expected.phi_r) == pytest.approx(0.0, abs=1e-7)
     assert wrap(got.phi - expected.phi) == pytest.approx(0.0, abs=1e-7)
@@ -94,8 +98,9 @@ def test_equation_20_follows_from_21_by_the_law_of_cosines_and_keeps_delta_what_
 ):
     delta, rho, phi_r, _ = state
     rates = state_rates(LOOK_AHEAD, state, SPEED, reference_heading_rate, heading_rate)
-    # d^2 = rho^2 + delta^2 - 2 rho delta cos(phi_r), differentiated: the four states know of the distance by three of them, and any
-    # four numbers keep their delta - epsilon d^2 for good, which is R where (15) is met at the start.
+    # d^2 = rho^2 + delta^2 - 2 rho delta cos(phi_r), differentiated: the four states know of the
+    # distance by three of them, and any four numbers keep their delta - epsilon d^2 for good, which
+    # is R where (15) is met at the start.
     chain = (
         2.0 * (rho - delta * math.cos(phi_r)) * rates.rho
         + 2.0 * (delta - rho * math.cos(phi_r)) * rates.delta
@@ -170,7 +175,8 @@ def test_the_rate_of_v_1_is_equation_23_whatever_the_control(
     step = 1e-4
     ahead, behind = moved(motion, 0.0, cartesian, step), moved(motion, 0.0, cartesian, -step)
     numerical = (v_1(relative(ahead)) - v_1(relative(behind))) / (2.0 * step)
-    # step^2/6 = 2e-9 of d^3(d^2/2)/dt^3, some 1e4 m^2/s^3; the rounding of rho^2, 1e6 m^2 times 2e-16, over the step.
+    # step^2/6 = 2e-9 of d^3(d^2/2)/dt^3, some 1e4 m^2/s^3; the rounding of rho^2, 1e6 m^2 times
+    # 2e-16, over the step.
     assert v_1_rate(relative(cartesian), SPEED) == pytest.approx(numerical, rel=0.0, abs=1e-4)
 
 
@@ -185,8 +191,9 @@ def test_the_rate_of_v_1_is_equation_23_whatever_the_control(
 def test_where_phi_equals_phi_r_distance_is_at_a_maximum_or_a_minimum_unless_both_are_zero(
     north, east, course, reference_heading_rate, heading_rate
 ):
-    # Section V, on figure 5: there (23) vanishes, not (26), for both move alike; and the second rate is d . (v_r-dot - v-dot) =
-    # rho V_r sin(phi) (omega - omega_r), which makes a maximum or a minimum.
+    # Section V, on figure 5: there (23) vanishes, not (26), for both move alike; and the second
+    # rate is d . (v_r-dot - v-dot) = rho V_r sin(phi) (omega - omega_r), which makes a maximum or a
+    # minimum.
     cartesian = [north, east, course, 0.0, 0.0, course]
     state = relative(cartesian)
     # Rounding of angles times 2 * 19 m/s * 1.5 km.
@@ -197,8 +204,8 @@ def test_where_phi_equals_phi_r_distance_is_at_a_maximum_or_a_minimum_unless_bot
         v_1_rate(relative(moved(motion, 0.0, cartesian, way)), SPEED) for way in (step, -step)
     )
     expected = state.rho * SPEED * math.sin(state.phi) * (heading_rate - reference_heading_rate)
-    # step^2/6 of the fourth rate: over 3,000 random states it erred by 4e-4 m^2/s^2, a hundred times more at ten times the step.
-    # The second rate itself reaches some 1e4.
+    # step^2/6 of the fourth rate: over 3,000 random states it erred by 4e-4 m^2/s^2, a hundred
+    # times more at ten times the step. The second rate itself reaches some 1e4.
     assert (ahead - behind) / (2.0 * step) == pytest.approx(expected, rel=0.0, abs=4e-3)
     assert v_2_rate(state, SPEED) == pytest.approx(
         -SPEED * state.rho * (1.0 - math.cos(state.phi)), abs=1e-9
@@ -206,6 +213,7 @@ def test_where_phi_equals_phi_r_distance_is_at_a_maximum_or_a_minimum_unless_bot
 
 
 def test_v_1_is_zero_off_x_d_too_where_delta_is_not_what_15_says():
-    # Equation (22) with phi_r = 0 is (rho - delta)^2/2, whatever their length; (15) at d = 0 leaves delta = R alone.
+    # Equation (22) with phi_r = 0 is (rho - delta)^2/2, whatever their length; (15) at d = 0 leaves
+    # delta = R alone.
     assert v_1(RelativeState(100.0, 100.0, 0.0, 0.0)) == 0.0
     assert RelativeState(100.0, 100.0, 0.0, 0.0) != equilibrium(LOOK_AHEAD)

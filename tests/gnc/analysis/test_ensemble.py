@@ -64,7 +64,8 @@ def test_the_heading_rate_of_a_reference_is_the_rate_of_its_course(time, rate):
     numerical = (
         refs.course_at(np.array([time + step])) - refs.course_at(np.array([time - step]))
     ) / (2.0 * step)
-    # Central difference: step^2/6 of omega_r's second derivative, below 1e-9; 500 rad of course rounded, 1e-13, over the step.
+    # Central difference: step^2/6 of omega_r's second derivative, below 1e-9; 500 rad of course
+    # rounded, 1e-13, over the step.
     assert refs.heading_rate_at(np.array([time])) == pytest.approx(numerical, rel=0.0, abs=1e-8)
     assert abs(refs.heading_rate_at(np.array([time]))[0]) <= refs.heading_rate_bound[0]
     assert refs.course_at(np.zeros(1)) == pytest.approx([0.4], abs=1e-15)
@@ -74,7 +75,8 @@ def test_an_oscillating_reference_is_the_one_of_equations_2_and_7():
     phase, time = 0.7, 33.0
     refs = oscillating(phase)
     angle = OSCILLATION.omega_0 * time + phase
-    # Section III: chi_r = eta cos(omega_0 t + phi_0) on a vessel's course of 0, omega_r = -A sin(omega_0 t + phi_0). Rounding.
+    # Section III: chi_r = eta cos(omega_0 t + phi_0) on a vessel's course of 0, omega_r = -A
+    # sin(omega_0 t + phi_0). Rounding.
     assert refs.course_at(np.array([time])) == pytest.approx(
         [OSCILLATION.eta * math.cos(angle)], abs=1e-13
     )
@@ -113,7 +115,8 @@ def test_the_rates_and_commands_of_an_ensemble_are_those_of_the_four_states(
     assert motion.phi(time, state)[0] == pytest.approx(there.phi, abs=1e-9)
     phi_rate = state_rates(LOOK_AHEAD, there, SPEED, rate, expected).phi
     if law is Steering.LYAPUNOV:
-        # sin(phi/2) = sin(phi_0/2) exp(-s), so that the rate of phi is -2 tan(phi/2) times that of s.
+        # sin(phi/2) = sin(phi_0/2) exp(-s), so that the rate of phi is -2 tan(phi/2) times that of
+        # s.
         assert -2.0 * math.tan(0.5 * there.phi) * rates[2, 0] == pytest.approx(
             phi_rate, rel=1e-8, abs=1e-8
         )
@@ -191,7 +194,8 @@ def test_the_mirrored_start_flies_the_mirrored_path(law, north, east, course, ra
         time_max=40.0,
         tolerances=Tolerances(relative=1e-8, absolute=1e-7),
     )
-    # Sine and cosine are odd and even to the last bit, and so is all that follows, but for the rounding of sums.
+    # Sine and cosine are odd and even to the last bit, and so is all that follows, but for the
+    # rounding of sums.
     assert result.distance[0] == pytest.approx(result.distance[1], rel=1e-6, abs=1e-6)
     assert result.phi[0] == pytest.approx(-result.phi[1], abs=1e-6)
     assert result.heading_rate_max[0] == pytest.approx(result.heading_rate_max[1], rel=1e-6)

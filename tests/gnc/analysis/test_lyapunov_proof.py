@@ -40,7 +40,8 @@ K_2 = 1.0 / K_1
 REFERENCES = pytest.mark.parametrize("reference_heading_rate", [oscillating, circling])
 
 
-# From behind, abeam, close by and almost opposite; not exactly opposite, where law (24) is singular.
+# From behind, abeam, close by and almost opposite; not exactly opposite, where law (24) is
+# singular.
 STARTS = pytest.mark.parametrize(
     "start", [(-250.0, 40.0, 0.5), (20.0, -150.0, -1.0), (3.0, 2.0, 2.5), (120.0, 5.0, 3.0)]
 )
@@ -61,7 +62,8 @@ def fly_law_24(reference_heading_rate, start, duration):
 @given(north=offsets, east=offsets, reference_course=courses, course=courses)
 def test_v_2_is_positive_everywhere_but_on_the_reference(north, east, reference_course, course):
     state = relative([north, east, reference_course, 0.0, 0.0, course])
-    # paper-notes, care 10: positive definite about x_d; a metre away or 0.1 rad off course is away from it.
+    # paper-notes, care 10: positive definite about x_d; a metre away or 0.1 rad off course is away
+    # from it.
     assume(math.hypot(north, east) > 1.0 or abs(state.phi) > 0.1)
     # The lesser of the two: K_2 (1 - cos 0.1) = 5, and half of 1 m squared.
     assert v_2(state, K_2) > 0.49
@@ -87,9 +89,10 @@ def test_under_law_24_the_rates_of_v_2_are_equations_26_and_27(
     rates = state_rates(LOOK_AHEAD, here, SPEED, omega_r, heading_rate)
     first = (v_2(ahead, K_2) - v_2(behind, K_2)) / (2.0 * step)
     second = (v_2_rate(ahead, SPEED) - v_2_rate(behind, SPEED)) / (2.0 * step)
-    # Central differences err by step^2/6 of the next but one derivative; phi moves at up to k_1 rho V_r tan(1) = 30 rad/s. Over
-    # 3,000 random states they erred by 3e-4 m^2/s and 1e-2 m^2/s^2, a hundred times more at ten times the step. Corners are allowed
-    # ten times that; the rates themselves reach some 1e4 and 1e6.
+    # Central differences err by step^2/6 of the next but one derivative; phi moves at up to k_1 rho
+    # V_r tan(1) = 30 rad/s. Over 3,000 random states they erred by 3e-4 m^2/s and 1e-2 m^2/s^2, a
+    # hundred times more at ten times the step. Corners are allowed ten times that; the rates
+    # themselves reach some 1e4 and 1e6.
     assert v_2_rate(here, SPEED) == pytest.approx(first, rel=0.0, abs=3e-3)
     assert v_2_acceleration(here, rates, SPEED) == pytest.approx(second, rel=0.0, abs=0.1)
 
@@ -114,7 +117,8 @@ def test_equation_26_is_the_rate_of_v_2_for_k_1_k_2_of_1_only(
     _, omega_rho = relative_velocity(LOOK_AHEAD, state, SPEED, SPEED, reference_heading_rate)
     rates = state_rates(LOOK_AHEAD, state, SPEED, reference_heading_rate, law_24(state, omega_rho))
     rate = v_1_rate(state, SPEED) + k_1_k_2 / K_1 * math.sin(state.phi) * rates.phi
-    # Otherwise (1 - k_1 k_2) rho V_r (1 - cos phi) is left over: never positive for k_1 k_2 >= 1, and (26) for 1.
+    # Otherwise (1 - k_1 k_2) rho V_r (1 - cos phi) is left over: never positive for k_1 k_2 >= 1,
+    # and (26) for 1.
     left_over = (1.0 - k_1_k_2) * state.rho * SPEED * (1.0 - math.cos(state.phi))
     # Roundings of 1e4 m^2 times up to k_1 rho V_r tan(1.55) = 1e3 rad/s.
     assert rate == pytest.approx(v_2_rate(state, SPEED) + left_over, rel=1e-10, abs=1e-6)
@@ -128,11 +132,12 @@ def test_equation_26_is_the_rate_of_v_2_for_k_1_k_2_of_1_only(
 def test_v_2_never_rises_under_law_24(start, reference_heading_rate):
     _, states, _ = fly_law_24(reference_heading_rate, start, 120.0)
     values = np.array([v_2(state, K_2) for state in states])
-    # Below equation (26), from sample to sample. At the end, where nothing changes any more, there are the integration's tolerance,
-    # 1e-8 m of d, and the squares' rounding: 1e-16 of (60 m)^2.
+    # Below equation (26), from sample to sample. At the end, where nothing changes any more, there
+    # are the integration's tolerance, 1e-8 m of d, and the squares' rounding: 1e-16 of (60 m)^2.
     assert np.max(np.diff(values)) <= 1e-10 * max(values[0], 1.0)
-    # And it does fall as much as (26) says: Simpson's rule over intervals of 0.2 s, which is coarse while phi moves at up to
-    # 30 rad/s: over 100 random starts it erred by up to 0.8 % of the start's V_2.
+    # And it does fall as much as (26) says: Simpson's rule over intervals of 0.2 s, which is coarse
+    # while phi moves at up to 30 rad/s: over 100 random starts it erred by up to 0.8 % of the
+    # start's V_2.
     fallen = simpson([v_2_rate(state, SPEED) for state in states], dx=0.2)
     assert values[-1] - values[0] == pytest.approx(fallen, rel=0.0, abs=0.02 * values[0] + 1e-3)
 
@@ -147,8 +152,9 @@ def test_under_law_24_the_states_converge_as_the_proof_says(reference_heading_ra
     rates = state_rates(
         LOOK_AHEAD, final, SPEED, reference_heading_rate(time), motion(time, cartesian[-1])[5]
     )
-    # (28): phi_r and phi go to zero, and with them V_2's rate; (29): so does phi_r's rate; so rho goes to delta, and delta to R.
-    # Convergence is exponential, and 250 s are ample: all is rounding by then, 1e-12. Of the look-ahead's 60 m, 1e-6 is 0.06 mm.
+    # (28): phi_r and phi go to zero, and with them V_2's rate; (29): so does phi_r's rate; so rho
+    # goes to delta, and delta to R. Convergence is exponential, and 250 s are ample: all is
+    # rounding by then, 1e-12. Of the look-ahead's 60 m, 1e-6 is 0.06 mm.
     assert abs(v_2_rate(final, SPEED)) < 1e-6
     assert abs(final.phi_r) < 1e-6
     assert abs(final.phi) < 1e-6
@@ -164,7 +170,8 @@ def test_under_law_24_the_states_converge_as_the_proof_says(reference_heading_ra
 def test_on_a_straight_reference_every_place_right_behind_is_at_rest_off_x_d(
     behind, reference_course
 ):
-    # Section IV.C says: rho goes to delta, as long as omega_r is not zero. With omega_r = 0 all that has phi_r = phi = 0 rests.
+    # Section IV.C says: rho goes to delta, as long as omega_r is not zero. With omega_r = 0 all
+    # that has phi_r = phi = 0 rests.
     position = [-behind * math.cos(reference_course), -behind * math.sin(reference_course)]
     state = relative([0.0, 0.0, reference_course, *position, reference_course])
     _, omega_rho = relative_velocity(LOOK_AHEAD, state, SPEED, SPEED, 0.0)
@@ -175,12 +182,14 @@ def test_on_a_straight_reference_every_place_right_behind_is_at_rest_off_x_d(
 
 
 def test_a_heading_rate_that_never_is_zero_but_dies_out_leaves_a_distance():
-    # The same for ever less of a turn: omega_r = exp(-t/2 s) 0.3 rad/s is zero at no time. It must not go to zero either.
+    # The same for ever less of a turn: omega_r = exp(-t/2 s) 0.3 rad/s is zero at no time. It must
+    # not go to zero either.
     _, states, cartesian = fly_law_24(
         lambda time: 0.3 * math.exp(-0.5 * time), [0.0, 0.0, 0.0, -100.0, 0.0, 0.0], 250.0
     )
     # (28) and (29) hold: all has come to rest to 1e-6 by then.
     assert max(abs(states[-1].phi_r), abs(states[-1].phi)) < 1e-6
-    # Of 100 m, 88.80 m are left for good; measured once, to the decimetre, for nothing but that it is far from zero matters.
+    # Of 100 m, 88.80 m are left for good; measured once, to the decimetre, for nothing but that it
+    # is far from zero matters.
     d = math.hypot(cartesian[-1][0] - cartesian[-1][3], cartesian[-1][1] - cartesian[-1][4])
     assert d == pytest.approx(88.8, abs=0.1)

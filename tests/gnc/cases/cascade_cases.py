@@ -37,7 +37,9 @@ def cascade_steering(gain, rate_max, reference_heading_rate):
 
 
 def fly_law_30(start, reference_heading_rate, *, gain, rate_max, duration, interval):
-    """Fly (30) in Cartesian coordinates; return times, relative states and distances [m] every ``interval`` seconds."""
+    """Fly (30) in Cartesian coordinates; return times, relative states and distances [m] every
+    ``interval`` seconds.
+    """
     motion = tracking_motion(
         cascade_steering(gain, rate_max, reference_heading_rate), reference_heading_rate
     )

@@ -1,4 +1,6 @@
-"""What the tests of the ensembles share: a vehicle, references and flights of many trajectories at once."""
+"""What the tests of the ensembles share: a vehicle, references and flights of many trajectories at
+once.
+"""
 
 import math
 

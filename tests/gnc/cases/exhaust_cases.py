@@ -93,7 +93,9 @@ class MadePlume:
 
 
 def spread_at(prior: PlumePrior, height: float) -> float:
-    """Return the spread in height of an axis so high [m]: the part that buoyancy makes goes with the rise."""
+    """Return the spread in height of an axis so high [m]: the part that buoyancy makes goes with
+    the rise.
+    """
     climbed, expected = float(prior.rise_of(height)), float(prior.rise_of(prior.height))
     return math.sqrt(prior.sigma_z**2 + BUOYANT_SPREAD**2 * (climbed**2 - expected**2))
 

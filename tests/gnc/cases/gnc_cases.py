@@ -1,7 +1,8 @@
-"""What the tests of the guidance share: the paper's vehicle, Cartesian motion to check against, and kinematic flights.
+"""What the tests of the guidance share: the paper's vehicle, Cartesian motion to check against, and
+kinematic flights.
 
-The paper does not print V_r and omega_max; 19.42 m/s and 0.503 rad/s reproduce its Sim. 3 (reference/paper-notes.md,
-"Parameters the paper does not print").
+The paper does not print V_r and omega_max; 19.42 m/s and 0.503 rad/s reproduce its Sim. 3
+(reference/paper-notes.md, "Parameters the paper does not print").
 """
 
 import math
@@ -35,10 +36,11 @@ DEPTH = int(os.environ.get("FUZZ_DEPTH", "1"))
 
 
 def examples(count):
-    """Settings of a property: no deadline, for time is not what is tested, and the same examples on every machine.
+    """Settings of a property: no deadline, for time is not what is tested, and the same examples on
+    every machine.
 
-    A quarter of ``count``, but twelve where there are as many: all of them, and more, with the environment variable FUZZ_DEPTH,
-    as in tests/test_fuzz.py.
+    A quarter of ``count``, but twelve where there are as many: all of them, and more, with the
+    environment variable FUZZ_DEPTH, as in tests/test_fuzz.py.
     """
     return settings(
         max_examples=max(min(count // 2, 12), count * DEPTH // 4), deadline=None, derandomize=True
@@ -77,9 +79,11 @@ def circling(time):
 
 
 def tracking_motion(steer, reference_heading_rate, *, reference_speed=SPEED, speed=SPEED):
-    """Return the right-hand side of the tracking problem in Cartesian coordinates: (1) and (13), nothing of the delta formulation.
+    """Return the right-hand side of the tracking problem in Cartesian coordinates: (1) and (13),
+    nothing of the delta formulation.
 
-    The state is the reference's north, east and course, then the vehicle's, whose heading rate is ``steer(state, time)``.
+    The state is the reference's north, east and course, then the vehicle's, whose heading rate is
+    ``steer(state, time)``.
     """
 
     def rates(time, state):
@@ -110,7 +114,9 @@ def relative(state, parameters=LOOK_AHEAD):
 
 @st.composite
 def tracking_starts(draw, *, phi_max=math.pi, reach=300.0):
-    """The reference at the origin, the vehicle up to ``reach`` [m] about it, phi no more than ``phi_max`` [rad] to either side."""
+    """The reference at the origin, the vehicle up to ``reach`` [m] about it, phi no more than
+    ``phi_max`` [rad] to either side.
+    """
     north, east, reference_course = (
         draw(st.floats(-reach, reach)),
         draw(st.floats(-reach, reach)),
@@ -156,7 +162,8 @@ def make_reference(oscillation, *, phase=0.0, centre=(0.0, 0.0), vessel_course=0
 
 
 def paper_parameters(reference, *, vessel=(0.0, 0.0), guard=None, airspeed_gain=0.0, **tracking):
-    """Return the guidance of the paper's flights: beside a vessel that is known exactly, at a velocity [m/s], in still air.
+    """Return the guidance of the paper's flights: beside a vessel that is known exactly, at a
+    velocity [m/s], in still air.
 
     A reference by itself is tracked from the first step on; ``DirectParameters`` may say otherwise.
     """
@@ -189,7 +196,9 @@ def motion(north, east, course, speed=SPEED, heading_rate=0.0):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class KinematicFlight:
-    """Histories, one entry per guidance step: position, commanded heading rate, distances to the reference and to the vessel."""
+    """Histories, one entry per guidance step: position, commanded heading rate, distances to the
+    reference and to the vessel.
+    """
 
     north: np.ndarray
     east: np.ndarray

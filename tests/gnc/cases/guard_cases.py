@@ -1,4 +1,6 @@
-"""What the tests of the keep-out guard share: discs, vehicles with a lag, random starts and commands."""
+"""What the tests of the keep-out guard share: discs, vehicles with a lag, random starts and
+commands.
+"""
 
 import math
 from collections import deque
@@ -24,7 +26,9 @@ distances = st.floats(0.0, 700.0)
 
 
 class DiscGuard:
-    """A keep-out guard asked about one disc, whose velocity it is told anew at each step; it may accelerate from then on."""
+    """A keep-out guard asked about one disc, whose velocity it is told anew at each step; it may
+    accelerate from then on.
+    """
 
     def __init__(self, acceleration=0.0, **parameters):
         self.guard = KeepoutGuard(GuardParameters(time_step=TIME_STEP, **parameters))
@@ -101,7 +105,9 @@ def make_guard(*, lag=0.4, delay=0.0, radius=RADIUS, heading_rate_max=HEADING_RA
 
 
 def moved(state, command, lag, duration, speed=SPEED):
-    """Return position in the air mass, course and heading rate after a held command: the project's own unicycle."""
+    """Return position in the air mass, course and heading rate after a held command: the project's
+    own unicycle.
+    """
     north, east, course, heading_rate = state
     if lag > 0.0:
         return lagged_move(north, east, course, heading_rate, speed, command, lag, duration)
@@ -119,7 +125,9 @@ class Steady:
 
 
 class Hunter:
-    """A disc that turns and speeds up towards the vehicle as hard as it may, and says its velocity with a constant error."""
+    """A disc that turns and speeds up towards the vehicle as hard as it may, and says its velocity
+    with a constant error.
+    """
 
     def __init__(self, velocity, *, acceleration, speed_max, error):
         self.velocity, self._acceleration, self._speed_max, self._error = (
@@ -144,7 +152,9 @@ class Hunter:
 
 
 def fly_guarded(guard, start, want, disc, *, lag, delay=0.0, duration=45.0, speed=SPEED):
-    """Return the closest approach to the disc's centre [m], and of each step whether the guard changed it and was lost."""
+    """Return the closest approach to the disc's centre [m], and of each step whether the guard
+    changed it and was lost.
+    """
     x, y, course, heading_rate = start
     under_way = deque([heading_rate] * round(delay / TIME_STEP))
     closest, changed, lost = math.hypot(x, y), [], []

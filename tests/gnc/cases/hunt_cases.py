@@ -1,4 +1,6 @@
-"""Vessels that hunt a vehicle as hard as they are declared to be able to, while their reports come late or not at all."""
+"""Vessels that hunt a vehicle as hard as they are declared to be able to, while their reports come
+late or not at all.
+"""
 
 import math
 from collections import deque
@@ -22,7 +24,9 @@ PIECE, FINE_PIECE = 0.025, 0.01
 
 
 class Hunt(NamedTuple):
-    """Closest approach [m], and at how many steps the guard changed its command, and at how many it was lost."""
+    """Closest approach [m], and at how many steps the guard changed its command, and at how many it
+    was lost.
+    """
 
     closest: float
     changed: int
@@ -67,7 +71,9 @@ def aim_at(tube, own, time):
 
 
 def as_it_was_known(reach):
-    """Return the discs of a guard that takes the vessel to be where its newest report says, and no more."""
+    """Return the discs of a guard that takes the vessel to be where its newest report says, and no
+    more.
+    """
 
     def tubes(time):
         newest = reach.tubes(time)[0]
@@ -77,7 +83,9 @@ def as_it_was_known(reach):
 
 
 def forgetful(guard):
-    """Return a guard that keeps off the disc that is nearest now, and knows none that it kept off before."""
+    """Return a guard that keeps off the disc that is nearest now, and knows none that it kept off
+    before.
+    """
 
     class Forgetful(KeepoutGuard):
         __slots__ = ()
@@ -102,7 +110,9 @@ def hunted(
     known=None,
     made=None,
 ):
-    """Return the hunt that a seed stands for: vessel, start and reports, which cease for a time after 40 s."""
+    """Return the hunt that a seed stands for: vessel, start and reports, which cease for a time
+    after 40 s.
+    """
     generator, duration = np.random.default_rng(seed), 100.0 + silence
     limits = replace(LIMITS, speed_max=speed_max)
     velocity = random_velocity(generator, float(generator.uniform(2.0, 0.9 * speed_max)))

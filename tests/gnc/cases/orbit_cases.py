@@ -9,7 +9,9 @@ from scipy.integrate import solve_ivp
 
 
 def assert_a_point_that_turns_so_flies(orbit, nu, start):
-    """Integrate a point from a place and course, turning at the orbit's heading rate; its path is that of the orbit's offsets."""
+    """Integrate a point from a place and course, turning at the orbit's heading rate; its path is
+    that of the orbit's offsets.
+    """
 
     def motion(time, state):
         return (
@@ -23,6 +25,7 @@ def assert_a_point_that_turns_so_flies(orbit, nu, start):
     flown = solve_ivp(
         motion, (0.0, orbit.period), start, t_eval=times, max_step=0.02, rtol=1e-9, atol=1e-9
     ).y
-    # Steps of 0.02 s over corners of the roll rate of 0.7 rad/s^2: 1e-5 m each, and that of the path's spline.
+    # Steps of 0.02 s over corners of the roll rate of 0.7 rad/s^2: 1e-5 m each, and that of the
+    # path's spline.
     assert along + nu * SPEED * times == pytest.approx(flown[0], rel=0.0, abs=1e-3)
     assert right == pytest.approx(flown[1], rel=0.0, abs=1e-3)

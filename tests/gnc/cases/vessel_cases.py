@@ -1,4 +1,6 @@
-"""What the tests of reachable sets share: vessels that do the worst they may, and their reports with errors, late or lost."""
+"""What the tests of reachable sets share: vessels that do the worst they may, and their reports
+with errors, late or lost.
+"""
 
 import math
 from dataclasses import dataclass, field
@@ -18,7 +20,9 @@ LIMITS = VesselLimits(
 
 @dataclass
 class Vessel:
-    """A vessel in double integrals of its acceleration, which is cut where it would exceed its largest speed."""
+    """A vessel in double integrals of its acceleration, which is cut where it would exceed its
+    largest speed.
+    """
 
     north: float = 0.0
     east: float = 0.0
@@ -27,14 +31,17 @@ class Vessel:
     limits: VesselLimits = LIMITS
 
     def accelerate(self, north, east, duration):
-        """Move on under a demanded acceleration [m/s^2], of which it does what its limits leave, exactly."""
+        """Move on under a demanded acceleration [m/s^2], of which it does what its limits leave,
+        exactly.
+        """
         share = min(1.0, self.limits.acceleration / max(math.hypot(north, east), 1e-300))
         faster = (
             self.velocity_north + share * north * duration,
             self.velocity_east + share * east * duration,
         )
         if math.hypot(*faster) > self.limits.speed_max:
-            # To the largest speed in that direction, if that is within its acceleration; else it goes straight on.
+            # To the largest speed in that direction, if that is within its acceleration; else it
+            # goes straight on.
             cut = self.limits.speed_max / math.hypot(*faster) * (1.0 - 1e-12)
             faster = (cut * faster[0], cut * faster[1])
             gained = math.hypot(faster[0] - self.velocity_north, faster[1] - self.velocity_east)
@@ -48,8 +55,8 @@ class Vessel:
 def report_of(vessel, time, *, split=0.0, place=0.0, drift=0.0):
     """Return a report whose errors are the largest that are allowed for.
 
-    Errors of place and velocity within (e_p/sigma_p)^2 + (e_v/sigma_v)^2 <= k^2 add up to no more than k hypot(sigma_p, sigma_v s)
-    after s seconds (Cauchy and Schwarz).
+    Errors of place and velocity within (e_p/sigma_p)^2 + (e_v/sigma_v)^2 <= k^2 add up to no more
+    than k hypot(sigma_p, sigma_v s) after s seconds (Cauchy and Schwarz).
 
     Parameters
     ----------
@@ -70,7 +77,9 @@ def report_of(vessel, time, *, split=0.0, place=0.0, drift=0.0):
 
 
 def radio(generator, *, interval, latency, missing, silences, duration):
-    """Return times of reports and of their arrival [s], in the order of arrival: some late, some lost, none in a silence."""
+    """Return times of reports and of their arrival [s], in the order of arrival: some late, some
+    lost, none in a silence.
+    """
     time, sent = 0.0, [(0.0, 0.0)]
     while time < duration:
         time += float(generator.uniform(*interval))

@@ -27,7 +27,8 @@ def checks_until_a_fault(
 
 def test_a_lack_of_airspeed_that_lasts_is_no_thrust():
     health = make()
-    # The mean of 4 m/s rises as 4 (1 - e^(-t/2)) and is above 2.4 from t = -2 ln 0.4 on; looks are 0.05 s apart.
+    # The mean of 4 m/s rises as 4 (1 - e^(-t/2)) and is above 2.4 from t = -2 ln 0.4 on; looks are
+    # 0.05 s apart.
     assert checks_until_a_fault(health, lack=4.0) == pytest.approx(
         -PATIENCE * math.log(0.4), abs=TIME_STEP
     )
@@ -97,8 +98,9 @@ def test_a_fault_once_detected_stays():
 
 def test_gusts_that_come_and_go_are_no_fault():
     health = make()
-    # 6 m/s at 0.1 Hz: the mean of 2 s keeps 1/sqrt(1 + (0.2 pi 2)^2) = 0.62 of it, 3.7 m/s, above the limit; at 1 Hz 0.48 m/s.
-    # It slows down all the while, by a little: one that does not has its thrust, however much it lacks.
+    # 6 m/s at 0.1 Hz: the mean of 2 s keeps 1/sqrt(1 + (0.2 pi 2)^2) = 0.62 of it, 3.7 m/s, above
+    # the limit; at 1 Hz 0.48 m/s. It slows down all the while, by a little: one that does not has
+    # its thrust, however much it lacks.
     for step in range(2000):
         lack = 6.0 * math.sin(2.0 * math.pi * step * TIME_STEP)
         assert health.check(lack, 100.0 - 0.01 * step, 0.0, 0.0, 0.0) is Fault.NONE

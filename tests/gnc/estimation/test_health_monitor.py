@@ -47,7 +47,8 @@ def test_a_sound_vehicle_has_no_fault():
     [
         # Means with a time constant of 2 s; 5 m/s lacking pass 2 m/s after 2 ln(5/3) s.
         ({"airspeed": SPEED - 5.0}, Fault.THRUST_LOST, 1.0),
-        # Twice omega_max off passes 0.8 omega_max after 2 ln(2/1.2) s, and later by the vehicle's own lag.
+        # Twice omega_max off passes 0.8 omega_max after 2 ln(2/1.2) s, and later by the vehicle's
+        # own lag.
         (
             {"heading_rate": -HEADING_RATE_MAX, "heading_rate_command": HEADING_RATE_MAX},
             Fault.CONTROL_LOST,

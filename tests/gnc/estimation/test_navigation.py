@@ -58,8 +58,9 @@ def test_dead_reckoning_with_exact_sensors_in_steady_wind_does_not_drift():
     navigation = make(wind_drift=0.0)
     where = fly(navigation, steps=3200, lost_from=100.0)
     assert navigation.lost == pytest.approx(60.0, abs=1e-9)
-    # Position by the trapezoidal rule, which is off by dt^2/12 times how much the acceleration has changed: twice 20 m/s times 0.5
-    # rad/s make 4 mm. By one end of each step it was off by up to 0.97 m.
+    # Position by the trapezoidal rule, which is off by dt^2/12 times how much the acceleration has
+    # changed: twice 20 m/s times 0.5 rad/s make 4 mm. By one end of each step it was off by up to
+    # 0.97 m.
     assert math.hypot(navigation.north - where[0], navigation.east - where[1]) < 0.01
     assert (navigation.velocity_north, navigation.velocity_east) == pytest.approx(
         velocity_at(159.95), abs=1e-3
@@ -181,7 +182,8 @@ def test_a_first_wind_that_is_wrong_by_the_vehicles_own_motion_is_averaged_out()
 
 @pytest.mark.parametrize("measured", [1, 3, 20])
 def test_a_noisy_compass_makes_the_wind_wrong_by_no_more_than_that(measured):
-    # Of a normal error in a plane one in 90 exceeds three deviations of its worst direction; 1,000 winds were estimated.
+    # Of a normal error in a plane one in 90 exceeds three deviations of its worst direction; 1,000
+    # winds were estimated.
     noise, generator, exceeded = 0.09, np.random.default_rng(measured), 0
     for _ in range(1000):
         navigation = make(

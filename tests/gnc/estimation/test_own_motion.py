@@ -36,7 +36,9 @@ def test_the_true_motion_has_course_and_speed_of_its_velocity_and_no_wind():
 
 
 def settled_in_wind(*, airspeed=SPEED, heading_rate=0.1):
-    """Return the estimate after four minutes of a circle in a steady wind, and where the vehicle then is."""
+    """Return the estimate after four minutes of a circle in a steady wind, and where the vehicle
+    then is.
+    """
     own = EstimatedNavigation(NAVIGATION)
     north = east = 0.0
     for step in range(4802):
@@ -53,12 +55,14 @@ def settled_in_wind(*, airspeed=SPEED, heading_rate=0.1):
 
 def test_the_estimated_motion_is_that_through_the_mean_air():
     own, place, heading = settled_in_wind()
-    # Exact sensors and a steady wind: what is left of the first guess, 10 m/s, after four minutes of circles; measured 2 mm/s.
+    # Exact sensors and a steady wind: what is left of the first guess, 10 m/s, after four minutes
+    # of circles; measured 2 mm/s.
     assert (own.wind_north, own.wind_east) == pytest.approx(WIND, abs=0.01)
     assert own.speed == pytest.approx(SPEED, abs=0.02)
     assert own.course == pytest.approx(heading, abs=1e-3)
     assert (own.ground_north, own.ground_east) == place
-    # The air mass has drifted by as much as its frame lies from that of the ground; over 240 s of a wind that was found soon.
+    # The air mass has drifted by as much as its frame lies from that of the ground; over 240 s of a
+    # wind that was found soon.
     assert (own.north + own.drift_north, own.east + own.drift_east) == pytest.approx(
         place, abs=1e-9
     )
@@ -69,7 +73,8 @@ def test_the_estimated_motion_is_that_through_the_mean_air():
 
 
 def test_a_turn_against_gusty_air_is_a_slower_one_over_the_mean_air_where_the_gust_is_a_tailwind():
-    # A gust from behind takes a tenth of the airspeed: the same acceleration turns the motion over the mean air by as much less.
+    # A gust from behind takes a tenth of the airspeed: the same acceleration turns the motion over
+    # the mean air by as much less.
     own, _, _ = settled_in_wind(airspeed=0.9 * SPEED, heading_rate=0.2)
     assert own.airspeed == 0.9 * SPEED
     assert own.heading_rate == pytest.approx(0.18, rel=2e-3)

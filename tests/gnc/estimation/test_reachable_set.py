@@ -1,4 +1,6 @@
-"""Where a vessel may be: it is in every disc at every time, whatever it does within its limits and whatever reports come."""
+"""Where a vessel may be: it is in every disc at every time, whatever it does within its limits and
+whatever reports come.
+"""
 
 import math
 from dataclasses import replace
@@ -81,7 +83,8 @@ def test_the_vessel_is_in_every_disc_at_every_time(manoeuvre, velocity, reported
 
 
 def test_the_disc_is_no_larger_than_what_the_vessel_can_do():
-    # A vessel that does the most it can, with the largest error, is on the edge of its disc: at rest, and reported 20 s ago.
+    # A vessel that does the most it can, with the largest error, is on the edge of its disc: at
+    # rest, and reported 20 s ago.
     limits = replace(LIMITS, speed_max=math.inf)
     vessel, age = Vessel(limits=limits), 20.0
     # The split of the error that is worst at that age: the gradient of 5 cos + 0.15 * 20 sin.
@@ -103,7 +106,8 @@ def test_the_disc_by_speed_is_reached_at_the_largest_speed():
 def test_the_disc_by_speed_of_a_new_report_begins_as_the_other_one():
     report = VesselReport(0.0, 3.0, -4.0, 8.0, 0.0)
     disc = tube_by_speed(report, LIMITS, 20.0)
-    # By hand: 5 hypot(5, 0.15 * 20) and 0.25 * 20^2/2 about 160 m farther north; from then on anywhere at 15 m/s.
+    # By hand: 5 hypot(5, 0.15 * 20) and 0.25 * 20^2/2 about 160 m farther north; from then on
+    # anywhere at 15 m/s.
     assert disc == pytest.approx(
         (20.0, 163.0, -4.0, 0.0, 0.0, 5.0 * math.hypot(5.0, 3.0) + 50.0, 15.0, 0.0), rel=1e-12
     )
@@ -112,7 +116,8 @@ def test_the_disc_by_speed_of_a_new_report_begins_as_the_other_one():
 def test_a_disc_by_speed_is_there_as_soon_as_the_edge_of_the_other_may_be_faster_than_the_vessel():
     reach = ReachableSet(LIMITS)
     reach.report(VesselReport(0.0, 0.0, 0.0, 8.0, 0.0))
-    # 8 m/s, and 0.25 m/s^2 until 9 s ahead: 15 m/s for reports that are 19 s old; their errors make that less than a second sooner.
+    # 8 m/s, and 0.25 m/s^2 until 9 s ahead: 15 m/s for reports that are 19 s old; their errors make
+    # that less than a second sooner.
     by_speed = [
         bool([disc for disc in reach.tubes(time) if disc.velocity_north == 0.0])
         for time in (0.0, 17.0, 19.1, 60.0)
@@ -150,7 +155,8 @@ def test_a_vessel_that_is_known_exactly_is_a_disc_without_width():
     exact = replace(LIMITS, acceleration=0.0, position_sigma=0.0, velocity_sigma=0.0)
     reach = ReachableSet(exact)
     reach.report(VesselReport(1.0, 10.0, -4.0, 6.0, 2.0))
-    # A vessel that cannot accelerate cannot reach another speed: no second disc; and no number is none.
+    # A vessel that cannot accelerate cannot reach another speed: no second disc; and no number is
+    # none.
     assert reach.tubes(3.0) == [Tube(3.0, 22.0, 0.0, 6.0, 2.0)]
 
 
@@ -168,7 +174,8 @@ def test_a_place_that_is_next_to_exact_makes_a_disc_that_is_next_to_that_of_an_e
 
 
 def test_normal_errors_are_outside_of_a_disc_as_rarely_as_its_deviations_say():
-    # Two dimensions: exp(-k^2/2), 1.1 % at k = 3. 20000 reports, each 12 s old, of a vessel at rest that stays.
+    # Two dimensions: exp(-k^2/2), 1.1 % at k = 3. 20000 reports, each 12 s old, of a vessel at rest
+    # that stays.
     generator = np.random.default_rng(11)
     limits = replace(LIMITS, deviations=3.0, acceleration=0.0, speed_max=math.inf)
     count, vessel = 20_000, Vessel(limits=limits)

@@ -54,7 +54,8 @@ def test_a_reported_target_is_where_the_filter_has_it_when_the_mission_plans():
 
 
 def test_of_the_acceleration_of_a_reported_vessel_the_scatter_of_her_reports_is_left_out():
-    # 0.5 m/s within 5 s: more than a steady vessel's reports scatter by within the filter, in one direction only.
+    # 0.5 m/s within 5 s: more than a steady vessel's reports scatter by within the filter, in one
+    # direction only.
     target = reported(
         (0.0, 0.0, 0.0, 6.0, 2.0), (5.0, 30.0, 10.0, 6.5, 2.0), (10.0, 66.0, 20.0, 8.0, 2.0)
     )
@@ -98,7 +99,8 @@ def test_between_plans_it_goes_on_at_its_acceleration():
     for step in range(1, 10):
         target.update(7.0 + step * TIME_STEP, False)
     seen = target.vessel.at(7.0 + 9 * TIME_STEP)
-    # 0.45 s at an acceleration that decays over 40 s, of 0.02 m/s^2 or so: 1 % of 9 mm/s; and half of it, as sums run, of 0.2 mm.
+    # 0.45 s at an acceleration that decays over 40 s, of 0.02 m/s^2 or so: 1 % of 9 mm/s; and half
+    # of it, as sums run, of 0.2 mm.
     assert fields(target) == pytest.approx(
         (seen.north, seen.east, seen.velocity_north, seen.velocity_east), abs=1e-3
     )

@@ -23,7 +23,9 @@ def make(**changes):
 
 
 def singer(time, *, sigma=SIGMA, memory=MEMORY):
-    """Return transition and process noise of Singer's model by Van Loan's matrix exponential (IEEE Trans. AC 23:395, 1978)."""
+    """Return transition and process noise of Singer's model by Van Loan's matrix exponential (IEEE
+    Trans. AC 23:395, 1978).
+    """
     a = np.array([[0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [0.0, 0.0, -1.0 / memory]])
     spectral = np.zeros((3, 3))
     spectral[2, 2] = 2.0 * sigma**2 / memory
@@ -42,8 +44,8 @@ def matrix(c):
 
 @pytest.mark.parametrize("time", [0.01, 0.19, 0.21, 0.5, 2.0, 12.0, 60.0, 400.0])
 def test_its_process_noise_is_singers(time):
-    # Below 0.2 s the leading terms alone are taken, true to 0.5 % by their comment; above, six digits of the closed forms cancel
-    # at worst, of sixteen.
+    # Below 0.2 s the leading terms alone are taken, true to 0.5 % by their comment; above, six
+    # digits of the closed forms cancel at worst, of sixteen.
     tolerance = 5e-3 if time < 0.005 * MEMORY else 1e-3
     assert make()._noise(time) == pytest.approx(packed(singer(time)[1]), rel=tolerance)
 
@@ -114,7 +116,8 @@ def test_a_report_that_is_older_than_the_newest_changes_nothing():
 
 
 def test_a_late_report_counts_for_when_it_was_true():
-    # What matters is the time in the report, not when it is handed over: here after a look at a later time.
+    # What matters is the time in the report, not when it is handed over: here after a look at a
+    # later time.
     looked, silent = make(), make()
     for vessel in (looked, silent):
         vessel.report(FIRST)
@@ -127,7 +130,8 @@ def test_a_late_report_counts_for_when_it_was_true():
 
 def test_exact_reports_give_exact_states_and_find_the_acceleration():
     vessel = make(position_sigma=0.0, velocity_sigma=0.0)
-    # 6 m/s, speeding up northward by 0.1 m/s^2, reported every half a second, as with exact knowledge.
+    # 6 m/s, speeding up northward by 0.1 m/s^2, reported every half a second, as with exact
+    # knowledge.
     for step in range(200):
         time = 0.5 * step
         vessel.report(VesselReport(time, 6.0 * time + 0.05 * time**2, 0.0, 6.0 + 0.1 * time, 0.0))
@@ -136,7 +140,8 @@ def test_exact_reports_give_exact_states_and_find_the_acceleration():
         assert motion.north == pytest.approx(6.0 * time + 0.05 * time**2, rel=0.0, abs=1e-9)
         assert motion.velocity_north == pytest.approx(6.0 + 0.1 * time, rel=0.0, abs=1e-9)
         assert motion.sigma == pytest.approx(0.0, abs=1e-6)
-    # It reckons with accelerations that fade with 40 s, so it sees 0.1 within the half second's share of that, 1.3 %.
+    # It reckons with accelerations that fade with 40 s, so it sees 0.1 within the half second's
+    # share of that, 1.3 %.
     assert motion.acceleration_north == pytest.approx(0.1, rel=0.02)
 
 
@@ -170,6 +175,7 @@ def test_it_knows_how_wrong_it_is_about_the_manoeuvres_that_it_reckons_with():
             report(truth, time)
         error = np.array([vessel._north, vessel._east]).T - truth
         normalised.append(np.sum(error * np.linalg.solve(matrix(vessel._covariance), error)))
-    # Six degrees of freedom a flight, independent flights; the limits hold for all but one set of seeds in 500.
+    # Six degrees of freedom a flight, independent flights; the limits hold for all but one set of
+    # seeds in 500.
     low, high = chi2.ppf([0.001, 0.999], 6 * flights) / flights
     assert low < np.mean(normalised) < high

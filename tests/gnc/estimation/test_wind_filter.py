@@ -50,8 +50,8 @@ def test_exact_sensors_find_a_steady_wind(course):
 
 
 def test_the_first_measurement_is_the_first_estimate_however_noisy_it_is_taken_to_be():
-    # By moderate turbulence, or at 300 m/s, single measurements are taken to be wrong by 9 m/s. With a likely wind of 10 m/s
-    # before them the first estimate was 0.58 of the wind.
+    # By moderate turbulence, or at 300 m/s, single measurements are taken to be wrong by 9 m/s.
+    # With a likely wind of 10 m/s before them the first estimate was 0.58 of the wind.
     wind_filter = make(airspeed_sigma=9.0, course_sigma=9.0 / SPEED)
     feed(wind_filter, 0.8, WIND)
     assert (wind_filter.north, wind_filter.east) == pytest.approx(WIND, abs=1e-12)
@@ -102,8 +102,9 @@ def test_its_covariance_stays_positive_on_a_course_that_never_changes():
     for _ in range(20_000):
         feed(wind_filter, 0.3, WIND)
     assert np.linalg.eigvalsh(covariance(wind_filter))[0] > 0.0
-    # Both components settle where drift and noise balance: p^2 = q r, with q = DRIFT^2 dt for each measurement, and p from after
-    # it to before it p + q. The worst direction is across, where r = (V sigma)^2.
+    # Both components settle where drift and noise balance: p^2 = q r, with q = DRIFT^2 dt for each
+    # measurement, and p from after it to before it p + q. The worst direction is across, where r =
+    # (V sigma)^2.
     q, r = DRIFT**2 * TIME_STEP, (SPEED * COURSE_SIGMA) ** 2
     after = 0.5 * (math.sqrt(q * q + 4.0 * q * r) - q)
     assert wind_filter.sigma == pytest.approx(math.sqrt(after), rel=1e-6)
@@ -124,7 +125,8 @@ def test_it_knows_how_wrong_it_is(course):
             feed(wind_filter, chi, wind, measured_airspeed=airspeed, measured_course=seen)
         error = np.array([wind_filter.north, wind_filter.east]) - wind
         normalised.append(error @ np.linalg.solve(covariance(wind_filter), error))
-    # Independent flights: the sum is chi-squared with two degrees of freedom each; the limits hold for all but one set of seeds in
-    # 500. The airspeed is the truth less its error, so that the course error acts on the true V_a: a second-order effect.
+    # Independent flights: the sum is chi-squared with two degrees of freedom each; the limits hold
+    # for all but one set of seeds in 500. The airspeed is the truth less its error, so that the
+    # course error acts on the true V_a: a second-order effect.
     low, high = chi2.ppf([0.001, 0.999], 2 * flights) / flights
     assert low < np.mean(normalised) < high

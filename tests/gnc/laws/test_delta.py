@@ -38,7 +38,8 @@ def course_of_z(state):
 @given(north=offsets, east=offsets, reference_course=courses, course=courses)
 def test_the_relative_state_holds_the_geometry_of_figure_2(north, east, reference_course, course):
     state = relative_state(LOOK_AHEAD, north, east, reference_course, course)
-    # Equations (14) to (16): d = z - delta, both with their courses; delta = epsilon d^2 + R with epsilon = 0.005, R = 60.
+    # Equations (14) to (16): d = z - delta, both with their courses; delta = epsilon d^2 + R with
+    # epsilon = 0.005, R = 60.
     z_course = course - state.phi
     delta = 0.005 * (north**2 + east**2) + 60.0
     # Roundings of angles, 1e-15 times lengths up to 3 km.
@@ -64,7 +65,8 @@ def test_the_relative_state_holds_the_geometry_of_figure_2(north, east, referenc
 @given(state=cartesian_states())
 def test_the_law_of_cosines_gives_the_cartesian_distance(state):
     there = relative(state)
-    # Between equations (19) and (20). The squares of rho and delta, up to 6.7e6 m^2 each, cancel but for their rounding.
+    # Between equations (19) and (20). The squares of rho and delta, up to 6.7e6 m^2 each, cancel
+    # but for their rounding.
     assert distance_squared(there) == pytest.approx(
         state[3] ** 2 + state[4] ** 2, rel=0.0, abs=1e-14 * there.delta**2
     )
@@ -100,9 +102,10 @@ def test_relative_rates_are_those_of_the_cartesian_motion_also_at_unequal_speeds
     numerical_delta = (relative(after).delta - relative(before).delta) / (2.0 * step)
     numerical_rho = (relative(after).rho - relative(before).rho) / (2.0 * step)
     numerical_omega = wrap(course_of_z(after) - course_of_z(before)) / (2.0 * step)
-    # Central differences err by step^2/6 of the third derivative, which is largest where delta (5 km) swings the end of z or where
-    # rho is shortest (10 m). Over 4,000 random states they erred by 4e-5 m^2/s, 2e-7 m/s, 8e-6 m/s and 9e-7 rad/s, a hundred times
-    # more at ten times the step; corners are allowed some ten times that. The rates themselves reach 9e4, 400, 600 and 9.
+    # Central differences err by step^2/6 of the third derivative, which is largest where delta (5
+    # km) swings the end of z or where rho is shortest (10 m). Over 4,000 random states they erred
+    # by 4e-5 m^2/s, 2e-7 m/s, 8e-6 m/s and 9e-7 rad/s, a hundred times more at ten times the step;
+    # corners are allowed some ten times that. The rates themselves reach 9e4, 400, 600 and 9.
     assert distance_squared_rate(there, reference_speed, speed) == pytest.approx(
         squared_rate, rel=0.0, abs=5e-4
     )
@@ -169,8 +172,8 @@ def test_z_never_gets_shorter_than_the_look_ahead_allows(
 def test_the_shortest_z_is_met_by_a_vehicle_right_ahead_of_the_reference(
     epsilon, excess, reference_course
 ):
-    # delta - d is least at d = 1/(2 epsilon), and rho is that when d points against the reference's course: at epsilon = 0.005 and
-    # R = 60 m, d = 100 m and rho = 60 - 50 = 10 m.
+    # delta - d is least at d = 1/(2 epsilon), and rho is that when d points against the reference's
+    # course: at epsilon = 0.005 and R = 60 m, d = 100 m and rho = 60 - 50 = 10 m.
     parameters = look_ahead(epsilon, excess / (4.0 * epsilon))
     d = 0.5 / epsilon
     rho = relative_state(
@@ -180,7 +183,8 @@ def test_the_shortest_z_is_met_by_a_vehicle_right_ahead_of_the_reference(
         reference_course,
         0.0,
     ).rho
-    # Rounding of delta, up to a thousand times rho along z; across it the angle's, 5e-16 of d, which rho hardly feels.
+    # Rounding of delta, up to a thousand times rho along z; across it the angle's, 5e-16 of d,
+    # which rho hardly feels.
     assert rho == pytest.approx(parameters.radius - 0.25 / epsilon, rel=1e-12)
 
 
@@ -200,7 +204,8 @@ def test_on_the_reference_z_points_along_its_course_and_turns_with_it(
     reference_course, course_error, reference_heading_rate
 ):
     state = relative_state(LOOK_AHEAD, 0.0, 0.0, reference_course, reference_course + course_error)
-    # Section IV.B: on top of the reference, chi_rho becomes chi_r; there is no singularity. Roundings.
+    # Section IV.B: on top of the reference, chi_rho becomes chi_r; there is no singularity.
+    # Roundings.
     assert state == pytest.approx(RelativeState(60.0, 60.0, 0.0, course_error), abs=1e-13)
     on_course = RelativeState(60.0, 60.0, 0.0, 0.0)
     assert relative_velocity(

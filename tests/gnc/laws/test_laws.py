@@ -56,7 +56,8 @@ def test_the_lyapunov_law_is_equation_24_as_printed(phi, rho, omega_rho):
 
 
 def test_the_lyapunov_law_grows_without_limit_towards_the_opposite_course():
-    # paper-notes, care 7: singular at phi = pi. tan(x) is 1/(pi/2 - x) there: 60 m * 19.42 m/s * 0.001/m^2 * 2/1e-6.
+    # paper-notes, care 7: singular at phi = pi. tan(x) is 1/(pi/2 - x) there: 60 m * 19.42 m/s *
+    # 0.001/m^2 * 2/1e-6.
     command = lyapunov_law(RelativeState(60.0, 60.0, 0.0, math.pi - 1e-6), SPEED, 0.0, K_1)
     # The angle's rounding, 4e-16 of 1e-6.
     assert command == pytest.approx(-60.0 * SPEED * K_1 * 2e6, rel=1e-9)
@@ -79,11 +80,13 @@ def test_on_the_reference_the_delta_laws_command_its_heading_rate(law, reference
 @pytest.mark.parametrize("nu", [0.0, 0.1, 0.5, 0.8])
 @pytest.mark.parametrize(
     "start",
-    # Behind, abeam on an opposite course, nearly on the reference and opposite, and far ahead, coming.
+    # Behind, abeam on an opposite course, nearly on the reference and opposite, and far ahead,
+    # coming.
     [(-300.0, 100.0, 2.0), (50.0, -200.0, -3.0), (0.0, -5.0, 3.1), (400.0, 0.0, math.pi - 0.01)],
 )
 def test_a_kinematic_vehicle_converges_onto_the_oscillating_reference_under_law_30(nu, start):
-    # A tenth of omega_max is left to feedback. Neither the law nor the vehicle is limited here, as in the paper's proof.
+    # A tenth of omega_max is left to feedback. Neither the law nor the vehicle is limited here, as
+    # in the paper's proof.
     oscillation = paper_oscillation(nu, reserve=0.1)
 
     def reference_heading_rate(time):
@@ -130,8 +133,9 @@ def test_the_line_of_sight_law_commands_nothing_on_the_reference_where_it_is_und
 
 
 def test_near_the_reference_the_line_of_sight_turns_arbitrarily_fast_and_z_does_not():
-    # Section IV.A: passing abeam at d the line of sight turns at V/d. A vehicle that overtakes at twice the reference's speed
-    # passes it by a millimetre; the line of sight swings by pi within a hundredth of a second, z by less than 0.01 rad.
+    # Section IV.A: passing abeam at d the line of sight turns at V/d. A vehicle that overtakes at
+    # twice the reference's speed passes it by a millimetre; the line of sight swings by pi within a
+    # hundredth of a second, z by less than 0.01 rad.
     times = np.linspace(-0.005, 0.005, 11)
     states = [[SPEED * t, 0.0, 0.0, 2.0 * SPEED * t, 1e-3, 0.0] for t in times]
     swing = [line_of_sight_law(s[0] - s[3], s[1] - s[4], s[5], 1.0) for s in states]

@@ -58,7 +58,8 @@ def test_tracking_begins_nearer_to_the_centre_than_it_ends(place, from_afar, onc
     [(1.15, True, True), (1.25, False, True), (1.85, False, True), (1.95, False, False)],
 )
 def test_tracking_begins_nearer_to_the_plumes_axis_than_it_ends(aspect, from_afar, once_tracking):
-    # 1.2 and 1.9 rad off the axis; near enough to the vessel that a centre 100 m astern of it is within 150 m at any aspect.
+    # 1.2 and 1.9 rad off the axis; near enough to the vessel that a centre 100 m astern of it is
+    # within 150 m at any aspect.
     own, x, y = approach((-20.0 * math.cos(aspect), 20.0 * math.sin(aspect))), -100.0, 0.0
     assert own.joins(x, y, AXIS, error=0.0, tracking=False, guarding=False) is from_afar
     assert own.joins(x, y, AXIS, error=0.0, tracking=True, guarding=False) is once_tracking

@@ -5,8 +5,8 @@ import pytest
 from gnc.mission.axis_height import AxisHeight
 
 RISING = AxisHeight(source=35.0, momentum_flux=124.0, buoyancy_flux=49.6)
-"""A two-stroke engine of 10 MW: w = 20 m/s out of d = 1.5 m at Ts = 523 K into Ta = 288 K, by Briggs' Fm = (Ta/Ts) w^2 d^2/4 and
-F = g w (d^2/4) (1 - Ta/Ts)."""
+"""A two-stroke engine of 10 MW: w = 20 m/s out of d = 1.5 m at Ts = 523 K into Ta = 288 K, by
+Briggs' Fm = (Ta/Ts) w^2 d^2/4 and F = g w (d^2/4) (1 - Ta/Ts)."""
 
 
 @pytest.mark.parametrize(

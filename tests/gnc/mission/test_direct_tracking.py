@@ -54,7 +54,9 @@ def mission():
 
 
 def guidance(*, joining=True, nu=NU):
-    """Return the guidance of a flight behind a vessel that goes north from the origin, with a guard about it."""
+    """Return the guidance of a flight behind a vessel that goes north from the origin, with a guard
+    about it.
+    """
     oscillation = paper_oscillation(nu, reserve=0.015)
     orbit = JoinedOrbit(shape=Sinusoid(), orbit=oscillation, vessel_course=0.0, time_step=TIME_STEP)
     centre = SteadyCentre(
@@ -112,7 +114,8 @@ def test_from_ahead_it_goes_round_the_vessel_and_settles_where_law_and_guard_alo
     # Measured, 52 to 105 s.
     assert settles(round_the_vessel) < 120.0
     assert np.max(round_the_vessel.distance[-600:]) < 0.5
-    # Law and guard undo each other's work: measured, 181 to 392 s, and half of them not within 400 s.
+    # Law and guard undo each other's work: measured, 181 to 392 s, and half of them not within 400
+    # s.
     assert settles(straight) > 2.0 * settles(round_the_vessel)
 
 
@@ -139,7 +142,8 @@ def test_the_orbit_is_joined_outside_of_its_place_and_closes_in_once_it_is_track
     joined = modes.index(Mode.TRACKING)
     assert set(modes[:joined]) == {Mode.APPROACH}
     assert set(modes[joined:]) == {Mode.TRACKING}
-    # It never moves out again, and is in its place from when on nothing is left; 24 m at 0.2 V_r take 6.2 s, 13 plans.
+    # It never moves out again, and is in its place from when on nothing is left; 24 m at 0.2 V_r
+    # take 6.2 s, 13 plans.
     assert np.all(np.diff(errors) <= 0.0)
     assert errors[joined] == 24.0
     there = in_place.index(True)

@@ -1,4 +1,6 @@
-"""How high a plume's axis is flown: the altitude follows slowly, and never farther ahead than the autopilot can follow."""
+"""How high a plume's axis is flown: the altitude follows slowly, and never farther ahead than the
+autopilot can follow.
+"""
 
 import math
 
@@ -82,5 +84,6 @@ def test_a_bearing_turns_the_centre_to_the_right_of_where_the_plume_would_trail(
             bearing=math.radians(10.0),
             **still,
         )
-    # Astern is 180 degrees; to the right of it, seen along the plume, is west. It comes there asymptotically.
+    # Astern is 180 degrees; to the right of it, seen along the plume, is west. It comes there
+    # asymptotically.
     assert math.degrees(around.centre.axis) % 360.0 == pytest.approx(190.0, abs=0.1)

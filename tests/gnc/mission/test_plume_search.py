@@ -68,10 +68,12 @@ def test_an_uncertain_height_is_probed_and_a_known_one_flown() -> None:
     probing = _search().next_altitude(vague, 65.0, PASS_TIME)
     spread = math.hypot(vague.sigma_z, PRIOR.meander_z)
     assert vague.height_deviation > 0.5 * spread
-    # One pass leaves open on which side the axis is: beside the estimate, but not where the plume is missed.
+    # One pass leaves open on which side the axis is: beside the estimate, but not where the plume
+    # is missed.
     assert 0.1 * spread < abs(probing - vague.height) <= 1.5 * spread
     sure = estimated(MadePlume(height=65.0), [65.0, 74.0, 56.0, 65.0, 74.0, 56.0, 65.0, 72.0])
-    # Between known and vague there is little to be gained off the estimate, and none where the deviation is small.
+    # Between known and vague there is little to be gained off the estimate, and none where the
+    # deviation is small.
     assert abs(_search().next_altitude(sure, 65.0, PASS_TIME) - sure.height) < 0.3 * spread
     sure.height_deviation = 0.1 * spread
     assert _search().next_altitude(sure, 65.0, PASS_TIME) == pytest.approx(sure.height)
@@ -98,7 +100,8 @@ def test_hits_are_those_of_centres_drawn_at_random() -> None:
     weights = estimator._weights.sum(axis=1)
     axes = generator.choice(len(weights), 100_000, p=weights / weights.sum())
     heights = estimator.grid.coarse_heights(estimator._heights)[axes]
-    # The made ways are square to the plume in its frame, and have a correlation length of a kilometre: one look.
+    # The made ways are square to the plume in its frame, and have a correlation length of a
+    # kilometre: one look.
     centres = heights + PRIOR.meander_z * generator.standard_normal(len(axes))
     for altitude, chance in zip(altitudes, estimator.hits(altitudes), strict=True):
         peak = np.exp(-0.5 * ((altitude - centres) / estimator._spread[axes]) ** 2)

@@ -1,4 +1,6 @@
-"""A plume that is searched for: what the guidance does before, while and after it detects something."""
+"""A plume that is searched for: what the guidance does before, while and after it detects
+something.
+"""
 
 import math
 from dataclasses import replace
@@ -36,7 +38,9 @@ SEARCHED = SearchedPlume(
     climb_rate=0.08 * SPEED,
 )
 CLEAN, PEAK, WIDTH = 420.0, 150.0, 12.0
-"""CO2 of clean air, in the plume's centre [ppm], and its spread across and in height [m]: an example of the fast preset."""
+"""CO2 of clean air, in the plume's centre [ppm], and its spread across and in height [m]: an
+example of the fast preset.
+"""
 
 STEP, INTERVAL, HALF_WIDTH = 0.1, 6.0, 50.0
 """Between looks [s], between crossings [s], and how far to the side it swings [m]."""
@@ -47,7 +51,8 @@ def reading(across, altitude, height):
 
 
 def flown(axis, *, height, duration, sensor=lambda _, ppm: ppm, distance=220.0, offset=0.0):
-    """Fly back and forth across a plume at a height, with a vehicle that follows its altitude; return the modes in their order.
+    """Fly back and forth across a plume at a height, with a vehicle that follows its altitude;
+    return the modes in their order.
 
     At a distance astern of the vessel; the plume is offset to the right there.
     """
@@ -71,7 +76,9 @@ def flown(axis, *, height, duration, sensor=lambda _, ppm: ppm, distance=220.0, 
 
 
 def noisy(time, ppm):
-    """Return a reading with a noise that is no random number: of the data sheet's size, and never twice the same."""
+    """Return a reading with a noise that is no random number: of the data sheet's size, and never
+    twice the same.
+    """
     return ppm + FAST.noise * math.sqrt(2.0) * math.sin(37.7 * time)
 
 
@@ -90,7 +97,8 @@ def test_the_bearing_is_that_from_the_funnel_wherever_the_plume_is_crossed(dista
     flown(
         axis, height=60.0, duration=150.0, sensor=noisy, distance=distance, offset=0.08 * distance
     )
-    # The prior of 0.06 rad about 0 draws the estimate inwards by a tenth; the centre of the orbit is 213 m astern in each case.
+    # The prior of 0.06 rad about 0 draws the estimate inwards by a tenth; the centre of the orbit
+    # is 213 m astern in each case.
     assert 0.055 < axis.bearing < 0.09
 
 
@@ -142,6 +150,7 @@ def test_a_reading_counts_for_the_place_at_which_it_was_read():
             axis.take_readings(time, waiting if due else [])
             waiting = [] if due else waiting
         both.append(axis.estimate)
-    # Half a second late makes no difference but that of a straight line between places a tenth of a second apart.
+    # Half a second late makes no difference but that of a straight line between places a tenth of a
+    # second apart.
     assert both[1].height == pytest.approx(both[0].height, abs=0.2)
     assert both[1].offset == pytest.approx(both[0].offset, abs=0.5)

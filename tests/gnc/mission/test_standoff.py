@@ -40,7 +40,9 @@ def mission(law, vessel=(6.0, 3.0), height=LEVEL):
 
 
 def flown(law, seconds, vessel=(6.0, 3.0), start=(-400.0, 50.0, 1.0)):
-    """Return the distances from the vessel of a kinematic vehicle under a law, a number each step, and the mission."""
+    """Return the distances from the vessel of a kinematic vehicle under a law, a number each step,
+    and the mission.
+    """
     own, target, circling = mission(law, vessel)
     north, east, course = start
     distances, rate = [], 0.0
@@ -72,7 +74,8 @@ def test_a_vehicle_on_the_circle_with_the_references_course_and_heading_rate_sta
     # What is left is of third order: V (V/R)^2 t^3 and a constant, at up to twice the speed.
     assert off == pytest.approx(0.0, abs=1e-8)
     point.place((time * velocity[0], time * velocity[1]), velocity, (north, east), RADIUS)
-    # The reference a moment later goes on the same course: second order, (V/R)^2 t^2 with the speeds that add up.
+    # The reference a moment later goes on the same course: second order, (V/R)^2 t^2 with the
+    # speeds that add up.
     assert math.remainder(point.course - course, math.tau) == pytest.approx(0.0, abs=2e-6)
 
 
@@ -81,7 +84,8 @@ def test_a_vehicle_on_the_circle_with_the_references_course_and_heading_rate_sta
 )
 def test_laws_circle_a_moving_vessel_at_the_radius(law):
     distances, circling = flown(law, 200.0)
-    # Closed in, and within the centimetres of a law that is called twenty times a second; LGVF converges within V/R.
+    # Closed in, and within the centimetres of a law that is called twenty times a second; LGVF
+    # converges within V/R.
     assert circling.in_place
     assert max(abs(distance - RADIUS) for distance in distances[-1000:]) < (
         2.0 if isinstance(law, LgvfLaw) else 0.2

@@ -65,7 +65,8 @@ def test_the_straight_relative_way_never_enters_the_blocked_circle_from_outside(
     )
     transit = Transit(TURN_RADIUS)
     way = relative(course_of(transit, place, goal, velocity=velocity, course=course), velocity)
-    # As far as the target where the way there is clear, or else past the tangent point, far enough for all that is ahead.
+    # As far as the target where the way there is clear, or else past the tangent point, far enough
+    # for all that is ahead.
     length = math.hypot(goal[0] - place[0], goal[1] - place[1]) if transit.side == 0 else 1e4
     # Rounding.
     assert nearest(place, way, length) >= BLOCKED - 1e-6
@@ -106,7 +107,8 @@ def test_mirrored_geometry_gives_the_mirrored_course(
         )
         return transit.side, found
 
-    # Where both sides are as long, or the way is just clear, the first is taken, mirrored or not: a hair's breadth decides.
+    # Where both sides are as long, or the way is just clear, the first is taken, mirrored or not: a
+    # hair's breadth decides.
     assume(len({asked(1, nudge)[0] for nudge in (-1e-6, 0.0, 1e-6)}) == 1)
     (one, found), (other, mirrored) = asked(1), asked(-1)
     assert one == -other
@@ -115,13 +117,15 @@ def test_mirrored_geometry_gives_the_mirrored_course(
 
 @pytest.mark.parametrize("sign", [1, -1])
 def test_it_passes_on_the_shorter_side(sign):
-    # Ahead of the disc, north of it, and 30 degrees to one side; the target is south. Straight there is through the disc.
+    # Ahead of the disc, north of it, and 30 degrees to one side; the target is south. Straight
+    # there is through the disc.
     transit = Transit(TURN_RADIUS)
     bearing = sign * math.radians(30.0)
     found = course_of(
         transit, polar(600.0, bearing), (-TARGET_DISTANCE, 0.0), course=bearing + math.pi
     )
-    # On the east side clockwise as seen from above, on the west side the other way; either way the tangent of the round circle.
+    # On the east side clockwise as seen from above, on the west side the other way; either way the
+    # tangent of the round circle.
     assert transit.side == sign
     expected = bearing + math.pi - sign * math.asin(ROUND / 600.0)
     assert math.remainder(found - expected, 2.0 * math.pi) == pytest.approx(0.0, abs=1e-12)
@@ -129,7 +133,8 @@ def test_it_passes_on_the_shorter_side(sign):
 
 @pytest.mark.parametrize("sign", [1, -1])
 def test_of_two_ways_nearly_as_long_it_takes_the_one_that_it_need_not_turn_to(sign):
-    # From 0.02 rad to the other side, so that the way round on this one is 0.04 rad of the round circle longer; it heads there.
+    # From 0.02 rad to the other side, so that the way round on this one is 0.04 rad of the round
+    # circle longer; it heads there.
     transit, bearing = Transit(TURN_RADIUS), -sign * 0.02
     lean = math.asin(ROUND / 600.0)
     course_of(
@@ -171,13 +176,15 @@ def test_following_it_leads_round_a_moving_disc_to_the_target_and_never_inside(
         if math.hypot(x - target[0], y - target[1]) < 5.0:
             break
     assert math.hypot(x - target[0], y - target[1]) < 5.0
-    # Euler steps of up to 3.7 m along a tangent only lead outwards; the straight way in at the end is checked by its whole length.
+    # Euler steps of up to 3.7 m along a tangent only lead outwards; the straight way in at the end
+    # is checked by its whole length.
     assert closest >= BLOCKED - 1e-6
 
 
 @pytest.mark.parametrize(
     ("distance", "outwards"),
-    # Of the relative velocity, sin 0.6 leads outwards until a turn radius is left to the circle, then proportionally less.
+    # Of the relative velocity, sin 0.6 leads outwards until a turn radius is left to the circle,
+    # then proportionally less.
     [
         (10.0, 0.5646),
         (100.0, 0.5646),

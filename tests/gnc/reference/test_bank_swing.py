@@ -31,7 +31,9 @@ heading_rates, roll_rates = st.floats(0.1, 0.9), st.floats(0.1, 5.0)
 
 
 def heading_rate_at(swing, eta, time):
-    """Return the heading rate some time after the passage through the centre, at full rates [rad/s]."""
+    """Return the heading rate some time after the passage through the centre, at full rates
+    [rad/s].
+    """
     omega_0 = math.pi / swing.half_period(eta)
     return eta * omega_0 * swing.slopes(eta, omega_0 * time)[1]
 
@@ -57,7 +59,8 @@ def test_neither_heading_rate_nor_roll_rate_ever_exceed_their_limits(
     step = 1e-4 * half
     rates = [heading_rate_at(swing, eta, part * half + i * step) for i in range(2)]
     banks = [math.atan(rate * SPEED / STANDARD_GRAVITY) for rate in rates]
-    # Rounding, which a difference over a ten-thousandth of half a period magnifies ten thousand times.
+    # Rounding, which a difference over a ten-thousandth of half a period magnifies ten thousand
+    # times.
     assert max(map(abs, rates)) <= heading_rate * (1.0 + 1e-12)
     assert abs(banks[1] - banks[0]) <= roll_rate * step * (1.0 + 1e-9)
 
@@ -119,7 +122,8 @@ def test_at_an_infinite_roll_rate_the_course_is_a_triangle():
 
 
 def test_a_small_amplitude_is_rolled_through_without_reaching_the_largest_bank():
-    # While rolling to 45 degrees the course turns by g/(V p) ln(sqrt(2)) = 0.2507 rad: integral of g/V tan(p t).
+    # While rolling to 45 degrees the course turns by g/(V p) ln(sqrt(2)) = 0.2507 rad: integral of
+    # g/V tan(p t).
     turned = HEADING_RATE / ROLL_RATE * math.log(math.sqrt(2.0))
     assert not COURSES.holds_bank(0.999 * turned)
     assert COURSES.holds_bank(1.001 * turned)
@@ -154,10 +158,13 @@ def test_half_a_period_grows_with_the_amplitude_and_falls_with_the_limits(
 def test_no_course_that_swings_evenly_to_both_sides_within_the_limits_is_slower_on_average(
     rolls, half, stretch
 ):
-    """docs/fastest_oscillation.md: of all such courses of a period, the trapezoid of bank has the least mean of the cosine."""
+    """docs/fastest_oscillation.md: of all such courses of a period, the trapezoid of bank has the
+    least mean of the cosine.
+    """
     if stretch:
         rolls = [math.copysign(1.0, roll) for roll in rolls]
-    # The roll rate is constant over each of the pieces; bank and course are their negatives half a period later.
+    # The roll rate is constant over each of the pieces; bank and course are their negatives half a
+    # period later.
     points = 400
     time = np.linspace(0.0, half, points * len(rolls) + 1)
     step = time[1]
@@ -193,7 +200,8 @@ def test_the_orbit_is_that_of_its_fourier_series_and_of_its_path(eta):
         assert [float(x) for x in path.offset(phase)] == pytest.approx(
             [along, right], rel=0.0, abs=3e-7
         )
-        # Eight pairs of terms, whose size falls with the fourth power: below 5e-4 of an orbit of about 1.
+        # Eight pairs of terms, whose size falls with the fourth power: below 5e-4 of an orbit of
+        # about 1.
         assert COURSES.offset(eta, phase) == pytest.approx((along, right), rel=0.0, abs=5e-4)
     # Parseval: the mean of |exp(i course)|^2 is 1.
     assert float(

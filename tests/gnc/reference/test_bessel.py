@@ -11,7 +11,8 @@ from gnc.reference.bessel import eta_for_speed_ratio, mean_speed_ratio
 from gnc.reference.oscillating import OscillatingReference, start_reference
 
 ratios = st.floats(0.0, 1.0)
-# First zero of J_0, eta of a vessel at rest: paper-notes, care 6; Abramowitz and Stegun, table 9.5: j_0,1 = 2.40482 55577.
+# First zero of J_0, eta of a vessel at rest: paper-notes, care 6; Abramowitz and Stegun, table 9.5:
+# j_0,1 = 2.40482 55577.
 ETA_MAX = 2.404825557695773
 
 
@@ -29,7 +30,8 @@ def test_the_mean_speed_ratio_is_the_mean_of_equation_5(eta):
 
 @pytest.mark.parametrize("nu", [0.0, 0.5, 0.95])
 def test_the_reference_makes_no_way_across_the_vessels_course(nu):
-    # Equation (5), second line: of the reference that is flown, over a period, in steps that divide it; and along it nu V_r T.
+    # Equation (5), second line: of the reference that is flown, over a period, in steps that divide
+    # it; and along it nu V_r T.
     oscillation = paper_oscillation(nu)
     start = start_reference(
         oscillation, phase=0.4, centre_north=0.0, centre_east=0.0, vessel_course=0.0

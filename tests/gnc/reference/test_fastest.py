@@ -23,7 +23,9 @@ LIMITS = {
     "vessel_heading_rate": 0.0,
     "roll_rate_max": math.radians(40.0),
 }
-"""Those of the issue's table: 45 degrees of bank, of which 1.5 % of the heading rate is kept, and 40 deg/s."""
+"""Those of the issue's table: 45 degrees of bank, of which 1.5 % of the heading rate is kept, and
+40 deg/s.
+"""
 
 
 def design(nu=0.5, **changes):
@@ -38,7 +40,9 @@ def reference_on(orbit, *, phase=0.0, share=1.0, vessel_course=0.3):
 
 
 def interval_by_integration(nu):
-    """Return the shortest interval, from the bank's trapezoid and the heading rates that follow from it [s]."""
+    """Return the shortest interval, from the bank's trapezoid and the heading rates that follow
+    from it [s].
+    """
     heading_rate = (1.0 - LIMITS["reserve"]) * LIMITS["heading_rate_max"]
     bank_max = math.atan(heading_rate * SPEED / STANDARD_GRAVITY)
 
@@ -89,7 +93,8 @@ def test_its_mean_velocity_is_that_of_the_vessel(nu, bank, roll_rate, reserve):
     courses = np.array(
         [orbit.course(phase) for phase in (2.0 * math.pi * (np.arange(400) + 0.5) / 400).tolist()]
     )
-    # The midpoint rule over a whole period of a course whose third derivative jumps: (2 pi/400)^3 times a few.
+    # The midpoint rule over a whole period of a course whose third derivative jumps: (2 pi/400)^3
+    # times a few.
     assert np.mean(np.cos(courses)) == pytest.approx(nu, abs=1e-5)
     assert np.mean(np.sin(courses)) == pytest.approx(0.0, abs=1e-12)
     assert orbit.amplitude <= (1.0 - reserve) * heading_rate * (1.0 + 1e-12)
@@ -117,7 +122,8 @@ def test_the_exact_rule_keeps_the_whole_orbit_outside_and_no_farther_than_that(n
     closest = np.hypot(
         distance * math.cos(heading) + along, distance * math.sin(heading) + right
     ).min()
-    # 20,000 points of an orbit of 250 m: 0.006 m apart, which at 200 m of distance is missed by its square.
+    # 20,000 points of an orbit of 250 m: 0.006 m apart, which at 200 m of distance is missed by its
+    # square.
     assert closest == pytest.approx(200.0, abs=1e-4)
 
 
@@ -147,7 +153,8 @@ def test_the_reference_stays_on_its_orbit():
         assert abs(reference.heading_rate) <= orbit.amplitude * (1.0 + 1e-12)
     along, right = orbit.offset(0.7 / orbit.omega_0 + steps * TIME_STEP)
     way = orbit.nu * SPEED * steps * TIME_STEP
-    # Simpson's rule over 150 corners of the roll rate: 1e-5 m each by its docstring, which partly cancel.
+    # Simpson's rule over 150 corners of the roll rate: 1e-5 m each by its docstring, which partly
+    # cancel.
     assert (reference.north, reference.east) == pytest.approx(
         (-214.0 + way + float(along), 5.0 + float(right)), rel=0.0, abs=2e-3
     )
@@ -168,14 +175,16 @@ def test_a_reference_that_is_slowed_down_has_a_larger_orbit_about_the_same_centr
     for _ in range(round(1.3 * orbit.period / TIME_STEP)):
         slow.step()
         assert abs(slow.heading_rate) <= share * orbit.amplitude * (1.0 + 1e-12)
-    # Asked to spend all, it does so from the next passage through the centre on, where it does not turn.
+    # Asked to spend all, it does so from the next passage through the centre on, where it does not
+    # turn.
     slow.spend(1.0)
     while slow.share != 1.0:
         before = slow.heading_rate
         slow.step()
     # A step of 0.05 s of rolling at 40 deg/s changes it by 0.5 rad/s^2 times that, 0.018 rad/s.
     assert abs(slow.heading_rate - before) < 0.02
-    # Its orbit's centre has moved with the vessel, and not otherwise: the mean over a whole period from here on.
+    # Its orbit's centre has moved with the vessel, and not otherwise: the mean over a whole period
+    # from here on.
     places = []
     while len(places) < round(orbit.period / TIME_STEP):
         places.append((slow.north, slow.east))

@@ -33,7 +33,9 @@ def nearest(place, course):
 
 
 def effort(reference, place, course):
-    """Return the distance to a reference together with 1.5 turn radii per radian between the courses [m]."""
+    """Return the distance to a reference together with 1.5 turn radii per radian between the
+    courses [m].
+    """
     turn = math.remainder(reference.course - course, 2.0 * math.pi)
     return math.hypot(
         reference.north - place[0], reference.east - place[1], 1.5 * TURN_RADIUS * turn
@@ -44,7 +46,8 @@ def effort(reference, place, course):
 def test_a_vehicle_on_the_orbit_is_met_where_it_is(phase):
     there = ORBIT.reference(phase, *CENTRE)
     found = nearest((there.north, there.east), there.course)
-    # Phases are 5 degrees apart, so half of that, over which the reference flies V_r 0.0436/omega_0.
+    # Phases are 5 degrees apart, so half of that, over which the reference flies V_r
+    # 0.0436/omega_0.
     assert (
         math.hypot(found.north - there.north, found.east - there.east)
         < SPEED * math.radians(2.6) / ORBIT.orbit.omega_0
@@ -61,7 +64,8 @@ def test_a_vehicle_on_the_orbit_is_met_where_it_is(phase):
 )
 def test_no_phase_costs_less_than_the_nearest(place, course, phase):
     least = effort(nearest(place, course), place, course)
-    # By no more than one gets from half a step of 2.5 degrees: way and turn of ``test_a_vehicle_on_the_orbit_...``.
+    # By no more than one gets from half a step of 2.5 degrees: way and turn of
+    # ``test_a_vehicle_on_the_orbit_...``.
     step = math.radians(2.6)
     slack = math.hypot(SPEED / ORBIT.orbit.omega_0, 1.5 * TURN_RADIUS * ORBIT.orbit.eta) * step
     assert least <= effort(ORBIT.reference(phase, *CENTRE), place, course) + slack

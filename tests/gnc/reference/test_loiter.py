@@ -39,7 +39,8 @@ def test_its_course_goes_round_once_at_the_mean_velocity_of_the_vessel_within_th
     orbit = design(nu, heading_rate=heading_rate, roll_rate=roll_rate)
     phases = 2.0 * math.pi * (np.arange(2000) + 0.5) / 2000
     courses = np.array([orbit.course(phase) for phase in phases.tolist()])
-    # The midpoint rule over a period of a course whose slope jumps at most: (2 pi/2000)^2 times a few.
+    # The midpoint rule over a period of a course whose slope jumps at most: (2 pi/2000)^2 times a
+    # few.
     assert np.mean(np.cos(courses)) == pytest.approx(nu, abs=1e-4)
     assert np.mean(np.sin(courses)) == pytest.approx(0.0, abs=1e-10)
     assert orbit.course(phases[3] + 2.0 * math.pi) == pytest.approx(
@@ -56,7 +57,8 @@ def test_its_course_goes_round_once_at_the_mean_velocity_of_the_vessel_within_th
 @given(nu=ratios)
 @examples(30)
 def test_no_roll_rate_makes_it_faster_than_the_bound_for_paths_that_go_round(nu):
-    # docs/fastest_oscillation.md: 2 pi/omega_max of turning with a mean velocity of 0, and the rest on the vessel's course.
+    # docs/fastest_oscillation.md: 2 pi/omega_max of turning with a mean velocity of 0, and the rest
+    # on the vessel's course.
     bound = math.pi / (HEADING_RATE * (1.0 - nu))
     intervals = [
         design(nu, roll_rate=rate).crossing_interval for rate in (math.inf, 4.0, ROLL_RATE)
@@ -101,11 +103,13 @@ def test_the_slower_one_meets_it_at_phase_0_and_becomes_it_there(share):
         steps += 1
     for _ in range(200):
         slow.step()
-    # It took 1 rad of phase at `share` of the frequency; from there on it is on the orbit about a centre that moved meanwhile.
+    # It took 1 rad of phase at `share` of the frequency; from there on it is on the orbit about a
+    # centre that moved meanwhile.
     time = 1.0 / (share * orbit.omega_0)
     along, right = orbit.offset((steps + 200) * TIME_STEP - time)
     way = orbit.nu * SPEED * (steps + 200) * TIME_STEP
-    # Within the step in which it changes, it goes on at one of two heading rates: 0.1 rad/s for 0.05 s at 19 m/s.
+    # Within the step in which it changes, it goes on at one of two heading rates: 0.1 rad/s for
+    # 0.05 s at 19 m/s.
     assert (slow.north, slow.east) == pytest.approx((way + float(along), float(right)), abs=0.02)
 
 
@@ -127,11 +131,13 @@ def test_up_to_about_half_the_speed_it_crosses_the_plume_and_beside_faster_vesse
     nu, roll_rate
 ):
     orbit = design(nu, roll_rate=roll_rate)
-    # Within two thousandths of the limit it just reaches both sides: at phase 0 the left, half a period later the right.
+    # Within two thousandths of the limit it just reaches both sides: at phase 0 the left, half a
+    # period later the right.
     left, right = orbit.offset(np.array([0.0, 0.5]) * orbit.period)[1]
     assert left <= 0.0 < right
     assert orbit.straight == pytest.approx(0.5 * orbit.crossing_interval, rel=0.05)
-    # The straight leg takes nu of the time at an infinite roll rate; at 40 deg/s half of it at 0.546.
+    # The straight leg takes nu of the time at an infinite roll rate; at 40 deg/s half of it at
+    # 0.546.
     for faster in (nu + 0.01, 0.6, 0.9):
         with pytest.raises(
             InfeasibleError,
@@ -142,7 +148,8 @@ def test_up_to_about_half_the_speed_it_crosses_the_plume_and_beside_faster_vesse
 
 @pytest.mark.parametrize("nu", [0.05, 0.1, 0.4])
 def test_a_vehicle_that_turns_by_half_a_turn_while_it_rolls_is_refused(nu):
-    # At 1 deg/s g/(V 0.0175 rad/s) log(1/cos 45 deg) is 10 rad from level flight; at 5 deg/s 2.0 rad.
+    # At 1 deg/s g/(V 0.0175 rad/s) log(1/cos 45 deg) is 10 rad from level flight; at 5 deg/s 2.0
+    # rad.
     with pytest.raises(
         InfeasibleError,
         match=r"while the vehicle rolls to its bank at 1 deg/s; that must stay below 180 deg",

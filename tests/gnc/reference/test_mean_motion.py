@@ -1,4 +1,6 @@
-"""The mean motion that takes a reference's orbit to where it should be, beside vessels fast and slow."""
+"""The mean motion that takes a reference's orbit to where it should be, beside vessels fast and
+slow.
+"""
 
 import math
 
@@ -17,7 +19,9 @@ SWING = SinusoidSwing(HEADING_RATE_MAX, 9.80665 / SPEED * math.radians(40.0))
 
 
 def moved(nu, turn=0.0):
-    """Return a centre astern of a vessel that steers north, swung to the west where she turns to the right [rad/s]."""
+    """Return a centre astern of a vessel that steers north, swung to the west where she turns to
+    the right [rad/s].
+    """
     centre = make()
     move(centre, (nu * SPEED, 0.0), acceleration=(0.0, nu * SPEED * turn), time_step=0.0)
     return centre
@@ -45,12 +49,14 @@ def test_a_steady_centre_is_followed_however_slow_it_is():
 
 
 def test_a_slow_orbit_follows_a_fast_swing_and_little_of_a_slow_one():
-    # Half a metre per second across at nu = 0.1 would turn the mean course by 14 degrees, and move the orbit's centre by some 20 m.
+    # Half a metre per second across at nu = 0.1 would turn the mean course by 14 degrees, and move
+    # the orbit's centre by some 20 m.
     slow = moved(0.1, turn=-0.5 / moved(0.1).distance)
     assert slow.swing == pytest.approx(-0.5, rel=1e-6)
     turned = demanded(slow)[0]
     assert 0.0 < turned < 0.2 * motion_course(slow)
-    # Six are a plume that goes over to the other side: nine tenths of them are followed, beside what the centre moves outwards.
+    # Six are a plume that goes over to the other side: nine tenths of them are followed, beside
+    # what the centre moves outwards.
     fast = moved(0.1, turn=-6.0 / moved(0.1).distance)
     assert math.tan(demanded(fast)[0]) == pytest.approx(
         0.9 * math.tan(motion_course(fast)), rel=0.01
@@ -58,7 +64,8 @@ def test_a_slow_orbit_follows_a_fast_swing_and_little_of_a_slow_one():
 
 
 def test_a_slow_orbit_follows_a_small_swing_that_goes_on():
-    # A vessel at rest in a wind of 2 m/s that turns by 0.3 deg/s: her plume's middle moves by 1.6 m/s across.
+    # A vessel at rest in a wind of 2 m/s that turns by 0.3 deg/s: her plume's middle moves by 1.6
+    # m/s across.
     centre, (wind, turn) = make(), (2.0, math.radians(0.3))
     for k in range(400):
         angle = turn * k * PLAN_TIME
@@ -105,9 +112,11 @@ def test_an_orbit_off_its_place_is_taken_towards_it(nu, off):
 
 
 def orbit_errors(nu, scatter, seed):
-    """Return how far [m] an orbit is from where it should be, beside a steady vessel whose velocity is not known exactly.
+    """Return how far [m] an orbit is from where it should be, beside a steady vessel whose velocity
+    is not known exactly.
 
-    What is wrong in each component of her velocity has the deviation ``scatter`` [m/s], and is forgotten in 10 s.
+    What is wrong in each component of her velocity has the deviation ``scatter`` [m/s], and is
+    forgotten in 10 s.
     """
     noise, (north, east) = np.random.default_rng(seed), (0.0, 0.0)
     kept = math.exp(-PLAN_TIME / 10.0)

@@ -65,7 +65,8 @@ def test_behind_a_steady_vessel_it_is_where_equations_9_to_11_put_it(nu):
     course = 0.6
     velocity = (nu * SPEED * math.cos(course), nu * SPEED * math.sin(course))
     move(centre, velocity, time_step=0.0)
-    # Half-widths from a table of 49 ratios, linear in between: second differences of the widths, up to 0.03 m.
+    # Half-widths from a table of 49 ratios, linear in between: second differences of the widths, up
+    # to 0.03 m.
     assert centre.distance == pytest.approx(paper_distance(nu), abs=0.05)
     assert (centre.x, centre.y) == pytest.approx(
         (-centre.distance * math.cos(course), -centre.distance * math.sin(course)), abs=1e-9
@@ -80,7 +81,8 @@ def test_with_a_given_plume_the_distance_knows_its_heading(heading_deg):
     heading = math.radians(heading_deg)
     centre = make(plume_heading=heading)
     move(centre, (0.5 * SPEED, 0.0), time_step=0.0)
-    # Equation (11): the orbit reaches sideways of the vessel's course by d_y, 68 m at nu = 0.5, along it by 14 m only. As above.
+    # Equation (11): the orbit reaches sideways of the vessel's course by d_y, 68 m at nu = 0.5,
+    # along it by 14 m only. As above.
     assert centre.distance == pytest.approx(paper_distance(0.5, heading), abs=0.05)
 
 
@@ -155,17 +157,20 @@ def test_its_velocity_is_the_rate_of_its_place(plume_heading, turn_rate, acceler
     mean = 0.5 * (np.array(velocities)[1:] + np.array(velocities)[:-1])
     jump = round(5.0 / time_step)
     kept = np.abs(np.arange(len(measured)) - jump) > 2
-    # Steps are by Euler's rule: half a step of the rate at which axis and distance change theirs, 0.005 s of up to 0.4 m/s^2.
+    # Steps are by Euler's rule: half a step of the rate at which axis and distance change theirs,
+    # 0.005 s of up to 0.4 m/s^2.
     np.testing.assert_allclose(measured[kept], mean[kept], rtol=0.0, atol=5e-3)
     # The centre was really swung, or moved out.
     assert np.ptp(np.hypot(*(np.array(velocities).T))) > 0.05
 
 
 def test_a_vessel_that_turns_moves_it_by_omega_cross_r():
-    # paper-notes, 11: V_V plus omega_V x r_CO. Course north, turning right: the centre astern swings to the west.
+    # paper-notes, 11: V_V plus omega_V x r_CO. Course north, turning right: the centre astern
+    # swings to the west.
     centre = make(plume_heading=math.pi)
     move(centre, (8.0, 0.0), acceleration=(0.0, 8.0 * 0.01), time_step=0.0)
-    # What it has along the axis besides, it spends on moving out: swung round, it takes up the orbit's width. Rounding.
+    # What it has along the axis besides, it spends on moving out: swung round, it takes up the
+    # orbit's width. Rounding.
     assert centre.velocity_east == pytest.approx(-0.01 * centre.distance, abs=1e-9)
     # To the right of an axis that points south.
     assert centre.swing == pytest.approx(0.01 * centre.distance, abs=1e-9)
@@ -193,9 +198,11 @@ def test_an_apparent_wind_that_passes_through_nothing_turns_the_axis_no_faster_t
         # The wind freshens past the vessel, and the plume goes over to the other side.
         move(centre, (6.0, 0.0), wind=(8.0, 0.1))
         turned = abs(math.remainder(centre.axis - before, 2.0 * math.pi)) / TIME_STEP
-        # _AXIS_SPEED of the vehicle's speed, at the centre's distance; that itself changes by 1 % in a step.
+        # _AXIS_SPEED of the vehicle's speed, at the centre's distance; that itself changes by 1 %
+        # in a step.
         assert turned * centre.distance <= 0.7 * SPEED * 1.02
-    # 35 s as fast as it may, 0.057 rad/s, down to the 1.1 rad from which it slows; e^(-0.05 165 s) of that.
+    # 35 s as fast as it may, 0.057 rad/s, down to the 1.1 rad from which it slows; e^(-0.05 165 s)
+    # of that.
     assert math.remainder(centre.axis - math.atan2(0.1, 2.0), 2.0 * math.pi) == pytest.approx(
         0.0, abs=1e-3
     )

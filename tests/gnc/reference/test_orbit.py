@@ -62,8 +62,8 @@ def test_the_orbit_is_a_figure_of_eight(nu, time):
     oscillation = paper_oscillation(nu)
     half = 0.5 * oscillation.period
     along, across = offset(oscillation, np.array([time, time + half, -time, half - time]))
-    # paper-notes: period T across and T/2 along; odd in time, and mirrored fore and aft about the quarter period.
-    # Roundings of angles of 1e3 rad, when nu is near 1, times 100 m.
+    # paper-notes: period T across and T/2 along; odd in time, and mirrored fore and aft about the
+    # quarter period. Roundings of angles of 1e3 rad, when nu is near 1, times 100 m.
     assert along[1] == pytest.approx(along[0], abs=1e-9)
     assert across[1] == pytest.approx(-across[0], abs=1e-9)
     assert (along[2], across[2]) == pytest.approx((-along[0], -across[0]), abs=1e-9)
@@ -73,7 +73,8 @@ def test_the_orbit_is_a_figure_of_eight(nu, time):
 @pytest.mark.parametrize("nu", RATIOS)
 def test_the_reference_passes_the_centre_twice_a_period(nu):
     oscillation = paper_oscillation(nu)
-    # paper-notes: it flies a figure of eight through the CO. An odd number of samples keeps the passages between samples.
+    # paper-notes: it flies a figure of eight through the CO. An odd number of samples keeps the
+    # passages between samples.
     times = (
         np.linspace(0.0, oscillation.period, 1001, endpoint=False) + 0.3 * oscillation.period / 1001
     )
@@ -92,8 +93,9 @@ def test_the_half_widths_are_the_largest_offsets_of_the_orbit(nu):
     times = np.linspace(0.0, oscillation.period, 40001)
     along, across = offset(oscillation, times)
     d_x, d_y = half_widths(oscillation)
-    # A sample lies within T/80,000 of the extremum, where the offset falls short by half its second derivative times that squared:
-    # V_r A (T/80,000)^2/2 = V_r A T pi/(80,000^2 omega_0), below 1e-6 m.
+    # A sample lies within T/80,000 of the extremum, where the offset falls short by half its second
+    # derivative times that squared: V_r A (T/80,000)^2/2 = V_r A T pi/(80,000^2 omega_0), below
+    # 1e-6 m.
     assert np.max(np.abs(along)) == pytest.approx(d_x, rel=0.0, abs=1e-6)
     assert np.max(np.abs(across)) == pytest.approx(d_y, rel=0.0, abs=1e-6)
     assert np.max(np.abs(along)) <= d_x + 1e-12

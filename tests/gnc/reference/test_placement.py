@@ -21,14 +21,17 @@ headings = st.floats(-math.pi, math.pi)
 elevations = st.floats(-1.2, 1.2)
 radii = st.floats(20.0, 1000.0)
 
-# The search for the worst point of the orbit stops within 1e-5 s of it: 2e-4 m of path, and the square of that in distance.
+# The search for the worst point of the orbit stops within 1e-5 s of it: 2e-4 m of path, and the
+# square of that in distance.
 SEARCH = 1e-6
 
 
 def closest_approach(oscillation, axis, distance):
-    """Return the smallest three-dimensional distance [m] between a dense orbit about the CO and the plume's origin.
+    """Return the smallest three-dimensional distance [m] between a dense orbit about the CO and the
+    plume's origin.
 
-    The orbit has 20,000 points, of which those are left out that lie too far from the closest of 2000 to be any closer.
+    The orbit has 20,000 points, of which those are left out that lie too far from the closest of
+    2000 to be any closer.
     """
     ahead, right, above = centre_of_oscillation(distance, axis)
 
@@ -51,8 +54,9 @@ def test_the_exact_placement_touches_the_keep_out_sphere_and_no_more(
     oscillation, axis = paper_oscillation(nu), PlumeAxis(heading=heading, elevation=elevation)
     closest = closest_approach(oscillation, axis, distance_exact(oscillation, axis, radius))
     assert closest >= radius - SEARCH
-    # Samples are at most 19.42 m/s * 30 s/20,000 = 0.029 m apart, so one is within 0.015 m of the closest point. Off it, distance
-    # grows by (1/r_min + 1/39 m)/2 of the square of that, 39 m being the tightest turn, V_r/omega_max: at r_min = 20 m, 8e-6 m.
+    # Samples are at most 19.42 m/s * 30 s/20,000 = 0.029 m apart, so one is within 0.015 m of the
+    # closest point. Off it, distance grows by (1/r_min + 1/39 m)/2 of the square of that, 39 m
+    # being the tightest turn, V_r/omega_max: at r_min = 20 m, 8e-6 m.
     assert closest <= radius + 1e-5
 
 
@@ -61,8 +65,9 @@ def test_the_exact_placement_touches_the_keep_out_sphere_and_no_more(
 def test_no_closer_placement_keeps_the_orbit_outside(nu, heading, elevation, radius, closer):
     oscillation, axis = paper_oscillation(nu), PlumeAxis(heading=heading, elevation=elevation)
     distance = distance_exact(oscillation, axis, radius) - closer
-    # Towards the worst point goes a share of 0.01 m: the cosine between axis and line of sight there, no less than 0.14 in 12,000
-    # random cases of these ranges. The samples' 1e-5 m, see before, is nothing to that.
+    # Towards the worst point goes a share of 0.01 m: the cosine between axis and line of sight
+    # there, no less than 0.14 in 12,000 random cases of these ranges. The samples' 1e-5 m, see
+    # before, is nothing to that.
     assert closest_approach(oscillation, axis, distance) < radius - 5e-4
 
 
@@ -103,7 +108,8 @@ def test_the_papers_placement_is_exact_for_a_plume_abeam(nu, radius, side):
 def test_an_elevated_plume_abeam_is_placed_by_the_end_of_the_lobe(nu, elevation):
     oscillation = paper_oscillation(nu)
     _, d_y = half_widths(oscillation)
-    # |r_CO u + o| = r_min at the end of the lobe nearest the vessel, o = -d_y towards it, solved by hand.
+    # |r_CO u + o| = r_min at the end of the lobe nearest the vessel, o = -d_y towards it, solved by
+    # hand.
     expected = d_y * math.cos(elevation) + math.sqrt(200.0**2 - (d_y * math.sin(elevation)) ** 2)
     axis = PlumeAxis(heading=0.5 * math.pi, elevation=elevation)
     assert distance_exact(oscillation, axis, 200.0) == pytest.approx(expected, rel=0.0, abs=SEARCH)
@@ -115,7 +121,8 @@ def test_an_elevated_plume_abeam_is_placed_by_the_end_of_the_lobe(nu, elevation)
 def test_mirrored_plumes_are_measured_at_the_same_distance(rule, nu, heading, elevation, radius):
     oscillation = paper_oscillation(nu)
     distance = rule(oscillation, PlumeAxis(heading=heading, elevation=elevation), radius)
-    # The figure of eight is symmetric port and starboard, fore and aft; up and down are the same to a sphere.
+    # The figure of eight is symmetric port and starboard, fore and aft; up and down are the same to
+    # a sphere.
     for mirrored in (
         PlumeAxis(heading=-heading, elevation=elevation),
         PlumeAxis(heading=math.pi - heading, elevation=elevation),

@@ -31,7 +31,9 @@ def make(nu, *, phase=0.0, time_step=TIME_STEP):
 
 
 def closed_form(oscillation, time, phase):
-    """Return north and east [m] of the reference: the CO goes with the vessel, and the orbit turns with its course."""
+    """Return north and east [m] of the reference: the CO goes with the vessel, and the orbit turns
+    with its course.
+    """
     along, right = offset(oscillation, time + phase / oscillation.omega_0)
     along = along + oscillation.nu * SPEED * time
     return (
@@ -48,8 +50,9 @@ def test_the_stepped_reference_does_not_drift_off_the_closed_form_in_1000_second
         reference.step()
         positions.append((reference.north, reference.east))
     expected = np.stack(closed_form(oscillation, TIME_STEP * np.arange(20_001), phase), axis=-1)
-    # Simpson's rule is good to 1e-9 m a step (class docstring), and its errors cancel over a period rather than add up over the
-    # 20,000 steps: at nu = 0.95, with 142 steps a period, they reach 3e-8 m.
+    # Simpson's rule is good to 1e-9 m a step (class docstring), and its errors cancel over a period
+    # rather than add up over the 20,000 steps: at nu = 0.95, with 142 steps a period, they reach
+    # 3e-8 m.
     np.testing.assert_allclose(positions, expected, rtol=0.0, atol=1e-7)
 
 
@@ -96,7 +99,8 @@ def test_the_course_is_that_of_equation_3_about_the_vessels(phase):
     oscillation, reference = make(0.3, phase=phase)
     for step in range(1, 2001):
         reference.step()
-        # Equation (3) with the start of (7). Rounding of angles of 30 rad; time comes from the step count, so it does not grow.
+        # Equation (3) with the start of (7). Rounding of angles of 30 rad; time comes from the step
+        # count, so it does not grow.
         expected = COURSE + oscillation.eta * math.cos(
             oscillation.omega_0 * step * TIME_STEP + phase
         )
@@ -108,14 +112,16 @@ def test_the_reference_is_a_unicycle_of_constant_speed():
     for _ in range(200):
         north, east = reference.north, reference.east
         reference.step()
-        # Equation (4): the speed is V_r throughout. The chord is shorter than the arc by (omega h)^2/24 of it, 1e-8.
+        # Equation (4): the speed is V_r throughout. The chord is shorter than the arc by (omega
+        # h)^2/24 of it, 1e-8.
         assert math.hypot(reference.north - north, reference.east - east) == pytest.approx(
             SPEED * 1e-3, rel=2e-8
         )
 
 
 def test_the_reference_starts_on_the_centre_with_phase_zero_only():
-    # Section III.B has it start on the CO; paper-notes, care 2, says why that holds for phi_0 = 0 only.
+    # Section III.B has it start on the CO; paper-notes, care 2, says why that holds for phi_0 = 0
+    # only.
     oscillation = paper_oscillation(0.5)
     on = start_reference(
         oscillation, phase=0.0, centre_north=CENTRE[0], centre_east=CENTRE[1], vessel_course=COURSE
@@ -128,7 +134,8 @@ def test_the_reference_starts_on_the_centre_with_phase_zero_only():
         vessel_course=COURSE,
     )
     assert (on.north, on.east) == pytest.approx(CENTRE, abs=1e-12)
-    # A quarter period on it is d_y = 68.395 m to the vessel's right (table of paper-notes, rounded to 1 cm).
+    # A quarter period on it is d_y = 68.395 m to the vessel's right (table of paper-notes, rounded
+    # to 1 cm).
     right = -(off.north - CENTRE[0]) * math.sin(COURSE) + (off.east - CENTRE[1]) * math.cos(COURSE)
     along = (off.north - CENTRE[0]) * math.cos(COURSE) + (off.east - CENTRE[1]) * math.sin(COURSE)
     assert right == pytest.approx(68.40, abs=0.005)
@@ -147,7 +154,8 @@ def test_a_circling_reference_is_a_unicycle_that_turns_steadily(heading_rate):
         reference.step()
         state = unicycle_move(*state, SPEED, heading_rate, TIME_STEP)
         assert (reference.heading_rate, reference.speed) == (heading_rate, SPEED)
-    # Equation (13) integrated step by step, against the closed form: 8,000 roundings of a radius up to 130 m.
+    # Equation (13) integrated step by step, against the closed form: 8,000 roundings of a radius up
+    # to 130 m.
     assert (reference.north, reference.east) == pytest.approx(state[:2], rel=0.0, abs=1e-8)
     assert reference.course == pytest.approx(state[2], rel=0.0, abs=1e-9)
 

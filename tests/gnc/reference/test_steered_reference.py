@@ -64,7 +64,8 @@ def test_with_constant_parameters_it_is_the_reference_of_its_shape(shape, nu):
     for _ in range(2000):
         reference.step()
         fixed.step()
-    # The same Simpson's rule; the series of J_0 is good to 5e-7, and so is eta, which 100 s of turning make 2e-5 rad of phase.
+    # The same Simpson's rule; the series of J_0 is good to 5e-7, and so is eta, which 100 s of
+    # turning make 2e-5 rad of phase.
     assert (reference.north, reference.east) == pytest.approx(
         (fixed.north, fixed.east), rel=0.0, abs=2e-3
     )
@@ -98,8 +99,8 @@ def test_it_is_a_unicycle_of_constant_speed_whatever_is_steered(shape, steering,
             north, east, course = reference.north, reference.east, reference.course
             reference.step()
             turn = reference.course - course
-            # The chord of an arc that turns evenly, and the course on its middle; how the rate changes within a step, 1.5 rad/s^2
-            # at most, moves the end by V dt^3 1.5/12 = 0.3 mm.
+            # The chord of an arc that turns evenly, and the course on its middle; how the rate
+            # changes within a step, 1.5 rad/s^2 at most, moves the end by V dt^3 1.5/12 = 0.3 mm.
             chord = (
                 SPEED * TIME_STEP * math.sin(0.5 * turn) / (0.5 * turn)
                 if turn
@@ -118,7 +119,8 @@ def test_it_is_a_unicycle_of_constant_speed_whatever_is_steered(shape, steering,
 @given(steering=steering, nu=st.floats(0.0, 0.97))
 @examples(10)
 def test_mirrored_steering_gives_a_mirrored_path(shape, steering, nu):
-    # Mirrored in the north-south line: courses change sign, and so does the amplitude, which is half a period of phase.
+    # Mirrored in the north-south line: courses change sign, and so does the amplitude, which is
+    # half a period of phase.
     one, other = (
         steered(shape, nu=nu, mean_course=side * 0.4, phase=phase)
         for side, phase in ((1.0, 0.0), (-1.0, math.pi))
@@ -146,14 +148,16 @@ def test_its_centre_is_the_mean_of_its_orbit(shape, nu, phase):
     centre = np.array(reference.centre())
     mean_speed = reference.speed_ratio * SPEED
     drift = mean_speed * np.array([math.cos(0.7), math.sin(0.7)])
-    # Ten periods, to within half a step: 0.025 s of some 150 s, up to 105 m from the centre, move the mean by up to 2 cm.
+    # Ten periods, to within half a step: 0.025 s of some 150 s, up to 105 m from the centre, move
+    # the mean by up to 2 cm.
     steps = round(10 * 2.0 * math.pi / reference.omega_0 / TIME_STEP)
     places = []
     for step in range(steps):
         places.append(np.array([reference.north, reference.east]) - step * TIME_STEP * drift)
         reference.step()
     assert np.mean(places, axis=0) == pytest.approx(centre, rel=0.0, abs=0.05)
-    # Nor does it wander from there: the centre moves with the mean velocity. Table of Bessel functions: 3e-6 of 100 m.
+    # Nor does it wander from there: the centre moves with the mean velocity. Table of Bessel
+    # functions: 3e-6 of 100 m.
     end = np.array(reference.centre()) - steps * TIME_STEP * drift
     assert end == pytest.approx(centre, rel=0.0, abs=0.01)
 
@@ -167,7 +171,8 @@ def test_the_offset_is_the_series_of_equation_12(eta, phase):
     along, right = offset(oscillation, phase / oscillation.omega_0)
     unit = SPEED / oscillation.omega_0
     found = SINUSOID.offset(eta, phase)
-    # What _ORDERS leaves out is below 1e-4 of the width, of order 1 in these units; the table is linear over 0.005 rad, 3e-6.
+    # What _ORDERS leaves out is below 1e-4 of the width, of order 1 in these units; the table is
+    # linear over 0.005 rad, 3e-6.
     assert found == pytest.approx((float(along) / unit, float(right) / unit), rel=0.0, abs=2e-5)
 
 
@@ -181,8 +186,8 @@ def test_the_table_of_eta_is_equation_6():
 
 def test_mean_speeds_beyond_the_table_are_those_of_its_ends():
     assert SINUSOID.eta(1.2) == 0.0
-    # Backing away: J_0 falls to -0.2 beyond its first zero; the end of the table is a step of 0.005 rad away at most, whose J_0 is
-    # 0.4 times that.
+    # Backing away: J_0 falls to -0.2 beyond its first zero; the end of the table is a step of 0.005
+    # rad away at most, whose J_0 is 0.4 times that.
     assert j0(SINUSOID.eta(-0.2)) == pytest.approx(-0.2, abs=0.002)
     assert SINUSOID.eta(-5.0) == pytest.approx(SINUSOID.eta(-0.2), abs=0.005)
 
@@ -190,7 +195,8 @@ def test_mean_speeds_beyond_the_table_are_those_of_its_ends():
 @shapes
 def test_it_knows_its_mean_speed(shape):
     for nu in (0.0, 0.2, 0.5, 0.97):
-        # The series of J_0 ends at the sixth power: (eta/2)^14/(7!)^2 = 5e-7 at eta = 2.405; tables of eta are good to 1e-5.
+        # The series of J_0 ends at the sixth power: (eta/2)^14/(7!)^2 = 5e-7 at eta = 2.405; tables
+        # of eta are good to 1e-5.
         assert steered(shape, nu=nu).speed_ratio == pytest.approx(nu, abs=1e-5)
 
 
@@ -200,7 +206,8 @@ def test_it_comes_to_the_mean_course_and_speed_that_are_asked_for(shape):
     reference.steer(2.0, 0.2)
     for _ in range(1200):
         reference.step()
-    # 60 s: rate 0.4/s and a gate of 0.2 to 1 make at least 1/0.08 s = 12 s the slowest time constant: e^-5 of 2 rad and more.
+    # 60 s: rate 0.4/s and a gate of 0.2 to 1 make at least 1/0.08 s = 12 s the slowest time
+    # constant: e^-5 of 2 rad and more.
     assert reference.mean_course == pytest.approx(2.0, abs=0.02)
     assert reference.speed_ratio == pytest.approx(0.2, abs=0.01)
 

@@ -1,4 +1,6 @@
-"""The guard is asked whether it would let a command pass at another speed, and answers for what it does next."""
+"""The guard is asked whether it would let a command pass at another speed, and answers for what it
+does next.
+"""
 
 import math
 from collections import deque
@@ -33,7 +35,8 @@ def test_it_allows_what_it_would_let_pass_and_asking_changes_nothing(lag, delay)
 
 
 def test_what_is_allowed_at_a_speed_is_safe_at_that_speed_from_then_on():
-    # Head on, at just the distance from which it can still turn away; not so if it were half as fast again.
+    # Head on, at just the distance from which it can still turn away; not so if it were half as
+    # fast again.
     far = next(
         distance
         for distance in np.arange(205.0, 400.0)
@@ -63,7 +66,8 @@ def test_to_ask_first_frees_no_more(bearing, command):
 
 
 def test_it_allows_nothing_that_a_slower_vehicle_could_not_turn_away_after():
-    # Heading off from a disc that closes in at 0.8 of its speed: 12 m are left over, and at three quarters of its speed 7 m lack.
+    # Heading off from a disc that closes in at 0.8 of its speed: 12 m are left over, and at three
+    # quarters of its speed 7 m lack.
     motion = (-215.0, 0.0, -0.8 * SPEED, 0.0, math.radians(120.0), SPEED, 0.0)
     for slowest, allowed in ((math.inf, True), (SPEED - 0.4, True), (0.75 * SPEED, False)):
         guard = make_guard()
@@ -78,7 +82,8 @@ def test_it_remembers_of_a_fast_vehicle_no_more_than_it_can_turn():
         guard.limit(HEADING_RATE_MAX, 1000.0, 0.0, 0.0, 0.0, 0.0, speed, 0.0)
         # Flown at the largest bank; the command itself is passed on as it is.
         assert guard.guard._given.since[-1] == HEADING_RATE_MAX * SPEED / speed
-    # One that may become faster, and is not, turns in full: taken for a slow turn it flew 9 m into a disc of 10.
+    # One that may become faster, and is not, turns in full: taken for a slow turn it flew 9 m into
+    # a disc of 10.
     own = KnownMotion(ground_north=1000.0, ground_east=0.0, course=0.0, speed=SPEED)
     guard.guard.limit(HEADING_RATE_MAX, 0.1, own, 1.5 * SPEED, SPEED)
     assert guard.guard._given.since[-1] == HEADING_RATE_MAX
@@ -104,7 +109,8 @@ def test_a_command_that_is_not_a_number_is_not_passed_on_beside_the_area():
 
 @pytest.mark.parametrize("speed", [SPEED, 1.5 * SPEED])
 def test_far_away_it_need_not_look_for_as_long_as_nothing_can_happen(speed):
-    # Straight at each other, the disc speeding up all the while: at the end of that time, and no later, a turn may be needed.
+    # Straight at each other, the disc speeding up all the while: at the end of that time, and no
+    # later, a turn may be needed.
     acceleration = 0.3
     guard = make_guard(turn_speed=SPEED, acceleration=acceleration)
 
@@ -118,5 +124,6 @@ def test_far_away_it_need_not_look_for_as_long_as_nothing_can_happen(speed):
         free = free_from(distance, 5.0)
         then = distance - (speed + 5.0) * free - 0.5 * acceleration * free**2
         assert free_from(then, 5.0 + acceleration * free) >= -1e-9
-        # What is left is what both can close in a full turn, which takes the longer the faster it flies.
+        # What is left is what both can close in a full turn, which takes the longer the faster it
+        # flies.
         assert free == 0.0 or then - RADIUS > (speed + 5.0 + acceleration * free) * duration

@@ -1,4 +1,6 @@
-"""What the vehicle does between two looks of the keep-out guard: within a step, and as its commands change."""
+"""What the vehicle does between two looks of the keep-out guard: within a step, and as its commands
+change.
+"""
 
 import copy
 import math
@@ -69,7 +71,8 @@ def test_no_path_leads_in_within_a_wide_step(rate_hz, heading_rate_max):
 
 @pytest.mark.parametrize("deviation", [0.0, 3.1, 19.7])
 def test_a_command_that_passes_leaves_a_turn_with_all_that_is_kept_for_its_own_change(deviation):
-    # A turn that is settled, beside the disc; then a law that steers inwards by a reversal. The vehicle has the guard's response.
+    # A turn that is settled, beside the disc; then a law that steers inwards by a reversal. The
+    # vehicle has the guard's response.
     heading_rate_max, lag, step = 0.49, 0.26, 0.05
     worked, least = 0, math.inf
     for gap in (1.0, 5.0, 15.0, 30.0):
@@ -90,7 +93,8 @@ def test_a_command_that_passes_leaves_a_turn_with_all_that_is_kept_for_its_own_c
             demanded = (
                 aim_at_the_centre(k, *state[:3], heading_rate_max) if inwards else -heading_rate_max
             )
-            # The turn away that keeps off by all that a change of command before it takes; once begun it is one itself.
+            # The turn away that keeps off by all that a change of command before it takes; once
+            # begun it is one itself.
             if k and not (guard.intervening and abs(command) == heading_rate_max):
                 asked = copy.copy(guard)
                 asked._given = copy.deepcopy(guard._given)
@@ -115,8 +119,8 @@ def test_a_command_that_passes_leaves_a_turn_with_all_that_is_kept_for_its_own_c
 def test_another_command_or_speed_than_was_counted_is_looked_at_at_once(
     command, speed, slowest, looks, monkeypatch
 ):
-    # Beside the disc, northbound: of a look some steps are free. Half a reversal is counted, which it has to roll into the turn
-    # as well, so a quarter to either side.
+    # Beside the disc, northbound: of a look some steps are free. Half a reversal is counted, which
+    # it has to roll into the turn as well, so a quarter to either side.
     guard, own = (
         guard_of(radius=200.0, heading_rate_max=0.5, time_step=0.05, lag=0.26, deviation=3.0),
         motion_of((0.0, 220.0, 0.0, 0.0)),
@@ -142,8 +146,9 @@ def flown(state, under_way, command, lag):
 )
 @pytest.mark.parametrize("order", ["against the turn", "at random", "of the turn"])
 def test_whatever_needs_no_look_leaves_the_turn_that_was_found(deviation, radius, closing, order):
-    # The worst that passes without a look, or anything that does, until nothing does: the better turn away then still keeps off by
-    # all that is kept for the last change of command. The vehicle has the guard's response; the disc follows it.
+    # The worst that passes without a look, or anything that does, until nothing does: the better
+    # turn away then still keeps off by all that is kept for the last change of command. The vehicle
+    # has the guard's response; the disc follows it.
     heading_rate_max, lag, step = 0.49, 0.26, 0.05
     generator, passed, least = np.random.default_rng(5), 0, math.inf
     tried = np.linspace(-1.0, 1.0, 9) * heading_rate_max

@@ -12,7 +12,9 @@ from gnc.safety.given_commands import GivenCommands, commands_under_way
 
 
 def commands(lag, delay, *, sooner=0.0):
-    """Return the commands to a vehicle of that lag and dead time that follows slow commands by so much sooner than they say."""
+    """Return the commands to a vehicle of that lag and dead time that follows slow commands by so
+    much sooner than they say.
+    """
     return GivenCommands(
         lag=lag,
         delay=delay,
@@ -51,7 +53,8 @@ def test_of_a_vehicle_with_just_that_dead_time_and_lag_nothing_is_to_come(lag, d
 
 
 def test_a_vehicle_that_has_not_begun_to_turn_has_all_of_it_to_come():
-    # One that flies on straight for n steps: the commanded course, n h u, over the lag, in which it is to be turned.
+    # One that flies on straight for n steps: the commanded course, n h u, over the lag, in which it
+    # is to be turned.
     given = commands(0.4, 0.0)
     given.still_to_come(0.0)
     give(given, [-0.3] * 4, 0.0)
@@ -59,7 +62,8 @@ def test_a_vehicle_that_has_not_begun_to_turn_has_all_of_it_to_come():
 
 
 def test_commands_under_way_are_not_to_come_twice():
-    # With a dead time of two steps the first command has acted for a step after three, and no other has.
+    # With a dead time of two steps the first command has acted for a step after three, and no other
+    # has.
     given = commands(0.4, 2.0 * TIME_STEP)
     given.still_to_come(0.0)
     give(given, [0.3, 0.4, 0.5], 0.0)
@@ -68,7 +72,8 @@ def test_commands_under_way_are_not_to_come_twice():
 
 
 def test_a_lack_that_stays_is_forgotten():
-    # A vehicle that a steady wrong trim keeps from turning, and commands that end: by exp(-t/(8 lag)) of what it lacked.
+    # A vehicle that a steady wrong trim keeps from turning, and commands that end: by exp(-t/(8
+    # lag)) of what it lacked.
     given = commands(0.4, 0.0)
     given.still_to_come(0.0)
     give(given, [0.3], 0.0)
@@ -80,12 +85,14 @@ def test_a_lack_that_stays_is_forgotten():
 
 
 def test_of_a_vehicle_that_follows_slow_commands_sooner_nothing_is_to_come_in_a_slow_turn():
-    # A command that rises slowly, and a heading rate that is it, 0.3 s ago: dead time and lag say 0.5 s.
+    # A command that rises slowly, and a heading rate that is it, 0.3 s ago: dead time and lag say
+    # 0.5 s.
     given, rise = commands(0.4, 0.1, sooner=0.2), 0.01
     given.still_to_come(-0.3 * rise)
     for step in range(200):
         give(given, [rise * (step + 0.5) * TIME_STEP], rise * (step * TIME_STEP - 0.3))
-    # A ramp's integral over a step of the rates at its beginnings lacks half a step: 0.025 s, of which lag makes 0.0002 rad/s.
+    # A ramp's integral over a step of the rates at its beginnings lacks half a step: 0.025 s, of
+    # which lag makes 0.0002 rad/s.
     assert given.still_to_come(rise * (200 * TIME_STEP - 0.3)) == pytest.approx(0.0, abs=1e-3)
 
 
@@ -93,7 +100,8 @@ def test_as_much_as_slow_commands_may_be_followed_sooner_or_later_does_not_count
     given = commands(0.4, 0.0)
     given.still_to_come(0.2)
     give(given, [0.2, 0.2], 0.2)
-    # 0.008 rad are lacking, of which some per cent of the course that is turned in 0.4 s do not count.
+    # 0.008 rad are lacking, of which some per cent of the course that is turned in 0.4 s do not
+    # count.
     give(given, [0.36], 0.2)
     assert given.still_to_come(0.2) == pytest.approx(
         (0.16 * TIME_STEP - SLOW_LAG_ERROR * 0.4 * 0.2) / 0.4, rel=1e-9

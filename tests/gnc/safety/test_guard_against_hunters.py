@@ -1,4 +1,6 @@
-"""The guard's theorem: a vessel that keeps within what is declared of it does not get the vehicle, whatever she does or reports."""
+"""The guard's theorem: a vessel that keeps within what is declared of it does not get the vehicle,
+whatever she does or reports.
+"""
 
 import math
 
@@ -60,7 +62,8 @@ def test_a_dead_time_of_no_whole_number_of_steps_lets_nobody_in(delay, lag, rate
 
 @HUNTED
 def test_where_the_vessel_is_taken_to_be_is_not_enough(hunter):
-    # The same hunts, and a guard that knows where the newest report says that she is. Measured, 27 to 200 m inside.
+    # The same hunts, and a guard that knows where the newest report says that she is. Measured, 27
+    # to 200 m inside.
     assert any(
         hunted(seed, hunter, silence=60.0, known=as_it_was_known).closest < RADIUS - 20.0
         for seed in range(2)
@@ -68,7 +71,8 @@ def test_where_the_vessel_is_taken_to_be_is_not_enough(hunter):
 
 
 def test_a_guard_that_forgets_what_it_kept_off_finds_no_way_out():
-    # A report that says that she may be elsewhere leaves no turn that keeps off all that she may be then.
+    # A report that says that she may be elsewhere leaves no turn that keeps off all that she may be
+    # then.
     found = [
         hunted(seed, hunter, made=forgetful) for seed in range(2) for hunter in (towards, braking)
     ]
@@ -76,7 +80,8 @@ def test_a_guard_that_forgets_what_it_kept_off_finds_no_way_out():
 
 
 def test_a_report_that_widens_the_disc_does_not_take_the_way_out():
-    # A vehicle that is turned away from a disc that is known, and a report after which she may be 60 m farther any way.
+    # A vehicle that is turned away from a disc that is known, and a report after which she may be
+    # 60 m farther any way.
     known, wider = Tube(0.0, 0.0, 0.0, 0.0, 0.0), Tube(0.0, 0.0, 0.0, 0.0, 0.0, 60.0)
     lost = {}
     for made in (lambda guard: guard, forgetful):
@@ -113,8 +118,8 @@ def test_a_report_that_widens_the_disc_does_not_take_the_way_out():
 @pytest.mark.parametrize("side", [1.0, -1.0])
 @pytest.mark.parametrize("rate", [1.0, 2.0])
 def test_dead_reckoning_that_goes_wrong_as_fast_as_declared_does_not_lead_in(rate, side):
-    # Satellite navigation is lost after 20 s for 30 s; meanwhile the vehicle takes itself to be ever farther from the vessel, or
-    # to the side of where it is.
+    # Satellite navigation is lost after 20 s for 30 s; meanwhile the vehicle takes itself to be
+    # ever farther from the vessel, or to the side of where it is.
     generator = np.random.default_rng(17)
     worst = {}
     for declared in (rate, 0.0):

@@ -1,4 +1,6 @@
-"""The guard lets a command pass exactly where the turn away that follows keeps off: beside its own clearance, and in wind."""
+"""The guard lets a command pass exactly where the turn away that follows keeps off: beside its own
+clearance, and in wind.
+"""
 
 import numpy as np
 import pytest
@@ -26,7 +28,9 @@ def a_guard(tube, *, delay=0.0):
 
 
 def nearest(asked):
-    """Return the least distance [m] at which something is so, which is not so at the radius and is so 100 m from it."""
+    """Return the least distance [m] at which something is so, which is not so at the radius and is
+    so 100 m from it.
+    """
     low, high = RADIUS, RADIUS + 100.0
     assert asked(high)
     for _ in range(12):
@@ -39,7 +43,8 @@ def nearest(asked):
 @pytest.mark.parametrize("delay", [0.0, 0.25, 0.5])
 @pytest.mark.parametrize("growth", [0.0, 5.0])
 def test_a_turn_away_passes_exactly_where_one_that_begins_now_keeps_off(side, delay, growth):
-    # The disc grows by 2.5 m within half a second, before any command acts. Straight at it, 5 m off its middle.
+    # The disc grows by 2.5 m within half a second, before any command acts. Straight at it, 5 m off
+    # its middle.
     disc = Tube(0.0, 0.0, 0.0, 0.0, 0.0, growth=growth)
 
     def own(distance):
@@ -56,7 +61,8 @@ def test_a_turn_away_passes_exactly_where_one_that_begins_now_keeps_off(side, de
             side * HEADING_RATE_MAX, 0.0, own(distance), SPEED
         )
     )
-    # Each closest approach is predicted to a thousandth of a turn radius; the bisections end within 0.03 m.
+    # Each closest approach is predicted to a thousandth of a turn radius; the bisections end within
+    # 0.03 m.
     assert passes == pytest.approx(keeps_off, abs=2.0 * floor + 0.05)
 
 

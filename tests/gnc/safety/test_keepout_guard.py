@@ -53,7 +53,8 @@ def test_no_commands_lead_in(lag, delay, nu):
         closest, changed, lost = fly_guarded(
             guard, start, want, Steady(velocity), lag=lag, delay=delay
         )
-        # The theorem of docs/keepout_guard.md, with what the guard keeps for its looks, 0.04 m, on the safe side of it.
+        # The theorem of docs/keepout_guard.md, with what the guard keeps for its looks, 0.04 m, on
+        # the safe side of it.
         assert closest >= RADIUS
         assert not any(lost)
         worked += any(changed)
@@ -82,7 +83,8 @@ def test_a_disc_that_hunts_the_vehicle_within_its_bounds_does_not_get_it(speed_e
 
 
 def test_a_guard_that_knows_nothing_of_the_hunters_acceleration_is_caught():
-    # What the bound is for: the same kind of pursuit, as hard as 1 m/s2, taken for a disc at constant velocity.
+    # What the bound is for: the same kind of pursuit, as hard as 1 m/s2, taken for a disc at
+    # constant velocity.
     disc = Hunter((0.0, 0.0), acceleration=1.0, speed_max=0.9 * SPEED, error=(0.0, 0.0))
     start = (-400.0, 0.0, 0.0, 0.0)
     assert fly_guarded(make_guard(), start, aim_at_the_centre, disc, lag=0.4)[0] < RADIUS - 0.5
@@ -125,7 +127,8 @@ def test_without_the_guard_those_vehicles_do_get_in(nu):
 
 @LAGS
 def test_looking_less_often_where_nothing_can_happen_changes_nothing(lag, delay):
-    # A guard that remembers nothing but the commands under way looks at every step, and allows all that the other lets pass.
+    # A guard that remembers nothing but the commands under way looks at every step, and allows all
+    # that the other lets pass.
     generator = np.random.default_rng(1)
     velocity = (0.6 * SPEED, 0.0)
     skipped = 0
@@ -158,7 +161,8 @@ def test_looking_less_often_where_nothing_can_happen_changes_nothing(lag, delay)
     nu=st.floats(0.0, 0.9),
 )
 def test_a_vehicle_far_away_is_left_alone(bearing, farther, course, command, turn, nu):
-    # Farther than both can close in the whole of a turn and the lag from any heading rate: nothing can have got near by then.
+    # Farther than both can close in the whole of a turn and the lag from any heading rate: nothing
+    # can have got near by then.
     distance = RADIUS + (1.0 + nu) * SPEED * (2.0 * math.pi / HEADING_RATE_MAX + 1.0) + farther
     guard = make_guard()
     motion = (
@@ -181,7 +185,8 @@ def test_a_vehicle_far_away_is_left_alone(bearing, farther, course, command, tur
     command=st.floats(0.0, HEADING_RATE_MAX),
 )
 def test_a_vehicle_that_passes_clear_is_left_alone(side, clear, command):
-    # Northbound, the disc abeam to port or starboard, farther than what is kept for the looks, and the command away from it.
+    # Northbound, the disc abeam to port or starboard, farther than what is kept for the looks, and
+    # the command away from it.
     assert (
         make_guard().limit(side * command, 0.0, side * (RADIUS + clear), 0.0, 0.0, 0.0, SPEED, 0.0)
         == side * command
@@ -242,7 +247,8 @@ def test_a_start_that_cannot_be_held_is_said_to_be_so():
     guard = make_guard()
     # Head on, 20 m off the radius, and a turn takes 38.6 m.
     assert guard.clearance(-220.0, 0.0, 0.0, 0.0, 0.0, SPEED, 0.0) < -10.0
-    # Turning away at once from a disc at rest, without lag: the circle beside it is sqrt(220^2 + r^2) - r from the centre.
+    # Turning away at once from a disc at rest, without lag: the circle beside it is sqrt(220^2 +
+    # r^2) - r from the centre.
     alone = make_guard(lag=0.0).clearance(-220.0, 0.0, 0.0, 0.0, 0.0, SPEED, 0.0)
     assert alone == pytest.approx(
         math.hypot(220.0, TURN_RADIUS) - TURN_RADIUS - RADIUS, abs=1e-3 * TURN_RADIUS
@@ -284,7 +290,8 @@ def test_what_an_allowance_or_an_error_of_the_own_place_takes_is_explained(decla
 
 @pytest.mark.parametrize("off", [0.0, 0.01, -0.01])
 def test_a_vehicle_that_heads_straight_away_from_what_closes_in_flies_on(off):
-    # The disc gains on it by 0.1 m/s: 1.5 m within the time that is looked ahead. Once round it would gain 250 m.
+    # The disc gains on it by 0.1 m/s: 1.5 m within the time that is looked ahead. Once round it
+    # would gain 250 m.
     guard = make_guard(deviation=3.0)
     command = guard.limit(
         HEADING_RATE_MAX, 0.0, RADIUS + 1.0, 0.0, SPEED + 0.1, 0.5 * math.pi + off, SPEED, 0.0
@@ -311,8 +318,8 @@ def test_a_vehicle_that_a_growing_radius_overtakes_flies_straight_away_from_it(w
 
 @pytest.mark.parametrize("side", [1.0, -1.0])
 def test_a_vehicle_whose_turn_leads_beyond_straight_away_turns_back(side):
-    # It turns by 0.5 rad/s, of which 0.2 rad are still to come with a lag of 0.4 s; straight away is 0.15 rad ahead. On the same
-    # side it would come once round, towards the disc.
+    # It turns by 0.5 rad/s, of which 0.2 rad are still to come with a lag of 0.4 s; straight away
+    # is 0.15 rad ahead. On the same side it would come once round, towards the disc.
     course = 0.5 * math.pi - side * 0.15
     guard = make_guard()
     command = guard.limit(
@@ -340,7 +347,8 @@ def test_interventions_are_counted_once_each():
 
 @pytest.mark.parametrize("off", [0.5, -0.5])
 def test_it_stays_with_the_side_that_was_safe(off):
-    # Nearly head on at the middle of the disc both sides keep off; the one that it found to be nearer first is flown throughout.
+    # Nearly head on at the middle of the disc both sides keep off; the one that it found to be
+    # nearer first is flown throughout.
     guard, state, answers = make_guard(), (-400.0, off, 0.0, 0.0), []
     for _ in range(250):
         x, y, course, turn = state
@@ -353,7 +361,8 @@ def test_it_stays_with_the_side_that_was_safe(off):
 
 @pytest.mark.parametrize("nu", [0.0, 0.3, 0.6, 0.9])
 def test_on_the_settled_orbit_it_never_intervenes_and_would_if_it_kept_more(nu):
-    # The paper's rule places the orbit 1.3 to 9.7 m off, where 1 m is asked; the guard keeps 0.75 m of that (tracking_flight.py).
+    # The paper's rule places the orbit 1.3 to 9.7 m off, where 1 m is asked; the guard keeps 0.75 m
+    # of that (tracking_flight.py).
     oscillation = paper_oscillation(nu, reserve=0.015)
     centre = (-distance_by_paper(oscillation, PlumeAxis(heading=math.pi), RADIUS + 1.0), 0.0)
     reference = make_reference(oscillation, centre=centre)

@@ -1,4 +1,6 @@
-"""A vehicle that loses its airspeed in a turn away, as without thrust, keeps out where the guard knows how slow it becomes."""
+"""A vehicle that loses its airspeed in a turn away, as without thrust, keeps out where the guard
+knows how slow it becomes.
+"""
 
 import math
 
@@ -12,11 +14,15 @@ from gnc.safety.guard_parameters import GuardParameters
 from gnc.safety.keepout_guard import KeepoutGuard
 
 LAG, FALL, SLOWEST = 0.4, 1.25, 14.2
-"""Of the X8: its airspeed falls by 1.25 m/s2 without thrust in a turn at 45 degrees, to 14.2 m/s until that is detected."""
+"""Of the X8: its airspeed falls by 1.25 m/s2 without thrust in a turn at 45 degrees, to 14.2 m/s
+until that is detected.
+"""
 
 
 def fly(fails, closing, slowest):
-    """Return the closest approach [m] to a disc that closes in, of a vehicle that is steered at it, and how often it was lost."""
+    """Return the closest approach [m] to a disc that closes in, of a vehicle that is steered at it,
+    and how often it was lost.
+    """
     guard = make_guard(lag=LAG, slowest=slowest)
     state, x, closest, lost, speed = (0.0, 3.0, 0.0, 0.0), -600.0, math.inf, 0, SPEED
     for step in range(round(45.0 / TIME_STEP)):

@@ -22,7 +22,8 @@ def made(**changes):
 @pytest.mark.parametrize("pace", [SPEED, 21.0, 15.0])
 def test_a_vehicle_that_flew_v_r_is_reckoned_with_at_the_faster_of_that_and_its_pace(pace):
     assert made(overshoot=0.0).fastest(pace) == max(SPEED, pace)
-    # And it overshoots the rise, or the return from a slower pace; as it undershoots a fall, or the return from a faster one.
+    # And it overshoots the rise, or the return from a slower pace; as it undershoots a fall, or the
+    # return from a faster one.
     assert made().fastest(pace) == pytest.approx(max(SPEED, pace) + 0.13 * abs(pace - SPEED))
     assert made().slowest(pace) == pytest.approx(min(SPEED, pace) - 0.13 * abs(pace - SPEED))
 
@@ -53,7 +54,8 @@ def test_a_fall_from_a_fast_pace_is_none_that_a_vehicle_could_rise_beyond():
 
 @pytest.mark.parametrize("damping", [1.0, 0.55])
 def test_a_pace_is_reckoned_with_for_as_long_as_the_vehicle_may_be_as_fast_or_slow(damping):
-    # A second-order airspeed, commanded up and down at random and to V_r in the end, stays within what was reckoned with then.
+    # A second-order airspeed, commanded up and down at random and to V_r in the end, stays within
+    # what was reckoned with then.
     generator = np.random.default_rng(3)
     overshoot = (
         0.0 if damping == 1.0 else math.exp(-math.pi * damping / math.sqrt(1.0 - damping**2))

@@ -1,4 +1,6 @@
-"""A gust as strong as declared that begins at once: the turn that was safe is flown on, though it seems no longer to be."""
+"""A gust as strong as declared that begins at once: the turn that was safe is flown on, though it
+seems no longer to be.
+"""
 
 import math
 from dataclasses import dataclass
@@ -35,7 +37,9 @@ class Gust:
 def closest(
     gust: Gust, *, vessel: float, bearing: float, distance: float, course: float, weave: float
 ) -> tuple[float, int]:
-    """Return how near a vehicle comes that aims at a vessel, weaving by some angle [rad], and how often the guard acts [m, -]."""
+    """Return how near a vehicle comes that aims at a vessel, weaving by some angle [rad], and how
+    often the guard acts [m, -].
+    """
     guard = KeepoutGuard(
         GuardParameters(
             radius=RADIUS,
@@ -116,8 +120,9 @@ def closest(
     ],
 )
 def test_a_gust_as_strong_as_declared_lets_nobody_in(gust, start):
-    # With the better turn in place of the one that was safe 3 to 7 m inside: the gust makes the other side seem the better one.
-    # With a turn away that was as slow through the air as the gust made the vehicle over the mean air up to 0.7 m inside.
+    # With the better turn in place of the one that was safe 3 to 7 m inside: the gust makes the
+    # other side seem the better one. With a turn away that was as slow through the air as the gust
+    # made the vehicle over the mean air up to 0.7 m inside.
     nearest, interventions = closest(gust, **start)
     assert nearest >= RADIUS
     assert interventions > 0

@@ -21,7 +21,9 @@ from gnc.safety.turn_prediction import TurnPrediction, nearer_side
 
 
 def turn_by_hand(side, state, velocity, lag, delay, speed=SPEED, rate=HEADING_RATE_MAX):
-    """Return by how much a full turn keeps the radius [m], flown in small steps for two turns or until it heads straight away."""
+    """Return by how much a full turn keeps the radius [m], flown in small steps for two turns or
+    until it heads straight away.
+    """
     x, y, course, turn = state
     closest, piece = math.inf, 0.005
     for i in range(round(30.0 * HEADING_RATE_MAX / rate / piece)):
@@ -47,7 +49,8 @@ def test_the_clearance_is_that_of_the_better_turn_away_flown_in_small_steps(lag,
             *state[:2], *velocity, state[2], SPEED, state[3]
         )
         flown = max(turn_by_hand(side, state, velocity, lag, delay) for side in (1.0, -1.0))
-        # The points are 0.125 rad apart; the closest approach between them is predicted to 0.04 m (gnc/safety/turn_prediction.py).
+        # The points are 0.125 rad apart; the closest approach between them is predicted to 0.04 m
+        # (gnc/safety/turn_prediction.py).
         assert found == pytest.approx(flown, abs=1e-3 * TURN_RADIUS)
 
 
@@ -72,7 +75,8 @@ def test_a_disc_that_grows_has_grown_by_the_dead_time_when_a_turn_begins(delay):
 
 
 def test_a_disc_in_the_way_of_a_turn_is_seen_however_small_it_is():
-    # The way between points is 5 m. A parabola through the distances missed centres that the turn leads over by up to 1.6 m.
+    # The way between points is 5 m. A parabola through the distances missed centres that the turn
+    # leads over by up to 1.6 m.
     generator = np.random.default_rng(6)
     prediction = TurnPrediction(
         heading_rate_max=HEADING_RATE_MAX, lag=0.25, delay=0.0, time_step=TIME_STEP
@@ -179,16 +183,20 @@ def test_no_speed_between_the_fastest_and_the_slowest_comes_nearer_than_predicte
             rising = min(turns_at_many_speeds(side, start, velocity, fast, slow)) - radius
             beyond_rising.append(min(kept(side, fast, slow), at_one) - rising)
     assert len(beyond) > 30
-    # Turn radii of 46 and 37 m. Two predictions at constant speeds miss what comes by more than a metre.
+    # Turn radii of 46 and 37 m. Two predictions at constant speeds miss what comes by more than a
+    # metre.
     assert max(beyond) < 0.05 * (fast - slow) / HEADING_RATE_MAX
     assert max(beyond_two) > 1.0
     assert np.median(beyond) > -0.3
-    # One that speeds up, as without thrust once it glides, comes no nearer than one that keeps its speed.
+    # One that speeds up, as without thrust once it glides, comes no nearer than one that keeps its
+    # speed.
     assert max(beyond_rising) < 0.02
 
 
 def turns_at_many_speeds(side, start, velocity, later, first, piece=0.02):
-    """Return the closest approaches to a disc's centre [m] of full turns, at one speed until one of many times, then at another."""
+    """Return the closest approaches to a disc's centre [m] of full turns, at one speed until one of
+    many times, then at another.
+    """
     x, y, course, turn = start
     duration = 2.0 * math.pi / HEADING_RATE_MAX
     courses = []
@@ -210,7 +218,8 @@ def turns_at_many_speeds(side, start, velocity, later, first, piece=0.02):
 
 
 def test_a_turn_that_leads_round_a_disc_comes_the_nearer_the_slower_it_is_flown():
-    # The circle at the fastest is about the disc's centre, 0.2 turn radii outside; at the slowest it leads through the disc.
+    # The circle at the fastest is about the disc's centre, 0.2 turn radii outside; at the slowest
+    # it leads through the disc.
     guard = make_guard(lag=0.0, radius=TURN_RADIUS).guard
     start = (0.0, -1.2 * TURN_RADIUS, 0.0, HEADING_RATE_MAX)
 
@@ -239,7 +248,9 @@ def test_a_turn_that_leads_round_a_disc_comes_the_nearer_the_slower_it_is_flown(
 def away(
     side=1.0, *, turn=0.0, course=0.0, closing=0.0, to_come=0.0, change=0.0, deviation=0.0, **start
 ):
-    """Return by how much a turn away keeps off [m], which is begun 250 m from the centre of a disc of 200 m, due south of it."""
+    """Return by how much a turn away keeps off [m], which is begun 250 m from the centre of a disc
+    of 200 m, due south of it.
+    """
     prediction = TurnPrediction(
         heading_rate_max=HEADING_RATE_MAX,
         lag=0.25,
@@ -265,7 +276,8 @@ def test_what_is_to_come_of_earlier_commands_counts_against_a_turn_and_not_for_i
 
 
 def test_the_deviation_counts_by_the_larger_of_the_roll_ahead_and_the_one_of_late():
-    # In the turn already none lies ahead, and half of it if wings are level; the other way all of it.
+    # In the turn already none lies ahead, and half of it if wings are level; the other way all of
+    # it.
     for turn, ahead in ((HEADING_RATE_MAX, 0.0), (0.0, 0.5), (-HEADING_RATE_MAX, 1.0)):
         for change in (0.2, 0.7):
             kept = away(turn=turn, change=change) - away(turn=turn, change=change, deviation=8.0)
@@ -275,13 +287,15 @@ def test_the_deviation_counts_by_the_larger_of_the_roll_ahead_and_the_one_of_lat
 @pytest.mark.parametrize("side", [1.0, -1.0])
 @pytest.mark.parametrize("beyond", [0.0, 0.05, 0.1])
 def test_a_turn_that_begins_just_beyond_straight_away_is_over(side, beyond):
-    # The disc gains on the vehicle by 0.1 m/s, and by as much as the course is off. Once round it would gain 250 m.
+    # The disc gains on the vehicle by 0.1 m/s, and by as much as the course is off. Once round it
+    # would gain 250 m.
     assert away(side, course=math.pi + side * beyond, closing=-SPEED - 0.1) > 0.0
 
 
 @pytest.mark.parametrize("aspect_deg", [60.0, 90.0, 120.0])
 def test_a_disc_that_closes_in_a_little_faster_than_the_vehicle_flies_is_a_little_worse(aspect_deg):
-    # A flight of a search violated r_min because it seemed to be 267 m worse: the vehicle was taken to fly on, once round.
+    # A flight of a search violated r_min because it seemed to be 267 m worse: the vehicle was taken
+    # to fly on, once round.
     guard = make_guard(lag=0.25, delay=0.25)
     closings = SPEED * np.linspace(0.9, 1.1, 41)
     found = np.array(
@@ -290,15 +304,17 @@ def test_a_disc_that_closes_in_a_little_faster_than_the_vehicle_flies_is_a_littl
             for closing in closings
         ]
     )
-    # By 0.5 % of the speed, while a turn and what follows it are predicted, 2.5 pi/omega_max: 1.5 m. Straight away is met
-    # to an eighth of a radian, and so as much again.
+    # By 0.5 % of the speed, while a turn and what follows it are predicted, 2.5 pi/omega_max: 1.5
+    # m. Straight away is met to an eighth of a radian, and so as much again.
     longest = 2.5 * math.pi / HEADING_RATE_MAX
     assert np.all(np.diff(found) <= 0.0)
     assert np.all(np.diff(found) >= -3.0 * np.diff(closings) * longest)
 
 
 def closest_by(values, starts, velocities, lag):
-    """Return the closest approaches [m] of many vehicles under many commands: first-order lag, equation (1) by small steps."""
+    """Return the closest approaches [m] of many vehicles under many commands: first-order lag,
+    equation (1) by small steps.
+    """
     piece = 0.05
     x, y, course, turn = (column.copy() for column in starts)
     closest = np.hypot(x, y)
@@ -349,7 +365,8 @@ def test_no_bounded_command_keeps_farther_off_than_the_better_turn_away(nu):
 
 
 def test_no_turn_passes_straight_away_sooner_than_it_says():
-    # Straight away turns as well, by what of the vehicle's and the disc's motion crosses it: towards a vehicle that turns away.
+    # Straight away turns as well, by what of the vehicle's and the disc's motion crosses it:
+    # towards a vehicle that turns away.
     prediction = TurnPrediction(
         heading_rate_max=HEADING_RATE_MAX, lag=0.2, delay=0.0, time_step=0.05
     )

@@ -16,7 +16,9 @@ LIGHT = low_altitude_turbulence(60.0, 7.717)  # 15 knots at 20 ft
 
 
 def spectrum(name, frequency, air=LIGHT):
-    """Power spectral density over positive frequencies [unit^2 s/rad], MIL-F-8785C 3.7.1.2 with Omega = omega/V; p after Yeager."""
+    """Power spectral density over positive frequencies [unit^2 s/rad], MIL-F-8785C 3.7.1.2 with
+    Omega = omega/V; p after Yeager.
+    """
     v = AIRSPEED
     along, down = air.horizontal_length / v * frequency, air.vertical_length / v * frequency
     transverse = {
@@ -53,7 +55,8 @@ def filters():
 def test_a_filter_has_the_spectrum_of_the_standard(filters, name):
     frequencies = np.logspace(-3, 2, 11)
     response = filters(1j * frequencies)[GUSTS.index(name)]
-    # White noise of intensity 1 has the density 1/pi over positive frequencies. Same formula, so rounding alone.
+    # White noise of intensity 1 has the density 1/pi over positive frequencies. Same formula, so
+    # rounding alone.
     found = np.sum(np.abs(response) ** 2, axis=0) / math.pi
     assert found == pytest.approx([spectrum(name, w) for w in frequencies], rel=1e-9)
 
@@ -64,7 +67,8 @@ def test_the_covariance_of_the_filters_is_the_integral_of_the_spectrum(filters, 
     frequencies = np.logspace(-7, 8, 40_000)
     by_integral = np.trapezoid([spectrum(name, w) for w in frequencies], frequencies)
     i = GUSTS.index(name)
-    # Trapezoids 0.09 % wide are good to 1e-7; beyond the ends lies 2/pi times frequency over corner, 7e-7 of the slowest.
+    # Trapezoids 0.09 % wide are good to 1e-7; beyond the ends lies 2/pi times frequency over
+    # corner, 7e-7 of the slowest.
     assert covariance[i, i] == pytest.approx(by_integral, rel=3e-6)
 
 
@@ -77,7 +81,8 @@ def test_velocities_are_as_strong_as_the_standard_says(filters):
 
 
 def test_at_a_thousand_feet_low_altitude_turbulence_is_the_same_in_every_direction():
-    # MIL-F-8785C, figures 10 and 11: there 0.177 + 0.000823 h is 1, so all deviations are 0.1 W20, and all lengths 1,000 ft.
+    # MIL-F-8785C, figures 10 and 11: there 0.177 + 0.000823 h is 1, so all deviations are 0.1 W20,
+    # and all lengths 1,000 ft.
     air = low_altitude_turbulence(1000.0 * METRES_PER_FOOT, 20.0)
     assert (air.horizontal, air.vertical) == pytest.approx((2.0, 2.0), rel=1e-12)
     assert (air.horizontal_length, air.vertical_length) == pytest.approx((304.8, 304.8), rel=1e-12)

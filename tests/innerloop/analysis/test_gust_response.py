@@ -1,4 +1,6 @@
-"""Gusts in the linear model against JSBSim, whose air is made to move past an aircraft that is held where it is."""
+"""Gusts in the linear model against JSBSim, whose air is made to move past an aircraft that is held
+where it is.
+"""
 
 import numpy as np
 import pytest
@@ -23,7 +25,9 @@ def in_gusts(schedule, bank_index):
 
 
 def read_in_wind(fdm, trim, wind_ned):
-    """Accelerations of velocity and rates, and measured heading rate, of a held aircraft that heads north."""
+    """Accelerations of velocity and rates, and measured heading rate, of a held aircraft that heads
+    north.
+    """
     fdm.command(dict(trim.inputs))
     fdm.place(trim.state(yaw=-trim.course_offset()))
     with fdm.frozen():
@@ -33,7 +37,8 @@ def read_in_wind(fdm, trim, wind_ned):
         assert fdm.settle(3e-8)
         velocity, rates = fdm.velocity_body(), np.array(fdm.rates_body())
         dot = np.array(fdm.acceleration_body())
-        # Held in inertial motion: omega x v is that of the body's own velocity, which the wind has been taken out of.
+        # Held in inertial motion: omega x v is that of the body's own velocity, which the wind has
+        # been taken out of.
         own = np.array(trim.state().velocity_body)
         against_earth = dot + np.cross(rates, own)
         measured = course_rate(velocity, tuple(against_earth), trim.roll, trim.pitch)
@@ -57,8 +62,9 @@ def test_a_steady_wind_past_a_held_aircraft_does_in_jsbsim_what_the_linear_model
         change = (read_in_wind(x8_fdm, trim, wind) - read_in_wind(x8_fdm, trim, -wind)) / (
             2.0 * WIND
         )
-        # Differences of differences: a thousandth of the largest entry of a kind, and 0.5 % where it is large, for the curvature
-        # between the steps of the model (0.05 m/s, 0.04 m/s by an angle) and this one.
+        # Differences of differences: a thousandth of the largest entry of a kind, and 0.5 % where
+        # it is large, for the curvature between the steps of the model (0.05 m/s, 0.04 m/s by an
+        # angle) and this one.
         sizes = np.repeat(
             [np.abs(predicted[:3]).max(), np.abs(predicted[3:6]).max(), np.abs(predicted[6]).max()],
             [3, 3, 1],
@@ -85,8 +91,9 @@ def test_moments_by_rates_hardly_depend_on_bank(x8_schedule, x8_fdm):
     )  # JSBSim's ixz is that of the matrix, its sign included
     rates = np.array(trim.rates_body)
     gyroscopic = -np.linalg.solve(inertia, cross(rates) @ inertia - cross(inertia @ rates))
-    # What is left in a steep turn is what the model takes from level flight. Measured 0.029 1/s, by the propeller and the larger
-    # angle of attack, of dampings of 3.9 to 24 1/s; the gyroscopic moments themselves are up to 0.26 1/s.
+    # What is left in a steep turn is what the model takes from level flight. Measured 0.029 1/s, by
+    # the propeller and the larger angle of attack, of dampings of 3.9 to 24 1/s; the gyroscopic
+    # moments themselves are up to 0.26 1/s.
     assert np.abs(steep - gyroscopic - level).max() < 0.04
     assert np.abs(gyroscopic).max() > 0.2
 
@@ -111,7 +118,8 @@ def test_in_a_turn_the_air_ahead_of_the_course_slows_the_turn_over_the_mean_air(
     loop = gust_loop(x8_schedule, MIDDLE, STEEP)
     gain = np.real(loop(1e-9j))
     along, outputs = loop.input_labels.index("gust_along"), list(loop.output_labels)
-    # The autopilot holds a_right/V_air; the motion that is 1 m/s faster with the same acceleration turns by omega/V less.
+    # The autopilot holds a_right/V_air; the motion that is 1 m/s faster with the same acceleration
+    # turns by omega/V less.
     assert gain[outputs.index("heading_rate"), along] == pytest.approx(0.0, abs=1e-6)
     assert gain[outputs.index("course_rate"), along] == pytest.approx(
         -trim.yaw_rate / trim.airspeed, rel=1e-6

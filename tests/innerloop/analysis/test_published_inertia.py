@@ -1,4 +1,6 @@
-"""The X8's autopilot on an X8 with the inertia that its authors print, instead of that of the model."""
+"""The X8's autopilot on an X8 with the inertia that its authors print, instead of that of the
+model.
+"""
 
 import re
 import shutil
@@ -25,7 +27,9 @@ def principal(jx, jy, jz, jxz):
 
 
 def worst_margins(schedule, root):
-    """Return whether all loops are stable, and the least gain [dB] and phase [deg] over airspeeds, level and at either bank."""
+    """Return whether all loops are stable, and the least gain [dB] and phase [deg] over airspeeds,
+    level and at either bank.
+    """
     law, fdm, stable, gains, phases = ControlLaw(schedule), Fdm(X8, root), [], [], []
     for airspeed in schedule.airspeeds:
         for bank in (schedule.gain_banks[0], 0.0, schedule.gain_banks[-1]):
@@ -56,7 +60,8 @@ def x8_with(tmp_path):
 
 
 def test_no_rigid_body_has_the_printed_inertia_and_one_has_that_of_the_model():
-    # A moment of inertia is no larger than the sum of the other two, about any axes: each part of a body counts in two of them.
+    # A moment of inertia is no larger than the sum of the other two, about any axes: each part of a
+    # body counts in two of them.
     printed = principal(*PRINTED.values())
     assert PRINTED["ixx"] > PRINTED["iyy"] + PRINTED["izz"]
     assert printed[2] > 7.0 * (printed[0] + printed[1])
@@ -67,7 +72,8 @@ def test_no_rigid_body_has_the_printed_inertia_and_one_has_that_of_the_model():
 
 
 def test_the_design_keeps_its_margins_with_the_printed_moments_of_inertia(x8_schedule, x8_with):
-    # 3.7 times the model's in roll and 2.2 in yaw: as much is required as of an aircraft with a fifth more.
+    # 3.7 times the model's in roll and 2.2 in yaw: as much is required as of an aircraft with a
+    # fifth more.
     stable, gain, phase = worst_margins(x8_schedule, x8_with(PRINTED | {"ixz": 0.0}))
     assert stable
     assert gain >= REQUIRED.perturbed_gain_db

@@ -1,4 +1,6 @@
-"""Changed aircraft: each change is what changing JSBSim's own model makes of the linear one; what too little margin leads to."""
+"""Changed aircraft: each change is what changing JSBSim's own model makes of the linear one; what
+too little margin leads to.
+"""
 
 import dataclasses
 import itertools
@@ -78,13 +80,15 @@ def test_a_fifth_of_mass_changes_the_linear_aircraft_as_a_fifth_of_mass_in_jsbsi
     factor = 1.0 + sign * 0.2
     heavier = linearise(Fdm(X8, x8_with(tmp_path, ("emptywt", factor))), trims[name])
     found = changed(f"mass {100.0 * (factor - 1.0):+.0f} %", models[name], trims[name])
-    # What bank does to the heading rate is left alone: the heavier aircraft that flies carries its weight, and turns by g/V.
+    # What bank does to the heading rate is left alone: the heavier aircraft that flies carries its
+    # weight, and turns by g/V.
     row = found.output_labels.index("heading_rate")
     attitude = [found.state_labels.index(angle) for angle in ("roll", "pitch")]
     np.testing.assert_array_equal(found.C[row, attitude], models[name].C[row, attitude])
     heavier.C[row, attitude] = found.C[row, attitude]
-    # Held in the same state, with the same inertia: only forces' accelerations differ. Gravity in JSBSim is 9.78 m/s^2, and the
-    # earth turns: 0.3 % and 3e-3 m/s^2 of what gravity does, of which a fifth is misplaced.
+    # Held in the same state, with the same inertia: only forces' accelerations differ. Gravity in
+    # JSBSim is 9.78 m/s^2, and the earth turns: 0.3 % and 3e-3 m/s^2 of what gravity does, of which
+    # a fifth is misplaced.
     assert_same(found, heavier, rtol=1e-3, atol=6e-3)
     # And a fifth is seen: lift's slope falls by it.
     row = models[name].state_labels.index("alpha")
@@ -100,8 +104,9 @@ def test_a_fifth_of_inertia_changes_the_linear_aircraft_as_a_fifth_of_inertia_in
     larger = [(f"i{axes}", factor) for axes in ("xx", "yy", "zz", "xz")]
     stiff = linearise(Fdm(X8, x8_with(tmp_path, *larger)), trims[name])
     found = changed(f"inertia {100.0 * (factor - 1.0):+.0f} %", models[name], trims[name])
-    # The same moments over other inertia; rounding of differences over 0.002 rad/s. Turning, its own gyroscopic moments grow with
-    # its inertia: the change divides them as well, a fifth of rates near 0.3 rad/s, where the air's terms are up to 20 1/s.
+    # The same moments over other inertia; rounding of differences over 0.002 rad/s. Turning, its
+    # own gyroscopic moments grow with its inertia: the change divides them as well, a fifth of
+    # rates near 0.3 rad/s, where the air's terms are up to 20 1/s.
     assert_same(found, stiff, rtol=1e-4, atol=gyroscopic)
 
 
@@ -113,7 +118,8 @@ def test_a_fifth_of_effectiveness_is_a_fifth_of_what_every_control_does_in_the_e
     np.testing.assert_allclose(after.B, factor * before.B, rtol=1e-12)
     extras = [model.output_labels.index(name) for name in ("heading_rate", "climb_rate")]
     np.testing.assert_allclose(after.D[extras], factor * before.D[extras], rtol=1e-12, atol=1e-15)
-    # Servos and engine move as they did, and the body is the same but for the propeller, which follows airspeed too.
+    # Servos and engine move as they did, and the body is the same but for the propeller, which
+    # follows airspeed too.
     driven = [i for i, name in enumerate(model.state_labels) if i >= 9]
     np.testing.assert_array_equal(found.A[driven], model.A[driven])
     np.testing.assert_array_equal(found.B[driven], model.B[driven])
@@ -121,8 +127,9 @@ def test_a_fifth_of_effectiveness_is_a_fifth_of_what_every_control_does_in_the_e
 
 
 def test_gravity_and_turning_are_those_of_a_body_without_forces(trims):
-    # Without force a body falls: in level flight the path bends down at g/V, V_dot by pitch is -g, alpha_dot by q
-    # is 1, and sideslip follows -r and g roll/V (Stevens and Lewis, linear equations of motion with all aerodynamics left out).
+    # Without force a body falls: in level flight the path bends down at g/V, V_dot by pitch is -g,
+    # alpha_dot by q is 1, and sideslip follows -r and g roll/V (Stevens and Lewis, linear equations
+    # of motion with all aerodynamics left out).
     states = ["airspeed", "alpha", "beta", "p", "q", "r", "roll", "pitch", "altitude"]
     level = dataclasses.replace(
         trims["level"], alpha=0.05, beta=0.0, roll=0.0, pitch=0.05, rates_body=(0.0, 0.0, 0.0)
@@ -166,7 +173,8 @@ def test_points_between_lie_half_way_between_neighbours_along_airspeed_and_along
         t.airspeed == v[3] and t.roll == pytest.approx(0.5 * (bank[2] + bank[3]), abs=1e-3)
         for t in between
     )
-    # At every airspeed the largest bank that the autopilot commands, either way; the tables reach a tenth farther.
+    # At every airspeed the largest bank that the autopilot commands, either way; the tables reach a
+    # tenth farther.
     largest = [t for t in between if abs(t.roll) > bank[4] + 0.01]
     assert sorted((t.airspeed, t.roll > 0.0) for t in largest) == sorted(
         itertools.product(v, (False, True))
@@ -189,7 +197,8 @@ def test_between_grid_points_interpolated_margins_are_those_of_the_aircraft_line
     for point in chosen:
         bank = 0.0 if point.trim.yaw_rate == 0.0 else point.trim.roll
         there = trim(fdm, airspeed=point.trim.airspeed, altitude=x8_schedule.altitude, bank=bank)
-        # Half a step of the grid is 1.25 m/s or 11 degrees; the bend of alpha over either, second order, is 7 % of it.
+        # Half a step of the grid is 1.25 m/s or 11 degrees; the bend of alpha over either, second
+        # order, is 7 % of it.
         assert point.trim.alpha == pytest.approx(there.alpha, abs=0.006)
         linearised = Loops(
             linearise(fdm, there), linear_controller(law, there), x8_schedule.delay
@@ -198,8 +207,8 @@ def test_between_grid_points_interpolated_margins_are_those_of_the_aircraft_line
             point.model, linear_controller(law, point.trim), x8_schedule.delay
         ).margins()
         for found, expected in zip(interpolated, linearised, strict=True):
-            # A few per cent of loop gain: 0.4 dB is 5 %, of 27 dB 3 %; of phase 1.5 degrees is 0.026 rad. What is required leaves
-            # far more.
+            # A few per cent of loop gain: 0.4 dB is 5 %, of 27 dB 3 %; of phase 1.5 degrees is
+            # 0.026 rad. What is required leaves far more.
             assert found.phase_deg == pytest.approx(expected.phase_deg, abs=1.5), found.loop
             assert found.gain_db == pytest.approx(expected.gain_db, abs=0.4, rel=0.03), found.loop
 
@@ -241,7 +250,9 @@ def test_a_check_knows_what_it_lacks():
 
 @pytest.fixture
 def x8_grid(x8_schedule, monkeypatch):
-    """Have designs begin with the equilibria and linear models of one that is made: to find them takes half of the time."""
+    """Have designs begin with the equilibria and linear models of one that is made: to find them
+    takes half of the time.
+    """
     names = [field.name for field in dataclasses.fields(designer.Grid)]
     grid = designer.Grid(**{name: getattr(x8_schedule, name) for name in names})
     monkeypatch.setattr(designer, "linear_grid", lambda *_: grid)
@@ -249,8 +260,8 @@ def x8_grid(x8_schedule, monkeypatch):
 
 @pytest.mark.usefixtures("x8_grid")
 def test_a_design_with_too_little_margin_is_refused_with_what_it_lacks_and_not_flown(monkeypatch):
-    # A second of delay: the fastest loop that leaves 45 degrees crosses over near 0.8 rad/s at best. Ten attempts at 4/5 the speed
-    # end at 0.13 of 4.8 rad/s; three end at half of it.
+    # A second of delay: the fastest loop that leaves 45 degrees crosses over near 0.8 rad/s at
+    # best. Ten attempts at 4/5 the speed end at 0.13 of 4.8 rad/s; three end at half of it.
     monkeypatch.setattr(robustness, "CASES", {NOMINAL: (CASES[NOMINAL][0], 120)})  # 120 steps late
     monkeypatch.setattr(designer, "_ATTEMPTS", 3)
     with pytest.raises(
@@ -281,8 +292,8 @@ def test_a_design_that_lacks_margin_only_under_a_perturbation_is_refused_with_wh
 def test_the_autopilot_computes_as_seldom_as_leaves_every_loop_its_phase_margin_but_for_five_degrees(
     designs, name, period
 ):
-    # The X8's fastest loop crosses over at 6.1 rad/s and the T-37's, its elevator, at 13.2 rad/s: half a step of 1/120 s more
-    # delay takes 1.5 and 3.2 degrees, and twice that 2.9 and 6.3.
+    # The X8's fastest loop crosses over at 6.1 rad/s and the T-37's, its elevator, at 13.2 rad/s:
+    # half a step of 1/120 s more delay takes 1.5 and 3.2 degrees, and twice that 2.9 and 6.3.
     schedule = designs(name).design.schedule
     assert schedule.period == period
     closed = closed_loops(schedule)
@@ -312,7 +323,8 @@ def test_a_loop_with_too_little_margin_is_slowed_and_the_others_are_left(monkeyp
 
     monkeypatch.setattr(robustness.ClosedPoint, "check", short_at_the_first_point)
     found = design_autopilot(X8, x8_design.schedule.altitude)
-    # Designed twice, then checked with the longest period, first as modelled; with the shortest no change of a good design is.
+    # Designed twice, then checked with the longest period, first as modelled; with the shortest no
+    # change of a good design is.
     assert (
         asked[-375:]
         == [(NOMINAL, 1)] * 75 + [(NOMINAL, 3)] * 75 + [(case, 3) for case in cases] * 75

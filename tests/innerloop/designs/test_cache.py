@@ -1,4 +1,6 @@
-"""Designs that are found again: only when nothing that they depend on has changed, and whatever state the cache is in."""
+"""Designs that are found again: only when nothing that they depend on has changed, and whatever
+state the cache is in.
+"""
 
 import dataclasses
 import hashlib
@@ -26,7 +28,9 @@ from innerloop.designs.designed import DesignError
 
 @pytest.fixture(autouse=True)
 def another_process():
-    """Have each test hash the program anew, as another process would, and leave nothing of what it changed."""
+    """Have each test hash the program anew, as another process would, and leave nothing of what it
+    changed.
+    """
     cache._program_hash.cache_clear()
     yield
     cache._program_hash.cache_clear()
@@ -34,7 +38,9 @@ def another_process():
 
 @pytest.fixture
 def asked(monkeypatch, tmp_path, designs):
-    """An empty cache of its own, and a list of what was asked to be designed: a short form of the X8's design stands for all."""
+    """An empty cache of its own, and a list of what was asked to be designed: a short form of the
+    X8's design stands for all.
+    """
     found = designs("x8")
     made = dataclasses.replace(
         found,
@@ -96,7 +102,8 @@ def test_a_design_that_is_used_is_the_one_that_was_made_to_the_last_bit(
     made = designs("x8")
     monkeypatch.setattr(cache, "_design", lambda *_: cache._Entry(made=made))
     used = designed(X8)
-    # As text, which has every bit of every number: what was made may hold figures of numpy where Python's own come back.
+    # As text, which has every bit of every number: what was made may hold figures of numpy where
+    # Python's own come back.
     assert cache.as_text(used) == cache.as_text(made)
     for mine, other in zip(
         sum(made.design.schedule.models, ()), sum(used.design.schedule.models, ()), strict=True

@@ -21,7 +21,8 @@ def test_the_record_is_json_without_nan_or_infinity(record):
 
 def test_the_record_has_every_operating_point_and_every_loop(record, x8_schedule):
     assert record["airspeeds_mps"] == [15.0, 17.5, 20.0, 22.5, 25.0]
-    # 25 points and 40 between; three controls, three measurements, and at the points all controls at once.
+    # 25 points and 40 between; three controls, three measurements, and at the points all controls
+    # at once.
     assert len(record["margins"]) == 75 * 6 + 25
     level = x8_schedule.level(2)
     expected = Loops(
@@ -67,7 +68,8 @@ def test_the_record_has_every_equilibrium_with_what_is_left_and_climbs_where_the
 def test_the_record_says_how_well_the_linear_aircraft_predicts_small_doublets(record):
     errors = {(v["input"], v["output"]): v["error"] for v in record["verification"]}
     assert ("elevator", "q") in errors
-    # A few per cent of each excursion, most of it the quickest motions in JSBSim's first-order steps, an eighth of the autopilot's.
+    # A few per cent of each excursion, most of it the quickest motions in JSBSim's first-order
+    # steps, an eighth of the autopilot's.
     assert max(errors.values()) < 0.05
 
 
@@ -79,7 +81,8 @@ def test_the_record_has_each_step_predicted_and_flown_alike(record):
         pairs.setdefault(response["command"], {})[response["kind"]] = response
     assert set(pairs) == {"heading_rate", "airspeed", "altitude"}
     for command, pair in pairs.items():
-        # At full size: tables and kinks add to what test_responses allows small steps, a tenth of the step in all.
+        # At full size: tables and kinks add to what test_responses allows small steps, a tenth of
+        # the step in all.
         final = [response["channels"][command][-1] for response in pair.values()]
         assert final[0] == pytest.approx(final[1], abs=0.1 * abs(pair["flown"]["size"]))
         # Of what a step should not move, that is of all but what it commands.
@@ -95,7 +98,8 @@ def test_the_record_has_each_step_predicted_and_flown_alike(record):
 
 def test_the_record_has_the_range_of_each_control_as_the_autopilot_has_it(record, x8_schedule):
     ranges = {i["name"]: (i["lower"], i["upper"]) for i in record["inputs"]}
-    # Its servos go as far either way; its throttle closes no further than flight idle, which is not closed.
+    # Its servos go as far either way; its throttle closes no further than flight idle, which is not
+    # closed.
     assert ranges == {
         "elevator": (-1.0, 1.0),
         "aileron": (-1.0, 1.0),

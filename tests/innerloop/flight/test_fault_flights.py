@@ -36,7 +36,9 @@ AT = 3.0
 
 
 def fly(aircraft, start, duration, fault="", commands=()):
-    """Release, turn at 0.3 rad/s after 1 s, fail after 3 s, then command (command, value); return what was read, (steps, 10)."""
+    """Release, turn at 0.3 rad/s after 1 s, fail after 3 s, then command (command, value); return
+    what was read, (steps, 10).
+    """
     aircraft.release(start.state(), airspeed=start.airspeed, altitude=start.altitude)
     nodes = [aircraft.fdm.node(name) for name in READ]
     log = np.empty((round(duration / TIME_STEP), len(nodes)))
@@ -87,7 +89,8 @@ def test_a_throttle_that_sticks_stays_at_trim_and_the_turn_costs_airspeed_alone(
     failed = round(AT / TIME_STEP) + 1
     np.testing.assert_array_equal(log[failed:, THROTTLE], log[0, THROTTLE])
     assert np.ptp(log[failed:, THROTTLE_DEMANDED]) > 0.01  # the autopilot asks for more
-    # A turn has more drag: slower than the trim, by 0.14 m/s when measured; altitude and heading rate are the elevons' work.
+    # A turn has more drag: slower than the trim, by 0.14 m/s when measured; altitude and heading
+    # rate are the elevons' work.
     assert 0.05 < (log[0, AIRSPEED] - log[-1, AIRSPEED]) * FOOT < 0.5
     assert log[-1, ALTITUDE] * FOOT == pytest.approx(log[0, ALTITUDE] * FOOT, abs=0.1)
     assert log[-1, HEADING_RATE] == pytest.approx(0.3, abs=1e-3)
@@ -101,7 +104,8 @@ def test_without_its_engine_it_glides_and_turns_at_the_commanded_airspeed_if_com
     failed = round(AT / TIME_STEP)
     assert log[0, THRUST] > 0.5
     assert np.all(log[failed + 60 :, THRUST] <= 0.0)  # the propeller stops within half a second
-    # An altitude error beyond its limit is not integrated, so the integral of the airspeed error is left to find the glide.
+    # An altitude error beyond its limit is not integrated, so the integral of the airspeed error is
+    # left to find the glide.
     assert log[-1, AIRSPEED] * FOOT == pytest.approx(start.airspeed, abs=0.2)
     assert log[-1, HEADING_RATE] == pytest.approx(0.3, abs=5e-3)
     # The published polynomials in level balance, at 20 m/s under 90 m of standard atmosphere.
@@ -121,7 +125,8 @@ def test_the_next_flight_of_an_aircraft_that_failed_is_whole(x8_schedule, x8_roo
     start = x8_schedule.level(MIDDLE)
     for fault in ("engine", "left_elevon"):
         fly(failable, start, 4.0, fault)
-    # Servos and propeller come to rest from elsewhere, to a millionth (tests/innerloop/flight/test_flight.py).
+    # Servos and propeller come to rest from elsewhere, to a millionth
+    # (tests/innerloop/flight/test_flight.py).
     np.testing.assert_allclose(
         fly(failable, start, 4.0), fly(AutopilotedAircraft(X8, x8_root), start, 4.0), atol=1e-5
     )
@@ -140,8 +145,9 @@ def test_what_cannot_fail_says_so(x8_schedule, x8_aircraft, failable):
 def test_without_its_engine_the_airspeed_falls_in_a_turn_by_drag_over_mass(x8_schedule, failable):
     start = x8_schedule.level(MIDDLE)
     found = measure_part_failure(failable, start, math.radians(45.0), 15.0)
-    # The published polynomials at 20 m/s and 1.41 times the weight. Within the second of the measurement the aircraft becomes
-    # slower by a fifteenth; and the propeller adds drag while it runs down.
+    # The published polynomials at 20 m/s and 1.41 times the weight. Within the second of the
+    # measurement the aircraft becomes slower by a fifteenth; and the propeller adds drag while it
+    # runs down.
     pressure, weight = 0.5 * 1.2147 * 20.0**2 * x8.WING_AREA, x8.MASS * STANDARD_GRAVITY
     lift = math.sqrt(2.0) * weight / pressure
     alpha, elevator = np.linalg.solve(
@@ -154,8 +160,9 @@ def test_without_its_engine_the_airspeed_falls_in_a_turn_by_drag_over_mass(x8_sc
 def test_the_push_over_to_a_glide_takes_from_a_turn_what_it_takes_from_the_lift(
     x8_schedule, failable
 ):
-    # At one bank lift turns the aircraft by L sin(bank)/(m V), and pushes it over by L cos(bank)/m less g. So whatever the time it
-    # takes, to sink with w costs the course omega w/g, until the autopilot has banked more.
+    # At one bank lift turns the aircraft by L sin(bank)/(m V), and pushes it over by L cos(bank)/m
+    # less g. So whatever the time it takes, to sink with w costs the course omega w/g, until the
+    # autopilot has banked more.
     start, bank = x8_schedule.level(MIDDLE), math.radians(45.0)
     level, climbing = (
         measure_part_failure(failable, start, bank, 15.0, gradient).glide_deviation

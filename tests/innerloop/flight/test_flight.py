@@ -22,8 +22,9 @@ MIDDLE = 2
 def test_a_released_aircraft_stays_in_its_equilibrium(x8_schedule, x8_aircraft, index):
     found = x8_schedule.level(index)
     flight = fly(x8_aircraft, found, 20.0)
-    # Integrators start at zero and the equilibrium's controls are in the tables: what moves is what the kink of the tables at wings
-    # level makes of 0.3 mrad of bank. Centimetres, cm/s and milliradians.
+    # Integrators start at zero and the equilibrium's controls are in the tables: what moves is what
+    # the kink of the tables at wings level makes of 0.3 mrad of bank. Centimetres, cm/s and
+    # milliradians.
     assert np.abs(flight["altitude"] - found.altitude).max() < 0.02
     assert np.abs(flight["airspeed"] - found.airspeed).max() < 0.02
     assert np.abs(flight["heading_rate"]).max() < 2e-3
@@ -78,7 +79,8 @@ def test_the_autopilot_designed_near_the_sea_flies_at_other_altitudes(x8_aircraf
     flight = fly(
         x8_aircraft, found, 30.0, [(1.0, "heading_rate", 0.25), (15.0, "heading_rate", 0.0)]
     )
-    # Integral action takes up the different equilibrium: at 2000 m, with a fifth less density, 0.2 m at first.
+    # Integral action takes up the different equilibrium: at 2000 m, with a fifth less density, 0.2
+    # m at first.
     assert np.abs(flight["altitude"] - altitude).max() < 0.5
     assert np.abs(flight["airspeed"] - 20.0).max() < 0.2
     assert np.abs(after(flight, 28.0, "altitude") - altitude).max() < 0.01

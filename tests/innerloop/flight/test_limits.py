@@ -1,4 +1,6 @@
-"""Limits and saturation: commands outside the envelope, commands that cannot be met, and what is left of them afterwards."""
+"""Limits and saturation: commands outside the envelope, commands that cannot be met, and what is
+left of them afterwards.
+"""
 
 import math
 
@@ -18,12 +20,15 @@ def test_a_huge_heading_rate_command_stays_within_the_envelopes_bank(
     x8_schedule, x8_aircraft, sign
 ):
     flight = fly(x8_aircraft, x8_schedule.level(MIDDLE), 20.0, [(1.0, "heading_rate", sign * 5.0)])
-    # The command is clipped: the limit as written in the file, nine digits. It is reached, else nothing was tried.
+    # The command is clipped: the limit as written in the file, nine digits. It is reached, else
+    # nothing was tried.
     assert np.abs(flight["bank_command"]).max() <= BANK_MAX * (1.0 + 1e-8)
     assert np.abs(flight["bank_command"]).max() == pytest.approx(BANK_MAX, rel=1e-6)
-    # The bank overshoots its command by 1.5 degrees in the first second; three is a small part of what is left to stall.
+    # The bank overshoots its command by 1.5 degrees in the first second; three is a small part of
+    # what is left to stall.
     assert np.abs(flight["bank"]).max() < BANK_MAX + math.radians(3.0)
-    # Steady: within 0.2 degrees, what the turn-compensation tables leave for feedback without integral on bank.
+    # Steady: within 0.2 degrees, what the turn-compensation tables leave for feedback without
+    # integral on bank.
     assert np.abs(after(flight, 5.0, "bank")) == pytest.approx(BANK_MAX, abs=math.radians(0.2))
     assert np.abs(flight["altitude"] - x8_schedule.altitude).max() < 1.0
     assert np.abs(flight["airspeed"] - 20.0).max() < 0.5
@@ -33,11 +38,12 @@ def test_a_huge_heading_rate_command_stays_within_the_envelopes_bank(
 def test_half_a_minute_of_saturated_bank_leaves_no_lasting_offset(x8_schedule, x8_aircraft, sign):
     commands = [(1.0, "heading_rate", sign * 5.0), (31.0, "heading_rate", 0.0)]
     flight = fly(x8_aircraft, x8_schedule.level(MIDDLE), 52.0, commands)
-    # Wound up by 30 s of 4 rad/s of error it would turn on for long. It rolls out at once, past level by less than 5 degrees ...
+    # Wound up by 30 s of 4 rad/s of error it would turn on for long. It rolls out at once, past
+    # level by less than 5 degrees ...
     rolled_out = after(flight, 32.0, "bank")
     assert np.abs(rolled_out).max() < math.radians(5.0)
-    # ... and after ten time constants of its heading integral (near 1.3 s) is as straight as before: 1e-3 rad/s is 0.06 degrees a
-    # second, 1e-3 rad of bank is 0.06 degrees.
+    # ... and after ten time constants of its heading integral (near 1.3 s) is as straight as
+    # before: 1e-3 rad/s is 0.06 degrees a second, 1e-3 rad of bank is 0.06 degrees.
     assert np.abs(after(flight, 44.0, "heading_rate")).max() < 1e-3
     assert np.abs(after(flight, 44.0, "bank") - flight["bank"][0]).max() < 1e-3
 
@@ -63,9 +69,11 @@ def test_an_airspeed_command_outside_the_envelope_is_held_at_its_limit(
     x8_schedule, x8_aircraft, commanded, held
 ):
     flight = fly(x8_aircraft, x8_schedule.level(MIDDLE), 35.0, [(1.0, "airspeed", commanded)])
-    # After 30 s there is nothing left of the change; the limit itself is in the file with nine digits.
+    # After 30 s there is nothing left of the change; the limit itself is in the file with nine
+    # digits.
     assert after(flight, 30.0, "airspeed") == pytest.approx(held, abs=0.01)
-    # On the way it passes the limit by 0.6 m/s at most; 1 m/s is how far the design airspeeds reach past the envelope.
+    # On the way it passes the limit by 0.6 m/s at most; 1 m/s is how far the design airspeeds reach
+    # past the envelope.
     assert flight["airspeed"].min() > X8.envelope.airspeed_min - 1.0
     assert flight["airspeed"].max() < X8.envelope.airspeed_max + 1.0
     assert np.abs(flight["altitude"] - x8_schedule.altitude).max() < 2.0
@@ -76,7 +84,8 @@ def test_a_wide_open_throttle_winds_nothing_up(x8_schedule, x8_aircraft):
     assert (
         np.count_nonzero(flight["throttle"] == 1.0) > 60
     )  # saturated for half a second at least, or nothing was tried
-    # Wound up, it would go on past 25 m/s. Within 0.3 m/s five seconds after full throttle ends, and in 15 s within 0.02.
+    # Wound up, it would go on past 25 m/s. Within 0.3 m/s five seconds after full throttle ends,
+    # and in 15 s within 0.02.
     ended = np.nonzero(flight["throttle"] == 1.0)[0][-1] / 120.0
     assert flight["airspeed"].max() < 25.3
     assert np.abs(after(flight, ended + 5.0, "airspeed") - 25.0).max() < 0.3
@@ -93,8 +102,8 @@ def test_an_altitude_that_cannot_be_reached_in_time_is_approached_within_the_env
         21.0,
         [(1.0, "altitude", x8_schedule.altitude + size)],
     )
-    # It climbs steadily (near 2.3 m/s, what an altitude error of 1 m asks for), with wings level and airspeed held: 0.5 m/s. The
-    # model is linear in angle of attack to 0.2 rad.
+    # It climbs steadily (near 2.3 m/s, what an altitude error of 1 m asks for), with wings level
+    # and airspeed held: 0.5 m/s. The model is linear in angle of attack to 0.2 rad.
     climbed = (after(flight, 20.9, "altitude")[0] - x8_schedule.altitude) * math.copysign(1.0, size)
     assert 20.0 < climbed < 100.0
     assert np.abs(flight["airspeed"] - 20.0).max() < 0.5
@@ -117,8 +126,8 @@ def test_an_altitude_that_could_not_be_reached_in_time_winds_nothing_up(
     # Sent back after 20 s it turns round within a second and less than 3 m further on ...
     assert np.argmax(error) / 120.0 < 22.0
     assert error.max() < error[21 * 120] + 3.0
-    # ... comes back no slower than it went (46 m at 2.3 m/s: 20 s, and 3 s to turn round), passes the old altitude by less than
-    # 0.5 m and stays within 0.1 m from 8 s later.
+    # ... comes back no slower than it went (46 m at 2.3 m/s: 20 s, and 3 s to turn round), passes
+    # the old altitude by less than 0.5 m and stays within 0.1 m from 8 s later.
     assert error.min() > -0.5
     assert np.abs(error[round(44.0 * 120) :]).max() < 0.5
     assert np.abs(error[round(52.0 * 120) :]).max() < 0.1
@@ -133,7 +142,9 @@ def test_a_descent_that_is_to_end_is_not_flown_on_by_its_own_integral(x8_schedul
     altitude = x8_aircraft.fdm.node("position/h-sl-ft").get_double_value
 
     def altitudes(seconds, ahead):
-        """Return the altitude at each half second [m], flown with a command that stays so far from it."""
+        """Return the altitude at each half second [m], flown with a command that stays so far from
+        it.
+        """
         flown = []
         for _ in range(2 * seconds):
             x8_aircraft.command_altitude(altitude() * METRES_PER_FOOT + ahead)
@@ -143,7 +154,8 @@ def test_a_descent_that_is_to_end_is_not_flown_on_by_its_own_integral(x8_schedul
 
     descent = altitudes(10, -1.4)
     assert descent[-2] - descent[-1] > 1.0  # at 2 m/s and more, or nothing was tried
-    # The error that is integrated is beyond its limit from now on, and what was integrated goes on descending.
+    # The error that is integrated is beyond its limit from now on, and what was integrated goes on
+    # descending.
     climb = altitudes(30, 3.0)
     assert min(climb) > descent[-1] - 4.0
     assert climb[-1] > climb[-20] > climb[-40]

@@ -36,8 +36,8 @@ def test_they_are_those_with_which_margins_are_checked_but_for_the_delay():
     assert set(CASES) == {name for name, (_, steps) in perturbations.CASES.items() if steps == 0}
 
 
-# Of the model file: 3.364 kg and 0.335, 0.140, 0.400 kg m^2; a kilogram weighs 2.2046226 lb, and 1 slug ft^2 is 1.3558179 kg m^2,
-# but by 9e-5 in JSBSim.
+# Of the model file: 3.364 kg and 0.335, 0.140, 0.400 kg m^2; a kilogram weighs 2.2046226 lb, and 1
+# slug ft^2 is 1.3558179 kg m^2, but by 9e-5 in JSBSim.
 @pytest.mark.parametrize("case", CASES)
 def test_mass_and_inertia_are_as_modelled_times_the_factor(flown, case):
     by = CASES[case]
@@ -55,7 +55,8 @@ def test_what_a_deflection_does_is_as_modelled_times_the_factor(flown, case):
     def of(name):
         return value(flown[case], name)
 
-    # The model file's rolling moment: -0.0849 beta - 0.4042 p b/2V + 0.05552 r b/2V + 0.12019 aileron.
+    # The model file's rolling moment: -0.0849 beta - 0.4042 p b/2V + 0.05552 r b/2V + 0.12019
+    # aileron.
     turning = -0.4042 * of("velocities/p-aero-rad_sec") + 0.05552 * of("velocities/r-aero-rad_sec")
     rolled = of("aero/coefficient/Cl") + 0.0849 * of("aero/beta-rad") - turning * of("aero/bi2vel")
     aileron = of("fcs/aileron-pos-rad")
@@ -98,7 +99,8 @@ def test_the_deflections_of_jsbsims_short_s23_are_scaled(tmp_path):
         for product in products
         if product.findtext("value") == "1.2"
     ]
-    # Every <property> of a deflection that the file of its aerodynamics has, in its order; what tables are read at stays.
+    # Every <property> of a deflection that the file of its aerodynamics has, in its order; what
+    # tables are read at stays.
     rudder, aileron, elevator = (
         f"fcs/{name}-pos-rad" for name in ("rudder", "left-aileron", "elevator")
     )

@@ -32,9 +32,10 @@ def test_a_small_step_is_flown_as_the_linear_design_predicts(
     flown = flown_step(x8_aircraft, x8_schedule.level(index), command, size, 6.0)
     predicted = predicted_step(x8_schedule, index, command, size, 6.0)
     difference = np.asarray(flown.channels[command]) - np.asarray(predicted.channels[command])
-    # Measured 1 to 2.2 % of the step: JSBSim works in steps of 1/120 s, in first order, on motion of up to 16 rad/s, of which the
-    # linear model knows the delay and not the rest; and tables kink at wings level. 4 % leaves room for neither a wrong gain (10 %
-    # of any shows) nor another platform's rounding to matter.
+    # Measured 1 to 2.2 % of the step: JSBSim works in steps of 1/120 s, in first order, on motion
+    # of up to 16 rad/s, of which the linear model knows the delay and not the rest; and tables kink
+    # at wings level. 4 % leaves room for neither a wrong gain (10 % of any shows) nor another
+    # platform's rounding to matter.
     assert np.abs(difference).max() < 0.04 * abs(size)
 
 
@@ -43,13 +44,15 @@ def test_a_heading_rate_step_is_quick_and_disturbs_neither_altitude_nor_airspeed
     x8_schedule, x8_aircraft, size
 ):
     flown = flown_step(x8_aircraft, x8_schedule.level(MIDDLE), "heading_rate", size, 8.0)
-    # Requirements: the guidance's commands reach 0.25 rad/s at frequencies near 0.3 rad/s, so 0.8 s of rise time is a small part of
-    # its period; altitude and airspeed are constant in the paper, and 1 m and 0.5 m/s are small against plume and speed.
+    # Requirements: the guidance's commands reach 0.25 rad/s at frequencies near 0.3 rad/s, so 0.8 s
+    # of rise time is a small part of its period; altitude and airspeed are constant in the paper,
+    # and 1 m and 0.5 m/s are small against plume and speed.
     assert flown.rise_time() <= 0.8
     assert flown.overshoot() <= 0.15
     assert flown.largest("altitude") <= 1.0
     assert flown.largest("airspeed") <= 0.5
-    # And it arrives: integral action leaves a thousandth of the step after 8 s, eight of its time constants or so.
+    # And it arrives: integral action leaves a thousandth of the step after 8 s, eight of its time
+    # constants or so.
     assert flown.channels["heading_rate"][-1] == pytest.approx(size, rel=2e-3)
 
 
@@ -66,8 +69,9 @@ def test_the_flown_heading_rate_lags_its_command_by_the_lag_of_the_model(
     x8_schedule, x8_aircraft, index
 ):
     weights = x8_schedule.weights
-    # A second-order model lags slow commands by 2 zeta/omega_n: 2 times 0.9 over 4.83 rad/s is 0.373 s. 0.03 s is left for its
-    # own phase at 0.5 rad/s (0.2 ms), two steps of computing (8 ms each), and how well the aircraft follows the model.
+    # A second-order model lags slow commands by 2 zeta/omega_n: 2 times 0.9 over 4.83 rad/s is
+    # 0.373 s. 0.03 s is left for its own phase at 0.5 rad/s (0.2 ms), two steps of computing (8 ms
+    # each), and how well the aircraft follows the model.
     expected = 2.0 * weights.model_damping / weights.model_frequency
     assert measure_lag(x8_aircraft, x8_schedule.level(index), X8.envelope.bank) == pytest.approx(
         expected, abs=0.03

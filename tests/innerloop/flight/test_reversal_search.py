@@ -31,7 +31,9 @@ REVERSALS = 12
 
 @pytest.fixture(scope="module")
 def flown(x8_schedule, x8_root):
-    """Return the response of the X8 at the bank of its studies, and a function that searches a few reversals of a new one."""
+    """Return the response of the X8 at the bank of its studies, and a function that searches a few
+    reversals of a new one.
+    """
     level, bank = x8_schedule.level(x8_schedule.middle), X8.envelope.bank
     measuring = AutopilotedAircraft(X8, x8_root)
     measured, slow_lag = (
@@ -55,7 +57,8 @@ def test_it_finds_a_deviation_and_the_same_for_the_same_seed(flown):
     assert 0.0 < found.usual <= found.deviation
     # Rolling to a turn costs the X8 decimetres of altitude.
     assert 0.05 < found.altitude_error < 1.0
-    # Of a turn radius of 38 m; measured 0.5 to 1.7 m, where 4 to 8 m were before what is to come was predicted.
+    # Of a turn radius of 38 m; measured 0.5 to 1.7 m, where 4 to 8 m were before what is to come
+    # was predicted.
     assert found.deviation < 2.5
     assert found.reversals == REVERSALS
     assert X8.envelope.airspeed_min < found.airspeed_before < X8.envelope.airspeed_max
@@ -119,13 +122,15 @@ def test_a_vehicle_of_just_that_response_is_predicted(x8_schedule):
     flown = flight.fly(0.5, 5.0)
     # Rates at the ends of steps of 1/120 s: half a step of turning at 1 rad/s, over 80 m.
     np.testing.assert_allclose(predicted, flown, rtol=0.0, atol=0.35)
-    # By hand, from 0.5 rad/s: -0.5 + exp(-0.3/0.4), then 0.2 + (.. - 0.2) exp(-1/0.4), then -0.5 + (.. + 0.5) exp(-0.6/0.4) is
-    # -0.348 rad/s when the reversal acts, and half of 1 + 0.348/0.5 the change.
+    # By hand, from 0.5 rad/s: -0.5 + exp(-0.3/0.4), then 0.2 + (.. - 0.2) exp(-1/0.4), then -0.5 +
+    # (.. + 0.5) exp(-0.6/0.4) is -0.348 rad/s when the reversal acts, and half of 1 + 0.348/0.5 the
+    # change.
     assert change == pytest.approx(0.848, abs=2e-3)
 
 
 def test_the_deviation_is_the_way_that_is_lacking_in_the_direction_of_the_turn():
-    # Northbound; to the right, away is east, or up to 60 degrees forward of it. 3 m less of the east, and 1 m more of the north.
+    # Northbound; to the right, away is east, or up to 60 degrees forward of it. 3 m less of the
+    # east, and 1 m more of the north.
     north = np.arange(1.0, 101.0)
     predicted = np.column_stack([north, np.zeros(100)])
     flown = predicted + np.outer(np.linspace(0.0, 1.0, 100), [1.0, -3.0])
@@ -143,7 +148,8 @@ def test_the_deviation_is_the_way_that_is_lacking_in_the_direction_of_the_turn()
     ("bank_deg", "airspeed", "expected"), [(45.0, 19.42, 150), (30.0, 76.5, 24), (25.0, 144.6, 20)]
 )
 def test_a_design_flies_as_many_reversals_as_a_thousand_seconds_hold(bank_deg, airspeed, expected):
-    # A quarter of a turn takes pi/2 V/(g tan(bank)): 3.1, 21 and 50 s, and twice that with what comes before it; 20 to 150.
+    # A quarter of a turn takes pi/2 V/(g tan(bank)): 3.1, 21 and 50 s, and twice that with what
+    # comes before it; 20 to 150.
     assert reversals_of_a_design(math.radians(bank_deg), airspeed) == expected
 
 

@@ -58,6 +58,7 @@ def test_the_model_is_nowhere_ahead_of_the_aircraft_that_it_is_measured_on(
     turned = np.unwrap(course)[1:] - course[0]
     flown = np.cumsum(rate * time - turned) / 120.0 / (2.0 * rate)
     ahead = flown - displacement(time, reversal)
-    # Nowhere by more than the 1 % that is allowed, and half as much for the steps of the sums; and no longer than needed.
+    # Nowhere by more than the 1 % that is allowed, and half as much for the steps of the sums; and
+    # no longer than needed.
     assert np.max(ahead) <= 0.015 * flown[-1]
     assert np.max(ahead) >= 0.005 * flown[-1]

@@ -30,7 +30,9 @@ AIRSPEED, ALTITUDE, ROLL, NORTH_SPEED, EAST_SPEED, NORTH, EAST = range(7)
 
 
 def fly(aircraft, start, weather, duration, turn_at=5.0):
-    """Release the aircraft, turn from ``turn_at`` [s] on, and return what was read at each step, shape (steps, 7)."""
+    """Release the aircraft, turn from ``turn_at`` [s] on, and return what was read at each step,
+    shape (steps, 7).
+    """
     aircraft.release(
         start.state(yaw=YAW), airspeed=start.airspeed, altitude=start.altitude, weather=weather
     )
@@ -53,23 +55,26 @@ def test_in_wind_an_aircraft_flies_the_calm_path_carried_along(x8_schedule, x8_r
     calm = fly(AutopilotedAircraft(X8, x8_root), start, None, 25.0)
     windy = fly(AutopilotedAircraft(X8, x8_root), start, Weather(wind=constant_wind(*wind)), 25.0)
     course = YAW + start.course_offset()
-    # The velocity triangle at the release, to the last digits that are left of a globe's coordinates and 1e-6 ft/s of north wind.
+    # The velocity triangle at the release, to the last digits that are left of a globe's
+    # coordinates and 1e-6 ft/s of north wind.
     ground = (
         start.airspeed * math.cos(course) + wind[0],
         start.airspeed * math.sin(course) + wind[1],
     )
     assert windy[0, [NORTH_SPEED, EAST_SPEED]] == pytest.approx(ground, abs=1e-6)
     assert windy[0, AIRSPEED] == pytest.approx(start.airspeed, abs=1e-6)
-    # No more of a transient in the first 5 s than in calm air. The earth turns: an aircraft that goes 10 m/s faster eastward weighs
-    # 2 x 7.3e-5 x 10 m/s^2 less, 1.5e-4 of its weight, so altitude and airspeed settle as much elsewhere: 0.1 mm and 0.02 mm/s were
-    # measured; and the same is allowed of roll [rad], where 5e-7 were.
+    # No more of a transient in the first 5 s than in calm air. The earth turns: an aircraft that
+    # goes 10 m/s faster eastward weighs 2 x 7.3e-5 x 10 m/s^2 less, 1.5e-4 of its weight, so
+    # altitude and airspeed settle as much elsewhere: 0.1 mm and 0.02 mm/s were measured; and the
+    # same is allowed of roll [rad], where 5e-7 were.
     first = slice(0, round(5.0 / TIME_STEP))
     transients = [
         np.ptp(flight[first, [AIRSPEED, ALTITUDE, ROLL]], axis=0) for flight in (windy, calm)
     ]
     lighter = 2.0 * EARTH_RATE * 10.0 / STANDARD_GRAVITY
     assert np.all(transients[0] < transients[1] + lighter)
-    # And its turns are as much wider, so the path is off by that part of their radius, 15 mm, at most twice across a circle.
+    # And its turns are as much wider, so the path is off by that part of their radius, 15 mm, at
+    # most twice across a circle.
     times = TIME_STEP * np.arange(len(calm))
     drift = windy[:, [NORTH, EAST]] - calm[:, [NORTH, EAST]] - np.outer(times, wind)
     assert np.abs(drift).max() < 2.0 * lighter * start.airspeed / TURN
@@ -109,7 +114,8 @@ def test_a_used_aircraft_flies_a_weather_as_a_fresh_one_does(x8_schedule, x8_roo
     )  # and ends in the middle of a gust, and of a period of the autopilot
     for weather in (rough, None):
         fresh = fly(AutopilotedAircraft(X8, x8_root), start, weather, 5.0)
-        # Servos and propeller come to rest from elsewhere, to a millionth (tests/innerloop/flight/test_flight.py).
+        # Servos and propeller come to rest from elsewhere, to a millionth
+        # (tests/innerloop/flight/test_flight.py).
         np.testing.assert_allclose(fly(used, start, weather, 5.0), fresh, atol=1e-6)
 
 

@@ -1,4 +1,6 @@
-"""The script that flies the autopilot in JSBSim alone, run by JSBSim's own program and held against the flight from Python."""
+"""The script that flies the autopilot in JSBSim alone, run by JSBSim's own program and held against
+the flight from Python.
+"""
 
 import math
 import shutil
@@ -33,7 +35,9 @@ def read_result(path):
 
 
 def fly_in_python(root, schedule, commands, duration):
-    """Fly commands with AutopilotedAircraft; return the script's columns after every step, and the time since release [s]."""
+    """Fly commands with AutopilotedAircraft; return the script's columns after every step, and the
+    time since release [s].
+    """
     aircraft, start = AutopilotedAircraft(schedule.spec, root), schedule.level(MIDDLE)
     aircraft.release(start.state(), airspeed=start.airspeed, altitude=start.altitude)
     names = columns(aircraft.fdm)
@@ -51,7 +55,9 @@ def fly_in_python(root, schedule, commands, duration):
 
 
 def fly_both(schedule, tmp_path_factory):
-    """An autopilot's schedule, the demonstration flown by JSBSim alone, hold and all, and flown from Python."""
+    """An autopilot's schedule, the demonstration flown by JSBSim alone, hold and all, and flown
+    from Python.
+    """
     root, away = tmp_path_factory.mktemp("root"), tmp_path_factory.mktemp("away")
     script = write_script(schedule, write_root(schedule, root))
     run_jsbsim(
@@ -105,7 +111,8 @@ def test_jsbsim_alone_flies_the_trajectory_that_python_flies(flights):
     )  # JSBSim adds up 12000 steps and prints ten digits
     assert set(alone) == set(python)
     for name in set(python) - {"Time"}:
-        # To the last bit: 18 digits are printed, one more than a number has, and both set the same state in the same order.
+        # To the last bit: 18 digits are printed, one more than a number has, and both set the same
+        # state in the same order.
         np.testing.assert_array_equal(alone[name], same[name], err_msg=name)
 
 
@@ -115,10 +122,12 @@ def test_the_demonstration_turns_climbs_changes_speed_and_comes_back(flights):
     rate, _, higher, faster, *_ = (
         command.value for command in demonstration(schedule.envelope, start)
     )
-    # A turn commanded for 15 s and given time to end turns by rate times 15 s, however it lags; a hundredth is let go.
+    # A turn commanded for 15 s and given time to end turns by rate times 15 s, however it lags; a
+    # hundredth is let go.
     assert turned(alone, 5.0, 25.0) == pytest.approx(15.0 * rate, rel=0.01)
     assert turned(alone, 70.0, 95.0) == pytest.approx(-15.0 * rate, rel=0.01)
-    # Fifteen seconds after each step: within four hundredths of it; the Aerosonde's slowest closed-loop pole is 0.23 1/s.
+    # Fifteen seconds after each step: within four hundredths of it; the Aerosonde's slowest
+    # closed-loop pole is 0.23 1/s.
     assert at(alone, 40.0, "position/h-sl-meters") == pytest.approx(
         higher, abs=0.04 * (higher - start.altitude)
     )
@@ -161,9 +170,10 @@ def test_a_stock_aircraft_is_flown_by_jsbsim_alone_as_from_python_but_for_its_en
     same = python.iloc[:: STEPS_PER_SECOND // 20].reset_index(drop=True)
     assert len(alone) == len(same)
     start = schedule.level(MIDDLE)
-    # Python places the aircraft twice, to run its engines up in between, and the script holds it all the time: engines are released
-    # in states that differ by what is left of spooling after 10 s. Measured 2e-9 m/s, 2e-8 m, 1e-11 and 1e-10 rad; a hundred times
-    # that is let go, for another platform's rounding decides when an engine settles.
+    # Python places the aircraft twice, to run its engines up in between, and the script holds it
+    # all the time: engines are released in states that differ by what is left of spooling after 10
+    # s. Measured 2e-9 m/s, 2e-8 m, 1e-11 and 1e-10 rad; a hundred times that is let go, for another
+    # platform's rounding decides when an engine settles.
     tolerances = {
         "autopilot/airspeed-mps": 2e-7,
         "position/h-sl-meters": 2e-6,
@@ -190,7 +200,8 @@ def test_a_stock_aircrafts_script_runs_its_engines_up_while_the_body_is_held_and
     ]
     start, again, release = events[:3]
     assert dict(START_ENGINES).items() <= start.items()
-    # Ten seconds of running up (RUN_UP_STEPS), for turbines are not cranked, then the settling time of 20 s.
+    # Ten seconds of running up (RUN_UP_STEPS), for turbines are not cranked, then the settling time
+    # of 20 s.
     assert float(run.get("start")) == pytest.approx(-30.0)
     assert set(schedule.spec.configuration) <= set(start.items())
     assert again == dict(schedule.spec.configuration)

@@ -103,8 +103,9 @@ def test_the_measured_heading_rate_is_the_rate_of_the_flown_course(x8_schedule, 
     )
     course = np.unwrap(np.arctan2(flight["east_speed"], flight["north_speed"]))
     differentiated = (course[2:] - course[:-2]) / (2.0 * TIME_STEP)
-    # Calm air: the air-relative course is the ground's. The autopilot measures forces a step or two before the motion they make, at
-    # up to 2 rad/s^2 of course acceleration; the earth's rotation adds 1e-4.
+    # Calm air: the air-relative course is the ground's. The autopilot measures forces a step or two
+    # before the motion they make, at up to 2 rad/s^2 of course acceleration; the earth's rotation
+    # adds 1e-4.
     assert np.abs(differentiated - flight["heading_rate"][1:-1]).max() < 2.0 * 1.5 * TIME_STEP
     # Where it turns steadily the two agree to a thousandth of the rate.
     steady = slice(round(5.0 / TIME_STEP), round(5.9 / TIME_STEP))
@@ -121,7 +122,8 @@ def test_the_autopilot_computes_once_in_a_period_and_integrates_over_it(x8_sched
     for _ in range(40 * period):
         x8_aircraft.fdm.step()
         rows.append([node.get_double_value() for node in nodes])
-    # It computed in the last step before the release, so that the command acts at the end of a whole period.
+    # It computed in the last step before the release, so that the command acts at the end of a
+    # whole period.
     moved = np.nonzero(np.any(np.diff(rows, axis=0), axis=1))[0] + 1
     np.testing.assert_array_equal(moved, period * np.arange(1, 41))
     jerk, acceleration, rate = np.array(rows)[::period].T

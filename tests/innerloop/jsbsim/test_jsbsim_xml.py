@@ -32,7 +32,9 @@ DIGITS = 1e-8  # numbers are written with nine digits
 
 @pytest.fixture
 def run(tmp_path):
-    """A function that loads an X8 with components in a system, with properties test/x and test/y to play with."""
+    """A function that loads an X8 with components in a system, with properties test/x and test/y to
+    play with.
+    """
 
     def load(*components):
         shutil.copytree(MODELS, tmp_path, dirs_exist_ok=True)

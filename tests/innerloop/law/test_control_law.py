@@ -1,7 +1,9 @@
-"""The control law in Python is the one that JSBSim flies: same states in, same commands out. Margins are computed from the former.
+"""The control law in Python is the one that JSBSim flies: same states in, same commands out.
+Margins are computed from the former.
 
-The body is held at random states (``Fdm.frozen``), with every integral held at nought or running, and what the autopilot asks for
-inside JSBSim, before its limits, is held against ``ControlLaw.evaluate``.
+The body is held at random states (``Fdm.frozen``), with every integral held at nought or running,
+and what the autopilot asks for inside JSBSim, before its limits, is held against
+``ControlLaw.evaluate``.
 """
 
 import math
@@ -37,7 +39,9 @@ REMEMBERED = {
     "model_acceleration": "autopilot/model-acceleration",
 }
 DIGITS = 2e-7
-"""Tables and gains are written with nine digits; commands are of size 1, and sums of ten terms up to 10."""
+"""Tables and gains are written with nine digits; commands are of size 1, and sums of ten terms up
+to 10.
+"""
 
 
 @pytest.fixture(scope="module", params=NAMES)
@@ -49,7 +53,9 @@ def flown(request, designs, tmp_path_factory):
 
 
 def random_state(rng, schedule):
-    """A state and commands anywhere in the envelope, banked past its limit too; errors small enough to be answered in full."""
+    """A state and commands anywhere in the envelope, banked past its limit too; errors small enough
+    to be answered in full.
+    """
     weights, envelope = schedule.weights, schedule.envelope
     commanded = rng.uniform(envelope.airspeed_min, envelope.airspeed_max)
     airspeed = commanded + 0.9 * weights.airspeed_error_max * rng.uniform(-1.0, 1.0)
@@ -71,7 +77,9 @@ def random_state(rng, schedule):
 
 
 def held(flown, rng, computed):
-    """Hold a random state, with integrals ``computed`` so often; return measurements, the autopilot's states and commands."""
+    """Hold a random state, with integrals ``computed`` so often; return measurements, the
+    autopilot's states and commands.
+    """
     schedule, _, aircraft = flown
     fdm, period = aircraft.fdm, schedule.period
     state, commands = random_state(rng, schedule)
@@ -102,7 +110,9 @@ def held(flown, rng, computed):
 
 
 def with_flown_jerk(flown, commands, states):
-    """The heading-rate command at which the law has the jerk of this period, which JSBSim computes before its model moves."""
+    """The heading-rate command at which the law has the jerk of this period, which JSBSim computes
+    before its model moves.
+    """
     schedule, _, aircraft = flown
     frequency, damping = schedule.weights.model_frequency, schedule.weights.model_damping
     jerk = aircraft.fdm.read("autopilot/model-jerk")
@@ -138,7 +148,8 @@ def test_at_random_states_the_integrals_grow_as_the_law_says(flown):
     for _ in range(25):
         commands, measured, states = held(flown, rng, 1)
         expected, _ = law.evaluate(commands, measured, states)
-        # What is left is back-calculation, which the law has not: it follows a control past its limit.
+        # What is left is back-calculation, which the law has not: it follows a control past its
+        # limit.
         back = schedule.weights.anti_windup_rate
         found = {
             f"{name}_integral": read(f"autopilot/{name}-integral-rate")
@@ -161,7 +172,8 @@ def test_the_random_states_reach_every_part_of_the_law(flown):
         command, measured, _ = held(flown, rng, 0)
         banks.append(measured["roll"])
         commands.append(command["airspeed_command"])
-    # Past the outermost gains on both sides and in every cell between the design airspeeds, or a wrong table edge would not show.
+    # Past the outermost gains on both sides and in every cell between the design airspeeds, or a
+    # wrong table edge would not show.
     assert min(banks) < schedule.gain_banks[0]
     assert max(banks) > schedule.gain_banks[-1]
     assert set(np.searchsorted(schedule.airspeeds, commands)) == {1, 2, 3, 4}
@@ -177,8 +189,8 @@ def test_in_every_equilibrium_the_law_asks_for_its_controls_and_its_integrals_st
         for j in range(len(schedule.gain_banks)):
             t, gains = schedule.gain_trim(i, j), schedule.gains[i][j]
             rates, controls = evaluate_at(law, operating_point(law, t))
-            # The law damps all of the roll rate, and a nose-up turn has its own, -yaw rate times sin(pitch): what aileron and
-            # rudder then lack, the integral of the heading rate adds.
+            # The law damps all of the roll rate, and a nose-up turn has its own, -yaw rate times
+            # sin(pitch): what aileron and rudder then lack, the integral of the heading rate adds.
             by_roll_rate = dict(
                 zip(
                     ("aileron", "rudder"),
@@ -199,8 +211,8 @@ def test_in_every_equilibrium_the_law_asks_for_its_controls_and_its_integrals_st
 def test_a_gain_that_is_a_thousandth_off_would_show(flown):
     schedule, law, _ = flown
     rng = np.random.default_rng(3)
-    # For every gain that is not nought there is a state among these at which a thousandth of it moves a control by ten times what
-    # the comparison allows, or the growth of an integral.
+    # For every gain that is not nought there is a state among these at which a thousandth of it
+    # moves a control by ten times what the comparison allows, or the growth of an integral.
     largest = np.zeros(28)
     for _ in range(40):
         commands, measured, states = held(flown, rng, 10)

@@ -1,8 +1,9 @@
-"""What flies equals what was designed: commands of the flown autopilot against gains, and against its linear description.
+"""What flies equals what was designed: commands of the flown autopilot against gains, and against
+its linear description.
 
-The aircraft is held where it is put (``Fdm.frozen``), off trim by a small amount in one quantity at a time, both ways; commands
-are read from JSBSim. Held integrators (``RESET``) leave the feedback alone; running ones add what they gather in a known number of
-steps.
+The aircraft is held where it is put (``Fdm.frozen``), off trim by a small amount in one quantity at
+a time, both ways; commands are read from JSBSim. Held integrators (``RESET``) leave the feedback
+alone; running ones add what they gather in a known number of steps.
 """
 
 import math
@@ -88,7 +89,9 @@ def state_off_trim(found, name, size):
 
 
 def commands_off_trim(root, found, name, size, steps, running=False, spec=X8, properties=()):
-    """Commands [-] after so many steps with one measurement or command off trim; or other properties."""
+    """Commands [-] after so many steps with one measurement or command off trim; or other
+    properties.
+    """
     aircraft = AutopilotedAircraft(spec, root)
     fdm = aircraft.fdm
     aircraft.command_airspeed(found.airspeed + (size if name == "airspeed_command" else 0.0))
@@ -113,7 +116,9 @@ def slope_of_commands(root, found, name, steps=3, running=False, spec=X8):
 
 
 def over_bank(schedule, quantity):
-    """Mean of the slopes of a trim quantity over bank on both sides of level flight, from the equilibria themselves."""
+    """Mean of the slopes of a trim quantity over bank on both sides of level flight, from the
+    equilibria themselves.
+    """
     left, middle, right = (quantity(schedule.trims[MIDDLE][LEVEL + i]) for i in (-1, 0, 1))
     to_right = (right - middle) / schedule.banks[LEVEL + 1]
     to_left = (middle - left) / -schedule.banks[LEVEL - 1]
@@ -127,7 +132,9 @@ def over_airspeed(schedule, quantity):
 
 
 def designed_slopes(schedule, name):
-    """Elevator, aileron and throttle per unit of a deviation, straight from the gains and the equilibria."""
+    """Elevator, aileron and throttle per unit of a deviation, straight from the gains and the
+    equilibria.
+    """
     gains = schedule.gains[MIDDLE][LEVEL_GAINS]
     elevator, throttle = -gains.longitudinal
     k_p, k_r, k_roll, _ = gains.lateral[0]
@@ -169,8 +176,8 @@ def test_at_a_design_airspeed_the_held_aircraft_gets_the_equilibriums_controls(
 ):
     found = x8_schedule.level(index)
     flown = commands_off_trim(x8_root, found, "nothing", 0.0, 3)
-    # The tables have their kink at wings level, the equilibrium (propeller torque) its bank 0.3 mrad beside it: that far along
-    # slopes of up to 0.4 a radian, and on the aileron 2.3 a radian.
+    # The tables have their kink at wings level, the equilibrium (propeller torque) its bank 0.3
+    # mrad beside it: that far along slopes of up to 0.4 a radian, and on the aileron 2.3 a radian.
     assert flown[[0, 2]] == pytest.approx(
         [found.inputs["elevator"], found.inputs["throttle"]], abs=2e-4
     )
@@ -184,8 +191,8 @@ def test_in_a_turning_equilibrium_turn_compensation_asks_for_its_elevator_and_th
 ):
     found = x8_schedule.trims[index][bank]
     flown = commands_off_trim(x8_root, found, "nothing", 0.0, 3)
-    # Every error of the longitudinal feedback is nought in it, so only the table speaks; at its own nodes, in nine digits. At wings
-    # level the bank is 0.3 mrad beside the node, see above.
+    # Every error of the longitudinal feedback is nought in it, so only the table speaks; at its own
+    # nodes, in nine digits. At wings level the bank is 0.3 mrad beside the node, see above.
     expected = [found.inputs["elevator"], found.inputs["throttle"]]
     assert flown[[0, 2]] == pytest.approx(expected, abs=2e-4 if found.yaw_rate == 0.0 else 1e-6)
 
@@ -194,9 +201,10 @@ def test_in_a_turning_equilibrium_turn_compensation_asks_for_its_elevator_and_th
 def test_the_flown_feedback_is_the_designed_gain_times_the_deviation(x8_schedule, x8_root, name):
     flown = slope_of_commands(x8_root, x8_schedule.level(MIDDLE), name)
     expected = designed_slopes(x8_schedule, name)
-    # Feedback is linear, so central differences are exact; numbers in the file have nine digits. A moved airspeed command also
-    # moves the schedule, and with it gains that multiply what is left of errors at trim; and at 0.3 mrad of bank a yaw rate is a
-    # little of a pitch rate: 1e-4 either.
+    # Feedback is linear, so central differences are exact; numbers in the file have nine digits. A
+    # moved airspeed command also moves the schedule, and with it gains that multiply what is left
+    # of errors at trim; and at 0.3 mrad of bank a yaw rate is a little of a pitch rate: 1e-4
+    # either.
     np.testing.assert_allclose(flown, expected, rtol=1e-3, atol=5e-4)
 
 
@@ -237,9 +245,11 @@ def test_sideslip_to_the_right_is_answered_by_rudder_to_the_right_at_once_and_ev
         )
         for steps in (20, 80)
     )
-    # Air from the right: the nose has to turn right, into it. A positive rudder yaws left (C_n_dr < 0).
+    # Air from the right: the nose has to turn right, into it. A positive rudder yaws left (C_n_dr <
+    # 0).
     assert late < early < found.inputs["rudder"]
-    # The integral: its gain times sideslip times time, at a node of its table; nine digits, and sideslip as placed.
+    # The integral: its gain times sideslip times time, at a node of its table; nine digits, and
+    # sideslip as placed.
     gains = schedule.gains[MIDDLE][LEVEL_GAINS]
     assert (more - gathered) / (60 * TIME_STEP) == pytest.approx(
         gains.sideslip_integral * (found.beta + 0.01), rel=1e-6
@@ -259,8 +269,9 @@ def test_the_integrals_gather_the_designed_gain_times_error_times_time(
     )
     gathered = (late - early)[[0, 2]] / (60 * TIME_STEP)
     column = 0 if name.startswith("airspeed") else 1
-    # Errors are constant while held, and anti-windup stays out of it: nothing saturates. A moved airspeed command moves the
-    # schedule's gain as well, whose slope changes at a design airspeed: 4e-3 of it.
+    # Errors are constant while held, and anti-windup stays out of it: nothing saturates. A moved
+    # airspeed command moves the schedule's gain as well, whose slope changes at a design airspeed:
+    # 4e-3 of it.
     expected = error * x8_schedule.gains[MIDDLE][LEVEL_GAINS].longitudinal_integral[:, column]
     np.testing.assert_allclose(gathered, expected, rtol=5e-3, atol=1e-6)
 
@@ -305,17 +316,20 @@ def test_a_heading_rate_command_moves_the_aileron_as_the_linear_description_says
     time = TIME_STEP * np.arange(1, steps + 1)
     answer = control.forced_response(named(system, "autopilot"), time - TIME_STEP, inputs)
     expected = answer.outputs[system.output_labels.index("aileron")]
-    # At the steps at which the autopilot computes. Between them it holds, and before the first it knows nothing of the command.
+    # At the steps at which the autopilot computes. Between them it holds, and before the first it
+    # knows nothing of the command.
     computed = slice(x8_schedule.period - 1, None, x8_schedule.period)
     flown, expected, time = flown[computed], np.asarray(expected)[computed], time[computed]
-    # JSBSim integrates the model in turn, a period behind itself, at 5 rad/s: 12 % of it while it moves; tables kink at level.
+    # JSBSim integrates the model in turn, a period behind itself, at 5 rad/s: 12 % of it while it
+    # moves; tables kink at level.
     late = time > 0.6
     np.testing.assert_allclose(flown[late], expected[late], rtol=0.03)
     np.testing.assert_allclose(flown, expected, atol=0.1 * np.abs(expected).max())
 
 
 def test_a_coordinated_turn_needs_nearly_the_textbooks_bank(x8_schedule):
-    # tan(bank) = V omega/g for a coordinated turn, so the slope is 1; sideslip's side force adds 3 % or so without a rudder.
+    # tan(bank) = V omega/g for a coordinated turn, so the slope is 1; sideslip's side force adds 3
+    # % or so without a rudder.
     assert bank_slopes(x8_schedule) == pytest.approx([1.03] * 5, abs=0.05)
 
 

@@ -79,7 +79,8 @@ def test_the_longitudinal_gains_are_those_of_a_servo_lqr(designs, name, i, j):
     gain = servo_lqr(*plant, deviations, (controls.elevator, controls.throttle))
     # Climb rate in place of angle of attack: what the five states are in the measured ones.
     *_, measured, _ = at_rest(model, states, ("elevator",), LONGITUDINAL)
-    # Riccati solvers agree to about 1e-7 of each control's largest gain; states differ in size by a hundred and more.
+    # Riccati solvers agree to about 1e-7 of each control's largest gain; states differ in size by a
+    # hundred and more.
     flown = found.longitudinal @ measured
     scale = np.abs(gain).max(axis=1, keepdims=True)
     np.testing.assert_allclose(flown / scale, gain[:, :5] / scale, atol=1e-5)
@@ -98,8 +99,8 @@ def test_without_a_rudder_the_lateral_gains_are_those_of_a_servo_lqr_on_the_aile
         (0.0, w.roll_rate, 0.0, w.roll, w.heading_integral),
         (allowed(designs("x8"), i).aileron,),
     )[0]
-    # Sideslip is not measured and its gain left out. The integral goes to the bank command, which the roll gain turns into aileron.
-    # Riccati solvers agree to about 1e-7 here.
+    # Sideslip is not measured and its gain left out. The integral goes to the bank command, which
+    # the roll gain turns into aileron. Riccati solvers agree to about 1e-7 here.
     np.testing.assert_allclose(found.lateral[0], [*gain[1:4], 0.0], rtol=1e-5)
     assert found.heading_integral * found.lateral[0, LATERAL.index("roll")] == pytest.approx(
         -gain[4], rel=1e-5
@@ -147,8 +148,9 @@ def test_gains_oppose_the_deviations_they_answer(designs, name, i):
 
     up = sign("q", "elevator")  # whether a positive elevator pitches up (stock aircraft differ)
     elevator = dict(zip(LONGITUDINAL, up * gains.longitudinal[0], strict=True))
-    # Commands are minus gain times deviation: too high, climbing, nose up or pitching up asks for nose down. Too fast asks for less
-    # throttle. Too much roll or roll rate asks for aileron against it.
+    # Commands are minus gain times deviation: too high, climbing, nose up or pitching up asks for
+    # nose down. Too fast asks for less throttle. Too much roll or roll rate asks for aileron
+    # against it.
     assert min(elevator[state] for state in ("climb_rate", "q", "pitch", "altitude")) > 0.0
     assert gains.longitudinal[1, LONGITUDINAL.index("airspeed")] > 0.0
     assert gains.longitudinal_integral[1, 0] > 0.0
@@ -166,7 +168,8 @@ def test_the_rudder_turns_the_nose_into_the_wind_and_damps_yaw(designs, name, i)
     by = dict(
         zip(LATERAL, -gains.lateral[1] * yaw_by_rudder, strict=True)
     )  # yaw acceleration per deviation
-    # Sideslip is positive with air from the right, and turning right takes it out; so does its integral. A yaw rate is opposed.
+    # Sideslip is positive with air from the right, and turning right takes it out; so does its
+    # integral. A yaw rate is opposed.
     assert by["beta"] > 0.0
     assert gains.sideslip_integral * yaw_by_rudder > 0.0
     assert by["r"] < 0.0
@@ -185,8 +188,9 @@ def test_rolling_under_the_feedforward_the_nose_goes_round_with_the_turn(designs
     controls = (
         gains.roll_rate_feedforward * rate + gains.roll_acceleration_feedforward * acceleration
     )
-    # Asked for: p_dot = acceleration; and r grows as the turn does in a roll about the velocity, omega = g tan(bank)/V, of which r
-    # is the part cos(bank): r_dot = g/V p at wings level, to 1e-7 at half a milliradian.
+    # Asked for: p_dot = acceleration; and r grows as the turn does in a roll about the velocity,
+    # omega = g tan(bank)/V, of which r is the part cos(bank): r_dot = g/V p at wings level, to 1e-7
+    # at half a milliradian.
     np.testing.assert_allclose(
         a[:, 0] * rate + b @ controls, [acceleration, 9.80665 / level.airspeed * rate], atol=1e-6
     )
@@ -198,14 +202,16 @@ def test_without_a_rudder_roll_feedforward_is_the_inverse_of_the_roll_equation(x
     row, aileron = model.state_labels.index("p"), model.state_labels.index("aileron_position")
     full = 0.5236  # rad of deflection for a command of 1 (model file)
     by_aileron, by_rate = model.A[row, aileron] * full, model.A[row, row]
-    # p_dot = L_p p + L_da da solved for the aileron. Propeller speed does not depend on roll rate, so nothing else enters.
+    # p_dot = L_p p + L_da da solved for the aileron. Propeller speed does not depend on roll rate,
+    # so nothing else enters.
     assert gains.roll_acceleration_feedforward[0] == pytest.approx(1.0 / by_aileron, rel=1e-6)
     assert gains.roll_rate_feedforward[0] == pytest.approx(-by_rate / by_aileron, rel=1e-6)
 
 
 def test_gains_change_little_from_one_bank_to_the_same_on_the_other_side(designs):
     schedule = designs("T37").design.schedule
-    # The model is the same to both sides: it trims level without bank or aileron (to 1e-15), so nothing turns one way.
+    # The model is the same to both sides: it trims level without bank or aileron (to 1e-15), so
+    # nothing turns one way.
     for row in schedule.gains:
         for left, right in zip(row, reversed(row), strict=True):
             assert left.bank == pytest.approx(-right.bank, abs=2e-3)

@@ -33,7 +33,8 @@ def test_banks_are_symmetric_about_level(shares):
 def test_the_tables_reach_past_the_largest_commanded_bank_and_gains_are_those_of_equilibria(
     x8_schedule,
 ):
-    # The X8's guidance banks by 45 degrees, its autopilot by 5 more, and a tenth more than that is in the tables.
+    # The X8's guidance banks by 45 degrees, its autopilot by 5 more, and a tenth more than that is
+    # in the tables.
     assert math.degrees(x8_schedule.banks[-1]) == pytest.approx(TABLE_REACH * 50.0)
     assert set(x8_schedule.gain_banks) < set(x8_schedule.banks)
     for i, row in enumerate(x8_schedule.trims):
@@ -62,8 +63,8 @@ def test_what_a_turn_asks_for_in_the_plane_of_symmetry_is_nearly_even_over_bank(
     x8_schedule, quantity
 ):
     even, odd = even_and_odd(x8_schedule.over_bank(quantity))
-    # Odd is what the propeller does: its torque, and its gyroscopic moment H r of 0.1 N m at most against 8 N m a unit of elevator.
-    # A fifth of the even part in the elevator and in pitch.
+    # Odd is what the propeller does: its torque, and its gyroscopic moment H r of 0.1 N m at most
+    # against 8 N m a unit of elevator. A fifth of the even part in the elevator and in pitch.
     assert np.abs(odd).max() < 0.25 * np.abs(even).max()
 
 
@@ -72,8 +73,9 @@ def test_what_a_turn_asks_for_in_the_plane_of_symmetry_is_nearly_even_over_bank(
 )
 def test_what_a_turn_asks_for_across_it_is_nearly_odd_over_bank(x8_schedule, quantity, share):
     even, odd = even_and_odd(x8_schedule.over_bank(quantity))
-    # Even is what the propeller does: its gyroscopic moment H q of 0.15 N m makes sideslip to the same side in either turn, and
-    # without rudder the aileron answers the rolling moment of that: half of the little aileron that a slow steep turn needs.
+    # Even is what the propeller does: its gyroscopic moment H q of 0.15 N m makes sideslip to the
+    # same side in either turn, and without rudder the aileron answers the rolling moment of that:
+    # half of the little aileron that a slow steep turn needs.
     assert np.abs(even).max() < share * np.abs(odd).max()
 
 
@@ -114,7 +116,8 @@ def test_the_bank_for_a_turn_is_that_of_the_equilibrium_with_this_yaw_rate(x8_sc
 def test_between_equilibria_the_bank_for_a_turn_is_within_a_tenth_of_a_degree(x8_schedule, bank):
     found = trim(Fdm(X8), airspeed=20.0, altitude=100.0, bank=math.radians(bank))
     turn = np.array([20.0 * found.yaw_rate / STANDARD_GRAVITY])
-    # tan(bank) is nearly proportional to V omega/g; half-way between two equilibria it is off by second order of that "nearly".
+    # tan(bank) is nearly proportional to V omega/g; half-way between two equilibria it is off by
+    # second order of that "nearly".
     assert math.degrees(float(x8_schedule.bank_for_turn(turn)[0, 2])) == pytest.approx(
         bank, abs=0.1
     )
@@ -154,8 +157,8 @@ def test_a_slower_heading_rate_model_is_designed_when_asked_for(x8_design, tmp_p
     )
     aircraft = AutopilotedAircraft(X8, write_root(schedule, tmp_path))
     flown = flown_step(aircraft, schedule.level(1), "heading_rate", 0.1, 6.0)
-    # From 10 to 90 % a second-order answer with a damping of 0.9 takes 2.9/omega_n (1.8 at 0.5, 3.4 at 1: control textbooks); the
-    # aircraft follows within a fifth.
+    # From 10 to 90 % a second-order answer with a damping of 0.9 takes 2.9/omega_n (1.8 at 0.5, 3.4
+    # at 1: control textbooks); the aircraft follows within a fifth.
     assert schedule.weights.model_frequency == pytest.approx(3.0)
     assert flown.rise_time() == pytest.approx(2.9 / 3.0, rel=0.2)
 

@@ -1,4 +1,6 @@
-"""What the design asks for: by hand for a simple aircraft, and without a length or a time of its own."""
+"""What the design asks for: by hand for a simple aircraft, and without a length or a time of its
+own.
+"""
 
 import math
 from dataclasses import astuple, fields, replace
@@ -131,11 +133,13 @@ def test_the_controls_may_do_what_moves_their_axis_at_its_frequency_against_its_
     bandwidths = LoopBandwidths(lateral=3.0, longitudinal=2.0, airspeed=0.5)
     asked = design_weights(bandwidths, 20.0)
     found = control_weights(simple(), bandwidths, asked)
-    # w hypot(w, damping) times the acceptable angle, over authority: by hand, 0.3 rad of pitch and 0.1 rad of roll.
+    # w hypot(w, damping) times the acceptable angle, over authority: by hand, 0.3 rad of pitch and
+    # 0.1 rad of roll.
     assert found.elevator == pytest.approx(0.3 * 2.0 * math.hypot(2.0, 5.0) / 20.0, rel=1e-12)
     assert found.aileron == pytest.approx(0.1 * 3.0 * math.hypot(3.0, 4.0) / 30.0, rel=1e-12)
     assert found.throttle == pytest.approx(asked.airspeed * 0.5 / 6.0, rel=1e-12)
-    # The rudder: 0.05 rad of sideslip, at w hypot(w, 1.5) or, if that is less, against the weathercock's own 8 1/s^2.
+    # The rudder: 0.05 rad of sideslip, at w hypot(w, 1.5) or, if that is less, against the
+    # weathercock's own 8 1/s^2.
     assert found.rudder == pytest.approx(0.05 * 8.0 / 5.0, rel=1e-12)
     stiff = control_weights(simple(yaw_stiffness=50.0), bandwidths, asked)
     assert stiff.rudder == pytest.approx(0.05 * 3.0 * math.hypot(3.0, 1.5) / 5.0, rel=1e-12)
@@ -152,7 +156,8 @@ def test_an_aircraft_without_a_rudder_has_no_weight_for_it(x8_design):
 
 def test_deviations_are_those_that_a_pitch_of_three_tenths_makes_in_a_unit_of_time():
     found = design_weights(LoopBandwidths(lateral=4.0, longitudinal=2.0, airspeed=0.5), 20.0)
-    # Half a second of a climb at 0.3 rad and 20 m/s is 3 m, of which half; g times 0.3 rad in it is 1.47 m/s, twice.
+    # Half a second of a climb at 0.3 rad and 20 m/s is 3 m, of which half; g times 0.3 rad in it is
+    # 1.47 m/s, twice.
     assert found.altitude == pytest.approx(0.5 * 20.0 * 0.3 * 0.5)
     assert found.airspeed == pytest.approx(2.0 * STANDARD_GRAVITY * 0.3 * 0.5)
     assert (found.pitch, found.roll, found.sideslip) == (0.3, 0.1, 0.05)
@@ -165,7 +170,8 @@ def test_with_half_the_speed_everything_takes_twice_as_long():
         design_weights(bandwidths, 20.0),
         design_weights(bandwidths.scaled(lateral=0.5, longitudinal=0.5, airspeed=0.5), 20.0),
     )
-    # At the same V and g: lengths V/w and airspeeds g/w double, their integrals quadruple, angles stay, and rates halve.
+    # At the same V and g: lengths V/w and airspeeds g/w double, their integrals quadruple, angles
+    # stay, and rates halve.
     exponents = {
         "airspeed": 1, "pitch": 0, "pitch_rate": -1, "altitude": 1, "airspeed_integral": 2, "altitude_integral": 2, "roll": 0,
         "roll_rate": -1, "sideslip": 0, "heading_integral": 1, "sideslip_integral": 1, "model_frequency": -1, "model_damping": 0,
@@ -188,7 +194,9 @@ SCALES = {
     "q": 0.5,
     "r": 0.5,
 }
-"""A dynamically similar aircraft, four times as long: in the same gravity it flies twice as fast, and all takes twice the time."""
+"""A dynamically similar aircraft, four times as long: in the same gravity it flies twice as fast,
+and all takes twice the time.
+"""
 
 
 def similar(model):
@@ -224,7 +232,8 @@ def test_a_dynamically_similar_aircraft_gets_the_similar_autopilot(monkeypatch, 
     larger = replace(level, airspeed=2.0 * level.airspeed)
     slower, scaled = designed([similar(model) for model in models], 2.0 * airspeed, larger)
     assert astuple(slower) == pytest.approx([0.5 * s for s in astuple(bandwidths)])
-    # The same deflection for a deviation that is as large for the larger aircraft: gains are over the deviation's scale.
+    # The same deflection for a deviation that is as large for the larger aircraft: gains are over
+    # the deviation's scale.
     units = np.array(
         [
             SCALES[n] if n != "pitch" else 1.0

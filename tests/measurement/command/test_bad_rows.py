@@ -1,4 +1,6 @@
-"""Logs with rows that no sensor and no receiver has written are refused, or read, with a line that names the rows."""
+"""Logs with rows that no sensor and no receiver has written are refused, or read, with a line that
+names the rows.
+"""
 
 import json
 
@@ -50,10 +52,12 @@ def test_a_reading_beyond_the_range_of_its_sensor_is_refused_with_its_row(
 
 
 def test_a_calibration_with_air_without_co2_is_refused_with_its_row(logged, capsys):
-    # Zero air is 420 ppm below the background, more than a plume is above it: it drew the slope to 0.
+    # Zero air is 420 ppm below the background, more than a plume is above it: it drew the slope to
+    # 0.
     with_values(logged, "co2_ppm", range(40, 60), 2.0)
     error = refusal(logged, capsys)
-    # Air has 250 ppm at least; noise of 1 ppm, a zero of 5 ppm (1 sigma) and 1 ppm for what is not stated, 8 times: 42 ppm.
+    # Air has 250 ppm at least; noise of 1 ppm, a zero of 5 ppm (1 sigma) and 1 ppm for what is not
+    # stated, 8 times: 42 ppm.
     assert (
         "CO2 is 2 ppm in row 42, and 19 more are as low; air, noise, zero and other gases explain 208 ppm at least"
         in error
@@ -126,7 +130,8 @@ def test_a_place_that_no_aircraft_reaches_is_refused_with_its_row(logged, capsys
 
 @pytest.mark.usefixtures("briefly")
 def test_a_receiver_that_is_slower_than_the_log_does_not_jump(logged):
-    # A new place every 20 s, in which a fast aircraft flies 6 km: between two rows it is 6 km a second.
+    # A new place every 20 s, in which a fast aircraft flies 6 km: between two rows it is 6 km a
+    # second.
     table = pd.read_csv(logged)
     table["north_m"] = 300.0 * 20.0 * (table["time_s"] // 20.0)
     table["east_m"] = 0.0
@@ -209,7 +214,8 @@ def test_a_row_without_a_time_is_named(logged, capsys, dates):
 
 @pytest.mark.parametrize(("row", "word"), [(301, "Mean"), (100, "time_s"), (0, "s")])
 def test_a_row_of_words_among_readings_is_named(logged, capsys, row, word):
-    # A summary below the readings, head lines of two logs in one file, and units below the head line.
+    # A summary below the readings, head lines of two logs in one file, and units below the head
+    # line.
     lines = logged.read_text(encoding="utf-8").splitlines()
     lines.insert(1 + row, word + "," * lines[0].count(","))
     logged.write_text("\n".join(lines), encoding="utf-8")

@@ -18,7 +18,9 @@ date = 2026-06-01T12:00:00+02:00
 place = "Kattegat, east of Anholt"
 operator = "Agency"
 """
-"""9074729 is the IMO number by which the check digit is commonly explained: 9 7 + 0 6 + 7 5 + 4 4 + 7 3 + 2 2 = 139."""
+"""9074729 is the IMO number by which the check digit is commonly explained: 9 7 + 0 6 + 7 5 + 4 4 +
+7 3 + 2 2 = 139.
+"""
 
 
 def recorded(logged, config):

@@ -19,7 +19,8 @@ def names_in(file):
     )
 
 
-# Worked example of the specification, section 2, printed to three digits: kg/s, CO2 mol/s, SO2 mmol/s, NOx g/s, FSC read.
+# Worked example of the specification, section 2, printed to three digits: kg/s, CO2 mol/s, SO2
+# mmol/s, NOx g/s, FSC read.
 WORKED = {
     "mgo": (0.514, 37.4, 15.7, 40.0, 0.0972),
     "vlsfo": (0.542, 38.3, 82.6, 42.5, 0.5003),
@@ -32,7 +33,8 @@ def test_the_emission_of_the_worked_example(name):
     fuel_rate, co2, so2, nox, _ = WORKED[name]
     emission = emission_of(CONTAINER, fuel_preset(name), power=10e6)
     rates = dict(zip(GASES, emission.rates, strict=True))
-    # The printed table takes the baseline of the consumption; at 78 % load the formula is 0.3 % above it.
+    # The printed table takes the baseline of the consumption; at 78 % load the formula is 0.3 %
+    # above it.
     assert emission.fuel_rate == pytest.approx(fuel_rate, rel=5e-3)
     assert rates["co2"] == pytest.approx(co2, rel=5e-3)
     assert 1e3 * rates["so2"] == pytest.approx(so2, rel=5e-3)
@@ -54,7 +56,8 @@ def test_a_perfect_instrument_reads_what_the_emission_says(name):
 
 
 def test_the_factor_between_ratio_and_sulphur():
-    # Section 4.1 of the specification, four digits; 0.232 in Balzani Loov et al., AMT 7:2597 (2014).
+    # Section 4.1 of the specification, four digits; 0.232 in Balzani Loov et al., AMT 7:2597
+    # (2014).
     assert fsc_factor(0.87) == fsc_factor() == pytest.approx(0.2322, abs=5e-5)
     assert fsc_factor(0.85) == pytest.approx(0.2268, abs=1e-4)
     assert fsc_factor(0.875) == pytest.approx(0.2336, abs=5e-5)
@@ -62,7 +65,8 @@ def test_the_factor_between_ratio_and_sulphur():
 
 def test_the_exhaust_of_the_worked_example():
     emission = emission_of(CONTAINER, fuel_preset("mgo"), power=10e6)
-    # Section 2: 20 m/s, 250 degC, F = 49.6 m4/s3, Fm = 124 m4/s2; the preset's part load is within 1 % of them.
+    # Section 2: 20 m/s, 250 degC, F = 49.6 m4/s3, Fm = 124 m4/s2; the preset's part load is within
+    # 1 % of them.
     assert emission.exhaust_speed == pytest.approx(20.0, rel=0.01)
     assert emission.exhaust_temperature == pytest.approx(523.15, abs=1.0)
     assert emission.buoyancy_flux == pytest.approx(49.6, rel=0.01)
@@ -82,7 +86,8 @@ def test_power_is_the_cube_of_speed_and_not_below_dead_slow():
 
 def test_at_full_power_there_is_no_correction_for_part_load():
     emission = emission_of(CONTAINER, fuel_preset("mgo"), power=CONTAINER.power_max)
-    # MAN 198 43 20-3.3: 262 - 413 + 151 = 0 K and 37 - 83 + 31 + 15 = 0 %; STEAM2: 0.455 - 0.71 + 1.28 = 1.025.
+    # MAN 198 43 20-3.3: 262 - 413 + 151 = 0 K and 37 - 83 + 31 + 15 = 0 %; STEAM2: 0.455 - 0.71 +
+    # 1.28 = 1.025.
     assert emission.exhaust_temperature == pytest.approx(CONTAINER.exhaust_temperature_c + 273.15)
     assert emission.fuel_rate == pytest.approx(185e-3 * 1.025 * CONTAINER.power_max / 3.6e6)
     volume = emission.exhaust_speed * math.pi * CONTAINER.stack_diameter**2 / 4.0
@@ -99,7 +104,8 @@ def test_every_ship_burns_every_fuel_from_rest_to_full_speed(ship, fuel):
     for share in (0.0, 0.3, 0.9, 1.0):
         emission = emission_of(vessel, fuel_preset(fuel), speed=share * vessel.speed_max)
         assert all(rate > 0.0 for rate in emission.rates)
-        # Stack CO2 by volume, section 2: 7 % is assumed for all ships (BSH p. 11), a two-stroke with scavenging has 4 to 5 %.
+        # Stack CO2 by volume, section 2: 7 % is assumed for all ships (BSH p. 11), a two-stroke
+        # with scavenging has 4 to 5 %.
         volume_rate = emission.exhaust_speed * math.pi * vessel.stack_diameter**2 / 4.0
         moles = volume_rate * 101325.0 / (8.314462618 * emission.exhaust_temperature)
         assert 0.03 < emission.rates[1] / moles < 0.08

@@ -29,13 +29,15 @@ def test_the_mean_of_realisations_is_the_regulatory_gaussian(structure):
         values.append(sample.dilution.reshape(len(times), 15))
     values = np.concatenate(values)
     error = values.std(axis=0) / np.sqrt(len(values))
-    # 1,200 realisations: within 4 standard errors, of which 15 places are by chance in 999 of 1,000 tests; each is 3 to 7 % here.
+    # 1,200 realisations: within 4 standard errors, of which 15 places are by chance in 999 of 1,000
+    # tests; each is 3 to 7 % here.
     assert (np.abs(values.mean(axis=0) - expected) < 4.0 * error).all()
     assert (error / expected < 0.08).all()
 
 
 def test_the_mean_plume_is_the_gaussian_of_the_total_spreads():
-    # Section 2 at 200 m, 10 m/s, wind 10: relative 9.1 m, meander 12.7 and 6.7 m, three digits; the total is their root of squares.
+    # Section 2 at 200 m, 10 m/s, wind 10: relative 9.1 m, meander 12.7 and 6.7 m, three digits; the
+    # total is their root of squares.
     of = straight(WIND, TRUE_WIND, mean=True, **COMMON).sample(
         *np.array([[0.0], [-DISTANCE], [0.0], [56.8]])
     )
@@ -50,7 +52,8 @@ def test_a_realisation_is_higher_and_narrower_than_the_mean():
         *np.array([[0.0], [-DISTANCE], [0.0], [56.8]])
     )
     one = straight(WIND, TRUE_WIND, **COMMON).sample(*np.array([[0.0], [-DISTANCE], [0.0], [56.8]]))
-    # Section 0, item 6: 1.1 to 2.1 times the mean on the axis at 200 m; the table has 171 over 80 ppm here.
+    # Section 0, item 6: 1.1 to 2.1 times the mean on the axis at 200 m; the table has 171 over 80
+    # ppm here.
     assert one.axis_dilution[0] / mean.axis_dilution[0] == pytest.approx(171.0 / 80.0, rel=0.02)
     assert one.sigma_y[0] / mean.sigma_y[0] == pytest.approx(9.1 / np.hypot(9.1, 12.7), rel=0.02)
 
@@ -80,6 +83,7 @@ def test_fluctuations_within_the_plume_have_the_intensity_asked_for():
         flat.append(both[0].sample(*at).dilution)
         rough.append(both[1].sample(*at).dilution)
     ratio = np.concatenate(rough) / np.concatenate(flat)
-    # Log-normal of mean 1 and deviation 0.4, section 1.5: 1,600 values 50 m apart, and lengths of 6 m; three standard errors.
+    # Log-normal of mean 1 and deviation 0.4, section 1.5: 1,600 values 50 m apart, and lengths of 6
+    # m; three standard errors.
     assert ratio.mean() == pytest.approx(1.0, abs=0.03)
     assert ratio.std() == pytest.approx(0.4, abs=0.05)

@@ -7,12 +7,15 @@ STEP = 2.0
 
 
 def plane(distance, half_width=350.0, top=350.0):
-    """Places of a plane across the wind, a distance behind the funnel that is at the origin, and the area that each stands for."""
+    """Places of a plane across the wind, a distance behind the funnel that is at the origin, and
+    the area that each stands for.
+    """
     across, up = np.meshgrid(
         np.arange(-half_width, half_width + STEP, STEP), np.arange(0.0, top + STEP, STEP)
     )
     area = np.full(across.shape, STEP**2)
-    # The trapezoidal rule: the plume is cut at the sea, and nothing is left of it at the other edges.
+    # The trapezoidal rule: the plume is cut at the sea, and nothing is left of it at the other
+    # edges.
     area[0] *= 0.5
     places = [np.full(across.size, -distance), across.ravel(), up.ravel()]
     return places, area.ravel()
@@ -24,7 +27,8 @@ def test_what_passes_a_plane_is_what_was_emitted(distance, settings):
     plume = straight(WIND, TRUE_WIND, seed=4, **settings)
     places, area = plane(distance)
     dilution = plume.sample(np.zeros(len(area)), *places).dilution
-    # Mole fraction times moles of air per second and area, over the moles emitted per second; the issue asks for 0.5 %.
+    # Mole fraction times moles of air per second and area, over the moles emitted per second; the
+    # issue asks for 0.5 %.
     assert (dilution * area).sum() * WIND * air(TRUE_WIND).molar_density == pytest.approx(
         1.0, rel=1e-6
     )
@@ -64,7 +68,8 @@ def test_fluctuations_within_the_plume_keep_what_passes_a_plane_on_average():
             here = [places[0][inside] + WIND * when, places[1][inside], places[2][inside]]
             sample = plume.sample(np.full(len(inside), when), *here)
             fluxes.append((sample.dilution * area[inside]).sum() * factor)
-    # 96 planes whose fluxes differ by about 0.1: the mean is within three of its standard errors, 0.03.
+    # 96 planes whose fluxes differ by about 0.1: the mean is within three of its standard errors,
+    # 0.03.
     assert np.std(fluxes) > 0.03
     assert np.mean(fluxes) == pytest.approx(1.0, abs=0.04)
 

@@ -69,7 +69,8 @@ def test_where_and_when_the_frame_begins_changes_nothing(turn, shift, later):
     other = plume((time + later, *seen(north, east))).sample(
         when + later, *seen(there_north, there_east), up
     )
-    # Rounding of 5e4 m and of 1e4 s is 1e-11, over spreads of 10 m and times 10 in the tails; ages are differences of such times.
+    # Rounding of 5e4 m and of 1e4 s is 1e-11, over spreads of 10 m and times 10 in the tails; ages
+    # are differences of such times.
     assert_same(one, other, 1e-6)
 
 
@@ -93,7 +94,8 @@ def test_the_same_seed_is_the_same_plume_and_another_is_not():
     first, again, other = (plume(TRACK, seed).sample(*places) for seed in (3, 3, 4))
     for name in NAMES:
         np.testing.assert_array_equal(getattr(first, name), getattr(again, name))
-    # Where the line has folded, the realisation decides which parcel is nearest; elsewhere it is the same.
+    # Where the line has folded, the realisation decides which parcel is nearest; elsewhere it is
+    # the same.
     same = np.flatnonzero(first.age == other.age)
     assert len(same) > 0.95 * len(first.age)
     for name in ("distance", "across", "axis_height", "sigma_y", "sigma_z"):
@@ -102,7 +104,8 @@ def test_the_same_seed_is_the_same_plume_and_another_is_not():
 
 
 def test_a_straight_line_of_parcels_is_the_slender_plume():
-    # x = (r - p)·a, y across to the right, age = x/U (specification, section 1.2); the ship goes north-west.
+    # x = (r - p)·a, y across to the right, age = x/U (specification, section 1.2); the ship goes
+    # north-west.
     wind, course = 6.0, np.deg2rad(-45.0)
     time = np.arange(-250.0, 30.5, 0.5)
     of = plume((time, wind * time * np.cos(course), wind * time * np.sin(course)))

@@ -21,7 +21,8 @@ def test_the_process_has_the_covariance_that_it_should():
     length, step = 4e6, 15.0
     process = Meander(0.0, length, SCALE, np.random.default_rng(5))
     values = process.at(np.arange(0.0, length, step))
-    # About length/(2 SCALE) = 22,000 independent values: a standard error of 0.007 and, with Bartlett's sum, of at most 0.01.
+    # About length/(2 SCALE) = 22,000 independent values: a standard error of 0.007 and, with
+    # Bartlett's sum, of at most 0.01.
     assert np.mean(values) == pytest.approx(0.0, abs=0.03)
     assert np.var(values) == pytest.approx(1.0, abs=0.03)
     for lag in (1, 2, 4, 8, 16):
@@ -35,8 +36,8 @@ def test_means_over_long_ways_vary_as_the_integral_scale_says():
     length = 2000 * block
     values = Meander(0.0, length, SCALE, np.random.default_rng(6)).at(np.arange(0.0, length, step))
     means = values.reshape(2000, -1).mean(axis=1)
-    # 2 SCALE/B (1 - 3 SCALE/4 B): the integral over the covariance, less what its tail loses at the ends. 2,000 variances are known
-    # to sqrt(2/2000) = 3.2 %; three times that.
+    # 2 SCALE/B (1 - 3 SCALE/4 B): the integral over the covariance, less what its tail loses at the
+    # ends. 2,000 variances are known to sqrt(2/2000) = 3.2 %; three times that.
     assert np.var(means) == pytest.approx(
         2.0 * SCALE / block * (1.0 - 0.75 * SCALE / block), rel=0.1
     )
@@ -46,8 +47,9 @@ def test_the_process_is_smooth_between_its_steps():
     process = Meander(0.0, 2000.0, SCALE, np.random.default_rng(1))
     place = np.linspace(0.0, 1999.0, 200001)
     slope = np.diff(process.at(place)) / np.diff(place)
-    # No corner: from one centimetre to the next the slope changes by what white noise of its stationary strength gives; it has a
-    # standard deviation of 1/L = 0.022 and changes by 4 noise^(1/2) at most, of which a corner would be a hundred times as much.
+    # No corner: from one centimetre to the next the slope changes by what white noise of its
+    # stationary strength gives; it has a standard deviation of 1/L = 0.022 and changes by 4
+    # noise^(1/2) at most, of which a corner would be a hundred times as much.
     assert np.abs(np.diff(slope)).max() < 5e-4
     # Stationary slope: variance 1/L^2 (about 22 independent stretches).
     assert np.std(slope) == pytest.approx(2.0 / SCALE, rel=0.4)
@@ -74,7 +76,8 @@ def test_successive_crossings_are_correlated_as_the_integral_scale_says(name, sc
     centre = sample.centre_across if name == "across" else sample.centre_height - sample.axis_height
     # The centre is seldom at the sea here, where it is mirrored.
     values = centre / centre.std()
-    # 60,000 s times 3 m/s over twice the integral scale: at least 1,000 independent values; three standard errors are 0.1.
+    # 60,000 s times 3 m/s over twice the integral scale: at least 1,000 independent values; three
+    # standard errors are 0.1.
     for crossings in (1, 2, 4):
         assert correlation(values, 2 * crossings) == pytest.approx(
             covariance(crossings * interval * wind, scale), abs=0.1

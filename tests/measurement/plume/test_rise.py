@@ -13,7 +13,8 @@ AGE = 30.0
 def test_buoyancy_alone_is_briggs_two_thirds_law():
     emission = replace(EMISSION, momentum_flux=0.0)
     distance = WIND * AGE
-    # 1.609 = (3/(2 0.6^2))^(1/3), section 1.3 of the specification; Briggs' 1.6. Four digits are printed.
+    # 1.609 = (3/(2 0.6^2))^(1/3), section 1.3 of the specification; Briggs' 1.6. Four digits are
+    # printed.
     expected = 1.609 * 49.6 ** (1 / 3) * distance ** (2 / 3) / WIND
     np.testing.assert_allclose(rise(emission, WIND, np.array(AGE)), expected, rtol=4e-4)
 
@@ -35,7 +36,8 @@ def test_stable_air_ends_the_rise_at_its_crest():
     still = replace(EMISSION, momentum_flux=0.0)
     age = np.linspace(0.0, 1000.0, 2001)
     height = rise(still, np.array(5.0), age, 0.02)
-    # AERMOD, SBLRIS: 2.66 (2 F/(N^2 U))^(1/3) where the cosine is -1, at t = pi/(0.7 N) = 224 s, and held.
+    # AERMOD, SBLRIS: 2.66 (2 F/(N^2 U))^(1/3) where the cosine is -1, at t = pi/(0.7 N) = 224 s,
+    # and held.
     final = 2.66 * (2.0 * 49.6 / (0.02**2 * 5.0)) ** (1 / 3)
     assert height[-1] == pytest.approx(final, rel=1e-12)
     assert (np.diff(height) >= 0.0).all()
@@ -51,5 +53,6 @@ def test_stable_air_never_lifts_more_than_neutral_air_and_weak_stability_not_les
 
 
 def test_the_tip_draws_down_what_leaves_slowly():
-    # 2 d (1.5 - w/U) with d = 1.5 m and w = 20 m/s: 1.5 m at 20 m/s, nothing up to 13.3 m/s. AERMOD, HSPRIM.
+    # 2 d (1.5 - w/U) with d = 1.5 m and w = 20 m/s: 1.5 m at 20 m/s, nothing up to 13.3 m/s.
+    # AERMOD, HSPRIM.
     np.testing.assert_allclose(downwash(EMISSION, WIND), [0.0, 0.0, 0.0, 1.5])

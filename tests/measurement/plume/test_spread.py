@@ -18,10 +18,12 @@ def test_relative_spread_goes_to_the_cube_of_time_without_buoyancy():
     law = 0.1 * air(10.0).dissipation(2.0 * HEIGHT)
     age = 120.0
     square = of.relative_y[:, round(age / STEP)] ** 2
-    # C_r eps t^3, section 1.4. The ballistic range at its start costs 0.8 s: three times that of 120 s is 2 %.
+    # C_r eps t^3, section 1.4. The ballistic range at its start costs 0.8 s: three times that of
+    # 120 s is 2 %.
     np.testing.assert_allclose(square / (law * age**3), 1.0, atol=0.025)
     earlier = of.relative_y[:, round(60.0 / STEP)] ** 2
-    # The exponent itself: a factor of eight when the time is twice as long; the start costs as much again.
+    # The exponent itself: a factor of eight when the time is twice as long; the start costs as much
+    # again.
     np.testing.assert_allclose(square / earlier, 8.0, rtol=0.02)
 
 
@@ -33,8 +35,9 @@ def test_relative_spread_and_meander_make_the_regulatory_total(buoyant):
     i = round(50.0 / STEP)
     rise = of.height[:, i] - HEIGHT
     final = of.height[:, round(60.0 / STEP)]
-    # AERMOD's sigma_v t/(1 + t/2T)^0.3 and sigma_w t/(1 + sigma_w t/0.72 h)^0.5 of section 1.4, with h the axis after a minute,
-    # and 0.283 of the rise; sigma_0^2 = d^2/8 max(w/U, 1) + 3 m squared.
+    # AERMOD's sigma_v t/(1 + t/2T)^0.3 and sigma_w t/(1 + sigma_w t/0.72 h)^0.5 of section 1.4,
+    # with h the axis after a minute, and 0.283 of the rise; sigma_0^2 = d^2/8 max(w/U, 1) + 3 m
+    # squared.
     scale = weather.mixing_height / (156.0 * weather.sigma_v) * final / 0.46
     across = weather.sigma_v * 50.0 / (1.0 + 50.0 / (2.0 * scale)) ** 0.3
     up = weather.sigma_w * 50.0 / np.sqrt(1.0 + weather.sigma_w * 50.0 / (0.72 * final))

@@ -28,9 +28,10 @@ def around(of, when, spacing=12.0, youngest=12.0):
     return places[0][near], places[1][near], np.full(near.sum(), np.median(up))
 
 
-# Ship's speed, wind, the course that it blows to, rad/s of the turn by 180 degrees, a time within the turn or after it, and the
-# largest difference over the largest reference. What is left are second-order terms of spread over radius of curvature and of the
-# apparent wind's change along a spread. The line of the last one folds where the spread is three quarters of its radius, at 3 m/s.
+# Ship's speed, wind, the course that it blows to, rad/s of the turn by 180 degrees, a time within
+# the turn or after it, and the largest difference over the largest reference. What is left are
+# second-order terms of spread over radius of curvature and of the apparent wind's change along a
+# spread. The line of the last one folds where the spread is three quarters of its radius, at 3 m/s.
 CASES = [
     (8.0, 0.0, 0.0, 0.02, 80.0, 0.01),
     (8.0, 0.0, 0.0, 0.02, 200.0, 0.01),
@@ -49,7 +50,8 @@ def test_the_plume_of_a_turning_ship_is_that_of_a_sum_of_puffs(case):
     places = around(of, when)
     sample = of.sample(np.full(len(places[0]), when), *places)
     reference = puffs(track, 7.0, when, places, interval=0.4, **SETTINGS)
-    # Within 100 m of the funnel puffs reach ahead of it and along a steep axis, which a slender plume does not.
+    # Within 100 m of the funnel puffs reach ahead of it and along a steep axis, which a slender
+    # plume does not.
     there = sample.distance > 100.0
     error = np.abs(sample.dilution - reference)[there] / reference[there].max()
     assert there.sum() > 500
@@ -59,7 +61,8 @@ def test_the_plume_of_a_turning_ship_is_that_of_a_sum_of_puffs(case):
 
 
 def test_both_arms_of_a_folded_line_are_added():
-    # A ship that comes back 60 m beside its own track: 3 m/s of wind carries nothing apart, and the arms overlap.
+    # A ship that comes back 60 m beside its own track: 3 m/s of wind carries nothing apart, and the
+    # arms overlap.
     track = turning(6.0, 0.0, 0.0, rate=0.2, until=120.0)
     of = plume(track)
     when = 110.0
@@ -70,7 +73,8 @@ def test_both_arms_of_a_folded_line_are_added():
     reference = puffs(track, 7.0, when, places, **SETTINGS)
     # Both arms are straight there: the difference is that of ages along puffs of 20 m at 6 m/s.
     np.testing.assert_allclose(sample.dilution, reference, atol=0.03 * reference.max())
-    # The nearest parcel is of one arm, and then of the other: their ages are 110 s of steaming apart.
+    # The nearest parcel is of one arm, and then of the other: their ages are 110 s of steaming
+    # apart.
     assert np.ptp(sample.age) > 60.0
 
 
@@ -87,7 +91,8 @@ def test_the_axis_is_where_its_parcels_are():
 
 
 def test_mass_per_length_of_the_line_follows_the_wind_that_the_parcel_met():
-    # The ship steams at 8 m/s in 4 m/s of wind from ahead and, after its turn, from astern: 12 and then 4 m/s of apparent wind.
+    # The ship steams at 8 m/s in 4 m/s of wind from ahead and, after its turn, from astern: 12 and
+    # then 4 m/s of apparent wind.
     track = turning(8.0, 4.0, np.pi, rate=0.05)
     parcels = Parcels(*track, 1.0)
     _, _, wind = parcels.at(np.array([-100.0, 200.0]))
@@ -97,7 +102,9 @@ def test_mass_per_length_of_the_line_follows_the_wind_that_the_parcel_met():
 
 
 def test_every_nearest_parcel_is_found_once():
-    """Against a search over a fine grid: places about a line that folds, and what an exhaustive search finds."""
+    """Against a search over a fine grid: places about a line that folds, and what an exhaustive
+    search finds.
+    """
     track = turning(8.0, 4.0, 1.0)
     parcels = Parcels(*track, 1.0)
     generator = np.random.default_rng(2)

@@ -1,4 +1,5 @@
-"""The table of the specification, section 2: 10 MW, stack 35 m, 288 K, neutral, no downwash of the tip; 37.4 mol/s of CO2.
+"""The table of the specification, section 2: 10 MW, stack 35 m, 288 K, neutral, no downwash of the
+tip; 37.4 mol/s of CO2.
 
 Each cell holds to 2 %, or to half of its last printed digit where that is more.
 """
@@ -17,7 +18,8 @@ RATES = {
 }
 UAV_SPEED = 20.0
 
-# U_app, true wind, x: age, axis, sigma_r, sigma_m y and z, CO2 (mean), SO2 at 0.1 %, NO, NO2, 4 sigma s, CO2 area, P(peak > 0.6).
+# U_app, true wind, x: age, axis, sigma_r, sigma_m y and z, CO2 (mean), SO2 at 0.1 %, NO, NO2, 4
+# sigma s, CO2 area, P(peak > 0.6).
 COLUMNS = (
     "age",
     "axis",
@@ -167,7 +169,8 @@ def row(wind, true_wind, distance):
     mean = at_axis(straight(wind, true_wind, downwash=False, mean=True), distance)
     chi, sigma = one.dilution[0], one.sigma_y[0]
     meander_z = math.sqrt(mean.sigma_z[0] ** 2 - one.sigma_z[0] ** 2)
-    # Section 1.5: at the axis' height the peak is above 0.6 of the axis where the centre is within sigma_rz (2 ln 1/0.6)^(1/2).
+    # Section 1.5: at the axis' height the peak is above 0.6 of the axis where the centre is within
+    # sigma_rz (2 ln 1/0.6)^(1/2).
     width = one.sigma_z[0] * math.sqrt(2.0 * math.log(1.0 / 0.6))
     return {
         "age": one.age[0],

@@ -1,4 +1,6 @@
-"""What a sniffer reads: gains, other gases, pressure, noise, drift, range; presets; instruments of one flight; bad figures."""
+"""What a sniffer reads: gains, other gases, pressure, noise, drift, range; presets; instruments of
+one flight; bad figures.
+"""
 
 import math
 
@@ -92,8 +94,8 @@ def test_instruments_of_one_flight_scatter_as_the_analyst_knows_them():
 
 
 def test_every_preset_has_the_figures_of_its_source():
-    # Data sheets of Alphasense's SO2-A4 and SO2-B4: t90 < 20 s and < 30 s, noise 15 and 5 ppb at two standard deviations,
-    # NO2 < -160 %, NO < -1.5 % and < -2 %.
+    # Data sheets of Alphasense's SO2-A4 and SO2-B4: t90 < 20 s and < 30 s, noise 15 and 5 ppb at
+    # two standard deviations, NO2 < -160 %, NO < -1.5 % and < -2 %.
     for name, t90, noise, no in (
         ("alphasense_a4", 20.0, 7.5, -0.015),
         ("alphasense_b4", 30.0, 2.5, -0.02),

@@ -1,4 +1,6 @@
-"""The lag of a channel: closed forms of step, ramp and area, two poles, delay, and readings in parts."""
+"""The lag of a channel: closed forms of step, ramp and area, two poles, delay, and readings in
+parts.
+"""
 
 import math
 
@@ -34,7 +36,8 @@ def test_a_ramp_is_followed_exactly():
 
 
 def test_a_step_reaches_90_percent_after_t90():
-    # A step within one sample period is a ramp of that length: the exact response is that of two ramps.
+    # A step within one sample period is a ramp of that length: the exact response is that of two
+    # ramps.
     time = STEP * np.arange(400)
     ramp = np.clip(time / STEP, 0.0, 1.0)
     read_off = response(Channel(gas="so2", t90_s=20.0, noise=0.0), ramp)
@@ -43,14 +46,16 @@ def test_a_step_reaches_90_percent_after_t90():
         return np.where(t > 0.0, t - TAU * (1.0 - np.exp(-np.maximum(t, 0.0) / TAU)), 0.0) / STEP
 
     np.testing.assert_allclose(read_off, ramped(time) - ramped(time - STEP), atol=1e-12)
-    # Half a step after t90 counted from the ramp's middle; the ramp moves it by less than (step/tau)^2/24 = 3e-5.
+    # Half a step after t90 counted from the ramp's middle; the ramp moves it by less than
+    # (step/tau)^2/24 = 3e-5.
     middle = np.interp(20.0 + STEP / 2.0, time, read_off)
     assert middle == pytest.approx(0.9, abs=1e-4)
 
 
 @pytest.mark.parametrize("second_pole", [0.0, 0.3, 0.95])
 def test_the_area_of_a_pulse_is_kept(second_pole):
-    # A lag has a gain of 1 at rest: the sum of its output is that of its input, once it has forgotten.
+    # A lag has a gain of 1 at rest: the sum of its output is that of its input, once it has
+    # forgotten.
     signal = np.zeros(4000)
     signal[40:60] = np.hanning(20)
     read_off = response(Channel(gas="so2", t90_s=20.0, second_pole=second_pole, noise=0.0), signal)
@@ -66,7 +71,8 @@ def test_two_poles_are_two_lags_in_a_row_and_keep_their_t90(second_pole):
         first - second
     )
     assert reached == pytest.approx(0.9, abs=1e-9)
-    # In a row at a step a hundred times finer, where the first lag's output is as good as straight between samples.
+    # In a row at a step a hundred times finer, where the first lag's output is as good as straight
+    # between samples.
     fine = 0.0025 * np.arange(40_001)
     signal = np.interp(fine, [0.0, 10.0, 20.0, 40.0], [0.0, 5.0, 1.0, 2.0])
     in_a_row = lag(lag(signal, 0.0025, first), 0.0025, second)
@@ -82,7 +88,8 @@ def test_a_delay_moves_the_response_also_by_parts_of_a_step():
     prompt = response(Channel(gas="so2", t90_s=5.0, noise=0.0), signal)
     whole = response(Channel(gas="so2", t90_s=5.0, delay_s=2.0 * STEP, noise=0.0), signal)
     np.testing.assert_allclose(whole[2:], prompt[:-2], atol=1e-13)
-    # Between samples: the lag's own solution for an input that is a straight line there, here a ramp.
+    # Between samples: the lag's own solution for an input that is a straight line there, here a
+    # ramp.
     part = response(Channel(gas="so2", t90_s=20.0, delay_s=0.4 * STEP, noise=0.0), time)
     late = np.maximum(time - 0.4 * STEP, 0.0)
     np.testing.assert_allclose(part, late - TAU * (1.0 - np.exp(-late / TAU)), atol=1e-12)

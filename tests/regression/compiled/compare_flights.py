@@ -1,4 +1,6 @@
-"""`make fast` runs these tests: flights of the compiled guidance are those of its sources, to the last bit."""
+"""`make fast` runs these tests: flights of the compiled guidance are those of its sources, to the
+last bit.
+"""
 
 import os
 import subprocess

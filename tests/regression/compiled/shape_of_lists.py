@@ -8,7 +8,9 @@ from gnc.reference.shapes.sinusoid import Sinusoid
 
 
 class Listed:
-    """An orbit, or courses of every amplitude, whose answers are numbers of NumPy, several of them in a list."""
+    """An orbit, or courses of every amplitude, whose answers are numbers of NumPy, several of them
+    in a list.
+    """
 
     def __init__(self, other):
         self._other = other

@@ -1,4 +1,6 @@
-"""Marks of logarithmic axes, lengths in kilometres, and what a caption says of curves that leave their panels."""
+"""Marks of logarithmic axes, lengths in kilometres, and what a caption says of curves that leave
+their panels.
+"""
 
 import io
 from dataclasses import replace
@@ -205,7 +207,8 @@ def test_an_axis_of_values_that_are_nearly_the_same_has_marks_of_few_digits_and_
 
 
 def test_an_axis_of_values_that_are_all_the_same_is_as_long_on_the_screen_as_in_print():
-    # Largest heading rates, each at ω_max: Plotly by itself would draw 1 to both sides, and rates below 0.
+    # Largest heading rates, each at ω_max: Plotly by itself would draw 1 to both sides, and rates
+    # below 0.
     line = Line(
         x=np.array([0.3, 0.6]),
         y=np.array([0.505, 0.505]),

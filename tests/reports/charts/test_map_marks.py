@@ -61,7 +61,8 @@ def test_a_map_shows_every_line_below_its_strip_whatever_its_aspect():
 def test_a_word_at_the_edge_of_a_map_has_room_for_its_letters(align):
     x = np.array([-300.0, 500.0])
     lines = [Line(x=x, y=np.array([0.0, 400.0]), label="track", colour="blue")]
-    # Ten letters of 4 points each in a map that is some 170 points high take a quarter of its height.
+    # Ten letters of 4 points each in a map that is some 170 points high take a quarter of its
+    # height.
     for at in x.tolist():
         notes = [Note(x=at, y=200.0, text="10 minutes", align=align)]
         panel = on_map(
@@ -133,7 +134,8 @@ def test_every_ship_that_is_known_has_a_hull_that_is_a_ships():
     )
     assert set(HULLS) == ships
     for hull in (ANY, *HULLS.values()):
-        # Merchant ships are five to eight and a half times as long as they are wide; an assumption of this table.
+        # Merchant ships are five to eight and a half times as long as they are wide; an assumption
+        # of this table.
         assert 5.0 < hull.length / hull.beam < 8.5
     # The most powerful is the longest.
     assert max(HULLS, key=lambda name: HULLS[name].length) == max(

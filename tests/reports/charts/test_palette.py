@@ -10,8 +10,8 @@ import pytest
 import reports
 from reports.document.palette import COLOURS, SERIES, Meaning
 
-# Machado, Oliveira and Fernandes, A physiologically-based model for simulation of color vision deficiency, IEEE TVCG 15 (2009),
-# severity 1.0, for linear RGB.
+# Machado, Oliveira and Fernandes, A physiologically-based model for simulation of color vision
+# deficiency, IEEE TVCG 15 (2009), severity 1.0, for linear RGB.
 DEFICIENCIES = {
     "protanopia": [
         [0.152286, 1.052583, -0.204868],
@@ -52,7 +52,8 @@ def test_meanings_and_series_are_told_apart_without_red_or_green_cones(deficienc
 
 def test_what_is_flown_and_what_is_drawn_over_it_differ_in_grey():
     grey = {name: lab(linear(name))[0] for name in COLOURS}
-    # Lightness of 100 is white. A thin line over a broad one needs more of a difference than curves that lie apart.
+    # Lightness of 100 is white. A thin line over a broad one needs more of a difference than curves
+    # that lie apart.
     assert abs(grey[Meaning.FLOWN] - grey[Meaning.ASKED]) > 20.0
     assert abs(grey[Meaning.FLOWN] - grey[Meaning.GUARD]) > 15.0
     assert max(grey[meaning] for meaning in Meaning) < 75.0

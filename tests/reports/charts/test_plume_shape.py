@@ -38,7 +38,8 @@ def test_an_axis_alone_has_no_width_of_its_own_and_rises_as_configured():
 
 
 def test_at_its_edge_the_mean_plume_has_exp_of_minus_two_of_its_axis():
-    # A ship on a course to the north in wind from there: the smoke trails to the south in the apparent wind of both.
+    # A ship on a course to the north in wind from there: the smoke trails to the south in the
+    # apparent wind of both.
     apparent = SPEED + WIND
     shape = shape_of(SMOKE, apparent)
     time = np.arange(-120.0, 1.0, 0.5)
@@ -86,13 +87,15 @@ def test_smoke_is_lower_in_warmer_air():
         shape_of(SMOKE | {"wind": {"temperature_c": celsius, "stability_per_s": 0.0}})
         for celsius in (-10.0, 40.0)
     )
-    # Near the funnel momentum carries it, and that is less of colder air: further on it is buoyancy.
+    # Near the funnel momentum carries it, and that is less of colder air: further on it is
+    # buoyancy.
     assert cold.height[-1] > warm.height[-1] + 1.0
 
 
 def test_far_away_the_mean_plume_is_as_wide_as_the_turbulence_makes_it():
-    # Of ambient turbulence sigma_y is at most sigma_v t, with sigma_v = 1.9 u* and u* about 0.035 of the wind over sea: 0.47 m/s
-    # (the sources of MarineAir); buoyancy and source add some. Age 80 s at 800 m.
+    # Of ambient turbulence sigma_y is at most sigma_v t, with sigma_v = 1.9 u* and u* about 0.035
+    # of the wind over sea: 0.47 m/s (the sources of MarineAir); buoyancy and source add some. Age
+    # 80 s at 800 m.
     sigma = shape_of(SMOKE).half_width[-1] / SPREADS
     assert 0.5 * 0.47 * 80.0 < sigma < 1.2 * 0.47 * 80.0
 
@@ -102,7 +105,8 @@ def test_far_away_the_mean_plume_is_as_wide_as_the_turbulence_makes_it():
     [
         ({"emission": {"ship": None}}, {}),
         ({"plume": SMOKE["plume"] | {"model": "straight"}}, {}),
-        # No direction in too weak a wind, a fuel that this version does not take, and a speed that the ship does not make.
+        # No direction in too weak a wind, a fuel that this version does not take, and a speed that
+        # the ship does not make.
         ({}, {"apparent_wind": 0.0}),
         ({}, {"apparent_wind": 0.5}),
         ({"emission": SMOKE["emission"] | {"sulphur_percent": 50.0}}, {}),

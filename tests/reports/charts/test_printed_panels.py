@@ -24,7 +24,8 @@ LABELS = (
     ("across", "along"), [((-8.2, 3.4), (-0.8, 16.8)), ((-370.0, 350.0), (-235.0, 860.0))]
 )
 def test_labels_and_titles_of_maps_are_not_cut_off_and_touch_no_legend(across, along):
-    # Of high maps with short marks, as of a fast aircraft's in kilometres, the label below had been cut in two.
+    # Of high maps with short marks, as of a fast aircraft's in kilometres, the label below had been
+    # cut in two.
     lines = [
         Line(x=np.array(across), y=np.array(along), label=label, colour="black") for label in LABELS
     ]

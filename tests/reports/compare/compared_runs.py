@@ -1,4 +1,6 @@
-"""Runs to compare: short kinematic sweeps that are flown, and made-up ones of which the rows are given."""
+"""Runs to compare: short kinematic sweeps that are flown, and made-up ones of which the rows are
+given.
+"""
 
 from pathlib import Path
 
@@ -51,7 +53,9 @@ def made_run(letter, rows, draws=None):
 
 
 def rows_of(numbers, *, trial="sea", seed=100, prefix="", **columns):
-    """Return a row for each number: its flight's name and seed follow from it, other columns are lists."""
+    """Return a row for each number: its flight's name and seed follow from it, other columns are
+    lists.
+    """
     return [
         {
             "flight_id": f"{prefix}{number:05d}",

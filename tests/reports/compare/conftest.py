@@ -1,4 +1,6 @@
-"""Short kinematic sweeps, flown once: a first one, one with a larger keep-out area, and the first once more."""
+"""Short kinematic sweeps, flown once: a first one, one with a larger keep-out area, and the first
+once more.
+"""
 
 import pytest
 

@@ -144,7 +144,9 @@ def test_a_place_that_cannot_be_made_is_refused(copies, tmp_path):
 
 
 def _hold(path, opened, released):
-    """Write to a journal, as a run does, until it is to end, and then end as if killed: without closing it."""
+    """Write to a journal, as a run does, until it is to end, and then end as if killed: without
+    closing it.
+    """
     journal = Journal(path)
     journal.add(Result(task=Task(number=0), items=1, lost=False, tables={}))
     opened.set()

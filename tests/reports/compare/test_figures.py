@@ -19,7 +19,8 @@ def pairs_of(before, after, name="tracking_error_rms_m"):
 
 
 def test_of_the_fewest_pairs_the_interval_of_the_median_is_from_the_least_to_the_greatest_difference():
-    # The least and the greatest of n enclose the median but for 2/2^n: 3.1 % of six, 6.3 % of five (David and Nagaraja, 7.1).
+    # The least and the greatest of n enclose the median but for 2/2^n: 3.1 % of six, 6.3 % of five
+    # (David and Nagaraja, 7.1).
     change = np.array([0.5, -1.0, 2.0, 3.0, 0.1, 7.0])
     assert len(change) == PAIRS_MIN
     found = differences(pairs_of(np.ones(6), 1.0 + change))["tracking_error_rms_m"]
@@ -41,7 +42,8 @@ def test_the_other_way_round_every_difference_has_the_other_sign():
 
 
 def test_what_is_common_to_both_flights_of_a_pair_is_no_difference():
-    # Flights differ by tens of metres, those of a pair by 1 cm: their medians alone would not tell it.
+    # Flights differ by tens of metres, those of a pair by 1 cm: their medians alone would not tell
+    # it.
     common = np.random.default_rng(2).uniform(0.0, 50.0, size=30)
     found = differences(pairs_of(common, common + 0.01))["tracking_error_rms_m"]
     # The sums are exact to the rounding of 50.
@@ -87,7 +89,8 @@ def test_the_table_counts_lower_and_higher_and_marks_an_interval_without_0():
     found = differences(pairs_of(np.zeros(8), [1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0]))
     table = difference_table(pairs_of(np.zeros(8), np.ones(8)), found)
     row = next(i for i, cells in enumerate(table.rows) if cells[0].startswith("Tracking error"))
-    # The first and the eighth of eight: 2/2^8 is left outside; with the second and the seventh it were 18/2^8, above 5 %.
+    # The first and the eighth of eight: 2/2^8 is left outside; with the second and the seventh it
+    # were 18/2^8, above 5 %.
     assert table.rows[row][1:] == [
         "8",
         "0.00",
@@ -143,7 +146,8 @@ def test_the_uncertainty_of_the_sulphur_content_says_that_it_is_one_sigma():
 
 
 def test_pairs_that_share_their_random_sample_count_as_one():
-    # Three seeds at two points of a sweep: differences of one seed are alike, and six pairs are three samples.
+    # Three seeds at two points of a sweep: differences of one seed are alike, and six pairs are
+    # three samples.
     rows = [
         rows_of(range(3), prefix=f"p{point}_", tracking_error_rms_m=[1.0, 1.0, 1.0])
         for point in (0, 1)

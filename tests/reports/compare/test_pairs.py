@@ -41,7 +41,8 @@ def test_a_trial_that_was_flown_alone_is_paired_with_itself_in_a_list():
 
 
 def test_flights_that_two_trials_could_mean_are_not_paired_across_trials():
-    # Sweeps over the speed ratio take their seeds from it alone, so that two trials may have flights of one name and seed.
+    # Sweeps over the speed ratio take their seeds from it alone, so that two trials may have
+    # flights of one name and seed.
     twice = rows_of([0], trial="one", prefix="one_") + rows_of([0], trial="two", prefix="two_")
     pairs = paired(
         made_run("A", twice),

@@ -148,7 +148,8 @@ def test_where_no_settling_time_is_predicted_none_is_compared(tmp_path):
         "",
         None,
     )
-    # Of 10 trajectories of a law about a kind of reference 8 are left, and the first point comes twice.
+    # Of 10 trajectories of a law about a kind of reference 8 are left, and the first point comes
+    # twice.
     panels = named_charts(report)["predicted"].panels
     assert {len(line.x) for panel in panels for line in panel.lines} == {9}
     assert min(line.x[0] for panel in panels for line in panel.lines) > 0.0
@@ -234,7 +235,8 @@ def test_a_damaged_study_is_refused_in_one_line(damage, words, tmp_path):
 
 
 def test_a_share_had_settled_when_so_many_had():
-    # Of 300 trajectories 99 % are 297: the 297th time, and not the 298th. Of four with one that never did, half had at the second.
+    # Of 300 trajectories 99 % are 297: the 297th time, and not the 298th. Of four with one that
+    # never did, half had at the second.
     assert settled_time(pd.Series(np.arange(1.0, 301.0)), 0.99) == "297"
     assert settled_time(pd.Series([30.0, 10.0, np.nan, 20.0]), 0.5) == "20"
     assert settled_time(pd.Series([30.0, 10.0, np.nan, 20.0]), 0.99) == "–"

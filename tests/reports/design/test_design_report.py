@@ -34,8 +34,8 @@ def report(path):
 
 
 def test_both_reports_are_built_from_disk_alone(path, monkeypatch):
-    # Page 1 has the figure of disk margins, and a sweep's report, which is printed too, curves and steps like these; every figure
-    # is laid out below.
+    # Page 1 has the figure of disk margins, and a sweep's report, which is printed too, curves and
+    # steps like these; every figure is laid out below.
     alike = ("bode", "nichols", "turnresponse", "climbresponse", "climbs", "trims")
     draw_all_but(monkeypatch, "first", "classicalmargins", *alike)
     assert "Autopilot of the Cessna 172" in built(path)
@@ -96,7 +96,8 @@ def test_a_design_with_every_margin_is_called_good(report):
         "≥ 6 dB",
         True,
     )
-    # Of the cases the last has the least margins, 8.5 - 0.5 x 4 dB less 1 dB for each of airspeed and bank.
+    # Of the cases the last has the least margins, 8.5 - 0.5 x 4 dB less 1 dB for each of airspeed
+    # and bank.
     worst = (
         "Worst gain margin, one more period of delay: elevator, 45 m/s, −33°",
         "4.5 dB",
@@ -147,8 +148,9 @@ def test_a_disk_margin_of_6_db_keeps_a_loop_37_degrees_from_the_critical_point()
     phase, gain = disk_region(20.0 * math.log10(2.0))
     assert gain.max() == pytest.approx(20.0 * math.log10(2.0))
     assert gain.min() == pytest.approx(-20.0 * math.log10(2.0))
-    # c = (2 - 1)/(2 + 1): 2 atan(1/3) = 36.87 deg, as Seiler, Packard and Gahinet print for a disk of that gain. The outline has
-    # points every 2 degrees, and unit gain at a quarter turn is one of them.
+    # c = (2 - 1)/(2 + 1): 2 atan(1/3) = 36.87 deg, as Seiler, Packard and Gahinet print for a disk
+    # of that gain. The outline has points every 2 degrees, and unit gain at a quarter turn is one
+    # of them.
     quarter = np.argmin(np.abs(gain[:90]))
     assert abs(phase[quarter] + 180.0) == pytest.approx(36.87, abs=0.01)
     # Another form of the same: the margin is the least abs(1/(S - T)), and S - T = (1 - L)/(1 + L).

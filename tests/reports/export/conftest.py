@@ -39,7 +39,9 @@ def run_path(request, tmp_path):
 
 @pytest.fixture
 def truth(run_path):
-    """Places of UAV and vessel on earth, shape (n, 2), latitude and longitude [deg], from the recorded metres alone."""
+    """Places of UAV and vessel on earth, shape (n, 2), latitude and longitude [deg], from the
+    recorded metres alone.
+    """
     row, history = pd.read_csv(run_path / "summary.csv").iloc[0], track()
     frame = LocalFrame(
         math.radians(row["place_latitude_deg"]), math.radians(row["place_longitude_deg"]), 60.0

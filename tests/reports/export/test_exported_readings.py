@@ -11,7 +11,9 @@ import pytest
 from tests.reports.export.placed_flight import exported, track
 
 READ = {"so2_reading_ppb": 12.3, "co2_reading_ppm": 431.25, "no_reading_ppb": 80.0}
-"""Columns of a sniffer that has no NO2, and by how much each rises over the flight; before 1 s there is no reading."""
+"""Columns of a sniffer that has no NO2, and by how much each rises over the flight; before 1 s
+there is no reading.
+"""
 
 
 def read():

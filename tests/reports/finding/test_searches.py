@@ -90,7 +90,8 @@ def test_the_estimated_plume_is_that_of_the_time_history(view):
 
 def test_the_true_axis_is_where_the_passes_cross_it(view):
     x, y, _, _ = view.true_plume()
-    # Behind a ship that keeps her course the axis is where the apparent wind takes it: the model's parcels are straight.
+    # Behind a ship that keeps her course the axis is where the apparent wind takes it: the model's
+    # parcels are straight.
     assert x == pytest.approx(0.0, abs=1.0)
     last = view.history.iloc[view.crossings[-1]]
     assert y == last["altitude_m"] - last["plume_above_m"]

@@ -28,7 +28,8 @@ ROWS = pd.DataFrame({
     "axis_height_error_3min_m": [3.0, -4.0, 12.0, math.nan],
     "axis_height_deviation_3min_m": [2.0, 3.0, 4.0, math.nan],
 })  # fmt: skip
-"""Three flights on their orbit, of which one never found its plume, and one that never came there."""
+"""Three flights on their orbit, of which one never found its plume, and one that never came there.
+"""
 
 TOLD = ROWS.iloc[[1, 0]].assign(
     variant="told", flight_id=["told_00001", "told_00000"], beside=["search_00001", "search_00000"],
@@ -119,8 +120,8 @@ def test_without_a_variant_that_is_told_nothing_is_compared_with_it(trial):
 
 def test_the_height_is_covered_where_its_error_is_within_two_standard_deviations(trial):
     table = height_table(variants_of(trial))
-    # 3 of 2 and -4 of 3 are within 1.96, 12 of 4 is not: two of three, whose exact interval is 9.43 to 99.16 % (Clopper, Pearson).
-    # Bias (3 - 4 + 12)/3; rms sqrt((9 + 16 + 144)/3).
+    # 3 of 2 and -4 of 3 are within 1.96, 12 of 4 is not: two of three, whose exact interval is 9.43
+    # to 99.16 % (Clopper, Pearson). Bias (3 - 4 + 12)/3; rms sqrt((9 + 16 + 144)/3).
     per_cent = "\N{NO-BREAK SPACE}%"
     assert table.rows == [
         [

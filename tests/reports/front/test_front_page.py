@@ -1,4 +1,6 @@
-"""Page 1: what a client has to know, with its date, its figures coloured by their criterion and a picture, on one page."""
+"""Page 1: what a client has to know, with its date, its figures coloured by their criterion and a
+picture, on one page.
+"""
 
 import re
 import shutil
@@ -38,7 +40,9 @@ criteria.tracking_error_rms_m = 1e-4
 
 @pytest.fixture(scope="module")
 def run_path(tmp_path_factory):
-    """Five flights, enough for a bound, that fail the criterion on tracking, as nothing tracks to 0.1 mm, and meet the others."""
+    """Five flights, enough for a bound, that fail the criterion on tracking, as nothing tracks to
+    0.1 mm, and meet the others.
+    """
     folder = tmp_path_factory.mktemp("front")
     (folder / "short.toml").write_text(SHORT, encoding="utf-8")
     ended = run_command(
@@ -55,7 +59,9 @@ def report(run_path):
 
 @pytest.fixture(scope="module")
 def built(run_path):
-    """Return the text of the page for the screen, and that of each printed page, of whose figures page 1's alone is drawn."""
+    """Return the text of the page for the screen, and that of each printed page, of whose figures
+    page 1's alone is drawn.
+    """
 
     def drawn(chart):
         return (
@@ -263,7 +269,9 @@ def test_a_run_without_time_histories_shows_its_first_figure(run_path, tmp_path)
 
 
 def without_histories(run_path, tmp_path, gone):
-    """Return the run without the time histories of flights, by their rank in closest approach, and all ranked."""
+    """Return the run without the time histories of flights, by their rank in closest approach, and
+    all ranked.
+    """
     copy = shutil.copytree(run_path, tmp_path / "run")
     ranked = read_run(copy).summary.sort_values("min_distance_m")
     for rank in gone:

@@ -1,4 +1,6 @@
-"""Where printed pages break: figures become smaller rather than leave much of a page empty, and tables go on over pages."""
+"""Where printed pages break: figures become smaller rather than leave much of a page empty, and
+tables go on over pages.
+"""
 
 from dataclasses import replace
 
@@ -14,7 +16,9 @@ from tests.reports.test_blocks import a_chart, a_report
 
 @pytest.fixture(autouse=True)
 def blank(monkeypatch):
-    """Figures are as large as they are, and empty: to lay out what is in them takes nearly all of their time."""
+    """Figures are as large as they are, and empty: to lay out what is in them takes nearly all of
+    their time.
+    """
 
     def drawn(chart):
         return Figure(figsize=draw(chart).get_size_inches())
@@ -44,7 +48,8 @@ def page_with(texts, words):
 @pytest.mark.parametrize(
     ("second", "together"),
     [
-        # With marks and captions 1.3, 1.5 and 2.1 widths in all: they fit as they are, when drawn smaller, and not at all.
+        # With marks and captions 1.3, 1.5 and 2.1 widths in all: they fit as they are, when drawn
+        # smaller, and not at all.
         (0.4, True),
         (0.6, True),
         (1.2, False),
@@ -58,7 +63,8 @@ def test_a_figure_goes_on_the_page_before_it_if_it_fits_when_it_is_drawn_smaller
 
 
 def test_a_page_makes_room_for_a_figure_that_would_stand_alone_on_the_next(tmp_path):
-    # The first two fill a page but for a tenth, and the last one fills one: the third needs others to be smaller.
+    # The first two fill a page but for a tenth, and the last one fills one: the third needs others
+    # to be smaller.
     heights = [0.55, 0.55, 0.35, 1.3]
     texts = pages_of(
         [tall(f"figure {i}", height) for i, height in enumerate(heights)], tmp_path / "report.pdf"
@@ -93,7 +99,8 @@ def test_no_row_of_a_table_goes_on_over_the_next_page(tmp_path):
 def test_words_that_a_section_ends_with_stay_on_its_page_if_the_next_section_does_not_fit_there(
     tmp_path,
 ):
-    # What failed, below the figures of the verdict: a section without words of its own, whose figure fills a page, comes next.
+    # What failed, below the figures of the verdict: a section without words of its own, whose
+    # figure fills a page, comes next.
     report = a_report([tall("filler", 0.9), tall("one", 0.5), Text("The words. " * 60)])
     following = Section(anchor="next", title="The next section", blocks=[tall("two", 1.1)])
     write_pdf(replace(report, sections=[*report.sections, following]), tmp_path / "report.pdf")

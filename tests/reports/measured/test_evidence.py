@@ -1,4 +1,6 @@
-"""What the report of a logged flight says of the flight itself: when, where, which ship, which log, which instrument."""
+"""What the report of a logged flight says of the flight itself: when, where, which ship, which log,
+which instrument.
+"""
 
 import hashlib
 import json
@@ -155,7 +157,8 @@ def test_the_instrument_has_a_column_for_each_channel_with_every_property(direct
     table = blocks_of(content(read_run(directory)), Table, "instrument")[0]
     assert table.head == ["Property", "SO2 [ppb]", "CO2 [ppm]", "NO [ppb]", "NO2 [ppb]"]
     rows = rows_of(directory, 0)
-    # As measurement/sniffer/presets/electrochemical.toml: t90 of SO2 20 s known to 5 %, of CO2 4 s known to 5 %.
+    # As measurement/sniffer/presets/electrochemical.toml: t90 of SO2 20 s known to 5 %, of CO2 4 s
+    # known to 5 %.
     assert rows["Response time t90 ± 1σ [s]"][:2] == ["20 ± 1", "4 ± 0.2"]
     assert rows["Noise of a reading, 1σ"] == ["2.5", "1", "7", "7"]
     assert rows["Delay ± 1σ [s]"] == ["1 ± 0.3", "1 ± 0.1", "1 ± 0.3", "1 ± 0.3"]
@@ -181,7 +184,8 @@ def test_the_analysis_names_its_configuration_thresholds_and_assumptions(directo
     )
     assert rows["A pass"] == ["a peak of CO2 of 5 times its noise"]
     assert rows["Limits"] == ["0.10 %, 0.50 % m/m"]
-    # A guard band on one side of 95 % is 1.645, half an interval of 95 % 1.960 deviations of a normal distribution.
+    # A guard band on one side of 95 % is 1.645, half an interval of 95 % 1.960 deviations of a
+    # normal distribution.
     assert rows["A verdict"][0].startswith(
         "“above” where the content is more than 1.645 standard uncertainties above the limit; “below”"
     )
@@ -236,7 +240,8 @@ def test_what_the_configuration_leaves_out_of_its_instrument_is_marked_as_assume
     ]
     assert main([*given, "--no-report"]) == 0
     rows = rows_of(tmp_path / "out", 0)
-    # What is assumed is that of measurement/sniffer/presets.py: 10 % of a t90, a gain of CO2 known to 3 %, a fifth of a response.
+    # What is assumed is that of measurement/sniffer/presets.py: 10 % of a t90, a gain of CO2 known
+    # to 3 %, a fifth of a response.
     assert rows["Response time t90 ± 1σ [s]"] == ["18 ± 1.8, 1σ assumed", "3 ± 0.3"]
     assert rows["Calibration: gain ± 1σ [-]"] == ["1 ± 0.04", "1 ± 0.03, assumed"]
     assert rows["Response to NO ± 1σ [per ppb]"] == ["0.015 ± 0.003, 1σ assumed", "none"]

@@ -16,7 +16,9 @@ EXAMPLE = Path(__file__).parents[3] / "docs" / "examples"
 
 
 def estimated(folder, *missing):
-    """Return a run of the example's log, a reading a second, without a row, with a gap, and with cells that are missing."""
+    """Return a run of the example's log, a reading a second, without a row, with a gap, and with
+    cells that are missing.
+    """
     table = pd.read_csv(EXAMPLE / "example_flight.csv")
     for column, rows in (("co2_ppm", [50]), *missing):
         table.loc[rows, column] = np.nan
@@ -49,7 +51,8 @@ def report(run):
 
 
 def test_missing_readings_and_gaps_are_counted_on_page_1_and_in_the_record(report):
-    # 301 rows of the example less 21; from the reading at 149 s to that at 170 s; and at 50 s and 100 s one sample each.
+    # 301 rows of the example less 21; from the reading at 149 s to that at 170 s; and at 50 s and
+    # 100 s one sample each.
     told = {
         "Missing readings": "1 of CO2 in 280 rows",
         "Gaps": "1 of 21 s from 149 s on; 2 samples in short ones interpolated, not shown as readings",
@@ -60,7 +63,8 @@ def test_missing_readings_and_gaps_are_counted_on_page_1_and_in_the_record(repor
 
 
 def test_holes_of_the_log_are_told_apart_from_readings_that_are_too_few_to_use(tmp_path):
-    # Without CO2 for 3 s after 219 s and 4 s after 227 s: of 6 readings between them, from 222 s on, none is used.
+    # Without CO2 for 3 s after 219 s and 4 s after 227 s: of 6 readings between them, from 222 s
+    # on, none is used.
     report = content(estimated(tmp_path, ("co2_ppm", [*range(220, 222), *range(228, 231)])))
     told = {fact.name: fact.value for fact in report.facts}
     assert told["Missing readings"] == "6 of CO2 in 280 rows"

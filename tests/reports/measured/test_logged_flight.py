@@ -1,4 +1,6 @@
-"""The report of a measured flight: its verdict, its figures, and what it says of a flight without a result."""
+"""The report of a measured flight: its verdict, its figures, and what it says of a flight without a
+result.
+"""
 
 import json
 import math
@@ -221,7 +223,8 @@ def test_what_is_assumed_of_gases_that_a_log_does_not_have_is_told(tmp_path, cap
     )
     found = json.loads((out / "estimate.json").read_text(encoding="utf-8"))
     estimate, samples = found["estimate"], pd.read_csv(out / "samples.csv")
-    # 0.015 of 18 ppb/ppm of NO and -0.16 of 2 ppb/ppm of NO2, to 0.2322 %: less 0.063 %, and more 0.074 %.
+    # 0.015 of 18 ppb/ppm of NO and -0.16 of 2 ppb/ppm of NO2, to 0.2322 %: less 0.063 %, and more
+    # 0.074 %.
     assert estimate["assumed_percent"] == pytest.approx(0.012, abs=0.0015)
     assert estimate["fsc_percent"] == pytest.approx(
         0.2322 * estimate["slope_ppb_per_ppm"] + estimate["assumed_percent"], abs=1e-4

@@ -49,7 +49,8 @@ def several(tmp_path_factory):
     )
     more = ("sweep.guidance.bank_deg=[30,45]",)
     with pytest.MonkeyPatch.context() as patch:
-        # Of each fuel and sensor one flight at either bank: too few for a curve that anybody is to read.
+        # Of each fuel and sensor one flight at either bank: too few for a curve that anybody is to
+        # read.
         patch.setattr("reports.measurement.flight_charts._OF_EACH_MIN", 2)
         return flown(tmp_path_factory.mktemp("several") / "run", *sweeps, *more)
 
@@ -228,7 +229,9 @@ def test_quality_c_gives_no_verdict_in_words_either():
     [(None, [4.0, 9.0]), (60.0, [1.0, 1.0]), ("swept", [1.0, 2.25]), (600.0, [6.0, 10.0])],
 )
 def test_noise_of_a_minute_follows_from_the_time_that_was_evaluated(own, minutes):
-    """Flights of 6 and 11 minutes settle after 2; the last ``flight.measured_s`` may be all that is evaluated [min]."""
+    """Flights of 6 and 11 minutes settle after 2; the last ``flight.measured_s`` may be all that is
+    evaluated [min].
+    """
     rows = pd.DataFrame({
         "flight_id": ["a", "b"], "trial": "t", "sensor": "fast", "duration_s": [360.0, 660.0], "settling_time_s": 120.0,
         "fsc_noise_percent": 0.02, "areas_fsc_noise_percent": 0.03, "fsc_expected_percent": 0.1, "fsc_percent": 0.1,
@@ -350,7 +353,8 @@ def test_page_1_has_place_and_time_where_the_scenario_has_them():
         told["Place"]
         == "56.90000° N, 11.50000° E, and 1 more (the ship at time 0, by the scenario)"
     )
-    # Beside a ship from AIS flights have place and time whatever they carry; beside others they have no facts.
+    # Beside a ship from AIS flights have place and time whatever they carry; beside others they
+    # have no facts.
     without = rows.drop(columns=["sensor"])
     assert {"Place", "Time (UTC)"} == dict(flown_facts(SimpleNamespace(summary=without))).keys()
     assert not flown_facts(SimpleNamespace(summary=without[["duration_s"]]))

@@ -1,4 +1,6 @@
-"""What a report shows of a Monte Carlo study: of a made-up one, with statistics as the study itself writes them."""
+"""What a report shows of a Monte Carlo study: of a made-up one, with statistics as the study itself
+writes them.
+"""
 
 import json
 from dataclasses import replace
@@ -58,7 +60,9 @@ def run_of(rows, inputs, **changes):
 
 @pytest.fixture(scope="module", autouse=True)
 def quick_statistics():
-    """Ask of two figures what drives them, with 3 bootstraps: they take nearly all of the time, and a report shows any alike."""
+    """Ask of two figures what drives them, with 3 bootstraps: they take nearly all of the time, and
+    a report shows any alike.
+    """
     with few_indices("clearance_m", "settling_time_s"):
         yield
 
@@ -248,7 +252,8 @@ def test_why_there_are_no_indices_is_said():
     rows, inputs = study_rows(50)
     section = monte_carlo_sections(run_of(rows, inputs))[2]
     texts = [block.text for block in section.blocks if isinstance(block, Text)]
-    # Two figures have indices at all here, each of 50 flights: one sentence, and not a word on how to read indices.
+    # Two figures have indices at all here, each of 50 flights: one sentence, and not a word on how
+    # to read indices.
     without = "Distance kept beyond r_min (50 flights); Settling time (50 flights)"
     assert texts == [f"No sensitivity indices of {without}: indices take 200 at least."]
     assert charts_of(section) == {}

@@ -19,7 +19,9 @@ def test_only_methods_that_had_a_turn_are_said_to_have_searched():
 
 
 VIOLATED = [(190.0, 1, "")] * 2 + [(250.0, 0, "")] * 38 + [(180.0, 1, "short_00000")] * 3
-"""40 flights that were measured, 2 with a violation, and 3 repeats with one: closest approach, violations, and what is repeated."""
+"""40 flights that were measured, 2 with a violation, and 3 repeats with one: closest approach,
+violations, and what is repeated.
+"""
 
 
 def in_words(proposed, rows=VIOLATED):

@@ -1,4 +1,6 @@
-"""What a report shows of a subset simulation, of made-up ones with statistics as the study itself writes them."""
+"""What a report shows of a subset simulation, of made-up ones with statistics as the study itself
+writes them.
+"""
 
 import numpy as np
 import pandas as pd
@@ -142,7 +144,8 @@ def test_the_curve_rises_with_the_distance_and_lies_within_its_band(reached):
     count = len(estimate.y)
     assert (band[:count] <= estimate.y).all()
     assert (estimate.y <= band[count:][::-1]).all()
-    # From the event's probability, 1e-6 within the scatter of three small simulations, to that of nearly all flights.
+    # From the event's probability, 1e-6 within the scatter of three small simulations, to that of
+    # nearly all flights.
     assert 1e-8 < estimate.y[0] < 1e-4
     assert estimate.y[-1] > 0.5
 

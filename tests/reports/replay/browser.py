@@ -1,4 +1,6 @@
-"""A headless Chromium that tests drive by its DevTools protocol, over a pair of pipes: no package and no network is needed."""
+"""A headless Chromium that tests drive by its DevTools protocol, over a pair of pipes: no package
+and no network is needed.
+"""
 
 import json
 import os
@@ -19,8 +21,9 @@ _OPTIONS = (
     "--remote-debugging-pipe", "--host-resolver-rules=MAP * ~NOTFOUND", "--use-gl=angle", "--use-angle=swiftshader",
     "--enable-unsafe-swiftshader", "--webgl-antialiasing-mode=none", "--disable-gpu",
 )  # fmt: skip
-"""No name resolves, so that nothing is loaded from a network. The processor draws three dimensions as a graphics processor would,
-with edges that are not smoothed, and the rest of the page in its own way: both are faster."""
+"""No name resolves, so that nothing is loaded from a network. The processor draws three dimensions
+as a graphics processor would, with edges that are not smoothed, and the rest of the page in its own
+way: both are faster."""
 
 
 class Browser:
@@ -71,7 +74,9 @@ class Browser:
         )
 
     def send(self, method, **parameters):
-        """Send a command and return its answer; what the page complains of meanwhile is kept in ``errors``."""
+        """Send a command and return its answer; what the page complains of meanwhile is kept in
+        ``errors``.
+        """
         self._number += 1
         message = {"id": self._number, "method": method, "params": parameters}
         if self._session:

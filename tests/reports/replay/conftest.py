@@ -31,7 +31,8 @@ def run_of(tmp_path_factory):
             flown[name] = small_trials(directory)
         elif name not in flown:
             with pytest.MonkeyPatch.context() as patch:
-                # The bounds of the paper's run are not what is tested here, and take most of its time.
+                # The bounds of the paper's run are not what is tested here, and take most of its
+                # time.
                 patch.setattr(paper, "SEARCH_STATES", 10_000)
                 patch.setattr(paper, "RESERVES", (0.0, 0.2, 0.4))
                 study = load_study(

@@ -1,4 +1,6 @@
-"""Reports of every kind that has a replay, opened from disk in a browser that has no network; pages in a narrow window."""
+"""Reports of every kind that has a replay, opened from disk in a browser that has no network; pages
+in a narrow window.
+"""
 
 import json
 import math
@@ -19,13 +21,17 @@ pytestmark = pytest.mark.skipif(
 )
 
 WHOLE = "sweep_nu"
-"""The kind whose page has all its charts. Of the others the flights stay, on one page: charts take most of the time."""
+"""The kind whose page has all its charts. Of the others the flights stay, on one page: charts take
+most of the time.
+"""
 
 OTHERS = ("trials", "monte_carlo", "sulphur", "paper")
 """The other kinds with a replay. Their page stays open for the tests after that of the slider."""
 
 WIDTH, HEIGHT = 520, 390
-"""Of the window [px]: a processor draws what a graphics processor would, and takes longer for more of it."""
+"""Of the window [px]: a processor draws what a graphics processor would, and takes longer for more
+of it.
+"""
 
 
 @pytest.fixture(scope="module")
@@ -49,7 +55,9 @@ def whole_page(runs, tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def page(runs, tmp_path_factory):
-    """A page of nothing but the flights of all other kinds, each with one chart, and called by its kind before its own name."""
+    """A page of nothing but the flights of all other kinds, each with one chart, and called by its
+    kind before its own name.
+    """
     reports = {kind: content(runs[kind]) for kind in OTHERS}
     flights = [
         replace(flight, flight_id=f"{kind}/{flight.flight_id}", charts=flight.charts[:1])
@@ -111,11 +119,13 @@ def test_the_time_slider_takes_the_aircraft_to_where_it_was(kind, browser, runs,
         )
         # The slider's steps are those of the history, 0.1 s.
         assert place["time"] == pytest.approx(sample["time_s"], abs=1e-9)
-        # Samples are good to 0.5 cm, the cubic between them to 3.4 cm in any of 60 flights of all studies, turbulence among them.
+        # Samples are good to 0.5 cm, the cubic between them to 3.4 cm in any of 60 flights of all
+        # studies, turbulence among them.
         for axis in ("north", "east"):
             assert place[axis] == pytest.approx(sample[f"{axis}_m"], abs=0.05)
         assert place["altitude"] == pytest.approx(sample["altitude_m"], abs=0.05)
-        # A kinematic vehicle has no heading of its own. Angles are good to 1 mrad; where a bank begins to change, to 0.06 rad.
+        # A kinematic vehicle has no heading of its own. Angles are good to 1 mrad; where a bank
+        # begins to change, to 0.06 rad.
         heading = (
             sample["heading_rad"] if np.isfinite(sample["heading_rad"]) else sample["course_rad"]
         )
@@ -188,7 +198,8 @@ def test_figures_are_as_wide_in_print_whatever_the_window_and_as_before_after_it
         show(browser, page, width)
         before = browser.run(drawn)
         browser.run("dispatchEvent(new Event('beforeprint'))")
-        # The width of the page's text in print; those that are smaller still have their letters in proportion.
+        # The width of the page's text in print; those that are smaller still have their letters in
+        # proportion.
         assert {plot for plot, _ in browser.run(drawn)} == {1040}
         assert browser.run("document.getElementById('paper').media") == "print"
         browser.run("dispatchEvent(new Event('afterprint'))")
@@ -222,7 +233,8 @@ def test_a_flight_opens_with_its_aircraft_in_the_picture(browser, page):
         browser.run("window.replay.look('vessel')")
         # Of the picture from -1 to 1; 1 is how far the camera sees.
         assert np.max(np.abs(browser.run(place))) < 1.0, kind
-        # Nearer by its end, where the aircraft is; a view that was turned by hand keeps its distance.
+        # Nearer by its end, where the aircraft is; a view that was turned by hand keeps its
+        # distance.
         far = (
             "window.replay.camera.camera.position.distanceTo(window.replay.camera.controls.target)"
         )

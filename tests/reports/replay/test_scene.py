@@ -95,7 +95,8 @@ def test_any_column_arrives_to_half_a_step(values):
 
 def test_a_second_of_flight_takes_some_sixty_bytes(scene):
     columns = json.dumps(replay.draw_scene(scene)["columns"])
-    # Eight columns that are not straight, five samples a second, most of a byte, 4/3 letters of base64 to a byte, and their names.
+    # Eight columns that are not straight, five samples a second, most of a byte, 4/3 letters of
+    # base64 to a byte, and their names.
     assert len(columns) < 65 * scene.interval * len(scene.columns["north"]) + 1000
 
 

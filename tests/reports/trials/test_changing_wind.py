@@ -1,4 +1,6 @@
-"""Reports of a flight in a wind that changes: what is shown is the wind of the time that it is shown of."""
+"""Reports of a flight in a wind that changes: what is shown is the wind of the time that it is
+shown of.
+"""
 
 import math
 

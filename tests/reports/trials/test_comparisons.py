@@ -1,4 +1,6 @@
-"""Comparisons of a run: the same flights with parts changed, in a table, and as curves where they have any."""
+"""Comparisons of a run: the same flights with parts changed, in a table, and as curves where they
+have any.
+"""
 
 import math
 import re
@@ -60,7 +62,8 @@ def test_panels_are_as_long_and_as_high_as_their_curves(run):
         blocks_of(longer, Chart, "comparison")[0].caption,
     )
     (height,) = {panel.y_range[1] for panel in chart.panels}
-    # Up to 1.2 settling bands of 5 m, which would hide the errors of two good trackers, and from a fiftieth of that on.
+    # Up to 1.2 settling bands of 5 m, which would hide the errors of two good trackers, and from a
+    # fiftieth of that on.
     largest = max(line.y.max() for line in lines)
     assert height == pytest.approx(min(6.0, max(1.05 * largest, 0.12)))
 

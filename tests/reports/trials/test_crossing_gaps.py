@@ -1,4 +1,6 @@
-"""Flights that settled and then did not cross the plume for long, beside a vessel that still manoeuvred."""
+"""Flights that settled and then did not cross the plume for long, beside a vessel that still
+manoeuvred.
+"""
 
 import math
 from dataclasses import replace
@@ -14,7 +16,9 @@ from reports.run.trials import read_trials
 
 
 def turning(run, *, crossings=(100.0, 110.0, 210.0), **values):
-    """Return the trial whose vessel turns, with the first of its two flights crossing at times of one's own."""
+    """Return the trial whose vessel turns, with the first of its two flights crossing at times of
+    one's own.
+    """
     own = run.summary.iloc[2]["flight_id"]
     values = {
         "settling_time_s": 95.0,

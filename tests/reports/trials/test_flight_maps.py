@@ -61,7 +61,8 @@ def test_the_panel_of_the_distance_shows_the_orbit_also_where_that_is_far_off_th
 ):
     view = flight_view(*flight)
     settled = view.time >= view.row["settling_time_s"]
-    # As of an area half as large beside the same orbit, which is left after a fault: 1.6 r_min lies below it.
+    # As of an area half as large beside the same orbit, which is left after a fault: 1.6 r_min lies
+    # below it.
     view.radius = 0.4 * float(np.median(view.distance[settled]))
     view.distance = np.where(view.time > view.ends[1] - 10.0, 3.0 * view.distance, view.distance)
     chart = flight_charts(view)[1]
@@ -183,13 +184,15 @@ def test_a_picture_has_a_panel_for_each_flight_with_a_time_history(run, flight):
 
 
 def test_the_ground_lies_along_the_way_of_a_ship_that_goes_far(run):
-    # The ship goes north at 5 to 14 m/s for some two minutes, and the track about her is some hundred metres wide.
+    # The ship goes north at 5 to 14 m/s for some two minutes, and the track about her is some
+    # hundred metres wide.
     trial = read_trials(run)[0]
     charts = [flight_charts(flight_view(trial, row))[0] for _, row in trial.rows.iterrows()]
     high = [chart for chart in charts if chart.last_height]
     for chart in high:
         panel = chart.panels[-1]
-        # What would fill less than half of the width has a higher panel, of the same metres each way.
+        # What would fill less than half of the width has a higher panel, of the same metres each
+        # way.
         (left, right), (bottom, top) = panel.x_range, panel.y_range
         assert (right - left) / (top - bottom) == pytest.approx(4.8 * 0.19 / chart.last_height)
         assert chart.last_height in (0.19, pytest.approx(0.285))

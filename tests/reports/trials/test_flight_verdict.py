@@ -339,7 +339,8 @@ def test_a_flight_that_could_not_be_flown_counts_as_a_violation_in_the_bound(run
     )
     verdict = content(sixteen).verdict
     headline = verdict.headline.replace("\N{NO-BREAK SPACE}", " ")
-    # Clopper and Pearson, one of sixteen: (1 - p)^16 + 16 p (1 - p)^15 = 0.05; none of fifteen would be 18.1 %.
+    # Clopper and Pearson, one of sixteen: (1 - p)^16 + 16 p (1 - p)^15 = 0.05; none of fifteen
+    # would be 18.1 %.
     assert "at most 26.4 % of such flights violate the area, at 95 % confidence" in headline
     assert headline.endswith("of 16, 1 could not be flown")
     assert "The bound counts 1 flight not flown as a keep-out violation." in verdict.detail
@@ -408,7 +409,8 @@ def test_the_shape_of_the_keep_out_area_is_said_where_a_distance_is_printed(run)
 
 
 def test_a_flight_that_was_flown_before_an_instrument_failed_counts_with_its_violation(run):
-    # An instrument is evaluated after the flight: where that fails, so is the flight's outcome, and its distances are known.
+    # An instrument is evaluated after the flight: where that fails, so is the flight's outcome, and
+    # its distances are known.
     failed = {
         "outcome": "failed",
         "message": "no such gas",

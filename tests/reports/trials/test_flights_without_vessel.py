@@ -1,4 +1,6 @@
-"""The report of flights about a circle: they were flown, have every figure that needs no vessel, and nothing to keep out of."""
+"""The report of flights about a circle: they were flown, have every figure that needs no vessel,
+and nothing to keep out of.
+"""
 
 import pytest
 from report_parts import blocks_of, flown

@@ -1,4 +1,6 @@
-"""Flights that differ in their keep-out area and in their funnel: each is drawn and measured with its own."""
+"""Flights that differ in their keep-out area and in their funnel: each is drawn and measured with
+its own.
+"""
 
 import numpy as np
 import pandas as pd
@@ -78,7 +80,8 @@ def panel_of(view, label):
 def test_the_time_history_of_a_flight_has_the_closest_approach_of_its_row_and_its_own_funnel(trial):
     for row, (shape, height) in zip(flights_of(trial), OWN, strict=True):
         view = flight_view(trial, row)
-        # Between samples, 0.1 s apart at 28 m/s at most, the summary interpolates. The shapes differ by 2 m and more.
+        # Between samples, 0.1 s apart at 28 m/s at most, the summary interpolates. The shapes
+        # differ by 2 m and more.
         assert np.nanmin(view.distance) == pytest.approx(row["min_distance_m"], abs=0.02)
         caption = flight_charts(view)[1].caption
         assert ("from the keep-out sphere's centre" in caption) == (shape == "sphere")
@@ -173,7 +176,9 @@ def test_a_comparisons_flight_has_what_the_comparison_sets(apart):
 
 
 def made(trial, draws, **row):
-    """Return a run of one flight with a configuration of its trial and its row of ``draws.csv``, and the flight's row."""
+    """Return a run of one flight with a configuration of its trial and its row of ``draws.csv``,
+    and the flight's row.
+    """
     rows = pd.DataFrame(
         [{"flight_id": "a", "trial": "t", "variant": "study", "fidelity": "six_dof"} | row]
     )

@@ -1,4 +1,6 @@
-"""Figures of a sweep over several keys: a column for each in two figures, instead of four figures for each."""
+"""Figures of a sweep over several keys: a column for each in two figures, instead of four figures
+for each.
+"""
 
 import re
 from dataclasses import replace
@@ -280,7 +282,8 @@ def test_where_the_flown_speed_ratio_is_not_the_swept_one_a_column_says_it(windy
             table for table in blocks_of(windy, Table, anchor) if "ν flown [-]" in table.head
         )
         ratios = [row[flights.head.index("ν flown [-]")] for row in flights.rows]
-        # (0.3 * 19.42 + 10)/19.42 = 0.815: head wind on a vessel on course north, at the X8's airspeed.
+        # (0.3 * 19.42 + 10)/19.42 = 0.815: head wind on a vessel on course north, at the X8's
+        # airspeed.
         assert ratios[:3] == ["0.30", "0.81", "0.60"]
         # What was not flown has none.
         assert ratios[3:] in ([], ["–"])
@@ -380,6 +383,7 @@ def test_the_name_of_a_flight_does_not_reach_into_its_outcome_in_print(trial, na
         message="it came down on the sea, after the fault 'engine'", outcome="aircraft_lost"
     )
     table = flight_table(rows, "Flight", lambda _: name)
-    # A4 leaves some 500 pt for a table, in which a letter of a name takes 3.9 pt; names may go on after a stroke.
+    # A4 leaves some 500 pt for a table, in which a letter of a name takes 3.9 pt; names may go on
+    # after a stroke.
     room = 500.0 * table.widths[0] / sum(table.widths)
     assert room >= 3.9 * max(map(len, re.split(r"(?<=_)(?=[a-z])", name)))

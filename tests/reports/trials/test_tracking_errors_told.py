@@ -1,4 +1,6 @@
-"""Tracking errors on page 1: large ones that no criterion limits are told with what happened, and nothing is told twice."""
+"""Tracking errors on page 1: large ones that no criterion limits are told with what happened, and
+nothing is told twice.
+"""
 
 import re
 from dataclasses import replace
@@ -28,13 +30,15 @@ def test_a_large_tracking_error_that_no_criterion_limits_is_told_with_what_happe
         "modes": "approach, tracking, outrun",
     }
     (line,) = content(with_values(limited, 3, **far)).verdict.failures
-    # The vessel of the second trial turns at 150 s, in both flights; its settling band is the schema's, 5 m.
+    # The vessel of the second trial turns at 150 s, in both flights; its settling band is the
+    # schema's, 5 m.
     assert line == (
         "Turns: in 1 of 2 flights the tracking error, rms after settling, is 39 m, above the 5 m within which a flight counts"
         " as settled, and no criterion limits it: after settling the keep-out guard changed commands (not in the other), the mode"
         " was 'outrun' for a time (not in the other)."
     )
-    # Of a trial with a criterion that tells; it is not judged by it where it does not have to settle.
+    # Of a trial with a criterion that tells; it is not judged by it where it does not have to
+    # settle.
     assert content(with_values(limited, 0, tracking_error_rms_m=39.04)).verdict.failures == []
     assert (
         len(

@@ -31,7 +31,8 @@ def test_a_missing_history_is_said_and_other_flights_are_looked_at_instead(run_p
     bare = read_run(path)
     shown = [str(row["flight_id"]) for _, row, _ in picked_flights(read_trials(bare))]
     assert sorted(shown) == ["steady_00001", "turns_00000", "turns_00001"]
-    # A flight with a violation is shown whatever is left of it; the page says that it has no time history.
+    # A flight with a violation is shown whatever is left of it; the page says that it has no time
+    # history.
     deep = content(
         with_values(bare, 0, keepout_violations=1, keepout_depth_m=0.5, criteria_met=False)
     )
@@ -53,11 +54,13 @@ def test_flights_are_drawn_about_the_plume_as_the_trial_measured_them(run):
             tracks = flight_charts(flight_view(trial, row))[0]
             lines = {line.label: line for line in tracks.panels[0].lines}
             uav, closest = lines["flown"], lines["closest approach"]
-            # The summary's bearing from the plume's axis counts clockwise, so that it is positive to the right of the axis.
+            # The summary's bearing from the plume's axis counts clockwise, so that it is positive
+            # to the right of the axis.
             aspect, distance = math.radians(row["start_aspect_deg"]), row["start_distance_m"]
             assert uav.x[0] == pytest.approx(distance * math.sin(aspect), abs=1e-6)
             assert uav.y[0] == pytest.approx(distance * math.cos(aspect), abs=1e-6)
-            # The flight is level with the funnel. Between samples, 0.1 s apart at 28 m/s at most, the summary interpolates.
+            # The flight is level with the funnel. Between samples, 0.1 s apart at 28 m/s at most,
+            # the summary interpolates.
             assert math.hypot(closest.x[0], closest.y[0]) == pytest.approx(
                 row["min_distance_m"], abs=0.02
             )
@@ -114,7 +117,8 @@ def test_manoeuvres_are_named_as_the_vessel_was_seen_to_turn(run):
 
 
 def test_manoeuvres_are_those_that_were_sampled_in_whatever_order(run):
-    # As where the manoeuvre is the second choice, weighted, or of a search: a flight's number does not tell it.
+    # As where the manoeuvre is the second choice, weighted, or of a search: a flight's number does
+    # not tell it.
     manoeuvres = run.draws["vessel.manoeuvres"]
     swapped = replace(
         run, draws=run.draws.assign(**{"vessel.manoeuvres": manoeuvres.to_numpy()[[0, 1, 3, 2]]})
@@ -141,7 +145,8 @@ def test_every_kind_of_trial_has_figures_of_any_run(run, kind, monkeypatch):
     monkeypatch.setattr(Trial, "kind", kind)
     for trial in read_trials(run):
         charts = trial_charts(trial)
-        # No vessel manoeuvres, and so no crossing resumes, but there is always a closest approach to show: by itself, not counted.
+        # No vessel manoeuvres, and so no crossing resumes, but there is always a closest approach
+        # to show: by itself, not counted.
         assert bool(charts) == (kind is not Kind.APPROACH)
         assert all(
             len(line.x) for chart in charts for panel in chart.panels for line in panel.lines

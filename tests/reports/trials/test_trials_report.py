@@ -1,4 +1,6 @@
-"""Reports of several trials: of a small kinematic run, flown once for this file, and of what can become of one."""
+"""Reports of several trials: of a small kinematic run, flown once for this file, and of what can
+become of one.
+"""
 
 import json
 import math
@@ -31,7 +33,8 @@ BRIEF = pytest.mark.usefixtures("without_single_flights")
 
 
 def test_trials_are_reported_on_screen_and_in_print(run_path, report, tmp_path, monkeypatch):
-    # Drawing takes nearly all of this test's time: one flight tells whether they are. Page 1's figure is drawn in its own tests.
+    # Drawing takes nearly all of this test's time: one flight tells whether they are. Page 1's
+    # figure is drawn in its own tests.
     draw_all_but(monkeypatch, "first")
     monkeypatch.setattr("reports.flights.selection.PICKED_MAX", 1)
     html, pdf = build_reports(shutil.copytree(run_path, tmp_path / "copy"))
@@ -167,7 +170,8 @@ def test_resuming_is_judged_of_flights_whose_vessel_ends_a_manoeuvre(run):
 def test_flights_that_failed_a_criterion_are_counted_whatever_its_limits(
     run, key, value, values, shown
 ):
-    # Of two flights of the trial, the second or, where the law must exceed omega_max = 0.5 rad/s, the first.
+    # Of two flights of the trial, the second or, where the law must exceed omega_max = 0.5 rad/s,
+    # the first.
     changed = {"heading_rate_limit_rad_s": [0.5, 0.5]} | values
     for i in range(2):
         run = with_values(run, 2 + i, **{name: of[i] for name, of in changed.items()})

@@ -19,7 +19,9 @@ LONG = {"crossings": 0, "duration_max_s": 2760.0}
 
 @pytest.fixture(scope="module")
 def flown():
-    """Of the hour that the scenario of the catalog has: with its turn of 90 degrees, its slow-down, and some minutes more."""
+    """Of the hour that the scenario of the catalog has: with its turn of 90 degrees, its slow-down,
+    and some minutes more.
+    """
     slow = {"guidance": {"rate_hz": 5.0}, "flight": LONG | {"log_rate_hz": 5.0}}
     return fly(vessel=DANISH, following=DECLARED, wind={"speed_mps": 5.0, "from_deg": 60.0}, **slow)
 
@@ -31,8 +33,9 @@ def test_beside_a_ship_from_a_file_it_keeps_out_and_crossings_resume(flown):
     assert flown.row["resume_periods"] <= 2.0
     crossings = pd.DataFrame(flown.tables["crossings.csv"])["time_s"].to_numpy()
     for ends in (1380.0, 2486.0):
-        # The turn, 90 degrees at 0.5 deg/s from 1200 s on, and the slow-down, 2.57 m/s at 0.03 m/s^2 from 2400 s on. There are two
-        # crossings a period, so that the mean interval is half of one.
+        # The turn, 90 degrees at 0.5 deg/s from 1200 s on, and the slow-down, 2.57 m/s at 0.03
+        # m/s^2 from 2400 s on. There are two crossings a period, so that the mean interval is half
+        # of one.
         after = crossings[crossings >= ends]
         assert after[0] - ends < 2.0 * 2.0 * np.diff(after[:20]).mean()
     assert crossings[-1] > 2710.0
@@ -66,7 +69,8 @@ def test_the_vessel_is_received_at_the_times_of_the_file_alone(flown):
 
 
 def test_its_row_says_where_and_when_and_how_fast_the_ship_was(flown):
-    # 57.2 N, 11.3 E at 10 o'clock, at 12 kn (scenarios.world.ais.made); the smooth track begins within its reports' errors.
+    # 57.2 N, 11.3 E at 10 o'clock, at 12 kn (scenarios.world.ais.made); the smooth track begins
+    # within its reports' errors.
     assert flown.row["place_latitude_deg"] == pytest.approx(57.2, abs=1e-4)
     assert flown.row["place_longitude_deg"] == pytest.approx(11.3, abs=2e-4)
     assert flown.row["start_utc"] == "2026-06-01T10:00:00Z"
@@ -124,7 +128,8 @@ def test_a_start_is_judged_by_the_report_that_the_guard_has_and_not_by_where_the
             )
         )
 
-    # Reports come each 119 s. Just after one the ship is where it says; 100 s later she may be up to 500 m from there.
+    # Reports come each 119 s. Just after one the ship is where it says; 100 s later she may be up
+    # to 500 m from there.
     planned("2026-06-01T10:02:01Z")
     with pytest.raises(
         InfeasibleError, match=r"where the best turn away comes within 0\.0 m of where it may be"
@@ -149,8 +154,9 @@ def test_reports_that_are_farther_off_than_declared_are_a_row_with_that_reason()
 def test_a_report_whose_velocity_is_wrong_is_refused_for_what_it_makes_of_a_silence_after_it(
     tmp_path,
 ):
-    # Until the next one, 2 s later, it is within its disc; 21 s later, with all data of the vessel lost, the ship is 41 m outside.
-    # Of 16 flights of a law that flies at her 6 had come in, by up to 31 m.
+    # Until the next one, 2 s later, it is within its disc; 21 s later, with all data of the vessel
+    # lost, the ship is 41 m outside. Of 16 flights of a law that flies at her 6 had come in, by up
+    # to 31 m.
     path, lines = tmp_path / "wrong.csv", ["time_utc,mmsi,lat_deg,lon_deg,sog_kn,cog_deg"]
     for time in range(0, 400, 2):
         wrong = time == 150
@@ -176,7 +182,8 @@ def test_a_report_whose_velocity_is_wrong_is_refused_for_what_it_makes_of_a_sile
 @pytest.mark.parametrize(
     ("slows_down", "silence", "fastest", "words"),
     [
-        # From 15 to 8 m/s while nothing is received: 1035 m in the 90 s before the start, and 8.6 m/s are 774 m, and 5.6 * 5 m.
+        # From 15 to 8 m/s while nothing is received: 1035 m in the 90 s before the start, and 8.6
+        # m/s are 774 m, and 5.6 * 5 m.
         (
             (-80.0, -10.0),
             (-85.0, 5.0),
@@ -184,7 +191,8 @@ def test_a_report_whose_velocity_is_wrong_is_refused_for_what_it_makes_of_a_sile
             r"apart after 90\.0 s; 80\d\.\d m .* following.vessel_speed_max_mps = 8.6: declare more",
         ),
         ((-80.0, -10.0), (-85.0, 5.0), 15.1, None),
-        # Of the reports before the start the guard keeps the newest three, of the last 20 s, and those are of a slow ship.
+        # Of the reports before the start the guard keeps the newest three, of the last 20 s, and
+        # those are of a slow ship.
         ((-55.0, -35.0), (0.5, 0.5), 8.6, None),
     ],
 )

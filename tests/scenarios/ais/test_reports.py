@@ -78,7 +78,8 @@ def test_a_byte_order_mark_and_windows_lines_are_read_over(read):
 @pytest.mark.parametrize(
     ("row", "reason"),
     [
-        # Values that say "not available" (ITU-R M.1371-5, table 48), and what no receiver should have written.
+        # Values that say "not available" (ITU-R M.1371-5, table 48), and what no receiver should
+        # have written.
         ("2026-06-01T10:00:05Z,219999001,91.0,181.0,12.0,20.5", "without a possible position"),
         ("2026-06-01T10:00:05Z,219999001,57.0,190.0,12.0,20.5", "without a possible position"),
         ("2026-06-01T10:00:05Z,219999001,,11.3,12.0,20.5", "without a possible position"),
@@ -188,7 +189,8 @@ def test_a_file_of_no_use_is_refused_in_one_line(read, text, mmsi, words):
 
 
 def sailed(*, knots=1.0, degrees=1.0, turned=0.0, swapped=False, interval=10, rate=0.0):
-    """Return a table of a vessel that goes north-east at 12 kn, 6.17 m/s, with speeds and courses in units of these sizes.
+    """Return a table of a vessel that goes north-east at 12 kn, 6.17 m/s, with speeds and courses
+    in units of these sizes.
 
     Reports are ``interval`` [s] apart, and she turns at a ``rate`` [deg/s].
     """
@@ -212,7 +214,9 @@ def sailed(*, knots=1.0, degrees=1.0, turned=0.0, swapped=False, interval=10, ra
     ("interval", "rate"), [(10, 0.0), (90, 0.0), (90, 0.1), (90, 0.5), (90, 2.0)]
 )
 def test_a_file_in_its_own_units_is_read_straight_or_in_turns(read, interval, rate):
-    """At 0.1 deg/s and 90 s pairs of reports count as straight; at 2 deg/s she turns by 180 deg between two of them."""
+    """At 0.1 deg/s and 90 s pairs of reports count as straight; at 2 deg/s she turns by 180 deg
+    between two of them.
+    """
     assert len(read(sailed(interval=interval, rate=rate)).time) == 30
 
 
@@ -314,7 +318,8 @@ def test_the_files_that_come_with_the_project_are_those_that_are_made():
 
 def test_what_is_wrong_in_the_made_file_is_dropped_and_counted():
     found = read_ais(CATALOG / "ais" / "made_danish.csv", MADE["made_danish.csv"])
-    # ``danish_file`` adds one row of each kind; a row twice and one out of order have times that are there.
+    # ``danish_file`` adds one row of each kind; a row twice and one out of order have times that
+    # are there.
     assert sum(found.dropped.values()) == found.rows - len(found.time) >= 5
     assert found.dropped["out of reach of others"] == found.dropped["without speed or course"] == 1
     assert np.diff(found.time).min() > 0.0

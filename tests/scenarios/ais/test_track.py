@@ -28,7 +28,9 @@ def vessel(name="made_danish.csv", *, utc=None, duration=HOUR, **changes):
 
 
 def residuals(of):
-    """Return report minus smooth track of each report within the flight: north, east, and their rates."""
+    """Return report minus smooth track of each report within the flight: north, east, and their
+    rates.
+    """
     return np.array(
         [
             np.subtract(report[1:], of.motion(report.time))
@@ -40,7 +42,8 @@ def residuals(of):
 
 @pytest.mark.parametrize(
     ("name", "scatter"),
-    # Errors of the made reports: 2.5 m and 0.8 m of each coordinate, and up to a second of their time at 6 m/s, 1.8 m rms.
+    # Errors of the made reports: 2.5 m and 0.8 m of each coordinate, and up to a second of their
+    # time at 6 m/s, 1.8 m rms.
     [
         ("made_danish.csv", math.sqrt(2.0) * math.hypot(2.5, 0.8, 1.3)),
         ("made_marine_cadastre.csv", 0.0),
@@ -50,17 +53,20 @@ def test_the_track_keeps_to_the_reports_but_for_their_scatter(name, scatter):
     found = residuals(vessel(name))
     assert np.sqrt(np.mean(found[:, :2] ** 2) * 2.0) <= max(scatter, 1.0)
     assert np.hypot(found[:, 0], found[:, 1]).max() <= 5.0 + scatter
-    # Speed and course as reported: 0.05 m/s of each component, and rounding of 0.1 kn and 0.1 degrees.
+    # Speed and course as reported: 0.05 m/s of each component, and rounding of 0.1 kn and 0.1
+    # degrees.
     assert np.sqrt(np.mean(found[:, 2:] ** 2)) < 0.08
 
 
 def test_it_turns_and_slows_as_the_ship_did():
     ship = vessel()
-    # 90 degrees from 1200 s on at 0.5 deg/s, and from 12 to 7 kn from 2400 s on (scenarios.world.ais.made).
+    # 90 degrees from 1200 s on at 0.5 deg/s, and from 12 to 7 kn from 2400 s on
+    # (scenarios.world.ais.made).
     assert math.degrees(ship.course(1500.0) - ship.course(1100.0)) == pytest.approx(90.0, abs=2.0)
     speeds = [math.hypot(*ship.motion(time)[2:]) / (1852.0 / 3600.0) for time in (2300.0, 3000.0)]
     assert speeds == pytest.approx([12.0, 7.0], abs=0.2)
-    # The slow-down lasts 2.57 m/s over 0.03 m/s^2 = 86 s; its end is known to half of the 30 s over which it is looked for.
+    # The slow-down lasts 2.57 m/s over 0.03 m/s^2 = 86 s; its end is known to half of the 30 s over
+    # which it is looked for.
     assert ship.manoeuvres_end == pytest.approx(2486.0, abs=25.0)
     # 12 kn at 0.5 deg/s is 0.054 m/s^2.
     assert 0.05 < largest_acceleration(ship, HOUR) < 0.08
@@ -82,7 +88,8 @@ def test_a_flight_may_begin_at_any_time_of_the_file_and_knows_the_reports_before
     later = vessel(utc=datetime(2026, 6, 1, 10, 30, tzinfo=UTC), duration=600.0)
     assert later.place.utc - whole.place.utc == pytest.approx(1800.0)
     assert -60.0 <= min(report.time for report in later.reports) <= 0.0
-    # The same ship at the same time, seen from another origin; of the reports within 600 s of the flight the track is made.
+    # The same ship at the same time, seen from another origin; of the reports within 600 s of the
+    # flight the track is made.
     apart = np.subtract(later.motion(300.0)[2:], whole.motion(2100.0)[2:])
     assert np.abs(apart).max() < 0.01
     north, east = whole.place.frame.to_local(later.place.latitude, later.place.longitude)
@@ -126,7 +133,8 @@ def test_smoothing_is_the_least_squares_solution_of_its_model():
     time = np.cumsum(generator.uniform(1.0, 90.0, 12))
     place, velocity = generator.normal(0.0, 300.0, (12, 2)), generator.normal(0.0, 3.0, (12, 2))
     smooth = smooth_motion(time, place, velocity)
-    # The mean given all reports, by solving all equations at once: reports, jerk, and what is known of the first state.
+    # The mean given all reports, by solving all equations at once: reports, jerk, and what is known
+    # of the first state.
     equations, wanted = [], []
     for i in range(12):
         for known, sigma, seen in ((0, POSITION_SIGMA, place[i]), (1, VELOCITY_SIGMA, velocity[i])):
@@ -196,7 +204,8 @@ def test_the_last_report_before_a_flight_is_known_at_its_start_however_old_it_is
 
 
 def test_a_long_gap_that_is_allowed_is_bridged_between_the_reports_at_both_of_its_ends(tmp_path):
-    # Reports up to 10:03:58, and from 10:25:59 on. A polynomial that goes on beyond the former is 56 km off at the end.
+    # Reports up to 10:03:58, and from 10:25:59 on. A polynomial that goes on beyond the former is
+    # 56 km off at the end.
     config = thinned(tmp_path / "gap.csv", [0, 2, 4, 26], gap_max_s=1500.0)
     begin = {"altitude": 60.0, "utc": datetime(2026, 6, 1, 10, 0, 30, tzinfo=UTC), "margin": 5.0}
     end = ais_vessel(config, duration=900.0, **begin).motion(900.0)

@@ -1,4 +1,6 @@
-"""Parts that are given as objects fly as those that are named by their files, and are refused in one line."""
+"""Parts that are given as objects fly as those that are named by their files, and are refused in
+one line.
+"""
 
 import math
 from dataclasses import dataclass, replace
@@ -126,7 +128,8 @@ def test_a_track_is_given_as_a_class_or_as_an_object_of_which_flights_take_copie
     by_class, by_object = fly(SHORT, nu=0.5, track=Northbound), fly(SHORT, nu=0.5, track=track)
     assert track.asked == 0
     assert by_object.met
-    # The class is called with 0.5 times the UAV's 19.42 m/s, which is the 9.71 m/s of the object to rounding.
+    # The class is called with 0.5 times the UAV's 19.42 m/s, which is the 9.71 m/s of the object to
+    # rounding.
     np.testing.assert_allclose(
         by_object.history["vessel_north_m"], by_class.history["vessel_north_m"], rtol=1e-12
     )

@@ -1,4 +1,6 @@
-"""What flights and runs hold: tables with units, figures, exports, reports, and nothing left on disk."""
+"""What flights and runs hold: tables with units, figures, exports, reports, and nothing left on
+disk.
+"""
 
 import gc
 import json

@@ -1,4 +1,6 @@
-"""A program gets what the command line gets: the same rows, crossings and time histories, byte for byte."""
+"""A program gets what the command line gets: the same rows, crossings and time histories, byte for
+byte.
+"""
 
 import csv
 import tomllib

@@ -183,7 +183,9 @@ def test_a_base_is_described_though_it_is_no_key():
 
 
 def test_a_unit_follows_a_number_alone():
-    """Of a criterion that is off the default is false, and 0 is a number that Python takes for false."""
+    """Of a criterion that is off the default is false, and 0 is a number that Python takes for
+    false.
+    """
     defaults = {
         line.split()[0]: " ".join(line.split()[1:3])
         for line in described("criteria")
@@ -265,7 +267,8 @@ def test_a_new_file_flies_the_same(file, tmp_path):
 
 @pytest.mark.parametrize(("swept", "compared"), [([0.3], []), ([0.15, 0.3], [0.15])])
 def test_a_new_file_flies_the_comparisons_of_its_source(swept, compared, tmp_path):
-    # Those of sweep_nu are of 0.15 and 0.5; the first of these sources flies none, and the second at one ratio.
+    # Those of sweep_nu are of 0.15 and 0.5; the first of these sources flies none, and the second
+    # at one ratio.
     source, path = tmp_path / "source.toml", tmp_path / "mine.toml"
     source.write_text(
         f'title = "Own"\nextends = "sweep_nu"\nsweep = {{ nu = {swept} }}\n', encoding="utf-8"

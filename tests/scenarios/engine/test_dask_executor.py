@@ -151,7 +151,8 @@ def test_a_scheduler_that_is_not_there_is_named_in_one_line(tmp_path, monkeypatc
 
 
 def test_a_worker_without_the_program_is_named_in_one_line(monkeypatch):
-    # As distributed hands back what a worker raised that cannot import the module of the function that it is to run.
+    # As distributed hands back what a worker raised that cannot import the module of the function
+    # that it is to run.
     raised = Exception("ModuleNotFoundError(\"No module named 'scenarios'\")")
     closed = []
     client = SimpleNamespace(

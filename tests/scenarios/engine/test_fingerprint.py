@@ -42,7 +42,8 @@ def test_every_package_that_a_flight_imports_is_in_the_hash():
         ("aircraft/models/aircraft/x8/x8.xml", True),
         ("scenarios/planning/theory/crossing_limits.json", True),
         ("scenarios/flight.py", True),
-        # Scenarios are compared by their content, and neither documents nor compiled files decide anything.
+        # Scenarios are compared by their content, and neither documents nor compiled files decide
+        # anything.
         ("scenarios/catalog/sea/arena.toml", False),
         ("gnc/EQUATIONS.md", False),
         ("scenarios/__pycache__/flight.cpython-311.pyc", False),

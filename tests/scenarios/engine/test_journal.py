@@ -53,7 +53,8 @@ def exported(journal, *columns):
 
 
 def test_rows_come_back_exactly(journal):
-    # A sum that is no short decimal, the smallest and the largest numbers, and what there is beside numbers.
+    # A sum that is no short decimal, the smallest and the largest numbers, and what there is beside
+    # numbers.
     row = {
         "sum": 0.1 + 0.2,
         "small": 5e-324,

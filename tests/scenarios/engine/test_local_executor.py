@@ -1,4 +1,6 @@
-"""Processes that are killed, hang, run out of memory: every task ends as a result, and no other is touched."""
+"""Processes that are killed, hang, run out of memory: every task ends as a result, and no other is
+touched.
+"""
 
 import functools
 import itertools
@@ -228,7 +230,9 @@ class Slow(Squares):
 
 
 def command(marks, pause, later, told):
-    """Have tasks done for ever, tell when the fourth is done, and take no more results for some time [s]."""
+    """Have tasks done for ever, tell when the fourth is done, and take no more results for some
+    time [s].
+    """
     with LocalExecutor(Slow(marks=marks, later=later), jobs=2, limits=Limits()) as executor:
         for result in executor.fly(Task(number=i) for i in itertools.count()):
             if result.task.number == 3:

@@ -213,7 +213,8 @@ def test_a_journal_that_cannot_be_opened_is_refused_in_a_line_and_the_run_contin
 ):
     study = SquareStudy(Squares(marks=marks))
     fly(study, out, progress=interrupt_at(3))
-    # A directory in the place of SQLite's log refuses every user, root too, as a file system without write access does.
+    # A directory in the place of SQLite's log refuses every user, root too, as a file system
+    # without write access does.
     log = out / "journal.sqlite-wal"
     log.mkdir()
     words = r"journal\.sqlite' cannot be used: unable to open database file; make .* writable, then continue with --resume"

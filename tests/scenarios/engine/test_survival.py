@@ -1,4 +1,6 @@
-"""A study that is killed, again and again, and goes on: its result is that of one that was left alone."""
+"""A study that is killed, again and again, and goes on: its result is that of one that was left
+alone.
+"""
 
 import contextlib
 import json
@@ -31,7 +33,9 @@ def trial(tmp_path_factory):
 
 
 def fly(path, out, reports=None):
-    """Fly the trial, or go on with it; in a process group of its own, which can be killed as one. Report every flight."""
+    """Fly the trial, or go on with it; in a process group of its own, which can be killed as one.
+    Report every flight.
+    """
     if reports is not None:
         os.setpgrp()
 
@@ -67,7 +71,9 @@ def undisturbed(trial, tmp_path_factory):
 
 
 def wall_times(out):
-    """Return how long each flight in the journal took: a flight that is flown again takes another time."""
+    """Return how long each flight in the journal took: a flight that is flown again takes another
+    time.
+    """
     if not (out / "journal.sqlite").is_file():
         return {}
     database = sqlite3.connect(out / "journal.sqlite")
@@ -98,7 +104,9 @@ def kill_parent(pid, _random):
 
 
 def kill_a_worker(pid, random):
-    """Kill a worker if there is one, and its parent a moment later, in the middle of having noticed it or not."""
+    """Kill a worker if there is one, and its parent a moment later, in the middle of having noticed
+    it or not.
+    """
     for worker in children(pid)[:1]:
         with contextlib.suppress(ProcessLookupError):
             os.kill(worker, signal.SIGKILL)
@@ -114,7 +122,9 @@ def kill_all(pid, _random):
 
 
 def alive_in(group):
-    """Return the processes of a group that live; those that have ended and are not collected yet do not."""
+    """Return the processes of a group that live; those that have ended and are not collected yet do
+    not.
+    """
     found = []
     for path in Path("/proc").glob("[0-9]*/stat"):
         with contextlib.suppress(OSError):
@@ -147,8 +157,8 @@ def test_killed_at_nine_random_moments_it_ends_as_if_nothing_had_happened(
         process = context.Process(target=fly, args=(trial, out, theirs))
         process.start()
         theirs.close()
-        # A third of the kills come in the first 50 ms, before anything or just as the run begins; the others in the middle of
-        # flights, tables and files, however long it takes to get there.
+        # A third of the kills come in the first 50 ms, before anything or just as the run begins;
+        # the others in the middle of flights, tables and files, however long it takes to get there.
         if number >= 3:
             await_reports(ours, int(random.integers(1, 10)))
         time.sleep(random.uniform(0.0, 0.05 if number < 3 else 0.02))

@@ -1,4 +1,6 @@
-"""What a search takes as declared: speed ratios, the vessel's acceleration, values that do not contradict each other."""
+"""What a search takes as declared: speed ratios, the vessel's acceleration, values that do not
+contradict each other.
+"""
 
 import math
 
@@ -26,7 +28,9 @@ def scenario(**changes):
 
 
 def manoeuvring(at_s, **second):
-    """Return a scenario whose vessel turns at 10 m/s and 1 deg/s, 0.175 m/s2, and changes its speed at 0.2 m/s2."""
+    """Return a scenario whose vessel turns at 10 m/s and 1 deg/s, 0.175 m/s2, and changes its speed
+    at 0.2 m/s2.
+    """
     turn = {"at_s": 50.0, "turn_deg": 90.0, "turn_rate_deg_s": 1.0}
     braking = {"at_s": at_s, "speed_mps": 2.0, "acceleration_mps2": 0.2} | second
     return scenario(
@@ -40,10 +44,12 @@ def manoeuvring(at_s, **second):
 
 
 def test_changes_of_speed_and_of_course_count_together():
-    # One after the other they are within 0.25 m/s2; at one time they make hypot(0.175, 0.2) = 0.265 at most.
+    # One after the other they are within 0.25 m/s2; at one time they make hypot(0.175, 0.2) = 0.265
+    # at most.
     assert beyond_declared(manoeuvring(200.0), [0.0]) == 0.0
     excess = math.hypot(10.0 * math.radians(1.0), 0.2) / 0.25 - 1.0
-    # Of a table of 0.05 s, in which the speed has fallen by 0.01 m/s, and of what is allowed for rounding, 0.001.
+    # Of a table of 0.05 s, in which the speed has fallen by 0.01 m/s, and of what is allowed for
+    # rounding, 0.001.
     assert beyond_declared(manoeuvring(50.0), [0.0]) == pytest.approx(excess, abs=2e-3)
     assert beyond_declared(manoeuvring(200.0, acceleration_mps2=0.25), [0.0]) == 0.0
     assert beyond_declared(manoeuvring(200.0, acceleration_mps2=0.3), [0.0]) == pytest.approx(

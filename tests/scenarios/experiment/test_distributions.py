@@ -13,7 +13,9 @@ SHARES = (1e-6, 0.01, 0.2, 0.5, 0.8, 0.99, 1.0 - 1e-6)
 
 
 def below(distribution, within):
-    """Return the quantiles of a distribution that is cut off, by its definition: what lies between, counted as the whole."""
+    """Return the quantiles of a distribution that is cut off, by its definition: what lies between,
+    counted as the whole.
+    """
     low, high = distribution.cdf(within)
     return lambda share: distribution.ppf(low + (high - low) * share)
 
@@ -42,7 +44,8 @@ def below(distribution, within):
 )
 def test_a_value_is_the_quantile_of_its_share(values, quantile):
     draw = DrawConfig(key="wind.speed_mps", **values)
-    # Both invert by series that are good to some 1e-14 of the quantile; a share near 1 has 1e-16/1e-6 of its complement.
+    # Both invert by series that are good to some 1e-14 of the quantile; a share near 1 has
+    # 1e-16/1e-6 of its complement.
     assert [value_at(draw, share) for share in SHARES] == pytest.approx(
         [float(quantile(share)) for share in SHARES], rel=1e-9
     )
@@ -58,7 +61,8 @@ def test_a_value_is_the_quantile_of_its_share(values, quantile):
 )
 def test_what_has_limits_begins_and_ends_there(values, ends):
     draw = DrawConfig(key="wind.speed_mps", **values)
-    # At the ends the quantile's slope is at most 1/density, some 30 here: rounding of a share, 1e-16, is 1e-14.
+    # At the ends the quantile's slope is at most 1/density, some 30 here: rounding of a share,
+    # 1e-16, is 1e-14.
     assert (value_at(draw, 0.0), value_at(draw, 1.0)) == pytest.approx(ends, abs=1e-12)
     assert all(ends[0] <= value_at(draw, share) <= ends[1] for share in np.linspace(0.0, 1.0, 101))
 

@@ -143,7 +143,8 @@ def test_what_is_drawn_is_distributed_as_was_said():
     )
     flights = [sampled_flight("trial", trial, number).scenario for number in range(400)]
     cut = stats.weibull_min(2.0, scale=4.0)
-    # Kolmogorov's test; of samples that are what they should be, one in a thousand has less, and these are always the same.
+    # Kolmogorov's test; of samples that are what they should be, one in a thousand has less, and
+    # these are always the same.
     for drawn, distribution in (
         ([flight.wind.speed_mps for flight in flights], lambda x: cut.cdf(x) / cut.cdf(9.0)),
         ([flight.vessel.course_deg for flight in flights], stats.norm(90.0, 20.0).cdf),
@@ -255,7 +256,8 @@ def test_a_point_says_where_each_key_is_in_its_distribution():
     trial = scenario(draws=POINTED, flight={"duration_max_s": 300.0})
     drawn = sampled_flight("trial", trial, 5, (0.5, 0.25, 0.9))
     assert drawn.values == {
-        # The median of what is below 9 m/s, by hand: 4 (-ln(1 - F(9)/2))^(1/2), F(9) = 1 - exp(-(9/4)^2).
+        # The median of what is below 9 m/s, by hand: 4 (-ln(1 - F(9)/2))^(1/2), F(9) = 1 -
+        # exp(-(9/4)^2).
         "wind.speed_mps": pytest.approx(
             4.0 * math.sqrt(-math.log(1.0 - 0.5 * (1.0 - math.exp(-((9.0 / 4.0) ** 2))))), rel=1e-12
         ),

@@ -37,7 +37,8 @@ def test_a_latin_hypercube_has_one_flight_in_each_stratum_of_each_input():
 
 
 def test_a_sobol_sequence_spreads_more_evenly_than_chance():
-    # Discrepancy of 512 points in 5 dimensions: 9e-4 at random by expectation, (5/4)^5 - (13/12)^5... of a scrambled net far below.
+    # Discrepancy of 512 points in 5 dimensions: 9e-4 at random by expectation, (5/4)^5 -
+    # (13/12)^5... of a scrambled net far below.
     random = np.random.default_rng(0).random((512, 5))
     assert qmc.discrepancy(points("sobol", 512)) < 0.2 * qmc.discrepancy(random)
 

@@ -1,4 +1,6 @@
-"""Keys that a case, a comparison or a condition sets beside random variables: what is set wins, and all others start alike."""
+"""Keys that a case, a comparison or a condition sets beside random variables: what is set wins, and
+all others start alike.
+"""
 
 import pytest
 

@@ -1,4 +1,6 @@
-"""The gymnasium environment: gymnasium's own check, the paper's guidance as a policy, rewards, and what is refused."""
+"""The gymnasium environment: gymnasium's own check, the paper's guidance as a policy, rewards, and
+what is refused.
+"""
 
 import math
 import re
@@ -36,7 +38,9 @@ def kinematic():
 
 
 def followed(env, flight_id):
-    """Fly an episode as the guidance would; return the sum of rewards, the last information, and how it ended."""
+    """Fly an episode as the guidance would; return the sum of rewards, the last information, and
+    how it ended.
+    """
     _, info = env.reset(options={"flight_id": flight_id})
     total, terminated, truncated = 0.0, False, False
     while not (terminated or truncated):
@@ -50,7 +54,8 @@ def column(env, name):
 
 
 def test_gymnasium_finds_it_in_a_process_of_its_own_as_the_page_says():
-    # By its module and name alone; the other tests' environments are made after an import, the page's other way.
+    # By its module and name alone; the other tests' environments are made after an import, the
+    # page's other way.
     name = f"scenarios.gym:{ENVIRONMENT}"
     script = f"import gymnasium; print(gymnasium.make({name!r}, keys={{'fidelity': 'kinematic'}}).spec.id)"
     found = subprocess.run(
@@ -93,7 +98,8 @@ def test_the_papers_guidance_as_a_policy_flies_the_flight_of_a_run_to_the_last_b
         assert np.array_equal(column(env, name), flown.history[name].to_numpy()), name
     assert terminated
     assert info["settled"]
-    # The vessel sails north, so that the plume trails south. Samples are 0.1 s and 2 m apart, 1 % of a crossing's distance.
+    # The vessel sails north, so that the plume trails south. Samples are 0.1 s and 2 m apart, 1 %
+    # of a crossing's distance.
     astern = column(env, "vessel_north_m") - column(env, "north_m")
     across = column(env, "east_m") - column(env, "vessel_east_m")
     crossed = astern[1:][(across[1:] * across[:-1] < 0.0) & (astern[1:] > 0.0)]
@@ -118,7 +124,8 @@ def test_an_episode_in_a_simulation_that_has_flown_before_is_the_same():
             observed, *_, info = env.step(info["guidance"])
             places.append(observed[:2])
         tracks.append(places)
-    # Half a minute. JSBSim's clock goes on from flight to flight, and leaves 1e-12 m in the last digits.
+    # Half a minute. JSBSim's clock goes on from flight to flight, and leaves 1e-12 m in the last
+    # digits.
     assert np.array(tracks[0]) == pytest.approx(np.array(tracks[1]), abs=1e-9)
 
 
@@ -137,7 +144,8 @@ def test_an_observation_is_what_the_flight_is_in_the_frame_of_the_plume(kinemati
     observed, _ = kinematic.reset(options={"flight_id": "nu_0.30"})
     seen = dict(zip(MEANINGS, observed, strict=True))
     plan = kinematic.unwrapped._episode.loop.plan
-    # The vessel starts at the origin, and her plume trails to the south: astern of a ship that sails north.
+    # The vessel starts at the origin, and her plume trails to the south: astern of a ship that
+    # sails north.
     assert seen["along_m"] == pytest.approx(-plan.start.north)
     assert seen["across_m"] == pytest.approx(-plan.start.east)
     assert seen["clearance_m"] == pytest.approx(
@@ -204,7 +212,8 @@ def test_actions_outside_the_space_are_cut_and_the_guidance_knows_what_was_flown
 
 
 def test_flights_with_other_limits_are_flown_within_their_own():
-    # The first flight turns at most at half the rate of the second one: its limit is none of the others'.
+    # The first flight turns at most at half the rate of the second one: its limit is none of the
+    # others'.
     keys = {
         "fidelity": "kinematic",
         "sweep": {"guidance.bank_deg": [25.0, 45.0]},
@@ -294,7 +303,8 @@ def test_what_cannot_be_an_environment_is_refused_in_a_line(keys, words):
 
 
 def test_flights_without_a_solution_are_passed_over_at_random_and_refused_by_name(monkeypatch):
-    # Against a wind of 5 m/s a vessel at nu = 0.9 of 19.42 m/s has an apparent wind that is faster than the UAV.
+    # Against a wind of 5 m/s a vessel at nu = 0.9 of 19.42 m/s has an apparent wind that is faster
+    # than the UAV.
     env = make(**KINEMATIC | {"sweep.nu": [0.3, 0.9], "wind.speed_mps": 5.0, "flight.crossings": 1})
     assert {env.reset(seed=seed)[1]["flight_id"] for seed in range(8)} == {"nu_0.30"}
     with pytest.raises(InputError, match="nu") as caught:

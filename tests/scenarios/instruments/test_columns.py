@@ -1,4 +1,6 @@
-"""Columns, figures and tables that instruments fill: each is one instrument's alone, and none is the flight's own."""
+"""Columns, figures and tables that instruments fill: each is one instrument's alone, and none is
+the flight's own.
+"""
 
 import pytest
 from flight_cases import fly

@@ -1,4 +1,6 @@
-"""Figures of the passes of a flight: crossings of the plume's axis, and those of them that had smoke in them."""
+"""Figures of the passes of a flight: crossings of the plume's axis, and those of them that had
+smoke in them.
+"""
 
 import math
 
@@ -17,7 +19,9 @@ CENTRES = (2.5, 12.5, 22.5, 32.5, 42.5, 52.5)
 
 
 def figures(peaks):
-    """Return the figures of a flight whose passes have these peaks of concentration over that in the plume's centre."""
+    """Return the figures of a flight whose passes have these peaks of concentration over that in
+    the plume's centre.
+    """
     fraction = sum(
         peak * np.exp(-0.5 * ((TIME - at) / 0.5) ** 2)
         for at, peak in zip(CENTRES, peaks, strict=True)

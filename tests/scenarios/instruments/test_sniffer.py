@@ -53,10 +53,12 @@ def test_truth_and_reading_are_columns_of_the_time_history(slow):
     assert row["outcome"] == "completed"
     for gas in ("so2", "no", "no2"):
         assert {f"{gas}_ppb", f"{gas}_reading_ppb"} <= set(history)
-    # The sensor reads once a second, and the history has ten samples of a second: each reading stands for ten.
+    # The sensor reads once a second, and the history has ten samples of a second: each reading
+    # stands for ten.
     changes = np.diff(history["co2_reading_ppm"]) != 0.0
     assert 0.08 < np.count_nonzero(changes) / len(changes) <= 0.1
-    # Clean air on the way there, and smoke at the crossings; the reading of a cell of 4 s is lower and wider.
+    # Clean air on the way there, and smoke at the crossings; the reading of a cell of 4 s is lower
+    # and wider.
     settled = history[history["time_s"] > row["settling_time_s"]]
     assert settled["co2_ppm"].max() > 500.0
     assert 430.0 < settled["co2_reading_ppm"].max() < settled["co2_ppm"].max()
@@ -78,14 +80,16 @@ def test_gases_are_in_the_ratio_of_the_emission(slow):
     _, history, _ = slow
     excess = history[history["co2_ppm"] > 450.0]
     ratio = (excess["so2_ppb"] - 0.2) / (excess["co2_ppm"] - 420.0)
-    # 32.06/12.011 x 0.87/10: the factor of Balzani Loov et al., Atmos. Meas. Tech. 7 (2014), at 87 % carbon.
+    # 32.06/12.011 x 0.87/10: the factor of Balzani Loov et al., Atmos. Meas. Tech. 7 (2014), at 87
+    # % carbon.
     expected = expected_fsc(fuel_preset("mgo", 0.1)) / 0.2322
     assert np.allclose(ratio, expected, rtol=2e-4)
 
 
 def test_a_good_instrument_reads_what_a_perfect_one_does():
     row, _, _ = flown(*PERFECT)
-    # Noise alone is left, which the estimate states; four of its standard deviations, and the lag that 5 Hz leaves (2 %).
+    # Noise alone is left, which the estimate states; four of its standard deviations, and the lag
+    # that 5 Hz leaves (2 %).
     error = row["fsc_percent"] - row["fsc_expected_percent"]
     assert abs(error) < 4.0 * row["fsc_noise_percent"] + 0.02 * row["fsc_expected_percent"]
     assert row["fsc_fuel_percent"] == 0.1

@@ -1,4 +1,6 @@
-"""A sniffer that is read in flight reads what it reads after the flight, and fails as its fault says."""
+"""A sniffer that is read in flight reads what it reads after the flight, and fails as its fault
+says.
+"""
 
 import numpy as np
 import pytest
@@ -66,7 +68,8 @@ def test_the_same_seed_reads_the_same_in_flight_as_after_it(sensor):
     expected = after.evaluate(columns.__getitem__, settled_at).columns
     read = followed(during, columns)
     known = after.readings(0.0)
-    # To the bit, for readings are rounded to the channel's resolution. The last ones may not have come yet.
+    # To the bit, for readings are rounded to the channel's resolution. The last ones may not have
+    # come yet.
     assert np.array_equal(read[:, 0], known.time[: len(read)])
     assert np.array_equal(read[:, 1], known.values[: len(read), CO2])
     assert known.time[-1] - read[-1, 0] <= 1.0 + 1e-9

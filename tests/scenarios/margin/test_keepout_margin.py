@@ -1,4 +1,6 @@
-"""The planned margin: Rice's formula against a simulated process, the loop against hand calculation, the spread against flights."""
+"""The planned margin: Rice's formula against a simulated process, the loop against hand
+calculation, the spread against flights.
+"""
 
 import copy
 import math
@@ -47,7 +49,9 @@ HOLD = SpeedHold(gain=0.3, airspeed_min=15.0, airspeed_max=25.0)
 
 
 def plan(**guidance):
-    """Return the plan of a flight at nu = 0.5 of a vehicle with a lag of 0.4 s, half a step of the guidance among them."""
+    """Return the plan of a flight at nu = 0.5 of a vehicle with a lag of 0.4 s, half a step of the
+    guidance among them.
+    """
     values = {"vessel.speed_ratio": 0.5, "guidance.keepout_guard": False}
     scenario = with_values(
         load_study("sweep_nu"),
@@ -58,8 +62,8 @@ def plan(**guidance):
 
 
 def test_a_gaussian_process_goes_above_a_level_as_often_as_rice_says():
-    # A sum of 400 sinusoids of random phase is as good as Gaussian up to 2 sigma; the square of its rate's deviation is the mean
-    # square of its frequencies.
+    # A sum of 400 sinusoids of random phase is as good as Gaussian up to 2 sigma; the square of its
+    # rate's deviation is the mean square of its frequencies.
     generator = np.random.default_rng(7)
     frequencies = generator.uniform(0.5, 3.0, 400)
     phases = generator.uniform(0.0, 2.0 * math.pi, 400)
@@ -74,14 +78,15 @@ def test_a_gaussian_process_goes_above_a_level_as_often_as_rice_says():
             np.count_nonzero((process[:-1] < level) & (process[1:] >= level)) * 3600.0 / time[-1]
         )
         per_hour = 3600.0 * rate / (2.0 * math.pi) * math.exp(-0.5 * level**2)
-        # About 1100, 750 and 400 crossings are counted; clustered ones make their spread 1.5 times that of independent ones: 5, 6
-        # and 8 %, and three times that is let pass for the least.
+        # About 1100, 750 and 400 crossings are counted; clustered ones make their spread 1.5 times
+        # that of independent ones: 5, 6 and 8 %, and three times that is let pass for the least.
         assert counted == pytest.approx(per_hour, rel=0.15)
         assert level_crossed(1.0, rate, per_hour) == pytest.approx(level, rel=1e-9)
 
 
 def test_a_level_that_is_crossed_too_seldom_even_at_the_mean_is_the_mean():
-    # Its mean is crossed 0.35/(2 pi 0.5) times a second, 401 times an hour, and no level more often.
+    # Its mean is crossed 0.35/(2 pi 0.5) times a second, 401 times an hour, and no level more
+    # often.
     assert level_crossed(0.5, 0.35, 500.0) == 0.0
 
 
@@ -100,7 +105,8 @@ def test_what_exceeds_the_limits_is_the_area_of_the_peak_above_them():
 
 def test_the_margin_grows_with_the_spread_and_with_care():
     margin = planned_margin(SPREAD, touches_per_hour=1e-3)
-    # With deviation and rate alike the part by tracking grows in proportion, that by limits not at all.
+    # With deviation and rate alike the part by tracking grows in proportion, that by limits not at
+    # all.
     tracking = margin - beyond_limits(SPREAD, 1e-3)
     wider = replace(SPREAD, radial=1.3, radial_rate=0.91)
     assert planned_margin(wider, touches_per_hour=1e-3) - margin == pytest.approx(
@@ -136,7 +142,8 @@ def test_gusts_on_an_orbit_vary_as_the_course_makes_them():
     theta = np.linspace(0.0, 2.0 * math.pi, 721)[:-1]
     time = LIGHT.horizontal_length / 19.42
     for delay in (0.0, 1.0, 4.75, 9.5):
-        # Of a frozen field: MIL-F-8785C's correlations along and across a wave, and the mean cosine of the course between.
+        # Of a frozen field: MIL-F-8785C's correlations along and across a wave, and the mean cosine
+        # of the course between.
         longitudinal, lateral = (
             math.exp(-delay / time),
             math.exp(-delay / time) * (1.0 - 0.5 * delay / time),
@@ -146,7 +153,8 @@ def test_gusts_on_an_orbit_vary_as_the_course_makes_them():
             LIGHT.horizontal**2 * 0.5 * (longitudinal + lateral) * float(np.mean(np.cos(turned)))
         )
         correlation = step * float(np.sum(found * np.cos(frequencies * delay))) / math.pi
-        # Beyond 20 rad/s lies 2/pi (20 L/V)^-1 of a wave along, 1.5 times that of one across: 0.35 % of the variance.
+        # Beyond 20 rad/s lies 2/pi (20 L/V)^-1 of a wave along, 1.5 times that of one across: 0.35
+        # % of the variance.
         assert correlation == pytest.approx(expected, abs=5e-3 * LIGHT.horizontal**2)
 
 
@@ -154,8 +162,8 @@ def test_without_preview_steering_is_the_law_linearised_by_hand():
     tracking = plan(preview=False).guidance.tracking
     speed, radius, gain = 19.42, tracking.law.look_ahead_m, tracking.law.gain_per_s
     found = dict(zip(STEERED_BY, steering_gains(tracking, 0.0, speed), strict=True))
-    # Laws (30) and (18) about a straight line, delta = rho = R: omega = -k (chi - e/R) - V chi/R, with e the reference's offset to
-    # the right. Differences of 1e-5 are good to 1e-6.
+    # Laws (30) and (18) about a straight line, delta = rho = R: omega = -k (chi - e/R) - V chi/R,
+    # with e the reference's offset to the right. Differences of 1e-5 are good to 1e-6.
     assert found["right"] == pytest.approx(gain / radius, rel=1e-5)
     assert found["course"] == pytest.approx(-gain - speed / radius, rel=1e-5)
     for name in ("along", "speed", "airspeed", "heading_rate", "last"):
@@ -169,7 +177,8 @@ def test_a_slow_gust_is_given_as_airspeed_and_leaves_no_error(x8_schedule):
         tracking_response(x8_schedule, MIDDLE, LEVEL_GAINS, tracking, HOLD, 19.42, slow)
     )[0]
     along = GUSTS.index("gust_along")
-    # At 1e-4 rad/s an airspeed loop of 1 rad/s lacks no more than 1e-3 of the gust, and a gain of 0.3 makes that 3.3 mm.
+    # At 1e-4 rad/s an airspeed loop of 1 rad/s lacks no more than 1e-3 of the gust, and a gain of
+    # 0.3 makes that 3.3 mm.
     assert response[RESPONSES.index("pace"), along] == pytest.approx(1.0, rel=1e-3)
     assert response[RESPONSES.index("along"), along] < 4e-3
 
@@ -236,11 +245,13 @@ def test_light_turbulence_spreads_flights_as_predicted_and_the_margin_holds_them
         [fly_in_turbulence(x8_root, start, flight, hold, seed) for seed in range(1, 5)]
     )
     along, across = np.sqrt(np.mean(errors**2, axis=0))
-    # 18 minutes of errors that last 5 s are 200 independent ones: 5 % of their deviation, 15 % three times over. Thirty flights
-    # measure 9 % and 3 % more than predicted, for the turn and its model are taken as steady.
+    # 18 minutes of errors that last 5 s are 200 independent ones: 5 % of their deviation, 15 %
+    # three times over. Thirty flights measure 9 % and 3 % more than predicted, for the turn and its
+    # model are taken as steady.
     assert along == pytest.approx(spread.along, rel=0.25)
     assert across == pytest.approx(spread.across, rel=0.25)
     # Tracking of 3 m rms in light turbulence is what the study requires.
     assert math.hypot(along, across) <= 3.0
-    # Passed in 18 minutes with a chance of 3 in 10,000, if it is an upper bound as it says; measured 1.5 m of 5.6 m.
+    # Passed in 18 minutes with a chance of 3 in 10,000, if it is an upper bound as it says;
+    # measured 1.5 m of 5.6 m.
     assert np.hypot(*errors.T).max() < planned_margin(spread, touches_per_hour=1e-3)

@@ -1,4 +1,6 @@
-"""How far out an orbit lies, as r_CO less its half-width along: there the guard never acts on it, and 2 m nearer it does."""
+"""How far out an orbit lies, as r_CO less its half-width along: there the guard never acts on it,
+and 2 m nearer it does.
+"""
 
 import math
 from collections import deque
@@ -24,7 +26,8 @@ GUARD = GuardParameters(
     slow_lag=DELAY + LAG,
     time_step=TIME_STEP,
 )
-# AIS every 10 s, up to 2 s late, and looked at twice a second: a ship that brakes or turns by 0.25 m/s^2.
+# AIS every 10 s, up to 2 s late, and looked at twice a second: a ship that brakes or turns by 0.25
+# m/s^2.
 AIS = tube(
     VesselReport(-12.5, 0.0, 0.0, 0.0, 0.0),
     VesselLimits(
@@ -46,9 +49,11 @@ def oscillation(nu):
 
 
 def interventions(nu, distance, vessel):
-    """Return at how many steps a guard intervenes on an orbit at some distance from a vessel that may always be as far off.
+    """Return at how many steps a guard intervenes on an orbit at some distance from a vessel that
+    may always be as far off.
 
-    The vehicle has a dead time and a lag; commands are what the orbit needs when they act, so that only the guard disturbs it.
+    The vehicle has a dead time and a lag; commands are what the orbit needs when they act, so that
+    only the guard disturbs it.
     """
     orbit, guard = oscillation(nu), KeepoutGuard(GUARD)
     along, _ = orbit.half_widths()
@@ -104,6 +109,6 @@ def test_all_of_the_orbit_lies_beyond_the_radius_about_wherever_the_vessel_may_b
 
 @RATIOS
 def test_a_vessel_that_is_known_exactly_costs_nothing(nu):
-    # The paper's distance leaves a turn away at every point: that of the orbit's foremost abscissa is r_min, and its points lie
-    # farther off. 1 cm for the points that are looked at.
+    # The paper's distance leaves a turn away at every point: that of the orbit's foremost abscissa
+    # is r_min, and its points lie farther off. 1 cm for the points that are looked at.
     assert orbit_distance(GUARD, EXACT, oscillation(nu)) <= GUARD.radius + 0.01

@@ -1,4 +1,6 @@
-"""Errors exceed the k standard deviations that the guard keeps no oftener than is declared, counted in simulated errors."""
+"""Errors exceed the k standard deviations that the guard keeps no oftener than is declared, counted
+in simulated errors.
+"""
 
 import math
 
@@ -25,7 +27,8 @@ def deviations(touches=TOUCHES, **values):
     [
         ({"reports.interval_s": [2.0, 10.0]}, 600.0, 0.0),
         ({"reports.interval_s": [2.0, 10.0], "sensors.position_sigma_m": 1.5}, 600.0, 60.0),
-        # However rare reports are, a flight begins with one: here one every 240 s in flights of 200 s.
+        # However rare reports are, a flight begins with one: here one every 240 s in flights of 200
+        # s.
         ({"reports.interval_s": [180.0, 300.0], "flight.duration_max_s": 200.0}, 15.0 + 18.0, 0.0),
     ],
 )
@@ -48,16 +51,19 @@ def test_the_wandering_error_of_the_own_place_comes_to_exceed_it_no_oftener():
         **{"sensors.position_sigma_m": 1.5}
     )
     begins = time_step * np.flatnonzero(beyond[1:] & ~beyond[:-1])
-    # It crosses a level many times when it comes there: what begins within a time constant is one event.
+    # It crosses a level many times when it comes there: what begins within a time constant is one
+    # event.
     events = 1 + np.count_nonzero(np.diff(begins) > NAVIGATION_TIME)
-    # Some 150 are counted, to 8 %. The rate that k follows from is that of large k, too high for such a small one.
+    # Some 150 are counted, to 8 %. The rate that k follows from is that of large k, too high for
+    # such a small one.
     assert 0.5 * TOUCHES < events / hours < TOUCHES
 
 
 def test_errors_of_reports_exceed_it_at_some_age_no_oftener():
     k = deviations(**{"reports.interval_s": [6.0, 6.0]})
     place, velocity = np.random.default_rng(20261126).standard_normal((2, 2, 3_000_000))
-    # As a report ages, its error goes from place to velocity: place cos(angle) + velocity sin(angle), over a quarter of a circle.
+    # As a report ages, its error goes from place to velocity: place cos(angle) + velocity
+    # sin(angle), over a quarter of a circle.
     squares, both = (
         (np.sum(place**2, axis=0), np.sum(velocity**2, axis=0)),
         np.sum(place * velocity, axis=0),

@@ -1,4 +1,6 @@
-"""How much larger a disc is planned because reports scatter: against reports as they are received, filtered and kept."""
+"""How much larger a disc is planned because reports scatter: against reports as they are received,
+filtered and kept.
+"""
 
 import itertools
 import math
@@ -27,7 +29,9 @@ def declared(**values):
 
 
 def oldest(scenario, **changes):
-    """Return what vessel and reports keep within, and the disc of a report that is as old as it becomes."""
+    """Return what vessel and reports keep within, and the disc of a report that is as old as it
+    becomes.
+    """
     limits, reports = replace(vessel_limits(scenario, TURN), **changes), scenario.reports
     return limits, tube(
         VesselReport(
@@ -39,7 +43,9 @@ def oldest(scenario, **changes):
 
 
 def reaches(scenario, limits, hours):
-    """Return how far north of where the vessel is taken to be her discs reach, just before each report [m]."""
+    """Return how far north of where the vessel is taken to be her discs reach, just before each
+    report [m].
+    """
     received = received_reports(
         scenario.reports,
         SteadyVessel(7.0, 0.0),
@@ -90,7 +96,8 @@ def test_exact_reports_need_no_allowance():
 
 
 def test_reports_without_errors_do_not_scatter():
-    # The newest disc is then the smallest one, and never older than the oldest: what is left is the filter's own error.
+    # The newest disc is then the smallest one, and never older than the oldest: what is left is the
+    # filter's own error.
     scenario = declared(**{"reports.position_sigma_m": 0.0, "reports.velocity_sigma_mps": 0.0})
     limits, disc = oldest(scenario, position_sigma=0.0, velocity_sigma=0.0, acceleration=0.2)
     known, reports = filter_parameters(scenario.reports), scenario.reports
@@ -110,5 +117,6 @@ def test_reports_that_come_all_the_time_or_hardly_ever_have_an_allowance(interva
     scenario = declared(**{"reports.interval_s": interval_s})
     limits, disc = oldest(scenario)
     widest = widest_tube(limits, scenario.reports, plan_period=PLAN_PERIOD)
-    # The newest three of many reports hardly differ in age; their errors do not add up to more than one may have.
+    # The newest three of many reports hardly differ in age; their errors do not add up to more than
+    # one may have.
     assert disc.radius <= widest.radius <= disc.radius + limits.deviations * limits.position_sigma

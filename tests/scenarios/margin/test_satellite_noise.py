@@ -1,4 +1,6 @@
-"""How much nearer noise of satellite navigation takes a vehicle: against a vehicle that is steered by it, and in flight."""
+"""How much nearer noise of satellite navigation takes a vehicle: against a vehicle that is steered
+by it, and in flight.
+"""
 
 import math
 from dataclasses import replace
@@ -28,7 +30,9 @@ def given(**values):
 
 
 def seen_errors(tracking, hold, turn, speed, lag):
-    """Return errors along and right that a vehicle sees whose position has noise of 1 m, on a circle, over time [m]."""
+    """Return errors along and right that a vehicle sees whose position has noise of 1 m, on a
+    circle, over time [m].
+    """
     step, noise, course, rate, faster = tracking.time_step, np.zeros(2), 0.0, turn, 0.0
     tracker = Tracker(
         tracking,
@@ -81,7 +85,8 @@ def test_the_error_that_a_vehicle_sees_scatters_as_predicted(turn):
         noise_time=NAVIGATION_TIME,
     )
     found = seen_errors(tracking, hold, turn, speed, setup.lag)
-    # 40 minutes are some 500 time constants of the loop, 4 to 5 s: one deviation of the deviation is 3 %.
+    # 40 minutes are some 500 time constants of the loop, 4 to 5 s: one deviation of the deviation
+    # is 3 %.
     assert math.sqrt(np.linalg.eigvalsh(np.cov(found.T)).max()) == pytest.approx(predicted, rel=0.1)
     assert 0.2 < predicted < 0.4
 
@@ -122,7 +127,8 @@ def test_without_noise_nothing_is_allowed_for():
 def test_the_guard_does_not_act_on_an_orbit_beside_a_vessel_that_is_known_exactly_for_noise_of_the_own_position(
     mission,
 ):
-    # Without the allowance it acted again and again, each time until the UAV was up to 370 m off its orbit.
+    # Without the allowance it acted again and again, each time until the UAV was up to 370 m off
+    # its orbit.
     vessel = {"draws": [], "wind.speed_mps": 0.0, "vessel.speed_mps": 14.0, "start.range_m": 600.0}
     noise = {"guidance.mission": mission, "sensors.position_sigma_m": 3.0}
     flown = {"flights": 1, "flight_seed": 7, "flight.crossings": 0, "flight.duration_max_s": 250.0}

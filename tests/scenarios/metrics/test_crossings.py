@@ -17,7 +17,8 @@ def straight(start, velocity, duration=20.0, step=0.1):
 
 
 def test_a_straight_path_is_cut_where_geometry_says():
-    # From 100 m left of the axis, 210 m astern, at 19.42 m/s square across: cut after 100/19.42 s at 210 m. Exact but for rounding.
+    # From 100 m left of the axis, 210 m astern, at 19.42 m/s square across: cut after 100/19.42 s
+    # at 210 m. Exact but for rounding.
     crossings = find_crossings(*straight((-210.0, -100.0, 0.0), (0.0, 19.42, 0.0)), axis())
     assert len(crossings) == 1
     assert crossings[0].time == pytest.approx(100.0 / 19.42, abs=1e-9)
@@ -31,8 +32,9 @@ def test_passing_ahead_of_the_vessel_is_no_crossing_of_a_plume_astern():
 
 
 def test_a_curved_path_is_timed_far_better_than_its_samples():
-    # A circle of 38.6 m at 0.503 rad/s (45 degrees of bank), sampled at 10 Hz. It cuts the axis where its phase says. A cubic
-    # through positions and velocities errs by R (omega dt)^4/384 = 0.6 um, over 19.4 m/s: below 1e-6 s.
+    # A circle of 38.6 m at 0.503 rad/s (45 degrees of bank), sampled at 10 Hz. It cuts the axis
+    # where its phase says. A cubic through positions and velocities errs by R (omega dt)^4/384 =
+    # 0.6 um, over 19.4 m/s: below 1e-6 s.
     radius, rate = 38.6, 0.503
     time = np.arange(0.0, 12.0, 0.1)
     angle = rate * time + 0.3
@@ -51,7 +53,8 @@ def test_a_curved_path_is_timed_far_better_than_its_samples():
 
 
 def test_crossings_of_a_rising_plume_know_their_height_above_it():
-    # 200 m astern on an axis that rises 10 degrees, the axis is 200 tan(10) above its origin, and 200/cos(10) along it.
+    # 200 m astern on an axis that rises 10 degrees, the axis is 200 tan(10) above its origin, and
+    # 200/cos(10) along it.
     elevation = math.radians(10.0)
     on_axis = 200.0 * math.tan(elevation)
     crossings = find_crossings(

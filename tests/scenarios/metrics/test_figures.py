@@ -39,7 +39,9 @@ def tracking_plan():
 
 
 def weave(plan, *, duration=100.0, distance=230.0, **columns):
-    """Return the history of a vehicle that swings across the axis astern, 60 m to either side: it crosses every ``INTERVAL``."""
+    """Return the history of a vehicle that swings across the axis astern, 60 m to either side: it
+    crosses every ``INTERVAL``.
+    """
     time = np.arange(0.0, duration + 0.5 * STEP, STEP)
     history = np.zeros((len(time), len(COLUMNS)))
     omega = math.pi / INTERVAL
@@ -131,7 +133,8 @@ def test_what_never_settles_has_no_crossings_and_is_measured_all_the_same(plan, 
 
 
 def test_an_axis_that_turns_is_crossed_where_it_is_by_then(plan):
-    # The vehicle stands still 230 m astern, 20 m to the west of the vessel's wake; the axis sweeps over it at 0.01 rad/s.
+    # The vehicle stands still 230 m astern, 20 m to the west of the vessel's wake; the axis sweeps
+    # over it at 0.01 rad/s.
     time = np.arange(0.0, 100.05, STEP)
     axis = math.pi + 0.01 * (time - 50.0)
     history = weave(
@@ -141,8 +144,8 @@ def test_an_axis_that_turns_is_crossed_where_it_is_by_then(plan):
         east_m=-20.0,
     )
     row, crossings = figures(plan, history)
-    # South by west: pi + atan(20/230), later than 50 s by that over 0.01 rad/s. The axis is wrapped on the way. Its rate by central
-    # differences is exact.
+    # South by west: pi + atan(20/230), later than 50 s by that over 0.01 rad/s. The axis is wrapped
+    # on the way. Its rate by central differences is exact.
     assert [crossing.time for crossing in crossings] == pytest.approx(
         [50.0 + math.atan2(20.0, 230.0) / 0.01], abs=1e-4
     )
@@ -159,7 +162,8 @@ def test_a_keep_out_violation_is_counted_from_the_first_second_on(plan):
     )
     row, _ = figures(plan, history, settled_at=50.0)
     assert row["keepout_violations"] == 1
-    # Inside while 60 sin^2 exceeds 50 m; the cubic errs by h^4/384 of the fourth derivative, 2e-9 m.
+    # Inside while 60 sin^2 exceeds 50 m; the cubic errs by h^4/384 of the fourth derivative, 2e-9
+    # m.
     assert row["keepout_time_s"] == pytest.approx(
         20.0 * (1.0 - 2.0 * math.asin(math.sqrt(5.0 / 6.0)) / math.pi), abs=1e-6
     )
@@ -187,7 +191,8 @@ def test_errors_are_measured_from_the_history(plan):
     history = weave(plan)
     north = column(history, "reference_north_m").copy()
     half = column(history, "time_s") >= 50.0
-    # 3 m short along the wake, towards and away from the vessel in turn; the vessel is seen 4 m off, the wind 1 m/s.
+    # 3 m short along the wake, towards and away from the vessel in turn; the vessel is seen 4 m
+    # off, the wind 1 m/s.
     sign = np.where(np.arange(len(north)) % 2, 1.0, -1.0)
     history = weave(
         plan,

@@ -17,7 +17,9 @@ NOISE = 0.5
 
 
 def history(*, first=100.0, above=6.0, believed=80.0, deviation=4.0, duration=300.0, altitude=70.0):
-    """Return a search that crosses the axis every interval, and detects the plume from ``first`` on [s]."""
+    """Return a search that crosses the axis every interval, and detects the plume from ``first`` on
+    [s].
+    """
     time = STEP * np.arange(round(duration / STEP) + 1)
     across = 50.0 * np.sin(math.pi * time / INTERVAL)
     inside = (np.abs(across) < 5.0) & (time > first - 1.0)
@@ -51,7 +53,8 @@ def figures(made, **limits):
 def test_the_time_to_find_counts_from_the_orbit_to_the_first_reading_of_the_plume():
     row = figures(history())
     assert row["orbit_at_s"] == ORBIT
-    # Detected from 99 s on, where the crossing at 100 s begins; the reading is a second late. A sample, and the width of the plume.
+    # Detected from 99 s on, where the crossing at 100 s begins; the reading is a second late. A
+    # sample, and the width of the plume.
     assert row["time_to_find_s"] == pytest.approx(100.0 - ORBIT + 0.8, abs=0.5)
     assert row["found"]
 

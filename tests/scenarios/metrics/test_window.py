@@ -21,7 +21,8 @@ def test_information_is_that_of_a_minute_and_adds_up():
     assert found == pytest.approx(
         {"plume_s_per_minute": 8.0, "sulphur_information_per_minute": 4000.0}
     )
-    # Noise falls with the root of time: twice the time at 1/sqrt(2) of the noise is as much information a minute.
+    # Noise falls with the root of time: twice the time at 1/sqrt(2) of the noise is as much
+    # information a minute.
     longer = MEASURED | {"fsc_noise_percent": 0.01 / math.sqrt(2.0), "seconds_in_plume_s": 40.0}
     assert measured_figures(longer, window=300.0) == pytest.approx(found)
 

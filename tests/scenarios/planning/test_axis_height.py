@@ -1,4 +1,6 @@
-"""The guidance expects the exhaust where the measurement lets it rise to, at the load that it expects."""
+"""The guidance expects the exhaust where the measurement lets it rise to, at the load that it
+expects.
+"""
 
 import pytest
 

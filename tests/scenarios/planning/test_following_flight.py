@@ -22,7 +22,8 @@ def test_such_a_flight_has_sensing_margin_and_health():
     assert flight.sensing.received is None  # the vessel is known exactly
     assert flight.guidance.health is not None
     assert flight.guidance.navigation is not None
-    # What is kept at least, in still air and with exact knowledge, where tracking has no spread: the guard keeps r_min.
+    # What is kept at least, in still air and with exact knowledge, where tracking has no spread:
+    # the guard keeps r_min.
     assert (flight.margin.total, flight.margin.guard) == pytest.approx((3.0, 0.0))
     assert flight.guidance.guard.radius == pytest.approx(200.0)
     assert flight.guidance.mission.centre.distance_min == pytest.approx(203.0)
@@ -32,7 +33,8 @@ def test_such_a_flight_has_sensing_margin_and_health():
     ("airspeed", "lack"), [(15.5, 0.06 * 15.5), (16.5, 0.06 * 16.5), (19.42, 0.55 * 4.42)]
 )
 def test_near_the_slowest_airspeed_a_gust_does_not_pass_for_lost_thrust(airspeed, lack):
-    # The X8's is 15 m/s. Light turbulence takes up to 0.4 m/s from a sound aircraft, moderate up to 0.6.
+    # The X8's is 15 m/s. Light turbulence takes up to 0.4 m/s from a sound aircraft, moderate up to
+    # 0.6.
     assert lost_thrust(airspeed, 15.0) == pytest.approx(lack)
 
 
@@ -41,12 +43,13 @@ def test_the_guard_reckons_with_the_airspeed_at_which_lost_thrust_is_detected():
     setup = replace(kinematic_setup(scenario()), airspeed_min=15.0, failing_level=failing)
     given = scenario(guidance={"airspeed_mps": 19.42}, fault={"declared": ["engine"]})
     guarded = plan(given, setup=setup).guidance.guard
-    # Of a steady fall the mean lack is behind the lack by a time constant of 2 s, and it is looked at every 0.2 s. Measured in 96
-    # flights of the X8 at a ship: 14.3 m/s or more.
+    # Of a steady fall the mean lack is behind the lack by a time constant of 2 s, and it is looked
+    # at every 0.2 s. Measured in 96 flights of the X8 at a ship: 14.3 m/s or more.
     assert guarded.slowest == pytest.approx(19.42 - 0.55 * 4.42 - 1.25 * (2.0 + 0.2))
     # Then it pushes over to a glide, which takes it off its turn: the guard keeps as much more.
     assert (guarded.radius, guarded.allowance) == (204.3, 4.3)
-    # A throttle that sticks takes thrust, too; a surface that is stuck does not, and the aircraft leaves gliding all the same.
+    # A throttle that sticks takes thrust, too; a surface that is stuck does not, and the aircraft
+    # leaves gliding all the same.
     stuck = [
         plan(scenario(fault={"declared": [part]}), setup=setup).guidance.guard
         for part in ("throttle", "left_elevon")
@@ -56,7 +59,8 @@ def test_the_guard_reckons_with_the_airspeed_at_which_lost_thrust_is_detected():
     # Only where it is declared: a list of trials has one setup.
     sound = plan(scenario(guidance={"airspeed_mps": 19.42}), setup=setup)
     assert (sound.guidance.guard.slowest, sound.guidance.guard.allowance) == (math.inf, 0.0)
-    # Beside an orbit of its least margin there is room for that much, and not for ten times as much.
+    # Beside an orbit of its least margin there is room for that much, and not for ten times as
+    # much.
     deviations = (0.0, 4.3, 43.0)
     totals = [
         plan(
@@ -109,7 +113,8 @@ def test_a_steady_vessel_that_is_faster_than_declared_is_refused():
         match=r"moves at up to 8 m/s .*vessel_speed_max_mps = 7, on which .* relies: declare",
     ):
         plan(scenario(following={"vessel_speed_max_mps": 7.0}, **changes))
-    # What is less by 0.05 % is not rounding: 1.2 m in 5 minutes. The speed that is given is what has to be declared.
+    # What is less by 0.05 % is not rounding: 1.2 m in 5 minutes. The speed that is given is what
+    # has to be declared.
     with pytest.raises(
         InfeasibleError, match=r"moves at up to 8 m/s .*vessel_speed_max_mps = 7\.996"
     ):
@@ -150,7 +155,8 @@ class Faster:
 
 
 def test_a_track_of_ones_own_whose_velocity_is_a_little_wrong_is_refused():
-    # 0.0199 m/s in the 200 s of the flight: kinematic flights of a law that flies at her came within r_min by 6 m in 300 s.
+    # 0.0199 m/s in the 200 s of the flight: kinematic flights of a law that flies at her came
+    # within r_min by 6 m in 300 s.
     with pytest.raises(
         InfeasibleError,
         match=r"differ by up to 4 m; 0\.01 m are allowed.*: let the velocity be the derivative",
@@ -192,7 +198,8 @@ def test_a_wind_that_changes_is_an_error_of_the_estimated_one(tmp_path):
         encoding="utf-8",
     )
     changing = plan(scenario(wind={"table": str(table)}, following={"speed_error_mps": 0.5}))
-    # 6 m/s in 600 s, for the 20.6 s that the estimate takes: 0.03 of 19.42 m/s each half second hide 0.02 m/s of wander.
+    # 6 m/s in 600 s, for the 20.6 s that the estimate takes: 0.03 of 19.42 m/s each half second
+    # hide 0.02 m/s of wander.
     assert changing.guidance.guard.speed_error == pytest.approx(
         0.5 + 0.01 * 0.03 * 19.42 * math.sqrt(0.5) / 0.02
     )
@@ -205,8 +212,8 @@ def test_a_wind_that_changes_is_an_error_of_the_estimated_one(tmp_path):
 
 
 def test_a_start_is_judged_by_the_wind_at_its_own_height():
-    # Abeam to the east of a ship that heads north, on course for her, with 12.2 m/s from astern of the UAV at 120 m, and 9 at 10 m:
-    # what is refused does not depend on the height of the funnel.
+    # Abeam to the east of a ship that heads north, on course for her, with 12.2 m/s from astern of
+    # the UAV at 120 m, and 9 at 10 m: what is refused does not depend on the height of the funnel.
     given = {
         "start": {"place_m": [0.0, 235.0], "course_deg": -90.0}, "flight": {"altitude_m": 120.0}, "keepout": {"shape": "cylinder"},
         "guidance": {"airspeed_mps": SPEED}, "following": {"climb_gradient": 1e-9},
@@ -279,8 +286,8 @@ def test_following_can_do_without_the_keep_out_guard():
     ],
 )
 def test_the_estimated_wind_follows_as_fast_as_the_guard_reckons_with(level, speed, turned):
-    # A wind that rises by 0.1 m/s each second, which gusts hide, or beside a fast vehicle the error of its course, as it flies
-    # straight across the wind: the filter lags by no more than its time.
+    # A wind that rises by 0.1 m/s each second, which gusts hide, or beside a fast vehicle the error
+    # of its course, as it flies straight across the wind: the filter lags by no more than its time.
     flown = scenario(
         fidelity="six_dof", turbulence={"level": level}, guidance={"airspeed_mps": speed}
     )

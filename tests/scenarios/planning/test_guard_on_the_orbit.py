@@ -1,4 +1,6 @@
-"""Beside an orbit that is known the guard keeps all of the deviation, and the orbit lies where that leaves it alone."""
+"""Beside an orbit that is known the guard keeps all of the deviation, and the orbit lies where that
+leaves it alone.
+"""
 
 import math
 
@@ -67,7 +69,8 @@ def least_clearance(plan):
 @pytest.mark.parametrize("placement", ["paper", "exact"])
 @pytest.mark.parametrize("nu", [0.1, 0.5, 0.9, 0.965])
 def test_an_orbit_leaves_the_guard_all_of_the_deviation(nu, placement):
-    # Where the orbit stayed, the guard kept less: 16 of 32 flights of a law that flies at the ship came in, by up to 0.6 m.
+    # Where the orbit stayed, the guard kept less: 16 of 32 flights of a law that flies at the ship
+    # came in, by up to 0.6 m.
     plan = planned(nu, f"guidance.placement={placement}")
     assert plan.guidance.guard.deviation == DEVIATION
     assert least_clearance(plan) > 0.0
@@ -88,7 +91,8 @@ def test_an_orbit_as_near_as_it_can_lie_is_nearer_than_the_papers(nu):
 @pytest.mark.parametrize("shape", ["sinusoid", "fastest"])
 @pytest.mark.parametrize("heading", [60, 90, -120])
 def test_the_guard_leaves_an_orbit_alone_wherever_the_plume_trails(shape, heading):
-    # As if it trailed astern the guard was left 1.5 m too little abeam, and acted on the orbit 197 times.
+    # As if it trailed astern the guard was left 1.5 m too little abeam, and acted on the orbit 197
+    # times.
     assert (
         least_clearance(planned(0.45, f"reference.shape={shape}", f"plume.heading_deg={heading}"))
         > 0.0

@@ -1,4 +1,6 @@
-"""Runs for aircraft other than the X8, as far as no flight of theirs is needed (tests/regression flies them)."""
+"""Runs for aircraft other than the X8, as far as no flight of theirs is needed (tests/regression
+flies them).
+"""
 
 import math
 

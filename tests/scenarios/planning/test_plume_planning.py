@@ -1,4 +1,6 @@
-"""What is planned of a plume before the flight: limits of the altitude, what is known of the ship, the distance."""
+"""What is planned of a plume before the flight: limits of the altitude, what is known of the ship,
+the distance.
+"""
 
 import math
 
@@ -44,7 +46,8 @@ def test_what_is_known_of_the_ship_is_the_middle_and_the_spread_of_the_ranges():
     assert (
         axis.expected.buoyancy_flux == emission(scenario, speed=math.nan, load=0.55).buoyancy_flux
     )
-    # The logarithm of a load that is uniform from 0.2 to 0.9 scatters by 0.4; fuel burnt goes almost with the load.
+    # The logarithm of a load that is uniform from 0.2 to 0.9 scatters by 0.4; fuel burnt goes
+    # almost with the load.
     assert axis.expected.load_deviation == pytest.approx(0.4, abs=0.05)
 
 
@@ -86,7 +89,8 @@ def test_the_flight_starts_at_its_altitude_and_keeps_out_of_the_sphere_about_the
     scenario = load_study("sulphur", ["fidelity=kinematic", "flight.altitude_m=80"])
     plan = plan_flight(scenario, flight_id="a", seed=1, setup=kinematic_setup(scenario))
     assert (plan.altitude, plan.source_height) == (80.0, 35.0)
-    # The altitude may change on the way: level with the mouth the sphere is as wide as it is anywhere.
+    # The altitude may change on the way: level with the mouth the sphere is as wide as it is
+    # anywhere.
     assert (plan.keepout_shape, plan.keepout_radius, plan.guidance.guard.radius) == (
         "sphere",
         200.0,
@@ -101,7 +105,8 @@ def test_the_sulphur_is_known_best_from_as_near_as_may_be(sensor, wind):
         "sulphur", [f"payload.sensor={sensor}", "following.distance=best_measurement"]
     )
     assert additional_distance(scenario, VESSEL, 220.0, wind) == 0.0
-    # Flights at 500 m had up to three times the noise of those at 200 m (docs/explanation/sulphur.md).
+    # Flights at 500 m had up to three times the noise of those at 200 m
+    # (docs/explanation/sulphur.md).
     near, far = information(scenario, VESSEL, np.array([200.0, 500.0]), wind)
     assert 1.5 < math.sqrt(near / far) < 4.0
 

@@ -20,7 +20,9 @@ def kinematic(*overrides):
 
 
 def flown(commands, *, speed, step, fine):
-    """Return time, position and velocity of a vehicle that turns at commands held for a step each, exact, ``fine`` times a step."""
+    """Return time, position and velocity of a vehicle that turns at commands held for a step each,
+    exact, ``fine`` times a step.
+    """
     time, course, place = [0.0], [0.0], [np.zeros(2)]
     for command in commands:
         for part in range(1, fine + 1):
@@ -60,7 +62,8 @@ def test_no_turn_is_farther_from_its_cubic_than_the_bound(log_rate, fastest):
     worst = np.hypot(*(cubic.reshape(2, -1) - position[:-1].T)).max()
     bound = path_error_max(scenario, log_rate)
     assert worst <= bound
-    # Four steps to a sample are enough for the worst reversals, at a quarter and three quarters of it.
+    # Four steps to a sample are enough for the worst reversals, at a quarter and three quarters of
+    # it.
     assert log_rate > 5.0 or worst > 0.8 * bound
 
 
@@ -94,7 +97,8 @@ def test_ordinary_flights_are_recorded_often_enough():
     ],
 )
 def test_a_record_too_seldom_for_the_turns_is_refused_before_any_flight(overrides, words):
-    # 3 of 4 flights that had kept 3 cm outside of r_min were violations by 4 cm in a record of 5 Hz.
+    # 3 of 4 flights that had kept 3 cm outside of r_min were violations by 4 cm in a record of 5
+    # Hz.
     scenario = load_study("sweep_nu", [*RAM, *overrides])
     with pytest.raises(InfeasibleError):
         check_recorded(scenario)

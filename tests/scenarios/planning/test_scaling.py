@@ -28,7 +28,8 @@ SPEED, GRAVITY = 19.42, 9.80665
 NOT_SCALED = {
     # The aircraft's own.
     "guidance.airspeed_mps", "following.turn_deviation_m",
-    # World and equipment, and what is written for a circle about which the scenario says everything.
+    # World and equipment, and what is written for a circle about which the scenario says
+    # everything.
     "vessel.speed_mps", "vessel.gap_max_s", "plume.source_height_m", "keepout.radius_m", "reference.radius_m", "wind.speed_mps",
     "wind.roughness_m", "wind.height_m",
     "turbulence.gust_speed_mps", "turbulence.gust_length_s", "reports.interval_s", "reports.position_sigma_m",
@@ -63,11 +64,15 @@ DIMENSIONS = {
     "_per_m2": (-2, 0), "_per_m": (-1, 0), "_per_s": (0, -1), "_rad_s": (0, -1), "_deg_s": (0, -1), "_mps": (1, -1),
     "_hz": (0, -1), "_m": (1, 0), "_s": (0, 1),
 }  # fmt: skip
-"""Powers of length and time in a unit, by the suffix that names it (house style); the first that fits."""
+"""Powers of length and time in a unit, by the suffix that names it (house style); the first that
+fits.
+"""
 
 
 def aircraft(time, length):
-    """Return an aircraft whose units are so many times the defaults': V = 19.42 length/time, and tan(bank) = omega_max V/g."""
+    """Return an aircraft whose units are so many times the defaults': V = 19.42 length/time, and
+    tan(bank) = omega_max V/g.
+    """
     airspeed = SPEED * length / time
     rate = GRAVITY / SPEED / time
     return Envelope(
@@ -90,14 +95,16 @@ def keys(scenario):
 
 
 def dimension(key):
-    # The one exception, explained where it is scaled: altitude follows pitch at a given speed, not the turn.
+    # The one exception, explained where it is scaled: altitude follows pitch at a given speed, not
+    # the turn.
     if key == "criteria.altitude_error_max_m":
         return 1, -1
     return next((powers for suffix, powers in DIMENSIONS.items() if key.endswith(suffix)), None)
 
 
 def test_units_are_those_of_the_turn():
-    # By hand: omega_max = g tan(bank)/V. Twice as fast at 45 degrees turns half as fast: 1/omega_max is 2, V/omega_max is 4.
+    # By hand: omega_max = g tan(bank)/V. Twice as fast at 45 degrees turns half as fast:
+    # 1/omega_max is 2, V/omega_max is 4.
     double = units(dataclasses.replace(X8.envelope, airspeed=2.0 * SPEED))
     assert (double.time, double.length, double.speed) == pytest.approx((2.0, 4.0, 2.0), rel=1e-12)
     # At its own speed with tan(bank) = 1/2 it turns half as fast, over twice the length.
@@ -152,7 +159,8 @@ def test_what_is_said_to_be_scaled_is_what_the_scenario_does_not_set():
 
 
 def test_keys_without_a_unit_in_their_names_have_no_length_and_no_time():
-    # Else the test before this one would not see them. Units stand in brackets in a key's description.
+    # Else the test before this one would not see them. Units stand in brackets in a key's
+    # description.
     scenario = load_study("sweep_nu")
     for name in keys(scenario):
         section, key = name.split(".")
@@ -219,7 +227,9 @@ def kinematic_flight(monkeypatch):
 
 
 def in_own_units(time, length, *overrides, nu, lag):
-    """Fly a scenario that is scaled to an aircraft, its keep-out area and its steps scaled by hand; return it in its units."""
+    """Fly a scenario that is scaled to an aircraft, its keep-out area and its steps scaled by hand;
+    return it in its units.
+    """
     by_hand = {
         "keepout.radius_m": 200.0 * length,
         "guidance.rate_hz": 20.0 / time,
@@ -236,7 +246,8 @@ def in_own_units(time, length, *overrides, nu, lag):
     record = fly(plan, release(plan, setup))
     assert record.outcome is Outcome.COMPLETED
     unit = {"_mps": length / time, "_rad_s": 1.0 / time, "_s": time, "_m": length}
-    # Altitude is the plume's, and not of the turn; course is an angle, compared as its cosine and sine by the velocities.
+    # Altitude is the plume's, and not of the turn; course is an angle, compared as its cosine and
+    # sine by the velocities.
     level = ("altitude_m", "altitude_command_m", "climb_rate_mps")
     flown = [name for name in COLUMNS if name.endswith(tuple(unit)) and name not in level]
     scale = [next(size for suffix, size in unit.items() if name.endswith(suffix)) for name in flown]
@@ -263,8 +274,8 @@ def test_in_its_own_units_every_aircraft_flies_the_same_flight(
     base = kinematic_flight(1.0, 1.0, *overrides, nu=nu, lag=lag)
     other = kinematic_flight(2.0, 4.0, *overrides, nu=nu, lag=lag)
     assert len(base) > 1000
-    # Twice the speed at 45 degrees of bank: factors are powers of two, so even roundings scale. Equal to the last bit, whatever
-    # the law does with a difference.
+    # Twice the speed at 45 degrees of bank: factors are powers of two, so even roundings scale.
+    # Equal to the last bit, whatever the law does with a difference.
     np.testing.assert_array_equal(other, base)
 
 
@@ -274,10 +285,12 @@ def test_in_its_own_units_every_aircraft_flies_the_same_flight(
 def test_it_is_the_same_flight_at_another_bank_as_far_as_roundings_go(
     kinematic_flight, nu, overrides
 ):
-    # tan(bank) = 2.4/1.5^2, 47 degrees. A reference that is limited by its roll rate would differ: with the bank, by gravity.
+    # tan(bank) = 2.4/1.5^2, 47 degrees. A reference that is limited by its roll rate would differ:
+    # with the bank, by gravity.
     base, other = (
         kinematic_flight(*unit, *overrides, nu=nu, lag=0.3) for unit in ((1.0, 1.0), (1.5, 2.4))
     )
     assert base.shape == other.shape
-    # Roundings of thousands of steps that contract towards the reference, of lengths up to 4 km; measured 3e-11.
+    # Roundings of thousands of steps that contract towards the reference, of lengths up to 4 km;
+    # measured 3e-11.
     np.testing.assert_allclose(other, base, rtol=1e-8, atol=1e-8)

@@ -87,7 +87,8 @@ def test_an_experiment_that_samples_its_turbulence_plans_each_levels_own_margin(
         own = predicted_spreads([alone], found, setup)
         assert {level for level, *_ in own.tables} == {level} - {"none"}
         assert plan(alone, setup=setup, spreads=own).margin == margins[level]
-    # MIL-F-8785C: twice the wind at 20 feet has twice the intensity, and the loop is linear; in still air the least is kept.
+    # MIL-F-8785C: twice the wind at 20 feet has twice the intensity, and the loop is linear; in
+    # still air the least is kept.
     assert margins["none"].tracking_sigma == 0.0
     assert margins["moderate"].tracking_sigma == pytest.approx(
         2.0 * margins["light"].tracking_sigma, rel=1e-6

@@ -17,9 +17,11 @@ def test_the_point_on_the_circle_moves_at_airspeed_through_the_air_and_returns_a
     step = 1e-2
     (x0, y0), (x1, y1) = circle.offset(time), circle.offset(time + step)
     through_air = np.hypot((x1 - x0) / step + nu * SPEED, (y1 - y0) / step)
-    # The table has 720 points: half a degree of a turn, over which the speed changes by nu times that, at most 1 %.
+    # The table has 720 points: half a degree of a turn, over which the speed changes by nu times
+    # that, at most 1 %.
     assert through_air == pytest.approx(np.full(400, SPEED), rel=0.012)
-    # The trapezoidal rule over a whole turn is exact to rounding; the closed form is an elliptic integral.
+    # The trapezoidal rule over a whole turn is exact to rounding; the closed form is an elliptic
+    # integral.
     assert np.hypot(*circle.offset(circle.period) - np.array(circle.offset(0.0))) == pytest.approx(
         0.0, abs=1e-3
     )

@@ -32,7 +32,8 @@ MISSIONS = pytest.mark.parametrize("made", [scenario, tracking], ids=["following
 
 @MISSIONS
 def test_a_start_that_is_given_is_where_and_as_it_was_given(made):
-    # The vessel goes north in still air: its plume trails south, and bearings from it count clockwise.
+    # The vessel goes north in still air: its plume trails south, and bearings from it count
+    # clockwise.
     given = plan(made(start={"range_m": 500.0, "aspect_deg": 30.0, "course_deg": -70.0})).start
     bearing = math.radians(180.0 + 30.0)
     # Rounding of the vessel's track, a kilometre of it at most.
@@ -126,7 +127,8 @@ def test_starts_depend_on_the_seed_and_nu_alone():
 
 
 def test_a_vehicle_that_lags_so_much_that_a_turn_away_does_not_lead_away_is_not_flown():
-    # At 0.5 rad/s and 4 s late it overshoots by two radians: it came within 28 m of a ship to be kept 50 m from.
+    # At 0.5 rad/s and 4 s late it overshoots by two radians: it came within 28 m of a ship to be
+    # kept 50 m from.
     with pytest.raises(
         InfeasibleError,
         match=r"lags by 4 s overshoots, and then leaves at only -.* of its .*: slow the vessel, .* shorter lag",

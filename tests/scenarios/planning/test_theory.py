@@ -29,12 +29,14 @@ def rows(name):
 @pytest.mark.parametrize(("name", "shape"), [("oscillating", "fastest"), ("going_round", "loiter")])
 def test_the_shapes_are_the_optimum_that_was_solved_for_with_another_method(name, shape):
     for nu, interval in rows(name):
-        # A roll rate that changes between 200 pieces of a period alone costs 1e-4; the loiter is 7e-5 above its optimum (measured).
+        # A roll rate that changes between 200 pieces of a period alone costs 1e-4; the loiter is
+        # 7e-5 above its optimum (measured).
         assert designed(GUIDANCE, shape, nu) == pytest.approx(interval, rel=2e-4)
 
 
 def test_no_solution_is_shorter_than_what_is_proven_for_an_infinite_roll_rate():
-    # docs/fastest_oscillation.md: 2 A/omega_max with sin(A)/A = nu, and pi/(omega_max (1 - nu)). IPOPT's tolerance is 1e-9.
+    # docs/fastest_oscillation.md: 2 A/omega_max with sin(A)/A = nu, and pi/(omega_max (1 - nu)).
+    # IPOPT's tolerance is 1e-9.
     unit = omega_max(GUIDANCE)
     for nu, interval in rows("oscillating"):
         amplitude = brentq(lambda a, nu=nu: math.sin(a) / a - nu, 1e-9, 3.2)
@@ -55,7 +57,8 @@ def test_the_limit_is_that_of_the_loiter_beside_slow_vessels_and_of_the_oscillat
     ):
         # As above.
         assert designed(GUIDANCE, shape, nu) == pytest.approx(shortest[nu], rel=2e-4)
-        # The issue: flown within 3 % of the limit; the reserve of the flown reference takes 1.5 % of it.
+        # The issue: flown within 3 % of the limit; the reserve of the flown reference takes 1.5 %
+        # of it.
         assert designed(GUIDANCE, shape, nu, reserve=GUIDANCE.reserve) <= 1.03 * shortest[nu]
 
 

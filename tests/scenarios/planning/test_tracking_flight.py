@@ -121,7 +121,8 @@ def test_a_start_from_which_no_command_keeps_out_is_refused():
 
 
 def test_the_guard_keeps_the_keep_out_radius_and_no_more_where_everything_is_known():
-    # The tracking allowance is the orbit's. The clearance of a vehicle that recedes is its distance less the radius.
+    # The tracking allowance is the orbit's. The clearance of a vehicle that recedes is its distance
+    # less the radius.
     guard = KeepoutGuard(plan(nu=0.0).guidance.guard)
     guard.tubes = (Tube(0.0, 0.0, 0.0, 0.0, 0.0),)
     own = KnownMotion(ground_north=0.0, ground_east=300.0, course=math.pi / 2.0)
@@ -132,7 +133,8 @@ def test_the_guard_keeps_the_disc_that_the_keep_out_sphere_cuts_out_at_the_heigh
     flight = plan("plume.elevation_deg=20")
     above = flight.altitude - 60.0
     assert flight.guidance.guard.radius == pytest.approx(math.sqrt(200.0**2 - above**2), rel=1e-12)
-    # An aircraft that sinks by a metre in a turn is where the sphere is wider; with the sphere's top just below it, too.
+    # An aircraft that sinks by a metre in a turn is where the sphere is wider; with the sphere's
+    # top just below it, too.
     sinking = replace(SETUP, altitude_error=1.0)
     assert plan("plume.elevation_deg=20", setup=sinking).guidance.guard.radius == pytest.approx(
         math.hypot(flight.guidance.guard.radius, math.sqrt(above**2 - (above - 1.0) ** 2))

@@ -66,7 +66,8 @@ def test_what_extends_a_shared_base_has_its_equipment():
     assert {scenario.guidance.reserve for scenario in shared} == {0.1}
     assert first.reports.interval_s == (2.0, 10.0)
     assert first.sensors.heading_bias_deg == 2.0
-    # The vessel that manoeuvres is reported alike, and followed with another allowance, without sensor errors.
+    # The vessel that manoeuvres is reported alike, and followed with another allowance, without
+    # sensor errors.
     manoeuvres = load_study("sea_manoeuvres")
     assert manoeuvres.reports == first.reports
     assert (

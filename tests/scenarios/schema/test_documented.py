@@ -105,7 +105,8 @@ def test_studies_are_those_in_which_a_key_can_act():
     assert "patrol" not in BY_KEY["criteria.time_to_find_s"].studies
     assert "falsify" not in BY_KEY["flights"].studies
     assert BY_KEY["ensemble.samples"].studies == ("convergence",)
-    # Those of one point refuse several; and beside the cases that a paper study needs there is no sweep.
+    # Those of one point refuse several; and beside the cases that a paper study needs there is no
+    # sweep.
     assert BY_KEY["sweep"].studies == ("flights", "monte_carlo")
     assert (
         BY_KEY["comparison.nu"].studies

@@ -55,7 +55,8 @@ def test_a_swept_or_sampled_key_that_no_flight_uses_is_refused(tmp_path, text, w
 @pytest.mark.parametrize(
     "text",
     [
-        # A variant has another law, which has no such key either; or it would, and is flown at no swept ratio.
+        # A variant has another law, which has no such key either; or it would, and is flown at no
+        # swept ratio.
         f'{PAPER}[[comparison.variants]]\nname = "sight"\nset = {{ "guidance.law" = "line_of_sight" }}\n',
         'extends = "sweep_nu"\nguidance.law = "lyapunov"\nguidance.gain_per_s = 0.5\nsweep.nu = [0.3]\n',
     ],

@@ -1,4 +1,6 @@
-"""Every key of the schema acts: with another value the flight differs, or the key is refused by name."""
+"""Every key of the schema acts: with another value the flight differs, or the key is refused by
+name.
+"""
 
 import contextlib
 import tomllib
@@ -183,8 +185,8 @@ ELSEWHERE = {
     "flights", "histories", "sweep", "cases", "draws", "comparison", "comparison.variants",
     "report.title", "report.author", "report.organisation", "report.logo",
 }  # fmt: skip
-"""Kinds of study, texts, experiments, parts and reports, which tests of their own are about (test_extension_points,
-test_experiments, test_report_settings)."""
+"""Kinds of study, texts, experiments, parts and reports, which tests of their own are about
+(test_extension_points, test_experiments, test_report_settings)."""
 
 LEVEL = {"criteria.airspeed_error_rms_mps", "criteria.altitude_error_max_m"}
 """Criteria that the kinematic vehicle always meets: it is level and as fast as commanded."""
@@ -193,7 +195,9 @@ IN_SILENCE = {"following.vessel_speed_max_mps"}
 """Keys that act where nothing is received for long, of which there is a test of its own."""
 
 DECLARED = {"fault.declared"}
-"""Keys that say what follows from the flight's own fault here; of other flights there is a test, test_worst_flights_again."""
+"""Keys that say what follows from the flight's own fault here; of other flights there is a test,
+test_worst_flights_again.
+"""
 
 BEYOND_OR_WITHIN = {"criteria.law_beyond_heading_rate_max", "criteria.law_within_heading_rate_max"}
 """Criteria of which every flight meets exactly one."""

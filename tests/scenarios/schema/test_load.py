@@ -7,7 +7,8 @@ from scenarios.studies.trials import TrialStudy
 
 
 def test_the_sweep_is_the_one_that_was_asked_for():
-    # Issue: nu = 0, 0.05, ..., 0.95, r_min = 200 m, V_r = 19.42 m/s, 45 degrees of bank, 400-800 m astern, 30 crossings, 1,500 s.
+    # Issue: nu = 0, 0.05, ..., 0.95, r_min = 200 m, V_r = 19.42 m/s, 45 degrees of bank, 400-800 m
+    # astern, 30 crossings, 1,500 s.
     sweep = load_study("sweep_nu")
     assert sweep.sweep.nu == pytest.approx([0.05 * i for i in range(20)], abs=1e-12)
     assert (sweep.keepout.radius_m, sweep.guidance.airspeed_mps, sweep.guidance.bank_deg) == (
@@ -78,7 +79,8 @@ def test_what_is_wrong_in_a_file_names_the_file_and_what_is_wrong_in_an_override
         ),
         ("guidance.law=magic", ["guidance.law", "'magic'", "cascade"]),
         ("guidance.rate_hz=50", ["rate_hz is 50 Hz", "must divide 120 Hz", "e.g. 40"]),
-        # Nothing could be logged at so low a rate: flight.log_rate_hz divides it, and is at least 5.
+        # Nothing could be logged at so low a rate: flight.log_rate_hz divides it, and is at least
+        # 5.
         ("guidance.rate_hz=4", ["guidance.rate_hz is 4; it must be at least 5 Hz"]),
         ("flight.log_rate_hz=7", ["log_rate_hz is 7 Hz", "must divide 20 Hz"]),
         ("start.distance_m=[800, 400]", ["distance_m", "first value must not exceed its second"]),

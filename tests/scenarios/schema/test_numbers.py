@@ -1,4 +1,6 @@
-"""Numbers are numbers: truth values are refused in their place, and limits that would count as another value."""
+"""Numbers are numbers: truth values are refused in their place, and limits that would count as
+another value.
+"""
 
 import pytest
 

@@ -1,5 +1,5 @@
-"""What a scenario says of its experiment: whether flights are a random sample, whether there are several points, where they
-start."""
+"""What a scenario says of its experiment: whether flights are a random sample, whether there are
+several points, where they start."""
 
 import pytest
 
@@ -27,7 +27,8 @@ START = {"place_m": [-400.0, 0.0], "course_deg": 0.0}
         ({"flight_seed": 3, "flights": 100}, False),
         ({"flight_seed": 3, "draws": [WIND]}, True),
         ({"study": "monte_carlo", "draws": [WIND]}, True),
-        # One seed, and four winds in turn: fifty times the same four flights. At random by their weights they are a sample.
+        # One seed, and four winds in turn: fifty times the same four flights. At random by their
+        # weights they are a sample.
         ({"flight_seed": 5, "flights": 200, "draws": [FROM]}, False),
         (
             {"flight_seed": 5, "flights": 200, "draws": [FROM | {"weights": [1.0, 1.0, 2.0, 1.0]}]},
@@ -39,7 +40,8 @@ START = {"place_m": [-400.0, 0.0], "course_deg": 0.0}
         ({"flights": 2, "draws": [SEEDS]}, True),
         ({"flights": 20, "draws": [SEEDS]}, False),
         ({"flights": 4, "draws": [{"key": "flight_seed", "choice": [7, 7, 7, 7]}]}, False),
-        # Two seeds with two winds each, or one seed with both: no flight twice, and no sample more than there are seeds.
+        # Two seeds with two winds each, or one seed with both: no flight twice, and no sample more
+        # than there are seeds.
         ({"flights": 4, "draws": [SEEDS, FROM]}, False),
         ({"flights": 2, "draws": [SEEDS, FROM]}, True),
         ({"flights": 2, "draws": [FROM, SEEDS]}, False),
@@ -102,7 +104,8 @@ def test_flights_are_a_random_sample_where_they_differ_by_chance_alone(keys, at_
         ({"sweep": {"keepout.radius_m": [200.0, 250.0, 200.0]}, "flights": 8}, 2),
         ({"sweep": {"flight_seed": [1, 2, 3]}}, 1),
         ({"fidelity": "both", "flights": 8}, 2),
-        # Speed ratios of one flight each have seeds of their own, but all points of a sweep the same sample of random variables.
+        # Speed ratios of one flight each have seeds of their own, but all points of a sweep the
+        # same sample of random variables.
         ({"sweep": {"nu": [0.3, 0.5]}, "draws": [FROM | {"weights": [1.0] * 4}]}, 2),
     ],
 )
@@ -291,10 +294,12 @@ def test_a_funnel_that_is_too_high_for_exhaust_is_refused_by_its_key_at_any_poin
 @pytest.mark.parametrize(
     ("name", "overrides", "funnel", "start"),
     [
-        # measurement/emission/ships.toml: 35 m of the container, 16 of the coaster, 55 of the cruise ship.
+        # measurement/emission/ships.toml: 35 m of the container, 16 of the coaster, 55 of the
+        # cruise ship.
         ("sulphur", (), 35.0, 35.0),
         ("sulphur", ("emission.ship=cruise",), 55.0, 55.0),
-        # The UAV keeps 3 m, in light turbulence 6, within flight.altitude_min_m and altitude_max_m: 20 and 120 m above the sea.
+        # The UAV keeps 3 m, in light turbulence 6, within flight.altitude_min_m and altitude_max_m:
+        # 20 and 120 m above the sea.
         ("sulphur", ("emission.ship=coaster", "vessel.speed_mps=6"), 16.0, 23.0),
         (
             "sulphur",

@@ -1,4 +1,6 @@
-"""Each search method, and all in turn, on problems with a known minimum that random sampling of the same budget misses."""
+"""Each search method, and all in turn, on problems with a known minimum that random sampling of the
+same budget misses.
+"""
 
 import functools
 
@@ -69,20 +71,24 @@ def corner(point):
 @pytest.mark.parametrize("seed", range(2))
 @pytest.mark.parametrize("method", ["differential_evolution", "local", "cma"])
 def test_a_method_that_learns_finds_the_centre_of_a_bowl_that_random_points_miss(method, seed):
-    # 1,920 points: the share of the cube within 0.15 of the centre, by the volume of an ellipsoid, is 7e-9.
+    # 1,920 points: the share of the cube within 0.15 of the centre, by the volume of an ellipsoid,
+    # is 7e-9.
     assert least_of_random(BOWL, bowl, seed) > 25.0
     assert least((method,), BOWL, bowl, seed=seed)[0] < 15.0
 
 
 @pytest.mark.parametrize("seed", range(3))
 def test_corner_sampling_finds_a_corner_that_random_points_miss(seed):
-    # A random point is in the corner with a probability of 0.05^5 = 3e-7, one of these with about 0.4^5 = 0.01.
+    # A random point is in the corner with a probability of 0.05^5 = 3e-7, one of these with about
+    # 0.4^5 = 0.01.
     assert least_of_random(BOWL, corner, seed) == 1.0
     assert least(("corners",), BOWL, corner, seed=seed)[0] == -1.0
 
 
 def rare(point):
-    """Three coordinates that matter only with the last choice, and there are to be at a corner, at one time."""
+    """Three coordinates that matter only with the last choice, and there are to be at a corner, at
+    one time.
+    """
     if point[0] < 2.0 / 3.0:
         return 50.0 + float(point[1])
     return 40.0 - 20.0 * float(point[1] + point[2]) + 200.0 * abs(float(point[3] - point[4]))
@@ -94,8 +100,8 @@ def test_methods_in_turn_find_two_events_at_one_time_with_one_of_the_choices(see
     space = space_of(
         Coordinate(choices=THIRDS), *[Coordinate()] * 2, time, time, *[Coordinate()] * 10
     )
-    # The least is 0. A random point has the choice in 1 of 3, both quantities in the last 5 % in 1 of 400, and times within 0.01 of
-    # each other in 1 of 50.
+    # The least is 0. A random point has the choice in 1 of 3, both quantities in the last 5 % in 1
+    # of 400, and times within 0.01 of each other in 1 of 50.
     assert least_of_random(space, rare, seed) > 2.0
     assert least(METHODS, space, rare, seed=seed)[0] < 0.2
 
@@ -111,7 +117,8 @@ def test_a_method_goes_the_same_way_with_the_same_seed_and_another_with_another(
 
 @pytest.mark.parametrize("method", ["local", "cma"])
 def test_a_search_around_a_point_begins_at_the_worst_that_others_found(method):
-    # A needle: nothing leads to it, but the corners find it, and it is the deeper the nearer the quantities that have no end are.
+    # A needle: nothing leads to it, but the corners find it, and it is the deeper the nearer the
+    # quantities that have no end are.
     time = Coordinate(time_range=(0.0, 1.0))
     space = space_of(*[Coordinate()] * 6, time, time)
 
@@ -138,7 +145,8 @@ def test_a_search_around_a_point_that_has_found_a_violation_looks_for_another_on
     )
     violating = [[depth(point, pit) < 0.0 for point in tried] for pit in pits]
     assert all(any(of) for of in violating)
-    # Once a pit is known no point of it is a start any more: it takes a few flights, not most of them.
+    # Once a pit is known no point of it is a start any more: it takes a few flights, not most of
+    # them.
     assert sum(map(sum, violating)) < 0.2 * len(tried)
 
 
@@ -153,7 +161,8 @@ def test_a_method_that_is_stuck_begins_anew_as_often_as_it_may(method):
 
     tried = []
     search_in_turns(methods, BOWL, chance, population=16, turns=10_000)
-    # Where nothing leads to anything better, a start is given up after some batches, and after three the search ends by itself.
+    # Where nothing leads to anything better, a start is given up after some batches, and after
+    # three the search ends by itself.
     assert methods[method].exhausted
     assert 300 < len(tried) < 2000
 
@@ -178,7 +187,8 @@ def test_corners_take_every_choice_equally_often_and_put_quantities_at_their_end
     np.testing.assert_allclose(values, [1.0 / 6.0, 0.5, 5.0 / 6.0])
     assert counts.tolist() == [160, 160, 160]
     ends = ((tried == 0.0) | (tried == 1.0)).mean(axis=0)
-    # 0.8 in the mean of the shares, with a standard deviation of 0.02; a course and a time have no ends.
+    # 0.8 in the mean of the shares, with a standard deviation of 0.02; a course and a time have no
+    # ends.
     assert ends[1] == pytest.approx(0.8, abs=0.06)
     assert ends[2:].tolist() == [0.0, 0.0]
 

@@ -59,7 +59,8 @@ def test_what_an_instrument_reads_is_in_the_time_history():
         *(history[f"{axis}_m"] - history[f"vessel_{axis}_m"] for axis in ("north", "east"))
     )
     np.testing.assert_allclose(history["reading_m"], distance, rtol=1e-14)  # the last bit of a root
-    # Its own random numbers, by the flight's seed; and nothing else of the flight changes with them.
+    # Its own random numbers, by the flight's seed; and nothing else of the flight changes with
+    # them.
     assert history["noise_ppb"].nunique() == len(history)
     np.testing.assert_array_equal(history["noise_ppb"], again["noise_ppb"])
     without = fly(**SHORT).history
@@ -141,7 +142,8 @@ def test_a_following_flight_in_a_rising_plume_is_commanded_to_the_height_of_its_
 
 
 def test_a_part_that_ends_the_steps_of_a_flight_is_no_record_of_it():
-    # Python makes such an error of it by itself; where steps are compiled, the exception of the part gets through.
+    # Python makes such an error of it by itself; where steps are compiled, the exception of the
+    # part gets through.
     for value in (None, "stop"):
         with pytest.raises(RuntimeError, match="generator raised StopIteration"):
             closed_loop.record_of(StopIteration(value))

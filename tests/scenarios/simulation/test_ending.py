@@ -74,7 +74,8 @@ def ended(
         ({"asked": 12, "mode": Mode.OUTRUN}, Outcome.COMPLETED, ""),
         ({"vessel": False, "settled": math.nan, "flown": 0}, Outcome.COMPLETED, ""),
         ({"settled": math.nan, "flown": 0}, Outcome.NOT_SETTLED, "did not settle within 300 s"),
-        # Over after its time, as a circle about the vessel may be before it crosses the plume: a longer duration is no remedy.
+        # Over after its time, as a circle about the vessel may be before it crosses the plume: a
+        # longer duration is no remedy.
         (
             {"flown": 0, "after": 200.0},
             Outcome.INCOMPLETE,
@@ -142,7 +143,8 @@ def ended(
             Outcome.AIRCRAFT_LOST,
             "it was still gliding towards the sea at 300.0 s, before it had settled, after the fault 'engine' at 281.5 s",
         ),
-        # A verdict is what such a flight is for, also where it has not settled for as long as is asked for.
+        # A verdict is what such a flight is for, also where it has not settled for as long as is
+        # asked for.
         ({"enough": Enough.BELOW, "after": 400.0, "mode": Mode.DEPARTING}, Outcome.COMPLETED, ""),
         (
             {"enough": Enough.OUT_OF_REACH, "mode": Mode.DEPARTING},

@@ -1,4 +1,6 @@
-"""The X8 in the plume of a ship when a part of it fails: it ends outside the keep-out area, in a stated mode."""
+"""The X8 in the plume of a ship when a part of it fails: it ends outside the keep-out area, in a
+stated mode.
+"""
 
 import numpy as np
 import pandas as pd
@@ -24,7 +26,9 @@ ENDS_IN = {
 
 @pytest.fixture(scope="module")
 def flown(designs, tmp_path_factory):
-    """A flight for each kind of fault, by its kind: row and time history. At 100 m, to have some way before the sea."""
+    """A flight for each kind of fault, by its kind: row and time history. At 100 m, to have some
+    way before the sea.
+    """
     flights = scenario(
         fidelity="six_dof",
         flights=len(KINDS),
@@ -71,7 +75,8 @@ def test_a_stuck_elevon_is_found_within_seconds_and_the_flight_leads_away_from_t
     )  # once it has been told to go elsewhere for as long as it may take
     north, east = (since[f"{axis}_m"] - since[f"vessel_{axis}_m"] for axis in ("north", "east"))
     distance = np.hypot(north, east).to_numpy()
-    # Two turn radii V^2/g at 45 degrees of bank: as much nearer as a turn away may come from any course.
+    # Two turn radii V^2/g at 45 degrees of bank: as much nearer as a turn away may come from any
+    # course.
     assert distance[0] - distance.min() < 2.0 * 19.42**2 / 9.80665
     assert distance[-1] > distance[0]
 
@@ -80,7 +85,8 @@ def test_a_stuck_elevon_is_found_within_seconds_and_the_flight_leads_away_from_t
 def test_an_aircraft_that_is_lost_before_its_last_crossing_is_not_met_and_decides_the_exit_status(
     tmp_path, required, status
 ):
-    # Issue: an engine that fails in sea_wind ended in the sea, with "met every criterion" and exit status 0.
+    # Issue: an engine that fails in sea_wind ended in the sea, with "met every criterion" and exit
+    # status 0.
     keys = [
         "flights=1",
         "fault.kind=engine",

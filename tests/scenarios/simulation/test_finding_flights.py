@@ -1,4 +1,6 @@
-"""Flights of the kinematic vehicle that search for a plume, are told where it is, and leave when they have enough."""
+"""Flights of the kinematic vehicle that search for a plume, are told where it is, and leave when
+they have enough.
+"""
 
 import numpy as np
 import pytest
@@ -58,7 +60,8 @@ def modes(history):
 def test_a_plume_is_found_and_the_flight_leaves_with_a_verdict(until_verdict):
     row, history = until_verdict
     assert row["outcome"] == "completed"
-    # 1.5 % are fifteen times the limit: nothing but a verdict above it ends the flight before its time.
+    # 1.5 % are fifteen times the limit: nothing but a verdict above it ends the flight before its
+    # time.
     assert row["enough"] == "verdict: above"
     assert row["sulphur_verdict"] == "above"
     assert modes(history)[0] is Mode.APPROACH
@@ -71,7 +74,8 @@ def test_it_leaves_outwards_at_its_altitude_and_keeps_out(until_verdict):
     row, history = until_verdict
     left = history[history["mode"] == Mode.DEPARTING.number]
     off = np.hypot(left["north_m"] - left["vessel_north_m"], left["east_m"] - left["vessel_east_m"])
-    # Half a turn away takes it no nearer than its orbit by more than the turn's diameter; then straight out.
+    # Half a turn away takes it no nearer than its orbit by more than the turn's diameter; then
+    # straight out.
     assert off.iloc[-1] > off.iloc[0] + 0.9 * GONE
     assert row["keepout_violations"] == 0
     assert np.ptp(left["altitude_command_m"]) == 0.0

@@ -1,4 +1,6 @@
-"""Whole flights that follow a plume, with the kinematic vehicle: what each mode of the guidance is there for."""
+"""Whole flights that follow a plume, with the kinematic vehicle: what each mode of the guidance is
+there for.
+"""
 
 import math
 
@@ -13,7 +15,9 @@ REPORTS = {"interval_s": (2.0, 10.0), "latency_max_s": 2.0, "missing": 0.1}
 
 
 def apart(history, one, other):
-    """Return the horizontal distance between two of the places that a history holds [m]; the vehicle's own has no name."""
+    """Return the horizontal distance between two of the places that a history holds [m]; the
+    vehicle's own has no name.
+    """
     return np.hypot(
         *(history[f"{one}{axis}_m"] - history[f"{other}{axis}_m"] for axis in ("north", "east"))
     )
@@ -31,11 +35,12 @@ def test_a_flight_in_wind_tracks_and_crosses_at_the_interval_of_the_apparent_win
     row = result.row
     assert (row["outcome"], row["criteria_met"], row["message"]) == ("completed", True, "")
     assert [mode for mode, _ in modes(history)] == [Mode.TRACKING]
-    # The vessel moves 8 m/s north, the wind 6 m/s towards 250 degrees; nu by the triangle, and the interval by equations (6), (8).
+    # The vessel moves 8 m/s north, the wind 6 m/s towards 250 degrees; nu by the triangle, and the
+    # interval by equations (6), (8).
     north, east = 8.0 - 6.0 * math.cos(math.radians(250.0)), -6.0 * math.sin(math.radians(250.0))
     assert row["nu"] == pytest.approx(math.hypot(north, east) / SPEED, rel=1e-9)
-    # Crossings count from the first moment within the band of 8 m, up to 0.4 s early or late at 19 m/s: 1 % of five
-    # intervals of 8.5 s. Measured 0.3 %.
+    # Crossings count from the first moment within the band of 8 m, up to 0.4 s early or late at 19
+    # m/s: 1 % of five intervals of 8.5 s. Measured 0.3 %.
     assert row["crossing_interval_mean_s"] == pytest.approx(
         row["crossing_interval_predicted_s"], rel=1e-2
     )
@@ -74,7 +79,8 @@ def test_the_reference_is_recorded_for_the_time_of_the_vehicle(windy):
     to_east = settled["reference_east_m"] - settled["east_m"]
     course = settled["reference_course_rad"]
     along = to_north * np.cos(course) + to_east * np.sin(course)
-    # A vehicle with exact sensors keeps pace within decimetres; a step of 0.05 s at 19.42 m/s is 0.97 m.
+    # A vehicle with exact sensors keeps pace within decimetres; a step of 0.05 s at 19.42 m/s is
+    # 0.97 m.
     assert abs(along.mean()) < 0.3
 
 
@@ -88,7 +94,8 @@ def test_from_ahead_it_goes_round_the_keep_out_area():
     assert [mode for mode, _ in modes(history)] == [Mode.APPROACH, Mode.TRACKING]
     assert result.row["outcome"] == "completed"
     assert apart(history, "", "vessel_").min() > 200.0
-    # Seen from the vessel it passes abeam: on the way to the other side, its bearing goes round, and not through the middle.
+    # Seen from the vessel it passes abeam: on the way to the other side, its bearing goes round,
+    # and not through the middle.
     bearing = np.unwrap(
         np.arctan2(
             history["east_m"] - history["vessel_east_m"],
@@ -110,7 +117,8 @@ def test_while_nothing_is_received_from_the_vessel_it_holds_off_and_then_resumes
     history = result.history
     during = history[(history["time_s"] > 110.0) & (history["time_s"] < 140.0)]
     assert set(during["mode"]) == {float(list(Mode).index(Mode.HOLDING))}
-    # 12 s without a report, and then a vessel that may speed up by 0.1 m/s^2: the later, the further off.
+    # 12 s without a report, and then a vessel that may speed up by 0.1 m/s^2: the later, the
+    # further off.
     place = apart(during, "centre_", "vessel_seen_")
     assert place.iloc[-1] > place.iloc[0] + 20.0
     assert np.diff(place).min() > -0.1

@@ -1,4 +1,6 @@
-"""Steering laws that return no heading rate, or cannot be called: the flight is a failed row that names the law."""
+"""Steering laws that return no heading rate, or cannot be called: the flight is a failed row that
+names the law.
+"""
 
 from dataclasses import dataclass
 

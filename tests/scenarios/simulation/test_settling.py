@@ -99,7 +99,8 @@ def test_crossings_count_behind_the_vessel_only():
 def test_it_is_complete_one_sample_after_the_last_crossing_and_no_earlier_than_settled():
     settling = make(crossings=2)
     done = [sample(settling, 0.5 * step, across=(-1.0) ** step) for step in range(41)]
-    # Both crossings are flown after 1 s; that it has settled shows after 19 s, in the sample before the last but one.
+    # Both crossings are flown after 1 s; that it has settled shows after 19 s, in the sample before
+    # the last but one.
     assert done == [False] * 39 + [True] * 2
     settling = make(crossings=1)
     for step in range(50):

@@ -1,4 +1,6 @@
-"""What a flight cannot depend on: the motion of the air as a whole, which way is north, and left and right."""
+"""What a flight cannot depend on: the motion of the air as a whole, which way is north, and left
+and right.
+"""
 
 import math
 
@@ -12,7 +14,8 @@ AIRSPEED, THROUGH_AIR = 19.42, 9.0
 
 
 def flown(place, start_course, wind=(1e-9, 0.0), turned=0.0):
-    """Return where the vehicle is from the vessel, in the frame of the vessel's motion through the air, shape (n, 2) [m].
+    """Return where the vehicle is from the vessel, in the frame of the vessel's motion through the
+    air, shape (n, 2) [m].
 
     Parameters
     ----------
@@ -49,7 +52,8 @@ STARTS = {"astern": ([-400.0, 150.0], 30.0), "ahead": ([300.0, 250.0], -150.0)}
 
 @pytest.mark.parametrize("start", STARTS)
 def test_a_flight_is_the_same_in_a_wind_and_on_another_course(start):
-    # Places over the ground, wind and compass are used all the way; as seen from the ship in moving air it is one flight.
+    # Places over the ground, wind and compass are used all the way; as seen from the ship in moving
+    # air it is one flight.
     plain = flown(*STARTS[start])
     assert np.hypot(*plain.T).min() < 230.0
     for changed in ({"wind": (3.0, -5.0)}, {"turned": 2.5}, {"wind": (-3.0, 2.0), "turned": -1.0}):

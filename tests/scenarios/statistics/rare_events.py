@@ -16,15 +16,19 @@ def normal(points):
 
 
 def linear(probability):
-    """Return a value that is below 0 with this probability: a plane at the distance beta = -Phi^-1(p) from the origin."""
+    """Return a value that is below 0 with this probability: a plane at the distance beta =
+    -Phi^-1(p) from the origin.
+    """
     return lambda points: -ndtri(probability) - normal(points).sum(axis=1) / math.sqrt(DIMENSION)
 
 
 def four_branches(distance):
-    """Return the series system of four branches, in the first two of the inputs, which is below 0 in four directions.
+    """Return the series system of four branches, in the first two of the inputs, which is below 0
+    in four directions.
 
-    L. Schueremans, D. Van Gemert, "Benefit of splines and neural networks in simulation based structural reliability
-    analysis", Structural Safety 27 (2005), with 3 replaced by ``distance`` and 6/sqrt(2) by sqrt(2) ``distance``.
+    L. Schueremans, D. Van Gemert, "Benefit of splines and neural networks in simulation based
+    structural reliability analysis", Structural Safety 27 (2005), with 3 replaced by ``distance``
+    and 6/sqrt(2) by sqrt(2) ``distance``.
     """
 
     def value(points):
@@ -44,8 +48,8 @@ def four_branches(distance):
 def four_branches_probability(distance):
     """Return the probability of a value below 0, by integration.
 
-    With a = (u1 - u2)/sqrt(2) and b = (u1 + u2)/sqrt(2), which are standard normal and independent: |b| above distance + 0.2 a^2,
-    or |a| above distance.
+    With a = (u1 - u2)/sqrt(2) and b = (u1 + u2)/sqrt(2), which are standard normal and independent:
+    |b| above distance + 0.2 a^2, or |a| above distance.
     """
     a = np.linspace(-distance, distance, 20_001)
     density = np.exp(-0.5 * a**2) / math.sqrt(2.0 * math.pi)
@@ -54,10 +58,14 @@ def four_branches_probability(distance):
 
 
 def noisy(probability, *, seed_share, blend_share):
-    """Return a value that is below 0 with this probability, of whose variance seed and blend have these shares."""
+    """Return a value that is below 0 with this probability, of whose variance seed and blend have
+    these shares.
+    """
 
     def hashed(seeds):
-        """Return a standard normal number of each seed: that of the generator's first number would take too long."""
+        """Return a standard normal number of each seed: that of the generator's first number would
+        take too long.
+        """
         mixed = (np.asarray(seeds).astype(np.uint64) + np.uint64(0x9E3779B97F4A7C15)) & np.uint64(
             2**64 - 1
         )
@@ -68,7 +76,8 @@ def noisy(probability, *, seed_share, blend_share):
     def value(points):
         inputs = normal(points).sum(axis=1) / math.sqrt(DIMENSION)
         seed = hashed([point[DIMENSION] for point in points])
-        # Blends have different numbers of parts: all of them in one row, of which each begins where the one before it ends.
+        # Blends have different numbers of parts: all of them in one row, of which each begins where
+        # the one before it ends.
         parts = np.concatenate([point[DIMENSION + 1 :] for point in points])
         begins = np.cumsum([0] + [(len(point) - DIMENSION - 1) // 2 for point in points[:-1]])
         blend = np.add.reduceat(hashed(parts[::2]) * parts[1::2], begins)

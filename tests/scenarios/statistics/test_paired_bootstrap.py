@@ -9,7 +9,8 @@ OPTIONS = {"greater_is_better": False, "resamples": 500, "confidence": 0.95, "se
 def test_what_is_common_to_all_entrants_does_not_count_as_a_difference():
     common = np.random.default_rng(2).normal(10.0, 5.0, 12)
     best, other = paired_estimates(np.array([common, common + 1.0]), np.zeros(12), **OPTIONS)
-    # The difference is 1 in every flight, and so in every resample; the means scatter by 5/sqrt(12).
+    # The difference is 1 in every flight, and so in every resample; the means scatter by
+    # 5/sqrt(12).
     assert best.best
     assert not other.as_good
     assert (other.behind_low, other.behind_high) == pytest.approx((1.0, 1.0), abs=1e-12)
@@ -45,7 +46,8 @@ def test_more_is_better_where_that_is_asked_for_and_missing_figures_do_not_count
 
 
 def test_an_entrant_that_lacks_a_flight_which_another_has_is_not_compared():
-    # The second one is better in every flight that it has, and has no figure of the one that was hard on the first.
+    # The second one is better in every flight that it has, and has no figure of the one that was
+    # hard on the first.
     values = np.array([[1.0, 1.0, 9.0], [0.5, 0.5, np.nan]])
     first, second = paired_estimates(values, np.zeros(3), **OPTIONS)
     assert (first.whole, first.best, second.whole, second.best, second.as_good) == (
@@ -79,7 +81,8 @@ def test_where_each_entrant_lacks_another_flight_none_is_best():
 def test_an_interval_of_normal_figures_is_as_wide_as_it_should_be():
     values = np.random.default_rng(4).normal(0.0, 1.0, (1, 400))
     (estimate,) = paired_estimates(values, np.zeros(400), **{**OPTIONS, "resamples": 4000})
-    # 1.96/sqrt(400) either side; scatter of the sample's deviation, 1/sqrt(800), and of 4,000 resamples' quantiles.
+    # 1.96/sqrt(400) either side; scatter of the sample's deviation, 1/sqrt(800), and of 4,000
+    # resamples' quantiles.
     assert 0.5 * (estimate.high - estimate.low) == pytest.approx(0.098, rel=0.12)
 
 
@@ -99,7 +102,8 @@ def test_single_flights_have_no_interval_and_show_no_difference(strata):
 
 @pytest.mark.parametrize(("entrants", "strata"), [(17, 5), (2, 1)])
 def test_of_equal_entrants_one_in_twenty_counts_as_worse_whatever_their_number(entrants, strata):
-    # The interval of the difference from the best of the same flights left out 0 for 35 % of 17, and for 22 % of two.
+    # The interval of the difference from the best of the same flights left out 0 for 35 % of 17,
+    # and for 22 % of two.
     generator, worse, arenas = np.random.default_rng(5), 0, 600 // entrants
     for _ in range(arenas):
         values = generator.normal(size=(entrants, 4 * strata)) + generator.normal(size=4 * strata)
@@ -126,5 +130,6 @@ def test_intervals_of_few_flights_hold_the_mean_as_often_as_they_say(strata):
             generator.normal(size=(1, 4 * strata)), np.repeat(np.arange(strata), 4), **OPTIONS
         )
         held += estimate.low <= 0.0 <= estimate.high
-    # Of 200 at 95 % below 180 are 0.2 % (binomial); percentiles alone hold 90 % of five times four and 83 % of four.
+    # Of 200 at 95 % below 180 are 0.2 % (binomial); percentiles alone hold 90 % of five times four
+    # and 83 % of four.
     assert held >= 180

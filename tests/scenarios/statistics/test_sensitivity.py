@@ -11,7 +11,9 @@ from scenarios.statistics.sensitivity import sensitivity_indices
 
 
 def words_and_noise(flights=400):
-    """Return a category that moves a uniform figure by more than its width, an input that does nothing, and the figure."""
+    """Return a category that moves a uniform figure by more than its width, an input that does
+    nothing, and the figure.
+    """
     generator = np.random.default_rng(5)
     level = generator.choice(["light", "severe"], flights)
     inputs = pd.DataFrame(
@@ -22,7 +24,9 @@ def words_and_noise(flights=400):
 
 @pytest.fixture(scope="module", autouse=True)
 def few_resamples():
-    """Make 8 bootstraps instead of 20: they take nearly all of the time, and an index hardly hangs on their number."""
+    """Make 8 bootstraps instead of 20: they take nearly all of the time, and an index hardly hangs
+    on their number.
+    """
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr("scenarios.statistics.sensitivity.RESAMPLES", 8)
         yield
@@ -38,10 +42,12 @@ def test_a_category_that_parts_the_figure_in_two_has_the_indices_that_follow_fro
 ):
     driver, _ = found.inputs
     assert driver.key == "turbulence.level"
-    # Two densities that do not meet, each 1 wide: either is 1/2 away from their mean over both supports, so delta is 1/2. The
-    # densities are smoothed by kernels some tenth wide, whose tails beyond either support are some hundredths of it.
+    # Two densities that do not meet, each 1 wide: either is 1/2 away from their mean over both
+    # supports, so delta is 1/2. The densities are smoothed by kernels some tenth wide, whose tails
+    # beyond either support are some hundredths of it.
     assert driver.delta == pytest.approx(0.5, abs=0.03)
-    # The means lie 2 apart, variance 1, of 1 + 1/12 in all. The variance within, 1/12, is known from 400 flights to 4.5 %.
+    # The means lie 2 apart, variance 1, of 1 + 1/12 in all. The variance within, 1/12, is known
+    # from 400 flights to 4.5 %.
     assert driver.first_order == pytest.approx(12.0 / 13.0, abs=3.0 * 0.045 / 13.0)
 
 
@@ -55,8 +61,8 @@ def test_a_sum_of_two_inputs_has_their_shares_of_the_variance():
     )
     found = sensitivity_indices(inputs, inputs.to_numpy() @ [2.0, 1.0], confidence=0.95, seed=1)
     assert [index.key for index in found.inputs] == ["wind.speed_mps", "vessel.speed_mps"]
-    # Variances are 4/12 and 1/12. Classes, six of 133 flights here, hide 1/36 of an input's variance and add 1/133 of the other's;
-    # shares of 800 flights have a deviation of some 0.02.
+    # Variances are 4/12 and 1/12. Classes, six of 133 flights here, hide 1/36 of an input's
+    # variance and add 1/133 of the other's; shares of 800 flights have a deviation of some 0.02.
     assert [index.first_order for index in found.inputs] == pytest.approx([0.8, 0.2], abs=0.06)
 
 
@@ -150,15 +156,16 @@ def test_flights_of_one_sample_do_not_make_an_input_without_effect_a_driver():
     above = 0
     for seed in range(4):
         generator = np.random.default_rng(seed)
-        # 100 samples at each of four points, which hardly differ: 400 flights, and no input has any effect.
+        # 100 samples at each of four points, which hardly differ: 400 flights, and no input has any
+        # effect.
         inputs = pd.DataFrame(np.tile(generator.random((100, 3)), (4, 1)), columns=["a", "b", "c"])
         figure = np.tile(generator.normal(size=100), 4) + 0.05 * generator.normal(size=400)
         found = sensitivity_indices(
             inputs, figure, confidence=0.95, seed=seed, samples=np.arange(400) % 100
         )
         above += sum(index.delta > found.delta_floor for index in found.inputs)
-    # Each exceeds the largest of five dummies one time in six, so that more than 5 of 12 have a probability of 1 %; all of them
-    # did where each flight was taken for a sample of its own.
+    # Each exceeds the largest of five dummies one time in six, so that more than 5 of 12 have a
+    # probability of 1 %; all of them did where each flight was taken for a sample of its own.
     assert above <= 5
 
 

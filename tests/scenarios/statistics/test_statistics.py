@@ -21,7 +21,9 @@ def statistics_of(rows, inputs, **changes):
 
 @pytest.fixture(scope="module", autouse=True)
 def quick_statistics():
-    """Ask of two figures what drives them, with 3 bootstraps: that takes nearly all of the time; test_sensitivity is about it."""
+    """Ask of two figures what drives them, with 3 bootstraps: that takes nearly all of the time;
+    test_sensitivity is about it.
+    """
     with few_indices("clearance_m", "tracking_error_rms_m"):
         yield
 
@@ -38,7 +40,9 @@ def statistics(study):
 
 @pytest.fixture
 def no_indices(monkeypatch):
-    """Of what is tested nothing hangs on the sensitivity indices, which take nearly all of the time."""
+    """Of what is tested nothing hangs on the sensitivity indices, which take nearly all of the
+    time.
+    """
     monkeypatch.setattr("scenarios.statistics.estimates.DRIVEN", ())
 
 
@@ -67,7 +71,8 @@ def test_flights_without_a_measurement_are_named_and_count_as_violations_where_t
         math.nan,
         None,
     ]
-    # Out of control: one that entered before, and one of which nobody knows where it would have gone.
+    # Out of control: one that entered before, and one of which nobody knows where it would have
+    # gone.
     rows.loc[3, ["outcome", "keepout_violations"]] = ["diverged", 1]
     rows.loc[5, "outcome"] = "diverged"
     found = statistics_of(rows, inputs)

@@ -11,7 +11,9 @@ from scenarios.statistics.stopping import confidence_at, looks, tight_enough
 
 
 def rows_with(distances, entered=0, outcome="completed"):
-    """Return rows of flights with these closest approaches [m], so many of the first of which entered."""
+    """Return rows of flights with these closest approaches [m], so many of the first of which
+    entered.
+    """
     return pd.DataFrame(
         {
             "flight_id": [f"f_{i:05d}" for i in range(len(distances))],
@@ -35,7 +37,9 @@ def test_all_looks_together_spend_what_the_confidence_leaves_and_no_more():
 
 
 def stopped_wrongly(confidences, *, probability, asked, seed=20261121, studies=20_000):
-    """Return the share of simulated studies whose bound, at the look that they stop at, lies below the true probability."""
+    """Return the share of simulated studies whose bound, at the look that they stop at, lies below
+    the true probability.
+    """
     numbers = looks(8192)
     generator = np.random.default_rng(seed)
     added = generator.binomial(np.diff([0, *numbers]), probability, size=(studies, len(numbers)))
@@ -96,13 +100,14 @@ def test_flights_that_may_have_entered_do_not_let_a_study_stop(distance, outcome
 
 
 def test_a_study_stops_once_a_quantile_of_the_closest_approach_is_known_as_well_as_asked():
-    # Evenly spread over 100 m: the median of 512 lies between order statistics some 26 either side of it (deviation 11.3, and
-    # 2.24 of them at 0.975), 0.195 m apart: 10.2 m.
+    # Evenly spread over 100 m: the median of 512 lies between order statistics some 26 either side
+    # of it (deviation 11.3, and 2.24 of them at 0.975), 0.195 m apart: 10.2 m.
     rows = rows_with(200.0 + np.arange(512) * 100.0 / 512.0)
     asked = {"look_number": 1, "confidence": 0.95, "distance_quantile": 0.5}
     assert tight_enough(rows, **asked, distance_quantile_width_m=11.0)
     assert not tight_enough(rows, **asked, distance_quantile_width_m=9.0)
-    # 256 flights are too few for an interval of the 1 % quantile that ends on both sides: 0.99^256 is 0.08.
+    # 256 flights are too few for an interval of the 1 % quantile that ends on both sides: 0.99^256
+    # is 0.08.
     few = {"look_number": 1, "confidence": 0.95, "distance_quantile_width_m": 1e6}
     assert not tight_enough(rows.head(256), **few)
 

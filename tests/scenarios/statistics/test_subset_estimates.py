@@ -1,4 +1,6 @@
-"""Intervals of rare probabilities: how often they hold what is true, and what they say where nothing was reached."""
+"""Intervals of rare probabilities: how often they hold what is true, and what they say where
+nothing was reached.
+"""
 
 import json
 import math
@@ -40,8 +42,8 @@ def test_intervals_hold_the_true_probability_as_often_as_they_claim(value, proba
         rare_probability(repeats_of(value, i, flights=200, noise=noise), 0.95)
         for i in range(studies)
     ]
-    # Measured with 500 flights a level (docs/explanation/operational_conditions.md): 0.94 to 0.99. Fewer of 20 (12) than are
-    # enough here would have a probability below 2 % at 0.95.
+    # Measured with 500 flights a level (docs/explanation/operational_conditions.md): 0.94 to 0.99.
+    # Fewer of 20 (12) than are enough here would have a probability below 2 % at 0.95.
     enough = studies - 3
     assert sum(study.low <= probability <= study.high for study in found) >= enough
     assert sum(probability <= study.upper for study in found) >= enough
@@ -56,8 +58,8 @@ def test_where_no_simulation_reaches_the_event_the_bound_says_what_is_left_open(
     simulations = repeats_of(linear(1e-12), 1, flights=200, levels=4)
     found = rare_probability(simulations, 0.95)
     assert (found.estimate, found.low, found.reached) == (0.0, 0.0, 0)
-    # The last level has about 1e-3, and 0 of at most 5 x 20 chains in the event: 1 - 0.025^(1/100) is 0.036 at half of what may go
-    # wrong.
+    # The last level has about 1e-3, and 0 of at most 5 x 20 chains in the event: 1 - 0.025^(1/100)
+    # is 0.036 at half of what may go wrong.
     assert 1e-3 * 0.036 < found.upper < 1e-3 * 0.036 * 10.0
     assert found.upper < found.high
 
@@ -148,7 +150,8 @@ def test_what_decides_is_apart_from_what_has_no_effect_by_the_noise_floor():
     # All that fails has it above 0.999: the distributions hardly overlap.
     assert shifts[0].distance > 0.99
     assert shifts[0].median_near > 0.999
-    # Nine others and five dummies are alike: the largest of the nine may exceed that of the five, but not by much.
+    # Nine others and five dummies are alike: the largest of the nine may exceed that of the five,
+    # but not by much.
     assert shifts[1].distance < 2.0 * floor
     assert sum(shifts[0].near) == pytest.approx(1.0, abs=1e-12)
 
@@ -193,8 +196,9 @@ def test_flights_of_unknown_end_raise_the_pessimistic_bound_by_their_own():
 
 
 def test_estimates_that_scatter_by_decades_have_bounds_of_1_at_any_confidence():
-    # Of a plane of probability 1e-2, and planes of 1e-6 and 1e-9: their logarithms deviate by 8, and Student's t of three repeats
-    # at this confidence is 1,000: the bound's logarithm is beyond that of any number.
+    # Of a plane of probability 1e-2, and planes of 1e-6 and 1e-9: their logarithms deviate by 8,
+    # and Student's t of three repeats at this confidence is 1,000: the bound's logarithm is beyond
+    # that of any number.
     simulations = [
         simulated(linear(10.0**-power), [20261126, power], flights=200)[0] for power in (2, 6, 9)
     ]
@@ -206,7 +210,8 @@ def test_estimates_that_scatter_by_decades_have_bounds_of_1_at_any_confidence():
 
 @pytest.mark.parametrize("probability", [0.5, 0.9995])
 def test_of_what_the_first_levels_see_the_interval_is_that_of_a_plain_sample(probability):
-    # Where all but one in 2,000 have it most repeats see nothing else: their scatter of 0 gave [1, 1], which holds nothing.
+    # Where all but one in 2,000 have it most repeats see nothing else: their scatter of 0 gave
+    # [1, 1], which holds nothing.
     studies = [repeats_of(linear(probability), i, flights=200) for i in range(20)]
     found = [rare_probability(simulations, 0.95) for simulations in studies]
     values = np.concatenate([simulation.levels[0].values for simulation in studies[0]])

@@ -30,8 +30,8 @@ def standard_error(found):
 @pytest.mark.parametrize(("probability", "count"), [(1e-3, 30), (1e-7, 40)])
 def test_the_mean_of_many_simulations_is_the_probability_of_a_plane(probability, count):
     found = estimates(linear(probability), count)[:, 0]
-    # Thresholds from the same sample make the estimate biased by the order of 1/flights (Au and Beck 2001), here up to 15 %; beside
-    # it four standard errors are allowed.
+    # Thresholds from the same sample make the estimate biased by the order of 1/flights (Au and
+    # Beck 2001), here up to 15 %; beside it four standard errors are allowed.
     assert abs(found.mean() - probability) < 0.15 * probability + 4.0 * standard_error(found)
     # Measured of 200 simulations of 500 flights a level: 0.36 at 1e-3, 0.82 at 1e-7.
     assert found.std() < 1.3 * probability
@@ -45,7 +45,8 @@ def test_a_rare_event_takes_thousands_of_flights_where_plain_sampling_takes_a_bi
 
 
 def test_four_branches_in_as_many_directions_are_all_found():
-    # 3.5 has a probability near 1e-3, and 4.9 near 2e-6; the published case is 3, with 4.46e-3 (Schueremans and Van Gemert).
+    # 3.5 has a probability near 1e-3, and 4.9 near 2e-6; the published case is 3, with 4.46e-3
+    # (Schueremans and Van Gemert).
     assert four_branches_probability(3.0) == pytest.approx(4.46e-3, rel=0.01)
     for distance in (3.5, 4.9):
         probability = four_branches_probability(distance)
@@ -84,7 +85,8 @@ def test_openturns_finds_the_same_with_the_same_effort():
 
 
 def test_noise_belongs_to_the_event_whether_it_moves_by_small_steps_or_is_renewed():
-    # Noise of one seed alone at a tenth of the variance, and the blend at half of it: as inputs, turbulence and reports share it.
+    # Noise of one seed alone at a tenth of the variance, and the blend at half of it: as inputs,
+    # turbulence and reports share it.
     value = noisy(1e-4, seed_share=0.1, blend_share=0.5)
     found = estimates(value, 12, noise=True, flights=300)[:, 0]
     assert abs(found.mean() - 1e-4) < 0.15e-4 + 4.0 * standard_error(found)
@@ -164,7 +166,8 @@ def test_an_event_beyond_the_last_level_leaves_the_estimate_at_nothing():
     found, _ = simulated(linear(1e-9), 1, levels=3)
     assert len(found.levels) == 3
     assert found.below(0.0) == (0.0, math.inf)
-    # A tenth of a tenth, and more only by states at the threshold that chains have repeated: some of 50.
+    # A tenth of a tenth, and more only by states at the threshold that chains have repeated: some
+    # of 50.
     assert 0.01 <= found.reached <= 0.013
 
 

@@ -126,7 +126,8 @@ def test_flights_of_one_seed_are_one_sample():
     swept = sulphur_statistics(pd.concat(points, ignore_index=True), confidence=0.95)
     (alone,) = sulphur_statistics(points[0], confidence=0.95)["accuracy"]
     whole, *of_fuels = swept["accuracy"]
-    # The same four sniffers at three fuels say no more of the method than at one; each fuel by itself says as much as before.
+    # The same four sniffers at three fuels say no more of the method than at one; each fuel by
+    # itself says as much as before.
     for entry in (whole, *of_fuels):
         assert (
             entry["coverage_interval"]
@@ -145,7 +146,8 @@ def test_flights_of_one_seed_are_one_sample():
 def test_a_seed_whose_flights_differ_counts_for_its_share_of_events():
     table = pd.concat([rows([0.0, 0.05, 0.05]), rows([0.05, 0.0, 0.05])], ignore_index=True)
     entry = sulphur_statistics(table, confidence=0.95)["accuracy"][0]
-    # 2 of 6 flights are covered, half of those of two of the three seeds: one of three samples at least, and at most.
+    # 2 of 6 flights are covered, half of those of two of the three seeds: one of three samples at
+    # least, and at most.
     assert entry["coverage_interval"] == pytest.approx([*_clopper(1, 3)])
     table.loc[1, "fsc_high_percent"] = 1.0
     table.loc[1, "fsc_low_percent"] = 0.0

@@ -1,4 +1,5 @@
-"""An aircraft of the user's own directory through the command line: flown, reported, resumed, replayed, listed, refused.
+"""An aircraft of the user's own directory through the command line: flown, reported, resumed,
+replayed, listed, refused.
 
 The aircraft is that of docs/scripts/aircraft_directory.py, so that its design is made once.
 """

@@ -63,7 +63,8 @@ def test_every_law_flies_every_task_that_it_can_in_every_condition_from_the_same
         for case in cases
         for i in range(2)
     ]
-    # Two starts in each condition, one for each flight of a law: seeds follow from condition and number alone.
+    # Two starts in each condition, one for each flight of a law: seeds follow from condition and
+    # number alone.
     assert rows.groupby("trial")["seed"].nunique().tolist() == [2, 2]
     assert rows.groupby("trial")["start_distance_m"].nunique().tolist() == [2, 2]
 

@@ -72,7 +72,8 @@ def small():
 
 
 def test_every_trajectory_of_a_small_study_converges(small):
-    # Section IV: asymptotically stable from anywhere under (24) and (30), as long as the reference turns.
+    # Section IV: asymptotically stable from anywhere under (24) and (30), as long as the reference
+    # turns.
     assert len(small) == 2 * SMALL
     assert set(small["outcome"]) == {"converged"}
     assert counterexamples(small).empty
@@ -113,7 +114,8 @@ def test_half_of_all_trajectories_settle_close_to_the_averaged_motions_time(smal
 def test_under_law_24_distance_never_exceeds_what_v_2_allows(small):
     rows = small[small["law"] == "lyapunov"]
     v_2 = 0.5 * rows["start_distance_m"] ** 2 + (1.0 - np.cos(rows["start_phi_rad"])) / 0.001
-    # V_2 never rises, equation (26), and d^2/2 is a part of it; steps err by 1e-6 of d, and 500 of them by 5e-4 if all alike.
+    # V_2 never rises, equation (26), and d^2/2 is a part of it; steps err by 1e-6 of d, and 500 of
+    # them by 5e-4 if all alike.
     assert (rows["distance_max_m"] <= np.sqrt(2.0 * v_2) * (1.0 + 5e-4)).all()
 
 
@@ -148,8 +150,8 @@ def test_an_interrupted_study_ends_its_processes_at_once():
     before = set(multiprocessing.active_children())
 
     def interrupt(*_):
-        # What Ctrl-C raises; the processes themselves are not told, as with kill -INT of the parent alone. Not before both of
-        # them run: Python ignores what is raised while it starts one.
+        # What Ctrl-C raises; the processes themselves are not told, as with kill -INT of the parent
+        # alone. Not before both of them run: Python ignores what is raised while it starts one.
         if len(set(multiprocessing.active_children()) - before) == 2:
             signal.setitimer(signal.ITIMER_REAL, 0.0)
             raise KeyboardInterrupt
@@ -224,15 +226,18 @@ def test_a_row_flown_again_ends_where_it_ended(law, trajectory, of_each_kind):
     assert first[["north_m", "east_m"]].tolist() == row[["start_north_m", "start_east_m"]].tolist()
     assert first["phi_rad"] == row["start_phi_rad"]
     assert math.cos(first["course_rad"] - row["start_course_rad"]) == pytest.approx(1.0, abs=1e-12)
-    # Smaller steps, so not the same to the bit; both runs end within 0.02 m of the reference, or at the same time just before.
+    # Smaller steps, so not the same to the bit; both runs end within 0.02 m of the reference, or at
+    # the same time just before.
     assert last["distance_m"] < 0.03
-    # Steps that err by up to 1e-4 m, ten of them in the time in which d decays, move the moment of passing 0.02 m by some 5 %
-    # of that time, which is 6 s of a circle and up to 100 s of a weak oscillation.
+    # Steps that err by up to 1e-4 m, ten of them in the time in which d decays, move the moment of
+    # passing 0.02 m by some 5 % of that time, which is 6 s of a circle and up to 100 s of a weak
+    # oscillation.
     assert last["time_s"] == pytest.approx(row["duration_s"], abs=10.0)
     # Rounding of times in the thousands.
     assert np.diff(track["time_s"]).max() <= 0.5 + 1e-11
-    # Both move at V along their courses, which law (24) may change on the spot at the start. A step is 0.5 s long, at up to some
-    # 0.5 rad/s: its chord is shorter than its arc by (0.25 rad)^2/24 = 0.1 %, and has the course of its middle to 1e-2 rad.
+    # Both move at V along their courses, which law (24) may change on the spot at the start. A step
+    # is 0.5 s long, at up to some 0.5 rad/s: its chord is shorter than its arc by (0.25 rad)^2/24 =
+    # 0.1 %, and has the course of its middle to 1e-2 rad.
     later = track[track["time_s"] > 60.0]
     for prefix in ("", "reference_"):
         north, east = np.diff(later[f"{prefix}north_m"]), np.diff(later[f"{prefix}east_m"])
@@ -246,7 +251,8 @@ def test_starts_fill_the_disc_and_references_stay_within_their_bounds():
     cases = [draw_case(1, i, 5000.0, SPEED, HEADING_RATE_MAX) for i in range(900)]
     distance = np.hypot([case.north for case in cases], [case.east for case in cases])
     assert distance.max() <= 5000.0
-    # Uniform over a disc: half of all within 1/sqrt(2) of its radius; of 900, five standard deviations are 0.083.
+    # Uniform over a disc: half of all within 1/sqrt(2) of its radius; of 900, five standard
+    # deviations are 0.083.
     assert np.mean(distance < 5000.0 / math.sqrt(2.0)) == pytest.approx(0.5, abs=0.083)
     for kind, bounds in (
         ("circle", (0.05, 0.5)),

@@ -138,7 +138,8 @@ def test_a_study_goes_on_with_the_blocks_that_are_left(tmp_path):
 
 
 def test_a_study_of_cut_commands_alone_is_no_verdict_on_the_theory(tmp_path):
-    # Every circle but those at the very limit converges; none of these 3 references, from near by, is one of them.
+    # Every circle but those at the very limit converges; none of these 3 references, from near by,
+    # is one of them.
     run(
         study('guidance.laws=["cascade_cut"]', "ensemble.trajectories=3", "ensemble.samples=1"),
         tmp_path / "run",

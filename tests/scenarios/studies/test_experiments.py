@@ -1,4 +1,6 @@
-"""Experiments on any scenario, in any study: what was once refused in calm air or in wind flies in both."""
+"""Experiments on any scenario, in any study: what was once refused in calm air or in wind flies in
+both.
+"""
 
 import pandas as pd
 import pytest
@@ -53,7 +55,8 @@ def test_the_sweep_flies_in_wind_and_turbulence(x8):
         "light",
         "tracking",
     )
-    # The vessel goes north at 0.5 V_r, the wind comes from abeam: by Pythagoras, nu of the motion through the air.
+    # The vessel goes north at 0.5 V_r, the wind comes from abeam: by Pythagoras, nu of the motion
+    # through the air.
     assert row["nu"] == pytest.approx((0.5**2 + (5.0 / 19.42) ** 2) ** 0.5, rel=1e-9)
     assert row["vessel_speed_mps"] == pytest.approx(0.5 * 19.42)
     # Turbulence is felt, and a margin planned for it.
@@ -65,7 +68,8 @@ def test_the_sweep_flies_in_wind_and_turbulence(x8):
 def test_a_plume_that_rises_is_crossed_above_the_funnel_in_wind_too(x8):
     _, history = x8
     last = history.iloc[-1]
-    # The orbit's centre is at least r_min from the funnel at 60 m: sin(10 deg) of that, and no more than of twice r_min.
+    # The orbit's centre is at least r_min from the funnel at 60 m: sin(10 deg) of that, and no more
+    # than of twice r_min.
     assert 60.0 + 200.0 * 0.1736 < last["altitude_m"] < 60.0 + 400.0 * 0.1736
 
 
@@ -149,7 +153,8 @@ def test_a_value_that_cannot_be_swept_is_refused(tmp_path):
     ],
 )
 def test_keys_on_which_no_flight_depends_are_not_swept(override, words):
-    # Each value would fly the same flights once more, and a bound on a probability would count all of them.
+    # Each value would fly the same flights once more, and a bound on a probability would count all
+    # of them.
     with pytest.raises(InputError, match=words):
         load_study("sweep_nu", [override])
 

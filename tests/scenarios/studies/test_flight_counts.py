@@ -56,7 +56,8 @@ def test_flights_are_counted_as_planned_flown_completed_and_met():
                 ({**each, "keepout_shape": shape} for each in ROWS), planned=6
             ).line()
         )
-    # A flight about a point, without a vessel, has nothing to keep out of; one that did not complete may have had.
+    # A flight about a point, without a vessel, has nothing to keep out of; one that did not
+    # complete may have had.
     alone = {
         "flight_id": "f4",
         "outcome": "completed",
@@ -268,7 +269,8 @@ def test_the_sulphur_of_one_flight_is_stated_with_its_interval_and_of_several_by
 
 
 def test_flights_whose_sniffer_failed_are_told_by_the_fault():
-    # 1800 s long; one fault was to begin after that, and an engine's is told by how the flight ended.
+    # 1800 s long; one fault was to begin after that, and an engine's is told by how the flight
+    # ended.
     begun = [
         ("sniffer_dead", 60.0),
         ("sniffer_dead", 90.0),

@@ -107,8 +107,8 @@ def test_a_key_of_the_trials_is_set_in_every_one(listed, tmp_path):
 
 
 def test_a_run_that_is_to_keep_no_history_keeps_those_that_tell_most(listed, whole, tmp_path):
-    # Of each trial the closest flight, the median one, and the first that did not settle; they are flown again for it, and their
-    # rows are as they were.
+    # Of each trial the closest flight, the median one, and the first that did not settle; they are
+    # flown again for it, and their rows are as they were.
     assert run(listed, tmp_path / "run", "histories=0").all_met
     assert same(whole, tmp_path / "run")
     told = set()

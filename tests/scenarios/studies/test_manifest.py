@@ -1,4 +1,6 @@
-"""The files that a run takes parts from: all are found and hashed, and one that is gone is refused in one line."""
+"""The files that a run takes parts from: all are found and hashed, and one that is gone is refused
+in one line.
+"""
 
 from dataclasses import fields
 from pathlib import Path

@@ -28,7 +28,8 @@ SHORT = [
     "guidance.rate_hz=5",
     "criteria.required=keep_out",
     "histories=5",
-    # All of them within the range, so that every flight is at its point; vessels at 2 m/s and more make an apparent wind.
+    # All of them within the range, so that every flight is at its point; vessels at 2 m/s and more
+    # make an apparent wind.
     "speed_ratio=[0.0, 5.0]",
     "wind.speed_mps=0.5",
 ]
@@ -64,7 +65,8 @@ def whole(tmp_path_factory):
 def test_what_is_drawn_follows_the_declared_distributions_at_the_points_of_a_sobol_sequence(whole):
     summary, draws = tables(whole)
     assert list(draws["flight_id"]) == list(summary["flight_id"])
-    # A Sobol sequence has one of 32 points in each 32nd of a range, so also in each quarter as many.
+    # A Sobol sequence has one of 32 points in each 32nd of a range, so also in each quarter as
+    # many.
     aspect = draws["start.aspect_deg"].to_numpy()[:32]
     assert np.histogram(aspect, bins=32, range=(-180.0, 180.0))[0].tolist() == [1] * 32
     assert summary["wind_from_deg"].equals(draws["wind.from_deg"])
@@ -106,7 +108,8 @@ def test_what_drives_a_figure_is_asked_of_the_random_variables_alone(whole, monk
     journal = Journal(directory.journal, reading=True)
     study.postprocess(directory, journal, lambda *_: None)
     journal.close()
-    # Neither the trial nor the variant, which are those of all flights, nor nu, which follows from wind and vessel.
+    # Neither the trial nor the variant, which are those of all flights, nor nu, which follows from
+    # wind and vessel.
     assert asked
     assert all(keys == [draw.key for draw in scenario.draws] for keys in asked)
 
@@ -134,7 +137,8 @@ def frequent_looks(monkeypatch):
 def test_a_study_stops_by_itself_where_the_interval_it_was_asked_for_is_tight_enough(
     frequent_looks, tmp_path
 ):
-    # 0 of n at the confidence of look k: 1 - (0.05/(k (k + 1)))^(1/n) is 0.37, 0.26, 0.15 at 8, 16, 32.
+    # 0 of n at the confidence of look k: 1 - (0.05/(k (k + 1)))^(1/n) is 0.37, 0.26, 0.15 at 8, 16,
+    # 32.
     result = run(tmp_path / "run", "flights=100", "statistics.violation_upper=0.2")
     assert result.summary.done == 32
     assert result.all_met
@@ -172,7 +176,8 @@ def test_a_study_stops_by_itself_where_the_interval_it_was_asked_for_is_tight_en
 
 
 def test_a_run_that_is_resumed_stops_at_no_look_before_what_it_has_flown(frequent_looks, tmp_path):
-    # One of 8 that is lost is at most 0.53 at the first look, none 0.37; one of 16 is at most 0.36 at the second.
+    # One of 8 that is lost is at most 0.53 at the first look, none 0.37; one of 16 is at most 0.36
+    # at the second.
     asked = ("flights=100", "statistics.violation_upper=0.45")
     assert run(tmp_path / "run", *asked, factory=losing(3)).summary.done == 16
     again = run(tmp_path / "run", *asked, resume=True)

@@ -61,7 +61,9 @@ log_rate_hz = 5.0
 [criteria]
 settles = false
 """
-"""Starts near r_min, of which about one in 20 is so near, and flown so straight at the vessel, that 3 s are enough."""
+"""Starts near r_min, of which about one in 20 is so near, and flown so straight at the vessel, that
+3 s are enough.
+"""
 
 
 @pytest.fixture(scope="module")
@@ -148,7 +150,8 @@ def test_no_bound_is_claimed_from_flights_of_which_each_follows_from_others(whol
 
 
 def test_no_point_outside_the_declared_speed_ratios_is_flown(whole):
-    # Vessels of 4 to 10 m/s beside a UAV at about 20 m/s have 0.2 to 0.5 and a little more; without wind nu is their ratio.
+    # Vessels of 4 to 10 m/s beside a UAV at about 20 m/s have 0.2 to 0.5 and a little more; without
+    # wind nu is their ratio.
     nu = pd.read_csv(whole[1] / "summary.csv")["nu"]
     assert nu.min() >= 0.3
     assert nu.max() <= 0.5
@@ -174,7 +177,8 @@ TURNING = [
 def test_flights_are_those_of_the_plain_study_also_beyond_what_is_declared_of_the_vessel(
     rare, tmp_path
 ):
-    # At 5 deg/s, from 2.5 degrees on, the second turn begins before the end of the first; and 0.05 s, a step, are allowed for.
+    # At 5 deg/s, from 2.5 degrees on, the second turn begins before the end of the first; and 0.05
+    # s, a step, are allowed for.
     draw = 'draws=[{key="vessel.manoeuvres.0.turn_deg", uniform=[0.5, 5.0]}, {key="start.range_m", uniform=[215.0, 350.0]}]'
     scenario = load_study(str(rare), [*TURNING, draw])
     # At 8 m/s and 5 deg/s it accelerates by 0.7 m/s2.

@@ -74,7 +74,8 @@ def test_its_parts_fail_by_name(place):
     vehicle.fail("engine")
     for _ in range(100):
         vehicle.advance(0.0, 20.0)
-    # Without thrust, on to keep its altitude, it pays with airspeed: drag of some 4 N on 3.4 kg for 5 s takes 5 m/s at first.
+    # Without thrust, on to keep its altitude, it pays with airspeed: drag of some 4 N on 3.4 kg for
+    # 5 s takes 5 m/s at first.
     assert vehicle.air_data()[0] < 17.0
 
 
@@ -86,7 +87,8 @@ def test_sound_elevons_are_where_they_were_commanded_to_be_however_slow_the_guid
     generator = np.random.default_rng(1)
 
     def errors(seconds, turns=(-0.5, 0.5)):
-        # Hard over at random, and up and down: commands of the elevons come and go between two steps of the guidance.
+        # Hard over at random, and up and down: commands of the elevons come and go between two
+        # steps of the guidance.
         for second in range(seconds):
             flown.command_altitude(68.0 if second % 2 else 52.0)
             for _ in range(round(rate_hz)):

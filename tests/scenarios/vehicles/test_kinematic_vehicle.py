@@ -67,7 +67,8 @@ def test_it_flies_a_circle_of_speed_over_heading_rate():
         places.append(vehicle.motion()[:2])
     centre = np.mean(places, axis=0)
     radius = np.hypot(*(np.array(places) - centre).T)
-    # Equation (1) at a constant heading rate: a circle of radius v/omega, closed after 2 pi/omega. Roundings of 400 steps.
+    # Equation (1) at a constant heading rate: a circle of radius v/omega, closed after 2 pi/omega.
+    # Roundings of 400 steps.
     assert radius == pytest.approx(np.full(400, SPEED / 0.3), rel=1e-10)
     assert places[-1] == pytest.approx((10.0, -20.0), abs=1e-9)
 
@@ -108,7 +109,8 @@ def test_in_a_wind_that_changes_it_is_carried_by_what_blows_at_its_time_and_heig
         for _ in range(200):
             still.advance(0.3, SPEED)
             windy.advance(0.3, SPEED)
-        # Velocity is held for a step of 0.05 s: the sum lags half a step behind the integral, 0.25 m at most.
+        # Velocity is held for a step of 0.05 s: the sum lags half a step behind the integral, 0.25
+        # m at most.
         off_north, off_east, faster, *_ = np.subtract(windy.motion(), still.motion())
         assert (off_north, off_east) == pytest.approx((0.5 * speed * 10.0, 0.0), abs=0.6)
         assert faster == pytest.approx(speed, rel=1e-9)
@@ -148,12 +150,14 @@ def test_a_motion_that_is_not_a_number_is_a_fault():
 def test_the_sweep_flies_with_it_too(nu):
     record = fly_scenario(nu=nu)
     assert record.outcome is Outcome.COMPLETED
-    # At constant speed, held commands of 20 Hz are late by 25 ms, half a metre at 19.42 m/s; measured 0.2 m or less.
+    # At constant speed, held commands of 20 Hz are late by 25 ms, half a metre at 19.42 m/s;
+    # measured 0.2 m or less.
     assert error_of_the_last_minute(record) < 0.5
 
 
 def test_a_lag_is_previewed_as_the_autopilots_is():
-    # Preview by the lag and half a step of hold takes most of the error away, as with the aircraft (regression tests).
+    # Preview by the lag and half a step of hold takes most of the error away, as with the aircraft
+    # (regression tests).
     lag = "kinematic.heading_rate_lag_s=0.3"
     previewed, not_previewed = (
         error_of_the_last_minute(fly_scenario(lag, *words))
@@ -163,7 +167,8 @@ def test_a_lag_is_previewed_as_the_autopilots_is():
 
 
 def test_the_guidance_is_the_same_for_both_vehicles():
-    # Fidelity does not enter the plan: the same start and the same guidance, but for the lag, which is measured.
+    # Fidelity does not enter the plan: the same start and the same guidance, but for the lag, which
+    # is measured.
     scenarios = [
         request_of("sim3", f"fidelity={fidelity}").scenario for fidelity in ("kinematic", "six_dof")
     ]

@@ -53,7 +53,8 @@ def test_noise_and_biases_are_as_large_as_they_say():
             # 4,000 of each: the deviation is known to 1.1 %; 4 sigma.
             expected = [0.1, 0.1, 0.3, math.radians(1.0)]
             np.testing.assert_allclose(found[:, 2:].std(axis=0), expected, rtol=0.045)
-            # What the mean of a flight's airspeed is off by is its bias: 4 sigma of a mean of 4,000.
+            # What the mean of a flight's airspeed is off by is its bias: 4 sigma of a mean of
+            # 4,000.
             assert found[:, 4].mean() == pytest.approx(
                 made.airspeed_bias, abs=4.0 * 0.3 / math.sqrt(4000)
             )
@@ -62,7 +63,8 @@ def test_noise_and_biases_are_as_large_as_they_say():
             ) / math.sqrt(4000)
         biases.append(made.airspeed_bias)
     assert np.abs(biases).max() <= 0.5
-    # Even over 1 m/s: deviation 0.289 m/s; of 60, known to 5 % or so (the kurtosis of a uniform is low), 4 sigma.
+    # Even over 1 m/s: deviation 0.289 m/s; of 60, known to 5 % or so (the kurtosis of a uniform is
+    # low), 4 sigma.
     assert np.std(biases) == pytest.approx(1.0 / math.sqrt(12.0), rel=0.25)
 
 
@@ -72,13 +74,15 @@ def test_the_bias_of_the_heading_is_even_over_what_is_said():
         [readings(errors(exact, steps=1, seed=seed), 1)[0, 5] for seed in range(600)]
     )
     assert np.abs(biases).max() <= 2.0
-    # Even over 4 degrees: deviation 4/sqrt(12); of 600 (the kurtosis of a uniform is 1.8) known to 1.8 %; 4 sigma.
+    # Even over 4 degrees: deviation 4/sqrt(12); of 600 (the kurtosis of a uniform is 1.8) known to
+    # 1.8 %; 4 sigma.
     assert biases.std() == pytest.approx(4.0 / math.sqrt(12.0), rel=0.075)
 
 
 def test_the_error_of_satellite_navigation_has_its_deviation_from_the_first_reading_on():
     first = np.array([readings(errors(steps=1, seed=seed), 1)[0, :2] for seed in range(6000)])
-    # 12,000 independent values: known to 0.65 %; 4 sigma. Were the first noise to count twice, it would be 4 % too large.
+    # 12,000 independent values: known to 0.65 %; 4 sigma. Were the first noise to count twice, it
+    # would be 4 % too large.
     assert first.std() == pytest.approx(1.5, rel=0.026)
 
 

@@ -28,7 +28,8 @@ def test_reports_come_within_their_interval_each_with_its_delay():
     gaps = np.diff(times)
     assert gaps.min() >= 2.0
     assert gaps.max() <= 10.0
-    # Even between 2 and 10 s: mean 6 s; of 667 gaps with a deviation of 8/sqrt(12) s, 4 sigma is 0.36 s.
+    # Even between 2 and 10 s: mean 6 s; of 667 gaps with a deviation of 8/sqrt(12) s, 4 sigma is
+    # 0.36 s.
     assert gaps.mean() == pytest.approx(6.0, abs=0.36)
     late = np.array([when - report.time for when, report in arrivals])
     assert late.min() >= 0.0

@@ -1,4 +1,6 @@
-"""The smoke of a vessel over the ground: it bends with her own track, and a velocity that all share changes nothing."""
+"""The smoke of a vessel over the ground: it bends with her own track, and a velocity that all share
+changes nothing.
+"""
 
 import math
 
@@ -25,7 +27,9 @@ def smoke(wind, vessel, *overrides):
 
 
 def behind(exhaust, vessel, wind, *, distance, across=0.0):
-    """Return the dilution at places behind the vessel's motion through the air, on the plume's mean height."""
+    """Return the dilution at places behind the vessel's motion through the air, on the plume's mean
+    height.
+    """
     places = np.array([vessel.motion(t) for t in TIME])
     through_air = places[:, 2:] - wind
     ahead = through_air / np.linalg.norm(through_air, axis=1)[:, None]
@@ -38,8 +42,8 @@ def test_smoke_leaves_the_funnel_of_its_ship_unless_a_height_is_given():
     vessel, wind = SteadyVessel(6.0, 0.0), constant_wind(0.0, 7.0)
     through_air = np.array([6.0, -7.0]) / math.hypot(6.0, 7.0)
     aft = -40.0 * through_air
-    # The coaster's funnel is 16 m high (measurement/emission/ships.toml): 40 m behind it her smoke is near that height, and that
-    # of one of 35 m is not.
+    # The coaster's funnel is 16 m high (measurement/emission/ships.toml): 40 m behind it her smoke
+    # is near that height, and that of one of 35 m is not.
     means = {}
     for given in ("emission.load=0.5", "plume.source_height_m=35"):
         exhaust = smoke(
@@ -80,8 +84,8 @@ def test_a_velocity_that_ship_and_air_share_changes_nothing(common):
     plume, height = plume_of(scenario, vessel), scenario.source_height
 
     def of(vessel, wind):
-        # What is emitted follows from her own speed, and the turbulence from the true wind: they have to be the same for the
-        # comparison to hold.
+        # What is emitted follows from her own speed, and the turbulence from the true wind: they
+        # have to be the same for the comparison to hold.
         emitted, air = emission(scenario, speed=10.0), MarineAir(wind_speed=4.0, temperature=288.15)
         settings = scenario.plume.settings(plume)
         dispersion = plume.dispersion(
@@ -145,7 +149,8 @@ def test_the_smoke_of_a_ship_that_turned_lies_along_her_own_track():
     )  # fmt: skip
     vessel = vessel_of(load_study("sulphur", overrides))
     exhaust = smoke(mean_wind(load_study("sulphur", overrides), vessel), vessel, *overrides)
-    # At 125 s she sails east; what she emitted at 30 s, before half her turn, the wind has carried 190 m west of there.
+    # At 125 s she sails east; what she emitted at 30 s, before half her turn, the wind has carried
+    # 190 m west of there.
     north, east, _, _ = vessel.motion(30.0)
     at = np.array([125.0])
     old = exhaust.sample(at, np.array([north]), np.array([east - 2.0 * 95.0]), np.array([70.0]))

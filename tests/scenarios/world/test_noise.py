@@ -40,7 +40,8 @@ def test_blended_numbers_are_distributed_as_those_of_one_seed():
 def test_a_small_step_of_the_blend_changes_every_number_by_little_and_a_new_seed_none_of_them():
     before = Noise(1, ((2, 1.0),))
     after = Noise(1, ((2, KEPT), (7, STEP)))
-    # Differences have the standard deviation STEP to 1e-4 of it; that of 2,000 is good to 1.6 %, and four times that is allowed.
+    # Differences have the standard deviation STEP to 1e-4 of it; that of 2,000 is good to 1.6 %,
+    # and four times that is allowed.
     assert np.std(normals(after) - normals(before)) == pytest.approx(STEP, rel=0.07)
     assert np.array_equal(normals(Noise(99, before.blend)), normals(before))
 

@@ -36,7 +36,8 @@ def manoeuvring(*manoeuvres, speed=8.0, course_deg=0.0):
     "vessel", [steady(6.0), manoeuvring(speed=6.0)], ids=["steady", "without manoeuvres"]
 )
 def test_the_plume_trails_behind_the_motion_through_the_air(vessel):
-    # Course north at 6 m/s in a wind to the east at 6 m/s: through the air it goes north-west, and the smoke south-east.
+    # Course north at 6 m/s in a wind to the east at 6 m/s: through the air it goes north-west, and
+    # the smoke south-east.
     axis = behind(vessel, wind=(0.0, 6.0)).axis(10.0)
     assert math.remainder(axis - math.radians(135.0), 2.0 * math.pi) == pytest.approx(
         0.0, abs=1e-12

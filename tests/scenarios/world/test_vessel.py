@@ -25,7 +25,8 @@ def track(vessel, duration=600.0):
 
 
 def test_a_steady_turn_is_a_circle():
-    # From north, to the right, all the way round at 1 deg/s: radius 8/0.01745 m, centred to starboard.
+    # From north, to the right, all the way round at 1 deg/s: radius 8/0.01745 m, centred to
+    # starboard.
     vessel = track(
         {
             "speed_mps": 8.0,
@@ -38,7 +39,8 @@ def test_a_steady_turn_is_a_circle():
     for time in (0.0, 33.33, 90.0, 200.017, 360.0):
         angle = rate * time
         north, east, v_north, v_east = vessel.motion(time)
-        # The trapezoidal rule over 0.05 s: h^2/12 of the acceleration's change, 0.28 m/s^2 at most, 6e-5 m.
+        # The trapezoidal rule over 0.05 s: h^2/12 of the acceleration's change, 0.28 m/s^2 at most,
+        # 6e-5 m.
         assert (north, east) == pytest.approx(
             (radius * math.sin(angle), radius * (1.0 - math.cos(angle))), abs=1e-4
         )
@@ -129,7 +131,9 @@ def test_manoeuvres_that_overlap_are_refused(second, words):
 
 
 class Weaving:
-    """A track whose places are the integral of its velocity, and drift off by ``drift`` [m/s] besides."""
+    """A track whose places are the integral of its velocity, and drift off by ``drift`` [m/s]
+    besides.
+    """
 
     manoeuvres_end = math.nan
 

@@ -1,4 +1,6 @@
-"""The plume estimate: symmetry, what silence and absence say, consistency, and sensors that do not work."""
+"""The plume estimate: symmetry, what silence and absence say, consistency, and sensors that do not
+work.
+"""
 
 import math
 from dataclasses import replace
@@ -37,7 +39,8 @@ def test_after_a_silence_a_plume_that_was_found_is_known_as_little_as_it_has_dri
     # A pass ahead of the ship says nothing, and drift is reckoned with it.
     MadePlume(height=68.0, peak=0.0, prior=replace(PRIOR, distance=10.0)).fly(estimator, [68.0])
     drifts = HEIGHT_DRIFT * math.sqrt(silence), BEARING_DRIFT * math.sqrt(silence)
-    # 1/6000 per second of the prior beside it, and some seconds of passes: a tenth and a quarter more.
+    # 1/6000 per second of the prior beside it, and some seconds of passes: a tenth and a quarter
+    # more.
     found = estimator.height_deviation, estimator.bearing_deviation
     for before, drift, after in zip(known, drifts, found, strict=True):
         assert math.hypot(before, drift) * 0.99 < after < 1.25 * math.hypot(before, drift)
@@ -154,7 +157,8 @@ def test_stated_intervals_hold_the_truth() -> None:
         squares.append(((estimator.height - plume.height) / estimator.height_deviation) ** 2)
     # 40 cases at 95 %: fewer than 34 happen once in 300.
     assert sum(inside) >= 34
-    # The mean of 40 squares of unit variance is 1 +- 0.22; the filter allows for more than the made plume has.
+    # The mean of 40 squares of unit variance is 1 +- 0.22; the filter allows for more than the made
+    # plume has.
     assert 0.3 < np.mean(squares) < 1.7
 
 
@@ -162,7 +166,8 @@ def test_innovations_are_those_of_a_consistent_filter() -> None:
     estimator = estimated(MadePlume(height=68.0), AROUND)
     # Chances of a hit are near 1, where squares are 0.02 unless there is a miss.
     assert 0.0 < estimator.innovation < 0.2
-    # And of one that reckons with a plume elsewhere, far above one, which it begins with: there are misses where hits are sure.
+    # And of one that reckons with a plume elsewhere, far above one, which it begins with: there are
+    # misses where hits are sure.
     assert estimated(MadePlume(height=68.0, peak=0.0), AROUND).innovation > 2.0
 
 
@@ -205,7 +210,8 @@ def test_the_chance_of_a_detection_is_that_of_centres_drawn_at_random(altitude: 
     )
     off = estimator._heights[height] + PRIOR.meander_z * generator.standard_normal(count) - altitude
     read = grid.strength[strength] * np.exp(-0.5 * (off / grid.sigma_z[spread, height]) ** 2)
-    # One look, at the cells' own distance. Steps of 0.5 in the logarithm of strength blur the least that is detected.
+    # One look, at the cells' own distance. Steps of 0.5 in the logarithm of strength blur the least
+    # that is detected.
     assert estimator.detection(altitude) == pytest.approx(
         np.mean(read > estimator._least), abs=0.01
     )
@@ -229,7 +235,9 @@ def test_a_sensor_that_does_not_work_is_recognised_and_says_nothing(
 
 
 def test_a_pass_in_which_the_sensor_failed_says_nothing() -> None:
-    """The last third of each pass is stuck at 100 ppm more than clean air, which looks like the edge of a plume."""
+    """The last third of each pass is stuck at 100 ppm more than clean air, which looks like the
+    edge of a plume.
+    """
     estimator, generator = PlumeEstimator(PRIOR), np.random.default_rng(7)
     before = estimator.cells.copy()
     for i in range(round(4.0 * 18.0 / 0.1)):
@@ -259,7 +267,9 @@ def test_a_sensor_that_comes_back_is_believed_again() -> None:
 
 @pytest.mark.parametrize("unread", ["silent", "ahead of the ship"])
 def test_a_background_that_drifts_while_nothing_is_read_is_no_plume(unread: str) -> None:
-    """Clean air, whose reading rises at the rate that the data sheet allows: 0.1 ppm/s, 12 times the noise in a minute."""
+    """Clean air, whose reading rises at the rate that the data sheet allows: 0.1 ppm/s, 12 times
+    the noise in a minute.
+    """
     for seed in range(5):
         estimator, generator = PlumeEstimator(PRIOR), np.random.default_rng(seed)
         for i in range(round(160.0 / 0.05)):

@@ -19,12 +19,14 @@ SPREAD = GRID.coarse_heights(GRID.sigma_z[MIDDLE])
 def test_the_prior_has_the_moments_that_it_was_given() -> None:
     assert GRID.prior.sum() == pytest.approx(1.0)
     of_heights = GRID.prior.sum(axis=(0, 2))
-    # Cut at three deviations, a Gaussian keeps 98.7 % of its deviation, and a funnel in a range has shorter tails.
+    # Cut at three deviations, a Gaussian keeps 98.7 % of its deviation, and a funnel in a range has
+    # shorter tails.
     assert of_heights @ GRID.height == pytest.approx(PRIOR.height, abs=0.1)
     deviation = np.sqrt(of_heights @ (GRID.height - PRIOR.height) ** 2)
     assert 0.97 * PRIOR.height_deviation < deviation < 1.001 * PRIOR.height_deviation
     assert GRID.bearing_prior.sum() == pytest.approx(1.0)
-    # The sum over steps of a quarter of a deviation is the integral; cut at three, a Gaussian keeps 98.7 %.
+    # The sum over steps of a quarter of a deviation is the integral; cut at three, a Gaussian keeps
+    # 98.7 %.
     assert np.sqrt(GRID.bearing_prior @ GRID.bearing**2) == pytest.approx(
         0.987 * PRIOR.bearing_deviation, rel=0.005
     )
@@ -80,7 +82,8 @@ def test_heights_taken_together_have_the_mean_of_the_cells() -> None:
     weights, heights = GRID.coarse(GRID.prior).sum(axis=1), GRID.coarse_heights(GRID.height)
     assert weights.sum() == pytest.approx(1.0)
     of_heights = GRID.prior.sum(axis=(0, 2))
-    # Two cells count by the mean of their heights: within a pair of 2 m they differ by a few per cent.
+    # Two cells count by the mean of their heights: within a pair of 2 m they differ by a few per
+    # cent.
     assert weights @ heights == pytest.approx(of_heights @ GRID.height, abs=0.02)
     one = np.zeros_like(GRID.prior)
     one[MIDDLE, -1, 0] = 1.0
@@ -95,7 +98,8 @@ def test_a_random_walk_has_the_variance_that_it_should_and_loses_nothing(steps: 
     assert found.sum(axis=1) == pytest.approx(cells.sum(axis=1), rel=1e-12)
     assert found.min() >= 0.0
     off = np.arange(201) - 100
-    # Exact: each round moves a share by one step either way. At ten deviations from the ends, rounding is left.
+    # Exact: each round moves a share by one step either way. At ten deviations from the ends,
+    # rounding is left.
     assert found[2] @ off**2 / found[2].sum() == pytest.approx(steps, abs=1e-12)
 
 

@@ -117,7 +117,8 @@ def test_the_background_at_the_end_of_a_pass_is_what_its_pulse_leaves(
         pulse = _pulse(clean.read_at, strength, place=10.0, spread=9.0)
         reader.read(_path(pulse + rate * clean.read_at, seed=seed), PLACES, SPREADS)
         off.append((reader._level - 420.0 - rate * clean.read_at[-1]) / reader._level_deviation)
-    # A drift of twice what the data sheet allows as a deviation; the mean of 20 errors of unit variance is 0.22 off at one sigma.
+    # A drift of twice what the data sheet allows as a deviation; the mean of 20 errors of unit
+    # variance is 0.22 off at one sigma.
     assert abs(np.mean(off)) < 1.0
     assert np.sqrt(np.mean(np.square(off))) < 1.5
 
@@ -191,7 +192,9 @@ def test_a_way_that_does_not_turn_ends_after_a_while() -> None:
 
 
 def test_the_way_along_the_plume_is_that_against_the_air() -> None:
-    """At rest along the axis the plume goes by at the apparent wind: here 10 m/s, half as fast as the way across."""
+    """At rest along the axis the plume goes by at the apparent wind: here 10 m/s, half as fast as
+    the way across.
+    """
     assert _path().drawn_out(0.0, 10.0) == pytest.approx(0.5)
     assert _path().drawn_out(0.0, 0.0) == pytest.approx(0.0)
 
@@ -199,7 +202,8 @@ def test_the_way_along_the_plume_is_that_against_the_air() -> None:
 @pytest.mark.filterwarnings("error")
 def test_passes_far_from_every_place_of_the_axis_detect_nothing() -> None:
     estimator = PlumeEstimator(PRIOR)
-    # A kilometre to the side, where the widest pulse of the outermost place is less than the smallest number.
+    # A kilometre to the side, where the widest pulse of the outermost place is less than the
+    # smallest number.
     for i in range(1200):
         estimator.predict(0.1)
         reading = 420.0 + 0.5 * math.sin(i) if i % 2 == 0 else math.nan

@@ -67,7 +67,9 @@ def test_a_reading_at_the_end_of_the_range_is_saturated() -> None:
 def test_readings_that_are_coarser_than_their_noise_are_those_of_a_working_sensor(
     noise: float,
 ) -> None:
-    """Clean air at a multiple of the step, where readings of noise 0.3 are the same in 90 % of all cases: 10 in a row are usual."""
+    """Clean air at a multiple of the step, where readings of noise 0.3 are the same in 90 % of all
+    cases: 10 in a row are usual.
+    """
     watch, generator = SensorWatch(_sensor(noise, 1.0)), np.random.default_rng(1)
     for reading in np.round(420.0 + noise * generator.standard_normal(10_000)):
         watch.read(float(reading))
@@ -75,7 +77,8 @@ def test_readings_that_are_coarser_than_their_noise_are_those_of_a_working_senso
 
 
 def test_a_sensor_with_coarse_readings_that_sticks_is_found_later() -> None:
-    # erf(1/(2 sqrt(2) 0.5)) = 0.6827 of a normal distribution lie within one deviation; 0.6827^73 = 7.8e-13, 0.6827^72 = 1.1e-12.
+    # erf(1/(2 sqrt(2) 0.5)) = 0.6827 of a normal distribution lie within one deviation; 0.6827^73 =
+    # 7.8e-13, 0.6827^72 = 1.1e-12.
     watch = SensorWatch(_sensor(0.5, 1.0))
     for _ in range(72):
         watch.read(420.0)

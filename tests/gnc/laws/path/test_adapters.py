@@ -1,4 +1,6 @@
-"""Every registered law, as it is put to a moving point: symmetries, and that it keeps to its reference once it is there."""
+"""Every registered law, as it is put to a moving point: symmetries, and that it keeps to its
+reference once it is there.
+"""
 
 import math
 from types import SimpleNamespace
@@ -110,10 +112,12 @@ def test_on_a_circle_a_law_for_circles_commands_what_keeps_it_there(name, frame)
     wanted |= {"park_l1_orbit": wanted["ardupilot_loiter_relative"], "rosplane_orbit": None}
     rate = commanded(name, point, (0.0, 0.0), point.course, frame=frame)
     if wanted.get(name, 0.15) is not None:
-        # Fields feed the heading rate forward that keeps to the circle; L1 laws give its centripetal acceleration, over V_a.
+        # Fields feed the heading rate forward that keeps to the circle; L1 laws give its
+        # centripetal acceleration, over V_a.
         assert rate == pytest.approx(wanted.get(name, 0.15), rel=1e-6)
     else:
-        # ROSplane feeds V_a^2/(R cos(crab)) forward, with g = 9.81 on both sides: right in still air.
+        # ROSplane feeds V_a^2/(R cos(crab)) forward, with g = 9.81 on both sides: right in still
+        # air.
         assert rate == pytest.approx(
             SPEED * motion.curvature / math.cos(point.course - course_of(motion.velocity)), rel=1e-9
         )
@@ -129,7 +133,8 @@ def test_the_path_of_a_reference_in_wind_is_that_of_its_velocity_over_the_ground
     turn = (course_of(ground(0.3 + 0.15 * step)) - course_of(ground(0.3 - 0.15 * step))) / (
         2.0 * step
     )
-    # Curvature is the turn of the velocity over the distance; a central difference, good to the square of 1e-5 rad.
+    # Curvature is the turn of the velocity over the distance; a central difference, good to the
+    # square of 1e-5 rad.
     assert motion.curvature == pytest.approx(turn / norm(ground(0.3)), rel=1e-8)
     assert course_of(motion.tangent) == pytest.approx(course_of(ground(0.3)), abs=1e-12)
 

@@ -1,4 +1,6 @@
-"""NPFG against its original: numbers of guidance-laws.md, section 1, computed by PX4's code in single precision."""
+"""NPFG against its original: numbers of guidance-laws.md, section 1, computed by PX4's code in
+single precision.
+"""
 
 import math
 
@@ -30,14 +32,16 @@ def test_beside_a_line_in_a_crosswind():
 
 def test_inside_a_turn_the_curvature_is_fed_forward():
     command = npfg((0.0, -10.0), (15.0, 0.0), CALM, ORIGIN, NORTH, 1.0 / 80.0)
-    # Section 1: a = 6.011614, of which feed-forward before fading 2.5: 15^2 m2/s2 over the 90 m of the vehicle's own circle.
+    # Section 1: a = 6.011614, of which feed-forward before fading 2.5: 15^2 m2/s2 over the 90 m of
+    # the vehicle's own circle.
     assert command.lateral_acceleration == pytest.approx(6.011614, rel=SINGLE)
     assert command.feed_forward == pytest.approx(2.5, rel=SINGLE)
 
 
 def test_blown_backwards_it_heads_against_the_wind_and_towards_its_bearing():
     command = npfg((0.0, 30.0), (-5.0, 0.0), (-20.0, 0.0), ORIGIN, NORTH, 0.0)
-    # Section 1.8, against(V) without regulation: along b sqrt(w^2 - V^2) - w, of 20 m/s from the north and 15 m/s.
+    # Section 1.8, against(V) without regulation: along b sqrt(w^2 - V^2) - w, of 20 m/s from the
+    # north and 15 m/s.
     least = math.sqrt(20.0**2 - 15.0**2)
     heading = math.atan2(
         least * math.sin(command.bearing), least * math.cos(command.bearing) + 20.0
@@ -66,7 +70,8 @@ def test_the_error_bound_is_continuous_at_a_ground_speed_of_one():
     [((-14.0, 0.0), 0.75), ((0.0, 15.0), 0.0), ((0.0, 13.5), 1.0), ((14.0, 0.0), 1.0)],
 )
 def test_a_bearing_is_feasible_as_far_as_airspeed_exceeds_what_blows_against_it(wind, feasible):
-    # Section 1.3 at 15 m/s: sin^2(pi/2 min((V - c)/1.5, 1)); 1 m/s left of 1.5 is sin^2(60 deg) = 3/4. Rounding.
+    # Section 1.3 at 15 m/s: sin^2(pi/2 min((V - c)/1.5, 1)); 1 m/s left of 1.5 is sin^2(60 deg) =
+    # 3/4. Rounding.
     assert bearing_feasibility(NORTH, wind, 15.0) == pytest.approx(feasible, abs=1e-15)
 
 

@@ -139,7 +139,8 @@ def test_line_of_sight_with_a_turning_reference():
 
 
 def test_a_carrot_is_ahead_of_the_nearest_point():
-    # Section 6: s = 10 along the line, delta 40; on the circle phi = 0, lambda a quarter of a turn to the right.
+    # Section 6: s = 10 along the line, delta 40; on the circle phi = 0, lambda a quarter of a turn
+    # to the right.
     assert carrot_on_line((10.0, 5.0), ORIGIN, (1.0, 0.0), 40.0) == (50.0, 0.0)
     assert carrot_on_circle((150.0, 0.0), ORIGIN, 100.0, 1, 0.5 * math.pi) == pytest.approx(
         (0.0, 100.0)

@@ -1,4 +1,6 @@
-"""How fast dead reckoning is taken to go wrong: what is declared, and what the air of the scenario adds."""
+"""How fast dead reckoning is taken to go wrong: what is declared, and what the air of the scenario
+adds.
+"""
 
 import math
 
@@ -76,7 +78,8 @@ def test_gusts_displace_by_no_more_than_is_reckoned_with(speed, rise, count):
     for begins in range(0, 6000, 100):
         since = moved[begins:] - moved[begins]
         assert (since <= added * (time[: len(since)] + TURN)).all()
-    # The wind is taken to be what is left of a gust that the estimate has followed, and none may blow: no more than both.
+    # The wind is taken to be what is left of a gust that the estimate has followed, and none may
+    # blow: no more than both.
     assert added <= 2.0 * speed
 
 
@@ -98,7 +101,8 @@ def test_turbulence_displaces_by_more_than_is_reckoned_with_about_as_often_as_th
         )
         moved += step * velocity
         exceeded.append(np.mean(np.abs(moved) > added * (n * step + TURN)))
-    # Of a normal distribution 0.27 % lie beyond three deviations: so many at the worst age, and fewer at any other.
+    # Of a normal distribution 0.27 % lie beyond three deviations: so many at the worst age, and
+    # fewer at any other.
     assert 0.001 < max(exceeded) < 0.004
 
 

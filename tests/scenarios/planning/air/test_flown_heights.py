@@ -1,4 +1,6 @@
-"""The winds at all heights that a flight may fly at count: how far it climbs, whether the vessel outruns it, where it glides to."""
+"""The winds at all heights that a flight may fly at count: how far it climbs, whether the vessel
+outruns it, where it glides to.
+"""
 
 import pytest
 
@@ -25,7 +27,9 @@ CIRCLE = {
 
 
 def scenario(tmp_path, table, **values):
-    """Return a scenario in the wind of a table, whose plume starts at 60 m, with the vessel and the wind of its flights."""
+    """Return a scenario in the wind of a table, whose plume starts at 60 m, with the vessel and the
+    wind of its flights.
+    """
     file = tmp_path / "wind.csv"
     file.write_text(table, encoding="utf-8")
     found = with_values(load_study("sea_wind"), {"draws": [], "wind.table": str(file)} | values)
@@ -49,7 +53,8 @@ def test_no_height_is_commanded_beyond_those_that_are_looked_at(tmp_path):
 
 def test_a_vessel_that_outruns_the_vehicle_where_it_climbs_to_is_refused(tmp_path):
     flown, vessel = scenario(tmp_path, FASTER_ALOFT, **CIRCLE)
-    # At the funnel she moves at 14 m/s through the air; at 60 + 150 m at 4 + 10 + 16 * ln(210/60)/ln(250/60) = 28 m/s.
+    # At the funnel she moves at 14 m/s through the air; at 60 + 150 m at 4 + 10 + 16 *
+    # ln(210/60)/ln(250/60) = 28 m/s.
     with pytest.raises(
         InfeasibleError,
         match=r"height of 210 m, which is flown, the vessel moves at up to 28\.\d m/s",

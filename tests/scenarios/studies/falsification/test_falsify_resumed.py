@@ -100,7 +100,8 @@ def test_a_search_by_time_ends_after_it_and_a_resumed_one_continues_for_as_long(
     first = after.iloc[: len(before)].drop(columns="wall_time_s")
     pd.testing.assert_frame_equal(first, before.drop(columns="wall_time_s"), check_exact=True)
     worst = {entry["flight_id"] for entry in manifest_of(out)["search"]["worst"]}
-    # What the first run repeated stays in the tables, also where it is not among the worst any more.
+    # What the first run repeated stays in the tables, also where it is not among the worst any
+    # more.
     assert set(repeats_after["confirms"]) == worst | set(repeats["confirms"])
     assert manifest_of(out)["flights_planned"] == len(after) + len(repeats_after)
     assert len(list((out / "worst").iterdir())) == KEPT

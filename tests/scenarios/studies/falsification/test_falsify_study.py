@@ -1,4 +1,6 @@
-"""The search for the worst flight, kinematic and short, the flights that it repeats and the files that it keeps."""
+"""The search for the worst flight, kinematic and short, the flights that it repeats and the files
+that it keeps.
+"""
 
 import numpy as np
 import pandas as pd
@@ -42,8 +44,9 @@ def distances(out):
 def test_the_search_closes_in_on_the_nearest_start_that_flies_at_the_vessel(found):
     every = distances(found)
     assert POPULATION * GENERATIONS < len(every) <= POPULATION * (GENERATIONS + 1)
-    # In 4 s nothing comes nearer than the shortest start, 400 m, less what vessel and UAV fly: 8 and 19.42 m/s, and 3 m/s more
-    # downwind; and it gets close to that only from there, on a course towards the vessel, and with the wind.
+    # In 4 s nothing comes nearer than the shortest start, 400 m, less what vessel and UAV fly: 8
+    # and 19.42 m/s, and 3 m/s more downwind; and it gets close to that only from there, on a course
+    # towards the vessel, and with the wind.
     nearest_possible = 400.0 - 4.0 * (8.0 + 19.42 + 3.0)
     assert nearest_possible < every.min() < nearest_possible + 25.0
     assert np.median(every[-POPULATION:]) < np.median(every[:POPULATION]) - 100.0
@@ -66,7 +69,8 @@ def test_every_flight_says_which_method_proposed_it(found):
 
 
 def test_violations_are_listed_the_worst_first(search, tmp_path):
-    # Starts of 400 m and more, and a keep-out area of 340 m: some flights at the vessel violate it, as there is no guard.
+    # Starts of 400 m and more, and a keep-out area of 340 m: some flights at the vessel violate it,
+    # as there is no guard.
     overrides = ("keepout.radius_m=340", "guidance.keepout_guard=false", "search.generations=3")
     result = run(search, tmp_path / "run", *overrides)
     assert not result.all_met

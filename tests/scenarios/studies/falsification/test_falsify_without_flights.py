@@ -65,7 +65,8 @@ def test_a_search_by_time_ends_where_no_point_is_within_the_declared_ranges(tmp_
         falsification, "time", SimpleNamespace(monotonic=lambda: float(next(ticks)))
     )
     (tmp_path / "beyond.py").write_text(BEYOND, encoding="utf-8")
-    # A turn of 4.5 deg/s at 8 m/s is 0.63 m/s2, whatever is sampled. Of turns that are not, the study would be refused at once.
+    # A turn of 4.5 deg/s at 8 m/s is 0.63 m/s2, whatever is sampled. Of turns that are not, the
+    # study would be refused at once.
     turns = (
         "vessel.manoeuvres=[{at_s=1.0,turn_deg=60.0}]", "following.vessel_acceleration_mps2=0.05",
         'draws=[{key="vessel.manoeuvres.0.turn_rate_deg_s",uniform=[4.5,5.0]}]',

@@ -1,4 +1,6 @@
-"""The files of the worst flights, of a search whose margin allows for faults that most of its flights do not have."""
+"""The files of the worst flights, of a search whose margin allows for faults that most of its
+flights do not have.
+"""
 
 import pandas as pd
 import pytest
@@ -72,7 +74,8 @@ def test_a_worst_flight_keeps_the_margin_that_allows_for_the_faults_of_the_whole
     first = pd.read_parquet(found / "flights" / f"{row.name}.parquet")
     second = pd.read_parquet(tmp_path / "again" / "flights" / f"{path.stem}_00000.parquet")
     pd.testing.assert_frame_equal(first, second, check_exact=True)
-    # Without the declaration it would not: the margin of a flight that can lose no satellites is 1 m smaller here.
+    # Without the declaration it would not: the margin of a flight that can lose no satellites is 1
+    # m smaller here.
     if fault != "satellite_navigation":
         flown(path, tmp_path / "other", "fault.declared=[]")
         assert (

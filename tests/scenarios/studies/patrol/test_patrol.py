@@ -91,8 +91,8 @@ def test_stretches_follow_each_other_in_time_and_place_and_fit_into_the_enduranc
         ("to_north_m", "from_north_m"),
         ("to_east_m", "from_east_m"),
     ):
-        # Each stretch begins with the very sample that the one before it ends with; a flight at the place that its start is
-        # turned into and back: rounding.
+        # Each stretch begins with the very sample that the one before it ends with; a flight at the
+        # place that its start is turned into and back: rounding.
         assert np.allclose(phases[end].iloc[:-1], phases[begin].iloc[1:], rtol=0.0, atol=1e-6), end
     assert phases["ends_s"].iloc[-1] <= 1500.0
     assert set(phases["phase"]) == {"transit", "approach", "searching", "measuring", "leaving"}
@@ -175,7 +175,8 @@ def test_ways_are_flown_in_the_wind_at_their_height_and_ships_have_the_speed_rat
 
 
 def test_a_patrol_that_fails_is_a_row_with_its_reason():
-    # Two ships that are to stay farther apart than the square is wide, found when the patrol is flown.
+    # Two ships that are to stay farther apart than the square is wide, found when the patrol is
+    # flown.
     scenario = with_values(patrol(), {"patrol.separation_m": 20_000.0})
     work = PatrolWork(
         experiments=(Experiment("patrol", scenario),),

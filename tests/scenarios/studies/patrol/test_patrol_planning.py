@@ -89,13 +89,15 @@ def test_no_course_reaches_the_ship_sooner(air):
 
 
 def test_times_of_known_chases():
-    # Head on at 20 + 10 m/s over 3,000 m; from astern at 20 - 10 m/s over 1,000 m; abeam, a right triangle 3-4-5.
+    # Head on at 20 + 10 m/s over 3,000 m; from astern at 20 - 10 m/s over 1,000 m; abeam, a right
+    # triangle 3-4-5.
     assert time_to_reach(3000 + 0j, -10 + 0j, 20.0) == pytest.approx(100.0, rel=1e-12)
     assert time_to_reach(1000 + 0j, 10 + 0j, 20.0) == pytest.approx(100.0, rel=1e-12)
     assert time_to_reach(400 + 0j, 12j, 20.0) == pytest.approx(25.0, rel=1e-12)
     assert time_to_reach(3000 + 0j, -10 + 0j, 20.0, 600.0) == pytest.approx(80.0, rel=1e-12)
     assert time_to_reach(100j, 3 + 0j, 20.0, 200.0) == 0.0
-    # A ship as fast as the pursuer is met if she comes, and never if she goes; a faster one likewise.
+    # A ship as fast as the pursuer is met if she comes, and never if she goes; a faster one
+    # likewise.
     assert time_to_reach(4000 + 0j, -20 + 0j, 20.0) == pytest.approx(100.0, rel=1e-12)
     assert time_to_reach(4000 + 0j, 20 + 0j, 20.0) == math.inf
     assert time_to_reach(4500 + 0j, -25 + 0j, 20.0) == pytest.approx(100.0, rel=1e-12)
@@ -108,7 +110,8 @@ def test_a_way_past_ships_keeps_clear_of_all_of_them_and_costs_little():
     for seed, air in enumerate(airs(12)):
         goal, *others = ships(seed, 4, air=air)
         straight = straight_leg(0j, 0.0, goal, RADIUS, air)
-        # In the way of the straight leg, at a quarter, the half and three quarters of it, up to 300 m to its side.
+        # In the way of the straight leg, at a quarter, the half and three quarters of it, up to 300
+        # m to its side.
         for i, other in enumerate(others):
             at = 0.25 * (i + 1) * straight.ends
             place = straight.velocity * at + 300.0 * cmath.exp(1j * seed) - other.velocity * at
@@ -129,8 +132,8 @@ def test_a_way_past_ships_keeps_clear_of_all_of_them_and_costs_little():
             one.end == other.start and one.ends == other.begins
             for one, other in itertools.pairwise(legs)
         )
-        # Round three octagons of 541 m: with each at most half her circumference more than through her, 3 (pi/2 - 1) 2 x 541 m,
-        # at the UAV's advance over the ships of 0.1 V_R at least.
+        # Round three octagons of 541 m: with each at most half her circumference more than through
+        # her, 3 (pi/2 - 1) 2 x 541 m, at the UAV's advance over the ships of 0.1 V_R at least.
         assert straight.ends < legs[-1].ends < straight.ends + 3.0 * 0.571 * 1082.0 / (0.1 * V_R)
     assert tried > 6
 
@@ -183,7 +186,8 @@ def test_insertion_expects_nearly_as_many_verdicts_as_the_best_of_all_orders(cou
         served = prospect(ships(seed, count, air=air), air)
         best = exact_order(served, 0j, 0.0, range(count))
         found = inserted_order(served, 0j, 0.0, range(count))
-        # No order is better than the exact one; insertion may stop at ships of which less than 0.02 verdicts are expected each.
+        # No order is better than the exact one; insertion may stop at ships of which less than 0.02
+        # verdicts are expected each.
         assert served.score_of(found) <= served.score_of(best) + 1e-12
         assert found.verdicts > best.verdicts - 0.1
         assert found.ends == pytest.approx(
@@ -215,7 +219,8 @@ def test_ships_ahead_on_a_line_are_served_as_they_come_and_those_out_of_reach_ar
     of = [Mover(complex(place), 0j) for place in (9000, 3000, 6000, 500_000)]
     assert inserted_order(prospect(of, air), 0j, 0.0, range(4)).ships == (1, 2, 0)
     assert exact_order(prospect(of, air), 0j, 0.0, range(4)).ships == (1, 2, 0)
-    # The one way to 9,000 m, 800 m of each way saved and made up for by flying on from the ship herself, and three services.
+    # The one way to 9,000 m, 800 m of each way saved and made up for by flying on from the ship
+    # herself, and three services.
     ends = ends_of(prospect(of, air), 0j, 0.0, (1, 2, 0))
     assert ends == pytest.approx(
         [2200.0 / V_R + 165.0, 4400.0 / V_R + 330.0, 6600.0 / V_R + 495.0], rel=1e-12
