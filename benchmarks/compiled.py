@@ -25,7 +25,7 @@ MODULES = {
         "airspeed/along_track", "airspeed/pace_hold",
         "estimation/health", "estimation/health_monitor", "estimation/navigation", "estimation/own_motion",
         "estimation/target_motion", "estimation/vessel_filter", "estimation/wind_filter",
-        "laws/cascade_equation", "laws/delta",
+        "paper",
         "mission/approach", "mission/direct_tracking", "mission/egress", "mission/mode", "mission/plume_following",
         "mission/transit",
         "reference/moving_centre", "reference/orbit_tables", "reference/oscillating", "reference/steered",

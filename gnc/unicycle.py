@@ -10,19 +10,6 @@ _PIECES_MAX = 200
 """
 
 
-def unicycle_rates(speed: float, course: float, heading_rate: float) -> tuple[float, float, float]:
-    """Return north rate, east rate [m/s] and course rate [rad/s]: equation (1), and (13) for a
-    reference.
-
-    Parameters
-    ----------
-    speed : v [m/s]
-    course : chi [rad]
-    heading_rate : omega [rad/s]
-    """
-    return speed * math.cos(course), speed * math.sin(course), heading_rate
-
-
 def unicycle_move(
     north: float, east: float, course: float, speed: float, heading_rate: float, duration: float
 ) -> tuple[float, float, float]:

@@ -5,7 +5,7 @@ import numpy.typing as npt
 
 from gnc.analysis.turning_reference import Array, TurningReferences
 from gnc.errors import InfeasibleError
-from gnc.laws.delta import LookAhead
+from gnc.paper import LookAhead
 
 
 def averaged_settling_time(

@@ -17,8 +17,8 @@ from scipy.optimize import Bounds, minimize
 
 from gnc.analysis.worst_position import worst_case_over_positions
 from gnc.errors import InfeasibleError
-from gnc.laws.delta import LookAhead, look_ahead
 from gnc.numeric import clip
+from gnc.paper import LookAhead, look_ahead
 
 _Array = npt.NDArray[np.float64]
 

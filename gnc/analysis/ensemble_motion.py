@@ -15,8 +15,8 @@ import numpy as np
 import numpy.typing as npt
 
 from gnc.analysis.turning_reference import TurningReferences
-from gnc.laws.delta import LookAhead
 from gnc.numeric import wrapped
+from gnc.paper import LookAhead
 
 Array = npt.NDArray[np.float64]
 

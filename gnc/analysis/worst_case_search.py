@@ -7,7 +7,7 @@ import numpy.typing as npt
 from scipy.optimize import minimize
 
 from gnc.errors import InfeasibleError
-from gnc.laws.delta import LookAhead
+from gnc.paper import LookAhead
 
 _Array = npt.NDArray[np.float64]
 

@@ -10,8 +10,8 @@ import pandas as pd
 
 from aircraft.atmosphere.wind import CALM
 from common.physics.geodesy import LocalFrame
-from gnc.laws.delta import LookAhead
 from gnc.numeric import wrapped
+from gnc.paper import LookAhead
 from scenarios.planning.flight_plan import FlightPlan
 from scenarios.simulation.record import PLACE_COLUMNS, RELATIVE_COLUMNS, WIND_COLUMNS, FlightRecord
 
@@ -65,7 +65,7 @@ def relative_states(
     look_ahead: LookAhead, to_north: Array, to_east: Array, reference_course: Array, course: Array
 ) -> tuple[Array, Array, Array, Array]:
     """Return delta, rho [m], phi_r and phi [rad] of many samples at once; parameters as of
-    ``gnc.laws.delta.relative_state``.
+    ``gnc.paper.relative_state``.
     """
     delta = look_ahead.epsilon * (to_north**2 + to_east**2) + look_ahead.radius
     z_north, z_east = (

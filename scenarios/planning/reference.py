@@ -7,9 +7,9 @@ import numpy as np
 
 from common.registry import PluginError
 from gnc.errors import InfeasibleError
+from gnc.paper import PlumeAxis, distance_by_paper, distance_exact
 from gnc.reference.circling import CirclingReference
 from gnc.reference.joining import JoinedOrbit
-from gnc.reference.placement import PlumeAxis, distance_by_paper, distance_exact
 from gnc.reference.reference import REFERENCE_SHAPES, Orbit, ReferenceShape, ReferenceStart, Swing
 from gnc.reference.shapes.plain import Plain, made_plain
 from scenarios.planning.limits import omega_max

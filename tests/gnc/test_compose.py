@@ -31,9 +31,9 @@ from gnc.mission.direct_tracking import DirectTracking
 from gnc.mission.mode import Mode
 from gnc.mission.plume_axis import PredictedPlume
 from gnc.mission.plume_following import GLIDE_ALTITUDE, FollowingParameters, PlumeFollowing
+from gnc.paper import half_widths
 from gnc.parameters import GuidanceParameters, ReportedVessel
 from gnc.reference.moving_centre import CentreParameters
-from gnc.reference.orbit import half_widths
 from gnc.reference.shapes.sinusoid import Sinusoid
 from gnc.safety.guard_parameters import GuardParameters
 

@@ -17,10 +17,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from gnc.estimation.reachable_set import Tube
-from gnc.laws.cascade import CascadeLaw
-from gnc.laws.line_of_sight import LineOfSightLaw
-from gnc.laws.lyapunov import LyapunovLaw
-from gnc.reference.placement import PlumeAxis, distance_by_paper
+from gnc.laws.paper import CascadeLaw, LineOfSightLaw, LyapunovLaw
+from gnc.paper import PlumeAxis, distance_by_paper
 from gnc.safety.guard_parameters import GuardParameters
 
 # 0.75 of the tracking allowance of 1 m about its 200 m (scenarios/planning/tracking_flight.py).

@@ -17,11 +17,8 @@ from gnc_cases import (
 from hypothesis import given
 from hypothesis import strategies as st
 
-from gnc.laws.cascade import CascadeLaw
-from gnc.laws.cascade_equation import cascade_law
-from gnc.laws.delta import relative_state, relative_velocity
-from gnc.laws.line_of_sight import LineOfSightLaw, line_of_sight_law
-from gnc.laws.lyapunov import LyapunovLaw, lyapunov_law
+from gnc.laws.paper import CascadeLaw, LineOfSightLaw, LyapunovLaw, line_of_sight_law
+from gnc.paper import cascade_law, lyapunov_law, relative_state, relative_velocity
 from gnc.tracker import Tracker
 
 LAWS = pytest.mark.parametrize(

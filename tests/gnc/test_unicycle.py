@@ -7,7 +7,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.integrate import solve_ivp
 
-from gnc.unicycle import lagged_move, unicycle_move, unicycle_rates
+from gnc.paper import unicycle_rates
+from gnc.unicycle import lagged_move, unicycle_move
 
 speeds = st.floats(1.0, 40.0)
 heading_rates = st.floats(-1.0, 1.0)

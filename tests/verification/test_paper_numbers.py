@@ -11,14 +11,17 @@ from scipy.optimize import brentq
 
 from common.physics.coordinated_turn import heading_rate_for_bank
 from common.physics.units import STANDARD_GRAVITY
-from gnc.reference.bessel import eta_for_speed_ratio, mean_speed_ratio
-from gnc.reference.orbit import f_x, half_widths, offset
-from gnc.reference.oscillation import design_oscillation
-from gnc.reference.placement import (
+from gnc.paper import (
     PlumeAxis,
     centre_of_oscillation,
+    design_oscillation,
     distance_by_paper,
     distance_exact,
+    eta_for_speed_ratio,
+    f_x,
+    half_widths,
+    mean_speed_ratio,
+    offset,
 )
 
 SPEED = 19.42

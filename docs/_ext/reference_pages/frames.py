@@ -5,7 +5,7 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
-from gnc.reference.bessel import eta_for_speed_ratio
+from gnc.paper import eta_for_speed_ratio
 
 Place = tuple[float, float]
 """On the picture: to the right, and down [pixels]."""

@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 from scipy.optimize import brentq
 
-from gnc.reference.oscillation import available_heading_rate
+from gnc.paper import available_heading_rate
 from gnc.reference.reference import Array, Swing, reference_shape
 from gnc.reference.shapes.bank_swing import BankSwing, bank_swing
 from gnc.reference.shapes.course_path import CoursePath, fourier_coefficients

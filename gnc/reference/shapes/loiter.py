@@ -19,7 +19,7 @@ from scipy.optimize import brentq
 from common.physics.coordinated_turn import bank_for_heading_rate
 from common.physics.units import STANDARD_GRAVITY
 from gnc.errors import InfeasibleError
-from gnc.reference.oscillation import available_heading_rate
+from gnc.paper import available_heading_rate
 from gnc.reference.reference import Array, Swing, reference_shape
 from gnc.reference.shapes.course_path import CoursePath, fourier_coefficients
 from gnc.reference.shapes.fastest import JOINING_SHARE

@@ -8,8 +8,8 @@ import numpy as np
 from scipy.special import j0, jv
 
 from common.physics.units import STANDARD_GRAVITY
+from gnc.paper import Oscillation, design_oscillation
 from gnc.reference.orbit_tables import ETA_STEP, OrbitTables
-from gnc.reference.oscillation import Oscillation, design_oscillation
 from gnc.reference.reference import ETA_FREQUENCY, Swing, reference_shape
 
 _ORDERS = 4
@@ -25,9 +25,9 @@ _ETA_MAX = 2.9
 class SinusoidSwing:
     """Courses eta cos(theta), as of ``gnc.reference.reference.Swing``.
 
-    Differs from ``gnc.reference.bessel`` in that eta comes from a table, because a steered
-    reference needs it often, and may have to back away: ratios down to -0.2 are those of eta beyond
-    the first zero of J_0.
+    Differs from ``gnc.paper`` in that eta comes from a table, because a steered reference needs it
+    often, and may have to back away: ratios down to -0.2 are those of eta beyond the first zero of
+    J_0.
 
     Attributes
     ----------
@@ -54,8 +54,8 @@ class SinusoidSwing:
         )
 
     def frequency(self, eta: float, heading_rate: float) -> float:
-        """Return omega_0 by the heading rate that is left and by the roll rate, as
-        ``gnc.reference.oscillation`` does [rad/s].
+        """Return omega_0 by the heading rate that is left and by the roll rate, as ``gnc.paper``
+        does [rad/s].
         """
         eta = eta if eta > ETA_FREQUENCY else ETA_FREQUENCY
         by_heading_rate = (
@@ -74,7 +74,7 @@ class SinusoidSwing:
 
     def offset(self, eta: float, phase: float) -> tuple[float, float]:
         """Return where the reference is from the orbit's centre, by the series of
-        ``gnc.reference.orbit.offset`` [V_r/omega_0].
+        ``gnc.paper.offset`` [V_r/omega_0].
         """
         return _tables().offset(eta, phase)
 

@@ -10,7 +10,7 @@ import numpy as np
 from common.physics.coordinated_turn import bank_for_heading_rate
 from common.registry import PluginError
 from gnc.errors import InfeasibleError
-from gnc.reference.placement import PlumeAxis
+from gnc.paper import PlumeAxis
 from scenarios.planning.limits import omega_max
 from scenarios.planning.reference import distance_kept, oscillation_at
 from scenarios.schema.scenario import Scenario

@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from gnc.analysis.turning_reference import TurningReferences
-from gnc.reference.oscillation import design_oscillation
+from gnc.paper import design_oscillation
 
 REFERENCES = ("circle", "oscillation", "random")
 """Kinds of reference, cycled through the trajectories."""

@@ -12,7 +12,7 @@ from common.run_layout import COUNTEREXAMPLES, SUMMARY, trajectory_path
 from gnc.analysis.ensemble_motion import Vehicle
 from gnc.analysis.ensemble_result import DISTANCE_CONVERGED, PHI_CONVERGED, Outcome
 from gnc.errors import InfeasibleError
-from gnc.laws.delta import look_ahead
+from gnc.paper import look_ahead
 from scenarios.engine.journal import Journal
 from scenarios.engine.run_directory import RunDirectory
 from scenarios.engine.runner import Fly, Progress, StudySummary

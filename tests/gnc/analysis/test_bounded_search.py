@@ -26,8 +26,8 @@ from gnc.analysis.bounds import (
 )
 from gnc.analysis.worst_case_search import heading_rates
 from gnc.errors import InfeasibleError
-from gnc.laws.cascade import CascadeLaw
-from gnc.laws.delta import delta_length, look_ahead
+from gnc.laws.paper import CascadeLaw
+from gnc.paper import delta_length, look_ahead
 
 
 @examples(15)

@@ -13,8 +13,7 @@ from gnc.analysis.bounds import heading_rate_bound, heading_rate_bound_least
 from gnc.analysis.worst_case_search import heading_rates
 from gnc.analysis.worst_position import factors, factors_at_most
 from gnc.errors import InfeasibleError
-from gnc.laws.delta import delta_length, look_ahead, relative_state, relative_velocity
-from gnc.laws.lyapunov import lyapunov_law
+from gnc.paper import delta_length, look_ahead, lyapunov_law, relative_state, relative_velocity
 
 
 @examples(200)

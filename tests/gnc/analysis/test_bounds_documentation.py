@@ -11,7 +11,7 @@ from gnc_cases import SPEED
 from gnc.analysis.bounds import heading_rate_bound, heading_rate_bound_least
 from gnc.analysis.worst_case_search import largest_heading_rate
 from gnc.errors import InfeasibleError
-from gnc.laws.delta import look_ahead
+from gnc.paper import look_ahead
 
 DOCS = (Path(__file__).parents[3] / "docs" / "actuation_bounds.md").read_text(encoding="utf-8")
 

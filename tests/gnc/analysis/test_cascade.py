@@ -21,18 +21,22 @@ from gnc_cases import (
 from hypothesis import given
 from hypothesis import strategies as st
 
-from gnc.analysis.cascade_system import (
+from gnc.paper import (
     DrivenState,
+    RelativeState,
+    cascade_law,
     driven_rates,
     driving_rate,
+    h,
+    look_ahead,
+    relative_velocity,
+    state_rates,
     unforced_rates,
+    v_1_rate,
     v_1_rate_split,
     v_1_unforced_acceleration,
     v_1_unforced_rate,
 )
-from gnc.analysis.dynamics import state_rates, v_1_rate
-from gnc.laws.cascade_equation import cascade_law, h
-from gnc.laws.delta import RelativeState, look_ahead, relative_velocity
 
 heading_rates = st.floats(-0.5, 0.5)
 speeds = st.floats(5.0, 40.0)

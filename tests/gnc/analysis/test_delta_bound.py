@@ -21,9 +21,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.integrate import quad
 
-from gnc.analysis.cascade_system import delta_bound, excursion_time
-from gnc.laws.cascade_equation import h
-from gnc.laws.delta import look_ahead
+from gnc.paper import delta_bound, excursion_time, h, look_ahead
 
 
 @examples(100)

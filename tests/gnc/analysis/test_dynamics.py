@@ -23,11 +23,19 @@ from hypothesis import strategies as st
 from lyapunov_cases import law_24
 from scipy.integrate import solve_ivp
 
-from gnc.analysis.cascade_system import v_1_rate_split
-from gnc.analysis.dynamics import equilibrium, state_rates, v_1, v_1_rate, v_2_rate
-from gnc.laws.cascade_equation import cascade_law
-from gnc.laws.delta import RelativeState, distance_squared_rate, relative_velocity
 from gnc.numeric import wrap
+from gnc.paper import (
+    RelativeState,
+    cascade_law,
+    distance_squared_rate,
+    equilibrium,
+    relative_velocity,
+    state_rates,
+    v_1,
+    v_1_rate,
+    v_1_rate_split,
+    v_2_rate,
+)
 
 offsets = st.floats(-300.0, 300.0)
 heading_rates = st.floats(-0.5, 0.5)

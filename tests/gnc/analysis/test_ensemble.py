@@ -31,15 +31,12 @@ from hypothesis import strategies as st
 from lyapunov_cases import K_1
 from scipy.integrate import solve_ivp
 
-from gnc.analysis.dynamics import state_rates, v_2
 from gnc.analysis.ensemble_motion import MOTIONS, Steering
 from gnc.analysis.ensemble_result import DISTANCE_CONVERGED, Outcome, Tolerances
 from gnc.analysis.turning_reference import TurningReferences
 from gnc.errors import InfeasibleError
-from gnc.laws.cascade_equation import cascade_law
-from gnc.laws.delta import relative_velocity
-from gnc.laws.lyapunov import lyapunov_law
 from gnc.numeric import wrap
+from gnc.paper import cascade_law, lyapunov_law, relative_velocity, state_rates, v_2
 
 LAWS = pytest.mark.parametrize("law", list(Steering))
 offsets = st.floats(-3000.0, 3000.0)

@@ -23,15 +23,15 @@ from hypothesis import strategies as st
 from lyapunov_cases import K_1, law_24
 from scipy.integrate import simpson, solve_ivp
 
-from gnc.analysis.dynamics import (
+from gnc.paper import (
     equilibrium,
+    relative_velocity,
     state_rates,
     v_1_rate,
     v_2,
     v_2_acceleration,
     v_2_rate,
 )
-from gnc.laws.delta import relative_velocity
 
 offsets = st.floats(-300.0, 300.0)
 heading_rates = st.floats(-0.5, 0.5)

@@ -14,8 +14,7 @@ from hypothesis import strategies as st
 from gnc.analysis.bounds import heading_rate_bound
 from gnc.analysis.worst_case_search import heading_rates, largest_heading_rate
 from gnc.errors import InfeasibleError
-from gnc.laws.cascade_equation import cascade_law
-from gnc.laws.delta import look_ahead, relative_velocity
+from gnc.paper import cascade_law, look_ahead, relative_velocity
 
 DESIGNS = {
     "as flown": (LOOK_AHEAD, 0.497, 1.5, 0.4),

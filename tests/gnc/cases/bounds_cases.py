@@ -4,8 +4,7 @@ from gnc_cases import SPEED
 from hypothesis import strategies as st
 
 from gnc.analysis.bounds import convergence_time, fastest_within
-from gnc.laws.cascade_equation import cascade_law
-from gnc.laws.delta import look_ahead, relative_state, relative_velocity
+from gnc.paper import cascade_law, look_ahead, relative_state, relative_velocity
 
 # omega_max of the tables of docs/actuation_bounds.md; paper-notes give 0.503.
 LIMIT = 0.505

@@ -15,7 +15,7 @@ from gnc_cases import (
 from hypothesis import strategies as st
 from scipy.integrate import solve_ivp
 
-from gnc.laws.cascade_equation import cascade_law
+from gnc.paper import cascade_law
 
 gains = st.floats(0.05, 5.0)
 rates_max = st.floats(0.05, 1.0)

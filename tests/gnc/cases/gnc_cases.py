@@ -16,14 +16,19 @@ from hypothesis import strategies as st
 
 from gnc.airspeed.along_track import AlongTrackTrim
 from gnc.compose import compose
-from gnc.laws.cascade import CascadeLaw
-from gnc.laws.delta import look_ahead, relative_state, relative_velocity
+from gnc.laws.paper import CascadeLaw
 from gnc.mission.direct_tracking import DirectParameters
+from gnc.paper import (
+    design_oscillation,
+    look_ahead,
+    relative_state,
+    relative_velocity,
+    unicycle_rates,
+)
 from gnc.parameters import GuidanceParameters
 from gnc.reference.oscillating import OscillatingReference, start_reference
-from gnc.reference.oscillation import design_oscillation
 from gnc.tracker import TrackingParameters
-from gnc.unicycle import unicycle_move, unicycle_rates
+from gnc.unicycle import unicycle_move
 
 SPEED = 19.42
 HEADING_RATE_MAX = 0.503

@@ -2,7 +2,7 @@
 
 from gnc_cases import SPEED
 
-from gnc.laws.lyapunov import lyapunov_law
+from gnc.paper import lyapunov_law
 
 K_1 = 0.001
 """Gain of the tested law [1/m^2]."""

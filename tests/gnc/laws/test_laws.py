@@ -18,14 +18,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.integrate import solve_ivp
 
-from gnc.analysis.dynamics import equilibrium
 from gnc.errors import InfeasibleError
-from gnc.laws.cascade import CascadeLaw
-from gnc.laws.cascade_equation import cascade_law, h
-from gnc.laws.delta import RelativeState, relative_velocity
-from gnc.laws.line_of_sight import LineOfSightLaw, line_of_sight_law
-from gnc.laws.lyapunov import LyapunovLaw, lyapunov_law
+from gnc.laws.paper import CascadeLaw, LineOfSightLaw, LyapunovLaw, line_of_sight_law
 from gnc.laws.steering_law import STEERING_LAWS
+from gnc.paper import RelativeState, cascade_law, equilibrium, h, lyapunov_law, relative_velocity
 
 # What the laws command in the guidance is tested in test_guidance.py.
 GAIN, RATE_MAX, K_1 = 1.5, 0.4, 0.001

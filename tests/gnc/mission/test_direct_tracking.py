@@ -20,8 +20,8 @@ from gnc.estimation.target_motion import SteadyTarget
 from gnc.mission.approach import ApproachParameters
 from gnc.mission.direct_tracking import DirectParameters, DirectTracking, Joining, SteadyCentre
 from gnc.mission.mode import Mode
+from gnc.paper import PlumeAxis, distance_by_paper
 from gnc.reference.joining import JoinedOrbit
-from gnc.reference.placement import PlumeAxis, distance_by_paper
 from gnc.reference.shapes.sinusoid import Sinusoid
 from gnc.safety.guard_parameters import GuardParameters
 

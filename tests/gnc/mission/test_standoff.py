@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 
 from gnc.estimation.own_motion import TrueNavigation
 from gnc.estimation.target_motion import SteadyTarget
-from gnc.laws.cascade import CascadeLaw
+from gnc.laws.paper import CascadeLaw
 from gnc.laws.path.lgvf import LgvfLaw
 from gnc.laws.path.npfg import NpfgLaw
 from gnc.mission.axis_height import AxisHeight

@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 from scipy.integrate import quad
 
 from gnc.errors import InfeasibleError
-from gnc.reference.bessel import eta_for_speed_ratio, mean_speed_ratio
+from gnc.paper import eta_for_speed_ratio, mean_speed_ratio
 from gnc.reference.oscillating import OscillatingReference, start_reference
 
 ratios = st.floats(0.0, 1.0)

@@ -10,8 +10,8 @@ from scipy.optimize import brentq
 
 from common.physics.units import STANDARD_GRAVITY
 from gnc.errors import InfeasibleError
+from gnc.paper import PlumeAxis, distance_exact
 from gnc.reference.joining import JoinedOrbit
-from gnc.reference.placement import PlumeAxis, distance_exact
 from gnc.reference.reference import REFERENCE_SHAPES
 from gnc.reference.shapes.fastest import JOINING_SHARE, Fastest
 from gnc.reference.shapes.sinusoid import Sinusoid

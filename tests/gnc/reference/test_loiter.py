@@ -9,8 +9,8 @@ from orbit_cases import assert_a_point_that_turns_so_flies
 
 from common.physics.units import STANDARD_GRAVITY
 from gnc.errors import InfeasibleError
+from gnc.paper import PlumeAxis, distance_exact
 from gnc.reference.joining import JoinedOrbit
-from gnc.reference.placement import PlumeAxis, distance_exact
 from gnc.reference.shapes.loiter import LoiterShape
 
 HEADING_RATE = STANDARD_GRAVITY / SPEED

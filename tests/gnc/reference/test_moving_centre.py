@@ -4,9 +4,8 @@ import numpy as np
 import pytest
 from gnc_cases import SPEED, paper_oscillation
 
+from gnc.paper import PlumeAxis, distance_by_paper, half_widths
 from gnc.reference.moving_centre import CentreParameters, MovingCentre
-from gnc.reference.orbit import half_widths
-from gnc.reference.placement import PlumeAxis, distance_by_paper
 
 RATIO_MAX = 0.97
 DISTANCE_MIN = 203.0

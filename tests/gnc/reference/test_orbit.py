@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.integrate import quad, solve_ivp
 
-from gnc.reference.orbit import f_x, f_y, half_widths, offset
+from gnc.paper import f_x, f_y, half_widths, offset
 
 RATIOS = [0.0, 0.1, 0.5, 0.9]
 ratios = st.floats(0.0, 0.99)

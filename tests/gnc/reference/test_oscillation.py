@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 
 from common.physics.units import STANDARD_GRAVITY
 from gnc.errors import InfeasibleError
-from gnc.reference.oscillation import design_oscillation
+from gnc.paper import design_oscillation
 
 ROLL_RATE_MAX = math.radians(40.0)
 

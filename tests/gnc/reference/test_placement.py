@@ -7,12 +7,13 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from gnc.errors import InfeasibleError
-from gnc.reference.orbit import half_widths, offset
-from gnc.reference.placement import (
+from gnc.paper import (
     PlumeAxis,
     centre_of_oscillation,
     distance_by_paper,
     distance_exact,
+    half_widths,
+    offset,
     reach,
 )
 

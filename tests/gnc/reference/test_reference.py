@@ -6,10 +6,9 @@ import pytest
 from gnc_cases import HEADING_RATE_MAX, SPEED, assert_a_copy_goes_on, paper_oscillation
 from scipy.integrate import solve_ivp
 
+from gnc.paper import design_oscillation, half_widths, offset
 from gnc.reference.circling import CirclingReference
-from gnc.reference.orbit import half_widths, offset
 from gnc.reference.oscillating import OscillatingReference, start_reference
-from gnc.reference.oscillation import design_oscillation
 from gnc.reference.reference import REFERENCE_SHAPES, ReferenceStart
 from gnc.unicycle import unicycle_move
 

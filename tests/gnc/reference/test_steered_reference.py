@@ -8,10 +8,8 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 from scipy.special import j0
 
-from gnc.reference.bessel import eta_for_speed_ratio
+from gnc.paper import design_oscillation, eta_for_speed_ratio, offset
 from gnc.reference.joining import JoinedOrbit
-from gnc.reference.orbit import offset
-from gnc.reference.oscillation import design_oscillation
 from gnc.reference.reference import REFERENCE_SHAPES
 from gnc.reference.shapes.sinusoid import SinusoidSwing
 from gnc.reference.steered import SteeredReference

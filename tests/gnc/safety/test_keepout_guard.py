@@ -35,7 +35,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from gnc.numeric import wrap
-from gnc.reference.placement import PlumeAxis, distance_by_paper
+from gnc.paper import PlumeAxis, distance_by_paper
 from gnc.safety.guard_parameters import GuardParameters
 
 

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from aircraft.fleet.x8 import X8
-from gnc.laws.line_of_sight import LineOfSightLaw
+from gnc.laws.paper import LineOfSightLaw
 from gnc.reference.shapes.sinusoid import Sinusoid
 from scenarios import InputError, fly, load, read_ais, run
 

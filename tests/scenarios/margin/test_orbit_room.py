@@ -11,7 +11,7 @@ import pytest
 from gnc.estimation.own_motion import KnownMotion
 from gnc.estimation.reachable_set import Tube, VesselLimits, tube
 from gnc.estimation.vessel_filter import VesselReport
-from gnc.reference.oscillation import design_oscillation
+from gnc.paper import design_oscillation
 from gnc.safety.guard_parameters import GuardParameters
 from gnc.safety.keepout_guard import KeepoutGuard
 from gnc.unicycle import lagged_move

@@ -9,7 +9,7 @@ import pytest
 
 from gnc.estimation.own_motion import KnownMotion
 from gnc.estimation.reachable_set import Tube
-from gnc.reference.placement import PlumeAxis, distance_by_paper
+from gnc.paper import PlumeAxis, distance_by_paper
 from gnc.safety.keepout_guard import KeepoutGuard
 from innerloop.flight.turn_reversal import TurnReversalResponse
 from scenarios.planning.planner import plan_flight

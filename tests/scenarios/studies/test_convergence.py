@@ -10,7 +10,7 @@ import pytest
 
 from gnc.analysis.averaged_motion import averaged_settling_time
 from gnc.analysis.ensemble_motion import Vehicle
-from gnc.laws.delta import look_ahead
+from gnc.paper import look_ahead
 from scenarios.engine.in_process_executor import InProcessExecutor
 from scenarios.engine.local_executor import LocalExecutor
 from scenarios.engine.task import Limits, Task

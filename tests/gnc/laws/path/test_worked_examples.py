@@ -5,7 +5,7 @@ import math
 import pytest
 
 from gnc.errors import InfeasibleError
-from gnc.laws.line_of_sight import line_of_sight_law
+from gnc.laws.paper import line_of_sight_law
 from gnc.laws.path.carrot import carrot_on_circle, carrot_on_line, chase, plos
 from gnc.laws.path.constant_bearing import collision_course
 from gnc.laws.path.lgvf import circle_course, heading_rate, lgvf

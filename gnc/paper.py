@@ -1,0 +1,686 @@
+"""The guidance and control of the paper, equation by equation, in its order.
+
+Escudeiro, "UAV-based Measurement of Marine Vessels Smoke Plumes - Guidance and Control System". A
+number in brackets is that of an equation, printed at the line that computes it. The plane is
+north-east, in metres; courses are clockwise from north, in radians. Symbols: V_r speed of vehicle
+and reference, chi course, omega heading rate, nu = V_V/V_r speed ratio, eta = A/omega_0 course
+amplitude, CO centre of oscillation, d from vehicle to reference, z = d + delta, rho = |z|.
+``EQUATIONS.md`` says where the code differs, and why.
+"""
+
+import functools
+import math
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+from scipy.optimize import brentq, minimize_scalar
+from scipy.special import j0, jv
+
+from common.physics.units import STANDARD_GRAVITY
+from gnc.errors import InfeasibleError
+from gnc.numeric import limited, wrap
+from gnc.reference.reference import Array, Orbit
+
+# ---------------------------------------------------------------- II.B Vehicle dynamics
+
+
+def unicycle_rates(speed: float, course: float, heading_rate: float) -> tuple[float, float, float]:
+    """Return north rate, east rate [m/s] and course rate [rad/s] of a vehicle, equation (1), or of
+    a reference, (13).
+    """
+    return speed * math.cos(course), speed * math.sin(course), heading_rate  # (1), (13)
+
+
+# ---------------------------------------------------------------- III.C The oscillation of the
+# reference
+
+
+def mean_speed_ratio(eta: float) -> float:
+    """Return the reference's mean speed over its speed, F(eta) = J_0(eta): equation (5)."""
+    return float(j0(eta))  # (5)
+
+
+def eta_for_speed_ratio(nu: float) -> float:
+    """Return eta [rad] such that the reference's mean speed is that of the vessel: equation (6),
+    eta = J_0^-1(nu).
+
+    Raises
+    ------
+    InfeasibleError : ``nu`` is outside 0 to 1, where J_0 on [0, 2.4048] has no inverse
+    """
+    if not (math.isfinite(nu) and 0.0 <= nu <= 1.0):
+        raise InfeasibleError(
+            f"speed ratio nu is {nu:g}; it must lie within 0 and 1: give the vessel a speed from 0 up to that of the UAV"
+        )
+    if nu == 1.0:
+        return 0.0
+    return float(
+        brentq(lambda eta: mean_speed_ratio(eta) - nu, 0.0, 2.5, xtol=1e-15, rtol=1e-14)
+    )  # (6)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Oscillation:
+    """The paper's orbit: the reference's course oscillates about the vessel's as a sinusoid.
+
+    Attributes
+    ----------
+    nu : speed ratio [-]
+    speed : V_r [m/s]
+    eta : course amplitude [rad]
+    omega_0 : frequency [rad/s]
+    limit : what set the frequency, ``heading rate`` or ``roll rate``
+    """
+
+    nu: float
+    speed: float
+    eta: float
+    omega_0: float
+    limit: str
+
+    @property
+    def amplitude(self) -> float:
+        """A, the amplitude of the reference's heading rate [rad/s]."""
+        return self.eta * self.omega_0
+
+    @property
+    def symmetric(self) -> bool:
+        """Return that the second half of the orbit is the mirror image of the first."""
+        return True
+
+    @property
+    def period(self) -> float:
+        """T = 2 pi/omega_0 [s]."""
+        return 2.0 * math.pi / self.omega_0
+
+    @property
+    def crossing_interval(self) -> float:
+        """Time between crossings of the centre of oscillation, half a period [s]."""
+        return math.pi / self.omega_0
+
+    def course(self, phase: float) -> float:
+        """Return the course offset from the vessel's, eta cos(theta) [rad]: equation (3), and (7)
+        at the start.
+        """
+        return self.eta * math.cos(phase)  # (3), (7)
+
+    def heading_rate(self, phase: float) -> float:
+        """Return omega_r = -A sin(theta) [rad/s]: equation (2)."""
+        return -self.amplitude * math.sin(phase)  # (2)
+
+    def offset(self, time: npt.ArrayLike) -> tuple[Array, Array]:
+        """Return where the reference is from the CO, along the vessel's course and to its right
+        [m]: equation (12).
+        """
+        return offset(self, time)
+
+    def half_widths(self) -> tuple[float, float]:
+        """Return the orbit's half-widths along and across the vessel's course [m]: equation (12)."""
+        return half_widths(self)
+
+    def sidebands(self, orders: npt.NDArray[np.int64]) -> Array:
+        """Return J_n(eta)^2, by the Jacobi-Anger expansion [-]."""
+        return np.asarray(jv(orders, self.eta) ** 2)
+
+
+def available_heading_rate(
+    *,
+    nu: float,
+    speed: float,
+    heading_rate_max: float,
+    reserve: float,
+    vessel_heading_rate: float,
+    roll_rate_max: float,
+) -> float:
+    """Return what an oscillation may take of the heading rate, (1 - reserve) omega_max - |omega_V|
+    [rad/s]: equation (8).
+
+    Raises
+    ------
+    InfeasibleError : nu below 0, or of 1 or more, a limit that is not above 0, or nothing left of
+        omega_max
+    """
+    for name, value, unit in (
+        ("speed", speed, "m/s"),
+        ("heading_rate_max", heading_rate_max, "rad/s"),
+        ("roll_rate_max", roll_rate_max, "rad/s"),
+    ):
+        if not value > 0.0:
+            raise InfeasibleError(
+                f"{name} is {value:g} {unit}; it must be above 0: give what the vehicle can fly"
+            )
+    if not 0.0 <= reserve < 1.0:
+        raise InfeasibleError(
+            f"reserve is {reserve:g} of omega_max; it must be at least 0 and below 1: a tenth is plenty"
+        )
+    if nu >= 1.0:
+        raise InfeasibleError(
+            f"speed ratio nu is {nu:g}; it must be below 1: at 1 the reference flies straight and never crosses the plume,"
+            " above 1 the vessel outruns the UAV; fly faster"
+        )
+    if not nu >= 0.0:
+        raise InfeasibleError(
+            f"speed ratio nu is {nu:g}; it must lie within 0 and 1: give the vessel a speed up to that of the UAV"
+        )
+    available = (1.0 - reserve) * heading_rate_max - abs(vessel_heading_rate)  # (8)
+    if not available > 0.0:
+        raise InfeasibleError(
+            f"vessel heading rate is {vessel_heading_rate:g} rad/s; with a reserve of {reserve:g} it must stay below"
+            f" {(1.0 - reserve) * heading_rate_max:g} rad/s: raise omega_max or lower the reserve"
+        )
+    return available
+
+
+def design_oscillation(
+    *,
+    nu: float,
+    speed: float,
+    heading_rate_max: float,
+    reserve: float = 0.0,
+    vessel_heading_rate: float = 0.0,
+    roll_rate_max: float = math.inf,
+) -> Oscillation:
+    """Return the fastest oscillation that the vehicle can follow: equation (8), eta omega_0 <=
+    omega_max - |omega_V|.
+
+    As nu approaches 1 that bound grows without limit, so omega_0 also respects the roll rate: near
+    level flight g/V times the roll rate is the heading acceleration, whose amplitude is eta
+    omega_0^2. Parameters and errors as of ``available_heading_rate``.
+    """
+    available = available_heading_rate(
+        nu=nu, speed=speed, heading_rate_max=heading_rate_max, reserve=reserve, vessel_heading_rate=vessel_heading_rate,
+        roll_rate_max=roll_rate_max,
+    )  # fmt: skip
+    eta = eta_for_speed_ratio(nu)
+    by_heading_rate = available / eta  # (8)
+    by_roll_rate = math.sqrt(STANDARD_GRAVITY * roll_rate_max / (speed * eta))
+    limit = "heading rate" if by_heading_rate <= by_roll_rate else "roll rate"
+    return Oscillation(
+        nu=nu, speed=speed, eta=eta, omega_0=min(by_heading_rate, by_roll_rate), limit=limit
+    )
+
+
+# ---------------------------------------------------------------- III.D Positioning of the centre
+# of oscillation
+
+_TERMS = np.arange(1, 25)
+_ODD = 2 * _TERMS - 1
+_ORBIT_POINTS = 7201
+
+
+@functools.lru_cache(maxsize=8)
+def _series(eta: float, omega_0: float) -> tuple[Array, Array]:
+    """Return the Jacobi-Anger coefficients of F_x and F_y [s]: both converge in a dozen terms."""
+    along = (-1.0) ** _TERMS * jv(2 * _TERMS, eta) / (_TERMS * omega_0)
+    across = 2.0 * (-1.0) ** (_TERMS - 1) * jv(_ODD, eta) / (_ODD * omega_0)
+    return along, across
+
+
+def f_x(oscillation: Orbit, time: npt.ArrayLike) -> Array:
+    """Return F_x = integral of cos[eta cos(omega_0 t)] from 0 [s]: equation (12)."""
+    t = np.asarray(time, dtype=np.float64)[..., None]
+    series, _ = _series(oscillation.eta, oscillation.omega_0)
+    return np.asarray(
+        oscillation.nu * t[..., 0]
+        + np.sum(series * np.sin(2 * _TERMS * oscillation.omega_0 * t), axis=-1)
+    )
+
+
+def f_y(oscillation: Orbit, time: npt.ArrayLike) -> Array:
+    """Return F_y = integral of sin[eta cos(omega_0 t)] from 0 [s]: equation (12)."""
+    t = np.asarray(time, dtype=np.float64)[..., None]
+    _, series = _series(oscillation.eta, oscillation.omega_0)
+    return np.asarray(np.sum(series * np.sin(_ODD * oscillation.omega_0 * t), axis=-1))
+
+
+def offset(oscillation: Orbit, time: npt.ArrayLike) -> tuple[Array, Array]:
+    """Return where the reference is from the CO: along the vessel's course and to its right [m];
+    phi_0 = 0 at time 0.
+    """
+    t = np.asarray(time, dtype=np.float64)
+    return oscillation.speed * (f_x(oscillation, t) - oscillation.nu * t), oscillation.speed * f_y(
+        oscillation, t
+    )
+
+
+def half_widths(oscillation: Orbit) -> tuple[float, float]:
+    """Return |d_x|max and |d_y|max [m], the orbit's half-widths along and across the vessel's
+    course: equation (12).
+    """
+    t_x = math.acos(min(1.0, math.acos(oscillation.nu) / oscillation.eta)) / oscillation.omega_0
+    t_y = 0.5 * math.pi / oscillation.omega_0
+    along, _ = offset(oscillation, t_x)
+    _, across = offset(oscillation, t_y)
+    return abs(float(along)), abs(float(across))  # (12)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PlumeAxis:
+    """Direction of the plume, seen from the vessel.
+
+    Attributes
+    ----------
+    heading : chi_P, clockwise from the vessel's bow [rad]; pi is straight astern
+    elevation : alpha_P, above the horizon [rad]
+    """
+
+    heading: float
+    elevation: float = 0.0
+
+
+def centre_of_oscillation(distance: float, axis: PlumeAxis) -> tuple[float, float, float]:
+    """Return the CO at ``distance`` r_CO [m] on the axis: metres ahead of, right of and above the
+    plume's origin. Equation (9).
+    """
+    horizontal = distance * math.cos(axis.elevation)
+    return (
+        horizontal * math.cos(axis.heading),
+        horizontal * math.sin(axis.heading),
+        distance * math.sin(axis.elevation),
+    )  # (9)
+
+
+def distance_by_paper(orbit: Orbit, axis: PlumeAxis, distance_min: float) -> float:
+    """Return r_CO [m] by the paper's rule, equation (10), for a keep-out sphere of radius
+    ``distance_min`` r_min [m].
+    """
+    _check(axis, distance_min)
+    return distance_min + reach(orbit, axis) * math.cos(axis.elevation)  # (10)
+
+
+def reach(orbit: Orbit, axis: PlumeAxis) -> float:
+    """Return d_max [m], the paper's estimate of how far the orbit reaches from the CO towards the
+    vessel: equation (11).
+    """
+    along, across = orbit.half_widths()
+    return along + (across - along) * abs(math.sin(axis.heading))  # (11)
+
+
+def distance_exact(orbit: Orbit, axis: PlumeAxis, distance_min: float) -> float:
+    """Return the smallest r_CO [m] for which the whole orbit stays ``distance_min`` r_min [m] away
+    from the plume's origin.
+
+    For every point o of the orbit, |r_CO u + o| >= r_min bounds r_CO from below by the larger root
+    of a quadratic; the result is the largest bound. Differs from equation (10) because (11)
+    overestimates the reach of all but an abeam plume: by up to 10 m for a level plume and r_min =
+    200 m.
+
+    Raises
+    ------
+    InfeasibleError : ``distance_min`` or the axis is out of range
+    """
+    _check(axis, distance_min)
+
+    def needed(time: npt.ArrayLike) -> Array:
+        along, across = orbit.offset(time)
+        towards = math.cos(axis.elevation) * (
+            along * math.cos(axis.heading) + across * math.sin(axis.heading)
+        )
+        inside = towards**2 - along**2 - across**2 + distance_min**2
+        # Where the root is imaginary, the line through that point never enters the sphere.
+        return np.where(inside >= 0.0, -towards + np.sqrt(np.maximum(inside, 0.0)), 0.0)
+
+    times = np.linspace(0.0, orbit.period, _ORBIT_POINTS)
+    step = float(times[1])
+    coarse = float(times[np.argmax(needed(times))])
+    fine = minimize_scalar(
+        lambda t: -float(needed(t)), bounds=(coarse - step, coarse + step), method="bounded"
+    )
+    return max(-float(fine.fun), 0.0)
+
+
+def _check(axis: PlumeAxis, distance_min: float) -> None:
+    if not (math.isfinite(distance_min) and distance_min >= 0.0):
+        raise InfeasibleError(
+            f"keep-out radius is {distance_min:g} m; it must be finite and at least 0"
+        )
+    if not math.isfinite(axis.heading):
+        raise InfeasibleError(f"plume heading is {axis.heading:g} rad; it must be finite")
+    if not abs(axis.elevation) < 0.5 * math.pi:
+        raise InfeasibleError(
+            f"plume elevation is {axis.elevation:g} rad; it must lie within -pi/2 and pi/2: a vertical plume cannot be crossed"
+        )
+
+
+# ---------------------------------------------------------------- IV.B The error formulation
+
+
+class LookAhead(NamedTuple):
+    """Parameters of the look-ahead, delta = epsilon d^2 + R: equation (15).
+
+    Attributes
+    ----------
+    epsilon : [1/m]
+    radius : R [m], above 1/(4 epsilon)
+    """
+
+    epsilon: float
+    radius: float
+
+
+class RelativeState(NamedTuple):
+    """The four states of equation (19).
+
+    Attributes
+    ----------
+    delta : length of the look-ahead vector [m]
+    rho : length of z, from the vehicle to the end of the look-ahead vector [m]
+    phi_r : reference course against that of z [rad]
+    phi : vehicle course against that of z [rad]
+    """
+
+    delta: float
+    rho: float
+    phi_r: float
+    phi: float
+
+
+def look_ahead(epsilon: float, radius: float) -> LookAhead:
+    """Return checked parameters.
+
+    Raises
+    ------
+    InfeasibleError : R <= 1/(4 epsilon), where delta may be shorter than d and z may vanish
+    """
+    if not (math.isfinite(epsilon) and epsilon > 0.0):
+        raise InfeasibleError(
+            f"look-ahead epsilon is {epsilon:g} 1/m; it must be finite and above 0"
+        )
+    if not (math.isfinite(radius) and radius > 1.0 / (4.0 * epsilon)):
+        raise InfeasibleError(
+            f"look-ahead R is {radius:g} m; it must exceed 1/(4 epsilon) = {1.0 / (4.0 * epsilon):g} m: raise R or epsilon"
+        )
+    return LookAhead(epsilon, radius)
+
+
+def delta_length(parameters: LookAhead, distance_squared: float) -> float:
+    """Return delta [m] for a squared distance d^2 [m^2]: equation (15)."""
+    return parameters.epsilon * distance_squared + parameters.radius  # (15)
+
+
+def relative_state(
+    parameters: LookAhead,
+    to_reference_north: float,
+    to_reference_east: float,
+    reference_course: float,
+    course: float,
+) -> RelativeState:
+    """Return the relative state: equations (14), (16) and (19).
+
+    Parameters
+    ----------
+    parameters : of the look-ahead
+    to_reference_north, to_reference_east : d, from the vehicle to the reference [m]
+    reference_course, course : chi_r and chi [rad]
+    """
+    delta = delta_length(
+        parameters, to_reference_north * to_reference_north + to_reference_east * to_reference_east
+    )
+    z_north = to_reference_north + delta * math.cos(reference_course)  # (14)
+    z_east = to_reference_east + delta * math.sin(reference_course)
+    rho, z_course = math.hypot(z_north, z_east), math.atan2(z_east, z_north)  # (16)
+    return RelativeState(
+        delta, rho, wrap(reference_course - z_course), wrap(course - z_course)
+    )  # (19)
+
+
+def distance_squared(state: RelativeState) -> float:
+    """Return d^2 [m^2] from the relative state, by the law of cosines."""
+    return state.rho**2 + state.delta**2 - 2.0 * state.rho * state.delta * math.cos(state.phi_r)
+
+
+def distance_squared_rate(state: RelativeState, reference_speed: float, speed: float) -> float:
+    """Return the rate of d^2 [m^2/s]: equation (20), which is this with both speeds V_r.
+
+    Differs from the paper because a real aircraft's speed is V_r only on average: d . d-dot = d .
+    (v_r - v), resolved along z.
+    """
+    delta, rho, phi_r, phi = state
+    cos_r, sin_r = math.cos(phi_r), math.sin(phi_r)
+    along = reference_speed * cos_r - speed * math.cos(phi)
+    across = reference_speed * sin_r - speed * math.sin(phi)
+    return 2.0 * ((rho - delta * cos_r) * along - delta * sin_r * across)  # (20)
+
+
+def relative_velocity(
+    parameters: LookAhead,
+    state: RelativeState,
+    reference_speed: float,
+    speed: float,
+    reference_heading_rate: float,
+) -> tuple[float, float]:
+    """Return the rates of rho [m/s] and of the course of z, omega_rho [rad/s]: equations (17) and
+    (18).
+
+    Parameters
+    ----------
+    parameters, state : look-ahead and relative state
+    reference_speed, speed : V_r for both in the paper [m/s]
+    reference_heading_rate : omega_r [rad/s]
+    """
+    delta, rho, phi_r, phi = state
+    cos_r, sin_r = math.cos(phi_r), math.sin(phi_r)
+    along = reference_speed * cos_r - speed * math.cos(phi)
+    across = reference_speed * sin_r - speed * math.sin(phi)
+    # (20) once more: this runs at each step of the guidance, and to ask for it would take each sine
+    # and cosine twice.
+    delta_rate = parameters.epsilon * (
+        2.0 * ((rho - delta * cos_r) * along - delta * sin_r * across)
+    )
+    swing = delta * reference_heading_rate
+    return along - swing * sin_r + delta_rate * cos_r, (
+        across + swing * cos_r + delta_rate * sin_r
+    ) / rho  # (17), (18)
+
+
+def state_rates(
+    parameters: LookAhead,
+    state: RelativeState,
+    speed: float,
+    reference_heading_rate: float,
+    heading_rate: float,
+) -> RelativeState:
+    """Return the rates of the four states, the nominal system: equation (21); omega_r and omega
+    [rad/s].
+    """
+    rho_rate, omega_rho = relative_velocity(parameters, state, speed, speed, reference_heading_rate)
+    delta_rate = parameters.epsilon * distance_squared_rate(state, speed, speed)
+    return RelativeState(
+        delta_rate, rho_rate, reference_heading_rate - omega_rho, heading_rate - omega_rho
+    )  # (21)
+
+
+# ---------------------------------------------------------------- IV.C Lyapunov-based controller
+
+
+def equilibrium(parameters: LookAhead) -> RelativeState:
+    """Return x_d = [R, R, 0, 0], on the reference."""
+    return RelativeState(parameters.radius, parameters.radius, 0.0, 0.0)
+
+
+def v_1(state: RelativeState) -> float:
+    """Return V_1 = d^2/2 [m^2]: equation (22). Positive definite about the equilibrium, where (15)
+    holds, and not about 0.
+    """
+    return 0.5 * distance_squared(state)  # (22)
+
+
+def v_1_rate(state: RelativeState, speed: float) -> float:
+    """Return the rate of V_1 [m^2/s] along (21), whatever the control: equation (23)."""
+    delta, rho, phi_r, phi = state
+    return speed * (
+        -rho * (1.0 - math.cos(phi_r))
+        - delta * (1.0 - math.cos(phi_r - phi))
+        + rho * (1.0 - math.cos(phi))
+    )  # (23)
+
+
+def lyapunov_law(state: RelativeState, speed: float, omega_rho: float, k_1: float) -> float:
+    """Return omega [rad/s] by the Lyapunov-based law, equation (24); k_1 [1/m^2]. Singular at phi =
+    pi.
+    """
+    return -k_1 * state.rho * speed * math.tan(0.5 * state.phi) + omega_rho  # (24)
+
+
+def v_2(state: RelativeState, k_2: float) -> float:
+    """Return V_2 = V_1 + k_2 (1 - cos phi) [m^2]: equation (25)."""
+    return v_1(state) + k_2 * (1.0 - math.cos(state.phi))  # (25)
+
+
+def v_2_rate(state: RelativeState, speed: float) -> float:
+    """Return the rate of V_2 [m^2/s] under law (24) with k_1 k_2 = 1: equation (26). Never
+    positive.
+
+    Any other product adds (1 - k_1 k_2) rho V_r (1 - cos phi), so V_2 never rises for larger ones
+    either.
+    """
+    delta, rho, phi_r, phi = state
+    return -speed * (rho * (1.0 - math.cos(phi_r)) + delta * (1.0 - math.cos(phi_r - phi)))  # (26)
+
+
+def v_2_acceleration(state: RelativeState, rates: RelativeState, speed: float) -> float:
+    """Return the second rate of V_2 [m^2/s^2] under law (24): equation (27), bounded and so V_2's
+    rate goes to zero.
+    """
+    delta, rho, phi_r, phi = state
+    return -speed * (
+        rates.rho * (1.0 - math.cos(phi_r))
+        + rho * rates.phi_r * math.sin(phi_r)
+        + (rates.phi_r - rates.phi) * delta * math.sin(phi_r - phi)
+        + rates.delta * (1.0 - math.cos(phi_r - phi))
+    )  # (27); (28) and (29) are steps of the proof, verified by convergence
+
+
+# ---------------------------------------------------------------- IV.D Nonlinear cascade system
+# approach
+
+
+def h(phi: float, gain: float, rate_max: float) -> float:
+    """Return h(phi) [rad/s] of equation (30): gain phi, kept within ``rate_max``. It is 0 at 0 and
+    has the sign of phi elsewhere.
+    """
+    return limited(gain * phi, rate_max)
+
+
+def cascade_law(phi: float, omega_rho: float, gain: float, rate_max: float) -> float:
+    """Return omega [rad/s] by the cascade law, equation (30), with h = gain phi within
+    ``rate_max``; gain [1/s].
+    """
+    return -h(phi, gain, rate_max) + omega_rho  # (30)
+
+
+class DrivenState(NamedTuple):
+    """x_1 of equations (22) and (31a): the relative state (19) but for phi.
+
+    Attributes
+    ----------
+    delta, rho, phi_r : as of ``RelativeState``
+    """
+
+    delta: float
+    rho: float
+    phi_r: float
+
+
+def driven_rates(
+    parameters: LookAhead,
+    driven: DrivenState,
+    phi: float,
+    speed: float,
+    reference_heading_rate: float,
+) -> DrivenState:
+    """Return the rates of the driven subsystem, whose input is phi: equation (31a), the first three
+    lines of (21).
+    """
+    rates = state_rates(parameters, RelativeState(*driven, phi), speed, reference_heading_rate, 0.0)
+    return DrivenState(rates.delta, rates.rho, rates.phi_r)  # (31a)
+
+
+def driving_rate(phi: float, gain: float, rate_max: float) -> float:
+    """Return the rate of phi [rad/s], the driving subsystem: equation (31b), (21) under law (30).
+    Parameters as of ``h``.
+    """
+    return -h(phi, gain, rate_max)  # (31b)
+
+
+def unforced_rates(
+    parameters: LookAhead, driven: DrivenState, speed: float, reference_heading_rate: float
+) -> DrivenState:
+    """Return the rates of the driven subsystem at phi = 0, written out: equation (32).
+
+    Differs from the paper because its first line lacks the factor V_r that (21) has, and without
+    which it is no speed.
+    """
+    delta, rho, phi_r = driven
+    cos_r, sin_r = math.cos(phi_r), math.sin(phi_r)
+    swing = delta * reference_heading_rate
+    shrinking = 2.0 * parameters.epsilon * speed * (rho + delta) * (1.0 - cos_r)
+    return DrivenState(
+        -shrinking,
+        -speed * (1.0 - cos_r) - swing * sin_r - cos_r * shrinking,
+        reference_heading_rate - (speed * sin_r + swing * cos_r - sin_r * shrinking) / rho,
+    )  # (32)
+
+
+def v_1_unforced_rate(driven: DrivenState, speed: float) -> float:
+    """Return the rate of V_1 [m^2/s] along the unforced system (32): equation (33). Never positive."""
+    return -speed * (driven.rho + driven.delta) * (1.0 - math.cos(driven.phi_r))  # (33)
+
+
+def v_1_unforced_acceleration(driven: DrivenState, rates: DrivenState, speed: float) -> float:
+    """Return the second rate of V_1 [m^2/s^2] along (32): equation (34), bounded and so V_1's rate
+    goes to zero.
+    """
+    delta, rho, phi_r = driven
+    return -speed * (
+        (rates.rho + rates.delta) * (1.0 - math.cos(phi_r))
+        + (rho + delta) * rates.phi_r * math.sin(phi_r)
+    )  # (34)
+
+
+def v_1_rate_split(state: RelativeState, speed: float) -> float:
+    """Return the rate of V_1 [m^2/s] along (21): equation (35), (23) gathered so that |phi| <=
+    |phi_r| makes no term positive.
+    """
+    delta, rho, phi_r, phi = state
+    return -speed * (
+        rho * (math.cos(phi) - math.cos(phi_r)) + delta * (1.0 - math.cos(phi - phi_r))
+    )  # (35)
+
+
+# ---------------------------------------------------------------- Why trajectories are bounded:
+# EQUATIONS.md, from (35)
+
+
+def excursion_time(phi: float, gain: float, rate_max: float) -> float:
+    """Return the integral of 1 - cos(phi) over time [s] along (31b) from ``phi`` to rest.
+    Parameters as of ``h``.
+
+    Time is -dphi/h, so that h = gain phi leaves the entire cosine integral of the angle where h
+    stops being held, and h = rate_max an elementary one of the angle above that.
+    """
+    size = abs(phi)
+    free = min(size, rate_max / gain)
+    # Fourteen terms are exact to rounding up to pi.
+    entire_cosine = sum(
+        (-1.0) ** (k + 1) * free ** (2 * k) / (2 * k * math.factorial(2 * k)) for k in range(1, 15)
+    )
+    return entire_cosine / gain + (size - free - math.sin(size) + math.sin(free)) / rate_max
+
+
+def delta_bound(
+    parameters: LookAhead, state: RelativeState, speed: float, gain: float, rate_max: float
+) -> float:
+    """Return what delta [m] cannot exceed under law (30), ever, and whatever the reference does: it
+    bounds d through (15).
+
+    Differs from the paper's argument after equation (35), that d no longer rises from some time on,
+    which does not hold.
+    """
+    rho_to_delta = 1.0 + 0.5 / math.sqrt(parameters.epsilon * parameters.radius)
+    exponent = (
+        2.0 * parameters.epsilon * speed * rho_to_delta * excursion_time(state.phi, gain, rate_max)
+    )
+    return state.delta * math.exp(exponent)
