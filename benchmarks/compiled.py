@@ -29,8 +29,7 @@ MODULES = {
         "mission/approach", "mission/direct_tracking", "mission/egress", "mission/mode", "mission/plume_following",
         "mission/transit",
         "reference/moving_centre", "reference/orbit_tables", "reference/oscillating", "reference/steered",
-        "safety/closest_approach", "safety/free_commands", "safety/given_commands", "safety/guard_parameters",
-        "safety/guarded_commands", "safety/keepout_guard", "safety/speed_reckoning", "safety/turn_prediction",
+        "guard/guard", "guard/turn",
     ),
     "scenarios": (
         "simulation/closed_loop", "simulation/ending", "simulation/recorder", "simulation/settling",

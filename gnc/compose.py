@@ -5,15 +5,13 @@ from gnc.estimation.own_motion import EstimatedNavigation, OwnMotion, TrueNaviga
 from gnc.estimation.reachable_set import ReachableSet
 from gnc.estimation.target_motion import ReportedTarget, SteadyTarget, TargetMotion
 from gnc.estimation.vessel_filter import VesselFilter
+from gnc.guard.guard import KeepoutGuard, SpeedRange
 from gnc.guidance import Guidance
 from gnc.mission.direct_tracking import DirectTracking
 from gnc.mission.mission import Mission
 from gnc.mission.plume_following import FollowingParameters, PlumeFollowing
 from gnc.mission.standoff import StandoffOrbit, StandoffParameters
 from gnc.parameters import GuidanceParameters, ReportedVessel
-from gnc.safety.guarded_commands import GuardedCommands
-from gnc.safety.keepout_guard import KeepoutGuard
-from gnc.safety.speed_reckoning import SpeedReckoning
 
 
 def compose(parameters: GuidanceParameters) -> Guidance:
@@ -27,7 +25,15 @@ def compose(parameters: GuidanceParameters) -> Guidance:
         )
     else:
         target = SteadyTarget(*p.vessel)
-    guard = KeepoutGuard(p.guard) if p.guard else None
+    guard = None
+    if p.guard:
+        speeds = SpeedRange(
+            speed=p.speed,
+            bandwidth=p.airspeed_bandwidth,
+            overshoot=p.airspeed_overshoot,
+            time_step=p.tracking.time_step,
+        )
+        guard = KeepoutGuard(p.guard, speeds)
     mission: Mission
     if isinstance(p.mission, FollowingParameters):
         mission = PlumeFollowing(p.mission, p.tracking, own=own, target=target, guard=guard)
@@ -41,23 +47,11 @@ def compose(parameters: GuidanceParameters) -> Guidance:
         own=own,
         target=target,
         mission=mission,
-        keep_out=_guarded_commands(guard, p) if guard else None,
+        guard=guard,
         airspeed_law=p.airspeed_law,
         monitor=HealthMonitor(p.health) if p.health else None,
         speed=p.speed,
         heading_rate_max=p.tracking.heading_rate_max,
         altitude=p.altitude,
         plan_interval=p.mission.plan_interval,
-    )
-
-
-def _guarded_commands(guard: KeepoutGuard, p: GuidanceParameters) -> GuardedCommands:
-    reckoning = SpeedReckoning(
-        speed=p.speed,
-        bandwidth=p.airspeed_bandwidth,
-        overshoot=p.airspeed_overshoot,
-        time_step=p.tracking.time_step,
-    )
-    return GuardedCommands(
-        guard, reckoning=reckoning, speed=p.speed, heading_rate_max=p.tracking.heading_rate_max
     )

@@ -1,15 +1,17 @@
 """The outer loop: from what is measured to commanded heading rate, airspeed and altitude."""
 
 import math
+from collections.abc import Sequence
 from typing import Any
 
 from gnc.airspeed.airspeed_law import AirspeedLaw
 from gnc.estimation.health_monitor import HealthMonitor
 from gnc.estimation.own_motion import OwnMotion
+from gnc.estimation.reachable_set import Tube
 from gnc.estimation.target_motion import TargetMotion
+from gnc.guard.guard import Demand, GuardStatus, KeepoutGuard
 from gnc.mission.mission import Mission
 from gnc.numeric import limited
-from gnc.safety.guarded_commands import GuardedCommands
 
 
 class Guidance:
@@ -19,7 +21,7 @@ class Guidance:
     ----------
     own, target : motion of the vehicle and of the vessel
     mission : what to do, and the tracker of its reference
-    keep_out : the guard of the keep-out area, or none
+    guard : of the keep-out area, or none
     airspeed_law : keeps the vehicle beside its reference
     monitor : of the vehicle's health, or none
     speed : V_r [m/s]
@@ -30,14 +32,13 @@ class Guidance:
     Attributes
     ----------
     own, target, mission, monitor, plan_interval : as above
-    guard : the keep-out guard itself, or none
     guarding : whether the keep-out guard changed the last command
     heading_rate_command, airspeed_command, altitude_command : last commands [rad/s, m/s, m]
     """
 
     # Methods of parts are bound once: each is called at every step.
     __slots__ = (
-        "_airspeed", "_keep_out", "_limit", "_locate", "_pace", "_plan", "_sense", "_until_plan", "airspeed_command",
+        "_airspeed", "_limit", "_locate", "_pace", "_plan", "_sense", "_until_plan", "_vessel_discs", "airspeed_command",
         "altitude_command", "guard", "guarding", "heading_rate_command", "mission", "monitor", "own", "plan_interval", "target",
     )  # fmt: skip
 
@@ -47,7 +48,7 @@ class Guidance:
         own: OwnMotion,
         target: TargetMotion,
         mission: Mission,
-        keep_out: GuardedCommands | None,
+        guard: KeepoutGuard | None,
         airspeed_law: AirspeedLaw,
         monitor: HealthMonitor | None,
         speed: float,
@@ -57,11 +58,9 @@ class Guidance:
     ) -> None:
         self.own, self.target, self.mission, self.monitor = own, target, mission, monitor
         self._sense, self._locate, self._plan = own.update, target.update, mission.plan
-        self._keep_out, self.guard, self.guarding = (
-            keep_out,
-            keep_out.guard if keep_out is not None else None,
-            False,
-        )
+        self.guard = guard
+        self.guarding = False
+        self._vessel_discs: Sequence[Tube] = ()
         self._pace, self._airspeed, self._limit = (
             airspeed_law.pace,
             airspeed_law.airspeed,
@@ -92,7 +91,7 @@ class Guidance:
             self._until_plan = self.plan_interval - 1
             self._locate(time, True)
             if self.guard is not None:
-                self.guard.tubes = target.tubes
+                self._vessel_discs = target.tubes
             self._plan(time)
             self.altitude_command = mission.altitude
         monitor = self.monitor
@@ -109,15 +108,16 @@ class Guidance:
         )
         last = tracker.heading_rate_command
         command = tracker.step(north, east, course, own.speed, own.heading_rate)
-        leaving, held, keep_out = overriding and mission.leaving, False, self._keep_out
+        leaving, held, guard = overriding and mission.leaving, False, self.guard
         command, pace = (
             (mission.command(last), mission.airspeed)
             if overriding
             else (command, self._pace(along))
         )
-        if keep_out is not None:
-            command, pace, held = keep_out.limit(command, pace, time, own, leaving=leaving)
-            self.guarding = keep_out.guard.intervening
+        if guard is not None:
+            demand = Demand(time, command, pace, leaving)
+            command, pace, held, status = guard.filter(demand, own, self._vessel_discs)
+            self.guarding = status is not GuardStatus.FREE
         tracker.heading_rate_command = command
         # A turn away is flown in full in gusts, too: it was predicted without them.
         full = self.guarding and abs(command) >= self._limit
@@ -126,8 +126,8 @@ class Guidance:
         if bounded != command:
             command = bounded
             tracker.heading_rate_command = turning = command * own.air_ratio
-            if keep_out is not None:
-                keep_out.overruled(turning)
+            if guard is not None:
+                guard.replace(turning)
         self.heading_rate_command = command
         self.airspeed_command = (
             pace if leaving or (overriding and not held) else self._airspeed(pace, own, held)
@@ -141,5 +141,5 @@ class Guidance:
         """
         self.heading_rate_command, self.airspeed_command = heading_rate, airspeed
         self.mission.tracker.heading_rate_command = turning = heading_rate * self.own.air_ratio
-        if self._keep_out is not None:
-            self._keep_out.overruled(turning, airspeed)
+        if self.guard is not None:
+            self.guard.replace(turning, airspeed)

@@ -9,10 +9,10 @@ from gnc.estimation.health_monitor import HealthParameters
 from gnc.estimation.navigation import NavigationParameters
 from gnc.estimation.reachable_set import VesselLimits
 from gnc.estimation.vessel_filter import FilterParameters
+from gnc.guard.guard import GuardParameters
 from gnc.mission.direct_tracking import DirectParameters
 from gnc.mission.plume_following import FollowingParameters
 from gnc.mission.standoff import StandoffParameters
-from gnc.safety.guard_parameters import GuardParameters
 from gnc.tracker import TrackingParameters
 
 

@@ -10,12 +10,12 @@ from typing import Any, NamedTuple
 from gnc.estimation.health import Fault
 from gnc.estimation.own_motion import OwnMotion
 from gnc.estimation.target_motion import TargetMotion
+from gnc.guard.guard import KeepoutGuard
 from gnc.mission.approach import LOST_TRACK, Approach, ApproachParameters
 from gnc.mission.mode import Mode
 from gnc.reference.closing import ClosingReference
 from gnc.reference.joining import JoinedOrbit
 from gnc.reference.reference import Reference
-from gnc.safety.keepout_guard import KeepoutGuard
 from gnc.tracker import Tracker, TrackingParameters
 
 STANDOFF = 2.0

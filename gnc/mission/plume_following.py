@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from gnc.estimation.health import Fault
 from gnc.estimation.own_motion import OwnMotion
 from gnc.estimation.target_motion import TargetMotion
+from gnc.guard.guard import KeepoutGuard
 from gnc.laws.steering_law import Surroundings
 from gnc.mission.approach import LOST_TRACK, Approach, ApproachParameters
 from gnc.mission.egress import Egress
@@ -17,7 +18,6 @@ from gnc.reference.mean_motion import mean_motion, motion_course
 from gnc.reference.moving_centre import CentreParameters, MovingCentre
 from gnc.reference.reference import Swing
 from gnc.reference.steered import SteeredReference
-from gnc.safety.keepout_guard import KeepoutGuard
 from gnc.tracker import Tracker, TrackingParameters
 
 MANOEUVRE_RANGE = 200.0

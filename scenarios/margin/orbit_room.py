@@ -8,10 +8,9 @@ import numpy as np
 
 from gnc.estimation.own_motion import KnownMotion
 from gnc.estimation.reachable_set import Tube
+from gnc.guard.guard import GuardParameters, HeadingRateFilter
 from gnc.mission.standoff import CirclePoint
 from gnc.reference.reference import Orbit
-from gnc.safety.guard_parameters import GuardParameters
-from gnc.safety.keepout_guard import KeepoutGuard
 
 _PHASES = 24
 """Points of half an orbit from which a turn away is predicted; the other half is its mirror image,
@@ -113,16 +112,14 @@ def _distance(
     """Return the distance at which the nearest of the motions that belong to it leaves the guard
     nothing to do [m].
     """
-    keeping = KeepoutGuard(guard)
-    keeping.tubes = (
-        vessel._replace(time=0.0, north=0.0, east=0.0, velocity_north=drift, velocity_east=0.0),
-    )
+    keeping = HeadingRateFilter(guard)
+    disc = vessel._replace(time=0.0, north=0.0, east=0.0, velocity_north=drift, velocity_east=0.0)
     distance = _FAR * (guard.radius + vessel.radius)
     for _ in range(2):
         # Clearances change as the distance does, but for the curvature of a disc: what is found is
         # up to 0.3 m too large.
         least = math.inf
         for motion in motions(distance):
-            least = min(least, keeping.clearance(0.0, motion, speed, enough=least))
+            least = min(least, keeping.clearance(0.0, motion, (disc,), speed, enough=least))
         distance -= least
     return distance

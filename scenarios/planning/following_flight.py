@@ -9,11 +9,11 @@ from gnc.airspeed.pace_hold import PaceHold
 from gnc.errors import InfeasibleError
 from gnc.estimation.health_monitor import HealthParameters
 from gnc.estimation.reachable_set import ReachableSet, Tube, VesselLimits
+from gnc.guard.guard import GuardParameters
 from gnc.mission.plume_following import FollowingParameters
 from gnc.mission.standoff import StandoffParameters
 from gnc.parameters import GuidanceParameters, ReportedVessel
 from gnc.reference.reference import Orbit, PeriodicPath
-from gnc.safety.guard_parameters import GuardParameters
 from scenarios.margin.keepout_margin import (
     KeepoutMargin,
     filter_parameters,

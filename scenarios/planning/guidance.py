@@ -9,12 +9,12 @@ from gnc.airspeed.pace_hold import SpeedHold, design_speed_hold
 from gnc.estimation.health import PATIENCE
 from gnc.estimation.health_monitor import CHECK_INTERVAL
 from gnc.estimation.navigation import NOISE_DEVIATIONS
+from gnc.guard.guard import GuardParameters
 from gnc.mission.approach import ApproachParameters
 from gnc.mission.plume_axis import AxisParameters
 from gnc.mission.plume_following import FollowingParameters
 from gnc.reference.moving_centre import CentreParameters
 from gnc.reference.reference import Swing
-from gnc.safety.guard_parameters import GuardParameters
 from gnc.tracker import TrackingParameters
 from innerloop.flight.part_failure import PartFailure, glide_airspeed
 from innerloop.flight.turn_reversal import TurnReversalResponse

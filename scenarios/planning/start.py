@@ -9,8 +9,7 @@ from gnc.errors import InfeasibleError
 from gnc.estimation.own_motion import KnownMotion
 from gnc.estimation.reachable_set import Tube
 from gnc.estimation.vessel_filter import VesselReport
-from gnc.safety.guard_parameters import GuardParameters
-from gnc.safety.keepout_guard import KeepoutGuard
+from gnc.guard.guard import GuardParameters, HeadingRateFilter
 from scenarios.planning.flight_plan import Start
 from scenarios.schema.sections.flight import StartConfig
 from scenarios.world.vessel import VesselTruth
@@ -105,8 +104,6 @@ def check_start(
             f" only {away:.1f} of its {airspeed:.1f} m/s, beside a vessel with {fastest:.1f} m/s through the air: slow the vessel,"
             " turn more slowly (guidance.bank_deg), or give a kinematic vehicle a shorter lag (kinematic.heading_rate_lag_s)"
         )
-    keeping = KeepoutGuard(guard)
-    keeping.tubes = vessel
     own = KnownMotion(
         ground_north=start.north,
         ground_east=start.east,
@@ -115,7 +112,7 @@ def check_start(
         wind_east=wind[1],
         wind_error=wind_error,
     )
-    clearance = keeping.clearance(0.0, own, airspeed)
+    clearance = HeadingRateFilter(guard).clearance(0.0, own, vessel, airspeed)
     if clearance < 0.0:
         raise InfeasibleError(
             f"the start lies {math.hypot(start.north, start.east):.1f} m from the vessel on course"

@@ -6,10 +6,10 @@ import math
 
 from gnc.airspeed.along_track import AlongTrackTrim
 from gnc.estimation.reachable_set import Tube
+from gnc.guard.guard import GuardParameters
 from gnc.mission.direct_tracking import DirectParameters, Joining, SteadyCentre
 from gnc.paper import PlumeAxis, centre_of_oscillation
 from gnc.parameters import GuidanceParameters
-from gnc.safety.guard_parameters import GuardParameters
 from scenarios.margin.orbit_room import orbit_distance
 from scenarios.planning.bounded_steering import Steering, plan_steering
 from scenarios.planning.flight_plan import FlightPlan

@@ -6,6 +6,7 @@ import math
 from collections.abc import Generator, Sequence
 
 from gnc.compose import compose
+from gnc.guard.guard import GuardStatus
 from gnc.guidance import Guidance
 from gnc.mission.plume_following import PlumeFollowing
 from gnc.mission.searched_axis import SearchedAxis
@@ -121,7 +122,7 @@ class ClosedLoop:
                     (
                         step,
                         math.hypot(motion[0] - target.north, motion[1] - target.east),
-                        guard.lost,
+                        guard.status is GuardStatus.LOST,
                     )
                 )
             if recorded:

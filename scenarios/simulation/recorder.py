@@ -107,7 +107,7 @@ class Recorder:
             seen_north + centre.x, seen_east + centre.y, centre_error, own.wind_north, own.wind_east,
             seen_north, seen_east, centre.speed_ratio, mission.mode.number,
             tracker.heading_rate_demand, guidance.heading_rate_command, guidance.airspeed_command, guidance.altitude_command,
-            tracker.saturated, guard.intervening + guard.lost if guard is not None else 0.0,
+            tracker.saturated, float(guard.status) if guard is not None else 0.0,
             *sample, *read,
         ))  # fmt: skip
         if not judged:

@@ -1,0 +1,941 @@
+"""The keep-out guard: a filter of commands that keeps the vehicle out of a moving disc.
+
+The guard is a safety filter with a backup manoeuvre (Gurriet et al., "An Online Approach to Active
+Set Invariance", CDC 2018). The backup manoeuvre is a **turn away**: omega_max to the left or to the
+right until the vehicle heads straight away from the disc, then straight on. The set that is made
+invariant is that of the states from which a turn away keeps off. It takes the place of the sublevel
+set of a control barrier function, and is not written down but evaluated by prediction (``turn.py``)::
+
+    demanded command, one step     then a turn away, predicted     decision
+
+      ---->----                    .-> left   keeps off            the demand passes
+                                  /
+      ---->----  then            <-
+                                  \\
+      ---->----                    '-> right  enters the disc      neither keeps off: the least
+                                                                   fraction of the turn away that
+                                                                   was safe at the last step is
+                                                                   mixed in until one does
+
+**Theorem.** Let a turn away keep off at the start. Then the distance from the vessel never falls
+below the radius, for any demand and whether reports of the vessel arrive, arrive late or never
+arrive. Proof by induction: what passes, or is mixed, leaves a turn away that keeps off after the
+step; the disc of that turn contains the vessel for certain, and later reports add discs and
+invalidate none; so that turn can still be flown, and the guard flies it where it finds nothing
+better.
+
+**Assumptions.** (1) Heading rate follows its command by a dead time, a lag and the deviation that
+was measured for the aircraft. (2) Commands within omega_max are flown, and the filter is called
+once per time step. (3) The vessel stays within its discs. (4) Own velocity and wind are in error by
+no more than ``speed_error`` and what the wind's filter says. (5) Flying straight away outruns the
+disc. (6) A turn away keeps off at the start. ``docs/keepout_guard.md`` has the proof, what each
+assumption rests on, and what happens where one fails. The guard plans no way round: it keeps out,
+and no more.
+"""
+
+import math
+from collections import deque
+from collections.abc import Sequence
+from dataclasses import dataclass
+from enum import IntEnum
+from typing import NamedTuple
+
+from gnc.estimation.own_motion import AirMotion
+from gnc.estimation.reachable_set import Tube
+from gnc.guard.turn import (
+    CHANGED,
+    FORGOTTEN,
+    LEAST_CHANGE,
+    RelativeMotion,
+    TurnAway,
+    TurnPrediction,
+    TurnStart,
+    commands_under_way,
+    nearer_side,
+    pending_turn_rate,
+)
+from gnc.numeric import limited
+
+_RESOLUTION = 1e-3
+"""Turn radii kept beyond the radius, the accuracy of the predicted closest approach: 4 cm at a turn
+radius of 40 m [-]."""
+
+_SAME_SPEED = 0.05
+"""Airspeeds that differ by no more count as one, the faster: a turn away then keeps off by the same
+to 2 cm [m/s]."""
+
+_UNSTEADY = 0.05
+"""Share of the difference between the turn radii when fast and slow by which a vehicle may come
+nearer than predicted [-]."""
+
+_BISECTIONS = 5
+"""Halvings of the fraction of the turn away that is mixed in: it is found to 1/32."""
+
+_PACE_TOLERANCE = 0.05
+"""Rise of the pace that the guard is not consulted about [m/s]: a turn away comes nearer by less
+than 0.1 m for it."""
+
+_SKIPPED_LESS = 0.5
+"""By how much skipped commands may be less of the turn away than the one that was looked at, over
+omega_max [-]. The more, the more slack is kept for rolling; the less, the sooner is the next look."""
+
+_REMEMBERED = 2.0
+"""Time constant with which former paces fade, over that of the airspeed [-]: an overshoot lasts
+longer than a rise."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class GuardParameters:
+    """What the keep-out guard knows beforehand.
+
+    Attributes
+    ----------
+    radius : distance that the vehicle's path must keep from the vessel [m]
+    heading_rate_max : omega_max, the largest command [rad/s]
+    lag : time constant of the heading rate behind its command; 0 if it follows at once [s]
+    delay : dead time before that [s]
+    slow_lag : delay behind slow commands; None if that is ``delay`` + ``lag`` [s]
+    time_step : for which a command is held [s]
+    speed_error : largest error of the vehicle's own velocity, of the wind, and by gusts, together
+        [m/s]
+    deviation : how much nearer than predicted the vehicle may come in a full reversal [m]
+    drift_rate : how fast dead reckoning may go wrong, where satellite navigation may be lost [m/s]
+    allowance : distance kept for what takes the vehicle off any predicted turn: turbulence, a
+        failed part [m]
+    wander : how much the error of the vehicle's position may change during a turn away [m]
+    turn_speed : airspeed up to which it can turn at ``heading_rate_max``; faster it turns at the
+        same acceleration across [m/s]
+    slowest : airspeed that it may fall to in any turn away, for instance without thrust; infinite
+        where it keeps to its commands [m/s]
+    """
+
+    radius: float
+    heading_rate_max: float
+    lag: float
+    delay: float = 0.0
+    slow_lag: float | None = None
+    time_step: float
+    speed_error: float = 0.0
+    deviation: float = 0.0
+    drift_rate: float = 0.0
+    allowance: float = 0.0
+    wander: float = 0.0
+    turn_speed: float = math.inf
+    slowest: float = math.inf
+
+
+class GuardStatus(IntEnum):
+    """What the guard did at a step.
+
+    ``LOST``: no turn away kept off by more than the declared errors explain; the best is flown.
+    """
+
+    FREE = 0
+    INTERVENING = 1
+    LOST = 2
+
+
+class Demand(NamedTuple):
+    """What the guidance wants to fly next.
+
+    Attributes
+    ----------
+    time : now [s]
+    heading_rate : [rad/s]
+    pace : speed over the mean air [m/s]
+    leaving : whether the vehicle leaves for good; its pace is not held then
+    """
+
+    time: float
+    heading_rate: float
+    pace: float
+    leaving: bool = False
+
+
+class Guarded(NamedTuple):
+    """What may be flown.
+
+    Attributes
+    ----------
+    heading_rate : [rad/s]
+    pace : speed over the mean air [m/s]
+    pace_held : whether the guard chose the pace
+    status : what the guard did
+    """
+
+    heading_rate: float
+    pace: float
+    pace_held: bool
+    status: GuardStatus
+
+
+class KeepoutGuard:
+    """Filters the demands of a guidance. It keeps a memory and must be called once per time step.
+
+    A faster pace is flown only where the faster vehicle can turn away as well: a turn that was safe
+    must remain so. A vehicle that catches up turns wider, so V_r is flown while the guard acts, and
+    for a quarter of a turn after: a faster pace would make the guard act again, and so in turns.
+
+    Parameters
+    ----------
+    parameters : of the vehicle, and what is to be kept
+    speeds : between which the vehicle stays, and V_r
+    """
+
+    def __init__(self, parameters: GuardParameters, speeds: "SpeedRange") -> None:
+        self._heading_rates = HeadingRateFilter(parameters)
+        self._speeds = speeds
+        self._speed = speeds.speed
+        self._quarter_turn = 0.5 * math.pi / parameters.heading_rate_max
+        self._hold_until = -math.inf
+
+    @property
+    def status(self) -> GuardStatus:
+        """What the guard did at the last step."""
+        return self._heading_rates.status
+
+    @property
+    def intervening(self) -> bool:
+        """Whether the guard changed the last heading rate."""
+        return self._heading_rates.status is not GuardStatus.FREE
+
+    def filter(self, demand: Demand, own: AirMotion, vessels: Sequence[Tube]) -> Guarded:
+        """Return the commands that keep out and are nearest to the demand.
+
+        Parameters
+        ----------
+        demand : of the guidance
+        own : the vehicle's motion
+        vessels : discs, each of which contains the vessel for certain, the one known best first
+        """
+        time, command, pace, leaving = demand
+        heading_rates, speeds = self._heading_rates, self._speeds
+        pace_held = False
+        if time < self._hold_until and not leaving:
+            pace, pace_held = self._speed, True
+        speed = own.speed
+        fastest, slowest = speeds.fastest(pace), speeds.slowest(pace)
+        # A measured speed beyond those that were commanded counts as well.
+        fastest = speed if speed > fastest else fastest
+        slowest = speed if speed < slowest else slowest
+        rises = pace > speeds.highest + _PACE_TOLERANCE and not leaving
+        if rises and not heading_rates.allows(command, time, own, vessels, fastest, slowest):
+            pace, pace_held = speeds.highest, True
+            fastest, slowest = speeds.fastest(pace), speeds.slowest(pace)
+            fastest = speed if speed > fastest else fastest
+            slowest = speed if speed < slowest else slowest
+        command = heading_rates.limit(command, time, own, vessels, fastest, slowest)
+        status = heading_rates.status
+        if status is not GuardStatus.FREE and not leaving:
+            pace, pace_held = self._speed, True
+            self._hold_until = time + self._quarter_turn
+        speeds.note(pace if rises or pace < speeds.highest else speeds.highest)
+        return Guarded(command, pace, pace_held, status)
+
+    def replace(self, heading_rate: float, pace: float | None = None) -> None:
+        """Take note of what is flown in place of the last commands [rad/s, m/s]."""
+        self._heading_rates.replace(heading_rate)
+        if pace is not None:
+            self._speeds.include(pace)
+
+
+class Encounter(NamedTuple):
+    """A disc and the vehicle's motions relative to it when a command begins to act.
+
+    Attributes
+    ----------
+    disc : that contains the vessel
+    motions : fast first and slow then; and, where that differs, slow all along and fast all along
+    """
+
+    disc: Tube
+    motions: tuple[RelativeMotion, ...]
+
+
+class _BackupTurn(NamedTuple):
+    """A turn away that may be flown: its slack [m], its side, and against what it was predicted."""
+
+    slack: float
+    side: float
+    encounter: Encounter
+
+
+class HeadingRateFilter:
+    """Passes heading rates after which a turn away keeps off, and mixes in that turn otherwise.
+
+    It must be called once per time step.
+
+    Parameters
+    ----------
+    parameters : of the vehicle, and what is to be kept
+
+    Attributes
+    ----------
+    status : what was done at the last step
+    interventions : how often interventions began
+    prediction, history, budget : of turns; of the commands; of those that need no look
+    """
+
+    def __init__(self, parameters: GuardParameters) -> None:
+        p = parameters
+        self._p = p
+        self._rate = p.heading_rate_max
+        self._time_step = p.time_step
+        self._turn_speed = p.turn_speed
+        self.history = CommandHistory(
+            lag=p.lag,
+            delay=p.delay,
+            slow_lag=p.delay + p.lag if p.slow_lag is None else p.slow_lag,
+            time_step=p.time_step,
+            heading_rate_max=p.heading_rate_max,
+        )
+        self.prediction = TurnPrediction(
+            heading_rate_max=p.heading_rate_max,
+            lag=p.lag,
+            delay=p.delay,
+            time_step=p.time_step,
+            deviation=p.deviation,
+            turn_speed=p.turn_speed,
+        )
+        self.budget = SkipBudget(p.heading_rate_max, p.time_step)
+        # Satellite navigation may be lost at any moment, and dead reckoning go wrong from then on.
+        self._speed_error = p.speed_error + p.drift_rate
+        # Half a turn to the nearer side, half as much again for the disc's motion, and what the lag
+        # takes from any heading rate.
+        self._turn_time = 1.5 * math.pi / p.heading_rate_max + 2.0 * p.lag + p.delay + p.time_step
+        # Slack that the declared errors may take from a turn that was safe.
+        self._explained = p.deviation + self._speed_error * self._turn_time + p.allowance + p.wander
+        # Within a step a command may lead off the turn that was safe by all of a reversal: by
+        # V omega_max dt^2. In turn radii:
+        self._resolution = max(_RESOLUTION, (p.heading_rate_max * p.time_step) ** 2)
+        # The turn that was safe: to which side, and from which disc.
+        self._side = 0.0
+        self._kept_off: Tube | None = None
+        self.status = GuardStatus.FREE
+        self.interventions = 0
+
+    def limit(
+        self,
+        command: float,
+        time: float,
+        own: AirMotion,
+        vessels: Sequence[Tube],
+        fastest: float,
+        slowest: float = math.inf,
+    ) -> float:
+        """Return the command, or as much of a turn away as is needed [rad/s].
+
+        Parameters
+        ----------
+        command : demanded heading rate [rad/s]
+        time : now [s]
+        own : the vehicle's motion
+        vessels : discs, each of which contains the vessel for certain
+        fastest, slowest : airspeeds that the vehicle may come to; a turn away has to keep off at
+            all speeds between them [m/s]
+        """
+        if not self.budget.may_skip(command, fastest, slowest):
+            encounters = self._look(command, time, own, vessels, fastest, slowest)
+            if encounters is None:
+                self.status = GuardStatus.FREE
+            else:
+                self.interventions += self.status is GuardStatus.FREE
+                command = self._mix(command, encounters)
+        # At the largest bank a command comes in part where the vehicle flies faster.
+        flown = command
+        if own.speed > self._turn_speed:
+            flown = limited(command, self._rate * self._turn_speed / own.speed)
+        self.history.append(flown, own.heading_rate)
+        return command
+
+    def allows(
+        self,
+        command: float,
+        time: float,
+        own: AirMotion,
+        vessels: Sequence[Tube],
+        fastest: float,
+        slowest: float = math.inf,
+    ) -> bool:
+        """Return whether ``limit``, called next with the same parameters, lets the command pass."""
+        if self._look(command, time, own, vessels, fastest, slowest) is not None:
+            return False
+        self.status = GuardStatus.FREE
+        self.budget.refund(command)
+        return True
+
+    def replace(self, command: float) -> None:
+        """Take note of a heading rate that is flown in place of the last command [rad/s]."""
+        self.budget.charge(self.history.newest, command)
+        self.history.newest = command
+
+    def clearance(
+        self,
+        time: float,
+        own: AirMotion,
+        vessels: Sequence[Tube],
+        speed: float,
+        enough: float = math.inf,
+    ) -> float:
+        """Return by how much the better turn away, begun now, keeps off [m]; negative if none does.
+
+        No other commands do better, as docs/keepout_guard.md argues. What the path may come nearer
+        within a step is taken off.
+
+        Parameters
+        ----------
+        time : now [s]
+        own : the vehicle's motion
+        vessels : discs, each of which contains the vessel for certain
+        speed : airspeed of the vehicle [m/s]
+        enough : clearance above which the search may end early [m]
+        """
+        within_step = (self._resolution - _RESOLUTION) / self._rate * speed
+        pending = self.history.pending_turn_rate(own.heading_rate)
+        best = -math.inf
+        for disc in vessels:
+            relative = self.relative_motion(disc, time, own, speed, speed, pending)
+            motions = self.motions_when_acting(relative)
+            first = motions[0]
+            nearer = nearer_side(first.x, first.y, first.course)
+            for side in (nearer, -nearer):
+                slack = math.inf
+                for motion in motions:
+                    start = TurnStart(motion.x, motion.y, motion.course, motion.heading_rate)
+                    turn = self.prediction.turn_away(
+                        side,
+                        start,
+                        motion,
+                        change=self.history.change,
+                        time=self._p.delay,
+                        floor=best,
+                    )
+                    # In this order NaN propagates.
+                    slack = min(turn.slack, slack)
+                best = max(best, slack)
+                if best >= enough + within_step:
+                    return best - within_step
+        return best - within_step
+
+    def _look(
+        self,
+        command: float,
+        time: float,
+        own: AirMotion,
+        vessels: Sequence[Tube],
+        fastest: float,
+        slowest: float,
+    ) -> list[Encounter] | None:
+        """Return None if a turn away keeps off some disc after the command, or the encounters."""
+        history = self.history
+        pending = history.pending_turn_rate(own.heading_rate)
+        change = history.change_with(command)
+        encounters: list[Encounter] = []
+        side, turn = 0.0, None
+        for disc in self._candidates(vessels, time, own):
+            motion = self.relative_motion(disc, time, own, fastest, slowest, pending)
+            far_for = self.time_until_near(motion)
+            if far_for > 0.0:
+                side, turn = 0.0, TurnAway(math.inf, far_for, math.inf, change)
+            else:
+                motions = self.motions_when_acting(motion)
+                turn = self._safe_turn_after(command, motions, change)
+                side = self._side
+                if turn is None:
+                    encounters.append(Encounter(disc, motions))
+            if turn is not None:
+                self._kept_off = disc
+                break
+        self.budget.reset(
+            turn,
+            side,
+            command=command,
+            last=history.last,
+            slowest=min(slowest, fastest) - _SAME_SPEED,
+            fastest=fastest + _SAME_SPEED,
+        )
+        return encounters if turn is None else None
+
+    def _candidates(self, vessels: Sequence[Tube], time: float, own: AirMotion) -> Sequence[Tube]:
+        """Return the disc that reaches least far towards the vehicle, and the one kept off last."""
+        nearest = vessels[0]
+        if len(vessels) > 1:
+            gaps = [self._gap(disc, time, own) for disc in vessels]
+            nearest = vessels[gaps.index(max(gaps))]
+        last = self._kept_off
+        return (nearest,) if last is None or last is nearest else (nearest, last)
+
+    def _gap(self, disc: Tube, time: float, own: AirMotion) -> float:
+        """Return the distance from a disc after a quarter of a turn, if the vehicle stayed [m]."""
+        since = time - disc.time + 0.5 * math.pi / self._rate
+        north = own.ground_north - disc.north - disc.velocity_north * since
+        east = own.ground_east - disc.east - disc.velocity_east * since
+        reach = (disc.growth + 0.5 * disc.acceleration * since) * since
+        return math.hypot(north, east) - disc.radius - reach
+
+    def relative_motion(
+        self,
+        disc: Tube,
+        time: float,
+        own: AirMotion,
+        fastest: float,
+        slowest: float,
+        pending_rate: float,
+    ) -> RelativeMotion:
+        """Return the motion relative to a disc, with all that is uncertain in radius and growth."""
+        since = time - disc.time
+        wind_error = own.wind_error
+        drifted = (self._p.drift_rate + wind_error) * own.lost
+        slowest = min(slowest, self._p.slowest)
+        return RelativeMotion(
+            x=own.ground_north - (disc.north + disc.velocity_north * since),
+            y=own.ground_east - (disc.east + disc.velocity_east * since),
+            disc_north=disc.velocity_north - own.wind_north,
+            disc_east=disc.velocity_east - own.wind_east,
+            course=own.course,
+            heading_rate=own.heading_rate,
+            fastest=fastest,
+            slowest=slowest if slowest < fastest - _SAME_SPEED else fastest,
+            radius=self._p.radius
+            + drifted
+            + disc.radius
+            + (disc.growth + 0.5 * disc.acceleration * since) * since,
+            growth=self._speed_error + wind_error + disc.growth + disc.acceleration * since,
+            acceleration=disc.acceleration,
+            pending_rate=pending_rate,
+        )
+
+    def time_until_near(self, motion: RelativeMotion) -> float:
+        """Return for how long the disc stays out of reach of a turn away [s]; negative if it is not.
+
+        Out of reach is what is farther off than disc and vehicle can close during a turn.
+        """
+        duration = self._turn_time * max(1.0, motion.fastest / self._turn_speed)
+        acceleration = motion.acceleration
+        disc_speed = math.hypot(motion.disc_north, motion.disc_east)
+        closing = motion.fastest + disc_speed + motion.growth
+        gap = (
+            math.hypot(motion.x, motion.y)
+            - motion.radius
+            - (closing + 0.5 * acceleration * duration) * duration
+        )
+        return min(gap / (closing + 1.5 * acceleration * duration), duration)
+
+    def motions_when_acting(self, motion: RelativeMotion) -> tuple[RelativeMotion, ...]:
+        """Return the motions of an encounter, when a command given now begins to act."""
+        acting, under_way = self.prediction.when_acting, self.history.under_way
+        if motion.slowest == motion.fastest:
+            return (acting(motion, under_way),)
+        # Round a disc, or past a small one, a turn may come nearer at one speed all along.
+        return (
+            acting(motion, under_way),
+            acting(motion.at_one_speed(motion.slowest), under_way),
+            acting(motion.at_one_speed(motion.fastest), under_way),
+        )
+
+    def _safe_turn_after(
+        self, command: float, motions: tuple[RelativeMotion, ...], change: float
+    ) -> TurnAway | None:
+        """Return the turn away that keeps off after this command, and store its side; None if none
+        does.
+        """
+        first = motions[0]
+        floor = self._resolution * first.fastest / self._rate
+        start = self.prediction.after(command, first)
+        nearer = nearer_side(start.x, start.y, start.course)
+        for side in (nearer, -nearer):
+            turn = self.turn_after(side, command, motions, change, floor)
+            if turn.slack >= floor:
+                self._side = side
+                return turn
+        return None
+
+    def turn_after(
+        self,
+        side: float,
+        command: float,
+        motions: tuple[RelativeMotion, ...],
+        change: float,
+        floor: float,
+    ) -> TurnAway:
+        """Return the turn away to a side after a command: the least of the motions in each respect.
+
+        Below ``floor`` [m] of slack the search may end early.
+        """
+        prediction = self.prediction
+        against = 0.5 - 0.5 * self.budget.least_of_turn(side, command) / self._rate
+        slack = free_time = free_course = math.inf
+        counted = 1.0
+        for motion in motions:
+            turn = prediction.turn_away(
+                side,
+                prediction.after(command, motion),
+                motion,
+                change=change,
+                time=self._p.delay + self._time_step,
+                floor=floor,
+                against=against,
+            )
+            # In this order NaN propagates.
+            slack = min(turn.slack, slack)
+            free_time = min(turn.free_time, free_time)
+            free_course = min(turn.free_course, free_course)
+            counted = min(counted, turn.change)
+            if slack < floor:
+                break
+        return TurnAway(slack, free_time, free_course, counted)
+
+    def _mix(self, command: float, encounters: Sequence[Encounter]) -> float:
+        """Return the command with the least of a turn away that keeps off, or that turn [rad/s]."""
+        backup = self._backup_turn(encounters)
+        self._side = backup.side
+        motions = backup.encounter.motions
+        first = motions[0]
+        turn = self._turn_command(backup.side, first)
+        floor = self._resolution * first.fastest / self._rate
+        lost = backup.slack < -self._explained_slack(first) - floor
+        self.status = GuardStatus.LOST if lost else GuardStatus.INTERVENING
+        if backup.slack < 0.0:
+            return turn
+        self._kept_off = backup.encounter.disc
+        low, high, mixed = 0.0, 1.0, turn
+        for _ in range(_BISECTIONS):
+            fraction = 0.5 * (low + high)
+            trial = command + fraction * (turn - command)
+            change = self.history.change_with(trial)
+            if self.turn_after(backup.side, trial, motions, change, floor).slack >= floor:
+                high, mixed = fraction, trial
+            else:
+                low = fraction
+        return mixed
+
+    def _backup_turn(self, encounters: Sequence[Encounter]) -> _BackupTurn:
+        """Return the turn away to fly: one that keeps off, or that to the side that was safe.
+
+        That one is flown as long as declared errors explain what it lacks, and the better one if
+        they do not.
+        """
+        safe_side = self._side
+        turns: list[_BackupTurn] = []
+        for encounter in encounters:
+            first = encounter.motions[0]
+            for side in (safe_side, -safe_side) if safe_side else (1.0, -1.0):
+                command = self._turn_command(side, first)
+                change = self.history.change_with(command)
+                found = self.turn_after(side, command, encounter.motions, change, -math.inf)
+                turn = _BackupTurn(found.slack, side, encounter)
+                if safe_side and turn.slack >= 0.0:
+                    return turn
+                turns.append(turn)
+        to_safe_side = [turn for turn in turns if turn.side == safe_side]
+        if to_safe_side:
+            continued = max(to_safe_side, key=lambda turn: turn.slack)
+            if continued.slack >= -self._explained_slack(continued.encounter.motions[0]):
+                return continued
+        return max(turns, key=lambda turn: (turn.slack, turn.side))
+
+    def _explained_slack(self, motion: RelativeMotion) -> float:
+        """Return the slack of a turn that was safe which declared errors may have taken since [m]."""
+        return self._explained + _UNSTEADY * (motion.fastest - motion.slowest) / self._rate
+
+    def _turn_command(self, side: float, motion: RelativeMotion) -> float:
+        """Return the command of a turn away [rad/s]: straight away from the disc and no farther."""
+        left = math.remainder(
+            math.atan2(motion.y, motion.x) - motion.course - self._p.lag * motion.heading_rate,
+            2.0 * math.pi,
+        )
+        # From less than a right angle beyond straight away it turns back: going on would lead once
+        # round, towards the disc.
+        if side * left >= self._rate * self._time_step or abs(left) >= 0.5 * math.pi:
+            return side * self._rate
+        return limited(left / self._time_step, self._rate)
+
+
+class CommandHistory:
+    """Heading-rate commands, one per time step, and what is still to come of them.
+
+    In the end a vehicle has turned by all of its commands. A prediction from its heading rate and
+    from the commands under way knows of some course to come. An aircraft in the middle of a roll,
+    or one whose autopilot makes up for course that it lacks, has another course ahead of it. The
+    difference is the lack; it is 0 for a vehicle with just that dead time and lag
+    (docs/keepout_guard.md, "Course that earlier commands still bring").
+
+    Parameters
+    ----------
+    lag, delay : of the heading rate behind its command [s]
+    slow_lag : delay behind slow commands [s]
+    time_step : for which a command is held [s]
+    heading_rate_max : omega_max [rad/s]
+
+    Attributes
+    ----------
+    under_way : commands that act within the delay, the first one perhaps for a part of its step
+        [rad/s]
+    change : largest recent change of command, over a full reversal; it counts less the older it is
+        [-]
+    last : command at the last look [rad/s]
+    """
+
+    def __init__(
+        self,
+        *,
+        lag: float,
+        delay: float,
+        slow_lag: float,
+        time_step: float,
+        heading_rate_max: float,
+    ) -> None:
+        self._lag = lag
+        self._slow_lag = slow_lag
+        # Commands count from when they act.
+        self._slow_lag_after_delay = slow_lag - delay
+        self._time_step = time_step
+        self._reversal = 2.0 * heading_rate_max
+        # The course of a full reversal that has not begun yet.
+        self._lack_max = self._reversal * (delay + lag)
+        count, self._first = commands_under_way(delay, time_step)
+        # Course turned in a step in which a lag follows one command, from the heading rates at its
+        # ends; and what is added where another command begins to act within the step. So the lack is
+        # exactly 0 for a vehicle with just that dead time and lag.
+        self._kept = self._fading = self._course_at_end = self._course_of_change = 0.0
+        if lag > 0.0:
+            self._kept = math.exp(-time_step / (FORGOTTEN * lag))
+            self._fading = math.exp(-time_step / (CHANGED * lag))
+            turned = time_step / -math.expm1(-time_step / lag)
+            self._course_at_end = turned - lag
+            self._course_of_change = (
+                time_step - self._first + turned * math.expm1((self._first - time_step) / lag)
+            )
+        self._lack = 0.0
+        self._begun = False
+        # Commands since the last look, and the heading rate at each [rad/s].
+        self._commands: list[float] = []
+        self._rates: list[float] = []
+        self.under_way: deque[float] = deque(maxlen=count)
+        self.change = LEAST_CHANGE
+        self.last = 0.0
+
+    @property
+    def newest(self) -> float:
+        """The command of the last step [rad/s]; whoever flies another one in its place sets it."""
+        return self._commands[-1]
+
+    @newest.setter
+    def newest(self, command: float) -> None:
+        self._commands[-1] = command
+
+    def append(self, command: float, rate: float) -> None:
+        """Take note of the command of a step and of the heading rate at its beginning [rad/s]."""
+        self._commands.append(command)
+        self._rates.append(rate)
+
+    def pending_turn_rate(self, rate: float) -> float:
+        """Return the change of heading rate that stands for the lack [rad/s].
+
+        Commands since the last look are taken in.
+
+        Parameters
+        ----------
+        rate : heading rate now [rad/s]. Course is its sum, and not that of the motion over the mean
+            air: no autopilot makes up for what a gust or a better estimate of the wind does to that
+        """
+        if self._commands:
+            self._begun = True
+            self._take_in(rate)
+        elif not self._begun:
+            # A flight begins: the turn that is flown is under way.
+            self.last = rate
+            self.under_way.extend([rate] * (self.under_way.maxlen or 0))
+        if self._lag == 0.0:
+            return 0.0
+        return pending_turn_rate(self._lack, rate, self._slow_lag, self._lag)
+
+    def change_with(self, command: float) -> float:
+        """Return ``change`` if a command [rad/s] is given now."""
+        now = abs(command - self.last) / self._reversal
+        return now if now > self.change else self.change
+
+    def _take_in(self, rate: float) -> None:
+        """Take in the commands and heading rates since the last look [rad/s]."""
+        commands, rates, under_way = self._commands, self._rates, self.under_way
+        acting = under_way[0] if under_way else 0.0
+        acted = self._time_step * sum(commands) + self._course_under_way()
+        under_way.extend(commands)
+        acted -= self._course_under_way()
+        rate_change = rate - rates[0]
+        turned = self._time_step * sum(rates) + self._course_at_end * rate_change
+        if under_way:
+            turned += self._course_of_change * (under_way[0] - acting)
+        remembered = self._lack * self._kept ** len(commands)
+        lack = remembered + acted - turned - self._slow_lag_after_delay * rate_change
+        self._lack = limited(lack, self._lack_max)
+        # What changed little by little since the last look counts as if it had changed at once.
+        commands.append(self.last)
+        highest, lowest = max(commands), min(commands)
+        faded = self.change * self._fading ** len(rates)
+        self.change = max((highest - lowest) / self._reversal, faded, LEAST_CHANGE)
+        self.last = commands[-2]
+        commands.clear()
+        rates.clear()
+
+    def _course_under_way(self) -> float:
+        """Return the course that the commands under way turn [rad]."""
+        if not self.under_way:
+            return 0.0
+        all_of_them = self._time_step * sum(self.under_way)
+        return all_of_them + (self._first - self._time_step) * self.under_way[0]
+
+
+class SkipBudget:
+    """Counts the commands that need no look, since they cannot spoil the turn away found last.
+
+    A command that is less of that turn than omega_max takes course from it. A look says how much
+    course the turn can lose, for how long, and at which commands and airspeeds. The budget lasts
+    until one of these is used up (docs/keepout_guard.md, "Evaluating less often").
+
+    Parameters
+    ----------
+    heading_rate_max : omega_max [rad/s]
+    time_step : for which a command is held [s]
+
+    Attributes
+    ----------
+    steps : for which commands may be skipped, at most
+    course_left : that the turn can still lose [rad]
+    """
+
+    def __init__(self, heading_rate_max: float, time_step: float) -> None:
+        self._rate = heading_rate_max
+        self._time_step = time_step
+        self._step_course = heading_rate_max * time_step
+        # A command may be cut after it has passed: as much course is kept for that.
+        self._reserve = 2.0 * self._step_course
+        self.steps = 0
+        self.course_left = 0.0
+        # Course that a command spares, per rad/s.
+        self._course_per_rate = 0.0
+        self._lowest = self._highest = 0.0
+        self._slowest = self._fastest = 0.0
+
+    def may_skip(self, command: float, fastest: float, slowest: float) -> bool:
+        """Return whether a command [rad/s] at such airspeeds [m/s] needs no look; it is counted."""
+        left = self.course_left + self._course_per_rate * command
+        if (
+            self.steps > 0
+            and self._lowest <= command <= self._highest
+            and fastest <= self._fastest
+            and slowest >= self._slowest
+            and left >= self._reserve
+        ):
+            self.steps -= 1
+            self.course_left = left - self._step_course
+            return True
+        return False
+
+    def reset(
+        self,
+        turn: TurnAway | None,
+        side: float,
+        *,
+        command: float,
+        last: float,
+        slowest: float,
+        fastest: float,
+    ) -> None:
+        """Begin anew with what a look has found.
+
+        Parameters
+        ----------
+        turn : away that keeps off; None if there is none, and nothing may be skipped
+        side : of the turn; 0 where the disc is out of reach
+        command, last : that was looked at, and at the look before [rad/s]
+        slowest, fastest : airspeeds at which the turn was predicted [m/s]
+        """
+        if turn is None:
+            self.steps = 0
+            return
+        self.steps = max(0, int(turn.free_time / self._time_step) - 1)
+        self.course_left = turn.free_course
+        self._course_per_rate = side * self._time_step
+        # Commands that change by no more than the turn's deviation counts, and that are not too
+        # little of the turn.
+        middle, half = 0.5 * (last + command), turn.change * self._rate
+        least = self.least_of_turn(side, command) if side else -self._rate
+        self._lowest = max(middle - half, least if side > 0.0 else -self._rate)
+        self._highest = min(middle + half, -least if side < 0.0 else self._rate)
+        self._slowest, self._fastest = slowest, fastest
+
+    def least_of_turn(self, side: float, command: float) -> float:
+        """Return how little of a turn to a side commands may be after this one [rad/s]."""
+        return max(min(side * command, self._rate) - _SKIPPED_LESS * self._rate, -self._rate)
+
+    def refund(self, command: float) -> None:
+        """Let the command [rad/s] that was looked at pass once more."""
+        self.steps += 1
+        self.course_left += self._step_course - self._course_per_rate * command
+
+    def charge(self, command: float, flown: float) -> None:
+        """Count what is flown in place of a command that has passed [rad/s]."""
+        self.course_left -= max(0.0, self._course_per_rate * (command - flown))
+        if not self._lowest <= flown <= self._highest:
+            self.steps = 0
+
+
+class SpeedRange:
+    """The speeds between which a vehicle stays, by the paces that it was commanded.
+
+    Airspeed follows its commands with a lag and overshoots their changes. A pace is a speed over
+    the mean air; former paces fade.
+
+    Parameters
+    ----------
+    speed : V_r, to which a turn away returns [m/s]
+    bandwidth : of the airspeed behind its command [rad/s]
+    overshoot : of the airspeed over a rise of its command, and below a fall [-]
+    time_step : between commands [s]
+
+    Attributes
+    ----------
+    speed : V_r [m/s]
+    highest, lowest : recent paces, the highest at least V_r [m/s]
+    """
+
+    def __init__(
+        self, *, speed: float, bandwidth: float, overshoot: float, time_step: float
+    ) -> None:
+        self.speed = speed
+        self._overshoot = overshoot
+        self._kept = math.exp(-time_step * bandwidth / _REMEMBERED)
+        self.highest = speed
+        self.lowest = speed
+        # What recent paces may still make of the speed.
+        self._crest = speed
+        self._trough = speed
+
+    def fastest(self, pace: float) -> float:
+        """Return the speed that it may rise to if a pace is commanded now, and V_r after it [m/s]."""
+        rise = pace if pace > self.speed else self.speed
+        reached = rise + self._overshoot * (rise - (pace if pace < self.lowest else self.lowest))
+        return reached if reached > self._crest else self._crest
+
+    def slowest(self, pace: float) -> float:
+        """Return the speed that it may fall to if a pace is commanded now, and V_r after it [m/s]."""
+        fall = pace if pace < self.speed else self.speed
+        reached = fall - self._overshoot * ((pace if pace > self.highest else self.highest) - fall)
+        return reached if reached < self._trough else self._trough
+
+    def include(self, pace: float) -> None:
+        """Take note of a pace that is flown in place of the last one [m/s]."""
+        self._crest, self._trough = self.fastest(pace), self.slowest(pace)
+        self.highest, self.lowest = max(self.highest, pace), min(self.lowest, pace)
+
+    def note(self, pace: float) -> None:
+        """Take note of the pace that is commanded for this step [m/s]."""
+        kept, highest, lowest = self._kept, self.highest, self.lowest
+        fastest, slowest = self.fastest(pace), self.slowest(pace)
+        highest = pace if pace > highest else pace + kept * (highest - pace)
+        self.highest = highest if highest > self.speed else self.speed
+        self.lowest = pace if pace < lowest else pace + kept * (lowest - pace)
+        # The crest and the trough fade towards the pace.
+        self._crest = pace + kept * (fastest - pace)
+        self._trough = pace + kept * (slowest - pace)

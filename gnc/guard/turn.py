@@ -1,0 +1,757 @@
+"""How a vehicle turns away from a moving disc, and how near it comes to it.
+
+The one prediction of a turn: the keep-out guard decides by it, and innerloop's search over
+reversals measures how far an aircraft strays from it. The vehicle's heading rate follows its
+command after a dead time and with a first-order lag; a **turn away** is omega_max to one side until
+the vehicle heads straight away from the disc, then straight on::
+
+          straight away
+               ^            slack: the least, along the turn, of the distance r from the
+           .---'            disc's centre less what is allowed for there: the radius to
+         /                  keep, the disc's growth, errors, the vehicle's deviation
+        |     r . '  .-.
+        ^   . '     ( * )   the disc, which moves and grows
+     vehicle         '-'
+
+All is relative to the disc's centre, in the air mass: x north, y east [m], courses clockwise from
+north [rad], the side of a turn 1 to the right and -1 to the left. ``docs/keepout_guard.md`` derives
+what is used here.
+"""
+
+import math
+from collections.abc import Sequence
+from typing import NamedTuple
+
+from gnc.numeric import limited
+
+LEAST_CHANGE = 0.2
+"""Change of heading rate, over that of a full reversal, for which a turn is taken to deviate at
+least [-]."""
+
+FORGOTTEN = 64.0
+"""Time constant with which course that is still to come is forgotten, over the lag [-]: some of a
+turn at the largest bank never comes. Heading rates oscillate after a reversal as well, for as long
+as ``CHANGED`` says."""
+
+CHANGED = 24.0
+"""Time constant with which the largest change of command counts less for how far turns deviate,
+over the lag [-]."""
+
+SLOW_LAG_ERROR = 0.025
+"""Share of the lag behind slow commands that it may be off [-]: it was measured at one airspeed,
+amplitude and frequency."""
+
+_POINT_SPACING = 0.125
+"""Course turned between two points of a predicted turn, at most; half of it where the lag is
+shorter than that takes [rad]."""
+
+_TURN_MAX = 2.5 * math.pi
+"""Course after which a turn away is over [rad]: once round, and what a turn the other way before it
+and the disc's motion add."""
+
+_ROLLING_TIMES = 3.0
+"""What commands before the turn add to its deviation by rolling is kept for this many times the
+shortest time in which commands against the turn use up its slack [-]."""
+
+_NEWTON_STEPS = 3
+"""Steps that find the closest approach between two points: each squares the error of the one before
+[-]."""
+
+_WHOLE_STEP = 1e-6
+"""A delay may exceed a whole number of steps by this share of one without counting as one more
+[-]."""
+
+
+class RelativeMotion:
+    """A vehicle's motion relative to a disc, and how the disc grows.
+
+    This class and ``TurnPoint`` are made at each look or point: compiled, a plain class takes a
+    sixth of the time of a NamedTuple.
+
+    Attributes
+    ----------
+    x, y : vehicle north and east of the disc's centre [m]
+    disc_north, disc_east : velocity of the disc in the air mass [m/s]
+    course, heading_rate : of the vehicle in the air mass [rad, rad/s]
+    fastest, slowest : airspeeds between which the vehicle stays [m/s]
+    radius, growth, acceleration : radius to keep now [m], its rate [m/s] and the rate of that
+        [m/s^2]
+    pending_rate : change of heading rate that stands for the course still to come of earlier
+        commands [rad/s]
+    """
+
+    def __init__(
+        self,
+        *,
+        x: float,
+        y: float,
+        disc_north: float,
+        disc_east: float,
+        course: float,
+        heading_rate: float,
+        fastest: float,
+        slowest: float,
+        radius: float,
+        growth: float,
+        acceleration: float,
+        pending_rate: float,
+    ) -> None:
+        self.x = x
+        self.y = y
+        self.disc_north = disc_north
+        self.disc_east = disc_east
+        self.course = course
+        self.heading_rate = heading_rate
+        self.fastest = fastest
+        self.slowest = slowest
+        self.radius = radius
+        self.growth = growth
+        self.acceleration = acceleration
+        self.pending_rate = pending_rate
+
+    def moved(self, x: float, y: float, course: float, heading_rate: float) -> "RelativeMotion":
+        """Return the same disc and speeds with the vehicle elsewhere [m, m, rad, rad/s]."""
+        return RelativeMotion(
+            x=x,
+            y=y,
+            disc_north=self.disc_north,
+            disc_east=self.disc_east,
+            course=course,
+            heading_rate=heading_rate,
+            fastest=self.fastest,
+            slowest=self.slowest,
+            radius=self.radius,
+            growth=self.growth,
+            acceleration=self.acceleration,
+            pending_rate=self.pending_rate,
+        )
+
+    def at_one_speed(self, speed: float) -> "RelativeMotion":
+        """Return the same motion of a vehicle that keeps to one airspeed [m/s]."""
+        same = self.moved(self.x, self.y, self.course, self.heading_rate)
+        same.fastest = speed
+        same.slowest = speed
+        return same
+
+
+class TurnStart(NamedTuple):
+    """Where a turn begins.
+
+    Attributes
+    ----------
+    x, y : of the vehicle, relative to the disc's centre [m]
+    course, heading_rate : [rad, rad/s]
+    """
+
+    x: float
+    y: float
+    course: float
+    heading_rate: float
+
+
+class TurnAway(NamedTuple):
+    """A full turn away, and what commands before it cannot spoil it.
+
+    Attributes
+    ----------
+    slack : by how much it keeps off [m]; negative if it does not
+    free_time : for which any command may be given before it [s]
+    free_course : course that these commands may take from the turn [rad]
+    change : share of a full reversal that its deviation counts, by rolling into it or by recent
+        changes of command [-]
+    """
+
+    slack: float
+    free_time: float
+    free_course: float
+    change: float
+
+
+class TurnPoint:
+    """A point of a predicted turn.
+
+    Attributes
+    ----------
+    x, y, course : relative to the disc's centre [m, m, rad]
+    allowed : distance that is allowed for there [m]
+    speed : airspeed on the way there [m/s]
+    """
+
+    def __init__(self, x: float, y: float, course: float, allowed: float, speed: float) -> None:
+        self.x = x
+        self.y = y
+        self.course = course
+        self.allowed = allowed
+        self.speed = speed
+
+
+class HeldResponse(NamedTuple):
+    """Coefficients of a first-order lag under a held command.
+
+    Attributes
+    ----------
+    duration : for which the command is held [s]
+    turned : course, per heading rate at the start [s]; the rest of the duration is course per
+        command
+    mean : course on the mean of the duration, per heading rate at the start [s]; the rest of half
+        the duration is per command
+    decay : heading rate at the end, per heading rate at the start [-]; the rest of 1 is per command
+    """
+
+    duration: float
+    turned: float
+    mean: float
+    decay: float
+
+
+class _Leg(NamedTuple):
+    """What is flown between two points of a full turn at one airspeed.
+
+    Attributes
+    ----------
+    way : chord [m]
+    course_to_middle, course_turned, rate_gained : by the command, besides what the heading rate at
+        the start brings [rad, rad, rad/s]
+    stretch : time that the turn takes, over that at omega_max [-]
+    speed : airspeed [m/s]
+    """
+
+    way: float
+    course_to_middle: float
+    course_turned: float
+    rate_gained: float
+    stretch: float
+    speed: float
+
+
+def held_response(duration: float, lag: float) -> HeldResponse:
+    """Return the coefficients for a command that is held for ``duration`` [s] behind a lag [s]."""
+    if lag == 0.0:
+        return HeldResponse(duration, 0.0, 0.0, 0.0)
+    turned = -lag * math.expm1(-duration / lag)
+    return HeldResponse(
+        duration, turned, lag * (1.0 - turned / duration), math.exp(-duration / lag)
+    )
+
+
+def commands_under_way(delay: float, time_step: float) -> tuple[int, float]:
+    """Return how many commands act within a delay, and for how long of it the first one does [s].
+
+    Parameters
+    ----------
+    delay : dead time of the vehicle [s]
+    time_step : for which each command is held [s]
+    """
+    count = math.ceil(delay / time_step - _WHOLE_STEP)
+    return count, delay - (count - 1) * time_step
+
+
+def pending_turn_rate(lack: float, rate: float, slow_lag: float, lag: float) -> float:
+    """Return the change of heading rate that turns through the course still to come [rad/s].
+
+    Parameters
+    ----------
+    lack : commanded course that has not been turned yet, nor is on its way by the lag [rad]
+    rate : heading rate now [rad/s]; its delay is known to ``SLOW_LAG_ERROR``, and course within
+        that doubt does not count
+    slow_lag, lag : delay behind slow commands, and lag over which the course is to be turned [s]
+    """
+    doubt = SLOW_LAG_ERROR * slow_lag * abs(rate)
+    return (lack - math.copysign(doubt, lack)) / lag if abs(lack) > doubt else 0.0
+
+
+def entry_rate(side: float, heading_rate: float, pending_rate: float) -> float:
+    """Return the heading rate that a turn begins with [rad/s]: pending course counts if it is
+    against the turn.
+    """
+    return heading_rate + side * min(0.0, side * pending_rate)
+
+
+def rolled_change(side: float, heading_rate: float, heading_rate_max: float) -> float:
+    """Return how far the vehicle rolls into a full turn, as a share of a full reversal [-]."""
+    return 0.5 - 0.5 * side * heading_rate / heading_rate_max
+
+
+def nearer_side(x: float, y: float, course: float) -> float:
+    """Return the side to which it is less far to head straight away from a disc."""
+    return 1.0 if y * math.cos(course) >= x * math.sin(course) else -1.0
+
+
+class TurnPrediction:
+    """Predicts the turns of one vehicle.
+
+    The vehicle flies at the fastest airspeed while it flies towards the disc, and at the slowest
+    while it flies away from one that closes in all the same: so it comes nearest.
+
+    Parameters
+    ----------
+    heading_rate_max, lag, delay, time_step, deviation, turn_speed : see ``GuardParameters``
+
+    Attributes
+    ----------
+    overshoot : angle by which a turn that ends straight away goes beyond it [rad]
+    """
+
+    def __init__(
+        self,
+        *,
+        heading_rate_max: float,
+        lag: float,
+        delay: float,
+        time_step: float,
+        deviation: float = 0.0,
+        turn_speed: float = math.inf,
+    ) -> None:
+        self._rate = heading_rate_max
+        self._lag = lag
+        self._delay = delay
+        self._deviation = deviation
+        self._turn_speed = turn_speed
+        self._step = held_response(time_step, lag)
+        # The first of the commands under way acts for a part of its step, the rest for all of it.
+        self._first_step = held_response(commands_under_way(delay, time_step)[1], lag)
+        spacing = max(
+            min(_POINT_SPACING / heading_rate_max, lag), 0.5 * _POINT_SPACING / heading_rate_max
+        )
+        self._spacing = held_response(spacing, lag)
+        self._points_max = math.ceil(_TURN_MAX / (heading_rate_max * spacing))
+        half_turned = 0.5 * heading_rate_max * spacing
+        self._chord_over_arc = math.sin(half_turned) / half_turned
+        # A turn that ends straight away goes beyond it by its lag and by a step of holding commands.
+        self.overshoot = min(heading_rate_max * (lag + time_step), 0.5 * math.pi)
+        self._overshoot_sine = math.sin(self.overshoot)
+
+    def when_acting(self, motion: RelativeMotion, under_way: Sequence[float]) -> RelativeMotion:
+        """Return the motion when a command given now begins to act.
+
+        Parameters
+        ----------
+        motion : now
+        under_way : commands [rad/s] that act until then, the first one perhaps for a part of its
+            step; they cannot be taken back
+        """
+        if not under_way:
+            return motion
+        course, heading_rate = motion.course, motion.heading_rate
+        mean_course_time = 0.0
+        response = self._first_step
+        for command in under_way:
+            duration, turned, mean, decay = response
+            mean_course_time += duration * (
+                course + mean * heading_rate + (0.5 * duration - mean) * command
+            )
+            course += turned * heading_rate + (duration - turned) * command
+            heading_rate = decay * heading_rate + (1.0 - decay) * command
+            response = self._step
+        # One chord will do, with the sine over arc of half the course turned.
+        mean_course, half_turned = mean_course_time / self._delay, 0.5 * (course - motion.course)
+        cos, sin = math.cos(mean_course), math.sin(mean_course)
+        receding = motion.x * cos + motion.y * sin > 0.0
+        speed = motion.slowest if receding else motion.fastest
+        chord_speed = speed * (1.0 - half_turned * half_turned / 6.0)
+        return motion.moved(
+            motion.x + (chord_speed * cos - motion.disc_north) * self._delay,
+            motion.y + (chord_speed * sin - motion.disc_east) * self._delay,
+            course,
+            heading_rate,
+        )
+
+    def after(self, command: float, motion: RelativeMotion) -> TurnStart:
+        """Return where a command [rad/s] leads that is held for one time step."""
+        if motion.fastest > self._turn_speed:
+            # At the largest bank a turn is the slower the faster the vehicle flies.
+            command = limited(command, self._rate * self._turn_speed / motion.fastest)
+        duration, turned, mean, decay = self._step
+        heading_rate = motion.heading_rate
+        middle = motion.course + mean * heading_rate + (0.5 * duration - mean) * command
+        cos, sin = math.cos(middle), math.sin(middle)
+        receding = motion.x * cos + motion.y * sin > 0.0
+        speed = motion.slowest if receding else motion.fastest
+        return TurnStart(
+            motion.x + (speed * cos - motion.disc_north) * duration,
+            motion.y + (speed * sin - motion.disc_east) * duration,
+            motion.course + turned * heading_rate + (duration - turned) * command,
+            decay * heading_rate + (1.0 - decay) * command,
+        )
+
+    def turn_away(
+        self,
+        side: float,
+        start: TurnStart,
+        motion: RelativeMotion,
+        *,
+        change: float,
+        time: float,
+        floor: float,
+        against: float = 1.0,
+    ) -> TurnAway:
+        """Return by how much a full turn away keeps off, and what cannot spoil it.
+
+        The turn is over once the vehicle recedes and the turn makes it recede faster: by going on
+        until it heads straight away, and straight on then, it recedes for good. From a disc that
+        closes in faster than the vehicle flies it turns no farther than that, and is followed for
+        as long as a turn takes.
+
+        Parameters
+        ----------
+        side : of the turn
+        start : of the turn
+        motion : when the command that is judged begins to act; its disc and speeds count
+        change : largest recent change of command, over a full reversal [-]
+        time : from now to the start [s]
+        floor : slack below which the search may end early [m]
+        against : how far commands before the turn may be against it, over a full reversal [-]
+        """
+        rate, lag, time_step = self._rate, self._lag, self._step.duration
+        duration, decay = self._spacing.duration, self._spacing.decay
+        heading_rate = entry_rate(side, start.heading_rate, motion.pending_rate)
+        counted = max(change, rolled_change(side, heading_rate, rate))
+        deviation = self._deviation * counted
+        leg = self._leg(side, motion.fastest)
+        path = _TurnPath(side, start, heading_rate, motion, self._spacing, time, deviation, leg)
+        if motion.slowest != motion.fastest:
+            radii_difference = (motion.fastest - motion.slowest) * leg.stretch / rate
+            path.slow_down_while_receding(self._leg(side, motion.slowest), radii_difference)
+        # Commands before the turn displace the vehicle by the course that they take from it, times
+        # a lever; and they use up slack by rolling, which makes the turn deviate more.
+        loss_rate = 2.0 * motion.fastest * rate * against / _ROLLING_TIMES
+        added_deviation = max(0.0, self._deviation * max(change, against) - deviation)
+        rolling = added_deviation / (loss_rate * max(lag, time_step))
+        acting = time - self._delay
+        fade = self._step.decay if time > self._delay else 1.0
+        least_rate = math.inf
+        # Where the vehicle is now it has not deviated yet.
+        least = path.slack + deviation
+        outward = self._outward(side, start)
+        gain, rise = -1.0, 0.0
+        for point in range(math.ceil(self._points_max * leg.stretch)):
+            if least < floor:
+                break
+            last_slack, last_rise, last_outward = path.slack, rise, outward
+            path.advance()
+            outward = path.outward
+            rise = path.slack - last_slack
+            acting += duration
+            fade *= decay
+            lever = acting - lag * (1.0 - fade) + rolling
+            least_rate = min(least_rate, path.slack / lever)
+            if rise < 0.0:
+                if gain >= 0.0:
+                    break
+                least = min(least, path.slack)
+                past_straight_away = last_outward >= 0.0 > outward and path.away
+                if past_straight_away and side * path.heading_rate > 0.0:
+                    # The disc gains on it all the same. Nothing does better than to fly straight on.
+                    path.fly_straight_on()
+                    outward = 0.0
+                continue
+            if last_rise < 0.0 or point == 0:
+                nearest = path.closest_about_last_point(first=point == 0)
+                least = min(least, nearest)
+                least_rate = min(least_rate, nearest / lever)
+            # Passing straight away between two points counts as well: it would have stopped there.
+            if side * path.heading_rate >= 0.0 and (outward >= 0.0 or last_outward >= 0.0):
+                # The turn is over. One point more may allow more time until the next look.
+                last_gain, gain = gain, max(gain, min(least_rate, rise / duration))
+                if gain == last_gain or outward < 0.0:
+                    break
+        gained = max(gain, 0.0)
+        free_time = min(gained / loss_rate, self.time_until_once_round(side, start, motion))
+        return TurnAway(least, free_time, gained / motion.fastest, counted)
+
+    def _leg(self, side: float, speed: float) -> _Leg:
+        """Return what is flown between two points of a full turn at an airspeed [m/s]."""
+        duration, turned, mean, decay = self._spacing
+        # At the largest bank a turn is the slower the faster the vehicle flies.
+        stretch = max(1.0, speed / self._turn_speed)
+        rate = side * self._rate / stretch
+        return _Leg(
+            way=speed * duration * self._chord_over_arc,
+            course_to_middle=(0.5 * duration - mean) * rate,
+            course_turned=(duration - turned) * rate,
+            rate_gained=(1.0 - decay) * rate,
+            stretch=stretch,
+            speed=speed,
+        )
+
+    def _outward(self, side: float, start: TurnStart) -> float:
+        """Return how far the course leads off the disc's direction on the side of the turn [m].
+
+        It is 0 where the turn begins beyond straight away by no more than one that ends there.
+        """
+        x, y, course, _ = start
+        cos, sin = math.cos(course), math.sin(course)
+        outward = side * (y * cos - x * sin)
+        beyond = -self._overshoot_sine * math.sqrt(x * x + y * y) < outward < 0.0
+        return 0.0 if beyond and x * cos + y * sin > 0.0 else outward
+
+    def time_until_once_round(self, side: float, start: TurnStart, motion: RelativeMotion) -> float:
+        """Return how soon the vehicle may be so far beyond straight away that the turn leads once
+        round [s].
+
+        Its course turns at omega_max at most. The direction in which the disc lies turns the other
+        way, by what crosses it: all of the disc's speed, and the vehicle's speed across while it
+        has so far left to turn.
+        """
+        x, y, course, _ = start
+        left = side * math.remainder(math.atan2(y, x) - course, 2.0 * math.pi) + self.overshoot
+        if left < 0.0:
+            return math.inf
+        speed, disc_speed = motion.fastest, math.hypot(motion.disc_north, motion.disc_east)
+        until_away = min(max(left - self.overshoot, 0.0), 0.5 * math.pi)
+        across = speed * math.sin(until_away) + disc_speed
+        nearest = max(motion.radius, math.hypot(x, y) - (speed + disc_speed) * left / self._rate)
+        return left / (self._rate + across / nearest) if nearest > 0.0 else 0.0
+
+
+class _TurnPath:
+    """A full turn, point by point.
+
+    Parameters
+    ----------
+    side, start, motion : see ``TurnPrediction.turn_away``
+    heading_rate : that the turn begins with [rad/s]
+    spacing : from point to point
+    time : from now to the start [s]
+    deviation : that is kept from the start on [m]
+    leg : what is flown between two points
+
+    Attributes
+    ----------
+    heading_rate : now [rad/s]
+    slack : distance from the disc's centre less what is allowed for [m]
+    outward : how far the last leg led off the disc's direction on the side of the turn [m]
+    away : whether it led away from the disc's centre
+    """
+
+    def __init__(
+        self,
+        side: float,
+        start: TurnStart,
+        heading_rate: float,
+        motion: RelativeMotion,
+        spacing: HeldResponse,
+        time: float,
+        deviation: float,
+        leg: _Leg,
+    ) -> None:
+        self.heading_rate = heading_rate
+        self.outward = 0.0
+        self.away = False
+        self._side = side
+        self._motion = motion
+        self._spacing = spacing
+        self._time = time
+        self._kept = motion.radius + deviation
+        self._disc_north = motion.disc_north * spacing.duration
+        self._disc_east = motion.disc_east * spacing.duration
+        x, y, course, _ = start
+        allowed = self._allowed()
+        self.slack = math.sqrt(x * x + y * y) - allowed
+        self._now = TurnPoint(x, y, course, allowed, leg.speed)
+        self._last = self._before_last = self._now
+        self._leg = leg
+        # Where the vehicle flies away, it is slower.
+        self._slow_leg: _Leg | None = None
+        self._slowed = False
+        self._radii_difference = 0.0
+        self._start_course = course
+        self._switch, self._turned_at_switch = self._now, 0.0
+
+    def slow_down_while_receding(self, slow_leg: _Leg, radii_difference: float) -> None:
+        """Fly another leg while the vehicle flies away; its turn's radius differs by so much [m]."""
+        self._slow_leg = slow_leg
+        self._radii_difference = radii_difference
+
+    def advance(self) -> None:
+        """Go on to the next point."""
+        duration, turned, mean, decay = self._spacing
+        point, leg, heading_rate = self._now, self._leg, self.heading_rate
+        x, y, course = point.x, point.y, point.course
+        north, east = self._disc_north, self._disc_east
+        middle = course + mean * heading_rate + leg.course_to_middle
+        cos, sin = math.cos(middle), math.sin(middle)
+        if self._slow_leg is not None:
+            away = recedes(x, y, cos, sin, leg.way, north, east)
+            if away != self._slowed:
+                # The other leg is kept for when the vehicle flies towards the disc again.
+                self._leg, self._slow_leg = self._slow_leg, leg
+                leg = self._leg
+                self._slowed = away
+                self._switch = point
+                self._turned_at_switch = self._side * (course - self._start_course)
+        x += leg.way * cos - north
+        y += leg.way * sin - east
+        course += turned * heading_rate + leg.course_turned
+        self.heading_rate = decay * heading_rate + leg.rate_gained
+        self._time += duration
+        allowed = self._allowed()
+        if self._slowed:
+            allowed += speed_switch_allowance(
+                self._side,
+                self._radii_difference,
+                self._switch,
+                self._turned_at_switch,
+                x,
+                y,
+                course,
+            )
+        self.slack = math.sqrt(x * x + y * y) - allowed
+        self.outward = self._side * (y * cos - x * sin)
+        self.away = x * cos + y * sin > 0.0
+        self._before_last, self._last = self._last, point
+        self._now = TurnPoint(x, y, course, allowed, leg.speed)
+
+    def fly_straight_on(self) -> None:
+        """Keep to the course and to the airspeed from here on."""
+        self.heading_rate = 0.0
+        self._leg = self._leg._replace(course_to_middle=0.0, course_turned=0.0, rate_gained=0.0)
+        self._slow_leg = None
+
+    def closest_about_last_point(self, *, first: bool) -> float:
+        """Return the least slack before or after the last point, from which on slack rises [m].
+
+        ``first`` says that the turn began at the last point.
+        """
+        return closest_between_samples(
+            self._before_last,
+            self._last,
+            self._now,
+            disc_north=self._motion.disc_north,
+            disc_east=self._motion.disc_east,
+            duration=self._spacing.duration,
+            first=first,
+        )
+
+    def _allowed(self) -> float:
+        """Return the distance from the disc's centre to keep now [m]."""
+        time, motion = self._time, self._motion
+        return self._kept + (motion.growth + 0.5 * motion.acceleration * time) * time
+
+
+def recedes(
+    x: float, y: float, cos: float, sin: float, way: float, disc_north: float, disc_east: float
+) -> bool:
+    """Return whether the vehicle flies away from the disc's centre, halfway between two points.
+
+    Parameters
+    ----------
+    x, y : at the first point [m]
+    cos, sin : of the course halfway
+    way, disc_north, disc_east : of the vehicle and of the disc between the points [m]
+    """
+    return (x - 0.5 * disc_north) * cos + (y - 0.5 * disc_east) * sin + 0.5 * way > 0.0
+
+
+def speed_switch_allowance(
+    side: float,
+    radii_difference: float,
+    switch: TurnPoint,
+    turned: float,
+    x: float,
+    y: float,
+    course: float,
+) -> float:
+    """Return how much nearer a turn may come that slows down sooner or later than predicted [m].
+
+    A vehicle is predicted to slow down where it begins to fly away from the disc's centre. It comes
+    nearest in another direction. Seen in that one, it began to fly away sooner, or later, by the
+    course that lies between the two directions, if it turned as much.
+
+    Parameters
+    ----------
+    side : of the turn
+    radii_difference : between the turns, fast and slow [m]
+    switch, turned : where it was predicted to slow down, and course turned until there [rad]
+    x, y, course : where it is now
+    """
+    across, along = side * (switch.x * y - switch.y * x), x * switch.x + y * switch.y
+    sooner = across < 0.0
+    between = 0.5 * min(
+        abs(math.atan2(across, along)),
+        max(0.0, turned) if sooner else side * (course - switch.course),
+    )
+    # Over that course the chords of the two circles differ.
+    chord = 2.0 * radii_difference * math.sin(between)
+    middle = switch.course + side * (-between if sooner else between)
+    shift = -chord if sooner else chord
+    shifted = math.hypot(x + shift * math.cos(middle), y + shift * math.sin(middle))
+    return max(0.0, math.hypot(x, y) - shifted)
+
+
+def closest_between_samples(
+    earlier: TurnPoint,
+    late: TurnPoint,
+    now: TurnPoint,
+    *,
+    disc_north: float,
+    disc_east: float,
+    duration: float,
+    first: bool,
+) -> float:
+    """Return the least slack about a point from which on it rises [m]: before that point, or after.
+
+    Parameters
+    ----------
+    earlier, late, now : the last points; slack rises from ``late`` to ``now``
+    disc_north, disc_east : velocity of the disc [m/s]
+    duration : between points [s]
+    first : whether the turn began at ``late``, and there is no earlier point
+    """
+    x, y = late.x, late.y
+    outwards = (now.speed * math.cos(late.course) - disc_north) * x + (
+        now.speed * math.sin(late.course) - disc_east
+    ) * y
+    if outwards / math.hypot(x, y) <= (now.allowed - late.allowed) / duration:
+        return _least_slack_between(late, now, disc_north, disc_east, duration)
+    if first:
+        return math.hypot(x, y) - late.allowed
+    return _least_slack_between(earlier, late, disc_north, disc_east, duration)
+
+
+def _least_slack_between(
+    begin: TurnPoint, end: TurnPoint, disc_north: float, disc_east: float, duration: float
+) -> float:
+    """Return the least slack between two points that are ``duration`` [s] apart [m].
+
+    The path is the cubic through both places with the velocities there, which is true to 1e-6 turn
+    radii. A disc may be smaller than the way between the points, so the distances at them alone
+    tell little of the closest approach.
+    """
+    x, y = begin.x, begin.y
+    way = end.speed * duration
+    north, east = duration * disc_north, duration * disc_east
+    # Place at the share u of the way: x + u x_1 + u^2 x_2 + u^3 x_3.
+    x_1, y_1 = way * math.cos(begin.course) - north, way * math.sin(begin.course) - east
+    x_end_rate, y_end_rate = way * math.cos(end.course) - north, way * math.sin(end.course) - east
+    x_far, y_far = end.x - x, end.y - y
+    x_2, y_2 = 3.0 * x_far - 2.0 * x_1 - x_end_rate, 3.0 * y_far - 2.0 * y_1 - y_end_rate
+    x_3, y_3 = x_1 + x_end_rate - 2.0 * x_far, y_1 + y_end_rate - 2.0 * y_far
+    slope = end.allowed - begin.allowed
+    u = 0.5
+    for _ in range(_NEWTON_STEPS):
+        x_u = x + u * (x_1 + u * (x_2 + u * x_3))
+        y_u = y + u * (y_1 + u * (y_2 + u * y_3))
+        x_rate = x_1 + u * (2.0 * x_2 + 3.0 * u * x_3)
+        y_rate = y_1 + u * (2.0 * y_2 + 3.0 * u * y_3)
+        # The square of the distance about there is square + 2 tilt du + bend du^2.
+        square = x_u * x_u + y_u * y_u
+        tilt = x_u * x_rate + y_u * y_rate
+        bend = (
+            x_rate * x_rate
+            + y_rate * y_rate
+            + 2.0 * (x_u * (x_2 + 3.0 * u * x_3) + y_u * (y_2 + 3.0 * u * y_3))
+        )
+        room = bend - slope * slope
+        if room <= 0.0:
+            # What is allowed for grows faster than the distance ever will.
+            return min(
+                math.hypot(x, y) - begin.allowed,
+                math.hypot(end.x, end.y) - end.allowed,
+            )
+        nearest_square = max(0.0, square - tilt * tilt / bend)
+        u += slope * math.sqrt(nearest_square / (room * bend)) - tilt / bend
+        u = min(max(u, 0.0), 1.0)
+    x_u = x + u * (x_1 + u * (x_2 + u * x_3))
+    y_u = y + u * (y_1 + u * (y_2 + u * y_3))
+    return math.hypot(x_u, y_u) - begin.allowed - slope * u
