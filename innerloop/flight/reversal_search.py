@@ -1,16 +1,15 @@
-"""How far an aircraft strays from its turn-reversal response: a search over reversals from whatever
-it was doing before.
+"""How far an aircraft strays from the predicted turn: a search over reversals.
 
-The guidance's keep-out guard predicts turns by a dead time, a lag and the course that is still to
-come of earlier commands (docs/keepout_guard.md). Rolling, airspeed lost in the turn and integrators
-of the autopilot make the aircraft's path another one. What counts is by how much it comes nearer to
-what it turns away from: the deviation against the direction in which the turn leads, as long as the
-guard may rely on it, in proportion to the change of heading rate, or of command of late if that is
-larger. The aircraft is flown as modelled and perturbed.
+The keep-out guard predicts turns by a dead time, a lag and the course that is still to come of
+earlier commands (``gnc/guard/turn.py``). Rolling, airspeed lost in the turn and integrators of the
+autopilot make the aircraft's path another one. The deviation that counts is how much nearer it comes
+to what it turns away from, over the change of heading rate in the turn, or over the largest recent
+change of command if that is larger. The aircraft is flown as modelled and perturbed.
 
-A turn away from what is at rest comes closest to it within a quarter of a turn; from what closes in
-as fast as the sine of an angle over the aircraft's own speed, later by that angle. So the
-directions lean, and the turn is flown on by the largest.
+A turn away from a disc at rest comes closest to it within a quarter of a turn. From a disc that
+closes in at the sine of an angle times the aircraft's speed, it comes closest later by that angle.
+So deviations are taken in directions that lean forward, and the turn is flown on by the largest
+lean.
 """
 
 import math
@@ -24,49 +23,51 @@ from scipy.signal import lfilter
 from aircraft.dynamics.equilibrium import Trim
 from aircraft.simulation.fdm import TIME_STEP
 from common.physics.coordinated_turn import heading_rate_for_bank
-from common.physics.turn_tube import CHANGED, FORGOTTEN, LEAST_CHANGE, SLOW_LAG_ERROR
 from common.physics.units import METRES_PER_FOOT
+from gnc.guard.turn import (
+    CHANGED,
+    FORGOTTEN,
+    LEAST_CHANGE,
+    entry_rate,
+    pending_turn_rate,
+    rolled_change,
+)
 from innerloop.flight.autopiloted_aircraft import AutopilotedAircraft
 from innerloop.flight.turn_reversal import TurnReversalResponse
 from innerloop.jsbsim.properties import HEADING_RATE
 
-_SEARCHED = (20, 150)
+_REVERSALS_MIN, _REVERSALS_MAX = 20, 150
 """Fewest and most reversals of the search that is part of every design [-]; the command's
-``--reversals`` flies more.
-"""
+``--reversals`` flies more."""
 
-_SEARCHED_FOR = 1000.0
+_SEARCH_TIME = 1000.0
 """Flight time of that search, within those limits [s]."""
 
-_NOT_CLIMBING = 0.5
-"""Share of the reversals whose commands owe nothing to the worst so far [-]."""
+_RANDOM_SHARE = 0.5
+"""Share of the reversals whose commands do not depend on the worst so far [-]."""
 
-_WORST = 2
-"""Of the worst so far, any of which a reversal's commands may be near [-]."""
+_WORST_KEPT = 2
+"""Number of the worst reversals so far near which the search tries further ones [-]."""
 
-_CHANGE = 0.15
-"""Standard deviation by which these are changed: of a command over omega_max, and of the logarithm
-of its duration [-].
-"""
+_STEP_SIGMA = 0.15
+"""Standard deviation of such a step: of a command over omega_max, and of the logarithm of its
+duration [-]."""
 
-_HELD = (0.1, 3.0)
+_HOLD_MIN, _HOLD_MAX = 0.1, 3.0
 """Shortest and longest time for which a command is held before the turn, over 1/omega_max [-]."""
 
-_BEFORE = 3
+_COMMANDS_BEFORE = 3
 """Commands before the turn [-]."""
 
 _SETTLED = 3.0
-"""Time for which the turn is held out of which those to the other side begin, over 1/omega_max [-].
-"""
+"""Time after which a turn is settled, over 1/omega_max [-]."""
 
-_ROLLING, _BACK = (1.0, 1.5, 2.0), (0.2, 2.0, 3.0, 4.0)
-"""For how long the aircraft turns to the other side, and has turned back since, over dead time and
-lag [-]: in the middle of a roll it turns on; and heading rates oscillate for as long after it."""
+_ROLL_TIMES, _BACK_TIMES = (1.0, 1.5, 2.0), (0.2, 2.0, 3.0, 4.0)
+"""For how long the aircraft rolls to the other side, and has rolled back since, over dead time and
+lag [-]: in the middle of a roll it turns on, and heading rates oscillate for as long after it."""
 
-_LEANING = np.radians([0.0, 30.0, 60.0])
-"""How far the direction away leans forward of abeam [rad]: more, the faster that moves from which
-the aircraft turns away.
-"""
+_LEANS = np.radians([0.0, 30.0, 60.0])
+"""How far the direction away leans forward of abeam [rad]: the more, the faster the disc."""
 
 Array = npt.NDArray[np.float64]
 
@@ -78,33 +79,30 @@ class ReversalSearch:
     Attributes
     ----------
     reversals : flown [-]
-    deviation : largest, over the change of heading rate as a fraction of a full reversal [m]
-    deviations : largest of each aircraft [m]; minus infinity of one that flew none
-    unguided : of the reversals, those that did not follow the worst so far [-]
-    usual : least deviation that at most one in a hundred of these exceeds [m]
+    deviation : largest, over the change of heading rate as a share of a full reversal [m]
+    deviations : largest of each aircraft [m]; minus infinity for one that flew none
+    random_reversals : reversals that did not follow the worst so far [-]
+    p99_deviation : least deviation that at most one in a hundred of these exceeds [m]
     command_before : heading-rate command just before the worst, over omega_max to the side of the
         turn [-]
     airspeed_before : airspeed at its beginning [m/s]
-    altitude_error : largest difference of the altitude from the one that is held, in all of the
-        flight [m]
+    altitude_error : largest difference from the altitude that is held, in all of the flight [m]
     """
 
     reversals: int
     deviation: float
     deviations: tuple[float, ...]
-    unguided: int
-    usual: float
+    random_reversals: int
+    p99_deviation: float
     command_before: float
     airspeed_before: float
     altitude_error: float
 
 
 def reversals_of_a_design(bank: float, airspeed: float) -> int:
-    """Return how many reversals are flown for the record of a design, by its bank [rad] and
-    airspeed [m/s].
-    """
-    quarter = 0.5 * math.pi / heading_rate_for_bank(bank, airspeed)
-    return min(max(round(0.5 * _SEARCHED_FOR / quarter), _SEARCHED[0]), _SEARCHED[1])
+    """Return how many reversals a design flies at a bank [rad] and an airspeed [m/s]."""
+    quarter_turn = 0.5 * math.pi / heading_rate_for_bank(bank, airspeed)
+    return min(max(round(0.5 * _SEARCH_TIME / quarter_turn), _REVERSALS_MIN), _REVERSALS_MAX)
 
 
 def search_reversals(
@@ -118,13 +116,12 @@ def search_reversals(
     seed: int = 0,
     settled: bool = False,
 ) -> ReversalSearch:
-    """Return the largest deviation of ``aircraft`` from their response in so many reversals, one
-    after the other.
+    """Return the largest deviation from the predicted turn in so many reversals.
 
-    The aircraft take turns. The first reversals begin after a roll to the other side, the next
-    after a few full turns to random sides for random durations; before every second one of these, a
-    command is less than full. Those of the second half climb: aircraft and commands are those of
-    one of the worst so far, the commands changed at random.
+    The aircraft take turns, each in one long flight. The first reversals begin after a roll to the
+    other side, the next after a few full turns to random sides for random durations; before every
+    second one of these, a command is less than full. Those of the second half climb: aircraft and
+    commands are those of one of the worst so far, the commands changed at random.
 
     Parameters
     ----------
@@ -132,52 +129,52 @@ def search_reversals(
     start : straight and level equilibrium
     bank : whose coordinated turn is omega_max [rad]
     response : of the heading rate to a reversal
-    slow_lag : by which it is behind slow commands [s]
+    slow_lag : delay behind slow commands [s]
     reversals, seed : how many are flown, and of their random numbers
     settled : whether each aircraft reverses a settled full turn as well, from either side
     """
     rate = heading_rate_for_bank(bank, start.airspeed)
     generator = np.random.default_rng(seed)
-    duration = (0.5 * math.pi + float(_LEANING[-1])) / rate + response.delay + response.lag
+    duration = (0.5 * math.pi + float(_LEANS[-1])) / rate + response.delay + response.lag
+    flights = [_Flight(each, start, response, slow_lag, rate) for each in aircraft]
+    flown: list[_Reversal] = []
 
     def reverse(which: int, before: _Before) -> None:
         flight = flights[which]
         for share, held in before.commands:
             flight.fly(share * rate, held / rate)
         turn, speed = before.side * rate, flight.speed
-        predicted, change = flight.predicted(turn, duration, max(speed, start.airspeed), rate)
+        predicted, change = flight.predicted_turn(turn, duration, max(speed, start.airspeed))
         deviation = _deviation(flight.fly(turn, duration), predicted, before.side) / change
-        found.append(_Found(deviation, which, before, speed))
+        flown.append(_Reversal(deviation, which, before, speed))
 
-    flights = [_Flight(each, start, response, slow_lag) for each in aircraft]
-    found: list[_Found] = []
     rolls = _rolls((response.delay + response.lag) * rate)
-    first = math.ceil(_NOT_CLIMBING * reversals)
+    random_count = math.ceil(_RANDOM_SHARE * reversals)
     for number in range(reversals):
         which = number % len(flights)
-        if number >= first:
-            worst = sorted(found, key=lambda entry: -entry.deviation)[:_WORST]
+        if number >= random_count:
+            worst = sorted(flown, key=lambda reversal: -reversal.deviation)[:_WORST_KEPT]
             near = worst[int(generator.integers(len(worst)))]
-            which, before = near.which, _changed(near.before, generator)
+            reverse(near.which, _changed(near.before, generator))
         elif number < len(rolls) * len(flights):
-            before = _changed(rolls[number % len(rolls)], generator)
+            reverse(which, _changed(rolls[number % len(rolls)], generator))
         else:
-            before = _random(generator, full=number % 2 == 0)
-        reverse(which, before)
-    for which in range(len(flights) if settled else 0):
-        for before in _SETTLED_TURNS:
-            reverse(which, before)
-    worst_of_all = max(found, key=lambda entry: entry.deviation)
-    unguided = [entry.deviation for entry in found[:first] + found[reversals:]]
+            reverse(which, _random(generator, full=number % 2 == 0))
+    if settled:
+        for which in range(len(flights)):
+            for side in (1.0, -1.0):
+                reverse(which, _Before(((-side, _SETTLED),), side))
+    worst_of_all = max(flown, key=lambda reversal: reversal.deviation)
+    random_ones = [reversal.deviation for reversal in flown[:random_count] + flown[reversals:]]
     return ReversalSearch(
-        reversals=len(found),
+        reversals=len(flown),
         deviation=max(0.0, worst_of_all.deviation),
         deviations=tuple(
-            max((entry.deviation for entry in found if entry.which == which), default=-math.inf)
+            max((each.deviation for each in flown if each.which == which), default=-math.inf)
             for which in range(len(flights))
         ),
-        unguided=len(unguided),
-        usual=max(0.0, float(np.quantile(unguided, 0.99, method="higher"))),
+        random_reversals=len(random_ones),
+        p99_deviation=max(0.0, float(np.quantile(random_ones, 0.99, method="higher"))),
         command_before=worst_of_all.before.side * worst_of_all.before.commands[-1][0],
         airspeed_before=worst_of_all.airspeed,
         altitude_error=max(flight.altitude_error for flight in flights),
@@ -186,22 +183,28 @@ def search_reversals(
 
 @dataclass(frozen=True, slots=True)
 class _Before:
-    """What is flown before a reversal: commands over omega_max, for how long over 1/omega_max each;
-    and the side turned to.
+    """What is flown before a reversal.
+
+    Attributes
+    ----------
+    commands : each over omega_max, and for how long it is held, over 1/omega_max
+    side : to which the aircraft turns then
     """
 
     commands: tuple[tuple[float, float], ...]
     side: float
 
 
-_SETTLED_TURNS = tuple(_Before(((-side, _SETTLED),), side) for side in (1.0, -1.0))
-"""Full turns to one side, out of which the aircraft turns to the other."""
-
-
 @dataclass(frozen=True, slots=True)
-class _Found:
-    """A reversal: deviation over its change of heading rate [m], which aircraft flew it, what
-    before, at what airspeed [m/s].
+class _Reversal:
+    """A reversal that was flown.
+
+    Attributes
+    ----------
+    deviation : over its change of heading rate [m]
+    which : number of the aircraft
+    before : what was flown before
+    airspeed : at its beginning [m/s]
     """
 
     deviation: float
@@ -214,44 +217,47 @@ def _rolls(late: float) -> list[_Before]:
     """Return turns to the other side and back; ``late`` is dead time and lag over 1/omega_max [-]."""
     return [
         _Before(((1.0, _SETTLED), (-1.0, rolling * late), (1.0, back * late)), 1.0)
-        for rolling in _ROLLING
-        for back in _BACK
+        for rolling in _ROLL_TIMES
+        for back in _BACK_TIMES
     ]
 
 
 def _random(generator: np.random.Generator, *, full: bool) -> _Before:
-    """Return random commands and a random side: full turns, of which one is a part of one unless
-    all are ``full``.
-    """
-    shares = generator.choice([-1.0, 1.0], _BEFORE)
+    """Return random commands and a random side: full turns, or one of them less than ``full``."""
+    shares = generator.choice([-1.0, 1.0], _COMMANDS_BEFORE)
     if not full:
-        shares[generator.integers(_BEFORE)] = generator.uniform(-1.0, 1.0)
-    held = np.exp(generator.uniform(math.log(_HELD[0]), math.log(_HELD[1]), _BEFORE))
-    return _Before(
-        tuple(zip(shares.tolist(), held.tolist(), strict=True)),
-        float(generator.choice([-1.0, 1.0])),
-    )
+        shares[generator.integers(_COMMANDS_BEFORE)] = generator.uniform(-1.0, 1.0)
+    log_held = generator.uniform(math.log(_HOLD_MIN), math.log(_HOLD_MAX), _COMMANDS_BEFORE)
+    held = np.exp(log_held)
+    side = float(generator.choice([-1.0, 1.0]))
+    return _Before(tuple(zip(shares.tolist(), held.tolist(), strict=True)), side)
 
 
 def _changed(before: _Before, generator: np.random.Generator) -> _Before:
     """Return commands near others."""
     commands = []
     for share, held in before.commands:
-        turn, longer = _CHANGE * generator.standard_normal(2)
-        commands.append(
-            (
-                float(np.clip(share + turn, -1.0, 1.0)),
-                float(np.clip(held * math.exp(longer), *_HELD)),
-            )
-        )
+        turn, longer = _STEP_SIGMA * generator.standard_normal(2)
+        changed_share = float(np.clip(share + turn, -1.0, 1.0))
+        changed_hold = float(np.clip(held * math.exp(longer), _HOLD_MIN, _HOLD_MAX))
+        commands.append((changed_share, changed_hold))
     return _Before(tuple(commands), before.side)
 
 
 class _Flight:
-    """An aircraft under way, the heading-rate commands that it was given at each time step, and
-    what is to come of them.
+    """An aircraft under way, what it was commanded, and the course that is still to come of that.
 
-    With it, the largest difference of its altitude from that of its release [m].
+    The model of the turn is the guard's (``gnc/guard/turn.py``), at the time step of the aircraft.
+
+    Parameters
+    ----------
+    aircraft, start, response, slow_lag : see ``search_reversals``
+    rate : omega_max [rad/s]
+
+    Attributes
+    ----------
+    altitude_error : largest difference from the altitude at the release [m]
+    lack : commanded course that has not been turned yet [rad]
     """
 
     def __init__(
@@ -260,103 +266,107 @@ class _Flight:
         start: Trim,
         response: TurnReversalResponse,
         slow_lag: float,
+        rate: float,
     ) -> None:
         aircraft.release(start.state(), airspeed=start.airspeed, altitude=start.altitude)
-        self._aircraft, self._response, fdm = aircraft, response, aircraft.fdm
-        self._slow, self._doubt = slow_lag - response.delay, SLOW_LAG_ERROR * slow_lag
+        self._aircraft = aircraft
+        self._lag = response.lag
+        self._slow_lag = slow_lag
+        self._slow_lag_after_delay = slow_lag - response.delay
+        self._rate_max = rate
+        fdm = aircraft.fdm
         self._north = fdm.node("velocities/v-north-fps").get_double_value
         self._east = fdm.node("velocities/v-east-fps").get_double_value
         self._rate = fdm.node(HEADING_RATE).get_double_value
         self._height = fdm.node("position/h-sl-ft").get_double_value
-        self._held, self.altitude_error = self._height(), 0.0
-        self._late = max(1, round(response.delay / TIME_STEP))
+        self._held_height_ft = self._height()
+        self._delay_steps = max(1, round(response.delay / TIME_STEP))
         self._kept = math.exp(-TIME_STEP / (FORGOTTEN * response.lag))
         self._fading = math.exp(-TIME_STEP / (CHANGED * response.lag))
-        self._lack, self._change = 0.0, 0.0
-        self.commands: list[float] = [0.0] * self._late
+        self._largest_change = 0.0
+        # Those that have not acted yet, and before them those of the last piece.
+        self._commands: list[float] = [0.0] * self._delay_steps
+        self.altitude_error = 0.0
+        self.lack = 0.0
 
     @property
     def speed(self) -> float:
+        """Ground speed, in still air [m/s]."""
         return math.hypot(self._north(), self._east()) * METRES_PER_FOOT
 
+    @property
+    def heading_rate(self) -> float:
+        """Heading rate now [rad/s]."""
+        return self._rate()
+
+    @property
+    def change(self) -> float:
+        """Largest recent change of command, over a full reversal [-]."""
+        return max(LEAST_CHANGE, self._largest_change / (2.0 * self._rate_max))
+
     def fly(self, heading_rate: float, duration: float) -> Array:
-        """Return the path from here [m], shape (steps, 2), under a command that is held for
-        ``duration`` [s].
+        """Return the path from here [m], shape (steps, 2), under a held command.
+
+        Parameters
+        ----------
+        heading_rate, duration : of the command [rad/s, s]
         """
         self._aircraft.command_heading_rate(heading_rate)
         steps = max(1, round(duration / TIME_STEP))
-        run, north, east, rate, height = (
-            self._aircraft.run,
-            self._north,
-            self._east,
-            self._rate,
-            self._height,
-        )
-        values = [north(), east(), rate(), height()]
+        values = [self._north(), self._east(), self._rate(), self._height()]
         for _ in range(steps):
-            run()
-            values += north(), east(), rate(), height()
-        flown = np.array(values).reshape(-1, 4)
-        self.altitude_error = max(
-            self.altitude_error, METRES_PER_FOOT * float(np.abs(flown[:, 3] - self._held).max())
+            self._aircraft.run()
+            values += self._north(), self._east(), self._rate(), self._height()
+        velocities_and_rates = np.array(values).reshape(-1, 4)
+        heights = velocities_and_rates[:, 3]
+        off = METRES_PER_FOOT * float(np.abs(heights - self._held_height_ft).max())
+        self.altitude_error = max(self.altitude_error, off)
+        self._take_in(heading_rate, velocities_and_rates)
+        return np.asarray(
+            np.cumsum(velocities_and_rates[1:, :2], axis=0) * (TIME_STEP * METRES_PER_FOOT)
         )
-        self._take_in(heading_rate, flown)
-        return np.asarray(np.cumsum(flown[1:, :2], axis=0) * (TIME_STEP * METRES_PER_FOOT))
 
-    def predicted(
-        self, turn: float, duration: float, speed: float, rate: float
-    ) -> tuple[Array, float]:
-        """Return the path [m], shape (steps, 2), of a vehicle of that response that is commanded to
-        turn from here on.
+    def predicted_turn(self, turn: float, duration: float, speed: float) -> tuple[Array, float]:
+        """Return the predicted path [m], shape (steps, 2), and the change of heading rate [-].
 
-        With it, by how much its heading rate changes from when the command acts, over a full
-        reversal.
+        That change is counted from when the command acts, over a full reversal.
 
         Parameters
         ----------
         turn, duration : the command [rad/s], held on [s]
         speed : of the vehicle [m/s]
-        rate : omega_max [rad/s]
         """
-        lag, steps = self._response.lag, max(1, round(duration / TIME_STEP))
-        decay, side = math.exp(-TIME_STEP / lag), math.copysign(1.0, turn)
+        steps = max(1, round(duration / TIME_STEP))
+        decay, side = math.exp(-TIME_STEP / self._lag), math.copysign(1.0, turn)
+        rate = self._rate()
+        pending = pending_turn_rate(self.lack, rate, self._slow_lag, self._lag)
         rates: list[float] = []
-        now = self._rate()
-        to_come = (
-            math.copysign(max(0.0, abs(self._lack) - self._doubt * abs(now)), self._lack) / lag
-        )
-        for command in self.commands[-self._late :]:
-            now = command + (now - command) * decay
-            rates.append(now)
-        # What is to come counts where it is against the turn.
-        now += side * min(0.0, side * to_come)
-        change = 0.5 - 0.5 * side * now / rate
-        for _ in range(steps - self._late):
-            now = turn + (now - turn) * decay
-            rates.append(now)
+        for command in self._commands[-self._delay_steps :]:
+            rate = command + (rate - command) * decay
+            rates.append(rate)
+        rate = entry_rate(side, rate, pending)
+        change = rolled_change(side, rate, self._rate_max)
+        for _ in range(steps - self._delay_steps):
+            rate = turn + (rate - turn) * decay
+            rates.append(rate)
         courses = math.atan2(self._east(), self._north()) + np.cumsum(rates) * TIME_STEP
-        path = (
-            np.cumsum(np.column_stack([np.cos(courses), np.sin(courses)]), axis=0)
-            * speed
-            * TIME_STEP
-        )
-        return np.asarray(path), max(LEAST_CHANGE, self._change / (2.0 * rate), change)
+        directions = np.column_stack([np.cos(courses), np.sin(courses)])
+        path = np.cumsum(directions, axis=0) * speed * TIME_STEP
+        return np.asarray(path), max(self.change, change)
 
-    def _take_in(self, heading_rate: float, flown: Array) -> None:
-        """Take in what was commanded and flown: the course that the aircraft has turned less than
-        its response to the commands.
-        """
-        steps = len(flown) - 1
-        self._change = (
-            max(abs(heading_rate - self.commands[-1]), self._change) * self._fading**steps
-        )
-        self.commands = [*self.commands[-self._late :], *[heading_rate] * steps]
-        acted = np.array(self.commands[:steps]) * TIME_STEP
-        courses = np.unwrap(np.arctan2(flown[:, 1], flown[:, 0]))
-        lacks = acted - np.diff(courses) - self._slow * np.diff(flown[:, 2])
-        self._lack = float(
-            lfilter([1.0], [1.0, -self._kept], lacks, zi=[self._kept * self._lack])[0][-1]
-        )
+    def _take_in(self, heading_rate: float, velocities_and_rates: Array) -> None:
+        """Take in a held command [rad/s] and what was flown under it."""
+        steps = len(velocities_and_rates) - 1
+        newest = abs(heading_rate - self._commands[-1])
+        self._largest_change = max(newest, self._largest_change) * self._fading**steps
+        self._commands = [*self._commands[-self._delay_steps :], *[heading_rate] * steps]
+        acted = np.array(self._commands[:steps]) * TIME_STEP
+        courses = np.unwrap(np.arctan2(velocities_and_rates[:, 1], velocities_and_rates[:, 0]))
+        rate_changes = np.diff(velocities_and_rates[:, 2])
+        lacks = acted - np.diff(courses) - self._slow_lag_after_delay * rate_changes
+        # The lack of each step is added to the last one, which is forgotten little by little.
+        sums, _ = lfilter([1.0], [1.0, -self._kept], lacks, zi=[self._kept * self.lack])
+        self.lack = float(sums[-1])
 
 
 def _deviation(flown: Array, predicted: Array, side: float) -> float:
@@ -364,5 +374,5 @@ def _deviation(flown: Array, predicted: Array, side: float) -> float:
     heading = np.gradient(predicted, axis=0)
     course = np.arctan2(heading[:, 1], heading[:, 0])
     lack = predicted - flown
-    away = course[:, None] + side * (0.5 * math.pi - _LEANING)
+    away = course[:, None] + side * (0.5 * math.pi - _LEANS)
     return float(np.max(lack[:, :1] * np.cos(away) + lack[:, 1:] * np.sin(away)))
