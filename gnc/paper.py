@@ -1,11 +1,20 @@
 """The guidance and control of the paper, equation by equation, in its order.
 
-Escudeiro, "UAV-based Measurement of Marine Vessels Smoke Plumes - Guidance and Control System". A
-number in brackets is that of an equation, printed at the line that computes it. The plane is
-north-east, in metres; courses are clockwise from north, in radians. Symbols: V_r speed of vehicle
-and reference, chi course, omega heading rate, nu = V_V/V_r speed ratio, eta = A/omega_0 course
-amplitude, CO centre of oscillation, d from vehicle to reference, z = d + delta, rho = |z|.
-``EQUATIONS.md`` says where the code differs, and why.
+D. Escudeiro, "UAV-based Measurement of Marine Vessels Smoke Plumes - Guidance and Control System".
+``# (24)`` stands at the line that computes equation (24). The plane is north-east, in metres;
+courses are clockwise from north, in radians. The paper's symbols are
+
+==============  ==================================================================
+V_r, V_V        speeds of vehicle and reference, and of the vessel
+chi, omega      course and heading rate; with the index r those of the reference
+nu              speed ratio, V_V/V_r
+eta, omega_0    course amplitude A/omega_0 and frequency of the reference's oscillation
+CO, r_CO        centre of oscillation, and its distance from the vessel
+d, delta, z     from vehicle to reference, look-ahead along the reference's course, d + delta
+rho, phi, phi_r length of z, and courses of vehicle and reference against that of z
+==============  ==================================================================
+
+``EQUATIONS.md`` lists where the code differs from the paper, and the errors in its print.
 """
 
 import functools
@@ -23,28 +32,29 @@ from gnc.errors import InfeasibleError
 from gnc.numeric import limited, wrap
 from gnc.reference.reference import Array, Orbit
 
-# ---------------------------------------------------------------- II.B Vehicle dynamics
+# --- II.B Vehicle dynamics
 
 
 def unicycle_rates(speed: float, course: float, heading_rate: float) -> tuple[float, float, float]:
-    """Return north rate, east rate [m/s] and course rate [rad/s] of a vehicle, equation (1), or of
-    a reference, (13).
+    """Return north rate, east rate [m/s] and course rate [rad/s] of a unicycle.
+
+    Equation (1) for the vehicle, and (13) for any reference that it can follow.
     """
-    return speed * math.cos(course), speed * math.sin(course), heading_rate  # (1), (13)
+    return speed * math.cos(course), speed * math.sin(course), heading_rate  # (1)  # (13)
 
 
-# ---------------------------------------------------------------- III.C The oscillation of the
-# reference
+# --- III.C The oscillation of the reference
 
 
 def mean_speed_ratio(eta: float) -> float:
-    """Return the reference's mean speed over its speed, F(eta) = J_0(eta): equation (5)."""
+    """Return F(eta), the reference's mean speed over its speed, by equation (5): J_0(eta) [-]."""
     return float(j0(eta))  # (5)
 
 
 def eta_for_speed_ratio(nu: float) -> float:
-    """Return eta [rad] such that the reference's mean speed is that of the vessel: equation (6),
-    eta = J_0^-1(nu).
+    """Return the course amplitude eta = J_0^-1(nu) [rad], equation (6).
+
+    With it the reference's mean speed is that of the vessel.
 
     Raises
     ------
@@ -52,13 +62,13 @@ def eta_for_speed_ratio(nu: float) -> float:
     """
     if not (math.isfinite(nu) and 0.0 <= nu <= 1.0):
         raise InfeasibleError(
-            f"speed ratio nu is {nu:g}; it must lie within 0 and 1: give the vessel a speed from 0 up to that of the UAV"
+            f"speed ratio nu is {nu:g}; it must lie within 0 and 1: give the vessel a speed from 0"
+            " up to that of the UAV"
         )
     if nu == 1.0:
         return 0.0
-    return float(
-        brentq(lambda eta: mean_speed_ratio(eta) - nu, 0.0, 2.5, xtol=1e-15, rtol=1e-14)
-    )  # (6)
+    eta = brentq(lambda eta: mean_speed_ratio(eta) - nu, 0.0, 2.5, xtol=1e-15, rtol=1e-14)  # (6)
+    return float(eta)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -101,27 +111,34 @@ class Oscillation:
         return math.pi / self.omega_0
 
     def course(self, phase: float) -> float:
-        """Return the course offset from the vessel's, eta cos(theta) [rad]: equation (3), and (7)
-        at the start.
+        """Return the course at a phase omega_0 t + phi_0, off the vessel's [rad].
+
+        Equation (3), and (7) at the start, where the phase is phi_0.
         """
-        return self.eta * math.cos(phase)  # (3), (7)
+        return self.eta * math.cos(phase)  # (3)  # (7)
+
+    def velocity(self, phase: float) -> tuple[float, float]:
+        """Return the velocity along the vessel's course and to its right, equation (4) [m/s]."""
+        course = self.course(phase)
+        return self.speed * math.cos(course), self.speed * math.sin(course)  # (4)
 
     def heading_rate(self, phase: float) -> float:
-        """Return omega_r = -A sin(theta) [rad/s]: equation (2)."""
+        """Return omega_r [rad/s] at a phase omega_0 t + phi_0, beside a vessel that does not turn.
+
+        Third line of equation (2); the first two are those of (1).
+        """
         return -self.amplitude * math.sin(phase)  # (2)
 
     def offset(self, time: npt.ArrayLike) -> tuple[Array, Array]:
-        """Return where the reference is from the CO, along the vessel's course and to its right
-        [m]: equation (12).
-        """
+        """Return the reference's offset from the CO, see ``offset`` [m]."""
         return offset(self, time)
 
     def half_widths(self) -> tuple[float, float]:
-        """Return the orbit's half-widths along and across the vessel's course [m]: equation (12)."""
+        """Return the orbit's half-widths, see ``half_widths`` [m]."""
         return half_widths(self)
 
     def sidebands(self, orders: npt.NDArray[np.int64]) -> Array:
-        """Return J_n(eta)^2, by the Jacobi-Anger expansion [-]."""
+        """Return the power of the orbit's harmonics, J_n(eta)^2 by Jacobi and Anger [-]."""
         return np.asarray(jv(orders, self.eta) ** 2)
 
 
@@ -134,8 +151,16 @@ def available_heading_rate(
     vessel_heading_rate: float,
     roll_rate_max: float,
 ) -> float:
-    """Return what an oscillation may take of the heading rate, (1 - reserve) omega_max - |omega_V|
-    [rad/s]: equation (8).
+    """Return the heading rate that an oscillation may take, numerator of equation (8) [rad/s].
+
+    Parameters
+    ----------
+    nu : speed ratio [-]
+    speed : V_r [m/s]
+    heading_rate_max : omega_max [rad/s]
+    reserve : share of omega_max that is left to the feedback; 0 in the paper [-]
+    vessel_heading_rate : omega_V [rad/s]
+    roll_rate_max : of the vehicle [rad/s]
 
     Raises
     ------
@@ -153,22 +178,24 @@ def available_heading_rate(
             )
     if not 0.0 <= reserve < 1.0:
         raise InfeasibleError(
-            f"reserve is {reserve:g} of omega_max; it must be at least 0 and below 1: a tenth is plenty"
+            f"reserve is {reserve:g} of omega_max; it must be at least 0 and below 1: a tenth is"
+            " plenty"
         )
     if nu >= 1.0:
         raise InfeasibleError(
-            f"speed ratio nu is {nu:g}; it must be below 1: at 1 the reference flies straight and never crosses the plume,"
-            " above 1 the vessel outruns the UAV; fly faster"
+            f"speed ratio nu is {nu:g}; it must be below 1: at 1 the reference flies straight and"
+            " never crosses the plume, above 1 the vessel outruns the UAV; fly faster"
         )
     if not nu >= 0.0:
         raise InfeasibleError(
-            f"speed ratio nu is {nu:g}; it must lie within 0 and 1: give the vessel a speed up to that of the UAV"
+            f"speed ratio nu is {nu:g}; it must lie within 0 and 1: give the vessel a speed up to"
+            " that of the UAV"
         )
-    available = (1.0 - reserve) * heading_rate_max - abs(vessel_heading_rate)  # (8)
+    available = (1.0 - reserve) * heading_rate_max - abs(vessel_heading_rate)
     if not available > 0.0:
         raise InfeasibleError(
-            f"vessel heading rate is {vessel_heading_rate:g} rad/s; with a reserve of {reserve:g} it must stay below"
-            f" {(1.0 - reserve) * heading_rate_max:g} rad/s: raise omega_max or lower the reserve"
+            f"vessel heading rate is {vessel_heading_rate:g} rad/s; with a reserve of {reserve:g} it"
+            f" must stay below {(1.0 - reserve) * heading_rate_max:g} rad/s: raise omega_max or lower the reserve"
         )
     return available
 
@@ -182,17 +209,20 @@ def design_oscillation(
     vessel_heading_rate: float = 0.0,
     roll_rate_max: float = math.inf,
 ) -> Oscillation:
-    """Return the fastest oscillation that the vehicle can follow: equation (8), eta omega_0 <=
-    omega_max - |omega_V|.
+    """Return the fastest oscillation that the vehicle can follow, by equation (8).
 
     As nu approaches 1 that bound grows without limit, so omega_0 also respects the roll rate: near
     level flight g/V times the roll rate is the heading acceleration, whose amplitude is eta
-    omega_0^2. Parameters and errors as of ``available_heading_rate``.
+    omega_0^2. Parameters and errors are those of ``available_heading_rate``.
     """
     available = available_heading_rate(
-        nu=nu, speed=speed, heading_rate_max=heading_rate_max, reserve=reserve, vessel_heading_rate=vessel_heading_rate,
+        nu=nu,
+        speed=speed,
+        heading_rate_max=heading_rate_max,
+        reserve=reserve,
+        vessel_heading_rate=vessel_heading_rate,
         roll_rate_max=roll_rate_max,
-    )  # fmt: skip
+    )
     eta = eta_for_speed_ratio(nu)
     by_heading_rate = available / eta  # (8)
     by_roll_rate = math.sqrt(STANDARD_GRAVITY * roll_rate_max / (speed * eta))
@@ -202,8 +232,7 @@ def design_oscillation(
     )
 
 
-# ---------------------------------------------------------------- III.D Positioning of the centre
-# of oscillation
+# --- III.D Positioning of the centre of oscillation
 
 _TERMS = np.arange(1, 25)
 _ODD = 2 * _TERMS - 1
@@ -219,7 +248,7 @@ def _series(eta: float, omega_0: float) -> tuple[Array, Array]:
 
 
 def f_x(oscillation: Orbit, time: npt.ArrayLike) -> Array:
-    """Return F_x = integral of cos[eta cos(omega_0 t)] from 0 [s]: equation (12)."""
+    """Return F_x of equation (12), the integral of cos[eta cos(omega_0 t)] from 0 [s]."""
     t = np.asarray(time, dtype=np.float64)[..., None]
     series, _ = _series(oscillation.eta, oscillation.omega_0)
     return np.asarray(
@@ -229,26 +258,25 @@ def f_x(oscillation: Orbit, time: npt.ArrayLike) -> Array:
 
 
 def f_y(oscillation: Orbit, time: npt.ArrayLike) -> Array:
-    """Return F_y = integral of sin[eta cos(omega_0 t)] from 0 [s]: equation (12)."""
+    """Return F_y of equation (12), the integral of sin[eta cos(omega_0 t)] from 0 [s]."""
     t = np.asarray(time, dtype=np.float64)[..., None]
     _, series = _series(oscillation.eta, oscillation.omega_0)
     return np.asarray(np.sum(series * np.sin(_ODD * oscillation.omega_0 * t), axis=-1))
 
 
 def offset(oscillation: Orbit, time: npt.ArrayLike) -> tuple[Array, Array]:
-    """Return where the reference is from the CO: along the vessel's course and to its right [m];
-    phi_0 = 0 at time 0.
+    """Return d_x and d_y, the reference's offset from the CO, for a phase phi_0 of 0 [m].
+
+    d_x is along the vessel's course and d_y right of it, each in the shape of ``time`` [s].
     """
     t = np.asarray(time, dtype=np.float64)
-    return oscillation.speed * (f_x(oscillation, t) - oscillation.nu * t), oscillation.speed * f_y(
-        oscillation, t
-    )
+    along = oscillation.speed * (f_x(oscillation, t) - oscillation.nu * t)
+    across = oscillation.speed * f_y(oscillation, t)
+    return along, across
 
 
 def half_widths(oscillation: Orbit) -> tuple[float, float]:
-    """Return |d_x|max and |d_y|max [m], the orbit's half-widths along and across the vessel's
-    course: equation (12).
-    """
+    """Return |d_x|max and |d_y|max, the half-widths along and across the vessel's course [m]."""
     t_x = math.acos(min(1.0, math.acos(oscillation.nu) / oscillation.eta)) / oscillation.omega_0
     t_y = 0.5 * math.pi / oscillation.omega_0
     along, _ = offset(oscillation, t_x)
@@ -271,8 +299,12 @@ class PlumeAxis:
 
 
 def centre_of_oscillation(distance: float, axis: PlumeAxis) -> tuple[float, float, float]:
-    """Return the CO at ``distance`` r_CO [m] on the axis: metres ahead of, right of and above the
-    plume's origin. Equation (9).
+    """Return the CO by equation (9): ahead of, right of and above the plume's origin [m].
+
+    Parameters
+    ----------
+    distance : r_CO, along the axis [m]
+    axis : of the plume
     """
     horizontal = distance * math.cos(axis.elevation)
     return (
@@ -283,24 +315,30 @@ def centre_of_oscillation(distance: float, axis: PlumeAxis) -> tuple[float, floa
 
 
 def distance_by_paper(orbit: Orbit, axis: PlumeAxis, distance_min: float) -> float:
-    """Return r_CO [m] by the paper's rule, equation (10), for a keep-out sphere of radius
-    ``distance_min`` r_min [m].
+    """Return r_CO by the paper's rule, equation (10) [m].
+
+    Parameters
+    ----------
+    orbit : of the reference
+    axis : of the plume
+    distance_min : r_min, radius of the keep-out sphere [m]
+
+    Raises
+    ------
+    InfeasibleError : ``distance_min`` or the axis is out of range
     """
     _check(axis, distance_min)
     return distance_min + reach(orbit, axis) * math.cos(axis.elevation)  # (10)
 
 
 def reach(orbit: Orbit, axis: PlumeAxis) -> float:
-    """Return d_max [m], the paper's estimate of how far the orbit reaches from the CO towards the
-    vessel: equation (11).
-    """
+    """Return d_max, the paper's estimate of the orbit's reach towards the vessel, (11) [m]."""
     along, across = orbit.half_widths()
     return along + (across - along) * abs(math.sin(axis.heading))  # (11)
 
 
 def distance_exact(orbit: Orbit, axis: PlumeAxis, distance_min: float) -> float:
-    """Return the smallest r_CO [m] for which the whole orbit stays ``distance_min`` r_min [m] away
-    from the plume's origin.
+    """Return the smallest r_CO at which the whole orbit keeps r_min from the plume's origin [m].
 
     For every point o of the orbit, |r_CO u + o| >= r_min bounds r_CO from below by the larger root
     of a quadratic; the result is the largest bound. Differs from equation (10) because (11)
@@ -340,11 +378,12 @@ def _check(axis: PlumeAxis, distance_min: float) -> None:
         raise InfeasibleError(f"plume heading is {axis.heading:g} rad; it must be finite")
     if not abs(axis.elevation) < 0.5 * math.pi:
         raise InfeasibleError(
-            f"plume elevation is {axis.elevation:g} rad; it must lie within -pi/2 and pi/2: a vertical plume cannot be crossed"
+            f"plume elevation is {axis.elevation:g} rad; it must lie within -pi/2 and pi/2: a"
+            " vertical plume cannot be crossed"
         )
 
 
-# ---------------------------------------------------------------- IV.B The error formulation
+# --- IV.B The error formulation
 
 
 class LookAhead(NamedTuple):
@@ -390,13 +429,14 @@ def look_ahead(epsilon: float, radius: float) -> LookAhead:
         )
     if not (math.isfinite(radius) and radius > 1.0 / (4.0 * epsilon)):
         raise InfeasibleError(
-            f"look-ahead R is {radius:g} m; it must exceed 1/(4 epsilon) = {1.0 / (4.0 * epsilon):g} m: raise R or epsilon"
+            f"look-ahead R is {radius:g} m; it must exceed 1/(4 epsilon) ="
+            f" {1.0 / (4.0 * epsilon):g} m: raise R or epsilon"
         )
     return LookAhead(epsilon, radius)
 
 
 def delta_length(parameters: LookAhead, distance_squared: float) -> float:
-    """Return delta [m] for a squared distance d^2 [m^2]: equation (15)."""
+    """Return delta for a squared distance d^2 [m^2], equation (15) [m]."""
     return parameters.epsilon * distance_squared + parameters.radius  # (15)
 
 
@@ -421,9 +461,8 @@ def relative_state(
     z_north = to_reference_north + delta * math.cos(reference_course)  # (14)
     z_east = to_reference_east + delta * math.sin(reference_course)
     rho, z_course = math.hypot(z_north, z_east), math.atan2(z_east, z_north)  # (16)
-    return RelativeState(
-        delta, rho, wrap(reference_course - z_course), wrap(course - z_course)
-    )  # (19)
+    phi_r, phi = wrap(reference_course - z_course), wrap(course - z_course)
+    return RelativeState(delta, rho, phi_r, phi)  # (19)
 
 
 def distance_squared(state: RelativeState) -> float:
@@ -432,7 +471,7 @@ def distance_squared(state: RelativeState) -> float:
 
 
 def distance_squared_rate(state: RelativeState, reference_speed: float, speed: float) -> float:
-    """Return the rate of d^2 [m^2/s]: equation (20), which is this with both speeds V_r.
+    """Return the rate of d^2, equation (20) where both speeds are V_r [m^2/s].
 
     Differs from the paper because a real aircraft's speed is V_r only on average: d . d-dot = d .
     (v_r - v), resolved along z.
@@ -451,8 +490,9 @@ def relative_velocity(
     speed: float,
     reference_heading_rate: float,
 ) -> tuple[float, float]:
-    """Return the rates of rho [m/s] and of the course of z, omega_rho [rad/s]: equations (17) and
-    (18).
+    """Return the rates of rho [m/s] and of the course of z, omega_rho [rad/s]: equation (18).
+
+    (18) is (17), the rate of z in the inertial frame, resolved along z and across it.
 
     Parameters
     ----------
@@ -464,15 +504,15 @@ def relative_velocity(
     cos_r, sin_r = math.cos(phi_r), math.sin(phi_r)
     along = reference_speed * cos_r - speed * math.cos(phi)
     across = reference_speed * sin_r - speed * math.sin(phi)
-    # (20) once more: this runs at each step of the guidance, and to ask for it would take each sine
-    # and cosine twice.
+    # This is epsilon times (20), written once more: the function runs at each step of the guidance,
+    # and a call would compute each sine and cosine twice.
     delta_rate = parameters.epsilon * (
         2.0 * ((rho - delta * cos_r) * along - delta * sin_r * across)
     )
     swing = delta * reference_heading_rate
-    return along - swing * sin_r + delta_rate * cos_r, (
-        across + swing * cos_r + delta_rate * sin_r
-    ) / rho  # (17), (18)
+    rho_rate = along - swing * sin_r + delta_rate * cos_r  # (17)  # (18)
+    omega_rho = (across + swing * cos_r + delta_rate * sin_r) / rho  # (18)
+    return rho_rate, omega_rho
 
 
 def state_rates(
@@ -482,8 +522,13 @@ def state_rates(
     reference_heading_rate: float,
     heading_rate: float,
 ) -> RelativeState:
-    """Return the rates of the four states, the nominal system: equation (21); omega_r and omega
-    [rad/s].
+    """Return the rates of the four states, the nominal system (21).
+
+    Parameters
+    ----------
+    parameters, state : look-ahead and relative state
+    speed : V_r [m/s]
+    reference_heading_rate, heading_rate : omega_r and omega [rad/s]
     """
     rho_rate, omega_rho = relative_velocity(parameters, state, speed, speed, reference_heading_rate)
     delta_rate = parameters.epsilon * distance_squared_rate(state, speed, speed)
@@ -492,7 +537,7 @@ def state_rates(
     )  # (21)
 
 
-# ---------------------------------------------------------------- IV.C Lyapunov-based controller
+# --- IV.C Lyapunov-based controller
 
 
 def equilibrium(parameters: LookAhead) -> RelativeState:
@@ -501,14 +546,15 @@ def equilibrium(parameters: LookAhead) -> RelativeState:
 
 
 def v_1(state: RelativeState) -> float:
-    """Return V_1 = d^2/2 [m^2]: equation (22). Positive definite about the equilibrium, where (15)
-    holds, and not about 0.
+    """Return V_1 = d^2/2, equation (22) [m^2].
+
+    It is positive definite about the equilibrium, among states that satisfy (15), and not about 0.
     """
     return 0.5 * distance_squared(state)  # (22)
 
 
 def v_1_rate(state: RelativeState, speed: float) -> float:
-    """Return the rate of V_1 [m^2/s] along (21), whatever the control: equation (23)."""
+    """Return the rate of V_1 along (21), for any control, equation (23) [m^2/s]."""
     delta, rho, phi_r, phi = state
     return speed * (
         -rho * (1.0 - math.cos(phi_r))
@@ -518,31 +564,38 @@ def v_1_rate(state: RelativeState, speed: float) -> float:
 
 
 def lyapunov_law(state: RelativeState, speed: float, omega_rho: float, k_1: float) -> float:
-    """Return omega [rad/s] by the Lyapunov-based law, equation (24); k_1 [1/m^2]. Singular at phi =
-    pi.
+    """Return omega by the Lyapunov-based law, equation (24) [rad/s]. It is singular at phi = pi.
+
+    Parameters
+    ----------
+    state : relative state
+    speed : V_r [m/s]
+    omega_rho : rate of the course of z [rad/s]
+    k_1 : gain [1/m^2]
     """
     return -k_1 * state.rho * speed * math.tan(0.5 * state.phi) + omega_rho  # (24)
 
 
 def v_2(state: RelativeState, k_2: float) -> float:
-    """Return V_2 = V_1 + k_2 (1 - cos phi) [m^2]: equation (25)."""
+    """Return V_2 = V_1 + k_2 (1 - cos phi), equation (25) [m^2]."""
     return v_1(state) + k_2 * (1.0 - math.cos(state.phi))  # (25)
 
 
 def v_2_rate(state: RelativeState, speed: float) -> float:
-    """Return the rate of V_2 [m^2/s] under law (24) with k_1 k_2 = 1: equation (26). Never
-    positive.
+    """Return the rate of V_2 under law (24) with k_1 k_2 = 1, equation (26) [m^2/s].
 
-    Any other product adds (1 - k_1 k_2) rho V_r (1 - cos phi), so V_2 never rises for larger ones
-    either.
+    It is never positive. Any other product adds (1 - k_1 k_2) rho V_r (1 - cos phi), so V_2 never
+    rises for larger ones either.
     """
     delta, rho, phi_r, phi = state
     return -speed * (rho * (1.0 - math.cos(phi_r)) + delta * (1.0 - math.cos(phi_r - phi)))  # (26)
 
 
 def v_2_acceleration(state: RelativeState, rates: RelativeState, speed: float) -> float:
-    """Return the second rate of V_2 [m^2/s^2] under law (24): equation (27), bounded and so V_2's
-    rate goes to zero.
+    """Return the second rate of V_2 under law (24), equation (27) [m^2/s^2].
+
+    It is bounded, so the rate of V_2 goes to zero. Two limits follow, which tests verify by
+    convergence.
     """
     delta, rho, phi_r, phi = state
     return -speed * (
@@ -550,24 +603,24 @@ def v_2_acceleration(state: RelativeState, rates: RelativeState, speed: float) -
         + rho * rates.phi_r * math.sin(phi_r)
         + (rates.phi_r - rates.phi) * delta * math.sin(phi_r - phi)
         + rates.delta * (1.0 - math.cos(phi_r - phi))
-    )  # (27); (28) and (29) are steps of the proof, verified by convergence
+    )  # (27)
+    # (28) is the limit phi_r, phi -> 0, since (26) goes to zero with them alone;
+    # (29) is the limit of the rate of phi_r, which goes to zero with phi_r (Barbalat).
 
 
-# ---------------------------------------------------------------- IV.D Nonlinear cascade system
-# approach
+# --- IV.D Nonlinear cascade system approach
 
 
 def h(phi: float, gain: float, rate_max: float) -> float:
-    """Return h(phi) [rad/s] of equation (30): gain phi, kept within ``rate_max``. It is 0 at 0 and
-    has the sign of phi elsewhere.
+    """Return h(phi) of equation (30): gain phi [1/s, rad], kept within ``rate_max`` [rad/s].
+
+    It is 0 at 0 and has the sign of phi elsewhere, as (30) asks.
     """
     return limited(gain * phi, rate_max)
 
 
 def cascade_law(phi: float, omega_rho: float, gain: float, rate_max: float) -> float:
-    """Return omega [rad/s] by the cascade law, equation (30), with h = gain phi within
-    ``rate_max``; gain [1/s].
-    """
+    """Return omega by the cascade law, equation (30) [rad/s]; gain and rate_max as in ``h``."""
     return -h(phi, gain, rate_max) + omega_rho  # (30)
 
 
@@ -576,7 +629,7 @@ class DrivenState(NamedTuple):
 
     Attributes
     ----------
-    delta, rho, phi_r : as of ``RelativeState``
+    delta, rho, phi_r : same as in ``RelativeState``
     """
 
     delta: float
@@ -591,24 +644,23 @@ def driven_rates(
     speed: float,
     reference_heading_rate: float,
 ) -> DrivenState:
-    """Return the rates of the driven subsystem, whose input is phi: equation (31a), the first three
-    lines of (21).
+    """Return the rates of the driven subsystem, whose input is phi, equation (31a).
+
+    They are the first three lines of (21).
     """
     rates = state_rates(parameters, RelativeState(*driven, phi), speed, reference_heading_rate, 0.0)
-    return DrivenState(rates.delta, rates.rho, rates.phi_r)  # (31a)
+    return DrivenState(rates.delta, rates.rho, rates.phi_r)  # (31)  # (31a)
 
 
 def driving_rate(phi: float, gain: float, rate_max: float) -> float:
-    """Return the rate of phi [rad/s], the driving subsystem: equation (31b), (21) under law (30).
-    Parameters as of ``h``.
-    """
-    return -h(phi, gain, rate_max)  # (31b)
+    """Return the rate of phi, the driving subsystem (31b): (21) under law (30) [rad/s]."""
+    return -h(phi, gain, rate_max)  # (31)  # (31b)
 
 
 def unforced_rates(
     parameters: LookAhead, driven: DrivenState, speed: float, reference_heading_rate: float
 ) -> DrivenState:
-    """Return the rates of the driven subsystem at phi = 0, written out: equation (32).
+    """Return the rates of the driven subsystem at phi = 0, equation (32).
 
     Differs from the paper because its first line lacks the factor V_r that (21) has, and without
     which it is no speed.
@@ -625,13 +677,14 @@ def unforced_rates(
 
 
 def v_1_unforced_rate(driven: DrivenState, speed: float) -> float:
-    """Return the rate of V_1 [m^2/s] along the unforced system (32): equation (33). Never positive."""
+    """Return the rate of V_1 along the unforced system, (33); it is never positive [m^2/s]."""
     return -speed * (driven.rho + driven.delta) * (1.0 - math.cos(driven.phi_r))  # (33)
 
 
 def v_1_unforced_acceleration(driven: DrivenState, rates: DrivenState, speed: float) -> float:
-    """Return the second rate of V_1 [m^2/s^2] along (32): equation (34), bounded and so V_1's rate
-    goes to zero.
+    """Return the second rate of V_1 along (32), equation (34) [m^2/s^2].
+
+    It is bounded, so the rate of V_1 goes to zero.
     """
     delta, rho, phi_r = driven
     return -speed * (
@@ -641,8 +694,9 @@ def v_1_unforced_acceleration(driven: DrivenState, rates: DrivenState, speed: fl
 
 
 def v_1_rate_split(state: RelativeState, speed: float) -> float:
-    """Return the rate of V_1 [m^2/s] along (21): equation (35), (23) gathered so that |phi| <=
-    |phi_r| makes no term positive.
+    """Return the rate of V_1 along (21) as equation (35) has it [m^2/s].
+
+    It is (23), gathered so that no term is positive where |phi| <= |phi_r|.
     """
     delta, rho, phi_r, phi = state
     return -speed * (
@@ -650,16 +704,15 @@ def v_1_rate_split(state: RelativeState, speed: float) -> float:
     )  # (35)
 
 
-# ---------------------------------------------------------------- Why trajectories are bounded:
-# EQUATIONS.md, from (35)
+# --- Why trajectories are bounded: EQUATIONS.md, from (35)
 
 
 def excursion_time(phi: float, gain: float, rate_max: float) -> float:
-    """Return the integral of 1 - cos(phi) over time [s] along (31b) from ``phi`` to rest.
-    Parameters as of ``h``.
+    """Return the integral of 1 - cos(phi) over time along (31b), from ``phi`` to rest [s].
 
-    Time is -dphi/h, so that h = gain phi leaves the entire cosine integral of the angle where h
-    stops being held, and h = rate_max an elementary one of the angle above that.
+    Parameters are those of ``h``. Time is -dphi/h, so that h = gain phi leaves the entire cosine
+    integral of the angle where h stops being held, and h = rate_max an elementary one of the angle
+    above that.
     """
     size = abs(phi)
     free = min(size, rate_max / gain)
@@ -673,11 +726,10 @@ def excursion_time(phi: float, gain: float, rate_max: float) -> float:
 def delta_bound(
     parameters: LookAhead, state: RelativeState, speed: float, gain: float, rate_max: float
 ) -> float:
-    """Return what delta [m] cannot exceed under law (30), ever, and whatever the reference does: it
-    bounds d through (15).
+    """Return the bound that delta never exceeds under law (30), for any reference [m].
 
-    Differs from the paper's argument after equation (35), that d no longer rises from some time on,
-    which does not hold.
+    It bounds d through (15). Differs from the paper's argument after equation (35), that d no
+    longer rises from some time on, which does not hold.
     """
     rho_to_delta = 1.0 + 0.5 / math.sqrt(parameters.epsilon * parameters.radius)
     exponent = (

@@ -2,9 +2,9 @@
 
 The guard is a safety filter with a backup manoeuvre (Gurriet et al., "An Online Approach to Active
 Set Invariance", CDC 2018). The backup manoeuvre is a **turn away**: omega_max to the left or to the
-right until the vehicle heads straight away from the disc, then straight on. The set that is made
-invariant is that of the states from which a turn away keeps off. It takes the place of the sublevel
-set of a control barrier function, and is not written down but evaluated by prediction (``turn.py``)::
+right until the vehicle heads straight away from the disc, then straight on. The set that is kept
+invariant holds the states from which a turn away keeps off. It takes the place of the safe set of a
+control barrier function. It is not written down, but evaluated by prediction (``turn.py``)::
 
     demanded command, one step     then a turn away, predicted     decision
 
@@ -77,7 +77,7 @@ than 0.1 m for it."""
 
 _SKIPPED_LESS = 0.5
 """By how much skipped commands may be less of the turn away than the one that was looked at, over
-omega_max [-]. The more, the more slack is kept for rolling; the less, the sooner is the next look."""
+omega_max [-]. A larger share keeps more slack for rolling; a smaller one brings the next look sooner."""
 
 _REMEMBERED = 2.0
 """Time constant with which former paces fade, over that of the airspeed [-]: an overshoot lasts
@@ -506,7 +506,7 @@ class HeadingRateFilter:
         )
 
     def time_until_near(self, motion: RelativeMotion) -> float:
-        """Return for how long the disc stays out of reach of a turn away [s]; negative if it is not.
+        """Return for how long the disc stays out of reach of a turn away [s]; below 0 if it is not.
 
         Out of reach is what is farther off than disc and vehicle can close during a turn.
         """
@@ -635,7 +635,7 @@ class HeadingRateFilter:
         return max(turns, key=lambda turn: (turn.slack, turn.side))
 
     def _explained_slack(self, motion: RelativeMotion) -> float:
-        """Return the slack of a turn that was safe which declared errors may have taken since [m]."""
+        """Return the slack that declared errors may have taken from a safe turn since [m]."""
         return self._explained + _UNSTEADY * (motion.fastest - motion.slowest) / self._rate
 
     def _turn_command(self, side: float, motion: RelativeMotion) -> float:
@@ -695,8 +695,8 @@ class CommandHistory:
         self._lack_max = self._reversal * (delay + lag)
         count, self._first = commands_under_way(delay, time_step)
         # Course turned in a step in which a lag follows one command, from the heading rates at its
-        # ends; and what is added where another command begins to act within the step. So the lack is
-        # exactly 0 for a vehicle with just that dead time and lag.
+        # ends; and what is added where another command begins to act within the step. So the lack
+        # is exactly 0 for a vehicle with just that dead time and lag.
         self._kept = self._fading = self._course_at_end = self._course_of_change = 0.0
         if lag > 0.0:
             self._kept = math.exp(-time_step / (FORGOTTEN * lag))
@@ -913,13 +913,13 @@ class SpeedRange:
         self._trough = speed
 
     def fastest(self, pace: float) -> float:
-        """Return the speed that it may rise to if a pace is commanded now, and V_r after it [m/s]."""
+        """Return the highest speed that follows from a pace now and V_r after it [m/s]."""
         rise = pace if pace > self.speed else self.speed
         reached = rise + self._overshoot * (rise - (pace if pace < self.lowest else self.lowest))
         return reached if reached > self._crest else self._crest
 
     def slowest(self, pace: float) -> float:
-        """Return the speed that it may fall to if a pace is commanded now, and V_r after it [m/s]."""
+        """Return the lowest speed that follows from a pace now and V_r after it [m/s]."""
         fall = pace if pace < self.speed else self.speed
         reached = fall - self._overshoot * ((pace if pace > self.highest else self.highest) - fall)
         return reached if reached < self._trough else self._trough

@@ -317,7 +317,7 @@ class TurnPrediction:
         self._points_max = math.ceil(_TURN_MAX / (heading_rate_max * spacing))
         half_turned = 0.5 * heading_rate_max * spacing
         self._chord_over_arc = math.sin(half_turned) / half_turned
-        # A turn that ends straight away goes beyond it by its lag and by a step of holding commands.
+        # A turn that ends straight away goes beyond it by its lag and by a step of held commands.
         self.overshoot = min(heading_rate_max * (lag + time_step), 0.5 * math.pi)
         self._overshoot_sine = math.sin(self.overshoot)
 
@@ -441,7 +441,7 @@ class TurnPrediction:
                 least = min(least, path.slack)
                 past_straight_away = last_outward >= 0.0 > outward and path.away
                 if past_straight_away and side * path.heading_rate > 0.0:
-                    # The disc gains on it all the same. Nothing does better than to fly straight on.
+                    # The disc gains on it all the same: flying straight on does best.
                     path.fly_straight_on()
                     outward = 0.0
                 continue
@@ -559,7 +559,7 @@ class _TurnPath:
         self._switch, self._turned_at_switch = self._now, 0.0
 
     def slow_down_while_receding(self, slow_leg: _Leg, radii_difference: float) -> None:
-        """Fly another leg while the vehicle flies away; its turn's radius differs by so much [m]."""
+        """Fly another leg while the vehicle flies away; the radii of the turns differ by so much."""
         self._slow_leg = slow_leg
         self._radii_difference = radii_difference
 
