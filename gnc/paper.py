@@ -194,8 +194,9 @@ def available_heading_rate(
     available = (1.0 - reserve) * heading_rate_max - abs(vessel_heading_rate)
     if not available > 0.0:
         raise InfeasibleError(
-            f"vessel heading rate is {vessel_heading_rate:g} rad/s; with a reserve of {reserve:g} it"
-            f" must stay below {(1.0 - reserve) * heading_rate_max:g} rad/s: raise omega_max or lower the reserve"
+            f"vessel heading rate is {vessel_heading_rate:g} rad/s; with a reserve of {reserve:g}"
+            f" it must stay below {(1.0 - reserve) * heading_rate_max:g} rad/s: raise omega_max or"
+            " lower the reserve"
         )
     return available
 

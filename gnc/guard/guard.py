@@ -77,7 +77,8 @@ than 0.1 m for it."""
 
 _SKIPPED_LESS = 0.5
 """By how much skipped commands may be less of the turn away than the one that was looked at, over
-omega_max [-]. A larger share keeps more slack for rolling; a smaller one brings the next look sooner."""
+omega_max [-]. A larger share keeps more slack for rolling; a smaller one brings the next look
+sooner."""
 
 _REMEMBERED = 2.0
 """Time constant with which former paces fade, over that of the airspeed [-]: an overshoot lasts

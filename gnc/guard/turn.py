@@ -559,7 +559,7 @@ class _TurnPath:
         self._switch, self._turned_at_switch = self._now, 0.0
 
     def slow_down_while_receding(self, slow_leg: _Leg, radii_difference: float) -> None:
-        """Fly another leg while the vehicle flies away; the radii of the turns differ by so much."""
+        """Fly a slower leg while the vehicle flies away; the radii differ by so much [m]."""
         self._slow_leg = slow_leg
         self._radii_difference = radii_difference
 
