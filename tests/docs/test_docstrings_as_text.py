@@ -6,7 +6,7 @@ from pathlib import Path
 
 from docstrings import as_text
 
-from gnc.laws.steering_law import SteeringLaw
+from gnc.laws import SteeringLaw
 from gnc.reference.reference import Reference
 
 

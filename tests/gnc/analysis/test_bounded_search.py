@@ -26,7 +26,7 @@ from gnc.analysis.bounds import (
 )
 from gnc.analysis.worst_case_search import heading_rates
 from gnc.errors import InfeasibleError
-from gnc.laws.paper import CascadeLaw
+from gnc.laws import CascadeLaw
 from gnc.paper import delta_length, look_ahead
 
 
