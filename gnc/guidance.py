@@ -3,7 +3,7 @@
 import math
 from typing import Any
 
-from gnc.airspeed.airspeed_law import AirspeedLaw
+from gnc.airspeed import AirspeedLaw
 from gnc.estimation.health_monitor import HealthMonitor
 from gnc.estimation.own_motion import OwnMotion
 from gnc.estimation.target_motion import TargetMotion

@@ -14,7 +14,7 @@ import numpy as np
 from hypothesis import settings
 from hypothesis import strategies as st
 
-from gnc.airspeed.along_track import AlongTrackTrim
+from gnc.airspeed import AlongTrackTrim
 from gnc.compose import compose
 from gnc.laws import CascadeLaw
 from gnc.mission.direct_tracking import DirectParameters
