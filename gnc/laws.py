@@ -232,7 +232,7 @@ class LimitedLaw:
         return Demand(rate, limited(rate, self._limit))
 
     def _number(self, rate: Any) -> float:
-        """Return a real number of any kind as a float: one of NumPy's would spread its precision."""
+        """Return a real number as a float: one of NumPy would pass its precision on."""
         number = rate[()] if isinstance(rate, np.ndarray) and rate.ndim == 0 else rate
         if not isinstance(number, Real):
             raise self._no_number(rate)
@@ -250,7 +250,7 @@ def _is_finite(reference: Reference, own: Motion) -> bool:
 
 
 def _call_error(name: str, error: TypeError, must: str) -> Exception:
-    """Return the error itself if it comes from inside the law, else one that says how to call it."""
+    """Return the error if it comes from inside the law, else one that says how to call it."""
     raised = error.__traceback__
     if raised is not None and raised.tb_next is not None:
         return error

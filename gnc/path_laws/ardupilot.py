@@ -220,7 +220,7 @@ class _L1Flight:
 @steering_law("ardupilot_l1")
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ArduPilotL1TangentLaw(ArduPilotL1Law):
-    """ArduPilot's L1 on the reference's tangent (M1); attributes are those of ``ArduPilotL1Law``."""
+    """ArduPilot's L1 on the reference's tangent (M1); attributes of ``ArduPilotL1Law``."""
 
     inputs: ClassVar[str] = "tangent of the path over the ground (M1); velocity over the ground"
 

@@ -183,7 +183,7 @@ def _adapted_period(
 def _air_velocity_reference(
     bearing: Vector, wind: Vector, wind_speed: float, airspeed: float
 ) -> Vector:
-    """Return the air velocity that gives the bearing over the ground, as nearly as possible [m/s]."""
+    """Return the air velocity that comes nearest to the bearing over the ground [m/s]."""
     across = cross(wind, bearing)
     along = dot(wind, bearing)
     if abs(across) < airspeed and (along > 0.0 or wind_speed < airspeed):

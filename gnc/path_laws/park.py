@@ -154,7 +154,7 @@ class ParkL1PointLaw(ParkL1Law):
 @steering_law("park_l1_orbit")
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ParkL1OrbitLaw(ParkL1Law):
-    """Park's law on a circle in the frame of its centre (M2); attributes are those of ``ParkL1Law``."""
+    """Park's law on a circle in the frame of its centre (M2); attributes of ``ParkL1Law``."""
 
     inputs: ClassVar[str] = "the circle in the frame of its centre (M2)"
     unsupported_tasks: ClassVar[dict[str, str]] = ONLY_CIRCLES
