@@ -6,7 +6,6 @@ from pathlib import Path
 
 from docstrings import as_text
 
-from gnc.laws import SteeringLaw
 from gnc.reference.reference import Reference
 
 
@@ -26,13 +25,10 @@ def test_entries_are_terms_with_their_descriptions_and_units():
 
 
 def test_a_description_that_goes_on_stays_with_its_entry():
-    text = as_text(inspect.getdoc(SteeringLaw.heading_rate).splitlines())
-    first = text.index("   ``reference``")
-    assert text[first + 1].startswith("      the point to track; its ``course`` [rad]")
-    assert (
-        text[first + 2]
-        == "      its position may be given for another frame than ``to_north`` and ``to_east``"
-    )
+    docstring = ["Parameters", "----------", "lag : behind the command [s]; above", "    0 it counts"]
+    text = as_text(docstring)
+    first = text.index("   ``lag``")
+    assert text[first + 1 : first + 3] == ["      behind the command [s]; above", "      0 it counts"]
 
 
 def test_a_section_ends_at_an_empty_line():
