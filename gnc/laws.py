@@ -91,7 +91,7 @@ class SteeringLaw(Protocol):
     """A steering law: a heading rate from the reference, the vehicle's motion and the air.
 
     A law is a frozen dataclass. Its fields are keys of a scenario's ``[guidance]`` by the same
-    names, in SI units, each with a default. This one is complete:
+    names, in SI units, each with a default. This one is complete::
 
         @dataclass(frozen=True, kw_only=True)
         class Pursuit:
