@@ -22,7 +22,7 @@ from gnc.compiled import FOLDER, INDEX, ROOT, sources_hash
 MODULES = {
     "gnc": (
         "guidance", "numeric", "unicycle",
-        "airspeed/along_track", "airspeed/pace_hold",
+        "airspeed",
         "estimation/health", "estimation/health_monitor", "estimation/navigation", "estimation/own_motion",
         "estimation/target_motion", "estimation/vessel_filter", "estimation/wind_filter",
         "paper",

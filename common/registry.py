@@ -43,13 +43,17 @@ class Registry(Generic[Part]):
     ----------
     kind : of the parts, as in "steering_law"
     folder : package whose modules register the project's own parts when they are imported
+    protocol : module of the Protocol, which may register parts, too; ``folder`` if it is not given
     methods : that every part has to have, unless it is a function that makes one: those of its
         Protocol; of some, "this|that"
     """
 
-    def __init__(self, kind: str, *, folder: str, methods: Sequence[str] = ()) -> None:
+    def __init__(
+        self, kind: str, *, folder: str, protocol: str = "", methods: Sequence[str] = ()
+    ) -> None:
         self.kind = kind
         self._folder, self._methods = folder, tuple(methods)
+        self._protocol = protocol or folder
         self._parts: dict[str, Part] = {}
         self._complete = False
 
@@ -104,7 +108,9 @@ class Registry(Generic[Part]):
         return sorted(
             name
             for name, part in self._known().items()
-            if getattr(part, "__module__", "").startswith(f"{self._folder}.")
+            if f"{getattr(part, '__module__', '')}.".startswith(
+                (f"{self._folder}.", f"{self._protocol}.")
+            )
         )
 
     def __contains__(self, name: str) -> bool:
@@ -187,7 +193,7 @@ class Registry(Generic[Part]):
             ):
                 missing = method.replace("|", "() or ")
                 raise PluginError(
-                    f"{self.words} '{name}' has no method {missing}(); see the Protocol in {self._folder}"
+                    f"{self.words} '{name}' has no method {missing}(); see the Protocol in {self._protocol}"
                 )
         found: Part = part
         return found

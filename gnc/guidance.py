@@ -4,7 +4,7 @@ import math
 from collections.abc import Sequence
 from typing import Any
 
-from gnc.airspeed.airspeed_law import AirspeedLaw
+from gnc.airspeed import AirspeedLaw
 from gnc.estimation.health_monitor import HealthMonitor
 from gnc.estimation.own_motion import OwnMotion
 from gnc.estimation.reachable_set import Tube

@@ -4,7 +4,7 @@
 
 from dataclasses import dataclass
 
-from gnc.airspeed.airspeed_law import AirspeedLaw
+from gnc.airspeed import AirspeedLaw
 from gnc.estimation.health_monitor import HealthParameters
 from gnc.estimation.navigation import NavigationParameters
 from gnc.estimation.reachable_set import VesselLimits

@@ -2,16 +2,9 @@
 
 from collections import deque
 from dataclasses import dataclass
-from typing import Generic, TypeVar
+from typing import Generic, NamedTuple, Protocol, TypeVar
 
-from gnc.laws.steering_law import (
-    STILL_AIR,
-    SteeringLaw,
-    Surroundings,
-    begun,
-    call_error,
-    within_limit,
-)
+from gnc.laws import STILL_AIR, Air, LimitedLaw, Motion, SteeringLaw
 from gnc.reference.reference import Reference
 from gnc.unicycle import lag_ahead
 
@@ -23,8 +16,8 @@ class TrackingParameters:
     Attributes
     ----------
     law : steering law
-    heading_rate_max : omega_max; no command exceeds it; infinite for a vehicle that can fly
-        anything [rad/s]
+    heading_rate_max : omega_max, which no command exceeds; infinite if the vehicle has no limit
+        [rad/s]
     time_step : [s]
     lag : of the vehicle's heading rate behind its command [s]; above 0 the law runs that much ahead
         of time
@@ -36,23 +29,46 @@ class TrackingParameters:
     lag: float
 
 
-class PlacedReference:
-    """Where a reference is, put there from outside.
+class Wind(Protocol):
+    """The velocity of the air mass over the ground, as it is known now.
 
     Attributes
     ----------
-    north, east, course, heading_rate, speed : as of ``gnc.reference.reference.Reference``
+    wind_north, wind_east : [m/s]
     """
 
-    __slots__ = ("course", "east", "heading_rate", "north", "speed")
+    wind_north: float
+    wind_east: float
+
+
+class _Instant(NamedTuple):
+    """The reference at an instant, waiting to become that of now."""
+
+    north: float
+    east: float
+    course: float
+    heading_rate: float
+
+
+class PlacedReference:
+    """A reference that is moved from outside; attributes are those of ``Reference``.
+
+    Parameters
+    ----------
+    reference : where it starts
+    """
 
     def __init__(self, reference: Reference) -> None:
-        self.north, self.east = reference.north, reference.east
-        self.course, self.heading_rate, self.speed = (
-            reference.course,
-            reference.heading_rate,
-            reference.speed,
-        )
+        self.speed = reference.speed
+        self.place(_instant(reference))
+
+    def place(self, instant: _Instant) -> None:
+        """Move there."""
+        self.north, self.east, self.course, self.heading_rate = instant
+
+
+def _instant(reference: Reference) -> _Instant:
+    return _Instant(reference.north, reference.east, reference.course, reference.heading_rate)
 
 
 AnyReference = TypeVar("AnyReference", bound=Reference)
@@ -61,50 +77,43 @@ AnyReference = TypeVar("AnyReference", bound=Reference)
 class Tracker(Generic[AnyReference]):
     """Tracks one reference point, stepped at a fixed rate.
 
-    Preview: a vehicle that answers ``lag`` seconds late is steered by the law as it will stand
-    then. The reference is known in advance; the vehicle's motion until then follows from its
-    heading rate, which goes from the measured value to the last command.
+    Preview: a vehicle that answers ``lag`` seconds late is steered by the law's demand at that
+    later time. The reference then is known in advance. The vehicle's motion until then follows from
+    its heading rate, which goes from the measured value to the last command.
 
     Parameters
     ----------
     parameters : of the tracking
     reference : at time 0; from then on the tracker moves it
-    surroundings : that the law may look at
+    wind : for the law; none for still air
 
     Attributes
     ----------
     reference : the reference point now
-    ahead : the reference point as far ahead of time as the preview looks; where it is steered, the
-        reference follows
-    heading_rate_demand : what the law asked for last, before omega_max had its say [rad/s]
-    heading_rate_command : what was commanded last; whoever changes it on its way to the vehicle
-        sets it [rad/s]
-    saturated : whether the last demand was cut at omega_max
+    ahead : the reference point at the end of the preview; it is the one that may be steered
+    heading_rate_demand : last demand of the law, before omega_max limits it [rad/s]
+    heading_rate_command : last command [rad/s]; to be set if another one is flown in its place
+    saturated : whether omega_max limited the last demand
     """
-
-    __slots__ = (
-        "_lag", "_law", "_limit", "_steer", "_until_ahead", "ahead", "heading_rate_command", "heading_rate_demand",
-        "reference", "saturated",
-    )  # fmt: skip
 
     def __init__(
         self,
         parameters: TrackingParameters,
         reference: AnyReference,
-        surroundings: Surroundings = STILL_AIR,
+        wind: Wind | None = None,
     ) -> None:
-        law = begun(parameters.law, surroundings, parameters.time_step)
-        self._law = type(parameters.law).__qualname__
-        self._steer, self._limit = law.heading_rate, parameters.heading_rate_max
+        self._law = LimitedLaw(parameters.law, parameters.heading_rate_max, parameters.time_step)
+        self._wind = wind
         self.reference = PlacedReference(reference)
         self.ahead = reference
-        # The reference moves once, ahead of time; until then its places wait in line.
-        self._until_ahead: deque[tuple[float, float, float, float]] = deque()
-        lead = round(parameters.lag / parameters.time_step)
-        for _ in range(lead):
+        # The reference moves once, ahead of time; here it waits until that time has come.
+        self._until_ahead: deque[_Instant] = deque()
+        steps_ahead = round(parameters.lag / parameters.time_step)
+        for _ in range(steps_ahead):
             self._move_ahead()
-        self._lag = lead * parameters.time_step
-        self.heading_rate_demand = self.heading_rate_command = 0.0
+        self._lag = steps_ahead * parameters.time_step
+        self.heading_rate_demand = 0.0
+        self.heading_rate_command = 0.0
         self.saturated = False
 
     def step(
@@ -121,40 +130,23 @@ class Tracker(Generic[AnyReference]):
 
         Raises
         ------
-        LawError : the law returned no number
+        LawError : the law cannot be called, or returned no number
         """
-        reference, ahead, lag = self.reference, self.ahead, self._lag
-        then_north, then_east, then_course = north, east, course
-        if lag > 0.0:
-            then_north, then_east, then_course = lag_ahead(
-                north, east, course, speed, heading_rate, self.heading_rate_command, lag
-            )
-        to_north, to_east, limit = ahead.north - then_north, ahead.east - then_east, self._limit
-        try:
-            demand = self._steer(ahead, to_north, to_east, then_course, speed)
-        except TypeError as error:
-            raise call_error(self._law, error) from None
-        try:
-            inside = -limit <= demand <= limit
-        except (TypeError, ValueError):
-            inside = False
-        command = demand
-        # Of an array of one number it is an array, too.
-        if inside is not True:
-            demand, command = within_limit(
-                demand, limit, self._law, (to_north, to_east, then_course, speed)
-            )
-        self.heading_rate_demand, self.heading_rate_command = demand, command
+        own = Motion(north, east, course, speed, heading_rate)
+        if self._lag > 0.0:
+            last = self.heading_rate_command
+            ahead = lag_ahead(north, east, course, speed, heading_rate, last, self._lag)
+            own = Motion(*ahead, speed, last)
+        wind = self._wind
+        air = STILL_AIR if wind is None else Air(wind.wind_north, wind.wind_east)
+        demand, command = self._law.demand(self.ahead, own, air)
+        self.heading_rate_demand = demand
+        self.heading_rate_command = command
         self.saturated = command != demand
-        ahead.step()
-        waiting = self._until_ahead
-        waiting.append((ahead.north, ahead.east, ahead.course, ahead.heading_rate))
-        reference.north, reference.east, reference.course, reference.heading_rate = (
-            waiting.popleft()
-        )
+        self._move_ahead()
+        self.reference.place(self._until_ahead.popleft())
         return command
 
     def _move_ahead(self) -> None:
-        ahead = self.ahead
-        ahead.step()
-        self._until_ahead.append((ahead.north, ahead.east, ahead.course, ahead.heading_rate))
+        self.ahead.step()
+        self._until_ahead.append(_instant(self.ahead))

@@ -20,7 +20,8 @@ def as_text(lines: Sequence[str]) -> list[str]:
     """Return a docstring as reStructuredText.
 
     Sections (a name over a line of dashes) become fields, each entry a term with its description.
-    Characters that reStructuredText would take for markup are escaped, but in literals.
+    Characters that reStructuredText would take for markup are escaped, but not in literals and in
+    the indented code after a line that ends with ``::``.
 
     Parameters
     ----------
@@ -33,6 +34,10 @@ def as_text(lines: Sequence[str]) -> list[str]:
             end = _end_of_section(lines, i + 2)
             done += ["", f":{lines[i].strip()}:", *_entries(lines[i + 2 : end]), ""]
             i = end
+        elif lines[i].endswith("::"):
+            end = _end_of_code(lines, i + 1)
+            done += [_escaped(lines[i]), *lines[i + 1 : end]]
+            i = end
         else:
             done.append(_escaped(lines[i]))
             i += 1
@@ -43,6 +48,14 @@ def _end_of_section(lines: Sequence[str], start: int) -> int:
     """Return the index after a section: it ends at an empty line."""
     end = start
     while end < len(lines) and lines[end].strip():
+        end += 1
+    return end
+
+
+def _end_of_code(lines: Sequence[str], start: int) -> int:
+    """Return the index after a block of code: it ends at a line that is not indented."""
+    end = start
+    while end < len(lines) and (not lines[end].strip() or lines[end].startswith(" ")):
         end += 1
     return end
 

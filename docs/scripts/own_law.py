@@ -13,14 +13,14 @@ class Pursuit:
     gain: float = 1.2
     lead_s: float = 1.0
 
-    def heading_rate(self, reference, to_north, to_east, course, speed):
+    def heading_rate(self, reference, own, air):
         """Return the demanded heading rate [rad/s]."""
         lead = self.lead_s * reference.speed
         sight = math.atan2(
-            to_east + lead * math.sin(reference.course),
-            to_north + lead * math.cos(reference.course),
+            reference.east - own.east + lead * math.sin(reference.course),
+            reference.north - own.north + lead * math.cos(reference.course),
         )
-        return self.gain * math.remainder(sight - course, math.tau) + reference.heading_rate
+        return self.gain * math.remainder(sight - own.course, math.tau) + reference.heading_rate
 
 
 if __name__ == "__main__":

@@ -1,8 +1,7 @@
-"""What the cascade law commands at most, over all states, and the fastest parameters that keep that
-within a limit.
+"""The largest command of the cascade law over all states, and the fastest law within a limit.
 
-The abstract of the paper promises such conditions and its text omits them; docs/actuation_bounds.md
-derives what is computed here.
+The paper's abstract announces such conditions, and its text omits them. The formulas are derived in
+``docs/actuation_bounds.md``.
 """
 
 import functools
@@ -15,7 +14,6 @@ import numpy as np
 import numpy.typing as npt
 from scipy.optimize import Bounds, minimize
 
-from gnc.analysis.worst_position import worst_case_over_positions
 from gnc.errors import InfeasibleError
 from gnc.numeric import clip
 from gnc.paper import LookAhead, look_ahead
@@ -23,25 +21,25 @@ from gnc.paper import LookAhead, look_ahead
 _Array = npt.NDArray[np.float64]
 
 _TOLERANCE = 1e-4
-"""How far above the largest command the bound may lie, relative. Half of it is for rounding."""
+"""Largest relative excess of the bound over the largest command [-]; half of it is for rounding."""
 
 _SIGMA_MAX = 1.0 - 1e-9
-"""Above this, rounding, 1e-15/(1 - sigma) relative, is no longer small beside the tolerance."""
+"""Largest sigma [-]: above it rounding, 1e-15/(1 - sigma), is not small beside the tolerance."""
 
 _SETTLED = 0.1
-"""|phi| below which distance decays as if phi were 0 [rad]: cos(0.1) is 0.995."""
+"""|phi| below which the distance decays as if phi were 0 [rad]: cos(0.1) is 0.995."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class BoundedSteering:
-    """Parameters of the cascade law whose command is bounded.
+    """Parameters of the cascade law, with a bound on its command.
 
     Attributes
     ----------
     look_ahead : epsilon and R
     gain : slope of h(phi) [1/s]
     steering_max : largest |h| [rad/s]
-    bound : no command exceeds it, whatever the state [rad/s]
+    bound : no command exceeds it in any state [rad/s]
     convergence_time : estimated [s]
     """
 
@@ -61,11 +59,10 @@ def heading_rate_bound(
     steering_max: float,
     tolerance: float = _TOLERANCE,
 ) -> float:
-    """Return a heading rate [rad/s] that no command of the cascade law, equation (30), exceeds,
-    whatever the state.
+    """Return a heading rate that no command of the cascade law (30) exceeds in any state [rad/s].
 
-    Both signs of omega_r are covered, and so is the law evaluated at predicted states. The bound is
-    the largest command itself, but for ``tolerance``, wherever h saturates well before phi is pi/2.
+    It covers both signs of omega_r, and the law at predicted states. Where h saturates well before
+    phi is pi/2, it is the largest command itself, within ``tolerance``.
 
     Parameters
     ----------
@@ -73,12 +70,11 @@ def heading_rate_bound(
     speed : V, of vehicle and reference, or the larger of both [m/s]
     reference_heading_rate_max : largest |omega_r| [rad/s]
     steering_max : largest |h(phi)| [rad/s]
-    tolerance : how far the bound on omega_rho may lie above its largest value [-]
+    tolerance : largest relative excess of the bound on omega_rho [-]
 
     Raises
     ------
-    InfeasibleError : a quantity is out of range, or R so close to 1/(4 epsilon) that the bound is
-        worthless
+    InfeasibleError : a quantity is out of range, or R is too close to 1/(4 epsilon)
     """
     _check_positive(
         speed=(speed, "m/s"),
@@ -87,55 +83,12 @@ def heading_rate_bound(
     )
     _check_heading_rate(reference_heading_rate_max)
     sigma = _sigma(parameters)
-    of_speed = speed / parameters.radius
+    turn_at_reference = speed / parameters.radius
 
     def omega_rho(speed_factor: _Array, turn_factor: _Array) -> _Array:
-        return of_speed * speed_factor + reference_heading_rate_max * turn_factor
+        return turn_at_reference * speed_factor + reference_heading_rate_max * turn_factor
 
     return steering_max + worst_case_over_positions(omega_rho, sigma, tolerance)
-
-
-def heading_rate_bound_least(
-    parameters: LookAhead,
-    *,
-    speed: float,
-    reference_heading_rate_max: float,
-    gain: float,
-    steering_max: float,
-) -> float:
-    """Return the largest command [rad/s] among states head on to the reference: no bound can be
-    smaller. In closed form.
-
-    There d points against the reference's course, phi is -pi/2 for omega_r > 0, and omega = (V +
-    delta omega_r)/(delta - d) + h(pi/2), which is largest where lambda sigma u^2 + u = (1 + lambda)
-    sigma: u = d sqrt(epsilon/R), lambda = omega_r R/V.
-
-    Parameters
-    ----------
-    parameters, speed, reference_heading_rate_max, steering_max : as for ``heading_rate_bound``
-    gain : slope of h(phi) [1/s]
-
-    Raises
-    ------
-    InfeasibleError : a quantity is out of range
-    """
-    _check_positive(speed=(speed, "m/s"), gain=(gain, "1/s"), steering_max=(steering_max, "rad/s"))
-    _check_heading_rate(reference_heading_rate_max)
-    sigma = _sigma(parameters)
-    ratio = reference_heading_rate_max * parameters.radius / speed
-    u = (
-        2.0
-        * sigma
-        * (1.0 + ratio)
-        / (1.0 + math.sqrt(1.0 + 4.0 * sigma**2 * ratio * (1.0 + ratio)))
-    )
-    omega_rho = (
-        speed
-        / parameters.radius
-        * (1.0 + ratio * (1.0 + u * u))
-        / ((1.0 - u) ** 2 + 2.0 * (1.0 - sigma) * u)
-    )
-    return min(gain * 0.5 * math.pi, steering_max) + omega_rho
 
 
 def convergence_time(
@@ -147,12 +100,11 @@ def convergence_time(
     gain: float,
     steering_max: float,
 ) -> float:
-    """Return the estimated time [s] in which the distance to the reference shrinks, from the worst
-    course.
+    """Return the estimated time of convergence between two distances, from the worst course [s].
 
-    First h brings phi from pi to 0.1 rad; how far the vehicle strays meanwhile is left out. Then
-    d^2 shrinks by V d^2/delta, the average about a reference that circles faster than V/(2 R).
-    Slower ones take longer: on a straight one, along-track errors stay.
+    First h brings phi from pi to 0.1 rad; the change of the distance meanwhile is neglected. Then
+    d^2 shrinks at the rate V d^2/delta, the average for a reference that circles faster than
+    V/(2 R). A slower one takes longer: beside a straight one, along-track errors do not decay.
 
     Parameters
     ----------
@@ -170,8 +122,9 @@ def convergence_time(
     _check_distances(distance_from, distance_to)
     linear_below = clip(steering_max / gain, _SETTLED, math.pi)
     turning = (math.pi - linear_below) / steering_max + math.log(linear_below / _SETTLED) / gain
-    by_radius = 2.0 * parameters.radius * math.log(distance_from / distance_to)
-    return turning + (by_radius + parameters.epsilon * (distance_from**2 - distance_to**2)) / speed
+    near = 2.0 * parameters.radius * math.log(distance_from / distance_to)
+    far = parameters.epsilon * (distance_from**2 - distance_to**2)
+    return turning + (near + far) / speed
 
 
 @functools.lru_cache(maxsize=64)
@@ -184,25 +137,25 @@ def fastest_within(
     distance_to: float,
     gain: float,
 ) -> BoundedSteering:
-    """Return the parameters that converge fastest, by ``convergence_time``, while no command
-    exceeds omega_max in any state.
+    """Return the parameters that converge fastest while no command exceeds omega_max in any state.
 
-    Sigma = 1/(2 sqrt(epsilon R)) and steering_max are chosen by the closed form for states head on
-    to the reference, which costs 0.2 % of the time; the R that goes with them respects every state.
-    It is kept at V/(2 omega_r) at least: a shorter one no longer speeds up convergence.
+    The time is that of ``convergence_time``. Sigma = 1/(2 sqrt(epsilon R)) and steering_max are
+    searched with the closed form of R for states head on to the reference, which costs 0.2 % of the
+    time; the final R respects every state. R is at least V/(2 omega_r), because a shorter one
+    converges no faster.
 
     Parameters
     ----------
     speed : V, of vehicle and reference [m/s]
     heading_rate_max : omega_max [rad/s]
     reference_heading_rate_max : largest |omega_r|, above 0 [rad/s]
-    distance_from, distance_to : between which convergence counts [m]
+    distance_from, distance_to : between which the time counts [m]
     gain : slope of h(phi), as steep as the autopilot follows [1/s]
 
     Raises
     ------
-    InfeasibleError : the reference leaves nothing of omega_max, a quantity is out of range, or the
-        search did not converge
+    InfeasibleError : omega_r takes all of omega_max, a quantity is out of range, or the search did
+        not converge
     """
     _check_positive(
         speed=(speed, "m/s"),
@@ -214,31 +167,23 @@ def fastest_within(
     limit = heading_rate_max / (1.0 + 2.0 * _TOLERANCE)
     if not reference_heading_rate_max < limit:
         raise InfeasibleError(
-            f"reference heading rate is {reference_heading_rate_max:g} rad/s; it must stay below omega_max, {limit:g} rad/s but for"
-            " tolerances, or no look-ahead bounds the command: lower it, to leave more of omega_max in reserve"
+            f"reference heading rate is {reference_heading_rate_max:g} rad/s; it must stay below"
+            f" omega_max, {limit:g} rad/s but for tolerances, or no look-ahead bounds the command:"
+            " lower it, to leave more of omega_max in reserve"
         )
     task = _Task(speed, limit, reference_heading_rate_max, distance_from, distance_to, gain)
 
-    def time(parameters: LookAhead, steering_max: float) -> float:
-        return convergence_time(
-            parameters,
-            speed=speed,
-            distance_from=distance_from,
-            distance_to=distance_to,
-            gain=gain,
-            steering_max=steering_max,
-        )
-
     def objective(fractions: _Array) -> float:
-        return math.log(time(*_design(fractions, task, _least_radius_head_on)))
+        return math.log(task.time(*task.design(fractions, _least_radius_head_on)))
 
     start = min((np.array([a, b]) for a in _FRACTIONS for b in _FRACTIONS), key=objective)
     found = minimize(objective, start, method="Nelder-Mead", bounds=Bounds(0.01, 0.99), tol=1e-4)
     if not found.success:
         raise InfeasibleError(
-            f"the search for the fastest look-ahead did not converge: {found.message}; report these parameters"
+            f"the search for the fastest look-ahead did not converge: {found.message}; report these"
+            " parameters"
         )
-    parameters, steering_max = _design(found.x, task, _least_radius)
+    parameters, steering_max = task.design(found.x, _least_radius)
     return BoundedSteering(
         look_ahead=parameters,
         gain=gain,
@@ -249,12 +194,19 @@ def fastest_within(
             reference_heading_rate_max=reference_heading_rate_max,
             steering_max=steering_max,
         ),
-        convergence_time=time(parameters, steering_max),
+        convergence_time=task.time(parameters, steering_max),
     )
 
 
+_FRACTIONS = np.linspace(0.05, 0.95, 19)
+"""Fractions of the largest sigma and of the largest steering_max where the search may start [-]."""
+
+_LeastRadius = Callable[[float, float, float, float], float]
+"""From sigma, V, omega_r and the limit of omega_rho to the least R."""
+
+
 class _Task(NamedTuple):
-    """The arguments of ``fastest_within``, in its units; ``limit`` is omega_max less tolerances."""
+    """The arguments of ``fastest_within``; ``limit`` is omega_max less tolerances [rad/s]."""
 
     speed: float
     limit: float
@@ -263,42 +215,48 @@ class _Task(NamedTuple):
     distance_to: float
     gain: float
 
+    def time(self, parameters: LookAhead, steering_max: float) -> float:
+        """Return the time of convergence [s]."""
+        return convergence_time(
+            parameters,
+            speed=self.speed,
+            distance_from=self.distance_from,
+            distance_to=self.distance_to,
+            gain=self.gain,
+            steering_max=steering_max,
+        )
 
-_LeastRadius = Callable[[float, float, float, float], float]
-"""From sigma, V, omega_r and the limit of omega_rho to the least R."""
+    def design(self, fractions: _Array, least_radius: _LeastRadius) -> tuple[LookAhead, float]:
+        """Return look-ahead and steering_max [rad/s] for fractions of their largest values.
 
-_FRACTIONS = np.linspace(0.05, 0.95, 19)
-
-
-def _design(fractions: _Array, task: _Task, least_radius: _LeastRadius) -> tuple[LookAhead, float]:
-    """Return look-ahead and steering_max for fractions, within 0 and 1, of the largest sigma and of
-    the largest steering_max.
-    """
-    sigma_fraction, steering_fraction = fractions.tolist()
-    turning = task.reference_heading_rate_max
-    steering_max = steering_fraction * min(task.limit - turning, task.gain * math.pi)
-    room = task.limit - steering_max
-    sigma = sigma_fraction * min(1.0 - turning / room, _SIGMA_MAX)
-    # With epsilon = 1/(4 sigma^2 R) the time has a minimum over R, this over sigma: a shorter R
-    # would only raise epsilon.
-    quickest = math.sqrt(
-        (task.distance_from**2 - task.distance_to**2)
-        / (8.0 * math.log(task.distance_from / task.distance_to))
-    )
-    radius = max(
-        least_radius(sigma, task.speed, turning, room),
-        quickest / sigma,
-        task.speed / (2.0 * turning),
-    )
-    return look_ahead(1.0 / (4.0 * sigma**2 * radius), radius), steering_max
+        Parameters
+        ----------
+        fractions : of the largest sigma and of the largest steering_max, between 0 and 1
+        least_radius : R by which omega_rho respects the limit
+        """
+        sigma_fraction, steering_fraction = fractions.tolist()
+        turning = self.reference_heading_rate_max
+        steering_max = steering_fraction * min(self.limit - turning, self.gain * math.pi)
+        room = self.limit - steering_max
+        sigma = sigma_fraction * min(1.0 - turning / room, _SIGMA_MAX)
+        # With epsilon = 1/(4 sigma^2 R) the time has a minimum over R, which is this over sigma: a
+        # shorter R would only raise epsilon.
+        quickest = math.sqrt(
+            (self.distance_from**2 - self.distance_to**2)
+            / (8.0 * math.log(self.distance_from / self.distance_to))
+        )
+        radius = max(
+            least_radius(sigma, self.speed, turning, room),
+            quickest / sigma,
+            self.speed / (2.0 * turning),
+        )
+        return look_ahead(1.0 / (4.0 * sigma**2 * radius), radius), steering_max
 
 
 def _least_radius(
     sigma: float, speed: float, reference_heading_rate_max: float, room: float
 ) -> float:
-    """Return an R [m] with which |omega_rho| stays within ``room`` [rad/s], the least but for the
-    tolerance.
-    """
+    """Return the least R by which |omega_rho| stays within ``room`` [rad/s], in every state [m]."""
 
     def radius(speed_factor: _Array, turn_factor: _Array) -> _Array:
         left = room - reference_heading_rate_max * turn_factor
@@ -312,11 +270,116 @@ def _least_radius(
 def _least_radius_head_on(
     sigma: float, speed: float, reference_heading_rate_max: float, room: float
 ) -> float:
-    """Return the least R [m] with which |omega_rho| stays within ``room`` [rad/s] head on to the
-    reference. In closed form.
-    """
+    """Return the least R by which |omega_rho| stays within ``room`` [rad/s], head on [m]."""
     left = room - reference_heading_rate_max
     return speed * left / (left**2 - (sigma * room) ** 2)
+
+
+# ---------------------------------------------------------------- The worst position
+
+_CELLS = 24
+"""Cells a side at the start."""
+
+
+def worst_case_over_positions(
+    value: Callable[[_Array, _Array], _Array], sigma: float, tolerance: float
+) -> float:
+    """Return an upper bound over all positions, at most ``tolerance`` too high, of a value.
+
+    Branch and bound: cells are quartered until, within the tolerance, none can hold a value above
+    the largest one found in the middle of a cell. This ends because the bounds of
+    ``factors_at_most`` converge to ``factors`` as cells shrink.
+
+    Parameters
+    ----------
+    value : of the two ``factors``, increasing in both
+    sigma : the largest d/delta, below 1 [-]
+    tolerance : [-]
+    """
+    edges = np.linspace(0.0, math.pi, _CELLS + 1)
+    low, high = (
+        np.stack(np.meshgrid(ends, ends)).reshape(2, -1) for ends in (edges[:-1], edges[1:])
+    )
+    largest = 0.0
+    while low.size:
+        middle = 0.5 * (low + high)
+        largest = max(largest, float(np.max(value(*factors(sigma, *middle)))))
+        may_hold = value(*factors_at_most(sigma, low, high)) > largest * (1.0 + 0.5 * tolerance)
+        low = low[:, may_hold]
+        middle = middle[:, may_hold]
+        high = high[:, may_hold]
+        corners = (
+            [(low[0], middle[0]), (middle[0], high[0])],
+            [(low[1], middle[1]), (middle[1], high[1])],
+        )
+        quarters = [(*across, *along) for across in corners[0] for along in corners[1]]
+        low = np.concatenate([np.stack([quarter[0], quarter[2]]) for quarter in quarters], axis=1)
+        high = np.concatenate([np.stack([quarter[1], quarter[3]]) for quarter in quarters], axis=1)
+    return largest * (1.0 + tolerance)
+
+
+def factors(sigma: float, alpha: _Array, beta: _Array) -> tuple[_Array, _Array]:
+    """Return the factors of V/R and of omega_r in the largest |omega_rho| at a position.
+
+    It is the largest over all courses. The factors are (R/rho)(|w_x| + |w|) and (delta/rho)
+    cos(phi_r) of ``docs/actuation_bounds.md``.
+
+    Parameters
+    ----------
+    sigma : 1/(2 sqrt(epsilon R)), the largest d/delta, below 1 [-]
+    alpha : 2 atan(d sqrt(epsilon/R)), so that d/delta = sigma sin(alpha), from 0 to pi [rad]
+    beta : between -d and the reference's course, from 0 to pi [rad]
+    """
+    sin_a, cos_a, sin_b = np.sin(alpha), np.cos(alpha), np.sin(beta)
+    x, k = sigma * sin_a, 1.0 - np.cos(beta)
+    rho_squared = (1.0 - x) ** 2 + 2.0 * x * k
+    across = np.sqrt(np.maximum(rho_squared - (sin_a * sin_b) ** 2, 0.0))
+    along = sin_a * sin_b * np.abs(sigma * (1.0 + cos_a) + sin_a * (k - 1.0))
+    return 0.5 * (along + (1.0 + cos_a) * across) / rho_squared, (1.0 - x + x * k) / rho_squared
+
+
+def factors_at_most(sigma: float, low: _Array, high: _Array) -> tuple[_Array, _Array]:
+    """Return upper bounds of both ``factors`` over cells, each term at its worst end of the cell.
+
+    Parameters
+    ----------
+    sigma : same as ``factors``
+    low, high : alpha and beta at the corners of the cells, shape (2, n) [rad]
+    """
+    a_1, b_1 = low
+    a_2, b_2 = high
+    s_1, s_2 = _sine_range(a_1, a_2)
+    sin_b_1, sin_b_2 = _sine_range(b_1, b_2)
+    c_1, c_2 = 1.0 + np.cos(a_2), 1.0 + np.cos(a_1)
+    k_1, k_2 = 1.0 - np.cos(b_1), 1.0 - np.cos(b_2)
+    x_1, x_2 = sigma * s_1, sigma * s_2
+    # (1 - x)^2 + 2 x k rises with k and is a parabola in x whose vertex is 1 - k.
+    nearest = np.clip(1.0 - k_1, x_1, x_2)
+    rho_squared_1 = (1.0 - nearest) ** 2 + 2.0 * nearest * k_1
+    rho_squared_2 = np.maximum(
+        (1.0 - x_1) ** 2 + 2.0 * x_1 * k_2, (1.0 - x_2) ** 2 + 2.0 * x_2 * k_2
+    )
+    # sqrt(rho^2 - p)/rho^2 is the root of y - p y^2, y = 1/rho^2, a parabola whose vertex is 1/(2
+    # p).
+    p = (s_1 * sin_b_1) ** 2
+    y = np.clip(1.0 / np.maximum(2.0 * p, 1e-300), 1.0 / rho_squared_2, 1.0 / rho_squared_1)
+    across = np.sqrt(np.maximum(y - p * y * y, 0.0))
+    along = np.maximum(
+        sigma * c_2 + np.maximum(s_1 * (k_2 - 1.0), s_2 * (k_2 - 1.0)),
+        -sigma * c_1 - np.minimum(s_1 * (k_1 - 1.0), s_2 * (k_1 - 1.0)),
+    )
+    speed_factor = 0.5 * (s_2 * sin_b_2 * along / rho_squared_1 + c_2 * across)
+    return speed_factor, (1.0 + np.maximum(x_1 * (k_2 - 1.0), x_2 * (k_2 - 1.0))) / rho_squared_1
+
+
+def _sine_range(low: _Array, high: _Array) -> tuple[_Array, _Array]:
+    """Return the least and the largest sine over angles within 0 and pi."""
+    at_low, at_high = np.sin(low), np.sin(high)
+    holds_crest = (low <= 0.5 * math.pi) & (high >= 0.5 * math.pi)
+    return np.minimum(at_low, at_high), np.where(holds_crest, 1.0, np.maximum(at_low, at_high))
+
+
+# ---------------------------------------------------------------- Checks
 
 
 def _sigma(parameters: LookAhead) -> float:
@@ -325,8 +388,8 @@ def _sigma(parameters: LookAhead) -> float:
     sigma = 0.5 / math.sqrt(epsilon * radius)
     if not sigma < _SIGMA_MAX:
         raise InfeasibleError(
-            f"look-ahead R is {radius:g} m, within rounding of 1/(4 epsilon) = {1.0 / (4.0 * epsilon):g} m, where commands have no"
-            " bound: raise R or epsilon"
+            f"look-ahead R is {radius:g} m, within rounding of 1/(4 epsilon) ="
+            f" {1.0 / (4.0 * epsilon):g} m, where commands have no bound: raise R or epsilon"
         )
     return sigma
 
@@ -340,13 +403,14 @@ def _check_positive(**quantities: tuple[float, str]) -> None:
 def _check_heading_rate(reference_heading_rate_max: float) -> None:
     if not (math.isfinite(reference_heading_rate_max) and reference_heading_rate_max >= 0.0):
         raise InfeasibleError(
-            f"reference_heading_rate_max is {reference_heading_rate_max:g} rad/s; it must be finite and at least 0"
+            f"reference_heading_rate_max is {reference_heading_rate_max:g} rad/s; it must be finite"
+            " and at least 0"
         )
 
 
 def _check_distances(distance_from: float, distance_to: float) -> None:
     if not 0.0 < distance_to < distance_from < math.inf:
         raise InfeasibleError(
-            f"distance_to is {distance_to:g} m and distance_from {distance_from:g} m; they must be finite, above 0 and the first"
-            " the smaller: convergence goes from far to near"
+            f"distance_to is {distance_to:g} m and distance_from {distance_from:g} m; they must be"
+            " finite, above 0 and the first the smaller: convergence goes from far to near"
         )

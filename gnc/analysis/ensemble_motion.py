@@ -1,9 +1,8 @@
-"""Motion of many vehicles relative to their references under each steering law, in variables that
-are not stiff.
+"""Motion of many vehicles relative to their references, under each steering law.
 
-Positions are d = p_r - p, from the vehicle to its reference. The course is no state where the law
-cancels omega_rho: with chi = chi_rho + phi the rate of d needs chi_r, z and phi alone, and phi is
-known in closed form.
+The variables are not stiff. Positions are d = p_r - p, from the vehicle to its reference. Where the
+law cancels omega_rho, the course is no state: with chi = chi_rho + phi the rate of d depends on
+chi_r, z and phi alone, and phi has a closed form.
 """
 
 from abc import ABC, abstractmethod
@@ -14,15 +13,13 @@ from typing import Any, NamedTuple, Self
 import numpy as np
 import numpy.typing as npt
 
-from gnc.analysis.turning_reference import TurningReferences
+from gnc.analysis.turning_reference import Array, TurningReferences
 from gnc.numeric import wrapped
 from gnc.paper import LookAhead
 
-Array = npt.NDArray[np.float64]
-
 
 class Steering(Enum):
-    """How the vehicles of an ensemble are steered."""
+    """The steering law of an ensemble."""
 
     LYAPUNOV = "lyapunov"
     CASCADE = "cascade"
@@ -51,8 +48,8 @@ class Vehicle:
     heading_rate_max: float
 
 
-class _View(NamedTuple):
-    """The geometry of one instant: unit vector along chi_r, delta, z and the length of z."""
+class _Geometry(NamedTuple):
+    """Unit vector along chi_r, delta [m], z [m] and its length [m], each of shape (n,)."""
 
     cos_r: Array
     sin_r: Array
@@ -62,10 +59,10 @@ class _View(NamedTuple):
     rho: Array
 
 
-class Motion(ABC):
+class RelativeMotion(ABC):
     """Relative motion of n vehicles.
 
-    Every state starts with d, north and east [m]; a third component is the law's own.
+    A state is d, north and east [m], and for some laws a third component.
 
     Parameters
     ----------
@@ -78,8 +75,12 @@ class Motion(ABC):
 
     @abstractmethod
     def start(self, to_reference: Array, course: Array) -> Array:
-        """Return the first state, shape (states, n), of d, shape (2, n) [m], and course chi, shape
-        (n,) [rad]; remember phi.
+        """Return the first state, shape (states, n), and remember phi.
+
+        Parameters
+        ----------
+        to_reference : d, shape (2, n) [m]
+        course : chi, shape (n,) [rad]
         """
 
     @abstractmethod
@@ -88,9 +89,7 @@ class Motion(ABC):
 
     @abstractmethod
     def rates(self, time: Array, state: Array) -> Array:
-        """Return the rates of the states, shape (states, n), at each vehicle's own ``time``, shape
-        (n,) [s].
-        """
+        """Return the rates of the states, shape (states, n), at times of shape (n,) [s]."""
 
     @abstractmethod
     def phi(self, time: Array, state: Array) -> Array:
@@ -98,15 +97,13 @@ class Motion(ABC):
 
     @abstractmethod
     def command(self, time: Array, state: Array, rates: Array) -> Array:
-        """Return the heading rate commanded [rad/s], shape (n,), from a state and its rates."""
+        """Return the commanded heading rate [rad/s], shape (n,), of a state and its rates."""
 
-    def offset_error(self, state: Array, error: Array) -> Array | None:  # noqa: ARG002 - the laws without a third state have none
-        """Return how far [m] the vehicle gets off before the law corrects an ``error`` of a third
-        state, or None without one.
-        """
+    def offset_error(self, state: Array, error: Array) -> Array | None:  # noqa: ARG002
+        """Return the offset [m] that an error of the third state causes, or None without one."""
         return None
 
-    def _view(self, time: Array, state: Array) -> _View:
+    def _geometry(self, time: Array, state: Array) -> _Geometry:
         """Return the geometry, by equations (14) and (15)."""
         north, east = state[0], state[1]
         chi_r = self._references.course_at(time)
@@ -114,56 +111,61 @@ class Motion(ABC):
         epsilon, radius = self._vehicle.look_ahead
         delta = epsilon * (north * north + east * east) + radius
         z_north, z_east = north + delta * cos_r, east + delta * sin_r
-        return _View(
+        return _Geometry(
             cos_r, sin_r, delta, z_north, z_east, np.sqrt(z_north * z_north + z_east * z_east)
         )
 
-    def _position_rates(self, view: _View, cos_phi: Array, sin_phi: Array, out: Array) -> None:
+    def _position_rates(
+        self, geometry: _Geometry, cos_phi: Array, sin_phi: Array, out: Array
+    ) -> None:
         """Write the rates of d: velocity of the reference less V along z turned by phi."""
         speed = self._vehicle.speed
-        along, across = speed / view.rho * cos_phi, speed / view.rho * sin_phi
-        out[0] = speed * view.cos_r - (along * view.z_north - across * view.z_east)
-        out[1] = speed * view.sin_r - (along * view.z_east + across * view.z_north)
+        along = speed / geometry.rho * cos_phi
+        across = speed / geometry.rho * sin_phi
+        out[0] = speed * geometry.cos_r - (along * geometry.z_north - across * geometry.z_east)
+        out[1] = speed * geometry.sin_r - (along * geometry.z_east + across * geometry.z_north)
 
     def _omega_rho(
-        self, view: _View, state: Array, rates: Array, reference_heading_rate: Array
+        self, geometry: _Geometry, state: Array, rates: Array, reference_heading_rate: Array
     ) -> Array:
-        """Return the rate of the course of z [rad/s], equation (18), from z and its rate (17) in
-        the inertial frame.
-        """
+        """Return the rate of the course of z [rad/s], (18), from z and its inertial rate (17)."""
         delta_rate = (
             2.0 * self._vehicle.look_ahead.epsilon * (state[0] * rates[0] + state[1] * rates[1])
         )
-        swing = view.delta * reference_heading_rate
-        north = rates[0] + delta_rate * view.cos_r - swing * view.sin_r
-        east = rates[1] + delta_rate * view.sin_r + swing * view.cos_r
-        turn: Array = (view.z_north * east - view.z_east * north) / (view.rho * view.rho)
+        swing = geometry.delta * reference_heading_rate
+        north = rates[0] + delta_rate * geometry.cos_r - swing * geometry.sin_r
+        east = rates[1] + delta_rate * geometry.sin_r + swing * geometry.cos_r
+        turn: Array = (geometry.z_north * east - geometry.z_east * north) / (
+            geometry.rho * geometry.rho
+        )
         return turn
 
 
-def phi_of_courses(view: _View, course: Array) -> Array:
-    """Return phi [rad], course against that of z, between -pi and pi."""
+def phi_of_courses(geometry: _Geometry, course: Array) -> Array:
+    """Return phi, the course relative to that of z, between -pi and pi [rad]."""
     cos_v, sin_v = np.cos(course), np.sin(course)
     phi: Array = np.arctan2(
-        view.z_north * sin_v - view.z_east * cos_v, view.z_north * cos_v + view.z_east * sin_v
+        geometry.z_north * sin_v - geometry.z_east * cos_v,
+        geometry.z_north * cos_v + geometry.z_east * sin_v,
     )
     return phi
 
 
-class CascadeMotion(Motion):
-    """Law (30) with h(phi) = gain phi within a bound; states d.
+class CascadeMotion(RelativeMotion):
+    """Law (30) with h(phi) = gain phi within a bound; the states are d.
 
-    phi runs off at the bound until gain phi is within it, and decays exponentially from there,
-    whatever the reference does.
+    phi decreases at the bound until gain phi is within it, and decays exponentially from there. It
+    does not depend on the reference.
     """
 
     def start(self, to_reference: Array, course: Array) -> Array:
         """Return the first state and remember phi."""
-        self._begin(phi_of_courses(self._view(np.zeros_like(course), to_reference), course))
+        self._begin(phi_of_courses(self._geometry(np.zeros_like(course), to_reference), course))
         return to_reference.copy()
 
     def _begin(self, phi_0: Array) -> None:
-        size, linear = np.abs(phi_0), self._vehicle.steering_max / self._vehicle.gain
+        size = np.abs(phi_0)
+        linear = self._vehicle.steering_max / self._vehicle.gain
         self._phi_0 = phi_0
         self._size_below_bound = np.minimum(size, linear)
         self._time_at_bound = np.maximum(size - linear, 0.0) / self._vehicle.steering_max
@@ -174,8 +176,8 @@ class CascadeMotion(Motion):
         taken._begin(self._phi_0[which])
         return taken
 
-    def phi(self, time: Array, state: Array) -> Array:  # noqa: ARG002 - phi depends on time alone
-        """Return phi [rad]: equation (30) makes its rate -h(phi), here integrated."""
+    def phi(self, time: Array, state: Array) -> Array:  # noqa: ARG002
+        """Return phi [rad], the integral of its rate -h(phi) under law (30)."""
         vehicle = self._vehicle
         remaining = self._time_at_bound - time
         size = self._size_below_bound * np.exp(vehicle.gain * np.minimum(remaining, 0.0))
@@ -187,14 +189,14 @@ class CascadeMotion(Motion):
         """Return the rates of d, shape (2, n)."""
         phi = self.phi(time, state)
         out = np.empty_like(state)
-        self._position_rates(self._view(time, state), np.cos(phi), np.sin(phi), out)
+        self._position_rates(self._geometry(time, state), np.cos(phi), np.sin(phi), out)
         return out
 
     def command(self, time: Array, state: Array, rates: Array) -> Array:
         """Return the heading rate of equation (30) [rad/s]."""
         vehicle = self._vehicle
         omega_rho = self._omega_rho(
-            self._view(time, state), state, rates, self._references.heading_rate_at(time)
+            self._geometry(time, state), state, rates, self._references.heading_rate_at(time)
         )
         steering = np.clip(
             vehicle.gain * self.phi(time, state), -vehicle.steering_max, vehicle.steering_max
@@ -203,19 +205,18 @@ class CascadeMotion(Motion):
         return command
 
 
-class LyapunovMotion(Motion):
-    """Law (24); states d and s = k_1 V/2 times the integral of rho, with which sin(phi/2) =
-    sin(phi_0/2) exp(-s).
+class LyapunovMotion(RelativeMotion):
+    """Law (24); the states are d and s, which is k_1 V/2 times the integral of rho.
 
-    In these variables nothing is singular at phi = pi. There the course leaves pi at once, by 2
-    sqrt(2 s) to first order, to the side of phi_0's sign (to the right of exactly pi, where the law
-    itself has no value and both sides solve the equation): only the command is unbounded, as 1/(pi
-    - |phi|), and for so short a time that the turn stays one of at most pi.
+    With s, sin(phi/2) = sin(phi_0/2) exp(-s), and nothing is singular at phi = pi. There the course
+    leaves pi at once, by 2 sqrt(2 s) to first order, to the side of the sign of phi_0. At exactly
+    pi, where the law has no value and both sides solve the equation, it turns to the right. Only
+    the command is unbounded, as 1/(pi - |phi|), and so briefly that the turn is pi at most.
     """
 
     def start(self, to_reference: Array, course: Array) -> Array:
         """Return the first state and remember phi."""
-        phi_0 = phi_of_courses(self._view(np.zeros_like(course), to_reference), course)
+        phi_0 = phi_of_courses(self._geometry(np.zeros_like(course), to_reference), course)
         self._sine_0 = np.sin(0.5 * phi_0)
         self._cosine_0_squared = np.cos(0.5 * phi_0) ** 2
         return np.vstack([to_reference, np.zeros_like(course)])
@@ -231,100 +232,94 @@ class LyapunovMotion(Motion):
         """Return sine and cosine of phi/2."""
         decay = np.exp(-state[2])
         sine = self._sine_0 * decay
-        # cos^2 = cos_0^2 + sin_0^2 (1 - decay^2): no difference of nearly equal numbers towards phi
-        # = pi.
+        # cos^2 = cos_0^2 + sin_0^2 (1 - decay^2) has no cancellation towards phi = pi.
         return sine, np.sqrt(
             self._cosine_0_squared + self._sine_0 * self._sine_0 * ((1.0 - decay) * (1.0 + decay))
         )
 
-    def phi(self, time: Array, state: Array) -> Array:  # noqa: ARG002 - phi depends on the state alone
-        """Return phi [rad]: equation (24) makes its rate -k_1 rho V tan(phi/2), here integrated."""
+    def phi(self, time: Array, state: Array) -> Array:  # noqa: ARG002
+        """Return phi [rad], the integral of its rate -k_1 rho V tan(phi/2) under law (24)."""
         phi: Array = 2.0 * np.arctan2(*self._half(state))
         return phi
 
     def rates(self, time: Array, state: Array) -> Array:
         """Return the rates of d and s, shape (3, n)."""
         sine, cosine = self._half(state)
-        view = self._view(time, state)
+        geometry = self._geometry(time, state)
         out = np.empty_like(state)
-        self._position_rates(view, 1.0 - 2.0 * sine * sine, 2.0 * sine * cosine, out)
-        out[2] = 0.5 * self._vehicle.k_1 * self._vehicle.speed * view.rho
+        self._position_rates(geometry, 1.0 - 2.0 * sine * sine, 2.0 * sine * cosine, out)
+        out[2] = 0.5 * self._vehicle.k_1 * self._vehicle.speed * geometry.rho
         return out
 
     def command(self, time: Array, state: Array, rates: Array) -> Array:
         """Return the heading rate of equation (24) [rad/s]."""
         sine, cosine = self._half(state)
-        view = self._view(time, state)
-        omega_rho = self._omega_rho(view, state, rates, self._references.heading_rate_at(time))
+        geometry = self._geometry(time, state)
+        omega_rho = self._omega_rho(geometry, state, rates, self._references.heading_rate_at(time))
         command: Array = (
-            omega_rho - self._vehicle.k_1 * view.rho * self._vehicle.speed * sine / cosine
+            omega_rho - self._vehicle.k_1 * geometry.rho * self._vehicle.speed * sine / cosine
         )
         return command
 
     def offset_error(self, state: Array, error: Array) -> Array | None:
-        """Return what an error of s does to sin(phi/2), times 2 for phi, times V and the law's time
-        2/(k_1 V R).
-        """
+        """Return the offset [m]: error of phi, from that of s, times V and the time 2/(k_1 V R)."""
         arm = 4.0 / (self._vehicle.k_1 * self._vehicle.look_ahead.radius)
         offset: Array = np.abs(arm * self._sine_0 * np.exp(-state[2]) * error[2])
         return offset
 
 
-class CascadeCutMotion(Motion):
-    """Law (30) as it is flown, its command cut at omega_max; states d and phi, not wrapped.
+class CascadeCutMotion(RelativeMotion):
+    """Law (30) with its command cut at omega_max, as flown; the states are d and phi, not wrapped.
 
-    Of this motion the paper proves nothing: while the command is cut, phi moves at the rate that is
-    left. While it is not, phi decays as under the law itself, and has no part in how long a step
-    may be.
+    The paper proves nothing about this motion. While the command is cut, phi moves at the rate that
+    is left.
     """
 
     def start(self, to_reference: Array, course: Array) -> Array:
         """Return the first state."""
-        return np.vstack(
-            [to_reference, phi_of_courses(self._view(np.zeros_like(course), to_reference), course)]
-        )
+        geometry = self._geometry(np.zeros_like(course), to_reference)
+        return np.vstack([to_reference, phi_of_courses(geometry, course)])
 
     def take(self, which: npt.NDArray[Any]) -> Self:
         """Return the motion of an index or mask ``which``."""
         return type(self)(self._vehicle, self._references.take(which))
 
-    def phi(self, time: Array, state: Array) -> Array:  # noqa: ARG002 - phi is a state
+    def phi(self, time: Array, state: Array) -> Array:  # noqa: ARG002
         """Return phi [rad]."""
         return wrapped(state[2])
 
     def rates(self, time: Array, state: Array) -> Array:
-        """Return the rates of d and phi, the heading rate of equation (30) cut at omega_max; shape
-        (3, n).
-        """
-        view = self._view(time, state)
+        """Return the rates of d and phi, shape (3, n)."""
+        geometry = self._geometry(time, state)
         out = np.empty_like(state)
-        self._position_rates(view, np.cos(state[2]), np.sin(state[2]), out)
-        command, omega_rho = self._command(view, time, state, out)
+        self._position_rates(geometry, np.cos(state[2]), np.sin(state[2]), out)
+        command, omega_rho = self._command(geometry, time, state, out)
         out[2] = command - omega_rho
         return out
 
     def command(self, time: Array, state: Array, rates: Array) -> Array:
         """Return the heading rate of equation (30) [rad/s], cut at omega_max."""
-        return self._command(self._view(time, state), time, state, rates)[0]
+        return self._command(self._geometry(time, state), time, state, rates)[0]
 
-    def offset_error(self, state: Array, error: Array) -> Array | None:  # noqa: ARG002 - phi is a state
-        """Return the error of phi times V and the law's time 1/gain."""
+    def offset_error(self, state: Array, error: Array) -> Array | None:  # noqa: ARG002
+        """Return the offset [m]: the error of phi times V and the time 1/gain."""
         offset: Array = np.abs(self._vehicle.speed / self._vehicle.gain * error[2])
         return offset
 
-    def _command(self, view: _View, time: Array, state: Array, rates: Array) -> tuple[Array, Array]:
-        """Return what is commanded and omega_rho [rad/s]."""
+    def _command(
+        self, geometry: _Geometry, time: Array, state: Array, rates: Array
+    ) -> tuple[Array, Array]:
+        """Return the command and omega_rho [rad/s]."""
         vehicle = self._vehicle
-        omega_rho = self._omega_rho(view, state, rates, self._references.heading_rate_at(time))
+        omega_rho = self._omega_rho(geometry, state, rates, self._references.heading_rate_at(time))
         steering = np.clip(
             vehicle.gain * wrapped(state[2]), -vehicle.steering_max, vehicle.steering_max
         )
-        return np.clip(
-            omega_rho - steering, -vehicle.heading_rate_max, vehicle.heading_rate_max
-        ), omega_rho
+        limit = vehicle.heading_rate_max
+        return np.clip(omega_rho - steering, -limit, limit), omega_rho
 
 
-MOTIONS: dict[Steering, type[Motion]] = {
+MOTIONS: dict[Steering, type[RelativeMotion]] = {
     Steering.LYAPUNOV: LyapunovMotion,
     Steering.CASCADE: CascadeMotion,
     Steering.CASCADE_CUT: CascadeCutMotion,

@@ -1,4 +1,4 @@
-"""The largest command of the cascade law by search, to measure bounds against."""
+"""The largest command of the cascade law found by search, to compare the bound with."""
 
 import math
 
@@ -12,24 +12,24 @@ from gnc.paper import LookAhead
 _Array = npt.NDArray[np.float64]
 
 _REFINED = 4
-"""How many of the worst samples start a refinement."""
+"""Number of worst samples from which a refinement starts."""
 
 _GATHERED = 0.5
-"""Fraction of the samples that gather where commands are largest; the others cover all geometries
-[-].
-"""
+"""Fraction of samples gathered where commands are largest; the others cover all geometries [-]."""
 
 _GATHERED_SIGMA = 0.3
-"""How widely they gather: standard deviation of the log of distance, and of course [-, rad]."""
+"""Standard deviation of the gathered samples' log of distance [-] and course [rad]."""
 
 _LOG_DISTANCES = (-7.0, 5.0)
-"""Log of the others' distances over sqrt(R/epsilon) [-]: from 0.001, near the reference, to 150,
-where delta outgrows d.
+"""Range of the other samples' log of distance over sqrt(R/epsilon) [-].
+
+From 0.001, near the reference, to 150, where delta is much longer than d.
 """
 
 _LOG10_ANGLES = (-3.0, 0.0)
-"""Decimal log of the gathered samples' angles to head on [-]: from what the refinement takes over,
-0.001 rad, to a right angle.
+"""Range of the gathered samples' decimal log of the angle from head on [rad].
+
+Smaller angles than 0.001 rad are left to the refinement.
 """
 
 
@@ -43,11 +43,10 @@ def largest_heading_rate(
     samples: int,
     generator: np.random.Generator,
 ) -> float:
-    """Return the largest |omega| [rad/s] of the cascade law that random states, refined by search,
-    come to.
+    """Return the largest |omega| of the cascade law that a search finds [rad/s].
 
-    Half of the states spread over all geometries, half gather where commands are largest: at d =
-    sqrt(R/epsilon), nearly head on to the reference, and across z. A number found by search: the
+    The search starts from random states. Half of them spread over all geometries, half gather where
+    commands are largest: at d = sqrt(R/epsilon), nearly head on to the reference, and across z. The
     supremum may be larger.
 
     Parameters
@@ -57,7 +56,7 @@ def largest_heading_rate(
     reference_heading_rate_max : |omega_r| of all states [rad/s]
     gain : slope of h(phi) [1/s]
     steering_max : largest |h(phi)| [rad/s]
-    samples : how many random states, at least 1
+    samples : number of random states, at least 1
     generator : of the states
 
     Raises
@@ -100,8 +99,8 @@ def largest_heading_rate(
             method="Nelder-Mead",
             options={"xatol": 1e-9, "fatol": 1e-10, "maxiter": 2000},
         )
-        # Any state's command is a lower bound of the largest, so a refinement that has not
-        # converged still counts.
+        # A refinement that has not converged still counts: the command of any state is a lower
+        # bound of the largest.
         largest = max(largest, -float(refined.fun))
     return largest
 
@@ -118,11 +117,10 @@ def heading_rates(
     gain: float,
     steering_max: float,
 ) -> _Array:
-    """Return commands of the cascade law for arrays of states, from vectors alone: equations (14),
-    (15), (17) and (30).
+    """Return commands of the cascade law for arrays of states [rad/s]: (14), (15), (17) and (30).
 
-    omega_rho is the cross product of z with its rate, over rho^2, instead of (18) in the frame of
-    z.
+    It is independent of ``gnc.paper``: omega_rho is the cross product of z with its rate, over
+    rho^2, and not (18) in the frame of z.
 
     Parameters
     ----------
@@ -134,12 +132,13 @@ def heading_rates(
     gain : slope of h(phi) [1/s]
     steering_max : largest |h(phi)| [rad/s]
     """
-    north, east, turn = (
-        np.asarray(part, dtype=np.float64) for part in (north, east, reference_heading_rate)
-    )
+    north = np.asarray(north, dtype=np.float64)
+    east = np.asarray(east, dtype=np.float64)
+    turn = np.asarray(reference_heading_rate, dtype=np.float64)
     ahead_north, ahead_east = np.cos(reference_course), np.sin(reference_course)
     own_north, own_east = np.cos(course), np.sin(course)
-    closing_north, closing_east = speed * (ahead_north - own_north), speed * (ahead_east - own_east)
+    closing_north = speed * (ahead_north - own_north)
+    closing_east = speed * (ahead_east - own_east)
     delta = parameters.epsilon * (north * north + east * east) + parameters.radius
     delta_rate = 2.0 * parameters.epsilon * (north * closing_north + east * closing_east)
     z_north, z_east = north + delta * ahead_north, east + delta * ahead_east
@@ -153,25 +152,22 @@ def heading_rates(
 
 
 def _random_states(parameters: LookAhead, samples: int, generator: np.random.Generator) -> _Array:
-    """Return log distance, direction of d against the reference's course, and the vehicle's course
-    against it: three rows.
+    """Return random states, shape (3, samples).
+
+    The rows are the log of the distance, and the direction of d and the vehicle's course, both
+    relative to the reference's course [rad].
     """
     critical = 0.5 * math.log(parameters.radius / parameters.epsilon)
     gathered = generator.random(samples) < _GATHERED
-    near, anywhere = (
-        generator.normal(0.0, _GATHERED_SIGMA, samples),
-        generator.uniform(*_LOG_DISTANCES, samples),
-    )
+    near = generator.normal(0.0, _GATHERED_SIGMA, samples)
+    anywhere = generator.uniform(*_LOG_DISTANCES, samples)
     log_distance = critical + np.where(gathered, near, anywhere)
-    # Directions gather on half a turn at every scale.
-    nearly = 10.0 ** generator.uniform(*_LOG10_ANGLES, samples) * generator.choice(
-        [-1.0, 1.0], samples
-    )
+    # Directions gather about half a turn, at every scale.
+    angle = 10.0 ** generator.uniform(*_LOG10_ANGLES, samples)
+    nearly = angle * generator.choice([-1.0, 1.0], samples)
     direction = math.pi + np.where(gathered, nearly, generator.uniform(-math.pi, math.pi, samples))
-    # Head on to the reference z points along its course, so that courses across z are courses
-    # across the reference's.
-    across = 0.5 * math.pi * generator.choice([-1.0, 1.0], samples) + generator.normal(
-        0.0, _GATHERED_SIGMA, samples
-    )
+    # Head on to the reference, z points along the reference's course.
+    side = generator.choice([-1.0, 1.0], samples)
+    across = 0.5 * math.pi * side + generator.normal(0.0, _GATHERED_SIGMA, samples)
     course = np.where(gathered, across, generator.uniform(-math.pi, math.pi, samples))
     return np.stack([log_distance, direction, course])

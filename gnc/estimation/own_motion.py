@@ -122,7 +122,7 @@ class EstimatedNavigation:
     ``OwnMotion``.
 
     An autopilot turns against the gusty air, the guidance over the mean air:
-    ``gnc.airspeed.pace_hold.air_turn``.
+    ``gnc.airspeed.air_turn``.
 
     Parameters
     ----------

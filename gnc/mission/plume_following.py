@@ -9,7 +9,6 @@ from gnc.estimation.health import Fault
 from gnc.estimation.own_motion import OwnMotion
 from gnc.estimation.target_motion import TargetMotion
 from gnc.guard.guard import KeepoutGuard
-from gnc.laws.steering_law import Surroundings
 from gnc.mission.approach import LOST_TRACK, Approach, ApproachParameters
 from gnc.mission.egress import Egress
 from gnc.mission.mode import Mode
@@ -265,7 +264,7 @@ class PlumeFollowing:
             swing=p.swing,
             time_step=self._tracking_parameters.time_step,
         )
-        tracker = Tracker(self._tracking_parameters, reference, Surroundings(own))
+        tracker = Tracker(self._tracking_parameters, reference, wind=own)
         self.tracker, self._reference = tracker, tracker.ahead
 
     def _steer(self) -> None:

@@ -4,7 +4,7 @@ that know paths.
 The reference is where a vehicle would be that flew the circle beside this one: the circle's point
 nearest to the vehicle, anew at every step, with the course and the heading rate through the air
 that keep to the circle. It has no clock, so that a law is free to lag along the circle; a law that
-reads a path from the reference (``gnc.laws.path.adapter``) finds the circle in the frame of the
+reads a path from the reference (``gnc.path_laws.path``) finds the circle in the frame of the
 vessel (M2).
 """
 
@@ -14,8 +14,7 @@ from dataclasses import dataclass
 from gnc.estimation.health import Fault
 from gnc.estimation.own_motion import OwnMotion
 from gnc.estimation.target_motion import TargetMotion
-from gnc.laws.path.lgvf import heading_for
-from gnc.laws.steering_law import Surroundings, begun, call_error, within_limit
+from gnc.laws import Air, LimitedLaw, Motion
 from gnc.mission.approach import COURSE_GAIN
 from gnc.mission.axis_height import AxisHeight
 from gnc.mission.direct_tracking import CLOSING_RATE, STANDOFF, SteadyCentre
@@ -23,7 +22,8 @@ from gnc.mission.egress import Egress
 from gnc.mission.mode import Mode
 from gnc.mission.plume_axis import Climb
 from gnc.mission.plume_following import GLIDE_ALTITUDE
-from gnc.numeric import wrap
+from gnc.numeric import limited, wrap
+from gnc.path_laws.lgvf import heading_for
 from gnc.tracker import TrackingParameters
 from gnc.unicycle import lag_ahead
 from gnc.vectors import Vector, along, course_of, minus, norm, plus, scaled
@@ -109,8 +109,8 @@ class CircleTracker:
     """
 
     __slots__ = (
-        "_lag", "_law", "_limit", "_own", "_steer", "_surroundings", "_target", "_time_step", "ahead", "heading_rate_command",
-        "heading_rate_demand", "radius", "reference", "saturated",
+        "_lag", "_law", "_limit", "_own", "_target", "_time_step", "ahead", "heading_rate_command", "heading_rate_demand",
+        "radius", "reference", "saturated",
     )  # fmt: skip
 
     def __init__(
@@ -122,9 +122,7 @@ class CircleTracker:
     ) -> None:
         self._own, self._target, self._time_step = own, target, tracking.time_step
         self.radius = parameters.radius + STANDOFF * parameters.tracked
-        self._surroundings = Surroundings(own)
-        self._steer = begun(tracking.law, self._surroundings, tracking.time_step).heading_rate
-        self._law = type(tracking.law).__qualname__
+        self._law = LimitedLaw(tracking.law, tracking.heading_rate_max, tracking.time_step)
         self._limit, self._lag = tracking.heading_rate_max, tracking.lag
         self.reference, self.ahead = CirclePoint(parameters.speed), CirclePoint(parameters.speed)
         self.heading_rate_demand = self.heading_rate_command = 0.0
@@ -144,11 +142,8 @@ class CircleTracker:
         drift = target.velocity_north - own.wind_north, target.velocity_east - own.wind_east
         if norm(drift) >= reference.speed:
             demand = COURSE_GAIN * self._limit * wrap(course_of(drift) - course)
+            command = limited(demand, self._limit)
         else:
-            self._surroundings.path_north, self._surroundings.path_east = (
-                target.velocity_north,
-                target.velocity_east,
-            )
             centre = target.north - own.drift_north, target.east - own.drift_east
 
             def placed(point: CirclePoint, time: float) -> tuple[float, float, float]:
@@ -158,18 +153,12 @@ class CircleTracker:
                 point.place(plus(centre, drift, time), drift, vehicle[:2], self.radius)
                 return vehicle
 
-            then_north, then_east, then_course = placed(ahead, self._lag)
-            try:
-                demand = self._steer(
-                    ahead, ahead.north - then_north, ahead.east - then_east, then_course, speed
-                )
-            except TypeError as error:
-                raise call_error(self._law, error) from None
+            turning = self.heading_rate_command if self._lag > 0.0 else heading_rate
+            then = Motion(*placed(ahead, self._lag), speed, turning)
+            air = Air(own.wind_north, own.wind_east, target.velocity_north, target.velocity_east)
+            demand, command = self._law.demand(ahead, then, air)
             # The reference is where it will be at the next step, as that of any tracker.
             placed(reference, self._time_step)
-        demand, command = within_limit(
-            demand, self._limit, self._law, (ahead.north - north, ahead.east - east, course, speed)
-        )
         self.heading_rate_demand, self.heading_rate_command = demand, command
         self.saturated = command != demand
         return command

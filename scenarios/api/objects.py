@@ -244,7 +244,7 @@ def _registry(key: str) -> Registry[Any]:
     InputError : it names none
     """
     from aircraft.fleet.registry import AIRCRAFT
-    from gnc.laws.steering_law import STEERING_LAWS
+    from gnc.laws import STEERING_LAWS
     from scenarios.search.method import SEARCH_METHODS
     from scenarios.studies.checks import PART_REGISTRIES
     from scenarios.studies.study import STUDIES

@@ -20,7 +20,7 @@ import numpy.typing as npt
 from scipy.linalg import solve_continuous_lyapunov
 
 from common.physics.units import SECONDS_PER_HOUR
-from gnc.airspeed.pace_hold import SpeedHold
+from gnc.airspeed import SpeedHold
 from gnc.tracker import TrackingParameters
 from scenarios.margin.report_scatter import GUARDED_PER_HOUR
 from scenarios.margin.steering_gains import STEERED_BY, steering_gains

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import numpy.typing as npt
 
-from gnc.airspeed.pace_hold import air_turn
+from gnc.airspeed import air_turn
 from gnc.reference.circling import CirclingReference
 from gnc.reference.reference import ReferenceStart
 from gnc.tracker import Tracker, TrackingParameters

@@ -10,7 +10,7 @@ is late.
 import numpy as np
 import numpy.typing as npt
 
-from gnc.airspeed.pace_hold import SpeedHold
+from gnc.airspeed import SpeedHold
 from gnc.tracker import TrackingParameters
 from innerloop.analysis.gust_response import GUSTS, gust_loop
 from innerloop.law.control_law import COMMANDS

@@ -28,7 +28,7 @@ import numpy as np
 import numpy.typing as npt
 
 from common.physics.units import SECONDS_PER_HOUR
-from gnc.airspeed.pace_hold import SpeedHold
+from gnc.airspeed import SpeedHold
 from gnc.reference.reference import Orbit
 from gnc.tracker import TrackingParameters
 from innerloop.analysis.gust_statistics import GustStatistics

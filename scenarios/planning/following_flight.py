@@ -5,7 +5,7 @@ reports.
 import math
 from collections.abc import Callable
 
-from gnc.airspeed.pace_hold import PaceHold
+from gnc.airspeed import PaceHold
 from gnc.errors import InfeasibleError
 from gnc.estimation.health_monitor import HealthParameters
 from gnc.estimation.reachable_set import ReachableSet, Tube, VesselLimits

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 
 from aircraft.simulation.faults import OF_THRUST
 from common.physics.coordinated_turn import heading_rate_for_bank
-from gnc.airspeed.pace_hold import SpeedHold, design_speed_hold
+from gnc.airspeed import SpeedHold, design_speed_hold
 from gnc.estimation.health import PATIENCE
 from gnc.estimation.health_monitor import CHECK_INTERVAL
 from gnc.estimation.navigation import NOISE_DEVIATIONS

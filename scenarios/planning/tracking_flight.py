@@ -4,7 +4,7 @@ still air, or on a circle.
 
 import math
 
-from gnc.airspeed.along_track import AlongTrackTrim
+from gnc.airspeed import AlongTrackTrim
 from gnc.estimation.reachable_set import Tube
 from gnc.guard.guard import GuardParameters
 from gnc.mission.direct_tracking import DirectParameters, Joining, SteadyCentre

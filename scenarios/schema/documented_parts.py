@@ -9,7 +9,7 @@ from dataclasses import Field, dataclass, fields, replace
 from typing import Any
 
 from common.registry import Registry
-from gnc.laws.steering_law import STEERING_LAWS
+from gnc.laws import STEERING_LAWS
 from scenarios.schema.extension_points import PAYLOADS, PLUME_MODELS
 from scenarios.schema.keys import line, split_unit
 from scenarios.schema.sections.guidance import GuidanceConfig

@@ -95,7 +95,7 @@ LAW_KEYS: tuple[tuple[str, str, Test], ...] = (
 """Keys of the project's own steering laws, the laws that use them, and whether one of them does.
 
 A steered reference is kept pace with by the look-ahead, whatever the law
-(``gnc.airspeed.pace_hold``).
+(``gnc.airspeed``).
 """
 
 

@@ -4,7 +4,7 @@ import math
 
 from pydantic import model_validator
 
-from gnc.laws.steering_law import ON_CIRCLE, ON_OSCILLATION
+from gnc.laws import ON_CIRCLE, ON_OSCILLATION
 from scenarios.schema.experiment_checks import check_together
 from scenarios.schema.scenario_keys import DEFAULT_AIRCRAFT, ScenarioKeys
 from scenarios.schema.sections.equipment import REPORTS_MAX

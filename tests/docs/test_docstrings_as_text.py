@@ -6,7 +6,6 @@ from pathlib import Path
 
 from docstrings import as_text
 
-from gnc.laws.steering_law import SteeringLaw
 from gnc.reference.reference import Reference
 
 
@@ -26,13 +25,18 @@ def test_entries_are_terms_with_their_descriptions_and_units():
 
 
 def test_a_description_that_goes_on_stays_with_its_entry():
-    text = as_text(inspect.getdoc(SteeringLaw.heading_rate).splitlines())
-    first = text.index("   ``reference``")
-    assert text[first + 1].startswith("      the point to track; its ``course`` [rad]")
-    assert (
-        text[first + 2]
-        == "      its position may be given for another frame than ``to_north`` and ``to_east``"
-    )
+    docstring = [
+        "Parameters",
+        "----------",
+        "lag : behind the command [s]; above",
+        "    0 it counts",
+    ]
+    text = as_text(docstring)
+    first = text.index("   ``lag``")
+    assert text[first + 1 : first + 3] == [
+        "      behind the command [s]; above",
+        "      0 it counts",
+    ]
 
 
 def test_a_section_ends_at_an_empty_line():
@@ -48,6 +52,11 @@ def test_characters_of_markup_are_escaped_but_in_literals_and_bullets():
     assert as_text(["* x_ is |a|*b, and ``x_*`` is code"]) == [
         r"* x\_ is \|a\|\*b, and ``x_*`` is code"
     ]
+
+
+def test_code_after_two_colons_is_left_as_it_is():
+    lines = ["A law::", "", "    gain * off", "", "    a_ | b", "", "2 * 3"]
+    assert as_text(lines) == [*lines[:-1], r"2 \* 3"]
 
 
 def test_names_with_underscores_are_left_as_they_are():

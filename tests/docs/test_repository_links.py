@@ -8,7 +8,9 @@ DOCS = Path(__file__).parents[2] / "docs"
 
 
 def test_a_folder_is_named_and_not_linked():
-    assert with_links("see [`gnc/laws`](../gnc/laws).", DOCS, DOCS) == "see `gnc/laws`."
+    assert (
+        with_links("see [`gnc/path_laws`](../gnc/path_laws).", DOCS, DOCS) == "see `gnc/path_laws`."
+    )
 
 
 def test_a_file_stays_a_link():

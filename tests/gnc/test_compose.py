@@ -17,7 +17,7 @@ from gnc_cases import (
     tracking_parameters,
 )
 
-from gnc.airspeed.pace_hold import PaceHold, SpeedHold
+from gnc.airspeed import PaceHold, SpeedHold
 from gnc.compose import compose
 from gnc.estimation.health_monitor import HealthParameters
 from gnc.estimation.navigation import NavigationParameters

@@ -17,7 +17,7 @@ from gnc_cases import (
 from hypothesis import given
 from hypothesis import strategies as st
 
-from gnc.laws.paper import CascadeLaw, LineOfSightLaw, LyapunovLaw, line_of_sight_law
+from gnc.laws import CascadeLaw, LineOfSightLaw, LyapunovLaw, line_of_sight_law
 from gnc.paper import cascade_law, lyapunov_law, relative_state, relative_velocity
 from gnc.tracker import Tracker
 

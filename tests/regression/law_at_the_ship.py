@@ -1,8 +1,7 @@
-"""A steering law that flies at the ship whatever is demanded: how near it comes is up to the
-keep-out guard alone.
+"""A steering law that flies at the ship: only the keep-out guard keeps it away.
 
-To be flown on a circle about her that is wider than its distance: the nearest point of that is the
-way she is not.
+To be flown on a circle about the ship that is wider than the vehicle's distance: then the nearest
+point of the circle is on the side away from the ship.
 """
 
 import math
@@ -15,6 +14,7 @@ class AtTheShip:
 
     gain: float = 20.0
 
-    def heading_rate(self, reference, to_north, to_east, course, speed):
-        del reference, speed
-        return self.gain * math.remainder(math.atan2(-to_east, -to_north) - course, math.tau)
+    def heading_rate(self, reference, own, air):
+        del air
+        away = math.atan2(-(reference.east - own.east), -(reference.north - own.north))
+        return self.gain * math.remainder(away - own.course, math.tau)

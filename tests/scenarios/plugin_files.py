@@ -12,10 +12,14 @@ class Pursuit:
     pursuit_gain_per_s: float = 1.2
     lead_s: float = 1.0
 
-    def heading_rate(self, reference, to_north, to_east, course, speed):
+    def heading_rate(self, reference, own, air):
         lead = self.lead_s * reference.speed
-        sight = math.atan2(to_east + lead * math.sin(reference.course), to_north + lead * math.cos(reference.course))
-        return self.pursuit_gain_per_s * math.remainder(sight - course, math.tau) + reference.heading_rate
+        sight = math.atan2(
+            reference.east - own.east + lead * math.sin(reference.course),
+            reference.north - own.north + lead * math.cos(reference.course),
+        )
+        off = math.remainder(sight - own.course, math.tau)
+        return self.pursuit_gain_per_s * off + reference.heading_rate
 '''
 
 PLUME = '''

@@ -9,7 +9,7 @@ import pandas as pd
 import pytest
 
 from common.registry import ENTRY_POINTS, file_hash
-from gnc.laws.steering_law import STEERING_LAWS
+from gnc.laws import STEERING_LAWS
 from innerloop.designs import cache
 from scenarios.engine.in_process_executor import InProcessExecutor
 from scenarios.engine.runner import fly_study
@@ -253,18 +253,18 @@ def test_files_may_be_swept_sampled_compared_and_set_in_cases(tmp_path):
         ),
         (
             "guidance.law",
-            LAW.replace("Pursuit:", "Part:\n    cannot = 'standoff'"),
-            "has cannot = 'standoff'; give the reason",
+            LAW.replace("Pursuit:", "Part:\n    unsupported_tasks = 'standoff'"),
+            "has unsupported_tasks = 'standoff'; give the reason",
         ),
         (
             "guidance.law",
-            LAW.replace("Pursuit:", "Part:\n    cannot = {'oscillaton': 'no'}"),
-            "has the task 'oscillaton' in cannot; did you mean 'oscillation'? tasks are oscillation and standoff",
+            LAW.replace("Pursuit:", "Part:\n    unsupported_tasks = {'oscillaton': 'no'}"),
+            "has the task 'oscillaton' in unsupported_tasks; did you mean 'oscillation'? tasks are oscillation and standoff",
         ),
         (
             "guidance.law",
-            LAW.replace("Pursuit:", "Part:\n    cannot = {'standoff': 3}"),
-            "has cannot['standoff'] = 3; give the reason",
+            LAW.replace("Pursuit:", "Part:\n    unsupported_tasks = {'standoff': 3}"),
+            "has unsupported_tasks['standoff'] = 3; give the reason",
         ),
         (
             "study",

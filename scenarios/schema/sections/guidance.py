@@ -12,7 +12,7 @@ from pydantic import ConfigDict, Field, field_validator, model_validator
 
 from common.registry import PluginError
 from common.spelling import did_you_mean, nearest
-from gnc.laws.steering_law import ON_CIRCLE, ON_OSCILLATION, STEERING_LAWS
+from gnc.laws import ON_CIRCLE, ON_OSCILLATION, STEERING_LAWS
 from scenarios.schema.sections.section import (
     Angle,
     NonNegative,
@@ -181,7 +181,7 @@ class GuidanceConfig(Section):
 
 
 def law_refusal(law: str, task: str) -> str:
-    """Return why a steering law cannot do a task, ``gnc.laws.steering_law.ON_OSCILLATION`` or
+    """Return why a steering law cannot do a task, ``gnc.laws.ON_OSCILLATION`` or
     ``ON_CIRCLE``; nothing if it can.
     """
     return _reasons(law).get(task, "")
@@ -189,22 +189,23 @@ def law_refusal(law: str, task: str) -> str:
 
 def _reasons(law: str) -> Mapping[str, str]:
     """Return what a steering law cannot do, by the task."""
-    reasons: Any = getattr(STEERING_LAWS.get(law), "cannot", {})
+    reasons: Any = getattr(STEERING_LAWS.get(law), "unsupported_tasks", {})
     tasks = (ON_OSCILLATION, ON_CIRCLE)
     if not isinstance(reasons, Mapping):
         raise PluginError(
-            f"steering law '{law}' has cannot = {reasons!r}; give the reason by the task, as in"
-            f" cannot = {{'{ON_CIRCLE}': 'it ...'}}"
+            f"steering law '{law}' has unsupported_tasks = {reasons!r}; give the reason by the task,"
+            f" as in unsupported_tasks = {{'{ON_CIRCLE}': 'it ...'}}"
         )
     for task, reason in reasons.items():
         if task not in tasks:
             raise PluginError(
-                f"steering law '{law}' has the task {task!r} in cannot{did_you_mean(str(task), tasks) or ';'} tasks are"
-                f" {' and '.join(tasks)}"
+                f"steering law '{law}' has the task {task!r} in unsupported_tasks"
+                f"{did_you_mean(str(task), tasks) or ';'} tasks are {' and '.join(tasks)}"
             )
         if not isinstance(reason, str):
             raise PluginError(
-                f"steering law '{law}' has cannot['{task}'] = {reason!r}; give the reason in words"
+                f"steering law '{law}' has unsupported_tasks['{task}'] = {reason!r};"
+                " give the reason in words"
             )
     found: Mapping[str, str] = reasons
     return found

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from common.registry import PluginError, is_file_part
-from gnc.laws.steering_law import ON_CIRCLE, ON_OSCILLATION, STEERING_LAWS
+from gnc.laws import ON_CIRCLE, ON_OSCILLATION, STEERING_LAWS
 from scenarios.errors import InputError
 from scenarios.schema.keys import displaced
 from scenarios.schema.load import with_values
@@ -94,12 +94,16 @@ def entrants_of(scenario: Scenario) -> tuple[list[Entrant], list[Refused]]:
             if reasons[task]:
                 refused.append(Refused(law=law, task=task, reason=reasons[task]))
             elif law in laws:
-                given = str(
-                    getattr(STEERING_LAWS.get(law), "given", "its class does not say (given)")
+                inputs = getattr(
+                    STEERING_LAWS.get(law), "inputs", "its class does not say (inputs)"
                 )
                 entrants.append(
                     Entrant(
-                        name=_name(law, task), law=law, task=task, given=given, defaults=defaults
+                        name=_name(law, task),
+                        law=law,
+                        task=task,
+                        given=str(inputs),
+                        defaults=defaults,
                     )
                 )
     names = [entrant.name for entrant in entrants]

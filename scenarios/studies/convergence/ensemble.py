@@ -8,11 +8,15 @@ import numpy as np
 import numpy.typing as npt
 import pandas as pd
 
-from gnc.analysis.averaged_motion import averaged_settling_time
-from gnc.analysis.ensemble import fly_ensemble
+from gnc.analysis.ensemble import (
+    DISTANCE_CONVERGED,
+    EnsembleResult,
+    Outcome,
+    Tolerances,
+    fly_ensemble,
+)
 from gnc.analysis.ensemble_motion import Steering, Vehicle
-from gnc.analysis.ensemble_result import DISTANCE_CONVERGED, EnsembleResult, Outcome, Tolerances
-from gnc.analysis.turning_reference import TurningReferences
+from gnc.analysis.turning_reference import TurningReferences, averaged_settling_time
 from scenarios.engine.task import Row
 from scenarios.errors import InputError
 from scenarios.studies.convergence.cases import (

@@ -9,8 +9,8 @@ from typing import Any
 import pandas as pd
 
 from common.run_layout import COUNTEREXAMPLES, SUMMARY, trajectory_path
+from gnc.analysis.ensemble import DISTANCE_CONVERGED, PHI_CONVERGED, Outcome
 from gnc.analysis.ensemble_motion import Vehicle
-from gnc.analysis.ensemble_result import DISTANCE_CONVERGED, PHI_CONVERGED, Outcome
 from gnc.errors import InfeasibleError
 from gnc.paper import look_ahead
 from scenarios.engine.journal import Journal

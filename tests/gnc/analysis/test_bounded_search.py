@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from bounds_cases import LIMIT, fastest, time_of
+from bounds_cases import LIMIT, fastest, largest_head_on, time_of
 from gnc_cases import (
     HEADING_RATE_MAX,
     LOOK_AHEAD,
@@ -22,11 +22,10 @@ from gnc.analysis.bounds import (
     convergence_time,
     fastest_within,
     heading_rate_bound,
-    heading_rate_bound_least,
 )
 from gnc.analysis.worst_case_search import heading_rates
 from gnc.errors import InfeasibleError
-from gnc.laws.paper import CascadeLaw
+from gnc.laws import CascadeLaw
 from gnc.paper import delta_length, look_ahead
 
 
@@ -83,7 +82,7 @@ def test_no_neighbour_of_the_fastest_is_faster_within_the_limit(reserve):
                     faster.append((neighbour, steering_max))
     assert len(faster) > 20
     for neighbour, steering_max in faster:
-        least = heading_rate_bound_least(
+        least = largest_head_on(
             neighbour,
             speed=SPEED,
             reference_heading_rate_max=(1.0 - reserve) * LIMIT,

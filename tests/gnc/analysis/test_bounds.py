@@ -4,14 +4,13 @@ import math
 
 import numpy as np
 import pytest
-from bounds_cases import command, distances, look_aheads, steering, turns
+from bounds_cases import command, distances, largest_head_on, look_aheads, steering, turns
 from gnc_cases import LOOK_AHEAD, SPEED, courses, examples
 from hypothesis import given
 from hypothesis import strategies as st
 
-from gnc.analysis.bounds import heading_rate_bound, heading_rate_bound_least
+from gnc.analysis.bounds import factors, factors_at_most, heading_rate_bound
 from gnc.analysis.worst_case_search import heading_rates
-from gnc.analysis.worst_position import factors, factors_at_most
 from gnc.errors import InfeasibleError
 from gnc.paper import delta_length, look_ahead, lyapunov_law, relative_state, relative_velocity
 
@@ -176,7 +175,7 @@ def test_the_tolerance_is_kept(parameters, turn):
 def test_the_least_bound_is_a_command_that_is_met_and_no_larger_one_is_met_head_on(
     parameters, turn, gain, steering_max
 ):
-    least = heading_rate_bound_least(
+    least = largest_head_on(
         parameters,
         speed=SPEED,
         reference_heading_rate_max=turn,
@@ -221,7 +220,7 @@ def test_states_head_on_come_close_to_the_worst_of_all(parameters, turn):
     worst = heading_rate_bound(
         parameters, speed=SPEED, reference_heading_rate_max=turn, steering_max=1e-9, tolerance=1e-3
     )
-    least = heading_rate_bound_least(
+    least = largest_head_on(
         parameters, speed=SPEED, reference_heading_rate_max=turn, gain=1.5, steering_max=1e-9
     )
     # docs, "In short": 0.75 % over sigma and omega_r R/V, measured; and 0.1 % by which the bound
@@ -240,7 +239,7 @@ def test_on_the_reference_itself_the_command_takes_the_references_turn_and_what_
     assert command(parameters, 0.0, 0.0, -0.5 * math.pi, turn, 1.5, steering_max) == pytest.approx(
         on_it, rel=1e-12
     )
-    least = heading_rate_bound_least(
+    least = largest_head_on(
         parameters,
         speed=SPEED,
         reference_heading_rate_max=turn,
@@ -280,8 +279,6 @@ def test_bounds_of_what_cannot_be_are_refused(changes, message):
     arguments = {"speed": SPEED, "reference_heading_rate_max": 0.3, "steering_max": 0.4} | changes
     with pytest.raises(InfeasibleError, match=message):
         heading_rate_bound(LOOK_AHEAD, **arguments)
-    with pytest.raises(InfeasibleError, match=message):
-        heading_rate_bound_least(LOOK_AHEAD, gain=1.5, **arguments)
 
 
 @pytest.mark.parametrize("radius", [50.0, 50.0 * (1.0 + 1e-12)])

@@ -5,10 +5,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from bounds_cases import LIMIT, fastest
+from bounds_cases import LIMIT, fastest, largest_head_on
 from gnc_cases import SPEED
 
-from gnc.analysis.bounds import heading_rate_bound, heading_rate_bound_least
+from gnc.analysis.bounds import heading_rate_bound
 from gnc.analysis.worst_case_search import largest_heading_rate
 from gnc.errors import InfeasibleError
 from gnc.paper import look_ahead
@@ -37,7 +37,7 @@ def test_the_documentation_prints_the_tightness_that_is_computed():
             parameters, **design, gain=1.5, samples=10_000, generator=generator
         )
         bound = heading_rate_bound(parameters, **design)
-        least = heading_rate_bound_least(parameters, **design, gain=1.5)
+        least = largest_head_on(parameters, **design, gain=1.5)
         # As printed, which another machine's rounding may change by one in the last digit.
         assert [float(cell) for cell in row[4:7]] == pytest.approx(
             [least, found, bound], rel=0.0, abs=2e-4

@@ -31,8 +31,8 @@ from hypothesis import strategies as st
 from lyapunov_cases import K_1
 from scipy.integrate import solve_ivp
 
+from gnc.analysis.ensemble import DISTANCE_CONVERGED, Outcome, Tolerances
 from gnc.analysis.ensemble_motion import MOTIONS, Steering
-from gnc.analysis.ensemble_result import DISTANCE_CONVERGED, Outcome, Tolerances
 from gnc.analysis.turning_reference import TurningReferences
 from gnc.errors import InfeasibleError
 from gnc.numeric import wrap

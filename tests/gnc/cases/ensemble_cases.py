@@ -8,9 +8,8 @@ import numpy as np
 from gnc_cases import HEADING_RATE_MAX, LOOK_AHEAD, OSCILLATION, SPEED
 from lyapunov_cases import K_1
 
-from gnc.analysis.ensemble import fly_ensemble
+from gnc.analysis.ensemble import Tolerances, fly_ensemble
 from gnc.analysis.ensemble_motion import Vehicle
-from gnc.analysis.ensemble_result import Tolerances
 from gnc.analysis.turning_reference import TurningReferences
 
 GAIN, STEERING_MAX = 1.5, 0.4

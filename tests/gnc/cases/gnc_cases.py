@@ -14,9 +14,9 @@ import numpy as np
 from hypothesis import settings
 from hypothesis import strategies as st
 
-from gnc.airspeed.along_track import AlongTrackTrim
+from gnc.airspeed import AlongTrackTrim
 from gnc.compose import compose
-from gnc.laws.paper import CascadeLaw
+from gnc.laws import CascadeLaw
 from gnc.mission.direct_tracking import DirectParameters
 from gnc.paper import (
     design_oscillation,

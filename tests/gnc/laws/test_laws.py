@@ -1,6 +1,7 @@
 import math
 import pickle
 from dataclasses import fields, replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -18,9 +19,18 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.integrate import solve_ivp
 
-from gnc.errors import InfeasibleError
-from gnc.laws.paper import CascadeLaw, LineOfSightLaw, LyapunovLaw, line_of_sight_law
-from gnc.laws.steering_law import STEERING_LAWS
+from gnc.errors import InfeasibleError, LawError
+from gnc.laws import (
+    STEERING_LAWS,
+    STILL_AIR,
+    CascadeLaw,
+    LimitedLaw,
+    LineOfSightLaw,
+    LyapunovLaw,
+    Motion,
+    line_of_sight_law,
+    started,
+)
 from gnc.paper import RelativeState, cascade_law, equilibrium, h, lyapunov_law, relative_velocity
 
 # What the laws command in the guidance is tested in test_guidance.py.
@@ -52,7 +62,7 @@ def test_the_lyapunov_law_is_equation_24_as_printed(phi, rho, omega_rho):
 
 
 def test_the_lyapunov_law_grows_without_limit_towards_the_opposite_course():
-    # paper-notes, care 7: singular at phi = pi. tan(x) is 1/(pi/2 - x) there: 60 m * 19.42 m/s *
+    # EQUATIONS.md, errata: singular at phi = pi. tan(x) is 1/(pi/2 - x) there: 60 m * 19.42 m/s *
     # 0.001/m^2 * 2/1e-6.
     command = lyapunov_law(RelativeState(60.0, 60.0, 0.0, math.pi - 1e-6), SPEED, 0.0, K_1)
     # The angle's rounding, 4e-16 of 1e-6.
@@ -182,3 +192,89 @@ def test_a_law_refuses_a_look_ahead_that_is_too_short(law):
 def test_laws_can_be_sent_to_another_process_and_changed_by_replacement(law):
     assert pickle.loads(pickle.dumps(law)) == law
     assert replace(law) == law
+
+
+class Constant:
+    """A law that demands what it is given."""
+
+    def __init__(self, demand):
+        self._demand = demand
+
+    def heading_rate(self, *_):
+        return self._demand
+
+
+def demanded(law, course=0.0):
+    reference = SimpleNamespace(north=50.0, east=0.0, course=0.0, heading_rate=0.0, speed=SPEED)
+    own = Motion(0.0, 0.0, course, SPEED, 0.0)
+    return LimitedLaw(law, limit=0.5, time_step=0.05).demand(reference, own, STILL_AIR)
+
+
+@pytest.mark.parametrize(
+    "demand", [0.3, 1, np.float32(0.25), np.array(-0.7), np.where(True, 0.5, 0.0), -math.inf]
+)
+def test_a_demand_is_a_plain_number_and_its_command_is_within_the_limit(demand):
+    found = demanded(Constant(demand))
+    assert (type(found.heading_rate), type(found.command)) == (float, float)
+    assert found == (float(demand), min(max(float(demand), -0.5), 0.5))
+
+
+@pytest.mark.parametrize("demand", [math.nan, None, "0.3", np.array([0.1]), 1j])
+def test_a_law_that_returns_no_number_is_named(demand):
+    with pytest.raises(LawError, match=r"law 'Constant' returned .*: its method heading_rate\("):
+        demanded(Constant(demand))
+
+
+def test_no_number_is_expected_of_inputs_that_are_not_finite():
+    assert math.isnan(demanded(Constant(math.nan), course=math.nan).command)
+
+
+class Counts:
+    """A law with a memory: demands the time of its flight."""
+
+    def start(self, time_step):
+        return CountsOneFlight(time_step)
+
+
+class CountsOneFlight:
+    def __init__(self, time_step):
+        self._time, self._time_step = 0.0, time_step
+
+    def heading_rate(self, *_):
+        self._time += self._time_step
+        return self._time
+
+
+def test_a_law_with_a_memory_starts_each_flight_afresh():
+    law = Counts()
+    for _ in range(2):
+        flown = started(law, 0.25)
+        assert [flown.heading_rate(), flown.heading_rate()] == [0.25, 0.5]
+    without_memory = CascadeLaw()
+    assert started(without_memory, 0.25) is without_memory
+
+
+class StartsNothing(Constant):
+    def start(self, _):
+        return None
+
+
+class StartsWithoutTimeStep(Constant):
+    def start(self):
+        return self
+
+
+class FailsAtStart(Constant):
+    def start(self, time_step):
+        return time_step + "s"
+
+
+def test_a_law_that_cannot_be_started_is_named():
+    must = r": its method start\(time_step\) has to return the law of one flight"
+    with pytest.raises(LawError, match=r"'StartsNothing' returned None from start\(\)" + must):
+        started(StartsNothing(0.0), 0.05)
+    with pytest.raises(LawError, match="'StartsWithoutTimeStep' cannot be called .*" + must):
+        started(StartsWithoutTimeStep(0.0), 0.05)
+    # The traceback of an error inside the law names its line.
+    with pytest.raises(TypeError, match="unsupported operand"):
+        started(FailsAtStart(0.0), 0.05)

@@ -8,13 +8,13 @@ from hypothesis import strategies as st
 
 from gnc.estimation.own_motion import TrueNavigation
 from gnc.estimation.target_motion import SteadyTarget
-from gnc.laws.paper import CascadeLaw
-from gnc.laws.path.lgvf import LgvfLaw
-from gnc.laws.path.npfg import NpfgLaw
+from gnc.laws import CascadeLaw
 from gnc.mission.axis_height import AxisHeight
 from gnc.mission.mode import Mode
 from gnc.mission.plume_axis import Climb
 from gnc.mission.standoff import CirclePoint, StandoffOrbit, StandoffParameters
+from gnc.path_laws.lgvf import LgvfLaw
+from gnc.path_laws.npfg import NpfgLaw
 from gnc.tracker import TrackingParameters
 from gnc.unicycle import unicycle_move
 

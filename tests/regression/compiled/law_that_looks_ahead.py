@@ -13,15 +13,12 @@ class LooksAhead:
 
     pursuit_per_s: float = 1.2
 
-    def heading_rate(self, reference, to_north, to_east, course, speed):
+    def heading_rate(self, reference, own, air):
         """Return the demanded heading rate [rad/s]."""
-        del speed
+        del air
         later = copy.deepcopy(reference)
         for _ in range(20):
             later.step()
-        north, east = (
-            to_north + later.north - reference.north,
-            to_east + later.east - reference.east,
-        )
-        off = math.remainder(math.atan2(east, north) - course, math.tau)
+        sight = math.atan2(later.east - own.east, later.north - own.north)
+        off = math.remainder(sight - own.course, math.tau)
         return np.float32(self.pursuit_per_s * off + reference.heading_rate)

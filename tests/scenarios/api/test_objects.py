@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from aircraft.fleet.x8 import X8
-from gnc.laws.paper import LineOfSightLaw
+from gnc.laws import LineOfSightLaw
 from gnc.reference.shapes.sinusoid import Sinusoid
 from scenarios import InputError, fly, load, read_ais, run
 
@@ -29,13 +29,13 @@ class Pursuit:
     gain: float = 1.2
     lead_s: float = 1.0
 
-    def heading_rate(self, reference, to_north, to_east, course, speed):
+    def heading_rate(self, reference, own, air):
         lead = self.lead_s * reference.speed
         sight = math.atan2(
-            to_east + lead * math.sin(reference.course),
-            to_north + lead * math.cos(reference.course),
+            reference.east - own.east + lead * math.sin(reference.course),
+            reference.north - own.north + lead * math.cos(reference.course),
         )
-        return self.gain * math.remainder(sight - course, math.tau) + reference.heading_rate
+        return self.gain * math.remainder(sight - own.course, math.tau) + reference.heading_rate
 
 
 class Northbound:

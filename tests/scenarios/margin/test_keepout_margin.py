@@ -12,7 +12,7 @@ import pytest
 
 from aircraft.fleet.x8 import X8
 from common.physics.units import METRES_PER_FOOT
-from gnc.airspeed.pace_hold import PaceHold, SpeedHold, air_turn, design_speed_hold
+from gnc.airspeed import PaceHold, SpeedHold, air_turn, design_speed_hold
 from gnc.paper import Oscillation
 from gnc.tracker import Tracker
 from innerloop.analysis.gust_response import GUSTS

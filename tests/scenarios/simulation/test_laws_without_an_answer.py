@@ -1,6 +1,4 @@
-"""Steering laws that return no heading rate, or cannot be called: the flight is a failed row that
-names the law.
-"""
+"""Steering laws that return no number, or cannot be called: a failed row that names the law."""
 
 from dataclasses import dataclass
 
@@ -8,7 +6,7 @@ import numpy as np
 import pytest
 from flight_cases import ASTERN, fly
 
-from gnc.laws.steering_law import STEERING_LAWS
+from gnc.laws import STEERING_LAWS
 from scenarios.simulation.failure import failure
 
 
@@ -17,11 +15,11 @@ class Answers:
     answer: object = 0.0
     after: int = 3
 
-    def begin(self, *_):
-        return _Begun(self.answer, self.after)
+    def start(self, _):
+        return _Started(self.answer, self.after)
 
 
-class _Begun:
+class _Started:
     def __init__(self, answer, after):
         self._answer, self._until = answer, after
 
@@ -59,8 +57,8 @@ class Word(Answers):
 class ArrayOfOne(Answers):
     answer: object = (0.1,)
 
-    def begin(self, *_):
-        return _Begun(np.array(self.answer), self.after)
+    def start(self, _):
+        return _Started(np.array(self.answer), self.after)
 
 
 @dataclass(frozen=True)
@@ -94,7 +92,7 @@ class Frozen:
         return 0.0
 
 
-MUST = "its method heading_rate(reference, to_north, to_east, course, speed) has to return a number [rad/s]"
+MUST = "its method heading_rate(reference, own, air) has to return a number [rad/s]"
 
 
 @pytest.mark.parametrize("mission", ["track", "follow", "standoff"])
@@ -111,7 +109,7 @@ MUST = "its method heading_rate(reference, to_north, to_east, course, speed) has
             TooFew,
             (
                 "steering law 'TooFew' cannot be called (",
-                "takes 2 positional arguments but 6 were given",
+                "takes 2 positional arguments but 4 were given",
                 MUST,
             ),
         ),

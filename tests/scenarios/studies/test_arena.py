@@ -5,7 +5,7 @@ import json
 import pandas as pd
 import pytest
 
-from gnc.laws.steering_law import STEERING_LAWS
+from gnc.laws import STEERING_LAWS
 from scenarios.engine.in_process_executor import InProcessExecutor
 from scenarios.errors import InputError
 from scenarios.schema.load import load_study

@@ -8,8 +8,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from gnc.analysis.averaged_motion import averaged_settling_time
 from gnc.analysis.ensemble_motion import Vehicle
+from gnc.analysis.turning_reference import averaged_settling_time
 from gnc.paper import look_ahead
 from scenarios.engine.in_process_executor import InProcessExecutor
 from scenarios.engine.local_executor import LocalExecutor

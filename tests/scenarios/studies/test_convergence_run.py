@@ -5,7 +5,7 @@ import shutil
 import pandas as pd
 import pytest
 
-from gnc.analysis.ensemble_result import DISTANCE_CONVERGED, PHI_CONVERGED
+from gnc.analysis.ensemble import DISTANCE_CONVERGED, PHI_CONVERGED
 from reports.output import write_report
 from reports.run.run_data import read_run
 from scenarios.engine.executors import ExecutorFactory

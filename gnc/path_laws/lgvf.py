@@ -1,9 +1,9 @@
-"""The Lyapunov guidance vector field: a standoff circle about a centre that moves, in wind.
+"""The Lyapunov guidance vector field: a standoff circle about a moving centre, in wind.
 
 Sources: D. A. Lawrence, E. W. Frew, W. J. Pisano, "Lyapunov Vector Fields for Autonomous Unmanned
 Aircraft Flight Control", JGCD 31(5), 2008; E. W. Frew, D. A. Lawrence, S. Morris, "Coordinated
-Standoff Tracking of Moving Targets Using Lyapunov Guidance Vector Fields", JGCD 31(2), 2008. The
-wind and the feedback on the heading are additions of this project.
+Standoff Tracking of Moving Targets Using Lyapunov Guidance Vector Fields", JGCD 31(2), 2008. Wind
+and the feedback of the heading are additions of this project.
 """
 
 import math
@@ -11,19 +11,19 @@ from dataclasses import dataclass
 from typing import ClassVar, NamedTuple
 
 from gnc.errors import InfeasibleError
-from gnc.laws.path.adapter import PathLaw, PathMotion
-from gnc.laws.steering_law import CIRCLES_ALONE, ON_OSCILLATION, steering_law
+from gnc.laws import ONLY_CIRCLES, steering_law
 from gnc.numeric import wrap
+from gnc.path_laws.path import PathLaw, PathMotion
 from gnc.vectors import Vector, along, course_of, cross, dot, minus, norm, plus, scaled
 
 
 class HeadingField(NamedTuple):
-    """A field of headings where the vehicle is.
+    """A field of headings, at the place of the vehicle.
 
     Attributes
     ----------
     heading : psi_d, through the air [rad]
-    rate : how fast it turns as the vehicle moves [rad/s]
+    rate : its rate as the vehicle moves [rad/s]
     """
 
     heading: float
@@ -31,7 +31,7 @@ class HeadingField(NamedTuple):
 
 
 def circle_course(from_centre: Vector, radius: float, side: int) -> float:
-    """Return the course of the field relative to the centre: bearing + 2 side atan(r/R) [rad].
+    """Return the field's course relative to the centre, bearing + 2 side atan(r/R) [rad].
 
     Parameters
     ----------
@@ -52,7 +52,7 @@ def lgvf(
     centre_velocity: Vector,
     wind: Vector,
 ) -> HeadingField:
-    """Return the heading of the field, and its rate. A pure function.
+    """Return the heading of the field, and its rate.
 
     Parameters
     ----------
@@ -66,7 +66,8 @@ def lgvf(
     ------
     InfeasibleError : the centre is as fast through the air as the vehicle
     """
-    from_centre, drift = minus(position, centre), minus(centre_velocity, wind)
+    from_centre = minus(position, centre)
+    drift = minus(centre_velocity, wind)
     course = circle_course(from_centre, radius, side)
     relative = minus(scaled(along(heading), airspeed), drift)
     r = norm(from_centre)
@@ -77,8 +78,9 @@ def lgvf(
 
 
 def heading_for(course: float, course_rate: float, airspeed: float, drift: Vector) -> HeadingField:
-    """Return the heading that gives a course relative to a centre, by the triangle of velocities,
-    and its rate.
+    """Return the heading that gives a course relative to a centre, and its rate.
+
+    It follows from the triangle of velocities.
 
     Parameters
     ----------
@@ -92,8 +94,9 @@ def heading_for(course: float, course_rate: float, airspeed: float, drift: Vecto
     """
     if norm(drift) >= airspeed:
         raise InfeasibleError(
-            f"the centre moves through the air at {norm(drift):.2f} m/s, the vehicle at {airspeed:.2f} m/s; no circle about it"
-            " can be flown: follow a slower vessel, or fly faster"
+            f"the centre moves through the air at {norm(drift):.2f} m/s, the vehicle at"
+            f" {airspeed:.2f} m/s; no circle about it can be flown: follow a slower vessel, or fly"
+            " faster"
         )
     direction = along(course)
     back = dot(direction, drift)
@@ -103,9 +106,7 @@ def heading_for(course: float, course_rate: float, airspeed: float, drift: Vecto
 
 
 def heading_rate(field: HeadingField, heading: float, gain: float) -> float:
-    """Return the heading rate that turns the vehicle into the field [rad/s], from its heading [rad]
-    and a gain [1/s].
-    """
+    """Return the heading rate that turns a vehicle into the field [rad/s]; gain [1/s]."""
     return field.rate + gain * wrap(field.heading - heading)
 
 
@@ -119,26 +120,24 @@ class LgvfLaw(PathLaw):
     lgvf_gain_per_s : feedback gain k, heading rate per course error [1/s]
     """
 
-    given: ClassVar[str] = "the circle in the frame of its centre (M2); wind"
-    cannot: ClassVar[dict[str, str]] = {ON_OSCILLATION: CIRCLES_ALONE}
+    inputs: ClassVar[str] = "the circle in the frame of its centre (M2); wind"
+    unsupported_tasks: ClassVar[dict[str, str]] = ONLY_CIRCLES
     lgvf_gain_per_s: float = 1.0
 
     def rate(self, motion: PathMotion) -> float:
-        """Return the demanded heading rate [rad/s]; a centre that is as fast as the vehicle is
-        followed, not circled.
+        """Return the demanded heading rate [rad/s].
+
+        A centre that is as fast as the vehicle is followed, not circled.
         """
         if norm(motion.wind) >= motion.airspeed:
-            return heading_rate(
-                HeadingField(course_of(motion.wind) + math.pi, 0.0),
+            field = HeadingField(course_of(motion.wind) + math.pi, 0.0)
+        else:
+            field = lgvf(
+                motion.position,
                 motion.heading,
-                self.lgvf_gain_per_s,
+                motion.airspeed,
+                *motion.circle,
+                centre_velocity=(0.0, 0.0),
+                wind=motion.wind,
             )
-        field = lgvf(
-            motion.position,
-            motion.heading,
-            motion.airspeed,
-            *motion.circle,
-            (0.0, 0.0),
-            motion.wind,
-        )
         return heading_rate(field, motion.heading, self.lgvf_gain_per_s)

@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from gnc.airspeed.pace_hold import PaceHold, SpeedHold, air_turn, design_speed_hold
+from gnc.airspeed import AlongTrackTrim, PaceHold, SpeedHold, air_turn, design_speed_hold
 from gnc.errors import InfeasibleError
 
 HOLD = SpeedHold(gain=0.3, airspeed_min=15.0, airspeed_max=25.0)
@@ -87,3 +87,33 @@ def test_while_the_guard_turns_away_the_vehicle_does_not_become_too_fast_for_its
     law = PaceHold(speed=19.0, hold=HOLD, turn_speed=21.0)
     assert law.airspeed(19.0, own, False) == 21.5
     assert law.airspeed(19.0, own, True) == 21.0
+
+
+@pytest.mark.parametrize(
+    ("along", "expected"),
+    # 0.15/s of the way that the reference is ahead, and 1 m/s at most.
+    [(4.0, 20.6), (-4.0, 19.4), (50.0, 21.0), (-50.0, 19.0)],
+)
+def test_the_pace_is_trimmed_by_the_way_that_the_reference_is_ahead(along, expected):
+    trim = AlongTrackTrim(speed=20.0, gain=0.15, change_max=1.0)
+    assert trim.pace(along) == pytest.approx(expected, abs=1e-12)
+
+
+def test_no_trimmed_pace_is_one_that_the_vehicle_cannot_fly():
+    trim = AlongTrackTrim(
+        speed=20.0, gain=0.15, change_max=30.0, airspeed_min=14.0, airspeed_max=26.0
+    )
+    assert [trim.pace(along) for along in (-1000.0, 0.0, 1000.0)] == [14.0, 20.0, 26.0]
+    # Nor, where nothing is known of the vehicle, that it flies backwards.
+    assert AlongTrackTrim(speed=20.0, gain=0.15, change_max=30.0).pace(-1000.0) == 0.0
+
+
+@pytest.mark.parametrize("guarding", [False, True])
+def test_in_still_air_a_pace_is_an_airspeed(guarding):
+    assert (
+        AlongTrackTrim(speed=20.0, gain=0.15, change_max=1.0).airspeed(20.3, None, guarding) == 20.3
+    )
+
+
+def test_without_a_gain_the_airspeed_is_that_of_the_reference():
+    assert AlongTrackTrim(speed=20.0, gain=0.0, change_max=1.0).pace(50.0) == 20.0

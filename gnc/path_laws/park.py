@@ -1,5 +1,4 @@
-"""The law of Park, Deyst and How: a lateral acceleration towards a point of the path at a distance
-L1 ahead.
+"""The law of Park, Deyst and How: steer at the point of the path that is L1 ahead.
 
 Source: S. Park, J. Deyst, J. P. How, "A New Nonlinear Guidance Logic for Trajectory Tracking", AIAA
 2004-4900; "Performance and Lyapunov Stability of a Nonlinear Path-Following Guidance Method", JGCD
@@ -10,18 +9,17 @@ import math
 from dataclasses import dataclass
 from typing import ClassVar
 
-from gnc.laws.path.adapter import PathLaw, PathMotion, turn_rate
-from gnc.laws.steering_law import CIRCLES_ALONE, NO_CIRCLE, ON_CIRCLE, ON_OSCILLATION, steering_law
+from gnc.laws import ONLY_CIRCLES, ONLY_MOVING_POINTS, steering_law
 from gnc.numeric import clip, wrap
+from gnc.path_laws.path import PathLaw, PathMotion, turn_rate
 from gnc.vectors import Vector, along, course_of, cross, dot, minus, norm, plus, scaled
 
 
 def park_l1(position: Vector, velocity: Vector, target: Vector, *, range_min: float = 0.0) -> float:
-    """Return the lateral acceleration, 2 v^2 sin(eta)/L1, positive to the right [m/s2]. A pure
-    function.
+    """Return the lateral acceleration, 2 v^2 sin(eta)/L1, positive to the right [m/s2].
 
-    Unlike the printed form it keeps eta within a quarter of a turn: as printed, the command falls
-    off again behind the vehicle.
+    Unlike the paper's law it keeps eta within 90 degrees: the paper's command falls off again for a
+    target behind the vehicle.
 
     Parameters
     ----------
@@ -38,8 +36,7 @@ def park_l1(position: Vector, velocity: Vector, target: Vector, *, range_min: fl
 
 
 def point_on_line(position: Vector, origin: Vector, course: float, distance: float) -> Vector:
-    """Return the point of a line at ``distance`` L1 ahead [m]; its nearest point where the line is
-    farther off.
+    """Return the point of a line that is ``distance`` ahead [m], or the nearest if it is farther.
 
     Parameters
     ----------
@@ -47,20 +44,17 @@ def point_on_line(position: Vector, origin: Vector, course: float, distance: flo
     origin, course : a point of the line [m], and its course [rad]
     distance : L1 [m]
     """
-    tangent, off = along(course), minus(position, origin)
-    error = cross(tangent, off)
-    return plus(
-        origin,
-        tangent,
-        dot(tangent, off) + math.sqrt(max(distance * distance - error * error, 0.0)),
-    )
+    tangent = along(course)
+    from_origin = minus(position, origin)
+    error = cross(tangent, from_origin)
+    ahead = math.sqrt(max(distance * distance - error * error, 0.0))
+    return plus(origin, tangent, dot(tangent, from_origin) + ahead)
 
 
 def point_on_circle(
     position: Vector, centre: Vector, radius: float, side: int, distance: float
 ) -> Vector:
-    """Return the point of a circle at ``distance`` L1 ahead [m]; its nearest point where there is
-    none.
+    """Return the point of a circle that is ``distance`` ahead [m], or the nearest if there is none.
 
     Parameters
     ----------
@@ -70,7 +64,8 @@ def point_on_circle(
     distance : L1 [m]
     """
     from_centre = minus(position, centre)
-    d, ahead = norm(from_centre), 0.0
+    d = norm(from_centre)
+    ahead = 0.0
     if d > 0.0 and abs(d - radius) <= distance <= d + radius:
         ahead = math.acos(
             clip((d * d + radius * radius - distance * distance) / (2.0 * d * radius), -1.0, 1.0)
@@ -80,7 +75,7 @@ def point_on_circle(
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ParkL1Law(PathLaw):
-    """Base of the laws of Park, Deyst and How; eta is kept within a quarter of a turn.
+    """Base of the laws of Park, Deyst and How; they differ in the point to steer at.
 
     Attributes
     ----------
@@ -108,9 +103,9 @@ class ParkL1Law(PathLaw):
 @steering_law("park_l1")
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ParkL1TangentLaw(ParkL1Law):
-    """Park's law along the reference's tangent (M1); attributes as of ``ParkL1Law``."""
+    """Park's law on the reference's tangent (M1); attributes are those of ``ParkL1Law``."""
 
-    given: ClassVar[str] = "tangent of the path over the ground (M1); velocity over the ground"
+    inputs: ClassVar[str] = "tangent of the path over the ground (M1); velocity over the ground"
 
     def target(self, motion: PathMotion) -> Vector:
         """Return the point of the tangent at L1 from the vehicle, from the path's point [m]."""
@@ -122,12 +117,13 @@ class ParkL1TangentLaw(ParkL1Law):
 @steering_law("park_l1_ahead")
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ParkL1AheadLaw(ParkL1Law):
-    """Park's law towards a point L1 ahead of the reference, on its tangent (M3); attributes as of
-    ``ParkL1Law``.
+    """Park's law to the point L1 ahead of the reference, on its tangent (M3).
+
+    Attributes are those of ``ParkL1Law``.
     """
 
-    given: ClassVar[str] = "a point ahead of the reference (M3); velocity over the ground"
-    cannot: ClassVar[dict[str, str]] = {ON_CIRCLE: NO_CIRCLE}
+    inputs: ClassVar[str] = "a point ahead of the reference (M3); velocity over the ground"
+    unsupported_tasks: ClassVar[dict[str, str]] = ONLY_MOVING_POINTS
 
     def target(self, motion: PathMotion) -> Vector:
         """Return the point L1 ahead, from the path's point [m]."""
@@ -137,12 +133,13 @@ class ParkL1AheadLaw(ParkL1Law):
 @steering_law("park_l1_point")
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ParkL1PointLaw(ParkL1Law):
-    """Park's law towards the reference itself (M3), with L1 as the floor of the range; attributes
-    as of ``ParkL1Law``.
+    """Park's law to the reference itself (M3), with L1 as the floor of the range.
+
+    Attributes are those of ``ParkL1Law``.
     """
 
-    given: ClassVar[str] = "the reference's place (M3); velocity over the ground"
-    cannot: ClassVar[dict[str, str]] = {ON_CIRCLE: NO_CIRCLE}
+    inputs: ClassVar[str] = "the reference's place (M3); velocity over the ground"
+    unsupported_tasks: ClassVar[dict[str, str]] = ONLY_MOVING_POINTS
     l1_distance_m: float = 30.0
 
     def target(self, motion: PathMotion) -> Vector:  # noqa: ARG002
@@ -157,10 +154,10 @@ class ParkL1PointLaw(ParkL1Law):
 @steering_law("park_l1_orbit")
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ParkL1OrbitLaw(ParkL1Law):
-    """Park's law on a circle in the frame of its centre (M2); attributes as of ``ParkL1Law``."""
+    """Park's law on a circle in the frame of its centre (M2); attributes of ``ParkL1Law``."""
 
-    given: ClassVar[str] = "the circle in the frame of its centre (M2)"
-    cannot: ClassVar[dict[str, str]] = {ON_OSCILLATION: CIRCLES_ALONE}
+    inputs: ClassVar[str] = "the circle in the frame of its centre (M2)"
+    unsupported_tasks: ClassVar[dict[str, str]] = ONLY_CIRCLES
 
     def target(self, motion: PathMotion) -> Vector:
         """Return the point of the circle at L1 from the vehicle, from the path's point [m]."""

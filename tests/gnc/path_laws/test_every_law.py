@@ -1,6 +1,4 @@
-"""Every registered law, as it is put to a moving point: symmetries, and that it keeps to its
-reference once it is there.
-"""
+"""Every registered law on a moving reference: symmetries, and that it keeps to its reference."""
 
 import math
 from types import SimpleNamespace
@@ -8,18 +6,21 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from gnc.errors import LawError
-from gnc.laws.path.adapter import path_motion
-from gnc.laws.steering_law import ON_CIRCLE, ON_OSCILLATION, STEERING_LAWS, Surroundings, begun
+from gnc.laws import ON_CIRCLE, ON_OSCILLATION, STEERING_LAWS, Air, Motion, started
+from gnc.path_laws.path import path_motion
 from gnc.vectors import along, course_of, norm, plus, scaled
 
 SPEED = 19.42
 LAWS = STEERING_LAWS.names()
 FEED_FORWARD = ["cascade", "look_ahead_line_of_sight", "lyapunov", "npfg", "vector_field"]
-CIRCLES = [
-    name for name in LAWS if ON_OSCILLATION in getattr(STEERING_LAWS.get(name), "cannot", {})
-]
-POINTS = [name for name in LAWS if ON_CIRCLE in getattr(STEERING_LAWS.get(name), "cannot", {})]
+
+
+def unsupported_tasks(name):
+    return getattr(STEERING_LAWS.get(name), "unsupported_tasks", {})
+
+
+CIRCLES = [name for name in LAWS if ON_OSCILLATION in unsupported_tasks(name)]
+POINTS = [name for name in LAWS if ON_CIRCLE in unsupported_tasks(name)]
 
 
 def reference(course=0.3, heading_rate=0.15, speed=SPEED):
@@ -28,14 +29,14 @@ def reference(course=0.3, heading_rate=0.15, speed=SPEED):
     )
 
 
-def surroundings(wind=(0.0, 0.0), frame=(0.0, 0.0)):
-    return Surroundings(SimpleNamespace(wind_north=wind[0], wind_east=wind[1]), *frame)
+def own_motion(course, to=(0.0, 0.0)):
+    """The vehicle from which the reference, at the origin, is at ``to``."""
+    return Motion(-to[0], -to[1], course, SPEED, 0.0)
 
 
 def commanded(name, point, to, course, wind=(0.0, 0.0), frame=(0.0, 0.0)):
-    return begun(STEERING_LAWS.get(name)(), surroundings(wind, frame), 0.05).heading_rate(
-        point, *to, course, SPEED
-    )
+    law = started(STEERING_LAWS.get(name)(), 0.05)
+    return law.heading_rate(point, own_motion(course, to), Air(*wind, *frame))
 
 
 def states(count=20):
@@ -107,7 +108,9 @@ def test_on_a_circle_a_law_for_circles_commands_what_keeps_it_there(name, frame)
     if name == "ardupilot_loiter" and frame != (0.0, 0.0):
         pytest.skip("as ArduPilot flies it, it knows nothing of the centre's motion")
     point = reference(heading_rate=0.15)
-    motion = path_motion(point, 0.0, 0.0, point.course, SPEED, surroundings(frame=frame))
+    motion = path_motion(
+        point, own_motion(point.course), Air(path_north=frame[0], path_east=frame[1])
+    )
     wanted = {"ardupilot_loiter_relative": norm(motion.velocity) ** 2 * motion.curvature / SPEED}
     wanted |= {"park_l1_orbit": wanted["ardupilot_loiter_relative"], "rosplane_orbit": None}
     rate = commanded(name, point, (0.0, 0.0), point.course, frame=frame)
@@ -129,7 +132,7 @@ def test_the_path_of_a_reference_in_wind_is_that_of_its_velocity_over_the_ground
     def ground(course):
         return plus(wind, scaled(along(course), SPEED))
 
-    motion = path_motion(point, 0.0, 0.0, 0.0, SPEED, surroundings(wind))
+    motion = path_motion(point, own_motion(0.0), Air(*wind))
     turn = (course_of(ground(0.3 + 0.15 * step)) - course_of(ground(0.3 - 0.15 * step))) / (
         2.0 * step
     )
@@ -139,46 +142,7 @@ def test_the_path_of_a_reference_in_wind_is_that_of_its_velocity_over_the_ground
     assert course_of(motion.tangent) == pytest.approx(course_of(ground(0.3)), abs=1e-12)
 
 
-def test_a_law_without_surroundings_is_begun_as_it_is():
-    law = STEERING_LAWS.get("cascade")()
-    assert begun(law, surroundings(), 0.05) is law
-
-
-class BeginsNothing:
-    def heading_rate(self, *_):
-        return 0.0
-
-    def begin(self, _surroundings, _time_step):
-        return None
-
-
-class BeginsAtOnce(BeginsNothing):
-    def begin(self):
-        return self
-
-
-class BeginsInVain(BeginsNothing):
-    def begin(self, _surroundings, time_step):
-        return time_step + "s"
-
-
-def test_a_law_that_begins_with_no_law_is_named():
-    with pytest.raises(
-        LawError,
-        match=r"'BeginsNothing' returned None from begin\(\): its method begin\(surroundings, time_step\) has",
-    ):
-        begun(BeginsNothing(), surroundings(), 0.05)
-    with pytest.raises(
-        LawError,
-        match=r"'BeginsAtOnce' cannot be called .*: its method begin\(surroundings, time_step\) has to",
-    ):
-        begun(BeginsAtOnce(), surroundings(), 0.05)
-    # What fails inside the law names its own line.
-    with pytest.raises(TypeError, match="unsupported operand"):
-        begun(BeginsInVain(), surroundings(), 0.05)
-
-
 @pytest.mark.parametrize("name", CIRCLES + POINTS)
 def test_a_law_that_cannot_do_a_task_says_why_and_what_to_set(name):
-    (reason,) = STEERING_LAWS.get(name).cannot.values()
+    (reason,) = unsupported_tasks(name).values()
     assert "set guidance.mission to" in reason

@@ -6,8 +6,13 @@ import math
 
 import pytest
 
-from gnc.laws.path.ardupilot_l1 import FRESH, L1Parameters, L1State, decided, update_waypoint
-from gnc.laws.path.ardupilot_loiter import update_loiter
+from gnc.path_laws.ardupilot import (
+    FRESH,
+    L1State,
+    decided,
+    update_loiter,
+    update_waypoint,
+)
 
 START, END = (-100.0, 0.0), (2000.0, 0.0)
 # ArduPilot computes in single precision: 1e-7 relative at each of some ten operations.
@@ -22,7 +27,6 @@ def test_beside_a_line_it_captures():
 
 def test_the_first_call_integrates_nothing_and_later_ones_within_five_degrees_do():
     def call(state, time_step=0.1, gain=0.02):
-        parameters = L1Parameters(integrator_gain=gain)
         return update_waypoint(
             (0.0, 2.0),
             (20.0, 0.0),
@@ -31,7 +35,7 @@ def test_the_first_call_integrates_nothing_and_later_ones_within_five_degrees_do
             END,
             time_step=time_step,
             state=state,
-            parameters=parameters,
+            integrator_gain=gain,
         )[1]
 
     first = call(FRESH)

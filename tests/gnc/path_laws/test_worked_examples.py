@@ -5,16 +5,27 @@ import math
 import pytest
 
 from gnc.errors import InfeasibleError
-from gnc.laws.paper import line_of_sight_law
-from gnc.laws.path.carrot import carrot_on_circle, carrot_on_line, chase, plos
-from gnc.laws.path.constant_bearing import collision_course
-from gnc.laws.path.lgvf import circle_course, heading_rate, lgvf
-from gnc.laws.path.look_ahead_line_of_sight import look_ahead_line_of_sight
-from gnc.laws.path.park_l1 import park_l1, point_on_circle, point_on_line
-from gnc.laws.path.proportional_navigation import sight_rate
-from gnc.laws.path.pure_pursuit import pure_pursuit
-from gnc.laws.path.rosplane_field import line_course, orbit_course, orbit_roll
-from gnc.laws.path.vector_field import field_heading_rate, line_field, orbit_field
+from gnc.laws import line_of_sight_law
+from gnc.path_laws.lgvf import circle_course, heading_rate, lgvf
+from gnc.path_laws.park import park_l1, point_on_circle, point_on_line
+from gnc.path_laws.pursuit import (
+    carrot_on_circle,
+    carrot_on_line,
+    chase,
+    collision_course,
+    look_ahead_line_of_sight,
+    plos,
+    pure_pursuit,
+    sight_rate,
+)
+from gnc.path_laws.vector_field import (
+    field_heading_rate,
+    line_course,
+    line_field,
+    orbit_course,
+    orbit_field,
+    orbit_roll,
+)
 from gnc.vectors import along, course_of, minus, scaled
 
 ORIGIN = (0.0, 0.0)

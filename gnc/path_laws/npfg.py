@@ -1,26 +1,28 @@
-"""NPFG, the fixed-wing path following of PX4: look-ahead by the track error, bearing feasibility in
-wind, adapted period.
+"""NPFG, the fixed-wing path following of PX4.
+
+Its look-ahead depends on the track error, it knows which bearings are feasible in wind, and it
+adapts its period.
 
 Source: T. Stastny, R. Siegwart, "On Flying Backwards: Preventing Run-away of Small, Low-speed,
 Fixed-wing UAVs in Strong Winds", IROS 2019, and the law as PX4 flies it, release 1.15
-(BSD-3-Clause). Written from equations, not from code. Differs in that the airspeed is not raised to
-keep a ground speed or to come back to the track: here it is left to whoever flies the law.
+(BSD-3-Clause). Written from equations, not from code. Unlike PX4 it does not raise the airspeed to
+keep a ground speed or to come back to the track: a steering law does not command the airspeed.
 """
 
 import math
 from dataclasses import dataclass
 from typing import ClassVar
 
-from gnc.laws.path.adapter import PathLaw, PathMotion, turn_rate
-from gnc.laws.steering_law import steering_law
+from gnc.laws import steering_law
 from gnc.numeric import clip
+from gnc.path_laws.path import PathLaw, PathMotion, turn_rate
 from gnc.vectors import Vector, course_of, cross, dot, minus, norm, plus, right_of, scaled
 
 _EPSILON = 1e-6
 _RADIUS_MIN = 0.5
 """Smallest turn radius that the feed-forward is formed for [m]."""
 _AIRSPEED_BUFFER = 1.5
-"""Airspeed beyond what a bearing needs, from which the bearing counts as wholly feasible [m/s]."""
+"""Airspeed in excess of the need of a bearing at which the bearing is wholly feasible [m/s]."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -49,16 +51,16 @@ PX4_DEFAULTS = NpfgParameters()
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class NpfgCommand:
-    """What NPFG asks for.
+    """What NPFG commands.
 
     Attributes
     ----------
     lateral_acceleration : positive to the right [m/s2]
     feed_forward : its part for the path's curvature, before it fades with the track error [m/s2]
-    heading : reference [rad]
-    bearing : ground course that is asked for [rad]
-    period : as adapted [s]
-    error_bound : track error from which on the bearing is straight at the path [m]
+    heading : demanded heading [rad]
+    bearing : demanded ground course [rad]
+    period : adapted period [s]
+    error_bound : track error beyond which the bearing points straight at the path [m]
     """
 
     lateral_acceleration: float
@@ -78,7 +80,7 @@ def npfg(
     curvature: float,
     parameters: NpfgParameters = PX4_DEFAULTS,
 ) -> NpfgCommand:
-    """Return NPFG's command. A pure function.
+    """Return NPFG's command.
 
     Parameters
     ----------
@@ -90,7 +92,9 @@ def npfg(
     """
     p = parameters
     air_velocity = minus(velocity, wind)
-    airspeed, ground_speed, wind_speed = norm(air_velocity), norm(velocity), norm(wind)
+    airspeed = norm(air_velocity)
+    ground_speed = norm(velocity)
+    wind_speed = norm(wind)
     error = cross(tangent, minus(position, path_point))
     track_feasible = bearing_feasibility(tangent, wind, airspeed)
     period = _adapted_period(
@@ -119,7 +123,7 @@ def npfg(
 
 
 def bearing_feasibility(bearing: Vector, wind: Vector, airspeed: float) -> float:
-    """Return how far a ground course can be flown in this wind, from 0 to 1.
+    """Return how feasible a ground course is in this wind, from 0 to 1.
 
     Parameters
     ----------
@@ -132,7 +136,7 @@ def bearing_feasibility(bearing: Vector, wind: Vector, airspeed: float) -> float
 
 
 def track_error_bound(ground_speed: float, time_constant: float) -> float:
-    """Return the track error from which on the vehicle heads straight for the path [m]."""
+    """Return the track error beyond which the vehicle heads straight for the path [m]."""
     if ground_speed > 1.0:
         return ground_speed * time_constant
     return 0.5 * time_constant * (ground_speed * ground_speed + 1.0)
@@ -147,9 +151,7 @@ def _adapted_period(
     curvature: float,
     feasible: float,
 ) -> float:
-    """Return the period, kept to what the roll dynamics allow and the path's curvature in wind
-    needs [s].
-    """
+    """Return the period [s], within what the roll dynamics and the path's curvature allow."""
     if p.roll_time_constant <= _EPSILON:
         return p.period
     turn_rate = abs(curvature * airspeed)
@@ -164,7 +166,8 @@ def _adapted_period(
             4.0 * math.pi * p.roll_time_constant * p.damping * feasible
             + (1.0 - feasible) * straight
         )
-    lowest, straight = lowest * p.safety_factor, straight * p.safety_factor
+    lowest *= p.safety_factor
+    straight *= p.safety_factor
     off = clip(error / track_error_bound(ground_speed, straight * p.damping), 0.0, 1.0)
     proximity = math.sin(0.5 * math.pi * (off - 1.0) ** 2) ** 2
     lowest = proximity * lowest + (1.0 - proximity) * straight
@@ -180,17 +183,16 @@ def _adapted_period(
 def _air_velocity_reference(
     bearing: Vector, wind: Vector, wind_speed: float, airspeed: float
 ) -> Vector:
-    """Return the velocity through the air that gives the demanded bearing over the ground, as far
-    as the wind lets it [m/s].
-    """
-    across, along = cross(wind, bearing), dot(wind, bearing)
+    """Return the air velocity that comes nearest to the bearing over the ground [m/s]."""
+    across = cross(wind, bearing)
+    along = dot(wind, bearing)
     if abs(across) < airspeed and (along > 0.0 or wind_speed < airspeed):
         return plus(
             scaled(bearing, math.sqrt(max(airspeed * airspeed - across * across, 0.0))),
             right_of(bearing),
             across,
         )
-    # No heading gives that bearing: it heads against the wind, turned towards the bearing.
+    # No heading gives that bearing: head against the wind, turned towards the bearing.
     drift = minus(
         scaled(bearing, math.sqrt(max(wind_speed * wind_speed - airspeed * airspeed, 0.0))), wind
     )
@@ -199,10 +201,9 @@ def _air_velocity_reference(
 
 
 def _feedback(gain: float, air_velocity: Vector, airspeed: float, reference: Vector) -> float:
-    """Return the lateral acceleration that turns the velocity through the air to its reference
-    [m/s2].
-    """
-    turn, length = cross(air_velocity, reference), norm(reference)
+    """Return the lateral acceleration that turns the air velocity to its reference [m/s2]."""
+    turn = cross(air_velocity, reference)
+    length = norm(reference)
     if dot(air_velocity, reference) < 0.0:
         return gain * airspeed * (-1.0 if turn < 0.0 else 1.0)
     return gain * turn / length if length > 0.0 else 0.0
@@ -211,15 +212,11 @@ def _feedback(gain: float, air_velocity: Vector, airspeed: float, reference: Vec
 def _feed_forward(
     tangent: Vector, velocity: Vector, wind: Vector, airspeed: float, error: float, curvature: float
 ) -> float:
-    """Return the lateral acceleration that the path's curvature needs, at the vehicle's distance
-    from it [m/s2].
-    """
-    here = (
-        curvature / max(1.0 - curvature * error, abs(curvature) * _RADIUS_MIN)
-        if curvature != 0.0
-        else 0.0
-    )
-    path_rate = here * max(dot(velocity, tangent), 0.0)
+    """Return the lateral acceleration of a curve at the vehicle's distance from the path [m/s2]."""
+    curvature_here = 0.0
+    if curvature != 0.0:
+        curvature_here = curvature / max(1.0 - curvature * error, abs(curvature) * _RADIUS_MIN)
+    path_rate = curvature_here * max(dot(velocity, tangent), 0.0)
     crosswind = cross(wind, tangent)
     along = math.sqrt(max(airspeed * airspeed - crosswind * crosswind, 0.0))
     return airspeed * (1.0 + dot(wind, tangent) / max(along, _EPSILON)) * path_rate
@@ -228,18 +225,16 @@ def _feed_forward(
 @steering_law("npfg")
 @dataclass(frozen=True, slots=True, kw_only=True)
 class NpfgLaw(PathLaw):
-    """NPFG on the reference's tangent and curvature (M1), or on a circle in the frame of its centre
-    (M2), at constant airspeed.
+    """NPFG on the reference's tangent (M1), or on a circle in the frame of its centre (M2).
 
     Attributes
     ----------
     npfg_period_s : period T_0 of the loop [s]
     npfg_damping : damping zeta of the loop [-]
-    npfg_roll_time_constant_s : time constant T_phi of the roll angle; 0 for no bounds on the period
-        [s]
+    npfg_roll_time_constant_s : time constant T_phi of the roll angle [s]
     """
 
-    given: ClassVar[str] = (
+    inputs: ClassVar[str] = (
         "tangent and curvature over the ground (M1), a circle in its centre's frame (M2); wind"
     )
     npfg_period_s: float = 10.0

@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 
-from gnc.laws.path.npfg import NpfgParameters, bearing_feasibility, npfg, track_error_bound
+from gnc.path_laws.npfg import NpfgParameters, bearing_feasibility, npfg, track_error_bound
 
 NORTH, ORIGIN, CALM = (1.0, 0.0), (0.0, 0.0), (0.0, 0.0)
 # PX4 computes in single precision: 1e-7 relative at each of some ten operations.

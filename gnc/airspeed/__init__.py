@@ -1,1 +1,0 @@
-"""Airspeed laws: along-track trim, pace hold."""
