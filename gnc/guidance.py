@@ -4,9 +4,9 @@ import math
 from typing import Any
 
 from gnc.airspeed.airspeed_law import AirspeedLaw
-from gnc.estimation.health_monitor import HealthMonitor
-from gnc.estimation.own_motion import OwnMotion
-from gnc.estimation.target_motion import TargetMotion
+from gnc.estimation.health import HealthMonitor
+from gnc.estimation.navigation import OwnMotion
+from gnc.estimation.vessel import TargetMotion
 from gnc.mission.mission import Mission
 from gnc.numeric import limited
 from gnc.safety.guarded_commands import GuardedCommands

@@ -4,7 +4,7 @@ airspeed to command for it.
 
 from typing import Protocol
 
-from gnc.estimation.own_motion import OwnMotion
+from gnc.estimation.navigation import OwnMotion
 
 
 class AirspeedLaw(Protocol):

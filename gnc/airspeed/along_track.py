@@ -3,7 +3,7 @@
 import math
 from dataclasses import dataclass, field
 
-from gnc.estimation.own_motion import OwnMotion
+from gnc.estimation.navigation import OwnMotion
 from gnc.numeric import clip
 
 

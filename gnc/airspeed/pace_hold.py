@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 from gnc.errors import InfeasibleError
-from gnc.estimation.own_motion import OwnMotion
+from gnc.estimation.navigation import OwnMotion
 
 _CRITICAL = 0.25
 """Of a first-order loop's bandwidth, the gain of a position loop about it that has two equal poles:

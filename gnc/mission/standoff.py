@@ -12,8 +12,8 @@ import math
 from dataclasses import dataclass
 
 from gnc.estimation.health import Fault
-from gnc.estimation.own_motion import OwnMotion
-from gnc.estimation.target_motion import TargetMotion
+from gnc.estimation.navigation import OwnMotion
+from gnc.estimation.vessel import TargetMotion
 from gnc.laws.path.lgvf import heading_for
 from gnc.laws.steering_law import Surroundings, begun, call_error, within_limit
 from gnc.mission.approach import COURSE_GAIN

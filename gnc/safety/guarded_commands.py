@@ -4,7 +4,7 @@ still turn away.
 
 import math
 
-from gnc.estimation.own_motion import OwnMotion
+from gnc.estimation.navigation import OwnMotion
 from gnc.safety.keepout_guard import KeepoutGuard
 from gnc.safety.speed_reckoning import SpeedReckoning
 

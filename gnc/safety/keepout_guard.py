@@ -16,8 +16,8 @@ those of its motion through the air. The guard plans no way round; it keeps out 
 import math
 from collections.abc import Sequence
 
-from gnc.estimation.own_motion import AirMotion
-from gnc.estimation.reachable_set import Tube
+from gnc.estimation.navigation import AirMotion
+from gnc.estimation.vessel import Tube
 from gnc.numeric import limited
 from gnc.safety.free_commands import FreeCommands
 from gnc.safety.given_commands import GivenCommands

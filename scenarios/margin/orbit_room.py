@@ -6,8 +6,8 @@ from collections.abc import Callable
 
 import numpy as np
 
-from gnc.estimation.own_motion import KnownMotion
-from gnc.estimation.reachable_set import Tube
+from gnc.estimation.navigation import KnownMotion
+from gnc.estimation.vessel import Tube
 from gnc.mission.standoff import CirclePoint
 from gnc.reference.reference import Orbit
 from gnc.safety.guard_parameters import GuardParameters

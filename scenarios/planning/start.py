@@ -6,9 +6,8 @@ from collections.abc import Sequence
 import numpy as np
 
 from gnc.errors import InfeasibleError
-from gnc.estimation.own_motion import KnownMotion
-from gnc.estimation.reachable_set import Tube
-from gnc.estimation.vessel_filter import VesselReport
+from gnc.estimation.navigation import KnownMotion
+from gnc.estimation.vessel import Tube, VesselReport
 from gnc.safety.guard_parameters import GuardParameters
 from gnc.safety.keepout_guard import KeepoutGuard
 from scenarios.planning.flight_plan import Start

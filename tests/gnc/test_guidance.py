@@ -16,7 +16,7 @@ from gnc_cases import (
 from hypothesis import given
 from hypothesis import strategies as st
 
-from gnc.estimation.reachable_set import Tube
+from gnc.estimation.vessel import Tube
 from gnc.laws.paper import CascadeLaw, LineOfSightLaw, LyapunovLaw
 from gnc.paper import PlumeAxis, distance_by_paper
 from gnc.safety.guard_parameters import GuardParameters

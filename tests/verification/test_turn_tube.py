@@ -11,8 +11,8 @@ from aircraft.fleet.x8 import X8
 from aircraft.simulation.fdm import TIME_STEP
 from common.physics.turn_tube import LEAST_CHANGE
 from common.physics.units import METRES_PER_FOOT, STANDARD_GRAVITY
-from gnc.estimation.own_motion import KnownMotion
-from gnc.estimation.reachable_set import Tube
+from gnc.estimation.navigation import KnownMotion
+from gnc.estimation.vessel import Tube
 from gnc.safety.given_commands import GivenCommands
 from gnc.safety.guard_parameters import GuardParameters
 from gnc.safety.keepout_guard import KeepoutGuard

@@ -9,8 +9,8 @@ import pytest
 from gnc_cases import HEADING_RATE_MAX, SPEED
 from hypothesis import strategies as st
 
-from gnc.estimation.own_motion import KnownMotion
-from gnc.estimation.reachable_set import Tube
+from gnc.estimation.navigation import KnownMotion
+from gnc.estimation.vessel import Tube
 from gnc.numeric import wrap
 from gnc.safety.guard_parameters import GuardParameters
 from gnc.safety.keepout_guard import KeepoutGuard

@@ -12,8 +12,8 @@ from gnc_cases import HEADING_RATE_MAX, SPEED
 from guard_cases import RADIUS, moved, random_velocity
 from vessel_cases import LIMITS, Mailbox, Vessel, radio, report_of
 
-from gnc.estimation.own_motion import KnownMotion
-from gnc.estimation.reachable_set import ReachableSet, Tube
+from gnc.estimation.navigation import KnownMotion
+from gnc.estimation.vessel import ReachableSet, Tube
 from gnc.numeric import wrap
 from gnc.safety.guard_parameters import GuardParameters
 from gnc.safety.keepout_guard import KeepoutGuard

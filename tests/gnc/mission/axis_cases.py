@@ -1,7 +1,7 @@
 """What tests of a plume's axis share: a vehicle astern of a vessel, and exhaust that rises."""
 
-from gnc.estimation.own_motion import KnownMotion
-from gnc.estimation.target_motion import SteadyTarget
+from gnc.estimation.navigation import KnownMotion
+from gnc.estimation.vessel import SteadyTarget
 from gnc.mission.axis_height import AxisHeight
 from gnc.mission.plume_axis import Situation
 from gnc.reference.moving_centre import CentreParameters, MovingCentre

@@ -15,8 +15,8 @@ from gnc_cases import (
 
 from gnc.compose import compose
 from gnc.estimation.health import Fault
-from gnc.estimation.own_motion import TrueNavigation
-from gnc.estimation.target_motion import SteadyTarget
+from gnc.estimation.navigation import TrueNavigation
+from gnc.estimation.vessel import SteadyTarget
 from gnc.mission.approach import ApproachParameters
 from gnc.mission.direct_tracking import DirectParameters, DirectTracking, Joining, SteadyCentre
 from gnc.mission.mode import Mode

@@ -6,8 +6,8 @@ from gnc_cases import SPEED, TIME_STEP
 from hypothesis import given
 from hypothesis import strategies as st
 
-from gnc.estimation.own_motion import TrueNavigation
-from gnc.estimation.target_motion import SteadyTarget
+from gnc.estimation.navigation import TrueNavigation
+from gnc.estimation.vessel import SteadyTarget
 from gnc.laws.paper import CascadeLaw
 from gnc.laws.path.lgvf import LgvfLaw
 from gnc.laws.path.npfg import NpfgLaw

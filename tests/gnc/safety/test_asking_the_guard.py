@@ -10,7 +10,7 @@ import pytest
 from gnc_cases import HEADING_RATE_MAX, SPEED
 from guard_cases import LAGS, RADIUS, TIME_STEP, aim_at_the_centre, make_guard, moved
 
-from gnc.estimation.own_motion import KnownMotion
+from gnc.estimation.navigation import KnownMotion
 
 
 @LAGS

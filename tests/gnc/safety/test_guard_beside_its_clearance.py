@@ -7,8 +7,8 @@ import pytest
 from gnc_cases import HEADING_RATE_MAX, SPEED
 from guard_cases import RADIUS, TIME_STEP, TURN_RADIUS, random_start, random_velocity
 
-from gnc.estimation.own_motion import KnownMotion
-from gnc.estimation.reachable_set import Tube
+from gnc.estimation.navigation import KnownMotion
+from gnc.estimation.vessel import Tube
 from gnc.safety.guard_parameters import GuardParameters
 from gnc.safety.keepout_guard import KeepoutGuard
 

@@ -14,8 +14,8 @@ from guard_cases import (
     random_velocity,
 )
 
-from gnc.estimation.own_motion import KnownMotion
-from gnc.estimation.reachable_set import Tube
+from gnc.estimation.navigation import KnownMotion
+from gnc.estimation.vessel import Tube
 from gnc.numeric import wrap
 from gnc.safety.turn_prediction import TurnPrediction, nearer_side
 

@@ -8,9 +8,8 @@ from collections import deque
 import numpy as np
 import pytest
 
-from gnc.estimation.own_motion import KnownMotion
-from gnc.estimation.reachable_set import Tube, VesselLimits, tube
-from gnc.estimation.vessel_filter import VesselReport
+from gnc.estimation.navigation import KnownMotion
+from gnc.estimation.vessel import Tube, VesselLimits, VesselReport, tube
 from gnc.paper import design_oscillation
 from gnc.safety.guard_parameters import GuardParameters
 from gnc.safety.keepout_guard import KeepoutGuard

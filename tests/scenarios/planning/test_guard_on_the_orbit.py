@@ -7,8 +7,8 @@ import math
 import numpy as np
 import pytest
 
-from gnc.estimation.own_motion import KnownMotion
-from gnc.estimation.reachable_set import Tube
+from gnc.estimation.navigation import KnownMotion
+from gnc.estimation.vessel import Tube
 from gnc.paper import PlumeAxis, distance_by_paper
 from gnc.safety.keepout_guard import KeepoutGuard
 from innerloop.flight.turn_reversal import TurnReversalResponse

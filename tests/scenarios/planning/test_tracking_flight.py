@@ -6,8 +6,8 @@ from dataclasses import replace
 import pytest
 
 from gnc.errors import InfeasibleError
-from gnc.estimation.own_motion import KnownMotion
-from gnc.estimation.reachable_set import Tube
+from gnc.estimation.navigation import KnownMotion
+from gnc.estimation.vessel import Tube
 from gnc.safety.keepout_guard import KeepoutGuard
 from innerloop.flight.turn_reversal import TurnReversalResponse
 from scenarios.errors import InputError
