@@ -10,7 +10,8 @@ import pytest
 from exhaust_cases import PRIOR, SENSOR, MadePlume, estimated
 
 from gnc.errors import InfeasibleError
-from gnc.estimation.plume.estimator import PlumeEstimator, PlumeState, SensorState
+from gnc.estimation.plume.estimator import PlumeEstimator, PlumeState
+from gnc.estimation.plume.passes import SensorState
 from gnc.estimation.plume.prior import BACKGROUND_DRIFT, BEARING_DRIFT, HEIGHT_DRIFT
 
 AROUND = [65.0, 72.0, 58.0, 68.0, 62.0, 70.0]
@@ -188,12 +189,14 @@ def test_a_single_miss_does_not_lose_a_plume() -> None:
 
 
 def test_the_interval_leaves_a_fortieth_on_either_side() -> None:
+    # Passes at the distance and in the wind of the prior: heights are those of the cells.
     estimator = estimated(MadePlume(height=68.0), [65.0])
-    step = estimator._heights[1] - estimator._heights[0]
+    heights, of_heights = estimator.grid.height, estimator.cells.sum(axis=(0, 2))
+    step = heights[1] - heights[0]
     low, high = estimator.height_interval
     # Each cell is as likely anywhere between its edges.
-    below = estimator._of_heights @ np.clip(0.5 + (low - estimator._heights) / step, 0.0, 1.0)
-    above = estimator._of_heights @ np.clip(0.5 - (high - estimator._heights) / step, 0.0, 1.0)
+    below = of_heights @ np.clip(0.5 + (low - heights) / step, 0.0, 1.0)
+    above = of_heights @ np.clip(0.5 - (high - heights) / step, 0.0, 1.0)
     assert (below, above) == pytest.approx((0.025, 0.025), abs=1e-9)
 
 
@@ -208,12 +211,12 @@ def test_the_chance_of_a_detection_is_that_of_centres_drawn_at_random(altitude: 
     spread, height, strength = np.unravel_index(
         generator.choice(estimator.cells.size, count, p=estimator.cells.ravel()), shape
     )
-    off = estimator._heights[height] + PRIOR.meander_z * generator.standard_normal(count) - altitude
+    off = grid.height[height] + PRIOR.meander_z * generator.standard_normal(count) - altitude
     read = grid.strength[strength] * np.exp(-0.5 * (off / grid.sigma_z[spread, height]) ** 2)
     # One look, at the cells' own distance. Steps of 0.5 in the logarithm of strength blur the least
     # that is detected.
     assert estimator.detection(altitude) == pytest.approx(
-        np.mean(read > estimator._least), abs=0.01
+        np.mean(read > estimator.detectable), abs=0.01
     )
     assert 0.1 < estimator.detection(altitude) < 0.999
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from exhaust_cases import PRIOR
 
-from gnc.estimation.plume.grid import STRENGTH_STEP, PlumeGrid, wandered
+from gnc.estimation.plume.estimator import STRENGTH_STEP, PlumeGrid, random_walk
 
 GRID = PlumeGrid(PRIOR)
 
@@ -94,7 +94,7 @@ def test_heights_taken_together_have_the_mean_of_the_cells() -> None:
 def test_a_random_walk_has_the_variance_that_it_should_and_loses_nothing(steps: float) -> None:
     cells = np.zeros((3, 201))
     cells[:, 100] = [0.2, 0.3, 0.5]
-    found = wandered(cells, 1, steps)
+    found = random_walk(cells, 1, steps)
     assert found.sum(axis=1) == pytest.approx(cells.sum(axis=1), rel=1e-12)
     assert found.min() >= 0.0
     off = np.arange(201) - 100
@@ -134,7 +134,7 @@ def test_without_an_uncertain_stack_the_whole_difference_is_rise() -> None:
 
 def test_what_a_pass_is_expected_to_read_adds_up_to_its_chance_of_anything() -> None:
     fading = GRID.fading(GRID.height - 70.0, 1.5)
-    read = GRID.over_faint(GRID.prior, fading)
+    read = GRID.reading_probability(GRID.prior, fading)
     # By spread, height and step; what a pass misses is the rest to 1.
     assert read.sum() == pytest.approx(
         float((GRID.prior.sum(axis=2)[..., np.newaxis] * fading).sum()), rel=1e-12
@@ -148,11 +148,11 @@ def test_what_a_pass_is_expected_to_read_adds_up_to_its_chance_of_anything() -> 
         for step in range(fading.shape[2])
     ]
     expected[nearest] = fading[MIDDLE, 20]
-    assert GRID.over_faint(one, fading)[MIDDLE] == pytest.approx(expected)
+    assert GRID.reading_probability(one, fading)[MIDDLE] == pytest.approx(expected)
 
 
 def test_a_pass_looks_as_wide_as_its_plume_or_less_likely_otherwise() -> None:
-    of_widths = GRID.of_widths(0.2)
+    of_widths = GRID.width_likelihood(0.2)
     assert of_widths.sum(axis=1) == pytest.approx(1.0)
     beside = (of_widths.shape[1] - len(of_widths)) // 2
     assert of_widths.argmax(axis=1).tolist() == [beside + w for w in range(len(of_widths))]
