@@ -20,7 +20,7 @@ from dataclasses import dataclass
 from typing import Any, NamedTuple, Protocol
 
 KEPT = 3
-"""Newest reports that discs are made of [-]: an older one could be nearer the truth only by luck."""
+"""Newest reports that discs are made of [-]: an older one is nearer the truth only by luck."""
 
 REPORTED_SCATTER = 0.03
 """Scatter of the estimated acceleration of a steady vessel whose reports have errors [m/s^2]."""

@@ -66,7 +66,7 @@ to.
 """
 
 _STILL = 0.1
-"""Range of the readings of a pass over the sensor's noise, below which they are not believed [-]."""
+"""Least range of the readings of a pass that is believed, over the sensor's noise [-]."""
 
 
 class SensorState(Enum):
