@@ -7,7 +7,7 @@ frame drifts with the estimated wind; in still air it is the frame of the ground
 import bisect
 import math
 from dataclasses import dataclass
-from typing import Any, NamedTuple, Protocol
+from typing import Any, NamedTuple
 
 NOISE_DEVIATIONS = 3.0
 """Standard deviations of noise that are allowed for [-]."""
@@ -71,7 +71,7 @@ class SensorReadings(NamedTuple):
     servo_error: float
 
 
-class AirMotion(Protocol):
+class AirMotion:
     """The part of a vehicle's motion that a turn away is predicted from.
 
     Attributes
@@ -85,18 +85,31 @@ class AirMotion(Protocol):
     speed : of the motion through the mean air [m/s]
     """
 
-    ground_north: float
-    ground_east: float
-    course: float
-    heading_rate: float
-    wind_north: float
-    wind_east: float
-    wind_error: float
-    lost: float
-    speed: float
+    def __init__(
+        self,
+        *,
+        ground_north: float,
+        ground_east: float,
+        course: float,
+        heading_rate: float = 0.0,
+        wind_north: float = 0.0,
+        wind_east: float = 0.0,
+        wind_error: float = 0.0,
+        lost: float = 0.0,
+        speed: float = 0.0,
+    ) -> None:
+        self.ground_north = ground_north
+        self.ground_east = ground_east
+        self.course = course
+        self.heading_rate = heading_rate
+        self.wind_north = wind_north
+        self.wind_east = wind_east
+        self.wind_error = wind_error
+        self.lost = lost
+        self.speed = speed
 
 
-class OwnMotion(AirMotion, Protocol):
+class OwnMotion(AirMotion):
     """The vehicle's motion, updated once per guidance step.
 
     Attributes
@@ -109,55 +122,22 @@ class OwnMotion(AirMotion, Protocol):
     Further attributes are those of ``AirMotion``.
     """
 
-    north: float
-    east: float
-    drift_north: float
-    drift_east: float
-    airspeed: float
-    air_ratio: float
+    def __init__(self) -> None:
+        super().__init__(ground_north=0.0, ground_east=0.0, course=0.0)
+        self.north = 0.0
+        self.east = 0.0
+        self.drift_north = 0.0
+        self.drift_east = 0.0
+        self.airspeed = math.nan
+        self.air_ratio = 1.0
 
     def update(self, measurement: Any) -> None:
         """Take in a measurement, in the form that this navigation takes."""
+        raise NotImplementedError
 
 
-@dataclass(slots=True, kw_only=True)
-class KnownMotion:
-    """A motion that is given; attributes same as ``AirMotion``."""
-
-    ground_north: float
-    ground_east: float
-    course: float
-    heading_rate: float = 0.0
-    wind_north: float = 0.0
-    wind_east: float = 0.0
-    wind_error: float = 0.0
-    lost: float = 0.0
-    speed: float = 0.0
-
-
-class _OwnState:
-    """The attributes of ``OwnMotion``, at the origin before the first measurement."""
-
-    def __init__(self) -> None:
-        self.north = 0.0
-        self.east = 0.0
-        self.ground_north = 0.0
-        self.ground_east = 0.0
-        self.course = 0.0
-        self.speed = 0.0
-        self.heading_rate = 0.0
-        self.airspeed = math.nan
-        self.air_ratio = 1.0
-        self.wind_north = 0.0
-        self.wind_east = 0.0
-        self.wind_error = 0.0
-        self.drift_north = 0.0
-        self.drift_east = 0.0
-        self.lost = 0.0
-
-
-class TrueNavigation(_OwnState):
-    """The exact motion, in still air; attributes same as ``OwnMotion``."""
+class TrueNavigation(OwnMotion):
+    """The exact motion, in still air."""
 
     def update(self, measurement: Motion) -> None:
         """Take in the motion now."""
@@ -288,7 +268,7 @@ class NavigationParameters:
     time_step: float
 
 
-class EstimatedNavigation(_OwnState):
+class EstimatedNavigation(OwnMotion):
     """The motion estimated from sensors, by dead reckoning while satellite navigation is lost.
 
     An autopilot turns against the gusty air, the guidance over the mean air:

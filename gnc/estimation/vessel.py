@@ -17,7 +17,7 @@ of them is enough (docs/keepout_guard.md).
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any, NamedTuple, Protocol
+from typing import Any, NamedTuple
 
 KEPT = 3
 """Newest reports that discs are made of [-]: an older one is nearer the truth only by luck."""
@@ -466,7 +466,7 @@ class ReachableSet:
         return speed + edge > self._limits.speed_max
 
 
-class TargetMotion(Protocol):
+class TargetMotion:
     """The vessel's motion over the ground, updated once per guidance step.
 
     Attributes
@@ -477,25 +477,26 @@ class TargetMotion(Protocol):
     tubes : discs that contain the vessel from the last plan on, the best known first
     """
 
-    north: float
-    east: float
-    velocity_north: float
-    velocity_east: float
-    acceleration_north: float
-    acceleration_east: float
-    tubes: Sequence[Tube]
+    def __init__(self) -> None:
+        self.north = 0.0
+        self.east = 0.0
+        self.velocity_north = 0.0
+        self.velocity_east = 0.0
+        self.acceleration_north = 0.0
+        self.acceleration_east = 0.0
+        self.tubes: Sequence[Tube] = ()
 
     def update(self, time: float, planning: bool) -> None:
         """Move on to ``time`` [s]; renew the estimate where the mission is ``planning``."""
+        raise NotImplementedError
 
     def age(self, time: float) -> float:
         """Return the age of the last report [s] at ``time`` [s]."""
+        raise NotImplementedError
 
 
-class SteadyTarget:
+class SteadyTarget(TargetMotion):
     """A vessel at constant velocity from the origin, known exactly.
-
-    Attributes are same as ``TargetMotion``.
 
     Parameters
     ----------
@@ -503,28 +504,23 @@ class SteadyTarget:
     """
 
     def __init__(self, velocity_north: float, velocity_east: float) -> None:
+        super().__init__()
         self.velocity_north = velocity_north
         self.velocity_east = velocity_east
-        self.north = 0.0
-        self.east = 0.0
-        self.acceleration_north = 0.0
-        self.acceleration_east = 0.0
-        self.tubes: Sequence[Tube] = (Tube(0.0, 0.0, 0.0, velocity_north, velocity_east),)
+        self.tubes = (Tube(0.0, 0.0, 0.0, velocity_north, velocity_east),)
 
-    def update(self, time: float, planning: bool) -> None:  # noqa: ARG002 - of the Protocol
+    def update(self, time: float, planning: bool) -> None:  # noqa: ARG002 - of TargetMotion
         """Move on to ``time`` [s]."""
         self.north = self.velocity_north * time
         self.east = self.velocity_east * time
 
-    def age(self, _time: float) -> float:
+    def age(self, time: float) -> float:  # noqa: ARG002 - of TargetMotion
         """Return 0: exact knowledge does not age [s]."""
         return 0.0
 
 
-class ReportedTarget:
+class ReportedTarget(TargetMotion):
     """A vessel known from its reports, extrapolated between plans.
-
-    Attributes are same as ``TargetMotion``.
 
     Parameters
     ----------
@@ -534,16 +530,10 @@ class ReportedTarget:
     """
 
     def __init__(self, vessel: VesselFilter, reach: ReachableSet, time_step: float) -> None:
+        super().__init__()
         self.vessel = vessel
         self._reach = reach
         self._time_step = time_step
-        self.tubes: Sequence[Tube] = ()
-        self.north = 0.0
-        self.east = 0.0
-        self.velocity_north = 0.0
-        self.velocity_east = 0.0
-        self.acceleration_north = 0.0
-        self.acceleration_east = 0.0
         # Of the velocity, in a step.
         self._gain_north = 0.0
         self._gain_east = 0.0

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from gnc.errors import InfeasibleError
-from gnc.estimation.navigation import KnownMotion
+from gnc.estimation.navigation import AirMotion
 from gnc.estimation.vessel import Tube, VesselReport
 from gnc.safety.guard_parameters import GuardParameters
 from gnc.safety.keepout_guard import KeepoutGuard
@@ -106,7 +106,7 @@ def check_start(
         )
     keeping = KeepoutGuard(guard)
     keeping.tubes = vessel
-    own = KnownMotion(
+    own = AirMotion(
         ground_north=start.north,
         ground_east=start.east,
         course=start.course,

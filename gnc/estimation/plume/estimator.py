@@ -524,7 +524,6 @@ class PlumeEstimator:
     sigma_y, sigma_z, meander_z : spreads of the plume at one moment, and its meander in height, at
         the last pass [m]
     state : whether the plume is searched for, found, or lost again
-    signal_to_noise : peak of the readings over their noise, of the best pass so far [-]
     found_at : time since the start at which the plume was found first [s]; NaN before;
         benchmarks/plume judges searches by it
     innovation : mean normalised innovation squared of the passes, 1 where the filter is consistent
@@ -537,7 +536,6 @@ class PlumeEstimator:
         self.prior = prior
         self.grid = PlumeGrid(prior)
         self.state = PlumeState.SEARCHING
-        self.signal_to_noise = 0.0
         self.found_at = math.nan
         self.innovation = 1.0
         self.passes = 0
@@ -737,7 +735,6 @@ class PlumeEstimator:
         squared = (hit - chance) ** 2 / (chance * (1.0 - chance))
         self.innovation += (squared - self.innovation) / min(self.passes, _MEMORY)
         if hit:
-            self.signal_to_noise = max(self.signal_to_noise, signal_to_noise)
             if math.isnan(self.found_at):
                 self.found_at = self._time
             self.state = PlumeState.FOUND

@@ -291,7 +291,7 @@ class Evidence:
     slope, bend : shape (w, j) [1/ppm, 1/ppm^2]
     response : largest reading that a pulse of strength 1 of the middle spread makes, where the axis
         is crossed best [-]
-    strength, at, spread : of the pulse that fits best: its strength [ppm], and its indices j and w
+    at : index j of the pulse that fits best
     peak : largest reading above the background that this pulse makes [ppm]
     significance : strength of this pulse over its uncertainty by noise alone [-]
     """
@@ -299,9 +299,7 @@ class Evidence:
     slope: Array
     bend: Array
     response: float
-    strength: float
     at: int
-    spread: int
     peak: float
     significance: float
 
@@ -396,7 +394,6 @@ class PassReader:
         slope, bend = products.projected(total, inner)
         bend_up = np.maximum(bend, BEND_MIN)
         best = int((np.maximum(slope, 0.0) ** 2 / bend_up).argmax())
-        spread, at = divmod(best, len(places))
         alone_slope, alone_bend = products.of(best).projected(noise, _inner(background, noise))
         strength = max(0.0, float(slope[best] / bend_up[best]))
         pulse = strength * templates[best]
@@ -408,9 +405,7 @@ class PassReader:
             slope=slope.reshape(len(spreads), -1),
             bend=bend.reshape(len(spreads), -1),
             response=float(templates[of_middle : of_middle + len(places)].max()),
-            strength=strength,
-            at=at,
-            spread=spread,
+            at=best % len(places),
             peak=float(pulse.max()),
             significance=float(alone_slope / math.sqrt(max(float(alone_bend), BEND_MIN))),
         )

@@ -9,7 +9,7 @@ import pytest
 from gnc_cases import HEADING_RATE_MAX, SPEED
 from hypothesis import strategies as st
 
-from gnc.estimation.navigation import KnownMotion
+from gnc.estimation.navigation import AirMotion
 from gnc.estimation.vessel import Tube
 from gnc.numeric import wrap
 from gnc.safety.guard_parameters import GuardParameters
@@ -52,7 +52,7 @@ class DiscGuard:
         place = (self._time, self._north, self._east, velocity_north, velocity_east)
         self.guard.tubes = (Tube(*place, radius_inflation, 0.0, self._acceleration),)
         place = {"ground_north": self._north + x, "ground_east": self._east + y}
-        return KnownMotion(**place, course=course, heading_rate=heading_rate, speed=speed)
+        return AirMotion(**place, course=course, heading_rate=heading_rate, speed=speed)
 
     def limit(
         self,

@@ -12,7 +12,7 @@ from gnc_cases import HEADING_RATE_MAX, SPEED
 from guard_cases import RADIUS, moved, random_velocity
 from vessel_cases import LIMITS, Mailbox, Vessel, radio, report_of
 
-from gnc.estimation.navigation import KnownMotion
+from gnc.estimation.navigation import AirMotion
 from gnc.estimation.vessel import ReachableSet, Tube
 from gnc.numeric import wrap
 from gnc.safety.guard_parameters import GuardParameters
@@ -195,7 +195,7 @@ def hunt(
             reach.report(report)
         if step % each == 0:
             guard.tubes = tubes(time)
-        own = KnownMotion(
+        own = AirMotion(
             ground_north=state[0], ground_east=state[1], course=state[2], heading_rate=state[3]
         )
         command = guard.limit(aim_at(guard.tubes[0], own, time), time, own, SPEED)

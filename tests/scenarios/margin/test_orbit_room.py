@@ -8,7 +8,7 @@ from collections import deque
 import numpy as np
 import pytest
 
-from gnc.estimation.navigation import KnownMotion
+from gnc.estimation.navigation import AirMotion
 from gnc.estimation.vessel import Tube, VesselLimits, VesselReport, tube
 from gnc.paper import design_oscillation
 from gnc.safety.guard_parameters import GuardParameters
@@ -77,7 +77,7 @@ def interventions(nu, distance, vessel):
     for step in range(round(2.0 * orbit.period / TIME_STEP)):
         time = step * TIME_STEP
         guard.tubes = (vessel._replace(time=time, north=mean * time, velocity_north=mean),)
-        own = KnownMotion(
+        own = AirMotion(
             ground_north=state[0], ground_east=state[1], course=state[2], heading_rate=state[3]
         )
         # Asked afresh: it keeps nothing in mind but the commands under way.

@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 
-from gnc.estimation.navigation import KnownMotion
+from gnc.estimation.navigation import AirMotion
 from gnc.estimation.vessel import Tube
 from gnc.paper import PlumeAxis, distance_by_paper
 from gnc.safety.keepout_guard import KeepoutGuard
@@ -54,7 +54,7 @@ def least_clearance(plan):
     return min(
         guard.clearance(
             0.0,
-            KnownMotion(
+            AirMotion(
                 ground_north=centre.x + north,
                 ground_east=centre.y + east,
                 course=heading,

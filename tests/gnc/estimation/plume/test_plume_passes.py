@@ -57,9 +57,12 @@ def test_a_pulse_is_found_where_and_as_strong_as_it_is() -> None:
     )
     assert evidence is not None
     assert PLACES[evidence.at] == pytest.approx(10.0)
-    assert SPREADS[evidence.spread] == 9.0
+    gain = evidence.slope**2 / evidence.bend
+    spread, place = np.unravel_index(gain.argmax(), gain.shape)
+    assert (SPREADS[spread], place) == (9.0, evidence.at)
     # A step of 0.25 s of the path is half a spread.
-    assert evidence.strength == pytest.approx(80.0, rel=0.05)
+    strength = evidence.slope[spread, place] / evidence.bend[spread, place]
+    assert strength == pytest.approx(80.0, rel=0.05)
     # Through a lag of 0.43 s a pulse of 0.45 s keeps about two thirds of its peak.
     assert 0.5 * 80.0 < evidence.peak < 0.8 * 80.0
 
