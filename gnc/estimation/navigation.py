@@ -343,7 +343,7 @@ class EstimatedNavigation(OwnMotion):
         variance = sigma**2
         if not self._first_variance:
             self._first_variance = variance
-        # The first measurement has the same share of the estimate as of a mean of as many.
+        # The share of the first measurement in the estimate falls with the variance, as in a mean.
         error = p.first_wind_error * variance / self._first_variance
         if p.wind_noise > p.wind_error:
             error += max(0.0, min(p.wind_noise, NOISE_DEVIATIONS * sigma) - p.wind_error)

@@ -89,7 +89,7 @@ class FilterParameters:
 
 
 class AxisState(NamedTuple):
-    """Position, velocity and acceleration along one axis [m, m/s, m/s^2]; or factors of them."""
+    """Position, velocity and acceleration along one axis [m, m/s, m/s^2], or gains on them."""
 
     position: float
     velocity: float
@@ -367,7 +367,7 @@ def radius_after(limits: VesselLimits, age: Any) -> Any:
 
 
 def radius_by_speed(limits: VesselLimits, age: Any) -> Any:
-    """Return the radius of the disc by the largest speed [m]; parameters same as above."""
+    """Return the radius of the disc by the largest speed [m]; parameters as in ``radius_after``."""
     return limits.deviations * limits.position_sigma + limits.speed_max * age
 
 

@@ -48,8 +48,8 @@ an assumption.
 """
 
 _TAIL_ERROR = 0.3
-"""Error of the rest of the last pass in the sensor, over that rest [-]: same as of the strength of
-a pass.
+"""Error of the rest of the last pass in the sensor, over that rest [-]: the error of a pass's
+strength.
 """
 
 _UNSEEN_DRIFT = 1.0

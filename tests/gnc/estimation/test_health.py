@@ -1,4 +1,4 @@
-"""Faults of the vehicle: each is found in the time that its mean takes, and a sound one has none."""
+"""Faults of the vehicle: found in the time that their means take, and none of a sound one."""
 
 import copy
 import math

@@ -289,7 +289,7 @@ def wind_filter_of(**changes):
 
 
 def weave(time):
-    """Return the course of a weave with eta = 1.52 and a period of 19 s: the reference at nu = 0.5."""
+    """Return the course of a weave with eta = 1.52 and a period of 19 s, as at nu = 0.5."""
     return 0.8 + 1.52 * math.cos(0.33 * time)
 
 

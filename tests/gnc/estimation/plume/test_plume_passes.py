@@ -78,7 +78,7 @@ def test_clean_air_has_no_significant_pulse() -> None:
 
 @pytest.mark.parametrize("place", [0.0, 80.0])
 def test_clean_air_after_a_plume_is_clean_air(place: float) -> None:
-    """Neither has the background risen by it, nor is what is left of it in the sensor another one."""
+    """Its background has not risen, and the rest of the plume in the sensor is no second plume."""
     duration, tail = 9.0, SENSOR.time_constant
     fine = np.arange(0.0, 2.0 * duration, 1e-3)
     # The plume is gone by the turn, at 90 m: the second pass meets nothing.
