@@ -23,8 +23,7 @@ MODULES = {
     "gnc": (
         "guidance", "numeric", "unicycle",
         "airspeed",
-        "estimation/health", "estimation/health_monitor", "estimation/navigation", "estimation/own_motion",
-        "estimation/target_motion", "estimation/vessel_filter", "estimation/wind_filter",
+        "estimation/health", "estimation/navigation", "estimation/vessel",
         "paper",
         "mission/approach", "mission/direct_tracking", "mission/egress", "mission/mode", "mission/plume_following",
         "mission/transit",

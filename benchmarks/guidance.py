@@ -21,8 +21,8 @@ import pandas as pd
 from benchmarks.vehicle import x8_setup
 from common.run_layout import SUMMARY, time_history_path
 from gnc.compose import compose
-from gnc.estimation.own_motion import Motion
-from gnc.estimation.target_motion import ReportedTarget
+from gnc.estimation.navigation import Motion
+from gnc.estimation.vessel import ReportedTarget
 from gnc.guidance import Guidance
 from gnc.mission.searched_axis import SearchedAxis
 from scenarios.engine.task import Task
@@ -162,7 +162,7 @@ def _flown(scenario: Scenario, setup: VehicleSetup) -> tuple[FlightPlan, Measure
     if not measured:
         # It knows its motion exactly.
         measured = [
-            (at, tuple(motion))
+            (at, Motion(*motion))
             for at, *motion in history[_MOTION].itertuples(index=False, name=None)
         ]
     return work.plan(work.request(Task(number=0))), measured, _plume_readings(history)

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from typing import NamedTuple, Protocol
 
 from gnc.errors import InfeasibleError
-from gnc.estimation.own_motion import OwnMotion
+from gnc.estimation.navigation import OwnMotion
 from gnc.numeric import clip
 
 

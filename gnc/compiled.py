@@ -1,6 +1,4 @@
-"""Modules that `make fast` has compiled: they are run in place of their sources until one of these
-is edited.
-"""
+"""Imports the modules that `make fast` has compiled, until a source is edited."""
 
 import json
 import os
@@ -14,28 +12,21 @@ from types import ModuleType
 from common.files import files_hash
 
 SOURCES = "PLUME_FLIGHT_SOURCES"
-"""Environment variable; whatever it is set to, the sources are run."""
+"""Environment variable: if it is not empty, the sources are run."""
 
 ROOT = Path(__file__).parents[1]
 FOLDER = ROOT / "build" / f"compiled-{sys.implementation.cache_tag}"
-"""What was compiled for this Python: apart from the sources, so that no other commit finds it."""
+"""Compiled for this Python; apart from the sources, so that no other commit finds it."""
 
 INDEX = FOLDER / "index.json"
-"""``sources``, their hash; ``modules``, names of modules and of files. Written last: without it
-there is nothing.
-"""
+"""``sources``, their hash; ``modules``, a file for each module. It is written last."""
 
 _PACKAGES = ("aircraft", "common", "gnc", "innerloop", "scenarios")
-"""Whose sources count: those of compiled modules, and what these import."""
+"""Packages whose sources are hashed: of compiled modules, and of what these import."""
 
 
 class _Finder:
-    """Finds modules in files of other names than Python looks for.
-
-    Parameters
-    ----------
-    files : by the names of modules
-    """
+    """Finds modules in given files, by their names."""
 
     def __init__(self, files: Mapping[str, Path]) -> None:
         self._files = files
@@ -48,15 +39,16 @@ class _Finder:
 
 
 def sources_hash() -> str:
-    """Return a hash of the sources as they are."""
+    """Return a hash of the sources now."""
     return files_hash(
         ROOT, (path for package in _PACKAGES for path in sorted((ROOT / package).rglob("*.py")))
     )
 
 
 def compiled_modules() -> dict[str, Path]:
-    """Return the file of each compiled module by its name: none if one is missing, the sources are
-    others by now, or asked for.
+    """Return the file of each compiled module by its name; none where the sources are to be run.
+
+    That is so if a file is missing, a source was edited since, or the environment asks for it.
     """
     if os.environ.get(SOURCES):
         return {}
@@ -64,13 +56,14 @@ def compiled_modules() -> dict[str, Path]:
         index = json.loads(INDEX.read_text(encoding="utf-8"))
         files = {name: FOLDER / file for name, file in index["modules"].items()}
     except (OSError, ValueError, LookupError, TypeError):
-        # There is none, or it is damaged.
+        # There is no index, or it is damaged.
         return {}
-    whole = all(file.is_file() for file in files.values()) and index["sources"] == sources_hash()
-    return files if whole else {}
+    complete = all(file.is_file() for file in files.values())
+    return files if complete and index["sources"] == sources_hash() else {}
 
 
 def choose() -> None:
-    """Have compiled modules be imported from now on, if there are any that are to be run."""
-    if files := compiled_modules():
+    """Import compiled modules from now on, if there are any."""
+    files = compiled_modules()
+    if files:
         sys.meta_path.insert(0, _Finder(files))

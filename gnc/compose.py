@@ -1,10 +1,14 @@
 """The one place where the parts of the guidance are chosen, from frozen parameters."""
 
-from gnc.estimation.health_monitor import HealthMonitor
-from gnc.estimation.own_motion import EstimatedNavigation, OwnMotion, TrueNavigation
-from gnc.estimation.reachable_set import ReachableSet
-from gnc.estimation.target_motion import ReportedTarget, SteadyTarget, TargetMotion
-from gnc.estimation.vessel_filter import VesselFilter
+from gnc.estimation.health import HealthMonitor
+from gnc.estimation.navigation import EstimatedNavigation, OwnMotion, TrueNavigation
+from gnc.estimation.vessel import (
+    ReachableSet,
+    ReportedTarget,
+    SteadyTarget,
+    TargetMotion,
+    VesselFilter,
+)
 from gnc.guard.guard import KeepoutGuard, SpeedRange
 from gnc.guidance import Guidance
 from gnc.mission.direct_tracking import DirectTracking

@@ -5,10 +5,9 @@ from collections.abc import Sequence
 from typing import Any
 
 from gnc.airspeed import AirspeedLaw
-from gnc.estimation.health_monitor import HealthMonitor
-from gnc.estimation.own_motion import OwnMotion
-from gnc.estimation.reachable_set import Tube
-from gnc.estimation.target_motion import TargetMotion
+from gnc.estimation.health import HealthMonitor
+from gnc.estimation.navigation import OwnMotion
+from gnc.estimation.vessel import TargetMotion, Tube
 from gnc.guard.guard import Demand, GuardStatus, KeepoutGuard
 from gnc.mission.mission import Mission
 from gnc.numeric import limited

@@ -1,4 +1,4 @@
-"""Angles brought into one turn, and values kept within a limit."""
+"""Angles wrapped to one turn, and values kept within limits. NaN propagates."""
 
 import math
 
@@ -9,26 +9,25 @@ _TURN = 2.0 * math.pi
 
 
 def wrap(angle: float) -> float:
-    """Return ``angle`` [rad] brought into [-pi, pi); the differences of courses go through here."""
+    """Return an angle [rad] wrapped to [-pi, pi), as differences of courses are."""
     shifted = angle + math.pi
     if 0.0 <= shifted < _TURN:
-        # What the remainder would be, without asking for it.
+        # The remainder would be the same.
         return shifted - math.pi
     wrapped = math.fmod(shifted, _TURN)
     return wrapped - math.pi if wrapped >= 0.0 else wrapped + math.pi
 
 
 def wrapped(angles: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
-    """Return angles [rad] brought to between -pi and pi, of any shape."""
+    """Return angles [rad] wrapped to between -pi and pi, of any shape."""
     result: npt.NDArray[np.float64] = angles - _TURN * np.rint(angles / _TURN)
     return result
 
 
 def limited(value: float, limit: float) -> float:
-    """Return ``value`` kept within minus and plus ``limit``, which is above 0; what is not a number
-    stays so.
+    """Return ``value`` kept within minus and plus ``limit``, which is above 0.
 
-    It takes a third of the time of ``min`` and ``max``: the guidance calls it at every step.
+    It takes a third of the time of ``min`` and ``max``; the guidance calls it at every step.
     """
     if value > limit:
         return limit
@@ -36,5 +35,7 @@ def limited(value: float, limit: float) -> float:
 
 
 def clip(value: float, low: float, high: float) -> float:
-    """Return ``value`` kept within ``low`` and ``high``; what is not a number stays so."""
-    return low if value < low else high if value > high else value
+    """Return ``value`` kept within ``low`` and ``high``."""
+    if value < low:
+        return low
+    return high if value > high else value

@@ -5,10 +5,9 @@
 from dataclasses import dataclass
 
 from gnc.airspeed import AirspeedLaw
-from gnc.estimation.health_monitor import HealthParameters
+from gnc.estimation.health import HealthParameters
 from gnc.estimation.navigation import NavigationParameters
-from gnc.estimation.reachable_set import VesselLimits
-from gnc.estimation.vessel_filter import FilterParameters
+from gnc.estimation.vessel import FilterParameters, VesselLimits
 from gnc.guard.guard import GuardParameters
 from gnc.mission.direct_tracking import DirectParameters
 from gnc.mission.plume_following import FollowingParameters

@@ -1,23 +1,46 @@
 """The vehicle of the paper: constant speed, steered by its heading rate."""
 
 import math
+from typing import NamedTuple
 
 _HALF_SPAN = 0.5 * math.sqrt(0.6)
 _GAUSS = ((0.5 - _HALF_SPAN, 5.0 / 18.0), (0.5, 8.0 / 18.0), (0.5 + _HALF_SPAN, 5.0 / 18.0))
 """Nodes and weights of the three-point rule on 0 to 1."""
+
 _PIECES_MAX = 200
-"""Pieces of a move at most; a lag for which these are too long is over before it moves the vehicle.
+"""Pieces of a move at most. A lag for which these are too long is over before it moves the vehicle.
 """
+
+
+class UnicycleState(NamedTuple):
+    """Position, course and heading rate of a vehicle.
+
+    Attributes
+    ----------
+    north, east : [m]
+    course : [rad]
+    heading_rate : [rad/s]
+    """
+
+    north: float
+    east: float
+    course: float
+    heading_rate: float
 
 
 def unicycle_move(
     north: float, east: float, course: float, speed: float, heading_rate: float, duration: float
 ) -> tuple[float, float, float]:
-    """Return position [m] and course [rad] after ``duration`` [s] of constant speed and heading
-    rate: equation (1) integrated.
+    """Return position [m] and course [rad] after a move at constant speed and heading rate.
 
-    The chord of the arc has the length v T sin(a)/a and the course of the arc's middle, with a half
-    the angle turned.
+    Equation (1) integrated. The chord of the arc has the length v T sin(a)/a, with a half the angle
+    turned, and the course of the arc's middle.
+
+    Parameters
+    ----------
+    north, east, course : at the start [m, m, rad]
+    speed, heading_rate : constant [m/s, rad/s]
+    duration : T [s]
     """
     half_turn = 0.5 * heading_rate * duration
     chord = speed * duration
@@ -40,9 +63,8 @@ def lagged_move(
     command: float,
     lag: float,
     duration: float,
-) -> tuple[float, float, float, float]:
-    """Return position [m], course [rad] and heading rate [rad/s] after ``duration`` [s] of
-    following a commanded heading rate.
+) -> UnicycleState:
+    """Return the state after following a commanded heading rate with a lag.
 
     Equation (1) with a first-order lag between command and heading rate. Course and heading rate
     are in closed form; position is Gauss and Legendre's quadrature at three nodes, over pieces no
@@ -63,13 +85,13 @@ def lagged_move(
     for i in range(pieces):
         for node, weight in _GAUSS:
             t = (i + node) * piece
-            there = course + command * t - gap * lag * math.expm1(-t / lag)
-            along += weight * math.cos(there)
-            across += weight * math.sin(there)
+            flown = course + command * t - gap * lag * math.expm1(-t / lag)
+            along += weight * math.cos(flown)
+            across += weight * math.sin(flown)
     decay = math.expm1(-duration / lag)
     distance = speed * piece
     turned = command * duration - gap * lag * decay
-    return (
+    return UnicycleState(
         north + distance * along,
         east + distance * across,
         course + turned,
@@ -86,8 +108,9 @@ def lag_ahead(
     command: float,
     lag: float,
 ) -> tuple[float, float, float]:
-    """Return position [m] and course [rad] after the lag, with a heading rate that goes from the
-    measured value to the command.
+    """Return position [m] and course [rad] after the lag.
+
+    Meanwhile the heading rate goes linearly from the measured value to the command.
 
     Parameters
     ----------
@@ -95,7 +118,6 @@ def lag_ahead(
     heading_rate, command : measured, and last commanded [rad/s]
     lag : [s]
     """
-    # Integrals over the lag of a heading rate that is linear in time.
     middle = course + lag * (heading_rate / 3.0 + command / 6.0)
     return (
         north + speed * lag * math.cos(middle),

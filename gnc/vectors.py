@@ -7,7 +7,7 @@ Vector = tuple[float, float]
 
 
 def cross(a: Vector, b: Vector) -> float:
-    """Return a x b, positive where ``b`` points to the right of ``a``."""
+    """Return a x b: positive where ``b`` points to the right of ``a``."""
     return a[0] * b[1] - a[1] * b[0]
 
 
@@ -37,7 +37,7 @@ def scaled(a: Vector, by: float) -> Vector:
 
 
 def right_of(a: Vector) -> Vector:
-    """Return ``a`` turned to the right by a quarter of a turn."""
+    """Return ``a`` turned right by a quarter turn."""
     return -a[1], a[0]
 
 

@@ -11,8 +11,8 @@ import numpy.typing as npt
 from scipy.optimize import brentq
 from scipy.special import j0
 
-from gnc.estimation.plume.estimator import GasSensor, PlumeEstimator, PlumePrior, PlumeState
-from gnc.estimation.plume.prior import Expectation, expected_plume
+from gnc.estimation.plume.estimator import PlumeEstimator, PlumeState
+from gnc.estimation.plume.prior import Expectation, GasSensor, PlumePrior, expected_plume
 from gnc.mission.plume_search import Search
 from measurement.emission.emission import emission_of
 from measurement.emission.fuel import fuel_preset

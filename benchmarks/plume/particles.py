@@ -7,8 +7,7 @@ import math
 import numpy as np
 
 from gnc.estimation.plume.estimator import PlumeEstimator
-from gnc.estimation.plume.pass_reader import Evidence
-from gnc.estimation.plume.passes import Path
+from gnc.estimation.plume.passes import Evidence, Path
 from gnc.estimation.plume.prior import BEARING_DRIFT, HEIGHT_DRIFT, PlumePrior
 
 COUNT = 1000

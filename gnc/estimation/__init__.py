@@ -1,1 +1,1 @@
-"""Estimates of own motion, wind and the vessel's motion, and the detection of the vehicle's faults."""
+"""Own motion, wind, vessel and plume, estimated on board; and the detection of faults."""

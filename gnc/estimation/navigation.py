@@ -1,15 +1,242 @@
-"""Where the vehicle is and how it moves, from its sensors; through a loss of satellite navigation
-by dead reckoning.
+"""Where the vehicle is, how it moves and what the wind is: known exactly, or from its sensors.
+
+The guidance works in the frame of the mean air, in which the vehicle flies at its airspeed. That
+frame drifts with the estimated wind; in still air it is the frame of the ground.
 """
 
 import bisect
 import math
 from dataclasses import dataclass
-
-from gnc.estimation.wind_filter import WindFilter
+from typing import Any, NamedTuple
 
 NOISE_DEVIATIONS = 3.0
 """Standard deviations of noise that are allowed for [-]."""
+
+_SPEED_MIN = 1.0
+"""Least speed in the ratio of airspeed to speed over the mean air [m/s]: no vehicle flies as
+slowly.
+"""
+
+
+class Motion(NamedTuple):
+    """A vehicle's motion.
+
+    Attributes
+    ----------
+    north, east : position [m]
+    velocity_north, velocity_east : over the ground [m/s]
+    heading_rate : rate of the course through the air [rad/s]
+    """
+
+    north: float
+    east: float
+    velocity_north: float
+    velocity_east: float
+    heading_rate: float
+
+
+class SatelliteFix(NamedTuple):
+    """Position and velocity over the ground by satellite navigation.
+
+    Attributes
+    ----------
+    north, east : [m]
+    velocity_north, velocity_east : [m/s]
+    """
+
+    north: float
+    east: float
+    velocity_north: float
+    velocity_east: float
+
+
+class SensorReadings(NamedTuple):
+    """What the sensors on board measure.
+
+    Attributes
+    ----------
+    fix : by satellite navigation; None while that is lost
+    airspeed : [m/s]
+    heading, roll : of the body [rad]
+    heading_rate : rate of the course through the air [rad/s]
+    servo_error : error of the control surface that is farthest from its command, over its travel
+        [-]
+    """
+
+    fix: SatelliteFix | None
+    airspeed: float
+    heading: float
+    roll: float
+    heading_rate: float
+    servo_error: float
+
+
+class AirMotion:
+    """The part of a vehicle's motion that a turn away is predicted from.
+
+    Attributes
+    ----------
+    ground_north, ground_east : position over the ground [m]
+    course : of the motion through the mean air, from -pi to pi [rad]
+    heading_rate : rate of that course [rad/s]
+    wind_north, wind_east : velocity of the air mass [m/s]
+    wind_error : error of the wind beyond its final one, while few measurements are in it [m/s]
+    lost : time since satellite navigation was lost [s]
+    speed : of the motion through the mean air [m/s]
+    """
+
+    def __init__(
+        self,
+        *,
+        ground_north: float,
+        ground_east: float,
+        course: float,
+        heading_rate: float = 0.0,
+        wind_north: float = 0.0,
+        wind_east: float = 0.0,
+        wind_error: float = 0.0,
+        lost: float = 0.0,
+        speed: float = 0.0,
+    ) -> None:
+        self.ground_north = ground_north
+        self.ground_east = ground_east
+        self.course = course
+        self.heading_rate = heading_rate
+        self.wind_north = wind_north
+        self.wind_east = wind_east
+        self.wind_error = wind_error
+        self.lost = lost
+        self.speed = speed
+
+
+class OwnMotion(AirMotion):
+    """The vehicle's motion, updated once per guidance step.
+
+    Attributes
+    ----------
+    north, east : position in the frame of the air mass [m]
+    drift_north, drift_east : drift of that frame since the start [m]
+    airspeed : as measured, against gusty air [m/s]; NaN where it is not measured
+    air_ratio : airspeed over the speed through the mean air [-]
+
+    Further attributes are those of ``AirMotion``.
+    """
+
+    def __init__(self) -> None:
+        super().__init__(ground_north=0.0, ground_east=0.0, course=0.0)
+        self.north = 0.0
+        self.east = 0.0
+        self.drift_north = 0.0
+        self.drift_east = 0.0
+        self.airspeed = math.nan
+        self.air_ratio = 1.0
+
+    def update(self, measurement: Any) -> None:
+        """Take in a measurement, in the form that this navigation takes."""
+        raise NotImplementedError
+
+
+class TrueNavigation(OwnMotion):
+    """The exact motion, in still air."""
+
+    def update(self, measurement: Motion) -> None:
+        """Take in the motion now."""
+        north, east, v_north, v_east, self.heading_rate = measurement
+        self.north = self.ground_north = north
+        self.east = self.ground_east = east
+        self.course = math.atan2(v_east, v_north)
+        self.speed = math.hypot(v_north, v_east)
+
+
+class WindFilter:
+    """A Kalman filter for a wind that wanders slowly.
+
+    It measures the wind triangle, w = v_ground - V_a (cos chi_a, sin chi_a). The error along chi_a
+    is that of the airspeed, the error across it is V_a times that of the course; gusts are in both.
+    The two components are taken one after the other, each as a scalar. The first measurement is the
+    first estimate: a wind assumed before it would stay in the estimate until more came.
+
+    Parameters
+    ----------
+    airspeed_sigma : error of the measured airspeed, gusts included [m/s]
+    course_sigma : error of the course through the air, gusts included [rad]
+    drift : standard deviation of the wind's change in one second [m/s]
+
+    Attributes
+    ----------
+    north, east : estimated velocity of the air mass, 0 before anything is measured [m/s]
+    variance_north, variance_east, covariance : of that estimate [m^2/s^2]
+    """
+
+    def __init__(self, *, airspeed_sigma: float, course_sigma: float, drift: float) -> None:
+        self._speed_variance = airspeed_sigma**2
+        self._course_variance = course_sigma**2
+        self._drift_variance = drift**2
+        self._measured = False
+        self.variance_north = 0.0
+        self.covariance = 0.0
+        self.variance_east = 0.0
+        self.north = 0.0
+        self.east = 0.0
+
+    @property
+    def sigma(self) -> float:
+        """Standard deviation of the estimate in its worst direction, once measured [m/s]."""
+        half = 0.5 * (self.variance_north - self.variance_east)
+        return math.sqrt(
+            0.5 * (self.variance_north + self.variance_east) + math.hypot(half, self.covariance)
+        )
+
+    def update(
+        self,
+        airspeed: float,
+        air_course: float,
+        velocity_north: float,
+        velocity_east: float,
+        time_step: float,
+    ) -> None:
+        """Correct the estimate by one measurement.
+
+        Parameters
+        ----------
+        airspeed : V_a, horizontal [m/s]
+        air_course : chi_a, of the motion through the air [rad]
+        velocity_north, velocity_east : over the ground [m/s]
+        time_step : since the last measurement [s]
+        """
+        cos_c = math.cos(air_course)
+        sin_c = math.sin(air_course)
+        north = velocity_north - airspeed * cos_c
+        east = velocity_east - airspeed * sin_c
+        along = self._speed_variance
+        across = airspeed * airspeed * self._course_variance
+        if not self._measured:
+            self._measured = True
+            self.north = north
+            self.east = east
+            self.variance_north = along * cos_c * cos_c + across * sin_c * sin_c
+            self.variance_east = along * sin_c * sin_c + across * cos_c * cos_c
+            self.covariance = (along - across) * sin_c * cos_c
+            return
+        drift = self._drift_variance * time_step
+        self.variance_north += drift
+        self.variance_east += drift
+        self._correct(cos_c, sin_c, north * cos_c + east * sin_c, along)
+        self._correct(-sin_c, cos_c, east * cos_c - north * sin_c, across)
+
+    def _correct(self, h_north: float, h_east: float, measured: float, variance: float) -> None:
+        """Correct by the wind's component in the direction of the unit vector h."""
+        to_north = self.variance_north * h_north + self.covariance * h_east
+        to_east = self.covariance * h_north + self.variance_east * h_east
+        innovation_variance = h_north * to_north + h_east * to_east + variance
+        gain_north = to_north / innovation_variance
+        gain_east = to_east / innovation_variance
+        innovation = measured - h_north * self.north - h_east * self.east
+        self.north += gain_north * innovation
+        self.east += gain_east * innovation
+        self.variance_north -= gain_north * to_north
+        self.covariance -= gain_north * to_east
+        self.variance_east -= gain_east * to_east
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -19,12 +246,12 @@ class NavigationParameters:
     Attributes
     ----------
     crab_banks, crab_offsets : course through the air minus heading, over bank, ascending [rad]
-    airspeed_sigma, course_sigma, wind_drift : of ``gnc.estimation.wind_filter.WindFilter``
-        [m/s, rad, m/s]
-    wind_noise, wind_error : largest errors by the noise of the sensors of a single measurement of
-        the wind, and of its estimate in the end, with which the guard reckons at all times [m/s]
-    first_wind_error : largest error of the first wind that is measured by the vehicle's own motion,
-        as it rolls or climbs [m/s]
+    airspeed_sigma, course_sigma, wind_drift : of ``WindFilter`` [m/s, rad, m/s]
+    wind_noise : largest error of a single measurement of the wind, by the sensors' noise [m/s]
+    wind_error : largest error of the estimated wind in the end, by the sensors' noise [m/s]; the
+        guard allows for it at all times
+    first_wind_error : largest error of the first measurement of the wind, by the vehicle's own
+        motion, as it rolls or climbs [m/s]
     wind_interval : guidance steps between measurements of the wind
     time_step : of the guidance [s]
     """
@@ -41,105 +268,97 @@ class NavigationParameters:
     time_step: float
 
 
-class Navigation:
-    """Own motion over the ground and through the air.
+class EstimatedNavigation(OwnMotion):
+    """The motion estimated from sensors, by dead reckoning while satellite navigation is lost.
 
-    The air mass has a frame of its own, which drifts with the estimated wind; in calm it is that of
-    the ground. The guidance works in it, for there the vehicle flies at its airspeed.
+    An autopilot turns against the gusty air, the guidance over the mean air:
+    ``gnc.airspeed.pace_hold.air_turn``.
+
+    Parameters
+    ----------
+    parameters : of the navigation
 
     Attributes
     ----------
-    north, east : over the ground [m]
+    wind : the wind's filter
     velocity_north, velocity_east : over the ground [m/s]
-    drift_north, drift_east : how far the frame of the air mass has drifted [m]
-    wind : the estimate
-    wind_error : by how much more it may be wrong than in the end, since it was measured seldom so
-        far [m/s]
-    lost : for how long there has been no satellite navigation [s]
+
+    Further attributes are those of ``OwnMotion``.
     """
 
-    __slots__ = (
-        "_first_variance",
-        "_parameters",
-        "_step_east",
-        "_step_north",
-        "_unmeasured",
-        "_until_measured",
-        "drift_east",
-        "drift_north",
-        "east",
-        "lost",
-        "north",
-        "velocity_east",
-        "velocity_north",
-        "wind",
-        "wind_error",
-    )
-
     def __init__(self, parameters: NavigationParameters) -> None:
+        super().__init__()
         self._parameters = parameters
+        self._until_measured = 0
+        self._unmeasured = 0.0
+        self._first_variance = 0.0
+        self._step_north = 0.0
+        self._step_east = 0.0
         self.wind = WindFilter(
             airspeed_sigma=parameters.airspeed_sigma,
             course_sigma=parameters.course_sigma,
             drift=parameters.wind_drift,
         )
-        self.north = self.east = self.velocity_north = self.velocity_east = 0.0
-        self.drift_north = self.drift_east = self.lost = self.wind_error = 0.0
-        self._step_north = self._step_east = self._unmeasured = 0.0
-        self._until_measured = 0
-        self._first_variance = 0.0
+        self.velocity_north = 0.0
+        self.velocity_east = 0.0
 
-    def update(
-        self,
-        position: tuple[float, float, float, float] | None,
-        airspeed: float,
-        heading: float,
-        roll: float,
-    ) -> None:
-        """Take in what the sensors say now.
-
-        Parameters
-        ----------
-        position : north, east [m], north and east velocity over the ground [m/s] by satellite
-            navigation, if there is any
-        airspeed : [m/s]
-        heading, roll : of the body [rad]
-        """
-        if position is None:
+    def update(self, measurement: SensorReadings) -> None:
+        """Take in the sensors' readings now."""
+        fix, airspeed, heading, roll, heading_rate, _ = measurement
+        if fix is None:
             self._reckon(airspeed, heading + self._crab(roll))
         else:
-            self.north, self.east, self.velocity_north, self.velocity_east = position
+            self.ground_north, self.ground_east, self.velocity_north, self.velocity_east = fix
             self.lost = 0.0
             self._until_measured -= 1
             if self._until_measured < 0:
-                self._measure(airspeed, heading + self._crab(roll))
+                self._measure_wind(airspeed, heading + self._crab(roll))
         self.drift_north += self._step_north
         self.drift_east += self._step_east
+        self.north = self.ground_north - self.drift_north
+        self.east = self.ground_east - self.drift_east
+        v_north = self.velocity_north - self.wind_north
+        v_east = self.velocity_east - self.wind_east
+        self.course = math.atan2(v_east, v_north)
+        self.speed = math.hypot(v_north, v_east)
+        self.airspeed = airspeed
+        self.air_ratio = _at_least(airspeed, _SPEED_MIN) / _at_least(self.speed, _SPEED_MIN)
+        self.heading_rate = heading_rate * self.air_ratio
 
-    def _measure(self, airspeed: float, air_course: float) -> None:
+    def _measure_wind(self, airspeed: float, air_course: float) -> None:
         p, wind = self._parameters, self.wind
         self._until_measured = p.wind_interval - 1
         since = p.wind_interval * p.time_step + self._unmeasured
         wind.update(airspeed, air_course, self.velocity_north, self.velocity_east, since)
         self._unmeasured = 0.0
-        sigma = wind.sigma
+        self.wind_north = wind.north
+        self.wind_east = wind.east
+        self._step_north = p.time_step * wind.north
+        self._step_east = p.time_step * wind.east
+        self.wind_error = self._error_of_few_measurements(wind.sigma)
+
+    def _error_of_few_measurements(self, sigma: float) -> float:
+        """Return the error of the wind beyond its final one, by its filter's deviation [m/s]."""
+        p = self._parameters
         variance = sigma**2
-        self._first_variance = self._first_variance or variance
-        # As much of the first measurement is left in the estimate as in a mean of as many.
-        self.wind_error = p.first_wind_error * variance / self._first_variance
+        if not self._first_variance:
+            self._first_variance = variance
+        # The share of the first measurement in the estimate falls with the variance, as in a mean.
+        error = p.first_wind_error * variance / self._first_variance
         if p.wind_noise > p.wind_error:
-            self.wind_error += max(0.0, min(p.wind_noise, NOISE_DEVIATIONS * sigma) - p.wind_error)
-        self._step_north, self._step_east = p.time_step * wind.north, p.time_step * wind.east
+            error += max(0.0, min(p.wind_noise, NOISE_DEVIATIONS * sigma) - p.wind_error)
+        return error
 
     def _reckon(self, airspeed: float, air_course: float) -> None:
-        time_step, wind = self._parameters.time_step, self.wind
-        before_north, before_east = self.velocity_north, self.velocity_east
-        self.velocity_north = wind.north + airspeed * math.cos(air_course)
-        self.velocity_east = wind.east + airspeed * math.sin(air_course)
-        # By the mean of the velocities at both ends: by one of them half a turn would be wrong by
+        time_step = self._parameters.time_step
+        before_north = self.velocity_north
+        before_east = self.velocity_east
+        self.velocity_north = self.wind_north + airspeed * math.cos(air_course)
+        self.velocity_east = self.wind_east + airspeed * math.sin(air_course)
+        # The trapezoidal rule: with the velocity at one end alone, half a turn would be wrong by
         # the way of a step.
-        self.north += 0.5 * time_step * (before_north + self.velocity_north)
-        self.east += 0.5 * time_step * (before_east + self.velocity_east)
+        self.ground_north += 0.5 * time_step * (before_north + self.velocity_north)
+        self.ground_east += 0.5 * time_step * (before_east + self.velocity_east)
         self.lost += time_step
         # The wind wanders on meanwhile.
         self._unmeasured += time_step
@@ -149,3 +368,7 @@ class Navigation:
         i = min(max(bisect.bisect(banks, roll), 1), len(banks) - 1)
         share = (roll - banks[i - 1]) / (banks[i] - banks[i - 1])
         return offsets[i - 1] + share * (offsets[i] - offsets[i - 1])
+
+
+def _at_least(value: float, least: float) -> float:
+    return value if value > least else least

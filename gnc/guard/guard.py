@@ -40,8 +40,8 @@ from dataclasses import dataclass
 from enum import IntEnum
 from typing import NamedTuple
 
-from gnc.estimation.own_motion import AirMotion
-from gnc.estimation.reachable_set import Tube
+from gnc.estimation.navigation import AirMotion
+from gnc.estimation.vessel import Tube
 from gnc.guard.turn import (
     CHANGED,
     FORGOTTEN,

@@ -3,8 +3,8 @@
 import math
 from dataclasses import dataclass
 
-from gnc.estimation.own_motion import OwnMotion
-from gnc.estimation.target_motion import TargetMotion
+from gnc.estimation.navigation import OwnMotion
+from gnc.estimation.vessel import TargetMotion
 from gnc.mission.transit import Transit
 from gnc.numeric import limited, wrap
 

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 from gnc.estimation.health import Fault
-from gnc.estimation.own_motion import OwnMotion
-from gnc.estimation.target_motion import TargetMotion
+from gnc.estimation.navigation import OwnMotion
+from gnc.estimation.vessel import TargetMotion
 from gnc.guard.guard import KeepoutGuard
 from gnc.mission.approach import LOST_TRACK, Approach, ApproachParameters
 from gnc.mission.mode import Mode

@@ -6,8 +6,8 @@ import math
 from dataclasses import dataclass
 from typing import Protocol
 
-from gnc.estimation.own_motion import OwnMotion
-from gnc.estimation.target_motion import TargetMotion
+from gnc.estimation.navigation import OwnMotion
+from gnc.estimation.vessel import TargetMotion
 from gnc.mission.axis_height import AxisHeight
 from gnc.mission.mode import Mode
 from gnc.numeric import clip, limited, wrap

@@ -4,7 +4,8 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from gnc.estimation.plume.estimator import PlumeEstimator, PlumeState, SensorState
+from gnc.estimation.plume.estimator import PlumeEstimator, PlumeState
+from gnc.estimation.plume.passes import SensorState
 from gnc.estimation.plume.prior import Expectation, expected_plume
 from gnc.mission.axis_height import AxisHeight
 from gnc.mission.mode import Mode

@@ -12,8 +12,8 @@ import math
 from dataclasses import dataclass
 
 from gnc.estimation.health import Fault
-from gnc.estimation.own_motion import OwnMotion
-from gnc.estimation.target_motion import TargetMotion
+from gnc.estimation.navigation import OwnMotion
+from gnc.estimation.vessel import TargetMotion
 from gnc.laws import Air, LimitedLaw, Motion
 from gnc.mission.approach import COURSE_GAIN
 from gnc.mission.axis_height import AxisHeight

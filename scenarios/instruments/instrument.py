@@ -7,7 +7,7 @@ from typing import Any, Protocol, runtime_checkable
 import numpy as np
 import numpy.typing as npt
 
-from gnc.estimation.own_motion import Motion
+from gnc.estimation.navigation import Motion
 from measurement.sniffer.sniffer import Readings
 from measurement.sniffer.spec import SnifferSpec
 from scenarios.schema.extension_points import PAYLOADS

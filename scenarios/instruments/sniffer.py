@@ -13,7 +13,7 @@ from pydantic import BeforeValidator
 from common.run_layout import SULPHUR_TABLE
 from common.spelling import did_you_mean
 from gnc.errors import InfeasibleError
-from gnc.estimation.own_motion import Motion
+from gnc.estimation.navigation import Motion
 from measurement.emission.fuel import expected_fsc
 from measurement.errors import MeasurementError
 from measurement.gases import GASES, UNITS

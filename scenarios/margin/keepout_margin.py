@@ -6,8 +6,7 @@ import math
 from dataclasses import dataclass
 
 from common.physics.units import SECONDS_PER_HOUR
-from gnc.estimation.reachable_set import Tube, VesselLimits, tube
-from gnc.estimation.vessel_filter import FilterParameters, VesselReport
+from gnc.estimation.vessel import FilterParameters, Tube, VesselLimits, VesselReport, tube
 from scenarios.margin.report_scatter import mean_interval, scatter_allowance
 from scenarios.margin.tracking_spread import CALM_AIR_SPREAD, SpreadTable, planned_margin
 from scenarios.schema.scenario import Scenario

@@ -6,8 +6,8 @@ from collections.abc import Callable
 
 import numpy as np
 
-from gnc.estimation.own_motion import KnownMotion
-from gnc.estimation.reachable_set import Tube
+from gnc.estimation.navigation import AirMotion
+from gnc.estimation.vessel import Tube
 from gnc.guard.guard import GuardParameters, HeadingRateFilter
 from gnc.mission.standoff import CirclePoint
 from gnc.reference.reference import Orbit
@@ -58,9 +58,9 @@ def orbit_distance(
     along, _ = orbit.half_widths()
     points = np.column_stack([*places[0], courses[0], rates]).tolist()
 
-    def motions(distance: float) -> list[KnownMotion]:
+    def motions(distance: float) -> list[AirMotion]:
         return [
-            KnownMotion(
+            AirMotion(
                 ground_north=x + ahead * distance + ahead * along,
                 ground_east=y + right * distance + right * along,
                 course=course,
@@ -84,13 +84,13 @@ def circle_distance(guard: GuardParameters, vessel: Tube, speed: float, drift: f
     """
     point = CirclePoint(speed)
 
-    def motions(radius: float) -> list[KnownMotion]:
+    def motions(radius: float) -> list[AirMotion]:
         found = []
         for bearing in 2.0 * np.pi * (np.arange(2 * _PHASES) + 0.5) / (2 * _PHASES):
             place = radius * float(np.cos(bearing)), radius * float(np.sin(bearing))
             point.place((0.0, 0.0), (drift, 0.0), place, radius)
             found.append(
-                KnownMotion(
+                AirMotion(
                     ground_north=place[0],
                     ground_east=place[1],
                     course=point.course,
@@ -105,7 +105,7 @@ def circle_distance(guard: GuardParameters, vessel: Tube, speed: float, drift: f
 def _distance(
     guard: GuardParameters,
     vessel: Tube,
-    motions: Callable[[float], list[KnownMotion]],
+    motions: Callable[[float], list[AirMotion]],
     speed: float,
     drift: float,
 ) -> float:

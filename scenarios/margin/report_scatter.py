@@ -2,7 +2,7 @@
 where they say she may be.
 
 The orbit lies beside where the filter takes the vessel to be. The discs of
-``gnc.estimation.reachable_set`` lie about what single reports say, which scatters more. So a disc
+``gnc.estimation.vessel`` lie about what single reports say, which scatters more. So a disc
 that is no larger than planned may all the same reach farther towards the orbit.
 """
 
@@ -11,8 +11,14 @@ import functools
 import numpy as np
 
 from common.physics.units import SECONDS_PER_HOUR
-from gnc.estimation.reachable_set import KEPT, VesselLimits, radius_after
-from gnc.estimation.vessel_filter import FilterParameters, VesselFilter, VesselReport
+from gnc.estimation.vessel import (
+    KEPT,
+    FilterParameters,
+    VesselFilter,
+    VesselLimits,
+    VesselReport,
+    radius_after,
+)
 
 GUARDED_PER_HOUR = 1.0
 """How often the discs of a vessel at constant velocity may reach farther than is allowed for here

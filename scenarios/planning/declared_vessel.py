@@ -10,8 +10,7 @@ import numpy.typing as npt
 
 from common.times import utc_text
 from gnc.errors import InfeasibleError
-from gnc.estimation.reachable_set import KEPT, VesselLimits, radius_after, radius_by_speed
-from gnc.estimation.vessel_filter import VesselReport
+from gnc.estimation.vessel import KEPT, VesselLimits, VesselReport, radius_after, radius_by_speed
 from scenarios.schema.scenario import Scenario
 from scenarios.world.ais.track import AisVessel
 from scenarios.world.vessel import (

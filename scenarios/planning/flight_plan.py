@@ -4,7 +4,7 @@ import math
 from dataclasses import dataclass
 from typing import Any
 
-from gnc.estimation.vessel_filter import VesselReport
+from gnc.estimation.vessel import VesselReport
 from gnc.parameters import GuidanceParameters
 from gnc.reference.reference import PeriodicPath
 from scenarios.margin.keepout_margin import KeepoutMargin

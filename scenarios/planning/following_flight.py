@@ -7,8 +7,8 @@ from collections.abc import Callable
 
 from gnc.airspeed import PaceHold
 from gnc.errors import InfeasibleError
-from gnc.estimation.health_monitor import HealthParameters
-from gnc.estimation.reachable_set import ReachableSet, Tube, VesselLimits
+from gnc.estimation.health import HealthParameters
+from gnc.estimation.vessel import ReachableSet, Tube, VesselLimits
 from gnc.guard.guard import GuardParameters
 from gnc.mission.plume_following import FollowingParameters
 from gnc.mission.standoff import StandoffParameters

@@ -6,8 +6,7 @@ from collections.abc import Sequence
 from aircraft.simulation.faults import OF_THRUST
 from common.physics.coordinated_turn import heading_rate_for_bank
 from gnc.airspeed import SpeedHold, design_speed_hold
-from gnc.estimation.health import PATIENCE
-from gnc.estimation.health_monitor import CHECK_INTERVAL
+from gnc.estimation.health import CHECK_INTERVAL, PATIENCE
 from gnc.estimation.navigation import NOISE_DEVIATIONS
 from gnc.guard.guard import GuardParameters
 from gnc.mission.approach import ApproachParameters

@@ -6,9 +6,8 @@ from collections.abc import Sequence
 import numpy as np
 
 from gnc.errors import InfeasibleError
-from gnc.estimation.own_motion import KnownMotion
-from gnc.estimation.reachable_set import Tube
-from gnc.estimation.vessel_filter import VesselReport
+from gnc.estimation.navigation import AirMotion
+from gnc.estimation.vessel import Tube, VesselReport
 from gnc.guard.guard import GuardParameters, HeadingRateFilter
 from scenarios.planning.flight_plan import Start
 from scenarios.schema.sections.flight import StartConfig
@@ -104,7 +103,7 @@ def check_start(
             f" only {away:.1f} of its {airspeed:.1f} m/s, beside a vessel with {fastest:.1f} m/s through the air: slow the vessel,"
             " turn more slowly (guidance.bank_deg), or give a kinematic vehicle a shorter lag (kinematic.heading_rate_lag_s)"
         )
-    own = KnownMotion(
+    own = AirMotion(
         ground_north=start.north,
         ground_east=start.east,
         course=start.course,

@@ -5,7 +5,7 @@ still air, or on a circle.
 import math
 
 from gnc.airspeed import AlongTrackTrim
-from gnc.estimation.reachable_set import Tube
+from gnc.estimation.vessel import Tube
 from gnc.guard.guard import GuardParameters
 from gnc.mission.direct_tracking import DirectParameters, Joining, SteadyCentre
 from gnc.paper import PlumeAxis, centre_of_oscillation

@@ -121,7 +121,7 @@ class ClosedLoop:
                 guarding.append(
                     (
                         step,
-                        math.hypot(motion[0] - target.north, motion[1] - target.east),
+                        math.hypot(motion.north - target.north, motion.east - target.east),
                         guard.status is GuardStatus.LOST,
                     )
                 )

@@ -3,7 +3,7 @@
 import math
 
 from gnc.estimation.health import Fault
-from gnc.estimation.own_motion import Motion
+from gnc.estimation.navigation import Motion
 from gnc.guidance import Guidance
 from gnc.mission.mode import LOST, Mode
 from scenarios.planning.flight_plan import FlightPlan
@@ -83,7 +83,7 @@ class Ending:
         if self._judge is not None:
             target = self._guidance.target
             over = self._judge.over(
-                time, math.hypot(motion[0] - target.north, motion[1] - target.east)
+                time, math.hypot(motion.north - target.north, motion.east - target.east)
             )
             over = over or (complete and self._judge.enough is None)
         return bool(self._fault) or self._ditched or over

@@ -3,7 +3,7 @@
 import math
 from enum import Enum
 
-from gnc.estimation.plume.estimator import SensorState
+from gnc.estimation.plume.passes import SensorState
 from gnc.mission.mode import Mode
 from gnc.mission.plume_following import PlumeFollowing
 from gnc.mission.searched_axis import SearchedAxis

@@ -3,9 +3,8 @@ commands.
 """
 
 from gnc.estimation.health import Fault
-from gnc.estimation.own_motion import Motion, Readings
-from gnc.estimation.target_motion import ReportedTarget
-from gnc.estimation.vessel_filter import VesselReport
+from gnc.estimation.navigation import Motion, SensorReadings
+from gnc.estimation.vessel import ReportedTarget, VesselReport
 from gnc.guidance import Guidance
 from scenarios.planning.flight_plan import Sensing
 from scenarios.simulation.plume_readings import PlumeReadings
@@ -67,7 +66,7 @@ class OnboardSensing:
         self._satellites_fail = world.fault.kind == SATELLITES
         self.airspeed_error = 0.0
 
-    def read(self, step: int, time: float, motion: Motion) -> Readings:
+    def read(self, step: int, time: float, motion: Motion) -> SensorReadings:
         """Return what the sensors say at a step; hand on what reports have come, and let fail what
         fails now.
         """
@@ -86,11 +85,13 @@ class OnboardSensing:
             self._vehicle.fail(fault.kind)
         # It begins with a place that is known, too: dead reckoning goes on from one.
         satellites = not self._satellites_fail or step == 0 or not fault.lasts(SATELLITES, time)
-        position, measured, measured_heading = self._read_with_errors(
+        fix, measured, measured_heading = self._read_with_errors(
             step, motion, airspeed, heading, satellites=satellites
         )
         self.airspeed_error = measured - airspeed
-        return position, measured, measured_heading, roll, motion[4], self._servo_error()
+        return SensorReadings(
+            fix, measured, measured_heading, roll, motion.heading_rate, self._servo_error()
+        )
 
     def act(self, step: int, time: float, motion: Motion) -> None:
         """Pass on what the guidance has decided beside heading rate and airspeed, and to it what

@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from gnc.estimation.own_motion import Motion
+from gnc.estimation.navigation import Motion
 from gnc.guidance import Guidance
 from gnc.mission.plume_axis import PlumeAxis, PredictedAxis
 from gnc.mission.plume_following import PlumeFollowing

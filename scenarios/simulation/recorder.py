@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from gnc.estimation.own_motion import Motion
+from gnc.estimation.navigation import Motion
 from gnc.guidance import Guidance
 from scenarios.instruments.instrument import Instrument
 from scenarios.simulation.record import COLUMNS, Array

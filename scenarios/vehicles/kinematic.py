@@ -4,6 +4,7 @@ import math
 
 from aircraft.atmosphere.wind import CALM, WindField
 from common.physics.coordinated_turn import bank_for_heading_rate
+from gnc.estimation.navigation import Motion
 from gnc.unicycle import lagged_move, unicycle_move
 from scenarios.errors import InputError
 from scenarios.vehicles.vehicle import SAMPLE_COLUMNS
@@ -52,13 +53,11 @@ class KinematicVehicle:
         self._wind, self._time = None if wind.constant else wind, 0.0
         self._wind_north, self._wind_east = wind.now(0.0, altitude)
 
-    def motion(self) -> tuple[float, float, float, float, float]:
-        """Return north, east [m], north and east velocity over the ground [m/s] and heading rate
-        against the air [rad/s].
-        """
+    def motion(self) -> Motion:
+        """Return the motion now."""
         velocity_north = self._speed * math.cos(self._course) + self._wind_north
         velocity_east = self._speed * math.sin(self._course) + self._wind_east
-        return self._north, self._east, velocity_north, velocity_east, self._heading_rate
+        return Motion(self._north, self._east, velocity_north, velocity_east, self._heading_rate)
 
     def air_data(self) -> tuple[float, float, float]:
         """Return airspeed [m/s], heading, not wrapped, and the bank of a coordinated turn [rad]."""

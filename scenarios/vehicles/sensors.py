@@ -7,15 +7,14 @@ from itertools import accumulate
 
 import numpy as np
 
+from gnc.estimation.navigation import Motion, SatelliteFix
 from scenarios.schema.sections.equipment import SensorsConfig
 
 NAVIGATION_TIME = 60.0
 """Time constant with which the error of satellite navigation wanders [s]."""
 
-Reading = tuple[tuple[float, float, float, float] | None, float, float]
-"""North, east [m], north and east velocity [m/s], or none while satellite navigation is lost;
-airspeed [m/s]; heading [rad].
-"""
+Reading = tuple[SatelliteFix | None, float, float]
+"""Satellite navigation, or None while it is lost; airspeed [m/s]; heading [rad]."""
 
 
 class SensorErrors:
@@ -64,7 +63,7 @@ class SensorErrors:
     def read(
         self,
         step: int,
-        motion: tuple[float, float, float, float, float],
+        motion: Motion,
         airspeed: float,
         heading: float,
         *,
@@ -75,14 +74,19 @@ class SensorErrors:
         Parameters
         ----------
         step : number of the reading
-        motion : true north, east [m], their rates [m/s] and heading rate [rad/s]
+        motion : true one
         airspeed, heading : true ones [m/s, rad]
         satellites : whether satellite navigation works
         """
         north, east, v_north, v_east, air, turned = self._errors[6 * step : 6 * step + 6]
-        position = (
-            (motion[0] + north, motion[1] + east, motion[2] + v_north, motion[3] + v_east)
+        fix = (
+            SatelliteFix(
+                motion.north + north,
+                motion.east + east,
+                motion.velocity_north + v_north,
+                motion.velocity_east + v_east,
+            )
             if satellites
             else None
         )
-        return position, airspeed + air, heading + turned
+        return fix, airspeed + air, heading + turned

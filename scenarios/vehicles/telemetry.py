@@ -5,6 +5,7 @@ import math
 from aircraft.simulation.fdm import Fdm
 from aircraft.simulation.local_frame import EquatorFrame
 from common.physics.units import METRES_PER_FOOT
+from gnc.estimation.navigation import Motion
 from innerloop.jsbsim.properties import CONTROL_COMMAND, HEADING_RATE
 
 _CONTROLS = ("elevator", "aileron", "throttle", "rudder")
@@ -50,14 +51,12 @@ class Telemetry:
             for name in _CONTROLS
         )
 
-    def motion(self) -> tuple[float, float, float, float, float]:
-        """Return north, east [m], north and east velocity over the ground [m/s] and heading rate
-        against the air [rad/s].
-        """
+    def motion(self) -> Motion:
+        """Return the motion now."""
         # To unpack two names takes a third of the time of a star in a tuple, in each step of every
         # flight.
         north, east = self._to_local(self._latitude(), self._longitude())
-        return (
+        return Motion(
             north,
             east,
             self._north() * METRES_PER_FOOT,

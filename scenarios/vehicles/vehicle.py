@@ -4,6 +4,8 @@ paper's kinematics.
 
 from typing import Protocol
 
+from gnc.estimation.navigation import Motion
+
 SAMPLE_COLUMNS = (
     "altitude_m",
     "airspeed_mps",
@@ -27,10 +29,8 @@ are commands [-], or the effect by which a surface is commanded whose travel is 
 class Vehicle(Protocol):
     """A vehicle under way, stepped at the rate of the guidance."""
 
-    def motion(self) -> tuple[float, float, float, float, float]:
-        """Return north, east [m], north and east velocity over the ground [m/s] and heading rate
-        against the air [rad/s].
-        """
+    def motion(self) -> Motion:
+        """Return the motion now."""
 
     def air_data(self) -> tuple[float, float, float]:
         """Return what sensors on board measure: airspeed, gusts and all [m/s], heading, not

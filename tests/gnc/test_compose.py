@@ -5,6 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from gnc.safety.guard_parameters import GuardParameters
 from gnc_cases import (
     HEADING_RATE_MAX,
     SPEED,
@@ -19,12 +20,21 @@ from gnc_cases import (
 
 from gnc.airspeed import PaceHold, SpeedHold
 from gnc.compose import compose
-from gnc.estimation.health_monitor import HealthParameters
-from gnc.estimation.navigation import NavigationParameters
-from gnc.estimation.own_motion import EstimatedNavigation, TrueNavigation
-from gnc.estimation.reachable_set import VesselLimits
-from gnc.estimation.target_motion import ReportedTarget, SteadyTarget
-from gnc.estimation.vessel_filter import FilterParameters, VesselReport
+from gnc.estimation.health import HealthParameters
+from gnc.estimation.navigation import (
+    EstimatedNavigation,
+    NavigationParameters,
+    SatelliteFix,
+    SensorReadings,
+    TrueNavigation,
+)
+from gnc.estimation.vessel import (
+    FilterParameters,
+    ReportedTarget,
+    SteadyTarget,
+    VesselLimits,
+    VesselReport,
+)
 from gnc.mission.approach import ApproachParameters
 from gnc.mission.axis_height import AxisHeight
 from gnc.mission.direct_tracking import DirectTracking
@@ -35,7 +45,6 @@ from gnc.paper import half_widths
 from gnc.parameters import GuidanceParameters, ReportedVessel
 from gnc.reference.moving_centre import CentreParameters
 from gnc.reference.shapes.sinusoid import Sinusoid
-from gnc.safety.guard_parameters import GuardParameters
 
 GUARD = GuardParameters(
     radius=200.0,
@@ -136,14 +145,8 @@ def reported(parameters, *, speed=8.0):
 
 def readings(north, east, *, course=0.0, airspeed=SPEED, servo_error=0.0):
     """Return what exact sensors say in still air."""
-    return (
-        (north, east, SPEED * math.cos(course), SPEED * math.sin(course)),
-        airspeed,
-        course,
-        0.0,
-        0.0,
-        servo_error,
-    )
+    fix = SatelliteFix(north, east, SPEED * math.cos(course), SPEED * math.sin(course))
+    return SensorReadings(fix, airspeed, course, 0.0, 0.0, servo_error)
 
 
 def test_the_papers_guidance_has_no_parts_that_have_nothing_to_do():

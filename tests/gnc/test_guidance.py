@@ -2,6 +2,7 @@ import math
 
 import numpy as np
 import pytest
+from gnc.safety.guard_parameters import GuardParameters
 from gnc_cases import (
     HEADING_RATE_MAX,
     SPEED,
@@ -16,10 +17,9 @@ from gnc_cases import (
 from hypothesis import given
 from hypothesis import strategies as st
 
-from gnc.estimation.reachable_set import Tube
+from gnc.estimation.vessel import Tube
 from gnc.laws import CascadeLaw, LineOfSightLaw, LyapunovLaw
 from gnc.paper import PlumeAxis, distance_by_paper
-from gnc.safety.guard_parameters import GuardParameters
 
 # 0.75 of the tracking allowance of 1 m about its 200 m (scenarios/planning/tracking_flight.py).
 # These vehicles answer at once.

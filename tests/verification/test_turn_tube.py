@@ -6,16 +6,16 @@ import math
 
 import numpy as np
 import pytest
-
-from aircraft.fleet.x8 import X8
-from aircraft.simulation.fdm import TIME_STEP
 from common.physics.turn_tube import LEAST_CHANGE
-from common.physics.units import METRES_PER_FOOT, STANDARD_GRAVITY
-from gnc.estimation.own_motion import KnownMotion
-from gnc.estimation.reachable_set import Tube
 from gnc.safety.given_commands import GivenCommands
 from gnc.safety.guard_parameters import GuardParameters
 from gnc.safety.keepout_guard import KeepoutGuard
+
+from aircraft.fleet.x8 import X8
+from aircraft.simulation.fdm import TIME_STEP
+from common.physics.units import METRES_PER_FOOT, STANDARD_GRAVITY
+from gnc.estimation.navigation import AirMotion
+from gnc.estimation.vessel import Tube
 from innerloop.flight.autopiloted_aircraft import AutopilotedAircraft
 from innerloop.flight.reversal_search import _Flight
 from innerloop.flight.turn_reversal import TurnReversalResponse
@@ -60,7 +60,7 @@ def rolled_back(x8_root, x8_schedule, record):
         return path
 
     def own():
-        return KnownMotion(
+        return AirMotion(
             ground_north=place[0],
             ground_east=place[1],
             course=math.atan2(read[1](), read[0]()),

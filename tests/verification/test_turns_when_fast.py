@@ -5,17 +5,17 @@ turn, and comes no nearer.
 import math
 
 import pytest
-
-from aircraft.simulation.fdm import TIME_STEP
-from common.physics.coordinated_turn import heading_rate_for_bank
-from common.physics.units import METRES_PER_FOOT, STANDARD_GRAVITY
-from gnc.estimation.own_motion import TrueNavigation
-from gnc.estimation.reachable_set import Tube
-from gnc.numeric import limited, wrap
 from gnc.safety.guard_parameters import GuardParameters
 from gnc.safety.guarded_commands import GuardedCommands
 from gnc.safety.keepout_guard import KeepoutGuard
 from gnc.safety.speed_reckoning import SpeedReckoning
+
+from aircraft.simulation.fdm import TIME_STEP
+from common.physics.coordinated_turn import heading_rate_for_bank
+from common.physics.units import METRES_PER_FOOT, STANDARD_GRAVITY
+from gnc.estimation.navigation import TrueNavigation
+from gnc.estimation.vessel import Tube
+from gnc.numeric import limited, wrap
 from innerloop.flight.autopiloted_aircraft import AutopilotedAircraft
 from innerloop.jsbsim.properties import HEADING_RATE
 from innerloop.jsbsim.root import write_root

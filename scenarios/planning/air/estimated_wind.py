@@ -6,7 +6,13 @@ import math
 
 from aircraft.atmosphere.turbulence import TURBULENCE, intensities, scale_lengths
 from aircraft.atmosphere.wind import WindField
-from gnc.estimation.navigation import NOISE_DEVIATIONS, Navigation, NavigationParameters
+from gnc.estimation.navigation import (
+    NOISE_DEVIATIONS,
+    EstimatedNavigation,
+    NavigationParameters,
+    SatelliteFix,
+    SensorReadings,
+)
 from scenarios.planning.air.flown_heights import climbs, flown_heights, glides
 from scenarios.planning.limits import plan_interval, plan_period
 from scenarios.schema.scenario import Scenario
@@ -86,9 +92,10 @@ def first_wind_error(scenario: Scenario, setup: VehicleSetup) -> float:
     """Return by how much more than in the end the wind may be wrong that is measured at the start
     [m/s].
     """
-    navigation = Navigation(navigation_parameters(scenario, setup))
+    airspeed = scenario.guidance.airspeed_mps
+    navigation = EstimatedNavigation(navigation_parameters(scenario, setup))
     navigation.update(
-        (0.0, 0.0, scenario.guidance.airspeed_mps, 0.0), scenario.guidance.airspeed_mps, 0.0, 0.0
+        SensorReadings(SatelliteFix(0.0, 0.0, airspeed, 0.0), airspeed, 0.0, 0.0, 0.0, 0.0)
     )
     return navigation.wind_error
 

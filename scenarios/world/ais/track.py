@@ -10,7 +10,7 @@ import numpy.typing as npt
 
 from common.physics.geodesy import LocalFrame
 from common.times import utc_text
-from gnc.estimation.vessel_filter import VesselReport
+from gnc.estimation.vessel import VesselReport
 from scenarios.errors import InputError
 from scenarios.schema.sections.world import VesselConfig
 from scenarios.world.ais.reports import AisReports, read_ais

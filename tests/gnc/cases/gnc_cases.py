@@ -196,7 +196,7 @@ def make_guidance(reference, **how):
 
 def motion(north, east, course, speed=SPEED, heading_rate=0.0):
     """Return a motion as the guidance takes it: velocities instead of course and speed."""
-    return north, east, speed * math.cos(course), speed * math.sin(course), heading_rate
+    return Motion(north, east, speed * math.cos(course), speed * math.sin(course), heading_rate)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -6,14 +6,14 @@ import math
 from collections import deque
 
 import pytest
+from gnc.safety.guard_parameters import GuardParameters
+from gnc.safety.keepout_guard import KeepoutGuard
 from gnc_cases import HEADING_RATE_MAX, SPEED
 from hypothesis import strategies as st
 
-from gnc.estimation.own_motion import KnownMotion
-from gnc.estimation.reachable_set import Tube
+from gnc.estimation.navigation import AirMotion
+from gnc.estimation.vessel import Tube
 from gnc.numeric import wrap
-from gnc.safety.guard_parameters import GuardParameters
-from gnc.safety.keepout_guard import KeepoutGuard
 from gnc.unicycle import lagged_move, unicycle_move
 
 RADIUS = 200.0
@@ -52,7 +52,7 @@ class DiscGuard:
         place = (self._time, self._north, self._east, velocity_north, velocity_east)
         self.guard.tubes = (Tube(*place, radius_inflation, 0.0, self._acceleration),)
         place = {"ground_north": self._north + x, "ground_east": self._east + y}
-        return KnownMotion(**place, course=course, heading_rate=heading_rate, speed=speed)
+        return AirMotion(**place, course=course, heading_rate=heading_rate, speed=speed)
 
     def limit(
         self,

@@ -8,15 +8,15 @@ from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
+from gnc.safety.guard_parameters import GuardParameters
+from gnc.safety.keepout_guard import KeepoutGuard
 from gnc_cases import HEADING_RATE_MAX, SPEED
 from guard_cases import RADIUS, moved, random_velocity
 from vessel_cases import LIMITS, Mailbox, Vessel, radio, report_of
 
-from gnc.estimation.own_motion import KnownMotion
-from gnc.estimation.reachable_set import ReachableSet, Tube
+from gnc.estimation.navigation import AirMotion
+from gnc.estimation.vessel import ReachableSet, Tube
 from gnc.numeric import wrap
-from gnc.safety.guard_parameters import GuardParameters
-from gnc.safety.keepout_guard import KeepoutGuard
 
 PLAN_PERIOD = 0.5
 PIECE, FINE_PIECE = 0.025, 0.01
@@ -195,7 +195,7 @@ def hunt(
             reach.report(report)
         if step % each == 0:
             guard.tubes = tubes(time)
-        own = KnownMotion(
+        own = AirMotion(
             ground_north=state[0], ground_east=state[1], course=state[2], heading_rate=state[3]
         )
         command = guard.limit(aim_at(guard.tubes[0], own, time), time, own, SPEED)

@@ -5,8 +5,7 @@ with errors, late or lost.
 import math
 from dataclasses import dataclass, field
 
-from gnc.estimation.reachable_set import VesselLimits
-from gnc.estimation.vessel_filter import VesselReport
+from gnc.estimation.vessel import VesselLimits, VesselReport
 
 LIMITS = VesselLimits(
     acceleration=0.25,

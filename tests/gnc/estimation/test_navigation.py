@@ -1,9 +1,20 @@
+"""Navigation: own motion by satellites and by dead reckoning, and the estimated wind."""
+
 import math
 
 import numpy as np
 import pytest
+from scipy.stats import chi2
 
-from gnc.estimation.navigation import Navigation, NavigationParameters
+from gnc.estimation.navigation import (
+    EstimatedNavigation,
+    Motion,
+    NavigationParameters,
+    SatelliteFix,
+    SensorReadings,
+    TrueNavigation,
+    WindFilter,
+)
 
 SPEED, TIME_STEP = 19.42, 0.05
 WIND = (-4.0, 3.0)
@@ -19,7 +30,11 @@ def make(**changes):
         "wind_interval": 5,
         "time_step": TIME_STEP,
     }
-    return Navigation(NavigationParameters(**(values | changes)))
+    return EstimatedNavigation(NavigationParameters(**(values | changes)))
+
+
+def sense(navigation, fix, airspeed, heading, roll=0.0):
+    navigation.update(SensorReadings(fix and SatelliteFix(*fix), airspeed, heading, roll, 0.0, 0.0))
 
 
 def course_at(time):
@@ -37,7 +52,7 @@ def fly(navigation, *, steps, lost_from=math.inf, place=(0.0, 0.0), first=0):
         time = step * TIME_STEP
         v_north, v_east = velocity_at(time)
         position = (north, east, v_north, v_east) if time < lost_from else None
-        navigation.update(position, SPEED, course_at(time), 0.0)
+        sense(navigation, position, SPEED, course_at(time))
         # Simpson's rule over the step, 1e-9 m.
         middle, end = velocity_at(time + 0.5 * TIME_STEP), velocity_at(time + TIME_STEP)
         before = (north, east)
@@ -49,7 +64,7 @@ def fly(navigation, *, steps, lost_from=math.inf, place=(0.0, 0.0), first=0):
 def test_with_satellites_it_is_where_they_say():
     navigation = make()
     where = fly(navigation, steps=100)
-    assert (navigation.north, navigation.east) == where
+    assert (navigation.ground_north, navigation.ground_east) == where
     assert (navigation.velocity_north, navigation.velocity_east) == velocity_at(99 * TIME_STEP)
     assert navigation.lost == 0.0
 
@@ -61,7 +76,7 @@ def test_dead_reckoning_with_exact_sensors_in_steady_wind_does_not_drift():
     # Position by the trapezoidal rule, which is off by dt^2/12 times how much the acceleration has
     # changed: twice 20 m/s times 0.5 rad/s make 4 mm. By one end of each step it was off by up to
     # 0.97 m.
-    assert math.hypot(navigation.north - where[0], navigation.east - where[1]) < 0.01
+    assert math.hypot(navigation.ground_north - where[0], navigation.ground_east - where[1]) < 0.01
     assert (navigation.velocity_north, navigation.velocity_east) == pytest.approx(
         velocity_at(159.95), abs=1e-3
     )
@@ -71,9 +86,9 @@ def test_satellites_that_come_back_end_the_dead_reckoning():
     navigation = make()
     where = fly(navigation, steps=400, lost_from=10.0)
     assert navigation.lost == pytest.approx(10.0, abs=1e-9)
-    navigation.update((*where, 1.0, 2.0), SPEED, 0.3, 0.0)
+    sense(navigation, (*where, 1.0, 2.0), SPEED, 0.3)
     assert navigation.lost == 0.0
-    assert (navigation.north, navigation.east) == where
+    assert (navigation.ground_north, navigation.ground_east) == where
 
 
 def test_the_air_frame_drifts_with_the_estimated_wind():
@@ -81,7 +96,7 @@ def test_the_air_frame_drifts_with_the_estimated_wind():
     total = [0.0, 0.0]
     for step in range(400):
         time = step * TIME_STEP
-        navigation.update((0.0, 0.0, *velocity_at(time)), SPEED, course_at(time), 0.0)
+        sense(navigation, (0.0, 0.0, *velocity_at(time)), SPEED, course_at(time))
         total[0] += TIME_STEP * navigation.wind.north
         total[1] += TIME_STEP * navigation.wind.east
     # Rounding.
@@ -107,7 +122,7 @@ def test_the_air_frame_drifts_with_the_estimated_wind():
 )
 def test_the_course_through_the_air_is_the_heading_and_the_crab_of_the_bank(roll, offset):
     navigation = make()
-    navigation.update(None, SPEED, 0.7, roll)
+    sense(navigation, None, SPEED, 0.7, roll)
     # There is no wind yet; rounding.
     found = math.atan2(navigation.velocity_east, navigation.velocity_north)
     assert found == pytest.approx(0.7 + offset, abs=1e-12)
@@ -117,7 +132,7 @@ def test_the_wind_is_measured_every_so_many_steps():
     navigation = make()
     seen = []
     for step in range(12):
-        navigation.update((0.0, 0.0, SPEED - 2.0 - 0.1 * step, 1.0), SPEED, 0.0, 0.0)
+        sense(navigation, (0.0, 0.0, SPEED - 2.0 - 0.1 * step, 1.0), SPEED, 0.0)
         seen.append(navigation.wind.north)
     # Steps 0, 5 and 10.
     assert [i for i in range(1, 12) if seen[i] != seen[i - 1]] == [5, 10]
@@ -129,25 +144,24 @@ def test_the_wind_is_kept_as_it_was_while_satellites_are_lost():
     fly(navigation, steps=400, lost_from=10.0)
     kept = (navigation.wind.north, navigation.wind.east)
     for _ in range(50):
-        navigation.update(None, SPEED + 5.0, 2.0, 0.3)
+        sense(navigation, None, SPEED + 5.0, 2.0, 0.3)
     assert (navigation.wind.north, navigation.wind.east) == kept
 
 
 def test_after_a_loss_of_satellites_the_wind_is_known_as_little_as_it_has_wandered():
-    navigation = make()
+    # Errors of a measurement are the same in every direction: the filter is a scalar one.
+    error, drift = 0.5, 0.02
+    navigation = make(airspeed_sigma=error, course_sigma=error / SPEED, wind_drift=drift)
     where = fly(navigation, steps=2000)
     before = navigation.wind.sigma
     for _ in range(1200):
-        navigation.update(None, SPEED, 0.3, 0.0)
-    navigation.wind._speed_variance = navigation.wind._course_variance = (
-        1e12  # what is measured then says nothing
-    )
+        sense(navigation, None, SPEED, 0.3)
     for _ in range(5):
-        navigation.update((*where, *velocity_at(0.0)), SPEED, course_at(0.0), 0.0)
-    # 60 s at 0.02 m/s a root of a second, and at most one interval of 0.25 s more.
-    assert navigation.wind.sigma == pytest.approx(
-        math.hypot(before, 0.02 * math.sqrt(60.0)), rel=5e-3
-    )
+        sense(navigation, (*where, *velocity_at(0.0)), SPEED, course_at(0.0))
+    # 60 s, and one interval of 0.25 s between measurements.
+    wandered = before**2 + drift**2 * 60.25
+    after = wandered * error**2 / (wandered + error**2)
+    assert navigation.wind.sigma == pytest.approx(math.sqrt(after), rel=1e-9)
 
 
 def test_a_wind_that_was_measured_seldom_may_be_wrong_by_as_much_as_its_filter_says():
@@ -191,12 +205,202 @@ def test_a_noisy_compass_makes_the_wind_wrong_by_no_more_than_that(measured):
         )
         for step in range(measured):
             time = 0.5 * step
-            navigation.update(
-                (0.0, 0.0, *velocity_at(time)),
-                SPEED,
-                course_at(time) + generator.normal(0.0, noise),
-                0.0,
-            )
+            heading = course_at(time) + generator.normal(0.0, noise)
+            sense(navigation, (0.0, 0.0, *velocity_at(time)), SPEED, heading)
         wrong = math.hypot(navigation.wind.north - WIND[0], navigation.wind.east - WIND[1])
         exceeded += wrong > navigation.wind_error
     assert exceeded <= 20
+
+
+def test_the_true_motion_has_course_and_speed_of_its_velocity_and_no_wind():
+    own = TrueNavigation()
+    own.update(Motion(100.0, -50.0, 12.0, -5.0, 0.2))
+    assert (own.north, own.east, own.ground_north, own.ground_east) == (100.0, -50.0, 100.0, -50.0)
+    # 5, 12, 13.
+    assert (own.speed, own.course, own.heading_rate) == pytest.approx(
+        (13.0, math.atan2(-5.0, 12.0), 0.2), rel=1e-15
+    )
+    assert (own.wind_north, own.wind_east, own.drift_north, own.drift_east, own.lost) == (0.0,) * 5
+    # Nothing in its measurement says how fast the air goes by.
+    assert own.air_ratio == 1.0
+    assert math.isnan(own.airspeed)
+
+
+def settled_in_wind(*, airspeed=SPEED, heading_rate=0.1):
+    """Return the estimate after four minutes of a circle in a steady wind, and where the vehicle
+    then is.
+    """
+    own = make(crab_offsets=(0.0, 0.0, 0.0), wind_interval=10)
+    north = east = 0.0
+    for step in range(4802):
+        heading = 0.1 * step * TIME_STEP
+        velocity = SPEED * math.cos(heading) + WIND[0], SPEED * math.sin(heading) + WIND[1]
+        last = step == 4801  # between two measurements of the wind
+        fix, read = SatelliteFix(north, east, *velocity), airspeed if last else SPEED
+        own.update(SensorReadings(fix, read, heading, 0.0, heading_rate, 0.0))
+        place = north, east
+        north, east = north + TIME_STEP * velocity[0], east + TIME_STEP * velocity[1]
+    return own, place, math.remainder(heading, 2.0 * math.pi)
+
+
+def test_the_estimated_motion_is_that_through_the_mean_air():
+    own, place, heading = settled_in_wind()
+    # Exact sensors and a steady wind: what is left of the first guess, 10 m/s, after four minutes
+    # of circles; measured 2 mm/s.
+    assert (own.wind_north, own.wind_east) == pytest.approx(WIND, abs=0.01)
+    assert own.speed == pytest.approx(SPEED, abs=0.02)
+    assert own.course == pytest.approx(heading, abs=1e-3)
+    assert (own.ground_north, own.ground_east) == place
+    # The air mass has drifted by as much as its frame lies from that of the ground; over 240 s of a
+    # wind that was found soon.
+    assert (own.north + own.drift_north, own.east + own.drift_east) == pytest.approx(
+        place, abs=1e-9
+    )
+    assert (own.drift_north, own.drift_east) == pytest.approx(
+        (240.0 * WIND[0], 240.0 * WIND[1]), rel=0.1
+    )
+    assert own.air_ratio == pytest.approx(1.0, abs=1e-3)
+
+
+def test_a_turn_against_gusty_air_is_a_slower_one_over_the_mean_air_where_the_gust_is_a_tailwind():
+    # A gust from behind takes a tenth of the airspeed: the same acceleration turns the motion over
+    # the mean air by as much less.
+    own, _, _ = settled_in_wind(airspeed=0.9 * SPEED, heading_rate=0.2)
+    assert own.airspeed == 0.9 * SPEED
+    assert own.heading_rate == pytest.approx(0.18, rel=2e-3)
+    assert own.air_ratio == pytest.approx(0.9, rel=2e-3)
+
+
+def test_without_satellite_navigation_it_counts_the_time():
+    own, _, heading = settled_in_wind()
+    assert own.lost == 0.0
+    for _ in range(20):
+        sense(own, None, SPEED, heading)
+    assert own.lost == pytest.approx(1.0, abs=1e-9)
+
+
+STEADY, INTERVAL = np.array([-6.0, 3.5]), 0.25
+AIRSPEED_SIGMA, COURSE_SIGMA, DRIFT = 0.5, 0.03, 0.02
+
+
+def wind_filter_of(**changes):
+    sigmas = {"airspeed_sigma": AIRSPEED_SIGMA, "course_sigma": COURSE_SIGMA, "drift": DRIFT}
+    return WindFilter(**(sigmas | changes))
+
+
+def weave(time):
+    """Return the course of a weave with eta = 1.52 and a period of 19 s, as at nu = 0.5."""
+    return 0.8 + 1.52 * math.cos(0.33 * time)
+
+
+def circle(time):
+    return 0.5 * time
+
+
+def feed(wind_filter, course, wind, airspeed=SPEED, measured_airspeed=None, measured_course=None):
+    velocity = wind + airspeed * np.array([math.cos(course), math.sin(course)])
+    measured = airspeed if measured_airspeed is None else measured_airspeed
+    seen = course if measured_course is None else measured_course
+    wind_filter.update(measured, seen, float(velocity[0]), float(velocity[1]), INTERVAL)
+    return velocity
+
+
+def covariance(wind_filter):
+    return np.array(
+        [
+            [wind_filter.variance_north, wind_filter.covariance],
+            [wind_filter.covariance, wind_filter.variance_east],
+        ]
+    )
+
+
+@pytest.mark.parametrize("course", [circle, weave])
+def test_exact_sensors_find_a_steady_wind(course):
+    wind_filter = wind_filter_of()
+    for step in range(240):
+        feed(wind_filter, course(step * INTERVAL), STEADY)
+    # Every measurement is the wind itself: rounding.
+    assert (wind_filter.north, wind_filter.east) == pytest.approx(STEADY, abs=1e-12)
+
+
+def test_the_first_measurement_is_the_first_estimate_however_noisy_it_is_taken_to_be():
+    # By moderate turbulence, or at 300 m/s, single measurements are taken to be wrong by 9 m/s.
+    # With a likely wind of 10 m/s before them the first estimate was 0.58 of the wind.
+    wind_filter = wind_filter_of(airspeed_sigma=9.0, course_sigma=9.0 / SPEED)
+    feed(wind_filter, 0.8, STEADY)
+    assert (wind_filter.north, wind_filter.east) == pytest.approx(STEADY, abs=1e-12)
+    assert wind_filter.sigma == pytest.approx(9.0)
+
+
+def test_a_bias_of_the_airspeed_averages_out_in_circles_and_stays_along_a_straight_course():
+    round_about, straight = wind_filter_of(drift=0.0), wind_filter_of(drift=0.0)
+    # 50.27 s are four circles at 0.5 rad/s.
+    steps = round(8.0 * math.pi / 0.5 / INTERVAL)
+    for step in range(steps):
+        feed(round_about, circle(step * INTERVAL), STEADY, measured_airspeed=SPEED + 1.0)
+        feed(straight, 0.0, STEADY, measured_airspeed=SPEED + 1.0)
+    # The triangle: an airspeed that reads 1 m/s high takes 1 m/s from the wind along the course.
+    assert (straight.north, straight.east) == pytest.approx(STEADY - [1.0, 0.0], abs=1e-3)
+    # The mean of a unit vector round whole circles is 0; 201 samples are not quite whole ones.
+    assert (round_about.north, round_about.east) == pytest.approx(STEADY, abs=0.02)
+
+
+@pytest.mark.parametrize("course", [circle, weave])
+def test_it_is_the_kalman_filter_of_the_textbook(course):
+    rng = np.random.default_rng(7)
+    wind_filter = wind_filter_of()
+    state, p = np.zeros(2), np.zeros((2, 2))
+    for step in range(400):
+        chi = course(step * INTERVAL)
+        airspeed = SPEED + AIRSPEED_SIGMA * rng.standard_normal()
+        seen = chi + COURSE_SIGMA * rng.standard_normal()
+        velocity = feed(wind_filter, chi, STEADY, measured_airspeed=airspeed, measured_course=seen)
+        p = p + DRIFT**2 * INTERVAL * np.eye(2)
+        along = np.array([math.cos(seen), math.sin(seen)])
+        across = np.array([-along[1], along[0]])
+        r = AIRSPEED_SIGMA**2 * np.outer(along, along) + (airspeed * COURSE_SIGMA) ** 2 * np.outer(
+            across, across
+        )
+        # Before the first measurement nothing is known.
+        gain = p @ np.linalg.inv(p + r) if step else np.eye(2)
+        state = state + gain @ (velocity - airspeed * along - state)
+        p = (np.eye(2) - gain) @ p if step else r
+        # The same filter, with both components at once: rounding.
+        assert (wind_filter.north, wind_filter.east) == pytest.approx(state, rel=0.0, abs=1e-9)
+        assert covariance(wind_filter) == pytest.approx(p, rel=1e-8, abs=1e-12)
+        assert wind_filter.sigma == pytest.approx(math.sqrt(np.linalg.eigvalsh(p)[-1]), rel=1e-8)
+
+
+def test_its_covariance_stays_positive_on_a_course_that_never_changes():
+    wind_filter = wind_filter_of()
+    for _ in range(20_000):
+        feed(wind_filter, 0.3, STEADY)
+    assert np.linalg.eigvalsh(covariance(wind_filter))[0] > 0.0
+    # Both components settle where drift and noise balance: p^2 = q r, with q = DRIFT^2 dt for each
+    # measurement, and p from after it to before it p + q. The worst direction is across, where r =
+    # (V sigma)^2.
+    q, r = DRIFT**2 * INTERVAL, (SPEED * COURSE_SIGMA) ** 2
+    after = 0.5 * (math.sqrt(q * q + 4.0 * q * r) - q)
+    assert wind_filter.sigma == pytest.approx(math.sqrt(after), rel=1e-6)
+
+
+@pytest.mark.parametrize("course", [circle, weave])
+def test_it_knows_how_wrong_it_is(course):
+    rng = np.random.default_rng(11)
+    flights, normalised = 200, []
+    for _ in range(flights):
+        wind_filter = wind_filter_of()
+        wind = 5.0 * rng.standard_normal(2)
+        for step in range(80):
+            wind = wind + DRIFT * math.sqrt(INTERVAL) * rng.standard_normal(2)
+            chi = course(step * INTERVAL)
+            airspeed = SPEED - AIRSPEED_SIGMA * rng.standard_normal()
+            seen = chi - COURSE_SIGMA * rng.standard_normal()
+            feed(wind_filter, chi, wind, measured_airspeed=airspeed, measured_course=seen)
+        error = np.array([wind_filter.north, wind_filter.east]) - wind
+        normalised.append(error @ np.linalg.solve(covariance(wind_filter), error))
+    # Independent flights: the sum is chi-squared with two degrees of freedom each; the limits hold
+    # for all but one set of seeds in 500. The airspeed is the truth less its error, so that the
+    # course error acts on the true V_a: a second-order effect.
+    low, high = chi2.ppf([0.001, 0.999], 2 * flights) / flights
+    assert low < np.mean(normalised) < high

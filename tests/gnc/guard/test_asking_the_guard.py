@@ -10,7 +10,7 @@ import pytest
 from gnc_cases import HEADING_RATE_MAX, SPEED
 from guard_cases import LAGS, RADIUS, TIME_STEP, aim_at_the_centre, make_guard, moved
 
-from gnc.estimation.own_motion import KnownMotion
+from gnc.estimation.navigation import AirMotion
 
 
 @LAGS
@@ -84,7 +84,7 @@ def test_it_remembers_of_a_fast_vehicle_no_more_than_it_can_turn():
         assert guard.guard._given.since[-1] == HEADING_RATE_MAX * SPEED / speed
     # One that may become faster, and is not, turns in full: taken for a slow turn it flew 9 m into
     # a disc of 10.
-    own = KnownMotion(ground_north=1000.0, ground_east=0.0, course=0.0, speed=SPEED)
+    own = AirMotion(ground_north=1000.0, ground_east=0.0, course=0.0, speed=SPEED)
     guard.guard.limit(HEADING_RATE_MAX, 0.1, own, 1.5 * SPEED, SPEED)
     assert guard.guard._given.since[-1] == HEADING_RATE_MAX
 

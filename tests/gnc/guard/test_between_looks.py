@@ -8,12 +8,12 @@ from collections import deque
 
 import numpy as np
 import pytest
-from guard_cases import aim_at_the_centre, moved
-
-from gnc.estimation.own_motion import KnownMotion
-from gnc.estimation.reachable_set import Tube
 from gnc.safety.guard_parameters import GuardParameters
 from gnc.safety.keepout_guard import KeepoutGuard
+from guard_cases import aim_at_the_centre, moved
+
+from gnc.estimation.navigation import AirMotion
+from gnc.estimation.vessel import Tube
 
 SPEED = 20.0
 
@@ -31,9 +31,7 @@ def guard_of(*, radius, heading_rate_max, time_step, lag=0.0, delay=0.0, deviati
 
 def motion_of(state):
     north, east, course, heading_rate = state
-    return KnownMotion(
-        ground_north=north, ground_east=east, course=course, heading_rate=heading_rate
-    )
+    return AirMotion(ground_north=north, ground_east=east, course=course, heading_rate=heading_rate)
 
 
 @pytest.mark.parametrize(

@@ -4,11 +4,10 @@ import math
 
 import numpy as np
 import pytest
-from gnc_cases import HEADING_RATE_MAX
-from guard_cases import TIME_STEP, moved
-
 from common.physics.turn_tube import CHANGED, FORGOTTEN, LEAST_CHANGE, SLOW_LAG_ERROR
 from gnc.safety.given_commands import GivenCommands, commands_under_way
+from gnc_cases import HEADING_RATE_MAX
+from guard_cases import TIME_STEP, moved
 
 
 def commands(lag, delay, *, sooner=0.0):

@@ -4,6 +4,7 @@ from collections import deque
 
 import numpy as np
 import pytest
+from gnc.safety.guard_parameters import GuardParameters
 from gnc_cases import (
     HEADING_RATE_MAX,
     SPEED,
@@ -36,7 +37,6 @@ from hypothesis import strategies as st
 
 from gnc.numeric import wrap
 from gnc.paper import PlumeAxis, distance_by_paper
-from gnc.safety.guard_parameters import GuardParameters
 
 
 @LAGS

@@ -6,6 +6,8 @@ import math
 
 import numpy as np
 import pytest
+from gnc.safety.guard_parameters import GuardParameters
+from gnc.safety.keepout_guard import KeepoutGuard
 from gnc_cases import HEADING_RATE_MAX, SPEED
 from guard_cases import RADIUS, TIME_STEP, moved
 from hunt_cases import (
@@ -19,11 +21,9 @@ from hunt_cases import (
     turning,
 )
 
-from gnc.estimation.own_motion import KnownMotion
-from gnc.estimation.reachable_set import Tube
+from gnc.estimation.navigation import AirMotion
+from gnc.estimation.vessel import Tube
 from gnc.numeric import wrap
-from gnc.safety.guard_parameters import GuardParameters
-from gnc.safety.keepout_guard import KeepoutGuard
 
 HUNTED = pytest.mark.parametrize("hunter", HUNTERS, ids=lambda hunter: hunter.__name__)
 
@@ -95,7 +95,7 @@ def test_a_report_that_widens_the_disc_does_not_take_the_way_out():
         state, lost[made], closest = (-400.0, 3.0, 0.0, 0.0), 0, math.inf
         for step in range(400):
             guard.tubes = (known if step < 160 else wider,)
-            own = KnownMotion(
+            own = AirMotion(
                 ground_north=state[0], ground_east=state[1], course=state[2], heading_rate=state[3]
             )
             # Straight at her.
@@ -148,7 +148,7 @@ def test_dead_reckoning_that_goes_wrong_as_fast_as_declared_does_not_lead_in(rat
                     wrong_east += rate * TIME_STEP * math.sin(away)
                 else:
                     wrong_north = wrong_east = 0.0
-                own = KnownMotion(
+                own = AirMotion(
                     ground_north=state[0] + wrong_north,
                     ground_east=state[1] + wrong_east,
                     course=state[2],

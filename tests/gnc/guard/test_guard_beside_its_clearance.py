@@ -4,13 +4,13 @@ clearance, and in wind.
 
 import numpy as np
 import pytest
+from gnc.safety.guard_parameters import GuardParameters
+from gnc.safety.keepout_guard import KeepoutGuard
 from gnc_cases import HEADING_RATE_MAX, SPEED
 from guard_cases import RADIUS, TIME_STEP, TURN_RADIUS, random_start, random_velocity
 
-from gnc.estimation.own_motion import KnownMotion
-from gnc.estimation.reachable_set import Tube
-from gnc.safety.guard_parameters import GuardParameters
-from gnc.safety.keepout_guard import KeepoutGuard
+from gnc.estimation.navigation import AirMotion
+from gnc.estimation.vessel import Tube
 
 
 def a_guard(tube, *, delay=0.0):
@@ -48,7 +48,7 @@ def test_a_turn_away_passes_exactly_where_one_that_begins_now_keeps_off(side, de
     disc = Tube(0.0, 0.0, 0.0, 0.0, 0.0, growth=growth)
 
     def own(distance):
-        return KnownMotion(
+        return AirMotion(
             ground_north=-distance, ground_east=5.0 * side, course=0.0, heading_rate=0.0
         )
 
@@ -82,13 +82,13 @@ def test_in_wind_it_does_what_it_does_in_still_air_beside_a_vessel_that_moves_ag
             "course": course,
             "heading_rate": heading_rate,
         }
-        windy = KnownMotion(**place, wind_north=wind[0], wind_east=wind[1])
+        windy = AirMotion(**place, wind_north=wind[0], wind_east=wind[1])
         in_wind = a_guard(Tube(0.0, 0.0, 0.0, *velocity))
         in_still_air = a_guard(Tube(0.0, 0.0, 0.0, velocity[0] - wind[0], velocity[1] - wind[1]))
         assert in_wind.clearance(0.0, windy, SPEED) == in_still_air.clearance(
-            0.0, KnownMotion(**place), SPEED
+            0.0, AirMotion(**place), SPEED
         )
         answer = in_wind.limit(command, 0.0, windy, SPEED)
-        assert answer == in_still_air.limit(command, 0.0, KnownMotion(**place), SPEED)
+        assert answer == in_still_air.limit(command, 0.0, AirMotion(**place), SPEED)
         changed += answer != command
     assert changed > 3

@@ -5,13 +5,13 @@ knows how slow it becomes.
 import math
 
 import pytest
+from gnc.safety.guard_parameters import GuardParameters
+from gnc.safety.keepout_guard import KeepoutGuard
 from gnc_cases import HEADING_RATE_MAX, SPEED
 from guard_cases import RADIUS, TIME_STEP, aim_at_the_centre, make_guard, moved
 
-from gnc.estimation.own_motion import KnownMotion
-from gnc.estimation.reachable_set import Tube
-from gnc.safety.guard_parameters import GuardParameters
-from gnc.safety.keepout_guard import KeepoutGuard
+from gnc.estimation.navigation import AirMotion
+from gnc.estimation.vessel import Tube
 
 LAG, FALL, SLOWEST = 0.4, 1.25, 14.2
 """Of the X8: its airspeed falls by 1.25 m/s2 without thrust in a turn at 45 degrees, to 14.2 m/s
@@ -53,7 +53,7 @@ def test_a_vehicle_that_slows_down_to_the_slowest_keeps_out_whenever_it_begins_t
 
 def test_a_start_and_an_orbit_are_judged_by_the_slowest_too():
     # Astern of a disc that comes on the vehicle flies away from it, the slower the nearer.
-    own = KnownMotion(ground_north=300.0, ground_east=0.0, course=1.0)
+    own = AirMotion(ground_north=300.0, ground_east=0.0, course=1.0)
     clearances = []
     for slowest in (math.inf, SPEED, SLOWEST):
         guard = KeepoutGuard(

@@ -4,7 +4,6 @@ import math
 
 import numpy as np
 import pytest
-
 from gnc.safety.speed_reckoning import SpeedReckoning
 
 SPEED, BANDWIDTH, TIME_STEP = 19.42, 1.3, 0.05

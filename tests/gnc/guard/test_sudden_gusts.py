@@ -6,14 +6,14 @@ import math
 from dataclasses import dataclass
 
 import pytest
+from gnc.safety.guard_parameters import GuardParameters
+from gnc.safety.keepout_guard import KeepoutGuard
 from gnc_cases import HEADING_RATE_MAX, SPEED
 from guard_cases import RADIUS, TIME_STEP
 
-from gnc.estimation.own_motion import KnownMotion
-from gnc.estimation.reachable_set import Tube
+from gnc.estimation.navigation import AirMotion
+from gnc.estimation.vessel import Tube
 from gnc.numeric import limited, wrap
-from gnc.safety.guard_parameters import GuardParameters
-from gnc.safety.keepout_guard import KeepoutGuard
 from gnc.unicycle import lagged_move
 
 LAG = 0.3
@@ -63,7 +63,7 @@ def closest(
         over_north, over_east = SPEED * math.cos(heading) + north, SPEED * math.sin(heading) + east
         speed = math.hypot(over_north, over_east)
         flown = math.atan2(over_east, over_north)
-        own = KnownMotion(
+        own = AirMotion(
             ground_north=x, ground_east=y, course=flown, heading_rate=rate * SPEED / speed
         )
         aim = math.atan2(-y, vessel * time - x) + weave * math.sin(0.3 * time + 6.05)

@@ -2,6 +2,7 @@ import math
 
 import numpy as np
 import pytest
+from gnc.safety.turn_prediction import TurnPrediction, nearer_side
 from gnc_cases import HEADING_RATE_MAX, SPEED
 from guard_cases import (
     LAGS,
@@ -14,10 +15,9 @@ from guard_cases import (
     random_velocity,
 )
 
-from gnc.estimation.own_motion import KnownMotion
-from gnc.estimation.reachable_set import Tube
+from gnc.estimation.navigation import AirMotion
+from gnc.estimation.vessel import Tube
 from gnc.numeric import wrap
-from gnc.safety.turn_prediction import TurnPrediction, nearer_side
 
 
 def turn_by_hand(side, state, velocity, lag, delay, speed=SPEED, rate=HEADING_RATE_MAX):
@@ -61,7 +61,7 @@ def test_a_disc_that_grows_has_grown_by_the_dead_time_when_a_turn_begins(delay):
     guard = make_guard(lag=lag, delay=delay).guard
     guard.tubes = (Tube(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, growth),)
     state = (-150.0, 230.0, 0.1, 0.0)
-    own = KnownMotion(
+    own = AirMotion(
         ground_north=state[0], ground_east=state[1], course=state[2], heading_rate=state[3]
     )
     found = guard.clearance(0.0, own, SPEED)

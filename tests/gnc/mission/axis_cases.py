@@ -1,7 +1,7 @@
 """What tests of a plume's axis share: a vehicle astern of a vessel, and exhaust that rises."""
 
-from gnc.estimation.own_motion import KnownMotion
-from gnc.estimation.target_motion import SteadyTarget
+from gnc.estimation.navigation import AirMotion
+from gnc.estimation.vessel import SteadyTarget
 from gnc.mission.axis_height import AxisHeight
 from gnc.mission.plume_axis import Situation
 from gnc.reference.moving_centre import CentreParameters, MovingCentre
@@ -14,7 +14,7 @@ RISING = AxisHeight(
 
 def situation(*, wind=(0.0, 0.0), vessel=(8.0, 0.0)):
     """Return a vehicle astern of a vessel, whose centre of oscillation has found its place."""
-    own = KnownMotion(
+    own = AirMotion(
         ground_north=-230.0, ground_east=0.0, course=0.0, wind_north=wind[0], wind_east=wind[1]
     )
     parameters = CentreParameters(

@@ -3,8 +3,8 @@ import math
 import pytest
 from gnc_cases import HEADING_RATE_MAX, SPEED, motion
 
-from gnc.estimation.own_motion import TrueNavigation
-from gnc.estimation.target_motion import SteadyTarget
+from gnc.estimation.navigation import TrueNavigation
+from gnc.estimation.vessel import SteadyTarget
 from gnc.mission.approach import Approach, ApproachParameters
 
 PARAMETERS = ApproachParameters(

@@ -2,6 +2,7 @@ import math
 
 import numpy as np
 import pytest
+from gnc.safety.guard_parameters import GuardParameters
 from gnc_cases import (
     HEADING_RATE_MAX,
     SPEED,
@@ -15,15 +16,14 @@ from gnc_cases import (
 
 from gnc.compose import compose
 from gnc.estimation.health import Fault
-from gnc.estimation.own_motion import TrueNavigation
-from gnc.estimation.target_motion import SteadyTarget
+from gnc.estimation.navigation import TrueNavigation
+from gnc.estimation.vessel import SteadyTarget
 from gnc.mission.approach import ApproachParameters
 from gnc.mission.direct_tracking import DirectParameters, DirectTracking, Joining, SteadyCentre
 from gnc.mission.mode import Mode
 from gnc.paper import PlumeAxis, distance_by_paper
 from gnc.reference.joining import JoinedOrbit
 from gnc.reference.shapes.sinusoid import Sinusoid
-from gnc.safety.guard_parameters import GuardParameters
 
 NU = 0.1
 GUARD = GuardParameters(

@@ -8,7 +8,7 @@ from dataclasses import replace
 import pytest
 from exhaust_cases import SENSOR
 
-from gnc.estimation.plume.estimator import SensorState
+from gnc.estimation.plume.passes import SensorState
 from gnc.estimation.plume.prior import Expectation
 from gnc.mission.mode import Mode
 from gnc.mission.plume_axis import Climb

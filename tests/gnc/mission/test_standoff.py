@@ -6,8 +6,8 @@ from gnc_cases import SPEED, TIME_STEP
 from hypothesis import given
 from hypothesis import strategies as st
 
-from gnc.estimation.own_motion import TrueNavigation
-from gnc.estimation.target_motion import SteadyTarget
+from gnc.estimation.navigation import TrueNavigation
+from gnc.estimation.vessel import SteadyTarget
 from gnc.laws import CascadeLaw
 from gnc.mission.axis_height import AxisHeight
 from gnc.mission.mode import Mode

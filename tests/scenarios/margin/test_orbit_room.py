@@ -7,13 +7,12 @@ from collections import deque
 
 import numpy as np
 import pytest
-
-from gnc.estimation.own_motion import KnownMotion
-from gnc.estimation.reachable_set import Tube, VesselLimits, tube
-from gnc.estimation.vessel_filter import VesselReport
-from gnc.paper import design_oscillation
 from gnc.safety.guard_parameters import GuardParameters
 from gnc.safety.keepout_guard import KeepoutGuard
+
+from gnc.estimation.navigation import AirMotion
+from gnc.estimation.vessel import Tube, VesselLimits, VesselReport, tube
+from gnc.paper import design_oscillation
 from gnc.unicycle import lagged_move
 from scenarios.margin.orbit_room import orbit_distance
 
@@ -78,7 +77,7 @@ def interventions(nu, distance, vessel):
     for step in range(round(2.0 * orbit.period / TIME_STEP)):
         time = step * TIME_STEP
         guard.tubes = (vessel._replace(time=time, north=mean * time, velocity_north=mean),)
-        own = KnownMotion(
+        own = AirMotion(
             ground_north=state[0], ground_east=state[1], course=state[2], heading_rate=state[3]
         )
         # Asked afresh: it keeps nothing in mind but the commands under way.

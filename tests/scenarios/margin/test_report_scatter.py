@@ -9,8 +9,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from gnc.estimation.reachable_set import ReachableSet, tube
-from gnc.estimation.vessel_filter import VesselFilter, VesselReport
+from gnc.estimation.vessel import ReachableSet, VesselFilter, VesselReport, tube
 from scenarios.margin.keepout_margin import filter_parameters, vessel_limits, widest_tube
 from scenarios.margin.report_scatter import GUARDED_PER_HOUR, scatter_allowance
 from scenarios.planning.limits import PLAN_PERIOD

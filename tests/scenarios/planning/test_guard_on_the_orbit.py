@@ -6,11 +6,11 @@ import math
 
 import numpy as np
 import pytest
-
-from gnc.estimation.own_motion import KnownMotion
-from gnc.estimation.reachable_set import Tube
-from gnc.paper import PlumeAxis, distance_by_paper
 from gnc.safety.keepout_guard import KeepoutGuard
+
+from gnc.estimation.navigation import AirMotion
+from gnc.estimation.vessel import Tube
+from gnc.paper import PlumeAxis, distance_by_paper
 from innerloop.flight.turn_reversal import TurnReversalResponse
 from scenarios.planning.planner import plan_flight
 from scenarios.schema.load import load_study, with_values
@@ -54,7 +54,7 @@ def least_clearance(plan):
     return min(
         guard.clearance(
             0.0,
-            KnownMotion(
+            AirMotion(
                 ground_north=centre.x + north,
                 ground_east=centre.y + east,
                 course=heading,

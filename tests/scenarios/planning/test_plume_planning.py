@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from gnc.errors import InfeasibleError
-from gnc.estimation.plume.sensor_watch import equal_readings
+from gnc.estimation.plume.passes import equal_readings
 from gnc.mission.plume_axis import PredictedPlume
 from gnc.mission.searched_axis import SearchedPlume
 from measurement.sniffer.presets import sensor_preset, sensor_presets

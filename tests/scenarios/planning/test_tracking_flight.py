@@ -4,11 +4,11 @@ import math
 from dataclasses import replace
 
 import pytest
+from gnc.safety.keepout_guard import KeepoutGuard
 
 from gnc.errors import InfeasibleError
-from gnc.estimation.own_motion import KnownMotion
-from gnc.estimation.reachable_set import Tube
-from gnc.safety.keepout_guard import KeepoutGuard
+from gnc.estimation.navigation import AirMotion
+from gnc.estimation.vessel import Tube
 from innerloop.flight.turn_reversal import TurnReversalResponse
 from scenarios.errors import InputError
 from scenarios.planning.planner import plan_flight
@@ -125,7 +125,7 @@ def test_the_guard_keeps_the_keep_out_radius_and_no_more_where_everything_is_kno
     # less the radius.
     guard = KeepoutGuard(plan(nu=0.0).guidance.guard)
     guard.tubes = (Tube(0.0, 0.0, 0.0, 0.0, 0.0),)
-    own = KnownMotion(ground_north=0.0, ground_east=300.0, course=math.pi / 2.0)
+    own = AirMotion(ground_north=0.0, ground_east=300.0, course=math.pi / 2.0)
     assert guard.clearance(0.0, own, 19.42) == pytest.approx(300.0 - 200.0, abs=1e-9)
 
 

@@ -5,7 +5,7 @@ from types import SimpleNamespace
 
 import pytest
 
-from gnc.estimation.plume.estimator import SensorState
+from gnc.estimation.plume.passes import SensorState
 from gnc.mission.mode import Mode
 from gnc.mission.searched_axis import PlumeEstimate, SearchedAxis
 from scenarios.simulation import judge as judging

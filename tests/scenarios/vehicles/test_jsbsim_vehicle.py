@@ -8,8 +8,7 @@ import pytest
 from aircraft.atmosphere.weather import Weather
 from aircraft.atmosphere.wind import constant_wind
 from aircraft.fleet.x8 import X8
-from gnc.estimation.health import STUCK
-from gnc.estimation.health_monitor import CHECK_INTERVAL
+from gnc.estimation.health import CHECK_INTERVAL, STUCK
 from innerloop.flight.autopiloted_aircraft import AutopilotedAircraft
 from scenarios.vehicles.jsbsim import JsbsimVehicle
 

@@ -7,9 +7,15 @@ import pytest
 from exhaust_cases import PRIOR, SENSOR
 
 from gnc.estimation.plume.estimator import PlumeEstimator, PlumeState
-from gnc.estimation.plume.pass_reader import PassReader
-from gnc.estimation.plume.passes import PassCollector, Path
-from gnc.estimation.plume.prior import BACKGROUND_DRIFT
+from gnc.estimation.plume.passes import (
+    PassCollector,
+    PassReader,
+    Path,
+    SensorState,
+    SensorWatch,
+    equal_readings,
+)
+from gnc.estimation.plume.prior import BACKGROUND_DRIFT, GasSensor
 
 _SPEED = 20.0
 
@@ -51,9 +57,12 @@ def test_a_pulse_is_found_where_and_as_strong_as_it_is() -> None:
     )
     assert evidence is not None
     assert PLACES[evidence.at] == pytest.approx(10.0)
-    assert SPREADS[evidence.spread] == 9.0
+    gain = evidence.slope**2 / evidence.bend
+    spread, place = np.unravel_index(gain.argmax(), gain.shape)
+    assert (SPREADS[spread], place) == (9.0, evidence.at)
     # A step of 0.25 s of the path is half a spread.
-    assert evidence.strength == pytest.approx(80.0, rel=0.05)
+    strength = evidence.slope[spread, place] / evidence.bend[spread, place]
+    assert strength == pytest.approx(80.0, rel=0.05)
     # Through a lag of 0.43 s a pulse of 0.45 s keeps about two thirds of its peak.
     assert 0.5 * 80.0 < evidence.peak < 0.8 * 80.0
 
@@ -69,7 +78,7 @@ def test_clean_air_has_no_significant_pulse() -> None:
 
 @pytest.mark.parametrize("place", [0.0, 80.0])
 def test_clean_air_after_a_plume_is_clean_air(place: float) -> None:
-    """Neither has the background risen by it, nor is what is left of it in the sensor another one."""
+    """Its background has not risen, and the rest of the plume in the sensor is no second plume."""
     duration, tail = 9.0, SENSOR.time_constant
     fine = np.arange(0.0, 2.0 * duration, 1e-3)
     # The plume is gone by the turn, at 90 m: the second pass meets nothing.
@@ -116,7 +125,7 @@ def test_the_background_at_the_end_of_a_pass_is_what_its_pulse_leaves(
         reader, clean = PassReader(SENSOR), _path(seed=seed)
         pulse = _pulse(clean.read_at, strength, place=10.0, spread=9.0)
         reader.read(_path(pulse + rate * clean.read_at, seed=seed), PLACES, SPREADS)
-        off.append((reader._level - 420.0 - rate * clean.read_at[-1]) / reader._level_deviation)
+        off.append((reader.level - 420.0 - rate * clean.read_at[-1]) / reader.level_deviation)
     # A drift of twice what the data sheet allows as a deviation; the mean of 20 errors of unit
     # variance is 0.22 off at one sigma.
     assert abs(np.mean(off)) < 1.0
@@ -127,7 +136,7 @@ def test_slope_and_bend_are_those_of_the_whole_covariance() -> None:
     """Woodbury's identity: against the inverse of the full matrix."""
     path = _path(seed=3)
     reader = PassReader(SENSOR)
-    templates = reader._templates(path, PLACES, SPREADS)
+    templates = reader.templates(path, PLACES, SPREADS)
     evidence = reader.read(path, PLACES, SPREADS)
     assert evidence is not None
     y = path.readings - np.median(path.readings)
@@ -195,8 +204,8 @@ def test_the_way_along_the_plume_is_that_against_the_air() -> None:
     """At rest along the axis the plume goes by at the apparent wind: here 10 m/s, half as fast as
     the way across.
     """
-    assert _path().drawn_out(0.0, 10.0) == pytest.approx(0.5)
-    assert _path().drawn_out(0.0, 0.0) == pytest.approx(0.0)
+    assert _path().obliqueness(0.0, 10.0) == pytest.approx(0.5)
+    assert _path().obliqueness(0.0, 0.0) == pytest.approx(0.0)
 
 
 @pytest.mark.filterwarnings("error")
@@ -212,3 +221,85 @@ def test_passes_far_from_every_place_of_the_axis_detect_nothing() -> None:
     assert estimator.detection(65.0) == 0.0
     assert estimator.state is PlumeState.SEARCHING
     assert estimator.height == pytest.approx(PRIOR.height, abs=1.0)
+
+
+def _sensor(noise: float = 1.0, resolution: float = 0.1) -> GasSensor:
+    return GasSensor(
+        interval=1.0,
+        delay=0.0,
+        time_constant=1.0,
+        noise=noise,
+        saturated=5000.0,
+        resolution=resolution,
+    )
+
+
+def _watch() -> SensorWatch:
+    return SensorWatch(_sensor())
+
+
+def test_noise_is_that_of_a_working_sensor() -> None:
+    watch, generator = _watch(), np.random.default_rng(0)
+    for _ in range(500):
+        watch.wait(1.0)
+        # Rounded to 0.1 at a noise of 1: neighbours are equal once in 35, ten in a row never.
+        watch.read(round(420.0 + generator.standard_normal(), 1))
+        assert watch.state is SensorState.WORKING
+
+
+def test_ten_equal_readings_are_those_of_a_stuck_sensor() -> None:
+    watch = _watch()
+    for _ in range(9):
+        watch.read(420.0)
+    assert watch.state is SensorState.WORKING
+    watch.read(420.0)
+    assert watch.state is SensorState.STUCK
+    watch.read(421.0)
+    assert watch.state is SensorState.WORKING
+
+
+def test_no_reading_for_five_intervals_is_silence() -> None:
+    watch = _watch()
+    watch.read(420.0)
+    watch.wait(4.9)
+    assert watch.state is SensorState.WORKING
+    watch.wait(0.2)
+    assert watch.state is SensorState.SILENT
+    watch.read(421.0)
+    assert watch.state is SensorState.WORKING
+
+
+def test_a_reading_at_the_end_of_the_range_is_saturated() -> None:
+    watch = _watch()
+    watch.read(5000.0)
+    assert watch.state is SensorState.SATURATED
+    watch.read(4999.0)
+    assert watch.state is SensorState.WORKING
+
+
+@pytest.mark.parametrize("noise", [0.2, 0.3, 0.5])
+def test_readings_that_are_coarser_than_their_noise_are_those_of_a_working_sensor(
+    noise: float,
+) -> None:
+    """Clean air at a multiple of the step, where readings of noise 0.3 are the same in 90 % of all
+    cases: 10 in a row are usual.
+    """
+    watch, generator = SensorWatch(_sensor(noise, 1.0)), np.random.default_rng(1)
+    for reading in np.round(420.0 + noise * generator.standard_normal(10_000)):
+        watch.read(float(reading))
+        assert watch.state is SensorState.WORKING
+
+
+def test_a_sensor_with_coarse_readings_that_sticks_is_found_later() -> None:
+    # erf(1/(2 sqrt(2) 0.5)) = 0.6827 of a normal distribution lie within one deviation; 0.6827^73 =
+    # 7.8e-13, 0.6827^72 = 1.1e-12.
+    watch = SensorWatch(_sensor(0.5, 1.0))
+    for _ in range(72):
+        watch.read(420.0)
+    assert watch.state is SensorState.WORKING
+    watch.read(420.0)
+    assert watch.state is SensorState.STUCK
+
+
+def test_noise_that_never_shows_says_nothing_of_equal_readings() -> None:
+    assert equal_readings(_sensor(0.01, 1.0)) == math.inf

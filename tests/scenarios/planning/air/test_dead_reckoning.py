@@ -10,7 +10,7 @@ from flight_cases import plan, scenario
 
 from aircraft.atmosphere.turbulence import TURBULENCE, intensities, scale_lengths
 from aircraft.atmosphere.wind import CALM, WindField
-from gnc.estimation.navigation import Navigation
+from gnc.estimation.navigation import EstimatedNavigation, SatelliteFix, SensorReadings
 from scenarios.planning.air.dead_reckoning import drift_rate
 from scenarios.planning.air.estimated_wind import navigation_parameters, wind_change
 from scenarios.vehicles.vehicle_setup import kinematic_setup
@@ -121,7 +121,7 @@ def test_a_compass_with_noise_makes_it_go_wrong_by_no_more_than_planned(sigma_de
         (3.0, -4.0),
     )
     for _ in range(20):
-        navigation = Navigation(navigation_parameters(flown, kinematic_setup(flown)))
+        navigation = EstimatedNavigation(navigation_parameters(flown, kinematic_setup(flown)))
         phase, north, east = float(generator.uniform(0.0, 2.0 * math.pi)), 0.0, 0.0
         heading = np.radians(sigma_deg) * generator.standard_normal(7200)
         for step, error in enumerate(heading.tolist()):
@@ -129,13 +129,12 @@ def test_a_compass_with_noise_makes_it_go_wrong_by_no_more_than_planned(sigma_de
             course = phase + 1.5 * math.sin(0.33 * time)
             v_north, v_east = speed * math.cos(course) + w_north, speed * math.sin(course) + w_east
             lost = time >= 300.0
-            navigation.update(
-                None if lost else (north, east, v_north, v_east), speed, course + error, 0.0
-            )
+            fix = None if lost else SatelliteFix(north, east, v_north, v_east)
+            navigation.update(SensorReadings(fix, speed, course + error, 0.0, 0.0, 0.0))
             north, east = north + time_step * v_north, east + time_step * v_east
             if lost:
                 age = navigation.lost
-                wrong = math.hypot(navigation.north - north, navigation.east - east)
+                wrong = math.hypot(navigation.ground_north - north, navigation.ground_east - east)
                 assert wrong <= (planned + navigation.wind_error) * (age + TURN)
 
 
