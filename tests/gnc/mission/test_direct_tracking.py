@@ -17,13 +17,13 @@ from gnc.compose import compose
 from gnc.estimation.health import Fault
 from gnc.estimation.own_motion import TrueNavigation
 from gnc.estimation.target_motion import SteadyTarget
+from gnc.guard.guard import GuardParameters
 from gnc.mission.approach import ApproachParameters
 from gnc.mission.direct_tracking import DirectParameters, DirectTracking, Joining, SteadyCentre
 from gnc.mission.mode import Mode
 from gnc.paper import PlumeAxis, distance_by_paper
 from gnc.reference.joining import JoinedOrbit
 from gnc.reference.shapes.sinusoid import Sinusoid
-from gnc.safety.guard_parameters import GuardParameters
 
 NU = 0.1
 GUARD = GuardParameters(
