@@ -58,7 +58,7 @@ LONGEST = (
     "test_subset_simulation.py", "test_ensemble.py", "test_survival.py", "test_bad_input.py", "test_design_report.py",
     "test_keepout_margin.py", "test_arena_report.py", "test_tutorials.py", "test_experiments.py", "test_results.py",
     "test_ensemble_settling.py", "test_falsify_resumed.py", "test_extension_points.py", "test_recomputed_figures.py",
-    "test_estimate_uncertainty.py", "test_monte_carlo_study.py", "test_robustness.py", "test_keepout_guard.py",
+    "test_estimate_uncertainty.py", "test_monte_carlo_study.py", "test_robustness.py", "test_guard.py",
     "test_methods.py",
 )  # fmt: skip
 """Files of tests that take longest, in this order: each is run by one process, and none may begin

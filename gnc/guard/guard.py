@@ -207,24 +207,18 @@ class KeepoutGuard:
         ----------
         demand : of the guidance
         own : the vehicle's motion
-        vessels : discs, each of which contains the vessel for certain, the one known best first
+        vessels : discs, at least one, each of which contains the vessel for certain
         """
         time, command, pace, leaving = demand
         heading_rates, speeds = self._heading_rates, self._speeds
         pace_held = False
         if time < self._hold_until and not leaving:
             pace, pace_held = self._speed, True
-        speed = own.speed
-        fastest, slowest = speeds.fastest(pace), speeds.slowest(pace)
-        # A measured speed beyond those that were commanded counts as well.
-        fastest = speed if speed > fastest else fastest
-        slowest = speed if speed < slowest else slowest
+        fastest, slowest = self._speeds_with(pace, own.speed)
         rises = pace > speeds.highest + _PACE_TOLERANCE and not leaving
         if rises and not heading_rates.allows(command, time, own, vessels, fastest, slowest):
             pace, pace_held = speeds.highest, True
-            fastest, slowest = speeds.fastest(pace), speeds.slowest(pace)
-            fastest = speed if speed > fastest else fastest
-            slowest = speed if speed < slowest else slowest
+            fastest, slowest = self._speeds_with(pace, own.speed)
         command = heading_rates.limit(command, time, own, vessels, fastest, slowest)
         status = heading_rates.status
         if status is not GuardStatus.FREE and not leaving:
@@ -232,6 +226,14 @@ class KeepoutGuard:
             self._hold_until = time + self._quarter_turn
         speeds.note(pace if rises or pace < speeds.highest else speeds.highest)
         return Guarded(command, pace, pace_held, status)
+
+    def _speeds_with(self, pace: float, measured: float) -> tuple[float, float]:
+        """Return the fastest and the slowest speed if a pace is commanded now [m/s].
+
+        A measured speed beyond those that were commanded counts as well.
+        """
+        fastest, slowest = self._speeds.fastest(pace), self._speeds.slowest(pace)
+        return max(fastest, measured), min(slowest, measured)
 
     def replace(self, heading_rate: float, pace: float | None = None) -> None:
         """Take note of what is flown in place of the last commands [rad/s, m/s]."""
@@ -273,7 +275,6 @@ class HeadingRateFilter:
     Attributes
     ----------
     status : what was done at the last step
-    interventions : how often interventions began
     prediction, history, budget : of turns; of the commands; of those that need no look
     """
 
@@ -313,7 +314,6 @@ class HeadingRateFilter:
         self._side = 0.0
         self._kept_off: Tube | None = None
         self.status = GuardStatus.FREE
-        self.interventions = 0
 
     def limit(
         self,
@@ -331,16 +331,15 @@ class HeadingRateFilter:
         command : demanded heading rate [rad/s]
         time : now [s]
         own : the vehicle's motion
-        vessels : discs, each of which contains the vessel for certain
+        vessels : discs, at least one, each of which contains the vessel for certain
         fastest, slowest : airspeeds that the vehicle may come to; a turn away has to keep off at
-            all speeds between them [m/s]
+            all speeds between them. The slowest counts where it is below the fastest [m/s]
         """
         if not self.budget.may_skip(command, fastest, slowest):
             encounters = self._look(command, time, own, vessels, fastest, slowest)
             if encounters is None:
                 self.status = GuardStatus.FREE
             else:
-                self.interventions += self.status is GuardStatus.FREE
                 command = self._mix(command, encounters)
         # At the largest bank a command comes in part where the vehicle flies faster.
         flown = command
@@ -387,7 +386,7 @@ class HeadingRateFilter:
         ----------
         time : now [s]
         own : the vehicle's motion
-        vessels : discs, each of which contains the vessel for certain
+        vessels : discs, at least one, each of which contains the vessel for certain
         speed : airspeed of the vehicle [m/s]
         enough : clearance above which the search may end early [m]
         """
@@ -440,10 +439,11 @@ class HeadingRateFilter:
                 side, turn = 0.0, TurnAway(math.inf, far_for, math.inf, change)
             else:
                 motions = self.motions_when_acting(motion)
-                turn = self._safe_turn_after(command, motions, change)
-                side = self._side
+                side, turn = self._safe_turn_after(command, motions, change)
                 if turn is None:
                     encounters.append(Encounter(disc, motions))
+                else:
+                    self._side = side
             if turn is not None:
                 self._kept_off = disc
                 break
@@ -536,10 +536,8 @@ class HeadingRateFilter:
 
     def _safe_turn_after(
         self, command: float, motions: tuple[RelativeMotion, ...], change: float
-    ) -> TurnAway | None:
-        """Return the turn away that keeps off after this command, and store its side; None if none
-        does.
-        """
+    ) -> tuple[float, TurnAway | None]:
+        """Return side and prediction of a turn away that keeps off after this command, or None."""
         first = motions[0]
         floor = self._resolution * first.fastest / self._rate
         start = self.prediction.after(command, first)
@@ -547,9 +545,8 @@ class HeadingRateFilter:
         for side in (nearer, -nearer):
             turn = self.turn_after(side, command, motions, change, floor)
             if turn.slack >= floor:
-                self._side = side
-                return turn
-        return None
+                return side, turn
+        return 0.0, None
 
     def turn_after(
         self,

@@ -5,7 +5,6 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from gnc.safety.guard_parameters import GuardParameters
 from gnc_cases import (
     HEADING_RATE_MAX,
     SPEED,
@@ -35,6 +34,7 @@ from gnc.estimation.vessel import (
     VesselLimits,
     VesselReport,
 )
+from gnc.guard.guard import GuardParameters
 from gnc.mission.approach import ApproachParameters
 from gnc.mission.axis_height import AxisHeight
 from gnc.mission.direct_tracking import DirectTracking
@@ -207,22 +207,22 @@ def test_flights_share_nothing():
     np.testing.assert_array_equal(one.command, other.command)
     first, second = compose(parameters), compose(parameters)
     first.step(0.0, motion(-202.0, 0.0, 0.0))
-    assert (first.guard.interventions, second.guard.interventions) == (1, 0)
+    assert (first.guard.intervening, second.guard.intervening) == (True, False)
 
 
 def test_the_mission_plans_every_few_steps_and_the_papers_once(monkeypatch):
-    asked = []
+    planned = []
     for mission in (PlumeFollowing, DirectTracking):
         plan = mission.plan
         monkeypatch.setattr(
-            mission, "plan", lambda self, time, plan=plan: (asked.append(time), plan(self, time))
+            mission, "plan", lambda self, time, plan=plan: (planned.append(time), plan(self, time))
         )
     for guidance, plans in ((reported(following()), 3), (compose(paper()), 1)):
-        asked.clear()
+        planned.clear()
         measurement = readings(-300.0, 0.0) if plans > 1 else motion(-300.0, 0.0, 0.0)
         for step in range(3 * PLAN_INTERVAL):
             guidance.step(step * TIME_STEP, measurement)
-        assert asked == pytest.approx([i * PLAN_INTERVAL * TIME_STEP for i in range(plans)])
+        assert planned == pytest.approx([i * PLAN_INTERVAL * TIME_STEP for i in range(plans)])
 
 
 def test_the_altitude_commanded_rises_with_the_centres_distance_where_the_plume_rises():
@@ -230,8 +230,8 @@ def test_the_altitude_commanded_rises_with_the_centres_distance_where_the_plume_
     guidance, level = reported(following(climb=climb)), reported(following())
     altitudes = []
     for step in range(6 * PLAN_INTERVAL + 1):
-        for made in (guidance, level):
-            made.step(step * TIME_STEP, readings(-900.0, 0.0))
+        for each in (guidance, level):
+            each.step(step * TIME_STEP, readings(-900.0, 0.0))
         altitudes.append(guidance.altitude_command)
     # From the funnel's 60 m towards the axis at the centre of oscillation, 36 m higher at least, no
     # steeper than 5 %.

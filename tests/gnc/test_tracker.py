@@ -117,8 +117,8 @@ def test_preview_makes_up_for_a_vehicle_that_answers_late(nu, law, delay):
 @LAWS
 @pytest.mark.parametrize("delay", [0.0, 0.3])
 def test_mirrored_flights_are_commanded_mirrored(law, delay):
-    # Without a guard: riding along its edge, the guard's choices hang on roundings. Its own mirror
-    # is in test_keepout_guard.py.
+    # Without a guard: along the edge of the keep-out area its choices hang on roundings. The
+    # guard's mirror symmetry is tested in guard/test_guard.py.
     oscillation = paper_oscillation(0.5, reserve=0.1)
     flights = []
     # The mirror image of the course eta cos(omega_0 t + phi_0) is that with phi_0 + pi.

@@ -6,16 +6,14 @@ import math
 
 import numpy as np
 import pytest
-from common.physics.turn_tube import LEAST_CHANGE
-from gnc.safety.given_commands import GivenCommands
-from gnc.safety.guard_parameters import GuardParameters
-from gnc.safety.keepout_guard import KeepoutGuard
 
 from aircraft.fleet.x8 import X8
 from aircraft.simulation.fdm import TIME_STEP
 from common.physics.units import METRES_PER_FOOT, STANDARD_GRAVITY
 from gnc.estimation.navigation import AirMotion
 from gnc.estimation.vessel import Tube
+from gnc.guard.guard import CommandHistory, GuardParameters, HeadingRateFilter
+from gnc.guard.turn import TurnStart, pending_turn_rate
 from innerloop.flight.autopiloted_aircraft import AutopilotedAircraft
 from innerloop.flight.reversal_search import _Flight
 from innerloop.flight.turn_reversal import TurnReversalResponse
@@ -36,8 +34,8 @@ def record(designs):
 
 @pytest.fixture(scope="module")
 def rolled_back(x8_root, x8_schedule, record):
-    """Return, for each time of rolling to the left out of a turn to the right, what the guard was
-    told, and the turn flown back.
+    """Return, for each time of rolling to the left out of a turn to the right, the commands with the
+    motion at each, the motion at their end, and the path of the turn back.
     """
     level = x8_schedule.level(x8_schedule.middle)
     rate = STANDARD_GRAVITY * math.tan(X8.envelope.bank) / level.airspeed
@@ -69,25 +67,25 @@ def rolled_back(x8_root, x8_schedule, record):
 
     found = []
     for held in HELD:
-        told = []
+        given = []
         for command, duration in ((rate, 5.0), (-rate, held)):
             for _ in range(round(duration / STEP)):
-                told.append((own(), command))
+                given.append((own(), command))
                 fly(command)
         now = own()
         path = np.array([point for _ in range(round(6.0 / STEP)) for point in fly(rate)])
-        found.append((told, now, path))
+        found.append((given, now, path))
     return rate, level.airspeed, found
 
 
 def lacking(flights, record, *, remembers):
-    """Return by how much nearer to discs each turn came than predicted [m], what is to come known
-    (``remembers``) or not.
+    """Return by how much nearer to discs each turn came than predicted [m], with pending course
+    (``remembers``) or without.
     """
     rate, speed, found = flights
     lacks = []
-    for told, now, path in found:
-        guard = KeepoutGuard(
+    for given, now, path in found:
+        guard = HeadingRateFilter(
             GuardParameters(
                 radius=RADIUS,
                 heading_rate_max=rate,
@@ -98,11 +96,11 @@ def lacking(flights, record, *, remembers):
             )
         )
         # Far off, so that every command passes.
-        guard.tubes = (Tube(0.0, 1e5, 0.0, 0.0, 0.0),)
-        for step, (own, command) in enumerate(told):
-            assert guard.limit(command, step * STEP, own, speed) == command
-        to_come = guard._given.still_to_come(now.heading_rate)
-        time = len(told) * STEP
+        far_off = (Tube(0.0, 1e5, 0.0, 0.0, 0.0),)
+        for step, (own, command) in enumerate(given):
+            assert guard.limit(command, step * STEP, own, far_off, speed) == command
+        pending = guard.history.pending_turn_rate(now.heading_rate)
+        time = len(given) * STEP
         after = TIME_STEP * np.arange(1, len(path) + 1)
         for closing in (0.0, 0.5 * speed, 0.85 * speed):
             for off in np.radians([0.0, 15.0, 30.0, 50.0]):
@@ -113,17 +111,21 @@ def lacking(flights, record, *, remembers):
                     + (RADIUS + 20.0 + 4.0 * closing) * towards
                 )
                 disc = Tube(time, *place, *(-closing * towards))
-                motion = guard._relative(
-                    disc, time, now, speed, speed, to_come if remembers else 0.0
+                motion = guard.relative_motion(
+                    disc, time, now, speed, speed, pending if remembers else 0.0
                 )
-                then = guard._prediction.when_acting(motion, guard._given.under_way)
-                start = (then[0], then[1], then[4], then[6])
-                kept, *_ = guard._prediction.turn_away(
-                    1.0, start, then, guard._given.change, record["delay_s"], -math.inf
+                (then,) = guard.motions_when_acting(motion)
+                turn = guard.prediction.turn_away(
+                    1.0,
+                    TurnStart(then.x, then.y, then.course, then.heading_rate),
+                    then,
+                    change=guard.history.change,
+                    time=record["delay_s"],
+                    floor=-math.inf,
                 )
                 flown = np.hypot(*(path - place + closing * after[:, None] * towards).T)
                 if np.argmin(flown) < len(path) - 1:
-                    lacks.append(kept - float(np.min(flown) - RADIUS))
+                    lacks.append(turn.slack - float(np.min(flown) - RADIUS))
     return np.array(lacks)
 
 
@@ -134,40 +136,41 @@ def test_a_turn_back_out_of_a_roll_comes_no_nearer_than_the_record_says(rolled_b
     assert lacks.max() <= 1.1 * record["deviation_max_m"]
 
 
-def test_without_what_is_to_come_it_would_come_nearer_by_metres(rolled_back, record):
+def test_without_pending_course_it_would_come_nearer_by_metres(rolled_back, record):
     lacks = lacking(rolled_back, record, remembers=False)
     assert lacks.max() > 2.0 * lacking(rolled_back, record, remembers=True).max()
     assert lacks.max() > 4.0
 
 
-def test_the_search_and_the_guard_mean_the_same_by_what_is_still_to_come(
-    x8_root, x8_schedule, record
-):
+def test_search_and_guard_agree_on_the_course_that_is_still_to_come(x8_root, x8_schedule, record):
     level = x8_schedule.level(x8_schedule.middle)
     response = TurnReversalResponse(delay=record["delay_s"], lag=record["lag_s"])
-    searched = _Flight(AutopilotedAircraft(X8, x8_root), level, response, record["slow_lag_s"])
+    slow_lag = record["slow_lag_s"]
     rate = STANDARD_GRAVITY * math.tan(X8.envelope.bank) / level.airspeed
-    guarded = GivenCommands(
+    searched = _Flight(AutopilotedAircraft(X8, x8_root), level, response, slow_lag, rate)
+    guarded = CommandHistory(
         lag=response.lag,
         delay=response.delay,
-        slow_lag=record["slow_lag_s"],
+        slow_lag=slow_lag,
         time_step=STEP,
         heading_rate_max=rate,
     )
-    guarded.still_to_come(0.0)
-    lacks = []
+    guarded.pending_turn_rate(0.0)
+    lacks, courses = [], []
     for share, duration in ((1.0, 4.0), (-1.0, 0.5), (0.3, 1.0), (-1.0, 2.0)):
         for _ in range(round(duration / STEP)):
-            guarded.since.append(share * rate)
-            guarded.rates.append(searched._rate())
+            guarded.append(share * rate, searched.heading_rate)
             searched.fly(share * rate, STEP)
-            guarded.still_to_come(searched._rate())
-            lacks.append((searched._lack, guarded._lack))
-        assert guarded.change == pytest.approx(
-            max(LEAST_CHANGE, searched._change / (2.0 * rate)), rel=0.01
-        )
-    own, others = np.array(lacks).T
-    assert np.max(np.abs(own)) > 0.05
-    # The search takes the dead time to whole steps of the simulation, 4 ms at most, and the course,
-    # of which 0.5 rad/s make 2 mrad.
+            turning, lack = searched.heading_rate, searched.lack
+            pending = (
+                pending_turn_rate(lack, turning, slow_lag, response.lag),
+                guarded.pending_turn_rate(turning),
+            )
+            lacks.append(lack)
+            courses.append([response.lag * each for each in pending])
+        assert guarded.change == pytest.approx(searched.change, rel=0.01)
+    own, others = np.array(courses).T
+    assert np.max(np.abs(lacks)) > 0.05
+    # The search takes the dead time to whole steps of the simulation, 4 ms at most, and the course:
+    # 0.5 rad/s for that time are 2 mrad.
     np.testing.assert_allclose(own, others, rtol=0.0, atol=4e-3)

@@ -1,20 +1,15 @@
-"""An aircraft that catches up may be told to keep out while it is fast: it slows down to V_r in the
-turn, and comes no nearer.
-"""
+"""An aircraft that has to turn away while it is fast slows down to V_r in the turn, and keeps out."""
 
 import math
 
 import pytest
-from gnc.safety.guard_parameters import GuardParameters
-from gnc.safety.guarded_commands import GuardedCommands
-from gnc.safety.keepout_guard import KeepoutGuard
-from gnc.safety.speed_reckoning import SpeedReckoning
 
 from aircraft.simulation.fdm import TIME_STEP
 from common.physics.coordinated_turn import heading_rate_for_bank
 from common.physics.units import METRES_PER_FOOT, STANDARD_GRAVITY
 from gnc.estimation.navigation import TrueNavigation
 from gnc.estimation.vessel import Tube
+from gnc.guard.guard import Demand, GuardParameters, GuardStatus, KeepoutGuard, SpeedRange
 from gnc.numeric import limited, wrap
 from innerloop.flight.autopiloted_aircraft import AutopilotedAircraft
 from innerloop.jsbsim.properties import HEADING_RATE
@@ -35,8 +30,8 @@ WORST = [
 
 @pytest.fixture(scope="module")
 def aircraft(heavy_design, tmp_path_factory):
-    """Return a heavy Cessna with its autopilot, level flight, omega_max, and what makes guarded
-    commands for it, by a radius.
+    """Return a heavy Cessna with its autopilot, level flight, omega_max, and a function that makes
+    its guard of a radius.
     """
     schedule, record = heavy_design.design.schedule, heavy_design.record
     level, envelope = schedule.level(schedule.middle), schedule.envelope
@@ -50,38 +45,34 @@ def aircraft(heavy_design, tmp_path_factory):
         if (r["command"], r["kind"]) == ("airspeed", "flown")
     )
 
-    def guarded(radius):
-        guard = KeepoutGuard(
-            GuardParameters(
-                radius=radius,
-                heading_rate_max=rate,
-                lag=reversal["lag_s"],
-                delay=reversal["delay_s"],
-                slow_lag=record["heading_rate_lag_s"],
-                time_step=STEP,
-                deviation=reversal["deviation_max_m"],
-                turn_speed=STANDARD_GRAVITY * math.tan(envelope.bank_max) / rate,
-            )
+    def guard_of(radius):
+        parameters = GuardParameters(
+            radius=radius,
+            heading_rate_max=rate,
+            lag=reversal["lag_s"],
+            delay=reversal["delay_s"],
+            slow_lag=record["heading_rate_lag_s"],
+            time_step=STEP,
+            deviation=reversal["deviation_max_m"],
+            turn_speed=STANDARD_GRAVITY * math.tan(envelope.bank_max) / rate,
         )
-        reckoning = SpeedReckoning(
+        speeds = SpeedRange(
             speed=level.airspeed,
             bandwidth=record["bandwidths_rad_s"]["airspeed"],
             overshoot=overshoot,
             time_step=STEP,
         )
-        return GuardedCommands(
-            guard, reckoning=reckoning, speed=level.airspeed, heading_rate_max=rate
-        )
+        return KeepoutGuard(parameters, speeds)
 
-    return aircraft, level, rate, guarded
+    return aircraft, level, rate, guard_of
 
 
 @pytest.mark.parametrize("case", WORST)
 def test_a_fast_aircraft_keeps_out_though_it_slows_down_in_the_turn(aircraft, case):
-    flown, level, rate, guarded = aircraft
+    flown, level, rate, guard_of = aircraft
     radii, share, heading, far, bearing, lead, faster = case
     turn_radius = level.airspeed / rate
-    commands = guarded(radii * turn_radius)
+    guard, statuses = guard_of(radii * turn_radius), set()
     flown.release(level.state(), airspeed=level.airspeed, altitude=level.altitude)
     node = flown.fdm.node
     velocity = [node(f"velocities/v-{axis}-fps").get_double_value for axis in ("north", "east")]
@@ -95,12 +86,13 @@ def test_a_fast_aircraft_keeps_out_though_it_slows_down_in_the_turn(aircraft, ca
     while time < 80.0:
         north, east = (METRES_PER_FOOT * of() for of in velocity)
         own.update((*place, north, east, turning()))
-        commands.guard.tubes = (Tube(time, *disc, *moving),)
         aim = math.atan2(disc[1] - place[1], disc[0] - place[0]) + lead
         wanted = limited(2.0 * wrap(aim - own.course), rate)
-        turn, pace, _ = commands.limit(wanted, faster * level.airspeed, time, own, leaving=False)
-        flown.command_heading_rate(turn)
-        flown.command_airspeed(pace)
+        demand = Demand(time, wanted, faster * level.airspeed)
+        guarded = guard.filter(demand, own, (Tube(time, *disc, *moving),))
+        statuses.add(guarded.status)
+        flown.command_heading_rate(guarded.heading_rate)
+        flown.command_airspeed(guarded.pace)
         for _ in range(RUNS):
             flown.run()
             place = [
@@ -110,5 +102,5 @@ def test_a_fast_aircraft_keeps_out_though_it_slows_down_in_the_turn(aircraft, ca
         disc = [p + v * STEP for p, v in zip(disc, moving, strict=True)]
         time += STEP
         nearest = min(nearest, math.dist(disc, place) - radii * turn_radius)
-    assert commands.guard.interventions > 0
+    assert GuardStatus.INTERVENING in statuses
     assert 0.0 <= nearest < 0.05 * turn_radius

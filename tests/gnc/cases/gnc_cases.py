@@ -16,6 +16,7 @@ from hypothesis import strategies as st
 
 from gnc.airspeed import AlongTrackTrim
 from gnc.compose import compose
+from gnc.estimation.navigation import Motion
 from gnc.laws import CascadeLaw
 from gnc.mission.direct_tracking import DirectParameters
 from gnc.paper import (
@@ -199,10 +200,10 @@ def motion(north, east, course, speed=SPEED, heading_rate=0.0):
     return Motion(north, east, speed * math.cos(course), speed * math.sin(course), heading_rate)
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, slots=True)
 class KinematicFlight:
     """Histories, one entry per guidance step: position, commanded heading rate, distances to the
-    reference and to the vessel.
+    reference and to the vessel, and whether the guard acted.
     """
 
     north: np.ndarray
@@ -210,6 +211,7 @@ class KinematicFlight:
     command: np.ndarray
     distance: np.ndarray
     to_vessel: np.ndarray
+    guarded: np.ndarray
 
 
 def fly(guidance, start, *, duration, delay=0.0):
@@ -223,13 +225,9 @@ def fly(guidance, start, *, duration, delay=0.0):
         distance = math.hypot(reference.north - north, reference.east - east)
         guidance.step(step * TIME_STEP, motion(north, east, course, SPEED, rate))
         command = guidance.heading_rate_command
-        rows.append(
-            (north, east, command, distance, math.hypot(north - target.north, east - target.east))
-        )
+        to_vessel = math.hypot(north - target.north, east - target.east)
+        rows.append((north, east, command, distance, to_vessel, guidance.guarding))
         pending.append(command)
         rate = pending.popleft()
         north, east, course = unicycle_move(north, east, course, SPEED, rate, TIME_STEP)
-    columns = np.array(rows).T
-    return KinematicFlight(
-        **dict(zip(("north", "east", "command", "distance", "to_vessel"), columns, strict=True))
-    )
+    return KinematicFlight(*np.array(rows).T)

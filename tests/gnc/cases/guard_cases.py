@@ -6,102 +6,121 @@ import math
 from collections import deque
 
 import pytest
-from gnc.safety.guard_parameters import GuardParameters
-from gnc.safety.keepout_guard import KeepoutGuard
 from gnc_cases import HEADING_RATE_MAX, SPEED
 from hypothesis import strategies as st
 
 from gnc.estimation.navigation import AirMotion
 from gnc.estimation.vessel import Tube
+from gnc.guard.guard import GuardParameters, HeadingRateFilter
+from gnc.guard.turn import RelativeMotion, TurnStart
 from gnc.numeric import wrap
 from gnc.unicycle import lagged_move, unicycle_move
 
 RADIUS = 200.0
 TIME_STEP = 0.05
 TURN_RADIUS = SPEED / HEADING_RATE_MAX
+AT_REST = Tube(0.0, 0.0, 0.0, 0.0, 0.0)
 LAGS = pytest.mark.parametrize(("lag", "delay"), [(0.0, 0.0), (0.4, 0.0), (0.25, 0.25)])
 
 commands = st.floats(-HEADING_RATE_MAX, HEADING_RATE_MAX)
 distances = st.floats(0.0, 700.0)
 
 
+def parameters_of(**changes):
+    """Return the parameters of a guard of 200 m for a vehicle with a lag of 0.4 s."""
+    defaults = {
+        "radius": RADIUS,
+        "heading_rate_max": HEADING_RATE_MAX,
+        "lag": 0.4,
+        "time_step": TIME_STEP,
+    }
+    return GuardParameters(**(defaults | changes))
+
+
+def known_motion(state, **changes):
+    """Return a state (north, east, course, heading rate) as the guard takes it."""
+    north, east, course, heading_rate = state
+    return AirMotion(
+        ground_north=north, ground_east=east, course=course, heading_rate=heading_rate, **changes
+    )
+
+
+def polar(distance, bearing, course, heading_rate=0.0):
+    """Return the state of a vehicle at a distance [m] and bearing [rad] from the origin."""
+    return TurnStart(
+        distance * math.cos(bearing), distance * math.sin(bearing), course, heading_rate
+    )
+
+
+def relative_motion(state, velocity=(0.0, 0.0), **changes):
+    """Return a motion relative to a disc of 200 m that moves at a velocity [m/s]."""
+    x, y, course, heading_rate = state
+    defaults = {
+        "fastest": SPEED,
+        "slowest": changes.get("fastest", SPEED),
+        "radius": RADIUS,
+        "growth": 0.0,
+        "acceleration": 0.0,
+        "pending_rate": 0.0,
+    }
+    return RelativeMotion(
+        x=x,
+        y=y,
+        disc_north=velocity[0],
+        disc_east=velocity[1],
+        course=course,
+        heading_rate=heading_rate,
+        **(defaults | changes),
+    )
+
+
 class DiscGuard:
-    """A keep-out guard asked about one disc, whose velocity it is told anew at each step; it may
-    accelerate from then on.
+    """A filter of heading rates beside one disc, whose velocity is reported anew at each step.
+
+    States (x, y, course, heading rate) are relative to the disc's centre.
     """
 
-    def __init__(self, acceleration=0.0, **parameters):
-        self.guard = KeepoutGuard(GuardParameters(time_step=TIME_STEP, **parameters))
-        self._acceleration, self._time, self._north, self._east = acceleration, 0.0, 0.0, 0.0
+    def __init__(self, *, acceleration=0.0, **parameters):
+        self.filter = HeadingRateFilter(parameters_of(**parameters))
+        self._acceleration = acceleration
+        self._time, self._north, self._east = 0.0, 0.0, 0.0
 
     @property
-    def intervening(self):
-        return self.guard.intervening
-
-    @property
-    def lost(self):
-        return self.guard.lost
-
-    @property
-    def interventions(self):
-        return self.guard.interventions
-
-    def _own(
-        self, x, y, velocity_north, velocity_east, course, speed, heading_rate, radius_inflation=0.0
-    ):
-        place = (self._time, self._north, self._east, velocity_north, velocity_east)
-        self.guard.tubes = (Tube(*place, radius_inflation, 0.0, self._acceleration),)
-        place = {"ground_north": self._north + x, "ground_east": self._east + y}
-        return AirMotion(**place, course=course, heading_rate=heading_rate, speed=speed)
+    def status(self):
+        return self.filter.status
 
     def limit(
         self,
         command,
-        x,
-        y,
-        velocity_north,
-        velocity_east,
-        course,
-        speed,
-        heading_rate,
+        state,
+        velocity=(0.0, 0.0),
         *,
-        radius_inflation=0.0,
+        speed=SPEED,
         slowest=math.inf,
+        disc_radius=0.0,
     ):
-        own = self._own(
-            x, y, velocity_north, velocity_east, course, speed, heading_rate, radius_inflation
-        )
-        answer = self.guard.limit(command, self._time, own, speed, slowest)
+        own, discs = self._encounter(state, velocity, speed, disc_radius)
+        answer = self.filter.limit(command, self._time, own, discs, speed, slowest)
         self._time += TIME_STEP
-        self._north += TIME_STEP * velocity_north
-        self._east += TIME_STEP * velocity_east
+        self._north += TIME_STEP * velocity[0]
+        self._east += TIME_STEP * velocity[1]
         return answer
 
-    def allows(
-        self,
-        command,
-        x,
-        y,
-        velocity_north,
-        velocity_east,
-        course,
-        speed,
-        heading_rate,
-        *,
-        slowest=math.inf,
-    ):
-        own = self._own(x, y, velocity_north, velocity_east, course, speed, heading_rate)
-        return self.guard.allows(command, self._time, own, speed, slowest)
+    def allows(self, command, state, velocity=(0.0, 0.0), *, speed=SPEED, slowest=math.inf):
+        own, discs = self._encounter(state, velocity, speed)
+        return self.filter.allows(command, self._time, own, discs, speed, slowest)
 
-    def clearance(self, x, y, velocity_north, velocity_east, course, speed, heading_rate):
-        own = self._own(x, y, velocity_north, velocity_east, course, speed, heading_rate)
-        return self.guard.clearance(self._time, own, speed)
+    def clearance(self, state, velocity=(0.0, 0.0), *, speed=SPEED):
+        own, discs = self._encounter(state, velocity, speed)
+        return self.filter.clearance(self._time, own, discs, speed)
 
-
-def make_guard(*, lag=0.4, delay=0.0, radius=RADIUS, heading_rate_max=HEADING_RATE_MAX, **changes):
-    return DiscGuard(
-        radius=radius, heading_rate_max=heading_rate_max, lag=lag, delay=delay, **changes
-    )
+    def _encounter(self, state, velocity, speed, disc_radius=0.0):
+        """Return the vehicle's motion over ground, and the disc."""
+        x, y, course, heading_rate = state
+        centre = (self._time, self._north, self._east)
+        disc = Tube(*centre, *velocity, disc_radius, 0.0, self._acceleration)
+        place = (self._north + x, self._east + y, course, heading_rate)
+        return known_motion(place, speed=speed), (disc,)
 
 
 def moved(state, command, lag, duration, speed=SPEED):
@@ -115,30 +134,26 @@ def moved(state, command, lag, duration, speed=SPEED):
 
 
 class Steady:
-    """A disc at constant velocity, whose velocity is known."""
+    """A disc at constant velocity, which it reports."""
 
-    def __init__(self, velocity):
-        self.velocity = self.told = velocity
+    def __init__(self, velocity=(0.0, 0.0)):
+        self.velocity = self.reported = velocity
 
     def step(self, x, y, duration):
         pass
 
 
 class Hunter:
-    """A disc that turns and speeds up towards the vehicle as hard as it may, and says its velocity
-    with a constant error.
+    """A disc that turns and speeds up towards the vehicle as hard as it may, and reports its
+    velocity with a constant error.
     """
 
     def __init__(self, velocity, *, acceleration, speed_max, error):
-        self.velocity, self._acceleration, self._speed_max, self._error = (
-            velocity,
-            acceleration,
-            speed_max,
-            error,
-        )
+        self.velocity, self._error = velocity, error
+        self._acceleration, self._speed_max = acceleration, speed_max
 
     @property
-    def told(self):
+    def reported(self):
         return self.velocity[0] + self._error[0], self.velocity[1] + self._error[1]
 
     def step(self, x, y, duration):
@@ -152,19 +167,16 @@ class Hunter:
 
 
 def fly_guarded(guard, start, want, disc, *, lag, delay=0.0, duration=45.0, speed=SPEED):
-    """Return the closest approach to the disc's centre [m], and of each step whether the guard
-    changed it and was lost.
-    """
+    """Return the closest approach to the disc's centre [m], and the guard's status at each step."""
     x, y, course, heading_rate = start
     under_way = deque([heading_rate] * round(delay / TIME_STEP))
-    closest, changed, lost = math.hypot(x, y), [], []
+    closest, statuses = math.hypot(x, y), []
     pieces = 2
     for step in range(round(duration / TIME_STEP)):
         command = guard.limit(
-            want(step, x, y, course), x, y, *disc.told, course, speed, heading_rate
+            want(step, x, y, course), (x, y, course, heading_rate), disc.reported, speed=speed
         )
-        changed.append(guard.intervening)
-        lost.append(guard.lost)
+        statuses.append(guard.status)
         under_way.append(command)
         acting = under_way.popleft()
         for _ in range(pieces):
@@ -175,7 +187,7 @@ def fly_guarded(guard, start, want, disc, *, lag, delay=0.0, duration=45.0, spee
             x, y = x - disc.velocity[0] * piece, y - disc.velocity[1] * piece
             disc.step(x, y, piece)
             closest = min(closest, math.hypot(x, y))
-    return closest, changed, lost
+    return closest, statuses
 
 
 def aim_at_the_centre(_, x, y, course, heading_rate_max=HEADING_RATE_MAX):
@@ -196,7 +208,7 @@ def random_start(generator, nearest=260.0):
     bearing, distance = generator.uniform(-math.pi, math.pi), generator.uniform(nearest, 600.0)
     course = generator.uniform(-math.pi, math.pi)
     turn = generator.uniform(-HEADING_RATE_MAX, HEADING_RATE_MAX)
-    return distance * math.cos(bearing), distance * math.sin(bearing), course, turn
+    return polar(distance, bearing, course, turn)
 
 
 def random_velocity(generator, speed):

@@ -8,14 +8,12 @@ from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
-from gnc.safety.guard_parameters import GuardParameters
-from gnc.safety.keepout_guard import KeepoutGuard
 from gnc_cases import HEADING_RATE_MAX, SPEED
-from guard_cases import RADIUS, moved, random_velocity
+from guard_cases import known_motion, moved, parameters_of, polar, random_velocity
 from vessel_cases import LIMITS, Mailbox, Vessel, radio, report_of
 
-from gnc.estimation.navigation import AirMotion
 from gnc.estimation.vessel import ReachableSet, Tube
+from gnc.guard.guard import GuardStatus, HeadingRateFilter
 from gnc.numeric import wrap
 
 PLAN_PERIOD = 0.5
@@ -24,12 +22,10 @@ PIECE, FINE_PIECE = 0.025, 0.01
 
 
 class Hunt(NamedTuple):
-    """Closest approach [m], and at how many steps the guard changed its command, and at how many it
-    was lost.
-    """
+    """Closest approach [m], and at how many steps the guard intervened and was lost."""
 
     closest: float
-    changed: int
+    intervened: int
     lost: int
 
 
@@ -82,20 +78,22 @@ def as_it_was_known(reach):
     return tubes
 
 
-def forgetful(guard):
-    """Return a guard that keeps off the disc that is nearest now, and knows none that it kept off
-    before.
-    """
+class ForgetfulFilter:
+    """A guard that keeps off the disc that is nearest now, and remembers none that it kept off."""
 
-    class Forgetful(KeepoutGuard):
-        __slots__ = ()
+    def __init__(self, parameters):
+        self._parameters = parameters
+        self._filter = HeadingRateFilter(parameters)
 
-        def limit(self, *asked):
-            self._kept_off = None
-            return super().limit(*asked)
+    @property
+    def status(self):
+        return self._filter.status
 
-    guard.__class__ = Forgetful
-    return guard
+    def limit(self, *demand):
+        fresh = HeadingRateFilter(self._parameters)
+        fresh.history, fresh.budget = self._filter.history, self._filter.budget
+        self._filter = fresh
+        return fresh.limit(*demand)
 
 
 def hunted(
@@ -108,7 +106,7 @@ def hunted(
     silence=0.0,
     speed_max=12.0,
     known=None,
-    made=None,
+    make=HeadingRateFilter,
 ):
     """Return the hunt that a seed stands for: vessel, start and reports, which cease for a time
     after 40 s.
@@ -117,12 +115,7 @@ def hunted(
     limits = replace(LIMITS, speed_max=speed_max)
     velocity = random_velocity(generator, float(generator.uniform(2.0, 0.9 * speed_max)))
     bearing, distance = generator.uniform(-math.pi, math.pi), generator.uniform(450.0, 700.0)
-    start = (
-        distance * math.cos(bearing),
-        distance * math.sin(bearing),
-        generator.uniform(-math.pi, math.pi),
-        0.0,
-    )
+    start = polar(distance, bearing, generator.uniform(-math.pi, math.pi))
     sent = radio(
         generator,
         interval=(2.0, 10.0),
@@ -131,19 +124,21 @@ def hunted(
         silences=[(40.0, 40.0 + silence)],
         duration=duration,
     )
-    guard = KeepoutGuard(
-        GuardParameters(
-            radius=RADIUS,
-            heading_rate_max=HEADING_RATE_MAX,
-            lag=lag,
-            delay=delay,
-            time_step=time_step,
-        )
-    )
+    guard = make(parameters_of(lag=lag, delay=delay, time_step=time_step))
+    vessel = Vessel(0.0, 0.0, *velocity, limits)
     return hunt(
-        made(guard) if made else guard, start, Vessel(0.0, 0.0, *velocity, limits), hunter, sent, generator,
-        lag=lag, delay=delay, duration=duration, known=known, time_step=time_step,
-    )  # fmt: skip
+        guard,
+        start,
+        vessel,
+        hunter,
+        sent,
+        generator,
+        lag=lag,
+        delay=delay,
+        duration=duration,
+        known=known,
+        time_step=time_step,
+    )
 
 
 def hunt(
@@ -170,7 +165,7 @@ def hunt(
     sent : times of its reports and of their arrival, in the order of arrival; the first at 0
     generator : of the reports' errors, whose largest are in the direction that hides the vessel
     lag, delay : of the vehicle
-    known : makes the discs of the reachable set those that the guard is given
+    known : makes the discs of the reachable set those that the guard knows
     """
     state, reach, post = start, ReachableSet(vessel.limits), Mailbox()
     sent = sorted(sent)
@@ -178,7 +173,8 @@ def hunt(
     piece = FINE_PIECE if delay else PIECE
     pieces, late = round(time_step / piece), round(delay / piece)
     under_way = deque([start[3]] * late)
-    closest, changed, lost, last_report = math.inf, 0, 0, -math.inf
+    closest, intervened, lost, last_report = math.inf, 0, 0, -math.inf
+    discs = ()
     each = round(PLAN_PERIOD / time_step)
     for step in range(round(duration / time_step)):
         time = step * time_step
@@ -194,13 +190,11 @@ def hunt(
         for report in post.deliver(time):
             reach.report(report)
         if step % each == 0:
-            guard.tubes = tubes(time)
-        own = AirMotion(
-            ground_north=state[0], ground_east=state[1], course=state[2], heading_rate=state[3]
-        )
-        command = guard.limit(aim_at(guard.tubes[0], own, time), time, own, SPEED)
-        changed += guard.intervening
-        lost += guard.lost
+            discs = tubes(time)
+        own = known_motion(state)
+        command = guard.limit(aim_at(discs[0], own, time), time, own, discs, SPEED)
+        intervened += guard.status is not GuardStatus.FREE
+        lost += guard.status is GuardStatus.LOST
         silent = not sent or sent[0][0] > time + 10.0 or time - last_report > 10.0
         for _ in range(pieces):
             under_way.append(command)
@@ -209,4 +203,4 @@ def hunt(
                 *(1e3 * part for part in hunter(vessel, state[0], state[1], silent)), piece
             )
             closest = min(closest, math.hypot(state[0] - vessel.north, state[1] - vessel.east))
-    return Hunt(closest, changed, lost)
+    return Hunt(closest, intervened, lost)

@@ -1,6 +1,4 @@
-"""What the vehicle does between two looks of the keep-out guard: within a step, and as its commands
-change.
-"""
+"""Between two looks of the keep-out guard: within a step, and while commands need no look."""
 
 import copy
 import math
@@ -8,30 +6,31 @@ from collections import deque
 
 import numpy as np
 import pytest
-from gnc.safety.guard_parameters import GuardParameters
-from gnc.safety.keepout_guard import KeepoutGuard
-from guard_cases import aim_at_the_centre, moved
+from gnc_cases import HEADING_RATE_MAX
+from gnc_cases import SPEED as PAPER_SPEED
+from guard_cases import (
+    AT_REST,
+    LAGS,
+    TIME_STEP,
+    DiscGuard,
+    aim_at_the_centre,
+    held_at_random,
+    known_motion,
+    moved,
+    parameters_of,
+    polar,
+    random_start,
+    relative_motion,
+)
 
-from gnc.estimation.navigation import AirMotion
 from gnc.estimation.vessel import Tube
+from gnc.guard.guard import GuardStatus, HeadingRateFilter, SkipBudget
+from gnc.guard.turn import TurnAway
 
 SPEED = 20.0
 
 
-def guard_of(*, radius, heading_rate_max, time_step, lag=0.0, delay=0.0, deviation=0.0):
-    guard = KeepoutGuard(
-        GuardParameters(
-            radius=radius, heading_rate_max=heading_rate_max, lag=lag, delay=delay, slow_lag=lag + delay, time_step=time_step,
-            deviation=deviation,
-        )
-    )  # fmt: skip
-    guard.tubes = (Tube(0.0, 0.0, 0.0, 0.0, 0.0),)
-    return guard
-
-
-def motion_of(state):
-    north, east, course, heading_rate = state
-    return AirMotion(ground_north=north, ground_east=east, course=course, heading_rate=heading_rate)
+# Within a step --------------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize(
@@ -39,103 +38,122 @@ def motion_of(state):
 )
 def test_no_path_leads_in_within_a_wide_step(rate_hz, heading_rate_max):
     generator = np.random.default_rng(3)
-    radius, step, nearest, worked = 10.0, 1.0 / rate_hz, math.inf, 0
+    radius, step, nearest, intervened = 10.0, 1.0 / rate_hz, math.inf, 0
+    parameters = parameters_of(
+        radius=radius, heading_rate_max=heading_rate_max, lag=0.0, time_step=step
+    )
     for _ in range(60):
-        bearing, distance = (
-            generator.uniform(-math.pi, math.pi),
-            generator.uniform(1.1, 8.0) * radius,
-        )
-        state = (
-            distance * math.cos(bearing),
-            distance * math.sin(bearing),
-            generator.uniform(-math.pi, math.pi),
-            0.0,
-        )
-        guard = guard_of(radius=radius, heading_rate_max=heading_rate_max, time_step=step)
-        if guard.clearance(0.0, motion_of(state), SPEED) < 0.0:
+        bearing = generator.uniform(-math.pi, math.pi)
+        distance = generator.uniform(1.1, 8.0) * radius
+        state = polar(distance, bearing, generator.uniform(-math.pi, math.pi))
+        guard = HeadingRateFilter(parameters)
+        if guard.clearance(0.0, known_motion(state), (AT_REST,), SPEED) < 0.0:
             continue
         for k in range(150):
             demanded = generator.uniform(-1.0, 1.0) * heading_rate_max
             if k % 4:
                 demanded = aim_at_the_centre(k, *state[:3], heading_rate_max)
-            command = guard.limit(demanded, k * step, motion_of(state), SPEED)
+            command = guard.limit(demanded, k * step, known_motion(state), (AT_REST,), SPEED)
             for _ in range(20):
                 state = moved(state, command, 0.0, step / 20.0, SPEED)
                 nearest = min(nearest, math.hypot(*state[:2]))
-            worked += guard.intervening
-    assert worked > 100
+            intervened += guard.status is not GuardStatus.FREE
+    assert intervened > 100
     assert nearest >= radius
 
 
-@pytest.mark.parametrize("deviation", [0.0, 3.1, 19.7])
-def test_a_command_that_passes_leaves_a_turn_with_all_that_is_kept_for_its_own_change(deviation):
-    # A turn that is settled, beside the disc; then a law that steers inwards by a reversal. The
-    # vehicle has the guard's response.
-    heading_rate_max, lag, step = 0.49, 0.26, 0.05
-    worked, least = 0, math.inf
-    for gap in (1.0, 5.0, 15.0, 30.0):
-        guard = guard_of(
-            radius=200.0,
-            heading_rate_max=heading_rate_max,
-            time_step=step,
-            lag=lag,
-            delay=4 * step,
-            deviation=deviation,
+RATE, LAG, DELAY = 0.49, 0.26, 4 * TIME_STEP
+"""Largest heading rate [rad/s], lag and dead time [s] of the vehicle of the next tests."""
+
+
+def filter_of(*, radius, deviation):
+    return HeadingRateFilter(
+        parameters_of(
+            radius=radius, heading_rate_max=RATE, lag=LAG, delay=DELAY, deviation=deviation
         )
-        state = (0.0, 200.0 + gap + 2.0 * SPEED / heading_rate_max, 0.0, -heading_rate_max)
-        under_way = deque([-heading_rate_max] * 4)
+    )
+
+
+@pytest.mark.parametrize("deviation", [0.0, 3.1, 19.7])
+def test_a_command_that_passes_leaves_a_turn_with_the_deviation_that_its_change_adds(deviation):
+    # A settled turn beside the disc; then a law that reverses it and steers inwards. The vehicle
+    # has the guard's response.
+    intervened, least = 0, math.inf
+    for gap in (1.0, 5.0, 15.0, 30.0):
+        guard = filter_of(radius=200.0, deviation=deviation)
+        state = (0.0, 200.0 + gap + 2.0 * SPEED / RATE, 0.0, -RATE)
+        under_way = deque([-RATE] * 4)
         command, inwards = 0.0, False
         for k in range(900):
             # It has come round to the disc on the settled turn.
             inwards = inwards or (k > 400 and state[1] < 200.0 + gap + 1.0)
-            demanded = (
-                aim_at_the_centre(k, *state[:3], heading_rate_max) if inwards else -heading_rate_max
-            )
-            # The turn away that keeps off by all that a change of command before it takes; once
-            # begun it is one itself.
-            if k and not (guard.intervening and abs(command) == heading_rate_max):
-                asked = copy.copy(guard)
-                asked._given = copy.deepcopy(guard._given)
-                least = min(least, asked.clearance(k * step, motion_of(state), SPEED))
-            command = guard.limit(demanded, k * step, motion_of(state), SPEED)
+            demanded = aim_at_the_centre(k, *state[:3], RATE) if inwards else -RATE
+            # The turn away keeps off by all that a change of command before it takes; once begun
+            # it is such a change itself.
+            if k and not (guard.status is not GuardStatus.FREE and abs(command) == RATE):
+                other = copy.copy(guard)
+                other.history = copy.deepcopy(guard.history)
+                clearance = other.clearance(k * TIME_STEP, known_motion(state), (AT_REST,), SPEED)
+                least = min(least, clearance)
+            command = guard.limit(demanded, k * TIME_STEP, known_motion(state), (AT_REST,), SPEED)
             under_way.append(command)
-            state = moved(state, under_way.popleft(), lag, step, SPEED)
-            worked += guard.intervening
-            assert not guard.lost
-    assert worked > 0
-    # To what is kept for the looks.
+            state = moved(state, under_way.popleft(), LAG, TIME_STEP, SPEED)
+            intervened += guard.status is not GuardStatus.FREE
+            assert guard.status is not GuardStatus.LOST
+    assert intervened > 0
+    # To the resolution of the prediction.
     assert least >= -0.01
 
 
+# Commands that need no look -------------------------------------------------------------------
+
+
+@LAGS
+def test_looking_less_often_where_nothing_can_happen_changes_nothing(lag, delay):
+    # A guard whose budget is always empty looks at every step, and lets the same commands pass.
+    generator = np.random.default_rng(1)
+    velocity = (0.6 * PAPER_SPEED, 0.0)
+    skipped = 0
+    for _ in range(2):
+        guard, state = DiscGuard(lag=lag, delay=delay), random_start(generator)
+        want = held_at_random(generator)
+        under_way = deque([state[3]] * round(delay / TIME_STEP))
+        for step in range(400):
+            fresh = copy.deepcopy(guard)
+            fresh.filter.budget.steps = 0
+            skipped += guard.filter.budget.steps > 0
+            command = guard.limit(want(step), state, velocity)
+            assert fresh.limit(want(step), state, velocity) == command
+            under_way.append(command)
+            x, y, course, heading_rate = moved(state, under_way.popleft(), lag, TIME_STEP)
+            state = (x - velocity[0] * TIME_STEP, y - velocity[1] * TIME_STEP, course, heading_rate)
+    assert skipped > 100
+
+
 @pytest.mark.parametrize(
-    ("command", "speed", "slowest", "looks"),
+    ("command", "fastest", "slowest", "looks"),
     [
-        (0.24, SPEED, SPEED, 0), (0.26, SPEED, SPEED, 1), (-0.26, SPEED, SPEED, 1),
-        (0.0, SPEED + 0.04, SPEED - 0.04, 0), (0.0, SPEED + 0.06, SPEED, 1), (0.0, SPEED, SPEED - 0.06, 1),
+        (0.24, SPEED, SPEED, False),
+        (0.26, SPEED, SPEED, True),
+        (-0.26, SPEED, SPEED, True),
+        (0.0, SPEED + 0.04, SPEED - 0.04, False),
+        (0.0, SPEED + 0.06, SPEED, True),
+        (0.0, SPEED, SPEED - 0.06, True),
     ],
-)  # fmt: skip
-def test_another_command_or_speed_than_was_counted_is_looked_at_at_once(
-    command, speed, slowest, looks, monkeypatch
+)
+def test_a_command_or_airspeed_beyond_those_that_were_counted_is_looked_at(
+    command, fastest, slowest, looks
 ):
-    # Beside the disc, northbound: of a look some steps are free. Half a reversal is counted, which
-    # it has to roll into the turn as well, so a quarter to either side.
-    guard, own = (
-        guard_of(radius=200.0, heading_rate_max=0.5, time_step=0.05, lag=0.26, deviation=3.0),
-        motion_of((0.0, 220.0, 0.0, 0.0)),
-    )
-    assert guard.limit(0.0, 0.0, own, SPEED, SPEED) == 0.0
-    assert guard._free.steps > 0
-    asked = []
-    look = KeepoutGuard._look
-    monkeypatch.setattr(KeepoutGuard, "_look", lambda *given: asked.append(given) or look(*given))
-    guard.limit(command, 0.05, own, speed, slowest)
-    assert len(asked) == looks
-
-
-def flown(state, under_way, command, lag):
-    """Return where a vehicle is after a step in which the oldest of the commands under way acts."""
-    under_way.append(command)
-    return moved(state, under_way.popleft(), lag, 0.05, SPEED)
+    # Beside the disc, northbound. Half a reversal is counted, since it has to roll into the turn:
+    # a quarter to either side.
+    guard = HeadingRateFilter(parameters_of(heading_rate_max=0.5, lag=0.26, deviation=3.0))
+    own = known_motion((0.0, 220.0, 0.0, 0.0))
+    first = 1e-6
+    assert guard.limit(first, 0.0, own, (AT_REST,), SPEED, SPEED) == first
+    assert guard.budget.steps > 0
+    guard.limit(command, 0.05, own, (AT_REST,), fastest, slowest)
+    # A look takes in the commands since the last one.
+    assert (guard.history.last == first) == looks
 
 
 @pytest.mark.parametrize(
@@ -143,56 +161,180 @@ def flown(state, under_way, command, lag):
     [(0.0, 200.0, 0.5), (3.1, 200.0, 0.5), (19.7, 200.0, 0.5), (6.1, 41.0, 0.9)],
 )
 @pytest.mark.parametrize("order", ["against the turn", "at random", "of the turn"])
-def test_whatever_needs_no_look_leaves_the_turn_that_was_found(deviation, radius, closing, order):
-    # The worst that passes without a look, or anything that does, until nothing does: the better
-    # turn away then still keeps off by all that is kept for the last change of command. The vehicle
-    # has the guard's response; the disc follows it.
-    heading_rate_max, lag, step = 0.49, 0.26, 0.05
+def test_skipped_commands_leave_the_turn_that_was_found(deviation, radius, closing, order):
+    # The worst command that needs no look, the best or any, until every command needs one: the
+    # better turn away then still keeps off by all that is kept for the last change of command. The
+    # vehicle has the guard's response; the disc follows it.
     generator, passed, least = np.random.default_rng(5), 0, math.inf
-    tried = np.linspace(-1.0, 1.0, 9) * heading_rate_max
+    tried = np.linspace(-1.0, 1.0, 9) * RATE
     for _ in range(120):
-        guard = guard_of(
-            radius=radius,
-            heading_rate_max=heading_rate_max,
-            time_step=step,
-            lag=lag,
-            delay=4 * step,
-            deviation=deviation,
-        )
-        bearing, distance = (
-            generator.uniform(-math.pi, math.pi),
-            radius + deviation + generator.uniform(2.0, 90.0),
-        )
+        guard = filter_of(radius=radius, deviation=deviation)
+        bearing = generator.uniform(-math.pi, math.pi)
+        distance = radius + deviation + generator.uniform(2.0, 90.0)
         velocity = (closing * SPEED * math.cos(bearing), closing * SPEED * math.sin(bearing))
-        guard.tubes = (Tube(0.0, 0.0, *velocity, 0.0),)
-        state = (
-            distance * math.cos(bearing),
-            distance * math.sin(bearing),
-            generator.uniform(-math.pi, math.pi),
-            0.0,
-        )
-        under_way, k, free = deque([0.0] * 4), 0, [0.0]
-        while free and k < 200:
-            side = guard._free._towards
-            against = min(free, key=lambda each, side=side: side * each)
-            ordered = {
-                "against the turn": against,
-                "of the turn": max(free, key=lambda each, side=side: side * each),
-            }
-            demanded = ordered.get(order) if order in ordered else generator.choice(free)
-            command = guard.limit(float(demanded), k * step, motion_of(state), SPEED)
-            if guard.intervening:
+        discs = (Tube(0.0, 0.0, 0.0, *velocity, 0.0),)
+        state = polar(distance, bearing, generator.uniform(-math.pi, math.pi))
+        under_way, k, skippable = deque([0.0] * 4), 0, {0.0: 0.0}
+        while skippable and k < 200:
+            if order == "at random":
+                demanded = generator.choice(list(skippable))
+            else:
+                choose = min if order == "against the turn" else max
+                demanded = choose(skippable, key=skippable.get)
+            command = guard.limit(float(demanded), k * TIME_STEP, known_motion(state), discs, SPEED)
+            if guard.status is not GuardStatus.FREE:
                 break
-            state, k = flown(state, under_way, command, lag), k + 1
-            free = [each for each in tried if copy.copy(guard._free).cover(each, SPEED, SPEED)]
-        if (
-            k > 1
-            and not guard.intervening
-            and math.hypot(state[0] - k * step * velocity[0], state[1] - k * step * velocity[1])
-            < 500.0
-        ):
+            under_way.append(command)
+            state = moved(state, under_way.popleft(), LAG, TIME_STEP, SPEED)
+            k += 1
+            skippable = {}
+            for each in tried:
+                budget = copy.copy(guard.budget)
+                if budget.may_skip(each, SPEED, SPEED):
+                    skippable[each] = budget.course_left
+        x, y = state[0] - k * TIME_STEP * velocity[0], state[1] - k * TIME_STEP * velocity[1]
+        if k > 1 and guard.status is GuardStatus.FREE and math.hypot(x, y) < 500.0:
             passed += 1
-            least = min(least, guard.clearance(k * step, motion_of(state), SPEED))
+            clearance = guard.clearance(k * TIME_STEP, known_motion(state), discs, SPEED)
+            least = min(least, clearance)
     assert passed > 20
-    # To what is kept for the looks.
+    # To the resolution of the prediction.
     assert least >= -0.01
+
+
+def budget_after_a_look(*, free_time=1.05, free_course=0.21, side=1.0):
+    """Return what a look leaves for omega_max 0.5 rad/s and steps of 0.1 s, at 0.5 rad/s into the
+    turn: commands of 0.25 to 0.5 rad/s into the turn, at 19 to 21 m/s.
+    """
+    budget = SkipBudget(0.5, 0.1)
+    turn = TurnAway(slack=1.0, free_time=free_time, free_course=free_course, change=0.5)
+    budget.reset(turn, side, command=0.5 * side, last=0.5 * side, slowest=19.0, fastest=21.0)
+    return budget
+
+
+def skips(budget, command):
+    count = 0
+    while budget.may_skip(command, 20.0, 20.0):
+        count += 1
+    return count
+
+
+@pytest.mark.parametrize("side", [1.0, -1.0])
+def test_commands_are_skipped_until_time_or_course_is_used_up(side):
+    # Of the 10 steps of 1.05 s the one that was looked at is the first.
+    assert skips(budget_after_a_look(side=side), 0.5 * side) == 9
+    # Each takes 0.025 of the 0.21 rad, of which the course of two steps, 0.1 rad, is kept less what
+    # the next command turns.
+    budget = budget_after_a_look(side=side)
+    assert skips(budget, 0.25 * side) == 6
+    assert budget.course_left == pytest.approx(0.06)
+    assert budget.may_skip(0.5 * side, 20.0, 20.0)
+    # Other commands and airspeeds than the counted ones are looked at.
+    for command, fastest, slowest in (
+        (0.24, 20.0, 20.0),
+        (0.51, 20.0, 20.0),
+        (0.5, 21.1, 20.0),
+        (0.5, 20.0, 18.9),
+        (math.nan, 20.0, 20.0),
+    ):
+        assert not budget_after_a_look(side=side).may_skip(command * side, fastest, slowest)
+
+
+def test_a_look_that_finds_no_turn_leaves_nothing_to_skip():
+    budget = budget_after_a_look()
+    budget.reset(None, 0.0, command=0.5, last=0.5, slowest=19.0, fastest=21.0)
+    assert skips(budget, 0.5) == 0
+
+
+def test_a_refunded_command_passes_once_more():
+    budget = budget_after_a_look()
+    budget.refund(0.3)
+    assert (budget.steps, budget.course_left) == (10, pytest.approx(0.21 + 0.5 * 0.1 - 0.3 * 0.1))
+    assert budget.may_skip(0.3, 20.0, 20.0)
+    assert (budget.steps, budget.course_left) == (9, pytest.approx(0.21))
+
+
+def test_what_is_flown_in_place_of_a_skipped_command_is_charged():
+    budget = budget_after_a_look()
+    budget.charge(0.5, 0.3)
+    assert (budget.steps, budget.course_left) == (9, pytest.approx(0.21 - 0.2 * 0.1))
+    # More of the turn costs nothing, and earns nothing.
+    budget.charge(0.3, 0.5)
+    assert (budget.steps, budget.course_left) == (9, pytest.approx(0.21 - 0.2 * 0.1))
+    budget.charge(0.5, 0.2)
+    assert budget.steps == 0
+
+
+def test_a_faster_vehicle_is_looked_at_though_a_slower_one_need_not_be():
+    # Head on, 60 m before a turn is needed; half as fast again it is needed sooner.
+    state = (-300.0, 0.0, 0.0, 0.0)
+    guard = DiscGuard()
+    guard.limit(0.0, state)
+    steps = guard.filter.budget.steps
+    assert guard.allows(0.0, state, speed=1.5 * PAPER_SPEED)
+    assert 0 < guard.filter.budget.steps < steps
+
+
+@pytest.mark.parametrize("command", [0.0, 0.5 * HEADING_RATE_MAX, -0.5 * HEADING_RATE_MAX])
+@pytest.mark.parametrize("bearing", [80.0, -80.0])
+def test_asking_first_leaves_the_same_budget(bearing, command):
+    # Beside the disc, so that a turn away is needed and the course that it can lose is counted.
+    state = (-240.0, 0.0, math.radians(bearing), 0.0)
+    guard, consulted = DiscGuard(), DiscGuard()
+    assert guard.limit(command, state) == command
+    assert consulted.allows(command, state)
+    assert consulted.limit(command, state) == command
+    course_left = guard.filter.budget.course_left
+    assert math.isfinite(course_left)
+    assert consulted.filter.budget.course_left == pytest.approx(course_left, abs=1e-12)
+    assert consulted.filter.budget.steps == guard.filter.budget.steps
+
+
+def test_a_command_that_is_not_allowed_leaves_no_budget():
+    guard = DiscGuard(deviation=3.1)
+    state = (-250.0, 0.0, math.radians(10.0), 0.0)
+    assert guard.limit(0.0, state) == 0.0
+    assert guard.filter.budget.steps > 0
+    assert not guard.allows(-HEADING_RATE_MAX, state, speed=2.5 * PAPER_SPEED)
+    # At that speed it has to turn at once, to the other side.
+    assert guard.limit(-HEADING_RATE_MAX, state, speed=2.5 * PAPER_SPEED) == HEADING_RATE_MAX
+    assert guard.status is not GuardStatus.FREE
+
+
+def test_a_fast_vehicle_is_remembered_to_turn_no_faster_than_it_can():
+    guard = DiscGuard(turn_speed=PAPER_SPEED)
+    far = (1000.0, 0.0, 0.0, 0.0)
+    for speed in (PAPER_SPEED, 1.5 * PAPER_SPEED):
+        # At the largest bank; the command itself is passed on unchanged.
+        assert guard.limit(HEADING_RATE_MAX, far, speed=speed) == HEADING_RATE_MAX
+        assert guard.filter.history.newest == HEADING_RATE_MAX * PAPER_SPEED / speed
+    # One that may become faster, but is not, turns in full: remembered as a slow turn it flew 9 m
+    # into a disc of 10.
+    own = known_motion(far, speed=PAPER_SPEED)
+    discs = (AT_REST,)
+    guard.filter.limit(HEADING_RATE_MAX, 0.1, own, discs, 1.5 * PAPER_SPEED, PAPER_SPEED)
+    assert guard.filter.history.newest == HEADING_RATE_MAX
+
+
+@pytest.mark.parametrize("speed", [PAPER_SPEED, 1.5 * PAPER_SPEED])
+def test_a_disc_that_is_far_away_stays_out_of_reach_for_as_long_as_predicted(speed):
+    # Straight at each other, the disc speeding up all the while: at the end of that time, and no
+    # sooner, a turn may be needed.
+    acceleration = 0.3
+    guard = DiscGuard(turn_speed=PAPER_SPEED).filter
+
+    def time_until_near(distance, closing):
+        state = (-distance, 0.0, 0.0, 0.0)
+        return guard.time_until_near(
+            relative_motion(state, (-closing, 0.0), fastest=speed, acceleration=acceleration)
+        )
+
+    radius = 200.0
+    duration = 1.5 * math.pi / HEADING_RATE_MAX * speed / PAPER_SPEED
+    for distance in (800.0, 1000.0, 1200.0):
+        free = time_until_near(distance, 5.0)
+        then = distance - (speed + 5.0) * free - 0.5 * acceleration * free**2
+        assert time_until_near(then, 5.0 + acceleration * free) >= -1e-9
+        # What is left is what both can close in a full turn, which takes the longer the faster it
+        # flies.
+        assert free == 0.0 or then - radius > (speed + 5.0 + acceleration * free) * duration

@@ -2,7 +2,6 @@ import math
 
 import numpy as np
 import pytest
-from gnc.safety.guard_parameters import GuardParameters
 from gnc_cases import (
     HEADING_RATE_MAX,
     SPEED,
@@ -18,6 +17,7 @@ from gnc.compose import compose
 from gnc.estimation.health import Fault
 from gnc.estimation.navigation import TrueNavigation
 from gnc.estimation.vessel import SteadyTarget
+from gnc.guard.guard import GuardParameters
 from gnc.mission.approach import ApproachParameters
 from gnc.mission.direct_tracking import DirectParameters, DirectTracking, Joining, SteadyCentre
 from gnc.mission.mode import Mode

@@ -115,7 +115,7 @@ def test_a_flight_is_the_same_whichever_form_of_the_guidance_flies_it(study, tmp
 
 
 def test_the_guidance_that_is_compiled_is_the_one_that_flies():
-    code = "import gnc.safety.keepout_guard as module; print(module.__file__)"
+    code = "import gnc.guard.guard as module; print(module.__file__)"
     for asked, ending in (("", EXTENSION_SUFFIXES[0]), ("1", ".py")):
         environment = {**os.environ, "PLUME_FLIGHT_SOURCES": asked}
         run = subprocess.run(

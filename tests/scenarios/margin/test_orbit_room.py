@@ -7,11 +7,10 @@ from collections import deque
 
 import numpy as np
 import pytest
-from gnc.safety.guard_parameters import GuardParameters
-from gnc.safety.keepout_guard import KeepoutGuard
 
 from gnc.estimation.navigation import AirMotion
 from gnc.estimation.vessel import Tube, VesselLimits, VesselReport, tube
+from gnc.guard.guard import GuardParameters, GuardStatus, HeadingRateFilter
 from gnc.paper import design_oscillation
 from gnc.unicycle import lagged_move
 from scenarios.margin.orbit_room import orbit_distance
@@ -54,14 +53,14 @@ def interventions(nu, distance, vessel):
     The vehicle has a dead time and a lag; commands are what the orbit needs when they act, so that
     only the guard disturbs it.
     """
-    orbit, guard = oscillation(nu), KeepoutGuard(GUARD)
+    orbit, history = oscillation(nu), HeadingRateFilter(GUARD).history
     along, _ = orbit.half_widths()
     mean, late = nu * SPEED, round(DELAY / TIME_STEP)
     before = TIME_STEP * np.arange(-200, round(3.0 * orbit.period / TIME_STEP) + late + 2)
     (x, y), (ahead, right) = orbit.offset(before), orbit.offset(before + 1e-3)
     courses = np.unwrap(np.arctan2((right - y) / 1e-3, (ahead - x) / 1e-3 + mean))
     rates = np.gradient(courses, TIME_STEP)
-    # What a vehicle with a lag is to be commanded.
+    # Commands that a vehicle with a lag needs.
     commands = np.clip(
         rates + LAG * np.gradient(rates, TIME_STEP), -HEADING_RATE_MAX, HEADING_RATE_MAX
     )
@@ -76,15 +75,16 @@ def interventions(nu, distance, vessel):
     count = 0
     for step in range(round(2.0 * orbit.period / TIME_STEP)):
         time = step * TIME_STEP
-        guard.tubes = (vessel._replace(time=time, north=mean * time, velocity_north=mean),)
+        disc = vessel._replace(time=time, north=mean * time, velocity_north=mean)
         own = AirMotion(
             ground_north=state[0], ground_east=state[1], course=state[2], heading_rate=state[3]
         )
-        # Asked afresh: it keeps nothing in mind but the commands under way.
-        guard._kept_off, guard._free.steps = None, 0
-        command = guard.limit(float(commands[first + step]), time, own, SPEED)
-        count += guard.intervening
-        under_way.append(float(commands[first + step]) if guard.intervening else command)
+        # A guard that remembers nothing but the commands: it looks at each step.
+        guard = HeadingRateFilter(GUARD)
+        guard.history = history
+        guard.limit(float(commands[first + step]), time, own, (disc,), SPEED)
+        count += guard.status is not GuardStatus.FREE
+        under_way.append(float(commands[first + step]))
         state = lagged_move(*state[:3], state[3], SPEED, under_way.popleft(), LAG, TIME_STEP)
     return count
 
@@ -97,12 +97,12 @@ def test_on_the_orbit_the_guard_never_intervenes_and_2_m_nearer_it_does(nu):
 
 
 @RATIOS
-def test_all_of_the_orbit_lies_beyond_the_radius_about_wherever_the_vessel_may_be(nu):
+def test_all_of_the_orbit_lies_beyond_the_radius_about_every_place_of_the_vessel(nu):
     orbit = oscillation(nu)
     along, _ = orbit.half_widths()
     x, y = orbit.offset(np.linspace(0.0, orbit.period, 2000))
     distance = np.hypot(x - orbit_distance(GUARD, AIS, orbit) - along, y)
-    # A turn away needs room of its own where the orbit heads for her.
+    # A turn away needs more room where the orbit heads for the vessel.
     assert distance.min() > GUARD.radius + AIS.radius + 3.0
 
 

@@ -38,13 +38,13 @@ def test_near_the_slowest_airspeed_a_gust_does_not_pass_for_lost_thrust(airspeed
     assert lost_thrust(airspeed, 15.0) == pytest.approx(lack)
 
 
-def test_the_guard_reckons_with_the_airspeed_at_which_lost_thrust_is_detected():
+def test_the_guard_allows_for_the_airspeed_at_which_lost_thrust_is_detected():
     failing = PartFailure(airspeed_fall=1.25, glide_deviation=4.3)
     setup = replace(kinematic_setup(scenario()), airspeed_min=15.0, failing_level=failing)
     given = scenario(guidance={"airspeed_mps": 19.42}, fault={"declared": ["engine"]})
     guarded = plan(given, setup=setup).guidance.guard
-    # Of a steady fall the mean lack is behind the lack by a time constant of 2 s, and it is looked
-    # at every 0.2 s. Measured in 96 flights of the X8 at a ship: 14.3 m/s or more.
+    # In a steady fall the mean lack lags by a time constant of 2 s, and it is checked every 0.2 s.
+    # Measured in 96 flights of the X8 at a ship: 14.3 m/s or more.
     assert guarded.slowest == pytest.approx(19.42 - 0.55 * 4.42 - 1.25 * (2.0 + 0.2))
     # Then it pushes over to a glide, which takes it off its turn: the guard keeps as much more.
     assert (guarded.radius, guarded.allowance) == (204.3, 4.3)
@@ -155,7 +155,7 @@ class Faster:
 
 
 def test_a_track_of_ones_own_whose_velocity_is_a_little_wrong_is_refused():
-    # 0.0199 m/s in the 200 s of the flight: kinematic flights of a law that flies at her came
+    # 0.0199 m/s in the 200 s of the flight: kinematic flights of a law that flies at the ship came
     # within r_min by 6 m in 300 s.
     with pytest.raises(
         InfeasibleError,
@@ -211,8 +211,8 @@ def test_a_wind_that_changes_is_an_error_of_the_estimated_one(tmp_path):
     )
 
 
-def test_a_start_is_judged_by_the_wind_at_its_own_height():
-    # Abeam to the east of a ship that heads north, on course for her, with 12.2 m/s from astern of
+def test_a_start_is_judged_by_the_wind_at_its_height():
+    # Abeam to the east of a ship that heads north, on course for it, with 12.2 m/s from astern of
     # the UAV at 120 m, and 9 at 10 m: what is refused does not depend on the height of the funnel.
     given = {
         "start": {"place_m": [0.0, 235.0], "course_deg": -90.0}, "flight": {"altitude_m": 120.0}, "keepout": {"shape": "cylinder"},
@@ -285,7 +285,7 @@ def test_following_can_do_without_the_keep_out_guard():
         ("none", 100.0, 0.0),
     ],
 )
-def test_the_estimated_wind_follows_as_fast_as_the_guard_reckons_with(level, speed, turned):
+def test_the_estimated_wind_follows_as_fast_as_the_guard_allows_for(level, speed, turned):
     # A wind that rises by 0.1 m/s each second, which gusts hide, or beside a fast vehicle the error
     # of its course, as it flies straight across the wind: the filter lags by no more than its time.
     flown = scenario(

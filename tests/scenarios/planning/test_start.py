@@ -1,15 +1,15 @@
-"""Where flights begin, whatever their mission."""
+"""Where flights of both missions begin."""
 
 import math
 
 import numpy as np
 import pytest
 from flight_cases import plan, scenario
-from gnc.safety.guard_parameters import GuardParameters
 
 from gnc.errors import InfeasibleError
 from gnc.estimation.navigation import Motion
 from gnc.estimation.vessel import Tube
+from gnc.guard.guard import GuardParameters
 from scenarios.experiment.requests import Experiment
 from scenarios.planning.bounded_steering import farthest_start
 from scenarios.planning.start import Start, check_start
@@ -28,13 +28,11 @@ def tracking(**changes):
     return Scenario.model_validate({"title": "test", "fidelity": "kinematic"} | changes)
 
 
-AT_REST = Motion(0.0, 0.0, 0.0, 0.0, 0.0)
-
 MISSIONS = pytest.mark.parametrize("made", [scenario, tracking], ids=["following", "tracking"])
 
 
 @MISSIONS
-def test_a_start_that_is_given_is_where_and_as_it_was_given(made):
+def test_a_given_start_is_flown_from(made):
     # The vessel goes north in still air: its plume trails south, and bearings from it count
     # clockwise.
     given = plan(made(start={"range_m": 500.0, "aspect_deg": 30.0, "course_deg": -70.0})).start
@@ -80,7 +78,9 @@ def test_nothing_else_of_a_flight_changes_with_a_start_that_is_given(key, value,
     assert given.world.fault == sampled.world.fault
     for step in (0, 1, 100):
         one, other = (
-            flight.sensing.errors.read(step, AT_REST, 0.0, 0.0, satellites=True)
+            flight.sensing.errors.read(
+                step, Motion(0.0, 0.0, 0.0, 0.0, 0.0), 0.0, 0.0, satellites=True
+            )
             for flight in (sampled, given)
         )
         assert other == one
@@ -129,9 +129,9 @@ def test_starts_depend_on_the_seed_and_nu_alone():
     assert len({seed for (_, variant), seed in base.items() if variant == "study"}) == 20
 
 
-def test_a_vehicle_that_lags_so_much_that_a_turn_away_does_not_lead_away_is_not_flown():
-    # At 0.5 rad/s and 4 s late it overshoots by two radians: it came within 28 m of a ship to be
-    # kept 50 m from.
+def test_a_vehicle_whose_lag_keeps_a_turn_away_from_leading_away_is_refused():
+    # At 0.5 rad/s and 4 s late it overshoots by two radians: it came within 28 m of a ship from
+    # which it had to keep 50 m.
     with pytest.raises(
         InfeasibleError,
         match=r"lags by 4 s overshoots, and then leaves at only -.* of its .*: slow the vessel, .* shorter lag",
@@ -141,9 +141,7 @@ def test_a_vehicle_that_lags_so_much_that_a_turn_away_does_not_lead_away_is_not_
 
 
 @pytest.mark.parametrize("reported", [19.95, 20.0, 25.0])
-def test_a_vessel_that_is_reported_to_be_as_fast_as_the_vehicle_or_faster_is_not_flown_beside(
-    reported,
-):
+def test_a_vessel_that_is_reported_to_be_as_fast_as_the_vehicle_is_refused(reported):
     guard = GuardParameters(
         radius=200.0, heading_rate_max=0.49, lag=0.26, delay=0.26, slow_lag=0.39, time_step=0.05
     )

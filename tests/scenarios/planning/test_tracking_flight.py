@@ -4,11 +4,11 @@ import math
 from dataclasses import replace
 
 import pytest
-from gnc.safety.keepout_guard import KeepoutGuard
 
 from gnc.errors import InfeasibleError
 from gnc.estimation.navigation import AirMotion
 from gnc.estimation.vessel import Tube
+from gnc.guard.guard import HeadingRateFilter
 from innerloop.flight.turn_reversal import TurnReversalResponse
 from scenarios.errors import InputError
 from scenarios.planning.planner import plan_flight
@@ -30,7 +30,7 @@ def plan(*overrides, nu=0.5, seed=1, setup=SETUP):
     return plan_flight(scenario, flight_id="x", seed=seed, setup=setup)
 
 
-def test_what_such_a_flight_has_no_use_for_is_absent():
+def test_a_tracking_flight_has_no_sensing_margin_or_health():
     flight = plan()
     assert (flight.sensing, flight.margin, flight.apparent_wind, flight.periods) == (
         None,
@@ -60,7 +60,7 @@ def test_the_altitude_is_that_of_the_centre_of_oscillation():
     assert flight.source_height == 60.0
 
 
-def test_omega_max_is_the_coordinated_turn_at_the_bank_asked_for():
+def test_omega_max_is_the_coordinated_turn_at_the_bank_of_the_scenario():
     # g tan(45 deg)/19.42 m/s = 0.50498 rad/s.
     assert plan().guidance.tracking.heading_rate_max == pytest.approx(9.80665 / 19.42, rel=1e-12)
     given = plan("guidance.heading_rate_max_rad_s=0.503")
@@ -80,7 +80,7 @@ def test_commands_may_be_left_uncut():
         "guidance.keepout_guard=false",
     )
     assert flight.guidance.tracking.heading_rate_max == math.inf
-    # What they are judged by.
+    # They are judged by omega_max all the same.
     assert flight.heading_rate_max == pytest.approx(9.80665 / 19.42, rel=1e-12)
 
 
@@ -100,7 +100,7 @@ def test_the_guard_and_an_orbit_that_is_joined_need_commands_that_are_cut():
 
 def test_preview_and_airspeed_trim_can_be_switched_off():
     assert plan("guidance.preview=false").guidance.tracking.lag == 0.0
-    # Half a step of 20 Hz beside the vehicle's own.
+    # The vehicle's lag and half a step of 20 Hz.
     assert plan().guidance.tracking.lag == pytest.approx(0.3, rel=1e-12)
     assert plan().guidance.airspeed_law.gain == 0.15
     assert plan("guidance.airspeed_trim=false").guidance.airspeed_law.gain == 0.0
@@ -123,10 +123,10 @@ def test_a_start_from_which_no_command_keeps_out_is_refused():
 def test_the_guard_keeps_the_keep_out_radius_and_no_more_where_everything_is_known():
     # The tracking allowance is the orbit's. The clearance of a vehicle that recedes is its distance
     # less the radius.
-    guard = KeepoutGuard(plan(nu=0.0).guidance.guard)
-    guard.tubes = (Tube(0.0, 0.0, 0.0, 0.0, 0.0),)
+    guard = HeadingRateFilter(plan(nu=0.0).guidance.guard)
+    vessel = Tube(0.0, 0.0, 0.0, 0.0, 0.0)
     own = AirMotion(ground_north=0.0, ground_east=300.0, course=math.pi / 2.0)
-    assert guard.clearance(0.0, own, 19.42) == pytest.approx(300.0 - 200.0, abs=1e-9)
+    assert guard.clearance(0.0, own, (vessel,), 19.42) == pytest.approx(300.0 - 200.0, abs=1e-9)
 
 
 def test_the_guard_keeps_the_disc_that_the_keep_out_sphere_cuts_out_at_the_height_of_the_flight():
