@@ -2,7 +2,7 @@
 
 The centre lies on the plume's axis, at the distance from the vessel that keeps the whole orbit out
 of the keep-out area. The axis turns with the vessel, or with its motion through the air: a vessel
-that turns moves the centre by omega_V x r_CO (paper-notes, 11). Everything is in the frame of the
+that turns moves the centre by omega_V x r_CO. Everything is in the frame of the
 air mass.
 """
 
@@ -21,8 +21,8 @@ _IN_PLACE = 0.04
 """Distance from its place within which the centre counts as being there, over r_CO [-]."""
 
 _AXIS_SPEED_FRACTION = 0.7
-"""Fraction of the vehicle's speed at which the centre may be swung round the vessel [-]: it must be
-followed.
+"""Speed at which the centre may be swung round the vessel, over the vehicle's [-]: the vehicle must
+follow.
 """
 
 _DISTANCE_GAIN = 0.12
@@ -30,35 +30,28 @@ _DISTANCE_GAIN = 0.12
 """
 
 _DISTANCE_SPEED_FRACTION = 0.3
-"""Fraction of the speed that the vehicle has over the vessel at which the centre's distance may
-change [-].
-"""
+"""Rate at which the centre's distance may change, over the vehicle's excess speed [-]."""
 
 _RECEDING_SPEED_FRACTION = 0.9
-"""Fraction of the vehicle's speed at which the centre may move while it has to recede from the
-vessel [-]: it must be followed.
+"""Speed at which a centre that has to recede may move, over the vehicle's [-]: the vehicle must
+follow.
 """
-
 
 _VESSEL_SPEED_MIN = 0.1
-"""Speed over ground that a vessel is given at least where its turn is computed from it [m/s]: at
-rest it has no course.
-"""
+"""Least speed over ground from which a vessel's turn is computed [m/s]: at rest it has no course."""
 
 _EXCESS_SPEED_MIN = 0.05
-"""Least fraction of V_r that the vehicle is taken to have over the vessel [-]: also outrun, it
-corrects the distance.
+"""Least excess speed that the vehicle is assumed to have over the vessel, over V_r [-]: also outrun,
+it corrects the distance.
 """
 
 _SWING_MEMORY = 40.0
-"""Time over which a swing is averaged [s]: the scatter of a vessel's reports averages out, and a
-wind that turns does not.
+"""Time over which a swing is averaged [s]: scatter of reports averages out, a turning wind does
+not.
 """
 
 _CENTRE_SPEED_MIN = 0.01
-"""Speed that the centre is given at least where its direction is computed from it [m/s]: at rest it
-has none.
-"""
+"""Least speed from which the centre's direction is computed [m/s]: at rest it has none."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -103,25 +96,27 @@ class MovingCentre:
     speed_ratio : nu, vessel through the air over the vehicle's speed [-]
     receding : rate of its distance [m/s]
     swing : what turning about the vessel adds to the velocity, to the right of the axis [m/s]
-    steady_swing : as much of it as has gone on for a while [m/s]
+    steady_swing : part of the swing that has gone on for a while [m/s]
     in_place : whether its distance is what it should be
     plume_known : whether the apparent wind is strong enough for the plume to have a known direction
     """
-
-    __slots__ = (
-        "_mean_swing", "_parameters", "_started", "axis", "distance", "in_place", "plume_known", "receding", "speed_ratio",
-        "steady_swing", "swing", "velocity_east", "velocity_north", "x", "y",
-    )  # fmt: skip
 
     def __init__(self, parameters: CentreParameters) -> None:
         self._parameters = parameters
         self._started = False
         self.axis = math.pi
-        self.distance = self.x = self.y = self.velocity_north = self.velocity_east = (
-            self.speed_ratio
-        ) = 0.0
-        self.receding = self.swing = self.steady_swing = self._mean_swing = 0.0
-        self.plume_known = self.in_place = True
+        self.distance = 0.0
+        self.x = 0.0
+        self.y = 0.0
+        self.velocity_north = 0.0
+        self.velocity_east = 0.0
+        self.speed_ratio = 0.0
+        self.receding = 0.0
+        self.swing = 0.0
+        self.steady_swing = 0.0
+        self._mean_swing = 0.0
+        self.plume_known = True
+        self.in_place = True
 
     def move(
         self,
@@ -148,10 +143,13 @@ class MovingCentre:
         bearing : of the plume, to the right of where it would trail [rad]
         """
         p = self._parameters
-        air_north, air_east = vessel_north - wind_north, vessel_east - wind_east
+        air_north = vessel_north - wind_north
+        air_east = vessel_east - wind_east
         through_air = math.hypot(air_north, air_east)
         self.speed_ratio = through_air / p.speed
-        demanded, turn = self.axis, 0.0
+        # Where the plume trails, and how fast that turns.
+        demanded = self.axis
+        turn = 0.0
         if p.plume_heading is None:
             self.plume_known = through_air >= p.apparent_wind_min
             if self.plume_known:
@@ -169,15 +167,14 @@ class MovingCentre:
             elif not self._started:
                 demanded = p.vessel_course + p.plume_heading + bearing
         if not self._started:
-            self._started, self.axis = True, demanded
+            self._started = True
+            self.axis = demanded
             self.distance = self._target(air_north, air_east) + additional_range
         fastest = _AXIS_SPEED_FRACTION * p.speed / self.distance
         turn = limited(turn + _AXIS_GAIN * p.heading_rate_max * wrap(demanded - self.axis), fastest)
         swing = turn * self.distance
-        swung_north, swung_east = (
-            air_north - swing * math.sin(self.axis),
-            air_east + swing * math.cos(self.axis),
-        )
+        swung_north = air_north - swing * math.sin(self.axis)
+        swung_east = air_east + swing * math.cos(self.axis)
         target = self._target(swung_north, swung_east) + additional_range
         fastest = (
             _DISTANCE_SPEED_FRACTION * max(_EXCESS_SPEED_MIN, 1.0 - self.speed_ratio) * p.speed
@@ -192,8 +189,10 @@ class MovingCentre:
         self.distance += recede * time_step
         self.receding = recede
         self.in_place = abs(target - self.distance) < _IN_PLACE * target
-        cos_a, sin_a = math.cos(self.axis), math.sin(self.axis)
-        self.x, self.y = self.distance * cos_a, self.distance * sin_a
+        cos_a = math.cos(self.axis)
+        sin_a = math.sin(self.axis)
+        self.x = self.distance * cos_a
+        self.y = self.distance * sin_a
         self.swing = turn * self.distance
         self._mean_swing += (
             (self.swing - self._mean_swing) * time_step / (time_step + _SWING_MEMORY)
@@ -203,9 +202,7 @@ class MovingCentre:
         self.velocity_east = air_east + recede * sin_a + turn * self.x
 
     def _target(self, velocity_north: float, velocity_east: float) -> float:
-        """Return r_CO by equations (10) and (11) for a centre of some velocity, across which the
-        orbit lies [m].
-        """
+        """Return r_CO by equations (10) and (11), for an orbit across a centre's velocity [m]."""
         p = self._parameters
         last = len(p.along) - 1
         moving = math.hypot(velocity_north, velocity_east)

@@ -9,9 +9,9 @@ from gnc.airspeed.pace_hold import PaceHold
 from gnc.errors import InfeasibleError
 from gnc.estimation.health_monitor import HealthParameters
 from gnc.estimation.reachable_set import ReachableSet, Tube, VesselLimits
-from gnc.mission.plume_following import FollowingParameters
+from gnc.guidance import GuidanceParameters, ReportedVessel
+from gnc.mission.follow import FollowingParameters
 from gnc.mission.standoff import StandoffParameters
-from gnc.parameters import GuidanceParameters, ReportedVessel
 from gnc.reference.reference import Orbit, PeriodicPath
 from gnc.safety.guard_parameters import GuardParameters
 from scenarios.margin.keepout_margin import (

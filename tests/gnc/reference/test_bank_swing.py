@@ -10,8 +10,7 @@ from scipy.integrate import quad
 from scipy.optimize import brentq
 
 from common.physics.units import STANDARD_GRAVITY
-from gnc.reference.shapes.bank_swing import BankSwing
-from gnc.reference.shapes.course_path import CoursePath, fourier_coefficients
+from gnc.reference.shapes import BankSwing, CoursePath, fourier_coefficients
 
 ROLL_RATE = math.radians(40.0)
 HEADING_RATE = STANDARD_GRAVITY / SPEED

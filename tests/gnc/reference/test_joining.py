@@ -15,9 +15,8 @@ from gnc_cases import (
 from hypothesis import given
 from hypothesis import strategies as st
 
-from gnc.reference.closing import ClosingReference
-from gnc.reference.joining import JoinedOrbit
-from gnc.reference.shapes.sinusoid import Sinusoid
+from gnc.reference.reference import ClosingReference, JoinedOrbit
+from gnc.reference.shapes import Sinusoid
 
 ORBIT = JoinedOrbit(
     shape=Sinusoid(), orbit=paper_oscillation(0.5), vessel_course=0.3, time_step=TIME_STEP

@@ -10,7 +10,7 @@ from gnc_cases import HEADING_RATE_MAX, SPEED
 
 from gnc.numeric import wrap
 from gnc.reference.mean_motion import mean_motion, motion_course
-from gnc.reference.shapes.sinusoid import SinusoidSwing
+from gnc.reference.shapes import SinusoidSwing
 from gnc.reference.steered import SteeredReference
 from tests.gnc.reference.test_moving_centre import make, move
 

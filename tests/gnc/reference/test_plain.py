@@ -5,7 +5,7 @@ import copy
 import numpy as np
 from gnc_cases import paper_oscillation
 
-from gnc.reference.shapes.plain import made_plain
+from gnc.reference.builtin_floats import with_builtin_floats
 
 
 class Single:
@@ -27,7 +27,7 @@ class Single:
 
 
 def test_numbers_are_plain_and_several_of_them_a_tuple():
-    plain = made_plain(Single())
+    plain = with_builtin_floats(Single())
     answers = [plain.nu, plain.course(2.0), *plain.slopes(1.0, 0.5)]
     assert answers == [0.5, 0.5, 1.0, 0.5]
     assert {type(answer) for answer in answers} == {float}
@@ -36,22 +36,22 @@ def test_numbers_are_plain_and_several_of_them_a_tuple():
 
 
 def test_arrays_are_of_double_precision():
-    along, right = made_plain(Single()).offset(1.5)
+    along, right = with_builtin_floats(Single()).offset(1.5)
     assert type(along) is float
     assert right.dtype == np.float64
     np.testing.assert_array_equal(right, [0.5, 0.25])
 
 
 def test_what_a_shape_makes_is_plain_too():
-    made = made_plain(Single()).design(nu=0.5)
+    made = with_builtin_floats(Single()).design(nu=0.5)
     assert type(made.course(1.0)) is float
-    assert made_plain(Single()).design(nu=0.0) is None
+    assert with_builtin_floats(Single()).design(nu=0.0) is None
 
 
 def test_what_is_the_projects_own_is_left_as_it_is():
     oscillation = paper_oscillation(0.5)
-    assert made_plain(oscillation) is oscillation
+    assert with_builtin_floats(oscillation) is oscillation
 
 
 def test_a_copy_answers_likewise():
-    assert copy.deepcopy(made_plain(Single())).course(2.0) == 0.5
+    assert copy.deepcopy(with_builtin_floats(Single())).course(2.0) == 0.5

@@ -7,9 +7,13 @@ from gnc_cases import HEADING_RATE_MAX, SPEED, assert_a_copy_goes_on, paper_osci
 from scipy.integrate import solve_ivp
 
 from gnc.paper import design_oscillation, half_widths, offset
-from gnc.reference.circling import CirclingReference
-from gnc.reference.oscillating import OscillatingReference, start_reference
-from gnc.reference.reference import REFERENCE_SHAPES, ReferenceStart
+from gnc.reference.reference import (
+    REFERENCE_SHAPES,
+    CirclingReference,
+    OscillatingReference,
+    ReferenceStart,
+    start_reference,
+)
 from gnc.unicycle import unicycle_move
 
 TIME_STEP = 0.05
@@ -170,7 +174,7 @@ def test_the_papers_shape_is_known_by_name_and_is_the_papers_oscillation():
 @pytest.mark.parametrize("copied", [copy.copy, copy.deepcopy])
 def test_a_copy_goes_on_as_its_original_would_and_leaves_that_where_it_is(copied):
     _, reference = make(0.5, phase=1.1)
-    reference.spend(0.6)
+    reference.set_turn_rate_fraction(0.6)
     for _ in range(137):
         reference.step()
     assert_a_copy_goes_on(reference, copied)

@@ -9,9 +9,8 @@ from hypothesis import strategies as st
 from scipy.special import j0
 
 from gnc.paper import design_oscillation, eta_for_speed_ratio, offset
-from gnc.reference.joining import JoinedOrbit
-from gnc.reference.reference import REFERENCE_SHAPES
-from gnc.reference.shapes.sinusoid import SinusoidSwing
+from gnc.reference.reference import REFERENCE_SHAPES, JoinedOrbit
+from gnc.reference.shapes import SinusoidSwing
 from gnc.reference.steered import SteeredReference
 
 TIME_STEP = 0.05
@@ -226,7 +225,7 @@ def test_it_turns_the_shorter_way():
 def test_a_copy_goes_on_as_its_original_would_and_leaves_that_where_it_is(copied):
     reference = steered(mean_course=0.3, phase=1.1)
     reference.steer(0.9, 0.4)
-    reference.spend(0.6)
+    reference.set_turn_rate_fraction(0.6)
     for _ in range(37):
         reference.step()
     assert_a_copy_goes_on(reference, copied)
