@@ -39,7 +39,7 @@ class ReportedVessel:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class GuidanceParameters:
-    """The parts of a flight's guidance, and what they know beforehand. A part that is None is absent.
+    """The parts of a flight's guidance, with what they know beforehand. None: without the part.
 
     Attributes
     ----------
@@ -207,7 +207,7 @@ class Guidance:
 
 
 def compose(parameters: GuidanceParameters) -> Guidance:
-    """Return the guidance of one flight, with parts of its own. Parts are chosen nowhere else."""
+    """Return the guidance at the beginning of a flight; only here its parts are chosen."""
     p = parameters
     own: OwnMotion = EstimatedNavigation(p.navigation) if p.navigation else TrueNavigation()
     target: TargetMotion

@@ -253,7 +253,7 @@ class PredictedAxis:
         self._true_axis: tuple[float, float] | None = None
 
     def set_true_axis(self, height: float, course: float) -> None:
-        """Set height above the sea [m] and course [rad] of the axis at the centre of oscillation."""
+        """Set the axis at the centre of oscillation: height above the sea [m], course [rad]."""
         self._true_axis = height, course
 
     def plan(self, time: float, inputs: AxisInputs, *, tracking: bool) -> None:  # noqa: ARG002 - of the Protocol

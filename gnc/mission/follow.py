@@ -193,12 +193,8 @@ class PlumeFollowing:
         )
         self.centre.move(
             self._plan_time,
-            vessel_north=vessel.velocity_north,
-            vessel_east=vessel.velocity_east,
-            acceleration_north=vessel.acceleration_north,
-            acceleration_east=vessel.acceleration_east,
-            wind_north=own.wind_north,
-            wind_east=own.wind_east,
+            own,
+            vessel,
             bearing=self.axis.bearing,
             additional_range=self._orbit_range
             + (0.0 if self._closing_in else self._parameters.standoff)

@@ -9,6 +9,8 @@ air mass.
 import math
 from dataclasses import dataclass
 
+from gnc.estimation.own_motion import OwnMotion
+from gnc.estimation.target_motion import TargetMotion
 from gnc.numeric import clip, limited, wrap
 
 _AXIS_GAIN = 0.1
@@ -38,11 +40,11 @@ follow.
 """
 
 _VESSEL_SPEED_MIN = 0.1
-"""Least speed over ground from which a vessel's turn is computed [m/s]: at rest it has no course."""
+"""Least speed over ground from which a vessel's turn is computed [m/s]: at rest it has none."""
 
 _EXCESS_SPEED_MIN = 0.05
-"""Least excess speed that the vehicle is assumed to have over the vessel, over V_r [-]: also outrun,
-it corrects the distance.
+"""Least excess speed of the vehicle over the vessel that is assumed, over V_r [-]: also outrun, the
+vehicle corrects the distance.
 """
 
 _SWING_MEMORY = 40.0
@@ -121,13 +123,9 @@ class MovingCentre:
     def move(
         self,
         time_step: float,
+        own: OwnMotion,
+        vessel: TargetMotion,
         *,
-        vessel_north: float,
-        vessel_east: float,
-        acceleration_north: float,
-        acceleration_east: float,
-        wind_north: float,
-        wind_east: float,
         additional_range: float,
         additional_rate: float = 0.0,
         bearing: float = 0.0,
@@ -136,49 +134,31 @@ class MovingCentre:
 
         Parameters
         ----------
-        vessel_north, vessel_east : its velocity over the ground [m/s]
-        acceleration_north, acceleration_east : of the vessel [m/s^2]
-        wind_north, wind_east : velocity of the air mass [m/s]
-        additional_range, additional_rate : added to r_CO for now, and how fast that grows [m, m/s]
+        own, vessel : the wind that the vehicle measures, and the motion of the vessel
+        additional_range : added to r_CO for now [m]
+        additional_rate : at which the additional range grows [m/s]
         bearing : of the plume, to the right of where it would trail [rad]
         """
         p = self._parameters
-        air_north = vessel_north - wind_north
-        air_east = vessel_east - wind_east
+        air_north = vessel.velocity_north - own.wind_north
+        air_east = vessel.velocity_east - own.wind_east
         through_air = math.hypot(air_north, air_east)
         self.speed_ratio = through_air / p.speed
-        # Where the plume trails, and how fast that turns.
-        demanded = self.axis
-        turn = 0.0
-        if p.plume_heading is None:
-            self.plume_known = through_air >= p.apparent_wind_min
-            if self.plume_known:
-                demanded = math.atan2(-air_east, -air_north) + bearing
-                turn = (
-                    air_north * acceleration_east - air_east * acceleration_north
-                ) / through_air**2
-        else:
-            over_ground = math.hypot(vessel_north, vessel_east)
-            if over_ground >= p.apparent_wind_min:
-                demanded = math.atan2(vessel_east, vessel_north) + p.plume_heading + bearing
-                turn = (vessel_north * acceleration_east - vessel_east * acceleration_north) / max(
-                    over_ground, _VESSEL_SPEED_MIN
-                ) ** 2
-            elif not self._started:
-                demanded = p.vessel_course + p.plume_heading + bearing
+        demanded, turn = self._trailing(vessel, air_north, air_east, through_air, bearing)
         if not self._started:
             self._started = True
             self.axis = demanded
             self.distance = self._target(air_north, air_east) + additional_range
+        # The axis turns at that rate, and towards its demand.
         fastest = _AXIS_SPEED_FRACTION * p.speed / self.distance
         turn = limited(turn + _AXIS_GAIN * p.heading_rate_max * wrap(demanded - self.axis), fastest)
+        # The centre recedes or draws near, until the orbit across its motion keeps out.
         swing = turn * self.distance
         swung_north = air_north - swing * math.sin(self.axis)
         swung_east = air_east + swing * math.cos(self.axis)
         target = self._target(swung_north, swung_east) + additional_range
-        fastest = (
-            _DISTANCE_SPEED_FRACTION * max(_EXCESS_SPEED_MIN, 1.0 - self.speed_ratio) * p.speed
-        )
+        excess = max(_EXCESS_SPEED_MIN, 1.0 - self.speed_ratio)
+        fastest = _DISTANCE_SPEED_FRACTION * excess * p.speed
         recede = limited(_DISTANCE_GAIN * p.heading_rate_max * (target - self.distance), fastest)
         if additional_rate > 0.0:
             along = air_north * math.cos(self.axis) + air_east * math.sin(self.axis)
@@ -189,17 +169,49 @@ class MovingCentre:
         self.distance += recede * time_step
         self.receding = recede
         self.in_place = abs(target - self.distance) < _IN_PLACE * target
-        cos_a = math.cos(self.axis)
-        sin_a = math.sin(self.axis)
-        self.x = self.distance * cos_a
-        self.y = self.distance * sin_a
         self.swing = turn * self.distance
         self._mean_swing += (
             (self.swing - self._mean_swing) * time_step / (time_step + _SWING_MEMORY)
         )
         self.steady_swing = clip(self._mean_swing, min(self.swing, 0.0), max(self.swing, 0.0))
+        cos_a = math.cos(self.axis)
+        sin_a = math.sin(self.axis)
+        self.x = self.distance * cos_a
+        self.y = self.distance * sin_a
         self.velocity_north = air_north + recede * cos_a - turn * self.y
         self.velocity_east = air_east + recede * sin_a + turn * self.x
+
+    def _trailing(
+        self,
+        vessel: TargetMotion,
+        air_north: float,
+        air_east: float,
+        through_air: float,
+        bearing: float,
+    ) -> tuple[float, float]:
+        """Return the course along which the plume trails [rad], and its rate [rad/s].
+
+        Without a known course of vessel or wind, the axis stays.
+        """
+        p = self._parameters
+        north = vessel.acceleration_north
+        east = vessel.acceleration_east
+        if p.plume_heading is None:
+            self.plume_known = through_air >= p.apparent_wind_min
+            if self.plume_known:
+                turn = (air_north * east - air_east * north) / through_air**2
+                return math.atan2(-air_east, -air_north) + bearing, turn
+        else:
+            over_ground = math.hypot(vessel.velocity_north, vessel.velocity_east)
+            if over_ground >= p.apparent_wind_min:
+                course = math.atan2(vessel.velocity_east, vessel.velocity_north)
+                turn = (vessel.velocity_north * east - vessel.velocity_east * north) / max(
+                    over_ground, _VESSEL_SPEED_MIN
+                ) ** 2
+                return course + p.plume_heading + bearing, turn
+            if not self._started:
+                return p.vessel_course + p.plume_heading + bearing, 0.0
+        return self.axis, 0.0
 
     def _target(self, velocity_north: float, velocity_east: float) -> float:
         """Return r_CO by equations (10) and (11), for an orbit across a centre's velocity [m]."""

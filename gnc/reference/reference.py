@@ -150,7 +150,7 @@ class Swing(Protocol):
         """Return the slopes of the course offset: over eta, and over the phase per eta [-]."""
 
     def offset(self, eta: float, phase: float) -> tuple[float, float]:
-        """Return the offset from the orbit's centre, along the mean course and right [V_r/omega_0]."""
+        """Return the offset from the orbit's centre, along its course and right [V_r/omega_0]."""
 
 
 class ReferenceShape(Protocol):

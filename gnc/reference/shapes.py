@@ -124,7 +124,7 @@ class CoursePath:
         self._right = CubicHermiteSpline(knots, place.imag, slope.imag)
 
     def offset(self, phase: npt.ArrayLike) -> tuple[Array, Array]:
-        """Return the offset from phase 0, along and right, for phases of any shape [V_r/omega_0]."""
+        """Return the offset from phase 0, along and right, same shape as phase [V_r/omega_0]."""
         within = np.mod(phase, 2.0 * np.pi)
         return np.asarray(self._along(within)), np.asarray(self._right(within))
 
@@ -161,7 +161,7 @@ class OrbitTables:
         self._eta_last = ETA_STEP * (len(ratios) - 3)
 
     def eta(self, speed_ratio: float) -> float:
-        """Return eta for a mean speed over speed; outside the table that of its nearest end [rad]."""
+        """Return eta for a mean speed over speed, which is clipped to the table [rad]."""
         if speed_ratio >= 1.0:
             return 0.0
         roots = self._roots
@@ -226,7 +226,7 @@ class SinusoidSwing:
         )
 
     def frequency(self, eta: float, heading_rate: float) -> float:
-        """Return omega_0 by heading rate and roll rate, the lower, as ``gnc.paper`` does [rad/s]."""
+        """Return omega_0 by the heading rate or the roll rate, the lower one [rad/s]."""
         eta = max(ETA_FREQUENCY, eta)
         by_heading_rate = min(self.heading_rate, heading_rate) / eta
         by_roll_rate = math.sqrt(self.acceleration / eta)
@@ -411,7 +411,7 @@ class BankSwing:
         return by_eta, -by_phase if angle > 0.0 else by_phase
 
     def offset(self, eta: float, phase: float) -> tuple[float, float]:
-        """Return the offset from the orbit's centre, along the mean course and right [V_r/omega_0]."""
+        """Return the offset from the orbit's centre, along its course and right [V_r/omega_0]."""
         return self._tables.offset(eta, phase)
 
     def _quarter(self, eta: float) -> _Quarter:
@@ -424,7 +424,7 @@ class BankSwing:
         return _Quarter(time, time, self._per_tangent * tangent)
 
     def _held(self, eta: float) -> tuple[float, float, float]:
-        """Return a quarter period [s], the largest heading rate [rad/s], half the time it is held."""
+        """Return a quarter period [s], the largest heading rate [rad/s], half its duration [s]."""
         quarter = self._quarter(eta)
         held = (eta - self._rolled) / self._heading_rate if self.holds_bank(eta) else 0.0
         return quarter.time, quarter.heading_rate, held

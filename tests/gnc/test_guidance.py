@@ -53,15 +53,15 @@ QUICK_GUARD = GuardParameters(
 
 
 class RecordingGuard:
-    """Says what it was asked, and answers a fixed command."""
+    """Records what it is called with, and returns a fixed command."""
 
     def __init__(self, answer, *, intervening=True, allowed=True):
         self.answer = answer
         self.intervening, self.allowed = intervening, allowed
-        self.asked, self.slowest, self.asked_to_allow, self.tubes = [], [], [], ()
+        self.limited, self.slowest, self.speeds, self.tubes = [], [], [], ()
 
     def allows(self, _command, _time, _own, speed, _slowest):
-        self.asked_to_allow.append(speed)
+        self.speeds.append(speed)
         return self.allowed
 
     def limit(self, _, time, own, speed, slowest):
@@ -74,7 +74,7 @@ class RecordingGuard:
             own.course,
             own.heading_rate,
         )
-        self.asked.append((time, *motion, speed))
+        self.limited.append((time, *motion, speed))
         return self.answer
 
 
@@ -168,7 +168,7 @@ def test_the_airspeed_is_trimmed_by_the_along_track_error_within_its_limit(
 
 
 @pytest.mark.parametrize("answer", [0.2, -0.3, 0.0])
-def test_the_guards_answer_is_what_is_commanded(guarded_by, answer):
+def test_the_guards_command_is_what_is_commanded(guarded_by, answer):
     guidance = guarded_by(RecordingGuard(answer))
     guidance.step(0.0, motion(-300.0, 0.0, 0.0))
     assert guidance.heading_rate_command == answer
@@ -177,11 +177,11 @@ def test_the_guards_answer_is_what_is_commanded(guarded_by, answer):
 
 
 @pytest.mark.parametrize("lag", [0.0, 0.4])
-def test_the_guard_is_asked_about_the_motion_now_and_gets_a_disc_without_width(guarded_by, lag):
+def test_the_guard_gets_the_motion_now_and_a_disc_without_width(guarded_by, lag):
     guidance = guarded_by(RecordingGuard(0.0), lag=lag, vessel=(3.0, -2.0))
     guidance.step(5.0, motion(-300.0, 20.0, 0.7, SPEED + 0.5, 0.1))
     # Course and speed come back from the velocities: roundings.
-    assert guidance.guard.asked[0] == pytest.approx(
+    assert guidance.guard.limited[0] == pytest.approx(
         (5.0, -300.0, 20.0, 0.0, 0.0, 0.7, 0.1, SPEED + 0.5), rel=1e-14
     )
     # From the origin at time 0, and known exactly for good.
@@ -193,7 +193,7 @@ def test_the_guard_reckons_with_the_airspeed_that_comes_back(guarded_by):
     # there.
     guidance = guarded_by(RecordingGuard(0.0))
     guidance.step(0.0, motion(-300.0, 20.0, 0.7, SPEED - 1.0, 0.1))
-    assert guidance.guard.asked[0][-1] == SPEED
+    assert guidance.guard.limited[0][-1] == SPEED
     # And to be as slow as it is, for against a disc that closes in the slower vehicle may come
     # nearer.
     assert guidance.guard.slowest[0] == pytest.approx(SPEED - 1.0, rel=1e-14)
@@ -206,7 +206,7 @@ def test_an_airspeed_that_is_flown_in_place_of_the_one_commanded_is_reckoned_wit
     guidance.step(0.0, motion(-300.0, 20.0, 0.7))
     guidance.overruled(0.1, SPEED + 3.0)
     guidance.step(TIME_STEP, motion(-300.0, 20.0, 0.7))
-    assert guard.asked[-1][-1] == SPEED + 3.0
+    assert guard.limited[-1][-1] == SPEED + 3.0
 
 
 @pytest.mark.parametrize("allowed", [True, False])
@@ -217,9 +217,9 @@ def test_on_the_way_it_flies_faster_only_where_the_guard_allows_that(guarded_by,
     for step in range(3):
         guidance.step(step * TIME_STEP, motion(-300.0, 20.0, 0.7))
         assert guidance.airspeed_command == (SPEED + 2.0 if allowed else SPEED)
-    # Once allowed it need not be asked again; what it is asked with, it goes on with.
-    assert guard.asked_to_allow == [SPEED + 2.0] * (1 if allowed else 3)
-    assert [asked[-1] for asked in guard.asked] == [SPEED + 2.0 if allowed else SPEED] * 3
+    # Once allowed, the speed is not checked again, and turns away are predicted with it.
+    assert guard.speeds == [SPEED + 2.0] * (1 if allowed else 3)
+    assert [call[-1] for call in guard.limited] == [SPEED + 2.0 if allowed else SPEED] * 3
 
 
 @pytest.mark.parametrize(
@@ -381,20 +381,31 @@ def following(*, guard=GUARD, climb=0.0):
         speed=SPEED,
         altitude=60.0,
         tracking=tracking_parameters(lag=0.4),
-        airspeed_law=PaceHold(speed=SPEED, hold=SpeedHold(gain=0.3, airspeed_min=15.0, airspeed_max=25.0)),
+        airspeed_law=PaceHold(
+            speed=SPEED, hold=SpeedHold(gain=0.3, airspeed_min=15.0, airspeed_max=25.0)
+        ),
         airspeed_bandwidth=1.3,
         airspeed_overshoot=0.1,
         navigation=NavigationParameters(
-            crab_banks=(-1.0, 1.0), crab_offsets=(0.0, 0.0), airspeed_sigma=0.5, course_sigma=0.03, wind_drift=0.02,
-            wind_interval=PLAN_INTERVAL, time_step=TIME_STEP,
+            crab_banks=(-1.0, 1.0),
+            crab_offsets=(0.0, 0.0),
+            airspeed_sigma=0.5,
+            course_sigma=0.03,
+            wind_drift=0.02,
+            wind_interval=PLAN_INTERVAL,
+            time_step=TIME_STEP,
         ),
         vessel=ReportedVessel(filter=FILTER, limits=LIMITS),
         guard=guard,
         mission=mission,
         health=HealthParameters(
-            airspeed_error=2.0, speed=SPEED, heading_rate_max=HEADING_RATE_MAX, lag=0.4, time_step=TIME_STEP
+            airspeed_error=2.0,
+            speed=SPEED,
+            heading_rate_max=HEADING_RATE_MAX,
+            lag=0.4,
+            time_step=TIME_STEP,
         ),
-    )  # fmt: skip
+    )
 
 
 def reported(parameters, *, speed=8.0):
@@ -430,8 +441,10 @@ def test_the_papers_guidance_has_no_parts_that_have_nothing_to_do():
 def test_a_guidance_that_follows_a_plume_has_every_part():
     guidance = compose(following())
     assert (type(guidance.own), type(guidance.target), type(guidance.mission)) == (
-        EstimatedNavigation, ReportedTarget, PlumeFollowing,
-    )  # fmt: skip
+        EstimatedNavigation,
+        ReportedTarget,
+        PlumeFollowing,
+    )
     assert guidance.monitor is not None
     assert guidance.guard is not None
 

@@ -1,8 +1,6 @@
-"""What the tests of the guidance share: the paper's vehicle, Cartesian motion to check against, and
-kinematic flights.
+"""The paper's vehicle, Cartesian motion to check against, and kinematic flights, for all tests.
 
-The paper does not print V_r and omega_max; 19.42 m/s and 0.503 rad/s reproduce its Sim. 3
-(reference/paper-notes.md, "Parameters the paper does not print").
+The paper does not print V_r and omega_max; 19.42 m/s and 0.503 rad/s reproduce its Simulation 3.
 """
 
 import math
@@ -189,7 +187,7 @@ def paper_parameters(reference, *, vessel=(0.0, 0.0), guard=None, airspeed_gain=
 
 
 def make_guidance(reference, **how):
-    """Return the paper's guidance; ``how`` as of ``paper_parameters``."""
+    """Return the paper's guidance; ``how`` same as in ``paper_parameters``."""
     return compose(paper_parameters(reference, **how))
 
 

@@ -49,18 +49,9 @@ def situation(*, wind=(0.0, 0.0), vessel=(8.0, 0.0)):
         heading_rate_max=0.5,
     )
     centre = MovingCentre(parameters)
-    still = {"acceleration_north": 0.0, "acceleration_east": 0.0, "additional_range": 0.0}
-    centre.move(
-        PLAN_TIME,
-        vessel_north=vessel[0],
-        vessel_east=vessel[1],
-        wind_north=wind[0],
-        wind_east=wind[1],
-        **still,
-    )
-    return AxisInputs(
-        own=own, vessel=SteadyTarget(*vessel), centre=centre, speed=SPEED, plan_time=PLAN_TIME
-    )
+    target = SteadyTarget(*vessel)
+    centre.move(PLAN_TIME, own, target, additional_range=0.0)
+    return AxisInputs(own=own, vessel=target, centre=centre, speed=SPEED, plan_time=PLAN_TIME)
 
 
 EXHAUST = AxisHeight(source=35.0, momentum_flux=124.0, buoyancy_flux=49.6)
@@ -151,24 +142,15 @@ def test_the_true_height_is_flown_within_the_limits_alone(given, flown):
 
 def test_the_plume_trails_behind_the_vessels_motion_through_the_air():
     around = situation(wind=(0.0, 8.0), vessel=(8.0, 0.0))
-    # A wind to the east as fast as the ship sails north carries her smoke to the south-east.
+    # A wind to the east as fast as the ship sails north carries its smoke to the south-east.
     assert trail(around.own, around.vessel) == pytest.approx(math.radians(135.0), abs=1e-12)
 
 
 def test_a_bearing_turns_the_centre_to_the_right_of_where_the_plume_would_trail():
-    around, still = (
-        situation(),
-        {"acceleration_north": 0.0, "acceleration_east": 0.0, "additional_range": 0.0},
-    )
+    around = situation()
     for _ in range(400):
         around.centre.move(
-            PLAN_TIME,
-            vessel_north=8.0,
-            vessel_east=0.0,
-            wind_north=0.0,
-            wind_east=0.0,
-            bearing=math.radians(10.0),
-            **still,
+            PLAN_TIME, around.own, around.vessel, additional_range=0.0, bearing=math.radians(10.0)
         )
     # Astern is 180 degrees; to the right of it, seen along the plume, is west. It comes there
     # asymptotically.

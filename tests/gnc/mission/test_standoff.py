@@ -40,7 +40,7 @@ def mission(law, height=LEVEL):
 
 
 class Flown:
-    """A kinematic flight under a law: distances from the vessel at each step, mission, last mode."""
+    """A kinematic flight under a law: distances from the vessel, mission, and last mode."""
 
     def __init__(self, law, seconds, vessel=(6.0, 3.0), start=(-400.0, 50.0, 1.0)):
         own, target, self.mission = TrueNavigation(), SteadyTarget(*vessel), mission(law)

@@ -68,7 +68,7 @@ def guidance(*, joining=True, nu=NU):
 
 
 def settles(flight):
-    """Return when a flight comes within 5 m of its reference for good [s]; infinite if it does not."""
+    """Return when a flight comes within 5 m of its reference for good [s]; inf if it never does."""
     outside = np.flatnonzero(flight.distance >= 5.0)
     last = outside[-1] + 1 if outside.size else 0
     return last * TIME_STEP if last < len(flight.distance) else math.inf

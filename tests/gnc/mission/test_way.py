@@ -101,7 +101,7 @@ def test_the_relative_velocity_lies_along_the_way_to_the_target_where_that_is_cl
 def test_mirrored_geometry_gives_the_mirrored_course(
     distance, bearing, target, course, speed, heading
 ):
-    def asked(side, nudge=0.0):
+    def found_on(side, nudge=0.0):
         transit = Transit(TURN_RADIUS)
         found = course_of(
             transit,
@@ -114,8 +114,8 @@ def test_mirrored_geometry_gives_the_mirrored_course(
 
     # Where both sides are as long, or the way is just clear, the first is taken, mirrored or not: a
     # hair's breadth decides.
-    assume(len({asked(1, nudge)[0] for nudge in (-1e-6, 0.0, 1e-6)}) == 1)
-    (one, found), (other, mirrored) = asked(1), asked(-1)
+    assume(len({found_on(1, nudge)[0] for nudge in (-1e-6, 0.0, 1e-6)}) == 1)
+    (one, found), (other, mirrored) = found_on(1), found_on(-1)
     assert one == -other
     assert math.remainder(found + mirrored, 2.0 * math.pi) == pytest.approx(0.0, abs=1e-9)
 
@@ -395,7 +395,7 @@ def test_from_a_course_towards_the_vessel_it_keeps_to_the_turn_that_it_has_begun
 
 
 @pytest.mark.parametrize("side", [1.0, -1.0])
-def test_where_one_turn_is_shorter_it_is_taken_whatever_is_flown(side):
+def test_where_one_turn_is_shorter_it_is_taken_from_any_turn(side):
     # 120 degrees to go: to the right for a vehicle east of north by that.
     own = KnownMotion(
         ground_north=400.0,

@@ -123,8 +123,7 @@ def test_the_reference_is_a_unicycle_of_constant_speed():
 
 
 def test_the_reference_starts_on_the_centre_with_phase_zero_only():
-    # Section III.B has it start on the CO; paper-notes, care 2, says why that holds for phi_0 = 0
-    # only.
+    # Section III.B has it start on the CO, which centres the orbit there for phi_0 = 0 only.
     oscillation = paper_oscillation(0.5)
     on = start_reference(
         oscillation, phase=0.0, centre_north=CENTRE[0], centre_east=CENTRE[1], vessel_course=COURSE
@@ -137,8 +136,8 @@ def test_the_reference_starts_on_the_centre_with_phase_zero_only():
         vessel_course=COURSE,
     )
     assert (on.north, on.east) == pytest.approx(CENTRE, abs=1e-12)
-    # A quarter period on it is d_y = 68.395 m to the vessel's right (table of paper-notes, rounded
-    # to 1 cm).
+    # A quarter period on it is d_y = 68.395 m to the vessel's right by (12), rounded to
+    # 1 cm.
     right = -(off.north - CENTRE[0]) * math.sin(COURSE) + (off.east - CENTRE[1]) * math.cos(COURSE)
     along = (off.north - CENTRE[0]) * math.cos(COURSE) + (off.east - CENTRE[1]) * math.sin(COURSE)
     assert right == pytest.approx(68.40, abs=0.005)

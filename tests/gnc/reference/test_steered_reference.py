@@ -52,9 +52,13 @@ steering = st.lists(
 def test_with_constant_parameters_it_is_the_reference_of_its_shape(shape, nu):
     reference, made = steered(shape, nu=nu), REFERENCE_SHAPES.get(shape)()
     orbit = made.design(
-        nu=reference.speed_ratio, speed=SPEED, heading_rate_max=HEADING_RATE_MAX, reserve=0.0, vessel_heading_rate=0.0,
+        nu=reference.speed_ratio,
+        speed=SPEED,
+        heading_rate_max=HEADING_RATE_MAX,
+        reserve=0.0,
+        vessel_heading_rate=0.0,
         roll_rate_max=ROLL_RATE_MAX,
-    )  # fmt: skip
+    )
     fixed = JoinedOrbit(shape=made, orbit=orbit, vessel_course=0.7, time_step=TIME_STEP).reference(
         0.0, -214.0, 35.0
     )
@@ -198,7 +202,7 @@ def test_it_knows_its_mean_speed(shape):
 
 
 @shapes
-def test_it_comes_to_the_mean_course_and_speed_that_are_asked_for(shape):
+def test_it_comes_to_the_mean_course_and_speed_that_are_demanded(shape):
     reference = steered(shape, nu=0.5, mean_course=0.0)
     reference.steer(2.0, 0.2)
     for _ in range(1200):

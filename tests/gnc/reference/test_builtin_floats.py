@@ -1,4 +1,4 @@
-"""What a shape of a user's own answers becomes plain numbers; the project's own is left as it is."""
+"""Results of a user's shape become Python's numbers; the project's own shapes are left alone."""
 
 import copy
 
@@ -9,7 +9,7 @@ from gnc.reference.builtin_floats import with_builtin_floats
 
 
 class Single:
-    """Answers in single precision, and in lists."""
+    """Returns single precision, and lists."""
 
     nu, limit, symmetric = np.float32(0.5), "roll rate", np.bool_(False)
 
@@ -26,13 +26,13 @@ class Single:
         return Single() if nu else None
 
 
-def test_numbers_are_plain_and_several_of_them_a_tuple():
-    plain = with_builtin_floats(Single())
-    answers = [plain.nu, plain.course(2.0), *plain.slopes(1.0, 0.5)]
+def test_numbers_are_pythons_and_several_of_them_a_tuple():
+    converted = with_builtin_floats(Single())
+    answers = [converted.nu, converted.course(2.0), *converted.slopes(1.0, 0.5)]
     assert answers == [0.5, 0.5, 1.0, 0.5]
     assert {type(answer) for answer in answers} == {float}
-    assert type(plain.slopes(1.0, 0.5)) is tuple
-    assert (plain.limit, bool(plain.symmetric)) == ("roll rate", False)
+    assert type(converted.slopes(1.0, 0.5)) is tuple
+    assert (converted.limit, bool(converted.symmetric)) == ("roll rate", False)
 
 
 def test_arrays_are_of_double_precision():
