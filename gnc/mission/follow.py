@@ -9,7 +9,7 @@ from gnc.estimation.target_motion import TargetMotion
 from gnc.laws.steering_law import Surroundings
 from gnc.mission.axis import AxisInputs, AxisParameters
 from gnc.mission.mission import LOST, TRACK, Centre, Mode, OrbitStatus, Order
-from gnc.mission.way import GLIDE_ALTITUDE, LOST_TRACK, Approach, ApproachParameters, Egress
+from gnc.mission.way import LOST_TRACK, Approach, ApproachParameters, Egress
 from gnc.reference.mean_motion import mean_motion, motion_course
 from gnc.reference.moving_centre import CentreParameters, MovingCentre
 from gnc.reference.reference import Swing
@@ -87,7 +87,11 @@ class PlumeFollowing:
             lag=tracking.lag,
             time_step=tracking.time_step,
         )
-        self._egress = Egress(tracking.heading_rate_max, tracking.lag)
+        self._egress = Egress(
+            heading_rate_max=tracking.heading_rate_max,
+            lag=tracking.lag,
+            glide_airspeed=parameters.glide_airspeed,
+        )
         self.tracker: Tracker[SteeredReference]
         self._reference: SteeredReference
         self.orbit: OrbitStatus | None = None
@@ -116,10 +120,9 @@ class PlumeFollowing:
         p = self._parameters
         last = self.tracker.heading_rate_command
         if self._fault is not Fault.NONE:
-            lost_thrust = self._fault is Fault.THRUST_LOST
-            self._mode = Mode.GLIDING if lost_thrust else Mode.TERMINATING
-            egress = self._egress.command(own, vessel, last)
-            return Order(egress, p.glide_airspeed, GLIDE_ALTITUDE, self._mode)
+            order = self._egress.order(self._fault, own, vessel, last)
+            self._mode = order.mode
+            return order
         command: float | None = TRACK
         if self.departing:
             command = self._egress.command(own, vessel, last)

@@ -17,7 +17,7 @@ from gnc.laws.steering_law import Surroundings, begun, call_error, within_limit
 from gnc.mission.axis import AxisHeight, Climb
 from gnc.mission.mission import LOST, TRACK, Centre, Mode, OrbitStatus, Order
 from gnc.mission.track import CLOSING_RATE, STANDOFF
-from gnc.mission.way import COURSE_GAIN, GLIDE_ALTITUDE, Egress
+from gnc.mission.way import COURSE_GAIN, Egress
 from gnc.numeric import wrap
 from gnc.tracker import TrackingParameters
 from gnc.unicycle import lag_ahead
@@ -180,7 +180,11 @@ class StandoffOrbit:
         self._tracking_parameters = tracking
         self._plan_time = parameters.plan_interval * tracking.time_step
         self._closing = CLOSING_RATE * parameters.speed * self._plan_time
-        self._egress = Egress(tracking.heading_rate_max, tracking.lag)
+        self._egress = Egress(
+            heading_rate_max=tracking.heading_rate_max,
+            lag=tracking.lag,
+            glide_airspeed=parameters.glide_airspeed,
+        )
         self.tracker: CircleTracker
         self.orbit: OrbitStatus | None = None
         self._altitude = parameters.altitude
@@ -201,10 +205,10 @@ class StandoffOrbit:
         if renew:
             self._plan_circle(own, vessel)
         if self._fault is not Fault.NONE:
-            lost_thrust = self._fault is Fault.THRUST_LOST
-            self._mode = Mode.GLIDING if lost_thrust else Mode.TERMINATING
-            egress = self._egress.command(own, vessel, self.tracker.heading_rate_command)
-            return Order(egress, p.glide_airspeed, GLIDE_ALTITUDE, self._mode)
+            last = self.tracker.heading_rate_command
+            order = self._egress.order(self._fault, own, vessel, last)
+            self._mode = order.mode
+            return order
         return Order(TRACK, p.speed, self._altitude, self._mode)
 
     def leave(self, fault: Fault) -> None:

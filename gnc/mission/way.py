@@ -3,8 +3,10 @@
 import math
 from dataclasses import dataclass
 
+from gnc.estimation.health import Fault
 from gnc.estimation.own_motion import OwnMotion
 from gnc.estimation.target_motion import TargetMotion
+from gnc.mission.mission import Mode, Order
 from gnc.numeric import limited, wrap
 
 COURSE_GAIN = 2.0
@@ -15,7 +17,7 @@ LOST_TRACK = 3.0
 [-].
 """
 
-GLIDE_ALTITUDE = -1000.0
+_GLIDE_ALTITUDE = -1000.0
 """Altitude that a gliding vehicle is commanded [m]: so far below that the autopilot holds its
 airspeed by pitch, and sinks.
 """
@@ -308,12 +310,22 @@ class Egress:
     ----------
     heading_rate_max : omega_max [rad/s]
     lag : of the vehicle's heading rate behind its command [s]
+    glide_airspeed : of a vehicle with a fault [m/s]
     """
 
-    def __init__(self, heading_rate_max: float, lag: float) -> None:
+    def __init__(self, *, heading_rate_max: float, lag: float, glide_airspeed: float) -> None:
         self._heading_rate_max = heading_rate_max
         self._lag = lag
+        self._glide_airspeed = glide_airspeed
         self._side = 0.0
+
+    def order(
+        self, fault: Fault, own: OwnMotion, vessel: TargetMotion, last_command: float
+    ) -> Order:
+        """Return the order to leave and sink, for a vehicle with a fault; see ``command``."""
+        mode = Mode.GLIDING if fault is Fault.THRUST_LOST else Mode.TERMINATING
+        command = self.command(own, vessel, last_command)
+        return Order(command, self._glide_airspeed, _GLIDE_ALTITUDE, mode)
 
     def command(self, own: OwnMotion, vessel: TargetMotion, last_command: float) -> float:
         """Return the heading rate to fly [rad/s].

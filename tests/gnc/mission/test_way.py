@@ -363,7 +363,11 @@ def fly_out(x, y, course, heading_rate=0.0, duration=30.0):
     """Return distances from the vessel, and heading rates, of a vehicle that answers at once and
     leaves a vessel at rest.
     """
-    egress, distances, turns = Egress(HEADING_RATE_MAX, lag=0.0), [], []
+    egress, distances, turns = (
+        Egress(heading_rate_max=HEADING_RATE_MAX, lag=0.0, glide_airspeed=15.0),
+        [],
+        [],
+    )
     for _ in range(round(duration / TIME_STEP)):
         own = KnownMotion(ground_north=x, ground_east=y, course=course, heading_rate=heading_rate)
         heading_rate = egress.command(own, VESSEL, heading_rate)
@@ -403,5 +407,5 @@ def test_where_one_turn_is_shorter_it_is_taken_from_any_turn(side):
         course=-side * math.radians(120.0),
         heading_rate=-side * 0.4,
     )
-    egress = Egress(HEADING_RATE_MAX, lag=0.0)
+    egress = Egress(heading_rate_max=HEADING_RATE_MAX, lag=0.0, glide_airspeed=15.0)
     assert egress.command(own, VESSEL, 0.0) == side * HEADING_RATE_MAX
