@@ -48,8 +48,8 @@ def shape_of(reference: ReferenceConfig) -> ReferenceShape:
     made = asked(part, "cannot be made", "no arguments: its fields need defaults", kind)
     if is_own(made) and not is_number(getattr(made, "turn_rate_fraction_until_tracked", None)):
         raise PluginError(
-            f"{part} has no turn_rate_fraction_until_tracked, the part of its heading rate that the reference takes until it is tracked [-]; give it"
-            " one, 1.0 as the sinusoid has"
+            f"{part} has no turn_rate_fraction_until_tracked, the part of its heading rate that the"
+            " reference takes until it is tracked [-]; give it one, 1.0 as the sinusoid has"
         )
     shape: ReferenceShape = with_builtin_floats(made)
     return shape
