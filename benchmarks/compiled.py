@@ -25,9 +25,8 @@ MODULES = {
         "airspeed",
         "estimation/health", "estimation/navigation", "estimation/vessel",
         "paper",
-        "mission/approach", "mission/direct_tracking", "mission/egress", "mission/mode", "mission/plume_following",
-        "mission/transit",
-        "reference/moving_centre", "reference/orbit_tables", "reference/oscillating", "reference/steered",
+        "mission/follow", "mission/mission", "mission/track", "mission/way",
+        "reference/moving_centre", "reference/steered",
         "guard/guard", "guard/turn",
     ),
     "scenarios": (

@@ -20,11 +20,10 @@ import pandas as pd
 
 from benchmarks.vehicle import x8_setup
 from common.run_layout import SUMMARY, time_history_path
-from gnc.compose import compose
 from gnc.estimation.navigation import Motion
 from gnc.estimation.vessel import ReportedTarget
-from gnc.guidance import Guidance
-from gnc.mission.searched_axis import SearchedAxis
+from gnc.guidance import Guidance, compose
+from gnc.mission.axis import SearchedAxis
 from scenarios.engine.task import Task
 from scenarios.experiment.requests import Experiment
 from scenarios.flight import FlightWork

@@ -2,44 +2,105 @@
 
 import math
 from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import Any
 
 from gnc.airspeed import AirspeedLaw
-from gnc.estimation.health import HealthMonitor
-from gnc.estimation.navigation import OwnMotion
-from gnc.estimation.vessel import TargetMotion, Tube
-from gnc.guard.guard import Demand, GuardStatus, KeepoutGuard
-from gnc.mission.mission import Mission
+from gnc.estimation.health import HealthMonitor, HealthParameters
+from gnc.estimation.navigation import (
+    EstimatedNavigation,
+    NavigationParameters,
+    OwnMotion,
+    TrueNavigation,
+)
+from gnc.estimation.vessel import (
+    FilterParameters,
+    ReachableSet,
+    ReportedTarget,
+    SteadyTarget,
+    TargetMotion,
+    Tube,
+    VesselFilter,
+    VesselLimits,
+)
+from gnc.guard.guard import Demand, GuardParameters, GuardStatus, KeepoutGuard, SpeedRange
+from gnc.mission.follow import FollowingParameters, PlumeFollowing
+from gnc.mission.mission import LOST, TRACK, Mission, Mode, Order
+from gnc.mission.standoff import StandoffOrbit, StandoffParameters
+from gnc.mission.track import DirectParameters, DirectTracking
 from gnc.numeric import limited
+from gnc.tracker import TrackingParameters
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ReportedVessel:
+    """A vessel that is known from its reports.
+
+    Attributes
+    ----------
+    filter : of the reports
+    limits : that the vessel and its reports keep
+    """
+
+    filter: FilterParameters
+    limits: VesselLimits
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class GuidanceParameters:
+    """The parts of a flight's guidance, with what they know beforehand. None: without the part.
+
+    Attributes
+    ----------
+    speed, altitude : V_r, and the altitude to hold [m/s, m]
+    tracking : of the tracker
+    airspeed_law : keeps the vehicle beside its reference
+    airspeed_bandwidth : of the airspeed behind its command [rad/s]
+    airspeed_overshoot : over a rise of the command [-]
+    navigation : of the estimated own motion; None where it is known exactly, in still air
+    vessel : its reports, or its velocity north and east where that is known exactly and steady
+        [m/s]
+    guard : of the keep-out area
+    mission : following a plume, circling the vessel, or tracking a reference that is known in
+        advance
+    health : of the vehicle
+    """
+
+    speed: float
+    altitude: float
+    tracking: TrackingParameters
+    airspeed_law: AirspeedLaw
+    airspeed_bandwidth: float
+    airspeed_overshoot: float
+    navigation: NavigationParameters | None
+    vessel: ReportedVessel | tuple[float, float]
+    guard: GuardParameters | None
+    mission: FollowingParameters | StandoffParameters | DirectParameters
+    health: HealthParameters | None
 
 
 class Guidance:
-    """The outer loop of one flight, stepped at a fixed rate. ``gnc.compose`` chooses its parts.
+    """The outer loop of one flight, stepped at a fixed rate. ``compose`` chooses its parts.
 
     Parameters
     ----------
     own, target : motion of the vehicle and of the vessel
     mission : what to do, and the tracker of its reference
-    guard : of the keep-out area, or none
+    guard : of the keep-out area, or None
     airspeed_law : keeps the vehicle beside its reference
-    monitor : of the vehicle's health, or none
+    monitor : of the vehicle's health, or None
     speed : V_r [m/s]
     heading_rate_max : omega_max; no command exceeds it [rad/s]
     altitude : to hold [m]
-    plan_interval : steps between plans; with 0 there is one plan, in the first step
+    plan_interval : steps between plans of the mission; with 0 there is one plan, in the first step
 
     Attributes
     ----------
-    own, target, mission, monitor, plan_interval : as above
+    own, target, mission, guard, monitor, plan_interval : same as the parameters
+    mode : what is being done
     guarding : whether the keep-out guard changed the last command
     heading_rate_command, airspeed_command, altitude_command : last commands [rad/s, m/s, m]
     """
-
-    # Methods of parts are bound once: each is called at every step.
-    __slots__ = (
-        "_airspeed", "_limit", "_locate", "_pace", "_plan", "_sense", "_until_plan", "_vessel_discs", "airspeed_command",
-        "altitude_command", "guard", "guarding", "heading_rate_command", "mission", "monitor", "own", "plan_interval", "target",
-    )  # fmt: skip
 
     def __init__(
         self,
@@ -55,90 +116,141 @@ class Guidance:
         altitude: float,
         plan_interval: int,
     ) -> None:
-        self.own, self.target, self.mission, self.monitor = own, target, mission, monitor
-        self._sense, self._locate, self._plan = own.update, target.update, mission.plan
+        self.own = own
+        self.target = target
+        self.mission = mission
+        self.monitor = monitor
+        self.mode = Mode.APPROACH
         self.guard = guard
         self.guarding = False
         self._vessel_discs: Sequence[Tube] = ()
-        self._pace, self._airspeed, self._limit = (
-            airspeed_law.pace,
-            airspeed_law.airspeed,
-            heading_rate_max,
-        )
-        self.plan_interval, self._until_plan = plan_interval, 0
-        self.heading_rate_command, self.airspeed_command, self.altitude_command = (
-            0.0,
-            speed,
-            altitude,
-        )
+        self._airspeed_law = airspeed_law
+        self._heading_rate_max = heading_rate_max
+        self.plan_interval = plan_interval
+        self._until_plan = 0
+        self.heading_rate_command = 0.0
+        self.airspeed_command = speed
+        self.altitude_command = altitude
 
     def step(self, time: float, measurement: Any) -> None:
-        """Compute the commands from what is measured now, then move the reference on by one time
-        step.
+        """Compute the commands, then move the reference on by one time step.
 
         Parameters
         ----------
         time : [s]
         measurement : in the form that the navigation takes
         """
-        own, target, mission = self.own, self.target, self.mission
-        self._sense(measurement)
-        if self._until_plan:
-            self._until_plan -= 1
-            self._locate(time, False)
-        else:
-            self._until_plan = self.plan_interval - 1
-            self._locate(time, True)
-            if self.guard is not None:
-                self._vessel_discs = target.tubes
-            self._plan(time)
-            self.altitude_command = mission.altitude
-        monitor = self.monitor
-        if monitor is not None and monitor.check(
-            measurement, self.airspeed_command, self.heading_rate_command
-        ):
-            mission.leave(monitor.fault)
-        tracker, overriding = mission.tracker, mission.overriding
-        course, north, east = own.course, own.north, own.east
+        own = self.own
+        own.update(measurement)
+        order = self._plan(time, measurement)
+        tracker = self.mission.tracker
         reference = tracker.reference
-        ahead_of = reference.course
-        along = (reference.north - north) * math.cos(ahead_of) + (reference.east - east) * math.sin(
-            ahead_of
-        )
-        last = tracker.heading_rate_command
-        command = tracker.step(north, east, course, own.speed, own.heading_rate)
-        leaving, held, guard = overriding and mission.leaving, False, self.guard
-        command, pace = (
-            (mission.command(last), mission.airspeed)
-            if overriding
-            else (command, self._pace(along))
-        )
+        course = reference.course
+        to_north = reference.north - own.north
+        to_east = reference.east - own.east
+        along = to_north * math.cos(course) + to_east * math.sin(course)
+        # While an order replaces its command, the law is called to go on from what is flown.
+        command = tracker.step(own.north, own.east, own.course, own.speed, own.heading_rate)
+        if order.heading_rate is TRACK:
+            pace = self._airspeed_law.pace(along)
+        else:
+            command = order.heading_rate
+            pace = order.airspeed
+        leaving = order.mode in LOST
+        held = False
+        guard = self.guard
         if guard is not None:
             demand = Demand(time, command, pace, leaving)
             command, pace, held, status = guard.filter(demand, own, self._vessel_discs)
             self.guarding = status is not GuardStatus.FREE
         tracker.heading_rate_command = command
         # A turn away is flown in full in gusts, too: it was predicted without them.
-        full = self.guarding and abs(command) >= self._limit
+        limit = self._heading_rate_max
+        full = self.guarding and abs(command) >= limit
         command /= own.air_ratio
-        bounded = math.copysign(self._limit, command) if full else limited(command, self._limit)
+        bounded = math.copysign(limit, command) if full else limited(command, limit)
         if bounded != command:
             command = bounded
-            tracker.heading_rate_command = turning = command * own.air_ratio
+            turning = command * own.air_ratio
+            tracker.heading_rate_command = turning
             if guard is not None:
                 guard.replace(turning)
         self.heading_rate_command = command
-        self.airspeed_command = (
-            pace if leaving or (overriding and not held) else self._airspeed(pace, own, held)
-        )
-        if leaving:
-            self.altitude_command = mission.altitude
+        if leaving or (order.heading_rate is not TRACK and not held):
+            self.airspeed_command = pace
+        else:
+            self.airspeed_command = self._airspeed_law.airspeed(pace, own, held)
+
+    def _plan(self, time: float, measurement: Any) -> Order:
+        """Return what the mission orders, from what is known of vessel and vehicle now."""
+        target = self.target
+        renew = self._until_plan == 0
+        self._until_plan = self.plan_interval - 1 if renew else self._until_plan - 1
+        target.update(time, renew)
+        if renew:
+            self._vessel_discs = target.tubes
+        monitor = self.monitor
+        if monitor is not None and monitor.check(
+            measurement, self.airspeed_command, self.heading_rate_command
+        ):
+            self.mission.leave(monitor.fault)
+        order = self.mission.plan(time, self.own, target, renew=renew, guarding=self.guarding)
+        self.mode = order.mode
+        self.altitude_command = order.altitude
+        return order
 
     def overruled(self, heading_rate: float, airspeed: float) -> None:
-        """Take note of commands that are flown in place of the last ones [rad/s, m/s]: what is
-        predicted follows them.
+        """Note commands that are flown in place of the last ones: predictions follow them.
+
+        Parameters
+        ----------
+        heading_rate : [rad/s]
+        airspeed : [m/s]
         """
-        self.heading_rate_command, self.airspeed_command = heading_rate, airspeed
-        self.mission.tracker.heading_rate_command = turning = heading_rate * self.own.air_ratio
+        self.heading_rate_command = heading_rate
+        self.airspeed_command = airspeed
+        turning = heading_rate * self.own.air_ratio
+        self.mission.tracker.heading_rate_command = turning
         if self.guard is not None:
             self.guard.replace(turning, airspeed)
+
+
+def compose(parameters: GuidanceParameters) -> Guidance:
+    """Return the guidance at the beginning of a flight; only here its parts are chosen."""
+    p = parameters
+    own: OwnMotion = EstimatedNavigation(p.navigation) if p.navigation else TrueNavigation()
+    target: TargetMotion
+    if isinstance(p.vessel, ReportedVessel):
+        target = ReportedTarget(
+            VesselFilter(p.vessel.filter), ReachableSet(p.vessel.limits), p.tracking.time_step
+        )
+    else:
+        target = SteadyTarget(*p.vessel)
+    guard = None
+    if p.guard:
+        speeds = SpeedRange(
+            speed=p.speed,
+            bandwidth=p.airspeed_bandwidth,
+            overshoot=p.airspeed_overshoot,
+            time_step=p.tracking.time_step,
+        )
+        guard = KeepoutGuard(p.guard, speeds)
+    mission: Mission
+    if isinstance(p.mission, FollowingParameters):
+        mission = PlumeFollowing(p.mission, p.tracking)
+    elif isinstance(p.mission, StandoffParameters):
+        mission = StandoffOrbit(p.mission, p.tracking)
+    else:
+        mission = DirectTracking(p.mission, p.tracking, altitude=p.altitude)
+    return Guidance(
+        own=own,
+        target=target,
+        mission=mission,
+        guard=guard,
+        airspeed_law=p.airspeed_law,
+        monitor=HealthMonitor(p.health) if p.health else None,
+        speed=p.speed,
+        heading_rate_max=p.tracking.heading_rate_max,
+        altitude=p.altitude,
+        plan_interval=p.mission.plan_interval,
+    )

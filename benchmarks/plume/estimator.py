@@ -16,7 +16,7 @@ import numpy as np
 from benchmarks.plume.flight import CLIMB_RATE, HIGHEST, LOWEST, Flight, draw_case, fly
 from benchmarks.plume.particles import ParticleEstimator
 from gnc.estimation.plume.estimator import PlumeEstimator
-from gnc.mission.plume_search import HeightSearch, LadderSearch, Search
+from gnc.mission.axis import HeightSearch, LadderSearch, Search
 from measurement.sniffer import SnifferSpec, sensor_preset
 
 SEARCHES: dict[str, Callable[[], Search]] = {

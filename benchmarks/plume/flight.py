@@ -13,7 +13,7 @@ from scipy.special import j0
 
 from gnc.estimation.plume.estimator import PlumeEstimator, PlumeState
 from gnc.estimation.plume.prior import Expectation, GasSensor, PlumePrior, expected_plume
-from gnc.mission.plume_search import Search
+from gnc.mission.axis import Search
 from measurement.emission.emission import emission_of
 from measurement.emission.fuel import fuel_preset
 from measurement.emission.ship import ship_preset

@@ -195,11 +195,6 @@ class KeepoutGuard:
         """What the guard did at the last step."""
         return self._heading_rates.status
 
-    @property
-    def intervening(self) -> bool:
-        """Whether the guard changed the last heading rate."""
-        return self._heading_rates.status is not GuardStatus.FREE
-
     def filter(self, demand: Demand, own: AirMotion, vessels: Sequence[Tube]) -> Guarded:
         """Return the commands that keep out and are nearest to the demand.
 

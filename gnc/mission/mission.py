@@ -1,40 +1,110 @@
-"""What a mission is: which way the guidance goes, and when it leaves the reference alone."""
+"""What a mission is: it orders a heading rate, or that the reference is tracked."""
 
-from typing import Protocol
+from enum import Enum
+from typing import NamedTuple, Protocol
 
 from gnc.estimation.health import Fault
-from gnc.mission.mode import Mode
+from gnc.estimation.navigation import OwnMotion
+from gnc.estimation.vessel import TargetMotion
 
 
-class Placed(Protocol):
-    """Where a reference is; attributes as of ``gnc.reference.reference.Reference``."""
+class Mode(Enum):
+    """What the guidance is doing.
+
+    Attributes
+    ----------
+    number : in a record: its index among all modes
+    """
+
+    number: int
+
+    APPROACH = "approach"
+    TRACKING = "tracking"
+    HOLDING = "holding off"
+    DEAD_RECKONING = "dead reckoning"
+    OUTRUN = "outrun"
+    NO_PLUME = "no plume"
+    GLIDING = "gliding"
+    TERMINATING = "terminating"
+    SEARCHING = "searching"
+    FOUND = "found"
+    LOST_AGAIN = "lost again"
+    SENSOR_FAILED = "sensor failed"
+    DEPARTING = "departing"
+
+
+for _i, _mode in enumerate(Mode):
+    _mode.number = _i
+
+LOST = (Mode.GLIDING, Mode.TERMINATING)
+"""Modes from which an aircraft does not come back: it glides, or flies away from the vessel, until
+it is down.
+"""
+
+LEAVING = (*LOST, Mode.DEPARTING)
+"""Modes in which the vehicle leaves for good, and tracks no reference."""
+
+TRACK = None
+"""In place of an ordered heading rate: the tracker commands it."""
+
+
+class Order(NamedTuple):
+    """What the guidance is to do in this step.
+
+    Attributes
+    ----------
+    heading_rate : to fly, positive to the right [rad/s]; ``TRACK`` to track the reference
+    airspeed : to fly with an ordered heading rate; an airspeed law sets that of tracking [m/s]
+    altitude : above the sea [m]
+    mode : what is being done
+    """
+
+    heading_rate: float | None
+    airspeed: float
+    altitude: float
+    mode: Mode
+
+
+class Centre(NamedTuple):
+    """A centre of oscillation; NaN for a reference without a vessel.
+
+    Attributes
+    ----------
+    x, y : north and east of the vessel [m]
+    speed_ratio : nu, the vessel's speed through the air over V_r [-]
+    """
+
+    x: float = float("nan")
+    y: float = float("nan")
+    speed_ratio: float = float("nan")
+
+
+NO_CENTRE = Centre()
+"""The centre of a reference without a vessel."""
+
+
+class OrbitStatus(NamedTuple):
+    """Where the reference's orbit is.
+
+    Attributes
+    ----------
+    centre : of oscillation
+    error : distance of the orbit's centre from that [m]
+    in_place : whether the orbit is as near to the vessel as it will come
+    """
+
+    centre: Centre
+    error: float
+    in_place: bool
+
+
+class ReferencePoint(Protocol):
+    """Where a reference is; attributes same as ``gnc.reference.reference.Reference``."""
 
     north: float
     east: float
     course: float
     heading_rate: float
-
-
-class Centre(Protocol):
-    """A centre of oscillation.
-
-    Attributes
-    ----------
-    x, y : north and east of the vessel [m]
-    speed_ratio : nu, vessel through the air over V_r [-]
-    """
-
-    @property
-    def x(self) -> float:
-        """North of the vessel."""
-
-    @property
-    def y(self) -> float:
-        """East of the vessel."""
-
-    @property
-    def speed_ratio(self) -> float:
-        """Speed ratio."""
 
 
 class Tracking(Protocol):
@@ -43,7 +113,7 @@ class Tracking(Protocol):
     Attributes
     ----------
     reference : the reference point now
-    heading_rate_demand, heading_rate_command, saturated : as of ``gnc.tracker.Tracker``
+    heading_rate_demand, heading_rate_command, saturated : same as ``gnc.tracker.Tracker``
     """
 
     heading_rate_demand: float
@@ -51,64 +121,42 @@ class Tracking(Protocol):
     saturated: bool
 
     @property
-    def reference(self) -> Placed:
+    def reference(self) -> ReferencePoint:
         """Reference point."""
 
     def step(
         self, north: float, east: float, course: float, speed: float, heading_rate: float
     ) -> float:
-        """Return the heading rate to command [rad/s]; parameters are those of
-        ``gnc.tracker.Tracker``.
-        """
+        """Return the heading rate to command [rad/s]; see ``gnc.tracker.Tracker``."""
 
 
 class Mission(Protocol):
-    """Plans every few steps where the reference goes; overrides the tracker where that would be the
-    wrong way.
+    """Plans where the reference goes, and takes over where tracking would lead the wrong way.
 
     Attributes
     ----------
-    started : whether there is a reference, and its tracker
-    tracker : of the reference, once started
-    mode : what it is doing
-    centre : of oscillation; not a number where there is none
-    centre_error : distance of the orbit's centre from its place [m]
-    in_place : whether the centre is as near to the vessel as it will come
-    overriding : whether ``command`` replaces the tracker's heading rate
-    leaving : whether the vehicle leaves for good, and sinks
-    airspeed, altitude : to command, the airspeed only while overriding [m/s, m]
+    tracker : of the reference; there is one once the first plan is made
+    orbit : of the reference; None before the first plan has placed it
     """
 
-    started: bool
-    mode: Mode
-    centre_error: float
-    leaving: bool
-    airspeed: float
-    altitude: float
+    orbit: OrbitStatus | None
 
     @property
     def tracker(self) -> Tracking:
         """Tracker of the reference."""
 
-    @property
-    def centre(self) -> Centre:
-        """Centre of oscillation."""
+    def plan(
+        self, time: float, own: OwnMotion, vessel: TargetMotion, *, renew: bool, guarding: bool
+    ) -> Order:
+        """Return what to do in this step of the guidance.
 
-    @property
-    def in_place(self) -> bool:
-        """Whether the centre is in its place."""
-
-    @property
-    def overriding(self) -> bool:
-        """Whether the mission commands the heading rate."""
-
-    def plan(self, time: float) -> None:
-        """Look at own motion and target, and decide what to do."""
-
-    def command(self, last_command: float) -> float:
-        """Return the heading rate to fly while overriding, after the last one that was flown
-        [rad/s].
+        Parameters
+        ----------
+        time : now [s]
+        own, vessel : motion of the vehicle and of the vessel
+        renew : whether the plan is made anew, or the last one is carried on
+        guarding : whether the keep-out guard turned the vehicle away in the last step
         """
 
     def leave(self, fault: Fault) -> None:
-        """Leave the vessel for good, because of a fault of the vehicle."""
+        """Leave the vessel for good from the next order on, because of a fault of the vehicle."""

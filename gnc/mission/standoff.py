@@ -1,11 +1,9 @@
-"""The mission on a circle about a moving vessel: the standoff orbits of the literature, for laws
-that know paths.
+"""The mission on a circle about a moving vessel: the standoff orbits of the literature.
 
-The reference is where a vehicle would be that flew the circle beside this one: the circle's point
-nearest to the vehicle, anew at every step, with the course and the heading rate through the air
-that keep to the circle. It has no clock, so that a law is free to lag along the circle; a law that
-reads a path from the reference (``gnc.path_laws.path``) finds the circle in the frame of the
-vessel (M2).
+The reference is the circle's point nearest to the vehicle, anew at every step, with the course and
+the heading rate through the air that keep to the circle. It has no clock, so that a law is free to
+lag along the circle; a law that reads a path from the reference (``gnc.path_laws.path``) finds
+the circle in the frame of the vessel.
 """
 
 import math
@@ -15,13 +13,10 @@ from gnc.estimation.health import Fault
 from gnc.estimation.navigation import OwnMotion
 from gnc.estimation.vessel import TargetMotion
 from gnc.laws import Air, LimitedLaw, Motion
-from gnc.mission.approach import COURSE_GAIN
-from gnc.mission.axis_height import AxisHeight
-from gnc.mission.direct_tracking import CLOSING_RATE, STANDOFF, SteadyCentre
-from gnc.mission.egress import Egress
-from gnc.mission.mode import Mode
-from gnc.mission.plume_axis import Climb
-from gnc.mission.plume_following import GLIDE_ALTITUDE
+from gnc.mission.axis import AxisHeight, Climb
+from gnc.mission.mission import LOST, TRACK, Centre, Mode, OrbitStatus, Order
+from gnc.mission.track import CLOSING_RATE, STANDOFF
+from gnc.mission.way import COURSE_GAIN, Egress
 from gnc.numeric import limited, wrap
 from gnc.path_laws.lgvf import heading_for
 from gnc.tracker import TrackingParameters
@@ -61,9 +56,7 @@ class StandoffParameters:
 
 @dataclass(slots=True)
 class CirclePoint:
-    """A reference on the circle; attributes as of ``gnc.reference.reference.Reference``. It is
-    moved by whoever has it.
-    """
+    """A reference on the circle, placed from outside; see ``gnc.reference.reference.Reference``."""
 
     speed: float
     north: float = 0.0
@@ -76,9 +69,9 @@ class CirclePoint:
 
         Parameters
         ----------
-        centre, drift : of the circle: its place [m] and its velocity through the air, below the
-            vehicle's speed [m/s]
-        vehicle : its place [m]
+        centre : place of the circle's centre, north and east [m]
+        drift : velocity of the centre through the air, below the vehicle's speed [m/s]
+        vehicle : place of the vehicle [m]
         radius : of the circle [m]
         """
         bearing = course_of(minus(vehicle, centre))
@@ -94,8 +87,7 @@ class CirclePoint:
 
 
 class CircleTracker:
-    """Steers to the circle, ahead of time by the vehicle's lag; attributes as of
-    ``gnc.tracker.Tracker``.
+    """Steers to the circle, ahead of time by the vehicle's lag; see ``gnc.tracker.Tracker``.
 
     Parameters
     ----------
@@ -108,11 +100,6 @@ class CircleTracker:
     radius : of the circle now [m]
     """
 
-    __slots__ = (
-        "_lag", "_law", "_limit", "_own", "_target", "_time_step", "ahead", "heading_rate_command", "heading_rate_demand",
-        "radius", "reference", "saturated",
-    )  # fmt: skip
-
     def __init__(
         self,
         tracking: TrackingParameters,
@@ -120,19 +107,23 @@ class CircleTracker:
         own: OwnMotion,
         target: TargetMotion,
     ) -> None:
-        self._own, self._target, self._time_step = own, target, tracking.time_step
+        self._own = own
+        self._target = target
+        self._time_step = tracking.time_step
         self.radius = parameters.radius + STANDOFF * parameters.tracked
         self._law = LimitedLaw(tracking.law, tracking.heading_rate_max, tracking.time_step)
-        self._limit, self._lag = tracking.heading_rate_max, tracking.lag
-        self.reference, self.ahead = CirclePoint(parameters.speed), CirclePoint(parameters.speed)
-        self.heading_rate_demand = self.heading_rate_command = 0.0
+        self._limit = tracking.heading_rate_max
+        self._lag = tracking.lag
+        self.reference = CirclePoint(parameters.speed)
+        self.ahead = CirclePoint(parameters.speed)
+        self.heading_rate_demand = 0.0
+        self.heading_rate_command = 0.0
         self.saturated = False
 
     def step(
         self, north: float, east: float, course: float, speed: float, heading_rate: float
     ) -> float:
-        """Return the heading rate to command [rad/s]; parameters are those of
-        ``gnc.tracker.Tracker``.
+        """Return the heading rate to command [rad/s]; parameters same as ``Tracker.step``.
 
         Raises
         ------
@@ -157,7 +148,7 @@ class CircleTracker:
             then = Motion(*placed(ahead, self._lag), speed, turning)
             air = Air(own.wind_north, own.wind_east, target.velocity_north, target.velocity_east)
             demand, command = self._law.demand(ahead, then, air)
-            # The reference is where it will be at the next step, as that of any tracker.
+            # Where it will be at the next step, same as the reference of any tracker.
             placed(reference, self._time_step)
         self.heading_rate_demand, self.heading_rate_command = demand, command
         self.saturated = command != demand
@@ -165,85 +156,72 @@ class CircleTracker:
 
 
 class StandoffOrbit:
-    """Circles the vessel; attributes as of ``gnc.mission.mission.Mission``. The centre is the
-    vessel.
+    """Circles the vessel, which is its centre; see ``gnc.mission.mission.Mission``.
 
     Parameters
     ----------
     parameters : of the mission
     tracking : of the tracker
-    own, target : motion of the vehicle and of the vessel
     """
 
-    __slots__ = (
-        "_closing", "_egress", "_lag", "_own", "_parameters", "_plan_time", "_target", "airspeed", "altitude", "centre",
-        "centre_error", "leaving", "mode", "started", "tracker",
-    )  # fmt: skip
-
-    def __init__(
-        self,
-        parameters: StandoffParameters,
-        tracking: TrackingParameters,
-        *,
-        own: OwnMotion,
-        target: TargetMotion,
-    ) -> None:
-        self._parameters, self._own, self._target, self._lag = parameters, own, target, tracking.lag
+    def __init__(self, parameters: StandoffParameters, tracking: TrackingParameters) -> None:
+        self._parameters = parameters
+        self._tracking_parameters = tracking
         self._plan_time = parameters.plan_interval * tracking.time_step
         self._closing = CLOSING_RATE * parameters.speed * self._plan_time
-        self._egress = Egress(tracking.heading_rate_max)
-        self.tracker = CircleTracker(tracking, parameters, own, target)
-        self.centre = SteadyCentre(0.0, 0.0, 0.0)
-        self.centre_error, self.leaving, self.started = (
-            self.tracker.radius - parameters.radius,
-            False,
-            False,
+        self._egress = Egress(
+            heading_rate_max=tracking.heading_rate_max,
+            lag=tracking.lag,
+            glide_airspeed=parameters.glide_airspeed,
         )
-        self.airspeed, self.altitude, self.mode = (
-            parameters.speed,
-            parameters.altitude,
-            Mode.APPROACH,
-        )
+        self.tracker: CircleTracker
+        self.orbit: OrbitStatus | None = None
+        self._altitude = parameters.altitude
+        self._mode = Mode.APPROACH
+        self._fault = Fault.NONE
 
-    @property
-    def in_place(self) -> bool:
-        """Whether the circle has closed in."""
-        return self.centre_error == 0.0
-
-    @property
-    def overriding(self) -> bool:
-        """Whether ``command`` replaces the tracker's heading rate."""
-        return self.leaving
-
-    def plan(self, time: float) -> None:  # noqa: ARG002 - of the Protocol
-        """Look whether the vessel can be circled, and whether the circle may close in."""
-        p, own, target, tracker = self._parameters, self._own, self._target, self.tracker
-        off = (
-            math.hypot(own.ground_north - target.north, own.ground_east - target.east)
-            - tracker.radius
-        )
-        if abs(off) < p.tracked and self.centre_error > 0.0:
-            self.centre_error = max(0.0, self.centre_error - self._closing)
-            tracker.radius = p.radius + self.centre_error
-        ratio = (
-            math.hypot(target.velocity_north - own.wind_north, target.velocity_east - own.wind_east)
-            / p.speed
-        )
-        self.centre, self.started = SteadyCentre(0.0, 0.0, ratio), True
-        if not self.leaving:
-            self.mode = Mode.OUTRUN if ratio >= p.speed_ratio_max else Mode.TRACKING
-            height = p.height.at(p.radius, ratio * p.speed)
-            self.altitude = p.climb.step(self.altitude, height, p.speed, self._plan_time)
-
-    def command(self, last_command: float) -> float:
-        """Return the heading rate that leads away from the vessel [rad/s]."""
-        own, target = self._own, self._target
-        x, y = own.ground_north - target.north, own.ground_east - target.east
-        course = own.course + 0.5 * self._lag * (own.heading_rate + last_command)
-        return self._egress.command(x, y, course, own.heading_rate)
+    def plan(
+        self,
+        time: float,  # noqa: ARG002 - of the Protocol
+        own: OwnMotion,
+        vessel: TargetMotion,
+        *,
+        renew: bool,
+        guarding: bool,  # noqa: ARG002 - of the Protocol
+    ) -> Order:
+        """Return whether to fly the circle, or the way from the vessel."""
+        p = self._parameters
+        if renew:
+            self._plan_circle(own, vessel)
+        if self._fault is not Fault.NONE:
+            last = self.tracker.heading_rate_command
+            order = self._egress.order(self._fault, own, vessel, last)
+            self._mode = order.mode
+            return order
+        return Order(TRACK, p.speed, self._altitude, self._mode)
 
     def leave(self, fault: Fault) -> None:
-        """Leave the vessel for good, because of a fault of the vehicle."""
-        self.leaving = True
-        self.mode = Mode.GLIDING if fault is Fault.THRUST_LOST else Mode.TERMINATING
-        self.airspeed, self.altitude = self._parameters.glide_airspeed, GLIDE_ALTITUDE
+        """Leave the vessel for good from the next order on, because of a fault of the vehicle."""
+        self._fault = fault
+
+    def _plan_circle(self, own: OwnMotion, vessel: TargetMotion) -> None:
+        """Decide whether the vessel can be circled, and whether the circle may close in."""
+        p = self._parameters
+        if self.orbit is None:
+            self.tracker = CircleTracker(self._tracking_parameters, p, own, vessel)
+            error = self.tracker.radius - p.radius
+        else:
+            error = self.orbit.error
+        tracker = self.tracker
+        distance = math.hypot(own.ground_north - vessel.north, own.ground_east - vessel.east)
+        if abs(distance - tracker.radius) < p.tracked and error > 0.0:
+            error = max(0.0, error - self._closing)
+            tracker.radius = p.radius + error
+        drift_north = vessel.velocity_north - own.wind_north
+        drift_east = vessel.velocity_east - own.wind_east
+        ratio = math.hypot(drift_north, drift_east) / p.speed
+        self.orbit = OrbitStatus(Centre(0.0, 0.0, ratio), error, in_place=error == 0.0)
+        if self._mode not in LOST:
+            self._mode = Mode.OUTRUN if ratio >= p.speed_ratio_max else Mode.TRACKING
+            height = p.height.at(p.radius, ratio * p.speed)
+            self._altitude = p.climb.step(self._altitude, height, p.speed, self._plan_time)

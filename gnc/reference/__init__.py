@@ -1,1 +1,1 @@
-"""The point to be tracked: shapes of its orbit, where the orbit lies in the plume, and its motion."""
+"""The point to be tracked: the shapes of its orbit, where that lies in the plume, its motion."""

@@ -1,12 +1,13 @@
-"""What mean motion takes a reference's orbit to where it should be.
+"""The mean motion that takes a reference's orbit to its place.
 
-It is that of the centre of oscillation, and a drift towards it. Along the centre's motion a drift
+It is that of the centre of oscillation, plus a drift towards it. Along the centre's motion a drift
 changes the amplitude alone; across, it turns the mean course, which moves the orbit's centre by
 itself, the more the slower the orbit. So a slow orbit does not turn with each small swing of a
 plume whose direction is not known well, but with a swing that goes on.
 """
 
 import math
+from typing import NamedTuple
 
 from gnc.numeric import limited
 from gnc.reference.moving_centre import MovingCentre
@@ -42,19 +43,36 @@ to be centred, too.
 """
 
 _SWING = 0.1
-"""Speed of an unsteady swing about the vessel, over V_r, of which a slow orbit follows half [-]:
-less is mostly scatter.
+"""Speed over V_r of an unsteady swing about the vessel that a slow orbit follows by half [-]: less
+is mostly scatter.
 """
 
 _SPEED_RATIO_MIN = 0.1
-"""Speed ratio that a mean motion has at least where it is turned [-]: a smaller one would be turned
-to any course by a drift.
+"""Least speed ratio of a mean motion that is turned [-]: any drift would turn a smaller one to any
+course.
 """
 
 
+class _Ahead(NamedTuple):
+    """The direction in which an orbit goes on.
+
+    Attributes
+    ----------
+    north, east : unit vector [-]
+    moving : speed of the centre or vessel that gives the direction [m/s]
+    along : speed of the centre in that direction [m/s]
+    """
+
+    north: float
+    east: float
+    moving: float
+    along: float
+
+
 def motion_course(centre: MovingCentre) -> float:
-    """Return the course of a centre of oscillation [rad]; of one at rest that against the plume,
-    across which its orbit lies.
+    """Return the course of a centre of oscillation; at rest, that against the plume [rad].
+
+    An orbit lies across its course, and so across the plume of a vessel at rest.
     """
     if centre.velocity_north == centre.velocity_east == 0.0:
         return math.atan2(-math.sin(centre.axis), -math.cos(centre.axis))
@@ -64,8 +82,7 @@ def motion_course(centre: MovingCentre) -> float:
 def mean_motion(
     centre: MovingCentre, off_north: float, off_east: float, speed: float, heading_rate_max: float
 ) -> tuple[float, float]:
-    """Return the mean course [rad] and the mean speed over the speed [-] to demand of the
-    reference.
+    """Return the mean course [rad] and the mean speed over speed [-] to demand of the reference.
 
     Parameters
     ----------
@@ -73,52 +90,52 @@ def mean_motion(
     off_north, off_east : from the orbit's centre to it [m]
     speed, heading_rate_max : V_r and omega_max [m/s, rad/s]
     """
-    north, east = _followed(centre, speed)
-    cos_m, sin_m, moving, ahead = _ahead(centre, north, east, speed)
+    ahead = _ahead(centre, speed)
     gain = _CENTRE_GAIN * heading_rate_max
     most = _ALONG_FRACTION * speed
-    along = ahead + limited(gain * (off_north * cos_m + off_east * sin_m), most)
-    gain *= min(1.0, max(_SLOW_GAIN_MIN, moving / (_SLOW * speed)))
-    most = _ACROSS_FRACTION * max(moving, _SPEED_RATIO_MIN * speed)
-    across = limited(gain * (off_east * cos_m - off_north * sin_m), most)
+    behind = off_north * ahead.north + off_east * ahead.east
+    along = ahead.along + limited(gain * behind, most)
+    gain *= min(1.0, max(_SLOW_GAIN_MIN, ahead.moving / (_SLOW * speed)))
+    most = _ACROSS_FRACTION * max(ahead.moving, _SPEED_RATIO_MIN * speed)
+    beside = off_east * ahead.north - off_north * ahead.east
+    across = limited(gain * beside, most)
     turned = math.atan2(across, max(along, _SPEED_RATIO_MIN * speed))
-    return math.atan2(sin_m, cos_m) + turned, along / math.cos(turned) / speed
+    course = math.atan2(ahead.east, ahead.north) + turned
+    return course, along / math.cos(turned) / speed
 
 
-def _ahead(
-    centre: MovingCentre, north: float, east: float, speed: float
-) -> tuple[float, float, float, float]:
-    """Return the direction (north, east) in which an orbit goes on whose centre has some velocity
-    [m/s].
+def _ahead(centre: MovingCentre, speed: float) -> _Ahead:
+    """Return the direction in which the orbit of a centre goes on.
 
-    Also return the speed of whoever gives that direction, and that of the centre along it [m/s]. A
-    centre that recedes faster than its vessel moves reverses its motion: then the direction is the
-    vessel's, and the orbit backs away. To turn it round would take it far off.
+    A centre that recedes faster than its vessel moves reverses its motion: then the direction is
+    the vessel's, and the orbit backs away. To turn it round would take it far off.
     """
-    cos_a, sin_a = math.cos(centre.axis), math.sin(centre.axis)
-    vessel_north, vessel_east = north - centre.receding * cos_a, east - centre.receding * sin_a
+    north, east = _followed_velocity(centre, speed)
+    cos_a = math.cos(centre.axis)
+    sin_a = math.sin(centre.axis)
+    vessel_north = north - centre.receding * cos_a
+    vessel_east = east - centre.receding * sin_a
     if north * vessel_north + east * vessel_east >= 0.0:
         moving = math.hypot(north, east)
         if moving > _STILL * speed:
-            return north / moving, east / moving, moving, moving
+            return _Ahead(north / moving, east / moving, moving, moving)
     else:
         moving = math.hypot(vessel_north, vessel_east)
         if moving > _STILL * speed:
-            cos_m, sin_m = vessel_north / moving, vessel_east / moving
-            return cos_m, sin_m, moving, north * cos_m + east * sin_m
-    return -cos_a, -sin_a, moving, -(north * cos_a + east * sin_a)
+            cos_m = vessel_north / moving
+            sin_m = vessel_east / moving
+            return _Ahead(cos_m, sin_m, moving, north * cos_m + east * sin_m)
+    return _Ahead(-cos_a, -sin_a, moving, -(north * cos_a + east * sin_a))
 
 
-def _followed(centre: MovingCentre, speed: float) -> tuple[float, float]:
-    """Return the velocity of a centre, of a slow one without most of a small unsteady swing, north
-    and east [m/s].
-    """
+def _followed_velocity(centre: MovingCentre, speed: float) -> tuple[float, float]:
+    """Return a centre's velocity, north and east, without a slow one's small swings [m/s]."""
     slow = centre.speed_ratio / _SLOW
     if slow >= 1.0:
         return centre.velocity_north, centre.velocity_east
     unsteady = centre.swing - centre.steady_swing
     followed = max(slow * slow, unsteady * unsteady / (unsteady * unsteady + (_SWING * speed) ** 2))
     left_out = (1.0 - followed) * unsteady
-    return centre.velocity_north + left_out * math.sin(
-        centre.axis
-    ), centre.velocity_east - left_out * math.cos(centre.axis)
+    north = centre.velocity_north + left_out * math.sin(centre.axis)
+    east = centre.velocity_east - left_out * math.cos(centre.axis)
+    return north, east

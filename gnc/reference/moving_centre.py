@@ -2,13 +2,15 @@
 
 The centre lies on the plume's axis, at the distance from the vessel that keeps the whole orbit out
 of the keep-out area. The axis turns with the vessel, or with its motion through the air: a vessel
-that turns moves the centre by omega_V x r_CO (paper-notes, 11). Everything is in the frame of the
+that turns moves the centre by omega_V x r_CO. Everything is in the frame of the
 air mass.
 """
 
 import math
 from dataclasses import dataclass
 
+from gnc.estimation.navigation import OwnMotion
+from gnc.estimation.vessel import TargetMotion
 from gnc.numeric import clip, limited, wrap
 
 _AXIS_GAIN = 0.1
@@ -21,8 +23,8 @@ _IN_PLACE = 0.04
 """Distance from its place within which the centre counts as being there, over r_CO [-]."""
 
 _AXIS_SPEED_FRACTION = 0.7
-"""Fraction of the vehicle's speed at which the centre may be swung round the vessel [-]: it must be
-followed.
+"""Speed at which the centre may be swung round the vessel, over the vehicle's [-]: the vehicle must
+follow.
 """
 
 _DISTANCE_GAIN = 0.12
@@ -30,35 +32,28 @@ _DISTANCE_GAIN = 0.12
 """
 
 _DISTANCE_SPEED_FRACTION = 0.3
-"""Fraction of the speed that the vehicle has over the vessel at which the centre's distance may
-change [-].
-"""
+"""Rate at which the centre's distance may change, over the vehicle's excess speed [-]."""
 
 _RECEDING_SPEED_FRACTION = 0.9
-"""Fraction of the vehicle's speed at which the centre may move while it has to recede from the
-vessel [-]: it must be followed.
+"""Speed at which a centre that has to recede may move, over the vehicle's [-]: the vehicle must
+follow.
 """
-
 
 _VESSEL_SPEED_MIN = 0.1
-"""Speed over ground that a vessel is given at least where its turn is computed from it [m/s]: at
-rest it has no course.
-"""
+"""Least speed over ground from which a vessel's turn is computed [m/s]: at rest it has none."""
 
 _EXCESS_SPEED_MIN = 0.05
-"""Least fraction of V_r that the vehicle is taken to have over the vessel [-]: also outrun, it
-corrects the distance.
+"""Least excess speed of the vehicle over the vessel that is assumed, over V_r [-]: also outrun, the
+vehicle corrects the distance.
 """
 
 _SWING_MEMORY = 40.0
-"""Time over which a swing is averaged [s]: the scatter of a vessel's reports averages out, and a
-wind that turns does not.
+"""Time over which a swing is averaged [s]: scatter of reports averages out, a turning wind does
+not.
 """
 
 _CENTRE_SPEED_MIN = 0.01
-"""Speed that the centre is given at least where its direction is computed from it [m/s]: at rest it
-has none.
-"""
+"""Least speed from which the centre's direction is computed [m/s]: at rest it has none."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -103,36 +98,34 @@ class MovingCentre:
     speed_ratio : nu, vessel through the air over the vehicle's speed [-]
     receding : rate of its distance [m/s]
     swing : what turning about the vessel adds to the velocity, to the right of the axis [m/s]
-    steady_swing : as much of it as has gone on for a while [m/s]
+    steady_swing : part of the swing that has gone on for a while [m/s]
     in_place : whether its distance is what it should be
     plume_known : whether the apparent wind is strong enough for the plume to have a known direction
     """
-
-    __slots__ = (
-        "_mean_swing", "_parameters", "_started", "axis", "distance", "in_place", "plume_known", "receding", "speed_ratio",
-        "steady_swing", "swing", "velocity_east", "velocity_north", "x", "y",
-    )  # fmt: skip
 
     def __init__(self, parameters: CentreParameters) -> None:
         self._parameters = parameters
         self._started = False
         self.axis = math.pi
-        self.distance = self.x = self.y = self.velocity_north = self.velocity_east = (
-            self.speed_ratio
-        ) = 0.0
-        self.receding = self.swing = self.steady_swing = self._mean_swing = 0.0
-        self.plume_known = self.in_place = True
+        self.distance = 0.0
+        self.x = 0.0
+        self.y = 0.0
+        self.velocity_north = 0.0
+        self.velocity_east = 0.0
+        self.speed_ratio = 0.0
+        self.receding = 0.0
+        self.swing = 0.0
+        self.steady_swing = 0.0
+        self._mean_swing = 0.0
+        self.plume_known = True
+        self.in_place = True
 
     def move(
         self,
         time_step: float,
+        own: OwnMotion,
+        vessel: TargetMotion,
         *,
-        vessel_north: float,
-        vessel_east: float,
-        acceleration_north: float,
-        acceleration_east: float,
-        wind_north: float,
-        wind_east: float,
         additional_range: float,
         additional_rate: float = 0.0,
         bearing: float = 0.0,
@@ -141,47 +134,31 @@ class MovingCentre:
 
         Parameters
         ----------
-        vessel_north, vessel_east : its velocity over the ground [m/s]
-        acceleration_north, acceleration_east : of the vessel [m/s^2]
-        wind_north, wind_east : velocity of the air mass [m/s]
-        additional_range, additional_rate : added to r_CO for now, and how fast that grows [m, m/s]
+        own, vessel : the wind that the vehicle measures, and the motion of the vessel
+        additional_range : added to r_CO for now [m]
+        additional_rate : at which the additional range grows [m/s]
         bearing : of the plume, to the right of where it would trail [rad]
         """
         p = self._parameters
-        air_north, air_east = vessel_north - wind_north, vessel_east - wind_east
+        air_north = vessel.velocity_north - own.wind_north
+        air_east = vessel.velocity_east - own.wind_east
         through_air = math.hypot(air_north, air_east)
         self.speed_ratio = through_air / p.speed
-        demanded, turn = self.axis, 0.0
-        if p.plume_heading is None:
-            self.plume_known = through_air >= p.apparent_wind_min
-            if self.plume_known:
-                demanded = math.atan2(-air_east, -air_north) + bearing
-                turn = (
-                    air_north * acceleration_east - air_east * acceleration_north
-                ) / through_air**2
-        else:
-            over_ground = math.hypot(vessel_north, vessel_east)
-            if over_ground >= p.apparent_wind_min:
-                demanded = math.atan2(vessel_east, vessel_north) + p.plume_heading + bearing
-                turn = (vessel_north * acceleration_east - vessel_east * acceleration_north) / max(
-                    over_ground, _VESSEL_SPEED_MIN
-                ) ** 2
-            elif not self._started:
-                demanded = p.vessel_course + p.plume_heading + bearing
+        demanded, turn = self._trailing(vessel, air_north, air_east, through_air, bearing)
         if not self._started:
-            self._started, self.axis = True, demanded
+            self._started = True
+            self.axis = demanded
             self.distance = self._target(air_north, air_east) + additional_range
+        # The axis turns at that rate, and towards its demand.
         fastest = _AXIS_SPEED_FRACTION * p.speed / self.distance
         turn = limited(turn + _AXIS_GAIN * p.heading_rate_max * wrap(demanded - self.axis), fastest)
+        # The centre recedes or draws near, until the orbit across its motion keeps out.
         swing = turn * self.distance
-        swung_north, swung_east = (
-            air_north - swing * math.sin(self.axis),
-            air_east + swing * math.cos(self.axis),
-        )
+        swung_north = air_north - swing * math.sin(self.axis)
+        swung_east = air_east + swing * math.cos(self.axis)
         target = self._target(swung_north, swung_east) + additional_range
-        fastest = (
-            _DISTANCE_SPEED_FRACTION * max(_EXCESS_SPEED_MIN, 1.0 - self.speed_ratio) * p.speed
-        )
+        excess = max(_EXCESS_SPEED_MIN, 1.0 - self.speed_ratio)
+        fastest = _DISTANCE_SPEED_FRACTION * excess * p.speed
         recede = limited(_DISTANCE_GAIN * p.heading_rate_max * (target - self.distance), fastest)
         if additional_rate > 0.0:
             along = air_north * math.cos(self.axis) + air_east * math.sin(self.axis)
@@ -192,20 +169,52 @@ class MovingCentre:
         self.distance += recede * time_step
         self.receding = recede
         self.in_place = abs(target - self.distance) < _IN_PLACE * target
-        cos_a, sin_a = math.cos(self.axis), math.sin(self.axis)
-        self.x, self.y = self.distance * cos_a, self.distance * sin_a
         self.swing = turn * self.distance
         self._mean_swing += (
             (self.swing - self._mean_swing) * time_step / (time_step + _SWING_MEMORY)
         )
         self.steady_swing = clip(self._mean_swing, min(self.swing, 0.0), max(self.swing, 0.0))
+        cos_a = math.cos(self.axis)
+        sin_a = math.sin(self.axis)
+        self.x = self.distance * cos_a
+        self.y = self.distance * sin_a
         self.velocity_north = air_north + recede * cos_a - turn * self.y
         self.velocity_east = air_east + recede * sin_a + turn * self.x
 
-    def _target(self, velocity_north: float, velocity_east: float) -> float:
-        """Return r_CO by equations (10) and (11) for a centre of some velocity, across which the
-        orbit lies [m].
+    def _trailing(
+        self,
+        vessel: TargetMotion,
+        air_north: float,
+        air_east: float,
+        through_air: float,
+        bearing: float,
+    ) -> tuple[float, float]:
+        """Return the course along which the plume trails [rad], and its rate [rad/s].
+
+        Without a known course of vessel or wind, the axis stays.
         """
+        p = self._parameters
+        north = vessel.acceleration_north
+        east = vessel.acceleration_east
+        if p.plume_heading is None:
+            self.plume_known = through_air >= p.apparent_wind_min
+            if self.plume_known:
+                turn = (air_north * east - air_east * north) / through_air**2
+                return math.atan2(-air_east, -air_north) + bearing, turn
+        else:
+            over_ground = math.hypot(vessel.velocity_north, vessel.velocity_east)
+            if over_ground >= p.apparent_wind_min:
+                course = math.atan2(vessel.velocity_east, vessel.velocity_north)
+                turn = (vessel.velocity_north * east - vessel.velocity_east * north) / max(
+                    over_ground, _VESSEL_SPEED_MIN
+                ) ** 2
+                return course + p.plume_heading + bearing, turn
+            if not self._started:
+                return p.vessel_course + p.plume_heading + bearing, 0.0
+        return self.axis, 0.0
+
+    def _target(self, velocity_north: float, velocity_east: float) -> float:
+        """Return r_CO by equations (10) and (11), for an orbit across a centre's velocity [m]."""
         p = self._parameters
         last = len(p.along) - 1
         moving = math.hypot(velocity_north, velocity_east)

@@ -103,7 +103,7 @@ class Observer:
         self.along, self.across = turned(north - vessel_north, east - vessel_east)
         self.distance = math.hypot(self.along, self.across)
         own, reference, course = guidance.own, (0.0, 0.0), axis
-        if guidance.mission.started:
+        if guidance.mission.orbit is not None:
             tracked = guidance.mission.tracker.reference
             reference = turned(
                 tracked.north + own.drift_north - north, tracked.east + own.drift_east - east

@@ -8,8 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from gnc.airspeed import air_turn
-from gnc.reference.circling import CirclingReference
-from gnc.reference.reference import ReferenceStart
+from gnc.reference.reference import CirclingReference, ReferenceStart
 from gnc.tracker import Tracker, TrackingParameters
 
 STEERED_BY = ("along", "right", "course", "speed", "airspeed", "heading_rate", "last")

@@ -7,7 +7,7 @@ import numpy.typing as npt
 
 from aircraft.atmosphere.wind import CALM
 from common.times import utc_text
-from gnc.mission.mode import LEAVING, Mode
+from gnc.mission.mission import LEAVING, Mode
 from scenarios.engine.task import Row
 from scenarios.metrics.crossings import Crossing, find_crossings
 from scenarios.metrics.keepout import closest_approach, keepout_figures

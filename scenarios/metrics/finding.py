@@ -6,7 +6,7 @@ import numpy as np
 import numpy.typing as npt
 import pandas as pd
 
-from gnc.mission.mode import Mode
+from gnc.mission.mission import Mode
 from measurement.plume.passes import FOUND_WITHIN, HIT, passes
 from scenarios.engine.task import Row
 from scenarios.instruments.air_samples import CLEAN_AIR

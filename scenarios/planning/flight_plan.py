@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from gnc.estimation.vessel import VesselReport
-from gnc.parameters import GuidanceParameters
+from gnc.guidance import GuidanceParameters
 from gnc.reference.reference import PeriodicPath
 from scenarios.margin.keepout_margin import KeepoutMargin
 from scenarios.planning.bounded_steering import Steering

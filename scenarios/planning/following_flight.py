@@ -10,9 +10,9 @@ from gnc.errors import InfeasibleError
 from gnc.estimation.health import HealthParameters
 from gnc.estimation.vessel import ReachableSet, Tube, VesselLimits
 from gnc.guard.guard import GuardParameters
-from gnc.mission.plume_following import FollowingParameters
+from gnc.guidance import GuidanceParameters, ReportedVessel
+from gnc.mission.follow import FollowingParameters
 from gnc.mission.standoff import StandoffParameters
-from gnc.parameters import GuidanceParameters, ReportedVessel
 from gnc.reference.reference import Orbit, PeriodicPath
 from scenarios.margin.keepout_margin import (
     KeepoutMargin,

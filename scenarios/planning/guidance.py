@@ -9,9 +9,9 @@ from gnc.airspeed import SpeedHold, design_speed_hold
 from gnc.estimation.health import CHECK_INTERVAL, PATIENCE
 from gnc.estimation.navigation import NOISE_DEVIATIONS
 from gnc.guard.guard import GuardParameters
-from gnc.mission.approach import ApproachParameters
-from gnc.mission.plume_axis import AxisParameters
-from gnc.mission.plume_following import FollowingParameters
+from gnc.mission.axis import AxisParameters
+from gnc.mission.follow import FollowingParameters
+from gnc.mission.way import ApproachParameters
 from gnc.reference.moving_centre import CentreParameters
 from gnc.reference.reference import Swing
 from gnc.tracker import TrackingParameters
@@ -275,7 +275,9 @@ def following_parameters(
         centre=centre,
         reference_heading_rate=(1.0 - g.reserve) * fastest,
         swing=swing,
-        joining_share=shape_of(scenario.reference).joining_share,
+        turn_rate_fraction_until_tracked=shape_of(
+            scenario.reference
+        ).turn_rate_fraction_until_tracked,
         speed_ratio_max=f.speed_ratio_max,
         approach=approach_parameters(scenario, setup, radius + margin.total),
         standoff=f.standoff_m,

@@ -8,10 +8,16 @@ import numpy as np
 from common.registry import PluginError
 from gnc.errors import InfeasibleError
 from gnc.paper import PlumeAxis, distance_by_paper, distance_exact
-from gnc.reference.circling import CirclingReference
-from gnc.reference.joining import JoinedOrbit
-from gnc.reference.reference import REFERENCE_SHAPES, Orbit, ReferenceShape, ReferenceStart, Swing
-from gnc.reference.shapes.plain import Plain, made_plain
+from gnc.reference.builtin_floats import BuiltinFloats, with_builtin_floats
+from gnc.reference.reference import (
+    REFERENCE_SHAPES,
+    CirclingReference,
+    JoinedOrbit,
+    Orbit,
+    ReferenceShape,
+    ReferenceStart,
+    Swing,
+)
 from scenarios.planning.limits import omega_max
 from scenarios.schema.scenario import Scenario
 from scenarios.schema.sections.guidance import GuidanceConfig, ReferenceConfig
@@ -40,12 +46,12 @@ def shape_of(reference: ReferenceConfig) -> ReferenceShape:
     """
     part, kind = _named(reference), REFERENCE_SHAPES.get(reference.shape)
     made = asked(part, "cannot be made", "no arguments: its fields need defaults", kind)
-    if is_own(made) and not is_number(getattr(made, "joining_share", None)):
+    if is_own(made) and not is_number(getattr(made, "turn_rate_fraction_until_tracked", None)):
         raise PluginError(
-            f"{part} has no joining_share, the part of its heading rate that the reference takes until it is tracked [-]; give it"
-            " one, 1.0 as the sinusoid has"
+            f"{part} has no turn_rate_fraction_until_tracked, the part of its heading rate that the"
+            " reference takes until it is tracked [-]; give it one, 1.0 as the sinusoid has"
         )
-    shape: ReferenceShape = made_plain(made)
+    shape: ReferenceShape = with_builtin_floats(made)
     return shape
 
 
@@ -74,7 +80,7 @@ def oscillation_at(guidance: GuidanceConfig, reference: ReferenceConfig, nu: flo
         reserve=guidance.reserve,
         roll_rate_max=math.radians(guidance.roll_rate_max_deg_s),
     )
-    if isinstance(shape, Plain):
+    if isinstance(shape, BuiltinFloats):
         for name in _OF_ORBIT:
             if not hasattr(orbit, name):
                 refuse_answer(
@@ -115,7 +121,7 @@ def swing_of(guidance: GuidanceConfig, reference: ReferenceConfig) -> Swing:
         heading_rate=(1.0 - guidance.reserve) * omega_max(guidance),
         roll_rate_max=math.radians(guidance.roll_rate_max_deg_s),
     )
-    if isinstance(shape, Plain) and not all(
+    if isinstance(shape, BuiltinFloats) and not all(
         callable(getattr(swing, name, None)) for name in _OF_SWING
     ):
         refuse_answer(part, "swing()", swing, f"courses, with the methods {', '.join(_OF_SWING)}")

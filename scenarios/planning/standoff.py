@@ -8,8 +8,7 @@ import numpy.typing as npt
 from scipy.special import ellipe
 
 from gnc.errors import InfeasibleError
-from gnc.mission.axis_height import AxisHeight
-from gnc.mission.plume_axis import Climb
+from gnc.mission.axis import AxisHeight, Climb
 from gnc.mission.standoff import StandoffParameters
 from innerloop.flight.part_failure import glide_airspeed
 from scenarios.planning.limits import omega_max, plan_interval

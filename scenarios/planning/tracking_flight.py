@@ -7,9 +7,10 @@ import math
 from gnc.airspeed import AlongTrackTrim
 from gnc.estimation.vessel import Tube
 from gnc.guard.guard import GuardParameters
-from gnc.mission.direct_tracking import DirectParameters, Joining, SteadyCentre
+from gnc.guidance import GuidanceParameters
+from gnc.mission.mission import Centre
+from gnc.mission.track import DirectParameters, Joining
 from gnc.paper import PlumeAxis, centre_of_oscillation
-from gnc.parameters import GuidanceParameters
 from scenarios.margin.orbit_room import orbit_distance
 from scenarios.planning.bounded_steering import Steering, plan_steering
 from scenarios.planning.flight_plan import FlightPlan
@@ -107,7 +108,7 @@ def tracking_flight(
         )
     mission = DirectParameters(
         reference=orbit.reference(math.radians(g.phase_deg), *placed(ahead, right, course)),
-        centre=SteadyCentre(*placed(ahead, right, course), nu),
+        centre=Centre(*placed(ahead, right, course), nu),
         joining=joining,
     )
     return FlightPlan.of(

@@ -5,11 +5,10 @@ closed here only.
 import math
 from collections.abc import Generator, Sequence
 
-from gnc.compose import compose
 from gnc.guard.guard import GuardStatus
-from gnc.guidance import Guidance
-from gnc.mission.plume_following import PlumeFollowing
-from gnc.mission.searched_axis import SearchedAxis
+from gnc.guidance import Guidance, compose
+from gnc.mission.axis import SearchedAxis
+from gnc.mission.follow import PlumeFollowing
 from scenarios.instruments.instrument import GasReader, Instrument
 from scenarios.planning.flight_plan import FlightPlan
 from scenarios.simulation.ending import Ending

@@ -5,7 +5,7 @@ import math
 from gnc.estimation.health import Fault
 from gnc.estimation.navigation import Motion
 from gnc.guidance import Guidance
-from gnc.mission.mode import LOST, Mode
+from gnc.mission.mission import LOST, Mode
 from scenarios.planning.flight_plan import FlightPlan
 from scenarios.schema.sections.flight import DITCHED
 from scenarios.simulation.judge import Judge
@@ -100,12 +100,12 @@ class Ending:
     @property
     def mode(self) -> str:
         """Return the mode of the guidance at the end, or ``DITCHED``."""
-        return DITCHED if self._ditched else self._guidance.mission.mode.value
+        return DITCHED if self._ditched else self._guidance.mode.value
 
     @property
     def outcome(self) -> Outcome:
         """Return how the flight ended."""
-        mode = self._guidance.mission.mode
+        mode = self._guidance.mode
         if self._fault:
             return Outcome.DIVERGED
         if self._ditched or mode in LOST:
@@ -162,7 +162,7 @@ class Ending:
         )
 
     def _shortfall(self) -> str:
-        settling, plan, mode = self._settling, self._plan, self._guidance.mission.mode
+        settling, plan, mode = self._settling, self._plan, self._guidance.mode
         if self._judge is not None and self._judge.enough is not None:
             return self._judge.words
         ended = f", and ended {mode.value}" if mode in _GIVEN_UP else ""

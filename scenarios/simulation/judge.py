@@ -4,9 +4,9 @@ import math
 from enum import Enum
 
 from gnc.estimation.plume.passes import SensorState
-from gnc.mission.mode import Mode
-from gnc.mission.plume_following import PlumeFollowing
-from gnc.mission.searched_axis import SearchedAxis
+from gnc.mission.axis import SearchedAxis
+from gnc.mission.follow import PlumeFollowing
+from gnc.mission.mission import Mode
 from measurement.errors import MeasurementError
 from measurement.estimate.estimator import estimate
 from measurement.estimate.verdict import OPEN
@@ -102,7 +102,8 @@ class Judge:
                 return Enough.SENSOR
             # Off its orbit a flight detects nothing, wherever the plume is.
             if (
-                self._mission.in_place
+                self._mission.orbit is not None
+                and self._mission.orbit.in_place
                 and axis.mode is not Mode.FOUND
                 and axis.measurable() < _MEASURABLE
             ):

@@ -8,9 +8,8 @@ import numpy as np
 
 from gnc.estimation.navigation import Motion
 from gnc.guidance import Guidance
-from gnc.mission.plume_axis import PlumeAxis, PredictedAxis
-from gnc.mission.plume_following import PlumeFollowing
-from gnc.mission.searched_axis import SearchedAxis
+from gnc.mission.axis import ExpectedAxis, PredictedAxis, SearchedAxis
+from gnc.mission.follow import PlumeFollowing
 from scenarios.instruments.instrument import GasReader
 from scenarios.vehicles.vehicle import Vehicle
 from scenarios.world.world import World
@@ -39,7 +38,7 @@ class PlumeReadings:
         reader: GasReader | None,
         world: World,
         vehicle: Vehicle,
-        axis: PlumeAxis,
+        axis: ExpectedAxis,
         *,
         interval: int,
         knows_axis: bool,
@@ -60,9 +59,10 @@ class PlumeReadings:
 
     def _tell(self, time: float, guidance: Guidance) -> None:
         """Say where the mean axis is, seen from the centre of oscillation as the guidance has it."""
-        exhaust, centre = self._world.exhaust, guidance.mission.centre
-        if exhaust is None or not isinstance(self._axis, PredictedAxis):
+        exhaust, orbit = self._world.exhaust, guidance.mission.orbit
+        if exhaust is None or orbit is None or not isinstance(self._axis, PredictedAxis):
             return
+        centre = orbit.centre
         north, east, _, _ = self._world.vessel.motion(time)
         height = self._world.source_height
         at = (np.array([value]) for value in (time, north + centre.x, east + centre.y, height))
@@ -101,6 +101,6 @@ class PlumeBelief:
         )  # fmt: skip
 
 
-def axis_of(guidance: Guidance) -> PlumeAxis | None:
+def axis_of(guidance: Guidance) -> ExpectedAxis | None:
     """Return the axis of the plume that a guidance follows, if it follows one."""
     return guidance.mission.axis if isinstance(guidance.mission, PlumeFollowing) else None

@@ -9,12 +9,15 @@ import numpy as np
 
 from gnc.estimation.navigation import Motion
 from gnc.guidance import Guidance
+from gnc.mission.mission import NO_CENTRE, OrbitStatus
 from scenarios.instruments.instrument import Instrument
 from scenarios.simulation.record import COLUMNS, Array
 from scenarios.simulation.settling import Settling
 from scenarios.vehicles.vehicle import Vehicle
 from scenarios.world.own_part import are_numbers, asked, refuse_answer
 from scenarios.world.world import World
+
+_NO_ORBIT = OrbitStatus(NO_CENTRE, math.nan, in_place=False)
 
 Place = tuple[float, float, float, float]
 """North and east [m], course [rad] and heading rate [rad/s]."""
@@ -66,7 +69,7 @@ class Recorder:
         """Return where the reference is in the frame of the air mass; nothing before the mission
         has placed it.
         """
-        if not self._mission.started:
+        if self._mission.orbit is None:
             return None
         reference = self._mission.tracker.reference
         return reference.north, reference.east, reference.course, reference.heading_rate
@@ -90,7 +93,8 @@ class Recorder:
             self._mission,
             self._guard,
         )
-        tracker, centre, centre_error = mission.tracker, mission.centre, mission.centre_error
+        tracker = mission.tracker
+        centre, centre_error, in_place = mission.orbit or _NO_ORBIT
         own_north, own_east, v_north, v_east, _ = motion
         north, east, course, heading_rate = reference
         north += own.drift_north
@@ -105,7 +109,7 @@ class Recorder:
         self._rows.append(self._pack(
             time, *motion, math.atan2(v_east, v_north), *vessel, axis, north, east, course, heading_rate,
             seen_north + centre.x, seen_east + centre.y, centre_error, own.wind_north, own.wind_east,
-            seen_north, seen_east, centre.speed_ratio, mission.mode.number,
+            seen_north, seen_east, centre.speed_ratio, guidance.mode.number,
             tracker.heading_rate_demand, guidance.heading_rate_command, guidance.airspeed_command, guidance.altitude_command,
             tracker.saturated, float(guard.status) if guard is not None else 0.0,
             *sample, *read,
@@ -113,7 +117,7 @@ class Recorder:
         if not judged:
             return sample, False
         error = math.hypot(north - own_north, east - own_east)
-        place = centre_error if mission.in_place else math.inf
+        place = centre_error if in_place else math.inf
         x, y = float(own_north - vessel[0]), float(own_east - vessel[1])
         return sample, self._settled(time, error, place, x, y, float(axis))
 

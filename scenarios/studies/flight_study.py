@@ -21,7 +21,7 @@ from common.run_layout import (
     SUMMARY,
     time_history_path,
 )
-from gnc.mission.mode import Mode
+from gnc.mission.mission import Mode
 from scenarios.engine.journal import Journal
 from scenarios.engine.run_directory import RunDirectory
 from scenarios.engine.runner import Fly, Progress, StudySummary, write_tables

@@ -13,7 +13,7 @@ from aircraft.errors import AircraftError
 from common.registry import PluginError
 from common.spelling import one_line
 from gnc.errors import InfeasibleError, LawError
-from gnc.reference.shapes import plain
+from gnc.reference import builtin_floats
 from measurement.errors import MeasurementError
 from scenarios.errors import InputError
 
@@ -30,7 +30,7 @@ _TOLD = (
 )
 """Errors that say themselves what is wrong, or do not come from the part."""
 
-_OTHERS = ("<", plain.__file__)
+_OTHERS = ("<", builtin_floats.__file__)
 """Files of frames that are not of a part: text of dataclasses, and what passes calls on to a shape.
 """
 

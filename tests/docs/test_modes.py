@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from gnc.mission.mode import Mode
+from gnc.mission.mission import Mode
 
 GLOSSARY = Path(__file__).parents[2] / "docs" / "reference" / "glossary.md"
 

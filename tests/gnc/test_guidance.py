@@ -1,4 +1,7 @@
+"""The outer loop: its parts, chosen by parameters, and the commands that they make."""
+
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -12,18 +15,38 @@ from gnc_cases import (
     make_reference,
     motion,
     paper_oscillation,
+    paper_parameters,
+    tracking_parameters,
 )
 from hypothesis import given
 from hypothesis import strategies as st
 
-from gnc.estimation.vessel import Tube
+from gnc.airspeed import PaceHold, SpeedHold
+from gnc.estimation.health import HealthParameters
+from gnc.estimation.navigation import EstimatedNavigation, NavigationParameters, TrueNavigation
+from gnc.estimation.vessel import (
+    FilterParameters,
+    ReportedTarget,
+    SteadyTarget,
+    Tube,
+    VesselLimits,
+    VesselReport,
+)
 from gnc.guard.guard import Guarded, GuardParameters, GuardStatus
+from gnc.guidance import GuidanceParameters, ReportedVessel, compose
 from gnc.laws import CascadeLaw, LineOfSightLaw, LyapunovLaw
-from gnc.paper import PlumeAxis, distance_by_paper
+from gnc.mission.axis import AxisHeight, PredictedPlume
+from gnc.mission.follow import FollowingParameters, PlumeFollowing
+from gnc.mission.mission import Mode, Order
+from gnc.mission.track import DirectTracking
+from gnc.mission.way import ApproachParameters
+from gnc.paper import PlumeAxis, distance_by_paper, half_widths
+from gnc.reference.moving_centre import CentreParameters
+from gnc.reference.shapes import Sinusoid
 
 # 0.75 of the tracking allowance of 1 m about its 200 m (scenarios/planning/tracking_flight.py).
 # These vehicles answer at once.
-GUARD = GuardParameters(
+QUICK_GUARD = GuardParameters(
     radius=200.75,
     heading_rate_max=HEADING_RATE_MAX,
     lag=0.0,
@@ -38,7 +61,6 @@ class RecordingGuard:
 
     def __init__(self, guarded):
         self.guarded = guarded
-        self.intervening = False
         self.demands, self.motions, self.vessels, self.replaced = [], [], [], []
 
     def filter(self, demand, own, vessels):
@@ -73,18 +95,15 @@ class RecordingFilter:
 
 
 class OnTheWay:
-    """A mission that overrides its tracker at all times, at another airspeed."""
-
-    overriding, leaving = True, False
+    """A mission that orders a heading rate at all times, at another airspeed than V_r."""
 
     def __init__(self, mission, airspeed):
-        self.tracker, self.altitude, self.plan = mission.tracker, mission.altitude, mission.plan
-        self.airspeed = airspeed
-        self.last_commands = []
+        self.tracker, self._airspeed = mission.tracker, airspeed
+        self.flown = []
 
-    def command(self, last_command):
-        self.last_commands.append(last_command)
-        return 0.1
+    def plan(self, _time, _own, _vessel, **_):
+        self.flown.append(self.tracker.heading_rate_command)
+        return Order(0.1, self._airspeed, 60.0, Mode.APPROACH)
 
 
 @pytest.fixture
@@ -92,8 +111,8 @@ def guarded_by(monkeypatch):
     """Return a function that makes the paper's guidance with another guard."""
 
     def guarded_by(guard, **how):
-        monkeypatch.setattr("gnc.compose.KeepoutGuard", lambda *_: guard)
-        return make_guidance(make_reference(paper_oscillation(0.5)), guard=GUARD, **how)
+        monkeypatch.setattr("gnc.guidance.KeepoutGuard", lambda *_: guard)
+        return make_guidance(make_reference(paper_oscillation(0.5)), guard=QUICK_GUARD, **how)
 
     return guarded_by
 
@@ -124,7 +143,7 @@ def about_a_vessel(nu, *, guard):
 @given(
     law=st.sampled_from([CascadeLaw(), LyapunovLaw(), LineOfSightLaw()]),
     lag=st.sampled_from([0.0, 0.4]),
-    guard=st.sampled_from([None, GUARD]),
+    guard=st.sampled_from([None, QUICK_GUARD]),
     motions=st.lists(
         st.tuples(
             st.floats(-1e4, 1e4),
@@ -288,7 +307,7 @@ def test_from_ahead_of_the_vessel_only_the_guard_keeps_the_vehicle_out(nu):
         np.min(
             fly(about_a_vessel(nu, guard=guard), (600.0, 30.0, math.pi), duration=400.0).to_vessel
         )
-        for guard in (None, GUARD)
+        for guard in (None, QUICK_GUARD)
     )
     # Straight through: measured, 2 to 14 m.
     assert unguarded < 50.0
@@ -311,18 +330,260 @@ def test_from_astern_a_guarded_vehicle_settles_and_keeps_out(nu, seed):
         distance * math.sin(bearing),
         generator.uniform(-math.pi, math.pi),
     )
-    flight = fly(about_a_vessel(nu, guard=GUARD), start, duration=400.0)
+    flight = fly(about_a_vessel(nu, guard=QUICK_GUARD), start, duration=400.0)
     # Orbit and guard both keep more than the keep-out area's 200 m: 201 and 200.75 m.
     assert np.min(flight.to_vessel) >= 200.75
     # Settled within the half metre that holding commands leaves; see test_tracker.py.
     assert np.max(flight.distance[-600:]) < 0.5
 
 
-def test_a_mission_that_overrides_gets_the_last_command_that_was_flown():
-    # And not what the law demands meanwhile.
+def test_an_order_follows_what_was_flown_and_not_what_the_law_demands_meanwhile():
     guidance = make_guidance(make_reference(paper_oscillation(0.5)), lag=0.4)
     guidance.mission = OnTheWay(guidance.mission, SPEED)
     for step in range(3):
         guidance.step(step * TIME_STEP, motion(-300.0, 0.0, 2.0))
     assert abs(guidance.mission.tracker.heading_rate_demand - 0.1) > 0.1
-    assert guidance.mission.last_commands == [0.0, 0.1, 0.1]
+    assert guidance.mission.flown == [0.0, 0.1, 0.1]
+
+
+GUARD = GuardParameters(
+    radius=200.0,
+    heading_rate_max=HEADING_RATE_MAX,
+    lag=0.4,
+    delay=0.0,
+    slow_lag=0.4,
+    time_step=TIME_STEP,
+)
+APPROACH = ApproachParameters(
+    blocked_radius=203.0,
+    round_radius=230.0,
+    join_distance=150.0,
+    tracked=12.0,
+    airspeed=SPEED + 2.0,
+)
+PLAN_INTERVAL = 10
+FILTER = FilterParameters(position_sigma=5.0, velocity_sigma=0.15, acceleration=0.02, memory=40.0)
+LIMITS = VesselLimits(
+    acceleration=0.25,
+    speed_max=15.0,
+    position_sigma=5.0,
+    velocity_sigma=0.15,
+    deviations=5.0,
+    horizon=9.0,
+)
+
+
+def paper(**how):
+    return paper_parameters(
+        make_reference(paper_oscillation(0.5), centre=(-214.0, 0.0)),
+        vessel=(0.5 * SPEED, 0.0),
+        **how,
+    )
+
+
+def following(*, guard=GUARD, climb=0.0):
+    """Return the guidance of a flight that follows a plume by sensors and reports."""
+    widths = [
+        half_widths(paper_oscillation(nu, roll_rate_max=math.radians(40.0)))
+        for nu in np.linspace(0.0, 0.97, 49)
+    ]
+    centre = CentreParameters(
+        distance_min=203.0,
+        speed_ratio_max=0.97,
+        along=tuple(along for along, _ in widths),
+        across=tuple(across for _, across in widths),
+        plume_heading=None,
+        vessel_course=0.0,
+        apparent_wind_min=1.0,
+        speed=SPEED,
+        heading_rate_max=HEADING_RATE_MAX,
+    )
+    mission = FollowingParameters(
+        centre=centre,
+        reference_heading_rate=0.985 * HEADING_RATE_MAX,
+        swing=Sinusoid().swing(
+            speed=SPEED, heading_rate=0.985 * HEADING_RATE_MAX, roll_rate_max=math.radians(40.0)
+        ),
+        turn_rate_fraction_until_tracked=1.0,
+        speed_ratio_max=0.97,
+        approach=APPROACH,
+        standoff=100.0,
+        glide_airspeed=17.0,
+        stale=12.0,
+        reach=0.0,
+        reach_time=9.0,
+        drift_rate=1.0,
+        plan_interval=PLAN_INTERVAL,
+        axis=PredictedPlume(height=AxisHeight(source=60.0, climb=climb), altitude=60.0),
+    )
+    return GuidanceParameters(
+        speed=SPEED,
+        altitude=60.0,
+        tracking=tracking_parameters(lag=0.4),
+        airspeed_law=PaceHold(
+            speed=SPEED, hold=SpeedHold(gain=0.3, airspeed_min=15.0, airspeed_max=25.0)
+        ),
+        airspeed_bandwidth=1.3,
+        airspeed_overshoot=0.1,
+        navigation=NavigationParameters(
+            crab_banks=(-1.0, 1.0),
+            crab_offsets=(0.0, 0.0),
+            airspeed_sigma=0.5,
+            course_sigma=0.03,
+            wind_drift=0.02,
+            wind_interval=PLAN_INTERVAL,
+            time_step=TIME_STEP,
+        ),
+        vessel=ReportedVessel(filter=FILTER, limits=LIMITS),
+        guard=guard,
+        mission=mission,
+        health=HealthParameters(
+            airspeed_error=2.0,
+            speed=SPEED,
+            heading_rate_max=HEADING_RATE_MAX,
+            lag=0.4,
+            time_step=TIME_STEP,
+        ),
+    )
+
+
+def reported(parameters, *, speed=8.0):
+    """Return a guidance that has received a report of a vessel that goes north from the origin."""
+    guidance = compose(parameters)
+    guidance.target.report(VesselReport(0.0, 0.0, 0.0, speed, 0.0))
+    return guidance
+
+
+def readings(north, east, *, course=0.0, airspeed=SPEED, servo_error=0.0):
+    """Return what exact sensors say in still air."""
+    return (
+        (north, east, SPEED * math.cos(course), SPEED * math.sin(course)),
+        airspeed,
+        course,
+        0.0,
+        0.0,
+        servo_error,
+    )
+
+
+def test_the_papers_guidance_has_no_parts_that_have_nothing_to_do():
+    guidance = compose(paper())
+    assert guidance.monitor is None
+    assert guidance.guard is None
+    assert (type(guidance.own), type(guidance.target), type(guidance.mission)) == (
+        TrueNavigation,
+        SteadyTarget,
+        DirectTracking,
+    )
+
+
+def test_a_guidance_that_follows_a_plume_has_every_part():
+    guidance = compose(following())
+    assert (type(guidance.own), type(guidance.target), type(guidance.mission)) == (
+        EstimatedNavigation,
+        ReportedTarget,
+        PlumeFollowing,
+    )
+    assert guidance.monitor is not None
+    assert guidance.guard is not None
+
+
+@pytest.mark.parametrize("part", ["guard", "health"])
+def test_a_guidance_that_follows_a_plume_can_do_without(part):
+    guidance = reported(replace(following(), **{part: None}))
+    assert getattr(guidance, {"guard": "guard", "health": "monitor"}[part]) is None
+    for step in range(50):
+        guidance.step(step * TIME_STEP, readings(-300.0 + SPEED * step * TIME_STEP, 20.0))
+        assert abs(guidance.heading_rate_command) <= HEADING_RATE_MAX
+    assert guidance.guarding is False
+
+
+def test_no_command_exceeds_its_bound_in_gusts_from_behind():
+    # A gust between two looks at the wind takes a fifth of the airspeed: the same acceleration
+    # turns the airframe the faster.
+    guidance = reported(following())
+    for step in range(50):
+        airspeed = SPEED if step % PLAN_INTERVAL == 0 else 0.8 * SPEED
+        guidance.step(step * TIME_STEP, readings(-400.0, 0.0, course=math.pi, airspeed=airspeed))
+        assert abs(guidance.heading_rate_command) <= HEADING_RATE_MAX
+    # It was in the way, and the guidance goes on from what is flown.
+    assert guidance.own.air_ratio < 0.9
+    assert abs(guidance.heading_rate_command) == HEADING_RATE_MAX
+    assert (
+        guidance.mission.tracker.heading_rate_command
+        == guidance.heading_rate_command * guidance.own.air_ratio
+    )
+
+
+def test_flights_share_nothing():
+    parameters = paper(guard=GUARD)
+    one = fly(compose(parameters), (-300.0, 40.0, 0.5), duration=20.0)
+    other = fly(compose(parameters), (-300.0, 40.0, 0.5), duration=20.0)
+    # Neither the reference's place nor the guard's memory: the same to the last bit.
+    np.testing.assert_array_equal(one.command, other.command)
+    first, second = compose(parameters), compose(parameters)
+    first.step(0.0, motion(-202.0, 0.0, 0.0))
+    assert (first.guarding, second.guarding) == (True, False)
+
+
+def test_the_mission_plans_every_few_steps_and_the_papers_once(monkeypatch):
+    planned = []
+    for mission in (PlumeFollowing, DirectTracking):
+        plan = mission.plan
+
+        def noted(self, time, *args, renew, plan=plan, **how):
+            if renew:
+                planned.append(time)
+            return plan(self, time, *args, renew=renew, **how)
+
+        monkeypatch.setattr(mission, "plan", noted)
+    for guidance, plans in ((reported(following()), 3), (compose(paper()), 1)):
+        planned.clear()
+        measurement = readings(-300.0, 0.0) if plans > 1 else motion(-300.0, 0.0, 0.0)
+        for step in range(3 * PLAN_INTERVAL):
+            guidance.step(step * TIME_STEP, measurement)
+        assert planned == pytest.approx([i * PLAN_INTERVAL * TIME_STEP for i in range(plans)])
+
+
+def test_the_altitude_commanded_rises_with_the_centres_distance_where_the_plume_rises():
+    climb = math.tan(math.radians(10.0))
+    guidance, level = reported(following(climb=climb)), reported(following())
+    altitudes = []
+    for step in range(6 * PLAN_INTERVAL + 1):
+        for made in (guidance, level):
+            made.step(step * TIME_STEP, readings(-900.0, 0.0))
+        altitudes.append(guidance.altitude_command)
+    # From the stack's 60 m towards the axis at the centre of oscillation, 36 m higher at least, no
+    # steeper than 5 %.
+    assert guidance.mission.centre.distance > 203.0
+    planned = np.array([60.0, *altitudes[::PLAN_INTERVAL]])
+    assert np.diff(planned) == pytest.approx(0.05 * SPEED * PLAN_INTERVAL * TIME_STEP, rel=1e-12)
+    assert level.altitude_command == 60.0
+
+
+def test_a_vehicle_with_a_fault_leaves_and_sinks():
+    guidance = reported(following())
+    for step in range(60):
+        guidance.step(step * TIME_STEP, readings(-400.0, 0.0, course=math.pi, servo_error=0.5))
+    assert guidance.mode is Mode.TERMINATING
+    assert guidance.airspeed_command == 17.0
+    assert guidance.altitude_command < -500.0
+
+
+def test_a_turn_away_is_flown_in_full_in_gusts_from_ahead():
+    # The vehicle is slower over the mean air: the guidance turns it the slower through the air, but
+    # not away from the vessel.
+    guidance = reported(following())
+    turns = []
+    for step in range(200):
+        airspeed = SPEED if step % PLAN_INTERVAL == 0 else 1.2 * SPEED
+        guidance.step(
+            step * TIME_STEP, readings(-300.0 + SPEED * step * TIME_STEP, 0.0, airspeed=airspeed)
+        )
+        if guidance.guarding and guidance.own.air_ratio > 1.1:
+            turns.append(abs(guidance.heading_rate_command))
+            assert (
+                guidance.mission.tracker.heading_rate_command
+                == guidance.heading_rate_command * guidance.own.air_ratio
+            )
+    assert max(turns) == HEADING_RATE_MAX

@@ -68,7 +68,7 @@ def test_a_shape_of_ones_own_is_steered_as_well(tmp_path):
     # The example of docs/howto/extending.md.
     (tmp_path / "myshape.py").write_text(
         "from dataclasses import dataclass\n\n"
-        "from gnc.reference.shapes.sinusoid import Sinusoid\n\n\n"
+        "from gnc.reference.shapes import Sinusoid\n\n\n"
         "@dataclass(frozen=True)\n"
         "class SlowSinusoid(Sinusoid):\n"
         "    share: float = 0.9\n\n"

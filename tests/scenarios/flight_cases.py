@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from gnc.mission.mode import Mode
+from gnc.mission.mission import Mode
 from scenarios.engine.task import Task
 from scenarios.experiment.requests import Experiment
 from scenarios.flight import FlightWork

@@ -12,7 +12,7 @@ from tests.scenarios.test_extension_points import refusal, run
 PARTS = """
 import math
 from dataclasses import dataclass
-from gnc.reference.shapes.sinusoid import Sinusoid
+from gnc.reference.shapes import Sinusoid
 
 class Track:
     manoeuvres_end = math.nan
@@ -123,7 +123,7 @@ KEYS = {"Track": ("vessel", "track"), "Plume": ("plume", "model"), "Shape": ("re
         ),
         (
             "ShapeWithoutShare",
-            " has no joining_share, the part of its heading rate that the reference takes until it is tracked",
+            " has no turn_rate_fraction_until_tracked, the part of its heading rate that the reference takes until it is tracked",
         ),
         (
             "ShapeOfOtherWords",

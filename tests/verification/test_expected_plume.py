@@ -8,7 +8,7 @@ from exhaust_cases import SENSOR
 
 from gnc.estimation.plume.estimator import HIT
 from gnc.estimation.plume.prior import Expectation, PlumePrior, expected_plume, rise
-from gnc.mission.axis_height import AxisHeight
+from gnc.mission.axis import AxisHeight
 from measurement.emission.emission import Emission, emission_of
 from measurement.emission.fuel import fuel_preset
 from measurement.emission.ship import ship_preset

@@ -8,9 +8,7 @@ import numpy as np
 
 from gnc.errors import InfeasibleError
 from gnc.estimation.plume.prior import Expectation, GasSensor
-from gnc.mission.axis_height import AxisHeight
-from gnc.mission.plume_axis import AxisParameters, Climb, PredictedPlume
-from gnc.mission.searched_axis import SearchedPlume
+from gnc.mission.axis import AxisHeight, AxisParameters, Climb, PredictedPlume, SearchedPlume
 from measurement.emission.emission import Emission
 from measurement.gases import GASES
 from measurement.sniffer.spec import SnifferSpec

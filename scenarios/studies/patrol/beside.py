@@ -8,7 +8,7 @@ from collections.abc import Iterator
 import numpy as np
 import pandas as pd
 
-from gnc.mission.mode import Mode
+from gnc.mission.mission import Mode
 from scenarios.engine.task import Row
 from scenarios.studies.patrol.legs import Air, Leg, Mover
 from scenarios.studies.patrol.tables import APPROACH, LEAVING, MEASURING, SEARCHING, verdict_of

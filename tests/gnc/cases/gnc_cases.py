@@ -1,8 +1,6 @@
-"""What the tests of the guidance share: the paper's vehicle, Cartesian motion to check against, and
-kinematic flights.
+"""The paper's vehicle, Cartesian motion to check against, and kinematic flights, for all tests.
 
-The paper does not print V_r and omega_max; 19.42 m/s and 0.503 rad/s reproduce its Sim. 3
-(reference/paper-notes.md, "Parameters the paper does not print").
+The paper does not print V_r and omega_max; 19.42 m/s and 0.503 rad/s reproduce its Simulation 3.
 """
 
 import math
@@ -15,10 +13,10 @@ from hypothesis import settings
 from hypothesis import strategies as st
 
 from gnc.airspeed import AlongTrackTrim
-from gnc.compose import compose
 from gnc.estimation.navigation import Motion
+from gnc.guidance import GuidanceParameters, compose
 from gnc.laws import CascadeLaw
-from gnc.mission.direct_tracking import DirectParameters
+from gnc.mission.track import DirectParameters
 from gnc.paper import (
     design_oscillation,
     look_ahead,
@@ -26,8 +24,7 @@ from gnc.paper import (
     relative_velocity,
     unicycle_rates,
 )
-from gnc.parameters import GuidanceParameters
-from gnc.reference.oscillating import OscillatingReference, start_reference
+from gnc.reference.reference import OscillatingReference, start_reference
 from gnc.tracker import TrackingParameters
 from gnc.unicycle import unicycle_move
 
@@ -67,7 +64,7 @@ def assert_a_copy_goes_on(reference, copied):
     assert (reference.north, reference.east) == place
     for _ in range(200):
         reference.step()
-    names = type(reference).__slots__
+    names = ("north", "east", "course", "heading_rate", "speed", "turn_rate_fraction")
     assert [getattr(other, name) for name in names] == [getattr(reference, name) for name in names]
 
 
@@ -191,7 +188,7 @@ def paper_parameters(reference, *, vessel=(0.0, 0.0), guard=None, airspeed_gain=
 
 
 def make_guidance(reference, **how):
-    """Return the paper's guidance; ``how`` as of ``paper_parameters``."""
+    """Return the paper's guidance; ``how`` same as in ``paper_parameters``."""
     return compose(paper_parameters(reference, **how))
 
 

@@ -6,12 +6,12 @@ from gnc_cases import SPEED, TIME_STEP
 from hypothesis import given
 from hypothesis import strategies as st
 
+from gnc.estimation.health import Fault
 from gnc.estimation.navigation import TrueNavigation
 from gnc.estimation.vessel import SteadyTarget
 from gnc.laws import CascadeLaw
-from gnc.mission.axis_height import AxisHeight
-from gnc.mission.mode import Mode
-from gnc.mission.plume_axis import Climb
+from gnc.mission.axis import AxisHeight, Climb
+from gnc.mission.mission import TRACK, Mode
 from gnc.mission.standoff import CirclePoint, StandoffOrbit, StandoffParameters
 from gnc.path_laws.lgvf import LgvfLaw
 from gnc.path_laws.npfg import NpfgLaw
@@ -22,8 +22,7 @@ RADIUS, LIMIT = 120.0, 0.503
 LEVEL = AxisHeight(source=60.0)
 
 
-def mission(law, vessel=(6.0, 3.0), height=LEVEL):
-    own, target = TrueNavigation(), SteadyTarget(*vessel)
+def mission(law, height=LEVEL):
     parameters = StandoffParameters(
         radius=RADIUS,
         tracked=12.0,
@@ -36,26 +35,26 @@ def mission(law, vessel=(6.0, 3.0), height=LEVEL):
         climb=Climb(time=20.0, gradient=0.05),
     )
     tracking = TrackingParameters(law=law, heading_rate_max=LIMIT, time_step=TIME_STEP, lag=0.0)
-    return own, target, StandoffOrbit(parameters, tracking, own=own, target=target)
+    return StandoffOrbit(parameters, tracking)
 
 
-def flown(law, seconds, vessel=(6.0, 3.0), start=(-400.0, 50.0, 1.0)):
-    """Return the distances from the vessel of a kinematic vehicle under a law, a number each step,
-    and the mission.
-    """
-    own, target, circling = mission(law, vessel)
-    north, east, course = start
-    distances, rate = [], 0.0
-    for step in range(round(seconds / TIME_STEP)):
-        time = step * TIME_STEP
-        own.update((north, east, SPEED * math.cos(course), SPEED * math.sin(course), rate))
-        target.update(time, step % 10 == 0)
-        if step % 10 == 0:
-            circling.plan(time)
-        distances.append(math.hypot(north - target.north, east - target.east))
-        rate = circling.tracker.step(north, east, course, SPEED, rate)
-        north, east, course = unicycle_move(north, east, course, SPEED, rate, TIME_STEP)
-    return distances, circling
+class Flown:
+    """A kinematic flight under a law: distances from the vessel, mission, and last mode."""
+
+    def __init__(self, law, seconds, vessel=(6.0, 3.0), start=(-400.0, 50.0, 1.0)):
+        own, target, self.mission = TrueNavigation(), SteadyTarget(*vessel), mission(law)
+        north, east, course = start
+        self.distances, rate = [], 0.0
+        for step in range(round(seconds / TIME_STEP)):
+            time, renew = step * TIME_STEP, step % 10 == 0
+            own.update((north, east, SPEED * math.cos(course), SPEED * math.sin(course), rate))
+            target.update(time, renew)
+            order = self.mission.plan(time, own, target, renew=renew, guarding=False)
+            assert order.heading_rate is TRACK
+            self.distances.append(math.hypot(north - target.north, east - target.east))
+            rate = self.mission.tracker.step(north, east, course, SPEED, rate)
+            north, east, course = unicycle_move(north, east, course, SPEED, rate, TIME_STEP)
+        self.mode = order.mode
 
 
 @given(bearing=st.floats(-3.1, 3.1), drift=st.floats(0.0, 0.9), towards=st.floats(-3.1, 3.1))
@@ -83,44 +82,59 @@ def test_a_vehicle_on_the_circle_with_the_references_course_and_heading_rate_sta
     "law", [NpfgLaw(), LgvfLaw(), CascadeLaw()], ids=lambda law: type(law).__name__
 )
 def test_laws_circle_a_moving_vessel_at_the_radius(law):
-    distances, circling = flown(law, 200.0)
+    flight = Flown(law, 200.0)
     # Closed in, and within the centimetres of a law that is called twenty times a second; LGVF
     # converges within V/R.
-    assert circling.in_place
-    assert max(abs(distance - RADIUS) for distance in distances[-1000:]) < (
+    assert flight.mission.orbit.in_place
+    assert max(abs(distance - RADIUS) for distance in flight.distances[-1000:]) < (
         2.0 if isinstance(law, LgvfLaw) else 0.2
     )
 
 
 def test_the_circle_is_joined_outside_of_its_place():
-    _, circling = flown(NpfgLaw(), 1.0)
+    circling = Flown(NpfgLaw(), 1.0).mission
     # Twice what counts as tracked, until the vehicle is near it.
     assert circling.tracker.radius == RADIUS + 24.0
-    assert not circling.in_place
+    assert circling.orbit == ((0.0, 0.0, math.hypot(6.0, 3.0) / SPEED), 24.0, False)
 
 
 def test_a_vessel_that_outruns_the_vehicle_is_followed():
-    distances, circling = flown(NpfgLaw(), 60.0, vessel=(1.1 * SPEED, 0.0))
-    assert circling.mode is Mode.OUTRUN
-    # Behind her, and somewhat to the side after its turn: she gains a tenth of its speed.
-    assert (distances[-1] - distances[-201]) / (200 * TIME_STEP) == pytest.approx(
-        0.1 * SPEED, rel=0.03
-    )
-    # On her course, north.
-    assert circling.tracker.heading_rate_demand == pytest.approx(0.0, abs=1e-6)
+    flight = Flown(NpfgLaw(), 60.0, vessel=(1.1 * SPEED, 0.0))
+    assert flight.mode is Mode.OUTRUN
+    # Behind the vessel, somewhat to the side after its turn: it gains a tenth of the speed.
+    gained = flight.distances[-1] - flight.distances[-201]
+    assert gained / (200 * TIME_STEP) == pytest.approx(0.1 * SPEED, rel=0.03)
+    # On the vessel's course, north.
+    assert flight.mission.tracker.heading_rate_demand == pytest.approx(0.0, abs=1e-6)
 
 
 def test_a_circle_rises_to_the_height_of_the_plume_at_its_radius():
     rising = AxisHeight(source=35.0, momentum_flux=124.0, buoyancy_flux=49.6)
-    own, target, circling = mission(CascadeLaw(), (10.0, 0.0), rising)
+    own, target, circling = TrueNavigation(), SteadyTarget(10.0, 0.0), mission(CascadeLaw(), rising)
     own.update((-RADIUS, 0.0, SPEED, 0.0, 0.0))
     target.update(0.0, True)
-    assert circling.altitude == 35.0
-    steps = round(200.0 / (10 * TIME_STEP))
-    heights = []
-    for step in range(steps):
-        circling.plan(10 * TIME_STEP * step)
-        heights.append(circling.altitude)
+    heights = [35.0]
+    for step in range(round(200.0 / (10 * TIME_STEP))):
+        order = circling.plan(10 * TIME_STEP * step, own, target, renew=True, guarding=False)
+        heights.append(order.altitude)
+    # No steeper than the gradient, from the height at the start.
+    assert heights[1] - heights[0] <= 0.05 * SPEED * 10 * TIME_STEP
     # Ten time constants: what is left is below 0.01 m of the 13 m.
     assert heights[-1] == pytest.approx(rising.at(RADIUS, 10.0), abs=0.01)
     assert all(later >= earlier for earlier, later in itertools.pairwise(heights))
+
+
+@pytest.mark.parametrize(
+    ("fault", "mode"),
+    [(Fault.THRUST_LOST, Mode.GLIDING), (Fault.ACTUATOR_STUCK, Mode.TERMINATING)],
+)
+def test_a_vehicle_with_a_fault_flies_straight_out_and_sinks(fault, mode):
+    own, target, circling = TrueNavigation(), SteadyTarget(0.0, 0.0), mission(CascadeLaw())
+    circling.leave(fault)
+    # South of the vessel and on a southerly course: straight on leads out.
+    own.update((-RADIUS, 0.0, -SPEED, 0.0, 0.0))
+    order = circling.plan(0.0, own, target, renew=True, guarding=False)
+    assert order.heading_rate == pytest.approx(0.0, abs=1e-9)
+    assert (order.airspeed, order.mode) == (15.0, mode)
+    # So far below the sea that the autopilot holds its airspeed by pitch.
+    assert order.altitude < -500.0

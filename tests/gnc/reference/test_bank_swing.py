@@ -10,8 +10,7 @@ from scipy.integrate import quad
 from scipy.optimize import brentq
 
 from common.physics.units import STANDARD_GRAVITY
-from gnc.reference.shapes.bank_swing import BankSwing
-from gnc.reference.shapes.course_path import CoursePath, fourier_coefficients
+from gnc.reference.shapes import BankSwing, CoursePath, fourier_coefficients
 
 ROLL_RATE = math.radians(40.0)
 HEADING_RATE = STANDARD_GRAVITY / SPEED
@@ -92,7 +91,7 @@ def test_the_heading_rate_is_the_slope_over_the_phase_at_full_rates(eta, phase, 
 @pytest.mark.parametrize("eta", [0.05, 0.4, 1.7, 3.0, 3.9])
 def test_the_mean_speed_is_the_mean_of_the_cosine_of_the_course(eta, roll_rate):
     swing = courses(roll_rate=roll_rate)
-    # Another integrator, told where the integrand has a corner.
+    # Another integrator, which is given the corner of the integrand.
     ramp = (
         math.atan(HEADING_RATE * SPEED / STANDARD_GRAVITY)
         / roll_rate

@@ -8,11 +8,10 @@ from scipy.integrate import quad
 
 from gnc.errors import InfeasibleError
 from gnc.paper import eta_for_speed_ratio, mean_speed_ratio
-from gnc.reference.oscillating import OscillatingReference, start_reference
+from gnc.reference.reference import OscillatingReference, start_reference
 
 ratios = st.floats(0.0, 1.0)
-# First zero of J_0, eta of a vessel at rest: paper-notes, care 6; Abramowitz and Stegun, table 9.5:
-# j_0,1 = 2.40482 55577.
+# First zero of J_0, eta of a vessel at rest by (6): Abramowitz and Stegun, table 9.5.
 ETA_MAX = 2.404825557695773
 
 

@@ -11,10 +11,8 @@ from scipy.optimize import brentq
 from common.physics.units import STANDARD_GRAVITY
 from gnc.errors import InfeasibleError
 from gnc.paper import PlumeAxis, distance_exact
-from gnc.reference.joining import JoinedOrbit
-from gnc.reference.reference import REFERENCE_SHAPES
-from gnc.reference.shapes.fastest import JOINING_SHARE, Fastest
-from gnc.reference.shapes.sinusoid import Sinusoid
+from gnc.reference.reference import REFERENCE_SHAPES, JoinedOrbit
+from gnc.reference.shapes import Fastest, Sinusoid
 
 LIMITS = {
     "speed": SPEED,
@@ -27,16 +25,18 @@ LIMITS = {
 40 deg/s.
 """
 
+FRACTION = Fastest().turn_rate_fraction_until_tracked
+
 
 def design(nu=0.5, **changes):
     return Fastest().design(**({"nu": nu} | LIMITS | changes))
 
 
-def reference_on(orbit, *, phase=0.0, share=1.0, vessel_course=0.3):
+def reference_on(orbit, *, phase=0.0, turn_rate_fraction=1.0, vessel_course=0.3):
     joined = JoinedOrbit(
         shape=Fastest(), orbit=orbit, vessel_course=vessel_course, time_step=TIME_STEP
     )
-    return joined.reference(phase, -214.0, 5.0, share=share)
+    return joined.reference(phase, -214.0, 5.0, turn_rate_fraction=turn_rate_fraction)
 
 
 def interval_by_integration(nu):
@@ -160,10 +160,10 @@ def test_the_reference_stays_on_its_orbit():
     )
 
 
-@pytest.mark.parametrize("share", [JOINING_SHARE, 0.5])
+@pytest.mark.parametrize("share", [FRACTION, 0.5])
 def test_a_reference_that_is_slowed_down_has_a_larger_orbit_about_the_same_centre(share):
     orbit = design()
-    slow = reference_on(orbit, phase=1.0, share=share, vessel_course=0.0)
+    slow = reference_on(orbit, phase=1.0, turn_rate_fraction=share, vessel_course=0.0)
     full = reference_on(orbit, phase=1.0, vessel_course=0.0)
     # About the same centre, 1/share as far off, on the same course.
     assert slow.north + 214.0 == pytest.approx((full.north + 214.0) / share, rel=1e-12)
@@ -177,8 +177,8 @@ def test_a_reference_that_is_slowed_down_has_a_larger_orbit_about_the_same_centr
         assert abs(slow.heading_rate) <= share * orbit.amplitude * (1.0 + 1e-12)
     # Asked to spend all, it does so from the next passage through the centre on, where it does not
     # turn.
-    slow.spend(1.0)
-    while slow.share != 1.0:
+    slow.set_turn_rate_fraction(1.0)
+    while slow.turn_rate_fraction != 1.0:
         before = slow.heading_rate
         slow.step()
     # A step of 0.05 s of rolling at 40 deg/s changes it by 0.5 rad/s^2 times that, 0.018 rad/s.
@@ -196,10 +196,10 @@ def test_a_reference_that_is_slowed_down_has_a_larger_orbit_about_the_same_centr
 
 def test_a_vehicle_on_its_way_joins_a_reference_that_leaves_it_some_of_the_heading_rate():
     orbit = design(0.1)
-    for shape, share in ((Fastest(), JOINING_SHARE), (Sinusoid(), 1.0)):
+    for shape, share in ((Fastest(), FRACTION), (Sinusoid(), 1.0)):
         joined = JoinedOrbit(shape=shape, orbit=orbit, vessel_course=0.0, time_step=TIME_STEP)
         nearest = joined.nearest(-214.0, 5.0, north=-300.0, east=80.0, course=0.5, turn_radius=40.0)
-        assert nearest.share == share
+        assert nearest.turn_rate_fraction == share
 
 
 @pytest.mark.parametrize(

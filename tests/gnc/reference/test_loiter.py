@@ -10,8 +10,8 @@ from orbit_cases import assert_a_point_that_turns_so_flies
 from common.physics.units import STANDARD_GRAVITY
 from gnc.errors import InfeasibleError
 from gnc.paper import PlumeAxis, distance_exact
-from gnc.reference.joining import JoinedOrbit
-from gnc.reference.shapes.loiter import LoiterShape
+from gnc.reference.reference import JoinedOrbit
+from gnc.reference.shapes import LoiterShape
 
 HEADING_RATE = STANDARD_GRAVITY / SPEED
 ROLL_RATE = math.radians(40.0)
@@ -95,10 +95,10 @@ def test_beside_a_vessel_at_rest_it_is_a_circle():
 def test_the_slower_one_meets_it_at_phase_0_and_becomes_it_there(share):
     orbit = design(0.2)
     joined = JoinedOrbit(shape=LoiterShape(), orbit=orbit, vessel_course=0.0, time_step=TIME_STEP)
-    slow = joined.reference(-1.0, 0.0, 0.0, share=share)
-    slow.spend(1.0)
+    slow = joined.reference(-1.0, 0.0, 0.0, turn_rate_fraction=share)
+    slow.set_turn_rate_fraction(1.0)
     steps = 0
-    while slow.share != 1.0:
+    while slow.turn_rate_fraction != 1.0:
         slow.step()
         steps += 1
     for _ in range(200):

@@ -10,7 +10,7 @@ from gnc_cases import HEADING_RATE_MAX, SPEED
 
 from gnc.numeric import wrap
 from gnc.reference.mean_motion import mean_motion, motion_course
-from gnc.reference.shapes.sinusoid import SinusoidSwing
+from gnc.reference.shapes import SinusoidSwing
 from gnc.reference.steered import SteeredReference
 from tests.gnc.reference.test_moving_centre import make, move
 
@@ -19,9 +19,7 @@ SWING = SinusoidSwing(HEADING_RATE_MAX, 9.80665 / SPEED * math.radians(40.0))
 
 
 def moved(nu, turn=0.0):
-    """Return a centre astern of a vessel that steers north, swung to the west where she turns to
-    the right [rad/s].
-    """
+    """Return a centre astern of a vessel on course north, which turns to the right [rad/s]."""
     centre = make()
     move(centre, (nu * SPEED, 0.0), acceleration=(0.0, nu * SPEED * turn), time_step=0.0)
     return centre
@@ -64,8 +62,8 @@ def test_a_slow_orbit_follows_a_fast_swing_and_little_of_a_slow_one():
 
 
 def test_a_slow_orbit_follows_a_small_swing_that_goes_on():
-    # A vessel at rest in a wind of 2 m/s that turns by 0.3 deg/s: her plume's middle moves by 1.6
-    # m/s across.
+    # A vessel at rest in a wind of 2 m/s that turns by 0.3 deg/s: the plume's middle moves by
+    # 1.6 m/s across.
     centre, (wind, turn) = make(), (2.0, math.radians(0.3))
     for k in range(400):
         angle = turn * k * PLAN_TIME
@@ -112,20 +110,26 @@ def test_an_orbit_off_its_place_is_taken_towards_it(nu, off):
 
 
 def orbit_errors(nu, scatter, seed):
-    """Return how far [m] an orbit is from where it should be, beside a steady vessel whose velocity
-    is not known exactly.
+    """Return an orbit's distances from its place, beside a steady vessel of uncertain velocity [m].
 
-    What is wrong in each component of her velocity has the deviation ``scatter`` [m/s], and is
-    forgotten in 10 s.
+    The error of each component of the velocity has the deviation ``scatter`` [m/s] and a
+    correlation time of 10 s.
     """
     noise, (north, east) = np.random.default_rng(seed), (0.0, 0.0)
     kept = math.exp(-PLAN_TIME / 10.0)
     centre, wrong, errors = make(), np.zeros(2), []
     move(centre, (nu * SPEED, 0.0), time_step=0.0)
     reference = SteeredReference(
-        north=centre.x, east=centre.y, mean_course=0.0, speed_ratio=nu, phase=0.0, swing=SWING, speed=SPEED,
-        heading_rate=HEADING_RATE_MAX, time_step=TIME_STEP,
-    )  # fmt: skip
+        north=centre.x,
+        east=centre.y,
+        mean_course=0.0,
+        speed_ratio=nu,
+        phase=0.0,
+        swing=SWING,
+        speed=SPEED,
+        heading_rate=HEADING_RATE_MAX,
+        time_step=TIME_STEP,
+    )
     for _ in range(1200):
         wrong = kept * wrong + math.sqrt(1.0 - kept**2) * scatter * noise.standard_normal(2)
         move(centre, (nu * SPEED + wrong[0], wrong[1]), time_step=PLAN_TIME)

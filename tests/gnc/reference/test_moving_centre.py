@@ -4,6 +4,8 @@ import numpy as np
 import pytest
 from gnc_cases import SPEED, paper_oscillation
 
+from gnc.estimation.navigation import AirMotion
+from gnc.estimation.vessel import SteadyTarget
 from gnc.paper import PlumeAxis, distance_by_paper, half_widths
 from gnc.reference.moving_centre import CentreParameters, MovingCentre
 
@@ -41,16 +43,12 @@ def move(
     time_step=TIME_STEP,
     additional_range=0.0,
 ):
-    centre.move(
-        time_step,
-        vessel_north=velocity[0],
-        vessel_east=velocity[1],
-        acceleration_north=acceleration[0],
-        acceleration_east=acceleration[1],
-        wind_north=wind[0],
-        wind_east=wind[1],
-        additional_range=additional_range,
+    own = AirMotion(
+        ground_north=0.0, ground_east=0.0, course=0.0, wind_north=wind[0], wind_east=wind[1]
     )
+    vessel = SteadyTarget(*velocity)
+    vessel.acceleration_north, vessel.acceleration_east = acceleration
+    centre.move(time_step, own, vessel, additional_range=additional_range)
 
 
 def paper_distance(nu, heading=math.pi):
@@ -96,15 +94,15 @@ def test_a_given_plume_keeps_its_bearing_from_the_bow():
 
 
 @pytest.mark.parametrize("velocity", [(0.0, 0.0), (0.2, 0.1)])
-def test_beside_a_vessel_too_slow_to_have_a_course_a_given_plume_is_where_her_bow_says(velocity):
+def test_beside_a_vessel_too_slow_to_have_a_course_a_given_plume_is_where_the_bow_says(velocity):
     centre = make(plume_heading=math.pi, vessel_course=math.radians(90.0))
     for _ in range(20):
-        # Bow east, plume astern; what little she drifts about does not matter, nor does a wind.
+        # Bow east, plume astern; the little that it drifts does not matter, nor does a wind.
         move(centre, velocity, wind=(5.0, -5.0))
         assert math.remainder(centre.axis - math.radians(270.0), 2.0 * math.pi) == pytest.approx(
             0.0, abs=1e-12
         )
-    # Under way she has one: north-east.
+    # Under way it has a course: north-east.
     for _ in range(400):
         move(centre, (4.0, 4.0))
     assert math.remainder(centre.axis - math.radians(225.0), 2.0 * math.pi) == pytest.approx(
@@ -164,7 +162,7 @@ def test_its_velocity_is_the_rate_of_its_place(plume_heading, turn_rate, acceler
 
 
 def test_a_vessel_that_turns_moves_it_by_omega_cross_r():
-    # paper-notes, 11: V_V plus omega_V x r_CO. Course north, turning right: the centre astern
+    # V_V plus omega_V x r_CO. Course north, turning right: the centre astern
     # swings to the west.
     centre = make(plume_heading=math.pi)
     move(centre, (8.0, 0.0), acceleration=(0.0, 8.0 * 0.01), time_step=0.0)
@@ -189,7 +187,7 @@ def test_an_apparent_wind_too_faint_leaves_the_axis_where_it_was():
     assert centre.plume_known
 
 
-def test_an_apparent_wind_that_passes_through_nothing_turns_the_axis_no_faster_than_it_can_be_followed():
+def test_an_apparent_wind_that_reverses_turns_the_axis_no_faster_than_it_can_be_followed():
     centre = make()
     move(centre, (6.0, 0.0), wind=(4.0, 0.0), time_step=0.0)
     for _ in range(400):

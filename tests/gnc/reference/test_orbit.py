@@ -62,7 +62,7 @@ def test_the_orbit_is_a_figure_of_eight(nu, time):
     oscillation = paper_oscillation(nu)
     half = 0.5 * oscillation.period
     along, across = offset(oscillation, np.array([time, time + half, -time, half - time]))
-    # paper-notes: period T across and T/2 along; odd in time, and mirrored fore and aft about the
+    # By (12): period T across and T/2 along; odd in time, and mirrored fore and aft about the
     # quarter period. Roundings of angles of 1e3 rad, when nu is near 1, times 100 m.
     assert along[1] == pytest.approx(along[0], abs=1e-9)
     assert across[1] == pytest.approx(-across[0], abs=1e-9)
@@ -73,7 +73,7 @@ def test_the_orbit_is_a_figure_of_eight(nu, time):
 @pytest.mark.parametrize("nu", RATIOS)
 def test_the_reference_passes_the_centre_twice_a_period(nu):
     oscillation = paper_oscillation(nu)
-    # paper-notes: it flies a figure of eight through the CO. An odd number of samples keeps the
+    # By (12) it flies a figure of eight through the CO. An odd number of samples keeps the
     # passages between samples.
     times = (
         np.linspace(0.0, oscillation.period, 1001, endpoint=False) + 0.3 * oscillation.period / 1001
@@ -103,7 +103,7 @@ def test_the_half_widths_are_the_largest_offsets_of_the_orbit(nu):
 
 
 def test_the_orbit_shrinks_as_the_vessel_speeds_up():
-    # Table of paper-notes.
+    # By (12), for eta falls with nu.
     widths = np.array([half_widths(paper_oscillation(nu)) for nu in np.linspace(0.0, 0.99, 34)])
     assert np.all(np.diff(widths, axis=0) < 0.0)
 

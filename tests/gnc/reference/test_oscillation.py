@@ -42,7 +42,7 @@ def test_the_oscillation_is_the_fastest_within_heading_rate_and_roll_rate(
     heading_rate_use = (oscillation.amplitude + abs(vessel_heading_rate)) / (
         (1.0 - reserve) * HEADING_RATE_MAX
     )
-    # paper-notes, care 5: the heading acceleration's amplitude is eta omega_0^2 = g/V times the
+    # By (2), the heading acceleration's amplitude is eta omega_0^2 = g/V times the
     # roll rate.
     roll_rate_use = (
         oscillation.eta * oscillation.omega_0**2 / (STANDARD_GRAVITY / SPEED * roll_rate_max)
@@ -53,7 +53,7 @@ def test_the_oscillation_is_the_fastest_within_heading_rate_and_roll_rate(
 
 
 def test_without_a_roll_rate_the_bound_of_equation_8_grows_without_limit():
-    # paper-notes, care 5: eta = 2 sqrt(1 - nu), so omega_0 = omega_max/(2 sqrt(1 - nu)), to a
+    # By (6) near nu = 1, eta = 2 sqrt(1 - nu), so omega_0 = omega_max/(2 sqrt(1 - nu)), to a
     # relative (1 - nu)/8.
     assert paper_oscillation(1.0 - 1e-8).omega_0 == pytest.approx(HEADING_RATE_MAX / 2e-4, rel=1e-7)
 

@@ -76,7 +76,7 @@ def test_no_closer_placement_keeps_the_orbit_outside(nu, heading, elevation, rad
 @given(nu=ratios, heading=st.floats(0.5 * math.pi, math.pi), elevation=elevations, radius=radii)
 def test_the_exact_placement_is_never_farther_than_the_papers(nu, heading, elevation, radius):
     oscillation, axis = paper_oscillation(nu), PlumeAxis(heading=heading, elevation=elevation)
-    # paper-notes, care 4, which says so from abeam to astern.
+    # From abeam to astern, (11) estimates the reach by its largest along and across.
     assert (
         distance_exact(oscillation, axis, radius)
         <= distance_by_paper(oscillation, axis, radius) + SEARCH
@@ -87,7 +87,7 @@ def test_the_exact_placement_is_never_farther_than_the_papers(nu, heading, eleva
 @given(nu=ratios, heading=headings, elevation=elevations, radius=radii)
 def test_the_papers_placement_keeps_the_orbit_outside(nu, heading, elevation, radius):
     oscillation, axis = paper_oscillation(nu), PlumeAxis(heading=heading, elevation=elevation)
-    # paper-notes, care 3: equation (10) keeps the three-dimensional distance. Rounding of 1 km.
+    # Equation (10) keeps the three-dimensional distance. Rounding of 1 km.
     assert (
         closest_approach(oscillation, axis, distance_by_paper(oscillation, axis, radius))
         >= radius - 1e-9
@@ -98,7 +98,7 @@ def test_the_papers_placement_keeps_the_orbit_outside(nu, heading, elevation, ra
 @given(nu=ratios, radius=radii, side=st.sampled_from([-1.0, 1.0]))
 def test_the_papers_placement_is_exact_for_a_plume_abeam(nu, radius, side):
     oscillation, axis = paper_oscillation(nu), PlumeAxis(heading=side * 0.5 * math.pi)
-    # paper-notes, care 4: abeam, equation (11) is exactly tight.
+    # Abeam, equation (11) is exactly tight.
     assert distance_exact(oscillation, axis, radius) == pytest.approx(
         distance_by_paper(oscillation, axis, radius), rel=0.0, abs=SEARCH
     )

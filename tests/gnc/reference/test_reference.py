@@ -1,18 +1,37 @@
+"""The paper's reference over time, and where its orbit is joined."""
+
 import copy
 import math
 
 import numpy as np
 import pytest
-from gnc_cases import HEADING_RATE_MAX, SPEED, assert_a_copy_goes_on, paper_oscillation
+from gnc_cases import (
+    HEADING_RATE_MAX,
+    SPEED,
+    TIME_STEP,
+    assert_a_copy_goes_on,
+    courses,
+    examples,
+    make_reference,
+    paper_oscillation,
+)
+from hypothesis import given
+from hypothesis import strategies as st
 from scipy.integrate import solve_ivp
 
 from gnc.paper import design_oscillation, half_widths, offset
-from gnc.reference.circling import CirclingReference
-from gnc.reference.oscillating import OscillatingReference, start_reference
-from gnc.reference.reference import REFERENCE_SHAPES, ReferenceStart
+from gnc.reference.reference import (
+    REFERENCE_SHAPES,
+    CirclingReference,
+    ClosingReference,
+    JoinedOrbit,
+    OscillatingReference,
+    ReferenceStart,
+    start_reference,
+)
+from gnc.reference.shapes import Sinusoid
 from gnc.unicycle import unicycle_move
 
-TIME_STEP = 0.05
 CENTRE = (-214.0, 35.0)
 COURSE = 0.7
 
@@ -119,8 +138,7 @@ def test_the_reference_is_a_unicycle_of_constant_speed():
 
 
 def test_the_reference_starts_on_the_centre_with_phase_zero_only():
-    # Section III.B has it start on the CO; paper-notes, care 2, says why that holds for phi_0 = 0
-    # only.
+    # Section III.B has it start on the CO, which centres the orbit there for phi_0 = 0 only.
     oscillation = paper_oscillation(0.5)
     on = start_reference(
         oscillation, phase=0.0, centre_north=CENTRE[0], centre_east=CENTRE[1], vessel_course=COURSE
@@ -133,8 +151,8 @@ def test_the_reference_starts_on_the_centre_with_phase_zero_only():
         vessel_course=COURSE,
     )
     assert (on.north, on.east) == pytest.approx(CENTRE, abs=1e-12)
-    # A quarter period on it is d_y = 68.395 m to the vessel's right (table of paper-notes, rounded
-    # to 1 cm).
+    # A quarter period on it is d_y = 68.395 m to the vessel's right by (12), rounded to
+    # 1 cm.
     right = -(off.north - CENTRE[0]) * math.sin(COURSE) + (off.east - CENTRE[1]) * math.cos(COURSE)
     along = (off.north - CENTRE[0]) * math.cos(COURSE) + (off.east - CENTRE[1]) * math.sin(COURSE)
     assert right == pytest.approx(68.40, abs=0.005)
@@ -170,7 +188,89 @@ def test_the_papers_shape_is_known_by_name_and_is_the_papers_oscillation():
 @pytest.mark.parametrize("copied", [copy.copy, copy.deepcopy])
 def test_a_copy_goes_on_as_its_original_would_and_leaves_that_where_it_is(copied):
     _, reference = make(0.5, phase=1.1)
-    reference.spend(0.6)
+    reference.set_turn_rate_fraction(0.6)
     for _ in range(137):
         reference.step()
     assert_a_copy_goes_on(reference, copied)
+
+
+ORBIT = JoinedOrbit(
+    shape=Sinusoid(), orbit=paper_oscillation(0.5), vessel_course=0.3, time_step=TIME_STEP
+)
+JOINED_CENTRE = (-214.0, 20.0)
+TURN_RADIUS = SPEED / HEADING_RATE_MAX
+
+
+def nearest(place, course):
+    return ORBIT.nearest(
+        *JOINED_CENTRE, north=place[0], east=place[1], course=course, turn_radius=TURN_RADIUS
+    )
+
+
+def effort(reference, place, course):
+    """Return the distance to a reference together with 1.5 turn radii per radian between the
+    courses [m].
+    """
+    turn = math.remainder(reference.course - course, 2.0 * math.pi)
+    return math.hypot(
+        reference.north - place[0], reference.east - place[1], 1.5 * TURN_RADIUS * turn
+    )
+
+
+@pytest.mark.parametrize("phase", [0.0, 1.1, 2.9, 4.4])
+def test_a_vehicle_on_the_orbit_is_met_where_it_is(phase):
+    there = ORBIT.reference(phase, *JOINED_CENTRE)
+    found = nearest((there.north, there.east), there.course)
+    # Phases are 5 degrees apart, so half of that, over which the reference flies V_r
+    # 0.0436/omega_0.
+    assert (
+        math.hypot(found.north - there.north, found.east - there.east)
+        < SPEED * math.radians(2.6) / ORBIT.orbit.omega_0
+    )
+    # Its course swings by no more than eta per radian of phase.
+    assert abs(found.course - there.course) < ORBIT.orbit.eta * math.radians(2.6)
+
+
+@examples(50)
+@given(
+    place=st.tuples(st.floats(-600.0, 200.0), st.floats(-300.0, 300.0)),
+    course=courses,
+    phase=st.floats(0.0, 2.0 * math.pi),
+)
+def test_no_phase_costs_less_than_the_nearest(place, course, phase):
+    least = effort(nearest(place, course), place, course)
+    # By no more than one gets from half a step of 2.5 degrees: way and turn of
+    # ``test_a_vehicle_on_the_orbit_...``.
+    step = math.radians(2.6)
+    slack = math.hypot(SPEED / ORBIT.orbit.omega_0, 1.5 * TURN_RADIUS * ORBIT.orbit.eta) * step
+    assert least <= effort(ORBIT.reference(phase, *JOINED_CENTRE), place, course) + slack
+
+
+def test_of_two_ways_through_a_place_the_one_on_the_vehicles_course_is_taken():
+    # The orbit passes near its centre twice in a period, once to the right and once to the left.
+    right, left = (nearest(JOINED_CENTRE, 0.3 + side * 1.0).course for side in (1.0, -1.0))
+    assert right > 0.3 > left
+
+
+def test_a_closing_reference_stands_off_until_it_may_close_and_then_reaches_its_place():
+    axis, standoff, rate = 2.5, 24.0, 4.0
+    alone, inner = (make_reference(paper_oscillation(0.5), centre=JOINED_CENTRE) for _ in range(2))
+    closing = ClosingReference(inner, axis=axis, standoff=standoff, rate=rate, time_step=TIME_STEP)
+
+    def off():
+        return closing.north - alone.north, closing.east - alone.east
+
+    away = (math.cos(axis), math.sin(axis))
+    for step in range(240):
+        closing.closing = step >= 100
+        # 5 s outside, then in at 4 m/s: 6 s. Roundings of 200 m.
+        left = min(24.0, max(0.0, 24.0 - rate * TIME_STEP * max(0, step - 100)))
+        assert off() == pytest.approx((left * away[0], left * away[1]), abs=1e-9)
+        assert (closing.course, closing.heading_rate, closing.speed) == (
+            alone.course,
+            alone.heading_rate,
+            alone.speed,
+        )
+        alone.step()
+        closing.step()
+    assert closing.standoff == 0.0

@@ -9,9 +9,8 @@ from hypothesis import strategies as st
 from scipy.special import j0
 
 from gnc.paper import design_oscillation, eta_for_speed_ratio, offset
-from gnc.reference.joining import JoinedOrbit
-from gnc.reference.reference import REFERENCE_SHAPES
-from gnc.reference.shapes.sinusoid import SinusoidSwing
+from gnc.reference.reference import REFERENCE_SHAPES, JoinedOrbit
+from gnc.reference.shapes import SinusoidSwing
 from gnc.reference.steered import SteeredReference
 
 TIME_STEP = 0.05
@@ -53,9 +52,13 @@ steering = st.lists(
 def test_with_constant_parameters_it_is_the_reference_of_its_shape(shape, nu):
     reference, made = steered(shape, nu=nu), REFERENCE_SHAPES.get(shape)()
     orbit = made.design(
-        nu=reference.speed_ratio, speed=SPEED, heading_rate_max=HEADING_RATE_MAX, reserve=0.0, vessel_heading_rate=0.0,
+        nu=reference.speed_ratio,
+        speed=SPEED,
+        heading_rate_max=HEADING_RATE_MAX,
+        reserve=0.0,
+        vessel_heading_rate=0.0,
         roll_rate_max=ROLL_RATE_MAX,
-    )  # fmt: skip
+    )
     fixed = JoinedOrbit(shape=made, orbit=orbit, vessel_course=0.7, time_step=TIME_STEP).reference(
         0.0, -214.0, 35.0
     )
@@ -199,7 +202,7 @@ def test_it_knows_its_mean_speed(shape):
 
 
 @shapes
-def test_it_comes_to_the_mean_course_and_speed_that_are_asked_for(shape):
+def test_it_comes_to_the_mean_course_and_speed_that_are_demanded(shape):
     reference = steered(shape, nu=0.5, mean_course=0.0)
     reference.steer(2.0, 0.2)
     for _ in range(1200):
@@ -226,7 +229,7 @@ def test_it_turns_the_shorter_way():
 def test_a_copy_goes_on_as_its_original_would_and_leaves_that_where_it_is(copied):
     reference = steered(mean_course=0.3, phase=1.1)
     reference.steer(0.9, 0.4)
-    reference.spend(0.6)
+    reference.set_turn_rate_fraction(0.6)
     for _ in range(37):
         reference.step()
     assert_a_copy_goes_on(reference, copied)

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from gnc.reference.shapes.sinusoid import Sinusoid
+from gnc.reference.shapes import Sinusoid
 
 
 class Listed:
@@ -34,7 +34,7 @@ class ShapeOfLists(Sinusoid):
     """The paper's shape, with such answers, and such numbers for its courses."""
 
     @property
-    def joining_share(self):
+    def turn_rate_fraction_until_tracked(self):
         """Return what of the heading rate is taken until the reference is tracked."""
         return np.float32(0.7)
 

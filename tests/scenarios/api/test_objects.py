@@ -10,7 +10,7 @@ import pytest
 
 from aircraft.fleet.x8 import X8
 from gnc.laws import LineOfSightLaw
-from gnc.reference.shapes.sinusoid import Sinusoid
+from gnc.reference.shapes import Sinusoid
 from scenarios import InputError, fly, load, read_ais, run
 
 SHORT = {

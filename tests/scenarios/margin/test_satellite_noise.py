@@ -8,8 +8,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from gnc.reference.circling import CirclingReference
-from gnc.reference.reference import ReferenceStart
+from gnc.reference.reference import CirclingReference, ReferenceStart
 from gnc.tracker import Tracker
 from scenarios.api.flying import fly
 from scenarios.margin.report_scatter import GUARDED_PER_HOUR

@@ -8,7 +8,7 @@ import pytest
 from flight_cases import plan as planned
 from flight_cases import scenario
 
-from gnc.mission.mode import Mode
+from gnc.mission.mission import Mode
 from scenarios.metrics.columns import SUMMARY_COLUMNS
 from scenarios.metrics.figures import flight_figures, plan_row
 from scenarios.planning.flight_plan import Start

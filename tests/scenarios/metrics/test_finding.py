@@ -6,7 +6,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from gnc.mission.mode import Mode
+from gnc.mission.mission import Mode
 from scenarios.metrics.finding import FINDING_FIGURES, finding_figures
 from scenarios.schema.sections.flight import FlightConfig
 

@@ -8,7 +8,7 @@ from flight_cases import SPEED, plan, scenario
 
 from gnc.errors import InfeasibleError
 from gnc.estimation.navigation import WindFilter
-from gnc.mission.plume_following import FollowingParameters
+from gnc.mission.follow import FollowingParameters
 from innerloop.flight.part_failure import PartFailure
 from scenarios.planning.air.estimated_wind import navigation_parameters, wind_followed
 from scenarios.planning.declared_vessel import check_declared

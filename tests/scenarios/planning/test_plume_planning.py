@@ -9,8 +9,7 @@ import pytest
 
 from gnc.errors import InfeasibleError
 from gnc.estimation.plume.passes import equal_readings
-from gnc.mission.plume_axis import PredictedPlume
-from gnc.mission.searched_axis import SearchedPlume
+from gnc.mission.axis import PredictedPlume, SearchedPlume
 from measurement.sniffer.presets import sensor_preset, sensor_presets
 from scenarios.errors import InputError
 from scenarios.planning.planner import plan_flight

@@ -7,7 +7,7 @@ import pytest
 
 from gnc.estimation.health import Fault
 from gnc.estimation.navigation import Motion
-from gnc.mission.mode import Mode
+from gnc.mission.mission import Mode
 from scenarios.simulation.ending import Ending
 from scenarios.simulation.judge import Enough
 from scenarios.simulation.outcome import Outcome
@@ -44,9 +44,7 @@ def ended(
         crossings=asked, after_settling=after, duration_max=300.0, world=world, settling_period=19.0
     )
     vehicle = SimpleNamespace(fault=lambda _: trouble)
-    guidance = SimpleNamespace(
-        monitor=SimpleNamespace(fault=fault), mission=SimpleNamespace(mode=mode)
-    )
+    guidance = SimpleNamespace(monitor=SimpleNamespace(fault=fault), mode=mode)
     guidance.target = SimpleNamespace(north=0.0, east=0.0)
     judge = (
         SimpleNamespace(

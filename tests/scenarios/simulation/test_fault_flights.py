@@ -7,7 +7,7 @@ import pandas as pd
 import pytest
 from flight_cases import scenario
 
-from gnc.mission.mode import Mode
+from gnc.mission.mission import Mode
 from scenarios.engine.in_process_executor import InProcessExecutor
 from scenarios.schema.load import load_study
 from scenarios.schema.sections.flight import DITCHED

@@ -5,7 +5,7 @@ they have enough.
 import numpy as np
 import pytest
 
-from gnc.mission.mode import Mode
+from gnc.mission.mission import Mode
 from scenarios.engine.task import Task
 from scenarios.experiment.requests import Experiment
 from scenarios.flight import FlightWork

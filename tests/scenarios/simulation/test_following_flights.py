@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from flight_cases import ASTERN, SPEED, fly, modes
 
-from gnc.mission.mode import Mode
+from gnc.mission.mission import Mode
 from scenarios.metrics.columns import CROSSING_COLUMNS, SUMMARY_COLUMNS
 
 REPORTS = {"interval_s": (2.0, 10.0), "latency_max_s": 2.0, "missing": 0.1}

@@ -6,8 +6,8 @@ from types import SimpleNamespace
 import pytest
 
 from gnc.estimation.plume.passes import SensorState
-from gnc.mission.mode import Mode
-from gnc.mission.searched_axis import PlumeEstimate, SearchedAxis
+from gnc.mission.axis import PlumeEstimate, SearchedAxis
+from gnc.mission.mission import NO_CENTRE, Mode, OrbitStatus
 from scenarios.simulation import judge as judging
 from scenarios.simulation.judge import GONE, INTERVAL, Enough, Judge
 
@@ -31,7 +31,8 @@ class Axis(SearchedAxis):
 
 class Mission:
     def __init__(self, axis):
-        self.axis, self.departing, self.in_place = axis, False, True
+        self.axis, self.departing = axis, False
+        self.orbit = OrbitStatus(NO_CENTRE, 0.0, in_place=True)
 
     def depart(self):
         self.departing = True
@@ -85,7 +86,7 @@ def test_before_the_flight_has_settled_no_reading_counts(monkeypatch):
 
 def test_off_its_orbit_and_where_it_is_detected_no_plume_is_out_of_reach(monkeypatch):
     judge, mission = judged(monkeypatch, ["open"] * 9, axis=Axis(measurable=0.01))
-    mission.in_place = False
+    mission.orbit = OrbitStatus(NO_CENTRE, 0.0, in_place=False)
     looks(judge, 3)
     found, _ = judged(monkeypatch, ["open"] * 9, axis=Axis(measurable=0.01, mode=Mode.FOUND))
     looks(found, 3)

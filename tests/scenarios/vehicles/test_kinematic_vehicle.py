@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from aircraft.atmosphere.wind import WindField, constant_wind
-from gnc.compose import compose
+from gnc.guidance import compose
 from scenarios.errors import InputError
 from scenarios.experiment.requests import Experiment
 from scenarios.planning.planner import plan_flight

@@ -1,15 +1,15 @@
-"""What a shape of a user's own answers becomes plain numbers; the project's own is left as it is."""
+"""Results of a user's shape become Python's numbers; the project's own shapes are left alone."""
 
 import copy
 
 import numpy as np
 from gnc_cases import paper_oscillation
 
-from gnc.reference.shapes.plain import made_plain
+from gnc.reference.builtin_floats import with_builtin_floats
 
 
 class Single:
-    """Answers in single precision, and in lists."""
+    """Returns single precision, and lists."""
 
     nu, limit, symmetric = np.float32(0.5), "roll rate", np.bool_(False)
 
@@ -26,32 +26,32 @@ class Single:
         return Single() if nu else None
 
 
-def test_numbers_are_plain_and_several_of_them_a_tuple():
-    plain = made_plain(Single())
-    answers = [plain.nu, plain.course(2.0), *plain.slopes(1.0, 0.5)]
+def test_numbers_are_pythons_and_several_of_them_a_tuple():
+    converted = with_builtin_floats(Single())
+    answers = [converted.nu, converted.course(2.0), *converted.slopes(1.0, 0.5)]
     assert answers == [0.5, 0.5, 1.0, 0.5]
     assert {type(answer) for answer in answers} == {float}
-    assert type(plain.slopes(1.0, 0.5)) is tuple
-    assert (plain.limit, bool(plain.symmetric)) == ("roll rate", False)
+    assert type(converted.slopes(1.0, 0.5)) is tuple
+    assert (converted.limit, bool(converted.symmetric)) == ("roll rate", False)
 
 
 def test_arrays_are_of_double_precision():
-    along, right = made_plain(Single()).offset(1.5)
+    along, right = with_builtin_floats(Single()).offset(1.5)
     assert type(along) is float
     assert right.dtype == np.float64
     np.testing.assert_array_equal(right, [0.5, 0.25])
 
 
 def test_what_a_shape_makes_is_plain_too():
-    made = made_plain(Single()).design(nu=0.5)
+    made = with_builtin_floats(Single()).design(nu=0.5)
     assert type(made.course(1.0)) is float
-    assert made_plain(Single()).design(nu=0.0) is None
+    assert with_builtin_floats(Single()).design(nu=0.0) is None
 
 
 def test_what_is_the_projects_own_is_left_as_it_is():
     oscillation = paper_oscillation(0.5)
-    assert made_plain(oscillation) is oscillation
+    assert with_builtin_floats(oscillation) is oscillation
 
 
 def test_a_copy_answers_likewise():
-    assert copy.deepcopy(made_plain(Single())).course(2.0) == 0.5
+    assert copy.deepcopy(with_builtin_floats(Single())).course(2.0) == 0.5

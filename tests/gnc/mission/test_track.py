@@ -13,17 +13,17 @@ from gnc_cases import (
     tracking_parameters,
 )
 
-from gnc.compose import compose
 from gnc.estimation.health import Fault
 from gnc.estimation.navigation import TrueNavigation
 from gnc.estimation.vessel import SteadyTarget
 from gnc.guard.guard import GuardParameters
-from gnc.mission.approach import ApproachParameters
-from gnc.mission.direct_tracking import DirectParameters, DirectTracking, Joining, SteadyCentre
-from gnc.mission.mode import Mode
+from gnc.guidance import compose
+from gnc.mission.mission import TRACK, Centre, Mode
+from gnc.mission.track import DirectParameters, DirectTracking, Joining
+from gnc.mission.way import ApproachParameters
 from gnc.paper import PlumeAxis, distance_by_paper
-from gnc.reference.joining import JoinedOrbit
-from gnc.reference.shapes.sinusoid import Sinusoid
+from gnc.reference.reference import JoinedOrbit
+from gnc.reference.shapes import Sinusoid
 
 NU = 0.1
 GUARD = GuardParameters(
@@ -47,10 +47,7 @@ PLAN_INTERVAL = 10
 @pytest.fixture
 def mission():
     parameters = DirectParameters(reference=make_reference(paper_oscillation(0.5)))
-    own, target = TrueNavigation(), SteadyTarget(0.0, 0.0)
-    return DirectTracking(
-        parameters, tracking_parameters(), own=own, target=target, guard=None, altitude=62.0
-    )
+    return DirectTracking(parameters, tracking_parameters(), altitude=62.0)
 
 
 def guidance(*, joining=True, nu=NU):
@@ -59,9 +56,7 @@ def guidance(*, joining=True, nu=NU):
     """
     oscillation = paper_oscillation(nu, reserve=0.015)
     orbit = JoinedOrbit(shape=Sinusoid(), orbit=oscillation, vessel_course=0.0, time_step=TIME_STEP)
-    centre = SteadyCentre(
-        -distance_by_paper(oscillation, PlumeAxis(heading=math.pi), 201.0), 0.0, nu
-    )
+    centre = Centre(-distance_by_paper(oscillation, PlumeAxis(heading=math.pi), 201.0), 0.0, nu)
     mission = DirectParameters(
         reference=orbit.reference(0.0, centre.x, centre.y),
         centre=centre,
@@ -73,24 +68,19 @@ def guidance(*, joining=True, nu=NU):
 
 
 def settles(flight):
-    """Return when a flight comes within 5 m of its reference for good [s]; infinite if it does not."""
+    """Return when a flight comes within 5 m of its reference for good [s]; inf if it never does."""
     outside = np.flatnonzero(flight.distance >= 5.0)
     last = outside[-1] + 1 if outside.size else 0
     return last * TIME_STEP if last < len(flight.distance) else math.inf
 
 
 def test_without_a_way_it_tracks_from_the_first_step_on_and_overrides_nothing(mission):
-    assert mission.started
-    mission.plan(0.0)
-    assert (mission.mode, mission.overriding, mission.leaving, mission.command(0.2)) == (
-        Mode.TRACKING,
-        False,
-        False,
-        0.0,
-    )
-    assert (mission.altitude, mission.centre_error, mission.in_place) == (62.0, 0.0, True)
-    # Its reference is placed beforehand: it knows no centre of its own.
-    assert all(math.isnan(value) for value in mission.centre)
+    order = mission.plan(0.0, TrueNavigation(), SteadyTarget(0.0, 0.0), renew=True, guarding=False)
+    assert order == (TRACK, SPEED, 62.0, Mode.TRACKING)
+    centre, error, in_place = mission.orbit
+    assert (error, in_place) == (0.0, True)
+    # Its reference is placed beforehand: it knows no centre.
+    assert all(math.isnan(value) for value in centre)
 
 
 def test_it_knows_no_way_out(mission):
@@ -123,23 +113,20 @@ def test_the_orbit_is_joined_outside_of_its_place_and_closes_in_once_it_is_track
     seen = []
     plan = DirectTracking.plan
 
-    def noted(mission, time):
-        plan(mission, time)
-        seen.append((mission.mode, mission.in_place, mission.centre_error))
+    def noted(mission, *args, renew, guarding):
+        order = plan(mission, *args, renew=renew, guarding=guarding)
+        if renew:
+            seen.append((order.mode, mission.orbit.in_place, mission.orbit.error))
+        return order
 
     monkeypatch.setattr(DirectTracking, "plan", noted)
     made = guidance()
-    mission = made.mission
     # As it begins: on the way, two times 12 m outside.
-    assert (mission.mode, mission.overriding, mission.in_place, mission.centre_error) == (
-        Mode.APPROACH,
-        True,
-        False,
-        24.0,
-    )
+    assert made.mission.orbit[1:] == (24.0, False)
     fly(made, (-600.0, 40.0, 0.0), duration=120.0)
     modes, in_place, errors = zip(*seen, strict=True)
     joined = modes.index(Mode.TRACKING)
+    assert joined > 0
     assert set(modes[:joined]) == {Mode.APPROACH}
     assert set(modes[joined:]) == {Mode.TRACKING}
     # It never moves out again, and is in its place from when on nothing is left; 24 m at 0.2 V_r

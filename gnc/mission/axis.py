@@ -1,0 +1,610 @@
+"""The height and bearing at which a plume's axis is expected: predicted, given, or searched for."""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import NamedTuple, Protocol
+
+import numpy as np
+import numpy.typing as npt
+from scipy.special import ndtr
+
+from gnc.estimation.navigation import OwnMotion
+from gnc.estimation.plume.estimator import HIT, PlumeEstimator, PlumeState
+from gnc.estimation.plume.passes import SensorState
+from gnc.estimation.plume.prior import Expectation, downwash, expected_plume, rise
+from gnc.estimation.vessel import TargetMotion
+from gnc.mission.mission import Mode
+from gnc.numeric import clip, limited, wrap
+from gnc.reference.moving_centre import MovingCentre
+
+Array = npt.NDArray[np.float64]
+
+_HEIGHT_STEP = 6.0
+"""Between the heights that are weighed [m]: less than the spread of a plume."""
+
+_HORIZON = 8
+"""Number of passes that the search plans ahead [-]."""
+
+_KNOWN = 0.3
+"""Deviation of the height over the spread of a pass [-], below which nothing is gained by flying
+anywhere else.
+"""
+
+_PROBE_REACH = 1.6
+"""Farthest that a height beside the estimated one is flown, over its deviation [-]."""
+
+_PROBES = np.linspace(0.0, 1.0, 9)
+"""Heights that are weighed, from the lowest to the highest probe [-]."""
+
+_PASSES_INFORMED = 3.0
+"""Passes over which the information of this one counts [-]: after those the later ones have given
+as much.
+"""
+
+_RUNG = 15.0
+"""Between the heights of a ladder [m]."""
+
+_MODES = {
+    PlumeState.SEARCHING: Mode.SEARCHING,
+    PlumeState.FOUND: Mode.FOUND,
+    PlumeState.LOST: Mode.LOST_AGAIN,
+}
+
+_BEARING_TIME = 15.0
+"""Time constant with which the centre of oscillation follows the estimated bearing [s]: it is swung
+round the vessel gently.
+"""
+
+_NOTED = 0.75
+"""Time between readings beyond which the estimator gets a position in between [s]."""
+
+_SILENT = 2.0
+"""Time without readings beyond which the estimator is informed of it [s]."""
+
+_DECIDED = 10.0
+"""Least time for which a chosen height is held once the plume is found [s]: what is known of it
+changes more slowly.
+"""
+
+_PASS_TIME = 8.0
+"""Time between passes that is assumed before the first two [s]."""
+
+_PASS_MEMORY = 0.3
+"""Weight of the last pass in the mean time between them [-]."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class AxisHeight:
+    """The expected height of the axis over the distance from the stack.
+
+    Attributes
+    ----------
+    source : height of the stack's mouth above the sea [m]
+    climb : slope of the axis [-]
+    momentum_flux, buoyancy_flux : of the assumed exhaust; 0 for an axis that does not rise by
+        itself [m^4/s^2, m^4/s^3]
+    stack_diameter, exhaust_speed : at the stack's mouth, whose wake draws the plume down; 0
+        without exhaust [m, m/s]
+    lowest, highest : that is flown [m]
+    """
+
+    source: float
+    climb: float = 0.0
+    momentum_flux: float = 0.0
+    buoyancy_flux: float = 0.0
+    stack_diameter: float = 0.0
+    exhaust_speed: float = 0.0
+    lowest: float = 0.0
+    highest: float = float("inf")
+
+    def at(self, distance: float, speed: float) -> float:
+        """Return the height above the sea, at a distance from the stack in an apparent wind [m].
+
+        Parameters
+        ----------
+        distance : behind the stack [m]
+        speed : of the apparent wind [m/s]
+        """
+        mouth = max(0.0, self.source - downwash(self.stack_diameter, self.exhaust_speed, speed))
+        climbed = rise(self.momentum_flux, self.buoyancy_flux, distance, speed)
+        return clip(mouth + self.climb * distance + climbed, self.lowest, self.highest)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Climb:
+    """How the commanded altitude follows the demanded one: slowly, so that the autopilot follows.
+
+    Attributes
+    ----------
+    time : constant of the lag [s]
+    gradient : steepest climb or descent over the vehicle's way [-]
+    reach : farthest that the command may be from the altitude that is flown [m]: an autopilot that
+        has fallen behind by more may stop to integrate, and come back slowly
+    """
+
+    time: float
+    gradient: float
+    reach: float = math.inf
+
+    def step(
+        self,
+        altitude: float,
+        demanded: float,
+        speed: float,
+        time_step: float,
+        *,
+        flown: float = math.nan,
+    ) -> float:
+        """Return the altitude to command a time step later [m].
+
+        Parameters
+        ----------
+        altitude, demanded : commanded now, and in the end [m]
+        speed : of the vehicle [m/s]
+        time_step : [s]
+        flown : altitude now; NaN where it is unknown [m]
+        """
+        rate = limited((demanded - altitude) / self.time, self.gradient * speed)
+        following = altitude + time_step * rate
+        return following if math.isnan(flown) else flown + limited(following - flown, self.reach)
+
+
+class AxisInputs(NamedTuple):
+    """What the expectation of a plume's axis is computed from.
+
+    Attributes
+    ----------
+    own, vessel : motion of the vehicle and of the vessel
+    centre : of oscillation
+    speed : V_r [m/s]
+    plan_time : between plans [s]
+    """
+
+    own: OwnMotion
+    vessel: TargetMotion
+    centre: MovingCentre
+    speed: float
+    plan_time: float
+
+    @property
+    def apparent_wind(self) -> float:
+        """Speed of the air past the vessel, by the centre of oscillation [m/s]."""
+        return self.centre.speed_ratio * self.speed
+
+
+class ExpectedAxis(Protocol):
+    """Where the axis is expected during one flight.
+
+    Attributes
+    ----------
+    climb : how the altitude follows
+    flown : altitude now; NaN where it is unknown [m]
+    demanded : altitude to fly [m]
+    bearing : of the centre of oscillation, to the right of where the plume trails behind the
+        vessel's motion through the air [rad]
+    mode : what is done while the reference is tracked
+    """
+
+    climb: Climb
+    flown: float
+    demanded: float
+    bearing: float
+    mode: Mode
+
+    def plan(self, time: float, inputs: AxisInputs, *, tracking: bool) -> None:
+        """Update the expectation; ``tracking`` says whether the reference is tracked."""
+
+
+class AxisParameters(Protocol):
+    """How a plume's axis is known."""
+
+    @property
+    def altitude(self) -> float:
+        """Altitude at the start [m]."""
+
+    def begin(self) -> ExpectedAxis:
+        """Return the axis at the beginning of a flight."""
+
+
+def trail(own: OwnMotion, vessel: TargetMotion) -> float:
+    """Return the course along which a plume trails behind the vessel, as estimated [rad]."""
+    north, east = apparent_wind(own, vessel)
+    return math.atan2(east, north)
+
+
+def apparent_wind(own: OwnMotion, vessel: TargetMotion) -> tuple[float, float]:
+    """Return the velocity of the air past the vessel, north and east, as estimated [m/s]."""
+    return own.wind_north - vessel.velocity_north, own.wind_east - vessel.velocity_east
+
+
+# A plume that is predicted, or given.
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PredictedPlume:
+    """A plume whose axis is predicted from wind, vessel and the rise of exhaust, or given.
+
+    Attributes
+    ----------
+    height : of the axis, and lowest and highest altitude that are flown
+    altitude : at the start [m]
+    climb : how the altitude follows
+    """
+
+    height: AxisHeight
+    altitude: float
+    climb: Climb = Climb(time=20.0, gradient=0.05)
+
+    def begin(self) -> "PredictedAxis":
+        """Return the axis at the beginning of a flight."""
+        return PredictedAxis(self)
+
+
+class PredictedAxis:
+    """The predicted axis, or the true one once it is given; see ``ExpectedAxis``."""
+
+    def __init__(self, parameters: PredictedPlume) -> None:
+        self._height = parameters.height
+        self.climb = parameters.climb
+        self.demanded = parameters.altitude
+        self.flown = math.nan
+        self.bearing = 0.0
+        self.mode = Mode.TRACKING
+        self._true_axis: tuple[float, float] | None = None
+
+    def set_true_axis(self, height: float, course: float) -> None:
+        """Set the axis at the centre of oscillation: height above the sea [m], course [rad]."""
+        self._true_axis = height, course
+
+    def plan(self, time: float, inputs: AxisInputs, *, tracking: bool) -> None:  # noqa: ARG002 - of the Protocol
+        """Demand the given height, or the one predicted at the centre, within the limits."""
+        if self._true_axis is None:
+            self.demanded = self._height.at(inputs.centre.distance, inputs.apparent_wind)
+            return
+        height, course = self._true_axis
+        self.demanded = clip(height, self._height.lowest, self._height.highest)
+        self.bearing = wrap(course - trail(inputs.own, inputs.vessel))
+
+
+# A plume that is searched for: which height to cross next.
+
+
+class Search(Protocol):
+    """Decides how high to fly next, after a pass (``PlumeEstimator.update`` returned True)."""
+
+    def next_altitude(self, estimator: PlumeEstimator, altitude: float, pass_time: float) -> float:
+        """Return the altitude of the next crossing above the sea, within the limits [m].
+
+        Parameters
+        ----------
+        estimator : after its last pass
+        altitude : of the vehicle now [m]
+        pass_time : between passes [s]
+        """
+
+
+class HeightSearch:
+    """Maximises the probability of detection per time; then narrows the height down, and stays.
+
+    While it searches, each height is weighed by the passes that lie on the way to it and at it: the
+    sum over them of the probability that the plume has been detected by then is the largest for the
+    height with the least expected time to find. Misses that have a plume in common are not
+    independent; given a cell of the estimate they are.
+
+    Parameters
+    ----------
+    lowest, highest : altitudes that may be flown [m]: limits of the flight, of the terrain and of
+        the keep-out area together
+    climb_rate : at which the vehicle climbs and sinks [m/s]
+    """
+
+    def __init__(self, *, lowest: float, highest: float, climb_rate: float) -> None:
+        self._lowest = lowest
+        self._highest = highest
+        self._climb_rate = climb_rate
+        count = max(2, 1 + math.ceil((highest - lowest) / _HEIGHT_STEP))
+        self._heights: Array = np.linspace(lowest, highest, count)
+
+    def next_altitude(self, estimator: PlumeEstimator, altitude: float, pass_time: float) -> float:
+        """Return the altitude of the next crossing [m]; see ``Search``."""
+        if estimator.state is not PlumeState.FOUND:
+            return self._soonest(estimator, altitude, self._climb_rate * pass_time)
+        return self._most_hits(estimator)
+
+    def _most_hits(self, estimator: PlumeEstimator) -> float:
+        """Return the height with the most expected hits, now and by what the pass shows [m]."""
+        height = estimator.height
+        deviation = estimator.height_deviation
+        spread = estimator.sigma_z
+        meander = estimator.meander_z
+        if deviation < _KNOWN * math.hypot(spread, meander):
+            return clip(height, self._lowest, self._highest)
+        low, high = (
+            clip(height + side * _PROBE_REACH * deviation, self._lowest, self._highest)
+            for side in (-1.0, 1.0)
+        )
+        altitudes = low + (high - low) * _PROBES
+        off = np.hypot(estimator.expected_deviation(altitudes), meander)
+        later = 2.0 * ndtr(math.sqrt(-2.0 * math.log(HIT)) * spread / off) - 1.0
+        hits = estimator.hits(altitudes) + _PASSES_INFORMED * later
+        return float(altitudes[int(hits.argmax())])
+
+    def _soonest(self, estimator: PlumeEstimator, altitude: float, climb: float) -> float:
+        """Return the height with the least expected time to find [m].
+
+        ``climb`` is the change of altitude that a pass leaves time for [m].
+        """
+        weights, chances = estimator.prospects(self._heights)
+        missed = 1.0 - chances
+        steps = climb * np.arange(1, _HORIZON + 1)
+        way = altitude + np.clip(self._heights[:, np.newaxis] - altitude, -steps, steps)
+        step = self._heights[1] - self._heights[0]
+        index = np.clip(
+            np.rint((way - self._lowest) / step).astype(np.intp), 0, len(self._heights) - 1
+        )
+        still = np.ones_like(missed)
+        lost = np.zeros(len(self._heights))
+        for k in range(_HORIZON):
+            still *= missed[index[:, k]]
+            lost += np.tensordot(still, weights)
+        return float(self._heights[int(lost.argmin())])
+
+
+class LadderSearch:
+    """Goes up and down a ladder of heights, one a pass, until the plume is found, and flies there.
+
+    Parameters
+    ----------
+    lowest, highest : altitudes that may be flown [m]
+    """
+
+    def __init__(self, *, lowest: float, highest: float) -> None:
+        self._lowest = lowest
+        self._highest = highest
+        self._rung = _RUNG
+
+    def next_altitude(self, estimator: PlumeEstimator, altitude: float, pass_time: float) -> float:  # noqa: ARG002 - of the Protocol
+        """Return the altitude of the next crossing [m]; see ``Search``."""
+        height = estimator.height
+        if estimator.state is not PlumeState.FOUND:
+            if not self._lowest < altitude + self._rung < self._highest:
+                self._rung = -self._rung
+            height = altitude + self._rung
+        return clip(height, self._lowest, self._highest)
+
+
+# A plume that is searched for: its axis, as it is estimated from readings.
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SearchedPlume:
+    """A plume that is searched for.
+
+    Attributes
+    ----------
+    height : of the axis as it is predicted, flown at on the way
+    altitude : at the start [m]
+    climb : how the altitude follows
+    expected : of ship and sensor
+    climb_rate : at which the vehicle climbs and sinks [m/s]
+    ladder : whether a ladder of heights is flown until it is found, instead of the most informative
+        height
+    """
+
+    height: AxisHeight
+    altitude: float
+    climb: Climb
+    expected: Expectation
+    climb_rate: float
+    ladder: bool = False
+
+    def search(self) -> Search:
+        """Return what decides where to cross next, at the beginning of a flight."""
+        lowest = self.expected.lowest
+        highest = self.expected.highest
+        if self.ladder:
+            return LadderSearch(lowest=lowest, highest=highest)
+        return HeightSearch(lowest=lowest, highest=highest, climb_rate=self.climb_rate)
+
+    def begin(self) -> "SearchedAxis":
+        """Return the axis at the beginning of a flight."""
+        return SearchedAxis(self)
+
+
+@dataclass(slots=True)
+class PlumeEstimate:
+    """The estimate of a plume after the last pass; NaN before it is searched for.
+
+    Attributes
+    ----------
+    height, height_deviation : of the axis above the sea [m]
+    offset, offset_deviation : of the axis to the right of the predicted one [m]
+    spread, spread_across : of one realisation in height and across [m]
+    innovation : mean normalised innovation squared [-]
+    """
+
+    height: float = math.nan
+    height_deviation: float = math.nan
+    offset: float = math.nan
+    offset_deviation: float = math.nan
+    spread: float = math.nan
+    spread_across: float = math.nan
+    innovation: float = math.nan
+
+
+class _Fix(NamedTuple):
+    """Where the vehicle was.
+
+    Attributes
+    ----------
+    time : [s]
+    north, east : of the vessel [m]
+    altitude : above the sea [m]
+    """
+
+    time: float
+    north: float
+    east: float
+    altitude: float
+
+
+class SearchedAxis:
+    """The axis as it is estimated from readings once the reference is tracked; ``ExpectedAxis``.
+
+    Attributes
+    ----------
+    estimate : after the last pass
+    sensor : its state, by its readings
+    """
+
+    def __init__(self, parameters: SearchedPlume) -> None:
+        self._parameters = parameters
+        self.climb = parameters.climb
+        self.demanded = parameters.altitude
+        self.flown = math.nan
+        self.bearing = 0.0
+        self.mode = Mode.SEARCHING
+        self.estimate = PlumeEstimate()
+        self.sensor = SensorState.WORKING
+        self._search = parameters.search()
+        self._estimator: PlumeEstimator | None = None
+        self._inputs: AxisInputs | None = None
+        self._fixes: list[_Fix] = []
+        self._last_note = 0.0
+        self._last_pass = 0.0
+        self._decide_at = 0.0
+        self._pass_time = _PASS_TIME
+        self._bearing_demand = 0.0
+
+    def measurable(self) -> float:
+        """Return the probability that the plume can be crossed within the altitudes flown [-].
+
+        It is costly to compute; NaN before the search.
+        """
+        return self._estimator.measurable if self._estimator is not None else math.nan
+
+    def take_readings(self, time: float, readings: Sequence[tuple[float, float]]) -> None:
+        """Note the place now, and what was read since the last call.
+
+        Parameters
+        ----------
+        time : now [s]
+        readings : pairs of time [s] and reading [ppm], in the order of time
+        """
+        estimator = self._estimator
+        inputs = self._inputs
+        if estimator is None or inputs is None:
+            return
+        own = inputs.own
+        vessel = inputs.vessel
+        north = own.ground_north - vessel.north
+        east = own.ground_east - vessel.east
+        self._fixes.append(_Fix(time, north, east, self.flown))
+        for read_at, reading in readings:
+            if read_at - self._last_note > _NOTED:
+                self._note(estimator, inputs, 0.5 * (self._last_note + read_at), math.nan)
+            self._note(estimator, inputs, read_at, reading)
+        if readings:
+            del self._fixes[:-2]
+        elif time - self._last_note > _SILENT:
+            self._note(estimator, inputs, time, math.nan)
+
+    def plan(self, time: float, inputs: AxisInputs, *, tracking: bool) -> None:
+        """Follow the prediction on the way; search once the reference is first tracked."""
+        self._inputs = inputs
+        if self._estimator is None:
+            if not tracking:
+                height = self._parameters.height
+                self.demanded = height.at(inputs.centre.distance, inputs.apparent_wind)
+                return
+            self._estimator = self._begin_search(time, inputs)
+        self.bearing += (self._bearing_demand - self.bearing) * min(
+            1.0, inputs.plan_time / _BEARING_TIME
+        )
+        self.sensor = self._estimator.sensor
+        if self.sensor is SensorState.WORKING:
+            self.mode = _MODES[self._estimator.state]
+        else:
+            self.mode = Mode.SENSOR_FAILED
+
+    def _begin_search(self, time: float, inputs: AxisInputs) -> PlumeEstimator:
+        # The wind at the vehicle's height: how it changes with height is not known on board.
+        prior = expected_plume(
+            self._parameters.expected,
+            distance=inputs.centre.distance,
+            apparent_wind=inputs.apparent_wind,
+            wind_speed=math.hypot(inputs.own.wind_north, inputs.own.wind_east),
+        )
+        estimator = PlumeEstimator(prior)
+        self._last_note = time
+        self._last_pass = time
+        self._keep_estimate(estimator)
+        self._decide(estimator, self.demanded)
+        return estimator
+
+    def _note(
+        self, estimator: PlumeEstimator, inputs: AxisInputs, at: float, reading: float
+    ) -> None:
+        """Give the estimator the place at a time [s], and the reading there [ppm]."""
+        fix = _fix_at(self._fixes, at)
+        along, across = _from_predicted_axis(inputs, fix.north, fix.east)
+        if at > self._last_note:
+            estimator.predict(at - self._last_note)
+            self._last_note = at
+        passed = estimator.update(
+            along, across, fix.altitude, reading, apparent_wind=inputs.apparent_wind
+        )
+        if not passed:
+            return
+        self._pass_time += _PASS_MEMORY * (at - self._last_pass - self._pass_time)
+        self._last_pass = at
+        # Seen from the stack: the pass may have been nearer than the orbit's centre, or farther.
+        self._bearing_demand = estimator.bearing
+        self._keep_estimate(estimator)
+        if estimator.state is not PlumeState.FOUND or at >= self._decide_at:
+            self._decide(estimator, fix.altitude)
+
+    def _decide(self, estimator: PlumeEstimator, altitude: float) -> None:
+        """Choose the altitude of the next crossing."""
+        self.demanded = self._search.next_altitude(estimator, altitude, self._pass_time)
+        self._decide_at = self._last_pass + _DECIDED
+
+    def _keep_estimate(self, found: PlumeEstimator) -> None:
+        self.estimate = PlumeEstimate(
+            height=found.height,
+            height_deviation=found.height_deviation,
+            offset=found.offset,
+            offset_deviation=found.offset_deviation,
+            spread=found.sigma_z,
+            spread_across=found.sigma_y,
+            innovation=found.innovation,
+        )
+
+
+def _from_predicted_axis(inputs: AxisInputs, north: float, east: float) -> tuple[float, float]:
+    """Return a place relative to the vessel as distances along the predicted axis and right [m]."""
+    wind_north, wind_east = apparent_wind(inputs.own, inputs.vessel)
+    speed = math.hypot(wind_north, wind_east) or 1.0
+    along = (north * wind_north + east * wind_east) / speed
+    across = (east * wind_north - north * wind_east) / speed
+    return along, across
+
+
+def _fix_at(fixes: Sequence[_Fix], time: float) -> _Fix:
+    """Return the place at a time [s], linear between those that are known; at least one is."""
+    later = len(fixes) - 1
+    while later > 0 and fixes[later - 1].time >= time:
+        later -= 1
+    then = fixes[later]
+    before = fixes[max(0, later - 1)]
+    if then.time > before.time:
+        fraction = clip((time - before.time) / (then.time - before.time), 0.0, 1.0)
+    else:
+        fraction = 1.0
+    return _Fix(
+        time,
+        before.north + fraction * (then.north - before.north),
+        before.east + fraction * (then.east - before.east),
+        before.altitude + fraction * (then.altitude - before.altitude),
+    )

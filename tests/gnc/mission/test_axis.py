@@ -1,0 +1,411 @@
+"""Where a plume is expected: by prediction, as it is given, and as it is searched for."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from exhaust_cases import PRIOR, SENSOR, MadePlume, estimated
+from hypothesis import given
+from hypothesis import strategies as st
+
+from gnc.estimation.navigation import AirMotion
+from gnc.estimation.plume.estimator import HIT, PlumeEstimator, PlumeState, SensorState
+from gnc.estimation.plume.prior import Expectation
+from gnc.estimation.vessel import SteadyTarget
+from gnc.mission.axis import (
+    AxisHeight,
+    AxisInputs,
+    Climb,
+    HeightSearch,
+    LadderSearch,
+    PredictedPlume,
+    SearchedPlume,
+    trail,
+)
+from gnc.mission.mission import Mode
+from gnc.reference.moving_centre import CentreParameters, MovingCentre
+
+SPEED, PLAN_TIME = 19.42, 0.5
+RISING = AxisHeight(
+    source=35.0, momentum_flux=124.0, buoyancy_flux=49.6, lowest=23.0, highest=117.0
+)
+
+
+def situation(*, wind=(0.0, 0.0), vessel=(8.0, 0.0)):
+    """Return a vehicle astern of a vessel, whose centre of oscillation has found its place."""
+    own = AirMotion(
+        ground_north=-230.0, ground_east=0.0, course=0.0, wind_north=wind[0], wind_east=wind[1]
+    )
+    parameters = CentreParameters(
+        distance_min=203.0,
+        speed_ratio_max=0.97,
+        along=(10.0,) * 3,
+        across=(20.0,) * 3,
+        plume_heading=None,
+        vessel_course=0.0,
+        apparent_wind_min=1.0,
+        speed=SPEED,
+        heading_rate_max=0.5,
+    )
+    centre = MovingCentre(parameters)
+    target = SteadyTarget(*vessel)
+    centre.move(PLAN_TIME, own, target, additional_range=0.0)
+    return AxisInputs(own=own, vessel=target, centre=centre, speed=SPEED, plan_time=PLAN_TIME)
+
+
+EXHAUST = AxisHeight(source=35.0, momentum_flux=124.0, buoyancy_flux=49.6)
+"""A two-stroke engine of 10 MW: w = 20 m/s out of d = 1.5 m at Ts = 523 K into Ta = 288 K, by
+Briggs' Fm = (Ta/Ts) w^2 d^2/4 and F = g w (d^2/4) (1 - Ta/Ts)."""
+
+
+@pytest.mark.parametrize(
+    ("speed", "distance", "height"),
+    [
+        (5.0, 200.0, 77.0),
+        (5.0, 500.0, 111.0),
+        (10.0, 200.0, 57.0),
+        (10.0, 500.0, 73.0),
+        (20.0, 200.0, 47.0),
+        (20.0, 500.0, 55.0),
+    ],
+)
+def test_it_is_that_of_the_worked_example(speed, distance, height):
+    # The table is printed to a metre.
+    assert EXHAUST.at(distance, speed) == pytest.approx(height, abs=0.5)
+
+
+def test_without_heat_it_is_a_straight_line():
+    assert AxisHeight(source=60.0).at(1234.0, 0.1) == 60.0
+    assert AxisHeight(source=60.0, climb=0.25).at(200.0, 12.0) == 110.0
+
+
+def test_it_stays_within_what_is_flown():
+    assert AxisHeight(source=35.0, buoyancy_flux=50.0, highest=60.0).at(500.0, 5.0) == 60.0
+    assert AxisHeight(source=12.0, lowest=20.0).at(100.0, 5.0) == 20.0
+
+
+def test_a_calm_does_not_send_the_aircraft_to_the_sky():
+    assert EXHAUST.at(300.0, 0.0) == EXHAUST.at(300.0, 1.0) < 400.0
+
+
+altitudes = st.floats(20.0, 120.0)
+
+
+@given(
+    altitude=altitudes, demanded=altitudes, gradient=st.floats(0.01, 0.2), time=st.floats(1.0, 20.0)
+)
+def test_the_command_climbs_no_steeper_than_the_gradient_and_never_beyond_what_is_demanded(
+    altitude, demanded, gradient, time
+):
+    following = Climb(time=time, gradient=gradient).step(altitude, demanded, SPEED, PLAN_TIME)
+    # Rounding alone.
+    assert abs(following - altitude) <= gradient * SPEED * PLAN_TIME + 1e-9
+    assert min(altitude, demanded) - 1e-9 <= following <= max(altitude, demanded) + 1e-9
+
+
+@given(altitude=altitudes, demanded=altitudes, flown=altitudes)
+def test_the_command_stays_within_reach_of_the_altitude_that_is_flown(altitude, demanded, flown):
+    following = Climb(time=4.0, gradient=0.08, reach=1.2).step(
+        altitude, demanded, SPEED, PLAN_TIME, flown=flown
+    )
+    assert abs(following - flown) <= 1.2 + 1e-9
+
+
+def test_a_vehicle_that_has_fallen_behind_is_led_back_up():
+    climb, altitude, flown = Climb(time=4.0, gradient=0.08, reach=1.2), 80.0, 40.0
+    for _ in range(200):
+        altitude = climb.step(altitude, 80.0, SPEED, PLAN_TIME, flown=flown)
+        # It closes half of its distance from the command in a plan.
+        flown += 0.5 * (altitude - flown)
+    assert flown == pytest.approx(80.0, abs=0.1)
+
+
+def test_a_plume_is_where_it_is_predicted_until_the_true_axis_is_set():
+    axis, around = PredictedPlume(height=RISING, altitude=60.0).begin(), situation(wind=(0.0, 3.0))
+    axis.plan(0.0, around, tracking=False)
+    assert axis.demanded == RISING.at(around.centre.distance, math.hypot(8.0, 3.0))
+    assert (axis.bearing, axis.mode) == (0.0, Mode.TRACKING)
+    axis.set_true_axis(52.5, trail(around.own, around.vessel) + 0.1)
+    axis.plan(0.5, around, tracking=True)
+    assert axis.demanded == 52.5
+    assert axis.bearing == pytest.approx(0.1, abs=1e-12)
+
+
+@pytest.mark.parametrize(("given", "flown"), [(300.0, 117.0), (3.0, 23.0)])
+def test_the_true_height_is_flown_within_the_limits_alone(given, flown):
+    axis = PredictedPlume(height=RISING, altitude=60.0).begin()
+    axis.set_true_axis(given, math.pi)
+    axis.plan(0.0, situation(), tracking=True)
+    assert axis.demanded == flown
+
+
+def test_the_plume_trails_behind_the_vessels_motion_through_the_air():
+    around = situation(wind=(0.0, 8.0), vessel=(8.0, 0.0))
+    # A wind to the east as fast as the ship sails north carries its smoke to the south-east.
+    assert trail(around.own, around.vessel) == pytest.approx(math.radians(135.0), abs=1e-12)
+
+
+def test_a_bearing_turns_the_centre_to_the_right_of_where_the_plume_would_trail():
+    around = situation()
+    for _ in range(400):
+        around.centre.move(
+            PLAN_TIME, around.own, around.vessel, additional_range=0.0, bearing=math.radians(10.0)
+        )
+    # Astern is 180 degrees; to the right of it, seen along the plume, is west. It comes there
+    # asymptotically.
+    assert math.degrees(around.centre.axis) % 360.0 == pytest.approx(190.0, abs=0.1)
+
+
+LOW, HIGH = 20.0, 120.0
+
+PASS_TIME = 9.0
+
+
+def _search(climb_rate: float = 1.5, lowest: float = LOW, highest: float = HIGH) -> HeightSearch:
+    return HeightSearch(lowest=lowest, highest=highest, climb_rate=climb_rate)
+
+
+def test_a_search_begins_where_the_plume_is_most_likely() -> None:
+    altitude = _search().next_altitude(PlumeEstimator(PRIOR), 65.0, PASS_TIME)
+    # The heights that are weighed are 6 m apart, and the plume's spread is 9 m.
+    assert altitude == pytest.approx(65.0, abs=9.0)
+
+
+def test_a_search_leaves_a_height_at_which_nothing_was_detected() -> None:
+    estimator = PlumeEstimator(PRIOR)
+    MadePlume(height=65.0, peak=0.0).fly(estimator, [65.0] * 4)
+    assert abs(_search().next_altitude(estimator, 65.0, PASS_TIME) - 65.0) > 8.0
+
+
+def test_the_demanded_height_has_the_least_expected_time_to_find() -> None:
+    """Against the definition: passes on the way and there, misses independent given a cell."""
+    estimator, climb = PlumeEstimator(PRIOR), 1.5 * PASS_TIME
+    MadePlume(height=100.0, peak=0.0).fly(estimator, [62.0] * 2)
+    heights = np.linspace(LOW, HIGH, 18)
+
+    def still_searching(target: float) -> float:
+        missed, total = 1.0, 0.0
+        for k in range(1, 9):
+            altitude = 62.0 + min(max(target - 62.0, -climb * k), climb * k)
+            nearest = heights[int(np.abs(heights - altitude).argmin())]
+            weights, chances = estimator.prospects(np.array([nearest]))
+            missed = missed * (1.0 - chances[0])
+            total += float(np.sum(weights * missed))
+        return total
+
+    best = min(heights.tolist(), key=still_searching)
+    assert _search().next_altitude(estimator, 62.0, PASS_TIME) == pytest.approx(best)
+
+
+@pytest.mark.parametrize(("lowest", "highest"), [(20.0, 120.0), (80.0, 90.0), (20.0, 45.0)])
+def test_demands_keep_within_the_limits(lowest: float, highest: float) -> None:
+    estimator = PlumeEstimator(PRIOR)
+    for search in (_search(1.5, lowest, highest), LadderSearch(lowest=lowest, highest=highest)):
+        altitude = 0.5 * (lowest + highest)
+        for _ in range(12):
+            altitude = search.next_altitude(estimator, altitude, PASS_TIME)
+            assert lowest <= altitude <= highest
+    found = estimated(MadePlume(height=65.0), [65.0, 72.0])
+    assert lowest <= _search(1.5, lowest, highest).next_altitude(found, 65.0, PASS_TIME) <= highest
+
+
+def test_an_uncertain_height_is_probed_and_a_known_one_flown() -> None:
+    vague = estimated(MadePlume(height=65.0), [65.0])
+    assert vague.state is PlumeState.FOUND
+    probing = _search().next_altitude(vague, 65.0, PASS_TIME)
+    spread = math.hypot(vague.sigma_z, PRIOR.meander_z)
+    assert vague.height_deviation > 0.5 * spread
+    # One pass leaves open on which side the axis is: beside the estimate, but not where the plume
+    # is missed.
+    assert 0.1 * spread < abs(probing - vague.height) <= 1.5 * spread
+    sure = estimated(MadePlume(height=65.0), [65.0, 74.0, 56.0, 65.0, 74.0, 56.0, 65.0, 72.0])
+    # Between known and vague there is little to be gained off the estimate, and none where the
+    # deviation is small.
+    assert abs(_search().next_altitude(sure, 65.0, PASS_TIME) - sure.height) < 0.3 * spread
+    sure.height_deviation = 0.1 * spread
+    assert _search().next_altitude(sure, 65.0, PASS_TIME) == pytest.approx(sure.height)
+
+
+def test_the_height_that_is_flown_has_the_most_hits_in_it_and_in_what_it_says() -> None:
+    """Against the definition: hits now, and three at the deviation that is expected after it."""
+    estimator = estimated(MadePlume(height=75.0), [65.0, 65.0])
+    demanded = _search().next_altitude(estimator, 65.0, PASS_TIME)
+    around = estimator.height + estimator.height_deviation * np.linspace(-1.6, 1.6, 9)
+    reach = estimator.sigma_z * math.sqrt(-2.0 * math.log(HIT))
+
+    def worth(altitude: float) -> float:
+        at = np.array([altitude])
+        off = math.hypot(float(estimator.expected_deviation(at)[0]), PRIOR.meander_z)
+        return float(estimator.hits(at)[0]) + 3.0 * math.erf(reach / off / math.sqrt(2.0))
+
+    assert demanded == pytest.approx(max(around.tolist(), key=worth))
+
+
+def test_hits_are_those_of_centres_drawn_at_random() -> None:
+    estimator = estimated(MadePlume(height=68.0), [65.0, 74.0, 56.0])
+    generator, altitudes = np.random.default_rng(4), np.array([50.0, 66.0, 80.0])
+    weights = estimator._weights.sum(axis=1)
+    axes = generator.choice(len(weights), 100_000, p=weights / weights.sum())
+    heights = estimator.grid.coarse_heights(estimator._heights)[axes]
+    # The made ways are square to the plume in its frame, and have a correlation length of a
+    # kilometre: one look.
+    centres = heights + PRIOR.meander_z * generator.standard_normal(len(axes))
+    for altitude, chance in zip(altitudes, estimator.hits(altitudes), strict=True):
+        peak = np.exp(-0.5 * ((altitude - centres) / estimator._spread[axes]) ** 2)
+        # A share of 100,000 has a deviation of at most 0.0016.
+        assert chance == pytest.approx(float(np.mean(peak > HIT)), abs=0.01)
+
+
+def test_a_ladder_goes_up_and_down_between_its_ends() -> None:
+    search, estimator, altitude = (
+        LadderSearch(lowest=20.0, highest=120.0),
+        PlumeEstimator(PRIOR),
+        65.0,
+    )
+    steps = []
+    for _ in range(10):
+        altitude = search.next_altitude(estimator, altitude, PASS_TIME)
+        steps.append(altitude)
+    assert steps == [80.0, 95.0, 110.0, 95.0, 80.0, 65.0, 50.0, 35.0, 50.0, 65.0]
+
+
+FAST = replace(SENSOR, saturated=20000.0)
+EXPECTED = Expectation(
+    source_height=35.0,
+    source_deviation=8.0,
+    stack_diameter=1.5,
+    exhaust_speed=18.0,
+    momentum_flux=124.0,
+    buoyancy_flux=49.6,
+    co2_rate=37.4,
+    load_deviation=0.4,
+    wind_deviation=0.5,
+    sensor=FAST,
+    lowest=23.0,
+    highest=117.0,
+)
+SEARCHED = SearchedPlume(
+    height=RISING,
+    altitude=60.0,
+    climb=Climb(time=4.0, gradient=0.08),
+    expected=EXPECTED,
+    climb_rate=0.08 * SPEED,
+)
+CLEAN, PEAK, WIDTH = 420.0, 150.0, 12.0
+"""CO2 of clean air, in the plume's centre [ppm], and its spread across and in height [m]: an
+example of the fast preset.
+"""
+
+STEP, INTERVAL, HALF_WIDTH = 0.1, 6.0, 50.0
+"""Between looks [s], between crossings [s], and how far to the side it swings [m]."""
+
+
+def reading(across, altitude, height):
+    return CLEAN + PEAK * math.exp(-0.5 * (across**2 + (altitude - height) ** 2) / WIDTH**2)
+
+
+def flown(axis, *, height, duration, sensor=lambda _, ppm: ppm, distance=220.0, offset=0.0):
+    """Fly back and forth across a plume at a height, with a vehicle that follows its altitude;
+    return the modes in their order.
+
+    At a distance astern of the vessel; the plume is offset to the right there.
+    """
+    around, modes = situation(), []
+    own, altitude, swings = around.own, SEARCHED.altitude, []
+    for i in range(round(duration / STEP)):
+        time = STEP * i
+        across = HALF_WIDTH * math.sin(math.pi * time / INTERVAL)
+        around.vessel.update(time, False)
+        # Astern of a vessel that sails north, right of the plume is west.
+        own.ground_north, own.ground_east = around.vessel.north - distance, -across
+        altitude += max(-0.15, min(0.15, axis.demanded - altitude))
+        axis.flown = altitude
+        swings.append(reading(across - offset, altitude, height))
+        late = swings[max(0, len(swings) - 1 - round(FAST.delay / STEP))]
+        axis.take_readings(time, [(time, sensor(time, late))] if i % 2 == 0 else [])
+        if i % round(PLAN_TIME / STEP) == 0:
+            axis.plan(time, around, tracking=time > 2.0)
+        modes += [axis.mode] if not modes or modes[-1] is not axis.mode else []
+    return modes
+
+
+def noisy(time, ppm):
+    """Return a reading with a noise that is no random number: of the data sheet's size, and never
+    twice the same.
+    """
+    return ppm + FAST.noise * math.sqrt(2.0) * math.sin(37.7 * time)
+
+
+def test_on_the_way_it_flies_at_the_height_that_is_predicted_and_believes_nothing():
+    axis, around = SEARCHED.begin(), situation()
+    axis.take_readings(0.0, [(0.0, 420.0)])
+    axis.plan(0.0, around, tracking=False)
+    assert axis.demanded == RISING.at(around.centre.distance, 8.0)
+    assert math.isnan(axis.estimate.height)
+    assert math.isnan(axis.measurable())
+
+
+@pytest.mark.parametrize("distance", [130.0, 220.0, 300.0])
+def test_the_bearing_is_that_from_the_funnel_wherever_the_plume_is_crossed(distance):
+    axis = SEARCHED.begin()
+    flown(
+        axis, height=60.0, duration=150.0, sensor=noisy, distance=distance, offset=0.08 * distance
+    )
+    # The prior of 0.06 rad about 0 draws the estimate inwards by a tenth; the centre of the orbit
+    # is 213 m astern in each case.
+    assert 0.055 < axis.bearing < 0.09
+
+
+@pytest.mark.parametrize("ladder", [False, True])
+def test_a_plume_is_searched_for_found_and_followed(ladder):
+    axis = replace(SEARCHED, ladder=ladder).begin()
+    modes = flown(axis, height=75.0, duration=180.0, sensor=noisy)
+    assert modes == [Mode.SEARCHING, Mode.FOUND]
+    # To about its own spread: strength and height off the axis look alike.
+    assert abs(axis.estimate.height - 75.0) < WIDTH
+    assert axis.estimate.height_deviation < WIDTH
+
+
+def test_a_plume_above_the_limits_is_searched_for_within_them_and_found_to_be_out_of_reach():
+    low = replace(SEARCHED, expected=replace(EXPECTED, highest=50.0), altitude=45.0)
+    axis, fresh = low.begin(), low.begin()
+    assert flown(axis, height=110.0, duration=120.0, sensor=noisy) == [Mode.SEARCHING]
+    assert EXPECTED.lowest <= axis.demanded <= 50.0
+    fresh.plan(0.0, situation(), tracking=True)
+    assert axis.measurable() < 0.5 * fresh.measurable()
+    assert axis.estimate.height > 60.0
+
+
+@pytest.mark.parametrize(
+    ("sensor", "state"),
+    [(lambda *_: 420.0, SensorState.STUCK), (lambda *_: 20000.0, SensorState.SATURATED)],
+)
+def test_a_sensor_that_fails_is_recognised_and_adds_no_evidence(sensor, state):
+    axis = SEARCHED.begin()
+    modes = flown(axis, height=75.0, duration=40.0, sensor=sensor)
+    assert modes[-1] is Mode.SENSOR_FAILED
+    assert axis.sensor is state
+
+
+def test_a_reading_counts_for_the_place_at_which_it_was_read():
+    both = []
+    for late in (False, True):
+        axis, around = SEARCHED.begin(), situation()
+        axis.flown = 60.0
+        axis.plan(0.0, around, tracking=True)
+        waiting = []
+        for i in range(300):
+            time = STEP * i
+            across = HALF_WIDTH * math.sin(math.pi * time / INTERVAL)
+            around.vessel.update(time, False)
+            around.own.ground_north, around.own.ground_east = around.vessel.north - 220.0, -across
+            waiting += [(time, noisy(time, reading(across, 60.0, 62.0)))] if i % 2 == 0 else []
+            due = not late or i % 5 == 4
+            axis.take_readings(time, waiting if due else [])
+            waiting = [] if due else waiting
+        both.append(axis.estimate)
+    # Half a second late makes no difference but that of a straight line between places a tenth of a
+    # second apart.
+    assert both[1].height == pytest.approx(both[0].height, abs=0.2)
+    assert both[1].offset == pytest.approx(both[0].offset, abs=0.5)
