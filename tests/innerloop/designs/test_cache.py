@@ -17,10 +17,9 @@ import pytest
 import aircraft
 import common
 import innerloop
-from aircraft.errors import AircraftError
 from aircraft.fleet.aerosonde import AEROSONDE
 from aircraft.fleet.x8 import X8
-from aircraft.spec import MODELS
+from aircraft.spec import MODELS, AircraftError
 from innerloop.designs import cache, designer
 from innerloop.designs.cache import design_key, designed
 from innerloop.designs.designed import DesignError

@@ -4,11 +4,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from aircraft.errors import AircraftError
+from aircraft.faults import ENGINE
 from aircraft.fleet.x8 import X8
-from aircraft.simulation.faults import ENGINE
-from aircraft.spec import Actuator
-from aircraft.spec_check import check_spec
+from aircraft.spec import Actuator, AircraftError, check_spec
 from scenarios.schema.sections.equipment import FaultConfig
 from scenarios.world.faults import NO_FAULT, NOT_OF_AIRCRAFT, SATELLITES, VESSEL_DATA, sampled_fault
 
