@@ -183,7 +183,8 @@ def test_settings_say_title_commands_properties_and_envelope(heavy):
             r"envelope: airspeed is 45 m/s; it must lie between airspeed_min, 50, and",
         ),
         (
-            "[envelope]\nairspeed_mps=45\nairspeed=45",
+            "[envelope]\nairspeed_min_mps=40\nairspeed_mps=45\nairspeed_max_mps=55\n"
+            "bank_deg=30\nairspeed=45",
             "unknown key 'envelope.airspeed'",
         ),
         (
