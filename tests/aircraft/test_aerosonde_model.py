@@ -1,6 +1,4 @@
-"""The Aerosonde's model in JSBSim, part by part, against what Beard and McLain publish: forces,
-propulsion, trims, linear model.
-"""
+"""The Aerosonde in JSBSim against Beard and McLain: forces, propulsion, trims, linear model."""
 
 import math
 
@@ -70,22 +68,20 @@ def hold(fdm, airspeed, alpha, beta, rates, surfaces, throttle=0.7):
     return fdm.read("atmosphere/rho-slugs_ft3") * KG_M3_PER_SLUG_FT3
 
 
-@pytest.mark.parametrize("condition", CONDITIONS, ids=repr)
-def test_aerodynamic_forces_and_moments_are_those_of_the_published_coefficients(fdm, condition):
-    airspeed, alpha, beta, rates, surfaces = condition
-    with fdm.frozen():
-        density = hold(fdm, *condition)
-        force = np.array([fdm.read(f"forces/fb{axis}-aero-lbs") for axis in "xyz"]) * N_PER_LBF
-        moment = (
-            np.array([fdm.read(f"moments/{axis}-aero-lbsft") for axis in "lmn"]) * NM_PER_LBF_FT
-        )
-    expected_force, expected_moment = bm.aero(
-        body_velocity(airspeed, alpha, beta), rates, surfaces, density
-    )
-    # JSBSim's unit factors carry eight digits or so; the blend multiplies those of its exponent by
-    # 50. Absolute: a millionth of what a coefficient of 0.05 gives at 25 m/s.
-    np.testing.assert_allclose(force, expected_force, rtol=2e-6, atol=1e-5)
-    np.testing.assert_allclose(moment, expected_moment, rtol=2e-6, atol=1e-5)
+def test_aerodynamic_forces_and_moments_are_those_of_the_published_coefficients(fdm):
+    for condition in CONDITIONS:
+        airspeed, alpha, beta, rates, surfaces = condition
+        with fdm.frozen():
+            density = hold(fdm, *condition)
+            force = np.array([fdm.read(f"forces/fb{i}-aero-lbs") for i in "xyz"]) * N_PER_LBF
+            moment = np.array([fdm.read(f"moments/{i}-aero-lbsft") for i in "lmn"]) * NM_PER_LBF_FT
+        velocity = body_velocity(airspeed, alpha, beta)
+        expected_force, expected_moment = bm.aero(velocity, rates, surfaces, density)
+        # JSBSim's unit factors carry eight digits or so; the blend multiplies those of its exponent
+        # by 50. Absolute: a millionth of what a coefficient of 0.05 gives at 25 m/s.
+        limits = {"rtol": 2e-6, "atol": 1e-5, "err_msg": repr(condition)}
+        np.testing.assert_allclose(force, expected_force, **limits)
+        np.testing.assert_allclose(moment, expected_moment, **limits)
 
 
 def test_lift_falls_past_the_stall(fdm):

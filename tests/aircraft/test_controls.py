@@ -1,6 +1,4 @@
-"""Control-effectiveness linearisation: a surface that travels further one way is commanded by its
-effect.
-"""
+"""Surfaces with unequal travel are commanded by their effect; flight idle brakes most."""
 
 from dataclasses import replace
 

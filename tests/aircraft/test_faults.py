@@ -1,6 +1,4 @@
-"""Faults of aircraft of other makes, flown by hand: what the autopilot does about them is in
-tests/innerloop.
-"""
+"""Faults of several aircraft, flown without an autopilot; with one: tests/innerloop."""
 
 from dataclasses import replace
 

@@ -1,4 +1,4 @@
-"""The JSBSim wrapper: property names, placing, holding, and silence."""
+"""The view of JSBSim: properties, placing, holding, silence, FlightGear and the clock."""
 
 import math
 import os

@@ -1,4 +1,4 @@
-"""Copies of models: what is left out, what stays, and that the originals are as they were."""
+"""Copies of JSBSim models: what is left out, what stays, and that the originals stay the same."""
 
 import hashlib
 import shutil
@@ -33,7 +33,8 @@ FLIGHT = """<fdm_config name="probe" version="2.0">
   <system name="map of flaps"><property>flaps/map</property></system>
   <flight_control name="fcs">
     <channel name="servo"><actuator name="fcs/servo">
-      <input>fcs/elevator-cmd-norm</input><lag>10</lag><hysteresis_width>0.05</hysteresis_width><deadband_width>0.01</deadband_width>
+      <input>fcs/elevator-cmd-norm</input><lag>10</lag>
+      <hysteresis_width>0.05</hysteresis_width><deadband_width>0.01</deadband_width>
     </actuator></channel>
   </flight_control>
 </fdm_config>"""

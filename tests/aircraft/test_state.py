@@ -1,4 +1,4 @@
-"""Kinematics of the rigid body: identities, and numerical differentiation of a path."""
+"""Kinematics of the rigid body, by identities and differentiation, and the local frame."""
 
 import math
 from dataclasses import replace

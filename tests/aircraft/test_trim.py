@@ -1,6 +1,4 @@
-"""Equilibria of the X8 against Newton's and Euler's equations written down from the published
-numbers.
-"""
+"""Equilibria against Newton's and Euler's equations: the X8's published, the T-37's of JSBSim."""
 
 import math
 from dataclasses import replace

@@ -1,6 +1,4 @@
-"""The look at an aircraft whose files are the user's: however it is named, and not at those that
-come with project and JSBSim.
-"""
+"""A user's aircraft is run before use, whatever its name; supplied ones are not."""
 
 import shutil
 import subprocess

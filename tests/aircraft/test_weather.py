@@ -1,4 +1,4 @@
-"""Turbulence against MIL-F-8785C, and JSBSim's against both."""
+"""Turbulence against MIL-F-8785C and gusts against 1 - cosine, as formulas and in JSBSim."""
 
 import math
 

@@ -1,4 +1,4 @@
-"""Aerodynamic forces and moments of the model in JSBSim against the published coefficients."""
+"""Forces, moments and inertia of the X8 in JSBSim against the published numbers."""
 
 import itertools
 
@@ -63,28 +63,28 @@ def hold(fdm, air, altitude=150.0):
     return fdm.read("atmosphere/rho-slugs_ft3") * KG_M3_PER_SLUG_FT3
 
 
-@pytest.mark.parametrize("air", STATES, ids=repr)
-def test_aerodynamic_forces_and_moments_are_those_of_the_published_coefficients(x8_fdm, air):
-    with x8_fdm.frozen():
-        density = hold(x8_fdm, air)
-        force = np.array([x8_fdm.read(f"forces/fb{axis}-aero-lbs") for axis in "xyz"]) * N_PER_LBF
-        moment = (
-            np.array([x8_fdm.read(f"moments/{axis}-aero-lbsft") for axis in "lmn"]) * NM_PER_LBF_FT
-        )
-    # Source of the coefficients: x8_published. At JSBSim's own density (which has its own test) a
-    # part in a million is left for JSBSim's unit factors, which carry eight digits or so. Absolute:
-    # a millionth of what a coefficient of 0.01 gives at 20 m/s.
-    np.testing.assert_allclose(force, x8.aero_force(air, density), rtol=1e-6, atol=2e-6)
-    np.testing.assert_allclose(moment, x8.aero_moment(air, density), rtol=1e-6, atol=2e-6)
+def test_aerodynamic_forces_and_moments_are_those_of_the_published_coefficients(x8_fdm):
+    for air in STATES:
+        with x8_fdm.frozen():
+            density = hold(x8_fdm, air)
+            force = np.array([x8_fdm.read(f"forces/fb{i}-aero-lbs") for i in "xyz"]) * N_PER_LBF
+            moment = np.array([x8_fdm.read(f"moments/{i}-aero-lbsft") for i in "lmn"])
+        moment *= NM_PER_LBF_FT
+        # Source of the coefficients: x8_published. At JSBSim's own density (which has its own test)
+        # a part in a million is left for JSBSim's unit factors, which carry eight digits or so.
+        # Absolute: a millionth of what a coefficient of 0.01 gives at 20 m/s.
+        expected_force, expected_moment = x8.aero_force(air, density), x8.aero_moment(air, density)
+        np.testing.assert_allclose(force, expected_force, rtol=1e-6, atol=2e-6, err_msg=repr(air))
+        np.testing.assert_allclose(moment, expected_moment, rtol=1e-6, atol=2e-6, err_msg=repr(air))
 
 
-@pytest.mark.parametrize("altitude", [0.0, 100.0, 200.0, 1000.0])
-def test_density_is_that_of_the_standard_atmosphere(x8_fdm, altitude):
-    with x8_fdm.frozen():
-        density = hold(x8_fdm, x8.Air(airspeed=20.0), altitude)
-    # U.S. Standard Atmosphere 1976. JSBSim rounds the molar mass of air to 28.9645 g/mol and the
-    # earth's radius: 1e-5 or so.
-    assert density == pytest.approx(x8.standard_density(altitude), rel=2e-5)
+def test_density_is_that_of_the_standard_atmosphere(x8_fdm):
+    for altitude in (0.0, 100.0, 200.0, 1000.0):
+        with x8_fdm.frozen():
+            density = hold(x8_fdm, x8.Air(airspeed=20.0), altitude)
+        # U.S. Standard Atmosphere 1976. JSBSim rounds the molar mass of air to 28.9645 g/mol and
+        # the earth's radius: 1e-5 or so.
+        assert density == pytest.approx(x8.standard_density(altitude), rel=2e-5)
 
 
 def test_the_standard_atmosphere_of_this_test_has_its_tabulated_density():
@@ -154,25 +154,17 @@ def eulers_equation(inertia, moment, rates):
     return np.linalg.solve(inertia, moment - np.cross(rates, inertia @ rates))
 
 
-@pytest.mark.parametrize("case", CASES)
-def test_angular_acceleration_obeys_eulers_equation(x8_fdm, case):
-    flown, moment = angular_acceleration_and_moment(x8_fdm, case)
-    expected = eulers_equation(x8.INERTIA, moment, case["rates"])
-    # Absolute: the earth's rate of 7e-5 rad/s times rates near 1 rad/s.
-    np.testing.assert_allclose(
-        flown, expected, rtol=JSBSIM_INERTIA_ERROR, atol=2e-4 * np.abs(expected).max()
-    )
-
-
-@pytest.mark.parametrize("case", CASES)
-def test_the_other_sign_of_the_product_of_inertia_would_show(x8_fdm, case):
-    flown, moment = angular_acceleration_and_moment(x8_fdm, case)
+def test_angular_acceleration_obeys_eulers_equation_for_one_sign_of_the_product_of_inertia(x8_fdm):
     other = x8.INERTIA * np.array([[1.0, 1.0, -1.0], [1.0, 1.0, 1.0], [-1.0, 1.0, 1.0]])
-    # A hundred times the tolerance above.
-    assert (
-        np.abs(flown - eulers_equation(other, moment, case["rates"])).max()
-        > 2e-2 * np.abs(flown).max()
-    )
+    for case in CASES:
+        flown, moment = angular_acceleration_and_moment(x8_fdm, case)
+        expected = eulers_equation(x8.INERTIA, moment, case["rates"])
+        # Absolute: the earth's rate of 7e-5 rad/s times rates near 1 rad/s.
+        atol = 2e-4 * np.abs(expected).max()
+        np.testing.assert_allclose(flown, expected, rtol=JSBSIM_INERTIA_ERROR, atol=atol)
+        # The other sign would show a hundred times the tolerance above.
+        off = np.abs(flown - eulers_equation(other, moment, case["rates"])).max()
+        assert off > 2e-2 * np.abs(flown).max()
 
 
 def test_aileron_alone_rolls_and_yaws_as_coefficients_and_inertia_say(x8_fdm):
@@ -195,11 +187,10 @@ def test_aileron_alone_rolls_and_yaws_as_coefficients_and_inertia_say(x8_fdm):
     assert expected[2] < 0.0
 
 
-@pytest.mark.parametrize(("name", "published"), [("ixx", x8.JX), ("iyy", x8.JY), ("izz", x8.JZ)])
-def test_moments_of_inertia_are_those_of_the_model_file(x8_fdm, name, published):
+def test_moments_of_inertia_are_those_of_the_model_file(x8_fdm):
     x8_fdm.place(
         RigidBodyState(altitude=100.0, roll=0.0, pitch=0.0, velocity_body=(20.0, 0.0, 0.0))
     )
-    assert x8_fdm.read(f"inertia/{name}-slugs_ft2") * KG_M2_PER_SLUG_FT2 == pytest.approx(
-        published, rel=JSBSIM_INERTIA_ERROR
-    )
+    for name, published in (("ixx", x8.JX), ("iyy", x8.JY), ("izz", x8.JZ)):
+        moment = x8_fdm.read(f"inertia/{name}-slugs_ft2") * KG_M2_PER_SLUG_FT2
+        assert moment == pytest.approx(published, rel=JSBSIM_INERTIA_ERROR)

@@ -1,6 +1,4 @@
-"""Propeller and motor of the X8 against the published polynomials and the three-constant motor
-equations.
-"""
+"""Propeller and motor of the X8 against the published polynomials and motor equations."""
 
 import math
 
@@ -60,41 +58,8 @@ def shaft_torque(fdm):
     return -fdm.read("propulsion/engine/propeller-torque-ftlb") * NM_PER_LBF_FT
 
 
-@pytest.mark.parametrize(("airspeed", "throttle"), CONDITIONS)
-def test_settled_thrust_is_that_of_the_published_polynomial(x8_fdm, airspeed, throttle):
-    with x8_fdm.frozen():
-        speed, density = settled(x8_fdm, airspeed, throttle)
-        thrust = x8_fdm.read("propulsion/engine/thrust-lbs") * N_PER_LBF
-    unit = density * (speed / (2.0 * math.pi)) ** 2 * x8.PROPELLER_DIAMETER**4
-    assert thrust == pytest.approx(x8.thrust(airspeed, speed, density), abs=CT_ERROR * unit)
-
-
-@pytest.mark.parametrize(("airspeed", "throttle"), CONDITIONS)
-def test_settled_torque_is_that_of_the_published_polynomial(x8_fdm, airspeed, throttle):
-    with x8_fdm.frozen():
-        speed, density = settled(x8_fdm, airspeed, throttle)
-        torque = shaft_torque(x8_fdm)
-    unit = density * (speed / (2.0 * math.pi)) ** 2 * x8.PROPELLER_DIAMETER**5
-    # The motor balances it within what its own equations allow, see below.
-    assert torque == pytest.approx(
-        x8.propeller_torque(airspeed, speed, density), abs=CQ_ERROR * unit + 2e-5 * abs(torque)
-    )
-
-
-@pytest.mark.parametrize(("airspeed", "throttle"), CONDITIONS)
-def test_settled_speed_satisfies_the_three_constant_motor_equations(x8_fdm, airspeed, throttle):
-    with x8_fdm.frozen():
-        speed, _ = settled(x8_fdm, airspeed, throttle)
-        torque = shaft_torque(x8_fdm)
-    # V = I R + Kt omega and Q = Kt (I - I0). JSBSim's conversion from watts to ft lbf/s (745.7 W a
-    # horsepower) is 1.3e-5 off.
-    assert torque == pytest.approx(x8.motor_torque(throttle, speed), rel=2e-5)
-
-
-@pytest.mark.parametrize(("airspeed", "throttle"), CONDITIONS)
-def test_the_speed_the_published_equations_settle_at_is_the_one_flown(x8_fdm, airspeed, throttle):
-    with x8_fdm.frozen():
-        flown, density = settled(x8_fdm, airspeed, throttle)
+def speed_where_torques_meet(airspeed, throttle, density):
+    """Speed [rad/s] at which the published motor and propeller have the same torque."""
     low, high = 50.0, x8.BATTERY / x8.MOTOR_KT
     for _ in range(60):  # bisection: the motor's torque falls with speed, the propeller's rises
         middle = 0.5 * (low + high)
@@ -102,11 +67,29 @@ def test_the_speed_the_published_equations_settle_at_is_the_one_flown(x8_fdm, ai
             low = middle
         else:
             high = middle
-    # The interpolated torque's error over the stiffness of motor and propeller, at least Kt^2/R =
-    # 0.0082 N m s/rad.
-    unit = density * (flown / (2.0 * math.pi)) ** 2 * x8.PROPELLER_DIAMETER**5
-    stiffness = x8.MOTOR_KT**2 / x8.MOTOR_RESISTANCE
-    assert flown == pytest.approx(0.5 * (low + high), abs=1.1 * CQ_ERROR * unit / stiffness)
+    return 0.5 * (low + high)
+
+
+def test_settled_thrust_torque_and_speed_are_those_of_the_published_equations(x8_fdm):
+    for airspeed, throttle in CONDITIONS:
+        with x8_fdm.frozen():
+            speed, density = settled(x8_fdm, airspeed, throttle)
+            thrust = x8_fdm.read("propulsion/engine/thrust-lbs") * N_PER_LBF
+            torque = shaft_torque(x8_fdm)
+        unit = density * (speed / (2.0 * math.pi)) ** 2 * x8.PROPELLER_DIAMETER**4
+        torque_error = CQ_ERROR * unit * x8.PROPELLER_DIAMETER
+        assert thrust == pytest.approx(x8.thrust(airspeed, speed, density), abs=CT_ERROR * unit)
+        # V = I R + Kt omega and Q = Kt (I - I0). JSBSim's conversion from watts to ft lbf/s (745.7
+        # W a horsepower) is 1.3e-5 off.
+        assert torque == pytest.approx(x8.motor_torque(throttle, speed), rel=2e-5)
+        assert torque == pytest.approx(
+            x8.propeller_torque(airspeed, speed, density), abs=torque_error + 2e-5 * abs(torque)
+        )
+        # The interpolated torque's error over the stiffness of motor and propeller, at least
+        # Kt^2/R = 0.0082 N m s/rad.
+        stiffness = x8.MOTOR_KT**2 / x8.MOTOR_RESISTANCE
+        expected = speed_where_torques_meet(airspeed, throttle, density)
+        assert speed == pytest.approx(expected, abs=1.1 * torque_error / stiffness)
 
 
 def test_the_propeller_follows_the_throttle_with_the_time_constant_of_motor_and_load(x8_fdm):

@@ -49,7 +49,7 @@ def test_a_part_fails_for_good():
 
 @pytest.mark.parametrize("name", sorted({*NOT_OF_AIRCRAFT, ENGINE}))
 def test_no_actuator_may_have_the_name_of_another_fault(name):
-    with pytest.raises(AircraftError, match=f"'{name}' is no name of an actuator"):
+    with pytest.raises(AircraftError, match=f"'{name}' is not a valid name of an actuator"):
         check_spec(
             replace(
                 X8, own_actuators=(Actuator(name=name, commands=X8.input("throttle").commands),)
