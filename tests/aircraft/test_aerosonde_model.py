@@ -101,7 +101,7 @@ def test_mass_and_inertia_are_the_published_ones(fdm):
     with fdm.frozen():
         hold(fdm, 25.0, 0.05, 0.0, STILL, STILL)
     assert fdm.read("inertia/mass-slugs") * 14.593902937 == pytest.approx(bm.MASS, rel=1e-7)
-    # JSBSim's kg m^2 is 9e-5 off (test_inertia). The sign of Jxz shows in how it answers moments
+    # JSBSim's kg m^2 is 9e-5 off (test_x8_forces). The sign of Jxz shows in how it answers moments
     # (the doublets of verification).
     for name, published in (("ixx", bm.JX), ("iyy", bm.JY), ("izz", bm.JZ)):
         assert fdm.read(f"inertia/{name}-slugs_ft2") * NM_PER_LBF_FT == pytest.approx(

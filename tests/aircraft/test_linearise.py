@@ -100,22 +100,20 @@ def test_states_inputs_and_outputs_are_named(models):
 
 
 @pytest.mark.parametrize("name", BANKS)
-@pytest.mark.parametrize("rate", [r for r in x8.RATES if r != "propeller_speed"])
-def test_every_derivative_of_the_rigid_body_is_that_of_the_published_equations(
-    trims, models, name, rate
-):
-    expected = published_derivatives(trims[name])[x8.RATES.index(rate)]
-    found = [entry(models[name], rate, source) for source in (*x8.STATES, "throttle")]
-    # Relative: JSBSim's inertia and density are off by 1e-4 and 1e-5 (test_inertia, test_forces);
-    # differences truncate less. Thrust has the slope of a table segment, where that of the
-    # polynomial differs by half a segment, 0.025, times the second derivative, 0.2158, of C_T: 3 %
-    # of a slope of 0.18. It enters the airspeed's rate by airspeed, angles and propeller speed.
-    tolerance = 3.5e-2 if rate == "airspeed" else 3e-4
-    # Absolute: the earth turns at 7.3e-5 rad/s, and twice that enters as Coriolis acceleration,
-    # 3e-3 m/s^2 per rad at 20 m/s.
-    np.testing.assert_allclose(
-        found, expected, rtol=tolerance, atol=3e-3 if rate == "airspeed" else 2e-4
-    )
+def test_every_derivative_of_the_rigid_body_is_that_of_the_published_equations(trims, models, name):
+    derivatives = published_derivatives(trims[name])
+    for rate, expected in zip(x8.RATES, derivatives, strict=True):
+        if rate == "propeller_speed":
+            continue
+        found = [entry(models[name], rate, source) for source in (*x8.STATES, "throttle")]
+        # Relative: JSBSim's inertia and density are off by 1e-4 and 1e-5 (test_x8_forces);
+        # differences truncate less. Thrust has the slope of a table segment, where that of the
+        # polynomial differs by half a segment, 0.025, times the second derivative, 0.2158, of C_T:
+        # 3 % of a slope of 0.18. It enters the airspeed's rate by airspeed, angles and propeller
+        # speed. Absolute: the earth turns at 7.3e-5 rad/s, and twice that enters as Coriolis
+        # acceleration, 3e-3 m/s^2 per rad at 20 m/s.
+        relative, absolute = (3.5e-2, 3e-3) if rate == "airspeed" else (3e-4, 2e-4)
+        np.testing.assert_allclose(found, expected, rtol=relative, atol=absolute, err_msg=rate)
 
 
 def analytic(found):
@@ -163,15 +161,12 @@ def analytic(found):
     }
 
 
-@pytest.mark.parametrize(
-    "pair",
-    list(analytic(trim(Fdm(X8), airspeed=20.0, altitude=100.0))),
-    ids=lambda pair: f"{pair[0]}-by-{pair[1]}",
-)
-def test_the_classic_derivatives_are_formulas_in_the_published_coefficients(trims, models, pair):
-    # Inertia 1e-4 (see above). The gyroscopic ones are a hundredth of the aerodynamic ones and
-    # carry the rounding of differences over 0.002 rad/s.
-    assert entry(models["level"], *pair) == pytest.approx(analytic(trims["level"])[pair], rel=1e-3)
+def test_the_classic_derivatives_are_formulas_in_the_published_coefficients(trims, models):
+    for (rate, source), expected in analytic(trims["level"]).items():
+        # Inertia 1e-4 (see above). The gyroscopic ones are a hundredth of the aerodynamic ones and
+        # carry the rounding of differences over 0.002 rad/s.
+        found = entry(models["level"], rate, source)
+        assert found == pytest.approx(expected, rel=1e-3), (rate, source)
 
 
 def test_the_other_sign_of_the_product_of_inertia_would_show_in_the_yaw_derivatives(trims, models):

@@ -52,42 +52,37 @@ def state_of(found):
     return np.array([*body, *driven])
 
 
-@pytest.mark.parametrize("name", CONDITIONS)
-def test_what_is_left_of_the_accelerations_is_a_millionth_of_g(trims, name):
-    # The solver converges quadratically and stops far below its limit; one part in a million of g
-    # would move the aircraft 1 mm in its first 15 s.
-    assert trims[name].residual < 1e-5
-
-
-@pytest.mark.parametrize("name", CONDITIONS)
-def test_the_published_equations_are_in_balance_at_every_trim(trims, name):
-    found = trims[name]
-    rates = dict(
-        zip(x8.RATES, x8.state_rates(state_of(found), found.inputs["throttle"]), strict=True)
-    )
-    unit = (
-        x8.standard_density(found.altitude)
-        * (found.driven["propeller_speed"] / (2.0 * math.pi)) ** 2
-    )
-    # Thrust may be off by what linear interpolation in a table with steps of 0.05 is (see
-    # test_propulsion), 6.8e-5 in C_T.
-    thrust_error = 6.8e-5 * unit * x8.PROPELLER_DIAMETER**4 / x8.MASS
-    # The earth turns and is round: 2 omega V = 3e-3 m/s^2 where motion is not north, V^2/R = 6e-5
-    # m/s^2.
-    coriolis = 2.0 * 7.292e-5 * found.airspeed
-    assert rates["airspeed"] == pytest.approx(0.0, abs=thrust_error + coriolis)
-    assert rates["alpha"] == pytest.approx(0.0, abs=coriolis / found.airspeed)
-    assert rates["beta"] == pytest.approx(0.0, abs=coriolis / found.airspeed)
-    # rad/s^2, where one thousandth of an aileron's full deflection gives 0.07 and of the elevator's
-    # 0.06. What is left is density (1e-5) of moments that balance, and the earth's rate times
-    # rates.
-    assert (rates["p"], rates["q"], rates["r"]) == pytest.approx((0.0, 0.0, 0.0), abs=3e-4)
-    # Definitions of a steady turn: exact but for rounding.
-    assert (rates["roll"], rates["pitch"]) == pytest.approx((0.0, 0.0), abs=1e-12)
-    assert rates["climb_rate"] == pytest.approx(
-        found.airspeed * math.sin(found.climb_angle), abs=1e-9
-    )
-    assert rates["heading_rate"] == pytest.approx(found.yaw_rate, abs=coriolis / found.airspeed)
+def test_the_published_equations_are_in_balance_at_every_trim(trims):
+    for found in trims.values():
+        # The solver converges quadratically and stops far below its limit; one part in a million of
+        # g would move the aircraft 1 mm in its first 15 s.
+        assert found.residual < 1e-5
+        rates = dict(
+            zip(x8.RATES, x8.state_rates(state_of(found), found.inputs["throttle"]), strict=True)
+        )
+        unit = (
+            x8.standard_density(found.altitude)
+            * (found.driven["propeller_speed"] / (2.0 * math.pi)) ** 2
+        )
+        # Thrust may be off by what linear interpolation in a table with steps of 0.05 is (see
+        # test_x8_propulsion), 6.8e-5 in C_T.
+        thrust_error = 6.8e-5 * unit * x8.PROPELLER_DIAMETER**4 / x8.MASS
+        # The earth turns and is round: 2 omega V = 3e-3 m/s^2 where motion is not north, V^2/R =
+        # 6e-5 m/s^2.
+        coriolis = 2.0 * 7.292e-5 * found.airspeed
+        assert rates["airspeed"] == pytest.approx(0.0, abs=thrust_error + coriolis)
+        assert rates["alpha"] == pytest.approx(0.0, abs=coriolis / found.airspeed)
+        assert rates["beta"] == pytest.approx(0.0, abs=coriolis / found.airspeed)
+        # rad/s^2, where one thousandth of an aileron's full deflection gives 0.07 and of the
+        # elevator's 0.06. What is left is density (1e-5) of moments that balance, and the earth's
+        # rate times rates.
+        assert (rates["p"], rates["q"], rates["r"]) == pytest.approx((0.0, 0.0, 0.0), abs=3e-4)
+        # Definitions of a steady turn: exact but for rounding.
+        assert (rates["roll"], rates["pitch"]) == pytest.approx((0.0, 0.0), abs=1e-12)
+        assert rates["climb_rate"] == pytest.approx(
+            found.airspeed * math.sin(found.climb_angle), abs=1e-9
+        )
+        assert rates["heading_rate"] == pytest.approx(found.yaw_rate, abs=coriolis / found.airspeed)
 
 
 @pytest.mark.parametrize("name", ["slow", "middle", "fast", "high"])
@@ -206,6 +201,9 @@ IMPOSSIBLE = {
     "bank 85 deg": {
         "bank": math.radians(85.0)
     },  # needs eleven times the weight in lift: alpha 0.6 rad
+    # Full throttle gives 1.9 N at 35 m/s, where drag is 11 N.
+    "35 m/s": {"airspeed": 35.0},
+    "60 m/s": {"airspeed": 60.0},
     "5 m/s": {"airspeed": 5.0},  # needs a lift coefficient of 2.9: alpha 0.7 rad
     "climb 57.2958 deg": {"climb_angle": 1.0},  # needs 28 N of thrust, of which there are 19
     "15000 m": {
@@ -222,18 +220,6 @@ def test_an_impossible_condition_is_refused_in_one_line_that_names_it_and_a_reme
     # The X8's spec states its envelope, which may be what is wrong.
     assert "choose a condition inside the flight envelope" in str(caught.value)
     assert str(caught.value).endswith("or the envelope that its spec states")
-    assert "\n" not in str(caught.value)
-
-
-@pytest.mark.parametrize(
-    "airspeed", [35.0, 60.0]
-)  # full throttle gives 1.9 N at 35 m/s, where drag is 11 N
-def test_an_airspeed_beyond_the_propellers_power_is_refused_in_one_line_that_names_it_and_a_remedy(
-    x8_fdm, airspeed
-):
-    with pytest.raises(AircraftError, match=f"{airspeed:g} m/s") as caught:
-        trim(x8_fdm, airspeed=airspeed, altitude=100.0)
-    assert "choose a condition inside the flight envelope" in str(caught.value)
     assert "\n" not in str(caught.value)
 
 
@@ -295,18 +281,14 @@ def jet_trims(jet):
     return {name: trim(jet, **JET, **condition) for name, condition in JET_CONDITIONS.items()}
 
 
-@pytest.mark.parametrize("name", JET_CONDITIONS)
-def test_a_trim_that_converged_says_so_and_leaves_less_than_a_millionth_of_g_without_sideslip(
-    jet_trims, name
-):
-    found = jet_trims[name]
-    assert found.outcome is TrimOutcome.CONVERGED
-    assert found.limits == ()
-    assert len(found.residuals) == 6
-    assert found.residual == max(abs(value) for value in found.residuals) < 1e-5
-    assert found.beta == pytest.approx(
-        0.0, abs=1e-6
-    )  # what the rudder is for; solved for as the accelerations are
+def test_a_trim_that_converged_leaves_less_than_a_millionth_of_g_and_no_sideslip(jet_trims):
+    for found in jet_trims.values():
+        assert found.outcome is TrimOutcome.CONVERGED
+        assert found.limits == ()
+        assert len(found.residuals) == 6
+        assert found.residual == max(abs(value) for value in found.residuals) < 1e-5
+        # What the rudder is for; it is solved for as the accelerations are.
+        assert found.beta == pytest.approx(0.0, abs=1e-6)
 
 
 @pytest.mark.parametrize("name", JET_CONDITIONS)

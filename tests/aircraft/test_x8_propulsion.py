@@ -143,6 +143,6 @@ def test_the_turning_propeller_resists_like_a_gyroscope(x8_fdm):
     # The airframe turns the rotor's angular momentum H, ahead for clockwise seen from behind, and
     # feels -omega x H.
     momentum = np.array([x8.PROPELLER_INERTIA * speed, 0.0, 0.0])
-    # JSBSim's kg m^2 is 9e-5 off (test_inertia), and a step passes between speed and moment:
+    # JSBSim's kg m^2 is 9e-5 off (test_x8_forces), and a step passes between speed and moment:
     # nothing once settled.
     np.testing.assert_allclose(moment, -np.cross(rates, momentum), rtol=2e-4, atol=1e-9)
