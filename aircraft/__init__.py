@@ -1,9 +1,9 @@
-"""Aircraft: JSBSim models, their simulation and their linear models; no other room touches JSBSim."""
+"""Aircraft: JSBSim models, their simulation and linear models. Only this package uses JSBSim."""
 
-from aircraft.errors import AircraftError
 from aircraft.spec import (
     MODELS,
     Actuator,
+    AircraftError,
     AircraftSpec,
     ControlInput,
     DrivenState,

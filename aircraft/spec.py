@@ -1,28 +1,67 @@
-"""What the project has to know about a JSBSim aircraft beyond its model files: the contract of an
-aircraft.
+"""What the project has to know about a JSBSim aircraft beyond its model files.
+
+``AircraftSpec`` is what an aircraft of the project, of a package or of a user's Python file has to
+provide. ``check_spec`` refuses one for which no autopilot can be designed.
 """
 
 import bisect
+import dataclasses
+import functools
 import math
+import numbers
 import re
+import types
+import typing
+import xml.etree.ElementTree as ET
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from pathlib import Path
+from reprlib import repr as shortened
+from typing import Any
 
-from aircraft.errors import AircraftError
-from aircraft.model_files import ModelFiles
 from common.physics.units import RAD_S_PER_RPM
 
 MODELS = Path(__file__).parent / "models"
-"""The JSBSim root of the project's own aircraft."""
+"""JSBSim root of the project's own aircraft."""
 
 NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9_.\-]*")
-"""What an aircraft and its model may be called: the name becomes part of file names and of XML."""
+"""Names of aircraft and models: they become part of file names and of XML."""
 
-SETTLE_TIMES = 0.1, 120.0
+NAME_RULE = "use letters, digits, '_', '-' and '.'"
+"""``NAME`` in words, for messages."""
+
+SETTLE_TIMES = (0.1, 120.0)
 """Range of the time in which servos and engines come to rest [s]."""
 
-_AIRSPEED_MAX, _BANKS_DEG = 400.0, (5.0, 60.0)
-"""Fastest airspeed of an envelope [m/s], and range of its bank [deg]."""
+BANK_RESERVE = math.radians(5.0)
+"""Bank that the autopilot may use beyond the bank that the guidance plans with [rad]."""
+
+DESIGN_AIRSPEEDS = 5
+"""Number of airspeeds at which an autopilot is designed."""
+
+_AIRSPEED_MAX = 400.0
+"""Fastest airspeed of an envelope [m/s]."""
+
+_BANKS_DEG = (5.0, 60.0)
+"""Range of an envelope's bank [deg]."""
+
+_ACTUATOR_NAME = re.compile(
+    r"(?!(engine|none|vessel_data|satellite_navigation|sniffer_(dead|saturated))$)"
+    r"[A-Za-z_][A-Za-z0-9_.\-]*"
+)
+"""Names of actuators: they become part of a JSBSim property and may not be those of other faults.
+"""
+
+_REQUIRED_INPUTS = ("elevator", "aileron", "throttle")
+_OPTIONAL_INPUTS = ("rudder",)
+
+
+class AircraftError(ValueError):
+    """An aircraft cannot be found, loaded, trimmed or linearised; the message is one line."""
+
+
+class UnknownPropertyError(AircraftError):
+    """A JSBSim property does not exist. JSBSim itself would create it silently on writing."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -31,12 +70,12 @@ class ControlInput:
 
     Attributes
     ----------
-    name : the input's name in linear models, e.g. ``elevator``
-    commands : JSBSim properties that take the command, one for each engine or surface that shares
-        it [-]
+    name : in linear models, e.g. ``elevator``
+    commands : JSBSim properties that take the command [-], one for each engine or surface that
+        shares it
     lower, upper : range of the command [-]
-    effectiveness : points (effect, command) of a surface that is commanded by its effect,
-        ascending; the range is then that of the effect
+    effectiveness : points (effect, command), ascending, of a surface that is commanded by its
+        effect; ``lower`` and ``upper`` are then the range of the effect
     """
 
     name: str
@@ -46,9 +85,7 @@ class ControlInput:
     effectiveness: tuple[tuple[float, float], ...] = ()
 
     def command(self, value: float) -> float:
-        """Return the command to JSBSim for a value of this input: an effect, if its effectiveness
-        is known [-].
-        """
+        """Command to JSBSim [-] for a value of this input: an effect, if effectiveness is known."""
         if not self.effectiveness:
             return value
         i = min(max(bisect.bisect(self.effectiveness, (value,)), 1), len(self.effectiveness) - 1)
@@ -73,15 +110,14 @@ class Feedback:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Actuator:
-    """A device that moves one surface or every engine's throttle, and can stick
-    (``aircraft.simulation.faults``).
+    """A device that moves one surface or every engine's throttle, and can stick.
 
     Attributes
     ----------
-    name : as the user types it, e.g. ``left_elevon``
+    name : as the user types it, e.g. ``left_elevon``; also the name of its fault
     commands : JSBSim properties that command it: those of a control input, or one that an
-        ``<actuator>`` reads
-    feedback : what it reports, if its command is not one of a control input's own
+        ``<actuator>`` of the model reads
+    feedback : required if the commands are not those of a control input
     """
 
     name: str
@@ -91,12 +127,11 @@ class Actuator:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class DrivenState:
-    """A state outside the rigid body that follows one input: a servo's deflection, a propeller's
-    speed.
+    """A state outside the rigid body that follows one input: a deflection, a propeller's speed.
 
     Attributes
     ----------
-    name : the state's name in linear models
+    name : in linear models
     position : JSBSim property that reads it
     input : name of the control input that drives it
     scale : SI value of one unit of the property
@@ -108,13 +143,6 @@ class DrivenState:
     scale: float = 1.0
 
 
-BANK_RESERVE = math.radians(5.0)
-"""Bank that the autopilot may use beyond the bank that the guidance plans with [rad]."""
-
-DESIGN_AIRSPEEDS = 5
-"""Number of airspeeds at which an autopilot is designed."""
-
-
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Envelope:
     """Airspeeds and banks at which the autopilot may fly the aircraft.
@@ -124,7 +152,7 @@ class Envelope:
     airspeed_min, airspeed_max : range of commanded true airspeed [m/s]
     airspeed : default airspeed of a study [m/s]
     bank : of the steepest coordinated turn that the guidance may demand [rad]
-    stall : stall airspeed in level flight; NaN if unknown [m/s]
+    stall : stall airspeed in level flight [m/s]; NaN if unknown
     notes : reasons for the limits
     """
 
@@ -136,39 +164,83 @@ class Envelope:
     notes: tuple[str, ...] = ()
 
     @property
-    def fault(self) -> str:
-        """Return why no autopilot can be designed for these airspeeds, or this bank, and the
-        remedy; empty if one can.
-        """
+    def problem(self) -> str:
+        """Reason why no autopilot can be designed for these airspeeds or this bank, or ""."""
         if not 0.0 < self.airspeed_min < self.airspeed < self.airspeed_max <= _AIRSPEED_MAX:
             return (
-                f"airspeed is {self.airspeed:g} m/s; it must lie between airspeed_min, {self.airspeed_min:g}, and airspeed_max,"
-                f" {self.airspeed_max:g} m/s, and these above 0 and up to {_AIRSPEED_MAX:g}: choose others"
+                f"airspeed is {self.airspeed:g} m/s; it must lie between airspeed_min,"
+                f" {self.airspeed_min:g}, and airspeed_max, {self.airspeed_max:g} m/s,"
+                f" and these above 0 and up to {_AIRSPEED_MAX:g}: choose others"
             )
         least, most = _BANKS_DEG
         if not math.radians(least) <= self.bank <= math.radians(most):
             return (
-                f"bank is {math.degrees(self.bank):g} deg ({self.bank:g} rad); it must lie between {least:g} and {most:g} deg:"
-                " give radians in Python, degrees in a file of settings"
+                f"bank is {math.degrees(self.bank):g} deg ({self.bank:g} rad); it must lie between"
+                f" {least:g} and {most:g} deg: give radians in Python, degrees in a settings file"
             )
         return ""
 
     @property
     def bank_max(self) -> float:
-        """Return the largest bank that the autopilot commands [rad]."""
+        """Largest bank that the autopilot commands [rad]."""
         return self.bank + BANK_RESERVE
 
     @property
     def design_airspeeds(self) -> tuple[float, ...]:
-        """Return the airspeeds at which the autopilot is designed [m/s], ascending."""
+        """Airspeeds at which the autopilot is designed [m/s], ascending."""
         step = (self.airspeed_max - self.airspeed_min) / (DESIGN_AIRSPEEDS - 1)
         return tuple(self.airspeed_min + i * step for i in range(DESIGN_AIRSPEEDS))
 
 
+SHARED_FOLDERS = {
+    "propulsion": "engine",
+    "engine": "engine",
+    "thruster": "engine",
+    "flight_control": "systems",
+    "system": "systems",
+    "autopilot": "systems",
+}
+"""Folder of a JSBSim root in which the files of an XML element stand."""
+
+_MODEL_SUBFOLDERS = ("", "Engines", "Systems", "systems")
+"""Folders of a model in which JSBSim looks for files, in order."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ModelFiles:
+    """Where the files of one JSBSim model are.
+
+    Attributes
+    ----------
+    model : name of the model
+    folder : with the model file, ``MODEL.xml``
+    roots : JSBSim roots whose engines and systems the model may name, the first one first
+    """
+
+    model: str
+    folder: Path
+    roots: tuple[Path, ...]
+
+    @property
+    def file(self) -> Path:
+        """The model file."""
+        return self.folder / f"{self.model}.xml"
+
+    def find(self, element: ET.Element) -> Path | None:
+        """File that an element of the model names, searched as JSBSim does; None if none exists."""
+        file = element.get("file")
+        if not file:
+            return None
+        name = file if file.endswith(".xml") else f"{file}.xml"
+        folders = [self.folder / subfolder for subfolder in _MODEL_SUBFOLDERS]
+        if element.tag in SHARED_FOLDERS:
+            folders += [root / SHARED_FOLDERS[element.tag] for root in self.roots]
+        return next((folder / name for folder in folders if (folder / name).is_file()), None)
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class AircraftSpec:
-    """An aircraft: what a file in ``aircraft/fleet``, an entry point or a Python file of the user
-    has to provide.
+    """An aircraft.
 
     Attributes
     ----------
@@ -178,17 +250,15 @@ class AircraftSpec:
     model : JSBSim model name
     folder : of the model file, if it is not ``root/aircraft/model``
     other_roots : further JSBSim roots whose engines and systems the model may name
-    inputs : control inputs: ``elevator``, ``aileron`` and ``throttle``, perhaps ``rudder``, and no
-        others
-    own_actuators : only if they are not one for each control input, such as a flying wing's elevons
-    driven_states : servo and propeller states that have a property of their own, one of an input;
-        other lags are measured
+    inputs : control inputs: ``elevator``, ``aileron``, ``throttle``, and ``rudder`` if there is one
+    own_actuators : if they are not one for each control input, such as a flying wing's elevons
+    driven_states : servo and propeller states that have a JSBSim property, at most one for each
+        input; the lags of other inputs are measured
     envelope : as published by its maker or its model's author; None if it is to be found by
         trimming
     configuration : JSBSim properties and their values in every flight, such as a retracted gear
     engine_flags : JSBSim properties that are 1 while an engine runs
-    alpha_max : largest angle of attack of an equilibrium, up to which the model is right; not a
-        number if not known [rad]
+    alpha_max : largest angle of attack up to which the model is right [rad]; NaN if unknown
     settle_time : in which servos and engines come to rest while the aircraft is held [s]
     source : of the model's numbers
     """
@@ -211,59 +281,175 @@ class AircraftSpec:
 
     @property
     def files(self) -> ModelFiles:
-        """Return where the model's files are."""
+        """Where the model's files are."""
         folder = self.folder or self.root / "aircraft" / self.model
         return ModelFiles(model=self.model, folder=folder, roots=(self.root, *self.other_roots))
 
-    def placed(self, other: "AircraftSpec") -> "AircraftSpec":
-        """Return this aircraft with its files where those of ``other`` are."""
+    def with_files_of(self, other: "AircraftSpec") -> "AircraftSpec":
+        """This aircraft with its files where those of ``other`` are."""
         return replace(self, root=other.root, folder=other.folder, other_roots=other.other_roots)
 
     @property
     def actuators(self) -> tuple[Actuator, ...]:
-        """Return the actuators: its own ones, or one for each control input."""
+        """The aircraft's own actuators, or one for each control input."""
         return self.own_actuators or tuple(
             Actuator(name=i.name, commands=i.commands) for i in self.inputs
         )
 
     def input(self, name: str) -> ControlInput:
-        """Return the control input called ``name``; raises AircraftError if there is no such input."""
+        """Control input called ``name``; raises AircraftError if there is no such input."""
         for control_input in self.inputs:
             if control_input.name == name:
                 return control_input
-        raise AircraftError(
-            f"aircraft '{self.name}' has no input '{name}'; it has {', '.join(i.name for i in self.inputs)}"
-        )
+        known = ", ".join(i.name for i in self.inputs)
+        raise AircraftError(f"aircraft '{self.name}' has no input '{name}'; it has {known}")
 
 
 def surface(name: str) -> ControlInput:
-    """Return the command of a control surface by the name that JSBSim gives it: elevator, aileron,
-    rudder.
-    """
+    """Command of a control surface, by JSBSim's name for it: elevator, aileron or rudder."""
     return ControlInput(name=name, commands=(f"fcs/{name}-cmd-norm",), lower=-1.0, upper=1.0)
 
 
 def throttle(engines: int) -> ControlInput:
-    """Return the one throttle of a number of engines."""
-    commands = tuple(f"fcs/throttle-cmd-norm{numbered(engine)}" for engine in range(engines))
+    """One throttle for a number of engines."""
+    commands = tuple(f"fcs/throttle-cmd-norm{engine_suffix(i)}" for i in range(engines))
     return ControlInput(name="throttle", commands=commands, lower=0.0, upper=1.0)
 
 
-def numbered(engine: int) -> str:
-    """Return the suffix of an engine's properties in JSBSim: empty for the first engine."""
+def engine_suffix(engine: int) -> str:
+    """Suffix of an engine's properties in JSBSim, such as ``[1]``; empty for the first engine."""
     return f"[{engine}]" if engine else ""
 
 
 def servo_position(name: str) -> DrivenState:
-    """Return the deflection of the control surface ``name`` [rad], which a servo moves."""
+    """Deflection of the control surface ``name`` [rad], moved by a servo."""
     return DrivenState(name=f"{name}_position", position=f"fcs/{name}-pos-rad", input=name)
 
 
 def propeller_speed() -> DrivenState:
-    """Return the speed of an only engine's propeller [rad/s]."""
+    """Speed of the propeller of the only engine [rad/s]."""
     return DrivenState(
         name="propeller_speed",
         position="propulsion/engine/propeller-rpm",
         input="throttle",
         scale=RAD_S_PER_RPM,
     )
+
+
+def check_spec(spec: AircraftSpec) -> None:
+    """Refuse a spec for which no autopilot can be designed.
+
+    Raises
+    ------
+    AircraftError : a field has another type than declared; a name has letters outside ``NAME``; an
+        input is missing, unknown or there twice; a driven state follows no input, or one that has a
+        state already; a range, an actuator, the settle time or the envelope is impossible
+    """
+    problem = _type_problem(spec, AircraftSpec, "") or next(_problems(spec), "")
+    if problem:
+        raise AircraftError(f"aircraft '{spec.name}': {problem}; correct its spec")
+
+
+def _problems(spec: AircraftSpec) -> Iterator[str]:
+    """What is wrong with the values of a spec, in words."""
+    if not NAME.fullmatch(spec.name):
+        yield f"'{spec.name}' is not a valid name; {NAME_RULE}"
+    names = [i.name for i in spec.inputs]
+    allowed = {*_REQUIRED_INPUTS, *_OPTIONAL_INPUTS}
+    if not set(_REQUIRED_INPUTS) <= set(names) <= allowed or len(names) > len(set(names)):
+        yield (
+            f"it has the inputs {', '.join(names) or '(none)'}; it needs"
+            f" {', '.join(_REQUIRED_INPUTS)}, may have {', '.join(_OPTIONAL_INPUTS)}, and no others"
+        )
+    for control_input in spec.inputs:
+        yield from _input_problems(control_input)
+    driven = [state.input for state in spec.driven_states]
+    for i, state in enumerate(spec.driven_states):
+        if state.input not in names or state.input in driven[:i]:
+            yield (
+                f"driven state '{state.name}' follows input '{state.input}'; it must be one of"
+                f" {', '.join(names)} that no other state follows"
+            )
+    taken = [actuator.name for actuator in spec.own_actuators]
+    for i, actuator in enumerate(spec.own_actuators):
+        if not _ACTUATOR_NAME.fullmatch(actuator.name) or actuator.name in taken[:i]:
+            yield f"'{actuator.name}' is not a valid name of an actuator, or is taken; {NAME_RULE}"
+        if not actuator.commands:
+            yield (
+                f"actuator '{actuator.name}' has no commands; name the JSBSim properties that"
+                " command it"
+            )
+        elif actuator.feedback is None and not any(
+            set(actuator.commands) <= set(i.commands) for i in spec.inputs
+        ):
+            yield (
+                f"actuator '{actuator.name}' has commands of its own and no feedback; name the"
+                " properties that read its command and position"
+            )
+    least, most = SETTLE_TIMES
+    if not least <= spec.settle_time <= most:
+        yield f"settle_time is {spec.settle_time:g} s; it must lie between {least:g} and {most:g} s"
+    if spec.envelope is not None and spec.envelope.problem:
+        yield spec.envelope.problem
+
+
+def _input_problems(control: ControlInput) -> Iterator[str]:
+    if not control.commands:
+        yield f"input '{control.name}' has no commands; name the JSBSim properties that take it"
+    given = f"input '{control.name}' ranges from {control.lower:g} to {control.upper:g}"
+    if not -math.inf < control.lower < control.upper < math.inf:
+        yield f"{given}; lower must be below upper, and both finite"
+    elif control.name != "throttle" and not control.lower < 0.0 < control.upper:
+        yield f"{given}; lower must be below 0, and upper above it"
+
+
+def _type_problem(value: Any, declared: Any, name: str) -> str:
+    """First part of a value that has another type than declared, in words; empty if none has.
+
+    Python itself does not check the types of dataclasses in a user's file. Any real number passes
+    for a float, and a list for a tuple of any length.
+    """
+    origin = typing.get_origin(declared)
+    if origin in (typing.Union, types.UnionType):
+        (other,) = (kind for kind in typing.get_args(declared) if kind is not types.NoneType)
+        return "" if value is None else _type_problem(value, other, name)
+    if origin is tuple:
+        parts = _tuple_parts(value, typing.get_args(declared), name)
+        demanded = str(declared).replace("aircraft.spec.", "")
+    elif declared is float:
+        is_number = isinstance(value, numbers.Real) and not isinstance(value, bool)
+        parts, demanded = [] if is_number else None, "float"
+    else:
+        parts, demanded = _field_parts(value, declared, name), declared.__name__
+    if parts is None:
+        shown = " ".join(shortened(value).split())
+        return f"{name} is {shown}, of type {type(value).__name__}; it must be of type {demanded}"
+    return next(filter(None, (_type_problem(*part) for part in parts)), "")
+
+
+_Parts = list[tuple[Any, Any, str]] | None
+"""Parts of a value with their declared types and names; None if the value has another type."""
+
+
+def _tuple_parts(value: Any, kinds: tuple[Any, ...], name: str) -> _Parts:
+    if kinds[1:] == (...,):
+        if not isinstance(value, (tuple, list)):
+            return None
+        kinds = (kinds[0],) * len(value)
+    elif not isinstance(value, tuple) or len(value) != len(kinds):
+        return None
+    return [(item, kinds[i], f"{name}[{i}]") for i, item in enumerate(value)]
+
+
+def _field_parts(value: Any, declared: type, name: str) -> _Parts:
+    if not isinstance(value, declared):
+        return None
+    if not dataclasses.is_dataclass(declared):
+        return []
+    hints = _type_hints(declared)
+    prefix = f"{name}." if name else ""
+    names = [field.name for field in dataclasses.fields(declared)]
+    return [(getattr(value, field), hints[field], f"{prefix}{field}") for field in names]
+
+
+_type_hints = functools.cache(typing.get_type_hints)

@@ -15,8 +15,8 @@ from collections.abc import Callable
 from functools import partial
 from pathlib import Path
 
+from aircraft.fdm import TIME_STEP, Fdm
 from aircraft.fleet.x8 import X8
-from aircraft.simulation.fdm import TIME_STEP, Fdm
 from benchmarks.engine import REFERENCE_STEP, report_engine
 from benchmarks.guidance import report_guidance
 from benchmarks.reports import report_reports

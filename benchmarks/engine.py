@@ -12,7 +12,7 @@ import time
 from collections.abc import Callable, Iterable
 from pathlib import Path
 
-from aircraft.simulation.fdm import TIME_STEP
+from aircraft.fdm import TIME_STEP
 from scenarios.engine.executors import ExecutorFactory
 from scenarios.engine.run_directory import RunDirectory
 from scenarios.engine.runner import fly_study

@@ -88,8 +88,8 @@ def command(
     """Design the autopilot of an aircraft: trim, poles, margins, step responses; a report, and a
     JSBSim root that flies it.
     """
-    from aircraft.errors import AircraftError
-    from aircraft.fleet.folder import folder_path
+    from aircraft.fleet.find import folder_path
+    from aircraft.spec import AircraftError
     from reports.errors import ReportError
 
     try:
@@ -130,8 +130,7 @@ def _file_refusal(error: OSError, out: Path) -> str:
 
 def _list(altitude: float, directory: Path | None, *, check: bool) -> None:
     """Print a line for every aircraft, as soon as it is known."""
-    from aircraft.fleet.find import aircraft_names
-    from aircraft.fleet.folder import folder_names, folder_path
+    from aircraft.fleet.find import aircraft_names, folder_names, folder_path
     from innerloop.designs.listing import discover, look_up
 
     names = (
@@ -183,7 +182,7 @@ def _design(
     no_report: bool,
 ) -> None:
     from aircraft.fleet.find import find_spec
-    from aircraft.simulation.user_check import check_user_aircraft
+    from aircraft.user_check import check_user_aircraft
     from reports.build import build_reports, check_settings, print_design
 
     check_settings(overrides)
@@ -247,7 +246,7 @@ def _refuse_another_run(out: Path) -> None:
     """Refuse a directory that holds flights: their manifest would be lost. An older design may be
     replaced.
     """
-    from aircraft.errors import AircraftError
+    from aircraft.spec import AircraftError
 
     try:
         study = json.loads((out / MANIFEST).read_text(encoding="utf-8")).get("study")

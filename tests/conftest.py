@@ -37,7 +37,7 @@ except ModuleNotFoundError:
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
-    from aircraft.simulation.fdm import Fdm
+    from aircraft.fdm import Fdm
     from innerloop.designs.designed import Design, Designed
     from innerloop.flight.autopiloted_aircraft import AutopilotedAircraft
     from innerloop.synthesis.schedule import Schedule
@@ -212,7 +212,7 @@ def x8_aircraft(x8_root: Path) -> AutopilotedAircraft:
 @pytest.fixture
 def x8_fdm() -> Fdm:
     """A bare X8."""
+    from aircraft.fdm import Fdm
     from aircraft.fleet.x8 import X8
-    from aircraft.simulation.fdm import Fdm
 
     return Fdm(X8)

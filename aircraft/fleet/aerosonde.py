@@ -2,7 +2,7 @@
 
 import math
 
-from aircraft.fleet.registry import AIRCRAFT
+from aircraft.fleet import AIRCRAFT
 from aircraft.spec import (
     MODELS,
     AircraftSpec,
@@ -26,6 +26,9 @@ AEROSONDE = AircraftSpec(
         servo_position("rudder"),
     ),
     envelope=Envelope(airspeed_min=21.0, airspeed_max=30.0, airspeed=25.0, bank=math.radians(45.0)),
-    source="Beard and McLain, Small Unmanned Aircraft, supplement; servos and rotor inertia as explained in the model files",
+    source=(
+        "Beard and McLain, Small Unmanned Aircraft, supplement; servos and rotor inertia as"
+        " explained in the model files"
+    ),
 )
 AIRCRAFT.register(AEROSONDE.name)(AEROSONDE)

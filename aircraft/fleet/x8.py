@@ -2,7 +2,7 @@
 
 import math
 
-from aircraft.fleet.registry import AIRCRAFT
+from aircraft.fleet import AIRCRAFT
 from aircraft.spec import (
     MODELS,
     Actuator,

@@ -20,7 +20,8 @@ from measurement.emission.ship import ship_preset
 from measurement.gases import GASES
 from measurement.plume.air import MarineAir
 from measurement.plume.fluctuating_plume import FluctuatingPlume
-from measurement.sniffer import Sniffer, SnifferSpec
+from measurement.sniffer.sniffer import Sniffer
+from measurement.sniffer.spec import SnifferSpec
 from scenarios.planning.plume.axis import co2_sensor
 
 Array = npt.NDArray[np.float64]

@@ -6,7 +6,7 @@ import functools
 
 import control
 
-from aircraft.dynamics.linear_model import LinearModel
+from aircraft.linearise import LinearModel
 from innerloop.law.control_law import COMMANDS
 
 

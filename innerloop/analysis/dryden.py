@@ -1,7 +1,7 @@
 """Low-altitude turbulence of MIL-F-8785C as filters that shape white noise: the disturbance of the
 linear closed loop.
 
-Intensities and scale lengths are those of ``aircraft.atmosphere.turbulence``; the filters are the
+Intensities and scale lengths are those of ``aircraft.weather``; the filters are the
 factors of its Dryden spectra, section 3.7.1.2, with the rotations as JSBSim has them (Yeager, NASA
 CR-1998-206937): p is independent, q and r are the slopes along the path of w and v, seen by a wing
 of some span. JSBSim's ``atmosphere/turb-type`` 4 is this, in Tustin's steps.

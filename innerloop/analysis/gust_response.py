@@ -13,9 +13,9 @@ import control
 import numpy as np
 import numpy.typing as npt
 
-from aircraft.dynamics.equilibrium import Trim
-from aircraft.dynamics.linear_model import LinearModel
-from aircraft.simulation.state import body_velocity, level
+from aircraft.linearise import LinearModel
+from aircraft.state import body_velocity, level
+from aircraft.trim import Trim
 from innerloop.analysis.closed_loop import closed_loop
 from innerloop.law.control_law import ControlLaw
 from innerloop.law.linear_controller import linear_controller
@@ -55,7 +55,7 @@ def aircraft_in_gusts(model: LinearModel, trim: Trim, level_model: LinearModel) 
 
     Parameters
     ----------
-    model, trim : as ``aircraft.dynamics.linearise.linearise`` returned it, and where
+    model, trim : as ``aircraft.linearise.linearise`` returned it, and where
     level_model : at the same airspeed in level flight
 
     Returns

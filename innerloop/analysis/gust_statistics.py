@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from aircraft.atmosphere.turbulence import intensities, scale_lengths
+from aircraft.weather import intensities, scale_lengths
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -27,7 +27,7 @@ def low_altitude_turbulence(altitude: float, wind_at_20ft: float) -> GustStatist
 
     Raises
     ------
-    AircraftError : as ``aircraft.atmosphere.turbulence.intensities``
+    AircraftError : as ``aircraft.weather.intensities``
     """
     horizontal, _, vertical = intensities(altitude, wind_at_20ft)
     horizontal_length, _, vertical_length = scale_lengths(altitude)

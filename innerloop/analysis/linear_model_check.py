@@ -8,9 +8,9 @@ import control
 import numpy as np
 import numpy.typing as npt
 
-from aircraft.dynamics.equilibrium import Trim
-from aircraft.dynamics.linear_model import LinearModel
-from aircraft.simulation.fdm import Fdm
+from aircraft.fdm import Fdm
+from aircraft.linearise import LinearModel
+from aircraft.trim import Trim
 from common.physics.units import METRES_PER_FOOT
 
 OUTPUTS: dict[str, tuple[str, float]] = {
@@ -86,7 +86,7 @@ def _flown(fdm: Fdm, level: Trim, name: str) -> tuple[Array, dict[str, Array]]:
     count = round(_DURATION / fdm.time_step)
     run, reads = fdm.run, [fdm.node(prop).get_double_value for prop, _ in OUTPUTS.values()]
     fdm.command(dict(level.inputs))
-    fdm.revive()
+    fdm.allow_engine_restart()
     fdm.place(level.state())
     with fdm.frozen():
         fdm.settle(_SETTLED, round(fdm.spec.settle_time / fdm.time_step))

@@ -17,7 +17,7 @@ import numpy as np
 import numpy.typing as npt
 from slycot import ab13md
 
-from aircraft.dynamics.linear_model import LinearModel
+from aircraft.linearise import LinearModel
 from innerloop.analysis.checks import ALL_CONTROLS, Margin
 from innerloop.analysis.closed_loop import pade
 from innerloop.law.control_law import COMMANDS
@@ -57,7 +57,7 @@ class Loops:
 
     Parameters
     ----------
-    aircraft : linear model, as ``aircraft.dynamics.linearise`` returns it
+    aircraft : linear model, as ``aircraft.linearise`` returns it
     autopilot : as ``innerloop.law.linear_controller.linear_controller`` returns it
     delay : between measurement and servo [s]
     frequencies : [rad/s]

@@ -9,10 +9,9 @@ from dataclasses import replace
 import numpy as np
 import numpy.typing as npt
 
-from aircraft.dynamics.equilibrium import Trim
-from aircraft.dynamics.linear_model import LinearModel
-from aircraft.dynamics.linearise import BODY_STATES
-from aircraft.simulation.perturbed_model import PERTURBATIONS, Perturbation
+from aircraft.linearise import BODY_STATES, LinearModel
+from aircraft.model import PERTURBATIONS, Perturbation
+from aircraft.trim import Trim
 from common.physics.units import STANDARD_GRAVITY
 from innerloop.analysis.checks import NOMINAL
 
@@ -29,7 +28,7 @@ def _effectiveness(factor: float) -> Change:
 
     That of the throttle is among them: thrust changes by the factor, too. In a perturbed model,
     which the search over reversals flies, only surfaces change
-    (``aircraft.simulation.perturbed_model``): less effectiveness leaves the throttle's loop less
+    (``aircraft.model``): less effectiveness leaves the throttle's loop less
     margin there than here, where it also lowers the loop's gain.
     """
 

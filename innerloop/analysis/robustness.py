@@ -3,8 +3,8 @@
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
-from aircraft.dynamics.equilibrium import Trim
-from aircraft.dynamics.linear_model import LinearModel
+from aircraft.linearise import LinearModel
+from aircraft.trim import Trim
 from innerloop.analysis.checks import NOMINAL, Check, Margin
 from innerloop.analysis.margins import Loops
 from innerloop.analysis.perturbations import CASES

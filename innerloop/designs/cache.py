@@ -13,9 +13,8 @@ from pathlib import Path
 import aircraft
 import common
 import innerloop
-from aircraft.errors import AircraftError
-from aircraft.simulation.model_copy import model_hash
-from aircraft.spec import AircraftSpec
+from aircraft.model import model_hash
+from aircraft.spec import AircraftError, AircraftSpec
 from common.files import files_hash, write_whole
 from innerloop.designs.designed import Designed, DesignError
 from innerloop.designs.stored import as_text, from_text
@@ -83,7 +82,7 @@ def _at(spec: AircraftSpec, found: Designed) -> Designed:
     elsewhere when it was made.
     """
     schedule = found.design.schedule
-    placed = schedule.spec.placed(spec)
+    placed = schedule.spec.with_files_of(spec)
     if placed == schedule.spec:
         return found
     schedule = replace(schedule, spec=placed)

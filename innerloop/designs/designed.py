@@ -6,7 +6,7 @@ import functools
 from dataclasses import dataclass
 from typing import Any
 
-from aircraft.errors import AircraftError
+from aircraft.spec import AircraftError
 from common.files import json_text
 from innerloop.analysis.checks import Check
 from innerloop.synthesis.schedule import Schedule

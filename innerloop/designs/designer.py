@@ -5,15 +5,12 @@ refuse.
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
-from aircraft.dynamics.control_effectiveness import with_linearised_controls
-from aircraft.dynamics.envelope import find_envelope, first_trim, with_reserve_note
-from aircraft.dynamics.equilibrium import Trim
-from aircraft.dynamics.flight_idle import flight_idle, idling_at
-from aircraft.dynamics.linear_model import LinearModel
-from aircraft.dynamics.linearise import linearise
-from aircraft.dynamics.trim import trim
-from aircraft.simulation.fdm import Fdm
+from aircraft.controls import flight_idle, with_flight_idle, with_linearised_controls
+from aircraft.envelope import find_envelope, first_trim, with_reserve_note
+from aircraft.fdm import Fdm
+from aircraft.linearise import LinearModel, linearise
 from aircraft.spec import AircraftSpec, Envelope
+from aircraft.trim import Trim, trim
 from innerloop.analysis.checks import ALL_CONTROLS, NOMINAL, Check
 from innerloop.analysis.robustness import ClosedLoops, check_design, closed_loops, with_all_controls
 from innerloop.designs.designed import Design, DesignError
@@ -134,7 +131,7 @@ def linear_grid(spec: AircraftSpec, altitude: float) -> Grid:
         edges.append((linearise(beyond, row[0]), linearise(beyond, row[-1])))
     if spec.envelope is not None:
         envelope = with_reserve_note(envelope, [t for row in trims for t in row], spec)
-    spec = idling_at(spec, flight_idle(fdm, trims[len(trims) // 2][LEVEL]))
+    spec = with_flight_idle(spec, flight_idle(fdm, trims[len(trims) // 2][LEVEL]))
     return Grid(
         spec=spec,
         envelope=envelope,

@@ -10,8 +10,8 @@ from concurrent.futures.process import BrokenProcessPool
 from dataclasses import dataclass
 from pathlib import Path
 
-from aircraft.errors import AircraftError
 from aircraft.fleet.find import find_spec
+from aircraft.spec import AircraftError
 from common.interrupt import follow_parent
 from innerloop.analysis.checks import NOMINAL
 from innerloop.designs.cache import designed, is_cached

@@ -7,8 +7,8 @@ from concurrent.futures import Future, ProcessPoolExecutor, as_completed
 from dataclasses import dataclass
 from pathlib import Path
 
-from aircraft.dynamics.equilibrium import Trim
 from aircraft.spec import AircraftSpec
+from aircraft.trim import Trim
 from common.interrupt import follow_parent
 from innerloop.designs.designed import Designed, Record
 from innerloop.flight.perturbed_aircraft import deviations_by_case, perturbed_aircraft

@@ -7,10 +7,9 @@ from typing import Any
 
 import numpy as np
 
-from aircraft.dynamics.equilibrium import Trim, TrimOutcome
-from aircraft.dynamics.trim import search_trim
-from aircraft.simulation.fdm import TIME_STEP, Fdm
+from aircraft.fdm import TIME_STEP, Fdm
 from aircraft.spec import AircraftSpec, ControlInput, Envelope
+from aircraft.trim import Trim, TrimOutcome, search_trim
 from common.physics.coordinated_turn import heading_rate_for_bank
 from innerloop.analysis.checks import NOMINAL, REQUIRED, Check, Margin
 from innerloop.analysis.linear_model_check import verify_model

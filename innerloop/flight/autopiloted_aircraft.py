@@ -4,15 +4,11 @@ import tempfile
 from collections.abc import Callable
 from pathlib import Path
 
-from aircraft.atmosphere.gusts import gusty_run
-from aircraft.atmosphere.weather import Weather, begin_turbulence, end_weather
-from aircraft.atmosphere.wind import windy_run
-from aircraft.errors import AircraftError
-from aircraft.simulation.faults import Faults, failable_root
-from aircraft.simulation.fdm import Fdm
-from aircraft.simulation.properties import CLOCK
-from aircraft.simulation.state import RigidBodyState
-from aircraft.spec import AircraftSpec
+from aircraft.faults import Faults, failable_root
+from aircraft.fdm import CLOCK, Fdm
+from aircraft.spec import AircraftError, AircraftSpec
+from aircraft.state import RigidBodyState
+from aircraft.weather import Weather, begin_weather, end_weather
 from innerloop.jsbsim.properties import (
     AIRSPEED_COMMAND,
     ALTITUDE_COMMAND,
@@ -100,11 +96,10 @@ class AutopilotedAircraft:
         self.fdm.write(RESET, 0.0)
         self.fdm.write(HELD_ELEVATOR, self.fdm.read(CONTROL_COMMAND.format("elevator")))
         if self._faults:
-            self._faults.note_trim()
+            self._faults.store_trim_positions()
         self.run = self.fdm.run
         if weather:
-            begin_turbulence(self.fdm, weather)
-            self.run = windy_run(self.fdm, weather.wind, gusty_run(self.fdm, weather.gusts))
+            self.run = begin_weather(self.fdm, weather)
 
     def hold_elevator(self) -> None:
         """Hold the elevator at its position at the release; the aircraft's own stability then
@@ -116,7 +111,7 @@ class AutopilotedAircraft:
 
     def fail(self, name: str) -> None:
         """Let a part fail from the next time step on, by a name from
-        ``aircraft.simulation.faults.fault_names``.
+        ``aircraft.faults.fault_names``.
 
         Raises
         ------

@@ -9,9 +9,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from aircraft.dynamics.equilibrium import Trim
-from aircraft.simulation.faults import ENGINE
-from aircraft.simulation.fdm import TIME_STEP
+from aircraft.faults import ENGINE
+from aircraft.fdm import TIME_STEP
+from aircraft.trim import Trim
 from common.physics.coordinated_turn import heading_rate_for_bank
 from common.physics.units import METRES_PER_FOOT
 from innerloop.flight.autopiloted_aircraft import AutopilotedAircraft

@@ -8,8 +8,7 @@ import tempfile
 from collections.abc import Sequence
 from pathlib import Path
 
-from aircraft.simulation.ground_contacts import leave_out_ground_contacts
-from aircraft.simulation.perturbed_model import PERTURBATIONS, Perturbation, perturb
+from aircraft.model import PERTURBATIONS, Perturbation, perturb, remove_ground_contacts
 from aircraft.spec import AircraftSpec
 from innerloop.analysis.checks import NOMINAL
 from innerloop.flight.autopiloted_aircraft import AutopilotedAircraft
@@ -33,7 +32,7 @@ def _flying(spec: AircraftSpec, root: Path, case: Perturbation) -> AutopilotedAi
     with tempfile.TemporaryDirectory() as folder:
         copy = Path(shutil.copytree(root, Path(folder) / "root"))
         perturb(copy / "aircraft" / spec.files.model / f"{spec.files.model}.xml", case)
-        leave_out_ground_contacts(spec, copy)
+        remove_ground_contacts(spec, copy)
         return AutopilotedAircraft(spec, copy)
 
 

@@ -20,8 +20,8 @@ import numpy as np
 import numpy.typing as npt
 from scipy.signal import lfilter
 
-from aircraft.dynamics.equilibrium import Trim
-from aircraft.simulation.fdm import TIME_STEP
+from aircraft.fdm import TIME_STEP
+from aircraft.trim import Trim
 from common.physics.coordinated_turn import heading_rate_for_bank
 from common.physics.units import METRES_PER_FOOT
 from gnc.guard.turn import (

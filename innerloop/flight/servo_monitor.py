@@ -8,7 +8,7 @@ last few tenths of a second.
 
 from collections import deque
 
-from aircraft.simulation.fdm import Fdm
+from aircraft.fdm import Fdm
 from aircraft.spec import Feedback
 from innerloop.jsbsim.properties import commanded_property
 

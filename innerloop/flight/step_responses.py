@@ -7,8 +7,8 @@ import control
 import numpy as np
 import numpy.typing as npt
 
-from aircraft.dynamics.equilibrium import Trim
-from aircraft.simulation.fdm import TIME_STEP, Fdm
+from aircraft.fdm import TIME_STEP, Fdm
+from aircraft.trim import Trim
 from common.physics.coordinated_turn import heading_rate_for_bank
 from common.physics.units import METRES_PER_FOOT
 from innerloop.analysis.closed_loop import closed_loop

@@ -9,9 +9,9 @@ import numpy as np
 import numpy.typing as npt
 from scipy.optimize import brentq
 
-from aircraft.dynamics.equilibrium import Trim
-from aircraft.errors import AircraftError
-from aircraft.simulation.fdm import TIME_STEP
+from aircraft.fdm import TIME_STEP
+from aircraft.spec import AircraftError
+from aircraft.trim import Trim
 from common.physics.coordinated_turn import heading_rate_for_bank
 from innerloop.flight.autopiloted_aircraft import AutopilotedAircraft
 from innerloop.jsbsim.properties import HEADING_RATE

@@ -1,6 +1,6 @@
 """JSBSim properties of the autopilot, and its name there."""
 
-from aircraft.simulation.fdm import TIME_STEP
+from aircraft.fdm import TIME_STEP
 from aircraft.spec import AircraftSpec, ControlInput
 
 AIRSPEED_COMMAND = "autopilot/airspeed-command-mps"

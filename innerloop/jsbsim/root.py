@@ -3,8 +3,7 @@
 import xml.etree.ElementTree as ET
 from pathlib import Path
 
-from aircraft.model_files import read_xml
-from aircraft.simulation.model_copy import copy_model
+from aircraft.model import copy_model, read_xml
 from innerloop.jsbsim.properties import system_name
 from innerloop.jsbsim.system import system_xml
 from innerloop.synthesis.schedule import Schedule
@@ -15,7 +14,7 @@ def write_root(schedule: Schedule, directory: Path) -> Path:
     autopilot; return the directory.
 
     Any JSBSim started on this root flies the aircraft under the autopilot. The model's own outputs
-    and autopilot are left out (``aircraft.simulation.model_copy``); its servos keep their play.
+    and autopilot are left out (``aircraft.model``); its servos keep their play.
     """
     spec = schedule.spec
     model_file = copy_model(spec.files, directory)

@@ -6,19 +6,19 @@ from dataclasses import dataclass
 from pathlib import Path
 from xml.sax.saxutils import escape
 
-from aircraft.dynamics.equilibrium import Trim
-from aircraft.errors import UnknownPropertyError
-from aircraft.simulation.fdm import TIME_STEP, Fdm
-from aircraft.simulation.properties import (
+from aircraft.fdm import (
     CRANK,
     INTEGRATORS,
     RUN_UP_STEPS,
     START_ENGINES,
     STOP_CRANKING,
+    TIME_STEP,
+    Fdm,
     before_hold,
     initial_conditions,
 )
-from aircraft.spec import Envelope
+from aircraft.spec import Envelope, UnknownPropertyError
+from aircraft.trim import Trim
 from common.physics.coordinated_turn import heading_rate_for_bank
 from innerloop.jsbsim.properties import (
     AIRSPEED_COMMAND,

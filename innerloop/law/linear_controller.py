@@ -6,8 +6,8 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from aircraft.dynamics.equilibrium import Trim
-from aircraft.dynamics.linear_model import LinearModel
+from aircraft.linearise import LinearModel
+from aircraft.trim import Trim
 from innerloop.law.control_law import COMMANDS, STATES, ControlLaw, measurements
 
 _STEP = 1e-4

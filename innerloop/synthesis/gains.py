@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from aircraft.dynamics.linear_model import Matrix
+from aircraft.linearise import Matrix
 
 LONGITUDINAL = ("airspeed", "climb_rate", "q", "pitch", "altitude")
 """Measured longitudinal states. Climb rate stands for angle of attack, which small aircraft do not

@@ -2,8 +2,7 @@
 
 import numpy as np
 
-from aircraft.dynamics.linear_model import LinearModel
-from aircraft.dynamics.linearise import BODY_STATES
+from aircraft.linearise import BODY_STATES, LinearModel
 
 _MOVES = 1e-9
 """Final value below which a state does not follow an input: a rate comes back to zero."""

@@ -1,6 +1,6 @@
 """How often the autopilot computes, and by how much that delays its loops."""
 
-from aircraft.simulation.fdm import TIME_STEP
+from aircraft.fdm import TIME_STEP
 
 PERIODS = (1, 2, 3)
 """Time steps from one computation of the autopilot to the next, of which a design takes the longest

@@ -9,10 +9,10 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from aircraft.dynamics.envelope import TABLE_REACH
-from aircraft.dynamics.equilibrium import Trim
-from aircraft.dynamics.linear_model import LinearModel
+from aircraft.envelope import TABLE_REACH
+from aircraft.linearise import LinearModel
 from aircraft.spec import AircraftSpec, Envelope
+from aircraft.trim import Trim
 from common.physics.units import STANDARD_GRAVITY
 from innerloop.synthesis.gains import Gains
 from innerloop.synthesis.rate import loop_delay

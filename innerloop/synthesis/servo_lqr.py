@@ -16,8 +16,8 @@ import math
 import control
 import numpy as np
 
-from aircraft.dynamics.equilibrium import Trim
-from aircraft.dynamics.linear_model import LinearModel, Matrix
+from aircraft.linearise import LinearModel, Matrix
+from aircraft.trim import Trim
 from common.physics.units import STANDARD_GRAVITY
 from innerloop.synthesis.gains import LONGITUDINAL, Gains
 from innerloop.synthesis.quasi_static import quasi_static
@@ -27,7 +27,7 @@ from innerloop.synthesis.weights import ControlWeights, DesignWeights
 def design_gains(
     model: LinearModel, trim: Trim, weights: DesignWeights, controls: ControlWeights
 ) -> Gains:
-    """Design the feedback for a linear model from ``aircraft.dynamics.linearise`` about ``trim``."""
+    """Design the feedback for a linear model from ``aircraft.linearise`` about ``trim``."""
     plant = quasi_static(model)
     longitudinal, longitudinal_integral = _longitudinal(plant, weights, controls)
     lateral, heading_integral, sideslip_integral = _lateral(plant, weights, controls)

@@ -11,7 +11,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from aircraft.dynamics.linear_model import LinearModel
+from aircraft.linearise import LinearModel
 from common.physics.units import STANDARD_GRAVITY
 from innerloop.synthesis.quasi_static import quasi_static, state_lag
 from innerloop.synthesis.rate import PERIODS, loop_delay

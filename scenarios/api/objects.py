@@ -188,7 +188,7 @@ class _Namer:
 
     def part(self, key: str, part: Any) -> str:
         """Return the name of an object that is given for a key."""
-        from aircraft.fleet.stock import stock_names
+        from aircraft.fleet.find import stock_names
 
         key = key.removeprefix("sweep.")
         registry = _registry(key)
@@ -243,7 +243,7 @@ def _registry(key: str) -> Registry[Any]:
     ------
     InputError : it names none
     """
-    from aircraft.fleet.registry import AIRCRAFT
+    from aircraft.fleet import AIRCRAFT
     from gnc.laws import STEERING_LAWS
     from scenarios.search.method import SEARCH_METHODS
     from scenarios.studies.checks import PART_REGISTRIES

@@ -17,7 +17,7 @@ from measurement.sniffer.spec import SnifferSpec
 if TYPE_CHECKING:
     import pandas as pd
 
-    from measurement.estimate import FscEstimate
+    from measurement.estimate.result import FscEstimate
 
 _INTERVAL = 60.0
 """About the time between estimates of a flight [s]: the time to a verdict is known to that."""
@@ -67,8 +67,8 @@ def fuel_estimate(
     limit : that the verdict is on [% m/m]
     expected : what a perfect instrument reads [% m/m]
     """
-    from measurement.estimate import time_to_verdict
     from measurement.estimate.flight_log.analysis import analyse
+    from measurement.estimate.over_time import time_to_verdict
     from measurement.estimate.verdict import OPEN
 
     try:

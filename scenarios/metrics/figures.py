@@ -5,7 +5,7 @@ import math
 import numpy as np
 import numpy.typing as npt
 
-from aircraft.atmosphere.wind import CALM
+from aircraft.wind import CALM
 from common.times import utc_text
 from gnc.mission.mission import LEAVING, Mode
 from scenarios.engine.task import Row

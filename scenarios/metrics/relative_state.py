@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 import pandas as pd
 
-from aircraft.atmosphere.wind import CALM
+from aircraft.wind import CALM
 from common.physics.geodesy import LocalFrame
 from gnc.numeric import wrapped
 from gnc.paper import LookAhead

@@ -3,9 +3,9 @@
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 
-from aircraft.atmosphere.turbulence import TURBULENCE
-from aircraft.simulation.fdm import Fdm
+from aircraft.fdm import Fdm
 from aircraft.spec import AircraftSpec
+from aircraft.weather import TURBULENCE
 from common.physics.units import METRES_PER_FOOT
 from gnc.errors import InfeasibleError
 from gnc.reference.reference import Orbit

@@ -7,8 +7,8 @@ from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 
-from aircraft.errors import AircraftError
-from aircraft.fleet.folder import folder_names, folder_path
+from aircraft.fleet.find import folder_names, folder_path
+from aircraft.spec import AircraftError
 from scenarios.errors import InputError
 from scenarios.schema.load import load_document
 from scenarios.schema.overrides import parse_override

@@ -3,7 +3,7 @@
 import traceback
 from pathlib import Path
 
-from aircraft.errors import AircraftError
+from aircraft.spec import AircraftError
 from common.registry import PluginError
 from common.spelling import one_line
 from gnc.errors import InfeasibleError, LawError

@@ -1,6 +1,6 @@
 """The vehicle at the start of a flight."""
 
-from aircraft.atmosphere.wind import CALM
+from aircraft.wind import CALM
 from innerloop.flight.autopiloted_aircraft import AutopilotedAircraft
 from scenarios.planning.flight_plan import FlightPlan
 from scenarios.vehicles.jsbsim import JsbsimVehicle
@@ -46,7 +46,7 @@ def release(
         )
     flown = flown or AutopilotedAircraft(aircraft.spec, aircraft.model, failable=failable(plan))
     if viewer is not None:
-        flown.fdm.show(*viewer)
+        flown.fdm.stream_to_flightgear(*viewer)
     # Still air needs no weather of its own.
     weather = world.weather if world and plan.sensing else None
     return JsbsimVehicle(

@@ -4,11 +4,10 @@ from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from typing import Any
 
-from aircraft.atmosphere.turbulence import scale_lengths
-from aircraft.errors import AircraftError
+from aircraft.faults import fault_names
 from aircraft.fleet.find import find_spec
-from aircraft.simulation.faults import fault_names
-from aircraft.spec import Envelope
+from aircraft.spec import AircraftError, Envelope
+from aircraft.weather import scale_lengths
 from common.files import is_data_file
 from common.registry import PluginError, Registry
 from common.run_layout import NAME_BYTES_MAX, is_file_name

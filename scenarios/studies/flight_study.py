@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from aircraft.errors import AircraftError
+from aircraft.spec import AircraftError
 from common.intervals import CONFIDENCE
 from common.physics.coordinated_turn import bank_for_heading_rate
 from common.run_layout import (

@@ -8,9 +8,9 @@ from typing import Any
 from pydantic import BaseModel
 from pydantic_core import to_jsonable_python
 
-from aircraft.errors import AircraftError
 from aircraft.fleet.find import find_spec
-from aircraft.simulation.model_copy import model_hash
+from aircraft.model import model_hash
+from aircraft.spec import AircraftError
 from common.provenance import provenance
 from common.registry import PluginError, file_hash, file_of
 from common.run_layout import FORMAT, LOGO

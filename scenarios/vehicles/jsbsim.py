@@ -6,10 +6,10 @@ import itertools
 import math
 from dataclasses import replace
 
-from aircraft.atmosphere.weather import Weather
-from aircraft.dynamics.equilibrium import Trim
-from aircraft.simulation.local_frame import EquatorFrame
 from aircraft.spec import Envelope
+from aircraft.state import EquatorFrame
+from aircraft.trim import Trim
+from aircraft.weather import Weather
 from innerloop.flight.autopiloted_aircraft import AutopilotedAircraft
 from innerloop.flight.servo_monitor import ServoMonitor
 from scenarios.vehicles.telemetry import Telemetry

@@ -2,7 +2,7 @@
 
 import math
 
-from aircraft.atmosphere.wind import CALM, WindField
+from aircraft.wind import CALM, WindField
 from common.physics.coordinated_turn import bank_for_heading_rate
 from gnc.estimation.navigation import Motion
 from gnc.unicycle import lagged_move, unicycle_move

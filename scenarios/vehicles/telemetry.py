@@ -2,8 +2,8 @@
 
 import math
 
-from aircraft.simulation.fdm import Fdm
-from aircraft.simulation.local_frame import EquatorFrame
+from aircraft.fdm import Fdm
+from aircraft.state import EquatorFrame
 from common.physics.units import METRES_PER_FOOT
 from gnc.estimation.navigation import Motion
 from innerloop.jsbsim.properties import CONTROL_COMMAND, HEADING_RATE

@@ -22,7 +22,7 @@ SAMPLE_COLUMNS = (
 )
 """What a vehicle's ``sample`` returns, in order; not a number where it has no such thing. Controls
 are commands [-], or the effect by which a surface is commanded whose travel is unequal
-(``aircraft.dynamics.control_effectiveness``).
+(``aircraft.controls``).
 """
 
 

@@ -10,13 +10,11 @@ from pathlib import Path
 
 import numpy as np
 
-from aircraft.dynamics.equilibrium import Trim
-from aircraft.dynamics.trim import level_trim
-from aircraft.errors import AircraftError
+from aircraft.faults import fault_names
 from aircraft.fleet.find import find_spec
-from aircraft.simulation.faults import fault_names
-from aircraft.simulation.user_check import check_user_aircraft
-from aircraft.spec import AircraftSpec, Envelope
+from aircraft.spec import AircraftError, AircraftSpec, Envelope
+from aircraft.trim import Trim, level_trim
+from aircraft.user_check import check_user_aircraft
 from common.files import write_tree
 from innerloop.designs.cache import designed
 from innerloop.designs.designed import Designed

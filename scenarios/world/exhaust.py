@@ -8,7 +8,7 @@ from typing import Any, Protocol, runtime_checkable
 import numpy as np
 import numpy.typing as npt
 
-from aircraft.atmosphere.wind import WindField
+from aircraft.wind import WindField
 from gnc.errors import InfeasibleError
 from measurement.emission.emission import Emission, emission_of
 from measurement.emission.fuel import Fuel, fuel_preset

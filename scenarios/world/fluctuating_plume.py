@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from aircraft.atmosphere.wind import WindField
+from aircraft.wind import WindField
 from measurement.emission.emission import Emission
 from measurement.plume.air import MarineAir
 from measurement.plume.fluctuating_plume import FluctuatingPlume

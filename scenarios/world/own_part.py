@@ -9,7 +9,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any, TypeVar
 
-from aircraft.errors import AircraftError
+from aircraft.spec import AircraftError
 from common.registry import PluginError
 from common.spelling import one_line
 from gnc.errors import InfeasibleError, LawError

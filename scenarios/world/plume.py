@@ -8,7 +8,7 @@ from typing import Protocol
 import numpy as np
 import numpy.typing as npt
 
-from aircraft.atmosphere.wind import WindField
+from aircraft.wind import WindField
 from scenarios.schema.extension_points import PLUME_MODELS
 from scenarios.schema.sections.world import PlumeConfig
 from scenarios.world.vessel import TRACK_STEP, SteadyVessel, VesselTruth, sampled, track_times

@@ -4,11 +4,9 @@ import math
 
 import numpy as np
 
-from aircraft.atmosphere.gusts import STEPS_BETWEEN, Gust
-from aircraft.atmosphere.turbulence import TURBULENCE
-from aircraft.atmosphere.weather import Weather
-from aircraft.atmosphere.wind import CALM, WindField, constant_wind, over_the_sea
-from aircraft.simulation.fdm import TIME_STEP
+from aircraft.fdm import TIME_STEP
+from aircraft.weather import STEPS_BETWEEN_GUSTS, TURBULENCE, Gust, Weather
+from aircraft.wind import CALM, WindField, constant_wind, over_the_sea
 from common.physics.wind import wind_velocity
 from scenarios.schema.scenario import Scenario
 from scenarios.schema.sections.world import WindConfig
@@ -17,7 +15,7 @@ from scenarios.world.wind_table import tabled_wind
 
 STILL_AIR = Weather(wind=CALM, turbulence=None, gusts=(), seed=0)
 
-_BETWEEN = (STEPS_BETWEEN + 1.0) * TIME_STEP
+_BETWEEN = (STEPS_BETWEEN_GUSTS + 1.0) * TIME_STEP
 """Time from the end of one gust to the next, at least [s]."""
 
 

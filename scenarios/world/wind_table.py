@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 import numpy.typing as npt
 
-from aircraft.atmosphere.wind import WindField, over_the_sea
+from aircraft.wind import WindField, over_the_sea
 from common.physics.wind import wind_velocity
 from common.spelling import other_units
 from common.times import utc_text

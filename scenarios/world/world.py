@@ -7,8 +7,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 import numpy.typing as npt
 
-from aircraft.atmosphere.weather import Weather
-from aircraft.atmosphere.wind import WindField
+from aircraft.weather import Weather
+from aircraft.wind import WindField
 from common.registry import PluginError
 from scenarios.schema.extension_points import PLUME_MODELS, VESSEL_TRACKS
 from scenarios.schema.scenario import Scenario

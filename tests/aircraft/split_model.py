@@ -3,7 +3,7 @@
 import shutil
 import xml.etree.ElementTree as ET
 
-from aircraft.model_files import stock_root
+from aircraft.model import stock_root
 
 SECTIONS = {
     "mass_balance": "Mass.xml",

@@ -235,7 +235,7 @@ def state_rates(state: np.ndarray, throttle: float) -> np.ndarray:
 
 
 def body_from_ned(roll: float, pitch: float, yaw: float = 0.0) -> np.ndarray:
-    """Rotation matrix of the 3-2-1 Euler angles [rad], built from its three elementary rotations."""
+    """Rotation matrix of the 3-2-1 Euler angles [rad], from its three elementary rotations."""
     cr, sr, cp, sp, cy, sy = (f(x) for x in (roll, pitch, yaw) for f in (math.cos, math.sin))
     about_x = np.array([[1.0, 0.0, 0.0], [0.0, cr, sr], [0.0, -sr, cr]])
     about_y = np.array([[cp, 0.0, -sp], [0.0, 1.0, 0.0], [sp, 0.0, cp]])

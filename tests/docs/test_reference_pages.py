@@ -11,7 +11,7 @@ from reference_pages.keys import keys_page
 from reference_pages.markdown import literal, plain, table
 
 from common import run_layout
-from measurement.estimate import estimate
+from measurement.estimate.estimator import estimate
 from measurement.estimate.flight_log.config import LogConfig
 from measurement.estimate.flight_log.csv_file import read_flight
 from measurement.estimate.flight_log.run_files import SAMPLE_MEANINGS, samples

@@ -7,10 +7,13 @@ import pytest
 from crossings import changed, crossings, flight, plain_sniffer, read, sniffer_of
 
 from measurement.errors import MeasurementError
-from measurement.estimate import estimate, over_time
+from measurement.estimate import over_time
+from measurement.estimate.estimator import estimate
 from measurement.estimate.passes import readings_noise
 from measurement.estimate.record import checked_record
-from measurement.sniffer import Channel, Readings, sensor_preset
+from measurement.sniffer.channel import Channel
+from measurement.sniffer.presets import sensor_preset
+from measurement.sniffer.sniffer import Readings
 
 SPEC = plain_sniffer(so2_noise=2.5, co2_noise=1.0)
 READINGS = read(SPEC, crossings(0.25, duration=120.0))

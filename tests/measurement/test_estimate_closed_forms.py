@@ -7,15 +7,16 @@ import numpy as np
 import pytest
 from crossings import changed, crossings, plain_sniffer, read
 
-from measurement.estimate import estimate
 from measurement.estimate.areas import area_ratio
+from measurement.estimate.estimator import estimate
 from measurement.estimate.fit.regression import fitted
 from measurement.estimate.fit.signals import make_signals
 from measurement.estimate.passes import find_passes
 from measurement.estimate.record import Record, checked_record
 from measurement.gases import fsc_factor
-from measurement.sniffer import Readings, sensor_preset
 from measurement.sniffer.lag import lag
+from measurement.sniffer.presets import sensor_preset
+from measurement.sniffer.sniffer import Readings
 
 TAU = 20.0 / math.log(10.0)
 

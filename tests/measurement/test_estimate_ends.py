@@ -8,10 +8,12 @@ import numpy as np
 import pytest
 from crossings import BACKGROUND, changed, crossings, plain_sniffer, read, sniffer_of
 
-from measurement.estimate import estimate, over_time
+from measurement.estimate import over_time
+from measurement.estimate.estimator import estimate
 from measurement.estimate.fit.signals import make_signals
 from measurement.estimate.record import checked_record
-from measurement.sniffer import Channel, Readings
+from measurement.sniffer.channel import Channel
+from measurement.sniffer.sniffer import Readings
 
 AIR = {"interval": 30.0, "meander": 0.0, "width": 2.0}
 

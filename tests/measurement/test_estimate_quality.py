@@ -8,13 +8,13 @@ import numpy as np
 import pytest
 from crossings import changed, crossings, flight, plain_sniffer, read
 
-from measurement.estimate import estimate
 from measurement.estimate.areas import area_ratio
+from measurement.estimate.estimator import estimate
 from measurement.estimate.passes import find_passes
 from measurement.estimate.record import checked_record
 from measurement.gases import GASES
-from measurement.sniffer import Readings, sensor_preset
-from measurement.sniffer.presets import read_spec
+from measurement.sniffer.presets import read_spec, sensor_preset
+from measurement.sniffer.sniffer import Readings
 
 
 def reasons(readings, spec):

@@ -8,9 +8,10 @@ import numpy as np
 import pytest
 from crossings import changed, crossings, flight, read
 
-from measurement.estimate import estimate
+from measurement.estimate.estimator import estimate
 from measurement.gases import GASES
-from measurement.sniffer import Readings, sensor_preset
+from measurement.sniffer.presets import sensor_preset
+from measurement.sniffer.sniffer import Readings
 
 STUCK = "its sensor, or its logger, was stuck"
 

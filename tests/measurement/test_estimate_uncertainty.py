@@ -9,16 +9,16 @@ import numpy as np
 import pytest
 from crossings import changed, crossings, flight, plain_sniffer, read
 
-from measurement.estimate import estimate
 from measurement.estimate.areas import area_ratio
+from measurement.estimate.estimator import estimate
 from measurement.estimate.fit.alignment import align
 from measurement.estimate.fit.regression import regress
 from measurement.estimate.fit.signals import make_signals
 from measurement.estimate.passes import find_passes
 from measurement.estimate.record import checked_record
 from measurement.gases import GASES, fsc_factor
-from measurement.sniffer import Readings, sensor_preset
-from measurement.sniffer.presets import read_spec
+from measurement.sniffer.presets import read_spec, sensor_preset
+from measurement.sniffer.sniffer import Readings
 
 REPEATS = 200
 """They give a standard deviation to 5 %; a tenth, which is asked for, is twice that, and the seeds

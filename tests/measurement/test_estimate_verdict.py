@@ -8,10 +8,13 @@ import pytest
 from crossings import changed, crossings, flight, plain_sniffer, read
 from scipy.stats import norm, truncnorm
 
-from measurement.estimate import estimate, judged, over_time, time_to_verdict
+from measurement.estimate import over_time
+from measurement.estimate.estimator import estimate
+from measurement.estimate.over_time import time_to_verdict
 from measurement.estimate.quality import judged_quality
-from measurement.estimate.verdict import interval, probability_above
-from measurement.sniffer import Readings, sensor_preset
+from measurement.estimate.verdict import interval, judged, probability_above
+from measurement.sniffer.presets import sensor_preset
+from measurement.sniffer.sniffer import Readings
 
 
 def test_a_verdict_is_that_of_a_guard_band():

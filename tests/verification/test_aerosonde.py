@@ -14,10 +14,10 @@ import numpy as np
 import pytest
 from x8_published import equatorial_gravity, standard_density
 
-from aircraft.dynamics.trim import trim
+from aircraft.fdm import TIME_STEP, Fdm
 from aircraft.fleet.aerosonde import AEROSONDE
-from aircraft.simulation.fdm import TIME_STEP, Fdm
 from aircraft.spec import MODELS
+from aircraft.trim import trim
 
 AIRSPEED, ALTITUDE = 25.0, 100.0  # m/s, m: where the authors start their simulations
 WORLD = bm.World(standard_density, equatorial_gravity(ALTITUDE))

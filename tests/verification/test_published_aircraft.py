@@ -11,9 +11,9 @@ import math
 import pytest
 from scipy.optimize import brentq
 
-from aircraft.dynamics.trim import trim
+from aircraft.fdm import Fdm
 from aircraft.fleet.x8 import X8
-from aircraft.simulation.fdm import Fdm
+from aircraft.trim import trim
 
 ALPHA, ELEVON = 0.0308, 0.0370  # rad
 ROUNDING = 5e-5  # rad, half their last digit

@@ -7,8 +7,8 @@ import math
 import numpy as np
 import pytest
 
+from aircraft.fdm import TIME_STEP
 from aircraft.fleet.x8 import X8
-from aircraft.simulation.fdm import TIME_STEP
 from common.physics.units import METRES_PER_FOOT, STANDARD_GRAVITY
 from gnc.estimation.navigation import AirMotion
 from gnc.estimation.vessel import Tube

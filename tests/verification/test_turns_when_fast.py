@@ -4,7 +4,7 @@ import math
 
 import pytest
 
-from aircraft.simulation.fdm import TIME_STEP
+from aircraft.fdm import TIME_STEP
 from common.physics.coordinated_turn import heading_rate_for_bank
 from common.physics.units import METRES_PER_FOOT, STANDARD_GRAVITY
 from gnc.estimation.navigation import TrueNavigation

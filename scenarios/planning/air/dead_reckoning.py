@@ -11,8 +11,8 @@ import math
 import numpy as np
 import numpy.typing as npt
 
-from aircraft.atmosphere.turbulence import TURBULENCE, intensities, scale_lengths
-from aircraft.atmosphere.wind import WindField
+from aircraft.weather import TURBULENCE, intensities, scale_lengths
+from aircraft.wind import WindField
 from gnc.estimation.navigation import NOISE_DEVIATIONS
 from scenarios.planning.air.estimated_wind import (
     WIND_FOLLOWED,

@@ -4,8 +4,8 @@ until its estimate has followed.
 
 import math
 
-from aircraft.atmosphere.turbulence import TURBULENCE, intensities, scale_lengths
-from aircraft.atmosphere.wind import WindField
+from aircraft.weather import TURBULENCE, intensities, scale_lengths
+from aircraft.wind import WindField
 from gnc.estimation.navigation import (
     NOISE_DEVIATIONS,
     EstimatedNavigation,

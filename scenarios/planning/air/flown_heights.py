@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from aircraft.atmosphere.wind import WindField
+from aircraft.wind import WindField
 from gnc.errors import InfeasibleError
 from scenarios.planning.limits import omega_max
 from scenarios.schema.scenario import Scenario

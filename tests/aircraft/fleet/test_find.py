@@ -3,19 +3,17 @@ flown.
 """
 
 import re
-from dataclasses import replace
 from pathlib import Path
 
 import jsbsim
-import numpy as np
 import pytest
 
-from aircraft.errors import AircraftError
+from aircraft.fdm import Fdm
 from aircraft.fleet.aerosonde import AEROSONDE
-from aircraft.fleet.find import aircraft_names, find_spec
-from aircraft.fleet.stock import stock_names
+from aircraft.fleet.find import aircraft_names, find_spec, stock_names
 from aircraft.fleet.x8 import X8
-from aircraft.spec import Actuator, DrivenState, servo_position, surface, throttle
+from aircraft.spec import AircraftError
+from aircraft.trim import trim
 
 STOCK = Path(jsbsim.get_default_root_dir()) / "aircraft"
 
@@ -114,158 +112,79 @@ def test_a_path_is_that_of_a_folder_and_no_name_of_jsbsims_own(name):
     assert f"aircraft '{name}': there is no such directory" in reason(name)
 
 
-THREE = (surface("elevator"), surface("aileron"), throttle(1))
-MAY = "; it needs elevator, aileron, throttle, may have rudder, and no others: correct its spec"
+SOURCE = """
+from dataclasses import replace
+
+from aircraft.fleet.x8 import X8
+
+TRAINER = replace(X8, name="trainer", title="X8 of another name")
+NOT_AN_AIRCRAFT = 3.0
+UNTRIMMED = replace(X8, settle_time=-1.0)
+"""
 
 
+@pytest.fixture
+def added_file(tmp_path):
+    path = tmp_path / "added_aircraft.py"
+    path.write_text(SOURCE, encoding="utf-8")
+    return path
+
+
+@pytest.fixture
+def installed(added_file, monkeypatch):
+    """The file as a package whose entry points are known, as after pip install."""
+    metadata = added_file.parent / "added_aircraft-1.0.dist-info"
+    metadata.mkdir()
+    (metadata / "METADATA").write_text(
+        "Metadata-Version: 2.1\nName: added-aircraft\nVersion: 1.0\n", encoding="utf-8"
+    )
+    points = (
+        "trainer = added_aircraft:TRAINER\nnumber = added_aircraft:NOT_AN_AIRCRAFT\n"
+        "lost = added_aircraft:LOST\n"
+    )
+    (metadata / "entry_points.txt").write_text(
+        f"[plume_flight_study.aircraft]\n{points}", encoding="utf-8"
+    )
+    monkeypatch.syspath_prepend(added_file.parent)
+
+
+def assert_it_trims_as_the_x8_does(spec):
+    found, original = (trim(Fdm(each), airspeed=20.0, altitude=100.0) for each in (spec, X8))
+    assert found == original  # the same model, so the same search to the last bit
+
+
+def test_an_aircraft_of_a_python_file_is_found_and_trims(added_file):
+    spec = find_spec(f"{added_file}:TRAINER")
+    assert (spec.name, spec.title) == ("trainer", "X8 of another name")
+    assert_it_trims_as_the_x8_does(spec)
+
+
+@pytest.mark.usefixtures("installed")
+def test_an_aircraft_of_an_installed_package_is_listed_found_and_trims():
+    assert "trainer" in aircraft_names()
+    assert_it_trims_as_the_x8_does(find_spec("trainer"))
+    with pytest.raises(AircraftError, match=r"did you mean 'trainer'\?"):
+        find_spec("trayner")
+
+
+def test_a_package_is_known_only_while_it_is_installed():
+    assert "trainer" not in aircraft_names()
+
+
+@pytest.mark.usefixtures("installed")
 @pytest.mark.parametrize(
-    ("parts", "why"),
+    ("name", "why"),
     [
-        (
-            {"inputs": (*THREE, surface("flap"))},
-            f"has the inputs elevator, aileron, throttle, flap{MAY}",
-        ),
-        (
-            {"inputs": (*THREE, surface("rudder"), surface("flap"))},
-            f"aileron, throttle, rudder, flap{MAY}",
-        ),
-        (
-            {"inputs": (THREE[0], THREE[2], surface("rudder"))},
-            f"has the inputs elevator, throttle, rudder{MAY}",
-        ),
-        (
-            {"inputs": (*THREE, THREE[0])},
-            f"has the inputs elevator, aileron, throttle, elevator{MAY}",
-        ),
-        ({"inputs": ()}, f"has the inputs (none){MAY}"),
-        (
-            {"driven_states": (servo_position("rudder"),)},
-            "driven state 'rudder_position' follows input 'rudder', which is none of elevator, aileron, throttle; correct its spec",
-        ),
-        (
-            {
-                "driven_states": (
-                    *X8.driven_states,
-                    DrivenState(name="rpm", position="a/b", input="throttle"),
-                )
-            },
-            ": driven state 'rpm' follows input 'throttle', as another one does; correct its spec",
-        ),
-        (
-            {"inputs": (replace(THREE[0], commands=()), *THREE[1:])},
-            "input 'elevator' has no commands; name the JSBSim properties",
-        ),
-        (
-            {"inputs": (replace(THREE[0], lower=1.0, upper=-1.0), *THREE[1:])},
-            "input 'elevator' ranges from 1 to -1; lower must be",
-        ),
-        (
-            {"inputs": (replace(THREE[0], lower=0.1), *THREE[1:])},
-            "'elevator' ranges from 0.1 to 1; lower must be below 0, and upper",
-        ),
-        (
-            {"own_actuators": (Actuator(name="left elevon", commands=("a/b",)),)},
-            "'left elevon' is no name of an actuator, or taken",
-        ),
-        (
-            {"own_actuators": (*X8.own_actuators, X8.own_actuators[0])},
-            "'left_elevon' is no name of an actuator, or taken; use let",
-        ),
-        (
-            {"own_actuators": (Actuator(name="engine", commands=THREE[2].commands),)},
-            "'engine' is no name of an actuator, or taken",
-        ),
-        (
-            {"own_actuators": (Actuator(name="flap", commands=("fcs/flap",)),)},
-            "actuator 'flap' has commands of its own and no feed",
-        ),
-        (
-            {"own_actuators": (Actuator(name="flap", commands=()),)},
-            "actuator 'flap' has no commands; name the JSBSim properties",
-        ),
-        (
-            {"settle_time": -1.0},
-            "settle_time is -1 s; it must lie between 0.1 and 120 s; correct its spec",
-        ),
-        (
-            {"envelope": replace(X8.envelope, airspeed_max=15.0)},
-            "airspeed is 19.42 m/s; it must lie between airspeed_min, 15, and",
-        ),
-        (
-            {"envelope": replace(X8.envelope, airspeed_min=25.0, airspeed_max=15.0)},
-            "airspeed_min, 25, and airspeed_max, 15 m/s",
-        ),
-        (
-            {"envelope": replace(X8.envelope, airspeed_min=-1.0)},
-            "airspeed_min, -1, and airspeed_max, 25 m/s, and these above 0",
-        ),
-        (
-            {"envelope": replace(X8.envelope, bank=0.0)},
-            "bank is 0 deg (0 rad); it must lie between 5 and 60 deg: give radians",
-        ),
-        (
-            {"envelope": replace(X8.envelope, bank=45.0)},
-            "bank is 2578.31 deg (45 rad); it must lie between 5 and 60 deg",
-        ),
-        (
-            {"name": "A&B/C"},
-            "'A&B/C' is no name of an aircraft; use letters, digits, '_', '-' and '.': correct its spec",
-        ),
-        # Of other types than the spec declares: each was a traceback, or was taken for something
-        # else.
-        ({"name": None}, "name is None, of type NoneType; it must be text; correct its spec"),
-        (
-            {"root": "models"},
-            "aircraft 'own': root is 'models', of type str; it must be of type Path; correct its spec",
-        ),
-        ({"root": None}, "root is None, of type NoneType; it must be of type Path"),
-        ({"folder": "x8"}, "folder is 'x8', of type str; it must be of type Path"),
-        ({"settle_time": "2"}, "settle_time is '2', of type str; it must be a number"),
-        ({"settle_time": True}, "settle_time is True, of type bool; it must be a number"),
-        (
-            {"configuration": {"fcs/flap": 0.3}},
-            "configuration is {'fcs/flap': 0.3}, of type dict; it must be of type tuple[tuple[str, float], ...], as"
-            " (('fcs/flap', 0.3),); correct its spec",
-        ),
-        (
-            {"configuration": ("fcs/flap", 0.3)},
-            "configuration[0] is 'fcs/flap', of type str; it must be of type tuple[str, float]",
-        ),
-        (
-            {"configuration": (("fcs/flap", 0.3, 1.0),)},
-            "configuration[0] is ('fcs/flap', 0.3, 1.0), of type tuple; it must be",
-        ),
-        (
-            {"inputs": (replace(THREE[0], commands="fcs/elevator-cmd-norm"), *THREE[1:])},
-            "inputs[0].commands is 'fcs/elevator-cmd-norm', of type str; it must be of type tuple[str, ...], which of one item has"
-            " a comma: ('fcs/elevator-cmd-norm',); correct its spec",
-        ),
-        ({"inputs": THREE[0]}, "of type ControlInput; it must be of type tuple[ControlInput, ...]"),
-        (
-            {"envelope": (15.0, 25.0)},
-            "envelope is (15.0, 25.0), of type tuple; it must be of type Envelope",
-        ),
-        (
-            {"envelope": replace(X8.envelope, bank="45")},
-            "envelope.bank is '45', of type str; it must be a number",
-        ),
+        ("number", "'number' is of type float; it must be an AircraftSpec of aircraft/spec.py"),
+        ("{file}:UNTRIMMED", "settle_time is -1 s"),
+        ("lost", "'lost' of package added_aircraft:LOST: AttributeError"),
+        ("{file}:NOT_AN_AIRCRAFT", "is of type float; it must be an AircraftSpec"),
+        ("{file}:TRAINR", "has no 'TRAINR'; did you mean 'TRAINER'?"),
+        ("absent.py:TRAINER", "absent.py: cannot be read"),
     ],
 )
-def test_an_aircraft_of_a_file_that_the_autopilot_cannot_fly_with_is_refused(
-    tmp_path, monkeypatch, parts, why
-):
-    own = replace(X8, **{"name": "own", **parts})
-    monkeypatch.setattr("common.registry.part_in_file", lambda _: own)
-    assert why in reason(f"{tmp_path / 'own.py'}:OWN")
-
-
-def test_lists_and_numbers_of_numpy_will_do_in_the_spec_of_a_file(tmp_path, monkeypatch):
-    own = replace(
-        X8,
-        name="own",
-        inputs=list(X8.inputs),
-        settle_time=np.float32(2.0),
-        configuration=[("fcs/flap", 1)],
-    )
-    monkeypatch.setattr("common.registry.part_in_file", lambda _: own)
-    assert find_spec(f"{tmp_path / 'own.py'}:OWN") is own
+def test_what_does_not_load_or_is_no_aircraft_is_one_line_with_the_reason(added_file, name, why):
+    with pytest.raises(AircraftError) as caught:
+        find_spec(name.format(file=added_file))
+    assert why in str(caught.value)
+    assert "\n" not in str(caught.value)

@@ -4,9 +4,9 @@ again.
 
 import pytest
 
+from aircraft.fdm import Fdm
 from aircraft.fleet.find import find_spec
-from aircraft.simulation.fdm import Fdm
-from aircraft.simulation.state import RigidBodyState, body_velocity
+from aircraft.state import RigidBodyState, body_velocity
 
 AIRSPEEDS = {
     "c172x": 55.0,

@@ -452,7 +452,8 @@ def test_v_r_is_flown_while_the_guard_acts_and_for_a_quarter_of_a_turn_after():
     guard = guard_with_pace()
     head_on = known_motion((-220.0, 0.0, 0.0, 0.0), speed=SPEED)
     guarded = guard.filter(Demand(0.0, 0.0, SPEED + 1.0), head_on, (AT_REST,))
-    assert (guarded.pace, guarded.pace_held, guard.intervening) == (SPEED, True, True)
+    assert (guarded.pace, guarded.pace_held) == (SPEED, True)
+    assert guarded.status is not GuardStatus.FREE
     # A vehicle that leaves is not held.
     leaving = Demand(TIME_STEP, 0.0, SPEED + 1.0, leaving=True)
     guarded = copy.deepcopy(guard).filter(leaving, FAR, (AT_REST,))
@@ -462,7 +463,7 @@ def test_v_r_is_flown_while_the_guard_acts_and_for_a_quarter_of_a_turn_after():
     held = times < 0.5 * math.pi / HEADING_RATE_MAX
     assert [pace.pace_held for pace in paces] == held.tolist()
     assert [pace.pace for pace in paces] == np.where(held, SPEED, SPEED + 1.0).tolist()
-    assert not guard.intervening
+    assert guard.status is GuardStatus.FREE
 
 
 def test_measured_airspeeds_beyond_the_commanded_ones_count():

@@ -10,7 +10,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from gnc.estimation.navigation import AirMotion
-from gnc.estimation.plume.estimator import HIT, PlumeEstimator, PlumeState, SensorState
+from gnc.estimation.plume.estimator import HIT, PlumeEstimator, PlumeState
+from gnc.estimation.plume.passes import SensorState
 from gnc.estimation.plume.prior import Expectation
 from gnc.estimation.vessel import SteadyTarget
 from gnc.mission.axis import (

@@ -5,7 +5,7 @@ where it is.
 import numpy as np
 import pytest
 
-from aircraft.simulation.state import course_rate
+from aircraft.state import course_rate
 from common.physics.units import METRES_PER_FOOT
 from innerloop.analysis.gust_response import GUSTS, aircraft_in_gusts, gust_loop, velocity_by_polar
 from innerloop.synthesis.quasi_static import quasi_static

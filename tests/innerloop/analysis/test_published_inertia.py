@@ -8,11 +8,11 @@ import shutil
 import numpy as np
 import pytest
 
-from aircraft.dynamics.linearise import linearise
-from aircraft.dynamics.trim import trim
+from aircraft.fdm import Fdm
 from aircraft.fleet.x8 import X8
-from aircraft.simulation.fdm import Fdm
+from aircraft.linearise import linearise
 from aircraft.spec import MODELS
+from aircraft.trim import trim
 from innerloop.analysis.checks import REQUIRED
 from innerloop.analysis.margins import Loops
 from innerloop.law.control_law import ControlLaw

@@ -11,11 +11,11 @@ import shutil
 import numpy as np
 import pytest
 
-from aircraft.dynamics.linearise import linearise
-from aircraft.dynamics.trim import trim
+from aircraft.fdm import Fdm
 from aircraft.fleet.x8 import X8
-from aircraft.simulation.fdm import Fdm
+from aircraft.linearise import linearise
 from aircraft.spec import MODELS
+from aircraft.trim import trim
 from innerloop.analysis import robustness
 from innerloop.analysis.checks import NOMINAL, Check, Margin
 from innerloop.analysis.margins import Loops

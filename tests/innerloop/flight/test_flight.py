@@ -7,11 +7,10 @@ import numpy as np
 import pytest
 from innerloop_flights import CHANNELS, TIME_STEP, after, fly
 
-from aircraft.dynamics.trim import trim
-from aircraft.errors import AircraftError
+from aircraft.fdm import Fdm
 from aircraft.fleet.x8 import X8
-from aircraft.simulation.fdm import Fdm
-from aircraft.spec import MODELS
+from aircraft.spec import MODELS, AircraftError
+from aircraft.trim import trim
 from common.physics.geodesy import LocalFrame
 from innerloop.flight.autopiloted_aircraft import AutopilotedAircraft
 

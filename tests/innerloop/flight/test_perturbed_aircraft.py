@@ -4,12 +4,11 @@ import xml.etree.ElementTree as ET
 
 import pytest
 
+from aircraft.fdm import Fdm
 from aircraft.fleet.find import find_spec
 from aircraft.fleet.x8 import X8
-from aircraft.simulation.fdm import Fdm
-from aircraft.simulation.model_copy import copy_model
-from aircraft.simulation.perturbed_model import perturb
-from aircraft.simulation.state import RigidBodyState
+from aircraft.model import copy_model, perturb
+from aircraft.state import RigidBodyState
 from innerloop.analysis import perturbations
 from innerloop.flight.perturbed_aircraft import CASES, perturbed_aircraft
 from tests.aircraft.split_model import split_model

@@ -5,9 +5,9 @@ import math
 import numpy as np
 import pytest
 
-from aircraft.dynamics.trim import level_trim
+from aircraft.fdm import TIME_STEP, Fdm
 from aircraft.fleet.x8 import X8
-from aircraft.simulation.fdm import TIME_STEP, Fdm
+from aircraft.trim import level_trim
 from innerloop.flight.autopiloted_aircraft import AutopilotedAircraft
 from innerloop.flight.step_responses import (
     CHANNELS,

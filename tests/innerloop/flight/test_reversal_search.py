@@ -9,8 +9,8 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from aircraft.fdm import TIME_STEP
 from aircraft.fleet.x8 import X8
-from aircraft.simulation.fdm import TIME_STEP
 from common.physics.units import METRES_PER_FOOT
 from gnc.unicycle import lagged_move
 from innerloop.designs import long_search

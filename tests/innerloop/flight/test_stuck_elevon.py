@@ -9,12 +9,10 @@ from typing import cast
 import numpy as np
 import pytest
 
-from aircraft.atmosphere.turbulence import TURBULENCE
-from aircraft.atmosphere.weather import Weather
+from aircraft.fdm import Fdm
 from aircraft.fleet.x8 import X8
-from aircraft.simulation.fdm import Fdm
-from aircraft.spec import Actuator
-from aircraft.spec_check import check_spec
+from aircraft.spec import Actuator, check_spec
+from aircraft.weather import TURBULENCE, Weather
 from innerloop.flight.autopiloted_aircraft import AutopilotedAircraft
 from innerloop.flight.servo_monitor import ServoMonitor
 

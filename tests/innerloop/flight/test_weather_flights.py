@@ -5,13 +5,11 @@ import math
 import numpy as np
 import pytest
 
-from aircraft.atmosphere.gusts import Gust
-from aircraft.atmosphere.turbulence import TURBULENCE
-from aircraft.atmosphere.weather import Weather
-from aircraft.atmosphere.wind import constant_wind
+from aircraft.fdm import EARTH_RATE
 from aircraft.fleet.x8 import X8
-from aircraft.simulation.local_frame import EquatorFrame
-from aircraft.simulation.properties import EARTH_RATE
+from aircraft.state import EquatorFrame
+from aircraft.weather import TURBULENCE, Gust, Weather
+from aircraft.wind import constant_wind
 from common.physics.units import STANDARD_GRAVITY
 from innerloop.flight.autopiloted_aircraft import AutopilotedAircraft
 

@@ -13,7 +13,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from aircraft.simulation.properties import INTEGRATORS, START_ENGINES
+from aircraft.fdm import INTEGRATORS, START_ENGINES
 from innerloop.flight.autopiloted_aircraft import AutopilotedAircraft
 from innerloop.jsbsim.root import write_root
 from innerloop.jsbsim.script import columns, demonstration, write_script

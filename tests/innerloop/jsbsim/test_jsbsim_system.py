@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 from innerloop_flights import TIME_STEP, fly
 
+from aircraft.fdm import Fdm
 from aircraft.fleet.x8 import X8
-from aircraft.simulation.fdm import Fdm
 from aircraft.spec import MODELS
 from innerloop.flight.autopiloted_aircraft import AutopilotedAircraft
 from innerloop.jsbsim.properties import (

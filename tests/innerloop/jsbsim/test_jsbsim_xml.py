@@ -6,10 +6,10 @@ import xml.etree.ElementTree as ET
 import numpy as np
 import pytest
 
+from aircraft.fdm import Fdm
 from aircraft.fleet.x8 import X8
-from aircraft.simulation.fdm import Fdm
-from aircraft.simulation.state import RigidBodyState
 from aircraft.spec import MODELS
+from aircraft.state import RigidBodyState
 from innerloop.jsbsim.xml import (
     clipped,
     function,

@@ -11,7 +11,7 @@ import math
 import numpy as np
 import pytest
 
-from aircraft.simulation.state import RigidBodyState, body_velocity
+from aircraft.state import RigidBodyState, body_velocity
 from innerloop.flight.autopiloted_aircraft import AutopilotedAircraft
 from innerloop.jsbsim.properties import HEADING_RATE, RESET
 from innerloop.jsbsim.root import write_root

@@ -15,7 +15,7 @@ import pytest
 from loop_reference import named
 
 from aircraft.fleet.x8 import X8
-from aircraft.simulation.state import body_velocity
+from aircraft.state import body_velocity
 from innerloop.flight.autopiloted_aircraft import AutopilotedAircraft
 from innerloop.jsbsim.properties import HEADING_RATE, RESET
 from innerloop.jsbsim.root import write_root

@@ -8,7 +8,7 @@ from dataclasses import astuple, fields, replace
 import numpy as np
 import pytest
 
-from aircraft.dynamics.linear_model import LinearModel
+from aircraft.linearise import LinearModel
 from common.physics.units import STANDARD_GRAVITY
 from innerloop.synthesis import weights
 from innerloop.synthesis.schedule import LEVEL_GAINS

@@ -10,7 +10,7 @@ from logged_flights import run
 
 from measurement.estimate.flight_log.repeats import new_readings, rows_per_reading
 from measurement.gases import GASES
-from measurement.sniffer import Readings
+from measurement.sniffer.sniffer import Readings
 
 COLUMNS = ["so2_ppb", "co2_ppm", "no_ppb", "no2_ppb"]
 

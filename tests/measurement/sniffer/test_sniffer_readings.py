@@ -9,8 +9,9 @@ import pytest
 from crossings import BACKGROUND, changed, plain_sniffer, read, sniffer_of
 
 from measurement.errors import MeasurementError
-from measurement.sniffer import Channel, Sniffer, sensor_preset, sensor_presets
-from measurement.sniffer.presets import read_spec
+from measurement.sniffer.channel import Channel
+from measurement.sniffer.presets import read_spec, sensor_preset, sensor_presets
+from measurement.sniffer.sniffer import Sniffer
 
 STILL = np.tile(BACKGROUND, (20_001, 1))
 

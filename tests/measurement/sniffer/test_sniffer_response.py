@@ -10,8 +10,10 @@ from crossings import BACKGROUND, crossings, plain_sniffer, read, sniffer_of
 
 from measurement.errors import MeasurementError
 from measurement.gases import GASES
-from measurement.sniffer import Channel, Sniffer, sensor_preset
+from measurement.sniffer.channel import Channel
 from measurement.sniffer.lag import lag, time_constants
+from measurement.sniffer.presets import sensor_preset
+from measurement.sniffer.sniffer import Sniffer
 
 STEP = 0.25
 TAU = 20.0 / math.log(10.0)

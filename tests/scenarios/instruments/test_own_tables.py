@@ -6,7 +6,7 @@ import pandas as pd
 import pytest
 
 from measurement.emission.ship import Ship, ship_of, ship_preset
-from measurement.sniffer import sensor_of
+from measurement.sniffer.presets import sensor_of
 from reports.output import write_report
 from reports.run.run_data import read_run
 from scenarios.errors import InputError

@@ -8,9 +8,9 @@ import pandas as pd
 import pytest
 import typer
 
-from aircraft.errors import AircraftError
 from aircraft.fleet.aerosonde import AEROSONDE
 from aircraft.fleet.find import find_spec
+from aircraft.spec import AircraftError
 from innerloop.designs.cache import cache_directory
 from innerloop.designs.designed import DesignError
 from reports.output import write_report

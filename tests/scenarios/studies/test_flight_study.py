@@ -7,7 +7,7 @@ from pathlib import Path
 import pandas as pd
 import pytest
 
-from aircraft.errors import AircraftError
+from aircraft.spec import AircraftError
 from scenarios.engine.in_process_executor import InProcessExecutor
 from scenarios.errors import InputError
 from scenarios.schema.load import load_study

@@ -5,9 +5,9 @@ import math
 import numpy as np
 import pytest
 
-from aircraft.atmosphere.weather import Weather
-from aircraft.atmosphere.wind import constant_wind
 from aircraft.fleet.x8 import X8
+from aircraft.weather import Weather
+from aircraft.wind import constant_wind
 from gnc.estimation.health import CHECK_INTERVAL, STUCK
 from innerloop.flight.autopiloted_aircraft import AutopilotedAircraft
 from scenarios.vehicles.jsbsim import JsbsimVehicle

@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from aircraft.atmosphere.wind import WindField, constant_wind
+from aircraft.wind import WindField, constant_wind
 from gnc.guidance import compose
 from scenarios.errors import InputError
 from scenarios.experiment.requests import Experiment

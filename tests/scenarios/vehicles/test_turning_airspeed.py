@@ -4,9 +4,9 @@ import math
 
 import pytest
 
-from aircraft.dynamics.trim import trim
+from aircraft.fdm import Fdm
 from aircraft.fleet.x8 import X8
-from aircraft.simulation.fdm import Fdm
+from aircraft.trim import trim
 from innerloop.flight.turn_reversal import TurnReversalResponse
 from scenarios.vehicles.vehicle_setup import VehicleSetup, _slower_turns
 

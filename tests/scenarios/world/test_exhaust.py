@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 
-from aircraft.atmosphere.wind import WindField, constant_wind
+from aircraft.wind import WindField, constant_wind
 from measurement.errors import MeasurementError
 from measurement.plume.air import MarineAir
 from scenarios.schema.load import load_study

@@ -4,11 +4,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from aircraft.errors import AircraftError
+from aircraft.faults import ENGINE
 from aircraft.fleet.x8 import X8
-from aircraft.simulation.faults import ENGINE
-from aircraft.spec import Actuator
-from aircraft.spec_check import check_spec
+from aircraft.spec import Actuator, AircraftError, check_spec
 from scenarios.schema.sections.equipment import FaultConfig
 from scenarios.world.faults import NO_FAULT, NOT_OF_AIRCRAFT, SATELLITES, VESSEL_DATA, sampled_fault
 
@@ -51,7 +49,7 @@ def test_a_part_fails_for_good():
 
 @pytest.mark.parametrize("name", sorted({*NOT_OF_AIRCRAFT, ENGINE}))
 def test_no_actuator_may_have_the_name_of_another_fault(name):
-    with pytest.raises(AircraftError, match=f"'{name}' is no name of an actuator"):
+    with pytest.raises(AircraftError, match=f"'{name}' is not a valid name of an actuator"):
         check_spec(
             replace(
                 X8, own_actuators=(Actuator(name=name, commands=X8.input("throttle").commands),)

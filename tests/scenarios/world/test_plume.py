@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from aircraft.atmosphere.wind import constant_wind
+from aircraft.wind import constant_wind
 from scenarios.schema.sections.world import PlumeConfig, VesselConfig
 from scenarios.world.plume import StraightPlume
 from scenarios.world.vessel import ManoeuvringVessel, SteadyVessel

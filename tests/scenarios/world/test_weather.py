@@ -5,8 +5,8 @@ import pytest
 from flight_cases import scenario
 from pydantic import ValidationError
 
-from aircraft.atmosphere.gusts import in_order
-from aircraft.simulation.fdm import TIME_STEP
+from aircraft.fdm import TIME_STEP
+from aircraft.weather import ordered_gusts
 from scenarios.schema.sections.world import WindConfig
 from scenarios.world.place import given_place
 from scenarios.world.weather import sampled_weather, wind_ned, wind_of
@@ -66,4 +66,4 @@ def test_many_gusts_leave_each_other_the_time_that_jsbsim_needs():
     turbulence = {"gusts": 100, "gust_speed_mps": 1.0, "gust_length_s": 1.3}
     given = scenario(fidelity="six_dof", turbulence=turbulence, flight={"duration_max_s": 300.0})
     for seed in range(100):
-        assert len(in_order(sampled(given, seed).gusts, TIME_STEP)) == 100
+        assert len(ordered_gusts(sampled(given, seed).gusts, TIME_STEP)) == 100

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 from flight_cases import plan, scenario
 
-from aircraft.atmosphere.turbulence import TURBULENCE, intensities, scale_lengths
-from aircraft.atmosphere.wind import CALM, WindField
+from aircraft.weather import TURBULENCE, intensities, scale_lengths
+from aircraft.wind import CALM, WindField
 from gnc.estimation.navigation import EstimatedNavigation, SatelliteFix, SensorReadings
 from scenarios.planning.air.dead_reckoning import drift_rate
 from scenarios.planning.air.estimated_wind import navigation_parameters, wind_change

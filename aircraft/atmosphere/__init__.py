@@ -1,1 +1,0 @@
-"""Wind, MIL-F-8785C turbulence and discrete gusts in JSBSim."""

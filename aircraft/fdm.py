@@ -1,0 +1,509 @@
+"""One aircraft in JSBSim, seen in SI and radians, with typed and checked access to properties."""
+
+import contextlib
+import ctypes
+import functools
+import math
+import os
+import re
+import sys
+import tempfile
+import time
+from collections.abc import Callable, Iterator
+from dataclasses import replace
+from pathlib import Path
+
+import jsbsim
+
+from aircraft.model import copy_model, remove_ground_contacts
+from aircraft.spec import AircraftError, AircraftSpec, UnknownPropertyError
+from aircraft.state import RigidBodyState, Vector, with_wind
+from common.physics.units import METRES_PER_FOOT
+
+TIME_STEP = 1.0 / 120.0
+"""Integration step of JSBSim [s]; the autopilot in it computes at every one to three of them."""
+
+EARTH_RATE = 7.292115e-5
+"""Rotation rate of the earth, as in JSBSim's default planet [rad/s]."""
+
+CLOCK = "simulation/sim-time-sec"
+"""Time since the aircraft was placed last [s]."""
+
+INTEGRATORS = tuple(
+    f"simulation/integrator/{kind}/{motion}"
+    for kind in ("rate", "position")
+    for motion in ("rotational", "translational")
+)
+"""Properties that choose how the rigid body is integrated; 0 in all four holds it still."""
+
+START_ENGINES = (("propulsion/set-running", -1.0),)
+"""Property that starts every engine at once, where JSBSim can."""
+
+CRANK = (("propulsion/magneto_cmd", 3.0), ("propulsion/starter_cmd", 1.0))
+"""Properties that start an engine as a pilot does: both magnetos, and the starter."""
+
+STOP_CRANKING = (("propulsion/starter_cmd", 0.0),)
+
+RUN_UP_STEPS = 1200
+"""Time steps in which engines run up before an aircraft is placed, and as many for cranking."""
+
+_INITIAL_STATE = (
+    "ic/lat-geod-rad",
+    "ic/long-gc-rad",
+    "ic/h-sl-ft",
+    "ic/phi-rad",
+    "ic/theta-rad",
+    "ic/psi-true-rad",
+    "ic/u-fps",
+    "ic/v-fps",
+    "ic/w-fps",
+    "ic/p-rad_sec",
+    "ic/q-rad_sec",
+    "ic/r-rad_sec",
+)
+"""JSBSim's initial conditions, in the order in which they must be set: each may change others."""
+
+_VELOCITY = "velocities/{}-aero-fps"
+_ACCELERATION = "accelerations/{}dot-ft_sec2"
+_RATE = "velocities/{}-rad_sec"
+_ANGULAR_ACCELERATION = "accelerations/{}dot-rad_sec2"
+
+_WIND = ("atmosphere/wind-north-fps", "atmosphere/wind-east-fps", "atmosphere/wind-down-fps")
+"""Velocity of the air [ft/s]."""
+
+_NORTH_WIND_MIN = 1e-6
+"""Least wind northward [ft/s]: in none JSBSim does not turn its turbulence into the wind."""
+
+_RESET_ONLY = 2
+"""Mode of JSBSim's reset that does not run the initial conditions."""
+
+_SETTLE_STRIDE = 4
+"""Time steps between two looks whether accelerations still change."""
+
+_SLOW_AFTER = 120
+"""Time steps after which engines that still change count as slow."""
+
+_SLOW_STEP_RATIO = 8
+"""Length of the steps in which slow engines settle, over the time step [-].
+
+They are still short against the second that a piston engine takes to change its speed.
+"""
+
+_FLIGHTGEAR = '<output name="{host}" type="FLIGHTGEAR" port="{port}" protocol="UDP" rate="30"/>'
+"""JSBSim's output of FlightGear's packets, 30 a second."""
+
+_PROPERTY_NAME = re.compile(r"[A-Za-z_][\w.\-]*(\[\d+\])?(/[A-Za-z_][\w.\-]*(\[\d+\])?)*")
+
+
+class Fdm:
+    """One aircraft in JSBSim.
+
+    Properties are read and written in JSBSim's own units; a name that JSBSim does not have is
+    refused. Everything else is in SI and radians.
+
+    Parameters
+    ----------
+    spec : the aircraft
+    root : JSBSim root to load it from unchanged, e.g. one with an autopilot written into it; by
+        default a copy of the aircraft's own model without autopilot, outputs, servo play and ground
+        contacts
+    time_step : integration step [s]
+
+    Attributes
+    ----------
+    run : advances one time step
+    cranked : whether an engine had to be started with its starter
+
+    Raises
+    ------
+    AircraftError : the model's files are missing or JSBSim refuses them
+    """
+
+    def __init__(
+        self, spec: AircraftSpec, root: Path | None = None, time_step: float = TIME_STEP
+    ) -> None:
+        self.spec = spec
+        self.time_step = time_step
+        if root is None:
+            with tempfile.TemporaryDirectory() as copy:
+                copy_model(spec.files, Path(copy), play=False)
+                remove_ground_contacts(spec, Path(copy))
+                self._exec = self._load(Path(copy))
+        else:
+            self._exec = self._load(root)
+        self._exec.disable_output()
+        self._properties = self._exec.get_property_manager()
+        self._nodes: dict[str, jsbsim.FGPropertyNode] = {}
+        self._initial = [self.writable_node(name) for name in _INITIAL_STATE]
+        self._wind = [self.writable_node(name) for name in _WIND]
+        accelerations = (*_names(_ACCELERATION, "uvw"), *_names(_ANGULAR_ACCELERATION, "pqr"))
+        self._accelerations = [self.node(name) for name in accelerations]
+        self._engines_started = False
+        self.cranked = False
+        # Bound directly to JSBSim: the innermost call of every flight.
+        self.run: Callable[[], object] = self._exec.run
+
+    def _load(self, root: Path) -> jsbsim.FGFDMExec:
+        name, model = self.spec.name, self.spec.model
+        model_file = root / "aircraft" / model / f"{model}.xml"
+        if not model_file.is_file():
+            raise AircraftError(
+                f"aircraft '{name}': no model file {model_file}; check the JSBSim root directory"
+            )
+        with silenced():
+            jsbsim.FGJSBBase().debug_lvl = 0  # type: ignore[no-untyped-call]
+            executive = jsbsim.FGFDMExec(str(root))
+            executive.set_debug_level(0)
+            executive.set_dt(self.time_step)
+            try:
+                loaded = executive.load_model(model)
+            except jsbsim.BaseError:
+                loaded = False
+        if not loaded:
+            raise AircraftError(
+                f"aircraft '{name}': JSBSim refused its model '{model}'; run JSBSim on it to see"
+                " why"
+            )
+        return executive
+
+    # Properties
+
+    def has(self, name: str) -> bool:
+        """Whether there is a property of this name."""
+        return self._find(name) is not None
+
+    def node(self, name: str) -> jsbsim.FGPropertyNode:
+        """Node of an existing property, for repeated access at the least cost."""
+        node = self._find(name)
+        if node is None:
+            raise UnknownPropertyError(
+                f"aircraft '{self.spec.name}' has no JSBSim property '{name}'; check its spelling"
+            )
+        return node
+
+    def _find(self, name: str) -> jsbsim.FGPropertyNode | None:
+        if name in self._nodes:
+            return self._nodes[name]
+        # An invalid name would end the whole process in JSBSim's property tree.
+        if not _PROPERTY_NAME.fullmatch(name):
+            return None
+        node = self._properties.get_node(name)
+        if not node:
+            return None
+        self._nodes[name] = node
+        return node
+
+    def writable_node(self, name: str) -> jsbsim.FGPropertyNode:
+        """Node of an existing property that takes writes."""
+        node = self.node(name)
+        if not node.get_attribute(jsbsim.Attribute.WRITE):
+            raise AircraftError(
+                f"JSBSim property '{name}' is read-only; a write to it would be ignored"
+            )
+        return node
+
+    def read(self, name: str) -> float:
+        """Value of a property, in JSBSim's unit."""
+        return float(self.node(name).get_double_value())
+
+    def write(self, name: str, value: float) -> None:
+        """Set a property, in JSBSim's unit."""
+        self.writable_node(name).set_double_value(value)
+
+    # Placing
+
+    def place(self, state: RigidBodyState, wind: tuple[float, float] | None = None) -> None:
+        """Put the aircraft into ``state``, configured as its spec says.
+
+        Engines are started the first time, and keep running afterwards.
+
+        Parameters
+        ----------
+        state : against the air
+        wind : velocity of the air, north and east [m/s]; None for still air
+        """
+        self._initialise(state, wind)
+        if not self._engines_started and self._start_engines():
+            self._initialise(state, wind)
+
+    def hold(
+        self, state: RigidBodyState, steps: int, wind: tuple[float, float] | None = None
+    ) -> None:
+        """Place the aircraft, hold it for ``steps`` time steps, and release it in ``state``.
+
+        Parameters
+        ----------
+        state : against the air
+        steps : enough for servos and engines to come to rest
+        wind : velocity of the air, north and east [m/s]; None for still air
+        """
+        self.allow_engine_restart()
+        self.place(before_hold(state, steps * self.time_step), wind)
+        with self.frozen():
+            self.step(steps)
+
+    def reset(self) -> None:
+        """Reset every model of JSBSim, such as turbulence and engines, as loaded; place it next."""
+        self._exec.reset_to_initial_conditions(_RESET_ONLY)
+        self._engines_started = False
+
+    def allow_engine_restart(self) -> None:
+        """Start engines that have stopped, stalled by too little throttle, at the next placing."""
+        self._engines_started = self._engines_started and self._engines_run()
+
+    def _initialise(self, state: RigidBodyState, wind: tuple[float, float] | None) -> None:
+        over_ground = with_wind(state, wind) if wind else state
+        for node, (_, value) in zip(self._initial, initial_conditions(over_ground), strict=True):
+            node.set_double_value(value)
+        try:
+            # JSBSim prints where engines are still to be started; a silence costs time.
+            with contextlib.nullcontext() if self._engines_started else silenced():
+                placed = self._exec.run_ic()
+        except jsbsim.BaseError as error:
+            reason = " ".join(str(error).split(") ", 1)[-1].split())
+            raise AircraftError(
+                f"aircraft '{self.spec.name}' does not run in JSBSim alone: {reason}"
+            ) from None
+        if not placed:
+            raise AircraftError(
+                f"aircraft '{self.spec.name}': JSBSim refused the initial state {state}"
+            )
+        for name, value in self.spec.configuration:
+            self.write(name, value)
+        if wind:
+            # JSBSim sets the wind of its initial conditions, 0, when it runs them.
+            self.set_wind(*wind)
+
+    def _start_engines(self) -> bool:
+        """Start every engine and run it up, the body held; return whether that took any time.
+
+        Engines start at once where JSBSim can, otherwise as a pilot does it. They run up at full
+        throttle: a governed propeller that comes from idle can stay windmilling at its fine stop.
+        """
+        self._engines_started = True
+        for name, value in START_ENGINES:
+            self.write(name, value)
+        if not self.spec.engine_flags:
+            return False
+        throttles = {name: self.read(name) for name in self.spec.input("throttle").commands}
+        with self.frozen():
+            for name in throttles:
+                self.write(name, 1.0)
+            self.cranked = not self._engines_run()
+            if self.cranked:
+                for name, value in CRANK:
+                    self.write(name, value)
+                self.step(RUN_UP_STEPS)
+                for name, value in STOP_CRANKING:
+                    self.write(name, value)
+            self.step(RUN_UP_STEPS)
+        for name, value in throttles.items():
+            self.write(name, value)
+        if not self._engines_run():
+            seconds = RUN_UP_STEPS * self.time_step
+            raise AircraftError(
+                f"aircraft '{self.spec.name}': an engine does not run after {seconds:g} s of"
+                " cranking and as much without"
+            )
+        return True
+
+    def _engines_run(self) -> bool:
+        return all(self.read(name) > 0.5 for name in self.spec.engine_flags)
+
+    # Flying
+
+    def command(self, inputs: dict[str, float]) -> None:
+        """Set control inputs by name [-], unclipped."""
+        for name, value in inputs.items():
+            control_input = self.spec.input(name)
+            command = control_input.command(value)
+            for commanded in control_input.commands:
+                self.write(commanded, command)
+
+    def set_wind(self, north: float, east: float) -> None:
+        """Set the velocity of the air [m/s]: north and east, where the wind blows to."""
+        north, east = north / METRES_PER_FOOT, east / METRES_PER_FOOT
+        values = (north if abs(north) > _NORTH_WIND_MIN else _NORTH_WIND_MIN, east, 0.0)
+        for node, value in zip(self._wind, values, strict=True):
+            node.set_double_value(value)
+
+    def step(self, count: int = 1) -> None:
+        """Advance ``count`` time steps."""
+        for _ in range(count):
+            self.run()
+
+    def stream_to_flightgear(self, host: str, port: int) -> None:
+        """Send the aircraft to FlightGear from now on, and run no faster than the clock.
+
+        The flight stays the same to the last bit. Place the aircraft next: JSBSim's outputs begin
+        with its initial conditions.
+
+        Raises
+        ------
+        AircraftError : JSBSim does not take the address
+        """
+        with tempfile.TemporaryDirectory() as folder, silenced():
+            path = Path(folder) / "flightgear.xml"
+            path.write_text(_FLIGHTGEAR.format(host=host, port=port), encoding="utf-8")
+            accepted = self._exec.set_output_directive(str(path))
+            self._exec.enable_output()
+        if not accepted:
+            raise AircraftError(
+                f"JSBSim does not send to FlightGear at {host}:{port}; check the address"
+            )
+        self.run = paced(self._exec.run, self.time_step)
+
+    @contextlib.contextmanager
+    def frozen(self) -> Iterator[None]:
+        """Hold the rigid body still while servos, propellers and forces go on."""
+        before = {name: self.read(name) for name in INTEGRATORS}
+        for name in INTEGRATORS:
+            self.write(name, 0.0)
+        try:
+            yield
+        finally:
+            for name, value in before.items():
+                self.write(name, value)
+
+    def settle(self, tolerance: float = 1e-9, steps_max: int = 4800) -> bool:
+        """Step, inside ``frozen``, until all accelerations are steady; return whether they are.
+
+        What takes longer than a second, such as the speed of a piston engine, is sped up by longer
+        steps.
+
+        Parameters
+        ----------
+        tolerance : largest change of an acceleration in a step [m/s^2, rad/s^2]
+        steps_max : number of steps after which it gives up
+        """
+        if self._comes_to_rest(tolerance, min(_SLOW_AFTER, steps_max)):
+            return True
+        # Where a slow engine comes to rest does not depend on the length of the steps. Whether it
+        # has come to rest is judged at the steps of flight.
+        long_steps = max(0, steps_max - _SLOW_AFTER) // _SLOW_STEP_RATIO
+        self._exec.set_dt(_SLOW_STEP_RATIO * self.time_step)
+        try:
+            self._comes_to_rest(tolerance, long_steps)
+        finally:
+            self._exec.set_dt(self.time_step)
+        return self._comes_to_rest(tolerance, steps_max - _SLOW_AFTER - long_steps)
+
+    def _comes_to_rest(self, tolerance: float, steps_max: int) -> bool:
+        run = self.run
+        reads = [node.get_double_value for node in self._accelerations]
+        limit = _SETTLE_STRIDE * tolerance
+        before = [math.nan] * len(reads)
+        for _ in range(0, steps_max, _SETTLE_STRIDE):
+            for _ in range(_SETTLE_STRIDE):
+                run()
+            after = [read() for read in reads]
+            for a, b in zip(after, before, strict=True):
+                if not abs(a - b) <= limit * max(1.0, abs(a)):
+                    break
+            else:
+                return True
+            before = after
+        return False
+
+    def velocity_body(self) -> Vector:
+        """Forward, right and down velocity against the air [m/s]."""
+        return self._vector(_VELOCITY, "uvw", METRES_PER_FOOT)
+
+    def acceleration_body(self) -> Vector:
+        """Rates of the body velocity components after the last step [m/s^2]."""
+        return self._vector(_ACCELERATION, "uvw", METRES_PER_FOOT)
+
+    def rates_body(self) -> Vector:
+        """Roll, pitch and yaw rate [rad/s]."""
+        return self._vector(_RATE, "pqr", 1.0)
+
+    def angular_acceleration(self) -> Vector:
+        """Rates of p, q and r after the last step [rad/s^2]."""
+        return self._vector(_ANGULAR_ACCELERATION, "pqr", 1.0)
+
+    def _vector(self, pattern: str, components: str, scale: float) -> Vector:
+        x, y, z = (self.read(name) * scale for name in _names(pattern, components))
+        return x, y, z
+
+
+@functools.cache
+def _names(pattern: str, components: str) -> tuple[str, ...]:
+    """Properties of a vector: ``pattern`` with each of the components, such as "uvw"."""
+    return tuple(pattern.format(component) for component in components)
+
+
+def initial_conditions(state: RigidBodyState) -> list[tuple[str, float]]:
+    """Properties, and their values in JSBSim's units, that set an initial state.
+
+    The order matters to the last digit: JSBSim works each one into those before it.
+    """
+    u, v, w = (speed / METRES_PER_FOOT for speed in state.velocity_body)
+    values = (
+        state.latitude,
+        state.longitude,
+        state.altitude / METRES_PER_FOOT,
+        state.roll,
+        state.pitch,
+        state.yaw,
+        u,
+        v,
+        w,
+        *state.rates_body,
+    )
+    return list(zip(_INITIAL_STATE, values, strict=True))
+
+
+def before_hold(state: RigidBodyState, duration: float) -> RigidBodyState:
+    """State in which to place a body so that it is in ``state`` after ``duration`` [s] held still.
+
+    A held body stays fixed in inertial space while the earth turns under it, so it is placed as far
+    east as it will drift west.
+    """
+    return replace(state, longitude=state.longitude + EARTH_RATE * duration)
+
+
+def paced(run: Callable[[], object], time_step: float) -> Callable[[], object]:
+    """``run``, a simulation's step of ``time_step`` [s], followed by a wait for the clock.
+
+    A simulation that falls behind catches up as fast as it can.
+    """
+    began, steps = time.monotonic(), 0
+
+    def run_and_wait() -> object:
+        nonlocal steps
+        result = run()
+        steps += 1
+        ahead = steps * time_step - (time.monotonic() - began)
+        if ahead > 0.0:
+            time.sleep(ahead)
+        return result
+
+    return run_and_wait
+
+
+@contextlib.contextmanager
+def silenced() -> Iterator[None]:
+    """Keep what JSBSim prints off standard output and error, also where these are files."""
+    _flush()
+    saved = {stream: os.dup(stream) for stream in (1, 2)}
+    try:
+        with Path(os.devnull).open("w", encoding="utf-8") as sink:
+            for stream in saved:
+                os.dup2(sink.fileno(), stream)
+            try:
+                yield
+            finally:
+                # A file or a pipe is buffered: what is left in a buffer would be printed later.
+                _flush()
+    finally:
+        for stream, copy in saved.items():
+            os.dup2(copy, stream)
+            os.close(copy)
+
+
+def _flush() -> None:
+    """Write what Python and C have buffered."""
+    for stream in (sys.stdout, sys.stderr):
+        stream.flush()
+    if os.name == "posix":
+        ctypes.CDLL(None).fflush(None)

@@ -1,0 +1,302 @@
+"""The spec of an aircraft, read from its JSBSim model and a user's settings file beside it.
+
+The model gives engines and controls, and whether it is an aeroplane at all. What neither it nor the
+settings say is found by trimming (``aircraft.envelope``).
+"""
+
+import json
+import math
+import re
+import tomllib
+import xml.etree.ElementTree as ET
+from dataclasses import replace
+from pathlib import Path
+from typing import Annotated, Any, Self
+
+from pydantic import (
+    AfterValidator,
+    BaseModel,
+    ConfigDict,
+    Field,
+    ValidationError,
+    ValidationInfo,
+    field_validator,
+    model_validator,
+)
+
+from aircraft.model import read_model, read_xml
+from aircraft.spec import (
+    SETTLE_TIMES,
+    AircraftError,
+    AircraftSpec,
+    ControlInput,
+    Envelope,
+    ModelFiles,
+    engine_suffix,
+    surface,
+    throttle,
+)
+from common.spelling import did_you_mean
+
+_PROPERTY = re.compile(r"^[A-Za-z_][\w.\-]*(\[\d+\])?(/[A-Za-z_][\w.\-]*(\[\d+\])?)*$")
+
+_SURFACES = ("elevator", "aileron", "rudder")
+_STARTED_ENGINES = ("piston_engine", "turbine_engine", "turboprop_engine")
+"""Kinds of engine that have to be started and then run."""
+
+_ELECTRIC_ENGINES = ("electric_engine", "brushless_dc_motor")
+"""Kinds of engine that turn when they get current."""
+
+_SETTLE_TIME = 20.0
+"""Time in which piston engines and their propellers settle behind a held aircraft [s]."""
+
+
+def _property(name: str) -> str:
+    if not _PROPERTY.match(name):
+        raise ValueError(f"'{name}' is not a JSBSim property, such as fcs/elevator-cmd-norm")
+    return name
+
+
+_Property = Annotated[str, AfterValidator(_property)]
+_Commands = tuple[_Property, ...]
+
+
+class _Table(BaseModel):
+    model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False)
+
+
+class EnvelopeSettings(_Table):
+    """Where the autopilot may fly the aircraft."""
+
+    airspeed_min_mps: float
+    """Slowest commanded true airspeed [m/s]."""
+    airspeed_max_mps: float
+    """Fastest commanded true airspeed [m/s]."""
+    airspeed_mps: float
+    """Default airspeed of a study [m/s]."""
+    bank_deg: float
+    """Bank of the steepest turn that the guidance may demand [deg]."""
+
+    @property
+    def envelope(self) -> Envelope:
+        """Envelope of an aircraft's spec, in its units."""
+        return Envelope(
+            airspeed_min=self.airspeed_min_mps,
+            airspeed_max=self.airspeed_max_mps,
+            airspeed=self.airspeed_mps,
+            bank=math.radians(self.bank_deg),
+        )
+
+    @model_validator(mode="after")
+    def _flyable(self) -> Self:
+        if self.envelope.problem:
+            raise ValueError(self.envelope.problem)
+        return self
+
+
+class ModelSettings(_Table):
+    """The settings file, ``NAME.toml`` beside a model. Each key may be left out."""
+
+    title: Annotated[str, Field(min_length=1, max_length=80)] | None = None
+    """Name in reports; the model's own name by default."""
+    elevator: Annotated[_Commands, Field(min_length=1)] | None = None
+    """JSBSim properties that take the elevator command, -1 to 1; default fcs/elevator-cmd-norm."""
+    aileron: Annotated[_Commands, Field(min_length=1)] | None = None
+    """The same of the ailerons; default fcs/aileron-cmd-norm."""
+    rudder: _Commands | None = None
+    """The same of the rudder; default fcs/rudder-cmd-norm, and false if there is no rudder."""
+    throttle: Annotated[_Commands, Field(min_length=1)] | None = None
+    """JSBSim properties that take the throttle command, 0 to 1; by default that of each engine."""
+    settle_time_s: Annotated[float, Field(ge=SETTLE_TIMES[0], le=SETTLE_TIMES[1])] | None = None
+    """Time in which servos and engines come to rest while the aircraft is held [s]; default 20."""
+    envelope: EnvelopeSettings | None = None
+    """Airspeeds and bank; found by trimming by default."""
+    properties: dict[_Property, float] = {}
+    """JSBSim properties and their values in every flight, beside gear up and fuel held."""
+
+    @field_validator("elevator", "aileron", "rudder", "throttle", mode="before")
+    @classmethod
+    def _one_or_more(cls, given: Any, key: ValidationInfo) -> Any:
+        if given is False and key.field_name == "rudder":
+            return ()
+        if isinstance(given, str):
+            return (given,)
+        if not isinstance(given, list):
+            raise ValueError("give the JSBSim property that takes the command, or a list of them")
+        return given
+
+
+def read_settings(path: Path) -> ModelSettings:
+    """Settings that a file contains.
+
+    Raises
+    ------
+    AircraftError : it cannot be read or is not TOML, or a key is unknown or out of range
+    """
+    try:
+        return ModelSettings.model_validate(tomllib.loads(path.read_text(encoding="utf-8-sig")))
+    except OSError as error:
+        raise AircraftError(
+            f"{path}: cannot be read: {error.strerror}; check its permissions"
+        ) from None
+    except ValidationError as error:
+        raise AircraftError(f"{path}: {_first_problem(error)}") from None
+    except ValueError as error:
+        raise AircraftError(
+            f"{path}: not valid TOML: {error}; names of properties need quotes"
+        ) from None
+
+
+def _first_problem(error: ValidationError) -> str:
+    """First thing that is wrong with the settings, in a line."""
+    first = error.errors()[0]
+    name = ".".join(str(part) for part in first["loc"])
+    *tables, key = name.split(".")
+    message = first["msg"].removeprefix("Value error, ").replace("Input should be", "it must be")
+    if first["type"] == "extra_forbidden":
+        known = (EnvelopeSettings if tables else ModelSettings).model_fields
+        return f"unknown key '{name}'{did_you_mean(key, known) or ';'} known are {', '.join(known)}"
+    if first["type"] == "missing":
+        return f"key '{name}' is missing; give it, or leave out the whole table"
+    if first["type"] == "value_error":
+        return f"{name}: {message}"
+    return f"{name} is {json.dumps(first['input'], default=str)}; {message[0].lower()}{message[1:]}"
+
+
+def spec_of_model(
+    files: ModelFiles, *, name: str, source: str, settings: ModelSettings | None = None
+) -> AircraftSpec:
+    """Spec of an aircraft with engines and the usual controls.
+
+    Parameters
+    ----------
+    files : of its model; the first root is that of the spec
+    name : of the aircraft
+    source : of the model's numbers
+    settings : of a user's model; None for a model of others, which a user cannot correct
+
+    Raises
+    ------
+    AircraftError : a file is not XML, or an autopilot cannot fly the aircraft, with the reason
+    """
+    given = settings or ModelSettings()
+    try:
+        config = read_model(files).getroot()
+        engines = [_kind(engine, files) for engine in config.iterfind("propulsion/engine")]
+        reason = _why_no_aeroplane(config, engines, files)
+    except AircraftError as error:
+        raise AircraftError(f"aircraft '{name}' cannot be flown: {error}") from None
+    inputs = _inputs(len(engines), given)
+    reason = reason or _missing_commands(inputs, config, files, of_user=settings is not None)
+    if reason:
+        raise AircraftError(f"aircraft '{name}' cannot be flown: {reason}")
+    configuration = {
+        "gear/gear-cmd-norm": 0.0,
+        "gear/gear-pos-norm": 0.0,
+        "propulsion/fuel_freeze": 1.0,
+    }
+    for lever in ("mixture", "advance"):
+        for i in range(len(engines)):
+            configuration[f"fcs/{lever}-cmd-norm{engine_suffix(i)}"] = 1.0
+    root, *others = files.roots
+    return AircraftSpec(
+        name=name,
+        title=" ".join((given.title or _model_title(config, name)).split()),
+        root=root,
+        model=files.model,
+        folder=None if files.folder == root / "aircraft" / files.model else files.folder,
+        other_roots=tuple(others),
+        inputs=inputs,
+        envelope=None if given.envelope is None else given.envelope.envelope,
+        configuration=tuple((configuration | given.properties).items()),
+        engine_flags=tuple(
+            f"propulsion/engine{engine_suffix(i)}/set-running"
+            for i, kind in enumerate(engines)
+            if kind in _STARTED_ENGINES
+        ),
+        settle_time=_SETTLE_TIME if given.settle_time_s is None else given.settle_time_s,
+        source=source,
+    )
+
+
+def _model_title(config: ET.Element, name: str) -> str:
+    """The model's own name with that of the aircraft, if the two differ."""
+    title = " ".join((config.get("name") or "").replace("_", " ").split())
+    return f"{title} ({name})" if title and title.lower() != name.lower() else name
+
+
+def _kind(element: ET.Element, files: ModelFiles) -> str:
+    """Tag of the file that an engine or a thruster names."""
+    found = files.find(element)
+    return read_xml(found).getroot().tag if found else f"missing ({element.get('file')})"
+
+
+def _inputs(engines: int, given: ModelSettings) -> tuple[ControlInput, ...]:
+    """Control inputs, with the command properties that are given or else usual."""
+    inputs = []
+    for control, commands in (
+        (surface("elevator"), given.elevator),
+        (surface("aileron"), given.aileron),
+        (throttle(engines), given.throttle),
+        (surface("rudder"), given.rudder),
+    ):
+        if commands is None:
+            inputs.append(control)
+        elif commands:
+            inputs.append(replace(control, commands=commands))
+    return tuple(inputs)
+
+
+def _why_no_aeroplane(config: ET.Element, engines: list[str], files: ModelFiles) -> str:
+    """Why a model is no aeroplane with engines; empty if it is one."""
+    thrusters = list(config.iterfind("propulsion/engine/thruster"))
+    if config.find("buoyant_forces") is not None:
+        return "it is lighter than air"
+    if "rotor" in [_kind(thruster, files) for thruster in thrusters]:
+        return "it is a rotorcraft"
+    if any(_lifts(thruster) for thruster in thrusters):
+        return "its engines lift it"
+    if not engines:
+        return "it has no engine"
+    if "rocket_engine" in engines:
+        return "it flies on rocket engines, for minutes"
+    odd = [kind for kind in engines if kind not in (*_STARTED_ENGINES, *_ELECTRIC_ENGINES)]
+    return f"its engine's file is {', '.join(odd)}" if odd else ""
+
+
+def _lifts(thruster: ET.Element) -> bool:
+    """Whether a thruster points more up than ahead."""
+    try:
+        pitch = float(thruster.findtext("orient/pitch", "0"))
+    except ValueError:
+        return False  # JSBSim refuses it in its own words
+    unit = next((orient.get("unit") for orient in thruster.iterfind("orient")), None)
+    return abs(math.radians(pitch) if unit == "DEG" else pitch) > math.pi / 4.0
+
+
+def _missing_commands(
+    inputs: tuple[ControlInput, ...], config: ET.Element, files: ModelFiles, *, of_user: bool
+) -> str:
+    """Which surfaces' commands the model does not read, with the user's remedy; empty if none."""
+    text = _text(config, files)
+    missing = [
+        control.name
+        for control in inputs
+        if control.name in _SURFACES and any(command not in text for command in control.commands)
+    ]
+    if not missing:
+        return ""
+    problem = f"its controls take no {' and no '.join(missing)} command"
+    if not of_user:
+        return problem
+    keys = ", ".join(f'{name} = "PROPERTY"' for name in missing)
+    remedy = f"{problem}; name the properties that take them in {files.model}.toml, {keys}"
+    return f"{remedy}, or rudder = false" if "rudder" in missing else remedy
+
+
+def _text(config: ET.Element, files: ModelFiles) -> str:
+    """Text of the model's folder and of the systems that it shares."""
+    shared = [found for system in config.iterfind("system[@file]") if (found := files.find(system))]
+    beside = sorted(files.folder.rglob("*.xml"))
+    paths = [path for path in dict.fromkeys([*beside, *shared]) if path.is_file()]
+    return "".join(path.read_text(encoding="utf-8", errors="replace") for path in paths)

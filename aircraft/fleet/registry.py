@@ -1,9 +1,0 @@
-"""The registry of aircraft: of this folder, of installed packages, and of the user's Python files."""
-
-from aircraft.spec import AircraftSpec
-from common.registry import Registry
-
-AIRCRAFT: Registry[AircraftSpec] = Registry("aircraft", folder="aircraft.fleet")
-"""To add an aircraft, register its ``AircraftSpec`` in a file of this folder, announce it as an
-entry point in the group ``plume_flight_study.aircraft``, or name it by its file,
-``FILE.py:NAME``."""

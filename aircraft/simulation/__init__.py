@@ -1,1 +1,0 @@
-"""Simulation of an aircraft in JSBSim: load, place, step, fail."""

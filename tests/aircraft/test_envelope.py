@@ -1,0 +1,159 @@
+"""Where an aircraft can fly the study: stall, banks by class, reserve at the ends."""
+
+import math
+import re
+import shutil
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from aircraft.envelope import bank_by_class, find_envelope, first_trim, with_reserve_note
+from aircraft.fdm import Fdm
+from aircraft.fleet.aerosonde import AEROSONDE
+from aircraft.fleet.find import find_spec
+from aircraft.fleet.x8 import X8
+from aircraft.spec import BANK_RESERVE, MODELS, AircraftError
+from aircraft.state import RigidBodyState, body_velocity
+from aircraft.trim import TrimOutcome, search_trim
+from common.physics.units import NEWTONS_PER_POUND
+
+ALTITUDE = 100.0
+STEEPEST = 1.1  # the autopilot's tables reach a tenth past its largest bank
+
+
+@pytest.fixture(scope="module")
+def jet():
+    return Fdm(find_spec("T37"))
+
+
+@pytest.fixture(scope="module")
+def envelope(jet):
+    return find_envelope(jet, ALTITUDE)
+
+
+@pytest.mark.parametrize("spec", [X8, AEROSONDE], ids=lambda spec: spec.name)
+def test_an_envelope_that_the_spec_states_is_taken_as_it_is(spec):
+    assert find_envelope(Fdm(spec), ALTITUDE) is spec.envelope
+
+
+def test_a_stated_envelope_has_a_note_where_an_equilibrium_lacks_a_reserve_and_none_elsewhere():
+    fdm = Fdm(X8)
+    slow = [
+        search_trim(fdm, airspeed=11.0, altitude=ALTITUDE, bank=math.radians(bank))
+        for bank in (0.0, 55.0)
+    ]
+    # Beyond nine tenths of its travel in the turn, and not in level flight.
+    assert slow[1].outcome is TrimOutcome.CONVERGED
+    assert slow[1].inputs["elevator"] < -0.9 < slow[0].inputs["elevator"]
+    assert with_reserve_note(X8.envelope, slow[:1], X8) is X8.envelope
+    noted = with_reserve_note(X8.envelope, slow, X8)
+    assert replace(noted, notes=(), stall=0.0) == replace(X8.envelope, stall=0.0)
+    (note,) = noted.notes
+    elevator = slow[1].inputs["elevator"]
+    assert "a reserve is lacking at 1 of 2 equilibria" in note
+    assert f"11 m/s and 55 deg of bank take {elevator:.2f} of elevator; -0.9 to 0.9" in note
+
+
+def test_an_equilibrium_beyond_the_angle_of_attack_up_to_which_the_model_is_right_is_noted():
+    # At 5,000 m the density is 0.6 of that at the sea, and so is the lift at an airspeed.
+    steep = search_trim(Fdm(X8), airspeed=15.0, altitude=5000.0, bank=math.radians(-55.0))
+    assert steep.outcome is TrimOutcome.CONVERGED
+    assert steep.alpha == pytest.approx(0.2022, abs=1e-4)
+    (note,) = with_reserve_note(X8.envelope, [steep], X8).notes
+    assert "15 m/s and -55 deg of bank take 11.6 deg of angle of attack" in note
+    assert "up to 11.5 deg" in note
+    # Of a model that states none nothing is known.
+    assert with_reserve_note(X8.envelope, [steep], replace(X8, alpha_max=math.nan)) is X8.envelope
+
+
+@pytest.mark.parametrize(
+    ("key", "pattern", "found"),
+    [
+        ("emptywt", r"(<emptywt[^>]*>)[^<]*", "weight is -"),
+        ("emptywt", r"(<emptywt[^>]*>)[^<]*", "weight is 0 N"),
+        ("wingarea", r"(<wingarea[^>]*>)[^<]*", "wing area is 0 m²"),
+    ],
+)
+@pytest.mark.parametrize("stated", [True, False])
+def test_a_model_without_weight_or_wing_area_is_refused_in_a_line(
+    tmp_path, key, pattern, found, stated
+):
+    root = shutil.copytree(MODELS, tmp_path / "models")
+    file = root / "aircraft" / "x8" / "x8.xml"
+    number = "-3.0" if found.endswith("-") else "0.0"
+    file.write_text(
+        re.sub(pattern, rf"\g<1> {number} ", file.read_text(encoding="utf-8")), encoding="utf-8"
+    )
+    spec = replace(X8, root=root, envelope=X8.envelope if stated else None)
+    with pytest.raises(AircraftError, match=found) as caught:
+        first_trim(Fdm(spec), ALTITUDE)
+    assert str(caught.value).endswith(f"it must be above 0: correct {key} in the model")
+
+
+@pytest.mark.parametrize(
+    ("mass", "bank_deg"),
+    # Small unmanned aircraft turn steeply; up to 12,500 lb (5670 kg), CS-23's limit, as light
+    # aeroplanes do; above as airliners.
+    [
+        (3.4, 45.0),
+        (150.0, 45.0),
+        (151.0, 30.0),
+        (1100.0, 30.0),
+        (5670.0, 30.0),
+        (5671.0, 25.0),
+        (60_000.0, 25.0),
+    ],
+)
+def test_the_bank_goes_with_the_class(mass, bank_deg):
+    assert math.degrees(bank_by_class(mass)) == pytest.approx(bank_deg)
+
+
+def test_the_stall_is_where_the_largest_lift_just_carries_the_weight(jet, envelope):
+    # Independently: at the stall airspeed itself, over all angles of attack, by steps ten times
+    # finer than the search's, lift just reaches the weight. Coefficients are the same at that speed
+    # (Mach 0.12 against 0.2); 1 degree of steps at the flat top of lift is 1 %, its root half of
+    # it.
+    lifts = []
+    with jet.frozen():
+        for alpha in np.radians(np.arange(0.0, 23.0, 0.1)):
+            velocity = body_velocity(envelope.stall, float(alpha), 0.0)
+            jet.place(
+                RigidBodyState(
+                    altitude=ALTITUDE, roll=0.0, pitch=float(alpha), velocity_body=velocity
+                )
+            )
+            jet.step(2)
+            lifts.append(-jet.read("forces/fwz-aero-lbs") * NEWTONS_PER_POUND)
+    weight = jet.read("inertia/weight-lbs") * NEWTONS_PER_POUND
+    assert max(abs(lift) for lift in lifts) == pytest.approx(weight, rel=0.03)
+
+
+def test_the_slowest_airspeed_leaves_three_tenths_above_stall_in_the_steepest_turn(envelope):
+    steepest = STEEPEST * (envelope.bank + BANK_RESERVE)
+    # In a turn stall rises with the root of the load, 1/cos(bank).
+    assert envelope.airspeed_min == pytest.approx(
+        1.3 * envelope.stall / math.sqrt(math.cos(steepest))
+    )
+    assert envelope.airspeed_max <= 1.6 * envelope.airspeed_min * (1.0 + 1e-9)
+    assert envelope.airspeed_min < envelope.airspeed < envelope.airspeed_max
+    assert len(envelope.design_airspeeds) == 5
+    assert envelope.design_airspeeds[-1] == pytest.approx(envelope.airspeed_max)
+    assert envelope.bank_max == pytest.approx(envelope.bank + math.radians(5.0))
+
+
+def test_both_ends_fly_level_and_steepest_turns_with_reserve(jet, envelope):
+    steepest = STEEPEST * envelope.bank_max
+    for airspeed in (envelope.airspeed_min, envelope.airspeed_max):
+        for bank in (0.0, steepest, -steepest):
+            found = search_trim(jet, airspeed=airspeed, altitude=ALTITUDE, bank=bank)
+            assert found.outcome is TrimOutcome.CONVERGED
+            assert 0.03 <= found.inputs["throttle"] <= 0.95
+            assert max(abs(found.inputs[name]) for name in ("elevator", "aileron", "rudder")) <= 0.9
+
+
+def test_an_aircraft_that_trims_nowhere_is_refused_with_what_holds_it():
+    # At 25 km there is a thirtieth of the air, which neither the T-37's wing nor its engines can
+    # live on.
+    with pytest.raises(AircraftError, match=r"'T37' does not trim: .* at .* m/s"):
+        first_trim(Fdm(find_spec("T37")), 25_000.0)

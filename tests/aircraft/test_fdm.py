@@ -1,0 +1,357 @@
+"""The view of JSBSim: properties, placing, holding, silence, FlightGear and the clock."""
+
+import math
+import os
+import shutil
+import socket
+import struct
+import subprocess
+import sys
+from dataclasses import replace
+
+import pytest
+
+from aircraft import fdm as fdm_module
+from aircraft.fdm import CLOCK, TIME_STEP, Fdm, paced
+from aircraft.fleet.find import find_spec
+from aircraft.fleet.x8 import X8
+from aircraft.spec import MODELS, AircraftError, UnknownPropertyError
+from aircraft.state import RigidBodyState, body_velocity
+from common.physics.geodesy import LocalFrame
+
+SOMEWHERE = RigidBodyState(
+    latitude=0.2,
+    longitude=-0.3,
+    altitude=120.0,
+    roll=0.3,
+    pitch=0.1,
+    yaw=1.234,
+    velocity_body=body_velocity(20.0, 0.04, -0.02),
+    rates_body=(0.3, -0.2, 0.1),
+)
+
+
+@pytest.mark.parametrize("use", ["read", "node", "writable_node"])
+def test_a_misspelt_property_is_refused_by_name_on_reading(x8_fdm, use):
+    with pytest.raises(UnknownPropertyError, match="'aero/alpha-rd'"):
+        getattr(x8_fdm, use)("aero/alpha-rd")
+
+
+@pytest.mark.parametrize(
+    "name", ["aero/alpha rad", "", "/aero", "aero//alpha-rad", "aero/alpha-rad "]
+)
+def test_what_is_not_a_property_name_is_refused_before_it_can_end_the_process(x8_fdm, name):
+    with pytest.raises(UnknownPropertyError):
+        x8_fdm.read(name)
+
+
+def test_a_misspelt_property_is_refused_by_name_on_writing_and_not_created(x8_fdm):
+    with pytest.raises(UnknownPropertyError, match="'fcs/elevator-cmd-nrm'"):
+        x8_fdm.write("fcs/elevator-cmd-nrm", 0.1)
+    with pytest.raises(UnknownPropertyError):
+        x8_fdm.read("fcs/elevator-cmd-nrm")
+
+
+def test_a_read_only_property_is_refused_by_name_on_writing_but_can_be_read(x8_fdm):
+    with pytest.raises(AircraftError, match="'aero/alpha-rad'"):
+        x8_fdm.write("aero/alpha-rad", 0.1)
+    assert math.isfinite(x8_fdm.read("aero/alpha-rad"))
+
+
+def test_a_written_property_reads_back(x8_fdm):
+    x8_fdm.write("fcs/elevator-cmd-norm", -0.123)
+    assert x8_fdm.read("fcs/elevator-cmd-norm") == -0.123  # stored, not computed with: exact
+
+
+def test_an_unknown_control_input_gets_one_line_that_lists_those_there_are(x8_fdm):
+    with pytest.raises(AircraftError, match=r"'rudder'.*elevator, aileron, throttle") as caught:
+        x8_fdm.command({"rudder": 0.1})
+    assert "\n" not in str(caught.value)
+
+
+def test_a_root_without_the_model_gets_one_line_that_names_file_and_remedy(tmp_path):
+    with pytest.raises(AircraftError, match=r"x8\.xml; check") as caught:
+        Fdm(X8, tmp_path)
+    assert "\n" not in str(caught.value)
+    assert str(tmp_path) in str(caught.value)
+
+
+def test_a_root_without_the_engine_files_gets_one_line_that_names_the_model(tmp_path):
+    shutil.copytree(MODELS / "aircraft", tmp_path / "aircraft")
+    with pytest.raises(AircraftError, match="refused its model 'x8'") as caught:
+        Fdm(X8, tmp_path)
+    assert "\n" not in str(caught.value)
+
+
+def test_a_model_that_is_not_xml_is_refused_as_an_aircraft_error(tmp_path):
+    shutil.copytree(MODELS, tmp_path, dirs_exist_ok=True)
+    (tmp_path / "aircraft" / "x8" / "x8.xml").write_text("<fdm_config>", encoding="utf-8")
+    with pytest.raises(AircraftError, match="refused its model 'x8'") as caught:
+        Fdm(X8, tmp_path)
+    assert "\n" not in str(caught.value)
+
+
+def test_loading_and_flying_prints_nothing(capfd):
+    fdm = Fdm(X8)
+    fdm.place(SOMEWHERE)
+    fdm.step(3)
+    assert capfd.readouterr() == ("", "")
+
+
+def test_nothing_is_left_in_a_buffer_to_be_printed_when_the_program_ends():
+    # C++ flushes its own buffer at exit, which capfd would not see.
+    program = (
+        "from aircraft.fdm import Fdm; from aircraft.fleet.x8 import X8; Fdm(X8); print('mine')"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", program],
+        capture_output=True,
+        text=True,
+        check=True,
+        cwd=MODELS.parents[1],
+    )
+    assert (done.stdout, done.stderr) == ("mine\n", "")
+
+
+def test_standard_output_works_again_after_loading(capfd):
+    Fdm(X8)
+    print("still here")
+    assert capfd.readouterr().out == "still here\n"
+
+
+def test_a_step_lasts_one_hundred_and_twentieth_of_a_second(x8_fdm):
+    x8_fdm.place(SOMEWHERE)
+    before = x8_fdm.read("simulation/sim-time-sec")
+    x8_fdm.step(12)
+    assert TIME_STEP == 1.0 / 120.0
+    assert x8_fdm.read("simulation/sim-time-sec") - before == pytest.approx(
+        0.1, abs=1e-12
+    )  # rounding of twelve additions
+
+
+def test_a_placed_aircraft_is_where_and_as_it_was_asked(x8_fdm):
+    x8_fdm.place(SOMEWHERE)
+    # Feet and quaternions in between: twelve digits survive.
+    assert x8_fdm.read("position/lat-geod-rad") == pytest.approx(0.2, abs=1e-12)
+    assert x8_fdm.read("position/long-gc-rad") == pytest.approx(-0.3, abs=1e-12)
+    assert x8_fdm.read("position/h-sl-meters") == pytest.approx(
+        120.0, abs=1e-6
+    )  # a metre in 6.4 million, twice
+    assert x8_fdm.velocity_body() == pytest.approx(SOMEWHERE.velocity_body, abs=1e-11)
+    assert x8_fdm.rates_body() == pytest.approx(SOMEWHERE.rates_body, abs=1e-12)
+    for name, angle in (("phi", 0.3), ("theta", 0.1), ("psi", 1.234)):
+        assert x8_fdm.read(f"attitude/{name}-rad") == pytest.approx(angle, abs=1e-12)
+
+
+@pytest.mark.parametrize("latitude", [0.0, 0.9])
+@pytest.mark.parametrize("yaw", [0.0, 1.234, -2.5])
+def test_hold_releases_at_the_asked_place_with_the_asked_yaw_and_motion(x8_fdm, latitude, yaw):
+    state = replace(SOMEWHERE, latitude=latitude, yaw=yaw)
+    x8_fdm.hold(state, 240)
+    frame = LocalFrame(latitude, state.longitude, state.altitude)
+    north, east = frame.to_local(
+        x8_fdm.read("position/lat-geod-rad"), x8_fdm.read("position/long-gc-rad")
+    )
+    # In two seconds the equator turns away by 930 m; 0.1 m is a thousandth of a percent of a plume
+    # crossing of kilometres.
+    assert math.hypot(north, east) < 0.1
+    assert x8_fdm.read("position/h-sl-meters") == pytest.approx(120.0, abs=0.1)
+    # The earth turns by 1.5e-4 rad meanwhile: an attitude held against the stars instead would be
+    # that far off.
+    off = x8_fdm.read("attitude/psi-rad") - yaw
+    assert math.remainder(off, 2.0 * math.pi) == pytest.approx(0.0, abs=1e-6)
+    assert x8_fdm.read("attitude/phi-rad") == pytest.approx(0.3, abs=1e-6)
+    assert x8_fdm.read("attitude/theta-rad") == pytest.approx(0.1, abs=1e-6)
+    assert x8_fdm.velocity_body() == pytest.approx(state.velocity_body, abs=1e-6)
+    assert x8_fdm.rates_body() == pytest.approx(state.rates_body, abs=1e-6)
+
+
+def test_hold_lets_servos_and_propeller_come_to_rest(x8_fdm):
+    x8_fdm.command({"elevator": 0.1, "aileron": 0.05, "throttle": 0.6})
+    x8_fdm.hold(SOMEWHERE, 240)
+    # Elevons mix to command times 0.5236 rad (model file). Two seconds are 80 servo time constants:
+    # nothing is left.
+    assert x8_fdm.read("fcs/elevator-pos-rad") == pytest.approx(0.05236, abs=1e-12)
+    assert x8_fdm.read("fcs/aileron-pos-rad") == pytest.approx(0.02618, abs=1e-12)
+    speed = x8_fdm.read("propulsion/engine/propeller-rpm")
+    with x8_fdm.frozen():
+        assert x8_fdm.settle()
+    # Forty of the propeller's time constants of about 0.05 s.
+    assert x8_fdm.read("propulsion/engine/propeller-rpm") == pytest.approx(speed, rel=1e-6)
+
+
+def test_a_frozen_body_keeps_its_velocity_and_rates_while_forces_go_on(x8_fdm):
+    x8_fdm.command({"elevator": -0.5, "aileron": 0.0, "throttle": 1.0})
+    x8_fdm.place(SOMEWHERE)
+    with x8_fdm.frozen():
+        x8_fdm.step(60)
+        assert x8_fdm.velocity_body() == pytest.approx(SOMEWHERE.velocity_body, abs=1e-6)
+        assert x8_fdm.rates_body() == pytest.approx(SOMEWHERE.rates_body, abs=1e-6)
+        assert max(abs(a) for a in x8_fdm.acceleration_body()) > 1.0
+
+
+def test_frozen_restores_motion_also_after_an_error(x8_fdm):
+    x8_fdm.place(SOMEWHERE)
+    with pytest.raises(RuntimeError), x8_fdm.frozen():
+        raise RuntimeError
+    x8_fdm.step(12)
+    # A tenth of a second of unbalanced flight: several hundredths of a radian and two metres.
+    assert abs(x8_fdm.read("attitude/phi-rad") - SOMEWHERE.roll) > 0.01
+    frame = LocalFrame(SOMEWHERE.latitude, SOMEWHERE.longitude, SOMEWHERE.altitude)
+    north, east = frame.to_local(
+        x8_fdm.read("position/lat-geod-rad"), x8_fdm.read("position/long-gc-rad")
+    )
+    assert math.hypot(north, east) == pytest.approx(
+        2.0, abs=0.2
+    )  # 20 m/s for 0.1 s, slightly climbing and accelerating
+
+
+def test_settle_says_whether_there_was_enough_time(x8_fdm):
+    x8_fdm.command({"elevator": 0.5, "aileron": 0.0, "throttle": 0.6})
+    x8_fdm.place(SOMEWHERE)
+    with x8_fdm.frozen():
+        # Five steps of the propeller's run-up of a second or so from rest.
+        assert not x8_fdm.settle(steps_max=5)
+        assert x8_fdm.settle()
+        speed = x8_fdm.read("propulsion/engine/propeller-rpm")
+        x8_fdm.step(120)
+    assert x8_fdm.read("propulsion/engine/propeller-rpm") == pytest.approx(
+        speed, rel=1e-7
+    )  # 1e-9 a step, dying out
+
+
+def test_two_aircraft_do_not_share_state(x8_fdm):
+    other = Fdm(X8)
+    x8_fdm.place(SOMEWHERE)
+    other.place(replace(SOMEWHERE, roll=-0.3))
+    other.step(5)
+    assert x8_fdm.read("attitude/phi-rad") == pytest.approx(0.3, abs=1e-12)  # as placed, see above
+
+
+@pytest.mark.parametrize("throttle", [0.5, 0.9])
+def test_a_slow_engine_settles_where_it_would_at_its_own_pace(throttle):
+    # The Cessna's piston engine changes its speed in a second: from 0.7 of its throttle it takes a
+    # thousand steps and more.
+    fdm = Fdm(find_spec("c172x"))
+    fdm.command({"throttle": 0.7})
+    fdm.place(
+        RigidBodyState(
+            altitude=500.0, roll=0.0, pitch=0.05, velocity_body=body_velocity(50.0, 0.05, 0.0)
+        )
+    )
+    with fdm.frozen():
+        assert fdm.settle(2e-9)
+        fdm.command({"throttle": throttle})
+        before, began = fdm.acceleration_body()[0], fdm.read(CLOCK)
+        steps, run = [], fdm.run
+        fdm.run = lambda: steps.append(run())
+        assert fdm.settle(2e-9)
+        # After 120 steps it is sped up eightfold: in less than half of the steps that the time
+        # takes.
+        assert len(steps) < 0.5 * (fdm.read(CLOCK) - began) / TIME_STEP
+        settled = fdm.acceleration_body()[0], fdm.read("propulsion/engine/engine-rpm")
+        fdm.step(2400)
+        # Twenty seconds more change nothing: 2e-9 m/s^2 a step is 2e-7 from the end, of an
+        # acceleration that changed by 1e-1.
+        assert abs(settled[0] - before) > 0.1
+        assert fdm.acceleration_body()[0] == pytest.approx(settled[0], abs=2e-7)
+        assert fdm.read("propulsion/engine/engine-rpm") == pytest.approx(settled[1], rel=1e-7)
+    # Flight goes on with its own time step.
+    clock = fdm.read(CLOCK)
+    fdm.step(120)
+    assert fdm.read(CLOCK) - clock == pytest.approx(1.0)
+
+
+PRINTING = """
+import ctypes
+from aircraft.fdm import silenced
+
+print("before")
+with silenced():
+    print("of Python")
+    ctypes.CDLL(None).puts(b"of C")
+print("after")
+"""
+
+
+def test_what_is_buffered_while_silenced_is_not_printed_later():
+    # JSBSim's warnings of the F-16 were printed by a first design whose output went into a file.
+    buffered = {name: value for name, value in os.environ.items() if name != "PYTHONUNBUFFERED"}
+    done = subprocess.run(
+        [sys.executable, "-c", PRINTING], capture_output=True, text=True, check=True, env=buffered
+    )
+    assert done.stdout.split() == ["before", "after"]
+
+
+NEAR_THE_ORIGIN = RigidBodyState(
+    latitude=0.01,
+    longitude=-0.02,
+    altitude=120.0,
+    roll=0.3,
+    pitch=0.1,
+    yaw=1.2,
+    velocity_body=(20.0, 0.0, 1.0),
+)
+
+
+def test_flightgears_packets_say_where_the_aircraft_is():
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as receiver:
+        receiver.bind(("127.0.0.1", 0))
+        receiver.settimeout(10.0)
+        fdm = Fdm(X8)
+        fdm.stream_to_flightgear("127.0.0.1", receiver.getsockname()[1])
+        fdm.place(NEAR_THE_ORIGIN)
+        fdm.step(12)
+        packet = receiver.recv(2048)
+    # FGNetFDM of FlightGear's net_fdm.hxx, version 24: 408 bytes, big-endian; version, padding,
+    # longitude, latitude, altitude [rad, rad, m].
+    assert len(packet) == 408
+    assert struct.unpack(">I", packet[:4]) == (24,)
+    longitude, latitude, altitude = struct.unpack(">ddd", packet[8:32])
+    # A tenth of a second at 20 m/s is 3e-7 rad; altitude is that of the centre of gravity, to a
+    # foot of its climb.
+    assert (latitude, longitude) == pytest.approx((0.01, -0.02), abs=1e-6)
+    assert altitude == pytest.approx(120.0, abs=1.0)
+
+
+def test_a_flight_that_is_shown_is_the_same_to_the_last_bit():
+    shown, alone = Fdm(X8), Fdm(X8)
+    shown.stream_to_flightgear("127.0.0.1", 9)
+    for fdm in (shown, alone):
+        fdm.place(NEAR_THE_ORIGIN)
+        fdm.step(30)
+    names = (
+        "position/lat-geod-rad",
+        "position/long-gc-rad",
+        "attitude/phi-rad",
+        "velocities/vt-fps",
+    )
+    assert [shown.read(name) for name in names] == [alone.read(name) for name in names]
+
+
+def test_a_paced_simulation_waits_for_the_clock_and_catches_up(monkeypatch):
+    now, slept = [100.0], []
+
+    class Clock:
+        @staticmethod
+        def monotonic():
+            return now[0]
+
+        @staticmethod
+        def sleep(seconds):
+            slept.append(seconds)
+            now[0] += seconds
+
+    def step():
+        now[0] += took.pop(0)
+
+    monkeypatch.setattr(fdm_module, "time", Clock)
+    took = [0.1, 2.5, 0.1, 0.1]
+    run = paced(step, 1.0)
+    for _ in range(4):
+        run()
+    # The first step is 0.9 s early; the second ends 1.5 s late, the third 0.6 s; the fourth is 0.3
+    # s early again.
+    assert slept == pytest.approx([0.9, 0.3])
+    assert now[0] == pytest.approx(104.0)
+    assert math.isclose(sum(slept), 1.2)
