@@ -28,7 +28,7 @@ from common.physics.turn_tube import CHANGED, FORGOTTEN, LEAST_CHANGE, SLOW_LAG_
 from common.physics.units import METRES_PER_FOOT
 from innerloop.flight.autopiloted_aircraft import AutopilotedAircraft
 from innerloop.flight.turn_reversal import TurnReversalResponse
-from innerloop.jsbsim.properties import HEADING_RATE
+from innerloop.jsbsim.system import HEADING_RATE
 
 _SEARCHED = (20, 150)
 """Fewest and most reversals of the search that is part of every design [-]; the command's

@@ -5,7 +5,7 @@ import math
 from aircraft.simulation.fdm import Fdm
 from aircraft.simulation.local_frame import EquatorFrame
 from common.physics.units import METRES_PER_FOOT
-from innerloop.jsbsim.properties import CONTROL_COMMAND, HEADING_RATE
+from innerloop.jsbsim.system import CONTROL_COMMAND, HEADING_RATE
 
 _CONTROLS = ("elevator", "aileron", "throttle", "rudder")
 """Whose commands are sampled."""

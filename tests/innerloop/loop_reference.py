@@ -5,7 +5,7 @@ rational function.
 import control
 import numpy as np
 
-from innerloop.law.control_law import COMMANDS
+from innerloop.law import COMMANDS
 
 PADE_ORDER = 4
 """Of delays up to 21 ms: exact to 1e-6 rad below 50 rad/s, where all crossovers lie."""

@@ -17,8 +17,7 @@ from gnc.safety.guarded_commands import GuardedCommands
 from gnc.safety.keepout_guard import KeepoutGuard
 from gnc.safety.speed_reckoning import SpeedReckoning
 from innerloop.flight.autopiloted_aircraft import AutopilotedAircraft
-from innerloop.jsbsim.properties import HEADING_RATE
-from innerloop.jsbsim.root import write_root
+from innerloop.jsbsim.system import HEADING_RATE, write_root
 
 STEP, RUNS = 0.1, 12
 

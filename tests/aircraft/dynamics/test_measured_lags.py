@@ -10,7 +10,7 @@ from aircraft.dynamics.trim import trim
 from aircraft.fleet.find import find_spec
 from aircraft.fleet.x8 import X8
 from aircraft.simulation.fdm import TIME_STEP, Fdm
-from innerloop.synthesis.quasi_static import state_lag
+from innerloop.synthesis import state_lag
 
 
 def entry(model, state, source):

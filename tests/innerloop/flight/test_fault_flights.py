@@ -16,22 +16,19 @@ TIME_STEP = 1.0 / 120.0
 FOOT = 0.3048
 MIDDLE = 2
 READ = (
-    "fcs/left-elevon-pos-rad", "fcs/right-elevon-pos-rad", "fcs/left-elevon-mixer", "fcs/right-elevon-mixer",
-    "fcs/throttle-cmd-norm", "autopilot/throttle-command", "propulsion/engine/thrust-lbs", "position/h-sl-ft", "velocities/vt-fps",
+    "fcs/left-elevon-pos-rad",
+    "fcs/right-elevon-pos-rad",
+    "fcs/left-elevon-mixer",
+    "fcs/right-elevon-mixer",
+    "fcs/throttle-cmd-norm",
+    "autopilot/throttle-command",
+    "propulsion/engine/thrust-lbs",
+    "position/h-sl-ft",
+    "velocities/vt-fps",
     "autopilot/heading-rate-rad_sec",
-)  # fmt: skip
-(
-    LEFT,
-    RIGHT,
-    LEFT_MIXED,
-    RIGHT_MIXED,
-    THROTTLE,
-    THROTTLE_DEMANDED,
-    THRUST,
-    ALTITUDE,
-    AIRSPEED,
-    HEADING_RATE,
-) = range(len(READ))
+)
+LEFT, RIGHT, LEFT_MIXED, RIGHT_MIXED, THROTTLE, THROTTLE_DEMANDED = range(6)
+THRUST, ALTITUDE, AIRSPEED, HEADING_RATE = range(6, 10)
 AT = 3.0
 
 

@@ -22,10 +22,14 @@ YAW = 0.6
 TURN = 0.2
 FRAME = EquatorFrame(100.0)
 READ = (
-    ("velocities/vt-fps", FOOT), ("position/h-sl-ft", FOOT), ("attitude/phi-rad", 1.0),
-    ("velocities/v-north-fps", FOOT), ("velocities/v-east-fps", FOOT),
-    ("position/lat-geod-rad", FRAME.north_scale), ("position/long-gc-rad", FRAME.east_scale),
-)  # fmt: skip
+    ("velocities/vt-fps", FOOT),
+    ("position/h-sl-ft", FOOT),
+    ("attitude/phi-rad", 1.0),
+    ("velocities/v-north-fps", FOOT),
+    ("velocities/v-east-fps", FOOT),
+    ("position/lat-geod-rad", FRAME.north_scale),
+    ("position/long-gc-rad", FRAME.east_scale),
+)
 AIRSPEED, ALTITUDE, ROLL, NORTH_SPEED, EAST_SPEED, NORTH, EAST = range(7)
 
 
