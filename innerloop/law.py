@@ -281,7 +281,7 @@ def _table(
 ) -> Callable[[float, float], Array]:
     """Return the bilinear look-up of a table of vectors, extended past its edges.
 
-    It is cached: linearising asks for the same point many times, and moves it in few directions.
+    It is cached: linearising looks up the same point many times, and moves it in few directions.
     """
     at_row, at_column = _cells(rows), _cells(columns)
 

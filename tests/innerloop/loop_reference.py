@@ -1,6 +1,4 @@
-"""Loops by another way than the package's: opened in a block diagram by python-control, the delay a
-rational function.
-"""
+"""Loops opened in a block diagram by python-control, with the delay a rational function."""
 
 import control
 import numpy as np

@@ -1,5 +1,4 @@
-"""What flies equals what was designed: commands of the flown autopilot against gains, and against
-its linear description.
+"""The flown autopilot equals the designed one: its commands against gains and linear model.
 
 The aircraft is held where it is put (``Fdm.frozen``), off trim by a small amount in one quantity at
 a time, both ways; commands are read from JSBSim. Held integrators (``RESET``) leave the feedback
@@ -86,9 +85,7 @@ def state_off_trim(found, name, size):
 
 
 def commands_off_trim(root, found, name, size, steps, running=False, spec=X8, properties=()):
-    """Commands [-] after so many steps with one measurement or command off trim; or other
-    properties.
-    """
+    """Commands [-], or ``properties``, after some steps with one quantity off trim."""
     aircraft = AutopilotedAircraft(spec, root)
     fdm = aircraft.fdm
     aircraft.command_airspeed(found.airspeed + (size if name == "airspeed_command" else 0.0))
@@ -113,9 +110,7 @@ def slope_of_commands(root, found, name, steps=3, running=False, spec=X8):
 
 
 def over_bank(schedule, quantity):
-    """Mean of the slopes of a trim quantity over bank on both sides of level flight, from the
-    equilibria themselves.
-    """
+    """Mean slope of a trim quantity over bank on both sides of level flight, from equilibria."""
     left, middle, right = (quantity(schedule.trims[MIDDLE][LEVEL + i]) for i in (-1, 0, 1))
     to_right = (right - middle) / schedule.banks[LEVEL + 1]
     to_left = (middle - left) / -schedule.banks[LEVEL - 1]
@@ -129,9 +124,7 @@ def over_airspeed(schedule, quantity):
 
 
 def designed_slopes(schedule, name):
-    """Elevator, aileron and throttle per unit of a deviation, straight from the gains and the
-    equilibria.
-    """
+    """Elevator, aileron and throttle per deviation, from the gains and the equilibria."""
     gains = schedule.gains[MIDDLE][LEVEL_GAINS]
     elevator, throttle = -gains.longitudinal
     k_p, k_r, k_roll, _ = gains.lateral[0]
@@ -280,7 +273,7 @@ def test_an_altitude_error_beyond_the_limit_asks_for_no_more_and_is_not_integrat
         commands_off_trim(x8_root, found, "altitude_command", e, 40, running=True)
         for e in (1.01 * limit, 50.0 * limit)
     ]
-    # The climb that such an error asks for saturates nothing, so the two fly alike to rounding.
+    # The climb that such an error demands saturates nothing, so the two fly alike to rounding.
     np.testing.assert_allclose(commands[0], commands[1], atol=1e-9)
 
 

@@ -32,8 +32,9 @@ LIGHT = low_altitude_turbulence(60.0, 7.717)  # 15 knots at 20 ft
 
 
 def spectrum(name, frequency, air=LIGHT):
-    """Power spectral density over positive frequencies [unit^2 s/rad], MIL-F-8785C 3.7.1.2 with
-    Omega = omega/V; p after Yeager.
+    """Power spectral density over positive frequencies [unit^2 s/rad].
+
+    MIL-F-8785C 3.7.1.2 with Omega = omega/V; p after Yeager.
     """
     v = AIRSPEED
     along, down = air.horizontal_length / v * frequency, air.vertical_length / v * frequency
@@ -118,9 +119,7 @@ def in_gusts(schedule, bank_index):
 
 
 def read_in_wind(fdm, trim, wind_ned):
-    """Accelerations of velocity and rates, and measured heading rate, of a held aircraft that heads
-    north.
-    """
+    """Accelerations, angular accelerations and heading rate of an aircraft held heading north."""
     fdm.command(dict(trim.inputs))
     fdm.place(trim.state(yaw=-trim.course_offset()))
     with fdm.frozen():

@@ -1,9 +1,8 @@
 """The control law in Python is the one that JSBSim flies: same states in, same commands out.
-Margins are computed from the former.
 
-The body is held at random states (``Fdm.frozen``), with every integral held at nought or running,
-and what the autopilot asks for inside JSBSim, before its limits, is held against
-``ControlLaw.evaluate``.
+The body is held at random states (``Fdm.frozen``), with every integral held at 0 or running, and
+the commands of the autopilot inside JSBSim, before its limits, are compared with
+``ControlLaw.evaluate``. Margins are computed from the latter.
 """
 
 import math
@@ -57,9 +56,7 @@ def flown(request, designs, tmp_path_factory):
 
 
 def random_state(rng, schedule):
-    """A state and commands anywhere in the envelope, banked past its limit too; errors small enough
-    to be answered in full.
-    """
+    """A state and commands in the envelope and a little past its bank, with unclipped errors."""
     weights, envelope = schedule.weights, schedule.envelope
     commanded = rng.uniform(envelope.airspeed_min, envelope.airspeed_max)
     airspeed = commanded + 0.9 * weights.airspeed_error_max * rng.uniform(-1.0, 1.0)
@@ -81,8 +78,9 @@ def random_state(rng, schedule):
 
 
 def held(flown, rng, computed):
-    """Hold a random state, with integrals ``computed`` so often; return measurements, the
-    autopilot's states and commands.
+    """Hold a random state; return commands, measurements and the autopilot's states.
+
+    The integrals are ``computed`` that many times.
     """
     schedule, _, aircraft = flown
     fdm, period = aircraft.fdm, schedule.period
@@ -114,8 +112,9 @@ def held(flown, rng, computed):
 
 
 def with_flown_jerk(flown, commands, states):
-    """The heading-rate command at which the law has the jerk of this period, which JSBSim computes
-    before its model moves.
+    """The commands at which the law has the jerk of this period.
+
+    JSBSim computes the jerk before its model moves.
     """
     schedule, _, aircraft = flown
     frequency, damping = schedule.weights.model_frequency, schedule.weights.model_damping
@@ -203,7 +202,7 @@ def test_in_every_equilibrium_the_law_asks_for_its_controls_and_its_integrals_st
                     strict=True,
                 )
             )
-            # At its own nodes a table is exact, and every error is nought.
+            # At its own nodes a table is exact, and every error is 0.
             for control_name, value in t.inputs.items():
                 assert controls[control_name] == pytest.approx(
                     value + by_roll_rate.get(control_name, 0.0), abs=1e-9
@@ -216,7 +215,7 @@ def test_in_every_equilibrium_the_law_asks_for_its_controls_and_its_integrals_st
 def test_a_gain_that_is_a_thousandth_off_would_show(flown):
     schedule, law, _ = flown
     rng = np.random.default_rng(3)
-    # For every gain that is not nought there is a state among these at which a thousandth of it
+    # For every gain that is not 0 there is a state among these at which a thousandth of it
     # moves a control by ten times what the comparison allows, or the growth of an integral.
     largest = np.zeros(28)
     for _ in range(40):

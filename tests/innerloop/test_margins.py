@@ -1,6 +1,4 @@
-"""Loop margins: against python-control on the same loops opened in a block diagram, against
-textbooks, and what is required.
-"""
+"""Loop margins against python-control on a block diagram, textbooks, and requirements."""
 
 import itertools
 import math
@@ -207,7 +205,7 @@ def test_every_single_loop_has_six_decibels_and_forty_five_degrees_everywhere_an
         gain_db, phase_deg = (6.0, 45.0) if check.case == NOMINAL else (4.0, 30.0)
         assert margin.gain_db >= gain_db, (check.airspeed, check.bank, margin)
         assert margin.phase_deg >= phase_deg, (check.airspeed, check.bank, margin)
-        # A disk lies inside both classical intervals, on whatever grid of frequencies.
+        # A disk lies inside both classical intervals, on any grid of frequencies.
         assert margin.disk_gain_db <= margin.gain_db * 1.005
         assert margin.disk_phase_deg <= margin.phase_deg * 1.005
 
@@ -238,11 +236,11 @@ def test_the_margins_of_an_integrator_with_a_delay():
 
 def test_a_loop_that_may_lose_gain_has_that_as_its_margin():
     # L = 2/(s - 1): stable for gains above 1/2, 6.02 dB down, and however high. At frequency
-    # nought, where its phase is -180 degrees; the lowest frequency evaluated stands for it. Phase:
+    # 0, where its phase is -180 degrees; the lowest frequency evaluated stands for it. Phase:
     # |L| = 1 at sqrt(3), -180 + 60 degrees.
     found = frequency_response(control.tf([2.0], [1.0, -1.0]))
     assert found.phase_deg == pytest.approx(60.0, abs=0.05)
-    # With a slow integral beside it the crossing lies above nought: L = 2 (s + 0.1)/(s (s - 1)),
+    # With a slow integral beside it the crossing lies above 0: L = 2 (s + 0.1)/(s (s - 1)),
     # characteristic polynomial s^2 + (2 k - 1) s + 0.2 k: stable for k above 1/2.
     found = frequency_response(control.tf([2.0, 0.2], [1.0, -1.0, 0.0]))
     assert found.gain_db == pytest.approx(20.0 * math.log10(2.0), abs=0.02)
@@ -253,7 +251,7 @@ def test_a_loop_without_any_crossing_has_no_margin_to_lose():
     assert (found.gain_db, found.phase_deg) == (math.inf, math.inf)
     assert math.isnan(found.crossover)
     # S = 1/(1 + L) and T lie close together: (2 - a)/(2 + a) of gain at a = 2 (1 + L)/(1 - L) at
-    # frequency nought: 6 > 2.
+    # frequency 0: 6 > 2.
     assert found.disk_gain_db == math.inf
 
 

@@ -1,6 +1,4 @@
-"""The X8's autopilot on an X8 with the inertia that its authors print, instead of that of the
-model.
-"""
+"""The X8's autopilot on an X8 with the inertia that its authors print."""
 
 import re
 import shutil
@@ -25,9 +23,7 @@ def principal(jx, jy, jz, jxz):
 
 
 def worst_margins(schedule, root):
-    """Return whether all loops are stable, and the least gain [dB] and phase [deg] over airspeeds,
-    level and at either bank.
-    """
+    """Return whether all loops are stable, and the least margins [dB, deg] over the envelope."""
     law, fdm, stable, gains, phases = ControlLaw(schedule), Fdm(X8, root), [], [], []
     for airspeed in schedule.airspeeds:
         for bank in (schedule.gain_banks[0], 0.0, schedule.gain_banks[-1]):

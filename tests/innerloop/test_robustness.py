@@ -1,6 +1,4 @@
-"""Changed aircraft: each change is what changing JSBSim's own model makes of the linear one; what
-too little margin leads to.
-"""
+"""Perturbed linear models against perturbed JSBSim models, and designs with too little margin."""
 
 import dataclasses
 import itertools
@@ -89,8 +87,8 @@ def test_a_fifth_of_mass_changes_the_linear_aircraft_as_a_fifth_of_mass_in_jsbsi
     np.testing.assert_array_equal(found.C[row, attitude], models[name].C[row, attitude])
     heavier.C[row, attitude] = found.C[row, attitude]
     # Held in the same state, with the same inertia: only forces' accelerations differ. Gravity in
-    # JSBSim is 9.78 m/s^2, and the earth turns: 0.3 % and 3e-3 m/s^2 of what gravity does, of which
-    # a fifth is misplaced.
+    # JSBSim is 9.78 m/s^2, and the earth turns: 0.3 % and 3e-3 m/s^2 of the effect of gravity; a
+    # fifth of that is misplaced.
     assert_same(found, heavier, rtol=1e-3, atol=6e-3)
     # And a fifth is seen: lift's slope falls by it.
     row = models[name].state_labels.index("alpha")
@@ -241,7 +239,7 @@ def test_a_check_knows_what_it_lacks():
         "5.0 dB (aileron) and 44.0 deg (elevator) at 20.0 m/s and 6 deg of bank"
         in nominal.describe()
     )
-    # Of a changed aircraft 4 dB and 30 degrees are asked for.
+    # Of a changed aircraft 4 dB and 30 degrees are required.
     assert dataclasses.replace(nominal, case="mass +20 %").met
     unstable = dataclasses.replace(nominal, case="mass +20 %", stable=False)
     assert unstable.short_loops == ("elevator", "aileron", "throttle")
@@ -251,9 +249,7 @@ def test_a_check_knows_what_it_lacks():
 
 @pytest.fixture
 def x8_grid(x8_schedule, monkeypatch):
-    """Have designs begin with the equilibria and linear models of one that is made: to find them
-    takes half of the time.
-    """
+    """Have designs begin with known equilibria and models: to find them takes half of the time."""
     names = [field.name for field in dataclasses.fields(designer.Grid)]
     grid = designer.Grid(**{name: getattr(x8_schedule, name) for name in names})
     monkeypatch.setattr(designer, "linear_grid", lambda *_: grid)
@@ -278,7 +274,7 @@ def test_a_design_with_too_little_margin_is_refused_with_what_it_lacks_and_not_f
 def test_a_design_that_lacks_margin_under_a_perturbation_is_refused_with_what_is_required_there(
     monkeypatch,
 ):
-    # As above, but the second of delay is a case of its own, of which less is required.
+    # As above, but the second of delay is a separate case, for which less is required.
     cases = {NOMINAL: CASES[NOMINAL], "far too late": CASES[NOMINAL]._replace(periods_late=120)}
     monkeypatch.setattr(robustness, "CASES", cases)
     monkeypatch.setattr(designer, "_ATTEMPTS", 1)
@@ -304,14 +300,14 @@ def test_the_autopilot_computes_as_seldom_as_costs_every_loop_five_degrees_of_ph
 
 @pytest.mark.usefixtures("x8_grid")
 def test_a_loop_with_too_little_margin_is_slowed_and_the_others_are_left(monkeypatch, x8_design):
-    points, asked, check = [], [], robustness.OperatingPointMargins.check
+    points, checked, check = [], [], robustness.OperatingPointMargins.check
     # Two changes of the aircraft for all of them: they are checked one after the other.
     cases = {case: CASES[case] for case in (NOMINAL, "mass +20 %", "one more period of delay")}
     monkeypatch.setattr(robustness, "CASES", cases)
 
     def short_at_the_first_point(point, case, period):
         points.append(point)
-        asked.append((case, period))
+        checked.append((case, period))
         found = check(point, case, period)
         if point is not points[0]:
             return found
@@ -325,7 +321,7 @@ def test_a_loop_with_too_little_margin_is_slowed_and_the_others_are_left(monkeyp
     # Designed twice, then checked with the longest period, first as modelled; with the shortest no
     # change of a good design is.
     assert (
-        asked[-375:]
+        checked[-375:]
         == [(NOMINAL, 1)] * 75 + [(NOMINAL, 3)] * 75 + [(case, 3) for case in cases] * 75
     )
     assert found.bandwidths.lateral == pytest.approx(0.8 * x8_design.bandwidths.lateral)

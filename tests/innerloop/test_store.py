@@ -1,6 +1,4 @@
-"""Designs that are found again: only when nothing that they depend on has changed, and whatever
-state the cache is in.
-"""
+"""Cached designs are used only if nothing they depend on has changed, in any state of the cache."""
 
 import dataclasses
 import hashlib
@@ -48,7 +46,7 @@ def design_as(monkeypatch, made):
 
 
 @pytest.fixture
-def asked(monkeypatch, tmp_path, designs):
+def requests(monkeypatch, tmp_path, designs):
     """A list of what was designed, from an empty cache; each design is a short form of the X8's."""
     found = designs("x8")
     made = dataclasses.replace(
@@ -69,12 +67,12 @@ def test_this_runs_designs_are_kept_apart_from_the_users(cache_home):
     assert Path.home() not in (cache_home, *cache_home.parents)
 
 
-def test_a_design_is_made_once_and_found_again_whole(asked, designs):
+def test_a_design_is_made_once_and_found_again_whole(requests, designs):
     first = designed(X8)
     # As another process finds it, which has parsed nothing yet.
     store._entry.cache_clear()
     second = designed(X8)
-    assert asked == [("x8", 100.0)]
+    assert requests == [("x8", 100.0)]
     assert second is not first
     # What is found is what was made, to the last bit: tables, gains, models, checks and record.
     assert second.record == first.record
@@ -99,7 +97,7 @@ def test_a_design_is_made_once_and_found_again_whole(asked, designs):
 
 
 def test_a_design_that_is_used_is_the_one_that_was_made_to_the_last_bit(
-    asked, designs, monkeypatch
+    requests, designs, monkeypatch
 ):
     made = designs("x8")
     design_as(monkeypatch, made)
@@ -115,12 +113,12 @@ def test_a_design_that_is_used_is_the_one_that_was_made_to_the_last_bit(
             assert getattr(mine, matrix).tobytes("A") == getattr(other, matrix).tobytes("A")
 
 
-def test_another_altitude_or_another_aircraft_is_designed_anew(asked):
+def test_another_altitude_or_another_aircraft_is_designed_anew(requests):
     designed(X8)
     designed(X8, 200.0)
     designed(AEROSONDE)
     designed(X8)
-    assert asked == [("x8", 100.0), ("x8", 200.0), ("aerosonde", 100.0)]
+    assert requests == [("x8", 100.0), ("x8", 200.0), ("aerosonde", 100.0)]
     assert len(remembered()) == 3
 
 
@@ -159,7 +157,7 @@ def test_the_same_model_elsewhere_on_disk_is_the_same_key_and_any_changed_file_o
 
 
 def test_a_design_made_of_the_same_model_elsewhere_flies_the_model_that_is_here(
-    asked, designs, monkeypatch, tmp_path
+    requests, designs, monkeypatch, tmp_path
 ):
     root = shutil.copytree(MODELS, tmp_path / "models")
     there = dataclasses.replace(X8, root=root)
@@ -244,17 +242,17 @@ def hashed(text):
         ),
     ],
 )
-def test_a_file_that_holds_no_design_is_ignored_and_replaced(asked, content):
+def test_a_file_that_holds_no_design_is_ignored_and_replaced(requests, content):
     designed(X8)
     (file,) = remembered()
     file.write_bytes(content)
     assert designed(X8).record["aircraft"] == "x8"
-    assert len(asked) == 2
+    assert len(requests) == 2
     designed(X8)
-    assert len(asked) == 2
+    assert len(requests) == 2
 
 
-def test_nothing_in_a_planted_file_is_executed(asked, tmp_path):
+def test_nothing_in_a_planted_file_is_executed(requests, tmp_path):
     designed(X8)
     (file,) = remembered()
     planted = pickle.dumps(Planted(tmp_path / "executed"))
@@ -265,7 +263,7 @@ def test_nothing_in_a_planted_file_is_executed(asked, tmp_path):
     assert not (tmp_path / "executed").exists()
 
 
-def test_a_file_that_is_cut_short_anywhere_is_ignored(asked):
+def test_a_file_that_is_cut_short_anywhere_is_ignored(requests):
     made = designed(X8)
     (file,) = remembered()
     whole = file.read_bytes()
@@ -273,11 +271,11 @@ def test_a_file_that_is_cut_short_anywhere_is_ignored(asked):
         file.write_bytes(whole[:length])
         assert designed(X8) is not None
         assert file.read_bytes() == whole
-    assert len(asked) == 6
+    assert len(requests) == 6
     assert made.record == designed(X8).record
 
 
-def test_a_file_with_a_wrong_byte_anywhere_is_ignored(asked):
+def test_a_file_with_a_wrong_byte_anywhere_is_ignored(requests):
     designed(X8)
     (file,) = remembered()
     whole = file.read_bytes()
@@ -289,7 +287,7 @@ def test_a_file_with_a_wrong_byte_anywhere_is_ignored(asked):
         file.write_bytes(bytes(spoilt))
         designed(X8)
         assert file.read_bytes() == whole
-    assert len(asked) == 9
+    assert len(requests) == 9
 
 
 @pytest.mark.parametrize("kind", [AircraftError, DesignError])
@@ -309,16 +307,16 @@ def test_that_an_aircraft_has_no_design_is_remembered_with_its_reason(monkeypatc
     assert attempts == ["x8"]
 
 
-def test_a_cache_that_cannot_be_written_is_done_without(asked, monkeypatch, tmp_path):
+def test_a_cache_that_cannot_be_written_is_done_without(requests, monkeypatch, tmp_path):
     # A file where the directory should be: also root may not write below it.
     (tmp_path / "file").write_text("", encoding="utf-8")
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "file"))
     assert designed(X8).record["aircraft"] == "x8"
     assert designed(X8).record["aircraft"] == "x8"
-    assert len(asked) == 2
+    assert len(requests) == 2
 
 
-def test_a_user_without_a_home_has_no_cache(asked, monkeypatch):
+def test_a_user_without_a_home_has_no_cache(requests, monkeypatch):
     def nowhere():
         raise RuntimeError("Could not determine home directory.")
 
@@ -329,7 +327,7 @@ def test_a_user_without_a_home_has_no_cache(asked, monkeypatch):
     assert cache_directory() is None
 
 
-def test_nothing_half_written_is_left_beside_a_design(asked):
+def test_nothing_half_written_is_left_beside_a_design(requests):
     designed(X8)
     assert [path.suffixes for path in cache_directory().iterdir()] == [[".design", ".json"]]
 

@@ -131,17 +131,17 @@ def test_the_slowest_of_all_airspeeds_decides_each_axis_by_itself():
 
 def test_the_controls_may_do_what_moves_their_axis_at_its_frequency_against_its_damping():
     bandwidths = LoopBandwidths(lateral=3.0, longitudinal=2.0, airspeed=0.5)
-    asked = design_weights(bandwidths, 20.0)
-    found = control_weights(simple(), bandwidths, asked)
+    weights = design_weights(bandwidths, 20.0)
+    found = control_weights(simple(), bandwidths, weights)
     # w hypot(w, damping) times the acceptable angle, over authority: by hand, 0.3 rad of pitch and
     # 0.1 rad of roll.
     assert found.elevator == pytest.approx(0.3 * 2.0 * math.hypot(2.0, 5.0) / 20.0, rel=1e-12)
     assert found.aileron == pytest.approx(0.1 * 3.0 * math.hypot(3.0, 4.0) / 30.0, rel=1e-12)
-    assert found.throttle == pytest.approx(asked.airspeed * 0.5 / 6.0, rel=1e-12)
+    assert found.throttle == pytest.approx(weights.airspeed * 0.5 / 6.0, rel=1e-12)
     # The rudder: 0.05 rad of sideslip, at w hypot(w, 1.5) or, if that is less, against the
     # weathercock's own 8 1/s^2.
     assert found.rudder == pytest.approx(0.05 * 8.0 / 5.0, rel=1e-12)
-    stiff = control_weights(simple(yaw_stiffness=50.0), bandwidths, asked)
+    stiff = control_weights(simple(yaw_stiffness=50.0), bandwidths, weights)
     assert stiff.rudder == pytest.approx(0.05 * 3.0 * math.hypot(3.0, 1.5) / 5.0, rel=1e-12)
 
 
@@ -221,9 +221,9 @@ def test_a_dynamically_similar_aircraft_gets_the_similar_autopilot(monkeypatch, 
 
     def designed(models, airspeed, level):
         bandwidths = reachable_bandwidths(models, bank)
-        asked = design_weights(bandwidths, airspeed)
+        weights = design_weights(bandwidths, airspeed)
         return bandwidths, design_gains(
-            models[2], level, asked, control_weights(models[2], bandwidths, asked)
+            models[2], level, weights, control_weights(models[2], bandwidths, weights)
         )
 
     level = schedule.level(2)

@@ -34,9 +34,7 @@ AIRSPEED, ALTITUDE, ROLL, NORTH_SPEED, EAST_SPEED, NORTH, EAST = range(7)
 
 
 def fly(aircraft, start, weather, duration, turn_at=5.0):
-    """Release the aircraft, turn from ``turn_at`` [s] on, and return what was read at each step,
-    shape (steps, 7).
-    """
+    """Fly, and turn from ``turn_at`` [s] on; return what was read at each step, (steps, 7)."""
     aircraft.release(
         start.state(yaw=YAW), airspeed=start.airspeed, altitude=start.altitude, weather=weather
     )

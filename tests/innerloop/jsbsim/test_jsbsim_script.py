@@ -1,6 +1,4 @@
-"""The script that flies the autopilot in JSBSim alone, run by JSBSim's own program and held against
-the flight from Python.
-"""
+"""The script that flies the autopilot in JSBSim alone, against the same flight from Python."""
 
 import math
 import shutil
@@ -35,9 +33,7 @@ def read_result(path):
 
 
 def fly_in_python(root, schedule, commands, duration):
-    """Fly commands with AutopilotedAircraft; return the script's columns after every step, and the
-    time since release [s].
-    """
+    """Fly commands from Python; return the script's columns and the time [s] after every step."""
     aircraft, start = AutopilotedAircraft(schedule.spec, root), schedule.level(MIDDLE)
     aircraft.release(start.state(), airspeed=start.airspeed, altitude=start.altitude)
     names = columns(aircraft.fdm)
@@ -55,9 +51,7 @@ def fly_in_python(root, schedule, commands, duration):
 
 
 def fly_both(schedule, tmp_path_factory):
-    """An autopilot's schedule, the demonstration flown by JSBSim alone, hold and all, and flown
-    from Python.
-    """
+    """A schedule, and its demonstration flown by JSBSim alone and from Python."""
     root, away = tmp_path_factory.mktemp("root"), tmp_path_factory.mktemp("away")
     script = write_script(schedule, write_root(schedule, root))
     run_jsbsim(

@@ -155,9 +155,7 @@ def test_the_autopilot_computes_once_in_a_period_and_integrates_over_it(x8_sched
 
 @pytest.fixture
 def run(tmp_path):
-    """A function that loads an X8 with components in a system, with properties test/x and test/y to
-    play with.
-    """
+    """A function that loads an X8 with components that may use properties test/x and test/y."""
 
     def load(*components):
         shutil.copytree(MODELS, tmp_path, dirs_exist_ok=True)
