@@ -85,19 +85,12 @@ class Designed:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class _Refusal:
-    """Why an aircraft has no design, and whether it is for its margins."""
-
-    message: str
-    is_margins: bool
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
 class _Entry:
-    """An entry of the cache: a design, or why there is none."""
+    """An entry of the cache: a design; or why there is none, and whether it lacks margins."""
 
     made: Designed | None = None
-    refused: _Refusal | None = None
+    refusal: str
+    lacks_margins: bool = False
 
 
 def designed(spec: AircraftSpec, altitude: float = 100.0) -> Designed:
@@ -119,11 +112,9 @@ def designed(spec: AircraftSpec, altitude: float = 100.0) -> Designed:
         # The text is read back even if it could not be written, so that this run uses the same
         # design as the next one.
         entry = _entry(text)
-    if entry.made is not None:
-        return _with_model_of(spec, entry.made)
-    if entry.refused is None:
-        raise AircraftError(f"aircraft '{spec.name}' has no design")
-    raise (DesignError if entry.refused.is_margins else AircraftError)(entry.refused.message)
+    if entry.made is None:
+        raise (DesignError if entry.lacks_margins else AircraftError)(entry.refusal)
+    return _with_model_of(spec, entry.made)
 
 
 def is_cached(spec: AircraftSpec, altitude: float) -> bool:
@@ -186,12 +177,10 @@ def _design(spec: AircraftSpec, altitude: float) -> _Entry:
     try:
         design = design_autopilot(spec, altitude)
     except AircraftError as error:
-        return _Entry(
-            refused=_Refusal(message=str(error), is_margins=isinstance(error, DesignError))
-        )
+        return _Entry(refusal=str(error), lacks_margins=isinstance(error, DesignError))
     with tempfile.TemporaryDirectory() as folder:
         record = design_record(design, write_root(design.schedule, Path(folder)))
-    return _Entry(made=Designed(design=design, record=record))
+    return _Entry(made=Designed(design=design, record=record), refusal="")
 
 
 def _with_model_of(spec: AircraftSpec, found: Designed) -> Designed:

@@ -5,6 +5,7 @@ controls, flown by the bare aircraft, verify its linear model.
 """
 
 import math
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -170,20 +171,9 @@ def flown_step(
         aircraft.command_altitude(start.altitude + size)
     else:
         aircraft.command_heading_rate(size)
-    fdm = aircraft.fdm
-    reads = [fdm.node(name).get_double_value for name, _ in CHANNELS.values()]
-    count = round(duration / TIME_STEP)
-    rows = []
-    for _ in range(count):
-        rows.append([read() for read in reads])
-        fdm.run()
-    values = np.array(rows) * [scale for _, scale in CHANNELS.values()]
-    return Response(
-        command=command,
-        size=size,
-        time=TIME_STEP * np.arange(count, dtype=np.float64),
-        channels={name: v - v[0] for name, v in zip(CHANNELS, values.T, strict=True)},
-    )
+    time = TIME_STEP * np.arange(round(duration / TIME_STEP), dtype=np.float64)
+    channels = _deviations(aircraft.fdm, CHANNELS, len(time), lambda _: None)
+    return Response(command=command, size=size, time=time, channels=channels)
 
 
 def measure_lag(aircraft: AutopilotedAircraft, start: Trim, bank: float) -> float:
@@ -242,7 +232,6 @@ def verify_model(fdm: Fdm, model: LinearModel, level: Trim) -> list[dict[str, An
 
 def _flown_doublet(fdm: Fdm, level: Trim, name: str) -> tuple[Array, dict[str, Array]]:
     """Return time [s] and the deviations of ``OUTPUTS`` after a doublet of a control."""
-    reads = [fdm.node(prop).get_double_value for prop, _ in OUTPUTS.values()]
     fdm.command(dict(level.inputs))
     fdm.revive()
     fdm.place(level.state())
@@ -250,11 +239,10 @@ def _flown_doublet(fdm: Fdm, level: Trim, name: str) -> tuple[Array, dict[str, A
         fdm.settle(_SETTLED, round(fdm.spec.settle_time / fdm.time_step))
     moved = fdm.spec.input(name)
     commands = [fdm.writable_node(commanded).set_double_value for commanded in moved.commands]
-    count = round(_DOUBLET_RECORDED / fdm.time_step)
-    rows = []
-    for i in range(count):
-        rows.append([read() for read in reads])
-        t = i * fdm.time_step
+    time = fdm.time_step * np.arange(round(_DOUBLET_RECORDED / fdm.time_step), dtype=np.float64)
+
+    def deflect(step: int) -> None:
+        t = step * fdm.time_step
         deflection = 0.0
         if t < _DOUBLET_HALF:
             deflection = _DOUBLET_SIZE
@@ -263,10 +251,30 @@ def _flown_doublet(fdm: Fdm, level: Trim, name: str) -> tuple[Array, dict[str, A
         value = moved.command(level.inputs[name] + deflection)
         for command in commands:
             command(value)
+
+    return time, _deviations(fdm, OUTPUTS, len(time), deflect)
+
+
+def _deviations(
+    fdm: Fdm,
+    quantities: Mapping[str, tuple[str, float]],
+    steps: int,
+    before_step: Callable[[int], None],
+) -> dict[str, Array]:
+    """Fly some time steps; return the deviations of quantities from their first values [SI].
+
+    Parameters
+    ----------
+    fdm : of the aircraft
+    quantities : JSBSim property and SI value of its unit, by name
+    steps : number of time steps
+    before_step : called with the number of each step, after its values are read
+    """
+    reads = [fdm.node(name).get_double_value for name, _ in quantities.values()]
+    rows = []
+    for step in range(steps):
+        rows.append([read() for read in reads])
+        before_step(step)
         fdm.run()
-    values = {
-        output: v * scale
-        for (output, (_, scale)), v in zip(OUTPUTS.items(), np.array(rows).T, strict=True)
-    }
-    deviations = {output: v - v[0] for output, v in values.items()}
-    return fdm.time_step * np.arange(count, dtype=np.float64), deviations
+    values = np.array(rows) * [scale for _, scale in quantities.values()]
+    return {name: v - v[0] for name, v in zip(quantities, values.T, strict=True)}
