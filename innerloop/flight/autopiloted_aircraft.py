@@ -91,7 +91,8 @@ class AutopilotedAircraft:
         wind = weather.wind.now(0.0, altitude) if weather else None
         # JSBSim counts the autopilot's steps on from one flight to the next. Its clock tells at
         # which step of a period the last flight ended.
-        if remaining := -round(self.fdm.read(CLOCK) / self.fdm.time_step) % self._period:
+        remaining = -round(self.fdm.read(CLOCK) / self.fdm.time_step) % self._period
+        if remaining:
             self.fdm.hold(state, remaining, wind)
         self.fdm.hold(state, hold_steps(self.fdm.spec, self._period), wind)
         self.fdm.write(RESET, 0.0)
