@@ -3,7 +3,7 @@
 from pathlib import Path
 
 from aircraft.fleet.x8 import X8
-from innerloop.designs.designed import Designed
+from innerloop.store import Designed
 from scenarios.engine.run_directory import RunDirectory
 from scenarios.schema.scenario import Scenario
 from scenarios.vehicles.vehicle_setup import VehicleSetup, aircraft_setup, design_of

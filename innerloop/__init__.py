@@ -1,3 +1,1 @@
-"""The autopilot: designed with python-control from the linearised aircraft, flown as a JSBSim
-``<system>``.
-"""
+"""The autopilot: designed from the linearised aircraft, and flown as a JSBSim ``<system>``."""

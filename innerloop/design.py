@@ -1,28 +1,27 @@
-"""Command line: ``python -m innerloop.design AIRCRAFT`` designs an autopilot, prints, reports and
-writes it for JSBSim.
-"""
+"""Command line: ``python -m innerloop.design AIRCRAFT`` designs an autopilot and reports on it."""
 
 import json
 import os
 import shutil
 import sys
 import time
+from datetime import UTC, datetime, timedelta
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
 from common.command_line import INTERRUPTED, refuse, run_command
-from common.run_layout import DESIGN_RECORD, MANIFEST, MODEL
+from common.run_layout import DESIGN_RECORD, FORMAT, MANIFEST, MODEL
 
 if TYPE_CHECKING:
-    from innerloop.designs.designed import Designed, Record
+    from innerloop.store import Designed, Record
 
 _RUNS = Path("runs")
-"""Where designs are written if no directory is given."""
+"""Directory of designs if none is given."""
 
 _FLIES = {True: "flies", False: "-", None: "?"}
-"""What the list says of an aircraft that flies, that cannot, and that was not designed before."""
+"""Marks in the list: the aircraft flies, cannot fly, was not designed before."""
 
 
 def command(
@@ -41,7 +40,7 @@ def command(
         typer.Option(
             min=10.0,
             max=5000.0,
-            help="Design altitude in metres; each altitude that was flown has a design of its own.",
+            help="Design altitude in metres; flights at another altitude have another design.",
         ),
     ] = 100.0,
     no_report: Annotated[
@@ -67,7 +66,7 @@ def command(
         Path | None,
         typer.Option(
             metavar="DIR",
-            help="Directory with JSBSim models of your own, DIR/NAME/NAME.xml, to take AIRCRAFT from.",
+            help="Directory with your JSBSim models, DIR/NAME/NAME.xml, to take AIRCRAFT from.",
         ),
     ] = None,
     list_aircraft: Annotated[
@@ -85,8 +84,9 @@ def command(
         ),
     ] = False,
 ) -> None:
-    """Design the autopilot of an aircraft: trim, poles, margins, step responses; a report, and a
-    JSBSim root that flies it.
+    """Design the autopilot of an aircraft: a report, and a JSBSim root that flies it.
+
+    The report shows trim, poles, margins and step responses.
     """
     from aircraft.fleet.find import folder_path
     from aircraft.spec import AircraftError
@@ -95,12 +95,14 @@ def command(
     try:
         if check and not list_aircraft:
             raise AircraftError(
-                "--check is for --list, and designs every aircraft listed; leave it out, or add --list"
+                "--check is for --list, and designs every aircraft listed;"
+                " leave it out, or add --list"
             )
         if list_aircraft:
             if aircraft is not None:
                 raise AircraftError(
-                    f"aircraft '{aircraft}' is given beside --list, which lists all of them; leave out one of both"
+                    f"aircraft '{aircraft}' is given with --list, which lists all aircraft;"
+                    " leave out one of them"
                 )
             _list(altitude, aircraft_dir, check=check)
             return
@@ -115,9 +117,7 @@ def command(
 
 
 def _file_refusal(error: OSError, out: Path) -> str:
-    """Return why a file cannot be used, by whether it belongs to the directory that is written, and
-    the remedy.
-    """
+    """Return why a file cannot be used, and the remedy; ``out`` is the directory to write."""
     if error.filename is None:
         return f"a file cannot be written: {error.strerror}; check the space on disk"
     path, written = Path(str(error.filename)).absolute(), out.absolute()
@@ -129,30 +129,29 @@ def _file_refusal(error: OSError, out: Path) -> str:
 
 
 def _list(altitude: float, directory: Path | None, *, check: bool) -> None:
-    """Print a line for every aircraft, as soon as it is known."""
+    """Print a line for every aircraft, as soon as it is known whether it flies."""
     from aircraft.fleet.find import aircraft_names, folder_names, folder_path
-    from innerloop.designs.listing import discover, look_up
+    from innerloop.listing import discover, look_up
 
-    names = (
-        aircraft_names()
-        if directory is None
-        else [folder_path(directory, name) for name in folder_names(directory)]
-    )
+    if directory is None:
+        names = aircraft_names()
+    else:
+        names = [folder_path(directory, name) for name in folder_names(directory)]
     width = max(18, 1 + max(map(len, names)))
     if check:
         print(
             "designing every aircraft that was not designed before: some minutes the first time",
             file=sys.stderr,
         )
-    known = (
-        discover(names, altitude, os.cpu_count() or 1)
-        if check
-        else (look_up(name, altitude) for name in names)
-    )
-    flying = waiting = 0
+        known = discover(names, altitude, os.cpu_count() or 1)
+    else:
+        known = (look_up(name, altitude) for name in names)
+    flying = 0
+    waiting = 0
     try:
         for found in known:
-            flying, waiting = flying + (found.flies is True), waiting + (found.flies is None)
+            flying += found.flies is True
+            waiting += found.flies is None
             print(f"{_FLIES[found.flies]:6}{found.name:{width}}{found.text}", flush=True)
     except KeyboardInterrupt:
         print(
@@ -160,16 +159,13 @@ def _list(altitude: float, directory: Path | None, *, check: bool) -> None:
             file=sys.stderr,
         )
         raise typer.Exit(INTERRUPTED) from None
-    before = f"{waiting} {'was' if waiting == 1 else 'were'} not designed for it before"
-    more = (
-        f"; {before}: --list --check does so, which takes minutes, and says which can be flown"
-        if waiting
-        else ""
-    )
-    print(
-        f"{flying} can be flown at {altitude:g} m (--altitude for another altitude){more}",
-        file=sys.stderr,
-    )
+    summary = f"{flying} can be flown at {altitude:g} m (--altitude for another altitude)"
+    if waiting:
+        summary += (
+            f"; {waiting} {'was' if waiting == 1 else 'were'} not designed for it before:"
+            " --list --check does so, which takes minutes, and says which can be flown"
+        )
+    print(summary, file=sys.stderr)
 
 
 def _design(
@@ -186,7 +182,6 @@ def _design(
     from reports.build import build_reports, check_settings, print_design
 
     check_settings(overrides)
-
     spec = find_spec(aircraft)
     check_user_aircraft(spec)
     out = out or _RUNS / f"design-{spec.name}"
@@ -194,18 +189,17 @@ def _design(
 
     from common.files import remove_reports, write_json
     from common.provenance import command_line
-    from innerloop.designs.cache import designed
-    from innerloop.designs.manifest import design_manifest
-    from innerloop.jsbsim.root import write_root
     from innerloop.jsbsim.script import write_script
+    from innerloop.jsbsim.system import write_root
+    from innerloop.store import designed
 
     print(f"designing the autopilot of {spec.title}", file=sys.stderr)
     started = time.monotonic()
     out.mkdir(parents=True, exist_ok=True)
     found = designed(spec, altitude)
     record = found.record
-    # Of an older design, perhaps of another aircraft; the manifest comes last, when all that it
-    # stands for is there.
+    # An older design in the directory may be of another aircraft. The manifest is removed first and
+    # written last: it stands only for a complete design.
     remove_reports(out)
     if (out / MANIFEST).exists():
         shutil.rmtree(out / MODEL, ignore_errors=True)
@@ -216,10 +210,7 @@ def _design(
         record = _with_repeated_search(found, root, reversals)
     write_json(out / DESIGN_RECORD, record, indent=None)
     command = command_line("innerloop.design", sys.argv)
-    write_json(
-        out / MANIFEST,
-        design_manifest(record, wall_time=time.monotonic() - started, command=command),
-    )
+    write_json(out / MANIFEST, _manifest(record, command, time.monotonic() - started))
     print_design(record)
     print(f"\ndesign: {out}\nJSBSim root with the autopilot: {root}")
     for path in () if no_report else build_reports(out, settings=overrides):
@@ -227,8 +218,8 @@ def _design(
 
 
 def _with_repeated_search(found: "Designed", root: Path, reversals: int) -> "Record":
-    """Return the design's record with what a search over so many reversals finds."""
-    from innerloop.designs.long_search import repeat_search
+    """Return the design's record with the result of a search over so many reversals."""
+    from innerloop.reversal_record import repeat_search
 
     def report_progress(count: int, deviation: float) -> None:
         print(
@@ -242,10 +233,40 @@ def _with_repeated_search(found: "Designed", root: Path, reversals: int) -> "Rec
     }
 
 
-def _refuse_another_run(out: Path) -> None:
-    """Refuse a directory that holds flights: their manifest would be lost. An older design may be
-    replaced.
+def _manifest(record: "Record", command_line: str, wall_time: float) -> dict[str, Any]:
+    """Return the manifest of a design that took ``wall_time`` [s] until now.
+
+    Its report takes title, description and provenance from it.
     """
+    from common.provenance import provenance
+
+    airspeeds = record["airspeeds_mps"]
+    return {
+        "format": FORMAT,
+        "study": "design",
+        "name": record["aircraft"],
+        "title": f"Autopilot of the {record['title']}",
+        "overrides": [],
+        "state": "complete",
+        "config": {
+            "study": "design",
+            "description": (
+                f"Designed at {record['altitude_m']:g} m of altitude for {airspeeds[0]:.4g} to"
+                f" {airspeeds[-1]:.4g} m/s: equilibria, linear models, gains, margins, and step"
+                " responses flown in JSBSim."
+            ),
+            "aircraft": record["aircraft"],
+            "altitude_m": record["altitude_m"],
+        },
+        **provenance(),
+        "command": command_line,
+        "begun_utc": f"{datetime.now(UTC) - timedelta(seconds=wall_time):%Y-%m-%dT%H:%M:%SZ}",
+        "wall_time_s": wall_time,
+    }
+
+
+def _refuse_another_run(out: Path) -> None:
+    """Refuse a directory with flights, whose manifest would be lost; a design may be replaced."""
     from aircraft.spec import AircraftError
 
     try:

@@ -38,9 +38,9 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
     from aircraft.fdm import Fdm
-    from innerloop.designs.designed import Design, Designed
     from innerloop.flight.autopiloted_aircraft import AutopilotedAircraft
-    from innerloop.synthesis.schedule import Schedule
+    from innerloop.schedule import Schedule
+    from innerloop.store import Design, Designed
 
 # No deadline, for time is not what is tested, and the same examples on every machine.
 if settings is not None:
@@ -132,7 +132,7 @@ def designs(cache_home: Path) -> Callable[..., Designed]:
     worker asks first: seconds.
     """
     from aircraft.fleet.find import find_spec
-    from innerloop.designs.cache import designed
+    from innerloop.store import designed
 
     @functools.cache
     def design(name: str, altitude: float = SWEPT_ALTITUDE) -> Designed:
@@ -183,7 +183,7 @@ def x8_schedule(x8_design: Design) -> Schedule:
 @pytest.fixture(scope="session")
 def x8_root(x8_schedule: Schedule, tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A JSBSim root that flies the X8 under its autopilot."""
-    from innerloop.jsbsim.root import write_root
+    from innerloop.jsbsim.system import write_root
 
     return write_root(x8_schedule, tmp_path_factory.mktemp("x8_root"))
 

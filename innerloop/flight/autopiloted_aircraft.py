@@ -9,7 +9,7 @@ from aircraft.fdm import CLOCK, Fdm
 from aircraft.spec import AircraftError, AircraftSpec
 from aircraft.state import RigidBodyState
 from aircraft.weather import Weather, begin_weather, end_weather
-from innerloop.jsbsim.properties import (
+from innerloop.jsbsim.system import (
     AIRSPEED_COMMAND,
     ALTITUDE_COMMAND,
     CONTROL_COMMAND,
@@ -23,14 +23,13 @@ from innerloop.jsbsim.properties import (
 
 
 class AutopilotedAircraft:
-    """An aircraft and its autopilot, as ``innerloop.jsbsim.root.write_root`` wrote them.
+    """An aircraft and its autopilot, as ``innerloop.jsbsim.system.write_root`` wrote them.
 
     Parameters
     ----------
     spec : the aircraft
     root : JSBSim root with the autopilot
-    failable : whether parts can fail in flight; the aircraft then flies from a prepared copy of
-        ``root``
+    failable : whether parts can fail in flight; the aircraft then flies a prepared copy of ``root``
 
     Attributes
     ----------
@@ -47,18 +46,16 @@ class AutopilotedAircraft:
         else:
             self.fdm = Fdm(spec, root)
         self.run: Callable[[], object] = self.fdm.run
+        self.command_airspeed = self._setter(AIRSPEED_COMMAND)
+        self.command_altitude = self._setter(ALTITUDE_COMMAND)
+        self.command_heading_rate = self._setter(HEADING_RATE_COMMAND)
         self._faults = Faults(self.fdm) if failable else None
         self._weathered = False
-        self.command_airspeed: Callable[[float], object] = self.fdm.writable_node(
-            AIRSPEED_COMMAND
-        ).set_double_value
-        self.command_altitude: Callable[[float], object] = self.fdm.writable_node(
-            ALTITUDE_COMMAND
-        ).set_double_value
-        self.command_heading_rate: Callable[[float], object] = self.fdm.writable_node(
-            HEADING_RATE_COMMAND
-        ).set_double_value
         self._period = round(self.fdm.read(PERIOD))
+
+    def _setter(self, command: str) -> Callable[[float], object]:
+        setter: Callable[[float], object] = self.fdm.writable_node(command).set_double_value
+        return setter
 
     def release(
         self,
@@ -88,9 +85,10 @@ class AutopilotedAircraft:
         self.fdm.write(ELEVATOR_HELD, 0.0)
         self.fdm.write(RESET, -1.0)
         wind = weather.wind.now(0.0, altitude) if weather else None
-        # JSBSim counts the autopilot's steps on from one flight to the next. Its clock tells where
-        # in a period that ended.
-        if remaining := -round(self.fdm.read(CLOCK) / self.fdm.time_step) % self._period:
+        # JSBSim counts the autopilot's steps on from one flight to the next. Its clock tells at
+        # which step of a period the last flight ended.
+        remaining = -round(self.fdm.read(CLOCK) / self.fdm.time_step) % self._period
+        if remaining:
             self.fdm.hold(state, remaining, wind)
         self.fdm.hold(state, hold_steps(self.fdm.spec, self._period), wind)
         self.fdm.write(RESET, 0.0)
@@ -102,16 +100,18 @@ class AutopilotedAircraft:
             self.run = begin_weather(self.fdm, weather)
 
     def hold_elevator(self) -> None:
-        """Hold the elevator at its position at the release; the aircraft's own stability then
-        controls pitch.
+        """Hold the elevator at its position at the release; stability alone then controls pitch.
 
         The remaining controls after a failure then have one task instead of two conflicting ones.
         """
         self.fdm.write(ELEVATOR_HELD, 1.0)
 
     def fail(self, name: str) -> None:
-        """Let a part fail from the next time step on, by a name from
-        ``aircraft.faults.fault_names``.
+        """Let a part fail from the next time step on.
+
+        Parameters
+        ----------
+        name : one of ``aircraft.faults.fault_names``
 
         Raises
         ------

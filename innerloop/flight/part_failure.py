@@ -1,6 +1,4 @@
-"""What an aircraft a part of which fails in a turn is measured for: how fast it loses airspeed, and
-how far its glide leads off.
-"""
+"""How an aircraft loses airspeed and leaves its turn when a part of it fails."""
 
 import itertools
 import math
@@ -18,41 +16,43 @@ from innerloop.flight.autopiloted_aircraft import AutopilotedAircraft
 
 _AIRSPEED = "velocities/vt-fps"
 
-_SIDES = -1.0, 1.0
-"""Of a turn: to the left, to the right."""
+_SIDES = (-1.0, 1.0)
+"""Turns to the left and to the right."""
 
-_WATCHED, _OVER = 5.0, 1.0
-"""For how long the fall is watched, an engine may run down for seconds, and time over which it is
-taken [s].
-"""
+_FALL_WATCHED = 5.0
+"""Time from the failure in which the airspeed is recorded [s]: engines run down for seconds."""
 
-_CLIMBED, _STEP = 8.0, 0.5
-"""For how long it climbs before, and time between commands of its altitude [s]."""
+_FALL_OVER = 1.0
+"""Time over which a rate of fall is taken [s]."""
+
+_CLIMB_TIME = 8.0
+"""Duration of the climb before the failure [s]."""
+
+_CLIMB_STEP = 0.5
+"""Time between the altitude commands of the climb [s]."""
 
 _ROOM = 1000.0
-"""How much higher a glide begins than flights do, so that it does not end in the sea, and how much
-lower it is commanded [m].
+"""Altitude of a glide's start above that of flights, so that it does not end in the sea, and depth
+to which it is commanded [m].
 """
 
 _KNOWN_AFTER = 2.0
-"""For how long the airspeed may go on to fall below the slowest commanded until the failure is
-known [s].
-"""
+"""Time for which the airspeed may fall below the slowest commanded until a failure is known [s]."""
 
-_FALLEN = 120.0
-"""For how long its airspeed may take to fall before it is commanded to glide all the same [s]."""
+_FALL_MAX = 120.0
+"""Time after which a glide is commanded even if the airspeed has not fallen to its start [s]."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PartFailure:
-    """What the failure of a part in the steepest turn that is commanded does.
+    """Effect of the failure of a part in the steepest turn that is commanded.
 
     Attributes
     ----------
-    airspeed_fall : largest rate at which the airspeed falls until it is known that the engine has
+    airspeed_fall : largest rate at which the airspeed falls until the engine is known to have
         failed [m/s2]
-    glide_deviation : how far the turn is led off while the aircraft pushes over to its glide, after
-        any failure [m]
+    glide_deviation : distance from the turn while the aircraft pushes over to its glide, after any
+        failure [m]
     """
 
     airspeed_fall: float
@@ -60,11 +60,10 @@ class PartFailure:
 
     def or_worse(self, other: "PartFailure") -> "PartFailure":
         """Return the larger of each figure."""
-        fall, deviation = (
-            max(self.airspeed_fall, other.airspeed_fall),
-            max(self.glide_deviation, other.glide_deviation),
+        return PartFailure(
+            airspeed_fall=max(self.airspeed_fall, other.airspeed_fall),
+            glide_deviation=max(self.glide_deviation, other.glide_deviation),
         )
-        return PartFailure(airspeed_fall=fall, glide_deviation=deviation)
 
 
 def measure_part_failure(
@@ -74,11 +73,11 @@ def measure_part_failure(
     airspeed_min: float,
     gradient: float = 0.0,
 ) -> PartFailure:
-    """Return what it does to the aircraft when a part of it fails in a settled turn, or as it has
-    begun to climb in one.
+    """Return the effect of a part's failure in a settled turn, level or at the start of a climb.
 
-    Where the engine has failed the glide begins as slowly as that may have become; with a surface
-    that is stuck it begins at once, and with the engine's power it may be commanded to sink faster.
+    If the engine failed, the glide begins at airspeeds down to the lowest that may have been
+    reached. If a surface is stuck, it begins at once, and with the engine's power the aircraft may
+    be commanded to sink faster.
 
     Parameters
     ----------
@@ -99,20 +98,18 @@ def measure_part_failure(
 
 
 def glide_airspeed(airspeed: float, airspeed_min: float) -> float:
-    """Return the airspeed that is commanded in a glide, by V_r and the slowest that is commanded
-    [m/s].
-    """
+    """Return the airspeed to command in a glide, by V_r and the slowest commanded [m/s]."""
     return 0.5 * (airspeed + airspeed_min)
 
 
 class _Turn:
-    """A settled turn, level or in a climb that has lasted for some seconds.
+    """A settled turn, which may go on in a climb.
 
     Attributes
     ----------
     aircraft : in the turn
     rate : commanded heading rate [rad/s]
-    half : time steps of half a turn
+    half : duration of half a turn [JSBSim time steps]
     altitude : at which it begins, ``room`` above that of the equilibrium [m]
     """
 
@@ -126,8 +123,10 @@ class _Turn:
         *,
         room: float = 0.0,
     ) -> None:
-        self.aircraft, self.rate = aircraft, side * heading_rate_for_bank(bank, start.airspeed)
-        self.altitude, self._climb_rate = start.altitude + room, gradient * start.airspeed
+        self.aircraft = aircraft
+        self.rate = side * heading_rate_for_bank(bank, start.airspeed)
+        self.altitude = start.altitude + room
+        self._climb_rate = gradient * start.airspeed
         aircraft.release(
             replace(start.state(), altitude=self.altitude),
             airspeed=start.airspeed,
@@ -138,57 +137,55 @@ class _Turn:
         for _ in range(self.half):
             aircraft.run()
 
-    def flown(self, *, failing: bool = True) -> Iterator[float]:
-        """Let it climb, its engine perhaps fail, and fly on as commanded; yield the airspeed before
-        each time step then [m/s].
+    def airspeeds(self, *, engine_fails: bool) -> Iterator[float]:
+        """Climb, then yield the airspeed before each time step [m/s], for ever.
+
+        With ``engine_fails`` the engine fails at the first of these steps.
         """
-        read, begun = (
-            self.aircraft.fdm.node(_AIRSPEED).get_double_value,
-            round(_CLIMBED / TIME_STEP),
-        )
+        read = self.aircraft.fdm.node(_AIRSPEED).get_double_value
+        climbed = round(_CLIMB_TIME / TIME_STEP)
         for step in itertools.count():
-            if step % round(_STEP / TIME_STEP) == 0:
+            if step % round(_CLIMB_STEP / TIME_STEP) == 0:
                 self.aircraft.command_altitude(self.altitude + self._climb_rate * step * TIME_STEP)
-            if failing and step == begun:
+            if engine_fails and step == climbed:
                 self.aircraft.fail(ENGINE)
-            if step >= begun:
+            if step >= climbed:
                 yield METRES_PER_FOOT * read()
             self.aircraft.run()
 
 
 def _airspeed_fall(turn: _Turn) -> float:
-    """Return the largest rate at which the airspeed falls [m/s2]."""
-    over = round(_OVER / TIME_STEP)
-    flown = np.array(list(itertools.islice(turn.flown(), round(_WATCHED / TIME_STEP) + 1)))
+    """Return the largest rate at which the airspeed falls after the engine fails [m/s2]."""
+    over = round(_FALL_OVER / TIME_STEP)
+    steps = round(_FALL_WATCHED / TIME_STEP) + 1
+    flown = np.array(list(itertools.islice(turn.airspeeds(engine_fails=True), steps)))
     return float(np.max(flown[:-over] - flown[over:])) / (over * TIME_STEP)
 
 
 def _glide_deviation(turn: _Turn, glide: float, begins: float) -> float:
-    """Return how far from the commanded turn the aircraft comes within half a turn [m], by its own
-    airspeed.
+    """Return how far from the commanded turn at its airspeed the aircraft comes in half a turn [m].
 
     Parameters
     ----------
     turn : in which a part fails
     glide : airspeed commanded in the glide [m/s]
-    begins : airspeed at which it begins, after the engine has failed; infinite at once, with its
-        power [m/s]
+    begins : airspeed at which the glide begins after the engine has failed [m/s]; infinite if it
+        begins at once, with the engine's power
     """
-    for airspeed in itertools.islice(
-        turn.flown(failing=math.isfinite(begins)), round(_FALLEN / TIME_STEP)
-    ):
+    airspeeds = turn.airspeeds(engine_fails=math.isfinite(begins))
+    for airspeed in itertools.islice(airspeeds, round(_FALL_MAX / TIME_STEP)):
         if airspeed <= begins:
             break
-    aircraft, velocities = turn.aircraft, list[tuple[float, float]]()
-    north, east = (
-        aircraft.fdm.node(f"velocities/v-{side}-fps").get_double_value for side in ("north", "east")
-    )
+    aircraft = turn.aircraft
+    north = aircraft.fdm.node("velocities/v-north-fps").get_double_value
+    east = aircraft.fdm.node("velocities/v-east-fps").get_double_value
     aircraft.command_airspeed(glide)
     aircraft.command_altitude(turn.altitude - _ROOM)
+    velocities = []
     for _ in range(turn.half):
-        velocities.append((north(), east()))
+        velocities.append(complex(north(), east()))
         aircraft.run()
-    flown = METRES_PER_FOOT * np.array([complex(*each) for each in velocities])
+    flown = METRES_PER_FOOT * np.array(velocities)
     commanded = np.abs(flown) * np.exp(
         1j * (np.angle(flown[0]) + turn.rate * TIME_STEP * np.arange(len(flown)))
     )

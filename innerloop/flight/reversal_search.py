@@ -34,7 +34,7 @@ from gnc.guard.turn import (
 )
 from innerloop.flight.autopiloted_aircraft import AutopilotedAircraft
 from innerloop.flight.turn_reversal import TurnReversalResponse
-from innerloop.jsbsim.properties import HEADING_RATE
+from innerloop.jsbsim.system import HEADING_RATE
 
 _REVERSALS_MIN, _REVERSALS_MAX = 20, 150
 """Fewest and most reversals of the search that is part of every design [-]; the command's

@@ -1,38 +1,47 @@
-"""Whether the control surfaces follow their commands, from what their servos report.
+"""Whether the control surfaces follow their commands, from the positions that servos report.
 
 A sound servo trails its command by its lag and its limited speed, from stop to stop when a turn is
-reversed; a stuck one stays where it is while its commands change. What distinguishes them without a
-model of the servo is time: wherever a sound servo is, its command was there, or beyond, within the
-last few tenths of a second.
+reversed. A stuck servo stays where it is while its commands change. Time distinguishes them without
+a model of the servo: the command of a sound servo was at its present position, or beyond, within
+the last few tenths of a second.
 """
 
 from collections import deque
+from collections.abc import Callable
+from typing import NamedTuple
 
 from aircraft.fdm import Fdm
 from aircraft.spec import Feedback
-from innerloop.jsbsim.properties import commanded_property
+from innerloop.jsbsim.system import commanded_property
 
 _TRAVEL_TIME = 0.4
 """Longest time a sound surface may trail its command [s]: the X8's takes 0.30 s from stop to stop
 and lags by 25 ms."""
 
 
+class _Surface(NamedTuple):
+    """Command [-] and position of a surface, its travel [unit of position], and recent commands."""
+
+    command: Callable[[], float]
+    position: Callable[[], float]
+    travel: float
+    recent: deque[float]
+
+
 class ServoMonitor:
     """Monitors every control surface of one aircraft in flight.
 
-    The throttle is not monitored, for no surface moves with it. A control input without a servo
-    model is taken to be at its command, as it is behind the switch of a fault.
+    The throttle is not monitored: it moves no surface. A control input without a servo model counts
+    as being at its command, as it is behind the switch of a fault.
 
     Parameters
     ----------
     fdm : of an aircraft with its autopilot
-    time_step : between looks at the commands, by ``watch`` or ``error`` [s]
+    time_step : between calls of ``watch`` or ``error`` [s]
     """
 
-    __slots__ = ("_surfaces",)
-
     def __init__(self, fdm: Fdm, time_step: float) -> None:
-        self._surfaces = []
+        self._surfaces: list[_Surface] = []
         for actuator in fdm.spec.actuators:
             control_input = next(
                 (i for i in fdm.spec.inputs if set(actuator.commands) <= set(i.commands)), None
@@ -48,28 +57,32 @@ class ServoMonitor:
                 )
             if feedback is None:
                 continue
-            command, position = (
-                fdm.node(name).get_double_value for name in (feedback.commanded, feedback.position)
+            self._surfaces.append(
+                _Surface(
+                    command=fdm.node(feedback.commanded).get_double_value,
+                    position=fdm.node(feedback.position).get_double_value,
+                    travel=feedback.travel,
+                    recent=deque(maxlen=1 + round(_TRAVEL_TIME / time_step)),
+                )
             )
-            recent: deque[float] = deque(maxlen=1 + round(_TRAVEL_TIME / time_step))
-            self._surfaces.append((command, position, feedback.travel, recent))
 
     def watch(self) -> None:
-        """Take note of the commands."""
-        for command, _, _, recent in self._surfaces:
-            recent.append(command())
+        """Record the commands."""
+        for surface in self._surfaces:
+            surface.recent.append(surface.command())
 
     def error(self) -> float:
-        """Take note of the commands, and return the largest distance of a surface from the recent
-        ones, over its travel [-].
+        """Record the commands; return the largest distance of a surface from the recent ones [-].
+
+        The distance is a fraction of the surface's travel.
         """
         worst = 0.0
         for command, position, travel, recent in self._surfaces:
-            now, at = command(), position() / travel
+            now = command()
+            at = position() / travel
             recent.append(now)
             oldest = recent[0]
-            # Between the oldest and the newest of its commands a surface is at no distance from
-            # them.
+            # Between the oldest and the newest command a surface is at no distance from them.
             if not (oldest <= at <= now or now <= at <= oldest):
                 off = at - max(recent) if at > now else min(recent) - at
                 worst = off if off > worst else worst

@@ -14,7 +14,7 @@ from aircraft.spec import AircraftError
 from aircraft.trim import Trim
 from common.physics.coordinated_turn import heading_rate_for_bank
 from innerloop.flight.autopiloted_aircraft import AutopilotedAircraft
-from innerloop.jsbsim.properties import HEADING_RATE
+from innerloop.jsbsim.system import HEADING_RATE
 
 Array = npt.NDArray[np.float64]
 

@@ -2,8 +2,8 @@
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
 from pathlib import Path
+from typing import NamedTuple
 from xml.sax.saxutils import escape
 
 from aircraft.fdm import (
@@ -20,7 +20,7 @@ from aircraft.fdm import (
 from aircraft.spec import Envelope, UnknownPropertyError
 from aircraft.trim import Trim
 from common.physics.coordinated_turn import heading_rate_for_bank
-from innerloop.jsbsim.properties import (
+from innerloop.jsbsim.system import (
     AIRSPEED_COMMAND,
     ALTITUDE_COMMAND,
     BANK_COMMAND,
@@ -29,10 +29,10 @@ from innerloop.jsbsim.properties import (
     RESET,
     hold_steps,
 )
-from innerloop.synthesis.schedule import Schedule
+from innerloop.schedule import Schedule
 
 OUTPUT_RATE = 20.0
-"""Rows of the script's output file a second [Hz]."""
+"""Rows per second of the script's output file [Hz]."""
 
 _AFTERWARDS = 10.0
 """Flight after the last command [s]."""
@@ -56,14 +56,13 @@ _MOTION = (
 )
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Command:
+class Command(NamedTuple):
     """A command to the autopilot.
 
     Attributes
     ----------
-    time : when it is given, from release on [s]
-    name : JSBSim property that takes it, one of ``innerloop.jsbsim.properties``
+    time : when it is given, from the release [s]
+    name : its JSBSim property, one of ``innerloop.jsbsim.system``
     value : [m/s, m or rad/s]
     note : the same in words
     """
@@ -75,50 +74,39 @@ class Command:
 
 
 def demonstration(envelope: Envelope, start: Trim) -> tuple[Command, ...]:
-    """Return commands that demonstrate the autopilot: turn right, climb, change speed, undo both,
-    turn left.
+    """Return commands that demonstrate the autopilot: turn, climb, change speed, and back.
 
     The turns are flown at a quarter of the heading rate of the largest commanded bank. The altitude
-    changes by the distance flown in half a second, and the airspeed by a tenth or by half the
-    distance to the farther end of the envelope, whichever is less, towards that end.
+    changes by the distance flown in half a second. The airspeed changes towards the farther end of
+    the envelope, by a tenth or by half the distance to that end, whichever is less.
 
     Parameters
     ----------
-    envelope, start : where the aircraft may fly, and the level equilibrium it starts from
+    envelope, start : the airspeeds and banks of the aircraft, and the level equilibrium it starts
+        from
     """
     heading_rate = 0.25 * heading_rate_for_bank(envelope.bank_max, start.airspeed)
     altitude_step = 0.5 * start.airspeed
     below, above = start.airspeed - envelope.airspeed_min, envelope.airspeed_max - start.airspeed
     airspeed_step = math.copysign(min(0.1 * start.airspeed, 0.5 * max(below, above)), above - below)
     turn = f"{math.degrees(heading_rate):.3g} degrees a second"
-    return tuple(
-        Command(time=time, name=name, value=value, note=note)
-        for time, name, value, note in (
-            (5.0, HEADING_RATE_COMMAND, heading_rate, f"Turn right at {turn}."),
-            (20.0, HEADING_RATE_COMMAND, 0.0, "Fly straight on."),
-            (
-                25.0,
-                ALTITUDE_COMMAND,
-                start.altitude + altitude_step,
-                f"Change altitude by {altitude_step:+.3g} m.",
-            ),
-            (
-                40.0,
-                AIRSPEED_COMMAND,
-                start.airspeed + airspeed_step,
-                f"Change airspeed by {airspeed_step:+.3g} m/s.",
-            ),
-            (55.0, ALTITUDE_COMMAND, start.altitude, "Come back to the altitude of the start."),
-            (55.0, AIRSPEED_COMMAND, start.airspeed, "Come back to the airspeed of the start."),
-            (70.0, HEADING_RATE_COMMAND, -heading_rate, f"Turn left at {turn}."),
-            (85.0, HEADING_RATE_COMMAND, 0.0, "Fly straight on."),
-        )
+    climb = f"Change altitude by {altitude_step:+.3g} m."
+    accelerate = f"Change airspeed by {airspeed_step:+.3g} m/s."
+    higher, faster = start.altitude + altitude_step, start.airspeed + airspeed_step
+    return (
+        Command(5.0, HEADING_RATE_COMMAND, heading_rate, f"Turn right at {turn}."),
+        Command(20.0, HEADING_RATE_COMMAND, 0.0, "Fly straight on."),
+        Command(25.0, ALTITUDE_COMMAND, higher, climb),
+        Command(40.0, AIRSPEED_COMMAND, faster, accelerate),
+        Command(55.0, ALTITUDE_COMMAND, start.altitude, "Come back to the altitude of the start."),
+        Command(55.0, AIRSPEED_COMMAND, start.airspeed, "Come back to the airspeed of the start."),
+        Command(70.0, HEADING_RATE_COMMAND, -heading_rate, f"Turn left at {turn}."),
+        Command(85.0, HEADING_RATE_COMMAND, 0.0, "Fly straight on."),
     )
 
 
 def write_script(schedule: Schedule, root: Path) -> Path:
-    """Write a JSBSim script of ``demonstration``, and the initialisation file it starts from, into
-    a root of ``innerloop.jsbsim.root.write_root``.
+    """Write a JSBSim script of ``demonstration``, and its initialisation file; return the script.
 
     The script releases the aircraft as ``AutopilotedAircraft.release`` does, at 0 s of its clock,
     from level flight at the middle design airspeed.
@@ -126,11 +114,7 @@ def write_script(schedule: Schedule, root: Path) -> Path:
     Parameters
     ----------
     schedule : the design
-    root : JSBSim root with its autopilot
-
-    Returns
-    -------
-    Path : the script
+    root : JSBSim root with its autopilot, from ``innerloop.jsbsim.system.write_root``
     """
     spec, start = schedule.spec, schedule.level(schedule.middle)
     commands = demonstration(schedule.envelope, start)
@@ -141,10 +125,11 @@ def write_script(schedule: Schedule, root: Path) -> Path:
         _INITIALISATION.format(name=name), encoding="utf-8"
     )
     held, preparations = _preparations(fdm, schedule.period)
-    release = [*((integrator, fdm.read(integrator)) for integrator in INTEGRATORS), (RESET, 0.0)]
+    integrating = [(integrator, fdm.read(integrator)) for integrator in INTEGRATORS]
+    release = "Release: let the body and the autopilot's integrators go."
     events = [
         *preparations,
-        _event("Release: let the body and the autopilot's integrators go.", 0, release),
+        _event(release, 0, [*integrating, (RESET, 0.0)]),
         *(_event(c.note, round(c.time / TIME_STEP), [(c.name, c.value)]) for c in commands),
     ]
     script = root / "scripts" / f"{name}.xml"
@@ -168,7 +153,7 @@ def write_script(schedule: Schedule, root: Path) -> Path:
 
 
 def _preparations(fdm: Fdm, period: int) -> tuple[int, list[str]]:
-    """Return for how many steps the body is held before release, and the events in that time."""
+    """Return how many steps the body is held before release, and the events in that time."""
     settle = hold_steps(fdm.spec, period)
     run_up = (2 if fdm.cranked else 1) * RUN_UP_STEPS if fdm.spec.engine_flags else 0
     held = settle + run_up
@@ -196,12 +181,9 @@ def _preparations(fdm: Fdm, period: int) -> tuple[int, list[str]]:
 
 
 def columns(fdm: Fdm) -> list[str]:
-    """Return the properties that the script's output file has as columns, after ``Time``: motion,
-    commands, controls, engines.
+    """Return the columns of the script's output file after ``Time``, as JSBSim properties.
 
-    Parameters
-    ----------
-    fdm : the aircraft under its autopilot
+    They are motion, commands, controls and engines of ``fdm``, the aircraft under its autopilot.
     """
     names = [
         *_MOTION,
@@ -223,8 +205,7 @@ def columns(fdm: Fdm) -> list[str]:
 
 
 def _before(start: Trim, held: float) -> str:
-    """Return the properties that are set before JSBSim runs its initial state, for a body that is
-    then ``held`` [s]."""
+    """Return the properties to set before the initial state, for a body then ``held`` [s]."""
     values = (
         *initial_conditions(before_hold(start.state(), held)),
         (AIRSPEED_COMMAND, start.airspeed),
@@ -236,11 +217,10 @@ def _before(start: Trim, held: float) -> str:
 
 
 def _event(note: str, step: int, values: Sequence[tuple[str, float]]) -> str:
-    """Return an event that sets values when ``step`` time steps from release are complete, before
-    the next one.
+    """Return an event that sets values between ``step`` time steps from release and the next one.
 
-    JSBSim advances its clock before it looks at events, and adds up rounding in it: the half step
-    is far from both neighbours.
+    JSBSim advances its clock before it evaluates events, and its rounding errors add up: the half
+    step is far from both neighbours.
     """
     lines = "\n".join(
         f'      <set name="{name}" value="{float(value)!r}"/>' for name, value in values
@@ -250,8 +230,8 @@ def _event(note: str, step: int, values: Sequence[tuple[str, float]]) -> str:
 
 
 _INITIALISATION = """<?xml version="1.0"?>
-<!-- Written by innerloop.jsbsim.script. JSBSim asks for this file; the script itself sets the state, in the order that makes the
-     flight the same to the last digit as one from Python. -->
+<!-- Written by innerloop.jsbsim.script. JSBSim asks for this file; the script itself sets the
+     state, in the order that makes the flight the same to the last digit as one from Python. -->
 <initialize name="{name}_init">
 </initialize>
 """
@@ -260,23 +240,26 @@ _SCRIPT = """<?xml version="1.0"?>
 <!-- Written by innerloop.jsbsim.script; write it again rather than editing. -->
 <runscript name="{title} under its autopilot">
   <description>
-    Flies the {title} under its autopilot, in JSBSim alone. To run it, in the directory that holds scripts/ and aircraft/:
+    Flies the {title} under its autopilot, in JSBSim alone. To run it, in the directory that holds
+    scripts/ and aircraft/:
 
       JSBSim --script=scripts/{name}.xml
 
-    or from anywhere, where ROOT is that directory and OUT the one for the result, both as full paths:
+    or from anywhere, where ROOT is that directory and OUT the one for the result, both as full
+    paths:
 
       JSBSim --root=ROOT --outputpath=OUT --script=scripts/{name}.xml
 
-    Where JSBSim came with its Python package, the program is called jsbsim. The result is {name}.csv. Its columns are JSBSim
-    properties with the unit in their names; those without one are -1 to 1 or, for throttles, 0 to 1. The clock is 0 s at release.
+    Where JSBSim came with its Python package, the program is called jsbsim. The result is
+    {name}.csv. Its columns are JSBSim properties with the unit in their names; those without one
+    are -1 to 1 or, for throttles, 0 to 1. The clock is 0 s at release.
   </description>
 
   <use aircraft="{model}" initialize="{name}_init"/>
 
   <run start="{start!r}" end="{end!r}" dt="{step!r}">
-    <!-- In force from the start: level flight, as far east of its place as the earth turns while the body is held; commands to
-         stay there; the autopilot's integrators held at 0. -->
+    <!-- In force from the start: level flight, as far east of its place as the earth turns while
+         the body is held; commands to stay there; the autopilot's integrators held at 0. -->
 {before}
 {events}
   </run>

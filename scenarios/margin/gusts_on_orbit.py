@@ -16,9 +16,7 @@ import numpy as np
 import numpy.typing as npt
 
 from gnc.reference.reference import Orbit
-from innerloop.analysis.dryden import dryden_filters
-from innerloop.analysis.gust_response import GUSTS
-from innerloop.analysis.gust_statistics import GustStatistics
+from innerloop.gusts import GUSTS, GustStatistics, dryden_filters
 
 _SIDEBANDS = np.arange(-12, 13)
 """J_13(2.4)^2 is below 1e-15, and eta is no more than 2.405; a course whose roll rate jumps leaves
@@ -48,7 +46,7 @@ def gusts_on_orbit(
 
     Parameters
     ----------
-    turbulence, airspeed, span : as of ``innerloop.analysis.dryden.dryden_filters``, in axes that do
+    turbulence, airspeed, span : same as ``innerloop.gusts.dryden_filters``, in axes that do
         not turn
     oscillation : of the reference's course
     frequencies : [rad/s], above 0

@@ -12,9 +12,9 @@ import numpy.typing as npt
 
 from gnc.airspeed import SpeedHold
 from gnc.tracker import TrackingParameters
-from innerloop.analysis.gust_response import GUSTS, gust_loop
-from innerloop.law.control_law import COMMANDS
-from innerloop.synthesis.schedule import Schedule
+from innerloop.gusts import GUSTS, gust_loop
+from innerloop.law import COMMANDS
+from innerloop.schedule import Schedule
 from scenarios.margin.steering_gains import STEERED_BY, steering_gains
 
 RESPONSES = ("along", "right", "pace")

@@ -31,8 +31,8 @@ from common.physics.units import SECONDS_PER_HOUR
 from gnc.airspeed import SpeedHold
 from gnc.reference.reference import Orbit
 from gnc.tracker import TrackingParameters
-from innerloop.analysis.gust_statistics import GustStatistics
-from innerloop.synthesis.schedule import Schedule
+from innerloop.gusts import GustStatistics
+from innerloop.schedule import Schedule
 
 FREQUENCIES = np.logspace(-2.5, 1.9, 400)
 """Where spectra are integrated [rad/s]: from far below the corner of a gust, V/L = 0.09, to beyond

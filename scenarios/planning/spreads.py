@@ -9,8 +9,8 @@ from aircraft.weather import TURBULENCE
 from common.physics.units import METRES_PER_FOOT
 from gnc.errors import InfeasibleError
 from gnc.reference.reference import Orbit
-from innerloop.analysis.gust_statistics import low_altitude_turbulence
-from innerloop.designs.designed import Designed
+from innerloop.gusts import low_altitude_turbulence
+from innerloop.store import Designed
 from scenarios.errors import InputError
 from scenarios.margin.tracking_spread import SpreadTable, tracking_spreads
 from scenarios.planning.guidance import speed_hold, tracking_parameters

@@ -6,7 +6,7 @@ from aircraft.fdm import Fdm
 from aircraft.state import EquatorFrame
 from common.physics.units import METRES_PER_FOOT
 from gnc.estimation.navigation import Motion
-from innerloop.jsbsim.properties import CONTROL_COMMAND, HEADING_RATE
+from innerloop.jsbsim.system import CONTROL_COMMAND, HEADING_RATE
 
 _CONTROLS = ("elevator", "aileron", "throttle", "rudder")
 """Whose commands are sampled."""

@@ -16,13 +16,12 @@ from aircraft.spec import AircraftError, AircraftSpec, Envelope
 from aircraft.trim import Trim, level_trim
 from aircraft.user_check import check_user_aircraft
 from common.files import write_tree
-from innerloop.designs.cache import designed
-from innerloop.designs.designed import Designed
 from innerloop.flight.autopiloted_aircraft import AutopilotedAircraft
 from innerloop.flight.part_failure import PartFailure, measure_part_failure
 from innerloop.flight.turn_reversal import TurnReversalResponse
-from innerloop.jsbsim.root import write_root
-from innerloop.synthesis.schedule import Schedule
+from innerloop.jsbsim.system import write_root
+from innerloop.schedule import Schedule
+from innerloop.store import Designed, designed
 from scenarios.engine.run_directory import RunDirectory
 from scenarios.errors import InputError
 from scenarios.schema.scenario import Scenario
@@ -193,7 +192,7 @@ def aircraft_setup(
     reversal, slow_lag = found.record["turn_reversal"], float(found.record["heading_rate_lag_s"])
     slower_or_faster = abs(start.airspeed / reversal["airspeed_mps"] - 1.0)
     if bank > schedule.envelope.bank + _SAME_BANK or slower_or_faster > _SAME_AIRSPEED:
-        from innerloop.designs.record import reversal_record  # needs python-control
+        from innerloop.reversal_record import reversal_record  # needs scipy.signal
 
         reversal = reversal_record(
             schedule.spec, run.model, start, max(bank, schedule.envelope.bank), slow_lag

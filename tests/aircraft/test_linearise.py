@@ -16,7 +16,7 @@ from aircraft.fleet.x8 import X8
 from aircraft.linearise import BODY_STATES, EXTRA_OUTPUTS, linearise
 from aircraft.spec import MODELS, AircraftError, DrivenState, propeller_speed
 from aircraft.trim import trim
-from innerloop.synthesis.quasi_static import state_lag
+from innerloop.synthesis import state_lag
 
 DRIVEN = ("elevator_position", "aileron_position", "propeller_speed")
 BANKS = {"level": 0.0, "right turn": 0.6, "left turn": -0.6}

@@ -1,11 +1,9 @@
-"""Loops by another way than the package's: opened in a block diagram by python-control, the delay a
-rational function.
-"""
+"""Loops opened in a block diagram by python-control, with the delay a rational function."""
 
 import control
 import numpy as np
 
-from innerloop.law.control_law import COMMANDS
+from innerloop.law import COMMANDS
 
 PADE_ORDER = 4
 """Of delays up to 21 ms: exact to 1e-6 rad below 50 rad/s, where all crossovers lie."""

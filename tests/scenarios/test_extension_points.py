@@ -10,7 +10,6 @@ import pytest
 
 from common.registry import ENTRY_POINTS, file_hash
 from gnc.laws import STEERING_LAWS
-from innerloop.designs import cache
 from scenarios.engine.in_process_executor import InProcessExecutor
 from scenarios.engine.runner import fly_study
 from scenarios.errors import InputError
@@ -49,9 +48,10 @@ def asked(monkeypatch, tmp_path, designs):
     def design(spec, altitude):
         names.append(spec.name)
         schedule = replace(made.design.schedule, spec=spec, envelope=spec.envelope)
-        return cache._Entry(made=replace(made, design=replace(made.design, schedule=schedule)))
+        return replace(made.design, schedule=schedule)
 
-    monkeypatch.setattr(cache, "_design", design)
+    monkeypatch.setattr("innerloop.designer.design_autopilot", design)
+    monkeypatch.setattr("innerloop.record.design_record", lambda *_: made.record)
     return names
 
 

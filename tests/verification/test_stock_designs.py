@@ -7,10 +7,10 @@ import math
 import pytest
 
 from aircraft.fleet.find import find_spec
-from innerloop.designs.designer import design_autopilot
+from innerloop.designer import design_autopilot
 from innerloop.flight.autopiloted_aircraft import AutopilotedAircraft
-from innerloop.flight.step_responses import flown_step, measure_lag, model_step
-from innerloop.jsbsim.root import write_root
+from innerloop.flight.responses import flown_step, measure_lag, model_step
+from innerloop.jsbsim.system import write_root
 
 STOCK = ("T37", "737", "c172p")
 ALTITUDE = 60.0  # m, of the designs that tests share

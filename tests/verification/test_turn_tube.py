@@ -17,7 +17,7 @@ from gnc.guard.turn import TurnStart, pending_turn_rate
 from innerloop.flight.autopiloted_aircraft import AutopilotedAircraft
 from innerloop.flight.reversal_search import _Flight
 from innerloop.flight.turn_reversal import TurnReversalResponse
-from innerloop.jsbsim.properties import HEADING_RATE
+from innerloop.jsbsim.system import HEADING_RATE
 
 RADIUS, STEP = 200.0, 0.05
 PIECES = round(STEP / TIME_STEP)

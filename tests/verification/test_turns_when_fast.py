@@ -12,8 +12,7 @@ from gnc.estimation.vessel import Tube
 from gnc.guard.guard import Demand, GuardParameters, GuardStatus, KeepoutGuard, SpeedRange
 from gnc.numeric import limited, wrap
 from innerloop.flight.autopiloted_aircraft import AutopilotedAircraft
-from innerloop.jsbsim.properties import HEADING_RATE
-from innerloop.jsbsim.root import write_root
+from innerloop.jsbsim.system import HEADING_RATE, write_root
 
 STEP, RUNS = 0.1, 12
 

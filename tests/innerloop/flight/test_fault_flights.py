@@ -16,28 +16,26 @@ TIME_STEP = 1.0 / 120.0
 FOOT = 0.3048
 MIDDLE = 2
 READ = (
-    "fcs/left-elevon-pos-rad", "fcs/right-elevon-pos-rad", "fcs/left-elevon-mixer", "fcs/right-elevon-mixer",
-    "fcs/throttle-cmd-norm", "autopilot/throttle-command", "propulsion/engine/thrust-lbs", "position/h-sl-ft", "velocities/vt-fps",
+    "fcs/left-elevon-pos-rad",
+    "fcs/right-elevon-pos-rad",
+    "fcs/left-elevon-mixer",
+    "fcs/right-elevon-mixer",
+    "fcs/throttle-cmd-norm",
+    "autopilot/throttle-command",
+    "propulsion/engine/thrust-lbs",
+    "position/h-sl-ft",
+    "velocities/vt-fps",
     "autopilot/heading-rate-rad_sec",
-)  # fmt: skip
-(
-    LEFT,
-    RIGHT,
-    LEFT_MIXED,
-    RIGHT_MIXED,
-    THROTTLE,
-    THROTTLE_DEMANDED,
-    THRUST,
-    ALTITUDE,
-    AIRSPEED,
-    HEADING_RATE,
-) = range(len(READ))
+)
+LEFT, RIGHT, LEFT_MIXED, RIGHT_MIXED, THROTTLE, THROTTLE_DEMANDED = range(6)
+THRUST, ALTITUDE, AIRSPEED, HEADING_RATE = range(6, 10)
 AT = 3.0
 
 
 def fly(aircraft, start, duration, fault="", commands=()):
-    """Release, turn at 0.3 rad/s after 1 s, fail after 3 s, then command (command, value); return
-    what was read, (steps, 10).
+    """Turn from 1 s on, fail after 3 s, then command; return what was read, (steps, 10).
+
+    The turn is at 0.3 rad/s. ``commands`` are pairs of a command and its value.
     """
     aircraft.release(start.state(), airspeed=start.airspeed, altitude=start.altitude)
     nodes = [aircraft.fdm.node(name) for name in READ]
@@ -88,7 +86,7 @@ def test_a_throttle_that_sticks_stays_at_trim_and_the_turn_costs_airspeed_alone(
     log = fly(failable, x8_schedule.level(MIDDLE), 25.0, "throttle")
     failed = round(AT / TIME_STEP) + 1
     np.testing.assert_array_equal(log[failed:, THROTTLE], log[0, THROTTLE])
-    assert np.ptp(log[failed:, THROTTLE_DEMANDED]) > 0.01  # the autopilot asks for more
+    assert np.ptp(log[failed:, THROTTLE_DEMANDED]) > 0.01  # the autopilot demands more
     # A turn has more drag: slower than the trim, by 0.14 m/s when measured; altitude and heading
     # rate are the elevons' work.
     assert 0.05 < (log[0, AIRSPEED] - log[-1, AIRSPEED]) * FOOT < 0.5
@@ -161,7 +159,7 @@ def test_the_push_over_to_a_glide_takes_from_a_turn_what_it_takes_from_the_lift(
     x8_schedule, failable
 ):
     # At one bank lift turns the aircraft by L sin(bank)/(m V), and pushes it over by L cos(bank)/m
-    # less g. So whatever the time it takes, to sink with w costs the course omega w/g, until the
+    # less g. However long it takes, to sink with w costs the course omega w/g, until the
     # autopilot has banked more.
     start, bank = x8_schedule.level(MIDDLE), math.radians(45.0)
     level, climbing = (

@@ -1,6 +1,4 @@
-"""Limits and saturation: commands outside the envelope, commands that cannot be met, and what is
-left of them afterwards.
-"""
+"""Limits and saturation: commands that cannot be met, and their effects afterwards."""
 
 import math
 
@@ -102,7 +100,7 @@ def test_an_altitude_that_cannot_be_reached_in_time_is_approached_within_the_env
         21.0,
         [(1.0, "altitude", x8_schedule.altitude + size)],
     )
-    # It climbs steadily (near 2.3 m/s, what an altitude error of 1 m asks for), with wings level
+    # It climbs steadily (near 2.3 m/s, as an altitude error of 1 m demands), with wings level
     # and airspeed held: 0.5 m/s. The model is linear in angle of attack to 0.2 rad.
     climbed = (after(flight, 20.9, "altitude")[0] - x8_schedule.altitude) * math.copysign(1.0, size)
     assert 20.0 < climbed < 100.0
@@ -142,9 +140,7 @@ def test_a_descent_that_is_to_end_is_not_flown_on_by_its_own_integral(x8_schedul
     altitude = x8_aircraft.fdm.node("position/h-sl-ft").get_double_value
 
     def altitudes(seconds, ahead):
-        """Return the altitude at each half second [m], flown with a command that stays so far from
-        it.
-        """
+        """Return the altitude at each half second [m] under a command ``ahead`` of it [m]."""
         flown = []
         for _ in range(2 * seconds):
             x8_aircraft.command_altitude(altitude() * METRES_PER_FOOT + ahead)
@@ -171,7 +167,7 @@ def test_an_altitude_step_is_not_overshot_by_more_for_being_larger(x8_schedule, 
             [(1.0, "altitude", x8_schedule.altitude + size)],
         )
         overshoots[size] = flight["altitude"].max() - x8_schedule.altitude - size
-    # The last metre is flown the same way whatever came before it.
+    # The last metre is flown the same way after any climb.
     assert max(overshoots.values()) < 0.3
 
 

@@ -9,8 +9,7 @@ from aircraft.fleet.find import find_spec
 from aircraft.fleet.x8 import X8
 from aircraft.model import copy_model, perturb
 from aircraft.state import RigidBodyState
-from innerloop.analysis import perturbations
-from innerloop.flight.perturbed_aircraft import CASES, perturbed_aircraft
+from innerloop.reversal_record import AIRCRAFT, perturbed_aircraft
 from tests.aircraft.split_model import split_model
 
 
@@ -18,7 +17,7 @@ from tests.aircraft.split_model import split_model
 def flown(x8_root, x8_schedule):
     """Return the X8 of each case, a tenth of a second into a turn."""
     level = x8_schedule.level(x8_schedule.middle)
-    aircraft = dict(zip(CASES, perturbed_aircraft(X8, x8_root), strict=True))
+    aircraft = dict(zip(AIRCRAFT, perturbed_aircraft(X8, x8_root), strict=True))
     for each in aircraft.values():
         each.release(level.state(), airspeed=level.airspeed, altitude=level.altitude)
         each.command_heading_rate(0.3)
@@ -31,15 +30,11 @@ def value(aircraft, name):
     return aircraft.fdm.node(name).get_double_value()
 
 
-def test_they_are_those_with_which_margins_are_checked_but_for_the_delay():
-    assert set(CASES) == {name for name, (_, steps) in perturbations.CASES.items() if steps == 0}
-
-
 # Of the model file: 3.364 kg and 0.335, 0.140, 0.400 kg m^2; a kilogram weighs 2.2046226 lb, and 1
 # slug ft^2 is 1.3558179 kg m^2, but by 9e-5 in JSBSim.
-@pytest.mark.parametrize("case", CASES)
+@pytest.mark.parametrize("case", AIRCRAFT)
 def test_mass_and_inertia_are_as_modelled_times_the_factor(flown, case):
-    by = CASES[case]
+    by = AIRCRAFT[case]
     assert value(flown[case], "inertia/weight-lbs") == pytest.approx(
         3.364 * 2.2046226 * by.mass, rel=1e-6
     )
@@ -49,7 +44,7 @@ def test_mass_and_inertia_are_as_modelled_times_the_factor(flown, case):
         )
 
 
-@pytest.mark.parametrize("case", CASES)
+@pytest.mark.parametrize("case", AIRCRAFT)
 def test_what_a_deflection_does_is_as_modelled_times_the_factor(flown, case):
     def of(name):
         return value(flown[case], name)
@@ -61,10 +56,10 @@ def test_what_a_deflection_does_is_as_modelled_times_the_factor(flown, case):
     aileron = of("fcs/aileron-pos-rad")
     assert abs(aileron) > 1e-3
     # Properties are of two neighbouring steps: a tenth of what a fifth of the effectiveness makes.
-    assert rolled == pytest.approx(0.12019 * CASES[case].effectiveness * aileron, rel=0.02)
+    assert rolled == pytest.approx(0.12019 * AIRCRAFT[case].effectiveness * aileron, rel=0.02)
 
 
-@pytest.mark.parametrize("case", CASES)
+@pytest.mark.parametrize("case", AIRCRAFT)
 def test_sections_in_files_of_their_own_are_perturbed_as_those_of_the_model_file_are(
     tmp_path, case
 ):
@@ -79,7 +74,7 @@ def test_sections_in_files_of_their_own_are_perturbed_as_those_of_the_model_file
     moved = []
     for spec in (find_spec("c172p"), find_spec(str(split_model("c172p", tmp_path)))):
         root = tmp_path / f"copy{len(moved)}"
-        perturb(copy_model(spec.files, root), CASES[case])
+        perturb(copy_model(spec.files, root), AIRCRAFT[case])
         fdm = Fdm(spec, root)
         fdm.command({"elevator": -0.1, "aileron": 0.2, "rudder": 0.1, "throttle": 0.5})
         fdm.hold(state, 240)
@@ -91,7 +86,7 @@ def test_sections_in_files_of_their_own_are_perturbed_as_those_of_the_model_file
 
 def test_the_deflections_of_jsbsims_short_s23_are_scaled(tmp_path):
     copy = copy_model(find_spec("Short_S23").files, tmp_path)
-    perturb(copy, CASES["control effectiveness +20 %"])
+    perturb(copy, AIRCRAFT["control effectiveness +20 %"])
     products = ET.parse(copy).getroot().find("aerodynamics").iter("product")
     scaled = [
         product.findtext("property").strip()

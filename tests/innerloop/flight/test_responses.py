@@ -9,13 +9,7 @@ from aircraft.fdm import TIME_STEP, Fdm
 from aircraft.fleet.x8 import X8
 from aircraft.trim import level_trim
 from innerloop.flight.autopiloted_aircraft import AutopilotedAircraft
-from innerloop.flight.step_responses import (
-    CHANNELS,
-    Response,
-    flown_step,
-    measure_lag,
-    predicted_step,
-)
+from innerloop.flight.responses import CHANNELS, Response, flown_step, measure_lag, predicted_step
 
 MIDDLE = 2
 INSIDE = [1, 2, 3]  # design airspeeds inside the envelope: 17.5, 20 and 22.5 m/s

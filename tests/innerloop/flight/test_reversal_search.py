@@ -13,18 +13,18 @@ from aircraft.fdm import TIME_STEP
 from aircraft.fleet.x8 import X8
 from common.physics.units import METRES_PER_FOOT
 from gnc.unicycle import lagged_move
-from innerloop.designs import long_search
-from innerloop.designs.long_search import repeat_search
+from innerloop import reversal_record
 from innerloop.flight.autopiloted_aircraft import AutopilotedAircraft
+from innerloop.flight.responses import measure_lag
 from innerloop.flight.reversal_search import (
     _deviation,
     _Flight,
     reversals_of_a_design,
     search_reversals,
 )
-from innerloop.flight.step_responses import measure_lag
 from innerloop.flight.turn_reversal import TurnReversalResponse, measure_turn_reversal
-from innerloop.jsbsim.properties import HEADING_RATE
+from innerloop.jsbsim.system import HEADING_RATE
+from innerloop.reversal_record import repeat_search
 
 REVERSALS = 12
 
@@ -154,7 +154,7 @@ def test_a_design_flies_as_many_reversals_as_a_thousand_seconds_hold(bank_deg, a
 
 
 def test_a_repeated_search_reports_part_by_part_and_counts_all(designs, x8_root, monkeypatch):
-    monkeypatch.setattr(long_search, "PART", 8)
+    monkeypatch.setattr(reversal_record, "PART", 8)
     told = []
     found = repeat_search(
         designs("x8"), x8_root, 10, done=lambda count, deviation: told.append((count, deviation))

@@ -1,6 +1,4 @@
-"""One elevon of the X8 that sticks: what its servo reports, and what the other one can do with the
-elevator held.
-"""
+"""One stuck elevon of the X8: what servos report, and the other elevon with the elevator held."""
 
 from dataclasses import replace
 from types import SimpleNamespace
@@ -38,9 +36,7 @@ def release(aircraft, x8_schedule, weather=None):
 
 
 def watched(aircraft, watch, turn, duration):
-    """Fly with the heading rate ``turn(time)``; return the watch's errors and the heading rates
-    that were flown.
-    """
+    """Fly with the heading rate ``turn(time)``; return errors and flown heading rates."""
     log = []
     for step in range(round(duration / TIME_STEP)):
         log.append((watch.error(), aircraft.fdm.read("autopilot/heading-rate-rad_sec")))
@@ -60,7 +56,7 @@ def test_a_sound_elevon_is_always_where_it_was_commanded_to_be_a_moment_ago(
 ):
     weather = Weather(turbulence=TURBULENCE["severe"], seed=3)
     errors, _ = watched(x8_aircraft, release(x8_aircraft, x8_schedule, weather), reversals, 20.0)
-    # What was told between two looks is not seen: 0.08 at most in 32 flights of 500 s through
+    # Commands between two samples are not seen: 0.08 at most in 32 flights of 500 s through
     # severe and light turbulence.
     assert max(errors) < 0.1
     assert min(errors) == 0.0
@@ -75,8 +71,8 @@ def test_a_stuck_elevon_is_noticed_half_a_second_after_a_turn_was_asked_of_it(
     assert max(errors) < 0.1
     failable.fail(fault)
     errors, _ = watched(failable, watch, lambda _: 0.5, 2.0)
-    # The watch waits for 0.4 s in case the servo is on its way, and the elevons are told to move at
-    # once.
+    # The watch waits for 0.4 s in case the servo is on its way, and the elevons are commanded
+    # to move at once.
     assert 0.4 <= TIME_STEP * int(np.argmax(errors > 0.1)) <= 0.6
 
 
@@ -85,7 +81,7 @@ def test_a_stuck_throttle_is_no_stuck_surface(failable, x8_schedule):
     failable.fail("throttle")
     failable.command_airspeed(25.0)
     errors, _ = watched(failable, watch, lambda _: 0.3, 5.0)
-    # Much more is asked of it than it gives.
+    # Much more is commanded than it gives.
     assert (
         failable.fdm.read("autopilot/throttle-command") - failable.fdm.read("fcs/throttle-cmd-norm")
         > 0.2
@@ -94,9 +90,7 @@ def test_a_stuck_throttle_is_no_stuck_surface(failable, x8_schedule):
 
 
 def heading_rates(aircraft, x8_schedule, fault, *, held):
-    """Turn to the right until an elevon fails after 3 s, then to the left; return the heading rates
-    from then on.
-    """
+    """Turn right, left once an elevon fails after 3 s; return the heading rates from then on."""
     watch = release(aircraft, x8_schedule)
     watched(aircraft, watch, lambda _: RATE, 3.0)
     aircraft.fail(fault)

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from aircraft.fleet.x8 import X8
-from innerloop.flight.step_responses import measure_lag
+from innerloop.flight.responses import measure_lag
 from innerloop.flight.turn_reversal import TurnReversalResponse, displacement, measure_turn_reversal
 
 

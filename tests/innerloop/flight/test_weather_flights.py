@@ -20,17 +20,19 @@ YAW = 0.6
 TURN = 0.2
 FRAME = EquatorFrame(100.0)
 READ = (
-    ("velocities/vt-fps", FOOT), ("position/h-sl-ft", FOOT), ("attitude/phi-rad", 1.0),
-    ("velocities/v-north-fps", FOOT), ("velocities/v-east-fps", FOOT),
-    ("position/lat-geod-rad", FRAME.north_scale), ("position/long-gc-rad", FRAME.east_scale),
-)  # fmt: skip
+    ("velocities/vt-fps", FOOT),
+    ("position/h-sl-ft", FOOT),
+    ("attitude/phi-rad", 1.0),
+    ("velocities/v-north-fps", FOOT),
+    ("velocities/v-east-fps", FOOT),
+    ("position/lat-geod-rad", FRAME.north_scale),
+    ("position/long-gc-rad", FRAME.east_scale),
+)
 AIRSPEED, ALTITUDE, ROLL, NORTH_SPEED, EAST_SPEED, NORTH, EAST = range(7)
 
 
 def fly(aircraft, start, weather, duration, turn_at=5.0):
-    """Release the aircraft, turn from ``turn_at`` [s] on, and return what was read at each step,
-    shape (steps, 7).
-    """
+    """Fly, and turn from ``turn_at`` [s] on; return what was read at each step, (steps, 7)."""
     aircraft.release(
         start.state(yaw=YAW), airspeed=start.airspeed, altitude=start.altitude, weather=weather
     )

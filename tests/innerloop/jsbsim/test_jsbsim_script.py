@@ -1,6 +1,4 @@
-"""The script that flies the autopilot in JSBSim alone, run by JSBSim's own program and held against
-the flight from Python.
-"""
+"""The script that flies the autopilot in JSBSim alone, against the same flight from Python."""
 
 import math
 import shutil
@@ -15,8 +13,8 @@ import pytest
 
 from aircraft.fdm import INTEGRATORS, START_ENGINES
 from innerloop.flight.autopiloted_aircraft import AutopilotedAircraft
-from innerloop.jsbsim.root import write_root
 from innerloop.jsbsim.script import columns, demonstration, write_script
+from innerloop.jsbsim.system import write_root
 
 MIDDLE = 2
 STEPS_PER_SECOND = 120
@@ -35,9 +33,7 @@ def read_result(path):
 
 
 def fly_in_python(root, schedule, commands, duration):
-    """Fly commands with AutopilotedAircraft; return the script's columns after every step, and the
-    time since release [s].
-    """
+    """Fly commands from Python; return the script's columns and the time [s] after every step."""
     aircraft, start = AutopilotedAircraft(schedule.spec, root), schedule.level(MIDDLE)
     aircraft.release(start.state(), airspeed=start.airspeed, altitude=start.altitude)
     names = columns(aircraft.fdm)
@@ -55,9 +51,7 @@ def fly_in_python(root, schedule, commands, duration):
 
 
 def fly_both(schedule, tmp_path_factory):
-    """An autopilot's schedule, the demonstration flown by JSBSim alone, hold and all, and flown
-    from Python.
-    """
+    """A schedule, and its demonstration flown by JSBSim alone and from Python."""
     root, away = tmp_path_factory.mktemp("root"), tmp_path_factory.mktemp("away")
     script = write_script(schedule, write_root(schedule, root))
     run_jsbsim(
@@ -188,7 +182,7 @@ def test_a_stock_aircraft_is_flown_by_jsbsim_alone_as_from_python_but_for_its_en
     assert alone["position/h-sl-meters"].max() > start.altitude + 0.4 * start.airspeed
 
 
-def test_a_stock_aircrafts_script_runs_its_engines_up_while_the_body_is_held_and_has_gear_and_fuel_as_in_flight(
+def test_a_stock_aircrafts_script_runs_its_engines_up_and_has_gear_and_fuel_as_in_flight(
     designs, tmp_path
 ):
     schedule = designs("T37").design.schedule

@@ -15,10 +15,9 @@ from common.physics.units import METRES_PER_FOOT
 from gnc.airspeed import PaceHold, SpeedHold, air_turn, design_speed_hold
 from gnc.paper import Oscillation
 from gnc.tracker import Tracker
-from innerloop.analysis.gust_response import GUSTS
-from innerloop.analysis.gust_statistics import low_altitude_turbulence
 from innerloop.flight.autopiloted_aircraft import AutopilotedAircraft
-from innerloop.synthesis.schedule import LEVEL_GAINS
+from innerloop.gusts import GUSTS, low_altitude_turbulence
+from innerloop.schedule import LEVEL_GAINS
 from scenarios.margin.gusts_on_orbit import gusts_on_orbit
 from scenarios.margin.steering_gains import STEERED_BY, steering_gains
 from scenarios.margin.tracking_response import RESPONSES, tracking_response

@@ -11,8 +11,7 @@ import typer
 from aircraft.fleet.aerosonde import AEROSONDE
 from aircraft.fleet.find import find_spec
 from aircraft.spec import AircraftError
-from innerloop.designs.cache import cache_directory
-from innerloop.designs.designed import DesignError
+from innerloop.store import DesignError, cache_directory
 from reports.output import write_report
 from reports.run.run_data import read_run
 from scenarios.engine.in_process_executor import InProcessExecutor

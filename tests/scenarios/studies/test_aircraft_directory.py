@@ -83,7 +83,7 @@ def test_it_is_resumed_and_replayed_as_it_was_and_where_it_is_now_but_not_change
     out, _ = flown
     # Nothing is designed for what is refused; the design of what is flown is cached.
     monkeypatch.setattr(
-        "innerloop.designs.designer.design_autopilot",
+        "innerloop.designer.design_autopilot",
         lambda spec, _: pytest.fail(f"{spec.title} is designed for"),
     )
     same = (

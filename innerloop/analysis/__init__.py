@@ -1,1 +1,0 @@
-"""Margins, robustness and gust response of the linear loop."""

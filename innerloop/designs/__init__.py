@@ -1,1 +1,0 @@
-"""Autopilots are designed, recorded, cached and listed here."""

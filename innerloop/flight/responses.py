@@ -1,0 +1,280 @@
+"""Responses that the linear models predict and that JSBSim flies, and their measures.
+
+Steps of the autopilot's commands are flown by the aircraft under its autopilot. Doublets of single
+controls, flown by the bare aircraft, verify its linear model.
+"""
+
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import control
+import numpy as np
+import numpy.typing as npt
+
+from aircraft.fdm import TIME_STEP, Fdm
+from aircraft.linearise import LinearModel
+from aircraft.trim import Trim
+from common.physics.coordinated_turn import heading_rate_for_bank
+from common.physics.units import METRES_PER_FOOT
+from innerloop.flight.autopiloted_aircraft import AutopilotedAircraft
+from innerloop.jsbsim.system import HEADING_RATE
+from innerloop.law import COMMANDS, ControlLaw, linear_controller
+from innerloop.margins import closed_loop
+from innerloop.schedule import LEVEL_GAINS, Schedule
+
+Array = npt.NDArray[np.float64]
+
+CHANNELS: dict[str, tuple[str, float]] = {
+    "airspeed": ("velocities/vt-fps", METRES_PER_FOOT),
+    "altitude": ("position/h-sl-ft", METRES_PER_FOOT),
+    "heading_rate": (HEADING_RATE, 1.0),
+    "roll": ("attitude/phi-rad", 1.0),
+    "beta": ("aero/beta-rad", 1.0),
+    "elevator_command": ("autopilot/elevator-command", 1.0),
+    "aileron_command": ("autopilot/aileron-command", 1.0),
+    "throttle_command": ("autopilot/throttle-command", 1.0),
+}
+"""Recorded quantities of a step, by their name in the closed loop: JSBSim property and SI value of
+its unit.
+"""
+
+OUTPUTS: dict[str, tuple[str, float]] = {
+    "airspeed": ("velocities/vt-fps", METRES_PER_FOOT),
+    "alpha": ("aero/alpha-rad", 1.0),
+    "beta": ("aero/beta-rad", 1.0),
+    "p": ("velocities/p-rad_sec", 1.0),
+    "q": ("velocities/q-rad_sec", 1.0),
+    "r": ("velocities/r-rad_sec", 1.0),
+    "roll": ("attitude/phi-rad", 1.0),
+    "pitch": ("attitude/theta-rad", 1.0),
+}
+"""States that are compared after a doublet: JSBSim property and SI value of its unit."""
+
+_MOVED_BY = {
+    "elevator": ("alpha", "q", "pitch"),
+    "aileron": ("p", "roll"),
+    "rudder": ("beta", "r"),
+    "throttle": ("airspeed",),
+}
+"""States that each control is meant to move: a relative error means little for the others."""
+
+_DOUBLET_RECORDED = 6.0
+"""Time over which a doublet's response is compared [s]."""
+
+_DOUBLET_HALF = 1.0
+"""Duration of each half of a doublet [s]."""
+
+_DOUBLET_SIZE = 0.01
+"""Deflection of each half of a doublet [-]."""
+
+_SUBSTEPS = 8
+"""Substeps of a time step in the flight of a doublet [-].
+
+The linear model does not have JSBSim's first-order integration errors.
+"""
+
+_SETTLED = 1e-9
+"""Change of acceleration per substep below which servos and engines count as settled.
+
+Behind an engine as slow as a second that is 1e-6 from the end, where a doublet accelerates the
+aircraft by 1e-2 and more.
+"""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Response:
+    """Response to a step of one command.
+
+    Attributes
+    ----------
+    command : name of the command, e.g. ``heading_rate``
+    size : of the step [SI]
+    time : shape (n,) [s], from the step
+    channels : shape (n,) each, deviations from trim by name of ``CHANNELS`` [SI]
+    """
+
+    command: str
+    size: float
+    time: Array
+    channels: dict[str, Array]
+
+    def rise_time(self) -> float:
+        """Return the time from 10 % to 90 % of the step [s]; NaN if 90 % is never reached."""
+        fraction = self.channels[self.command] / self.size
+        if not (fraction >= 0.9).any():
+            return math.nan
+        return float(self.time[np.argmax(fraction >= 0.9)] - self.time[np.argmax(fraction >= 0.1)])
+
+    def overshoot(self) -> float:
+        """Return how far the response goes past the step, as a fraction of the step [-]."""
+        return max(0.0, float(np.max(self.channels[self.command] / self.size)) - 1.0)
+
+    def largest(self, channel: str) -> float:
+        """Return the largest absolute deviation of a channel [SI]."""
+        return float(np.max(np.abs(self.channels[channel])))
+
+
+def predicted_step(
+    schedule: Schedule, index: int, command: str, size: float, duration: float
+) -> Response:
+    """Return the linear closed loop's response to a step of a command.
+
+    Parameters
+    ----------
+    schedule, index : the design, and the index of its airspeed
+    command, size : name of the command, and its step [SI]
+    duration : of the response [s]
+    """
+    autopilot = linear_controller(ControlLaw(schedule), schedule.level(index))
+    loop = closed_loop(schedule.models[index][LEVEL_GAINS], autopilot, schedule.delay)
+    time = np.arange(0.0, duration, TIME_STEP)
+    answer = control.step_response(
+        loop, time, input=COMMANDS.index(f"{command}_command"), squeeze=False
+    )
+    labels = list(loop.output_labels)
+    return Response(
+        command=command,
+        size=size,
+        time=time,
+        channels={name: size * answer.outputs[labels.index(name), 0] for name in CHANNELS},
+    )
+
+
+def model_step(schedule: Schedule, size: float, duration: float) -> Response:
+    """Return the heading-rate model's response to a step of heading rate [rad/s]."""
+    frequency, damping = schedule.weights.model_frequency, schedule.weights.model_damping
+    time = np.arange(0.0, duration, TIME_STEP)
+    model = control.tf([frequency**2], [1.0, 2.0 * damping * frequency, frequency**2])
+    answer = control.step_response(model, time).outputs
+    return Response(
+        command="heading_rate", size=size, time=time, channels={"heading_rate": size * answer}
+    )
+
+
+def flown_step(
+    aircraft: AutopilotedAircraft, start: Trim, command: str, size: float, duration: float
+) -> Response:
+    """Return the response in JSBSim to a step of a command from the equilibrium ``start``.
+
+    Parameters
+    ----------
+    aircraft, start : under its autopilot, and where it begins
+    command, size : name of the command, and its step [SI]
+    duration : of the response [s]
+    """
+    aircraft.release(start.state(), airspeed=start.airspeed, altitude=start.altitude)
+    if command == "airspeed":
+        aircraft.command_airspeed(start.airspeed + size)
+    elif command == "altitude":
+        aircraft.command_altitude(start.altitude + size)
+    else:
+        aircraft.command_heading_rate(size)
+    time = TIME_STEP * np.arange(round(duration / TIME_STEP), dtype=np.float64)
+    channels = _deviations(aircraft.fdm, CHANNELS, len(time), lambda _: None)
+    return Response(command=command, size=size, time=time, channels=channels)
+
+
+def measure_lag(aircraft: AutopilotedAircraft, start: Trim, bank: float) -> float:
+    """Return the lag of the flown heading rate behind a slow sinusoidal command [s].
+
+    The amplitude is half the heading rate of a turn at ``bank`` [rad]. The frequency is that
+    heading rate itself, near which those of the guidance lie. The phase is fitted over two periods
+    after two.
+    """
+    frequency = heading_rate_for_bank(bank, start.airspeed)
+    amplitude = 0.5 * frequency
+    aircraft.release(start.state(), airspeed=start.airspeed, altitude=start.altitude)
+    node = aircraft.fdm.node(HEADING_RATE)
+    period = round(2.0 * math.pi / frequency / TIME_STEP)
+    time = TIME_STEP * np.arange(4 * period)
+    flown = np.empty(4 * period)
+    for i, t in enumerate(time):
+        aircraft.command_heading_rate(amplitude * math.sin(frequency * float(t)))
+        aircraft.fdm.run()
+        flown[i] = node.get_double_value()
+    last = slice(2 * period, None)
+    phasor = np.sum(flown[last] * np.exp(-1j * frequency * time[last]))
+    commanded = np.sum(np.sin(frequency * time[last]) * np.exp(-1j * frequency * time[last]))
+    return float(-np.angle(phasor / commanded) / frequency)
+
+
+def verify_model(fdm: Fdm, model: LinearModel, level: Trim) -> list[dict[str, Any]]:
+    """Return the largest error of each prediction over the largest excursion flown.
+
+    There is one record for each control and each state it is meant to move: ``input``, ``output``
+    and ``error``, which is None if the state did not move.
+
+    Parameters
+    ----------
+    fdm : the aircraft; another simulation of it flies at a finer time step
+    model, level : its linear model, and the straight and level equilibrium
+    """
+    fine = Fdm(fdm.spec, time_step=fdm.time_step / _SUBSTEPS)
+    system = control.ss(model.A, model.B, model.C, model.D, inputs=model.input_labels)
+    records = []
+    for control_input in fdm.spec.inputs:
+        name = control_input.name
+        time, flown = _flown_doublet(fine, level, name)
+        second_half = np.where(time < 2.0 * _DOUBLET_HALF, -_DOUBLET_SIZE, 0.0)
+        doublet = np.where(time < _DOUBLET_HALF, _DOUBLET_SIZE, second_half)
+        response = control.forced_response(system[:, name], time, doublet)
+        for output in _MOVED_BY.get(name, ()):
+            predicted = response.outputs[model.output_labels.index(output)]
+            excursion = float(np.max(np.abs(flown[output])))
+            error = float(np.max(np.abs(predicted - flown[output])))
+            records.append(
+                {"input": name, "output": output, "error": error / excursion if excursion else None}
+            )
+    return records
+
+
+def _flown_doublet(fdm: Fdm, level: Trim, name: str) -> tuple[Array, dict[str, Array]]:
+    """Return time [s] and the deviations of ``OUTPUTS`` after a doublet of a control."""
+    fdm.command(dict(level.inputs))
+    fdm.allow_engine_restart()
+    fdm.place(level.state())
+    with fdm.frozen():
+        fdm.settle(_SETTLED, round(fdm.spec.settle_time / fdm.time_step))
+    moved = fdm.spec.input(name)
+    commands = [fdm.writable_node(commanded).set_double_value for commanded in moved.commands]
+    time = fdm.time_step * np.arange(round(_DOUBLET_RECORDED / fdm.time_step), dtype=np.float64)
+
+    def deflect(step: int) -> None:
+        t = step * fdm.time_step
+        deflection = 0.0
+        if t < _DOUBLET_HALF:
+            deflection = _DOUBLET_SIZE
+        elif t < 2.0 * _DOUBLET_HALF:
+            deflection = -_DOUBLET_SIZE
+        value = moved.command(level.inputs[name] + deflection)
+        for command in commands:
+            command(value)
+
+    return time, _deviations(fdm, OUTPUTS, len(time), deflect)
+
+
+def _deviations(
+    fdm: Fdm,
+    quantities: Mapping[str, tuple[str, float]],
+    steps: int,
+    before_step: Callable[[int], None],
+) -> dict[str, Array]:
+    """Fly some time steps; return the deviations of quantities from their first values [SI].
+
+    Parameters
+    ----------
+    fdm : of the aircraft
+    quantities : JSBSim property and SI value of its unit, by name
+    steps : number of time steps
+    before_step : called with the number of each step, after its values are read
+    """
+    reads = [fdm.node(name).get_double_value for name, _ in quantities.values()]
+    rows = []
+    for step in range(steps):
+        rows.append([read() for read in reads])
+        before_step(step)
+        fdm.run()
+    values = np.array(rows) * [scale for _, scale in quantities.values()]
+    return {name: v - v[0] for name, v in zip(quantities, values.T, strict=True)}

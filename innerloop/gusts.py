@@ -1,0 +1,261 @@
+"""Turbulence as filtered white noise, and the linear aircraft in moving air.
+
+Low-altitude turbulence is that of MIL-F-8785C. Intensities and scale lengths are those of
+``aircraft.weather``. The filters are the factors of its Dryden spectra, section
+3.7.1.2, with the rotations of JSBSim (Yeager, NASA CR-1998-206937): p is independent, q and r are
+the slopes of w and v along the path, seen by a wing of some span. JSBSim's ``atmosphere/turb-type``
+4 is the same, in Tustin's steps.
+
+Moving air acts through the velocity of the body against it: on the forces and moments of the air,
+and on the propeller. The linear model was made in still air, where that velocity is the body's own,
+so its columns contain more: how velocity components turn with the body (-omega x v), how they add
+up to climb, and how angles follow rates. Those are known in closed form and subtracted; the rest,
+times minus the air's velocity, is the effect of a gust.
+
+python-control is imported where it computes: a flight reads ``GustStatistics`` without it.
+"""
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+import numpy.typing as npt
+
+from aircraft.linearise import LinearModel
+from aircraft.state import body_velocity, level
+from aircraft.trim import Trim
+from aircraft.weather import intensities, scale_lengths
+from innerloop.law import ControlLaw, linear_controller
+from innerloop.margins import closed_loop
+from innerloop.schedule import LEVEL_GAINS, Schedule
+
+if TYPE_CHECKING:
+    import control
+
+GUSTS = ("gust_along", "gust_right", "gust_down", "gust_p", "gust_q", "gust_r")
+"""Velocity of the air along the trimmed course, right and down [m/s], and its rotation about these
+axes [rad/s].
+"""
+
+MOTION = ("speed", "course_rate")
+"""Motion against the mean air: horizontal speed [m/s] and rate of the course [rad/s].
+
+``airspeed``, ``alpha``, ``beta`` and ``heading_rate`` are against the gusty air, as the autopilot
+measures them.
+"""
+
+_AIR = ("airspeed", "alpha", "beta", "p", "q", "r")
+_RATES = ("p", "q", "r")
+
+Array = npt.NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class GustStatistics:
+    """Turbulence at one altitude.
+
+    Attributes
+    ----------
+    horizontal, vertical : standard deviations of the horizontal and the vertical wind [m/s]
+    horizontal_length, vertical_length : scale lengths of the same [m]
+    """
+
+    horizontal: float
+    vertical: float
+    horizontal_length: float
+    vertical_length: float
+
+
+def low_altitude_turbulence(altitude: float, wind_at_20ft: float) -> GustStatistics:
+    """Return the turbulence at an altitude [m], by the mean wind [m/s] 20 ft above the surface.
+
+    Raises
+    ------
+    AircraftError : same as ``aircraft.weather.intensities``
+    """
+    horizontal, _, vertical = intensities(altitude, wind_at_20ft)
+    horizontal_length, _, vertical_length = scale_lengths(altitude)
+    return GustStatistics(
+        horizontal=horizontal,
+        vertical=vertical,
+        horizontal_length=horizontal_length,
+        vertical_length=vertical_length,
+    )
+
+
+def dryden_filters(
+    turbulence: GustStatistics, *, airspeed: float, span: float
+) -> "control.StateSpace":
+    """Return the filters from four white noises of intensity 1 (of u, v, w and p) to ``GUSTS``.
+
+    The standard deviation of each output is that of the gust, so that the covariance is the
+    Lyapunov equation's solution.
+
+    Parameters
+    ----------
+    turbulence : its intensities and scale lengths
+    airspeed : of the aircraft [m/s]
+    span : of the wing, which averages rotations [m]
+    """
+    import control
+
+    def lag(gain: float, time: float) -> control.TransferFunction:
+        return control.tf([gain], [time, 1.0])
+
+    def across_path(deviation: float, time: float) -> control.TransferFunction:
+        """Return sigma sqrt(T) (1 + sqrt(3) T s) / (1 + T s)^2."""
+        gain = deviation * math.sqrt(time)
+        denominator = np.polymul([time, 1.0], [time, 1.0])
+        return control.tf([gain * math.sqrt(3.0) * time, gain], denominator)
+
+    def slope(share: float) -> control.TransferFunction:
+        """Return the slope of a velocity along the path, averaged over a share of the span."""
+        return control.tf([1.0 / airspeed, 0.0], [share * span / (math.pi * airspeed), 1.0])
+
+    def block(system: control.TransferFunction, source: str, name: str) -> control.StateSpace:
+        return control.ss(
+            control.tf2ss(system), inputs=[source], outputs=[name], name=f"{name}_filter"
+        )
+
+    along = turbulence.horizontal_length / airspeed
+    down = turbulence.vertical_length / airspeed
+    reach = math.sqrt(turbulence.vertical_length * span)
+    rolling = reach / 2.6 / airspeed
+    u = lag(turbulence.horizontal * math.sqrt(2.0 * along), along)
+    p = lag(1.9 * turbulence.vertical / reach * math.sqrt(2.0 * rolling), rolling)
+    blocks = [
+        block(u, "noise_u", "u"),
+        block(across_path(turbulence.horizontal, along), "noise_v", "v"),
+        block(across_path(turbulence.vertical, down), "noise_w", "w"),
+        block(p, "noise_p", "p"),
+        block(slope(4.0), "w", "q"),
+        block(slope(3.0), "v", "r"),
+    ]
+    together = control.interconnect(
+        blocks,
+        inputs=[f"noise_{name}" for name in "uvwp"],
+        outputs=list("uvwpqr"),
+        name="turbulence",
+    )
+    together.update_names(outputs=list(GUSTS))
+    return together
+
+
+def gust_loop(schedule: Schedule, index: int, bank_index: int) -> "control.StateSpace":
+    """Return aircraft and autopilot at an airspeed and a gain bank, from commands and gusts.
+
+    Inputs are ``COMMANDS`` and ``GUSTS``. Outputs are those of ``aircraft_in_gusts`` and the
+    command of each control.
+
+    Parameters
+    ----------
+    schedule : the design
+    index, bank_index : of the airspeed and of the gain bank
+    """
+    models = schedule.models[index]
+    trim = schedule.gain_trim(index, bank_index)
+    aircraft = aircraft_in_gusts(models[bank_index], trim, models[LEVEL_GAINS])
+    return closed_loop(aircraft, linear_controller(ControlLaw(schedule), trim), schedule.delay)
+
+
+def aircraft_in_gusts(model: LinearModel, trim: Trim, level_model: LinearModel) -> LinearModel:
+    """Return a linear model with inputs for gusts, and outputs for the motion against the mean air.
+
+    Parameters
+    ----------
+    model, trim : linear model from ``aircraft.linearise``, and its equilibrium
+    level_model : at the same airspeed in level flight
+
+    Returns
+    -------
+    LinearModel
+        States are those of ``model``; the body's velocity is that against the mean air. Inputs are
+        those of ``model``, then ``GUSTS``. Outputs are those of ``model``, then ``MOTION``;
+        ``airspeed``, ``alpha``, ``beta`` and ``heading_rate`` are against the gusty air.
+
+    Notes
+    -----
+    In a turn the rates' columns of moments contain the body's gyroscopic moments, which cannot be
+    separated without its inertia. Moments by rates are taken from level flight instead, where
+    gyroscopic moments vanish; they hardly depend on the angle of attack.
+    """
+    states, outputs = model.state_labels, model.output_labels
+    air = [states.index(name) for name in _AIR]
+    moments = [states.index(name) for name in _RATES]
+    at = velocity_by_polar(trim.airspeed, trim.alpha, trim.beta)
+    by_air = model.A[:, air].copy()
+    by_air[:3] -= np.linalg.solve(at, _turning(trim, at))
+    by_air[moments, 3:] = level_model.A[np.ix_(moments, air[3:])]
+    by_air[[states.index(name) for name in ("roll", "pitch", "altitude")]] = 0.0
+
+    to_body = _course_to_body(trim)
+    against = np.zeros((6, 6))
+    against[:3, :3] = -np.linalg.solve(at, to_body)
+    against[3:, 3:] = -to_body
+
+    reads = np.zeros((len(outputs), len(GUSTS)))
+    for j, name in enumerate(_AIR[:3]):
+        reads[outputs.index(name)] = against[j]
+    rate = outputs.index("heading_rate")
+    reads[rate] = model.C[rate, air] @ against
+    speed = np.zeros(len(states))
+    speed[states.index("airspeed")] = 1.0
+    # The same acceleration turns a faster motion less: against the mean air the aircraft is faster
+    # by the gust along its course.
+    course_rate = reads[rate] - np.eye(len(GUSTS))[0] * trim.yaw_rate / trim.airspeed
+    return LinearModel(
+        A=model.A,
+        B=np.hstack([model.B, by_air @ against]),
+        C=np.vstack([model.C, speed, model.C[rate]]),
+        D=np.block(
+            [
+                [model.D, reads],
+                [np.zeros((1, len(model.input_labels) + len(GUSTS)))],
+                [model.D[rate], course_rate],
+            ]
+        ),
+        state_labels=states,
+        input_labels=(*model.input_labels, *GUSTS),
+        output_labels=(*outputs, *MOTION),
+    )
+
+
+def velocity_by_polar(airspeed: float, alpha: float, beta: float) -> Array:
+    """Return the derivatives of body velocity [m/s] by airspeed, alpha and beta, shape (3, 3).
+
+    Parameters
+    ----------
+    airspeed, alpha, beta : [m/s, rad, rad]
+    """
+    ca, sa = math.cos(alpha), math.sin(alpha)
+    cb, sb = math.cos(beta), math.sin(beta)
+    return np.array(
+        [
+            [ca * cb, -airspeed * sa * cb, -airspeed * ca * sb],
+            [sb, 0.0, airspeed * cb],
+            [sa * cb, airspeed * ca * cb, -airspeed * sa * sb],
+        ]
+    )
+
+
+def _turning(trim: Trim, at: Array) -> Array:
+    """Return the derivatives of -omega x v [m/s^2] by ``_AIR``, shape (3, 6)."""
+    velocity = body_velocity(trim.airspeed, trim.alpha, trim.beta)
+    return np.hstack([-_cross(trim.rates_body) @ at, _cross(velocity)])
+
+
+def _cross(vector: tuple[float, float, float]) -> Array:
+    """Return the matrix of the cross product with ``vector``."""
+    x, y, z = vector
+    return np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
+
+
+def _course_to_body(trim: Trim) -> Array:
+    """Return the matrix that turns a vector along the course, right and down into body axes."""
+    units = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
+    from_body = np.column_stack([level(unit, trim.roll, trim.pitch) for unit in units])
+    offset = trim.course_offset()
+    cos, sin = math.cos(offset), math.sin(offset)
+    from_course = np.array([[cos, -sin, 0.0], [sin, cos, 0.0], [0.0, 0.0, 1.0]])
+    return np.asarray(from_body.T @ from_course)

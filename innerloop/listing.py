@@ -1,0 +1,119 @@
+"""Which of the known aircraft can be flown, and why the others cannot."""
+
+import math
+import multiprocessing
+from collections.abc import Iterator, Sequence
+from concurrent.futures import ProcessPoolExecutor
+from concurrent.futures.process import BrokenProcessPool
+from dataclasses import dataclass
+from pathlib import Path
+
+from aircraft.fleet.find import find_spec
+from aircraft.spec import AircraftError
+from common.interrupt import follow_parent
+from innerloop.margins import NOMINAL
+from innerloop.store import designed, is_cached
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Discovered:
+    """An aircraft and whether it can be flown.
+
+    Attributes
+    ----------
+    name, title : by which the user calls the aircraft, and in its model
+    flies : whether an autopilot could be designed; None if it was not tried before
+    text : envelope and margins, or the reason why it cannot be flown
+    """
+
+    name: str
+    title: str
+    flies: bool | None
+    text: str
+
+
+def look_up(name: str, altitude: float) -> Discovered:
+    """Return whether one aircraft flies at ``altitude`` [m], if that is known without a design."""
+    try:
+        spec = find_spec(name)
+        known = is_cached(spec, altitude)
+    except AircraftError:
+        # ``examine`` finds the same error, and says it.
+        known = True
+    if known:
+        return examine(name, altitude)
+    return Discovered(
+        name=name, title=spec.title, flies=None, text=f"not designed before for {altitude:g} m"
+    )
+
+
+def discover(names: Sequence[str], altitude: float, jobs: int) -> Iterator[Discovered]:
+    """Yield aircraft in the order of ``names``, each as soon as it is known whether it flies.
+
+    Parameters
+    ----------
+    names : of known aircraft, or paths of their folders
+    altitude : of the designs [m]
+    jobs : processes; an aircraft that JSBSim cannot survive costs its process, not the list
+    """
+    context = multiprocessing.get_context("spawn")
+    pool = ProcessPoolExecutor(max_workers=jobs, mp_context=context, initializer=follow_parent)
+    try:
+        futures = {name: pool.submit(examine, name, altitude) for name in names}
+        for name, future in futures.items():
+            try:
+                yield future.result()
+            except BrokenProcessPool:
+                yield _alone(name, altitude)
+    finally:
+        # An interrupted list does not wait for the designs that run: an aircraft that does not trim
+        # can take a minute.
+        pool.shutdown(wait=False, cancel_futures=True)
+        for process in multiprocessing.active_children():
+            process.terminate()
+
+
+def _alone(name: str, altitude: float) -> Discovered:
+    """Examine an aircraft in a new process, after the pool broke."""
+    with ProcessPoolExecutor(
+        max_workers=1, mp_context=multiprocessing.get_context("spawn"), initializer=follow_parent
+    ) as pool:
+        try:
+            return pool.submit(examine, name, altitude).result()
+        except BrokenProcessPool:
+            return Discovered(
+                name=name, title=name, flies=False, text="JSBSim ends the whole process with it"
+            )
+
+
+def examine(name: str, altitude: float) -> Discovered:
+    """Return whether one aircraft flies, from the design of its autopilot at ``altitude`` [m]."""
+    title = name
+    try:
+        spec = find_spec(name)
+        title = spec.title
+        design = designed(spec, altitude).design
+    except AircraftError as error:
+        return Discovered(name=name, title=title, flies=False, text=_reason(name, str(error)))
+    except Exception as error:  # noqa: BLE001 - one aircraft's failure does not end the list
+        return Discovered(
+            name=name, title=title, flies=False, text=f"{type(error).__name__}: {error}"
+        )
+    envelope = design.schedule.envelope
+    nominal = [check for check in design.checks if check.case == NOMINAL]
+    gain = min(check.worst_gain.gain_db for check in nominal)
+    phase = min(check.worst_phase.phase_deg for check in nominal)
+    text = (
+        f"{envelope.airspeed_min:.0f} to {envelope.airspeed_max:.0f} m/s,"
+        f" {math.degrees(envelope.bank):.0f} deg of bank,"
+        f" margins {math.floor(10.0 * gain) / 10.0:.1f} dB and {math.floor(phase):.0f} deg"
+    )
+    return Discovered(name=name, title=title, flies=True, text=text)
+
+
+def _reason(name: str, message: str) -> str:
+    """Return the message without the aircraft, which stands next to it in the list."""
+    aircraft = f"aircraft '{Path(name).name}'"
+    for prefix in (" cannot be flown: ", " cannot fly the study: ", " ", ": "):
+        message = message.removeprefix(aircraft + prefix)
+    return message

@@ -1,0 +1,313 @@
+"""Designs and the cache that keeps them, under the hash of everything they depend on.
+
+Nothing here designs: a flight whose design is cached starts without python-control.
+
+A design is stored as JSON. Every number comes back to the last bit, and nothing in a stored text is
+executed. A dataclass is written as an object of its fields and read back by their declared types;
+anything else is rejected.
+"""
+
+import contextlib
+import dataclasses
+import functools
+import hashlib
+import importlib.metadata
+import json
+import os
+import platform
+import tempfile
+import types
+import typing
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from enum import Enum
+from pathlib import Path
+from typing import Any, Literal, TypeVar
+
+import numpy as np
+import numpy.typing as npt
+
+import aircraft
+import common
+import innerloop
+from aircraft.model import model_hash
+from aircraft.spec import AircraftError, AircraftSpec
+from common.files import files_hash, json_text, write_whole
+from innerloop.jsbsim.system import write_root
+from innerloop.margins import Check
+from innerloop.schedule import LoopBandwidths, Schedule
+
+SUFFIX = ".design.json"
+"""End of the file names of cached designs."""
+
+Record = dict[str, Any]
+"""The record of a design for its report, as plain data."""
+
+Kind = TypeVar("Kind")
+
+_PACKAGES = ("jsbsim", "numpy", "scipy", "control", "slycot")
+
+_JSON_TYPES = (float, str, bool, int)
+
+
+class DesignError(AircraftError):
+    """No design of an aircraft has the margins that are required."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Design:
+    """An autopilot and its margins.
+
+    Attributes
+    ----------
+    schedule : the autopilot's tables
+    bandwidths : of its loops
+    checks : margins at every grid point, between them, and with the perturbed aircraft
+    """
+
+    schedule: Schedule
+    bandwidths: LoopBandwidths
+    checks: tuple[Check, ...]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Designed:
+    """A design and its record."""
+
+    design: Design
+    record: Record
+
+    @functools.cached_property
+    def record_text(self) -> str:
+        """The record on one line of JSON, as every run with the design has it: half a megabyte."""
+        return json_text(self.record, indent=None)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class _Entry:
+    """An entry of the cache: a design; or why there is none, and whether it lacks margins."""
+
+    made: Designed | None = None
+    refusal: str
+    lacks_margins: bool = False
+
+
+def designed(spec: AircraftSpec, altitude: float = 100.0) -> Designed:
+    """Return the design of an aircraft at ``altitude`` [m] and its record.
+
+    It comes from the cache if nothing it depends on has changed (``design_key``). A failed design
+    is cached as well.
+
+    Raises
+    ------
+    AircraftError : the aircraft cannot fly the study, or one of its design conditions
+    DesignError : no design has the margins
+    """
+    key = design_key(spec, altitude)
+    entry = _cached(key)
+    if entry is None:
+        text = as_text(_design(spec, altitude))
+        _store(key, text)
+        # The text is read back even if it could not be written, so that this run uses the same
+        # design as the next one.
+        entry = _entry(text)
+    if entry.made is None:
+        raise (DesignError if entry.lacks_margins else AircraftError)(entry.refusal)
+    return _with_model_of(spec, entry.made)
+
+
+def is_cached(spec: AircraftSpec, altitude: float) -> bool:
+    """Return whether ``designed`` finds a design or a refusal in the cache."""
+    return _cached(design_key(spec, altitude)) is not None
+
+
+def design_key(spec: AircraftSpec, altitude: float) -> str:
+    """Return the hash of everything that a design depends on.
+
+    That is the aircraft's spec and files but not their place on disk, the altitude [m], and
+    ``program_hash``.
+    """
+    digest = hashlib.sha256()
+    for text in (
+        repr(replace(spec, root=Path(), folder=None, other_roots=())),
+        repr(altitude),
+        model_hash(spec.files),
+        program_hash(),
+    ):
+        digest.update(text.encode())
+    return digest.hexdigest()
+
+
+@functools.cache
+def program_hash() -> str:
+    """Return the hash of the program that designs; it is computed once in a process.
+
+    It covers the source of ``aircraft``, ``common`` and ``innerloop``, and the versions of Python,
+    JSBSim and the numerical packages.
+    """
+    digest = hashlib.sha256()
+    for text in (
+        platform.python_version(),
+        *(f"{package} {importlib.metadata.version(package)}" for package in _PACKAGES),
+    ):
+        digest.update(text.encode())
+    for package in (aircraft, common, innerloop):
+        for folder in package.__path__:
+            digest.update(files_hash(Path(folder), sorted(Path(folder).rglob("*.py"))).encode())
+    return digest.hexdigest()
+
+
+def cache_directory() -> Path | None:
+    """Return the cache of designs in the user's cache directory; None for a user without a home."""
+    base = os.environ.get("XDG_CACHE_HOME") or os.environ.get("LOCALAPPDATA")
+    if not base:
+        try:
+            base = str(Path.home() / ".cache")
+        except RuntimeError:
+            return None
+    return Path(base) / "plume-flight-study"
+
+
+def _design(spec: AircraftSpec, altitude: float) -> _Entry:
+    # These import python-control, which a flight with a cached design does not need.
+    from innerloop.designer import design_autopilot
+    from innerloop.record import design_record
+
+    try:
+        design = design_autopilot(spec, altitude)
+    except AircraftError as error:
+        return _Entry(refusal=str(error), lacks_margins=isinstance(error, DesignError))
+    with tempfile.TemporaryDirectory() as folder:
+        record = design_record(design, write_root(design.schedule, Path(folder)))
+    return _Entry(made=Designed(design=design, record=record), refusal="")
+
+
+def _with_model_of(spec: AircraftSpec, found: Designed) -> Designed:
+    """Return a design that reads the model files of ``spec``.
+
+    The same files may have been elsewhere on disk when the design was made.
+    """
+    schedule = found.design.schedule
+    placed = schedule.spec.with_files_of(spec)
+    if placed == schedule.spec:
+        return found
+    schedule = replace(schedule, spec=placed)
+    return replace(found, design=replace(found.design, schedule=schedule))
+
+
+def _cached(key: str) -> _Entry | None:
+    """Return the cached entry of a key; None if it is absent or damaged."""
+    directory = cache_directory()
+    if directory is None:
+        return None
+    try:
+        # The first line is the hash of the rest: numbers of a damaged file could pass as another
+        # autopilot.
+        content = (directory / f"{key}{SUFFIX}").read_text(encoding="utf-8")
+        digest, _, text = content.partition("\n")
+        return _entry(text) if digest == _digest(text) else None
+    except (OSError, ValueError):
+        return None
+
+
+@functools.lru_cache(maxsize=4)
+def _entry(text: str) -> _Entry:
+    """Return the entry that a text holds, parsed once for all studies of a process."""
+    return from_text(text, _Entry)
+
+
+def _store(key: str, text: str) -> None:
+    """Cache an entry; if it cannot be written, the design is made again the next time."""
+    directory = cache_directory()
+    if directory is None:
+        return
+    with contextlib.suppress(OSError):
+        directory.mkdir(parents=True, exist_ok=True)
+        content = f"{_digest(text)}\n{text}"
+        write_whole(
+            directory / f"{key}{SUFFIX}", lambda path: path.write_text(content, encoding="utf-8")
+        )
+
+
+def _digest(text: str) -> str:
+    return hashlib.sha256(text.encode()).hexdigest()
+
+
+def as_text(value: object) -> str:
+    """Return a dataclass as JSON text, with NaN and infinity as Python's JSON writes them."""
+    return json.dumps(value, default=_plain, separators=(",", ":"))
+
+
+def from_text(text: str, kind: type[Kind]) -> Kind:
+    """Return the dataclass ``kind`` that ``as_text`` wrote.
+
+    Raises
+    ------
+    ValueError : the text is not that of such an object
+    """
+    try:
+        found: Kind = _value(json.loads(text), kind)
+    except (LookupError, TypeError, AttributeError, RecursionError) as error:
+        raise ValueError(f"not a {kind.__name__}: {error}") from None
+    return found
+
+
+def _plain(value: Any) -> Any:
+    """Return a value for which JSON has no notation in terms of values for which it has one."""
+    if dataclasses.is_dataclass(value):
+        return {field.name: getattr(value, field.name) for field in dataclasses.fields(value)}
+    if isinstance(value, np.ndarray):
+        # The order of numbers in memory decides how products of matrices are rounded.
+        order: Literal["C", "F"] = (
+            "F" if value.flags.f_contiguous and not value.flags.c_contiguous else "C"
+        )
+        return {"shape": value.shape, "order": order, "values": value.ravel(order).tolist()}
+    if isinstance(value, Mapping):
+        return dict(value)
+    if isinstance(value, Enum):
+        return value.value
+    if isinstance(value, np.generic):
+        return value.item()
+    return str(value)
+
+
+def _value(found: Any, kind: Any) -> Any:
+    """Return a value of a type from its JSON."""
+    if (
+        kind is Any
+        or (type(found) is kind and kind in _JSON_TYPES)
+        or (kind is float and type(found) is int)
+    ):
+        return found
+    arguments = typing.get_args(kind)
+    if arguments:
+        return _generic_value(found, typing.get_origin(kind), arguments)
+    if isinstance(kind, type) and dataclasses.is_dataclass(kind):
+        hints = _hints(kind)
+        return kind(**{key: _value(item, hints[key]) for key, item in found.items()})
+    if kind is Path or issubclass(kind, Enum):
+        return kind(found)
+    raise TypeError(f"{found!r} where {kind} is declared")
+
+
+def _generic_value(found: Any, origin: Any, arguments: tuple[Any, ...]) -> Any:
+    """Return an array, an optional value, a tuple or a mapping from its JSON."""
+    if origin is np.ndarray:
+        return _array(found)
+    if origin in (typing.Union, types.UnionType):
+        (kind,) = (argument for argument in arguments if argument is not types.NoneType)
+        return None if found is None else _value(found, kind)
+    if origin is tuple:
+        kinds = [arguments[0]] * len(found) if arguments[1:] == (...,) else arguments
+        return tuple(_value(item, kind) for item, kind in zip(found, kinds, strict=True))
+    return {key: _value(item, arguments[1]) for key, item in found.items()}
+
+
+def _array(found: Any) -> npt.NDArray[np.float64]:
+    values = np.array(found["values"], dtype=np.float64)
+    return values.reshape(found["shape"], order=found["order"])
+
+
+@functools.cache
+def _hints(kind: type) -> dict[str, Any]:
+    return typing.get_type_hints(kind)

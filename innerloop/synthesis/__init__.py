@@ -1,1 +1,0 @@
-"""From linear models to scheduled LQR gains."""

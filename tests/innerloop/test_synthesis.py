@@ -1,0 +1,472 @@
+"""Weights by hand for a simple aircraft, without lengths and times; gains by a second solver."""
+
+import itertools
+import math
+from dataclasses import astuple, fields, replace
+
+import numpy as np
+import pytest
+from scipy.linalg import solve_continuous_are
+
+from aircraft.linearise import LinearModel
+from common.physics.units import STANDARD_GRAVITY
+from innerloop import synthesis
+from innerloop.schedule import GAIN_BANKS, LATERAL, LEVEL_GAINS, LONGITUDINAL, LoopBandwidths
+from innerloop.synthesis import (
+    control_weights,
+    design_gains,
+    design_weights,
+    quasi_static,
+    reachable_bandwidths,
+)
+
+STATES = [
+    "airspeed",
+    "alpha",
+    "beta",
+    "p",
+    "q",
+    "r",
+    "roll",
+    "pitch",
+    "altitude",
+    "elevator_effect",
+    "throttle_effect",
+]
+INPUTS = ["elevator", "aileron", "throttle", "rudder"]
+LAG, ENGINE_LAG = 0.04, 0.5  # s, of elevator and engine; aileron and rudder have none
+DELAY = 0.0125  # s, of the autopilot's steps
+
+
+def simple(
+    aileron=30.0, roll_damping=-4.0, elevator=-20.0, z_alpha=-3.0, rudder=5.0, yaw_stiffness=8.0
+):
+    """An aircraft with one number for each thing that the bandwidths depend on [1/s, 1/s^2]."""
+    a, b = np.zeros((11, 11)), np.zeros((11, 4))
+    entries = {
+        ("alpha", "alpha"): z_alpha,
+        ("p", "p"): roll_damping,
+        ("q", "q"): -5.0,
+        ("r", "r"): -1.5,
+        ("r", "beta"): yaw_stiffness,
+        ("q", "elevator_effect"): elevator,
+        ("airspeed", "throttle_effect"): 6.0,
+        ("elevator_effect", "elevator_effect"): -1.0 / LAG,
+        ("throttle_effect", "throttle_effect"): -1.0 / ENGINE_LAG,
+    }
+    for (row, column), value in entries.items():
+        a[STATES.index(row), STATES.index(column)] = value
+    forcing = {
+        ("p", "aileron"): aileron,
+        ("r", "rudder"): rudder,
+        ("elevator_effect", "elevator"): 1.0 / LAG,
+        ("throttle_effect", "throttle"): 1.0 / ENGINE_LAG,
+    }
+    for (row, column), value in forcing.items():
+        b[STATES.index(row), INPUTS.index(column)] = value
+    return LinearModel(
+        A=a,
+        B=b,
+        C=np.eye(11),
+        D=np.zeros((11, 4)),
+        state_labels=STATES,
+        input_labels=INPUTS,
+        output_labels=STATES,
+    )
+
+
+BANK = 0.6  # rad; half of it is the step that half the authority is to turn
+
+
+@pytest.mark.parametrize(
+    ("changes", "expected"),
+    [
+        # A tenth of a radian and more of phase for delays: 0.18 rad over 12.5 ms without a servo.
+        ({"aileron": 1000.0}, 0.18 / DELAY),
+        # Authority: w^2 times 0.3 rad from half of 2 1/s^2.
+        ({"aileron": 2.0, "roll_damping": -0.1}, math.sqrt(0.5 * 2.0 / 0.3)),
+        # Roll damping: 0.42 w times 0.3 rad is as fast as half of 10 1/s^2 rolls against 20 1/s.
+        ({"aileron": 10.0, "roll_damping": -20.0}, 0.5 * 10.0 / 20.0 / (0.42 * 0.3)),
+    ],
+)
+def test_the_turn_is_as_fast_as_delay_authority_and_roll_damping_allow(changes, expected):
+    assert reachable_bandwidths([simple(**changes)], BANK).lateral == pytest.approx(
+        expected, rel=1e-12
+    )
+
+
+@pytest.mark.parametrize(
+    ("changes", "expected"),
+    [
+        ({"elevator": -1000.0, "z_alpha": -50.0}, 0.18 / (LAG + DELAY)),
+        # Either sign of the elevator: 0.15 rad from half of 1 1/s^2.
+        ({"elevator": 1.0}, math.sqrt(0.5 * 1.0 / 0.15)),
+        ({"elevator": -1.0}, math.sqrt(0.5 * 1.0 / 0.15)),
+        # Three quarters of what lift follows the angle of attack with.
+        ({"z_alpha": -1.2}, 0.75 * 1.2),
+    ],
+)
+def test_altitude_is_as_fast_as_delay_authority_and_lift_allow(changes, expected):
+    assert reachable_bandwidths([simple(**changes)], BANK).longitudinal == pytest.approx(
+        expected, rel=1e-12
+    )
+
+
+def test_airspeed_is_as_fast_as_the_engine_and_slower_than_altitude():
+    # Lift allows 2.25 rad/s, of which 0.27; the engine 0.3 over its lag.
+    assert reachable_bandwidths([simple()], BANK).airspeed == pytest.approx(
+        0.3 / (ENGINE_LAG + DELAY), rel=1e-12
+    )
+    assert reachable_bandwidths([simple(z_alpha=-1.2)], BANK).airspeed == pytest.approx(
+        0.27 * 0.9, rel=1e-12
+    )
+
+
+def test_the_slowest_of_all_airspeeds_decides_each_axis_by_itself():
+    slow_turn, slow_climb = simple(aileron=2.0, roll_damping=-0.1), simple(z_alpha=-1.2)
+    both = reachable_bandwidths([slow_turn, slow_climb], BANK)
+    assert both.lateral == reachable_bandwidths([slow_turn], BANK).lateral
+    assert both.longitudinal == reachable_bandwidths([slow_climb], BANK).longitudinal
+
+
+def test_the_controls_may_do_what_moves_their_axis_at_its_frequency_against_its_damping():
+    bandwidths = LoopBandwidths(lateral=3.0, longitudinal=2.0, airspeed=0.5)
+    weights = design_weights(bandwidths, 20.0)
+    found = control_weights(simple(), bandwidths, weights)
+    # w hypot(w, damping) times the acceptable angle, over authority: by hand, 0.3 rad of pitch and
+    # 0.1 rad of roll.
+    assert found.elevator == pytest.approx(0.3 * 2.0 * math.hypot(2.0, 5.0) / 20.0, rel=1e-12)
+    assert found.aileron == pytest.approx(0.1 * 3.0 * math.hypot(3.0, 4.0) / 30.0, rel=1e-12)
+    assert found.throttle == pytest.approx(weights.airspeed * 0.5 / 6.0, rel=1e-12)
+    # The rudder: 0.05 rad of sideslip, at w hypot(w, 1.5) or, if that is less, against the
+    # weathercock's own 8 1/s^2.
+    assert found.rudder == pytest.approx(0.05 * 8.0 / 5.0, rel=1e-12)
+    stiff = control_weights(simple(yaw_stiffness=50.0), bandwidths, weights)
+    assert stiff.rudder == pytest.approx(0.05 * 3.0 * math.hypot(3.0, 1.5) / 5.0, rel=1e-12)
+
+
+def test_an_aircraft_without_a_rudder_has_no_weight_for_it(x8_design):
+    schedule = x8_design.schedule
+    assert math.isnan(
+        control_weights(
+            schedule.models[2][LEVEL_GAINS], x8_design.bandwidths, schedule.weights
+        ).rudder
+    )
+
+
+def test_deviations_are_those_that_a_pitch_of_three_tenths_makes_in_a_unit_of_time():
+    found = design_weights(LoopBandwidths(lateral=4.0, longitudinal=2.0, airspeed=0.5), 20.0)
+    # Half a second of a climb at 0.3 rad and 20 m/s is 3 m, of which half; g times 0.3 rad in it is
+    # 1.47 m/s, twice.
+    assert found.altitude == pytest.approx(0.5 * 20.0 * 0.3 * 0.5)
+    assert found.airspeed == pytest.approx(2.0 * STANDARD_GRAVITY * 0.3 * 0.5)
+    assert (found.pitch, found.roll, found.sideslip) == (0.3, 0.1, 0.05)
+    assert (found.model_frequency, found.model_damping) == (4.0, 0.9)
+
+
+def test_with_half_the_speed_everything_takes_twice_as_long():
+    bandwidths = LoopBandwidths(lateral=4.0, longitudinal=2.0, airspeed=0.5)
+    quick, slow = (
+        design_weights(bandwidths, 20.0),
+        design_weights(bandwidths.scaled(lateral=0.5, longitudinal=0.5, airspeed=0.5), 20.0),
+    )
+    # At the same V and g: lengths V/w and airspeeds g/w double, their integrals quadruple, angles
+    # stay, and rates halve.
+    exponents = dict.fromkeys((field.name for field in fields(quick)), 0)
+    exponents |= dict.fromkeys(("airspeed", "altitude", "heading_integral", "sideslip_integral"), 1)
+    exponents |= dict.fromkeys(("altitude_error_max", "airspeed_error_max"), 1)
+    exponents |= dict.fromkeys(("airspeed_integral", "altitude_integral"), 2)
+    exponents |= dict.fromkeys(("pitch_rate", "roll_rate", "model_frequency"), -1)
+    exponents |= {"anti_windup_rate": -1}
+    ratios = {
+        field.name: getattr(slow, field.name) / getattr(quick, field.name)
+        for field in fields(quick)
+    }
+    assert ratios == pytest.approx({name: 2.0**exponent for name, exponent in exponents.items()})
+
+
+SCALES = {
+    "airspeed": 2.0,
+    "climb_rate": 2.0,
+    "altitude": 4.0,
+    "propeller_speed": 0.5,
+    "heading_rate": 0.5,
+    "p": 0.5,
+    "q": 0.5,
+    "r": 0.5,
+}
+"""A dynamically similar aircraft, four times as long: in the same gravity it flies twice as fast,
+and all takes twice the time.
+"""
+
+
+def similar(model):
+    """The linear model of the aircraft four times as long."""
+    state = np.array([SCALES.get(name, 1.0) for name in model.state_labels])
+    output = np.array([SCALES.get(name, 1.0) for name in model.output_labels])
+    return replace(
+        model,
+        A=0.5 * state[:, None] * model.A / state,
+        B=0.5 * state[:, None] * model.B,
+        C=output[:, None] * model.C / state,
+        D=output[:, None] * model.D,
+    )
+
+
+@pytest.mark.parametrize("name", ["x8", "aerosonde"])
+def test_a_dynamically_similar_aircraft_gets_the_similar_autopilot(monkeypatch, designs, name):
+    schedule = designs(name).design.schedule
+    models = [row[LEVEL_GAINS] for row in schedule.models]
+    bank, airspeed = schedule.envelope.bank, schedule.airspeeds[2]
+
+    def designed(models, airspeed, level):
+        bandwidths = reachable_bandwidths(models, bank)
+        weights = design_weights(bandwidths, airspeed)
+        return bandwidths, design_gains(
+            models[2], level, weights, control_weights(models[2], bandwidths, weights)
+        )
+
+    level = schedule.level(2)
+    bandwidths, gains = designed(models, airspeed, level)
+    # The autopilot's steps are the only time that is not the aircraft's own.
+    monkeypatch.setattr(synthesis, "loop_delay", lambda _: 2.0 * DELAY)
+    larger = replace(level, airspeed=2.0 * level.airspeed)
+    slower, scaled = designed([similar(model) for model in models], 2.0 * airspeed, larger)
+    assert astuple(slower) == pytest.approx([0.5 * s for s in astuple(bandwidths)])
+    # The same deflection for a deviation that is as large for the larger aircraft: gains are over
+    # the deviation's scale.
+    units = np.array(
+        [
+            SCALES[n] if n != "pitch" else 1.0
+            for n in ("airspeed", "climb_rate", "q", "pitch", "altitude")
+        ]
+    )
+    np.testing.assert_allclose(
+        scaled.longitudinal * units, gains.longitudinal, rtol=1e-5, atol=1e-9
+    )
+    np.testing.assert_allclose(
+        scaled.longitudinal_integral * 2.0 * np.array([2.0, 4.0]),
+        gains.longitudinal_integral,
+        rtol=1e-5,
+    )
+    np.testing.assert_allclose(
+        scaled.lateral * np.array([0.5, 0.5, 1.0, 1.0]), gains.lateral, rtol=1e-5, atol=1e-9
+    )
+    assert scaled.heading_integral == pytest.approx(
+        gains.heading_integral, rel=1e-5
+    )  # heading is an angle
+    assert 2.0 * scaled.sideslip_integral == pytest.approx(gains.sideslip_integral, rel=1e-5)
+    np.testing.assert_allclose(
+        0.5 * scaled.roll_rate_feedforward, gains.roll_rate_feedforward, rtol=1e-9
+    )
+    np.testing.assert_allclose(
+        0.25 * scaled.roll_acceleration_feedforward, gains.roll_acceleration_feedforward, rtol=1e-9
+    )
+
+
+NAMES = ("x8", "aerosonde", "T37")
+WITH_RUDDER = ("aerosonde", "T37")
+
+
+def grid_points(name):
+    """The indices of airspeeds and gain banks at which the gains of an aircraft are compared."""
+    airspeeds = range(5) if name == "x8" else (0, 2, 4)
+    return itertools.product(airspeeds, range(len(GAIN_BANKS)))
+
+
+def at_rest(model, states, inputs, outputs=()):
+    """A, B, C and D with servos and engines at rest: 0 = A_dr x + A_dd d + B_d u solved for d."""
+    names = list(model.state_labels)
+    rigid = [names.index(n) for n in states]
+    driven = [
+        k
+        for k, n in enumerate(names)
+        if n.endswith(("_position", "_speed", "_effect", "_effect_rate"))
+    ]
+    columns = [model.input_labels.index(n) for n in inputs]
+    rows = [model.output_labels.index(n) for n in outputs]
+    rest = -np.linalg.inv(model.A[np.ix_(driven, driven)])
+    by_state = rest @ model.A[np.ix_(driven, rigid)]
+    by_input = rest @ model.B[np.ix_(driven, columns)]
+    return (
+        model.A[np.ix_(rigid, rigid)] + model.A[np.ix_(rigid, driven)] @ by_state,
+        model.B[np.ix_(rigid, columns)] + model.A[np.ix_(rigid, driven)] @ by_input,
+        model.C[np.ix_(rows, rigid)] + model.C[np.ix_(rows, driven)] @ by_state,
+        model.D[np.ix_(rows, columns)] + model.C[np.ix_(rows, driven)] @ by_input,
+    )
+
+
+def servo_lqr(a, b, c, d, deviations, controls):
+    """Gain of u = -K (x, integral of -y), by scipy's Riccati solver, which is not the package's."""
+    states, outputs = a.shape[0], c.shape[0]
+    a_servo = np.block([[a, np.zeros((states, outputs))], [-c, np.zeros((outputs, outputs))]])
+    b_servo = np.vstack([b, -d])
+    # Bryson's rule; 0 stands for no weight.
+    q = np.diag([0.0 if x == 0.0 else x**-2 for x in deviations])
+    r = np.diag([x**-2 for x in controls])
+    return np.linalg.solve(r, b_servo.T @ solve_continuous_are(a_servo, b_servo, q, r))
+
+
+def allowed(design, i):
+    """Acceptable deviations of the controls at an airspeed, from the level model."""
+    schedule = design.schedule
+    return control_weights(schedule.models[i][LEVEL_GAINS], design.bandwidths, schedule.weights)
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_the_longitudinal_gains_are_those_of_a_servo_lqr(designs, name):
+    design = designs(name).design
+    schedule, w = design.schedule, design.schedule.weights
+    states = ("airspeed", "alpha", "q", "pitch", "altitude")
+    deviations = (
+        w.airspeed,
+        0.0,
+        w.pitch_rate,
+        w.pitch,
+        w.altitude,
+        w.airspeed_integral,
+        w.altitude_integral,
+    )
+    for i, j in grid_points(name):
+        found, model, controls = schedule.gains[i][j], schedule.models[i][j], allowed(design, i)
+        plant = at_rest(model, states, ("elevator", "throttle"), ("airspeed", "altitude"))
+        gain = servo_lqr(*plant, deviations, (controls.elevator, controls.throttle))
+        # Climb rate replaces angle of attack: the five states in terms of the measured ones.
+        *_, measured, _ = at_rest(model, states, ("elevator",), LONGITUDINAL)
+        # Riccati solvers agree to about 1e-7 of each control's largest gain; states differ in size
+        # by a hundred and more.
+        flown = found.longitudinal @ measured
+        scale = np.abs(gain).max(axis=1, keepdims=True)
+        np.testing.assert_allclose(flown / scale, gain[:, :5] / scale, atol=1e-5)
+        np.testing.assert_allclose(
+            found.longitudinal_integral / scale, -gain[:, 5:] / scale, atol=1e-5
+        )
+
+
+def test_without_a_rudder_the_lateral_gains_are_those_of_a_servo_lqr_on_the_aileron(x8_design):
+    schedule, w = x8_design.schedule, x8_design.schedule.weights
+    deviations = (0.0, w.roll_rate, 0.0, w.roll, w.heading_integral)
+    for i, j in grid_points("x8"):
+        found, model = schedule.gains[i][j], schedule.models[i][j]
+        plant = at_rest(model, ("beta", "p", "r", "roll"), ("aileron",), ("heading_rate",))
+        gain = servo_lqr(*plant, deviations, (allowed(x8_design, i).aileron,))[0]
+        # Sideslip is not measured and its gain left out. The integral goes to the bank command,
+        # which the roll gain turns into aileron. Riccati solvers agree to about 1e-7 here.
+        np.testing.assert_allclose(found.lateral[0], [*gain[1:4], 0.0], rtol=1e-5)
+        assert found.heading_integral * found.lateral[0, LATERAL.index("roll")] == pytest.approx(
+            -gain[4], rel=1e-5
+        )
+        # A rudder that is absent has no gains.
+        assert not found.lateral[1].any()
+        assert found.sideslip_integral == 0.0
+        assert (found.roll_rate_feedforward[1], found.roll_acceleration_feedforward[1]) == (0, 0)
+
+
+@pytest.mark.parametrize("name", WITH_RUDDER)
+def test_with_a_rudder_the_lateral_gains_are_those_of_a_servo_lqr_that_regulates_sideslip_too(
+    designs, name
+):
+    design = designs(name).design
+    schedule, w = design.schedule, design.schedule.weights
+    deviations = (w.sideslip, w.roll_rate, 0.0, w.roll, w.heading_integral, w.sideslip_integral)
+    for i, j in grid_points(name):
+        found, model, controls = schedule.gains[i][j], schedule.models[i][j], allowed(design, i)
+        inputs, outputs = ("aileron", "rudder"), ("heading_rate", "beta")
+        plant = at_rest(model, ("beta", "p", "r", "roll"), inputs, outputs)
+        gain = servo_lqr(*plant, deviations, (controls.aileron, controls.rudder))
+        scale = np.abs(gain).max(axis=1, keepdims=True)
+        # The order of LATERAL: p, r, roll, beta. Riccati solvers agree to about 1e-7.
+        np.testing.assert_allclose(found.lateral / scale, gain[:, [1, 2, 3, 0]] / scale, atol=1e-5)
+        assert found.heading_integral * found.lateral[0, LATERAL.index("roll")] == pytest.approx(
+            -gain[0, 4], rel=1e-5
+        )
+        # The law adds its integral of beta, where the design has that of -beta and a minus.
+        assert found.sideslip_integral == pytest.approx(gain[1, 5], rel=1e-5)
+
+
+def level_gains(schedule):
+    """The gains and the model with servos and engines at rest, level at each airspeed."""
+    for gains, models in zip(schedule.gains, schedule.models, strict=True):
+        yield gains[LEVEL_GAINS], quasi_static(models[LEVEL_GAINS])
+
+
+def effect(plant, state, control_input):
+    """The acceleration of a state by a control."""
+    return plant.B[plant.state_labels.index(state), plant.input_labels.index(control_input)]
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_gains_oppose_the_deviations_they_answer(designs, name):
+    for gains, plant in level_gains(designs(name).design.schedule):
+        assert gains.longitudinal.shape == (2, len(LONGITUDINAL))
+        assert gains.lateral.shape == (2, len(LATERAL))
+        # Whether a positive elevator pitches up: stock aircraft differ.
+        up = np.sign(effect(plant, "q", "elevator"))
+        elevator = dict(zip(LONGITUDINAL, up * gains.longitudinal[0], strict=True))
+        # Commands are minus gain times deviation: too high, climbing, nose up or pitching up
+        # commands nose down. Too fast commands less throttle. Too much roll or roll rate commands
+        # aileron against it.
+        assert min(elevator[state] for state in ("climb_rate", "q", "pitch", "altitude")) > 0.0
+        assert gains.longitudinal[1, LONGITUDINAL.index("airspeed")] > 0.0
+        assert gains.longitudinal_integral[1, 0] > 0.0
+        assert up * gains.longitudinal_integral[0, 1] > 0.0
+        against = np.sign(effect(plant, "p", "aileron")) * gains.lateral[0]
+        assert min(against[LATERAL.index("p")], against[LATERAL.index("roll")]) > 0.0
+        assert gains.heading_integral > 0.0
+
+
+@pytest.mark.parametrize("name", WITH_RUDDER)
+def test_the_rudder_turns_the_nose_into_the_wind_and_damps_yaw(designs, name):
+    for gains, plant in level_gains(designs(name).design.schedule):
+        yaw_by_rudder = effect(plant, "r", "rudder")
+        # Yaw acceleration per deviation.
+        by = dict(zip(LATERAL, -gains.lateral[1] * yaw_by_rudder, strict=True))
+        # Sideslip is positive with air from the right, and turning right removes it; so does its
+        # integral. A yaw rate is opposed.
+        assert by["beta"] > 0.0
+        assert gains.sideslip_integral * yaw_by_rudder > 0.0
+        assert by["r"] < 0.0
+
+
+@pytest.mark.parametrize("name", WITH_RUDDER)
+def test_rolling_under_the_feedforward_the_nose_goes_round_with_the_turn(designs, name):
+    schedule = designs(name).design.schedule
+    rate, acceleration = 0.2, 0.5
+    for i, (gains, plant) in enumerate(level_gains(schedule)):
+        a, b, _, _ = plant.pick(("p", "r"), ("aileron", "rudder"), ("p",))
+        controls = (
+            gains.roll_rate_feedforward * rate + gains.roll_acceleration_feedforward * acceleration
+        )
+        # Demanded: p_dot = acceleration; and r grows as the turn does in a roll about the velocity,
+        # omega = g tan(bank)/V, whose part cos(bank) is r: r_dot = g/V p at wings level, to 1e-7 at
+        # half a milliradian.
+        expected = [acceleration, STANDARD_GRAVITY / schedule.level(i).airspeed * rate]
+        np.testing.assert_allclose(a[:, 0] * rate + b @ controls, expected, atol=1e-6)
+
+
+def test_without_a_rudder_roll_feedforward_is_the_inverse_of_the_roll_equation(x8_schedule):
+    full = 0.5236  # rad of deflection for a command of 1 (model file)
+    for models, row_of_gains in zip(x8_schedule.models, x8_schedule.gains, strict=True):
+        model, gains = models[LEVEL_GAINS], row_of_gains[LEVEL_GAINS]
+        row, aileron = model.state_labels.index("p"), model.state_labels.index("aileron_position")
+        by_aileron, by_rate = model.A[row, aileron] * full, model.A[row, row]
+        # p_dot = L_p p + L_da da solved for the aileron. Propeller speed does not depend on roll
+        # rate, so nothing else enters.
+        assert gains.roll_acceleration_feedforward[0] == pytest.approx(1.0 / by_aileron, rel=1e-6)
+        assert gains.roll_rate_feedforward[0] == pytest.approx(-by_rate / by_aileron, rel=1e-6)
+
+
+def test_gains_change_little_from_one_bank_to_the_same_on_the_other_side(designs):
+    schedule = designs("T37").design.schedule
+    # The model is the same to both sides: it trims level without bank or aileron (to 1e-15), so
+    # nothing turns one way.
+    for row in schedule.gains:
+        for left, right in zip(row, reversed(row), strict=True):
+            assert left.bank == pytest.approx(-right.bank, abs=2e-3)
+            np.testing.assert_allclose(
+                left.longitudinal,
+                right.longitudinal,
+                rtol=0.05,
+                atol=0.02 * np.abs(right.longitudinal).max(),
+            )
+    assert math.degrees(schedule.gains[0][0].bank) == pytest.approx(-0.82 * 1.1 * 35.0, abs=0.1)
