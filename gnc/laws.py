@@ -184,19 +184,6 @@ def started(law: SteeringLaw, time_step: float) -> SteeringLaw:
     return flown
 
 
-class Demand(NamedTuple):
-    """A heading rate, as a law demands it and as the vehicle can fly it.
-
-    Attributes
-    ----------
-    heading_rate : as demanded [rad/s]
-    command : kept within the limit [rad/s]
-    """
-
-    heading_rate: float
-    command: float
-
-
 class LimitedLaw:
     """The law of one flight, with its result checked and kept within a limit.
 
@@ -214,8 +201,10 @@ class LimitedLaw:
         self._steer = started(law, time_step).heading_rate
         self._limit = limit
 
-    def demand(self, reference: Reference, own: Motion, air: Air) -> Demand:
-        """Return what the law demands; parameters are those of ``SteeringLaw.heading_rate``.
+    def demand(self, reference: Reference, own: Motion, air: Air) -> tuple[float, float]:
+        """Return the demanded heading rate, and the same kept within the limit [rad/s].
+
+        Parameters are those of ``SteeringLaw.heading_rate``.
 
         Raises
         ------
@@ -229,7 +218,7 @@ class LimitedLaw:
             rate = self._number(rate)
         if math.isnan(rate) and _is_finite(reference, own):
             raise self._no_number(rate)
-        return Demand(rate, limited(rate, self._limit))
+        return rate, limited(rate, self._limit)
 
     def _number(self, rate: Any) -> float:
         """Return a real number as a float: one of NumPy would pass its precision on."""

@@ -132,11 +132,13 @@ class Tracker(Generic[AnyReference]):
         ------
         LawError : the law cannot be called, or returned no number
         """
-        own = Motion(north, east, course, speed, heading_rate)
         if self._lag > 0.0:
             last = self.heading_rate_command
-            ahead = lag_ahead(north, east, course, speed, heading_rate, last, self._lag)
-            own = Motion(*ahead, speed, last)
+            north, east, course = lag_ahead(
+                north, east, course, speed, heading_rate, last, self._lag
+            )
+            heading_rate = last
+        own = Motion(north, east, course, speed, heading_rate)
         wind = self._wind
         air = STILL_AIR if wind is None else Air(wind.wind_north, wind.wind_east)
         demand, command = self._law.demand(self.ahead, own, air)

@@ -62,8 +62,8 @@ def fly_law_24(reference_heading_rate, start, duration):
 @given(north=offsets, east=offsets, reference_course=courses, course=courses)
 def test_v_2_is_positive_everywhere_but_on_the_reference(north, east, reference_course, course):
     state = relative([north, east, reference_course, 0.0, 0.0, course])
-    # paper-notes, care 10: positive definite about x_d; a metre away or 0.1 rad off course is away
-    # from it.
+    # Section IV.C, and EQUATIONS.md on (22): positive definite about x_d. A metre away or 0.1 rad
+    # off course is away from it.
     assume(math.hypot(north, east) > 1.0 or abs(state.phi) > 0.1)
     # The lesser of the two: K_2 (1 - cos 0.1) = 5, and half of 1 m squared.
     assert v_2(state, K_2) > 0.49
