@@ -14,12 +14,10 @@ from scipy.special import j0
 from gnc.estimation.plume.estimator import GasSensor, PlumeEstimator, PlumePrior, PlumeState
 from gnc.estimation.plume.prior import Expectation, expected_plume
 from gnc.mission.plume_search import Search
-from measurement.emission.emission import emission_of
-from measurement.emission.fuel import fuel_preset
-from measurement.emission.ship import ship_preset
+from measurement.emission import emission_of, fuel_preset, ship_preset
 from measurement.gases import GASES
-from measurement.plume.air import MarineAir
 from measurement.plume.fluctuating_plume import FluctuatingPlume
+from measurement.plume.spread import MarineAir
 from measurement.sniffer import Sniffer, SnifferSpec
 from scenarios.planning.plume.axis import co2_sensor
 

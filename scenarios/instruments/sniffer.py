@@ -14,7 +14,7 @@ from common.run_layout import SULPHUR_TABLE
 from common.spelling import did_you_mean
 from gnc.errors import InfeasibleError
 from gnc.estimation.own_motion import Motion
-from measurement.emission.fuel import expected_fsc
+from measurement.emission import expected_fsc
 from measurement.errors import MeasurementError
 from measurement.gases import GASES, UNITS
 from measurement.sniffer.presets import sensor_of, sensor_presets

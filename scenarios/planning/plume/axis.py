@@ -11,7 +11,7 @@ from gnc.estimation.plume.prior import Expectation, GasSensor
 from gnc.mission.axis_height import AxisHeight
 from gnc.mission.plume_axis import AxisParameters, Climb, PredictedPlume
 from gnc.mission.searched_axis import SearchedPlume
-from measurement.emission.emission import Emission
+from measurement.emission import Emission
 from measurement.gases import GASES
 from measurement.sniffer.spec import SnifferSpec
 from scenarios.instruments.sniffer import SnifferOnBoard

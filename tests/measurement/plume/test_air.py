@@ -2,7 +2,7 @@ import pytest
 from plume_cases import air
 
 from measurement.errors import MeasurementError
-from measurement.plume.air import MarineAir
+from measurement.plume.spread import MarineAir
 
 
 @pytest.mark.parametrize(

@@ -4,7 +4,7 @@ from plume_cases import EMISSION, HEIGHT, air, straight
 
 from measurement.errors import MeasurementError
 from measurement.plume.fluctuating_plume import FluctuatingPlume
-from measurement.plume.settings import PlumeSettings
+from measurement.plume.spread import PlumeSettings
 
 TIME = np.array([0.0, 50.0, 100.0])
 

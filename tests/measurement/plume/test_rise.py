@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from plume_cases import EMISSION
 
-from measurement.plume.rise import downwash, rise
+from measurement.plume.spread import downwash, rise
 
 WIND = np.array([2.0, 5.0, 10.0, 20.0])
 AGE = 30.0

@@ -4,8 +4,7 @@ import numpy as np
 import pytest
 from plume_cases import EMISSION, HEIGHT, air
 
-from measurement.plume.settings import PlumeSettings
-from measurement.plume.spread import STEP, spreads
+from measurement.plume.spread import STEP, PlumeSettings, spreads
 
 WIND = np.array([5.0, 10.0, 20.0])
 COLD_POINT = replace(
@@ -86,10 +85,9 @@ def test_stable_air_is_narrower_and_lower():
     ).all()
 
 
-def test_halving_the_step_of_the_axis_changes_nothing_that_is_printed(monkeypatch):
+def test_halving_the_step_of_the_axis_changes_nothing_that_is_printed():
     coarse = spreads(EMISSION, air(7.0), HEIGHT, WIND, 100.0, PlumeSettings())
-    monkeypatch.setattr("measurement.plume.spread.STEP", 0.05)
-    fine = spreads(EMISSION, air(7.0), HEIGHT, WIND, 100.0, PlumeSettings())
+    fine = spreads(EMISSION, air(7.0), HEIGHT, WIND, 100.0, PlumeSettings(), step=0.5 * STEP)
     # Euler's rule is of first order: a step of 0.1 s is 0.1 % of what is left of 100 s.
     np.testing.assert_allclose(
         coarse.relative_y[:, 100:1000], fine.relative_y[:, 200:2000:2], rtol=2e-3

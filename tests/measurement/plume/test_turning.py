@@ -4,7 +4,7 @@ from plume_cases import EMISSION, HEIGHT, air, puffs, turning
 
 from measurement.plume.fluctuating_plume import FluctuatingPlume
 from measurement.plume.parcels import Parcels
-from measurement.plume.settings import PlumeSettings
+from measurement.plume.spread import PlumeSettings
 
 SETTINGS = {"meander": False, "age_max": 250.0}
 

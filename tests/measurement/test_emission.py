@@ -4,9 +4,7 @@ from importlib.resources import files
 
 import pytest
 
-from measurement.emission.emission import emission_of
-from measurement.emission.fuel import Fuel, expected_fsc, fuel_preset
-from measurement.emission.ship import ship_preset
+from measurement.emission import Fuel, emission_of, expected_fsc, fuel_preset, ship_preset
 from measurement.errors import MeasurementError
 from measurement.gases import GASES, MOLAR_MASS, fsc_factor
 
@@ -14,9 +12,7 @@ CONTAINER = ship_preset("container")
 
 
 def names_in(file):
-    return sorted(
-        tomllib.loads(files("measurement.emission").joinpath(file).read_text(encoding="utf-8"))
-    )
+    return sorted(tomllib.loads(files("measurement").joinpath(file).read_text(encoding="utf-8")))
 
 
 # Worked example of the specification, section 2, printed to three digits: kg/s, CO2 mol/s, SO2
