@@ -10,7 +10,7 @@ from aircraft.spec import AircraftSpec
 from aircraft.spec_check import check_spec
 from common.files import is_path
 from common.registry import PluginError, is_file_part
-from common.spelling import did_you_mean
+from common.text import did_you_mean
 
 
 def aircraft_names() -> list[str]:

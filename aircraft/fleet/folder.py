@@ -10,7 +10,7 @@ from aircraft.fleet.settings import ModelSettings, read_settings
 from aircraft.model_files import SHARED, ModelFiles, read_xml, stock_root
 from aircraft.spec import NAME, AircraftSpec
 from common.files import is_path
-from common.spelling import did_you_mean
+from common.text import did_you_mean
 
 _MODEL = "fdm_config"
 """Root element of a JSBSim model."""

@@ -21,7 +21,7 @@ from pydantic import (
 
 from aircraft.errors import AircraftError
 from aircraft.spec import SETTLE_TIMES, Envelope
-from common.spelling import did_you_mean
+from common.text import did_you_mean
 
 _Property = Annotated[
     str, Field(pattern=r"^[A-Za-z_][\w.\-]*(\[\d+\])?(/[A-Za-z_][\w.\-]*(\[\d+\])?)*$")

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from common.times import moment, span_words
+from common.text import moment, span_words
 from measurement.estimate.flight_log.details import FROM_LOG
 from measurement.estimate.flight_log.gaps import Gaps
 from measurement.sniffer.presets import sensor_preset, sensor_presets

@@ -8,7 +8,7 @@ from typing import Any, TypeAlias
 import numpy as np
 import pandas as pd
 
-from common.dotted_keys import at_or_below
+from common.text import at_or_below
 from measurement.emission import stack_height_of
 from reports.run.run_data import RunData
 

@@ -11,7 +11,7 @@ import numpy.typing as npt
 from pydantic import BeforeValidator
 
 from common.run_layout import SULPHUR_TABLE
-from common.spelling import did_you_mean
+from common.text import did_you_mean
 from gnc.errors import InfeasibleError
 from gnc.estimation.own_motion import Motion
 from measurement.emission import expected_fsc

@@ -12,7 +12,7 @@ from aircraft.spec import Envelope
 from common.files import is_data_file
 from common.registry import PluginError, Registry
 from common.run_layout import NAME_BYTES_MAX, is_file_name
-from common.spelling import did_you_mean
+from common.text import did_you_mean
 from gnc.errors import InfeasibleError
 from gnc.reference.reference import REFERENCE_SHAPES
 from scenarios.errors import InputError

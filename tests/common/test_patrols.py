@@ -4,7 +4,7 @@ import math
 
 import pytest
 
-from common.verdicts.patrols import PatrolCounts
+from common.patrols import PatrolCounts
 
 # A patrol of six ships of which five were served, as the catalog's criteria have it: 80 % of the
 # oracle's, 5 % wrong.
