@@ -17,9 +17,8 @@ from gnc.estimation.own_motion import Motion
 from measurement.emission import expected_fsc
 from measurement.errors import MeasurementError
 from measurement.gases import GASES, UNITS
-from measurement.sniffer.presets import sensor_of, sensor_presets
 from measurement.sniffer.sniffer import Readings, Sniffer
-from measurement.sniffer.spec import SnifferSpec
+from measurement.sniffer.spec import SnifferSpec, sensor_of, sensor_presets
 from scenarios.instruments.air_samples import (
     PLACE_COLUMNS,
     RATE_COLUMNS,

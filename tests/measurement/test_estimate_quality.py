@@ -14,7 +14,7 @@ from measurement.estimate.passes import find_passes
 from measurement.estimate.record import checked_record
 from measurement.gases import GASES
 from measurement.sniffer import Readings, sensor_preset
-from measurement.sniffer.presets import read_spec
+from measurement.sniffer.spec import read_spec
 
 
 def reasons(readings, spec):

@@ -18,7 +18,7 @@ from measurement.estimate.passes import find_passes
 from measurement.estimate.record import checked_record
 from measurement.gases import GASES, fsc_factor
 from measurement.sniffer import Readings, sensor_preset
-from measurement.sniffer.presets import read_spec
+from measurement.sniffer.spec import read_spec
 
 REPEATS = 200
 """They give a standard deviation to 5 %; a tenth, which is asked for, is twice that, and the seeds

@@ -10,7 +10,7 @@ from crossings import BACKGROUND, changed, plain_sniffer, read, sniffer_of
 
 from measurement.errors import MeasurementError
 from measurement.sniffer import Channel, Sniffer, sensor_preset, sensor_presets
-from measurement.sniffer.presets import read_spec
+from measurement.sniffer.spec import read_spec
 
 STILL = np.tile(BACKGROUND, (20_001, 1))
 
@@ -132,7 +132,7 @@ def test_every_preset_has_the_figures_of_its_source():
         ({"cross": {"so2": 0.1}}, "cross of so2 names 'so2'"),
         ({"cross": {"co": 0.1}}, "cross of so2 names 'co'"),
         ({"cross": {"no": 60.0}}, "cross of so2 to no is 60"),
-        ({"pressure_effect": 1.0}, "pressure_effect at most 0.1"),
+        ({"pressure_effect": 1.0}, "pressure_effect of so2 is 1; it must be at most 0.1"),
         ({"gas": "o3"}, "gas is 'o3'; it must be one of so2, co2, no, no2"),
     ],
 )
@@ -167,7 +167,7 @@ def test_sniffers_that_cannot_be_are_refused():
             {"channels": {"so2": {"t90_s": "fast"}}},
             "t90_s of channel 'so2' of instrument 'x' is 'fast'; it must be a number",
         ),
-        ({"channels": {"so2": {"cross": 0.1}}}, "give a table"),
+        ({"channels": {"so2": {"cross": 0.1}}}, "must be a table"),
         ({"rate_hz": True, "channels": {"so2": {}}}, "rate_hz of x is True"),
     ],
 )

@@ -11,7 +11,7 @@ from gnc.errors import InfeasibleError
 from gnc.estimation.plume.sensor_watch import equal_readings
 from gnc.mission.plume_axis import PredictedPlume
 from gnc.mission.searched_axis import SearchedPlume
-from measurement.sniffer.presets import sensor_preset, sensor_presets
+from measurement.sniffer.spec import sensor_preset, sensor_presets
 from scenarios.errors import InputError
 from scenarios.planning.planner import plan_flight
 from scenarios.planning.plume.axis import co2_sensor, plume_axis
