@@ -35,7 +35,7 @@ def install_words(extra: str) -> str:
 
 
 def nearest(name: str, known: Iterable[str]) -> str | None:
-    """Return the known name that is spelt most like another, whatever the case, or None.
+    """Return the known name that is spelt most like a name, in any case, or None.
 
     A known name that has only one letter more at its end comes first.
     """

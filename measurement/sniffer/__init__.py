@@ -1,4 +1,4 @@
-"""Sniffers: what they are, and what they read."""
+"""Sniffers: their specification and their readings."""
 
 from measurement.sniffer.channel import Channel
 from measurement.sniffer.sniffer import Readings, Sniffer

@@ -28,7 +28,7 @@ def air(wind_speed, **options):
 
 
 def straight(wind, true_wind, *, since=-150.0, until=100.0, course=0.0, seed=1, **settings):
-    """A plume in a constant apparent wind: the funnel leaves the air mass behind on ``course``,
+    """A plume in a constant apparent wind: the stack leaves the air mass behind on ``course``,
     from the origin at time 0.
     """
     time = np.array([since, until])

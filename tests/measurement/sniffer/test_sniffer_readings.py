@@ -17,8 +17,14 @@ STILL = np.tile(BACKGROUND, (20_001, 1))
 
 def test_a_steady_reading_is_gain_times_air_and_other_gases_with_pressure_and_zero():
     so2 = Channel(
-        gas="so2", t90_s=5.0, noise=0.0, gain=1.1, zero=-2.0, cross={"no": 0.015, "no2": -1.6}, pressure_effect=0.0015
-    )  # fmt: skip
+        gas="so2",
+        t90_s=5.0,
+        noise=0.0,
+        gain=1.1,
+        zero=-2.0,
+        cross={"no": 0.015, "no2": -1.6},
+        pressure_effect=0.0015,
+    )
     air = np.array([[30.0, 420.0, 1000.0, 50.0]] * 3)
     spec = sniffer_of(so2)
     reading = (
