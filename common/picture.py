@@ -1,6 +1,5 @@
 """Pictures that a user gives, such as the logo of a report."""
 
-import base64
 import hashlib
 import io
 import xml.etree.ElementTree as ET
@@ -37,11 +36,6 @@ class Picture:
     def sha256(self) -> str:
         """Hash of the file."""
         return hashlib.sha256(self.content).hexdigest()
-
-    @property
-    def data_uri(self) -> str:
-        """The picture as a data URI."""
-        return f"data:{self.media_type};base64,{base64.b64encode(self.content).decode('ascii')}"
 
 
 def read_picture(path: Path) -> Picture:

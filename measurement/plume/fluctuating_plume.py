@@ -127,7 +127,7 @@ class FluctuatingPlume:
     Raises
     ------
     MeasurementError : the track cannot be used, or the apparent wind is below 1 m/s anywhere on it,
-        where a plume has no direction. The spreads hold from 2 m/s on: see ``wind_min``
+        where a plume has no direction. The spreads hold from 2 m/s on
 
     Notes
     -----
@@ -179,11 +179,6 @@ class FluctuatingPlume:
                 length_across=settings.structure_length,
                 generator=within,
             )
-
-    @property
-    def wind_min(self) -> float:
-        """Least apparent wind on the track [m/s]; below 2 m/s the spreads do not hold."""
-        return self._parcels.wind_min
 
     def sample(self, time: Array, north: Array, east: Array, up: Array) -> PlumeSample:
         """Return the plume at times and places in any order, each independent of the others.
