@@ -1,3 +1,1 @@
-"""Shared by all rooms: registries, files, the layout of run directories, command lines, provenance;
-units and places.
-"""
+"""Shared by all rooms: text, files, registries, run directories, command lines, physics."""

@@ -9,34 +9,40 @@ from typing import Annotated, Any, NoReturn, TextIO
 
 import typer
 
-from common.spelling import one_line
+from common.text import one_line
 
 PROGRAM = "plume-flight"
 """Name of the console command."""
 
 BAD_INPUT, INTERRUPTED, UNREAD = 2, 130, 141
-"""Exit statuses: of input that is refused, and of a command that Ctrl-C ended or that lost the
-reader of its output: 128 and the number of the signal, as in a shell."""
+"""Exit statuses: input was refused; Ctrl-C ended the command; the reader of its output was gone.
+
+The last two are 128 and the number of the signal, as in a shell.
+"""
 
 _USAGE_ERROR: type[Exception] = typer.BadParameter.__bases__[0]
-"""Base class of the errors that typer raises for bad options, which it does not export."""
+"""Base class of typer's errors for bad options, which typer does not export."""
 
 
 def run_command(
     command: Callable[..., None] | Mapping[str, Callable[..., None]], name: str, version: str = ""
 ) -> None:
-    """Run a command as a command line called ``name`` and exit with its status, 2 for bad options.
+    """Run a command line and exit with its status, which is 2 for bad options.
 
     Parameters
     ----------
-    command : the only one, or commands by the words that choose them
+    command : the only command, or commands by name
     name : of the command line
-    version : what ``--version`` prints, of a command line with several commands
+    version : printed by ``--version`` if there are several commands
     """
-    sys.stdout, sys.stderr = map(_Output.instead_of, (sys.stdout, sys.stderr))
+    sys.stdout = _Output.instead_of(sys.stdout)
+    sys.stderr = _Output.instead_of(sys.stderr)
     app = typer.Typer(add_completion=False, pretty_exceptions_enable=False)
-    for word, one in command.items() if isinstance(command, Mapping) else [(None, command)]:
-        app.command(word)(one)
+    if isinstance(command, Mapping):
+        for word, one in command.items():
+            app.command(word)(one)
+    else:
+        app.command()(command)
     if version:
         app.callback()(_with_version(f"{name} {version}"))
     try:
@@ -47,33 +53,38 @@ def run_command(
         )
         called = getattr(getattr(error, "ctx", None), "command_path", name)
         status = refuse(f"{message}; see {called} --help")
-    # Here, and not while the interpreter ends, where a reader that is gone would be an exception.
+    # While the interpreter ends, a reader that is gone would be an exception.
     for stream in (sys.stdout, sys.stderr):
         stream.flush()
     sys.exit(status or 0)
 
 
 def _without_types(command: Any) -> Any:
-    """Return a command, or all that it has, whose help names no types beside arguments and flags.
+    """Return a command whose help shows no types of arguments and flags.
 
     Typer writes <list[Path]> beside RUN_DIR, which says what it is, and <bool> beside flags, which
     take no value.
     """
     for one in (command, *getattr(command, "commands", {}).values()):
-        # With --help, which a command makes once it is asked for.
+        # This creates --help as well, which a command does not have before.
         for parameter in one.get_params(typer.Context(one)):
-            if parameter.metavar if parameter.param_type_name == "argument" else parameter.is_flag:
+            if parameter.param_type_name == "argument":
+                hidden = parameter.metavar
+            else:
+                hidden = parameter.is_flag
+            if hidden:
                 parameter.display_type_rich = _no_type
     return command
 
 
 def _no_type(**_: object) -> None:
-    """Return no name of a type, as typer asks for."""
+    return None
 
 
 def _with_value(error: Exception, message: str, given: Sequence[str]) -> str:
-    """Return what is wrong with an option, with its value: "--jobs is 0; it must be ..."; any other
-    message as it is.
+    """Return a message with the option's value, as in "--jobs is 0; it must be ...".
+
+    A message about anything else stays as it is.
     """
     names = getattr(getattr(error, "param", None), "opts", [])
     _, said, demanded = message.partition("Input should be ")
@@ -87,20 +98,17 @@ def _with_value(error: Exception, message: str, given: Sequence[str]) -> str:
 
 
 class _Output(io.TextIOWrapper):
-    """An output whose reader may be gone before its end, as ``head`` is: the command then ends
-    without a word.
+    """An output that ends the command silently when its reader is gone, as after ``| head``.
 
-    Not with an OSError, which commands take for a file that cannot be written.
+    An OSError instead would look to commands like a file that cannot be written.
     """
 
     @staticmethod
     def instead_of(stream: TextIO) -> TextIO:
-        """Return what to write to instead of a standard stream; the stream itself where a program
-        or a test has replaced it.
-        """
+        """Return an output for a standard stream, or the stream itself if something replaced it."""
         if not isinstance(stream, io.TextIOWrapper):
             return stream
-        # Names may have letters that a terminal does not.
+        # Names may have letters that the terminal cannot show.
         stream.reconfigure(errors="backslashreplace")
         if stream not in (sys.__stdout__, sys.__stderr__):
             return stream
@@ -121,14 +129,14 @@ class _Output(io.TextIOWrapper):
             self._end()
 
     def _end(self) -> NoReturn:
-        # What is left to write has a place to go to, or the interpreter would try once more.
+        # Otherwise the interpreter would try once more to write what is left.
         nowhere = os.open(os.devnull, os.O_WRONLY)
         os.dup2(nowhere, self.fileno())
         raise SystemExit(UNREAD)
 
 
 def _with_version(text: str) -> Callable[..., None]:
-    """Return what reads the options that stand before any command."""
+    """Return a callback for the options before the command, which prints a version."""
 
     def printed(given: bool) -> None:
         if given:
@@ -146,8 +154,6 @@ def _with_version(text: str) -> Callable[..., None]:
 
 
 def refuse(error: Exception | str) -> int:
-    """Print what is wrong with the input as one line, whatever names it quotes; return the exit
-    status.
-    """
+    """Print an error about the input as one line on stderr; return the exit status."""
     print(f"error: {one_line(str(error))}", file=sys.stderr)
     return BAD_INPUT

@@ -1,4 +1,4 @@
-"""Files that are written completely or not at all."""
+"""Files: written completely or not at all, recognised by their names, hashed."""
 
 import filecmp
 import hashlib
@@ -13,21 +13,21 @@ from typing import Any
 from common.run_layout import EXPORT, REPORT_HTML, REPORT_PDF
 
 DATA_SUFFIXES = (".csv", ".nmea", ".txt", ".nc")
-"""How the names of files of data end that a scenario may name: tables, AIS sentences, netCDF."""
+"""Suffixes of data files that a scenario may name: tables, AIS sentences, netCDF."""
 
 
 def is_data_file(name: str) -> bool:
-    """Return whether ``name`` is that of a file of data, by how it ends."""
+    """Return whether a name is that of a data file, by its suffix."""
     return name.lower().endswith(DATA_SUFFIXES)
 
 
 def is_path(name: str) -> bool:
-    """Return whether ``name`` leads into a folder, as ``DIR/NAME`` does."""
+    """Return whether a name contains a folder, as ``DIR/NAME`` does."""
     return any(separator and separator in name for separator in ("/", os.sep, os.altsep))
 
 
 def is_file(path: Path) -> bool:
-    """Return whether there is a file, which there is not under a name that no file can have."""
+    """Return whether there is a file of this name; False for names that no file can have."""
     try:
         return path.is_file()
     except OSError:
@@ -35,8 +35,15 @@ def is_file(path: Path) -> bool:
 
 
 def write_whole(path: Path, write: Callable[[Path], object]) -> None:
-    """Call ``write`` with a temporary path beside ``path``, then rename the result; a file with the
-    same content is left as it is."""
+    """Write a file through a temporary one, completely or not at all.
+
+    A file that already has the content is left untouched.
+
+    Parameters
+    ----------
+    path : of the file
+    write : is called with the path of the temporary file
+    """
     part = path.with_name(f".{path.name}.{os.getpid()}.part")
     try:
         write(part)
@@ -62,9 +69,7 @@ def json_text(value: Mapping[str, Any], *, indent: int | None) -> str:
 
 
 def plain_number(value: object) -> object:
-    """Return the number that one of NumPy's is, for JSON: such as a part of a user's own may
-    answer.
-    """
+    """Return a NumPy scalar as a Python number, for JSON; a user's part may return one."""
     if callable(item := getattr(value, "item", None)):
         return item()
     raise TypeError(f"JSON has nothing for {type(value).__name__}")
@@ -76,9 +81,7 @@ def write_text(path: Path, text: str) -> None:
 
 
 def write_tree(source: Path, target: Path) -> None:
-    """Copy the files below ``source`` to ``target``; those with the same content are left as they
-    are.
-    """
+    """Copy the files below a folder; files that already have the content are left untouched."""
     for path in sorted(path for path in source.rglob("*") if path.is_file()):
         copy = target / path.relative_to(source)
         copy.parent.mkdir(parents=True, exist_ok=True)
@@ -86,9 +89,7 @@ def write_tree(source: Path, target: Path) -> None:
 
 
 def files_hash(root: Path, paths: Iterable[Path]) -> str:
-    """Return a SHA-256 of files below a folder, by their paths in it and their contents, in the
-    order given.
-    """
+    """Return a SHA-256 of files below a folder: of their relative paths and contents, in order."""
     digest = hashlib.sha256()
     for path in paths:
         digest.update(path.relative_to(root).as_posix().encode())
@@ -97,9 +98,7 @@ def files_hash(root: Path, paths: Iterable[Path]) -> str:
 
 
 def remove_reports(directory: Path) -> None:
-    """Remove reports and exports of a run that continues, or of a design that is made again: they
-    are no longer true.
-    """
+    """Remove reports and exports, which are outdated when a run continues or a design is redone."""
     for name in (REPORT_HTML, REPORT_PDF):
         (directory / name).unlink(missing_ok=True)
     shutil.rmtree(directory / EXPORT, ignore_errors=True)

@@ -1,4 +1,4 @@
-"""How the processes of a command end."""
+"""The end of a command's processes."""
 
 import multiprocessing
 import os
@@ -7,9 +7,7 @@ import threading
 
 
 def follow_parent() -> None:
-    """Have this process end with its parent, however that ends, and ignore Ctrl-C: its parent
-    handles it and keeps the results.
-    """
+    """End this process together with its parent, and ignore Ctrl-C, which the parent handles."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     parent = multiprocessing.parent_process()
     if parent is not None:
@@ -17,7 +15,6 @@ def follow_parent() -> None:
 
 
 def _end_after(parent: multiprocessing.process.BaseProcess) -> None:
-    # This waits for the end of a pipe of which the parent holds the other end, so that SIGKILL is
-    # noticed as well.
+    # join() waits until the parent's end of a pipe is closed, so that SIGKILL is noticed as well.
     parent.join()
     os._exit(1)

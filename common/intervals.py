@@ -1,6 +1,4 @@
-"""Bounds and confidence intervals of probabilities and quantiles, for independent flights and any
-distribution.
-"""
+"""Bounds and confidence intervals of probabilities and quantiles, for any distribution."""
 
 import math
 from dataclasses import dataclass
@@ -11,17 +9,15 @@ import numpy.typing as npt
 Array = npt.NDArray[np.float64]
 
 CONFIDENCE = 0.95
-"""Confidence of a bound where nothing else is asked for [-]."""
+"""Confidence of a bound unless another one is given [-]."""
 
 TELLING = 0.5
-"""Largest bound on a probability that is stated: a flight, or a handful of them, bounds it by
-nearly everything [-].
-"""
+"""Largest bound on a probability that is worth stating [-]: one flight bounds it by 0.95."""
 
 TINY = 1e-5
-"""Probabilities below are written as powers of ten: nobody reads zeros behind a point."""
+"""Probability below which powers of ten are written instead of many zeros [-]."""
 
-_RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
+_SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 
 def upper_bound(events: int, trials: int, confidence: float = CONFIDENCE) -> float:
@@ -53,24 +49,21 @@ def upper_bound(events: int, trials: int, confidence: float = CONFIDENCE) -> flo
 
 @dataclass(frozen=True, slots=True)
 class Interval:
-    """An interval in the unit of its quantity; a limit for which the sample is too small is not a
-    number.
-    """
+    """An interval in the unit of its quantity; a limit is NaN if the sample is too small for it."""
 
     low: float
     high: float
 
     @property
     def width(self) -> float:
-        """Width of the interval; not a number if a limit is missing."""
+        """Width of the interval; NaN if a limit is."""
         return self.high - self.low
 
 
 def clopper_pearson(events: int, trials: int, confidence: float) -> Interval:
-    """Return the exact two-sided interval of a probability; each limit errs with (1 - confidence)/2
-    at most.
+    """Return the exact two-sided interval of a probability, from two one-sided bounds.
 
-    It is made of two one-sided bounds.
+    Each limit is wrong with a probability of (1 - confidence)/2 at most.
 
     Parameters
     ----------
@@ -89,20 +82,19 @@ def clopper_pearson(events: int, trials: int, confidence: float) -> Interval:
 def shared_interval(
     events: npt.NDArray[np.bool_], samples: npt.ArrayLike, confidence: float
 ) -> Interval:
-    """Return the interval of a probability, of trials of which some share their random sample and
-    count as one.
+    """Return the interval of a probability where trials that share a random sample count as one.
 
-    Where such trials differ, the share of them with an event counts, and each limit is that of the
-    whole number beyond it.
+    If such trials differ, their share with an event counts. The sum of events is then not whole,
+    and each limit is taken at the next whole number outwards.
 
     Parameters
     ----------
     events : whether each trial had an event, shape (n,)
-    samples : of each trial, which random sample it has, shape (n,)
+    samples : label of each trial's random sample, shape (n,)
     confidence : of the two-sided interval, between 0 and 1
     """
     _, of, counts = np.unique(np.asarray(samples), return_inverse=True, return_counts=True)
-    # Rounded: shares of a third add up to whole numbers but for rounding.
+    # Three thirds are a whole number except for rounding.
     total = round(float(np.sum(np.bincount(of, weights=events) / counts)), 6)
     low, high = (
         clopper_pearson(whole(total), len(counts), confidence) for whole in (math.floor, math.ceil)
@@ -126,8 +118,8 @@ def quantile_interval(values: Array, probability: float, confidence: float) -> I
 
     Returns
     -------
-    interval : in the unit of ``values``; a limit is not a number if even the smallest or largest
-        value does not reach the confidence, as for quantiles near 0 or 1 of few values
+    interval : in the unit of ``values``; a limit is NaN if even the smallest or largest value does
+        not reach the confidence, as for quantiles near 0 or 1 of few values
 
     Raises
     ------
@@ -162,13 +154,12 @@ def _check(confidence: float) -> None:
 
 
 def percent(fraction: float) -> str:
-    """Return a fraction in per cent, to three digits, and to four where it is nearly all; below
-    1e-5 as a power of ten.
+    """Return a fraction in per cent with three digits, or as a power of ten below ``TINY``.
 
-    No line breaks before the sign.
+    From 0.99 on there are four digits. The space before the sign does not break.
     """
     if 0.0 < fraction < TINY:
         mantissa, exponent = f"{fraction:.1e}".split("e")
-        return f"{mantissa}·10{str(int(exponent)).translate(_RAISED)}"
+        return f"{mantissa}·10{str(int(exponent)).translate(_SUPERSCRIPTS)}"
     digits = 3 if fraction < 0.99 else 4
     return f"{100.0 * fraction:.{digits}g}\N{NO-BREAK SPACE}%"

@@ -1,6 +1,5 @@
 """Pictures that a user gives, such as the logo of a report."""
 
-import base64
 import hashlib
 import io
 import xml.etree.ElementTree as ET
@@ -8,13 +7,13 @@ from dataclasses import dataclass
 from pathlib import Path
 
 BYTES_MAX = 1_000_000
-"""Largest file of a picture: it is written into every report."""
+"""Largest file of a picture [bytes]: it is written into every report."""
 
 _SVG = "{http://www.w3.org/2000/svg}svg"
 """Root of an SVG document."""
 
 _SUFFIXES = {"image/png": ".png", "image/jpeg": ".jpg", "image/svg+xml": ".svg"}
-"""Kinds of pictures that reports can show, and how the names of their files end."""
+"""Media types that reports can show, with the suffixes of their files."""
 
 
 class PictureError(ValueError):
@@ -23,25 +22,20 @@ class PictureError(ValueError):
 
 @dataclass(frozen=True, slots=True)
 class Picture:
-    """A picture: the content of its file, and its kind as the web names it."""
+    """A picture: the content of its file, and its media type."""
 
     content: bytes
     media_type: str
 
     @property
     def suffix(self) -> str:
-        """How the name of its file ends."""
+        """Suffix of its file."""
         return _SUFFIXES[self.media_type]
 
     @property
     def sha256(self) -> str:
         """Hash of the file."""
         return hashlib.sha256(self.content).hexdigest()
-
-    @property
-    def data_uri(self) -> str:
-        """The picture as an address that holds it."""
-        return f"data:{self.media_type};base64,{base64.b64encode(self.content).decode('ascii')}"
 
 
 def read_picture(path: Path) -> Picture:
@@ -55,11 +49,13 @@ def read_picture(path: Path) -> Picture:
         content = path.read_bytes()
     except (OSError, ValueError) as error:
         raise PictureError(
-            f"'{path.name}' cannot be read ({getattr(error, 'strerror', error)}); give a PNG, JPEG or SVG"
+            f"'{path.name}' cannot be read ({getattr(error, 'strerror', error)}); "
+            "give a PNG, JPEG or SVG"
         ) from None
     if len(content) > BYTES_MAX:
         raise PictureError(
-            f"'{path.name}' has {len(content) / 1e6:.1f} MB; at most {BYTES_MAX / 1e6:g} MB: give a smaller picture"
+            f"'{path.name}' has {len(content) / 1e6:.1f} MB; at most {BYTES_MAX / 1e6:g} MB: "
+            "give a smaller picture"
         )
     media_type = _media_type(content)
     if media_type is None:
@@ -68,7 +64,7 @@ def read_picture(path: Path) -> Picture:
 
 
 def _media_type(content: bytes) -> str | None:
-    """Return the kind of a picture, or None for other content."""
+    """Return the media type of a picture, or None for other content."""
     from PIL import Image
 
     try:
@@ -77,22 +73,16 @@ def _media_type(content: bytes) -> str | None:
             return f"image/{str(image.format).lower()}"
     except (OSError, ValueError, SyntaxError, Image.DecompressionBombError):
         pass
+    # Unknown encodings raise LookupError or ValueError.
     try:
-        return (
-            "image/svg+xml" if ET.fromstring(content).tag == _SVG and _is_printed(content) else None
-        )
-    except (
-        ET.ParseError,
-        LookupError,
-        ValueError,
-    ):  # the last two by encodings that the parser does not know
+        is_svg = ET.fromstring(content).tag == _SVG and _can_be_printed(content)
+    except (ET.ParseError, LookupError, ValueError):
         return None
+    return "image/svg+xml" if is_svg else None
 
 
-def _is_printed(svg: bytes) -> bool:
-    """Return whether the library that sets reports for print can draw an SVG: one without a size,
-    or with links, it cannot.
-    """
+def _can_be_printed(svg: bytes) -> bool:
+    """Return whether typst can draw an SVG; it cannot without a size or with links."""
     import typst
 
     try:

@@ -1,6 +1,4 @@
-"""Software and hosts of a run: recorded in its manifest, printed in its report. No name and no path
-of a machine is.
-"""
+"""Software and host of a run, for its manifest and report, without names or paths of a machine."""
 
 import functools
 import importlib.metadata
@@ -38,33 +36,31 @@ _FOLDERS = re.compile(r"""(?<![^\s=,'"\[({])(?:~|[A-Za-z]:)?[/\\](?:[^,'"\])}]*[
 
 
 def without_folders(text: str) -> str:
-    """Return a text with the absolute paths in it cut to their last name."""
+    """Return a text in which absolute paths are cut to their last name."""
     return _FOLDERS.sub("", text)
 
 
 def command_line(module: str, given: Sequence[str]) -> str:
-    """Return a command line as a shell reads it, with no host and with absolute paths cut to their
-    last name.
+    """Return a command line for a shell, without hosts, and absolute paths cut to their last name.
 
     Parameters
     ----------
-    module : that was run, where it was not the console command
+    module : that was run, if it was not the console command
     given : ``sys.argv``: the program, and its arguments
     """
     program = PROGRAM if Path(given[0]).stem == PROGRAM else f"python -m {module}"
     shown = []
-    host = False
+    is_host = False
     for argument in given[1:]:
         option, equals, _ = argument.partition("=")
-        text = (
-            "HOST:PORT"
-            if host
-            else f"{option}=HOST:PORT"
-            if equals and option in _HOSTS
-            else without_folders(argument)
-        )
+        if is_host:
+            text = "HOST:PORT"
+        elif equals and option in _HOSTS:
+            text = f"{option}=HOST:PORT"
+        else:
+            text = without_folders(argument)
         shown.append(shlex.quote(text))
-        host = argument in _HOSTS
+        is_host = argument in _HOSTS
     return " ".join([program, *shown])
 
 
@@ -81,7 +77,7 @@ def provenance() -> dict[str, Any]:
 
 @functools.cache
 def _versions() -> Mapping[str, str]:
-    """Return the version of each package: those of a process stay what they are."""
+    """Return the version of each package; they do not change within a process."""
     versions = {}
     for package in _PACKAGES:
         try:

@@ -1,6 +1,4 @@
-"""Extension points: named parts of one kind, from the project, from installed packages, or from a
-Python file.
-"""
+"""Extension points: parts by name, from the project, an installed package or a Python file."""
 
 import functools
 import hashlib
@@ -16,36 +14,32 @@ from pathlib import Path
 from types import FunctionType
 from typing import Any, Generic, TypeVar
 
-from common.spelling import did_you_mean
+from common.text import did_you_mean
 
 Part = TypeVar("Part")
 
 ENTRY_POINTS = "plume_flight_study"
-"""Packages announce parts in groups of this name and the registry's:
-``plume_flight_study.steering_law``.
-"""
+"""Prefix of the groups of entry points, as in ``plume_flight_study.steering_law``."""
 
 
 class PluginError(ValueError):
-    """A part that is unknown, or does not load, or is not what it should be. The message is one
-    line.
-    """
+    """A part is unknown, does not load, or is not what it should be. The message is one line."""
 
 
 class Registry(Generic[Part]):
     """The parts of one kind.
 
-    A part is known by its name where a module of ``folder`` registers it, or an installed package
-    has an entry point of that name in the group ``plume_flight_study.KIND``. It may also be named
-    by its file, as in ``mylaw.py:MyLaw``.
+    A part has a name if a module of ``folder`` registers it, or if an installed package has an
+    entry point of that name in the group ``plume_flight_study.KIND``. A part can also be named by
+    its file, as in ``mylaw.py:MyLaw``.
 
     Parameters
     ----------
     kind : of the parts, as in "steering_law"
-    folder : package whose modules register the project's own parts when they are imported
-    protocol : module of the Protocol, which may register parts, too; ``folder`` if it is not given
-    methods : that every part has to have, unless it is a function that makes one: those of its
-        Protocol; of some, "this|that"
+    folder : package whose modules register the project's parts when they are imported
+    protocol : module of the Protocol, which may register parts as well; by default ``folder``
+    methods : of the Protocol, which a part has to have unless it is a function that makes one;
+        "this|that" where one of two is enough
     """
 
     def __init__(
@@ -59,33 +53,33 @@ class Registry(Generic[Part]):
 
     @property
     def words(self) -> str:
-        """Return the kind in words."""
+        """The kind in words."""
         return self.kind.replace("_", " ")
 
     def register(self, name: str) -> Callable[[Part], Part]:
-        """Return a decorator that makes a part known by ``name``."""
+        """Return a decorator that registers a part under a name."""
 
-        def added(part: Part) -> Part:
+        def registered(part: Part) -> Part:
             self._parts[name] = part
             return part
 
-        return added
+        return registered
 
     @contextmanager
-    def lent(self, name: str, part: Part) -> Iterator[None]:
-        """Know a part by ``name`` inside the context: one that is given as an object, and not by
-        its name.
+    def temporarily_registered(self, name: str, part: Part) -> Iterator[None]:
+        """Register a part inside the context only.
 
         Raises
         ------
-        PluginError : another part is known by this name
+        PluginError : another part has this name
         """
         if self._parts.get(name) is part:
             yield
             return
         if name in self.names():
             raise PluginError(
-                f"{self.words} '{name}' is known already, and is not the object that was given; rename yours"
+                f"{self.words} '{name}' is known already, and is not the object that was given; "
+                "rename yours"
             )
         self._parts[name] = part
         try:
@@ -94,17 +88,15 @@ class Registry(Generic[Part]):
             del self._parts[name]
 
     def name_of(self, part: object) -> str | None:
-        """Return the name of a part that is registered, or None if it is not."""
+        """Return the name of a part, or None if it is not registered."""
         return next((name for name, known in self._parts.items() if known is part), None)
 
     def names(self) -> list[str]:
-        """Return every known name, in alphabetical order."""
+        """Return all known names, in alphabetical order."""
         return sorted({*self._known(), *self._entry_points()})
 
-    def own_names(self) -> list[str]:
-        """Return the names of the project's own parts, in alphabetical order: those that modules of
-        ``folder`` register.
-        """
+    def builtin_names(self) -> list[str]:
+        """Return the names that modules of ``folder`` register, in alphabetical order."""
         return sorted(
             name
             for name, part in self._known().items()
@@ -114,18 +106,16 @@ class Registry(Generic[Part]):
         )
 
     def __contains__(self, name: str) -> bool:
-        """Return whether a part is known by ``name``; installed packages are asked last, which
-        takes longest.
-        """
+        """Return whether a name is known; installed packages come last, which takes longest."""
         return name in self._known() or name in self._entry_points()
 
     def get(self, name: str) -> Part:
-        """Return the part of this name, or that of a file, ``FILE.py:NAME``.
+        """Return a part by its name, or by its file as ``FILE.py:NAME``.
 
         Raises
         ------
-        PluginError : there is none, or it does not load, or it lacks a method, or is an object, of
-            which no flight makes its own
+        PluginError : there is none, it does not load, it lacks a method, or it is an object where
+            a class is needed, because each flight makes a part of its own
         """
         if name.endswith(".py:"):
             raise self._without_name(name)
@@ -136,7 +126,7 @@ class Registry(Generic[Part]):
             and name.isidentifier()
             and importlib.util.find_spec(f"{self._folder}.{name}")
         ):
-            # A file of its name comes first: the others may take long to import.
+            # The module of that name first: the others may take long to import.
             importlib.import_module(f"{self._folder}.{name}")
         if name in self._parts or name in self._known():
             return self._parts[name]
@@ -147,25 +137,29 @@ class Registry(Generic[Part]):
                 raise
             except Exception as error:
                 raise PluginError(
-                    f"{self.words} '{name}' of package {found.value}: {type(error).__name__}: {error}"
+                    f"{self.words} '{name}' of package {found.value}: "
+                    f"{type(error).__name__}: {error}"
                 ) from error
         if name.endswith(".py"):
             raise self._without_name(name)
         names = self.names()
         raise PluginError(
-            f"unknown {self.words} '{name}'{did_you_mean(name, names) or ';'} known are {', '.join(names)}, or FILE.py:NAME"
+            f"unknown {self.words} '{name}'{did_you_mean(name, names) or ';'} "
+            f"known are {', '.join(names)}, or FILE.py:NAME"
         )
 
     def _callable(self, name: str, part: Any) -> Any:
         if self._methods and not callable(part):
             raise PluginError(
-                f"{self.words} '{name}' is an object of class {type(part).__name__}; give the class itself"
+                f"{self.words} '{name}' is an object of class {type(part).__name__}; "
+                "give the class itself"
             )
         return part
 
     def _without_name(self, name: str) -> PluginError:
         return PluginError(
-            f"{self.words} '{name}' names a file, and no part in it; give {name.removesuffix(':')}:NAME"
+            f"{self.words} '{name}' names a file, and no part in it; "
+            f"give {name.removesuffix(':')}:NAME"
         )
 
     def _known(self) -> dict[str, Part]:
@@ -173,7 +167,7 @@ class Registry(Generic[Part]):
             package = importlib.import_module(self._folder)
             for module in pkgutil.iter_modules(package.__path__):
                 importlib.import_module(f"{self._folder}.{module.name}")
-            # Not before: a module that does not load is to be tried, and to fail, at every call.
+            # Only now: a module that does not load has to fail at every call.
             self._complete = True
         return self._parts
 
@@ -181,26 +175,26 @@ class Registry(Generic[Part]):
         return announced(self.kind)
 
     def checked(self, name: str, part: Any) -> Part:
-        """Return a part called ``name`` that has every method of its Protocol.
+        """Return a part, which has every method of its Protocol.
 
         Raises
         ------
         PluginError : it lacks one
         """
-        for method in () if isinstance(part, FunctionType) else self._methods:
-            if not any(
-                callable(getattr(part, alternative, None)) for alternative in method.split("|")
-            ):
-                missing = method.replace("|", "() or ")
-                raise PluginError(
-                    f"{self.words} '{name}' has no method {missing}(); see the Protocol in {self._protocol}"
-                )
+        if not isinstance(part, FunctionType):
+            for method in self._methods:
+                alternatives = method.split("|")
+                if not any(callable(getattr(part, each, None)) for each in alternatives):
+                    raise PluginError(
+                        f"{self.words} '{name}' has no method {'() or '.join(alternatives)}(); "
+                        f"see the Protocol in {self._protocol}"
+                    )
         found: Part = part
         return found
 
 
 def announced(kind: str) -> dict[str, importlib.metadata.EntryPoint]:
-    """Return the parts of a kind that installed packages announce as entry points, by name."""
+    """Return the entry points of installed packages for parts of a kind, by name."""
     return {
         point.name: point
         for point in _points(f"{ENTRY_POINTS}.{kind}", importlib.metadata.entry_points, _places())
@@ -211,16 +205,15 @@ def announced(kind: str) -> dict[str, importlib.metadata.EntryPoint]:
 def _points(
     group: str, find: Callable[..., importlib.metadata.EntryPoints], _: tuple[tuple[str, int], ...]
 ) -> importlib.metadata.EntryPoints:
-    """Return the entry points of a group, for which every installed package is looked into: once,
-    as long as none is installed.
+    """Return the entry points of a group, which takes a look into every installed package.
+
+    The last argument is ``_places()``: the result is kept until a package is installed or removed.
     """
     return find(group=group)
 
 
 def _places() -> tuple[tuple[str, int], ...]:
-    """Return where packages may lie, and when something was last installed or removed there [ns]; 0
-    where there is nothing.
-    """
+    """Return the folders of packages, and when each last changed [ns], or 0."""
     return tuple((place, _changed(place)) for place in sys.path)
 
 
@@ -237,12 +230,12 @@ def is_file_part(name: str) -> bool:
 
 
 def file_of(name: str) -> Path:
-    """Return the file of a part that is named by it, or the file of data that ``name`` is."""
+    """Return the file of a part that is named by its file, or the file of data itself."""
     return Path(name.rpartition(":")[0] if is_file_part(name) else name)
 
 
 def file_hash(name: str) -> str:
-    """Return a hash of the file of a part that is named by it, or of a file of data.
+    """Return a hash of the file of a part that is named by its file, or of a file of data.
 
     Raises
     ------
@@ -253,12 +246,13 @@ def file_hash(name: str) -> str:
             return hashlib.file_digest(file, "sha256").hexdigest()[:16]
     except OSError as error:
         raise PluginError(
-            f"{file_of(name)}: cannot be read: {error.strerror}; check the path, in a scenario file relative to that file"
+            f"{file_of(name)}: cannot be read: {error.strerror}; "
+            "check the path, in a scenario file relative to that file"
         ) from None
 
 
 def part_in_file(name: str) -> Any:
-    """Return what a Python file calls NAME, by ``FILE.py:NAME``.
+    """Return the part NAME of a Python file, by ``FILE.py:NAME``.
 
     Raises
     ------
@@ -273,7 +267,7 @@ def part_in_file(name: str) -> Any:
 
 @functools.lru_cache(maxsize=64)
 def _module_in(path: Path, digest: str) -> Any:
-    """Return the module in a file, loaded once as long as its hash stays the same."""
+    """Return the module in a file, loaded once while its hash stays the same."""
     name = f"plume_flight_study_{path.stem}_{digest}"
     spec = importlib.util.spec_from_file_location(name, path)
     if spec is None or spec.loader is None:
@@ -283,20 +277,18 @@ def _module_in(path: Path, digest: str) -> Any:
     sys.modules[name] = module
     try:
         spec.loader.exec_module(module)
-    # A script that ends the process when it is read is no part, and must not end the command
-    # without a word.
+    # A script that exits when it is imported must not end the command without a message.
     except (Exception, SystemExit) as error:
         del sys.modules[name]
         raise PluginError(
-            f"{path} does not load: {type(error).__name__}: {error}{_where(path, error)}{_beside(path, error)}"
+            f"{path} does not load: {type(error).__name__}: {error}"
+            f"{_line_of(path, error)}{_hint(path, error)}"
         ) from error
     return module
 
 
-def _where(path: Path, error: BaseException) -> str:
-    """Return the line of a file at which its loading failed, if that is known; an error of its
-    syntax says it itself.
-    """
+def _line_of(path: Path, error: BaseException) -> str:
+    """Return the line of a file at which loading failed, where the error does not say it."""
     lines = [
         frame.lineno
         for frame in traceback.extract_tb(error.__traceback__)
@@ -305,12 +297,12 @@ def _where(path: Path, error: BaseException) -> str:
     return f" ({path.name}:{lines[-1]})" if lines else ""
 
 
-def _beside(path: Path, error: BaseException) -> str:
-    """Return a hint where a module is not found that is a file beside a part."""
+def _hint(path: Path, error: BaseException) -> str:
+    """Return a hint where a part imports a module that lies next to its file."""
     name = (error.name or "").partition(".")[0] if isinstance(error, ModuleNotFoundError) else ""
-    there = name and ((path.parent / f"{name}.py").is_file() or (path.parent / name).is_dir())
-    return (
-        f"; '{name}' lies beside it, but a part is one file, or an installed package: put it into {path.name}"
-        if there
-        else ""
-    )
+    if name and ((path.parent / f"{name}.py").is_file() or (path.parent / name).is_dir()):
+        return (
+            f"; '{name}' lies beside it, but a part is one file, or an installed package: "
+            f"put it into {path.name}"
+        )
+    return ""

@@ -6,8 +6,9 @@ MANIFEST = "manifest.json"
 """Configuration, software, and how the run ended."""
 
 FORMAT = 1
-"""Version of a run directory, the manifest's entry ``format``. It rises when what is read changes
-its meaning.
+"""Version of a run directory, the manifest's entry ``format``.
+
+It increases when the meaning of a file or an entry changes.
 """
 
 FILES = "files"
@@ -50,21 +51,19 @@ STATISTICS = "statistics.json"
 """Estimates of a Monte Carlo study."""
 
 SULPHUR_TABLE = "sulphur.csv"
-"""A row per flight with a sniffer, method and time after settling: what was known of the fuel by
-then.
-"""
+"""A row per flight with a sniffer, method and time after settling: the estimate at that time."""
 
 SULPHUR = "sulphur.json"
 """Statistics of the flights with a sniffer."""
 
 ARENA = "arena.json"
-"""What an arena of steering laws has shown, and what each law was given."""
+"""Results of an arena of steering laws, and the tuning of each law."""
 
 SHIPS = "ships.csv"
 """A row per ship of a patrol."""
 
 PHASES = "phases.csv"
-"""A row per stretch of a patrol: the way to a ship, and what was done beside her."""
+"""A row per stretch of a patrol: the way to a ship, and the flight beside it."""
 
 TUNING_TABLE = "tuning.csv"
 """A row for each setting that the tuner of an arena tried."""
@@ -73,9 +72,19 @@ WINDOW_TABLE = "window.csv"
 """A row for each flight of an arena: figures of its end."""
 
 TABLES = (
-    SUMMARY, COMPARISON, CROSSINGS, INTERVENTIONS, DRAWS, COUNTEREXAMPLES, SAMPLES, SHIPS, PHASES, TUNING_TABLE, WINDOW_TABLE,
-)  # fmt: skip
-"""Tables that a run writes of itself; that of the sulphur content is the sniffer's."""
+    SUMMARY,
+    COMPARISON,
+    CROSSINGS,
+    INTERVENTIONS,
+    DRAWS,
+    COUNTEREXAMPLES,
+    SAMPLES,
+    SHIPS,
+    PHASES,
+    TUNING_TABLE,
+    WINDOW_TABLE,
+)
+"""Tables of a run; the sniffer writes that of the sulphur content."""
 
 MODEL = "model"
 """Directory of the aircraft's model with the autopilot."""
@@ -93,30 +102,28 @@ REPORT_HTML, REPORT_PDF = "report.html", "report.pdf"
 """The reports."""
 
 REPORT_SETTINGS = ("title", "author", "organisation", "logo")
-"""What a report says of itself: keys of a scenario's section ``report``, and of the manifest's
-entry of that name.
-"""
+"""Keys of a scenario's section ``report`` and of the manifest's entry of that name."""
 
 LOGO = "logo"
-"""Name of the file of the reports' logo; its suffix says what kind of picture it is."""
+"""Name of the file of the reports' logo, without the suffix of its kind."""
 
 EXPORT = "export"
-"""Directory of what exporters wrote."""
+"""Directory of exported files."""
 
 HISTORY_SUFFIX = ".parquet"
 """Suffix of time histories."""
 
 EVALUATION_SUFFIX = ".json"
-"""Suffix of what instruments made of flights."""
+"""Suffix of instruments' evaluations of flights."""
 
 NAME_BYTES_MAX = 200
 """Longest name of a trial or a flight [bytes]: file systems take 255, and suffixes are added."""
 
 
 def is_file_name(name: object) -> bool:
-    """Return whether ``name`` can be part of the name of a file, and leads to no other directory.
+    """Return whether a name can be part of a file's name, and leads to no other directory.
 
-    Names are checked where they are read from a file: in somebody else's run they may be anything.
+    Names that are read from a run are checked, because the run may come from somebody else.
     """
     return (
         isinstance(name, str)
@@ -133,14 +140,12 @@ def time_history_path(flight_id: str) -> str:
 
 
 def evaluation_path(flight_id: str) -> str:
-    """Return the path of what an instrument made of a flight, relative to the run directory."""
+    """Return the path of an instrument's evaluation of a flight, relative to the run directory."""
     return f"{FLIGHTS}/{flight_id}{EVALUATION_SUFFIX}"
 
 
 def flight_of(path: str) -> str:
-    """Return the flight that a path ``RUN_DIR/flights/ID`` names, with or without the suffix of one
-    of its files.
-    """
+    """Return the ID of a flight by a path ``RUN_DIR/flights/ID``, with or without a suffix."""
     return Path(path).name.removesuffix(HISTORY_SUFFIX).removesuffix(EVALUATION_SUFFIX)
 
 

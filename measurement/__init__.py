@@ -1,3 +1,1 @@
-"""What a sniffer in a ship's plume measures, from the engine to the fuel's sulphur content. Knows
-no other room of the project.
-"""
+"""From a ship's engine over its plume and a sniffer's readings to the fuel sulphur content."""

@@ -1,4 +1,4 @@
-"""The gases of the exhaust, their units in readings, and what their ratio says of the fuel."""
+"""The gases of the exhaust, the units of their readings, and the fuel sulphur content."""
 
 from measurement.errors import MeasurementError
 
@@ -11,11 +11,17 @@ PARTS = {"so2": 1e9, "co2": 1e6, "no": 1e9, "no2": 1e9}
 UNITS = {"so2": "ppb", "co2": "ppm", "no": "ppb", "no2": "ppb"}
 """Units of readings, as they are printed."""
 
-_CARBON, _OXYGEN, _NITROGEN = 12.011e-3, 15.999e-3, 14.007e-3
-"""Standard atomic weights [kg/mol], abridged (IUPAC 2021)."""
+_CARBON = 12.011e-3
+"""Standard atomic weight [kg/mol], abridged (IUPAC 2021)."""
+
+_OXYGEN = 15.999e-3
+"""Standard atomic weight [kg/mol], abridged (IUPAC 2021)."""
+
+_NITROGEN = 14.007e-3
+"""Standard atomic weight [kg/mol], abridged (IUPAC 2021)."""
 
 SULPHUR_MASS = 32.06e-3
-"""Of a mole of sulphur [kg/mol] (IUPAC 2021)."""
+"""Molar mass of sulphur [kg/mol] (IUPAC 2021)."""
 
 MOLAR_MASS = {
     "so2": SULPHUR_MASS + 2.0 * _OXYGEN,
@@ -31,43 +37,31 @@ CARBON_FRACTION = 0.87
 CARBON_PER_CO2 = _CARBON / MOLAR_MASS["co2"]
 """Carbon by mass in CO2 [-]."""
 
-
 EXPECTED_PPB_PER_PPM = {"no": (18.0, 7.5), "no2": (2.0, 1.2)}
-"""Of a ship's NO and NO2 over its CO2 and its standard deviation, where they are not measured
-[ppb/ppm].
+"""A ship's NO and NO2 over its CO2 where they are not measured: mean and deviation [ppb/ppm].
 
 Assumption: NOx tiers 0 to 3 of two- and four-stroke engines emit 4 to 27 ppb/ppm; 5 to 15 % of it
 is NO2, and ozone adds some.
 """
 
-
 FUEL_SULPHUR_MOST = 5.0
-"""More sulphur than marine fuels have [% m/m]: their limit was 4.5 % until 2012 (MARPOL Annex VI,
-regulation 14).
-"""
+"""Largest sulphur content of a marine fuel [% m/m].
 
+The limit was 4.5 % until 2012 (MARPOL Annex VI, regulation 14).
+"""
 
 ASSUMED_LEAST = 0.0005
-"""Smallest correction for gases assumed, not measured, that is told [% m/m]: three decimals show no
-smaller one.
-"""
-
+"""Smallest correction for assumed gases that is printed [% m/m]: half of the third decimal."""
 
 MASS_PERCENT = "% m/m"
-"""Unit of a sulphur content where it stands first; what follows it, as its interval and its limits,
-is in plain %.
-"""
+"""Unit of a sulphur content where it stands first; intervals and limits follow in plain %."""
 
 
 def limit_words(limit_percent: float) -> str:
-    """Return a limit on the sulphur content [% m/m] as it is printed: with two decimals, or with as
-    many as it has.
-    """
-    return (
-        f"{limit_percent:.2f} %"
-        if round(limit_percent, 2) == limit_percent
-        else f"{limit_percent:g} %"
-    )
+    """Return a limit on the sulphur content [% m/m] as printed, with at least two decimals."""
+    if round(limit_percent, 2) == limit_percent:
+        return f"{limit_percent:.2f} %"
+    return f"{limit_percent:g} %"
 
 
 def fsc_factor(carbon_fraction: float = CARBON_FRACTION) -> float:
@@ -86,6 +80,7 @@ def fsc_factor(carbon_fraction: float = CARBON_FRACTION) -> float:
     """
     if not 0.0 < carbon_fraction <= 1.0:
         raise MeasurementError(
-            f"carbon fraction is {carbon_fraction:g}; a fuel has above 0 and at most 1, usually 0.85 to 0.875"
+            f"carbon fraction is {carbon_fraction:g}; "
+            "it must be above 0 and at most 1, usually 0.85 to 0.875"
         )
     return 0.1 * carbon_fraction * SULPHUR_MASS / _CARBON

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from common.run_layout import time_history_path
-from common.spelling import did_you_mean
+from common.text import did_you_mean
 from reports.errors import ReportError
 from reports.run.files import damage_named, failure_named, written
 from reports.run.run_data import RunData

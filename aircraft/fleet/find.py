@@ -19,7 +19,7 @@ from aircraft.spec import (
 )
 from common.files import is_path
 from common.registry import PluginError, is_file_part
-from common.spelling import did_you_mean
+from common.text import did_you_mean
 
 _MODEL_TAG = "fdm_config"
 """Root element of a JSBSim model."""

@@ -36,7 +36,7 @@ from aircraft.spec import (
     surface,
     throttle,
 )
-from common.spelling import did_you_mean
+from common.text import did_you_mean
 
 _PROPERTY = re.compile(r"^[A-Za-z_][\w.\-]*(\[\d+\])?(/[A-Za-z_][\w.\-]*(\[\d+\])?)*$")
 

@@ -17,8 +17,7 @@ from benchmarks.plume.flight import CLIMB_RATE, HIGHEST, LOWEST, Flight, draw_ca
 from benchmarks.plume.particles import ParticleEstimator
 from gnc.estimation.plume.estimator import PlumeEstimator
 from gnc.mission.axis import HeightSearch, LadderSearch, Search
-from measurement.sniffer.presets import sensor_preset
-from measurement.sniffer.spec import SnifferSpec
+from measurement.sniffer.spec import SnifferSpec, sensor_preset
 
 SEARCHES: dict[str, Callable[[], Search]] = {
     "information": lambda: HeightSearch(lowest=LOWEST, highest=HIGHEST, climb_rate=CLIMB_RATE),

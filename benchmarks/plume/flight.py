@@ -14,12 +14,10 @@ from scipy.special import j0
 from gnc.estimation.plume.estimator import PlumeEstimator, PlumeState
 from gnc.estimation.plume.prior import Expectation, GasSensor, PlumePrior, expected_plume
 from gnc.mission.axis import Search
-from measurement.emission.emission import emission_of
-from measurement.emission.fuel import fuel_preset
-from measurement.emission.ship import ship_preset
+from measurement.emission import emission_of, fuel_preset, ship_preset
 from measurement.gases import GASES
-from measurement.plume.air import MarineAir
 from measurement.plume.fluctuating_plume import FluctuatingPlume
+from measurement.plume.spread import MarineAir
 from measurement.sniffer.sniffer import Sniffer
 from measurement.sniffer.spec import SnifferSpec
 from scenarios.planning.plume.axis import co2_sensor

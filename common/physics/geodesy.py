@@ -1,6 +1,4 @@
-"""Places on the WGS 84 ellipsoid, which JSBSim's default planet is, and metres north and east of an
-origin on it.
-"""
+"""Places on the WGS 84 ellipsoid, JSBSim's default, in metres north and east of an origin."""
 
 import math
 
@@ -11,7 +9,7 @@ EQUATORIAL_RADIUS = 6378137.0
 """Semi-major axis of WGS 84 [m]."""
 
 FLATTENING = 1.0 / 298.257223563
-"""Of WGS 84 [-]."""
+"""Flattening of WGS 84 [-]."""
 
 ECCENTRICITY_SQUARED = FLATTENING * (2.0 - FLATTENING)
 """First eccentricity of WGS 84, squared [-]."""
@@ -20,20 +18,19 @@ Array = npt.NDArray[np.float64]
 
 
 class LocalFrame:
-    """North and east metres about an origin anywhere: an azimuthal equidistant projection of the
-    ellipsoid.
+    """Metres north and east of an origin anywhere: an azimuthal equidistant projection.
 
-    A place at a distance d on the ellipsoid, at an azimuth A from true north at the origin, is at d
-    cos A north and d sin A east. The line to it is taken as an arc with the ellipsoid's radius of
-    curvature at the origin in that direction: within 20 km of the origin, poles and date line
-    included, places are true to 0.2 mm, within 100 km to 2 cm (against GeographicLib, C. F. F.
-    Karney, Algorithms for geodesics, J. Geodesy 87:43, 2013). Metres between two places that are
-    both d away from the origin are long by up to d^2/(6 R^2): 2e-6 at 20 km.
+    A place at a distance d on the ellipsoid, at an azimuth A from true north at the origin, is at
+    d cos A north and d sin A east. The line to it is taken as an arc with the ellipsoid's radius of
+    curvature at the origin in that direction. Within 20 km of the origin, poles and date line
+    included, places are true to 0.2 mm; within 100 km to 2 cm (against GeographicLib, C. F. F.
+    Karney, Algorithms for geodesics, J. Geodesy 87:43, 2013). Distances between two places that are
+    both d away from the origin are too long by up to d^2/(6 R^2): 2e-6 at 20 km.
 
     Parameters
     ----------
     latitude, longitude : geodetic, of the origin [rad]
-    altitude : above the ellipsoid at which metres are counted: higher up an angle is longer [m]
+    altitude : above the ellipsoid at which metres count; higher up an angle spans more metres [m]
     """
 
     def __init__(self, latitude: float, longitude: float, altitude: float = 0.0) -> None:
@@ -44,13 +41,11 @@ class LocalFrame:
         w = 1.0 - ECCENTRICITY_SQUARED * math.sin(latitude) ** 2
         self._meridian_radius = EQUATORIAL_RADIUS * (1.0 - ECCENTRICITY_SQUARED) / w**1.5
         self._transverse_radius = EQUATORIAL_RADIUS / math.sqrt(w)
-        self._north_longer, self._east_longer = (
-            1.0 + altitude / self._meridian_radius,
-            1.0 + altitude / self._transverse_radius,
-        )
+        self._north_longer = 1.0 + altitude / self._meridian_radius
+        self._east_longer = 1.0 + altitude / self._transverse_radius
 
     def to_local(self, latitude: npt.ArrayLike, longitude: npt.ArrayLike) -> tuple[Array, Array]:
-        """Return north and east [m] of places [rad]; the shape is that of the places."""
+        """Return north and east [m] of places [rad], in the shape of the places."""
         chord = (
             cartesian(
                 np.asarray(latitude, dtype=np.float64), np.asarray(longitude, dtype=np.float64)
@@ -60,11 +55,8 @@ class LocalFrame:
         north, east = chord @ self._north, chord @ self._east
         level = np.hypot(north, east)
         radius = self._radius(north, level)
-        longer = np.where(
-            level > 0.0,
-            radius * np.arcsin(np.minimum(1.0, level / radius)) / np.where(level > 0.0, level, 1.0),
-            1.0,
-        )
+        arc = radius * np.arcsin(np.minimum(1.0, level / radius))
+        longer = np.where(level > 0.0, arc / np.where(level > 0.0, level, 1.0), 1.0)
         return north * longer * self._north_longer, east * longer * self._east_longer
 
     def to_geodetic(self, north: npt.ArrayLike, east: npt.ArrayLike) -> tuple[Array, Array]:
@@ -76,16 +68,15 @@ class LocalFrame:
         angle = distance / radius
         shorter = np.sinc(angle / math.pi)
         down = 2.0 * radius * np.sin(0.5 * angle) ** 2
-        level = (to_north * shorter)[..., None] * self._north + (to_east * shorter)[
-            ..., None
-        ] * self._east
+        level_north = (to_north * shorter)[..., None] * self._north
+        level_east = (to_east * shorter)[..., None] * self._east
+        level = level_north + level_east
         return _geodetic(self._origin + level - down[..., None] * self._up)
 
     def true_north(self, latitude: npt.ArrayLike, longitude: npt.ArrayLike) -> Array:
-        """Return where true north lies at places [rad], as an angle clockwise from the frame's
-        north [rad].
+        """Return the angle of true north at places [rad], clockwise from the frame's north [rad].
 
-        Meridians converge: a course from true north at a place is that angle more in this frame.
+        Meridians converge: a course in this frame is that from true north plus this angle.
         """
         _, north, _ = _axes(
             np.asarray(latitude, dtype=np.float64), np.asarray(longitude, dtype=np.float64)
@@ -95,9 +86,7 @@ class LocalFrame:
         return angle
 
     def _radius(self, north: Array, distance: Array) -> Array:
-        """Return the radius of curvature at the origin in the direction of places [m] (Euler's
-        theorem).
-        """
+        """Return the radius of curvature at the origin towards places [m] (Euler's theorem)."""
         share = np.where(distance > 0.0, north / np.where(distance > 0.0, distance, 1.0), 1.0) ** 2
         radius: Array = 1.0 / (
             share / self._meridian_radius + (1.0 - share) / self._transverse_radius
@@ -106,13 +95,11 @@ class LocalFrame:
 
 
 def _axes(latitude: npt.ArrayLike, longitude: npt.ArrayLike) -> tuple[tuple[Array, ...], ...]:
-    """Return unit vectors up, north and east at places [rad], in axes fixed to the earth."""
-    sin_lat, cos_lat, sin_lon, cos_lon = (
-        np.sin(latitude),
-        np.cos(latitude),
-        np.sin(longitude),
-        np.cos(longitude),
-    )
+    """Return unit vectors up, north and east at places [rad], in Earth-fixed axes."""
+    sin_lat = np.sin(latitude)
+    cos_lat = np.cos(latitude)
+    sin_lon = np.sin(longitude)
+    cos_lon = np.cos(longitude)
     return (
         (cos_lat * cos_lon, cos_lat * sin_lon, sin_lat),
         (-sin_lat * cos_lon, -sin_lat * sin_lon, cos_lat),
@@ -121,9 +108,7 @@ def _axes(latitude: npt.ArrayLike, longitude: npt.ArrayLike) -> tuple[tuple[Arra
 
 
 def cartesian(latitude: Array | np.float64, longitude: Array | np.float64) -> Array:
-    """Return places [rad] on the ellipsoid in axes fixed to the earth, the last dimension being x,
-    y, z [m].
-    """
+    """Return places [rad] on the ellipsoid in Earth-fixed axes [m], shape (..., 3)."""
     radius = EQUATORIAL_RADIUS / np.sqrt(1.0 - ECCENTRICITY_SQUARED * np.sin(latitude) ** 2)
     level = radius * np.cos(latitude)
     z = (1.0 - ECCENTRICITY_SQUARED) * radius * np.sin(latitude)
@@ -133,8 +118,9 @@ def cartesian(latitude: Array | np.float64, longitude: Array | np.float64) -> Ar
 
 
 def _geodetic(place: Array) -> tuple[Array, Array]:
-    """Return latitude and longitude [rad] of places near the ellipsoid (B. R. Bowring, Survey
-    Review 23:323, 1976).
+    """Return latitude and longitude [rad] of places near the ellipsoid.
+
+    Source: B. R. Bowring, Survey Review 23:323 (1976).
     """
     x, y, z = place[..., 0], place[..., 1], place[..., 2]
     polar_radius = EQUATORIAL_RADIUS * (1.0 - FLATTENING)

@@ -1,6 +1,4 @@
-"""Conversion factors, all in one place. Everything outside JSBSim's own properties is SI and
-radians.
-"""
+"""Conversion factors; everything outside JSBSim's properties is in SI and radians."""
 
 import math
 
@@ -14,13 +12,13 @@ METRES_PER_NAUTICAL_MILE = 1852.0
 """International nautical mile, exact by definition [m/nmi]."""
 
 METRES_PER_SECOND_PER_KNOT = METRES_PER_NAUTICAL_MILE / SECONDS_PER_HOUR
-"""Knot: one nautical mile an hour, exact by definition [m/s per kt]."""
+"""Knot: one nautical mile per hour, exact by definition [m/s per kt]."""
 
 NEWTONS_PER_POUND = 4.4482216152605
 """Pound-force, exact by definition [N/lbf]."""
 
 RAD_S_PER_RPM = math.pi / 30.0
-"""One revolution a minute [rad/s per rpm]."""
+"""One revolution per minute [rad/s per rpm]."""
 
 KG_PER_SLUG = 14.593902937206364
 """Slug: lbf s^2/ft [kg/slug]."""

@@ -13,8 +13,8 @@ import numpy as np
 import pandas as pd
 
 from measurement.gases import GASES, UNITS, fsc_factor
-from measurement.sniffer.presets import sensor_preset
 from measurement.sniffer.sniffer import Sniffer
+from measurement.sniffer.spec import sensor_preset
 
 SEED, FSC_PERCENT = 5, 0.25
 DURATION_S, STEP_S, INTERVAL_S = 300.0, 0.1, 9.5

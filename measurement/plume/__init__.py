@@ -1,3 +1,1 @@
-"""The plume behind a funnel over the sea: rise, spreads, meander, and its concentration at any time
-and place.
-"""
+"""The plume behind a stack over the sea: rise, spread, meander and concentration."""

@@ -1,9 +1,8 @@
-"""Sniffers: what they are, and what they read."""
+"""Sniffers: their specification and their readings."""
 
 from measurement.sniffer.channel import Channel
-from measurement.sniffer.presets import sensor_of, sensor_preset, sensor_presets
 from measurement.sniffer.sniffer import Readings, Sniffer
-from measurement.sniffer.spec import SnifferSpec
+from measurement.sniffer.spec import SnifferSpec, sensor_of, sensor_preset, sensor_presets
 
 __all__ = [
     "Channel",

@@ -1,4 +1,4 @@
-"""One gas channel of a sniffer: how it responds, and how well that is known."""
+"""One gas channel of a sniffer: its response, and how well it is known."""
 
 import math
 from collections.abc import Mapping
@@ -14,9 +14,9 @@ class Channel:
     """A gas channel. Concentrations are in the unit of its gas: ppm of CO2, ppb of the others.
 
     It reads ``gain (c + sum of cross k c_k) (1 + pressure_effect dp) + zero``, delayed, through its
-    lag, with white noise and a random walk, rounded and cut at its range. An ending ``_sd`` is the
-    standard deviation with which the analyst knows a property; infinite for t90 and delay of SO2
-    that are not known at all: they are estimated from the record.
+    lag, with white noise and a random walk, rounded and cut at its range. A name that ends in
+    ``_sd`` is the standard deviation with which the analyst knows a property. It is infinite for a
+    t90 and a delay of SO2 that are not known at all: they are estimated from the record.
 
     Attributes
     ----------
@@ -26,8 +26,7 @@ class Channel:
     second_pole : second time constant over the first, 0 for a response with one pole [-]
     delay_s : delay of tube and pump [s]
     delay_sd_s : standard deviation of the delay [s]
-    noise : standard deviation of a reading; not a number where it is to be estimated from the
-        record [unit]
+    noise : standard deviation of a reading; NaN if it is to be estimated from the record [unit]
     random_walk : standard deviation of the zero's drift after one second, growing with the root of
         time [unit/s^0.5]
     resolution : step of the readings, 0 for none [unit]
@@ -74,44 +73,46 @@ class Channel:
             "zero_sd",
         ):
             value = getattr(self, name)
+            if not value >= 0.0:
+                raise MeasurementError(f"{name} of {self.gas} is {value:g}; it must be 0 or more")
             estimated = self.gas == "so2" and name in ("t90_sd", "delay_sd_s")
-            if not value >= 0.0 or (math.isinf(value) and not estimated):
-                only = (
-                    "; t90 and delay of SO2 alone can be estimated from a record"
-                    if math.isinf(value)
-                    else ""
-                )
+            if math.isinf(value) and not estimated:
                 raise MeasurementError(
-                    f"{name} of {self.gas} is {value:g}; it must be 0 or more and finite{only}"
+                    f"{name} of {self.gas} is {value:g}; it must be finite: "
+                    "t90 and delay of SO2 alone can be estimated from a record"
                 )
         if self.noise < 0.0 or math.isinf(self.noise):
             raise MeasurementError(
                 f"noise of {self.gas} is {self.noise:g} {UNITS[self.gas]}; it must be 0 or more"
             )
         if not 0.1 <= self.gain <= 10.0:
-            raise MeasurementError(
-                f"gain of {self.gas} is {self.gain:g}; it must be 0.1 to 10: calibrate the channel"
-            )
+            raise MeasurementError(f"gain of {self.gas} is {self.gain:g}; it must be 0.1 to 10")
         if not self.range_low < self.range_high:
             raise MeasurementError(
-                f"range of {self.gas} is {self.range_low:g} to {self.range_high:g}; its end must lie above its start"
+                f"range of {self.gas} is {self.range_low:g} to {self.range_high:g}; "
+                "its end must lie above its start"
             )
         for name in ("cross", "cross_sd"):
             self._check_cross(name)
-        if not math.isfinite(self.zero) or not abs(self.pressure_effect) <= 0.1:
+        if not math.isfinite(self.zero):
+            raise MeasurementError(f"zero of {self.gas} is {self.zero:g}; it must be finite")
+        if not abs(self.pressure_effect) <= 0.1:
             raise MeasurementError(
-                f"zero of {self.gas} must be finite and pressure_effect at most 0.1 per hPa, but it is {self.pressure_effect:g}"
+                f"pressure_effect of {self.gas} is {self.pressure_effect:g}; "
+                "it must be at most 0.1 per hPa"
             )
 
     def _check_cross(self, name: str) -> None:
         for gas, value in getattr(self, name).items():
             if gas not in GASES or gas == self.gas:
                 raise MeasurementError(
-                    f"{name} of {self.gas} names {gas!r}; it must be another of {', '.join(GASES)}"
+                    f"{name} of {self.gas} names {gas!r}; it must name another of "
+                    f"{', '.join(GASES)}"
                 )
             if not abs(value) <= 10.0 or (name == "cross_sd" and value < 0.0):
                 raise MeasurementError(
-                    f"{name} of {self.gas} to {gas} is {value:g}; it must be at most 10, and a deviation 0 or more"
+                    f"{name} of {self.gas} to {gas} is {value:g}; "
+                    "it must be at most 10, and a deviation 0 or more"
                 )
 
     @property

@@ -11,8 +11,7 @@ from measurement.errors import MeasurementError
 Array = npt.NDArray[np.float64]
 
 SECOND_POLE_MAX = 0.95
-"""Largest second time constant over the first: the parallel form of two equal poles has no weights.
-"""
+"""Largest second time constant over the first [-]: two equal poles have no parallel form."""
 
 
 @functools.lru_cache(maxsize=256)
@@ -28,11 +27,12 @@ def time_constants(t90: float, second_pole: float) -> tuple[float, ...]:
     """
     if not 0.0 < t90 < math.inf:
         raise MeasurementError(
-            f"t90 is {t90:g} s; it must be positive: give the time to 90 % of a step"
+            f"t90 is {t90:g} s; it must be positive and finite: the time to 90 % of a step"
         )
     if not 0.0 <= second_pole <= SECOND_POLE_MAX:
         raise MeasurementError(
-            f"second_pole is {second_pole:g}; it must be 0 to {SECOND_POLE_MAX:g}: give the smaller time constant over the larger"
+            f"second_pole is {second_pole:g}; it must be 0 to {SECOND_POLE_MAX:g}: "
+            "the smaller time constant over the larger"
         )
     if second_pole == 0.0:
         return (t90 / math.log(10.0),)
@@ -51,9 +51,7 @@ def time_constants(t90: float, second_pole: float) -> tuple[float, ...]:
 
 
 def parallel(constants: tuple[float, ...]) -> tuple[tuple[float, float], ...]:
-    """Return weight and time constant [s] of the first-order lags whose weighted sum is the lag
-    with these time constants.
-    """
+    """Return weight and time constant [s] of the first-order lags that add up to a lag."""
     if len(constants) == 1:
         return ((1.0, constants[0]),)
     first, second = constants
@@ -61,11 +59,11 @@ def parallel(constants: tuple[float, ...]) -> tuple[tuple[float, float], ...]:
 
 
 def weights(step: Array | float, constant: float) -> tuple[Array, Array, Array]:
-    """Return what a first-order lag's output after a step is of its output, its input before and
-    its input after [-].
+    """Return a first-order lag's coefficients over a step [-].
 
-    With r = step/constant, a = e^-r and m = (1 - a)/r these are a, m - a and 1 - m: exact where the
-    input is linear over the step.
+    The output after a step is a sum of three terms: coefficients times the output before, the input
+    before and the input after. With r = step/constant, a = e^-r and m = (1 - a)/r they are a, m - a
+    and 1 - m: exact for an input that is linear over the step.
     """
     r = np.asarray(step, dtype=np.float64) / constant
     a = np.exp(-r)

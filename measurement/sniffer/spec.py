@@ -1,17 +1,81 @@
-"""A sniffer: its channels, its rate, and the instrument that one flight has."""
+"""A sniffer: its channels and its rate, presets, and the instrument of one flight."""
 
 import math
+import tomllib
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
+from importlib.resources import files
+from importlib.resources.abc import Traversable
+from typing import Any
 
 import numpy as np
 
-from measurement.errors import MeasurementError
+from measurement.errors import MeasurementError, guess, number
 from measurement.gases import GASES
 from measurement.sniffer.channel import Channel
 
-_SHORTEST = 0.2
-"""Least share of a stated response time, and of a gain, that an instrument of one flight has."""
+UNTITLED_SNIFFER = "own sniffer"
+"""Name of a sniffer from an inline table without a title."""
+
+_SHARE_MIN = 0.2
+"""Least share of a stated response time, and of a gain, in the instrument of one flight [-]."""
+
+_UNKNOWN: dict[str, dict[str, Any]] = {
+    "so2": {
+        "t90_s": 20.0,
+        "t90_sd": math.inf,
+        "delay_s": 0.0,
+        "delay_sd_s": math.inf,
+        "noise": math.nan,
+        "gain_sd": 0.05,
+        "zero_sd": 10.0,
+        "cross": {},
+        "cross_sd": {"no": 0.02, "no2": 0.8},
+    },
+    "co2": {
+        "t90_s": 3.0,
+        "t90_sd": 0.5,
+        "delay_s": 0.0,
+        "delay_sd_s": 0.0,
+        "noise": math.nan,
+        "gain_sd": 0.03,
+    },
+    "no": {
+        "t90_s": 20.0,
+        "t90_sd": 0.3,
+        "delay_s": 0.0,
+        "delay_sd_s": 2.0,
+        "noise": math.nan,
+        "gain_sd": 0.1,
+        "zero_sd": 10.0,
+    },
+    "no2": {
+        "t90_s": 30.0,
+        "t90_sd": 0.3,
+        "delay_s": 0.0,
+        "delay_sd_s": 2.0,
+        "noise": math.nan,
+        "gain_sd": 0.1,
+        "zero_sd": 10.0,
+    },
+}
+"""Properties of a channel that its table leaves out (assumptions).
+
+t90 and delay of SO2 are then estimated from the record. The SO2 channels of the presets respond to
+NO by 0 to 3 %, and to NO2 by 0, by -16 % with a filter, and by -160 % without one.
+"""
+
+_T90_KNOWN = 0.1
+"""Relative standard deviation of a t90 that is given without one [-]; an assumption."""
+
+_DELAY_KNOWN_S = 0.5
+"""Standard deviation of a delay that is given without one [s]; an assumption."""
+
+_CROSS_KNOWN = 0.2
+"""Relative standard deviation of a response to another gas that is given without one [-].
+
+Same as the electrochemical preset's to NO2.
+"""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -20,9 +84,9 @@ class SnifferSpec:
 
     Attributes
     ----------
-    name : what it is called in files
-    title : what it is called in reports
-    rate_hz : readings in a second [1/s]
+    name : in files
+    title : in reports
+    rate_hz : readings per second [1/s]
     channels : one per gas at most; SO2 and CO2 are needed for an estimate, not for reading
     source : where the figures come from
     """
@@ -45,7 +109,7 @@ class SnifferSpec:
             )
 
     def channel(self, gas: str) -> Channel | None:
-        """Return the channel of a gas, or none."""
+        """Return the channel of a gas, or None."""
         for channel in self.channels:
             if channel.gas == gas:
                 return channel
@@ -67,15 +131,13 @@ class SnifferSpec:
 
     @property
     def gases(self) -> tuple[str, ...]:
-        """Gases that it reads, in the order of ``GASES``."""
+        """Gases of its channels, in the order of ``GASES``."""
         return tuple(gas for gas in GASES if self.channel(gas))
 
     def with_channel(self, channel: Channel) -> "SnifferSpec":
         """Return the sniffer with the channel of the same gas replaced."""
-        return replace(
-            self,
-            channels=tuple(channel if channel.gas == old.gas else old for old in self.channels),
-        )
+        channels = tuple(channel if channel.gas == old.gas else old for old in self.channels)
+        return replace(self, channels=channels)
 
     def check_known(self) -> None:
         """Refuse a sniffer that cannot be flown.
@@ -84,20 +146,19 @@ class SnifferSpec:
         ------
         MeasurementError : response, delay or noise of a channel is not known
         """
-        for of in self.channels:
-            if not math.isfinite(of.t90_sd + of.delay_sd_s + of.noise):
+        for channel in self.channels:
+            if not math.isfinite(channel.t90_sd + channel.delay_sd_s + channel.noise):
                 raise MeasurementError(
-                    f"t90, delay or noise of {of.gas} is not known; give its t90_s, delay_s and noise to fly it"
+                    f"t90, delay or noise of {channel.gas} is not known; "
+                    "give its t90_s, delay_s and noise to fly it"
                 )
 
     def drawn(self, generator: np.random.Generator) -> "SnifferSpec":
-        """Return the instrument of one flight: each property sampled within its standard deviation,
-        and then known exactly.
+        """Return the instrument of one flight, with sampled properties that are known exactly.
 
         Raises
         ------
-        MeasurementError : a property has an infinite standard deviation, from which nothing can be
-            sampled
+        MeasurementError : response, delay or noise of a channel is not known
         """
         self.check_known()
         return replace(
@@ -107,15 +168,16 @@ class SnifferSpec:
 
 def _drawn(channel: Channel, generator: np.random.Generator) -> Channel:
     t90, delay, gain, zero = generator.standard_normal(4)
-    cross = {
-        gas: channel.cross.get(gas, 0.0) + sd * float(generator.standard_normal())
-        for gas, sd in _deviations(channel).items()
-    }
+    cross = {}
+    for gas in GASES:
+        if gas in channel.cross or gas in channel.cross_sd:
+            deviation = channel.cross_sd.get(gas, 0.0) * float(generator.standard_normal())
+            cross[gas] = channel.cross.get(gas, 0.0) + deviation
     return replace(
         channel,
-        t90_s=channel.t90_s * max(1.0 + channel.t90_sd * t90, _SHORTEST),
+        t90_s=channel.t90_s * max(1.0 + channel.t90_sd * t90, _SHARE_MIN),
         delay_s=max(channel.delay_s + channel.delay_sd_s * delay, 0.0),
-        gain=channel.gain * max(1.0 + channel.gain_sd * gain, _SHORTEST),
+        gain=channel.gain * max(1.0 + channel.gain_sd * gain, _SHARE_MIN),
         zero=channel.zero + channel.zero_sd * zero,
         cross=cross,
         t90_sd=0.0,
@@ -126,9 +188,113 @@ def _drawn(channel: Channel, generator: np.random.Generator) -> Channel:
     )
 
 
-def _deviations(channel: Channel) -> Mapping[str, float]:
-    return {
-        gas: channel.cross_sd.get(gas, 0.0)
-        for gas in GASES
-        if gas in channel.cross or gas in channel.cross_sd
-    }
+def _folder() -> Traversable:
+    return files("measurement.sniffer") / "presets"
+
+
+def sensor_presets() -> tuple[str, ...]:
+    """Return the names of the sniffers that come with the program."""
+    names = (path.name for path in _folder().iterdir())
+    return tuple(sorted(name.removesuffix(".toml") for name in names if name.endswith(".toml")))
+
+
+def sensor_preset(name: str) -> SnifferSpec:
+    """Return a sniffer by its name.
+
+    Raises
+    ------
+    MeasurementError : there is none of that name
+    """
+    known = sensor_presets()
+    if name not in known:
+        raise MeasurementError(
+            f"instrument is {name!r}{guess(name, known)} there are {', '.join(known)}"
+        )
+    return read_spec(tomllib.loads((_folder() / f"{name}.toml").read_text(encoding="utf-8")), name)
+
+
+def sensor_of(given: str | Mapping[str, Any], name: str = "") -> SnifferSpec:
+    """Return a sniffer by the name of a preset, or from an inline table.
+
+    Parameters
+    ----------
+    given : name or table
+    name : of a sniffer from a table; its title if empty
+
+    Raises
+    ------
+    MeasurementError : the name is not known, or the table is invalid
+    """
+    if isinstance(given, str):
+        return sensor_preset(given)
+    return read_spec(given, name or str(given.get("title", UNTITLED_SNIFFER)))
+
+
+def read_spec(table: Mapping[str, Any], name: str) -> SnifferSpec:
+    """Return a sniffer from a table.
+
+    Parameters
+    ----------
+    table : ``title``, ``rate_hz``, ``source`` and ``channels``, a table of tables by gas. Keys of a
+        channel are the fields of ``Channel`` without its gas; those that are left out are taken as
+        not known. With a ``cross`` the channel responds to no other gases.
+    name : of the sniffer
+
+    Raises
+    ------
+    MeasurementError : a key is not known, or a value is not of its kind or range
+    """
+    _check_keys(table, {"title", "rate_hz", "source", "channels"}, f"instrument '{name}'")
+    channels = table.get("channels")
+    if not isinstance(channels, dict) or not channels:
+        raise MeasurementError(
+            f"instrument '{name}' has no channels; "
+            "give a table [channels.so2], one [channels.co2], and so on"
+        )
+    return SnifferSpec(
+        name=name,
+        title=str(table.get("title", name)),
+        rate_hz=number(table.get("rate_hz", 1.0), "rate_hz", name),
+        channels=tuple(_channel(gas, channels[gas], name) for gas in channels),
+        source=str(table.get("source", "")),
+    )
+
+
+def _channel(gas: str, table: Any, name: str) -> Channel:
+    where = f"channel '{gas}' of instrument '{name}'"
+    if gas not in GASES or not isinstance(table, dict):
+        raise MeasurementError(
+            f"{where} is not known; channels are tables called {', '.join(GASES)}"
+        )
+    _check_keys(table, {field.name for field in fields(Channel)} - {"gas"}, where)
+    given: dict[str, Any] = dict(_UNKNOWN[gas])
+    if "t90_s" in table:
+        given["t90_sd"] = _T90_KNOWN
+    if "delay_s" in table:
+        given["delay_sd_s"] = _DELAY_KNOWN_S
+    for key, value in table.items():
+        if key not in ("cross", "cross_sd"):
+            given[key] = number(value, key, where)
+        elif isinstance(value, dict):
+            given[key] = {other: number(share, key, where) for other, share in value.items()}
+        else:
+            raise MeasurementError(
+                f"{key} of {where} is {value!r}; it must be a table, as in {{ no = 0.015 }}"
+            )
+    if "cross" in table and "cross_sd" not in table:
+        given["cross_sd"] = {
+            other: _CROSS_KNOWN * abs(share) for other, share in given["cross"].items()
+        }
+    try:
+        return Channel(gas=gas, **given)
+    except MeasurementError as error:
+        raise MeasurementError(f"{where}: {error}") from None
+
+
+def _check_keys(table: Mapping[str, Any], known: set[str], where: str) -> None:
+    unknown = sorted(set(table) - known)
+    if unknown:
+        raise MeasurementError(
+            f"{where} has the key '{unknown[0]}'{guess(unknown[0], known)} "
+            f"it may have {', '.join(sorted(known))}"
+        )

@@ -5,7 +5,7 @@ import math
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 
-from common.cells import cell
+from common.text import cell
 from reports.compare.content import Compared
 from reports.compare.figures import MEASURES
 from reports.run.columns import met

@@ -4,8 +4,8 @@ import importlib.util
 from pathlib import Path
 from typing import Protocol
 
-from common.extras import install_words
 from common.registry import Registry
+from common.text import install_words
 from reports.errors import ReportError
 from reports.run.run_data import RunData
 

@@ -11,7 +11,7 @@ import numpy as np
 import pandas as pd
 
 from common.physics.geodesy import LocalFrame
-from common.times import moment, utc_text
+from common.text import moment, utc_text
 from measurement.gases import GASES, UNITS
 from reports.errors import ReportError
 from reports.run.columns import Array, column

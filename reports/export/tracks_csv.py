@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pandas as pd
 
-from common.cells import cell
+from common.text import cell
 from reports.errors import ReportError
 from reports.export.exporter import EXPORTERS
 from reports.run.run_data import RunData

@@ -8,7 +8,7 @@ import numpy as np
 import pandas as pd
 
 from measurement.estimate.verdict import COVERAGE
-from measurement.plume.passes import FOUND_WITHIN
+from measurement.plume.fluctuating_plume import FOUND_WITHIN
 from reports.document.blocks import Block, Heading, Section, Text
 from reports.finding.flight_charts import height_chart, section_chart
 from reports.finding.search_view import SearchView, search_view

@@ -9,8 +9,8 @@ import numpy as np
 import pandas as pd
 
 from measurement.errors import MeasurementError
-from measurement.plume.passes import passes
-from measurement.sniffer.presets import sensor_of
+from measurement.plume.fluctuating_plume import passes
+from measurement.sniffer.spec import sensor_of
 from reports.document.chart import Band
 from reports.run.columns import Array, column
 from reports.run.flight_config import flight_config

@@ -7,7 +7,7 @@ import numpy as np
 from common.intervals import CONFIDENCE, percent, shared_interval
 from measurement.estimate.verdict import COVERAGE
 from measurement.gases import MASS_PERCENT
-from measurement.plume.passes import FOUND_WITHIN
+from measurement.plume.fluctuating_plume import FOUND_WITHIN
 from reports.document.blocks import Table
 from reports.document.tables import number
 from reports.finding.variants import Variant

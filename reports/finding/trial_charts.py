@@ -6,7 +6,7 @@ import numpy as np
 import pandas as pd
 
 from measurement.estimate.verdict import COVERAGE
-from measurement.plume.passes import FOUND_WITHIN, HIT, passes
+from measurement.plume.fluctuating_plume import FOUND_WITHIN, HIT, passes
 from reports.document.chart import Chart, Line, Panel
 from reports.document.panels import histogram
 from reports.finding.variants import Variant

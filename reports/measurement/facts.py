@@ -7,10 +7,10 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from common.times import moment, span_words
+from common.text import moment, span_words
 from measurement.estimate.flight_log.details import FROM_LOG
 from measurement.estimate.flight_log.gaps import Gaps
-from measurement.sniffer.presets import sensor_preset, sensor_presets
+from measurement.sniffer.spec import sensor_preset, sensor_presets
 from reports.document.blocks import Fact
 from reports.measurement.data import Record
 from reports.run.columns import column, flights_flown

@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from common.verdicts.patrols import PatrolCounts
+from common.patrols import PatrolCounts
 from reports.design.section import innerloop_section
 from reports.document.blocks import Card, Findings, Heading, Section, Text, Verdict
 from reports.document.tables import parameter_table, vehicle_flown

@@ -7,9 +7,9 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
+from common.patrols import PatrolCounts
 from common.physics.wind import wind_towards
 from common.run_layout import PHASES, SHIPS
-from common.verdicts.patrols import PatrolCounts
 from reports.run.columns import Array
 from reports.run.run_data import RunData
 from reports.run.table_file import read_table

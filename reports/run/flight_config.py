@@ -8,8 +8,8 @@ from typing import Any, TypeAlias
 import numpy as np
 import pandas as pd
 
-from common.dotted_keys import at_or_below
-from measurement.emission.ship import funnel_height
+from common.text import at_or_below
+from measurement.emission import stack_height_of
 from reports.run.run_data import RunData
 
 Config = Mapping[str, Any]
@@ -45,7 +45,9 @@ def flight_configs(run: RunData, rows: pd.DataFrame) -> list[Config]:
 
 def source_height(config: Config) -> float:
     """Return the height of the funnel's mouth, the centre of a keep-out sphere, above the sea [m]."""
-    return funnel_height(config["plume"]["source_height_m"], config.get("emission", {}).get("ship"))
+    return stack_height_of(
+        config["plume"]["source_height_m"], config.get("emission", {}).get("ship")
+    )
 
 
 def keepout_shape(config: Config) -> str:

@@ -9,7 +9,7 @@ from typing import Any
 
 from common.picture import Picture, PictureError, read_picture
 from common.run_layout import REPORT_SETTINGS, is_file_name
-from common.spelling import did_you_mean
+from common.text import did_you_mean
 from reports.errors import ReportError
 from reports.run.run_data import RunData
 

@@ -5,13 +5,9 @@ from dataclasses import dataclass, fields
 
 import numpy as np
 
-from measurement.emission.emission import emission_of
-from measurement.emission.fuel import fuel_preset
-from measurement.emission.ship import ship_of
+from measurement.emission import emission_of, fuel_preset, ship_of
 from measurement.errors import MeasurementError
-from measurement.plume.air import MarineAir
-from measurement.plume.settings import PlumeSettings
-from measurement.plume.spread import STEP, spreads
+from measurement.plume.spread import STEP, MarineAir, PlumeSettings, spreads
 from reports.run.columns import Array
 from reports.run.flight_config import Config, source_height
 

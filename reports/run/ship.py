@@ -32,7 +32,7 @@ HULLS = {
     "tanker": Hull(title="a tanker", length=180.0, beam=30.0),
     "cruise": Hull(title="a cruise ship", length=290.0, beam=36.0, funnel=0.35),
 }
-"""By the names of ``measurement/emission/ships.toml``: usual sizes of such ships, assumptions."""
+"""By the names of ``measurement/ships.toml``: usual sizes of such ships, assumptions."""
 
 ANY = Hull(title="a merchant ship", length=150.0, beam=23.0, known=False)
 """Of a ship whose class is not known, as one of a user's own."""

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pandas as pd
 
-from common.cells import MARK, from_cell
+from common.text import MARK, from_cell
 from measurement.tables import other_separator
 from reports.errors import ReportError
 

@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from common.dotted_keys import at_or_below
 from common.run_layout import DRAWS
+from common.text import at_or_below
 from reports.errors import ReportError
 from reports.run.columns import Array, column, flights_flown
 from reports.run.flight_config import Config, flight_config, keepout_shape

@@ -10,7 +10,7 @@ from numbers import Integral
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from common.spelling import did_you_mean
+from common.text import did_you_mean
 from scenarios.api.objects import LentWork, check_picklable, lent
 from scenarios.api.results import Flight, Run
 from scenarios.api.scenario import Given, Scenario, load, sweeps_nu

@@ -70,7 +70,9 @@ def lent(parts: Parts) -> Iterator[None]:
     with ExitStack() as stack:
         for given in parts:
             try:
-                stack.enter_context(_registry(given.key).lent(given.name, given.part))
+                stack.enter_context(
+                    _registry(given.key).temporarily_registered(given.name, given.part)
+                )
             except PluginError as error:
                 raise InputError(f"{given.key}: {error}") from None
         if any(given.key == "reference.shape" for given in parts):

@@ -3,7 +3,7 @@
 from dataclasses import dataclass, field
 from importlib.util import find_spec
 
-from common.extras import install_words
+from common.text import install_words
 from scenarios.engine.executor import Executor
 from scenarios.engine.local_executor import LocalExecutor
 from scenarios.engine.task import Limits, Work

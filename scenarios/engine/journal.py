@@ -16,8 +16,8 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import IO
 
-from common.cells import cell
 from common.files import plain_number
+from common.text import cell
 from scenarios.engine.task import Result, Row, Task
 from scenarios.errors import InputError
 

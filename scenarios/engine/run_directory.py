@@ -8,7 +8,6 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from common.cells import cell
 from common.files import write_json, write_text, write_whole
 from common.run_layout import (
     BOUNDS,
@@ -23,6 +22,7 @@ from common.run_layout import (
     REPORT_PDF,
     STATISTICS,
 )
+from common.text import cell
 from scenarios.engine.configuration import changed_keys
 from scenarios.engine.fingerprint import differences, fingerprint
 from scenarios.errors import InputError

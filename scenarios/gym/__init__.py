@@ -6,7 +6,7 @@ Importing this package makes the environment known. Gymnasium has no entry point
 ``gymnasium.make("scenarios.gym:PlumeCrossing-v0")``.
 """
 
-from common.extras import install_words
+from common.text import install_words
 
 try:
     from gymnasium.envs.registration import register, registry

@@ -3,12 +3,12 @@ goes on, as at once.
 """
 
 import math
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
 
-from measurement.emission.emission import GRAVITY
+from common.physics.units import STANDARD_GRAVITY
 from measurement.gases import GASES
 from measurement.plume.fluctuating_plume import PlumeSample
 from scenarios.world.exhaust import Exhaust
@@ -64,7 +64,7 @@ class AirSamples:
         def of_plume(of: str) -> Array:
             return np.concatenate([getattr(part.plume, of) for part in parts])
 
-        plume = PlumeSample(*(of_plume(field.name) for field in fields(PlumeSample)))
+        plume = PlumeSample(*(of_plume(name) for name in PlumeSample._fields))
         return cls(whole("time"), whole("air"), whole("pressure"), whole("above"), plume)
 
 
@@ -102,7 +102,9 @@ class AirSampler:
         return AirSamples(
             time=at,
             air=self.background + self._exhaust.excess(plume.dilution),
-            pressure=_AIR_DENSITY * (0.5 * self._fraction * flown**2 - GRAVITY * up) / 100.0,
+            pressure=_AIR_DENSITY
+            * (0.5 * self._fraction * flown**2 - STANDARD_GRAVITY * up)
+            / 100.0,
             above=up - plume.axis_height,
             plume=plume,
         )

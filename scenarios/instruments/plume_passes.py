@@ -5,8 +5,7 @@ import math
 import numpy as np
 import numpy.typing as npt
 
-from measurement.plume.fluctuating_plume import PlumeSample
-from measurement.plume.passes import HIT, passes
+from measurement.plume.fluctuating_plume import HIT, PlumeSample, passes
 
 Array = npt.NDArray[np.float64]
 

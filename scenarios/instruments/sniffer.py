@@ -11,15 +11,14 @@ import numpy.typing as npt
 from pydantic import BeforeValidator
 
 from common.run_layout import SULPHUR_TABLE
-from common.spelling import did_you_mean
+from common.text import did_you_mean
 from gnc.errors import InfeasibleError
 from gnc.estimation.navigation import Motion
-from measurement.emission.fuel import expected_fsc
+from measurement.emission import expected_fsc
 from measurement.errors import MeasurementError
 from measurement.gases import GASES, UNITS
-from measurement.sniffer.presets import sensor_of, sensor_presets
 from measurement.sniffer.sniffer import Readings, Sniffer
-from measurement.sniffer.spec import SnifferSpec
+from measurement.sniffer.spec import SnifferSpec, sensor_of, sensor_presets
 from scenarios.instruments.air_samples import (
     PLACE_COLUMNS,
     RATE_COLUMNS,

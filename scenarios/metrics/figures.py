@@ -6,7 +6,7 @@ import numpy as np
 import numpy.typing as npt
 
 from aircraft.wind import CALM
-from common.times import utc_text
+from common.text import utc_text
 from gnc.mission.mission import LEAVING, Mode
 from scenarios.engine.task import Row
 from scenarios.metrics.crossings import Crossing, find_crossings

@@ -7,7 +7,7 @@ import numpy.typing as npt
 import pandas as pd
 
 from gnc.mission.mission import Mode
-from measurement.plume.passes import FOUND_WITHIN, HIT, passes
+from measurement.plume.fluctuating_plume import FOUND_WITHIN, HIT, passes
 from scenarios.engine.task import Row
 from scenarios.instruments.air_samples import CLEAN_AIR
 from scenarios.schema.sections.flight import FlightConfig

@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 import numpy.typing as npt
 
-from common.times import utc_text
+from common.text import utc_text
 from gnc.errors import InfeasibleError
 from gnc.estimation.vessel import KEPT, VesselLimits, VesselReport, radius_after, radius_by_speed
 from scenarios.schema.scenario import Scenario

@@ -14,7 +14,7 @@ from pydantic import BaseModel, RootModel
 from pydantic.fields import FieldInfo
 from pydantic_core import to_jsonable_python
 
-from common.spelling import nearest
+from common.text import nearest
 from scenarios.schema.documented_parts import FLIGHT_STUDIES, DocumentedKey, documented_part_keys
 from scenarios.schema.effect import named_by
 from scenarios.schema.effect_rules import RULES

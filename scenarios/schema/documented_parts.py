@@ -67,7 +67,7 @@ def documented_part_keys() -> tuple[DocumentedKey, ...]:
     found: dict[tuple[str, str], tuple[DocumentedKey, list[str]]] = {}
     for key_of_part, registry in _REGISTRIES.items():
         section = key_of_part.partition(".")[0]
-        for name in registry.own_names():
+        for name in registry.builtin_names():
             part = registry.get(name)
             made = part if section == "guidance" else getattr(part, "SETTINGS", None)
             for key in _part_keys(section, made) if made else ():

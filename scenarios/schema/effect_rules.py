@@ -5,7 +5,7 @@ would use them.
 from collections.abc import Callable
 from dataclasses import dataclass, fields
 
-from measurement.plume.settings import PlumeSettings
+from measurement.plume.spread import PlumeSettings
 from scenarios.schema.experiment_checks import FOLLOWING, UNSTEADY
 from scenarios.schema.scenario import Scenario
 

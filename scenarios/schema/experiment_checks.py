@@ -6,8 +6,8 @@ from collections.abc import Collection, Iterator
 
 from pydantic import BaseModel
 
-from common.dotted_keys import at_or_below
-from measurement.plume.settings import SOURCE_HEIGHT_MAX
+from common.text import at_or_below
+from measurement.plume.spread import SOURCE_HEIGHT_MAX
 from scenarios.schema.scenario_keys import ScenarioKeys
 from scenarios.schema.sections.experiment import FLIGHTS_MAX, STUDY
 from scenarios.schema.sections.world import SOURCE_HEIGHT_MIN

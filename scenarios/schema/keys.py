@@ -10,8 +10,7 @@ from pydantic import BaseModel, RootModel, ValidationError
 from pydantic.fields import FieldInfo
 from pydantic_core import ErrorDetails
 
-from common.dotted_keys import at_or_below
-from common.spelling import did_you_mean, nearest
+from common.text import at_or_below, did_you_mean, nearest
 from scenarios.schema.sections.wrong_value import must_be
 
 _SPEEDS = {"vessel.speed_mps", "vessel.speed_ratio"}

@@ -13,7 +13,7 @@ from pydantic import ValidationError
 from common.files import is_file
 from common.registry import announced, is_file_part
 from common.run_layout import FLIGHTS, MANIFEST
-from common.spelling import did_you_mean
+from common.text import did_you_mean
 from scenarios.errors import InputError
 from scenarios.schema.effect import refuse_unused
 from scenarios.schema.keys import explanation, key_of

@@ -6,7 +6,7 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
-from measurement.emission.ship import funnel_height
+from measurement.emission import stack_height_of
 from scenarios.schema.sections.equipment import (
     FaultConfig,
     KinematicConfig,
@@ -175,7 +175,7 @@ class ScenarioKeys(Section):
         """Return the height of the funnel's mouth above the sea: as it is given, else that of the
         ship [m].
         """
-        return funnel_height(self.plume.source_height_m, self.emission.ship)
+        return stack_height_of(self.plume.source_height_m, self.emission.ship)
 
     @property
     def altitude(self) -> float:

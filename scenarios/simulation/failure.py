@@ -5,7 +5,7 @@ from pathlib import Path
 
 from aircraft.spec import AircraftError
 from common.registry import PluginError
-from common.spelling import one_line
+from common.text import one_line
 from gnc.errors import InfeasibleError, LawError
 from measurement.errors import MeasurementError
 from scenarios.engine.task import Row

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from common.spelling import did_you_mean
+from common.text import did_you_mean
 from scenarios.simulation.interventions import Intervention
 from scenarios.simulation.outcome import Outcome
 

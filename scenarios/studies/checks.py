@@ -11,7 +11,7 @@ from aircraft.weather import scale_lengths
 from common.files import is_data_file
 from common.registry import PluginError, Registry
 from common.run_layout import NAME_BYTES_MAX, is_file_name
-from common.spelling import did_you_mean
+from common.text import did_you_mean
 from gnc.errors import InfeasibleError
 from gnc.reference.reference import REFERENCE_SHAPES
 from scenarios.errors import InputError

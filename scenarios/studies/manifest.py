@@ -14,7 +14,7 @@ from aircraft.spec import AircraftError
 from common.provenance import provenance
 from common.registry import PluginError, file_hash, file_of
 from common.run_layout import FORMAT, LOGO
-from measurement.emission.ship import Ship
+from measurement.emission import Ship
 from measurement.gases import UNITS
 from measurement.sniffer.channel import Channel
 from measurement.sniffer.spec import SnifferSpec

@@ -10,12 +10,10 @@ import numpy.typing as npt
 
 from aircraft.wind import WindField
 from gnc.errors import InfeasibleError
-from measurement.emission.emission import Emission, emission_of
-from measurement.emission.fuel import Fuel, fuel_preset
-from measurement.emission.ship import ship_of
+from measurement.emission import Emission, Fuel, emission_of, fuel_preset, ship_of
 from measurement.gases import GASES, PARTS
-from measurement.plume.air import MarineAir
 from measurement.plume.fluctuating_plume import PlumeSample
+from measurement.plume.spread import MarineAir
 from scenarios.schema.scenario import Scenario
 from scenarios.world.plume import Plume
 from scenarios.world.vessel import VesselTruth

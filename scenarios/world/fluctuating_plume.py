@@ -7,10 +7,9 @@ import math
 import numpy as np
 
 from aircraft.wind import WindField
-from measurement.emission.emission import Emission
-from measurement.plume.air import MarineAir
+from measurement.emission import Emission
 from measurement.plume.fluctuating_plume import FluctuatingPlume
-from measurement.plume.settings import PlumeSettings
+from measurement.plume.spread import MarineAir, PlumeSettings
 from scenarios.world.plume import StraightPlume, plume_model
 from scenarios.world.vessel import VesselTruth
 

@@ -11,7 +11,7 @@ from typing import Any, TypeVar
 
 from aircraft.spec import AircraftError
 from common.registry import PluginError
-from common.spelling import one_line
+from common.text import one_line
 from gnc.errors import InfeasibleError, LawError
 from gnc.reference import builtin_floats
 from measurement.errors import MeasurementError

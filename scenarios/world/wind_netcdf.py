@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from common.extras import install_words
+from common.text import install_words
 from scenarios.errors import InputError
 
 Array = npt.NDArray[np.float64]

@@ -12,8 +12,7 @@ import numpy.typing as npt
 
 from aircraft.wind import WindField, over_the_sea
 from common.physics.wind import wind_velocity
-from common.spelling import other_units
-from common.times import utc_text
+from common.text import other_units, utc_text
 from measurement.tables import decimal_commas, other_separator
 from scenarios.errors import InputError
 from scenarios.schema.sections.world import WindConfig

@@ -8,9 +8,8 @@ import numpy as np
 
 from measurement.gases import fsc_factor
 from measurement.sniffer.channel import Channel
-from measurement.sniffer.presets import sensor_preset
 from measurement.sniffer.sniffer import Sniffer
-from measurement.sniffer.spec import SnifferSpec
+from measurement.sniffer.spec import SnifferSpec, sensor_preset
 
 BACKGROUND = np.array([1.0, 420.0, 0.2, 3.0])
 """SO2 [ppb], CO2 [ppm], NO [ppb], NO2 [ppb] of sea air."""

@@ -6,14 +6,10 @@ from dataclasses import replace
 
 import numpy as np
 
-from measurement.emission.emission import emission_of
-from measurement.emission.fuel import fuel_preset
-from measurement.emission.ship import ship_preset
-from measurement.plume.air import MarineAir
+from measurement.emission import emission_of, fuel_preset, ship_preset
 from measurement.plume.fluctuating_plume import FluctuatingPlume
 from measurement.plume.parcels import Parcels
-from measurement.plume.settings import PlumeSettings
-from measurement.plume.spread_table import SpreadTable
+from measurement.plume.spread import MarineAir, PlumeSettings, SpreadTable
 
 # The worked example of the specification, section 2: 10 MW, 20 m/s, 1.5 m, 250 degC, F = 49.6
 # m4/s3, Fm = 124 m4/s2.
@@ -32,7 +28,7 @@ def air(wind_speed, **options):
 
 
 def straight(wind, true_wind, *, since=-150.0, until=100.0, course=0.0, seed=1, **settings):
-    """A plume in a constant apparent wind: the funnel leaves the air mass behind on ``course``,
+    """A plume in a constant apparent wind: the stack leaves the air mass behind on ``course``,
     from the origin at time 0.
     """
     time = np.array([since, until])

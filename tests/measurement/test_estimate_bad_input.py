@@ -12,8 +12,8 @@ from measurement.estimate.estimator import estimate
 from measurement.estimate.passes import readings_noise
 from measurement.estimate.record import checked_record
 from measurement.sniffer.channel import Channel
-from measurement.sniffer.presets import sensor_preset
 from measurement.sniffer.sniffer import Readings
+from measurement.sniffer.spec import sensor_preset
 
 SPEC = plain_sniffer(so2_noise=2.5, co2_noise=1.0)
 READINGS = read(SPEC, crossings(0.25, duration=120.0))

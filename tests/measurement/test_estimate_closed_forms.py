@@ -15,8 +15,8 @@ from measurement.estimate.passes import find_passes
 from measurement.estimate.record import Record, checked_record
 from measurement.gases import fsc_factor
 from measurement.sniffer.lag import lag
-from measurement.sniffer.presets import sensor_preset
 from measurement.sniffer.sniffer import Readings
+from measurement.sniffer.spec import sensor_preset
 
 TAU = 20.0 / math.log(10.0)
 

@@ -13,8 +13,8 @@ from measurement.estimate.estimator import estimate
 from measurement.estimate.passes import find_passes
 from measurement.estimate.record import checked_record
 from measurement.gases import GASES
-from measurement.sniffer.presets import read_spec, sensor_preset
 from measurement.sniffer.sniffer import Readings
+from measurement.sniffer.spec import read_spec, sensor_preset
 
 
 def reasons(readings, spec):

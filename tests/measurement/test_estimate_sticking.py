@@ -10,8 +10,8 @@ from crossings import changed, crossings, flight, read
 
 from measurement.estimate.estimator import estimate
 from measurement.gases import GASES
-from measurement.sniffer.presets import sensor_preset
 from measurement.sniffer.sniffer import Readings
+from measurement.sniffer.spec import sensor_preset
 
 STUCK = "its sensor, or its logger, was stuck"
 

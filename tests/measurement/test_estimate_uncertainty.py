@@ -17,8 +17,8 @@ from measurement.estimate.fit.signals import make_signals
 from measurement.estimate.passes import find_passes
 from measurement.estimate.record import checked_record
 from measurement.gases import GASES, fsc_factor
-from measurement.sniffer.presets import read_spec, sensor_preset
 from measurement.sniffer.sniffer import Readings
+from measurement.sniffer.spec import read_spec, sensor_preset
 
 REPEATS = 200
 """They give a standard deviation to 5 %; a tenth, which is asked for, is twice that, and the seeds

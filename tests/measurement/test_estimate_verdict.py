@@ -13,8 +13,8 @@ from measurement.estimate.estimator import estimate
 from measurement.estimate.over_time import time_to_verdict
 from measurement.estimate.quality import judged_quality
 from measurement.estimate.verdict import interval, judged, probability_above
-from measurement.sniffer.presets import sensor_preset
 from measurement.sniffer.sniffer import Readings
+from measurement.sniffer.spec import sensor_preset
 
 
 def test_a_verdict_is_that_of_a_guard_band():

@@ -9,7 +9,7 @@ from measurement.estimate.fit.regression import regress
 from measurement.estimate.fit.signals import make_signals
 from measurement.estimate.passes import find_passes
 from measurement.estimate.record import checked_record
-from measurement.sniffer.presets import sensor_preset
+from measurement.sniffer.spec import sensor_preset
 
 
 def test_a_record_that_was_asked_before_answers_as_a_new_one():

@@ -9,14 +9,10 @@ from exhaust_cases import SENSOR
 from gnc.estimation.plume.estimator import HIT
 from gnc.estimation.plume.prior import Expectation, PlumePrior, expected_plume, rise
 from gnc.mission.axis import AxisHeight
-from measurement.emission.emission import Emission, emission_of
-from measurement.emission.fuel import fuel_preset
-from measurement.emission.ship import ship_preset
+from measurement.emission import Emission, emission_of, fuel_preset, ship_preset
 from measurement.gases import GASES
-from measurement.plume import passes
-from measurement.plume.air import MarineAir
-from measurement.plume.settings import PlumeSettings
-from measurement.plume.spread import spreads
+from measurement.plume import fluctuating_plume
+from measurement.plume.spread import MarineAir, PlumeSettings, spreads
 
 EMISSION = emission_of(ship_preset("container"), fuel_preset("mgo", 0.1), power=10e6)
 
@@ -174,4 +170,4 @@ def test_rise_by_buoyancy_is_briggs_law() -> None:
 
 
 def test_a_hit_of_the_guidance_is_a_hit_of_the_figures() -> None:
-    assert HIT == passes.HIT
+    assert HIT == fluctuating_plume.HIT

@@ -13,8 +13,7 @@ from measurement.estimate.flight_log.details import FlightDetails, read_details
 from measurement.estimate.result import Method
 from measurement.estimate.verdict import LIMITS_PERCENT
 from measurement.gases import CARBON_FRACTION, GASES, UNITS
-from measurement.sniffer.presets import sensor_of, sensor_preset
-from measurement.sniffer.spec import SnifferSpec
+from measurement.sniffer.spec import SnifferSpec, sensor_of, sensor_preset
 
 COLUMNS = {
     "time": "time_s",

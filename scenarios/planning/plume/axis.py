@@ -9,7 +9,7 @@ import numpy as np
 from gnc.errors import InfeasibleError
 from gnc.estimation.plume.prior import Expectation, GasSensor
 from gnc.mission.axis import AxisHeight, AxisParameters, Climb, PredictedPlume, SearchedPlume
-from measurement.emission.emission import Emission
+from measurement.emission import Emission
 from measurement.gases import GASES
 from measurement.sniffer.spec import SnifferSpec
 from scenarios.instruments.sniffer import SnifferOnBoard

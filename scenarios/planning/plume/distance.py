@@ -14,9 +14,7 @@ import numpy.typing as npt
 from scipy.special import erfcx
 
 from gnc.errors import InfeasibleError
-from measurement.plume.air import MarineAir
-from measurement.plume.settings import PlumeSettings
-from measurement.plume.spread import STEP, spreads
+from measurement.plume.spread import STEP, MarineAir, PlumeSettings, spreads
 from scenarios.planning.plume.axis import (
     axis_height,
     expected_emission,

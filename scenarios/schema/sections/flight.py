@@ -4,7 +4,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import Field, field_validator, model_validator
 
-from common.spelling import did_you_mean
+from common.text import did_you_mean
 from gnc.mission.mission import Mode
 from scenarios.schema.sections.section import (
     Angle,

@@ -11,7 +11,7 @@ from typing import Annotated, Any, Literal
 from pydantic import ConfigDict, Field, field_validator, model_validator
 
 from common.registry import PluginError
-from common.spelling import did_you_mean, nearest
+from common.text import did_you_mean, nearest
 from gnc.laws import ON_CIRCLE, ON_OSCILLATION, STEERING_LAWS
 from scenarios.schema.sections.section import (
     Angle,

@@ -8,7 +8,7 @@ from typing import Any
 from pydantic import ConfigDict, TypeAdapter, ValidationError, model_validator
 
 from common.registry import PluginError
-from common.spelling import did_you_mean
+from common.text import did_you_mean
 from scenarios.schema.sections.section import Section, refuse_truth_values
 from scenarios.schema.sections.wrong_value import must_be
 

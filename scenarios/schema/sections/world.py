@@ -10,8 +10,8 @@ from pydantic import BeforeValidator, Field, field_validator, model_validator
 
 from common.files import is_data_file
 from common.registry import is_file_part
-from measurement.emission.fuel import SULPHUR_MAX_PERCENT, fuel_preset
-from measurement.emission.ship import funnel_height, ship_of
+from measurement.emission import fuel_preset, ship_of, stack_height_of
+from measurement.gases import FUEL_SULPHUR_MOST
 from scenarios.schema.extension_points import PLUME_MODELS, VESSEL_TRACKS
 from scenarios.schema.sections.part_section import PartSection
 from scenarios.schema.sections.section import Angle, NonNegative, Positive, Section
@@ -155,7 +155,7 @@ class PlumeConfig(PartSection):
         """Return the height where the axis starts, as the section has it; a plume model is given
         its flight's own [m].
         """
-        return funnel_height(self.source_height_m, None)
+        return stack_height_of(self.source_height_m, None)
 
     def parts(self) -> dict[str, Any]:
         """Return the plume model by its name."""
@@ -177,11 +177,11 @@ class EmissionConfig(Section):
     """What comes out of the funnel."""
 
     ship: Annotated[str | dict[str, Any] | None, BeforeValidator(_known_ship)] = None
-    """The ship that emits the exhaust, one of measurement/emission/ships.toml, or a table of one's
+    """The ship that emits the exhaust, one of measurement/ships.toml, or a table of one's
     own with the keys of these; no exhaust if not given."""
     fuel: str = "mgo"
-    """Fuel of the ship, one of measurement/emission/fuels.toml."""
-    sulphur_percent: Annotated[float, Field(ge=0.0, le=SULPHUR_MAX_PERCENT)] | None = None
+    """Fuel of the ship, one of measurement/fuels.toml."""
+    sulphur_percent: Annotated[float, Field(ge=0.0, le=FUEL_SULPHUR_MOST)] | None = None
     """Sulphur content of the fuel by mass; the usual one of that fuel if not given [% m/m]."""
     load: Annotated[float, Field(gt=0.0, le=1.0)] | None = None
     """Load of the engine, a fraction as 0.85; if not given, that at the vessel's speed, which the

@@ -4,8 +4,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import fields
 from typing import Any
 
+from common.patrols import PatrolCounts
 from common.run_layout import PHASES, SHIPS, SUMMARY
-from common.verdicts.patrols import PatrolCounts
 from scenarios.engine.journal import Journal
 from scenarios.engine.run_directory import RunDirectory
 from scenarios.engine.runner import Fly, Progress, StudySummary

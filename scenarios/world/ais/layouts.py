@@ -12,7 +12,7 @@ from itertools import islice
 from pathlib import Path
 from typing import TextIO
 
-from common.spelling import other_units
+from common.text import other_units
 from measurement.tables import decimal_commas, other_separator
 from scenarios.errors import InputError
 from scenarios.world.ais.nmea import nmea_rows

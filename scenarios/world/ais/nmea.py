@@ -8,7 +8,7 @@ from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import Any
 
-from common.extras import install_words
+from common.text import install_words
 from scenarios.errors import InputError
 from scenarios.world.ais.rows import AisRow, seconds_of
 

@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from common.physics.geodesy import LocalFrame
-from common.times import utc_text
+from common.text import utc_text
 from gnc.estimation.vessel import VesselReport
 from scenarios.errors import InputError
 from scenarios.schema.sections.world import VesselConfig

@@ -7,7 +7,7 @@ STEP = 2.0
 
 
 def plane(distance, half_width=350.0, top=350.0):
-    """Places of a plane across the wind, a distance behind the funnel that is at the origin, and
+    """Places of a plane across the wind, a distance behind the stack that is at the origin, and
     the area that each stands for.
     """
     across, up = np.meshgrid(
@@ -74,7 +74,7 @@ def test_fluctuations_within_the_plume_keep_what_passes_a_plane_on_average():
     assert np.mean(fluxes) == pytest.approx(1.0, abs=0.04)
 
 
-def test_upwind_of_the_funnel_and_before_the_track_there_is_nothing():
+def test_upwind_of_the_stack_and_before_the_track_there_is_nothing():
     plume = straight(WIND, TRUE_WIND, since=-50.0)
     sample = plume.sample(np.zeros(3), np.array([1.0, 50.0, -251.0]), np.zeros(3), np.full(3, 60.0))
     assert (sample.dilution == 0.0).all()

@@ -1,13 +1,11 @@
-from dataclasses import fields
-
 import numpy as np
 import pytest
 from plume_cases import EMISSION, HEIGHT, air, turning
 
 from measurement.plume.fluctuating_plume import FluctuatingPlume, PlumeSample
-from measurement.plume.settings import PlumeSettings
+from measurement.plume.spread import PlumeSettings
 
-NAMES = [field.name for field in fields(PlumeSample)]
+NAMES = PlumeSample._fields
 TRACK = turning(8.0, 4.0, 1.0)
 
 

@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 from plume_cases import HEIGHT, straight
 
-from measurement.plume.meander import Meander
+from measurement.plume.fluctuating_plume import Meander
 
 SCALE = 90.0
 

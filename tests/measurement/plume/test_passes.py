@@ -4,7 +4,7 @@ import itertools
 
 import numpy as np
 
-from measurement.plume.passes import passes
+from measurement.plume.fluctuating_plume import passes
 
 
 def test_each_pass_runs_half_way_to_the_next_change_of_sides():

@@ -1,10 +1,10 @@
 import numpy as np
 import pytest
-from plume_cases import EMISSION, HEIGHT, air, straight
+from plume_cases import EMISSION, HEIGHT, air
 
 from measurement.errors import MeasurementError
 from measurement.plume.fluctuating_plume import FluctuatingPlume
-from measurement.plume.settings import PlumeSettings
+from measurement.plume.spread import PlumeSettings
 
 TIME = np.array([0.0, 50.0, 100.0])
 
@@ -93,7 +93,3 @@ def test_an_axis_without_a_track_there_is_refused():
 def test_settings_out_of_range_are_refused(name, value):
     with pytest.raises(MeasurementError, match=f"^{name} is"):
         PlumeSettings(**{name: value})
-
-
-def test_the_least_apparent_wind_shows_whether_the_spreads_are_in_their_range():
-    assert straight(1.5, 7.0).wind_min == pytest.approx(1.5)

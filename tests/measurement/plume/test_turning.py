@@ -4,7 +4,7 @@ from plume_cases import EMISSION, HEIGHT, air, puffs, turning
 
 from measurement.plume.fluctuating_plume import FluctuatingPlume
 from measurement.plume.parcels import Parcels
-from measurement.plume.settings import PlumeSettings
+from measurement.plume.spread import PlumeSettings
 
 SETTINGS = {"meander": False, "age_max": 250.0}
 
@@ -50,7 +50,7 @@ def test_the_plume_of_a_turning_ship_is_that_of_a_sum_of_puffs(case):
     places = around(of, when)
     sample = of.sample(np.full(len(places[0]), when), *places)
     reference = puffs(track, 7.0, when, places, interval=0.4, **SETTINGS)
-    # Within 100 m of the funnel puffs reach ahead of it and along a steep axis, which a slender
+    # Within 100 m of the stack puffs reach ahead of it and along a steep axis, which a slender
     # plume does not.
     there = sample.distance > 100.0
     error = np.abs(sample.dilution - reference)[there] / reference[there].max()

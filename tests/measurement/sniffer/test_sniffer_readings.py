@@ -10,16 +10,22 @@ from crossings import BACKGROUND, changed, plain_sniffer, read, sniffer_of
 
 from measurement.errors import MeasurementError
 from measurement.sniffer.channel import Channel
-from measurement.sniffer.presets import read_spec, sensor_preset, sensor_presets
 from measurement.sniffer.sniffer import Sniffer
+from measurement.sniffer.spec import read_spec, sensor_preset, sensor_presets
 
 STILL = np.tile(BACKGROUND, (20_001, 1))
 
 
 def test_a_steady_reading_is_gain_times_air_and_other_gases_with_pressure_and_zero():
     so2 = Channel(
-        gas="so2", t90_s=5.0, noise=0.0, gain=1.1, zero=-2.0, cross={"no": 0.015, "no2": -1.6}, pressure_effect=0.0015
-    )  # fmt: skip
+        gas="so2",
+        t90_s=5.0,
+        noise=0.0,
+        gain=1.1,
+        zero=-2.0,
+        cross={"no": 0.015, "no2": -1.6},
+        pressure_effect=0.0015,
+    )
     air = np.array([[30.0, 420.0, 1000.0, 50.0]] * 3)
     spec = sniffer_of(so2)
     reading = (
@@ -133,7 +139,7 @@ def test_every_preset_has_the_figures_of_its_source():
         ({"cross": {"so2": 0.1}}, "cross of so2 names 'so2'"),
         ({"cross": {"co": 0.1}}, "cross of so2 names 'co'"),
         ({"cross": {"no": 60.0}}, "cross of so2 to no is 60"),
-        ({"pressure_effect": 1.0}, "pressure_effect at most 0.1"),
+        ({"pressure_effect": 1.0}, "pressure_effect of so2 is 1; it must be at most 0.1"),
         ({"gas": "o3"}, "gas is 'o3'; it must be one of so2, co2, no, no2"),
     ],
 )
@@ -168,7 +174,7 @@ def test_sniffers_that_cannot_be_are_refused():
             {"channels": {"so2": {"t90_s": "fast"}}},
             "t90_s of channel 'so2' of instrument 'x' is 'fast'; it must be a number",
         ),
-        ({"channels": {"so2": {"cross": 0.1}}}, "give a table"),
+        ({"channels": {"so2": {"cross": 0.1}}}, "must be a table"),
         ({"rate_hz": True, "channels": {"so2": {}}}, "rate_hz of x is True"),
     ],
 )

@@ -12,8 +12,8 @@ from measurement.errors import MeasurementError
 from measurement.gases import GASES
 from measurement.sniffer.channel import Channel
 from measurement.sniffer.lag import lag, time_constants
-from measurement.sniffer.presets import sensor_preset
 from measurement.sniffer.sniffer import Sniffer
+from measurement.sniffer.spec import sensor_preset
 
 STEP = 0.25
 TAU = 20.0 / math.log(10.0)

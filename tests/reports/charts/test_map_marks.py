@@ -7,7 +7,7 @@ from importlib.resources import files
 import numpy as np
 import pytest
 
-from measurement.emission.ship import ship_preset
+from measurement.emission import ship_preset
 from reports.document.chart import Line, Note, Panel
 from reports.document.map_marks import arrow, hull_line, on_map, plume_lines
 from reports.document.palette import Meaning
@@ -128,9 +128,7 @@ def test_a_course_that_is_up_is_up():
 
 def test_every_ship_that_is_known_has_a_hull_that_is_a_ships():
     ships = set(
-        tomllib.loads(
-            files("measurement.emission").joinpath("ships.toml").read_text(encoding="utf-8")
-        )
+        tomllib.loads(files("measurement").joinpath("ships.toml").read_text(encoding="utf-8"))
     )
     assert set(HULLS) == ships
     for hull in (ANY, *HULLS.values()):

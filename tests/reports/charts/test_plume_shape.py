@@ -5,12 +5,9 @@ import math
 import numpy as np
 import pytest
 
-from measurement.emission.emission import emission_of
-from measurement.emission.fuel import fuel_preset
-from measurement.emission.ship import ship_preset
-from measurement.plume.air import MarineAir
+from measurement.emission import emission_of, fuel_preset, ship_preset
 from measurement.plume.fluctuating_plume import FluctuatingPlume
-from measurement.plume.settings import PlumeSettings
+from measurement.plume.spread import MarineAir, PlumeSettings
 from reports.run.flight_config import source_height
 from reports.run.plume_shape import LINE_HALF_WIDTH, SPREADS, plume_shape
 
@@ -72,7 +69,7 @@ def test_smoke_rises_and_widens_with_distance_and_in_weaker_wind_past_the_funnel
 
 
 def test_smoke_begins_at_the_funnel_of_its_ship_unless_a_height_is_given():
-    # measurement/emission/ships.toml: 16 m.
+    # measurement/ships.toml: 16 m.
     coaster = SMOKE["emission"] | {"ship": "coaster", "load": 0.5}
     for given, height in ((None, 16.0), (35.0, 35.0)):
         config = SMOKE | {"emission": coaster, "plume": SMOKE["plume"] | {"source_height_m": given}}

@@ -12,7 +12,7 @@ import pypdfium2
 import pytest
 from report_parts import blocks_of, built
 
-from common.times import moment, span_words
+from common.text import moment, span_words
 from measurement.estimate.__main__ import main
 from reports.document.blocks import Table
 from reports.document.provenance import provenance_section

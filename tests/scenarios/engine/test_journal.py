@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from common.cells import from_cell
+from common.text import from_cell
 from scenarios.engine.journal import Journal
 from scenarios.engine.task import Result, Task
 from scenarios.errors import InputError

@@ -5,8 +5,8 @@ from pathlib import Path
 import pandas as pd
 import pytest
 
-from measurement.emission.ship import Ship, ship_of, ship_preset
-from measurement.sniffer.presets import sensor_of
+from measurement.emission import Ship, ship_of, ship_preset
+from measurement.sniffer.spec import sensor_of
 from reports.output import write_report
 from reports.run.run_data import read_run
 from scenarios.errors import InputError
@@ -125,15 +125,15 @@ def test_keys_of_a_table_are_set_and_swept_like_others():
         ),
         (
             "emission.ship.stroke=3",
-            "emission.ship: stroke of ferry of 5 MW is 3; an engine has 2 or 4",
+            "emission.ship: stroke of ferry of 5 MW is 3; it must be 2 or 4",
         ),
         (
             "emission.ship.stroke=2.5",
-            "emission.ship: stroke of ferry of 5 MW is 2.5; an engine has 2 or 4",
+            "emission.ship: stroke of ferry of 5 MW is 2.5; it must be 2 or 4",
         ),
         (
             "emission.ship.power_max=inf",
-            "emission.ship: power_max of ferry of 5 MW is inf; give a finite value above 0",
+            "emission.ship: power_max of ferry of 5 MW is inf; it must be finite and above 0",
         ),
         (
             "emission.ship.stack_height=high",

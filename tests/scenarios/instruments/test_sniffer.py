@@ -5,7 +5,7 @@ import json
 import numpy as np
 import pytest
 
-from measurement.emission.fuel import expected_fsc, fuel_preset
+from measurement.emission import expected_fsc, fuel_preset
 from scenarios.engine.task import Task
 from scenarios.errors import InputError
 from scenarios.experiment.requests import Experiment
@@ -149,7 +149,7 @@ def test_a_flight_without_payload_is_flown_alike(slow):
         ("emission.ship=canoe", "emission.ship: ship 'canoe' is not known; there are container"),
         ("emission.fuel=coal", "fuel 'coal' is not known; there are mgo"),
         ("emission.sulphur_percent=7", "emission.sulphur_percent is 7; it must be at most 5 %"),
-        ("plume.richardson=5", "plume.richardson is 5; give 0.01 to 2"),
+        ("plume.richardson=5", "plume.richardson is 5; it must be 0.01 to 2"),
         ("flight.altitude_min_m=200", "altitude_min_m is 200 m and altitude_max_m 120 m"),
     ],
 )
@@ -166,7 +166,7 @@ def test_bad_values_are_refused_in_one_line(override, words):
     [
         (
             ("vessel.speed_mps=14", "wind.speed_mps=1"),
-            "speed of container is 14 m/s; it makes 0 to 13.03",
+            "speed of container is 14 m/s; it must be 0 to 13.03",
         ),
         (
             ("plume.model=straight", "plume.direction=apparent_wind"),

@@ -4,7 +4,7 @@ expects.
 
 import pytest
 
-from measurement.plume.rise import downwash, rise
+from measurement.plume.spread import downwash, rise
 from scenarios.planning.plume.axis import axis_height
 from scenarios.schema.load import load_study
 from scenarios.world.exhaust import emission

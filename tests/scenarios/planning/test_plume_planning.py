@@ -10,7 +10,7 @@ import pytest
 from gnc.errors import InfeasibleError
 from gnc.estimation.plume.passes import equal_readings
 from gnc.mission.axis import PredictedPlume, SearchedPlume
-from measurement.sniffer.presets import sensor_preset, sensor_presets
+from measurement.sniffer.spec import sensor_preset, sensor_presets
 from scenarios.errors import InputError
 from scenarios.planning.planner import plan_flight
 from scenarios.planning.plume.axis import co2_sensor, plume_axis

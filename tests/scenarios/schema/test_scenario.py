@@ -294,7 +294,7 @@ def test_a_funnel_that_is_too_high_for_exhaust_is_refused_by_its_key_at_any_poin
 @pytest.mark.parametrize(
     ("name", "overrides", "funnel", "start"),
     [
-        # measurement/emission/ships.toml: 35 m of the container, 16 of the coaster, 55 of the
+        # measurement/ships.toml: 35 m of the container, 16 of the coaster, 55 of the
         # cruise ship.
         ("sulphur", (), 35.0, 35.0),
         ("sulphur", ("emission.ship=cruise",), 55.0, 55.0),

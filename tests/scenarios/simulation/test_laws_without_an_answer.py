@@ -119,7 +119,7 @@ MUST = "its method heading_rate(reference, own, air) has to return a number [rad
     ],
 )
 def test_a_law_without_an_answer_ends_its_flight_with_a_reason_that_names_it(mission, law, words):
-    with STEERING_LAWS.lent("own", law):
+    with STEERING_LAWS.temporarily_registered("own", law):
         flown = fly(
             guidance={"law": "own", "mission": mission, "keepout_guard": False},
             start=ASTERN,
@@ -151,7 +151,7 @@ class Steady:
 @pytest.mark.parametrize("kind", ["scalar", "array", "where"])
 def test_a_law_may_return_a_number_of_numpy(mission, kind):
     guidance = {"law": "own", "mission": mission, "keepout_guard": False}
-    with STEERING_LAWS.lent("own", Steady):
+    with STEERING_LAWS.temporarily_registered("own", Steady):
         rows = [
             fly(
                 guidance=guidance | {"kind": given}, start=ASTERN, flight={"duration_max_s": 20.0}

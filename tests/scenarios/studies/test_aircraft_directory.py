@@ -11,7 +11,7 @@ from pathlib import Path
 import pandas as pd
 import pytest
 
-from measurement.emission.ship import WITHOUT_SHIP
+from measurement.emission import DEFAULT_STACK_HEIGHT
 from reports.output import write_report
 from reports.run.run_data import read_run
 from scenarios.schema.load import load_document
@@ -125,7 +125,7 @@ def test_it_is_resumed_and_replayed_as_it_was_and_where_it_is_now_but_not_change
 
 def test_the_directory_is_designed_for_and_listed(flown, heavy, tmp_path):
     # At the height of the sweep, whose design is cached.
-    place = ("--aircraft-dir", heavy.parent, "--altitude", WITHOUT_SHIP)
+    place = ("--aircraft-dir", heavy.parent, "--altitude", DEFAULT_STACK_HEIGHT)
     ended = run_command("innerloop.design", *place, "--out", tmp_path / "design", "--no-report")
     assert ended.status == 0, ended
     assert (tmp_path / "design" / "model" / "aircraft" / "heavy" / "heavy.xml").is_file()

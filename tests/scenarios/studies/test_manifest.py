@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from common.registry import file_hash
-from measurement.emission.ship import Ship
+from measurement.emission import Ship
 from measurement.sniffer.channel import Channel
 from measurement.sniffer.spec import SnifferSpec
 from scenarios.errors import InputError
@@ -126,7 +126,7 @@ def test_every_key_of_a_ship_and_a_sniffer_of_ones_own_has_its_unit_and_meaning(
     assert {key: listed[key]["unit"] for key in units} == units
     assert (
         listed["emission.ship.stack_height"]["meaning"]
-        == "Height of the funnel's mouth above the sea."
+        == "Height of the stack's mouth above the sea."
     )
     own = [
         of for key, of in listed.items() if key.startswith(("emission.ship.", "payload.sensor."))

@@ -9,7 +9,7 @@ import pytest
 
 from aircraft.wind import WindField, constant_wind
 from measurement.errors import MeasurementError
-from measurement.plume.air import MarineAir
+from measurement.plume.spread import MarineAir
 from scenarios.schema.load import load_study
 from scenarios.world.exhaust import Exhaust, emission, exhaust_of, fuel_of
 from scenarios.world.vessel import SteadyVessel
@@ -42,7 +42,7 @@ def test_smoke_leaves_the_funnel_of_its_ship_unless_a_height_is_given():
     vessel, wind = SteadyVessel(6.0, 0.0), constant_wind(0.0, 7.0)
     through_air = np.array([6.0, -7.0]) / math.hypot(6.0, 7.0)
     aft = -40.0 * through_air
-    # The coaster's funnel is 16 m high (measurement/emission/ships.toml): 40 m behind it her smoke
+    # The coaster's funnel is 16 m high (measurement/ships.toml): 40 m behind it her smoke
     # is near that height, and that of one of 35 m is not.
     means = {}
     for given in ("emission.load=0.5", "plume.source_height_m=35"):

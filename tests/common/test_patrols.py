@@ -4,14 +4,24 @@ import math
 
 import pytest
 
-from common.verdicts.patrols import PatrolCounts
+from common.patrols import PatrolCounts
 
 # A patrol of six ships of which five were served, as the catalog's criteria have it: 80 % of the
 # oracle's, 5 % wrong.
 ROW = {
-    "ships": 6, "served": 5, "verdicts": 5, "correct": 5, "wrong": 0, "open": 0, "oracle_verdicts": 6, "keepout_violations": 0,
-    "kept_out": True, "criteria_met": True, "duration_s": 3600.0, "message": "",
-}  # fmt: skip
+    "ships": 6,
+    "served": 5,
+    "verdicts": 5,
+    "correct": 5,
+    "wrong": 0,
+    "open": 0,
+    "oracle_verdicts": 6,
+    "keepout_violations": 0,
+    "kept_out": True,
+    "criteria_met": True,
+    "duration_s": 3600.0,
+    "message": "",
+}
 
 
 def counts(*rows, planned=1):

@@ -1,6 +1,4 @@
-"""Sums over the patrols of a run, and how they are judged: the same for the study, its exit status
-and the report.
-"""
+"""Sums over the patrols of a run, and their verdict: for study, exit status and report alike."""
 
 import math
 from collections.abc import Mapping, Sequence
@@ -16,15 +14,17 @@ class PatrolCounts:
 
     Attributes
     ----------
-    planned, done : patrols that are planned, and those that are done
-    through, kept_out : patrols that kept out with their aircraft, those that kept out
-    ships, served, verdicts, correct, wrong, open : ships, those flown beside, and how these flights
-        ended
+    planned, done : patrols that were planned, and those that were flown
+    through : patrols that met their criteria: they kept out and brought their aircraft back
+    kept_out : patrols that kept out
+    ships, served : ships, and those that were measured
+    verdicts, correct, wrong, open : verdicts on ships, the correct and the wrong ones, and flights
+        without a verdict
     oracle : verdicts of an oracle that knows everything
     violations : of keep-out areas
     hours : of all patrols [h]
-    oracle_share_min, wrong_share_max : least share of correct verdicts in the oracle's, largest one
-        of wrong ones in all [-]
+    oracle_share_min : least number of correct verdicts over the oracle's verdicts [-]
+    wrong_share_max : largest number of wrong verdicts over all verdicts [-]
     """
 
     planned: int
@@ -52,7 +52,7 @@ class PatrolCounts:
         oracle_share_min: float,
         wrong_share_max: float,
     ) -> Self:
-        """Return the sums over the rows of a summary; what a row does not know counts as 0."""
+        """Return the sums over the rows of a summary; missing figures count as 0."""
         return cls(
             planned=planned,
             done=len(rows),
@@ -73,41 +73,39 @@ class PatrolCounts:
 
     @property
     def judged(self) -> bool:
-        """Whether there is a ship that was served, and a verdict to judge: its own or an oracle's."""
+        """Whether a ship was served and there is a verdict, of the patrol or of the oracle."""
         return self.served > 0 and self.verdicts + self.oracle > 0
 
     @property
     def enough(self) -> bool:
-        """Whether the correct verdicts are as many as the oracle's ask for."""
+        """Whether there are enough correct verdicts, compared with the oracle's."""
         return self.correct >= self.oracle_share_min * self.oracle
 
     @property
     def right(self) -> bool:
-        """Whether no more verdicts are wrong than may be."""
+        """Whether few enough verdicts are wrong."""
         return self.wrong <= self.wrong_share_max * self.verdicts
 
     @property
     def holds(self) -> bool:
-        """Whether nothing happened that must not: some ship was served, and every patrol kept out
-        and brought its aircraft back.
-        """
+        """Whether a ship was served, and every patrol kept out and brought its aircraft back."""
         return self.served > 0 and self.through == self.done
 
     @property
     def met(self) -> bool:
-        """Whether every planned patrol held, and the verdicts are enough and right."""
+        """Whether every planned patrol held, with enough verdicts and few enough wrong ones."""
         return (
             self.holds and self.done == self.planned and self.judged and self.enough and self.right
         )
 
     @property
     def per_hour(self) -> float:
-        """Return ships served an hour [1/h]."""
+        """Ships served per hour [1/h]."""
         return self.served / self.hours if self.hours else 0.0
 
 
 def _known(row: Mapping[Any, Any], name: str) -> float:
-    """Return a figure of a row; 0 where it has none: rows of a table have "not a number" there."""
+    """Return a figure of a row, or 0 if it is missing: None, or NaN in a table."""
     value = row.get(name)
     return 0.0 if value is None or math.isnan(value) else float(value)
 

@@ -1,12 +1,26 @@
-"""Times as text."""
+"""Names that are nearly right, and times as text."""
 
 from datetime import UTC, datetime
 
 import pytest
 
-from common.times import utc_text
+from common.text import nearest, utc_text
 
 NOON = datetime(2026, 6, 1, 12, tzinfo=UTC).timestamp()
+
+
+@pytest.mark.parametrize(
+    ("name", "known", "found"),
+    [
+        # Each of these has one letter more; only one of them at its end.
+        ("nu_0.5", ["nu_0.25", "nu_0.50", "nu_0.75", "nu_0.95"], "nu_0.50"),
+        ("Flap", ["flap", "flaps"], "flap"),
+        ("wind.speed", ["wind.speed_mps", "wind.from_deg"], "wind.speed_mps"),
+        ("nothing", ["wind.speed_mps"], None),
+    ],
+)
+def test_among_equally_near_names_the_one_that_only_lacks_its_end_is_meant(name, known, found):
+    assert nearest(name, known) == found
 
 
 @pytest.mark.parametrize(

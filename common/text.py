@@ -1,0 +1,130 @@
+"""Text for people and tables: names that are nearly right, lines, times, cells of CSV tables."""
+
+import difflib
+import math
+from collections.abc import Iterable
+from datetime import UTC, datetime
+
+_SHORT = 3
+"""Letters up to which a name is short: one wrong letter is then a large share of it."""
+
+_FORMULA = ("=", "+", "-", "@", "\t", "\r")
+"""First letters of a text that a spreadsheet computes."""
+
+MARK = "'"
+"""Put before such a text in a cell, so that it is shown and not computed (OWASP, CSV injection)."""
+
+
+def at_or_below(key: str, above: str) -> bool:
+    """Return whether a dotted key is another one, or below it, as wind.speed_mps is below wind."""
+    return key == above or key.startswith(f"{above}.")
+
+
+def one_line(words: str) -> str:
+    """Return words in one line, with control characters escaped."""
+    joined = " ".join(part for line in words.splitlines() if (part := line.strip()))
+    return "".join(
+        letter if letter.isprintable() else letter.encode("unicode_escape").decode()
+        for letter in joined
+    )
+
+
+def install_words(extra: str) -> str:
+    """Return how an optional extra of the project is installed, for messages."""
+    return f"in the clone, pip install -c constraints.txt -e '.[{extra}]'"
+
+
+def nearest(name: str, known: Iterable[str]) -> str | None:
+    """Return the known name that is spelt most like a name, in any case, or None.
+
+    A known name that has only one letter more at its end comes first.
+    """
+    by_lower_case = {each.lower(): each for each in known}
+    lower = name.lower()
+    longer = [
+        each for each in by_lower_case if each.startswith(lower) and len(each) == len(lower) + 1
+    ]
+    if longer and lower not in by_lower_case:
+        return by_lower_case[min(longer)]
+    cutoff = 0.5 if len(name) <= _SHORT else 0.6
+    close = difflib.get_close_matches(lower, by_lower_case, n=1, cutoff=cutoff)
+    return by_lower_case[close[0]] if close else None
+
+
+def did_you_mean(name: str, known: Iterable[str]) -> str:
+    """Return ``; did you mean 'x'?`` for the nearest known name, or nothing if none is similar."""
+    found = nearest(name, known)
+    return f"; did you mean '{found}'?" if found else ""
+
+
+def other_units(heads: Iterable[str], columns: Iterable[str]) -> str:
+    """Return, as a remedy, which heads differ from missing columns only by the unit at their end.
+
+    Parameters
+    ----------
+    heads : of the table that is read
+    columns : that it should have, such as ``speed_mps``
+    """
+    heads = list(heads)
+    missing = {
+        column.rpartition("_")[0]: column
+        for column in columns
+        if "_" in column and column not in heads
+    }
+    remedies = []
+    for head in heads:
+        column = missing.get(head.rpartition("_")[0])
+        if column is not None:
+            remedies.append(
+                f"'{head}' is in another unit than '{column}': "
+                "convert its values before you rename it"
+            )
+    return "; ".join(remedies)
+
+
+def utc_text(seconds: float, *, milliseconds: bool = False) -> str:
+    """Return a time since 1970 [s] in ISO 8601, rounded to a millisecond.
+
+    Parameters
+    ----------
+    seconds : since 1970-01-01 in UTC [s]
+    milliseconds : whether whole seconds are printed with them as well
+    """
+    time = datetime.fromtimestamp(round(seconds, 3), UTC)
+    timespec = "milliseconds" if milliseconds or time.microsecond else "seconds"
+    return time.isoformat(timespec=timespec).replace("+00:00", "Z")
+
+
+def span_words(first: datetime, last: datetime) -> str:
+    """Return two times in UTC, as in ``2026-06-01 10:00:00 to 10:05:00 UTC``."""
+    begin, end = (time.astimezone(UTC).strftime("%Y-%m-%d %H:%M:%S") for time in (first, last))
+    if begin == end:
+        return f"{begin} UTC"
+    begin_date, _ = begin.split()
+    end_date, end_time = end.split()
+    return f"{begin} to {end_time if begin_date == end_date else end} UTC"
+
+
+def moment(recorded: object) -> datetime | None:
+    """Return a time that was recorded in ISO 8601, or None if it is not one."""
+    try:
+        return datetime.fromisoformat(str(recorded))
+    except ValueError:
+        return None
+
+
+def cell(value: object) -> object:
+    """Return a value for a cell of a CSV table: missing is empty, and no text is a formula."""
+    if value is None or (isinstance(value, float) and math.isnan(value)):
+        return ""
+    return f"{MARK}{value}" if _looks_like_formula(value) else value
+
+
+def from_cell(value: object) -> object:
+    """Return the value that ``cell`` wrote."""
+    marked = isinstance(value, str) and value.startswith(MARK) and _looks_like_formula(value)
+    return str(value)[1:] if marked else value
+
+
+def _looks_like_formula(value: object) -> bool:
+    return isinstance(value, str) and value.lstrip(MARK).startswith(_FORMULA)
