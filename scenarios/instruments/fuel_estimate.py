@@ -68,8 +68,8 @@ def fuel_estimate(
     expected : what a perfect instrument reads [% m/m]
     """
     from measurement.estimate import time_to_verdict
-    from measurement.estimate.flight_log.analysis import analyse
     from measurement.estimate.verdict import OPEN
+    from measurement.log.analysis import analyse
 
     try:
         found = analyse(readings, instrument, limits_percent=(limit,), points=_points(readings))

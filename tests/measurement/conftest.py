@@ -7,7 +7,7 @@ import pandas as pd
 import pytest
 from crossings import flight
 
-from measurement.estimate.flight_log.analysis import analyse
+from measurement.log.analysis import analyse
 
 
 @pytest.fixture
@@ -35,6 +35,4 @@ def briefly(monkeypatch):
     """Have the command estimate after one, two and five minutes, and not at fifteen times more for
     a curve: it takes a quarter.
     """
-    monkeypatch.setattr(
-        "measurement.estimate.__main__.analyse", functools.partial(analyse, points=0)
-    )
+    monkeypatch.setattr("measurement.log.command.analyse", functools.partial(analyse, points=0))

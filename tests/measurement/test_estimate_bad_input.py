@@ -8,8 +8,7 @@ from crossings import changed, crossings, flight, plain_sniffer, read, sniffer_o
 
 from measurement.errors import MeasurementError
 from measurement.estimate import estimate, over_time
-from measurement.estimate.passes import readings_noise
-from measurement.estimate.record import checked_record
+from measurement.estimate.record import checked_record, readings_noise
 from measurement.sniffer import Channel, Readings, sensor_preset
 
 SPEC = plain_sniffer(so2_noise=2.5, co2_noise=1.0)

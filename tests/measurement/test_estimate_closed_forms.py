@@ -9,10 +9,10 @@ from crossings import changed, crossings, plain_sniffer, read
 
 from measurement.estimate import estimate
 from measurement.estimate.areas import area_ratio
-from measurement.estimate.fit.regression import fitted
-from measurement.estimate.fit.signals import make_signals
+from measurement.estimate.fit import fit_slope
 from measurement.estimate.passes import find_passes
 from measurement.estimate.record import Record, checked_record
+from measurement.estimate.signals import make_signals
 from measurement.gases import fsc_factor
 from measurement.sniffer import Readings, sensor_preset
 from measurement.sniffer.lag import lag
@@ -110,7 +110,7 @@ def slopes_of_one_pass(actual, *believed):
         step=0.1, times=(readings.time,), values=(values,), resolution={}, scatter={}, problems=()
     )
     nothing = np.zeros((len(readings), 1))
-    return [fitted(replace(make_signals(record, spec), basis=nothing))[0] for spec in believed]
+    return [fit_slope(replace(make_signals(record, spec), basis=nothing))[0] for spec in believed]
 
 
 @pytest.mark.parametrize("wrong", [0.8, 0.9, 1.1, 1.25])

@@ -9,8 +9,8 @@ import pytest
 from crossings import BACKGROUND, changed, crossings, plain_sniffer, read, sniffer_of
 
 from measurement.estimate import estimate, over_time
-from measurement.estimate.fit.signals import make_signals
 from measurement.estimate.record import checked_record
+from measurement.estimate.signals import make_signals
 from measurement.sniffer import Channel, Readings
 
 AIR = {"interval": 30.0, "meander": 0.0, "width": 2.0}

@@ -9,7 +9,7 @@ from crossings import changed, crossings, flight, plain_sniffer, read
 from scipy.stats import norm, truncnorm
 
 from measurement.estimate import estimate, judged, over_time, time_to_verdict
-from measurement.estimate.quality import judged_quality
+from measurement.estimate.quality import quality_class
 from measurement.estimate.verdict import interval, probability_above
 from measurement.sniffer import Readings, sensor_preset
 
@@ -133,7 +133,7 @@ GOOD = {
     ],
 )
 def test_quality_is_stated_with_its_reason(change, quality, reason):
-    found, reasons = judged_quality(**{**GOOD, **change})
+    found, reasons = quality_class(**{**GOOD, **change})
     assert found == quality
     assert reason in " ".join(reasons)
     assert bool(reasons) == (quality != "A")

@@ -1,13 +1,8 @@
-"""What the command prints: results, verdicts and their limits in words."""
+"""Results, verdicts and limits in words, same on consoles and in reports."""
 
-import re
-
-import pandas as pd
 import pytest
-from logged_flights import run
 
-from measurement.estimate.verdict import judged
-from measurement.estimate.words import content_words, needed, next_step, verdict_words
+from measurement.estimate.verdict import content_words, judged, needed, next_step, verdict_words
 from measurement.gases import limit_words
 
 
@@ -24,27 +19,6 @@ def test_a_limit_is_printed_with_as_many_decimals_as_it_has(limit, words):
 
 def test_a_content_that_rounds_to_0_has_no_sign():
     assert content_words(-0.0004, 0.0, 0.0196) == "0.000 % m/m, 95 % interval 0.000 to 0.020 %"
-
-
-@pytest.mark.usefixtures("briefly")
-@pytest.mark.parametrize("level", [420.0, None])
-def test_a_record_without_a_verdict_says_so_and_prints_no_nan(logged, capsys, level):
-    table = pd.read_csv(logged)
-    # No reading of it is too low for a cell of which nothing is known.
-    table["so2_ppb"] *= -1.0
-    table["co2_ppm"] = table["co2_ppm"] if level is None else level
-    table.to_csv(logged, index=False)
-    assert run(logged, config=False) == 0
-    printed = capsys.readouterr().out
-    assert "nothing is known" in printed
-    assert "fuel sulphur content: none can be given\n" in printed
-    assert "no verdict on the limit of 0.10 %: quality C gives none" in printed
-    assert "are needed" not in printed
-    assert not re.search(r"\bnan\b", printed)
-    assert ("CO2 reads the same throughout; check its sensor" in printed) == (level is not None)
-    assert ("and no fuel has above 5 %: SO2 does not follow CO2; check its sign" in printed) == (
-        level is None
-    )
 
 
 def test_an_open_verdict_beyond_the_probability_names_the_guard_band():

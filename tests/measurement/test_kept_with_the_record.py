@@ -5,10 +5,10 @@ response, delays and windows.
 from crossings import changed, crossings, read
 
 from measurement.estimate.areas import area_ratio
-from measurement.estimate.fit.regression import regress
-from measurement.estimate.fit.signals import make_signals
+from measurement.estimate.fit import regress
 from measurement.estimate.passes import find_passes
 from measurement.estimate.record import checked_record
+from measurement.estimate.signals import make_signals
 from measurement.sniffer import sensor_preset
 
 
