@@ -236,7 +236,7 @@ def _timing(instrument: SnifferSpec) -> Array:
 def _with_timing(instrument: SnifferSpec, timing: Array) -> SnifferSpec:
     """Return the instrument with log(t90) of SO2 and its delay after CO2 [s].
 
-    Where SO2 would come before its own air, all other channels are delayed instead.
+    Where the delay of SO2 would be negative, the other channels are delayed instead.
     """
     late = max(0.0, -float(timing[1]) - instrument.known("co2").delay_s)
     if late:

@@ -55,7 +55,7 @@ def quality_class(
 
     Parameters
     ----------
-    problems : of the record, each of which makes it C
+    problems : of the record; each makes it C
     snr, passes : of CO2, median of the passes, and their number
     fsc, deviation : result and its standard uncertainty [% m/m]
     agreement : probability that passes of one fuel differ as much

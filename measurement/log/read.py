@@ -606,7 +606,7 @@ def _without_missing_fixes(places: dict[str, Array]) -> tuple[dict[str, Array], 
         named = f"{len(rows):,} rows, from row {rows[0]} to row {rows[-1]}, are"
     kept = {name: np.where(missing, np.nan, places[name]) for name in ("latitude", "longitude")}
     return places | kept, (
-        f"{named} at latitude 0 and longitude 0, as of a receiver without a fix: taken as missing"
+        f"{named} at latitude 0 and longitude 0, as from a receiver without a fix: taken as missing"
     )
 
 

@@ -124,9 +124,8 @@ def write_run(
 
     Raises
     ------
-    MeasurementError : the directory cannot be written, or holds another run
+    MeasurementError : the directory cannot be written
     """
-    check_no_other_run(directory)
     signals = analysis.estimate.signals
     gaps = find_gaps(flight.readings, signals, flight.about.readings)
     record = analysis.record() | {"flight": flight.about.record(), "gaps": vars(gaps)}

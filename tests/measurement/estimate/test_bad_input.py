@@ -60,7 +60,7 @@ def put(array, index, value):
         (lambda r: put(r.time, 7, np.nan), "time of sample 7 is not a number"),
         (
             lambda r: put(r.time, slice(None), 1000.0 * r.time),
-            r"samples are 1000 s apart \(median\); they must be 0.001 to 30 s apart: check that time is in seconds",
+            r"samples are 1000 s apart \(median\); they must be 0.001 to 30 s apart",
         ),
         (
             lambda r: put(r.time, slice(None), r.time / 3600.0),

@@ -9,7 +9,7 @@ from crossings import changed, crossings, plain_sniffer, read
 
 from measurement.estimate import estimate
 from measurement.estimate.areas import area_ratio
-from measurement.estimate.fit import fit_slope
+from measurement.estimate.fit import fit_slope, regress
 from measurement.estimate.passes import find_passes
 from measurement.estimate.record import Record, checked_record
 from measurement.estimate.signals import make_signals
@@ -254,3 +254,26 @@ def test_an_uneven_record_is_the_same_wherever_its_times_begin():
     assert other.fsc_percent == pytest.approx(found.fsc_percent, rel=1e-5)
     assert other.misfit == pytest.approx(found.misfit, rel=1e-3)
     assert found.misfit < 1.5
+
+
+def test_results_cached_with_a_record_are_those_of_a_new_record():
+    # Passes so far from each other that a window is as long as the slowest response asks for.
+    spec = sensor_preset("electrochemical")
+    readings = read(spec, crossings(0.3, interval=75.0))
+    so2, co2 = spec.known("so2"), spec.known("co2")
+    instruments = [
+        spec,
+        changed(spec, "so2", t90_s=1.3 * so2.t90_s),
+        changed(spec, "co2", t90_s=1.3 * co2.t90_s),
+        changed(spec, "no2", t90_s=3.0 * so2.t90_s),
+        changed(spec, "so2", delay_s=so2.delay_s + 2.0),
+        changed(spec, "co2", delay_s=co2.delay_s + 2.0),
+        changed(spec, "so2", gain=1.1),
+    ]
+    cached = checked_record(readings, spec)
+    passes = find_passes(cached, co2)
+    for instrument in [*instruments, *instruments]:
+        new = checked_record(readings, spec)
+        # To the last bit.
+        assert area_ratio(cached, instrument, passes) == area_ratio(new, instrument, passes)
+        assert regress(make_signals(cached, instrument)) == regress(make_signals(new, instrument))
