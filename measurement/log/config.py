@@ -38,8 +38,15 @@ FLIGHT_KEYS = {
 """Keys of the table ``[flight]`` of a configuration, and their meanings. Each may be left out."""
 
 _KEYS = {
-    "instrument", "carbon", "limits_percent", "method", "missing", "columns", "scale", "flight",
-}  # fmt: skip
+    "instrument",
+    "carbon",
+    "limits_percent",
+    "method",
+    "missing",
+    "columns",
+    "scale",
+    "flight",
+}
 
 _DEFAULT_INSTRUMENT = "unspecified"
 """Instrument of a flight without a configuration."""

@@ -82,13 +82,16 @@ def test_of_passes_that_not_all_channels_read_the_others_are_compared():
     assert not math.isnan(found.agreement)
 
 
-@pytest.mark.parametrize(("fsc", "delay", "verdicts"), [
-    # Of 0.25 % the first 25 s were "below", quality B, before its SO2 had arrived.
-    (0.25, 25.0, ["open", "open", "open", "above"]),
-    (0.25, 3.0, ["above", "above", "above", "above"]),
-    # Of a clean fuel nothing arrives: half of the CO2 must be older than any delay.
-    (0.0, 3.0, ["open", "open", "open", "below"]),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("fsc", "delay", "verdicts"),
+    [
+        # Of 0.25 % the first 25 s were "below", quality B, before its SO2 had arrived.
+        (0.25, 25.0, ["open", "open", "open", "above"]),
+        (0.25, 3.0, ["above", "above", "above", "above"]),
+        # Of a clean fuel nothing arrives: half of the CO2 must be older than any delay.
+        (0.0, 3.0, ["open", "open", "open", "below"]),
+    ],
+)
 def test_without_a_stated_delay_no_fuel_is_below_a_limit_before_its_so2_can_have_arrived(
     fsc, delay, verdicts
 ):

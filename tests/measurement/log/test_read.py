@@ -139,15 +139,17 @@ def test_a_column_that_the_configuration_names_has_to_be_there(logged, config, q
 
 def test_columns_units_and_places_are_mapped(logged):
     table = pd.read_csv(logged)
-    renamed = pd.DataFrame({
-        "Zeit": since("2024-05-01T12:00:00Z"),
-        "SO2 [ppm]": table["so2_ppb"] / 1000.0,
-        "CO2": table["co2_ppm"],
-        "NO": table["no_ppb"],
-        "NO2": table["no2_ppb"],
-        "lat": 54.0 + np.degrees(table["north_m"] / EARTH_RADIUS_M),
-        "lon": 8.0 + np.degrees(table["east_m"] / EARTH_RADIUS_M / np.cos(np.radians(54.0))),
-    })  # fmt: skip
+    renamed = pd.DataFrame(
+        {
+            "Zeit": since("2024-05-01T12:00:00Z"),
+            "SO2 [ppm]": table["so2_ppb"] / 1000.0,
+            "CO2": table["co2_ppm"],
+            "NO": table["no_ppb"],
+            "NO2": table["no2_ppb"],
+            "lat": 54.0 + np.degrees(table["north_m"] / EARTH_RADIUS_M),
+            "lon": 8.0 + np.degrees(table["east_m"] / EARTH_RADIUS_M / np.cos(np.radians(54.0))),
+        }
+    )
     other, config = logged.with_name("other.csv"), logged.with_name("other.toml")
     renamed.to_csv(other, index=False)
     config.write_text(
