@@ -1,30 +1,29 @@
-"""Refusals of input from which nothing can be measured."""
+"""Errors of input from which nothing can be measured."""
 
-import difflib
 from collections.abc import Iterable
 from typing import Any
 
+from common.text import did_you_mean
+
 
 class MeasurementError(ValueError):
-    """The input cannot be used. The message is one line that names the quantity, its value, the
-    limit and the remedy.
-    """
+    """The input cannot be used; its one-line message names quantity, value, limit and remedy."""
 
 
 def guess(name: str, known: Iterable[str]) -> str:
-    """Return what stands between an unknown name and the known ones: the nearest of these, if any
-    is similar.
+    """Return the question for the known name nearest to an unknown one, or ";" if none is similar.
+
+    It stands between the unknown name and the list of the known ones.
     """
-    close = difflib.get_close_matches(name.lower(), known, n=1)
-    return f"; did you mean '{close[0]}'?" if close else ";"
+    return did_you_mean(name, known) or ";"
 
 
 def number(value: Any, key: str, where: str) -> float:
-    """Return the value of a key of a table as a number.
+    """Return the value of a table's key as a number; ``where`` names the table in the error.
 
     Raises
     ------
-    MeasurementError : it is none; ``where`` is what the table is of
+    MeasurementError : the value is not a number
     """
     if isinstance(value, bool) or not isinstance(value, (int, float)):
         raise MeasurementError(f"{key} of {where} is {value!r}; it must be a number")

@@ -1,7 +1,6 @@
-"""The fuel sulphur content of readings, its uncertainty, its quality, and the verdict."""
+"""Fuel sulphur content of a ship from a sniffer's readings: uncertainty, quality and verdicts."""
 
-from measurement.estimate.estimator import estimate
-from measurement.estimate.over_time import over_time, time_to_verdict
+from measurement.estimate.estimator import estimate, over_time, time_to_verdict
 from measurement.estimate.result import Figures, FscEstimate
 from measurement.estimate.verdict import Verdict, judged
 

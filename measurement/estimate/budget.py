@@ -1,6 +1,4 @@
-"""Errors that do not average out: what each property of the instrument that is not known exactly
-does to the result.
-"""
+"""Errors that do not average out: effect of each property of the instrument not known exactly."""
 
 import math
 from collections.abc import Callable, Iterator
@@ -9,6 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from measurement.gases import EXPECTED_PPB_PER_PPM, fsc_factor
+from measurement.sniffer.channel import Channel
 from measurement.sniffer.lag import Array
 from measurement.sniffer.spec import SnifferSpec
 
@@ -16,16 +15,16 @@ CARBON_SD = 0.015
 """Relative standard deviation of a fuel's carbon content [-] (assumption)."""
 
 SAMPLING_SD = 0.02
-"""Relative standard deviation by what lies between readings, over their interval in time constants
-of CO2 [-].
+"""Relative standard deviation by the time between readings, per time constant of CO2 [-].
 
 Without noise, readings 0.6 to 4.6 time constants apart read 0.8 to 3.7 % too much, or 1.1 to 7.7 %
 where delays differ by half of their interval.
 """
 
 SULPHATE_SHARE = 0.0225
-"""Of the sulphur leaves as sulphate, not as SO2 [-] (IMO GHG4, eq. 15); 0.01 to 0.19 are reported.
-Stated, not corrected.
+"""Share of the sulphur that leaves as sulphate, not as SO2 [-] (IMO GHG4, eq. 15).
+
+Reported values are 0.01 to 0.19. It is stated, not corrected.
 """
 
 _CORRECTING = ("no", "no2")
@@ -34,15 +33,13 @@ _CORRECTING = ("no", "no2")
 def unmeasured(
     instrument: SnifferSpec, measured: tuple[str, ...], carbon: float
 ) -> dict[str, tuple[float, float]]:
-    """Return what NO and NO2 that are not measured add to the result, and its standard deviation,
-    by gas [% m/m].
-    """
+    """Return the effect of NO and NO2 that are not measured, and its deviation, by gas [% m/m]."""
     so2, found = instrument.known("so2"), {}
+    factor = fsc_factor(carbon)
     for gas in _CORRECTING:
         share, deviation = so2.cross.get(gas, 0.0), so2.cross_sd.get(gas, 0.0)
         if gas not in measured and (share or deviation):
             ratio, ratio_deviation = EXPECTED_PPB_PER_PPM[gas]
-            factor = fsc_factor(carbon)
             spread = math.sqrt(
                 (share * ratio_deviation) ** 2 + deviation**2 * (ratio**2 + ratio_deviation**2)
             )
@@ -52,7 +49,7 @@ def unmeasured(
 
 @dataclass(frozen=True)
 class CommonErrors:
-    """What the instrument's uncertainty does.
+    """Effect of the instrument's uncertainty.
 
     Attributes
     ----------
@@ -69,64 +66,50 @@ def common_errors(
     measured: tuple[str, ...],
     changes: Callable[[SnifferSpec], tuple[float, Array]],
 ) -> CommonErrors:
-    """Return what gains, responses, delays and cross-sensitivities do that are not known exactly.
+    """Return the effect of gains, responses, delays and cross-sensitivities not known exactly.
 
-    Each property is moved by its standard deviation, and the result found anew; those of a name add
-    in squares.
+    Each property is moved by its standard deviation, and the result found again; those of a name
+    add in squares.
 
     Parameters
     ----------
-    instrument : as it is known, with response and delay of SO2 as they fit where they are not given
+    instrument : as it is known, with response and delay of SO2 as they fit where they are not
+        stated
     measured : gases of the record
-    changes : by how much result and residuals differ from those of the instrument as it is known,
-        for another one
+    changes : by how much result and residuals of another instrument differ from those of the
+        instrument as it is known
     """
     squares: dict[str, float] = {}
     energy = 0.0
-    for name, moved in _moved(instrument, measured):
-        change, of_residuals = changes(moved)
+    for name, channel in _moved_channels(instrument, measured):
+        change, of_residuals = changes(instrument.with_channel(channel))
         squares[name] = squares.get(name, 0.0) + change**2
         energy += float(np.sum(of_residuals**2))
     return CommonErrors({name: math.sqrt(square) for name, square in squares.items()}, energy)
 
 
-def _moved(instrument: SnifferSpec, measured: tuple[str, ...]) -> Iterator[tuple[str, SnifferSpec]]:
-    """Yield the name of an error and the instrument that has it. What is not given at all was found
-    from the record.
+def _moved_channels(
+    instrument: SnifferSpec, measured: tuple[str, ...]
+) -> Iterator[tuple[str, Channel]]:
+    """Yield the name of each error, and the channel that has it by a standard deviation.
+
+    Properties with an infinite deviation were found from the record, and do not count.
     """
     for gas in measured:
         channel = instrument.known(gas)
-        correcting = gas in _CORRECTING
-        if correcting and not any(
-            instrument.known(main).cross.get(gas, 0.0) for main in ("so2", "co2")
-        ):
-            continue
-        name, response = (gas, gas) if correcting else ("calibration", "response")
+        calibration, response = "calibration", "response"
+        if gas in _CORRECTING:
+            if not any(instrument.known(main).cross.get(gas, 0.0) for main in ("so2", "co2")):
+                continue
+            calibration = response = gas
         if channel.gain_sd:
-            yield (
-                name,
-                instrument.with_channel(
-                    replace(channel, gain=channel.gain * (1.0 + channel.gain_sd))
-                ),
-            )
+            yield calibration, replace(channel, gain=channel.gain * (1.0 + channel.gain_sd))
         for other, deviation in channel.cross_sd.items():
             if other in measured and deviation:
                 cross = {**channel.cross, other: channel.cross.get(other, 0.0) + deviation}
-                yield (
-                    other if other in _CORRECTING else "calibration",
-                    instrument.with_channel(replace(channel, cross=cross)),
-                )
+                name = other if other in _CORRECTING else "calibration"
+                yield name, replace(channel, cross=cross)
         if 0.0 < channel.t90_sd < math.inf:
-            yield (
-                response,
-                instrument.with_channel(
-                    replace(channel, t90_s=channel.t90_s * (1.0 + channel.t90_sd))
-                ),
-            )
+            yield response, replace(channel, t90_s=channel.t90_s * (1.0 + channel.t90_sd))
         if 0.0 < channel.delay_sd_s < math.inf:
-            yield (
-                response,
-                instrument.with_channel(
-                    replace(channel, delay_s=channel.delay_s + channel.delay_sd_s)
-                ),
-            )
+            yield response, replace(channel, delay_s=channel.delay_s + channel.delay_sd_s)

@@ -1,10 +1,11 @@
-"""The fuel sulphur content of a record, how sure it is, and what follows."""
+"""Fuel sulphur content of a flight: uncertainty, quality and verdicts, at its end or over time."""
 
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
+import pandas as pd
 
 from measurement.errors import MeasurementError
 from measurement.estimate.areas import area_ratio
@@ -15,43 +16,69 @@ from measurement.estimate.budget import (
     common_errors,
     unmeasured,
 )
-from measurement.estimate.fit.alignment import DELAY_MOST, Alignment, align, stated, widened
-from measurement.estimate.fit.groups import grouped
-from measurement.estimate.fit.regression import fitted, regress
-from measurement.estimate.fit.signals import Ends, Signals, make_signals, samples_of, used_gases
+from measurement.estimate.fit import (
+    DELAY_MOST,
+    Alignment,
+    align,
+    fit_groups,
+    fit_slope,
+    regress,
+    stated_alignment,
+    with_instrument_errors,
+)
 from measurement.estimate.passes import (
     SNR_LEAST,
     Pass,
     co2_excesses,
+    coarseness_problem,
     find_passes,
-    read_coarsely,
-    readings_noise,
 )
-from measurement.estimate.plausible import unlikely
-from measurement.estimate.quality import judged_quality, late, noise_alone, not_arrived, stranger
-from measurement.estimate.record import Record, checked_record
+from measurement.estimate.plausible import implausibilities
+from measurement.estimate.quality import (
+    delay_problem,
+    noise_explains,
+    pending_so2_problem,
+    quality_class,
+    residual_problem,
+)
+from measurement.estimate.record import Record, checked_record, readings_noise
 from measurement.estimate.result import Figures, FscEstimate, Method
-from measurement.estimate.verdict import LIMITS_PERCENT, interval, judged
+from measurement.estimate.signals import Ends, Signals, make_signals, signals_table
+from measurement.estimate.verdict import LIMITS_PERCENT, OPEN, interval, judged
 from measurement.gases import CARBON_FRACTION, fsc_factor
 from measurement.sniffer.lag import Array
 from measurement.sniffer.sniffer import Readings
 from measurement.sniffer.spec import SnifferSpec
 
-CARBON_LEAST, CARBON_MOST = 0.5, 0.95
-"""Of a fuel [-]; methanol has 0.375, which these factors are not made for."""
+ELAPSED_S = (60.0, 120.0, 300.0, 600.0)
+"""Times after which the estimate is reported [s]."""
 
-OVERLAP_LEAST = 0.95
-"""Least share of the truth that areas must read, by how their passes overlap in the slow channel:
-2.0 t90 between passes.
+_CARBON_LEAST, _CARBON_MOST = 0.5, 0.95
+"""Range of a fuel's carbon [-]; methanol has 0.375, for which these factors are not made."""
+
+_OVERLAP_LEAST = 0.95
+"""Least share of the truth that areas must read where passes overlap in the slow channel [-].
+
+It is that of passes 2.0 t90 apart.
 """
 
-EXPLAINED_LEAST = 0.5
-"""Share of a misfit that another delay has to explain for it to be the true one."""
+_EXPLAINED_LEAST = 0.5
+"""Least share of a misfit that another delay explains if it is the true one [-]."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class _Ratio:
-    """A ratio of SO2 to CO2 by either method, with what the methods do not share."""
+    """A ratio of SO2 to CO2, and the parts of an estimate that depend on the method.
+
+    Attributes
+    ----------
+    ratio, noise : [ppb/ppm]
+    misfit : mean square of the residuals over that of the noise [-]
+    common : standard uncertainties by errors that do not average out, by name [ppb/ppm]
+    alignment : response and delay of SO2
+    overlap : excess of the ratio that separate passes would have [ppb/ppm]
+    problems : reasons why there can be no verdict
+    """
 
     ratio: float
     noise: float
@@ -72,167 +99,168 @@ def estimate(
 ) -> FscEstimate:
     """Return the fuel sulphur content that the readings show.
 
+    A record that is weak, but not wrong, has quality C with its reason, and no verdict.
+
     Parameters
     ----------
     readings : of a flight through the plume of one ship
     instrument : as the analyst knows it
     method : "regression" (equalise and regress), or "areas" over each pass
-    carbon : mass share of the fuel [-]
-    limits_percent : on which there are to be verdicts [% m/m]
+    carbon : mass share of the fuel [-], 0.5 to 0.95
+    limits_percent : that verdicts are given on [% m/m], above 0, at most 10
 
     Raises
     ------
-    MeasurementError : the readings cannot be those of a flight through a plume: no CO2, times,
-        units or shapes; or a parameter is out of range. What makes a record weak rather than wrong
-        is a quality of C with its reason, and no verdict.
+    MeasurementError : the readings cannot be those of a flight through a plume: no CO2, or wrong
+        times, units or shapes; or a parameter is out of range
     """
     check_parameters(method, carbon, limits_percent)
     record = checked_record(readings, instrument)
-    strange = unlikely(record, readings, instrument)
+    problems = [*record.problems, *implausibilities(record, readings, instrument)]
     noise = readings_noise(record, instrument)
-    instrument = replace(
-        instrument,
-        channels=tuple(
-            replace(channel, noise=noise.get(channel.gas, channel.noise))
-            for channel in instrument.channels
-        ),
-    )
+    channels = [
+        replace(channel, noise=noise.get(channel.gas, channel.noise))
+        for channel in instrument.channels
+    ]
+    instrument = replace(instrument, channels=tuple(channels))
     passes = find_passes(record, instrument.known("co2"))
-    problems = [*record.problems, *strange, *_too_little(record, instrument, passes, noise["co2"])]
     if not passes:
-        ratio = _nothing(instrument)
+        problems.append(_no_pass(noise["co2"]))
+        ratio = _no_ratio(instrument)
     else:
-        ratio = (
-            _regressed(record, instrument)
-            if method == "regression"
-            else _areas(record, instrument, passes)
-        )
-    return _told(
-        record, passes, ratio, method, carbon, tuple(limits_percent), [*problems, *ratio.problems]
-    )
+        problems += coarseness_problem(passes, record) or _too_short(record, instrument, passes)
+        if method == "regression":
+            ratio = _by_regression(record, instrument)
+        else:
+            ratio = _by_areas(record, instrument, passes)
+        problems += ratio.problems
+    return _estimate_from(record, passes, ratio, method, carbon, limits_percent, problems)
 
 
 def check_parameters(method: str, carbon: float, limits_percent: Sequence[float]) -> None:
-    """Refuse parameters of ``estimate`` that are out of range.
+    """Check that the parameters of ``estimate`` are in range.
 
     Raises
     ------
-    MeasurementError : one is
+    MeasurementError : one is not
     """
     if method not in ("regression", "areas"):
         raise MeasurementError(f"method is {method!r}; it must be 'regression' or 'areas'")
-    if not CARBON_LEAST <= carbon <= CARBON_MOST:
+    if not _CARBON_LEAST <= carbon <= _CARBON_MOST:
         raise MeasurementError(
-            f"carbon is {carbon:g}; a fuel's mass share of carbon must be {CARBON_LEAST:g} to {CARBON_MOST:g}"
+            f"carbon is {carbon:g}; a fuel's mass share of carbon must be {_CARBON_LEAST:g} to"
+            f" {_CARBON_MOST:g}"
         )
     if not limits_percent or not all(0.0 < limit <= 10.0 for limit in limits_percent):
         raise MeasurementError(
-            f"limits_percent is {list(limits_percent)}; give one or more numbers above 0, up to 10 % m/m"
+            f"limits_percent is {list(limits_percent)}; give one or more numbers above 0, up to"
+            " 10 % m/m"
         )
 
 
-def _too_little(
-    record: Record, instrument: SnifferSpec, passes: Sequence[Pass], noise: float
-) -> list[str]:
-    """Return why the record is too short or too coarse, or has no plume in it."""
-    if not passes:
-        if noise == 0.0:
-            return ["no pass through a plume: CO2 reads the same throughout; check its sensor"]
-        least = f"{SNR_LEAST * noise:.1f} ppm, {SNR_LEAST:g} times its noise"
-        return [f"no pass through a plume: CO2 is nowhere {least}, over its background"]
-    if coarse := read_coarsely(passes, record):
-        return coarse
-    width = max(found.end_s - found.start_s for found in passes)
-    response = (
-        instrument.known("so2").t90_s if math.isfinite(instrument.known("so2").t90_sd) else 0.0
+def _no_pass(noise: float) -> str:
+    """Return the problem of a record without a pass, given the noise of CO2 [ppm]."""
+    if noise == 0.0:
+        return "no pass through a plume: CO2 reads the same throughout; check its sensor"
+    least = f"{SNR_LEAST * noise:.1f} ppm, {SNR_LEAST:g} times its noise"
+    return f"no pass through a plume: CO2 is nowhere {least}, over its background"
+
+
+def _too_short(record: Record, instrument: SnifferSpec, passes: Sequence[Pass]) -> tuple[str, ...]:
+    """Return the problem of a record that is shorter than a pass with the response of SO2."""
+    so2 = instrument.known("so2")
+    needed = max(found.end_s - found.start_s for found in passes)
+    needed += so2.t90_s if math.isfinite(so2.t90_sd) else 0.0
+    if record.duration >= needed:
+        return ()
+    return (
+        f"the record lasts {record.duration:.0f} s; a pass and the response of SO2 take"
+        f" {needed:.0f} s",
     )
-    if record.duration < width + response:
-        return [
-            f"the record lasts {record.duration:.0f} s; a pass and the response of SO2 take {width + response:.0f} s"
-        ]
-    return []
 
 
-def _nothing(instrument: SnifferSpec) -> _Ratio:
-    """Return the ratio of a record without a pass."""
+def _no_ratio(instrument: SnifferSpec) -> _Ratio:
+    """Return the ratio of a record without a pass: NaN."""
     alignment = Alignment(
         instrument=instrument, slope_deviation=math.nan, t90_sd_s=math.nan, delay_sd_s=math.nan
     )
     return _Ratio(ratio=math.nan, noise=math.nan, misfit=math.nan, common={}, alignment=alignment)
 
 
-def _regressed(record: Record, instrument: SnifferSpec) -> _Ratio:
+def _by_regression(record: Record, instrument: SnifferSpec) -> _Ratio:
+    """Return the slope of SO2 over CO2, with response and delay as they are stated or fit best."""
     alignment = align(record, instrument)
     found = regress(make_signals(record, alignment.instrument))
 
     def aligned(moved: SnifferSpec, ends: Ends = (0, 0)) -> Signals:
-        return make_signals(
-            record, align(record, moved, start=alignment.instrument).instrument, ends
-        )
+        near = align(record, moved, start=alignment.instrument)
+        return make_signals(record, near.instrument, ends)
 
-    as_known, others = aligned(alignment.instrument), list[SnifferSpec]()
+    as_known = aligned(alignment.instrument)
+    others: list[SnifferSpec] = []
 
     def changes(moved: SnifferSpec) -> tuple[float, Array]:
-        # Both of the samples that both know.
         other = aligned(moved, as_known.ends)
         others.append(other.instrument)
-        same = (
-            as_known
-            if other.ends == as_known.ends
-            else make_signals(record, as_known.instrument, other.ends)
-        )
-        (slope, residual), (before, left) = fitted(other), fitted(same)
-        if not math.isfinite(slope - before):
-            # It may be anything.
+        # Compared over the samples that both know.
+        same = as_known
+        if other.ends != as_known.ends:
+            same = make_signals(record, as_known.instrument, other.ends)
+        slope, residual = fit_slope(other)
+        slope_known, residual_known = fit_slope(same)
+        if not math.isfinite(slope - slope_known):
+            # An error as large as the slope: with this instrument it may be anything.
             return found.slope, np.zeros(1)
-        return slope - before, residual - left
+        return slope - slope_known, residual - residual_known
 
-    errors = common_errors(alignment.instrument, used_gases(record), changes)
-    common = {
-        **errors.parts,
-        "response": math.hypot(errors.parts.get("response", 0.0), alignment.slope_deviation),
-    }
-    strange = stranger(found.misfit, found.residual_energy, errors.residual_energy, as_known.count)
-    problems = (*_out_of_time(record, instrument, found.misfit, as_known.count), *strange)
-    alignment = widened(alignment, as_known.instrument, others)
+    errors = common_errors(alignment.instrument, record.gases, changes)
+    response = math.hypot(errors.parts.get("response", 0.0), alignment.slope_deviation)
+    problems = (
+        *_shown_delay_problem(record, instrument, found.misfit, as_known.count),
+        *residual_problem(
+            found.misfit, found.residual_energy, errors.residual_energy, as_known.count
+        ),
+    )
     return _Ratio(
         ratio=found.slope,
         noise=found.noise,
         misfit=found.misfit,
-        common=common,
-        alignment=alignment,
+        common={**errors.parts, "response": response},
+        alignment=with_instrument_errors(alignment, as_known.instrument, others),
         problems=problems,
     )
 
 
-def _out_of_time(
+def _shown_delay_problem(
     record: Record, instrument: SnifferSpec, misfit: float, samples: int
 ) -> tuple[str, ...]:
-    """Return the problem of SO2 and CO2 that do not fit in time, as where two loggers have two
-    clocks.
+    """Return the problem of SO2 and CO2 that do not fit in time, as with the clocks of two loggers.
 
-    Far from the true delay the slope is near 0 and changes little: an error that small steps of the
-    delay do not show. So the delay is sought over its whole range, as if it were not stated; where
-    noise alone explains the residuals it is not needed.
+    Far from the true delay the slope is near 0 and changes little, so that small steps of the delay
+    do not show the error. The delay is sought over its whole range, as if it were not stated,
+    unless noise alone explains the residuals.
     """
     so2 = instrument.known("so2")
-    if math.isinf(so2.delay_sd_s) or not misfit > 0.0 or noise_alone(misfit, samples):
+    if math.isinf(so2.delay_sd_s) or not misfit > 0.0 or noise_explains(misfit, samples):
         return ()
     free = align(record, instrument.with_channel(replace(so2, delay_sd_s=math.inf)))
-    # A clean fuel leaves what NO and NO2 were not corrected for, which may follow CO2 of another
-    # pass a little better than its own.
-    if not regress(make_signals(record, free.instrument)).misfit - 1.0 < (1.0 - EXPLAINED_LEAST) * (
-        misfit - 1.0
-    ):
+    # With a clean fuel, the uncorrected effect of NO and NO2 is left, which may follow the CO2 of
+    # another pass a little better than that of its pass.
+    remaining = regress(make_signals(record, free.instrument)).misfit - 1.0
+    if not remaining < (1.0 - _EXPLAINED_LEAST) * (misfit - 1.0):
         return ()
 
-    def changes(moved: SnifferSpec) -> tuple[float, Array]:
-        return _delay(align(record, moved, start=free.instrument).instrument) - delay, np.zeros(1)
+    def refined_delay(moved: SnifferSpec) -> float:
+        return _delay(align(record, moved, start=free.instrument).instrument)
 
-    delay = _delay(align(record, free.instrument, start=free.instrument).instrument)
-    parts = common_errors(free.instrument, used_gases(record), changes).parts
+    refined = refined_delay(free.instrument)
+
+    def changes(moved: SnifferSpec) -> tuple[float, Array]:
+        return refined_delay(moved) - refined, np.zeros(1)
+
+    parts = common_errors(free.instrument, record.gases, changes).parts
     deviation = math.hypot(so2.delay_sd_s, free.delay_sd_s, *parts.values())
-    return late(_delay(instrument), _delay(free.instrument), deviation)
+    return delay_problem(_delay(instrument), _delay(free.instrument), deviation)
 
 
 def _delay(instrument: SnifferSpec) -> float:
@@ -240,45 +268,46 @@ def _delay(instrument: SnifferSpec) -> float:
     return instrument.known("so2").delay_s - instrument.known("co2").delay_s
 
 
-def _areas(record: Record, instrument: SnifferSpec, passes: Sequence[Pass]) -> _Ratio:
-    """Return the ratio of areas; passes that overlap in the slow channel add a common error as
-    large as the closed form tells.
+def _by_areas(record: Record, instrument: SnifferSpec, passes: Sequence[Pass]) -> _Ratio:
+    """Return the ratio of areas.
+
+    Passes that overlap in the slow channel add a common error as large as the closed form says.
     """
-    alignment = stated(instrument)
+    alignment = stated_alignment(instrument)
     found = area_ratio(record, instrument, passes)
 
     def changes(moved: SnifferSpec) -> tuple[float, Array]:
         return area_ratio(record, moved, passes).ratio - found.ratio, np.zeros(1)
 
-    common = common_errors(instrument, used_gases(record), changes).parts
+    common = common_errors(instrument, record.gases, changes).parts
     problems: tuple[str, ...] = ()
-    if found.share < OVERLAP_LEAST:
-        problems = (found.unread(instrument.known("so2").t90_s),)
+    if found.share < _OVERLAP_LEAST:
+        problems = (found.truncation_reason(instrument.known("so2").t90_s),)
     overlap = found.separate - found.ratio
-    common["overlap"] = abs(overlap)
     return _Ratio(
         ratio=found.ratio,
         noise=found.noise,
         misfit=1.0,
-        common=common,
+        common={**common, "overlap": abs(overlap)},
         alignment=alignment,
         overlap=overlap,
         problems=problems,
     )
 
 
-def _told(
+def _estimate_from(
     record: Record,
     passes: tuple[Pass, ...],
     ratio: _Ratio,
     method: Method,
     carbon: float,
-    limits: tuple[float, ...],
+    limits: Sequence[float],
     problems: list[str],
 ) -> FscEstimate:
-    """Return the estimate that a ratio means."""
+    """Return the estimate of the fuel from a ratio of SO2 to CO2."""
     factor, instrument = fsc_factor(carbon), ratio.alignment.instrument
-    absent = unmeasured(instrument, used_gases(record), carbon)
+    so2 = instrument.known("so2")
+    absent = unmeasured(instrument, record.gases, carbon)
     assumed = -sum(shift for shift, _ in absent.values())
     fsc = factor * ratio.ratio + assumed
     noise = factor * ratio.noise
@@ -288,30 +317,29 @@ def _told(
     common["carbon"] = CARBON_SD * abs(fsc)
     common["sampling"] = SAMPLING_SD * record.step / instrument.known("co2").constants[0] * abs(fsc)
     total = math.sqrt(noise**2 + sum(value**2 for value in common.values()))
-    if math.isinf(instrument.known("so2").delay_sd_s):
-        read = [_read_after(record, found.end_s) for found in passes]
-        problems += not_arrived(fsc, total, read, [found.dose_ppm_s for found in passes])
+    if math.isinf(so2.delay_sd_s):
+        read = [_share_read_after(record, found.end_s) for found in passes]
+        doses = [found.dose_ppm_s for found in passes]
+        problems = [*problems, *pending_so2_problem(fsc, total, read, doses)]
     signals = make_signals(record, instrument)
-    groups = grouped(
+    groups = fit_groups(
         signals,
         passes,
         ratio.ratio,
         misfit=ratio.misfit,
         response=ratio.common.get("response", 0.0),
     )
-    samples, so2_snr = samples_of(signals, ratio.ratio)
-    snr = float(np.median([found.snr for found in passes])) if passes else 0.0
-    quality, reasons = judged_quality(
+    table, so2_snr = signals_table(signals, ratio.ratio)
+    figures = _figures(record, passes, instrument, so2_snr)
+    quality, reasons = quality_class(
         problems=problems,
-        snr=snr,
+        snr=figures.co2_snr,
         passes=len(passes),
         fsc=fsc,
         deviation=total,
         agreement=groups.agreement,
         limit=min(limits),
-        responses_stated=all(
-            instrument.known("so2").cross.get(gas) for gas in instrument.known("so2").cross_sd
-        ),
+        responses_stated=all(so2.cross.get(gas) for gas in so2.cross_sd),
     )
     low, high = interval(fsc, total)
     return FscEstimate(
@@ -330,33 +358,31 @@ def _told(
         quality=quality,
         quality_reasons=reasons,
         verdicts=tuple(judged(limit, fsc, total, admitted=quality != "C") for limit in limits),
-        figures=_figures(record, passes, instrument, snr, so2_snr),
+        figures=figures,
         passes=passes,
         pass_percent=tuple(factor * slope + assumed for slope in groups.slopes),
         pass_deviation_percent=tuple(factor * deviation for deviation in groups.deviations),
         agreement=groups.agreement,
-        so2_t90_s=instrument.known("so2").t90_s,
+        so2_t90_s=so2.t90_s,
         so2_t90_sd_s=ratio.alignment.t90_sd_s,
         delay_s=_delay(instrument),
         delay_sd_s=ratio.alignment.delay_sd_s,
         instrument=instrument,
-        signals=samples,
+        signals=table,
     )
 
 
-def _read_after(record: Record, end: float) -> float:
-    """Return which share was read of the time after the end of a pass [s] in which its SO2 may
-    come.
-    """
+def _share_read_after(record: Record, end: float) -> float:
+    """Return the share read of the time in which SO2 may come after a pass that ends then [s]."""
     after = record.time - end
-    return min(
-        1.0, np.count_nonzero((after > 0.0) & (after <= DELAY_MOST)) * record.step / DELAY_MOST
-    )
+    samples = np.count_nonzero((after > 0.0) & (after <= DELAY_MOST))
+    return min(1.0, samples * record.step / DELAY_MOST)
 
 
 def _figures(
-    record: Record, passes: tuple[Pass, ...], instrument: SnifferSpec, snr: float, so2_snr: float
+    record: Record, passes: tuple[Pass, ...], instrument: SnifferSpec, so2_snr: float
 ) -> Figures:
+    """Return the figures of a record: its length, its passes, and signal to noise."""
     noise = instrument.known("co2").noise
     above = sum(int(np.sum(excess > SNR_LEAST * noise)) for excess in co2_excesses(record, noise))
     times = np.array([found.centre_s for found in passes])
@@ -366,6 +392,80 @@ def _figures(
         interval_s=float(np.median(np.diff(times))) if len(times) > 1 else math.nan,
         seconds_in_plume=above * record.step if passes else 0.0,
         dose_ppm_s=float(np.mean([found.dose_ppm_s for found in passes])) if passes else math.nan,
-        co2_snr=snr,
+        co2_snr=float(np.median([found.snr for found in passes])) if passes else 0.0,
         so2_snr=so2_snr,
     )
+
+
+def over_time(
+    readings: Readings,
+    instrument: SnifferSpec,
+    *,
+    elapsed_s: Sequence[float] = ELAPSED_S,
+    method: Method = "regression",
+    carbon: float = CARBON_FRACTION,
+    limits_percent: Sequence[float] = LIMITS_PERCENT,
+) -> pd.DataFrame:
+    """Return the estimate after each elapsed time within the record, a row per time.
+
+    Columns: ``elapsed_s``, ``fsc_percent``, ``noise_percent``, ``total_percent``, ``low_percent``,
+    ``high_percent``, ``quality``, ``passes``, and for each limit ``verdict_0.1`` and
+    ``probability_above_0.1``. Times at which there is no estimate yet have quality C and NaN.
+
+    Raises
+    ------
+    MeasurementError : a parameter is out of range, or the whole record cannot be that of a flight,
+        same as ``estimate``
+    """
+    check_parameters(method, carbon, limits_percent)
+    checked_record(readings, instrument)
+    start, end = float(readings.time[0]), float(readings.time[-1])
+    rows = []
+    for elapsed in elapsed_s:
+        if elapsed > end - start + 1e-6:
+            continue
+        until = int(np.searchsorted(readings.time, start + elapsed + 1e-6))
+        part = Readings(readings.time[:until], readings.values[:until])
+        try:
+            found = estimate(
+                part, instrument, method=method, carbon=carbon, limits_percent=limits_percent
+            )
+        except MeasurementError:
+            found = None
+        rows.append(_row(elapsed, found, limits_percent))
+    return pd.DataFrame(rows, columns=list(_row(0.0, None, limits_percent)))
+
+
+def _row(
+    elapsed: float, found: FscEstimate | None, limits: Sequence[float]
+) -> dict[str, float | str]:
+    """Return a row of the table over time; ``found`` is None where there is no estimate yet."""
+    row: dict[str, float | str] = {"elapsed_s": elapsed}
+    for name in ("fsc_percent", "noise_percent", "total_percent", "low_percent", "high_percent"):
+        row[name] = math.nan if found is None else getattr(found, name)
+    row["quality"] = "C" if found is None else found.quality
+    row["passes"] = 0 if found is None else found.figures.passes
+    for i, limit in enumerate(limits):
+        verdict = None if found is None else found.verdicts[i]
+        row[f"verdict_{limit:g}"] = OPEN if verdict is None else verdict.verdict
+        row[f"probability_above_{limit:g}"] = (
+            math.nan if verdict is None else verdict.probability_above
+        )
+    return row
+
+
+def time_to_verdict(table: pd.DataFrame, limit_percent: float) -> float:
+    """Return the elapsed time from which the verdict on a limit stays the same, NaN if open [s].
+
+    Parameters
+    ----------
+    table : of ``over_time``
+    limit_percent : one of its limits [% m/m]
+    """
+    verdicts = table[f"verdict_{limit_percent:g}"].tolist()
+    if not verdicts or verdicts[-1] == OPEN:
+        return math.nan
+    first = len(verdicts)
+    while first > 0 and verdicts[first - 1] == verdicts[-1]:
+        first -= 1
+    return float(table["elapsed_s"].iloc[first])

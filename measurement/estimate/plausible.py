@@ -1,156 +1,321 @@
-"""What no living sensor reads, and no exhaust has."""
+"""Readings that no working sensor has: cut off, stuck, spikes, too little noise, mixed-up gases."""
 
 import math
 
 import numpy as np
 
-from measurement.estimate.fit.signals import used_gases
-from measurement.estimate.quality import STRANGE_SIGMA, quiet
+from measurement.estimate.quality import STRANGE_SIGMA
 from measurement.estimate.record import Record, shown_scatter, shown_step
-from measurement.estimate.sticking import sticking
 from measurement.gases import GASES, UNITS
 from measurement.sniffer.channel import Channel
 from measurement.sniffer.lag import Array
 from measurement.sniffer.sniffer import Readings
 from measurement.sniffer.spec import SnifferSpec
 
-OZONE_MOST = 50.0
-"""NO2 that ozone makes of the NO of a plume, at most [ppb] (assumption): all ozone of the air over
-the sea, which has 20 to 50.
-"""
-
-_LOW, _HIGH, _SIGMAS = 0.05, 0.95, 3.29
-"""Shares of the readings below the level outside the plume, and below that in it; of noise alone
-they lie so many sigma apart.
-"""
-
-
 _CUT_LEAST, _CUT_OVER, _CUT_STEPS = 8, 3.0, 5
-"""Readings at the last one, and how often as many as at any of the next steps before it, that show
-where readings are cut off.
+"""Readings at the last step before an end of the range that show where readings are cut off.
+
+They are at least so many, and more than so many times those at any of the next steps.
 """
 
 _FASTER, _FASTEST = 0.5, 0.1
-"""Share of the stated t90 within which a sensor may fall, for uneven times and wrong figures; and
-where t90 is not well known.
+"""Shares of the stated t90 within which a sensor may fall: at most, and at least.
+
+The first allows for uneven times and wrong figures, the second is for a t90 that is not well known.
 """
 
 _FALL_SIGMAS = 10.0
-"""Standard deviations of the noise by which a reading is lower than the one before it allows, until
-noise is no explanation.
+"""Standard deviations of the noise by which a reading may be lower than a fall allows."""
+
+_CHANCE_MOST = 1e-6
+"""Least probability that noise alone has as many equal readings in a row in the record."""
+
+_STUCK_SHARE_MOST = 0.1
+"""Share of a record in which a sensor may be stuck, for no longer than its t90 at a time.
+
+As much may be missing.
 """
 
+_FEWEST = 10
+"""Least number of equal readings in a row that show a stuck sensor."""
 
-def unlikely(record: Record, readings: Readings, instrument: SnifferSpec) -> list[str]:
-    """Return what is wrong with readings of CO2, SO2, and the gases of the record that the SO2
-    channel responds to.
-    """
-    so2 = instrument.known("so2")
-    telling = [
-        "so2",
-        *(
-            gas
-            for gas in used_gases(record)
-            if so2.cross.get(gas, 0.0) or so2.cross_sd.get(gas, 0.0)
-        ),
-    ]
-    problems = [
-        problem
-        for gas in used_gases(record)
-        for problem in _cut_off(readings, instrument.known(gas))
-    ]
-    problems += [
-        *sticking(readings, instrument.known("co2")),
-        *_spikes(record, readings, instrument.known("co2")),
-    ]
-    for channel in map(instrument.known, telling):
-        problems += sticking(readings, channel) or quiet(record.scatter[channel.gas], channel)
+_RISE_SIGMA = 10.0
+"""Rise of another gas that shows the plume [standard deviations of its noise].
+
+White noise reaches 7 of them.
+"""
+
+_SMOOTHED = 0.1
+"""Least share of its stated noise that a sensor shows in clean air.
+
+Data sheets state 2 sigma, and instruments smooth.
+"""
+
+_STEP_ROUNDING = 1e-6
+"""Rounding of floating-point numbers by which readings a step apart may differ more [steps]."""
+
+_NOISE_USUAL = 1.0
+"""Noise of a channel of SO2, NO or NO2 that states none [ppb]: presets have 0.3 to 7.5 ppb."""
+
+_QUIET_SHARE = 0.01
+"""Least scatter of readings, relative to their noise.
+
+Readings in ppm have a thousandth; a data sheet that states 2 sigma, or smoothing in the instrument,
+leaves a larger share. With ``_NOISE_USUAL`` it is 10 ppt: only laser-induced fluorescence has less
+in a second (2 ppt in 10 s: Rollins et al., AMT 9:4601).
+"""
+
+_OZONE_MOST = 50.0
+"""NO2 that ozone makes of the NO of a plume, at most [ppb] (assumption).
+
+It is all ozone of the air over the sea, which has 20 to 50.
+"""
+
+_LOW, _HIGH, _NOISE_RANGE = 0.05, 0.95, 3.29
+"""Quantiles whose difference is the range of a gas, and that range of noise alone [sigma]."""
+
+
+def implausibilities(record: Record, readings: Readings, instrument: SnifferSpec) -> list[str]:
+    """Return what is wrong with the readings of CO2, SO2, and the gases that SO2 responds to."""
+    so2, co2 = instrument.known("so2"), instrument.known("co2")
+    problems = []
+    for gas in record.gases:
+        problems += _cut_off(readings, instrument.known(gas))
+    problems += _stuck(readings, co2)
+    problems += _spikes(record, readings, co2)
+    responds_to = (
+        gas for gas in record.gases if so2.cross.get(gas, 0.0) or so2.cross_sd.get(gas, 0.0)
+    )
+    for gas in ("so2", *responds_to):
+        channel = instrument.known(gas)
+        problems += _stuck(readings, channel) or _quiet(record.scatter[gas], channel)
     return problems or _exchanged(record, instrument)
 
 
 def _cut_off(readings: Readings, channel: Channel) -> list[str]:
-    """Return the problem of readings that end in a heap, at the largest or the least, if they do.
+    """Return the problem of readings that are cut off at the largest or the least.
 
-    What lies beyond is lost, which makes a mean of SO2 or of CO2 too low, or too high. Saturation
-    is told apart.
+    The readings beyond are lost, which makes the mean of a gas too low, or too high. Saturation at
+    the end of the stated range is a problem of the record, and not repeated here.
     """
     column = readings.values[:, GASES.index(channel.gas)]
     known, step = column[np.isfinite(column)], shown_step(column)
+    if not step:
+        return []
     most, least = float(known.max()), float(known.min())
     noise = channel.noise
     if math.isnan(noise):
         noise = shown_scatter([known[known > least]], step)
     name, unit = channel.gas.upper(), UNITS[channel.gas]
-    if not step:
-        return []
-    if most < channel.range_high - 0.5 * channel.resolution and (
-        times := _heap((most - known) / step)
-    ):
+    saturated = most >= channel.range_high - 0.5 * channel.resolution
+    times = 0 if saturated else _heap((most - known) / step)
+    if times:
         return [
-            f"{name} reads {most:g} {unit}, and never more, {times} times, and hardly ever just less: it is cut off"
+            f"{name} reads {most:g} {unit}, and never more, {times} times, and hardly ever just"
+            " less: it is cut off"
         ]
-    # Clean air without noise that is seen reads the same, and least.
-    if noise >= step and (times := _heap((known - least) / step)):
+    # Clean air without visible noise reads the same, and least.
+    times = _heap((known - least) / step) if noise >= step else 0
+    if times:
         return [
-            f"{name} reads {least:g} {unit}, and never less, {times} times, and hardly ever just more: it is cut off; log what its"
-            " noise takes below"
+            f"{name} reads {least:g} {unit}, and never less, {times} times, and hardly ever just"
+            " more: it is cut off; log what its noise takes below"
         ]
     return []
 
 
 def _heap(steps: Array) -> int:
-    """Return how many readings lie at 0 steps from the end, where these are a heap: noise and
-    plumes end in fewer and fewer.
+    """Return how many readings are at the end, given their steps from it, if these are a heap.
+
+    Noise and plumes end in fewer and fewer readings.
     """
     heap, *near = (int(np.sum(np.round(steps) == number)) for number in range(_CUT_STEPS + 1))
     return heap if heap >= _CUT_LEAST and heap > _CUT_OVER * max(near) else 0
 
 
 def _spikes(record: Record, readings: Readings, channel: Channel) -> list[str]:
-    """Return the problem of CO2 that falls faster than its sensor can, as it does after a spike, if
-    it does.
+    """Return the problem of CO2 that falls faster than its sensor can, as it does after a spike.
 
-    A reading falls towards that of the air, and no lower: a time constant later an e-th of its
-    excess is left. One spike is enough to draw the slope to 0, and where SO2 is noisy nothing else
-    shows it.
+    A reading falls towards that of the air, and no lower: a time constant later 1/e of its excess
+    is left. One spike is enough to draw the slope to 0, and where SO2 is noisy nothing else shows
+    it.
     """
     column = readings.values[:, GASES.index("co2")]
     known = np.flatnonzero(np.isfinite(column))
     time, values, lowest = readings.time[known], column[known], float(np.min(column[known]))
     noise = np.fmax(channel.noise, record.scatter["co2"])
-    fastest = channel.constants[0] * max(
-        _FASTEST, min(_FASTER, 1.0 - STRANGE_SIGMA * channel.t90_sd)
-    )
-    least = (
-        lowest + (values[:-1] - lowest) * np.exp(-np.diff(time) / fastest) - _FALL_SIGMAS * noise
-    )
+    share = max(_FASTEST, min(_FASTER, 1.0 - STRANGE_SIGMA * channel.t90_sd))
+    fastest = channel.constants[0] * share
+    left = np.exp(-np.diff(time) / fastest)
+    least = lowest + (values[:-1] - lowest) * left - _FALL_SIGMAS * noise
     falls = np.flatnonzero(values[1:] < least)
     if not falls.size:
         return []
-    i, more = int(falls[0]), f", and {falls.size - 1} more such falls" if falls.size > 1 else ""
+    i = int(falls[0])
+    more = f", and {falls.size - 1} more such falls" if falls.size > 1 else ""
     when = f"in {time[i + 1] - time[i]:.2g} s at {time[i] - readings.time[0]:.0f} s{more}"
     return [
-        f"CO2 falls from {values[i]:.1f} to {values[i + 1]:.1f} ppm {when}, faster than a t90 of {channel.t90_s:g} s allows: leave"
-        " spikes empty, or correct t90_s"
+        f"CO2 falls from {values[i]:.1f} to {values[i + 1]:.1f} ppm {when}, faster than a t90 of"
+        f" {channel.t90_s:g} s allows: leave spikes empty, or correct t90_s"
+    ]
+
+
+def _quiet(scatter: float, channel: Channel) -> list[str]:
+    """Return the problem of a gas that scatters less than its sensor can; clean air has noise, too.
+
+    Parameters
+    ----------
+    scatter : standard deviation of the noise that the readings show [ppb]
+    channel : of SO2, NO or NO2, as the analyst knows it; rounding to a step that is larger than its
+        noise may hide the noise
+    """
+    stated = not math.isnan(channel.noise)
+    noise = channel.noise if stated else _NOISE_USUAL
+    if scatter >= _QUIET_SHARE * noise or channel.resolution > noise:
+        return []
+    found = "reads the same throughout"
+    if scatter > 0.0:
+        found = f"scatters by {scatter:.2g} ppb from reading to reading"
+    expected = f"its noise is {noise:g} ppb"
+    if not stated:
+        expected = f"the noise of such sensors is about {noise:g} ppb"
+    return [
+        f"{channel.gas.upper()} {found}, and {expected}: it is in another unit (of ppm, give a"
+        f" [scale] of {channel.gas} = 1000.0), or its sensor is dead"
     ]
 
 
 def _exchanged(record: Record, instrument: SnifferSpec) -> list[str]:
-    """Return the problem of NO2 that exceeds NO by more than ozone makes of it, if it does.
+    """Return the problem of NO2 that exceeds NO by more than ozone makes of it.
 
     Of the NOx of exhaust 3 to 20 % are NO2.
     """
-    if not {"no", "no2"} <= set(used_gases(record)):
+    if not {"no", "no2"} <= set(record.gases):
         return []
     gains = {gas: instrument.known(gas).gain for gas in ("no", "no2")}
     no, no2 = (
         float(np.ptp(np.quantile(record.of(gas), (_LOW, _HIGH)))) / gain
         for gas, gain in gains.items()
     )
-    # The squares of what noise and plume do add up.
-    if no2**2 - (_SIGMAS * record.scatter["no2"] / gains["no2"]) ** 2 <= (no + OZONE_MOST) ** 2:
+    # The squares of noise and plume add up.
+    noise = _NOISE_RANGE * record.scatter["no2"] / gains["no2"]
+    if no2**2 - noise**2 <= (no + _OZONE_MOST) ** 2:
         return []
     return [
-        f"NO2 varies by {no2:.0f} ppb in the plume and NO by {no:.0f} ppb: exhaust has more NO than NO2, and ozone makes at most"
-        f" {OZONE_MOST:g} ppb of it; check which columns are SO2, NO and NO2, and their units"
+        f"NO2 varies by {no2:.0f} ppb in the plume and NO by {no:.0f} ppb: exhaust has more NO than"
+        f" NO2, and ozone makes at most {_OZONE_MOST:g} ppb of it; check which columns are SO2, NO"
+        " and NO2, and their units"
     ]
+
+
+# Stuck sensors: they read the same for longer than their noise and resolution allow
+
+
+def _stuck(readings: Readings, channel: Channel) -> list[str]:
+    """Return the problem of a gas whose sensor is stuck for a part of the record.
+
+    A working sensor shows its noise in clean air, too, unless that is below its resolution. Only
+    where another gas rises meanwhile is the stated noise taken at its word; otherwise a tenth of it
+    has to be too much, and readings of 0 do not count, as a sensor may cut off there what is lower.
+    A gas that reads the same throughout is left to ``_quiet``.
+
+    Parameters
+    ----------
+    readings : as they were logged, with those of the gas
+    channel : of the gas, as the analyst knows it
+    """
+    column = readings.values[:, GASES.index(channel.gas)]
+    known = np.flatnonzero(np.isfinite(column))
+    time, values = readings.time[known], column[known]
+    # A sensor that works for a part of the record may hardly ever move by a single step.
+    step = shown_step(np.sort(values))
+    if not step:
+        return []
+    runs = [
+        run
+        for run in _equal_runs(values, step)
+        if _too_long(run, values, step, _noise_outside(run, values, step, channel))
+        and not _explained(run, time, values, step, readings, channel)
+    ]
+    lengths = [float(time[run[-1]] - time[run[0]]) for run in runs]
+    most = _STUCK_SHARE_MOST * float(time[-1] - time[0])
+    if not runs or (max(lengths) <= channel.t90_s and sum(lengths) <= most):
+        return []
+    longest, unit = runs[int(np.argmax(lengths))], UNITS[channel.gas]
+    within = f" within {step:.3g} {unit}" if np.ptp(values[longest]) > 0.0 else ""
+    times = f", and {len(runs) - 1} more time{'s' * (len(runs) > 2)}" if runs[1:] else ""
+    noise = "noise" if math.isnan(channel.noise) else f"noise of {channel.noise:g} {unit}"
+    return [
+        f"{channel.gas.upper()} reads the same{within} for {max(lengths):.0f} s from"
+        f" {time[longest[0]] - readings.time[0]:.0f} s on{times}, which its {noise} does not allow:"
+        " its sensor, or its logger, was stuck"
+    ]
+
+
+def _equal_runs(values: Array, step: float) -> list[range]:
+    """Return the rows of ``_FEWEST`` or more consecutive readings within one step, shape (n,)."""
+    step *= 1.0 + _STEP_ROUNDING
+    near = np.concatenate([[False], np.abs(np.diff(values)) <= step, [False]])
+    edges = np.flatnonzero(np.diff(near.astype(int)))
+    runs = []
+    for start, end in zip(edges[::2].tolist(), edges[1::2].tolist(), strict=True):
+        if end - start + 1 < _FEWEST:
+            continue
+        first = start
+        least = most = values[start]
+        for row in range(start + 1, end + 1):
+            least, most = min(least, values[row]), max(most, values[row])
+            if most - least > step:
+                runs.append(range(first, row))
+                first = row
+                least = most = values[row]
+        runs.append(range(first, end + 1))
+    return [run for run in runs if len(run) >= _FEWEST]
+
+
+def _noise_outside(run: range, values: Array, step: float, channel: Channel) -> float:
+    """Return the stated noise of a channel, or the noise of the readings outside of a run."""
+    if not math.isnan(channel.noise):
+        return channel.noise
+    rest = [part for part in (values[: run.start], values[run.stop :]) if len(part)]
+    return shown_scatter(rest, step)
+
+
+def _too_long(run: range, values: Array, step: float, noise: float) -> bool:
+    """Return whether noise would hardly ever leave so many readings within a step."""
+    if not noise > 0.0:
+        return False
+    # Most normal noise is within a step that is centred on its mean.
+    within = math.erf(step / noise / math.sqrt(2.0))
+    readings = len(run) / _oversampling(values)
+    return readings >= _FEWEST and len(values) * within ** (readings - 1.0) < _CHANCE_MOST
+
+
+def _oversampling(values: Array) -> float:
+    """Return the rows per reading: more than 1 where the logger is faster than the sensor."""
+    changes = np.flatnonzero(np.diff(values))
+    return float(np.median(np.diff(changes))) if len(changes) > 1 else 1.0
+
+
+def _explained(
+    run: range, time: Array, values: Array, step: float, readings: Readings, channel: Channel
+) -> bool:
+    """Return whether a working sensor may read this: at the end of its range, or in clean air."""
+    if values[run[0]] >= channel.range_high - channel.resolution:
+        return True
+    if values[run[0]] != 0.0 and _too_long(run, values, step, _SMOOTHED * channel.noise):
+        return False
+    # A gas that arrives ends the clean air; faster sensors than this one show it before.
+    until = time[run[-1]] - channel.t90_s - channel.delay_s
+    during = (readings.time >= time[run[0]]) & (readings.time <= until)
+    others = [i for i, gas in enumerate(GASES) if gas != channel.gas]
+    return not any(_rises(readings.values[:, i], during) for i in others)
+
+
+def _rises(column: Array, during: Array) -> bool:
+    """Return whether a gas rises by more than its noise in a part of its readings, shape (m,)."""
+    part = column[during & np.isfinite(column)]
+    if not len(part):
+        return False
+    noise = shown_scatter([column[np.isfinite(column)]], shown_step(column))
+    return float(np.max(part - np.minimum.accumulate(part))) > _RISE_SIGMA * noise

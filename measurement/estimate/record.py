@@ -1,10 +1,9 @@
-"""Readings, checked and laid on an even grid, in segments between gaps."""
+"""Readings of a flight, checked and interpolated on an even time grid, in segments between gaps."""
 
 import math
 from collections.abc import Callable, Hashable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
-from pathlib import Path
 from typing import Any, TypeVar
 
 import numpy as np
@@ -18,73 +17,75 @@ from measurement.sniffer.sniffer import Readings
 from measurement.sniffer.spec import SnifferSpec
 
 CO2_LEAST, CO2_MOST = 250.0, 50_000.0
-"""Median CO2 of a record in air that can be breathed [ppm]: outside it the unit, or the background,
-is wrong.
-"""
+"""Range of the median CO2 in breathable air [ppm]; outside it unit or background is wrong."""
 
 _OTHER_MOST = 1e6
 """Largest reading of the other gases [ppb]."""
 
 _STEP_LEAST, _STEP_MOST = 1e-3, 30.0
-"""Median interval between samples [s]: no sniffer reads faster, and the slowest cell of the presets
-has answered by the longest, in which an aircraft has crossed a plume and left it."""
+"""Range of the median interval between samples [s].
 
-BRIDGED = 2.5
-"""Gaps of up to so many sample periods are bridged by a straight line; longer ones part the record.
+No sniffer reads faster. Within the longest interval the slowest cell of the presets has responded,
+and an aircraft has crossed a plume and left it.
 """
 
-_WHOLE = 1.75
-"""Between readings that are fewer sample periods apart none is missing, even if their times are
-uneven by three quarters.
+BRIDGED = 2.5
+"""Longest gap that is bridged by a straight line [sample periods]; longer ones end a segment."""
+
+_NO_GAP = 1.75
+"""Interval between readings below which none is missing [sample periods].
+
+It allows for times that are uneven by three quarters of a period.
 """
 
 SHORTEST = 8
-"""Fewest samples of a segment: pieces between gaps that have fewer are left out."""
+"""Fewest samples of a segment; shorter pieces between gaps are left out."""
 
 _SATURATED_MAX, _MISSING_MAX = 0.0, 0.1
-"""Shares of saturated and of missing samples from which on there is no verdict."""
+"""Largest shares of saturated and of missing samples with a verdict."""
 
 _SAME = 1e-9
-"""Readings that differ by less, relative to the largest, are the same."""
+"""Difference of equal readings, relative to the largest reading."""
 
 _CALM, _CALM_SIGMA = 0.1, 0.1257
-"""Share of the second differences that are noise alone, and the largest of them over their standard
-deviation: the quantile of the size of normal noise."""
+"""Share of the second differences that are noise alone, and the quantile of normal noise there.
 
-_EVEN = 0.5 * (math.sqrt(5.0) - 1.0)
-"""Multiples of the golden section, less their whole numbers, lie evenly within 0 to 1 however many
-there are.
+Of normal noise a share of 0.1 has a size below 0.1257 standard deviations.
 """
+
+_GOLDEN = 0.5 * (math.sqrt(5.0) - 1.0)
+"""Fractional parts of multiples of the golden section are evenly spread in 0 to 1."""
 
 _NEGATIVE_SIGMA = 8.0
-"""A reading lower than zero by so many standard deviations of noise and zero is no reading."""
+"""Standard deviations of noise and zero below which a reading cannot be one."""
 
 _NOX_SIGMA = 3.0
-"""A ship that is not measured for NO or NO2 may emit the expected by so many standard deviations
-more.
+"""Standard deviations above the mean that the NO and NO2 of a ship may have if not measured."""
+
+_DITHERED = 4.0
+"""Largest step of other gases, in standard deviations of the noise, whose rounding is noise.
+
+Up to it the mean of rounded readings is right within a tenth of a step.
 """
 
-_KEPT = 32
-"""What is worked out of a record and kept, at most: to move one property of the instrument changes
-little of it.
-"""
+_CACHE_SIZE = 32
+"""Results kept for a record: moving one property of the instrument changes few of them."""
 
 _T = TypeVar("_T")
 
 
 @dataclass(frozen=True)
 class Record:
-    """An even record.
+    """Readings on an even time grid.
 
     Attributes
     ----------
     step : between samples [s]
     times : of each segment, shape (n,) [s]
     values : of each segment, by gas, shape (n,) each
-    resolution : of the readings as they were logged, by gas: the smallest change from one to the
-        next, 0 where none changes
-    scatter : standard deviation of the readings that they show themselves, likewise
-    problems : why there can be no verdict, a sentence each
+    resolution : by gas, smallest change between consecutive readings of the log, 0 if none changes
+    scatter : by gas, standard deviation of the noise that the readings show
+    problems : reasons why there can be no verdict, a sentence each
     """
 
     step: float
@@ -93,188 +94,195 @@ class Record:
     resolution: dict[str, float]
     scatter: dict[str, float]
     problems: tuple[str, ...]
-    _kept: dict[Hashable, Any] = field(default_factory=dict, init=False, repr=False, compare=False)
+    _cache: dict[Hashable, Any] = field(default_factory=dict, init=False, repr=False, compare=False)
+
+    @cached_property
+    def gases(self) -> tuple[str, ...]:
+        """Gases of the record, in the order of ``GASES``."""
+        return tuple(gas for gas in GASES if gas in self.values[0])
 
     @cached_property
     def time(self) -> Array:
-        """Times of all samples."""
+        """Times of all samples [s]."""
         return np.concatenate(self.times)
 
-    def once(self, key: Hashable, make: Callable[[], _T]) -> _T:
-        """Return what ``make`` makes of the record, kept from the last time that it was asked for
-        by ``key``.
-        """
-        made: _T = self._kept.pop(key) if key in self._kept else make()
-        self._kept[key] = made
-        if len(self._kept) > _KEPT:
-            del self._kept[next(iter(self._kept))]
-        return made
+    @property
+    def duration(self) -> float:
+        """Time from the first sample to the last [s]."""
+        return float(self.times[-1][-1] - self.times[0][0])
 
     def of(self, gas: str) -> Array:
         """Return all samples of a gas."""
         return np.concatenate([segment[gas] for segment in self.values])
 
-    @property
-    def duration(self) -> float:
-        """From the first sample to the last [s]."""
-        return float(self.times[-1][-1] - self.times[0][0])
+    def cached(self, key: Hashable, compute: Callable[[], _T]) -> _T:
+        """Return ``compute()``, or the result that it had under the same key."""
+        result: _T = self._cache.pop(key) if key in self._cache else compute()
+        self._cache[key] = result
+        if len(self._cache) > _CACHE_SIZE:
+            del self._cache[next(iter(self._cache))]
+        return result
 
 
 def checked_record(readings: Readings, instrument: SnifferSpec) -> Record:
-    """Return the readings of SO2, CO2 and, where they and their channels exist, NO and NO2, on an
-    even grid.
+    """Return the readings of all gases that readings and instrument have, on an even grid.
 
     Raises
     ------
     MeasurementError : no CO2 or SO2, too short, times that do not increase or are too far apart, or
-        units that cannot be
+        readings that cannot be in their unit
     """
-    time, values = (
-        np.asarray(readings.time, dtype=np.float64),
-        np.asarray(readings.values, dtype=np.float64),
-    )
+    time = np.asarray(readings.time, dtype=np.float64)
+    values = np.asarray(readings.values, dtype=np.float64)
+    step = _checked_step(time, values)
+    columns = _measured(values, instrument)
+    for gas, column in columns.items():
+        check_units(instrument.known(gas), column)
+    complete = np.flatnonzero(np.isfinite(list(columns.values())).all(axis=0))
+    segments = [rows for rows in split_at_gaps(time, complete, step) if len(rows) >= SHORTEST]
+    if not segments:
+        raise MeasurementError(_no_segment(columns))
+    grids = [_grid(time[rows], step) for rows in segments]
+    parts = []
+    for grid, rows in zip(grids, segments, strict=True):
+        known = time[rows]
+        parts.append({gas: np.interp(grid, known, column[rows]) for gas, column in columns.items()})
+    # Interpolated samples lie on straight lines and show no noise.
+    pieces = split_at_gaps(time, complete, step, _NO_GAP)
+    unbroken = [rows for rows in pieces if len(rows) > 2] or segments
+    resolution = {gas: shown_step(column) for gas, column in columns.items()}
+    scatter = {
+        gas: shown_scatter([column[rows] for rows in unbroken], resolution[gas])
+        for gas, column in columns.items()
+    }
+    problems = _problems(time, values, columns, instrument)
+    return Record(step, tuple(grids), tuple(parts), resolution, scatter, problems)
+
+
+def _checked_step(time: Array, values: Array) -> float:
+    """Return the median interval between samples [s] after checking shapes and times."""
     if time.ndim != 1 or values.shape != (len(time), len(GASES)):
         raise MeasurementError(
-            f"readings have shapes {time.shape} and {values.shape}; they must be (m,) and (m, {len(GASES)})"
+            f"readings have shapes {time.shape} and {values.shape};"
+            f" they must be (m,) and (m, {len(GASES)})"
         )
     if len(time) < SHORTEST:
         raise MeasurementError(
-            f"the record has {len(time)} samples; it needs at least {SHORTEST}, and one whole crossing of the plume"
+            f"the record has {len(time)} samples; it needs at least {SHORTEST}, and one whole"
+            " crossing of the plume"
         )
     if not np.isfinite(time).all():
+        first = int(np.argmin(np.isfinite(time)))
         raise MeasurementError(
-            f"time of sample {int(np.argmin(np.isfinite(time)))} is not a number; give a time [s] for every sample"
+            f"time of sample {first} is not a number; give a time [s] for every sample"
         )
     check_increasing(time)
     step = float(np.median(np.diff(time)))
     if not _STEP_LEAST <= step <= _STEP_MOST:
         raise MeasurementError(
-            f"samples are {step:g} s apart (median); they must be {_STEP_LEAST:g} to {_STEP_MOST:g} s apart: check that time is in"
-            " seconds, not milliseconds or hours"
+            f"samples are {step:g} s apart (median); they must be {_STEP_LEAST:g} to"
+            f" {_STEP_MOST:g} s apart: check that time is in seconds, not milliseconds or hours"
         )
-    gases = _used(values, instrument)
-    logged = {gas: values[:, GASES.index(gas)] for gas in gases}
-    for gas, column in logged.items():
-        check_units(instrument.known(gas), column)
-    problems = _problems(time, values, gases, instrument)
-    known = np.isfinite(list(logged.values())).all(axis=0)
-    segments = [
-        segment for segment in pieces(time, np.flatnonzero(known), step) if len(segment) >= SHORTEST
-    ]
-    times, parts = [], []
-    for segment in segments:
-        grid = time[segment[0]] + step * np.arange(
-            math.floor((time[segment[-1]] - time[segment[0]]) / step + 1e-6) + 1
-        )
-        # A grid of the record's own times is left as it is.
-        grid = (
-            time[segment]
-            if len(grid) == len(segment)
-            and np.allclose(grid, time[segment], rtol=0.0, atol=1e-3 * step)
-            else grid
-        )
-        times.append(grid)
-        parts.append(
-            {gas: np.interp(grid, time[segment], column[segment]) for gas, column in logged.items()}
-        )
-    if not times:
-        *names, last = (gas.upper() for gas in gases)
-        fewest = min(gases, key=lambda gas: int(np.isfinite(logged[gas]).sum()))
-        remedy = (
-            ""
-            if fewest in ("so2", "co2")
-            else f", or leave out the column of {fewest.upper()}, which has fewest"
-        )
-        every = f"no {SHORTEST} samples in a row have all of {', '.join(names)} and {last}"
-        raise MeasurementError(f"{every}; give a record with fewer gaps{remedy}")
-    # Samples that are interpolated lie on straight lines, and show no noise.
-    whole = [
-        run for run in pieces(time, np.flatnonzero(known), step, _WHOLE) if len(run) > 2
-    ] or segments
-    resolution = {gas: shown_step(column) for gas, column in logged.items()}
-    scatter = {
-        gas: shown_scatter([column[run] for run in whole], resolution[gas])
-        for gas, column in logged.items()
-    }
-    return Record(step, tuple(times), tuple(parts), resolution, scatter, problems)
+    return step
 
 
-def pieces(
-    time: Array, rows: npt.NDArray[np.intp], step: float, periods: float = BRIDGED
-) -> list[npt.NDArray[np.intp]]:
-    """Return the rows that have all readings, shape (n,), in pieces between gaps of so many periods
-    of the log, ``step`` [s].
-    """
-    return np.split(rows, np.flatnonzero(np.diff(time[rows]) > periods * step) + 1)
-
-
-def _used(values: Array, instrument: SnifferSpec) -> list[str]:
-    used = [
-        gas
-        for i, gas in enumerate(GASES)
-        if instrument.channel(gas) and np.isfinite(values[:, i]).any()
-    ]
+def _measured(values: Array, instrument: SnifferSpec) -> dict[str, Array]:
+    """Return the columns of the gases that have a channel and readings, shape (m,) each."""
+    columns = {}
+    for i, gas in enumerate(GASES):
+        if instrument.channel(gas) and np.isfinite(values[:, i]).any():
+            columns[gas] = values[:, i]
     for gas, why in (
         ("co2", "the fuel that it burnt is not known without"),
         ("so2", "there is nothing to estimate without"),
     ):
-        if gas not in used:
+        if gas not in columns:
             raise MeasurementError(
-                f"the record has no {gas.upper()} readings, or '{instrument.name}' no such channel; {why} them: add them"
+                f"the record has no {gas.upper()} readings, or '{instrument.name}' no such channel;"
+                f" {why} them: add them"
             )
-    return used
+    return columns
 
 
-def check_increasing(time: Array, path: Path | None = None) -> None:
-    """Refuse times that do not increase, shape (m,); of a file it is told where, by rows of which
-    the head line is the first.
+def split_at_gaps(
+    time: Array, rows: npt.NDArray[np.intp], step: float, periods: float = BRIDGED
+) -> list[npt.NDArray[np.intp]]:
+    """Return rows in pieces between gaps that are longer than ``periods`` times ``step`` [s].
+
+    Parameters
+    ----------
+    time : of all rows, shape (m,) [s]
+    rows : indices of the rows that have all readings, shape (n,)
+    """
+    return np.split(rows, np.flatnonzero(np.diff(time[rows]) > periods * step) + 1)
+
+
+def _grid(time: Array, step: float) -> Array:
+    """Return even times over those of a segment; times that are even already stay as they are."""
+    intervals = math.floor((time[-1] - time[0]) / step + 1e-6)
+    grid = time[0] + step * np.arange(intervals + 1)
+    even = len(grid) == len(time) and np.allclose(grid, time, rtol=0.0, atol=1e-3 * step)
+    return time if even else grid
+
+
+def _no_segment(columns: Mapping[str, Array]) -> str:
+    """Return the error of a record that has no segment with readings of all gases."""
+    *names, last = (gas.upper() for gas in columns)
+    fewest = min(columns, key=lambda gas: int(np.isfinite(columns[gas]).sum()))
+    remedy = ""
+    if fewest not in ("so2", "co2"):
+        remedy = f", or leave out the column of {fewest.upper()}, which has fewest"
+    return (
+        f"no {SHORTEST} samples in a row have all of {', '.join(names)} and {last};"
+        f" give a record with fewer gaps{remedy}"
+    )
+
+
+def check_increasing(time: Array, *, in_file: bool = False) -> None:
+    """Check that times increase, shape (m,); the error names the row of a file, from 2 on.
 
     Raises
     ------
-    MeasurementError : they do not
+    MeasurementError : they do not increase
     """
-    late = np.flatnonzero(np.diff(time) <= 0.0)
-    if not late.size:
+    backwards = np.flatnonzero(np.diff(time) <= 0.0)
+    if not backwards.size:
         return
-    at = int(late[0])
-    where, row, what = (
-        ("", "", "record") if path is None else (f"'{path}': ", f" in row {at + 2}", "rows by time")
-    )
+    i = int(backwards[0])
+    row, what = (f" in row {i + 2}", "rows by time") if in_file else ("", "record")
     raise MeasurementError(
-        f"{where}times do not increase: {time[at]:.15g} s{row} is followed by {time[at + 1]:.15g} s; sort the {what} and drop"
-        " repeats, or, where the clock was set back, correct the times after it"
+        f"times do not increase: {time[i]:.15g} s{row} is followed by {time[i + 1]:.15g} s;"
+        f" sort the {what} and drop repeats, or, where the clock was set back, correct the times"
+        " after it"
     )
 
 
 def check_units(channel: Channel, values: Array) -> None:
-    """Refuse readings of a channel that cannot be in its gas's unit, shape (m,).
+    """Check that readings of a channel can be in the unit of its gas, shape (m,).
 
     Raises
     ------
-    MeasurementError : they are CO2 without its background, or no gas has them
+    MeasurementError : CO2 has no background, or the readings are larger than any gas has
     """
-    gas, known = channel.gas, values[np.isfinite(values)]
-    middle, least, most = (
-        float(np.median(known)) / channel.gain,
-        float(known.min()),
-        float(known.max()),
-    )
+    gas = channel.gas
+    known = values[np.isfinite(values)]
+    middle = float(np.median(known)) / channel.gain
+    least, most = float(known.min()), float(known.max())
     if gas == "co2" and not CO2_LEAST <= middle <= CO2_MOST:
         raise MeasurementError(
-            f"CO2 has a median of {middle:g} ppm; air has {CO2_LEAST:g} to {CO2_MOST:g} ppm: check the unit; keep the background"
+            f"CO2 has a median of {middle:g} ppm; air has {CO2_LEAST:g} to {CO2_MOST:g} ppm:"
+            " check the unit; keep the background"
         )
     if gas != "co2" and max(most, -least) > _OTHER_MOST:
-        far = most if most > -least else least
+        largest = most if most > -least else least
         raise MeasurementError(
-            f"{gas.upper()} reaches {far:g} ppb; at most {_OTHER_MOST:g} ppb of either sign can be: check its unit and its marks"
-            " for missing readings"
+            f"{gas.upper()} reaches {largest:g} ppb; at most {_OTHER_MOST:g} ppb of either sign"
+            " can be: check its unit and its marks for missing readings"
         )
 
 
 def shown_step(values: Array) -> float:
-    """Return the smallest change from one known reading to the next; what is rounding of
-    floating-point numbers is no change.
-    """
+    """Return the smallest change between consecutive known readings, apart from rounding errors."""
     known = values[np.isfinite(values)]
     changes = np.abs(np.diff(known))
     changes = changes[changes > _SAME * float(np.abs(known).max())]
@@ -282,32 +290,35 @@ def shown_step(values: Array) -> float:
 
 
 def shown_scatter(segments: Sequence[Array], step: float) -> float:
-    """Return the standard deviation of readings in these steps that their second differences show.
+    """Return the standard deviation of the noise that second differences of readings show.
 
-    It is half the step at least: so much has a reading that moves between two neighbouring marks.
+    It is at least half of ``step``, the resolution: a reading that moves between two neighbouring
+    values has as much.
     """
     if not sum(len(segment) > 2 for segment in segments):
         return 0.5 * step
     second = np.concatenate([np.diff(segment, 2) for segment in segments])
-    # Whole numbers hide their noise: most of these differences are 0. Spread evenly over a step,
+    # Rounded readings hide their noise: most second differences are 0. Spread evenly over a step
     # they show it again.
-    spread = step * ((_EVEN * np.arange(len(second))) % 1.0 - 0.5)
+    spread = step * ((_GOLDEN * np.arange(len(second))) % 1.0 - 0.5)
     # The variance of a second difference is 6 times that of a sample.
     shown = float(np.quantile(np.abs(second + spread), _CALM)) / _CALM_SIGMA / math.sqrt(6.0)
     return max(shown, 0.5 * step)
 
 
 def lowest_reading(gas: str, values: Array, instrument: SnifferSpec) -> float:
-    """Return how low a gas may read for its noise, its zero and what the cell makes of other gases;
-    CO2 is in all air.
+    """Return how low a gas may read by noise, zero and the cell's response to other gases.
+
+    CO2 is in all air, which raises its limit.
 
     Parameters
     ----------
-    gas : of which there are readings, and that the instrument has
+    gas : that has readings and a channel
     values : readings of all gases, shape (m, 4)
-    instrument : as the analyst knows it; noise that it does not state is what the readings show
+    instrument : as the analyst knows it; a noise that is not stated is taken from the readings
     """
-    channel, column = instrument.known(gas), values[:, GASES.index(gas)]
+    channel = instrument.known(gas)
+    column = values[:, GASES.index(gas)]
     noise = channel.noise
     if math.isnan(noise):
         noise = shown_scatter([column[np.isfinite(column)]], shown_step(column))
@@ -316,57 +327,76 @@ def lowest_reading(gas: str, values: Array, instrument: SnifferSpec) -> float:
     return max(0.0, channel.gain * CO2_LEAST + floor) if gas == "co2" else floor
 
 
-def _problems(
-    time: Array, values: Array, gases: list[str], instrument: SnifferSpec
-) -> tuple[str, ...]:
-    problems = []
-    for gas in gases:
-        channel, column = instrument.known(gas), values[:, GASES.index(gas)]
-        name, unit = gas.upper(), UNITS[gas]
-        missing = float(np.mean(~np.isfinite(column)))
-        if missing > _MISSING_MAX:
-            problems.append(
-                f"{100.0 * missing:.0f} % of {name} is missing; at most {100.0 * _MISSING_MAX:.0f} % may be"
-            )
-        full = (
-            float(np.mean(column >= channel.range_high - 0.5 * channel.resolution))
-            if math.isfinite(channel.range_high)
-            else 0.0
-        )
-        if full > _SATURATED_MAX:
-            problems.append(
-                f"{name} is saturated at {channel.range_high:g} {unit} in {100.0 * full:.1f} % of the readings"
-            )
-        floor = lowest_reading(gas, values, instrument)
-        if (least := float(np.nanmin(column))) < floor:
-            problems.append(
-                f"{name} reads {least:g} {unit}, which its noise and zero do not explain (from {floor:.0f} {unit})"
-            )
-    gaps = np.diff(time)
-    lost = float(np.sum(gaps[gaps > BRIDGED * np.median(gaps)])) / float(time[-1] - time[0])
-    if lost > _MISSING_MAX:
-        problems.append(
-            f"gaps make up {100.0 * lost:.0f} % of the record; at most {100.0 * _MISSING_MAX:.0f} % may be"
-        )
-    return tuple(problems)
-
-
 def _cross_floor(cross: Mapping[str, float], values: Array, instrument: SnifferSpec) -> float:
-    """Return how far below zero a cell of gain 1 may truly read: what it makes of other gases,
-    measured or as ships emit them.
+    """Return how far below zero other gases can push a cell of gain 1.
+
+    Gases that are not measured count as ships emit them.
     """
     channels = [instrument.channel(gas) for gas in GASES]
     concentrations = values / [channel.gain if channel else 1.0 for channel in channels]
-    lowest, co2 = 0.0, concentrations[:, GASES.index("co2")]
+    co2 = concentrations[:, GASES.index("co2")]
+    lowest = 0.0
     for gas, share in cross.items():
         column = concentrations[:, GASES.index(gas)]
         if share < 0.0 and np.isfinite(column).any():
             lowest += -share * max(0.0, float(np.nanmax(column)))
         elif share < 0.0 and gas in EXPECTED_PPB_PER_PPM:
             ratio, deviation = EXPECTED_PPB_PER_PPM[gas]
-            lowest += (
-                -share
-                * (ratio + _NOX_SIGMA * deviation)
-                * float(np.nanmax(co2) - max(0.0, np.nanmin(co2)))
-            )
+            co2_rise = float(np.nanmax(co2) - max(0.0, np.nanmin(co2)))
+            lowest += -share * (ratio + _NOX_SIGMA * deviation) * co2_rise
     return lowest
+
+
+def _problems(
+    time: Array, values: Array, columns: Mapping[str, Array], instrument: SnifferSpec
+) -> tuple[str, ...]:
+    """Return what the record lacks for a verdict: missing, saturated or negative readings, gaps."""
+    problems = []
+    for gas, column in columns.items():
+        channel = instrument.known(gas)
+        name, unit = gas.upper(), UNITS[gas]
+        missing = float(np.mean(~np.isfinite(column)))
+        if missing > _MISSING_MAX:
+            problems.append(
+                f"{100.0 * missing:.0f} % of {name} is missing; at most"
+                f" {100.0 * _MISSING_MAX:.0f} % may be"
+            )
+        # No reading reaches an infinite end of the range.
+        saturated = float(np.mean(column >= channel.range_high - 0.5 * channel.resolution))
+        if saturated > _SATURATED_MAX:
+            problems.append(
+                f"{name} is saturated at {channel.range_high:g} {unit} in"
+                f" {100.0 * saturated:.1f} % of the readings"
+            )
+        floor = lowest_reading(gas, values, instrument)
+        least = float(np.nanmin(column))
+        if least < floor:
+            problems.append(
+                f"{name} reads {least:g} {unit}, which its noise and zero do not explain"
+                f" (from {floor:.0f} {unit})"
+            )
+    gaps = np.diff(time)
+    lost = float(np.sum(gaps[gaps > BRIDGED * np.median(gaps)])) / float(time[-1] - time[0])
+    if lost > _MISSING_MAX:
+        problems.append(
+            f"gaps make up {100.0 * lost:.0f} % of the record; at most"
+            f" {100.0 * _MISSING_MAX:.0f} % may be"
+        )
+    return tuple(problems)
+
+
+def readings_noise(record: Record, instrument: SnifferSpec) -> dict[str, float]:
+    """Return the standard deviation of each gas's readings: as stated, or as the readings show.
+
+    Rounding to steps that are larger than the stated noise adds noise of a step over the root of
+    12, where noise or passes carry the readings through several steps.
+    """
+    noise = {}
+    for gas in record.gases:
+        stated, step = instrument.known(gas).noise, record.resolution[gas]
+        if math.isnan(stated):
+            stated = record.scatter[gas]
+        elif 0.0 < stated < step and (gas == "co2" or step <= _DITHERED * stated):
+            stated = math.hypot(stated, step / math.sqrt(12.0))
+        noise[gas] = stated
+    return noise

@@ -1,4 +1,4 @@
-"""What an estimate of the fuel sulphur content says."""
+"""An estimate of the fuel sulphur content, its figures, and its record for JSON."""
 
 import math
 from dataclasses import asdict, dataclass, field
@@ -16,16 +16,16 @@ Quality = Literal["A", "B", "C"]
 
 @dataclass(frozen=True, kw_only=True)
 class Figures:
-    """What the record holds.
+    """Figures of a record.
 
     Attributes
     ----------
     duration_s : of the record [s]
-    passes : through the plume
-    interval_s : between them, median [s]
-    seconds_in_plume : the CO2 reading above its background by its detection limit [s]
+    passes : number through the plume
+    interval_s : between passes, median [s]
+    seconds_in_plume : with the CO2 reading above its background by its detection limit [s]
     dose_ppm_s : CO2 of a pass, mean [ppm s]
-    co2_snr : of a pass's peak, median [-]
+    co2_snr : signal to noise of a pass's peak, median [-]
     so2_snr : standard deviation of the SO2 that the plume explains, over that of the rest [-]
     """
 
@@ -40,8 +40,7 @@ class Figures:
 
 @dataclass(frozen=True, kw_only=True)
 class FscEstimate:
-    """A fuel sulphur content with its uncertainty. Contents and uncertainties are in % m/m; what is
-    not known is not a number.
+    """A fuel sulphur content with its uncertainty, in % m/m; NaN where it is not known.
 
     Attributes
     ----------
@@ -49,28 +48,27 @@ class FscEstimate:
     fsc_percent : estimate; noise may make it negative
     noise_percent : standard uncertainty by noise, which falls with the number of passes
     common_percent : standard uncertainties by errors that do not average out, by name
-    overlap_percent : by how much areas of passes that do not overlap would read more; 0 by
-        regression
-    assumed_percent : what of the estimate corrects SO2 for NO and NO2 that were not measured, as
-        ships emit them on average
-    total_percent : standard uncertainty by both
-    low_percent, high_percent : 95 % interval, of the distribution that the verdicts' probabilities
-        are of
+    overlap_percent : increase of the result if the areas' passes did not overlap; 0 by regression
+    assumed_percent : part of the estimate that corrects SO2 for NO and NO2 not measured, as ships
+        emit them on average
+    total_percent : standard uncertainty by noise and common errors
+    low_percent, high_percent : 95 % interval, of the same distribution as the verdicts'
+        probabilities
     sulphate_percent : mean error by sulphur that leaves as sulphate, stated and not corrected
     slope_ppb_per_ppm : SO2 over CO2
     misfit : mean square of the residuals over that of the stated noise [-]
     quality, quality_reasons : A, B or C, and why it is not A
     verdicts : on each limit
-    figures : what the record holds
+    figures : of the record
     passes : through the plume
     pass_percent, pass_deviation_percent : sulphur content of groups of neighbouring passes and its
         noise
     agreement : probability that groups of the same fuel differ as much as these
-    so2_t90_s, so2_t90_sd_s, delay_s, delay_sd_s : response of SO2 and its delay after CO2, as given
-        or as they fit best [s]
+    so2_t90_s, so2_t90_sd_s, delay_s, delay_sd_s : response of SO2 and its delay after CO2, as
+        stated or as they fit best [s]
     instrument : as it was used: noise, and response and delay of SO2, as the record shows them
-        where they were not given
-    signals : readings, equalised signals beside their background, fit and residual; a row per
+        where they were not stated
+    signals : readings, equalised signals without their background, fit and residual; a row per
         sample
     """
 
@@ -102,12 +100,9 @@ class FscEstimate:
     signals: pd.DataFrame = field(compare=False, repr=False)
 
     def record(self) -> dict[str, Any]:
-        """Return everything but instrument and signals, for JSON: what is not a number is None."""
-        values = {
-            name: value
-            for name, value in vars(self).items()
-            if name not in ("instrument", "signals")
-        }
+        """Return everything but instrument and signals, for JSON, with None for NaN."""
+        names = [name for name in vars(self) if name not in ("instrument", "signals")]
+        values = {name: getattr(self, name) for name in names}
         values["figures"] = asdict(self.figures)
         values["verdicts"] = [asdict(verdict) for verdict in self.verdicts]
         values["passes"] = [asdict(found) for found in self.passes]
@@ -115,7 +110,7 @@ class FscEstimate:
 
 
 def plain(value: Any) -> Any:
-    """Return a value with None where it is not finite."""
+    """Return a value for JSON, with None for each number in it that is not finite."""
     if isinstance(value, float):
         return value if math.isfinite(value) else None
     if isinstance(value, dict):

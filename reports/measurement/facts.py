@@ -8,8 +8,8 @@ import numpy as np
 import pandas as pd
 
 from common.text import moment, span_words
-from measurement.estimate.flight_log.details import FROM_LOG
-from measurement.estimate.flight_log.gaps import Gaps
+from measurement.log.analysis import Gaps
+from measurement.log.read import FROM_LOG
 from measurement.sniffer.spec import sensor_preset, sensor_presets
 from reports.document.blocks import Fact
 from reports.measurement.data import Record
@@ -48,7 +48,7 @@ def logged_facts(run: RunData, record: Record) -> list[Fact]:
             "Log",
             f"{manifest['source']}, {flight['readings']:,} rows, SHA-256 {manifest['source_hash']}",
         ),
-        *(Fact(*told) for told in Gaps(**record["gaps"]).told.items()),
+        *(Fact(*remark) for remark in Gaps(**record["gaps"]).remarks.items()),
         Fact("Program", f"{version}, source revision {manifest['git_revision']}"),
     ]
 

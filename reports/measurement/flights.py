@@ -8,7 +8,7 @@ import numpy as np
 import pandas as pd
 
 from common.intervals import percent
-from measurement.estimate.words import content_words, counted_verdicts, verdict_words
+from measurement.estimate.verdict import content_words, counted_verdicts, verdict_words
 from measurement.gases import MASS_PERCENT
 from reports.document.blocks import Block, Card, Heading, Section, Text
 from reports.document.chart import Chart

@@ -2,9 +2,9 @@
 
 import pandas as pd
 
-from measurement.estimate.flight_log.gaps import Gaps
 from measurement.estimate.passes import SNR_LEAST
 from measurement.gases import MASS_PERCENT, limit_words
+from measurement.log.analysis import Gaps
 from reports.document.blocks import Table
 from reports.document.tables import number, pairs_table
 from reports.measurement.data import METHODS, SINCE, Record

@@ -2,8 +2,14 @@
 
 from typing import Any
 
-from measurement.estimate.verdict import BELOW, OPEN
-from measurement.estimate.words import content_words, next_step, probability, verdict_words
+from measurement.estimate.verdict import (
+    BELOW,
+    OPEN,
+    content_words,
+    next_step,
+    probability,
+    verdict_words,
+)
 from measurement.gases import FUEL_SULPHUR_MOST, MASS_PERCENT, limit_words
 from reports.document.blocks import Card, FuelCard, UndecidedCard, Verdict
 from reports.document.tables import number

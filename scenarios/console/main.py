@@ -77,7 +77,7 @@ def estimate(
     """Estimate the sulphur content of a ship's fuel from the log of a flight through her plume, and
     judge it.
     """
-    from measurement.estimate.__main__ import main as estimate_logged
+    from measurement.log.command import main as estimate_logged
 
     options = [("--config", config), ("--out", out)]
     given = [word for name, value in options if value is not None for word in (name, str(value))]

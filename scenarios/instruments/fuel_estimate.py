@@ -67,9 +67,9 @@ def fuel_estimate(
     limit : that the verdict is on [% m/m]
     expected : what a perfect instrument reads [% m/m]
     """
-    from measurement.estimate.flight_log.analysis import analyse
-    from measurement.estimate.over_time import time_to_verdict
+    from measurement.estimate.estimator import time_to_verdict
     from measurement.estimate.verdict import OPEN
+    from measurement.log.analysis import analyse
 
     try:
         found = analyse(readings, instrument, limits_percent=(limit,), points=_points(readings))

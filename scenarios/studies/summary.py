@@ -9,7 +9,7 @@ from typing import Any, Self
 from common.intervals import CONFIDENCE, TELLING, percent, upper_bound
 from common.physics.units import SECONDS_PER_HOUR
 from common.run_layout import SUMMARY
-from measurement.estimate.words import content_words, counted_verdicts, verdict_words
+from measurement.estimate.verdict import content_words, counted_verdicts, verdict_words
 from scenarios.engine.task import Row
 from scenarios.simulation.outcome import Outcome
 from scenarios.world.faults import OF_SNIFFER

@@ -12,9 +12,9 @@ from reference_pages.markdown import literal, plain, table
 
 from common import run_layout
 from measurement.estimate.estimator import estimate
-from measurement.estimate.flight_log.config import LogConfig
-from measurement.estimate.flight_log.csv_file import read_flight
-from measurement.estimate.flight_log.run_files import SAMPLE_MEANINGS, samples
+from measurement.log.config import LogConfig
+from measurement.log.read import read_flight
+from measurement.log.run_files import SAMPLE_MEANINGS, samples
 from scenarios.console.main import commands
 from scenarios.metrics.meanings import CONVERGENCE_MEANINGS, MEANINGS
 from scenarios.schema.documented import documented_keys

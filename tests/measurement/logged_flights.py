@@ -1,6 +1,6 @@
 """The command on a logged flight."""
 
-from measurement.estimate.__main__ import main
+from measurement.log.command import main
 
 
 def run(logged, *more, config=True):

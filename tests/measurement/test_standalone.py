@@ -5,11 +5,13 @@ import pytest
 from tests.standing_alone import StandingAlone
 
 MEASUREMENT = StandingAlone(
-    "measurement", allowed={"common", "numpy", "pandas", "scipy"}, barred={"hypothesis"}
+    "measurement",
+    allowed={"common", "numpy", "pandas", "rich", "scipy", "typer"},
+    barred={"hypothesis"},
 )
 
 
-@pytest.mark.parametrize("name", ["gnc", "hypothesis", "pydantic"])
+@pytest.mark.parametrize("name", ["gnc", "hypothesis", "jsbsim", "pydantic"])
 def test_the_bar_keeps_out_what_measurement_must_not_know(name):
     outcome = MEASUREMENT.run(f"import {name}")
     assert outcome.returncode == 1

@@ -3,7 +3,7 @@
 from collections.abc import Iterable, Mapping
 
 from common.run_layout import PHASES, SHIPS, SUMMARY
-from measurement.estimate.flight_log.run_files import SAMPLE_MEANINGS
+from measurement.log.run_files import SAMPLE_MEANINGS
 from reference_pages.markdown import literal, plain, table
 from reports.compare.figures import MEASURES
 from reports.export.tracks_csv import COLUMNS as TRACK_COLUMNS

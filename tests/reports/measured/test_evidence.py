@@ -13,7 +13,7 @@ import pytest
 from report_parts import blocks_of, built
 
 from common.text import moment, span_words
-from measurement.estimate.__main__ import main
+from measurement.log.command import main
 from reports.document.blocks import Table
 from reports.document.provenance import provenance_section
 from reports.measurement.facts import position_words

@@ -7,7 +7,7 @@ import pandas as pd
 import pytest
 from report_parts import blocks_of, named_charts
 
-from measurement.estimate.__main__ import main
+from measurement.log.command import main
 from reports.document.blocks import Table
 from reports.registry import content
 from reports.run.run_data import read_run
@@ -119,7 +119,7 @@ def test_a_whole_log_has_no_word_of_gaps_on_page_1(tmp_path):
 def test_quality_c_is_not_called_open_and_says_what_to_do_next(tmp_path, capsys):
     report = content(estimated(tmp_path, ("co2_ppm", range(200, 261))))
     console = capsys.readouterr().out
-    step = "analyse apart, as logs of their own, those parts of the log that are free of it"
+    step = "analyse the parts of the log that are free of it as separate logs"
     assert step in report.verdict.detail
     assert step in console
     assert {card.value for card in report.verdict.figures if card.name.startswith("Time to")} == {

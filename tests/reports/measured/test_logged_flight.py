@@ -12,7 +12,7 @@ import pandas as pd
 import pytest
 from report_parts import assert_axes_read_quantity_and_unit, blocks_of, built, named_charts
 
-from measurement.estimate.__main__ import main
+from measurement.log.command import main
 from reports.document.blocks import Table
 from reports.document.chart import Chart, Line, Panel
 from reports.errors import ReportError

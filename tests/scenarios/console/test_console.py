@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from measurement.estimate.__main__ import main as estimate_logged
+from measurement.log.command import main as estimate_logged
 from scenarios import fly
 from scenarios.console.describe import described
 from scenarios.console.main import commands

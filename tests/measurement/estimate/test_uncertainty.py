@@ -11,11 +11,10 @@ from crossings import changed, crossings, flight, plain_sniffer, read
 
 from measurement.estimate.areas import area_ratio
 from measurement.estimate.estimator import estimate
-from measurement.estimate.fit.alignment import align
-from measurement.estimate.fit.regression import regress
-from measurement.estimate.fit.signals import make_signals
+from measurement.estimate.fit import align, regress
 from measurement.estimate.passes import find_passes
 from measurement.estimate.record import checked_record
+from measurement.estimate.signals import make_signals
 from measurement.gases import GASES, fsc_factor
 from measurement.sniffer.sniffer import Readings
 from measurement.sniffer.spec import read_spec, sensor_preset
@@ -73,7 +72,7 @@ def test_noise_in_co2_does_not_attenuate_the_slope():
     spec = plain_sniffer(co2_noise=4.0)
     slopes, _ = repeated(spec, air, lambda record: (regress(make_signals(record, spec)).slope, 0.0))
     signals = make_signals(checked_record(read(spec, air, step=1.0), spec), spec)
-    co2, _ = signals.excess()
+    co2, _ = signals.excess
     noise_energy = signals.noise("co2") ** 2 * signals.noise_energy("co2")
     attenuation = noise_energy / (float(co2 @ co2) - noise_energy)
     error = np.std(slopes) / math.sqrt(REPEATS)

@@ -8,10 +8,9 @@ import numpy as np
 import pytest
 from crossings import BACKGROUND, changed, crossings, plain_sniffer, read, sniffer_of
 
-from measurement.estimate import over_time
-from measurement.estimate.estimator import estimate
-from measurement.estimate.fit.signals import make_signals
+from measurement.estimate.estimator import estimate, over_time
 from measurement.estimate.record import checked_record
+from measurement.estimate.signals import make_signals
 from measurement.sniffer.channel import Channel
 from measurement.sniffer.sniffer import Readings
 
@@ -84,13 +83,16 @@ def test_of_passes_that_not_all_channels_read_the_others_are_compared():
     assert not math.isnan(found.agreement)
 
 
-@pytest.mark.parametrize(("fsc", "delay", "verdicts"), [
-    # Of 0.25 % the first 25 s were "below", quality B, before its SO2 had arrived.
-    (0.25, 25.0, ["open", "open", "open", "above"]),
-    (0.25, 3.0, ["above", "above", "above", "above"]),
-    # Of a clean fuel nothing arrives: half of the CO2 must be older than any delay.
-    (0.0, 3.0, ["open", "open", "open", "below"]),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("fsc", "delay", "verdicts"),
+    [
+        # Of 0.25 % the first 25 s were "below", quality B, before its SO2 had arrived.
+        (0.25, 25.0, ["open", "open", "open", "above"]),
+        (0.25, 3.0, ["above", "above", "above", "above"]),
+        # Of a clean fuel nothing arrives: half of the CO2 must be older than any delay.
+        (0.0, 3.0, ["open", "open", "open", "below"]),
+    ],
+)
 def test_without_a_stated_delay_no_fuel_is_below_a_limit_before_its_so2_can_have_arrived(
     fsc, delay, verdicts
 ):
@@ -115,10 +117,9 @@ def test_so2_that_may_still_come_is_named_with_what_to_do():
         ),
         unknown,
     )
-    assert found.quality_reasons == (
-        "SO2 does not stand out, and may still come: its delay is not stated, and may be up to 30 s; state it, or record longer"
-        " after the passes",
-    )
+    (reason,) = found.quality_reasons
+    assert "SO2 does not stand out" in reason
+    assert "up to 30 s" in reason
 
 
 def test_so2_that_may_have_come_in_a_gap_is_waited_for():

@@ -1,4 +1,4 @@
-"""Verdicts and their guard bands, quality classes, the estimate over time."""
+"""Verdicts with their guard bands and words, quality classes, the estimate over time."""
 
 import math
 from dataclasses import replace
@@ -8,11 +8,18 @@ import pytest
 from crossings import changed, crossings, flight, plain_sniffer, read
 from scipy.stats import norm, truncnorm
 
-from measurement.estimate import over_time
-from measurement.estimate.estimator import estimate
-from measurement.estimate.over_time import time_to_verdict
-from measurement.estimate.quality import judged_quality
-from measurement.estimate.verdict import interval, judged, probability_above
+from measurement.estimate.estimator import estimate, over_time, time_to_verdict
+from measurement.estimate.quality import quality_class
+from measurement.estimate.verdict import (
+    content_words,
+    interval,
+    judged,
+    needed,
+    next_step,
+    probability_above,
+    verdict_words,
+)
+from measurement.gases import limit_words
 from measurement.sniffer.sniffer import Readings
 from measurement.sniffer.spec import sensor_preset
 
@@ -102,9 +109,15 @@ def test_of_repeated_readings_of_one_fuel_93_to_97_5_percent_have_intervals_that
 
 
 GOOD = {
-    "problems": (), "snr": 50.0, "passes": 10, "fsc": 0.1, "deviation": 0.015, "agreement": 0.5, "limit": 0.1,
+    "problems": (),
+    "snr": 50.0,
+    "passes": 10,
+    "fsc": 0.1,
+    "deviation": 0.015,
+    "agreement": 0.5,
+    "limit": 0.1,
     "responses_stated": True,
-}  # fmt: skip
+}
 
 
 @pytest.mark.parametrize(
@@ -136,7 +149,7 @@ GOOD = {
     ],
 )
 def test_quality_is_stated_with_its_reason(change, quality, reason):
-    found, reasons = judged_quality(**{**GOOD, **change})
+    found, reasons = quality_class(**{**GOOD, **change})
     assert found == quality
     assert reason in " ".join(reasons)
     assert bool(reasons) == (quality != "A")
@@ -232,3 +245,45 @@ def test_an_instrument_that_is_not_the_one_stated_is_noticed():
         in mistaken.quality_reasons[-1]
     )
     assert estimate(readings, sensor_preset("unspecified")).quality != "C"
+
+
+@pytest.mark.parametrize(
+    ("limit", "words"),
+    [(0.1, "0.10 %"), (0.5, "0.50 %"), (1.0, "1.00 %"), (0.001, "0.001 %"), (0.125, "0.125 %")],
+)
+def test_a_limit_is_printed_with_as_many_decimals_as_it_has(limit, words):
+    assert limit_words(limit) == words
+    assert f"above the limit of {words}; probability above it: 99.0 %" in verdict_words(
+        "above", limit, 0.99
+    )
+
+
+def test_a_content_that_rounds_to_0_has_no_sign():
+    assert content_words(-0.0004, 0.0, 0.0196) == "0.000 % m/m, 95 % interval 0.000 to 0.020 %"
+
+
+def test_an_open_verdict_beyond_the_probability_names_the_guard_band():
+    # The knowledge that no fuel has less than 0 lifts the probability, and "above" asks for the
+    # guard band alone: the normal distribution's 0.9370 at 1.53, over its 0.9484 at 1.63.
+    verdict = judged(0.01, 0.163, 0.1, admitted=True)
+    assert verdict.verdict == "open"
+    assert verdict.probability_above > 0.95
+    assert verdict_words("open", 0.01, verdict.probability_above).endswith(": 98.8 %")
+    assert needed(verdict.probability_above) == "the result is within the guard band"
+    assert (
+        needed(judged(0.1, 0.12, 0.1, admitted=True).probability_above) == "95 % or 5 % are needed"
+    )
+
+
+def test_an_open_verdict_says_which_part_of_the_uncertainty_to_lower():
+    known = {
+        "passes": 9,
+        "undecided": True,
+        "errors": {"correction for NO2": 0.02, "carbon content": 0.01},
+    }
+    assert "measure more passes" in next_step("B", noise=0.03, **known)
+    assert "as by a calibration: correction for NO2." in next_step("B", noise=0.01, **known)
+    assert next_step("B", noise=0.01, **{**known, "undecided": False}) == ""
+    assert "measure again in the plume" in next_step(
+        "C", noise=float("nan"), **{**known, "passes": 0}
+    )

@@ -1,0 +1,237 @@
+"""Analysis of a flight's readings by both methods and over time, and what the log lacks."""
+
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+import pandas as pd
+
+from measurement.errors import MeasurementError
+from measurement.estimate.estimator import ELAPSED_S, estimate, over_time, time_to_verdict
+from measurement.estimate.record import BRIDGED, SHORTEST, split_at_gaps
+from measurement.estimate.result import FscEstimate, Method, plain
+from measurement.estimate.verdict import LIMITS_PERCENT
+from measurement.gases import CARBON_FRACTION, GASES, UNITS
+from measurement.sniffer.lag import Array
+from measurement.sniffer.sniffer import Readings
+from measurement.sniffer.spec import SnifferSpec
+
+POINTS = 15
+"""Even elapsed times of the figure over time, in addition to ``ELAPSED_S``."""
+
+_NEAR = 0.5
+"""Distance from the next reading beyond which a sample is interpolated [sample periods]."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Analysis:
+    """Analysis of a flight's readings.
+
+    Attributes
+    ----------
+    estimate : by the chosen method
+    other : by the other method, or None where it is not possible
+    table : of ``over_time``
+    instrument : as the analyst knows it
+    carbon : mass share of the fuel [-]
+    """
+
+    estimate: FscEstimate
+    other: FscEstimate | None
+    table: pd.DataFrame
+    instrument: SnifferSpec
+    carbon: float
+
+    def record(self, true_percent: float | None = None) -> dict[str, Any]:
+        """Return the content of a report, for JSON.
+
+        Parameters
+        ----------
+        true_percent : what a perfect instrument reads, where that is known [% m/m]
+        """
+        limits = [verdict.limit_percent for verdict in self.estimate.verdicts]
+        return {
+            "estimate": self.estimate.record(),
+            "other": None if self.other is None else self.other.record(),
+            "over_time": [
+                {str(key): plain(value) for key, value in row.items()}
+                for row in self.table.to_dict("records")
+            ],
+            "time_to_verdict_s": {
+                f"{limit:g}": plain(time_to_verdict(self.table, limit)) for limit in limits
+            },
+            "instrument": {
+                "name": self.instrument.name,
+                "title": self.instrument.title,
+                "source": self.instrument.source,
+                "rate_hz": self.instrument.rate_hz,
+                "stated": _channels(self.instrument),
+                "used": _channels(self.estimate.instrument),
+            },
+            "carbon": self.carbon,
+            "true_percent": true_percent,
+        }
+
+
+def _channels(instrument: SnifferSpec) -> dict[str, Any]:
+    """Return the channels of an instrument by gas, for JSON; None is not stated, or no limit."""
+    return {channel.gas: plain(asdict(channel)) for channel in instrument.channels}
+
+
+def analyse(
+    readings: Readings,
+    instrument: SnifferSpec,
+    *,
+    method: Method = "regression",
+    carbon: float = CARBON_FRACTION,
+    limits_percent: Sequence[float] = LIMITS_PERCENT,
+    points: int = POINTS,
+) -> Analysis:
+    """Return the estimate by both methods, and over time.
+
+    Parameters
+    ----------
+    readings, instrument, method, carbon, limits_percent : same as for ``estimate``
+    points : even times of the estimate over time, in addition to those of ``ELAPSED_S``
+
+    Raises
+    ------
+    MeasurementError : same as ``estimate``
+    """
+    found = estimate(
+        readings, instrument, method=method, carbon=carbon, limits_percent=limits_percent
+    )
+    second: Method = "areas" if method == "regression" else "regression"
+    try:
+        other = estimate(
+            readings, instrument, method=second, carbon=carbon, limits_percent=limits_percent
+        )
+    except MeasurementError:
+        other = None
+    duration = float(readings.time[-1] - readings.time[0])
+    even = np.linspace(0.0, duration, points + 1)[1:]
+    elapsed = {round(float(t), 3) for t in even} | {t for t in ELAPSED_S if t <= duration}
+    table = over_time(
+        readings,
+        instrument,
+        elapsed_s=sorted(elapsed),
+        method=method,
+        carbon=carbon,
+        limits_percent=limits_percent,
+    )
+    return Analysis(estimate=found, other=other, table=table, instrument=instrument, carbon=carbon)
+
+
+# Gaps
+
+
+@dataclass(frozen=True, kw_only=True)
+class Gaps:
+    """Missing readings and gaps of a log.
+
+    Attributes
+    ----------
+    log_rows : of the log
+    rows : those with a new reading, where the log is faster than the sensors; otherwise all
+    missing : number of readings that are missing in these rows, by gas that the analysis uses
+    interpolated : samples in short gaps, which are bridged by a straight line
+    gaps : beginning and end of each longer gap, which is left out [s] since the first row
+    unused : complete rows that are also left out, as there are too few of them in a row
+    """
+
+    log_rows: int
+    rows: int
+    missing: dict[str, int]
+    interpolated: int
+    gaps: list[tuple[float, float]]
+    unused: int
+
+    @property
+    def remarks(self) -> dict[str, str]:
+        """Remarks on what the log lacks, by title; empty for a complete log."""
+        found = {}
+        if self.log_rows > self.rows:
+            found["Rows"] = (
+                f"{self.log_rows:,}, of which {self.rows:,} have a new reading; the others repeat"
+                " one, or have none, and do not count"
+            )
+        if any(self.missing.values()):
+            found["Missing readings"] = self.missing_words
+        if self.gaps or self.interpolated or self.unused:
+            found["Gaps"] = self.gap_words
+        return found
+
+    @property
+    def missing_words(self) -> str:
+        """Number of missing readings by gas, in words."""
+        counts = [f"{count:,} of {gas.upper()}" for gas, count in self.missing.items() if count]
+        return f"{', '.join(counts) or 'none'} in {self.rows:,} rows"
+
+    @property
+    def gap_words(self) -> str:
+        """Number and length of the gaps, and what is interpolated or left out, in words."""
+        words = []
+        if self.gaps:
+            start, end = max(self.gaps, key=lambda gap: gap[1] - gap[0])
+            longest = f"{end - start:.0f} s from {start:.0f} s on"
+            whole = sum(end - start for start, end in self.gaps)
+            several = f"{len(self.gaps)} of {whole:.0f} s in all, the longest {longest}"
+            words.append(several if len(self.gaps) > 1 else f"1 of {longest}")
+        if self.interpolated:
+            samples = f"{self.interpolated:,} sample{'s' * (self.interpolated > 1)}"
+            words.append(f"{samples} in short ones interpolated, not shown as readings")
+        if self.unused:
+            rows = f"{self.unused:,} row{'s' * (self.unused > 1)}"
+            words.append(
+                f"{rows} beside gaps left out, as fewer than {SHORTEST} in a row are too few to use"
+            )
+        return "; ".join(words) or "none"
+
+
+def find_gaps(readings: Readings, signals: pd.DataFrame, log_rows: int) -> Gaps:
+    """Return the gaps of a log.
+
+    Parameters
+    ----------
+    readings : of the log, each once
+    signals : that an estimate made of them
+    log_rows : of the log
+    """
+    used = _used_gases(signals)
+    known, period = np.isfinite(readings.values), _period(readings)
+    complete = np.flatnonzero(known[:, used].all(axis=1))
+    times = [readings.time[:1], readings.time[complete], readings.time[-1:]]
+    since = np.concatenate(times) - readings.time[0]
+    long = np.flatnonzero(np.diff(since) > BRIDGED * period)
+    pieces = [len(rows) for rows in split_at_gaps(readings.time, complete, period)]
+    return Gaps(
+        log_rows=log_rows,
+        rows=len(readings.time),
+        missing={GASES[i]: int(np.sum(~known[:, i])) for i in used},
+        interpolated=int(np.sum(interpolated(readings, signals))),
+        gaps=[(float(since[i]), float(since[i + 1])) for i in long],
+        unused=sum(rows for rows in pieces if rows < SHORTEST),
+    )
+
+
+def interpolated(readings: Readings, signals: pd.DataFrame) -> npt.NDArray[np.bool_]:
+    """Return which samples of an estimate are not near to a row with all readings, shape (n,)."""
+    complete: Array = readings.time[
+        np.isfinite(readings.values[:, _used_gases(signals)]).all(axis=1)
+    ]
+    time = signals["time_s"].to_numpy()
+    after = np.searchsorted(complete, time).clip(1, len(complete) - 1)
+    nearest = np.minimum(np.abs(time - complete[after - 1]), np.abs(time - complete[after]))
+    far: npt.NDArray[np.bool_] = nearest > _NEAR * _period(readings)
+    return far
+
+
+def _used_gases(signals: pd.DataFrame) -> list[int]:
+    """Return the indices in ``GASES`` of those that an estimate made signals of."""
+    return [i for i, gas in enumerate(GASES) if f"{gas}_{UNITS[gas]}" in signals]
+
+
+def _period(readings: Readings) -> float:
+    return float(np.median(np.diff(readings.time)))

@@ -1,0 +1,178 @@
+"""The command ``plume-flight estimate FLIGHT.csv``: fuel sulphur content of a logged flight."""
+
+import argparse
+import contextlib
+import math
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+
+from common.command_line import PROGRAM, refuse
+from measurement.errors import MeasurementError
+from measurement.estimate.result import FscEstimate
+from measurement.estimate.verdict import OPEN, content_words, needed, next_step, verdict_words
+from measurement.gases import ASSUMED_LEAST, FUEL_SULPHUR_MOST, GASES
+from measurement.log.analysis import Analysis, analyse, find_gaps
+from measurement.log.config import LogConfig, read_config
+from measurement.log.read import LoggedFlight, read_flight
+from measurement.log.run_files import (
+    build_report,
+    check_no_other_run,
+    check_same_log,
+    write_run,
+)
+from measurement.sniffer.sniffer import Readings
+from measurement.sniffer.spec import SnifferSpec
+
+_ERRORS = {
+    "calibration": "calibration of SO2 and CO2",
+    "no": "correction for NO",
+    "no2": "correction for NO2",
+    "response": "response time and delay",
+    "carbon": "carbon content of the fuel",
+    "overlap": "passes that overlap",
+    "sampling": "time between readings",
+}
+"""Names of the common errors in words."""
+
+
+def main(arguments: list[str] | None = None) -> int:
+    """Estimate, print and write; return the exit status, 0 or 2 for bad input."""
+    given = _parser().parse_args(arguments)
+    directory = given.out or Path("runs") / f"measurement_{given.flight.stem}"
+    try:
+        check_no_other_run(directory)
+        config = read_config(given.config) if given.config else LogConfig()
+        flight = read_flight(given.flight, config)
+        if given.out is None:
+            check_same_log(directory, given.flight)
+        with _naming(given.flight):
+            analysis = analyse(
+                flight.readings,
+                config.instrument,
+                method=config.method,
+                carbon=config.carbon,
+                limits_percent=config.limits_percent,
+            )
+        write_run(directory, flight, analysis, given.flight, given.config, _command(arguments))
+    except MeasurementError as error:
+        return refuse(error)
+    for line in (
+        *_summary(analysis, given.flight.name),
+        *_missing(flight, analysis),
+        *_unused_gases(flight.readings, config.instrument),
+        f"files: {directory}" if given.no_report else build_report(directory),
+    ):
+        print(line)
+    return 0
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(
+        prog="python -m measurement.estimate",
+        description="Estimate the fuel sulphur content of a ship from a flight through its plume.",
+        epilog="Exit status: 0 done, 2 bad input.",
+    )
+    parser.add_argument(
+        "flight",
+        type=Path,
+        metavar="FLIGHT.csv",
+        help="time_s, so2_ppb, co2_ppm, and where known no_ppb, no2_ppb, place and height",
+    )
+    parser.add_argument(
+        "--config",
+        type=Path,
+        metavar="TOML",
+        help="instrument, columns, limits; without it the instrument counts as unknown",
+    )
+    parser.add_argument(
+        "--out",
+        type=Path,
+        metavar="DIR",
+        help="directory of files and report; default runs/measurement_FLIGHT",
+    )
+    parser.add_argument("--no-report", action="store_true", help="write no report")
+    return parser
+
+
+@contextlib.contextmanager
+def _naming(path: Path) -> Iterator[None]:
+    """Name the file in errors of its content."""
+    try:
+        yield
+    except MeasurementError as error:
+        raise MeasurementError(f"'{path}': {error}") from None
+
+
+def _command(arguments: list[str] | None) -> list[str]:
+    """Return the program and its arguments; with arguments alone, no program is known."""
+    console = Path(sys.argv[0]).stem == PROGRAM
+    return sys.argv if arguments is None or console else ["", *arguments]
+
+
+def _summary(analysis: Analysis, name: str) -> Iterator[str]:
+    """Yield the lines of a summary of a flight called ``name``."""
+    found, figures = analysis.estimate, analysis.estimate.figures
+    passes = "1 pass" if figures.passes == 1 else f"{figures.passes} passes"
+    every = f" every {figures.interval_s:.1f} s" if figures.passes > 1 else ""
+    yield f"{name}, with: {analysis.instrument.title}"
+    yield f"{figures.duration_s:.0f} s, {passes}{every}, CO2 signal to noise {figures.co2_snr:.0f}"
+    yield from _result(found)
+    reasons = "; ".join(found.quality_reasons)
+    yield f"quality {found.quality}: {reasons}" if reasons else f"quality {found.quality}"
+    for verdict in found.verdicts:
+        chance = verdict.probability_above
+        words = verdict_words(verdict.verdict, verdict.limit_percent, chance, found.quality)
+        is_open = verdict.verdict == OPEN and found.quality != "C"
+        yield f"{words}; {needed(chance)}" if is_open else words
+    step = next_step(
+        found.quality,
+        passes=figures.passes,
+        undecided=any(verdict.verdict == OPEN for verdict in found.verdicts),
+        noise=found.noise_percent,
+        errors={_ERRORS.get(key, key): size for key, size in found.common_percent.items()},
+    )
+    if step:
+        yield step
+
+
+def _result(found: FscEstimate) -> Iterator[str]:
+    """Yield the lines of the sulphur content and its uncertainty."""
+    if found.total_percent <= FUEL_SULPHUR_MOST:
+        content = content_words(found.fsc_percent, found.low_percent, found.high_percent)
+        yield f"fuel sulphur content {content}"
+    else:
+        yield "fuel sulphur content: none can be given"
+    if abs(found.assumed_percent) >= ASSUMED_LEAST:
+        yield (
+            f"of it {found.assumed_percent:+.3f} % correct SO2 for NO and NO2 that the log does"
+            " not have, as ships emit them on average"
+        )
+    if math.isfinite(found.total_percent):
+        yield f"standard uncertainty (1 sigma) {found.total_percent:.4f} %, of which"
+        yield f"  noise {found.noise_percent:.4f}"
+        for key, size in sorted(found.common_percent.items(), key=lambda item: -item[1]):
+            yield f"  {_ERRORS.get(key, key)} {size:.4f}"
+
+
+def _missing(flight: LoggedFlight, analysis: Analysis) -> Iterator[str]:
+    """Yield lines on repeated rows, missing readings, gaps, and places that count as missing."""
+    gaps = find_gaps(flight.readings, analysis.estimate.signals, flight.about.readings)
+    yield from (f"{title.lower()}: {words}" for title, words in gaps.remarks.items())
+    if flight.about.place_remark:
+        yield f"places: {flight.about.place_remark}"
+
+
+def _unused_gases(readings: Readings, instrument: SnifferSpec) -> Iterator[str]:
+    """Yield a line for each gas with readings that SO2 responds to, but without a channel."""
+    so2 = instrument.known("so2")
+    for i, gas in enumerate(GASES):
+        measured = np.isfinite(readings.values[:, i]).any()
+        matters = so2.cross.get(gas) or so2.cross_sd.get(gas)
+        if measured and matters and not instrument.channel(gas):
+            yield (
+                f"{gas.upper()} is not used to correct SO2: '{instrument.name}' has no channel for"
+                f" it; add a table channels.{gas}"
+            )

@@ -1,0 +1,282 @@
+"""Configuration of a logged flight: instrument, columns, limits, and details of the flight."""
+
+import math
+import tomllib
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from datetime import UTC, date, datetime
+from pathlib import Path
+from typing import Any
+
+from measurement.errors import MeasurementError, guess
+from measurement.estimate.estimator import check_parameters
+from measurement.estimate.result import Method
+from measurement.estimate.verdict import LIMITS_PERCENT
+from measurement.gases import CARBON_FRACTION, GASES, UNITS
+from measurement.sniffer.spec import SnifferSpec, sensor_of, sensor_preset
+
+COLUMNS = {
+    "time": "time_s",
+    **{gas: f"{gas}_{UNITS[gas]}" for gas in GASES},
+    "latitude": "latitude_deg",
+    "longitude": "longitude_deg",
+    "north": "north_m",
+    "east": "east_m",
+    "height": "height_m",
+}
+"""Columns of a logged flight, and their names unless the configuration gives others."""
+
+FLIGHT_KEYS = {
+    "vessel": "name of the ship that was measured",
+    "imo": "IMO number of the ship, of seven digits",
+    "mmsi": "MMSI of the ship, of nine digits",
+    "date": "date of the flight in UTC, or date and time of the log's first reading",
+    "place": "where the flight was, in words",
+    "operator": "who flew and measured",
+}
+"""Keys of the table ``[flight]`` of a configuration, and their meanings. Each may be left out."""
+
+_KEYS = {
+    "instrument",
+    "carbon",
+    "limits_percent",
+    "method",
+    "missing",
+    "columns",
+    "scale",
+    "flight",
+}
+
+_DEFAULT_INSTRUMENT = "unspecified"
+"""Instrument of a flight without a configuration."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class FlightDetails:
+    """Details of the flight in a configuration; empty or None where they are left out.
+
+    Attributes
+    ----------
+    vessel, imo, mmsi : of the ship that was measured
+    day : date of the flight in UTC
+    start : of the log's first reading in UTC, or None where only the date is given
+    place : in words
+    operator : who flew and measured
+    """
+
+    vessel: str = ""
+    imo: int | None = None
+    mmsi: int | None = None
+    day: date | None = None
+    start: datetime | None = None
+    place: str = ""
+    operator: str = ""
+
+
+@dataclass(frozen=True, kw_only=True)
+class LogConfig:
+    """Configuration of a logged flight.
+
+    Attributes
+    ----------
+    instrument : as the analyst knows it
+    stated : keys that the configuration has of each channel, by gas; None for a preset, whose file
+        says what is assumed
+    carbon : mass share of the fuel [-]
+    limits_percent : that verdicts are given on [% m/m]
+    method : "regression" or "areas"
+    missing : numbers that stand for missing readings in the file, as -9999
+    columns : name in the file of each of ``COLUMNS``
+    scale : factors of gases' columns to ppb, or ppm of CO2
+    flight : details that the log cannot show
+    """
+
+    instrument: SnifferSpec = field(default_factory=lambda: sensor_preset(_DEFAULT_INSTRUMENT))
+    stated: Mapping[str, tuple[str, ...]] | None = None
+    carbon: float = CARBON_FRACTION
+    limits_percent: tuple[float, ...] = LIMITS_PERCENT
+    method: Method = "regression"
+    missing: tuple[float, ...] = ()
+    columns: Mapping[str, str] = field(default_factory=lambda: dict(COLUMNS))
+    scale: Mapping[str, float] = field(default_factory=dict)
+    flight: FlightDetails = field(default_factory=FlightDetails)
+
+
+def read_config(path: Path) -> LogConfig:
+    """Return the configuration in a TOML file.
+
+    Raises
+    ------
+    MeasurementError : it cannot be read, has an unknown key, or a value of another kind or out of
+        range
+    """
+    try:
+        table = tomllib.loads(path.read_text(encoding="utf-8"))
+    except OSError as error:
+        raise MeasurementError(
+            f"'{path}' cannot be read: {error.strerror}; give a TOML file"
+        ) from None
+    except (UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
+        raise MeasurementError(f"'{path}' is not TOML: {error}; correct it") from None
+    try:
+        return _config(table, path.stem)
+    except MeasurementError as error:
+        raise MeasurementError(f"'{path}': {error}") from None
+
+
+def _config(table: Mapping[str, Any], name: str) -> LogConfig:
+    """Return the configuration in a table; ``name`` is that of an instrument in it."""
+    if unknown := sorted(set(table) - _KEYS):
+        raise MeasurementError(
+            f"unknown key '{unknown[0]}'{guess(unknown[0], _KEYS)} it may have"
+            f" {', '.join(sorted(_KEYS))}"
+        )
+    columns = {**COLUMNS, **_sub_table(table, "columns", COLUMNS)}
+    for key, column in columns.items():
+        if not isinstance(column, str):
+            raise MeasurementError(f"columns.{key} is {column!r}; give a name")
+    _check_used_once(columns)
+    scale = _sub_table(table, "scale", GASES)
+    for gas, factor in scale.items():
+        if not _is_finite(factor) or factor <= 0.0:
+            raise MeasurementError(
+                f"scale of {gas} is {factor!r}; it must be positive, 1000 for ppm of SO2"
+            )
+    method = table.get("method", "regression")
+    carbon = table.get("carbon", CARBON_FRACTION)
+    if not _is_finite(carbon):
+        raise MeasurementError(
+            f"carbon is {carbon!r}; give the mass share of the fuel, 0.85 to 0.875 for most"
+        )
+    limits = table.get("limits_percent", list(LIMITS_PERCENT))
+    if not isinstance(limits, list) or not all(_is_finite(limit) for limit in limits):
+        raise MeasurementError(
+            f"limits_percent is {limits!r}; give a list of numbers, as in [0.10, 0.50]"
+        )
+    if len(set(limits)) < len(limits):
+        raise MeasurementError(f"limits_percent is {limits!r}; give each limit once")
+    check_parameters(method, carbon, limits)
+    missing = table.get("missing", [])
+    if not isinstance(missing, list) or not all(_is_finite(code) for code in missing):
+        raise MeasurementError(f"missing is {missing!r}; give a list of numbers, as in [-9999]")
+    given = table.get("instrument", _DEFAULT_INSTRUMENT)
+    if not isinstance(given, str | dict):
+        raise MeasurementError(
+            f"instrument is {given!r}; give the name of a preset, or a table [instrument] with its"
+            " channels"
+        )
+    instrument = sensor_of(given, name)
+    stated = None
+    if isinstance(given, dict):
+        stated = {gas: tuple(given["channels"][gas]) for gas in instrument.gases}
+    return LogConfig(
+        instrument=instrument,
+        stated=stated,
+        carbon=float(carbon),
+        limits_percent=tuple(sorted(float(limit) for limit in limits)),
+        method=method,
+        missing=tuple(float(code) for code in missing),
+        columns=columns,
+        scale={gas: float(factor) for gas, factor in scale.items()},
+        flight=_details(_sub_table(table, "flight", FLIGHT_KEYS)),
+    )
+
+
+def _sub_table(table: Mapping[str, Any], key: str, names: Any) -> dict[str, Any]:
+    """Return the table under a key, empty if there is none, after checking its keys."""
+    found = table.get(key, {})
+    if not isinstance(found, dict):
+        raise MeasurementError(f"{key} is {found!r}; give a table [{key}]")
+    for name in found:
+        if name not in names:
+            raise MeasurementError(
+                f"[{key}] has the key '{name}'{guess(name, names)} it may have {', '.join(names)}"
+            )
+    return found
+
+
+def _check_used_once(columns: Mapping[str, str]) -> None:
+    """Check that no column is given for two quantities, which would share their readings."""
+    used: dict[str, str] = {}
+    for key, column in columns.items():
+        if column in used:
+            raise MeasurementError(
+                f"[columns] has the column '{column}' for {used[column]} and for {key}; name"
+                " another one for either of them"
+            )
+        used[column] = key
+
+
+def _details(table: Mapping[str, Any]) -> FlightDetails:
+    """Return the details in the table ``[flight]``."""
+    words = {key: table.get(key, "") for key in ("vessel", "place", "operator")}
+    for key, text in words.items():
+        if not isinstance(text, str) or not text.isprintable():
+            raise MeasurementError(f"flight.{key} is {text!r}; give a text of one line")
+    imo, mmsi = table.get("imo"), table.get("mmsi")
+    if imo is not None and not _is_imo_number(imo):
+        raise MeasurementError(
+            f"flight.imo is {imo!r}; give seven digits whose last is their check digit, as"
+            " 9074729, without quotation marks"
+        )
+    if mmsi is not None and not _has_digits(mmsi, 9):
+        raise MeasurementError(
+            f"flight.mmsi is {mmsi!r}; give nine digits, as 219000000, without quotation marks"
+        )
+    day, start = _date(table.get("date"))
+    return FlightDetails(
+        vessel=words["vessel"].strip(),
+        imo=imo,
+        mmsi=mmsi,
+        day=day,
+        start=start,
+        place=words["place"].strip(),
+        operator=words["operator"].strip(),
+    )
+
+
+def _date(value: Any) -> tuple[date | None, datetime | None]:
+    """Return the date in UTC, and the time where it is given."""
+    if value is None:
+        return None, None
+    given = _parsed(value) if isinstance(value, str) else value
+    if isinstance(given, datetime) and given.tzinfo is not None:
+        start = given.astimezone(UTC)
+        return start.date(), start
+    if isinstance(given, date) and not isinstance(given, datetime):
+        return given, None
+    raise MeasurementError(
+        f"flight.date is {value!s}; give a date, as 2026-06-01, or a time with its offset, as"
+        " 2026-06-01T10:00:00Z"
+    )
+
+
+def _parsed(text: str) -> date | None:
+    """Return a date or a time in ISO 8601, or None for another text."""
+    for kind in (date, datetime):
+        try:
+            return kind.fromisoformat(text)
+        except ValueError:
+            continue
+    return None
+
+
+def _is_imo_number(value: Any) -> bool:
+    """Return whether the last of seven digits is the check digit (IMO resolution A.1117(30)).
+
+    It is the last digit of the sum of the other digits times 7 to 2.
+    """
+    if not _has_digits(value, 7):
+        return False
+    *digits, check = (int(digit) for digit in str(value))
+    return sum(d * weight for d, weight in zip(digits, range(7, 1, -1), strict=True)) % 10 == check
+
+
+def _has_digits(value: Any, digits: int) -> bool:
+    whole = isinstance(value, int) and not isinstance(value, bool)
+    return whole and 10 ** (digits - 1) <= value < 10**digits
+
+
+def _is_finite(value: Any) -> bool:
+    number = isinstance(value, (int, float)) and not isinstance(value, bool)
+    return number and math.isfinite(value)

@@ -1,0 +1,670 @@
+"""A logged flight in a CSV file: its readings, places and times, checked row by row.
+
+Rows are counted as in a spreadsheet: the head line is row 1.
+"""
+
+import lzma
+import math
+import re
+import warnings
+import zipfile
+import zlib
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict, dataclass
+from datetime import date, datetime, timedelta
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+import pandas as pd
+
+from measurement.errors import MeasurementError
+from measurement.estimate.record import check_increasing, check_units, lowest_reading, shown_step
+from measurement.gases import GASES, UNITS
+from measurement.log.config import COLUMNS, FlightDetails, LogConfig
+from measurement.sniffer.lag import Array
+from measurement.sniffer.sniffer import Readings
+from measurement.tables import other_separator
+
+TRUE_COLUMNS = {f"{gas}_true_{UNITS[gas]}": gas for gas in GASES}
+"""Columns of the true concentrations of a simulated flight; shown, and not used by the estimate."""
+
+FROM_LOG, FROM_CONFIGURATION = "log", "configuration"
+"""Sources of the times of a flight."""
+
+_REQUIRED = ("time", "so2", "co2")
+"""Columns without which there is no estimate; others are needed only if the configuration has them.
+"""
+
+Position = tuple[float, float]
+"""Latitude and longitude [deg]."""
+
+Rows = npt.NDArray[np.intp]
+"""Indices of rows, shape (n,)."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class FlightRecord:
+    """Details of a logged flight, and how its log was read.
+
+    Attributes
+    ----------
+    readings : number of rows of the log
+    details : in the configuration
+    first_utc, last_utc : of the first and the last reading, or None where neither log nor
+        configuration has a time
+    utc_from : ``FROM_LOG``, ``FROM_CONFIGURATION`` or empty
+    offset : whether the log's times have an offset from UTC; those without are taken as UTC
+    first_position, last_position : first and last known place of the log, or None where it has none
+    place_remark : which of its places are taken as missing, or empty
+    columns, scale, missing : as the log was read
+    stated : keys of the instrument's channels in the configuration, same as in ``LogConfig``
+    """
+
+    readings: int
+    details: FlightDetails
+    first_utc: datetime | None
+    last_utc: datetime | None
+    utc_from: str
+    offset: bool
+    first_position: Position | None
+    last_position: Position | None
+    place_remark: str
+    columns: Mapping[str, str]
+    scale: Mapping[str, float]
+    missing: tuple[float, ...]
+    stated: Mapping[str, tuple[str, ...]] | None
+
+    def record(self) -> dict[str, Any]:
+        """Return the details for JSON, with times in ISO 8601."""
+        found = asdict(self)
+        details = found.pop("details")
+        details |= {"day": _iso_text(self.details.day), "start": _iso_text(self.details.start)}
+        found |= {"first_utc": _iso_text(self.first_utc), "last_utc": _iso_text(self.last_utc)}
+        return found | {"details": details}
+
+
+@dataclass(frozen=True)
+class LoggedFlight:
+    """A flight as it was logged.
+
+    Attributes
+    ----------
+    readings : of the sniffer, each once where the log's rows are faster
+    place : ``time_s``, and those of ``north_m``, ``east_m``, ``height_m`` and the true
+        concentrations that the file has
+    about : details of the flight and its log
+    """
+
+    readings: Readings
+    place: pd.DataFrame
+    about: FlightRecord
+
+
+def read_flight(path: Path, config: LogConfig) -> LoggedFlight:
+    """Return the flight in a CSV file with a row per reading, or with rows faster than the sensors.
+
+    Times are seconds, or dates and times that pandas reads. Rows may end in a comma.
+
+    Raises
+    ------
+    MeasurementError : the file cannot be read or is not separated by commas, has no readings, lacks
+        a column or has it twice, has words in it, readings out of range or too low, times that do
+        not increase, longer rows than its head line, or places that no aircraft can have
+    """
+    try:
+        return _flight(_read_table(path, config), config)
+    except MeasurementError as error:
+        raise MeasurementError(f"'{path}': {error}") from None
+
+
+def _flight(table: pd.DataFrame, config: LogConfig) -> LoggedFlight:
+    """Return the flight in the table of a log."""
+    time_column = table[config.columns["time"]]
+    time, logged = _times(time_column)
+    values = np.full((len(table), len(GASES)), np.nan)
+    for i, gas in enumerate(GASES):
+        name = config.columns[gas]
+        if name in table:
+            values[:, i] = config.scale.get(gas, 1.0) * _known_numbers(table[name], config)
+    _check_range(values, config)
+    readings = new_readings(Readings(time, values), config.instrument.gases)
+    _check_negative(values, readings, config)
+    places = {
+        key: _known_numbers(table[config.columns[key]], config)
+        for key in _PLACES
+        if config.columns[key] in table
+    }
+    _check_angles(places)
+    places, remark = _without_missing_fixes(places)
+    plane = _on_a_plane(places)
+    _check_jumps(plane, time)
+    true = {name: _numbers(table[name]) for name in TRUE_COLUMNS if name in table}
+    first_utc, last_utc, utc_from = _utc_times(config.flight, logged, float(time[-1] - time[0]))
+    first_position, last_position = _end_positions(places)
+    about = FlightRecord(
+        readings=len(table),
+        details=config.flight,
+        first_utc=first_utc,
+        last_utc=last_utc,
+        utc_from=utc_from,
+        offset=logged is not None and _has_offset(time_column),
+        first_position=first_position,
+        last_position=last_position,
+        place_remark=remark,
+        columns={key: name for key, name in config.columns.items() if name in table},
+        scale=config.scale,
+        missing=config.missing,
+        stated=config.stated,
+    )
+    return LoggedFlight(readings, pd.DataFrame({"time_s": time, **plane, **true}), about)
+
+
+# The table of a CSV file
+
+_HEAD_LETTERS = 60
+"""Letters of a head line that are quoted in an error."""
+
+_LONG_ROW = re.compile(r"Expected \d+ fields in line (\d+), saw \d+")
+"""Error of pandas for a row that is longer than the first ones."""
+
+_OPEN_QUOTE = re.compile(r"EOF inside string starting at row (\d+)")
+"""Error of pandas for an open quotation mark; it counts the head line as row 0."""
+
+_NUMBER = re.compile(r"[-+]?[\d.]+(e[-+]?\d+)?(\.\d+)?", re.IGNORECASE)
+"""A number, with the suffix that pandas adds to a repeated one."""
+
+_DECIMAL_COMMA = re.compile(r"[-+]?\d+,\d+")
+
+
+def _read_table(path: Path, config: LogConfig) -> pd.DataFrame:
+    """Return the table of a CSV file, which may be compressed, after checking its columns."""
+    head = ""
+    try:
+        head = _checked_head(path)
+        # Without ``index_col=False`` rows that end in a comma would move every column by one.
+        # With it pandas drops the ends of long rows with a warning, which is an error here.
+        with warnings.catch_warnings(action="error", category=pd.errors.ParserWarning):
+            table = pd.read_csv(path, skipinitialspace=True, low_memory=False, index_col=False)
+            # The names as they stand there: pandas numbers repeated ones.
+            names = pd.read_csv(
+                path, skipinitialspace=True, header=None, nrows=1, dtype=str, index_col=False
+            ).iloc[0]
+    except MeasurementError:
+        raise
+    except (pd.errors.ParserWarning, pd.errors.ParserError, pd.errors.EmptyDataError) as error:
+        raise MeasurementError(_parser_problem(error, head)) from None
+    except (EOFError, lzma.LZMAError, zipfile.BadZipFile, zlib.error) as error:
+        raise MeasurementError(
+            f"cannot be unpacked: {error}; give a whole file, or the CSV file itself"
+        ) from None
+    except OSError as error:
+        # A file that is not the archive that its name says has no error number.
+        raise MeasurementError(
+            f"cannot be read: {error.strerror or error}; give a CSV file"
+        ) from None
+    except UnicodeDecodeError:
+        raise MeasurementError("not text in UTF-8; save it as CSV in UTF-8") from None
+    except ValueError as error:
+        raise MeasurementError(_not_csv(error)) from None
+    table.columns = table.columns.map(str).str.strip()
+    names = names.dropna().str.strip()
+    used = [*config.columns.values(), *TRUE_COLUMNS]
+    twice = names[names.duplicated() & names.isin(used)]
+    if len(twice):
+        raise MeasurementError(f"column '{twice.iloc[0]}' is there twice; rename or remove one")
+    if table.empty:
+        raise MeasurementError("a head line and 0 readings; it needs a row per reading")
+    for key, name in config.columns.items():
+        if name not in table and (key in _REQUIRED or name != COLUMNS[key]):
+            raise MeasurementError(_missing_column(key, name, table))
+    return table
+
+
+def _checked_head(path: Path) -> str:
+    """Return the head line in quotes, empty for a compressed file; check that it has commas."""
+    with path.open(encoding="utf-8-sig", errors="replace") as file:
+        head = file.readline().strip()
+    if not head.replace("\t", "").isprintable():
+        # It may be compressed, which pandas reads.
+        return ""
+    if problem := other_separator(head):
+        raise MeasurementError(f"the file {problem}")
+    return f" ('{head[:_HEAD_LETTERS]}{'...' * (len(head) > _HEAD_LETTERS)}')"
+
+
+def _parser_problem(error: Exception, head: str) -> str:
+    """Return the problem of a table that pandas refuses, given its head line in quotes."""
+    if isinstance(error, pd.errors.EmptyDataError):
+        return "empty; it needs a head line and a row per reading"
+    if opened := _OPEN_QUOTE.search(str(error)):
+        return f"the quotation mark in line {int(opened[1]) + 1} is not closed; remove it"
+    long_row = _LONG_ROW.search(str(error))
+    if not long_row and not isinstance(error, pd.errors.ParserWarning):
+        return _not_csv(error)
+    where = f"line {long_row[1]} has" if long_row else "some rows have"
+    return (
+        f"{where} more values than the head line has names{head}: the first line has to name every"
+        " column; remove lines above it, and write decimals with a point"
+    )
+
+
+def _not_csv(error: Exception) -> str:
+    reason = str(error).splitlines()[0].strip()
+    return f"not CSV: {reason}; give a CSV file with a head line"
+
+
+def _missing_column(key: str, name: str, table: pd.DataFrame) -> str:
+    """Return the problem of a table without the column ``name`` for the quantity ``key``."""
+    numbers = sum(bool(_NUMBER.fullmatch(column)) for column in table.columns)
+    if 2 * numbers > len(table.columns):
+        needed = ", ".join(COLUMNS[required] for required in _REQUIRED)
+        return (
+            "no head line, but numbers in the first line; add one that names every column, as in"
+            f" {needed}"
+        )
+    quantity = key.upper() if key in GASES else key
+    there = ", ".join(f"'{column}'" for column in list(table.columns)[:12])
+    remedy = f'name it in [columns] of the configuration: {key} = "..."'
+    if name != COLUMNS[key]:
+        remedy = f'correct {key} = "{name}" in [columns] of the configuration'
+    return f"no {quantity} column '{name}', but {there}; {remedy}"
+
+
+def _numbers(column: pd.Series) -> Array:
+    """Return a column as numbers, NaN where it is empty, shape (n,)."""
+    numbers = pd.to_numeric(column, errors="coerce")
+    words = numbers.isna() & column.notna() & (column.astype(str).str.strip() != "")
+    if words.any():
+        row = int(np.argmax(words.to_numpy()))
+        value = str(column.iloc[row])
+        raise MeasurementError(
+            f"column '{column.name}' has {value!r} in row {row + 2}; it must hold numbers, or be"
+            f" empty{_with_a_point(value)}"
+        )
+    if np.isinf(numbers).any():
+        row = int(np.argmax(np.isinf(numbers)))
+        raise MeasurementError(
+            f"column '{column.name}' is infinite in row {row + 2}; where it stands for a reading"
+            " out of range, leave the record out from there, or leave the cell empty"
+        )
+    return numbers.to_numpy(dtype=np.float64)
+
+
+def _known_numbers(column: pd.Series, config: LogConfig) -> Array:
+    """Return a column as numbers, NaN where it is empty or has a mark for missing values."""
+    numbers = _numbers(column)
+    return np.where(np.isin(numbers, config.missing), np.nan, numbers)
+
+
+def _with_a_point(value: str) -> str:
+    """Return the remedy for a number with a decimal comma; empty for other words."""
+    value = value.strip()
+    if not _DECIMAL_COMMA.fullmatch(value):
+        return ""
+    return f"; write decimals with a point, as in {value.replace(',', '.')}"
+
+
+# Times
+
+_COMPACT = 1e13, 1e14
+"""Range of times of 14 digits, as 20240501120000: as seconds they jump by 41 at every minute."""
+
+_DAY_ENDS = 240_000.0
+"""End of a day by a clock without marks, HHMMSS."""
+
+_MINUTES_MIN = 2
+"""Changes of the minute that show such a clock: seconds may skip 60 to 99 once by chance."""
+
+
+def _times(column: pd.Series) -> tuple[Array, tuple[datetime, datetime] | None]:
+    """Return the times [s], and those of the first and last row in UTC where the log has dates."""
+    logged = None
+    if pd.api.types.is_numeric_dtype(column):
+        time = column.to_numpy(dtype=np.float64)
+        _check_seconds(time, str(column.name))
+    else:
+        moments = _moments(column)
+        time = np.asarray((moments - moments.iloc[0]).dt.total_seconds(), dtype=np.float64)
+        if not moments.isna().any():
+            logged = moments.iloc[0].to_pydatetime(), moments.iloc[-1].to_pydatetime()
+    missing = np.flatnonzero(~np.isfinite(time))
+    if missing.size:
+        raise MeasurementError(
+            f"no time in row {missing[0] + 2}; give a time in every row, or remove the row"
+        )
+    check_increasing(time, in_file=True)
+    return time, logged
+
+
+def _moments(column: pd.Series) -> pd.Series:
+    """Return a column of dates and times in UTC."""
+    try:
+        return pd.to_datetime(column, utc=True, format="ISO8601")
+    except (ValueError, TypeError):
+        # The first row that is not of the kind that most rows have.
+        seconds = pd.to_numeric(column, errors="coerce").notna()
+        dates = pd.to_datetime(column, utc=True, format="ISO8601", errors="coerce").notna()
+        row = int(np.argmin(seconds if seconds.sum() > dates.sum() else dates))
+        value = str(column.iloc[row])
+        raise MeasurementError(
+            f"time '{value}' in column '{column.name}' cannot be read (row {row + 2}); give"
+            f" seconds, or 2024-05-01T12:00:00.0{_with_a_point(value)}"
+        ) from None
+
+
+def _check_seconds(time: Array, name: str) -> None:
+    """Check that numbers are seconds, and not dates or times of the day without marks.
+
+    Parameters
+    ----------
+    time : of the rows, shape (n,), NaN where a row has none [s]
+    name : of the column
+    """
+    if _COMPACT[0] <= time[0] < _COMPACT[1]:
+        raise MeasurementError(
+            f"time {time[0]:.0f} in column '{name}' is a date and time without marks; give"
+            " seconds, or 2024-05-01T12:00:00.0"
+        )
+    in_a_day = (time >= 0.0) & (time < _DAY_ENDS)
+    if not (in_a_day & (time % 100.0 < 60.0) & (time // 100.0 % 100.0 < 60.0)).all():
+        return
+    minutes = np.flatnonzero(np.diff(time // 100.0) > 0.0)
+    if len(minutes) >= _MINUTES_MIN:
+        row = int(minutes[0])
+        raise MeasurementError(
+            f"times in column '{name}' go from {time[row]:.10g} to {time[row + 1]:.10g}"
+            f" (row {row + 3}), and similarly at each of {len(minutes)} minutes: they are hours,"
+            " minutes and seconds without marks; give seconds, or 2024-05-01T12:00:00.0"
+        )
+
+
+def _has_offset(column: pd.Series) -> bool:
+    """Return whether dates and times have an offset from UTC."""
+    return pd.Timestamp(str(column.iloc[0]).strip()).tzinfo is not None
+
+
+def _utc_times(
+    details: FlightDetails, logged: tuple[datetime, datetime] | None, duration_s: float
+) -> tuple[datetime | None, datetime | None, str]:
+    """Return the times of the first and the last reading, and their source.
+
+    Parameters
+    ----------
+    details : in the configuration
+    logged : times of the first and the last reading in the log, or None where it counts seconds
+    duration_s : from the first to the last reading [s]
+
+    Raises
+    ------
+    MeasurementError : log and configuration have different dates, or times that are a second or
+        more apart
+    """
+    start = details.start
+    if logged is None:
+        if start is None:
+            return None, None, ""
+        try:
+            return start, start + timedelta(seconds=duration_s), FROM_CONFIGURATION
+        except OverflowError:
+            raise MeasurementError(
+                f"the log lasts {duration_s:g} s from flight.date on, beyond the year 9999; give"
+                " its times in seconds"
+            ) from None
+    first = logged[0]
+    apart = start is not None and abs((first - start).total_seconds()) >= 1.0
+    if apart or (details.day is not None and first.date() != details.day):
+        raise MeasurementError(
+            f"flight.date is {_iso_text(start or details.day)}, but the log begins at"
+            f" {_iso_text(first)}; correct it, or leave it out"
+        )
+    return (*logged, FROM_LOG)
+
+
+def _iso_text(value: date | datetime | None) -> str | None:
+    """Return a date or a time of UTC in ISO 8601, to a millisecond if it has a fraction."""
+    if isinstance(value, datetime):
+        timespec = "milliseconds" if value.microsecond else "seconds"
+        return value.isoformat(timespec=timespec).replace("+00:00", "Z")
+    return None if value is None else value.isoformat()
+
+
+# Readings
+
+
+def _check_range(values: Array, config: LogConfig) -> None:
+    """Check that no reading is beyond the end of its channel's range, where the sensor stops."""
+    for gas in config.instrument.gases:
+        channel, column = config.instrument.known(gas), values[:, GASES.index(gas)]
+        if gas == "co2" and np.isfinite(column).any():
+            # In another unit, or without its background, the whole column is wrong.
+            check_units(channel, column)
+        beyond = np.flatnonzero(column > channel.range_high + channel.resolution)
+        if beyond.size:
+            unit = UNITS[gas]
+            more = f", and {beyond.size - 1} more" if beyond.size > 1 else ""
+            raise MeasurementError(
+                f"{gas.upper()} is {column[beyond[0]]:g} {unit} in row {beyond[0] + 2}{more}; its"
+                f" sensor reads {channel.range_high:g} {unit} at most (range_high): leave such a"
+                " cell empty, or correct the column's unit ([scale]) or the range"
+            )
+
+
+def _check_negative(values: Array, readings: Readings, config: LogConfig) -> None:
+    """Check that no reading is lower than in clean air: a mark, a calibration or a wrong sign.
+
+    Parameters
+    ----------
+    values : of all rows, shape (n, 4)
+    readings : each once
+    """
+    for gas in config.instrument.gases:
+        column = values[:, GASES.index(gas)]
+        if not np.isfinite(column).any():
+            continue
+        lowest = lowest_reading(gas, readings.values, config.instrument)
+        low = np.flatnonzero(column < lowest)
+        if low.size:
+            least, unit = float(column[low[0]]), UNITS[gas]
+            more = f", and {low.size - 1} more are as low" if low.size > 1 else ""
+            air = "air, " if gas == "co2" else ""
+            raise MeasurementError(
+                f"{gas.upper()} is {least:g} {unit} in row {low[0] + 2}{more}; {air}noise, zero"
+                f" and other gases explain {lowest:.0f} {unit} at least: where it stands for a"
+                " missing reading, or is of a calibration from which the sensor has not recovered,"
+                " leave it empty or name it in the configuration, as in missing = [-9999];"
+                " otherwise check the sign, and state the channel's noise, zero and cross"
+            )
+
+
+_FEWEST = 10
+"""Least number of intervals between new readings that show how many rows a reading has."""
+
+_LOW = 0.1
+"""Share of these intervals that counts as the shortest.
+
+Readings that are equal by chance make others twice as long and longer.
+"""
+
+_OFF, _REGULAR = 0.25, 0.8
+"""Deviation of an interval from a whole multiple of the sensor's interval [sensor's intervals].
+
+The second is the least share of the intervals that are so near: of those that noise and rounding
+make half are.
+"""
+
+_LARGER = 0.25
+"""Least share of the changes that are larger than a step of the readings."""
+
+
+def new_readings(logged: Readings, gases: Sequence[str]) -> Readings:
+    """Return each reading of a log once, at the time of its first row.
+
+    A log with a row per reading is returned as it is. Otherwise the times are those of the slowest
+    of the gases; the others are interpolated between their readings.
+
+    Parameters
+    ----------
+    logged : by row, NaN where there is no reading
+    gases : that the instrument has
+    """
+    columns = logged.values.T
+    rows_each = [rows_per_reading(column) for column in columns]
+    slowest = max((GASES.index(gas) for gas in gases), key=lambda i: rows_each[i])
+    if rows_each[slowest] == 1.0:
+        return logged
+    time = logged.time[_first_rows(columns[slowest], rows_each[slowest])]
+    values = np.full((len(time), len(columns)), np.nan)
+    for i, (column, rows) in enumerate(zip(columns, rows_each, strict=True)):
+        own = _first_rows(column, rows)
+        values[:, i] = np.interp(time, logged.time[own], column[own])
+    return Readings(time, values)
+
+
+def rows_per_reading(column: Array) -> float:
+    """Return the mean number of rows that a reading of a gas has; 1 where they are not repeated.
+
+    Readings in coarse steps may change as seldom and as evenly as passes come, and mostly by one
+    step: they count as not repeated.
+
+    Parameters
+    ----------
+    column : readings by row, NaN where there is none, shape (n,)
+    """
+    changes = _changes(column)
+    between = np.diff(changes)
+    if len(between) < _FEWEST:
+        return 1.0
+    larger = np.abs(np.diff(column[changes])) > 1.5 * shown_step(column)
+    if np.mean(larger) < _LARGER:
+        return 1.0
+    rows = float(np.mean(between[between <= 1.5 * np.quantile(between, _LOW)]))
+    off = np.abs(between / rows - np.round(between / rows))
+    return rows if float(np.mean(off <= _OFF)) >= _REGULAR else 1.0
+
+
+def _changes(column: Array) -> Rows:
+    """Return the rows with another reading than the last one before them."""
+    known = np.flatnonzero(np.isfinite(column))
+    return known[np.concatenate([[True], np.diff(column[known]) != 0.0])] if len(known) else known
+
+
+def _first_rows(column: Array, rows: float) -> Rows:
+    """Return the first row of each reading, given how many rows one has.
+
+    Where none is new for longer, readings are the sensor's interval apart.
+    """
+    starts = np.unique(np.concatenate([[0], _changes(column)]))
+    parts = []
+    for start, end in zip(starts, [*starts[1:], len(column)], strict=True):
+        count = max(1, round((end - start) / rows))
+        parts.append(start + np.round(rows * np.arange(count)).astype(np.intp))
+    return np.concatenate(parts)
+
+
+# Places
+
+_PLACES = ("latitude", "longitude", "north", "east", "height")
+"""Keys of the columns of places."""
+
+EARTH_RADIUS_M = 6_371_000.0
+"""Mean radius [m], for a track of a few kilometres on a plane."""
+
+_SPEED_MOST = 340.0
+"""Largest speed of an aircraft that measures exhaust [m/s]: the speed of sound."""
+
+_ERROR_M = 100.0
+"""Largest error of a place [m]."""
+
+
+def _check_angles(places: Mapping[str, Array]) -> None:
+    """Check that latitude and longitude are in range, shape (n,) each [deg]."""
+    for name, most in (("latitude", 90.0), ("longitude", 360.0)):
+        if name not in places:
+            continue
+        beyond = np.flatnonzero(np.abs(places[name]) > most)
+        if beyond.size:
+            row = int(beyond[0])
+            raise MeasurementError(
+                f"{name} is {places[name][row]:g} deg in row {row + 2}; it must be {-most:g} to"
+                f" {most:g}: correct it, leave it empty, or name what stands for a missing one in"
+                " the configuration, as in missing = [-9999]"
+            )
+
+
+def _without_missing_fixes(places: dict[str, Array]) -> tuple[dict[str, Array], str]:
+    """Return places without latitude and longitude 0 of receivers without a fix, and a remark."""
+    if not {"latitude", "longitude"} <= set(places):
+        return places, ""
+    missing = (places["latitude"] == 0.0) & (places["longitude"] == 0.0)
+    rows = np.flatnonzero(missing) + 2
+    if not len(rows):
+        return places, ""
+    named = f"row {rows[0]} is"
+    if len(rows) > 1:
+        named = f"{len(rows):,} rows, from row {rows[0]} to row {rows[-1]}, are"
+    kept = {name: np.where(missing, np.nan, places[name]) for name in ("latitude", "longitude")}
+    return places | kept, (
+        f"{named} at latitude 0 and longitude 0, as from a receiver without a fix: taken as missing"
+    )
+
+
+def _check_jumps(plane: Mapping[str, Array], time: Array) -> None:
+    """Check that an aircraft can fly between places in the time [s], shape (n,) each."""
+    if "north_m" not in plane:
+        return
+    north, east = plane["north_m"], plane["east_m"]
+    rows = np.flatnonzero(np.isfinite(north + east))
+    if not len(rows):
+        return
+    # A receiver may be slower than the log: only the first row of a new place counts.
+    moved = (np.diff(north[rows]) != 0.0) | (np.diff(east[rows]) != 0.0)
+    rows = rows[np.concatenate([[True], moved])]
+    distance, seconds = np.hypot(np.diff(north[rows]), np.diff(east[rows])), np.diff(time[rows])
+    jumps = np.flatnonzero(distance > _SPEED_MOST * seconds + _ERROR_M)
+    if jumps.size:
+        i = int(jumps[0])
+        more = f" (1 of {jumps.size} such jumps)" if jumps.size > 1 else ""
+        raise MeasurementError(
+            f"the place in row {rows[i + 1] + 2} is {distance[i] / 1000.0:,.1f} km from that in row"
+            f" {rows[i] + 2}, {seconds[i]:g} s earlier, which is faster than {_SPEED_MOST:g}"
+            f" m/s{more}: correct the places that are wrong, or leave them empty"
+        )
+
+
+def _known_positions(places: Mapping[str, Array]) -> Rows:
+    """Return the rows that have a latitude and a longitude."""
+    if not {"latitude", "longitude"} <= set(places):
+        return np.empty(0, dtype=np.intp)
+    return np.flatnonzero(np.isfinite(places["latitude"] + places["longitude"]))
+
+
+def _on_a_plane(places: Mapping[str, Array]) -> dict[str, Array]:
+    """Return ``north_m``, ``east_m`` and ``height_m``, on a plane at the first known place."""
+    plane = {}
+    known = _known_positions(places)
+    if {"north", "east"} <= set(places):
+        plane = {"north_m": places["north"], "east_m": places["east"]}
+    elif len(known):
+        latitude, longitude = np.radians(places["latitude"]), np.radians(places["longitude"])
+        first = known[0]
+        east = (longitude - longitude[first] + math.pi) % math.tau - math.pi
+        plane = {
+            "north_m": EARTH_RADIUS_M * (latitude - latitude[first]),
+            "east_m": EARTH_RADIUS_M * math.cos(latitude[first]) * east,
+        }
+    if "height" in places:
+        plane["height_m"] = places["height"]
+    return plane
+
+
+def _end_positions(places: Mapping[str, Array]) -> tuple[Position | None, Position | None]:
+    """Return the first and the last known latitude and longitude, or None for both."""
+    known = _known_positions(places)
+    if not len(known):
+        return None, None
+    first, last = (
+        (float(places["latitude"][i]), float(places["longitude"][i])) for i in known[[0, -1]]
+    )
+    return first, last

@@ -1,0 +1,126 @@
+"""The configuration of a logged flight: instrument, limits, columns, and details of the flight."""
+
+import pandas as pd
+import pytest
+
+from measurement.errors import MeasurementError
+from measurement.log.config import read_config
+from measurement.log.read import read_flight
+
+WHOLE = """instrument = "electrochemical"
+[flight]
+vessel = "Nordlys"
+imo = 9074729
+mmsi = 219000000
+date = 2026-06-01T12:00:00+02:00
+place = "Kattegat, east of Anholt"
+operator = "Agency"
+"""
+"""9074729 is the IMO number by which the check digit is commonly explained: 9 7 + 0 6 + 7 5 + 4 4 +
+7 3 + 2 2 = 139.
+"""
+
+
+@pytest.fixture
+def config(tmp_path):
+    """Return a function that reads a configuration from a text."""
+
+    def read(text):
+        path = tmp_path / "own.toml"
+        path.write_text(text, encoding="utf-8")
+        return read_config(path)
+
+    return read
+
+
+def with_dates(logged):
+    times = pd.Timestamp("2026-06-01T10:00:00Z") + pd.to_timedelta(range(301), unit="s")
+    pd.read_csv(logged).assign(time_s=times.astype(str)).to_csv(logged, index=False)
+
+
+@pytest.mark.parametrize(
+    ("text", "quoted"),
+    [
+        ("[", "not TOML"),
+        ("zone = 1", "'zone'; it may have carbon"),
+        ("limit_percent = 0.1", "'limit_percent'; did you mean 'limits_percent'?"),
+        ("instrument = 'nose'", "instrument is 'nose'; there are alphasense_a4"),
+        ("instrument = 'laserr'", "instrument is 'laserr'; did you mean 'laser'?"),
+        ("instrument = 3", "instrument is 3"),
+        ("[instrument.channels.so2]\ngain = 0.03", "gain of so2 is 0.03"),
+        ("[instrument.channels.so2]\nt90_s = -3", "t90 is -3 s"),
+        ("[instrument.channels.so2]\nt90 = 3", "'t90'; did you mean 't90_s'?"),
+        ("method = 'magic'", "method is 'magic'"),
+        ("carbon = 'much'", "carbon is 'much'"),
+        ("carbon = 87", "carbon is 87; a fuel's mass share of carbon must be 0.5 to 0.95"),
+        ("limits_percent = 0.1", "limits_percent is 0.1; give a list"),
+        ("limits_percent = []", "limits_percent is []"),
+        ("limits_percent = [-1]", "limits_percent is [-1]"),
+        ("limits_percent = [0.5, 0.1, 0.1]", "limits_percent is [0.5, 0.1, 0.1]"),
+        ("missing = -9999", "missing is -9999; give a list of numbers, as in [-9999]"),
+        ("[scale]\nso2 = 0", "scale of so2 is 0; it must be positive"),
+        ("[columns]\nso3 = 'x'", "[columns] has the key 'so3'"),
+        ("[columns]\nso2 = 3", "columns.so2 is 3"),
+        ("[columns]\nso2 = 'co2_ppm'", "[columns] has the column 'co2_ppm' for so2 and for co2"),
+        ("flight = 3", "flight is 3; give a table [flight]"),
+        ("flight.ship = 'A'", "[flight] has the key 'ship'; it may have vessel, imo, mmsi"),
+        ("flight.vesel = 'A'", "[flight] has the key 'vesel'; did you mean 'vessel'?"),
+        ("flight.vessel = 3", "flight.vessel is 3"),
+        ('flight.place = "a\\nb"', "flight.place is 'a\\nb'"),
+        ("flight.imo = 9074728", "flight.imo is 9074728"),
+        ("flight.imo = 907472", "flight.imo is 907472"),
+        ('flight.imo = "9074729"', "'9074729'; give seven digits"),
+        ('flight.mmsi = "219000000"', "'219000000'; give nine digits"),
+        ("flight.mmsi = 2190000", "flight.mmsi is 2190000"),
+        ("flight.date = 2026-06-01T10:00:00", "flight.date is 2026-06-01 10:00:00"),
+        ("flight.date = 'June'", "flight.date is June"),
+    ],
+)
+def test_mistakes_are_refused_in_one_line_that_names_the_value(config, text, quoted):
+    with pytest.raises(MeasurementError) as error:
+        config(text)
+    line = str(error.value)
+    assert quoted in line
+    assert line.count("own.toml") == 1
+    assert "\n" not in line
+
+
+def test_a_configuration_names_ship_place_operator_and_the_time_of_the_first_reading(
+    logged, config
+):
+    found = read_flight(logged, config(WHOLE)).about.record()
+    # The log has 301 readings, a second apart; 12:00 two hours east of Greenwich is 10:00 UTC.
+    assert found["first_utc"] == "2026-06-01T10:00:00Z"
+    assert found["last_utc"] == "2026-06-01T10:05:00Z"
+    assert found["utc_from"] == "configuration"
+    expected = {
+        "vessel": "Nordlys",
+        "imo": 9074729,
+        "mmsi": 219000000,
+        "place": "Kattegat, east of Anholt",
+        "operator": "Agency",
+    }
+    assert expected.items() <= found["details"].items()
+    assert found["readings"] == 301
+    assert found["columns"]["so2"] == "so2_ppb"
+
+
+def test_a_log_of_seconds_with_a_date_alone_has_no_time_of_day(logged, config):
+    found = read_flight(logged, config('flight.date = "2026-06-01"\n')).about.record()
+    assert found["details"]["day"] == "2026-06-01"
+    assert (found["first_utc"], found["utc_from"]) == (None, "")
+    assert read_flight(logged, config("")).about.record()["details"]["day"] is None
+
+
+@pytest.mark.parametrize("date", ["2026-06-02", "2026-06-01T10:00:02Z"])
+def test_a_date_other_than_that_of_the_log_is_refused(logged, config, date):
+    with_dates(logged)
+    with pytest.raises(MeasurementError, match=rf"{date}.* 2026-06-01T10:00:00Z"):
+        read_flight(logged, config(f"flight.date = {date}\n"))
+
+
+def test_times_that_lead_beyond_all_years_are_refused(logged, config):
+    table = pd.read_csv(logged)
+    table.assign(time_s=[1e12 * i for i in range(301)]).to_csv(logged, index=False)
+    with pytest.raises(MeasurementError, match=r"lasts 3e\+14 s .* year 9999"):
+        read_flight(logged, config("flight.date = 2026-06-01T10:00:00Z\n"))
