@@ -8,7 +8,7 @@ from aircraft.fdm import Fdm
 from aircraft.spec import BANK_RESERVE, AircraftError, AircraftSpec, Envelope
 from aircraft.state import RigidBodyState, body_velocity
 from aircraft.trim import Trim, TrimOutcome, search_trim, trim
-from common.physics.units import KG_PER_SLUG, METRES_PER_FOOT, NEWTONS_PER_POUND
+from common.physics import KG_PER_SLUG, METRES_PER_FOOT, NEWTONS_PER_POUND
 
 BANK_LIMITS = ((150.0, 45.0), (5_670.0, 30.0), (math.inf, 25.0))
 """Largest mass [kg] of a class and the bank it turns with [deg].

@@ -18,7 +18,7 @@ import jsbsim
 from aircraft.model import copy_model, remove_ground_contacts
 from aircraft.spec import AircraftError, AircraftSpec, UnknownPropertyError
 from aircraft.state import RigidBodyState, Vector, with_wind
-from common.physics.units import METRES_PER_FOOT
+from common.physics import METRES_PER_FOOT
 
 TIME_STEP = 1.0 / 120.0
 """Integration step of JSBSim [s]; the autopilot in it computes at every one to three of them."""

@@ -19,7 +19,7 @@ from pathlib import Path
 from reprlib import repr as shortened
 from typing import Any
 
-from common.physics.units import RAD_S_PER_RPM
+from common.physics import RAD_S_PER_RPM
 
 MODELS = Path(__file__).parent / "models"
 """JSBSim root of the project's own aircraft."""

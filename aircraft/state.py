@@ -3,7 +3,7 @@
 import math
 from dataclasses import dataclass, replace
 
-from common.physics.geodesy import ECCENTRICITY_SQUARED, EQUATORIAL_RADIUS
+from common.geodesy import ECCENTRICITY_SQUARED, EQUATORIAL_RADIUS
 
 Vector = tuple[float, float, float]
 
@@ -129,7 +129,7 @@ class EquatorFrame:
     """North and east metres about latitude and longitude 0, at a fixed altitude.
 
     All flights fly there: at the equator local north stays true north, and JSBSim's axes have no
-    pole. Where on earth a flight is meant to be (``common.physics.geodesy.LocalFrame``) does not
+    pole. Where on earth a flight is meant to be (``common.physics.LocalFrame``) does not
     change how it flies.
 
     The mapping is azimuthal equidistant, to third order. With s = M phi (1 + e^2 phi^2/2) the

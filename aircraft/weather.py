@@ -22,7 +22,7 @@ from dataclasses import dataclass
 from aircraft.fdm import Fdm
 from aircraft.spec import AircraftError
 from aircraft.wind import CALM, WindField
-from common.physics.units import METRES_PER_FOOT, METRES_PER_SECOND_PER_KNOT
+from common.physics import METRES_PER_FOOT, METRES_PER_SECOND_PER_KNOT
 
 _DRYDEN = 4
 """JSBSim's number for the Dryden spectra of MIL-F-8785C in Tustin's discretisation."""

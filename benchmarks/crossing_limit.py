@@ -23,7 +23,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from common.physics.coordinated_turn import bank_for_heading_rate
+from common.physics import bank_for_heading_rate
 from gnc.errors import InfeasibleError
 from gnc.reference.reference import REFERENCE_SHAPES
 from scenarios.planning.limits import omega_max

@@ -18,7 +18,7 @@ from pathlib import Path
 import numpy as np
 
 from benchmarks.vehicle import x8_setup
-from common.physics.coordinated_turn import bank_for_heading_rate, heading_rate_for_bank
+from common.physics import bank_for_heading_rate, heading_rate_for_bank
 from gnc.errors import InfeasibleError
 from scenarios.errors import InputError
 from scenarios.experiment.requests import Experiment

@@ -24,13 +24,13 @@ from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
-from scipy.optimize import brentq, minimize_scalar
-from scipy.special import j0, jv
 
-from common.physics.units import STANDARD_GRAVITY
+from common.physics import STANDARD_GRAVITY
 from gnc.errors import InfeasibleError
 from gnc.numeric import limited, wrap
 from gnc.reference.reference import Array, Orbit
+
+# SciPy is imported where it is used: the steering laws are needed without it, by `describe`.
 
 # --- II.B Vehicle dynamics
 
@@ -48,6 +48,8 @@ def unicycle_rates(speed: float, course: float, heading_rate: float) -> tuple[fl
 
 def mean_speed_ratio(eta: float) -> float:
     """Return F(eta), the reference's mean speed over its speed, by equation (5): J_0(eta) [-]."""
+    from scipy.special import j0
+
     return float(j0(eta))  # (5)
 
 
@@ -60,6 +62,8 @@ def eta_for_speed_ratio(nu: float) -> float:
     ------
     InfeasibleError : ``nu`` is outside 0 to 1, where J_0 on [0, 2.4048] has no inverse
     """
+    from scipy.optimize import brentq
+
     if not (math.isfinite(nu) and 0.0 <= nu <= 1.0):
         raise InfeasibleError(
             f"speed ratio nu is {nu:g}; it must lie within 0 and 1: give the vessel a speed from 0"
@@ -139,6 +143,8 @@ class Oscillation:
 
     def sidebands(self, orders: npt.NDArray[np.int64]) -> Array:
         """Return the power of the orbit's harmonics, J_n(eta)^2 by Jacobi and Anger [-]."""
+        from scipy.special import jv
+
         return np.asarray(jv(orders, self.eta) ** 2)
 
 
@@ -243,6 +249,8 @@ _ORBIT_POINTS = 7201
 @functools.lru_cache(maxsize=8)
 def _series(eta: float, omega_0: float) -> tuple[Array, Array]:
     """Return the Jacobi-Anger coefficients of F_x and F_y [s]: both converge in a dozen terms."""
+    from scipy.special import jv
+
     along = (-1.0) ** _TERMS * jv(2 * _TERMS, eta) / (_TERMS * omega_0)
     across = 2.0 * (-1.0) ** (_TERMS - 1) * jv(_ODD, eta) / (_ODD * omega_0)
     return along, across
@@ -350,6 +358,8 @@ def distance_exact(orbit: Orbit, axis: PlumeAxis, distance_min: float) -> float:
     ------
     InfeasibleError : ``distance_min`` or the axis is out of range
     """
+    from scipy.optimize import minimize_scalar
+
     _check(axis, distance_min)
 
     def needed(time: npt.ArrayLike) -> Array:

@@ -16,7 +16,7 @@ import numpy.typing as npt
 
 from aircraft.linearise import LinearModel
 from aircraft.trim import Trim
-from common.physics.units import STANDARD_GRAVITY
+from common.physics import STANDARD_GRAVITY
 from innerloop.schedule import LATERAL, LONGITUDINAL, Gains, Schedule
 
 COMMANDS = ("airspeed_command", "altitude_command", "heading_rate_command")

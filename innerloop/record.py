@@ -10,7 +10,7 @@ import numpy as np
 from aircraft.fdm import TIME_STEP, Fdm
 from aircraft.spec import ControlInput, Envelope
 from aircraft.trim import Trim, TrimOutcome, search_trim
-from common.physics.coordinated_turn import heading_rate_for_bank
+from common.physics import heading_rate_for_bank
 from innerloop.flight.autopiloted_aircraft import AutopilotedAircraft
 from innerloop.flight.responses import (
     Response,

@@ -11,7 +11,7 @@ import numpy.typing as npt
 from aircraft.linearise import BODY_STATES, LinearModel
 from aircraft.model import PERTURBATIONS, Perturbation
 from aircraft.trim import Trim
-from common.physics.units import STANDARD_GRAVITY
+from common.physics import STANDARD_GRAVITY
 from innerloop.law import ControlLaw, linear_controller
 from innerloop.margins import NOMINAL, Check, Loops
 from innerloop.schedule import GAIN_BANKS, TRIM_BANKS, Schedule, loop_delay

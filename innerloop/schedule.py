@@ -15,7 +15,7 @@ from aircraft.fdm import TIME_STEP
 from aircraft.linearise import LinearModel, Matrix
 from aircraft.spec import AircraftSpec, Envelope
 from aircraft.trim import Trim
-from common.physics.units import STANDARD_GRAVITY
+from common.physics import STANDARD_GRAVITY
 
 PERIODS = (1, 2, 3)
 """Periods at which the autopilot may compute [JSBSim time steps].

@@ -25,7 +25,7 @@ import numpy as np
 
 from aircraft.linearise import BODY_STATES, LinearModel, Matrix
 from aircraft.trim import Trim
-from common.physics.units import STANDARD_GRAVITY
+from common.physics import STANDARD_GRAVITY
 from innerloop.schedule import (
     LONGITUDINAL,
     PERIODS,

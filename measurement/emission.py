@@ -8,7 +8,7 @@ from dataclasses import dataclass, fields
 from importlib.resources import files
 from typing import Any
 
-from common.physics.units import STANDARD_GRAVITY
+from common.physics import STANDARD_GRAVITY
 from measurement.errors import MeasurementError, guess, number
 from measurement.gases import (
     CARBON_FRACTION,

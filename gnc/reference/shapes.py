@@ -16,8 +16,7 @@ from scipy.interpolate import CubicHermiteSpline
 from scipy.optimize import brentq
 from scipy.special import j0, jv
 
-from common.physics.coordinated_turn import bank_for_heading_rate
-from common.physics.units import STANDARD_GRAVITY
+from common.physics import STANDARD_GRAVITY, bank_for_heading_rate
 from gnc.errors import InfeasibleError
 from gnc.numeric import clip
 from gnc.paper import Oscillation, available_heading_rate, design_oscillation

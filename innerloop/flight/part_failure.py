@@ -10,8 +10,7 @@ import numpy as np
 from aircraft.faults import ENGINE
 from aircraft.fdm import TIME_STEP
 from aircraft.trim import Trim
-from common.physics.coordinated_turn import heading_rate_for_bank
-from common.physics.units import METRES_PER_FOOT
+from common.physics import METRES_PER_FOOT, heading_rate_for_bank
 from innerloop.flight.autopiloted_aircraft import AutopilotedAircraft
 
 _AIRSPEED = "velocities/vt-fps"

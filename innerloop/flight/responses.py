@@ -16,8 +16,7 @@ import numpy.typing as npt
 from aircraft.fdm import TIME_STEP, Fdm
 from aircraft.linearise import LinearModel
 from aircraft.trim import Trim
-from common.physics.coordinated_turn import heading_rate_for_bank
-from common.physics.units import METRES_PER_FOOT
+from common.physics import METRES_PER_FOOT, heading_rate_for_bank
 from innerloop.flight.autopiloted_aircraft import AutopilotedAircraft
 from innerloop.jsbsim.system import HEADING_RATE
 from innerloop.law import COMMANDS, ControlLaw, linear_controller

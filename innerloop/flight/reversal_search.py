@@ -22,8 +22,7 @@ from scipy.signal import lfilter
 
 from aircraft.fdm import TIME_STEP
 from aircraft.trim import Trim
-from common.physics.coordinated_turn import heading_rate_for_bank
-from common.physics.units import METRES_PER_FOOT
+from common.physics import METRES_PER_FOOT, heading_rate_for_bank
 from gnc.guard.turn import (
     CHANGED,
     FORGOTTEN,

@@ -12,7 +12,7 @@ from scipy.optimize import brentq
 from aircraft.fdm import TIME_STEP
 from aircraft.spec import AircraftError
 from aircraft.trim import Trim
-from common.physics.coordinated_turn import heading_rate_for_bank
+from common.physics import heading_rate_for_bank
 from innerloop.flight.autopiloted_aircraft import AutopilotedAircraft
 from innerloop.jsbsim.system import HEADING_RATE
 

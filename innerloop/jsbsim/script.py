@@ -19,7 +19,7 @@ from aircraft.fdm import (
 )
 from aircraft.spec import Envelope, UnknownPropertyError
 from aircraft.trim import Trim
-from common.physics.coordinated_turn import heading_rate_for_bank
+from common.physics import heading_rate_for_bank
 from innerloop.jsbsim.system import (
     AIRSPEED_COMMAND,
     ALTITUDE_COMMAND,

@@ -19,7 +19,7 @@ import numpy.typing as npt
 from aircraft.fdm import TIME_STEP
 from aircraft.model import copy_model, read_xml
 from aircraft.spec import AircraftSpec, ControlInput
-from common.physics.units import METRES_PER_FOOT, STANDARD_GRAVITY
+from common.physics import METRES_PER_FOOT, STANDARD_GRAVITY
 from innerloop.law import bank_slopes
 from innerloop.schedule import LATERAL, LONGITUDINAL, Schedule
 

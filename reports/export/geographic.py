@@ -10,7 +10,7 @@ from datetime import UTC, datetime
 import numpy as np
 import pandas as pd
 
-from common.physics.geodesy import LocalFrame
+from common.geodesy import LocalFrame
 from common.text import moment, utc_text
 from measurement.gases import GASES, UNITS
 from reports.errors import ReportError

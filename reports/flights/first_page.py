@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 import pandas as pd
 
-from common.physics.units import SECONDS_PER_HOUR
+from common.physics import SECONDS_PER_HOUR
 from reports.document.chart import Chart
 from reports.document.tables import approach, vehicle_flown
 from reports.flights.names import told_name

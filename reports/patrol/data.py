@@ -8,7 +8,7 @@ import numpy as np
 import pandas as pd
 
 from common.patrols import PatrolCounts
-from common.physics.wind import wind_towards
+from common.physics import wind_towards
 from common.run_layout import PHASES, SHIPS
 from reports.run.columns import Array
 from reports.run.run_data import RunData

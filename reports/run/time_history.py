@@ -6,7 +6,7 @@ from collections.abc import Iterable
 import numpy as np
 import pandas as pd
 
-from common.physics.wind import wind_velocity
+from common.physics import wind_velocity
 from reports.run.columns import Array, Mask, column
 from reports.run.flight_config import Config, Row, keepout_shape, source_height
 

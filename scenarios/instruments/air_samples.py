@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from common.physics.units import STANDARD_GRAVITY
+from common.physics import STANDARD_GRAVITY
 from measurement.gases import GASES
 from measurement.plume.fluctuating_plume import PlumeSample
 from scenarios.world.exhaust import Exhaust

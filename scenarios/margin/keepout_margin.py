@@ -5,7 +5,7 @@ keep-out guard keeps off.
 import math
 from dataclasses import dataclass
 
-from common.physics.units import SECONDS_PER_HOUR
+from common.physics import SECONDS_PER_HOUR
 from gnc.estimation.vessel import FilterParameters, Tube, VesselLimits, VesselReport, tube
 from scenarios.margin.report_scatter import mean_interval, scatter_allowance
 from scenarios.margin.tracking_spread import CALM_AIR_SPREAD, SpreadTable, planned_margin

@@ -10,7 +10,7 @@ import functools
 
 import numpy as np
 
-from common.physics.units import SECONDS_PER_HOUR
+from common.physics import SECONDS_PER_HOUR
 from gnc.estimation.vessel import (
     KEPT,
     FilterParameters,

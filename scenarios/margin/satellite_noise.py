@@ -19,7 +19,7 @@ import numpy as np
 import numpy.typing as npt
 from scipy.linalg import solve_continuous_lyapunov
 
-from common.physics.units import SECONDS_PER_HOUR
+from common.physics import SECONDS_PER_HOUR
 from gnc.airspeed import SpeedHold
 from gnc.tracker import TrackingParameters
 from scenarios.margin.report_scatter import GUARDED_PER_HOUR

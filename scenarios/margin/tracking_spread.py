@@ -27,7 +27,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from common.physics.units import SECONDS_PER_HOUR
+from common.physics import SECONDS_PER_HOUR
 from gnc.airspeed import SpeedHold
 from gnc.reference.reference import Orbit
 from gnc.tracker import TrackingParameters

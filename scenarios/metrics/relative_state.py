@@ -9,7 +9,7 @@ import numpy.typing as npt
 import pandas as pd
 
 from aircraft.wind import CALM
-from common.physics.geodesy import LocalFrame
+from common.geodesy import LocalFrame
 from gnc.numeric import wrapped
 from gnc.paper import LookAhead
 from scenarios.planning.flight_plan import FlightPlan

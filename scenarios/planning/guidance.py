@@ -4,7 +4,7 @@ import math
 from collections.abc import Sequence
 
 from aircraft.faults import OF_THRUST
-from common.physics.coordinated_turn import heading_rate_for_bank
+from common.physics import heading_rate_for_bank
 from gnc.airspeed import SpeedHold, design_speed_hold
 from gnc.estimation.health import CHECK_INTERVAL, PATIENCE
 from gnc.estimation.navigation import NOISE_DEVIATIONS

@@ -5,7 +5,7 @@ it plans.
 import math
 
 from aircraft.spec import Envelope
-from common.physics.coordinated_turn import bank_for_heading_rate, heading_rate_for_bank
+from common.physics import bank_for_heading_rate, heading_rate_for_bank
 from gnc.errors import InfeasibleError
 from scenarios.errors import InputError
 from scenarios.schema.scenario import Scenario

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from aircraft.spec import Envelope
-from common.physics.coordinated_turn import heading_rate_for_bank
+from common.physics import heading_rate_for_bank
 from scenarios.schema.effect_rules import LAW_KEYS
 from scenarios.schema.load import with_values
 from scenarios.schema.scenario import Scenario

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 from aircraft.fdm import Fdm
 from aircraft.spec import AircraftSpec
 from aircraft.weather import TURBULENCE
-from common.physics.units import METRES_PER_FOOT
+from common.physics import METRES_PER_FOOT
 from gnc.errors import InfeasibleError
 from gnc.reference.reference import Orbit
 from innerloop.gusts import low_altitude_turbulence

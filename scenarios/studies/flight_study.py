@@ -10,7 +10,7 @@ import numpy as np
 
 from aircraft.spec import AircraftError
 from common.intervals import CONFIDENCE
-from common.physics.coordinated_turn import bank_for_heading_rate
+from common.physics import bank_for_heading_rate
 from common.run_layout import (
     COMPARISON,
     CROSSINGS,

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from typing import Any, Self
 
 from common.intervals import CONFIDENCE, TELLING, percent, upper_bound
-from common.physics.units import SECONDS_PER_HOUR
+from common.physics import SECONDS_PER_HOUR
 from common.run_layout import SUMMARY
 from measurement.estimate.verdict import content_words, counted_verdicts, verdict_words
 from scenarios.engine.task import Row

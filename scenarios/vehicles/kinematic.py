@@ -3,7 +3,7 @@
 import math
 
 from aircraft.wind import CALM, WindField
-from common.physics.coordinated_turn import bank_for_heading_rate
+from common.physics import bank_for_heading_rate
 from gnc.estimation.navigation import Motion
 from gnc.unicycle import lagged_move, unicycle_move
 from scenarios.errors import InputError

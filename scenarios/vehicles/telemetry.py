@@ -4,7 +4,7 @@ import math
 
 from aircraft.fdm import Fdm
 from aircraft.state import EquatorFrame
-from common.physics.units import METRES_PER_FOOT
+from common.physics import METRES_PER_FOOT
 from gnc.estimation.navigation import Motion
 from innerloop.jsbsim.system import CONTROL_COMMAND, HEADING_RATE
 

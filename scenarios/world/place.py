@@ -4,7 +4,7 @@ import math
 from dataclasses import dataclass
 from functools import cached_property
 
-from common.physics.geodesy import LocalFrame
+from common.geodesy import LocalFrame
 from scenarios.schema.sections.world import PlaceConfig
 
 

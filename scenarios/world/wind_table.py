@@ -11,7 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from aircraft.wind import WindField, over_the_sea
-from common.physics.wind import wind_velocity
+from common.physics import wind_velocity
 from common.text import other_units, utc_text
 from measurement.tables import decimal_commas, other_separator
 from scenarios.errors import InputError

@@ -16,7 +16,7 @@ from aircraft.fleet.x8 import X8
 from aircraft.spec import BANK_RESERVE, MODELS, AircraftError
 from aircraft.state import RigidBodyState, body_velocity
 from aircraft.trim import TrimOutcome, search_trim
-from common.physics.units import NEWTONS_PER_POUND
+from common.physics import NEWTONS_PER_POUND
 
 ALTITUDE = 100.0
 STEEPEST = 1.1  # the autopilot's tables reach a tenth past its largest bank

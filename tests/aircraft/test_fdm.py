@@ -17,7 +17,7 @@ from aircraft.fleet.find import find_spec
 from aircraft.fleet.x8 import X8
 from aircraft.spec import MODELS, AircraftError, UnknownPropertyError
 from aircraft.state import RigidBodyState, body_velocity
-from common.physics.geodesy import LocalFrame
+from common.geodesy import LocalFrame
 
 SOMEWHERE = RigidBodyState(
     latitude=0.2,

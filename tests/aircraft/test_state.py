@@ -23,7 +23,7 @@ from aircraft.state import (
     with_wind,
 )
 from aircraft.trim import trim
-from common.physics.geodesy import LocalFrame
+from common.geodesy import LocalFrame
 
 components = st.floats(-50.0, 50.0)
 vectors = st.tuples(components, components, components)

@@ -15,7 +15,7 @@ from aircraft.fleet.x8 import X8
 from aircraft.spec import AircraftError, surface
 from aircraft.state import body_velocity, level
 from aircraft.trim import TrimOutcome, pitch_for_climb, search_trim, trim
-from common.physics.units import METRES_PER_FOOT, NEWTONS_PER_POUND
+from common.physics import METRES_PER_FOOT, NEWTONS_PER_POUND
 
 CONDITIONS = {
     "slow": {"airspeed": 14.0, "altitude": 100.0},

@@ -7,7 +7,7 @@ import pytest
 import x8_published as x8
 
 from aircraft.state import RigidBodyState
-from common.physics.units import RAD_S_PER_RPM
+from common.physics import RAD_S_PER_RPM
 
 N_PER_LBF = 4.4482216152605
 NM_PER_LBF_FT = 1.3558179483314

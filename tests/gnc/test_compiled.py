@@ -64,7 +64,7 @@ def test_what_was_compiled_is_run_unless_sources_are_asked_for(packages):
     [
         "gnc/estimation/health.py",
         "gnc/guidance.py",
-        "common/physics/units.py",
+        "common/physics.py",
         "scenarios/simulation/record.py",
     ],
 )

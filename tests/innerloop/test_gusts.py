@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from aircraft.state import course_rate
-from common.physics.units import METRES_PER_FOOT
+from common.physics import METRES_PER_FOOT
 from innerloop.gusts import (
     GUSTS,
     aircraft_in_gusts,

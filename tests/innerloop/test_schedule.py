@@ -11,7 +11,7 @@ from aircraft.fdm import Fdm
 from aircraft.fleet.x8 import X8
 from aircraft.spec import AircraftError
 from aircraft.trim import trim
-from common.physics.units import STANDARD_GRAVITY
+from common.physics import STANDARD_GRAVITY
 from innerloop.designer import Grid, linear_grid, schedule_at
 from innerloop.flight.autopiloted_aircraft import AutopilotedAircraft
 from innerloop.flight.responses import flown_step

@@ -9,7 +9,7 @@ import pytest
 from scipy.linalg import solve_continuous_are
 
 from aircraft.linearise import LinearModel
-from common.physics.units import STANDARD_GRAVITY
+from common.physics import STANDARD_GRAVITY
 from innerloop import synthesis
 from innerloop.schedule import GAIN_BANKS, LATERAL, LEVEL_GAINS, LONGITUDINAL, LoopBandwidths
 from innerloop.synthesis import (

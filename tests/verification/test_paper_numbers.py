@@ -9,8 +9,7 @@ import pytest
 from scipy.integrate import quad
 from scipy.optimize import brentq
 
-from common.physics.coordinated_turn import heading_rate_for_bank
-from common.physics.units import STANDARD_GRAVITY
+from common.physics import STANDARD_GRAVITY, heading_rate_for_bank
 from gnc.paper import (
     PlumeAxis,
     centre_of_oscillation,

@@ -9,7 +9,7 @@ import pytest
 
 from aircraft.fdm import TIME_STEP
 from aircraft.fleet.x8 import X8
-from common.physics.units import METRES_PER_FOOT, STANDARD_GRAVITY
+from common.physics import METRES_PER_FOOT, STANDARD_GRAVITY
 from gnc.estimation.navigation import AirMotion
 from gnc.estimation.vessel import Tube
 from gnc.guard.guard import CommandHistory, GuardParameters, HeadingRateFilter

@@ -5,8 +5,7 @@ import math
 import pytest
 
 from aircraft.fdm import TIME_STEP
-from common.physics.coordinated_turn import heading_rate_for_bank
-from common.physics.units import METRES_PER_FOOT, STANDARD_GRAVITY
+from common.physics import METRES_PER_FOOT, STANDARD_GRAVITY, heading_rate_for_bank
 from gnc.estimation.navigation import TrueNavigation
 from gnc.estimation.vessel import Tube
 from gnc.guard.guard import Demand, GuardParameters, GuardStatus, KeepoutGuard, SpeedRange

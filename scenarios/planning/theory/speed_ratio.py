@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
-from common.physics.coordinated_turn import bank_for_heading_rate
+from common.physics import bank_for_heading_rate
 from common.registry import PluginError
 from gnc.errors import InfeasibleError
 from gnc.paper import PlumeAxis

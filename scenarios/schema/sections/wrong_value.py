@@ -6,7 +6,7 @@ import re
 from collections.abc import Mapping
 from typing import Any
 
-from common.physics.units import (
+from common.physics import (
     METRES_PER_FOOT,
     METRES_PER_NAUTICAL_MILE,
     METRES_PER_SECOND_PER_KNOT,

@@ -4,7 +4,7 @@ import math
 from collections.abc import Sequence
 from typing import Any
 
-from common.physics.units import SECONDS_PER_HOUR
+from common.physics import SECONDS_PER_HOUR
 from scenarios.engine.task import Row
 from scenarios.experiment.draws import speed_ratios
 from scenarios.simulation.outcome import Outcome

@@ -11,8 +11,8 @@ from pathlib import Path
 
 import numpy as np
 
-from common.physics.geodesy import LocalFrame
-from common.physics.units import METRES_PER_SECOND_PER_KNOT
+from common.geodesy import LocalFrame
+from common.physics import METRES_PER_SECOND_PER_KNOT
 from scenarios.schema.sections.world import VesselConfig
 from scenarios.world.vessel import ManoeuvringVessel
 

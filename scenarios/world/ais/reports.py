@@ -12,8 +12,8 @@ from pathlib import Path
 import numpy as np
 import numpy.typing as npt
 
-from common.physics.geodesy import cartesian
-from common.physics.units import METRES_PER_SECOND_PER_KNOT
+from common.geodesy import cartesian
+from common.physics import METRES_PER_SECOND_PER_KNOT
 from scenarios.errors import InputError
 from scenarios.world.ais.layouts import rows_of
 from scenarios.world.ais.rows import AisRow

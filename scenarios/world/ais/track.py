@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import numpy.typing as npt
 
-from common.physics.geodesy import LocalFrame
+from common.geodesy import LocalFrame
 from common.text import utc_text
 from gnc.estimation.vessel import VesselReport
 from scenarios.errors import InputError

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import numpy.typing as npt
 
-from common.physics.geodesy import cartesian
+from common.geodesy import cartesian
 from scenarios.errors import InputError
 from scenarios.schema.sections.world import GAP_MAX
 

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from scipy.integrate import quad
 from scipy.optimize import brentq
 
-from common.physics.units import STANDARD_GRAVITY
+from common.physics import STANDARD_GRAVITY
 from gnc.reference.shapes import BankSwing, CoursePath, fourier_coefficients
 
 ROLL_RATE = math.radians(40.0)

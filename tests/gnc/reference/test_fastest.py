@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from orbit_cases import assert_a_point_that_turns_so_flies
 from scipy.optimize import brentq
 
-from common.physics.units import STANDARD_GRAVITY
+from common.physics import STANDARD_GRAVITY
 from gnc.errors import InfeasibleError
 from gnc.paper import PlumeAxis, distance_exact
 from gnc.reference.reference import REFERENCE_SHAPES, JoinedOrbit

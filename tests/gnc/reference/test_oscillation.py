@@ -5,7 +5,7 @@ from gnc_cases import HEADING_RATE_MAX, SPEED, examples, paper_oscillation
 from hypothesis import given
 from hypothesis import strategies as st
 
-from common.physics.units import STANDARD_GRAVITY
+from common.physics import STANDARD_GRAVITY
 from gnc.errors import InfeasibleError
 from gnc.paper import design_oscillation
 

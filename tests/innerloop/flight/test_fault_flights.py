@@ -8,7 +8,7 @@ import x8_published as x8
 
 from aircraft.fleet.x8 import X8
 from aircraft.spec import AircraftError
-from common.physics.units import STANDARD_GRAVITY
+from common.physics import STANDARD_GRAVITY
 from innerloop.flight.autopiloted_aircraft import AutopilotedAircraft
 from innerloop.flight.part_failure import measure_part_failure
 

@@ -11,7 +11,7 @@ from aircraft.fdm import Fdm
 from aircraft.fleet.x8 import X8
 from aircraft.spec import MODELS, AircraftError
 from aircraft.trim import trim
-from common.physics.geodesy import LocalFrame
+from common.geodesy import LocalFrame
 from innerloop.flight.autopiloted_aircraft import AutopilotedAircraft
 
 MIDDLE = 2

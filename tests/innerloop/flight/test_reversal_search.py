@@ -11,7 +11,7 @@ import pytest
 
 from aircraft.fdm import TIME_STEP
 from aircraft.fleet.x8 import X8
-from common.physics.units import METRES_PER_FOOT
+from common.physics import METRES_PER_FOOT
 from gnc.unicycle import lagged_move
 from innerloop import reversal_record
 from innerloop.flight.autopiloted_aircraft import AutopilotedAircraft

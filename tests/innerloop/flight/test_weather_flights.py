@@ -10,7 +10,7 @@ from aircraft.fleet.x8 import X8
 from aircraft.state import EquatorFrame
 from aircraft.weather import TURBULENCE, Gust, Weather
 from aircraft.wind import constant_wind
-from common.physics.units import STANDARD_GRAVITY
+from common.physics import STANDARD_GRAVITY
 from innerloop.flight.autopiloted_aircraft import AutopilotedAircraft
 
 TIME_STEP = 1.0 / 120.0

@@ -6,7 +6,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from common.physics.geodesy import LocalFrame
+from common.geodesy import LocalFrame
 from tests.reports.export.placed_flight import PLACES, track
 from tests.run_tables import write_manifest
 

@@ -12,7 +12,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from common.physics.geodesy import LocalFrame
+from common.geodesy import LocalFrame
 from reports.build import export_run
 from reports.errors import ReportError
 from reports.export.geographic import recorded_flights

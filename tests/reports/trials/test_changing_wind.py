@@ -8,7 +8,7 @@ import numpy as np
 import pyarrow.parquet as pq
 import pytest
 
-from common.physics.wind import wind_velocity
+from common.physics import wind_velocity
 from reports.flights.first_page import flights_in_words
 from reports.flights.flight_view import flight_view
 from reports.flights.selection import flight_section

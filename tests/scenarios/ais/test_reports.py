@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from common.physics.units import METRES_PER_SECOND_PER_KNOT
+from common.physics import METRES_PER_SECOND_PER_KNOT
 from scenarios.errors import InputError
 from scenarios.schema.load import CATALOG
 from scenarios.world.ais import read_ais

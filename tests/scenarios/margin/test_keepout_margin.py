@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from aircraft.fleet.x8 import X8
-from common.physics.units import METRES_PER_FOOT
+from common.physics import METRES_PER_FOOT
 from gnc.airspeed import PaceHold, SpeedHold, air_turn, design_speed_hold
 from gnc.paper import Oscillation
 from gnc.tracker import Tracker

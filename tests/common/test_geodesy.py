@@ -8,7 +8,7 @@ from geographiclib.geodesic import Geodesic
 from hypothesis import given
 from hypothesis import strategies as st
 
-from common.physics.geodesy import EQUATORIAL_RADIUS, FLATTENING, LocalFrame
+from common.geodesy import EQUATORIAL_RADIUS, FLATTENING, LocalFrame
 
 PLACES = [
     (0.0, 0.0),
