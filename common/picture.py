@@ -1,6 +1,7 @@
 """Pictures that a user gives, such as the logo of a report."""
 
 import hashlib
+import base64
 import io
 import xml.etree.ElementTree as ET
 from dataclasses import dataclass
@@ -36,6 +37,11 @@ class Picture:
     def sha256(self) -> str:
         """Hash of the file."""
         return hashlib.sha256(self.content).hexdigest()
+
+    @property
+    def data_uri(self) -> str:
+        """The picture as a ``data:`` address, for the HTML report."""
+        return f"data:{self.media_type};base64,{base64.b64encode(self.content).decode('ascii')}"
 
 
 def read_picture(path: Path) -> Picture:
