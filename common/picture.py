@@ -1,7 +1,7 @@
 """Pictures that a user gives, such as the logo of a report."""
 
-import hashlib
 import base64
+import hashlib
 import io
 import xml.etree.ElementTree as ET
 from dataclasses import dataclass
