@@ -15,10 +15,7 @@ PROGRAM = "plume-flight"
 """Name of the console command."""
 
 BAD_INPUT, INTERRUPTED, UNREAD = 2, 130, 141
-"""Exit statuses: input was refused; Ctrl-C ended the command; the reader of its output was gone.
-
-The last two are 128 and the number of the signal, as in a shell.
-"""
+"""Exit statuses: bad input; Ctrl-C and a gone reader, 128 and the signal's number as in a shell."""
 
 _USAGE_ERROR: type[Exception] = typer.BadParameter.__bases__[0]
 """Base class of typer's errors for bad options, which typer does not export."""
@@ -73,12 +70,8 @@ def _without_types(command: Any) -> Any:
             else:
                 hidden = parameter.is_flag
             if hidden:
-                parameter.display_type_rich = _no_type
+                parameter.display_type_rich = lambda **_: None
     return command
-
-
-def _no_type(**_: object) -> None:
-    return None
 
 
 def _with_value(error: Exception, message: str, given: Sequence[str]) -> str:

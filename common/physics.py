@@ -58,10 +58,10 @@ def wind_velocity(speed: float, from_deg: float) -> tuple[float, float]:
 
 
 def heading_rate_for_bank(bank: float, speed: float) -> float:
-    """Return the heading rate [rad/s] of a coordinated turn at ``bank`` [rad] and ``speed`` [m/s]."""
+    """Return the heading rate [rad/s] of a coordinated turn with a bank [rad] at a speed [m/s]."""
     return STANDARD_GRAVITY * math.tan(bank) / speed
 
 
 def bank_for_heading_rate(heading_rate: float, speed: float) -> float:
-    """Return the bank [rad] of a coordinated turn at ``heading_rate`` [rad/s] and ``speed`` [m/s]."""
+    """Return the bank [rad] of a coordinated turn at a heading rate [rad/s] and a speed [m/s]."""
     return math.atan(heading_rate * speed / STANDARD_GRAVITY)

@@ -93,7 +93,7 @@ class Registry(Generic[Part]):
 
     def names(self) -> list[str]:
         """Return all known names, in alphabetical order."""
-        return sorted({*self._known(), *self._entry_points()})
+        return sorted({*self._known(), *announced(self.kind)})
 
     def builtin_names(self) -> list[str]:
         """Return the names that modules of ``folder`` register, in alphabetical order."""
@@ -107,7 +107,7 @@ class Registry(Generic[Part]):
 
     def __contains__(self, name: str) -> bool:
         """Return whether a name is known; installed packages come last, which takes longest."""
-        return name in self._known() or name in self._entry_points()
+        return name in self._known() or name in announced(self.kind)
 
     def get(self, name: str) -> Part:
         """Return a part by its name, or by its file as ``FILE.py:NAME``.
@@ -130,7 +130,7 @@ class Registry(Generic[Part]):
             importlib.import_module(f"{self._folder}.{name}")
         if name in self._parts or name in self._known():
             return self._parts[name]
-        if (found := self._entry_points().get(name)) is not None:
+        if (found := announced(self.kind).get(name)) is not None:
             try:
                 return self.checked(name, self._callable(name, found.load()))
             except PluginError:
@@ -170,9 +170,6 @@ class Registry(Generic[Part]):
             # Only now: a module that does not load has to fail at every call.
             self._complete = True
         return self._parts
-
-    def _entry_points(self) -> dict[str, importlib.metadata.EntryPoint]:
-        return announced(self.kind)
 
     def checked(self, name: str, part: Any) -> Part:
         """Return a part, which has every method of its Protocol.

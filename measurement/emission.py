@@ -28,16 +28,10 @@ AIR_PRESSURE = 101325.0
 """Pressure of the standard atmosphere at sea level [Pa]."""
 
 SULPHUR_AS_SO2 = 0.97753
-"""Share of the fuel's sulphur that leaves as SO2 [-]; the rest leaves as sulphate.
-
-Source: IMO GHG4, eq. 15, as in USEPA Marine_Emissions_Tools. Published losses are 1 to 19 %.
-"""
+"""Share of the fuel's sulphur that leaves as SO2, not as sulphate [-] (IMO GHG4, eq. 15)."""
 
 NO2_SHARE = 0.10
-"""Share of NO2 in NOx by mole [-], after the entrained ozone is used up.
-
-Assumption: makers give about 5 % at the engine; the range is 5 to 15 %.
-"""
+"""Share of NO2 in NOx by mole, with all ozone used up [-]; assumed, of 0.05 to 0.15."""
 
 DEFAULT_STACK_HEIGHT = 60.0
 """Height of the stack above the sea where neither a height nor a ship is given [m]."""
@@ -46,10 +40,7 @@ UNTITLED_SHIP = "own ship"
 """Name of a ship from an inline table without a title."""
 
 _EXHAUST_MOLAR_MASS = 28.8e-3
-"""Molar mass of exhaust with 4.5 % CO2 and 5 % water [kg/mol]; an assumption.
-
-It is within 1 % of that of air.
-"""
+"""Molar mass of exhaust with 4.5 % CO2 and 5 % water [kg/mol]; an assumption."""
 
 _KILOWATT_HOUR = 3.6e6
 """Kilowatt-hour [J]."""
@@ -60,10 +51,7 @@ _FUEL_G_KWH = {
     (4, False): 205.0,
     (4, True): 215.0,
 }
-"""Baseline of the specific fuel consumption [g/kWh] by stroke and whether the fuel is residual.
-
-Source: USEPA Marine_Emissions_Tools.
-"""
+"""Fuel consumption [g/kWh] by stroke and if residual (USEPA Marine_Emissions_Tools)."""
 
 _NOX_G_KWH = {
     (2, False): (17.0, 16.0, 14.4, 3.4),
@@ -71,16 +59,10 @@ _NOX_G_KWH = {
     (4, False): (13.2, 12.2, 10.5, 2.6),
     (4, True): (13.2, 12.2, 10.5, 2.6),
 }
-"""NOx as NO2 [g/kWh] at any load, by stroke and whether the fuel is residual, for tiers 0 to 3.
-
-Source: USEPA Marine_Emissions_Tools.
-"""
+"""NOx as NO2 [g/kWh] by the same, for tiers 0 to 3 (USEPA Marine_Emissions_Tools)."""
 
 _LOAD_MIN = 0.05
-"""Least load of an engine under way [-]: dead slow; an assumption.
-
-The cubic law goes to zero, engines do not.
-"""
+"""Least load of an engine under way, dead slow [-]; an assumption."""
 
 _POSITIVE = (
     "power_max",
@@ -362,40 +344,20 @@ def fuel_preset(name: str, sulphur_percent: float | None = None) -> Fuel:
     return Fuel(name=name, **values)
 
 
-def ship_preset(name: str) -> Ship:
-    """Return a ship of ``ships.toml``.
-
-    Raises
-    ------
-    MeasurementError : the name is not known
-    """
-    return read_ship(_preset("ship", name), name)
-
-
 def ship_of(given: str | Mapping[str, Any]) -> Ship:
     """Return a ship by its name in ``ships.toml``, or from an inline table.
 
+    A table has every field of ``Ship`` but ``name``; ``title`` may be left out.
+
     Raises
     ------
-    MeasurementError : the name is not known, or the table is invalid
+    MeasurementError : the name is not known, a key is not known or is missing, or a value is not of
+        its kind or range
     """
     if isinstance(given, str):
-        return ship_preset(given)
-    return read_ship(given, str(given.get("title", UNTITLED_SHIP)))
-
-
-def read_ship(table: Mapping[str, Any], name: str) -> Ship:
-    """Return a ship from a table with the fields of ``Ship``.
-
-    Parameters
-    ----------
-    table : every field but ``name``; ``title`` may be left out
-    name : of the ship
-
-    Raises
-    ------
-    MeasurementError : a key is not known or is missing, or a value is not of its kind or range
-    """
+        name, table = given, _preset("ship", given)
+    else:
+        name, table = str(given.get("title", UNTITLED_SHIP)), dict(given)
     where = f"ship '{name}'"
     numbers = [field.name for field in fields(Ship) if field.name not in ("name", "title")]
     known = ["title", *numbers]

@@ -45,10 +45,7 @@ is NO2, and ozone adds some.
 """
 
 FUEL_SULPHUR_MOST = 5.0
-"""Largest sulphur content of a marine fuel [% m/m].
-
-The limit was 4.5 % until 2012 (MARPOL Annex VI, regulation 14).
-"""
+"""Largest sulphur content of a marine fuel [% m/m]: 4.5 was the limit (MARPOL VI, reg. 14)."""
 
 ASSUMED_LEAST = 0.0005
 """Smallest correction for assumed gases that is printed [% m/m]: half of the third decimal."""

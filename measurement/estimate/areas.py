@@ -24,10 +24,7 @@ _TAIL = 5.0
 """Time from the end of a pass to that of its window [slowest time constants]."""
 
 _BASE = 15.0
-"""Length of the background on either side of a window, outside of other windows [s].
-
-Where there is no room it is one sample.
-"""
+"""Length of the background beside a window, outside of others [s]; at least one sample."""
 
 _SHARE_LEAST = 0.05
 """Share of an area below which nothing can be concluded from the rest."""

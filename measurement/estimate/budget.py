@@ -22,10 +22,7 @@ where delays differ by half of their interval.
 """
 
 SULPHATE_SHARE = 0.0225
-"""Share of the sulphur that leaves as sulphate, not as SO2 [-] (IMO GHG4, eq. 15).
-
-Reported values are 0.01 to 0.19. It is stated, not corrected.
-"""
+"""Share of sulphur that leaves as sulphate [-], stated and not corrected (IMO GHG4, eq. 15)."""
 
 _CORRECTING = ("no", "no2")
 

@@ -57,10 +57,7 @@ _CARBON_LEAST, _CARBON_MOST = 0.5, 0.95
 """Range of a fuel's carbon [-]; methanol has 0.375, for which these factors are not made."""
 
 _OVERLAP_LEAST = 0.95
-"""Least share of the truth that areas must read where passes overlap in the slow channel [-].
-
-It is that of passes 2.0 t90 apart.
-"""
+"""Least share of the SO2 that areas must read [-]: that of passes 2.0 t90 apart."""
 
 _EXPLAINED_LEAST = 0.5
 """Least share of a misfit that another delay explains if it is the true one [-]."""

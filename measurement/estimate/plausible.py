@@ -13,16 +13,10 @@ from measurement.sniffer.sniffer import Readings
 from measurement.sniffer.spec import SnifferSpec
 
 _CUT_LEAST, _CUT_OVER, _CUT_STEPS = 8, 3.0, 5
-"""Readings at the last step before an end of the range that show where readings are cut off.
-
-They are at least so many, and more than so many times those at any of the next steps.
-"""
+"""Least readings at the end of a range where they are cut off; ratio to each of the next steps."""
 
 _FASTER, _FASTEST = 0.5, 0.1
-"""Shares of the stated t90 within which a sensor may fall: at most, and at least.
-
-The first allows for uneven times and wrong figures, the second is for a t90 that is not well known.
-"""
+"""Shares of the stated t90 within which a sensor may fall: most, and if t90 is not well known."""
 
 _FALL_SIGMAS = 10.0
 """Standard deviations of the noise by which a reading may be lower than a fall allows."""
@@ -31,25 +25,16 @@ _CHANCE_MOST = 1e-6
 """Least probability that noise alone has as many equal readings in a row in the record."""
 
 _STUCK_SHARE_MOST = 0.1
-"""Share of a record in which a sensor may be stuck, for no longer than its t90 at a time.
-
-As much may be missing.
-"""
+"""Share of a record in which a sensor may be stuck, for no longer than its t90 at a time."""
 
 _FEWEST = 10
 """Least number of equal readings in a row that show a stuck sensor."""
 
 _RISE_SIGMA = 10.0
-"""Rise of another gas that shows the plume [standard deviations of its noise].
-
-White noise reaches 7 of them.
-"""
+"""Rise of another gas that shows the plume [standard deviations of its noise, which reaches 7]."""
 
 _SMOOTHED = 0.1
-"""Least share of its stated noise that a sensor shows in clean air.
-
-Data sheets state 2 sigma, and instruments smooth.
-"""
+"""Least share of its stated noise that a sensor shows in clean air: instruments smooth."""
 
 _STEP_ROUNDING = 1e-6
 """Rounding of floating-point numbers by which readings a step apart may differ more [steps]."""
@@ -60,16 +45,12 @@ _NOISE_USUAL = 1.0
 _QUIET_SHARE = 0.01
 """Least scatter of readings, relative to their noise.
 
-Readings in ppm have a thousandth; a data sheet that states 2 sigma, or smoothing in the instrument,
-leaves a larger share. With ``_NOISE_USUAL`` it is 10 ppt: only laser-induced fluorescence has less
-in a second (2 ppt in 10 s: Rollins et al., AMT 9:4601).
+Readings in ppm have a thousandth. With ``_NOISE_USUAL`` it is 10 ppt: only laser-induced
+fluorescence has less in a second (2 ppt in 10 s: Rollins et al., AMT 9:4601).
 """
 
 _OZONE_MOST = 50.0
-"""NO2 that ozone makes of the NO of a plume, at most [ppb] (assumption).
-
-It is all ozone of the air over the sea, which has 20 to 50.
-"""
+"""Most NO2 that ozone makes of the NO of a plume [ppb]: sea air has 20 to 50 of ozone."""
 
 _LOW, _HIGH, _NOISE_RANGE = 0.05, 0.95, 3.29
 """Quantiles whose difference is the range of a gas, and that range of noise alone [sigma]."""

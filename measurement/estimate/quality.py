@@ -17,24 +17,17 @@ PASSES_GOOD = 3
 """Passes for class A."""
 
 AGREEMENT_LEAST = 0.01
-"""Least probability for class A that passes of one fuel differ as much.
+"""Least probability for class A that passes of one fuel differ as much; no smaller one makes C.
 
-No smaller one makes class C. The probability allows for noise and response, but not for corrections
-and drift that change from pass to pass: of 200 flights of ``sulphur_monte_carlo``, all of one fuel,
-one has 1e-4.
+Of 200 flights of ``sulphur_monte_carlo``, all of one fuel, one has 1e-4, as corrections and drift
+change from pass to pass.
 """
 
 STRANGE_SIGMA = 4.0
-"""Standard deviations by which a property of the instrument, or the residuals, may differ.
-
-Beyond them the instrument is not the one that is stated.
-"""
+"""Standard deviations beyond which residuals or a property are not of the stated instrument."""
 
 _ARRIVED_SIGMA, _ARRIVED_SHARE = 3.0, 0.5
-"""A result above 0 by so many standard uncertainties is SO2 that has arrived.
-
-Otherwise readings must follow this share of CO2 for as long as SO2 may take.
-"""
+"""Standard uncertainties of a result with arrived SO2; share of CO2 to be followed otherwise."""
 
 _NEGATIVE_SIGMA = 3.0
 """Standard uncertainties below 0, or above the most that a fuel has, that a result may be."""

@@ -23,20 +23,13 @@ _OTHER_MOST = 1e6
 """Largest reading of the other gases [ppb]."""
 
 _STEP_LEAST, _STEP_MOST = 1e-3, 30.0
-"""Range of the median interval between samples [s].
-
-No sniffer reads faster. Within the longest interval the slowest cell of the presets has responded,
-and an aircraft has crossed a plume and left it.
-"""
+"""Range of the median interval between samples [s] of sniffers on a flight through a plume."""
 
 BRIDGED = 2.5
 """Longest gap that is bridged by a straight line [sample periods]; longer ones end a segment."""
 
 _NO_GAP = 1.75
-"""Interval between readings below which none is missing [sample periods].
-
-It allows for times that are uneven by three quarters of a period.
-"""
+"""Interval between readings below which none is missing [sample periods]; times may be uneven."""
 
 SHORTEST = 8
 """Fewest samples of a segment; shorter pieces between gaps are left out."""
@@ -48,10 +41,7 @@ _SAME = 1e-9
 """Difference of equal readings, relative to the largest reading."""
 
 _CALM, _CALM_SIGMA = 0.1, 0.1257
-"""Share of the second differences that are noise alone, and the quantile of normal noise there.
-
-Of normal noise a share of 0.1 has a size below 0.1257 standard deviations.
-"""
+"""Share of the second differences that are noise alone, and that quantile of normal noise."""
 
 _GOLDEN = 0.5 * (math.sqrt(5.0) - 1.0)
 """Fractional parts of multiples of the golden section are evenly spread in 0 to 1."""
@@ -63,10 +53,7 @@ _NOX_SIGMA = 3.0
 """Standard deviations above the mean that the NO and NO2 of a ship may have if not measured."""
 
 _DITHERED = 4.0
-"""Largest step of other gases, in standard deviations of the noise, whose rounding is noise.
-
-Up to it the mean of rounded readings is right within a tenth of a step.
-"""
+"""Largest step of other gases that only adds noise: means are right to a tenth of it [sigma]."""
 
 _CACHE_SIZE = 32
 """Results kept for a record: moving one property of the instrument changes few of them."""

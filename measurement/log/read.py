@@ -34,8 +34,7 @@ FROM_LOG, FROM_CONFIGURATION = "log", "configuration"
 """Sources of the times of a flight."""
 
 _REQUIRED = ("time", "so2", "co2")
-"""Columns without which there is no estimate; others are needed only if the configuration has them.
-"""
+"""Columns without which there is no estimate; others are needed if the configuration has them."""
 
 Position = tuple[float, float]
 """Latitude and longitude [deg]."""
@@ -482,17 +481,10 @@ _FEWEST = 10
 """Least number of intervals between new readings that show how many rows a reading has."""
 
 _LOW = 0.1
-"""Share of these intervals that counts as the shortest.
-
-Readings that are equal by chance make others twice as long and longer.
-"""
+"""Share of these intervals that counts as the shortest; equal readings make others longer."""
 
 _OFF, _REGULAR = 0.25, 0.8
-"""Deviation of an interval from a whole multiple of the sensor's interval [sensor's intervals].
-
-The second is the least share of the intervals that are so near: of those that noise and rounding
-make half are.
-"""
+"""Deviation from a whole number of sensor intervals, and least share of intervals as near."""
 
 _LARGER = 0.25
 """Least share of the changes that are larger than a step of the readings."""

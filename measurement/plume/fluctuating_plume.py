@@ -29,22 +29,13 @@ _CHUNK = 4096
 """Places that are computed at a time: their arrays stay in the processor's cache."""
 
 _EDGE = 4.0
-"""Spreads from the centre within which there are fluctuations within the plume [-].
-
-Beyond, the concentration is 3e-4 of that on the axis.
-"""
+"""Spreads from the centre within which there are fluctuations [-]; beyond, 3e-4 is left."""
 
 _FOLD = 0.5
-"""Least share of a parcel's length that a bend leaves on its inner side [-].
-
-Nearer to the centre of curvature the line folds. 0.5 agrees best with a sum of puffs, of 0.1 to 1.
-"""
+"""Least share of a parcel's length inside a bend [-]: agrees best with puffs, of 0.1 to 1."""
 
 _STEPS_PER_LENGTH = 8.0
-"""Steps of the meander's grid per correlation length.
-
-The cubic between them is good to 1e-4 of a standard deviation.
-"""
+"""Steps of the meander per correlation length [-]: cubics are good to 1e-4 standard deviations."""
 
 _WAVES = 64
 """Waves in the field of fluctuations: enough that the sum is Gaussian."""
@@ -168,10 +159,8 @@ class FluctuatingPlume:
         )
         path_end = self._parcels.path_end
         if settings.meander:
-            self._across = Meander(
-                0.0, path_end, settings.meander_length_across * source_height, across
-            )
-            self._up = Meander(0.0, path_end, settings.meander_length_up * source_height, up)
+            self._across = Meander(path_end, settings.meander_length_across * source_height, across)
+            self._up = Meander(path_end, settings.meander_length_up * source_height, up)
         if settings.structure_intensity > 0.0:
             self._structure = Structure(
                 settings.structure_intensity,
@@ -332,25 +321,24 @@ class Meander:
 
     Parameters
     ----------
-    start, end : of the path [m]
+    length : of the path, which begins at 0 [m]
     integral_scale : 2 L [m], above 0
     generator : source of its randomness
     """
 
     def __init__(
-        self, start: float, end: float, integral_scale: float, generator: np.random.Generator
+        self, length: float, integral_scale: float, generator: np.random.Generator
     ) -> None:
-        length = 0.5 * integral_scale
-        self._start = start
-        self._step = length / _STEPS_PER_LENGTH
-        count = math.ceil((end - start) / self._step) + 2
-        value, slope = _meander_states(count, self._step / length, generator)
-        slope *= self._step / length
+        correlation_length = 0.5 * integral_scale
+        self._step = correlation_length / _STEPS_PER_LENGTH
+        count = math.ceil(length / self._step) + 2
+        value, slope = _meander_states(count, self._step / correlation_length, generator)
+        slope *= self._step / correlation_length
         self._cubics = np.ascontiguousarray(cubics(value, slope).T)
 
     def at(self, path: Array) -> Array:
-        """Return the process at places on the path [m] between its start and end, shape (n,)."""
-        steps = (path - self._start) / self._step
+        """Return the process at places from 0 to the end of the path [m], shape (n,)."""
+        steps = path / self._step
         index = steps.astype(np.intp)
         return cubic_value(self._cubics.take(index, axis=0).T, steps - index)
 

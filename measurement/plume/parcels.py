@@ -14,19 +14,13 @@ WIND_MIN = 1.0
 """Least apparent wind [m/s]: below it a plume has no direction."""
 
 _TURN = 0.15
-"""Largest change of course of the apparent wind within a block [rad].
-
-Within a block there is one nearest parcel to a place.
-"""
+"""Largest change of course within a block [rad], so that a place has one nearest parcel there."""
 
 _CLOSE = 1e-7
 """Tolerance of the emission time of a nearest parcel [s]: a micrometre along the plume."""
 
 _ITERATIONS_MAX = 60
-"""Most iterations of the search.
-
-It takes 3 to 6. Near a centre of curvature each iteration halves the bracket: an hour in 35.
-"""
+"""Most iterations of the search: it takes 3 to 6, and 35 by bisection of an hour."""
 
 
 class Nearest(NamedTuple):

@@ -34,10 +34,7 @@ _VISCOSITY = 1.5e-5
 """Kinematic viscosity of air [m2/s] at 15 degC."""
 
 _CALM = 0.5
-"""Wind below which the turbulence is the one of this wind [m/s]; an assumption.
-
-The logarithmic profile has no limit at calm.
-"""
+"""Wind below which turbulence is that of this wind [m/s]; an assumption, as calm has no profile."""
 
 _WIND_MAX = 40.0
 """Largest wind [m/s]: above it no UAV flies and Charnock's drag of the sea does not hold."""

@@ -24,26 +24,21 @@ _UNKNOWN: dict[str, dict[str, Any]] = {
     "so2": {
         "t90_s": 20.0,
         "t90_sd": math.inf,
-        "delay_s": 0.0,
         "delay_sd_s": math.inf,
         "noise": math.nan,
         "gain_sd": 0.05,
         "zero_sd": 10.0,
-        "cross": {},
         "cross_sd": {"no": 0.02, "no2": 0.8},
     },
     "co2": {
         "t90_s": 3.0,
         "t90_sd": 0.5,
-        "delay_s": 0.0,
-        "delay_sd_s": 0.0,
         "noise": math.nan,
         "gain_sd": 0.03,
     },
     "no": {
         "t90_s": 20.0,
         "t90_sd": 0.3,
-        "delay_s": 0.0,
         "delay_sd_s": 2.0,
         "noise": math.nan,
         "gain_sd": 0.1,
@@ -52,7 +47,6 @@ _UNKNOWN: dict[str, dict[str, Any]] = {
     "no2": {
         "t90_s": 30.0,
         "t90_sd": 0.3,
-        "delay_s": 0.0,
         "delay_sd_s": 2.0,
         "noise": math.nan,
         "gain_sd": 0.1,
@@ -72,10 +66,7 @@ _DELAY_KNOWN_S = 0.5
 """Standard deviation of a delay that is given without one [s]; an assumption."""
 
 _CROSS_KNOWN = 0.2
-"""Relative standard deviation of a response to another gas that is given without one [-].
-
-Same as the electrochemical preset's to NO2.
-"""
+"""Relative standard deviation of a cross response given without one [-]; an assumption."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -210,7 +201,7 @@ def sensor_preset(name: str) -> SnifferSpec:
         raise MeasurementError(
             f"instrument is {name!r}{guess(name, known)} there are {', '.join(known)}"
         )
-    return read_spec(tomllib.loads((_folder() / f"{name}.toml").read_text(encoding="utf-8")), name)
+    return sensor_of(tomllib.loads((_folder() / f"{name}.toml").read_text(encoding="utf-8")), name)
 
 
 def sensor_of(given: str | Mapping[str, Any], name: str = "") -> SnifferSpec:
@@ -218,34 +209,20 @@ def sensor_of(given: str | Mapping[str, Any], name: str = "") -> SnifferSpec:
 
     Parameters
     ----------
-    given : name or table
+    given : name, or a table of ``title``, ``rate_hz``, ``source`` and ``channels``, a table of
+        tables by gas. Keys of a channel are the fields of ``Channel`` without its gas; those that
+        are left out are taken as not known. With a ``cross`` it responds to no other gases.
     name : of a sniffer from a table; its title if empty
 
     Raises
     ------
-    MeasurementError : the name is not known, or the table is invalid
+    MeasurementError : the name or a key is not known, or a value is not of its kind or range
     """
     if isinstance(given, str):
         return sensor_preset(given)
-    return read_spec(given, name or str(given.get("title", UNTITLED_SNIFFER)))
-
-
-def read_spec(table: Mapping[str, Any], name: str) -> SnifferSpec:
-    """Return a sniffer from a table.
-
-    Parameters
-    ----------
-    table : ``title``, ``rate_hz``, ``source`` and ``channels``, a table of tables by gas. Keys of a
-        channel are the fields of ``Channel`` without its gas; those that are left out are taken as
-        not known. With a ``cross`` the channel responds to no other gases.
-    name : of the sniffer
-
-    Raises
-    ------
-    MeasurementError : a key is not known, or a value is not of its kind or range
-    """
-    _check_keys(table, {"title", "rate_hz", "source", "channels"}, f"instrument '{name}'")
-    channels = table.get("channels")
+    name = name or str(given.get("title", UNTITLED_SNIFFER))
+    _check_keys(given, {"title", "rate_hz", "source", "channels"}, f"instrument '{name}'")
+    channels = given.get("channels")
     if not isinstance(channels, dict) or not channels:
         raise MeasurementError(
             f"instrument '{name}' has no channels; "
@@ -253,10 +230,10 @@ def read_spec(table: Mapping[str, Any], name: str) -> SnifferSpec:
         )
     return SnifferSpec(
         name=name,
-        title=str(table.get("title", name)),
-        rate_hz=number(table.get("rate_hz", 1.0), "rate_hz", name),
+        title=str(given.get("title", name)),
+        rate_hz=number(given.get("rate_hz", 1.0), "rate_hz", name),
         channels=tuple(_channel(gas, channels[gas], name) for gas in channels),
-        source=str(table.get("source", "")),
+        source=str(given.get("source", "")),
     )
 
 

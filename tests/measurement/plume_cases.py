@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from measurement.emission import emission_of, fuel_preset, ship_preset
+from measurement.emission import emission_of, fuel_preset, ship_of
 from measurement.plume.fluctuating_plume import FluctuatingPlume
 from measurement.plume.parcels import Parcels
 from measurement.plume.spread import MarineAir, PlumeSettings, SpreadTable
@@ -14,7 +14,7 @@ from measurement.plume.spread import MarineAir, PlumeSettings, SpreadTable
 # The worked example of the specification, section 2: 10 MW, 20 m/s, 1.5 m, 250 degC, F = 49.6
 # m4/s3, Fm = 124 m4/s2.
 EMISSION = replace(
-    emission_of(ship_preset("container"), fuel_preset("mgo"), power=10e6),
+    emission_of(ship_of("container"), fuel_preset("mgo"), power=10e6),
     buoyancy_flux=49.6,
     momentum_flux=124.0,
     exhaust_speed=20.0,

@@ -5,11 +5,11 @@ from importlib.resources import files
 
 import pytest
 
-from measurement.emission import Fuel, emission_of, expected_fsc, fuel_preset, ship_preset
+from measurement.emission import Fuel, emission_of, expected_fsc, fuel_preset, ship_of
 from measurement.errors import MeasurementError
 from measurement.gases import GASES, MOLAR_MASS, fsc_factor
 
-CONTAINER = ship_preset("container")
+CONTAINER = ship_of("container")
 
 
 def names_in(file):
@@ -96,7 +96,7 @@ def test_at_full_power_there_is_no_correction_for_part_load():
 
 @pytest.mark.parametrize("ship", names_in("ships.toml"))
 def test_every_ship_burns_every_fuel_from_rest_to_full_speed(ship):
-    vessel = ship_preset(ship)
+    vessel = ship_of(ship)
     for fuel, share in itertools.product(names_in("fuels.toml"), (0.0, 0.3, 0.9, 1.0)):
         emission = emission_of(vessel, fuel_preset(fuel), speed=share * vessel.speed_max)
         assert all(rate > 0.0 for rate in emission.rates)
@@ -125,7 +125,7 @@ def test_sulphur_changes_sulphur_alone():
             lambda: Fuel(name="x", title="", residual=False, co2_per_fuel=4.0, sulphur_percent=0.1),
             "CO2 of x is 4 kg/kg",
         ),
-        (lambda: ship_preset("canoe"), "there are container, coaster, tanker, cruise"),
+        (lambda: ship_of("canoe"), "there are container, coaster, tanker, cruise"),
         (lambda: emission_of(CONTAINER, fuel_preset("mgo")), "neither is given"),
         (
             lambda: emission_of(CONTAINER, fuel_preset("mgo"), speed=1.0, power=1.0),

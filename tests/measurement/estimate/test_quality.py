@@ -12,7 +12,7 @@ from measurement.estimate.passes import find_passes
 from measurement.estimate.record import checked_record
 from measurement.gases import GASES
 from measurement.sniffer.sniffer import Readings
-from measurement.sniffer.spec import read_spec, sensor_preset
+from measurement.sniffer.spec import sensor_of, sensor_preset
 
 
 def reasons(readings, spec):
@@ -98,7 +98,7 @@ def test_no_and_no2_in_ppm_have_no_verdict(column, gas):
     assert f"give a [scale] of {gas.lower()} = 1000.0" in told
     # A sniffer that is known to respond to neither needs neither.
     deaf = spec.with_channel(
-        read_spec({"channels": {"so2": {"t90_s": 20.0, "cross": {}}}}, "deaf").known("so2")
+        sensor_of({"channels": {"so2": {"t90_s": 20.0, "cross": {}}}}, "deaf").known("so2")
     )
     assert "scatters" not in reasons(Readings(readings.time, values), deaf)
 
@@ -165,7 +165,7 @@ def test_a_cell_of_which_nothing_is_said_gives_no_wrong_verdict():
 
 def test_responses_to_other_gases_that_a_table_leaves_out_are_not_known():
     silent, told, none = (
-        read_spec({"channels": {"so2": {"t90_s": 20.0, **cross}, "co2": {}}}, "own").known("so2")
+        sensor_of({"channels": {"so2": {"t90_s": 20.0, **cross}, "co2": {}}}, "own").known("so2")
         for cross in ({}, {"cross": {"no2": -0.16}}, {"cross": {}})
     )
     assert silent.cross_sd == sensor_preset("unspecified").known("so2").cross_sd

@@ -11,7 +11,7 @@ from crossings import BACKGROUND, changed, plain_sniffer, read, sniffer_of
 from measurement.errors import MeasurementError
 from measurement.sniffer.channel import Channel
 from measurement.sniffer.sniffer import Sniffer
-from measurement.sniffer.spec import read_spec, sensor_preset, sensor_presets
+from measurement.sniffer.spec import sensor_of, sensor_preset, sensor_presets
 
 STILL = np.tile(BACKGROUND, (20_001, 1))
 
@@ -180,11 +180,11 @@ def test_sniffers_that_cannot_be_are_refused():
 )
 def test_tables_with_mistakes_are_refused(table, message):
     with pytest.raises(MeasurementError, match=message):
-        read_spec(table, "x")
+        sensor_of(table, "x")
 
 
 def test_what_a_table_leaves_out_is_not_known():
-    spec = read_spec({"channels": {"so2": {}, "co2": {"t90_s": 2.0}}}, "x")
+    spec = sensor_of({"channels": {"so2": {}, "co2": {"t90_s": 2.0}}}, "x")
     assert math.isinf(spec.known("so2").t90_sd)
     assert math.isnan(spec.known("so2").noise)
     assert spec.known("co2").t90_sd == 0.1
