@@ -57,11 +57,7 @@ def run_command(
 
 
 def _without_types(command: Any) -> Any:
-    """Return a command whose help shows no types of arguments and flags.
-
-    Typer writes <list[Path]> beside RUN_DIR, which says what it is, and <bool> beside flags, which
-    take no value.
-    """
+    """Return a command whose help shows no types of arguments and flags: their names say them."""
     for one in (command, *getattr(command, "commands", {}).values()):
         # This creates --help as well, which a command does not have before.
         for parameter in one.get_params(typer.Context(one)):
@@ -75,10 +71,7 @@ def _without_types(command: Any) -> Any:
 
 
 def _with_value(error: Exception, message: str, given: Sequence[str]) -> str:
-    """Return a message with the option's value, as in "--jobs is 0; it must be ...".
-
-    A message about anything else stays as it is.
-    """
+    """Return a message with the option's value: "--jobs is 0; it must be ..."; others unchanged."""
     names = getattr(getattr(error, "param", None), "opts", [])
     _, said, demanded = message.partition("Input should be ")
     values = [
@@ -91,10 +84,7 @@ def _with_value(error: Exception, message: str, given: Sequence[str]) -> str:
 
 
 class _Output(io.TextIOWrapper):
-    """An output that ends the command silently when its reader is gone, as after ``| head``.
-
-    An OSError instead would look to commands like a file that cannot be written.
-    """
+    """An output that ends the command silently when its reader is gone, as after ``| head``."""
 
     @staticmethod
     def instead_of(stream: TextIO) -> TextIO:

@@ -1,6 +1,8 @@
 """Errors of input from which nothing can be measured."""
 
-from collections.abc import Iterable
+import contextlib
+from collections.abc import Iterable, Iterator
+from pathlib import Path
 from typing import Any
 
 from common.text import did_you_mean
@@ -8,6 +10,15 @@ from common.text import did_you_mean
 
 class MeasurementError(ValueError):
     """The input cannot be used; its one-line message names quantity, value, limit and remedy."""
+
+
+@contextlib.contextmanager
+def naming(path: Path) -> Iterator[None]:
+    """Put the name of a file before an error of its content."""
+    try:
+        yield
+    except MeasurementError as error:
+        raise MeasurementError(f"'{path}': {error}") from None
 
 
 def guess(name: str, known: Iterable[str]) -> str:

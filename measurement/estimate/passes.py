@@ -103,10 +103,7 @@ def find_passes(record: Record, channel: Channel) -> tuple[Pass, ...]:
 def _passes_at(
     peaks: npt.NDArray[np.int64], time: Array, excess: Array, channel: Channel
 ) -> list[Pass]:
-    """Return the passes at these peaks of a segment.
-
-    A pass lasts as long as the excess is above the noise, at most from trough to trough.
-    """
+    """Return the passes at peaks: where the excess is above noise, at most trough to trough."""
     noise, memory = channel.noise, sum(channel.constants)
     troughs = [int(a + np.argmin(excess[a : b + 1])) for a, b in itertools.pairwise(peaks)]
     below = np.flatnonzero(excess <= noise)

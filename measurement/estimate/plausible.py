@@ -5,7 +5,7 @@ import math
 import numpy as np
 
 from measurement.estimate.quality import STRANGE_SIGMA
-from measurement.estimate.record import Record, shown_scatter, shown_step
+from measurement.estimate.record import Record, shown_scatter, shown_step, stated_noise
 from measurement.gases import GASES, UNITS
 from measurement.sniffer.channel import Channel
 from measurement.sniffer.lag import Array
@@ -76,17 +76,14 @@ def implausibilities(record: Record, readings: Readings, instrument: SnifferSpec
 def _cut_off(readings: Readings, channel: Channel) -> list[str]:
     """Return the problem of readings that are cut off at the largest or the least.
 
-    The readings beyond are lost, which makes the mean of a gas too low, or too high. Saturation at
-    the end of the stated range is a problem of the record, and not repeated here.
+    Saturation at the end of the stated range is a problem of the record, and not repeated here.
     """
     column = readings.values[:, GASES.index(channel.gas)]
     known, step = column[np.isfinite(column)], shown_step(column)
     if not step:
         return []
     most, least = float(known.max()), float(known.min())
-    noise = channel.noise
-    if math.isnan(noise):
-        noise = shown_scatter([known[known > least]], step)
+    noise = stated_noise(channel, [known[known > least]], step)
     name, unit = channel.gas.upper(), UNITS[channel.gas]
     saturated = most >= channel.range_high - 0.5 * channel.resolution
     times = 0 if saturated else _heap((most - known) / step)
@@ -106,10 +103,7 @@ def _cut_off(readings: Readings, channel: Channel) -> list[str]:
 
 
 def _heap(steps: Array) -> int:
-    """Return how many readings are at the end, given their steps from it, if these are a heap.
-
-    Noise and plumes end in fewer and fewer readings.
-    """
+    """Return how many readings are at the end, by their steps from it, if noise leaves fewer."""
     heap, *near = (int(np.sum(np.round(steps) == number)) for number in range(_CUT_STEPS + 1))
     return heap if heap >= _CUT_LEAST and heap > _CUT_OVER * max(near) else 0
 
@@ -117,9 +111,7 @@ def _heap(steps: Array) -> int:
 def _spikes(record: Record, readings: Readings, channel: Channel) -> list[str]:
     """Return the problem of CO2 that falls faster than its sensor can, as it does after a spike.
 
-    A reading falls towards that of the air, and no lower: a time constant later 1/e of its excess
-    is left. One spike is enough to draw the slope to 0, and where SO2 is noisy nothing else shows
-    it.
+    One spike is enough to draw the slope to 0, and where SO2 is noisy nothing else shows it.
     """
     column = readings.values[:, GASES.index("co2")]
     known = np.flatnonzero(np.isfinite(column))
@@ -142,14 +134,7 @@ def _spikes(record: Record, readings: Readings, channel: Channel) -> list[str]:
 
 
 def _quiet(scatter: float, channel: Channel) -> list[str]:
-    """Return the problem of a gas that scatters less than its sensor can; clean air has noise, too.
-
-    Parameters
-    ----------
-    scatter : standard deviation of the noise that the readings show [ppb]
-    channel : of SO2, NO or NO2, as the analyst knows it; rounding to a step that is larger than its
-        noise may hide the noise
-    """
+    """Return the problem of a gas with less scatter [ppb] than its sensor's noise and rounding."""
     stated = not math.isnan(channel.noise)
     noise = channel.noise if stated else _NOISE_USUAL
     if scatter >= _QUIET_SHARE * noise or channel.resolution > noise:
@@ -167,10 +152,7 @@ def _quiet(scatter: float, channel: Channel) -> list[str]:
 
 
 def _exchanged(record: Record, instrument: SnifferSpec) -> list[str]:
-    """Return the problem of NO2 that exceeds NO by more than ozone makes of it.
-
-    Of the NOx of exhaust 3 to 20 % are NO2.
-    """
+    """Return the problem of NO2 that exceeds NO by more than ozone makes of it."""
     if not {"no", "no2"} <= set(record.gases):
         return []
     gains = {gas: instrument.known(gas).gain for gas in ("no", "no2")}
@@ -215,7 +197,7 @@ def _stuck(readings: Readings, channel: Channel) -> list[str]:
     runs = [
         run
         for run in _equal_runs(values, step)
-        if _too_long(run, values, step, _noise_outside(run, values, step, channel))
+        if _too_long(run, values, step, stated_noise(channel, _around(run, values), step))
         and not _explained(run, time, values, step, readings, channel)
     ]
     lengths = [float(time[run[-1]] - time[run[0]]) for run in runs]
@@ -254,12 +236,8 @@ def _equal_runs(values: Array, step: float) -> list[range]:
     return [run for run in runs if len(run) >= _FEWEST]
 
 
-def _noise_outside(run: range, values: Array, step: float, channel: Channel) -> float:
-    """Return the stated noise of a channel, or the noise of the readings outside of a run."""
-    if not math.isnan(channel.noise):
-        return channel.noise
-    rest = [part for part in (values[: run.start], values[run.stop :]) if len(part)]
-    return shown_scatter(rest, step)
+def _around(run: range, values: Array) -> list[Array]:
+    return [part for part in (values[: run.start], values[run.stop :]) if len(part)]
 
 
 def _too_long(run: range, values: Array, step: float, noise: float) -> bool:

@@ -293,6 +293,11 @@ def shown_scatter(segments: Sequence[Array], step: float) -> float:
     return max(shown, 0.5 * step)
 
 
+def stated_noise(channel: Channel, segments: Sequence[Array], step: float) -> float:
+    """Return the noise of a channel as stated, or else as ``shown_scatter`` finds it."""
+    return shown_scatter(segments, step) if math.isnan(channel.noise) else channel.noise
+
+
 def lowest_reading(gas: str, values: Array, instrument: SnifferSpec) -> float:
     """Return how low a gas may read by noise, zero and the cell's response to other gases.
 
@@ -306,19 +311,14 @@ def lowest_reading(gas: str, values: Array, instrument: SnifferSpec) -> float:
     """
     channel = instrument.known(gas)
     column = values[:, GASES.index(gas)]
-    noise = channel.noise
-    if math.isnan(noise):
-        noise = shown_scatter([column[np.isfinite(column)]], shown_step(column))
+    noise = stated_noise(channel, [column[np.isfinite(column)]], shown_step(column))
     explained = _NEGATIVE_SIGMA * math.hypot(noise, channel.zero_sd, 1.0) - min(channel.zero, 0.0)
     floor = -explained - channel.gain * _cross_floor(channel.cross, values, instrument)
     return max(0.0, channel.gain * CO2_LEAST + floor) if gas == "co2" else floor
 
 
 def _cross_floor(cross: Mapping[str, float], values: Array, instrument: SnifferSpec) -> float:
-    """Return how far below zero other gases can push a cell of gain 1.
-
-    Gases that are not measured count as ships emit them.
-    """
+    """Return how far other gases, measured or as emitted, push a cell of gain 1 below zero."""
     channels = [instrument.channel(gas) for gas in GASES]
     concentrations = values / [channel.gain if channel else 1.0 for channel in channels]
     co2 = concentrations[:, GASES.index("co2")]

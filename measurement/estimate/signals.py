@@ -126,11 +126,7 @@ def _beyond_ends(step: float, delay: float) -> Ends:
 
 
 def _between_samples(step: float, delay: float) -> tuple[int, Weights]:
-    """Return the sample before a time ``delay`` [s] earlier, and Lagrange's weights around it.
-
-    The squares of the weights sum to 0.64 halfway between samples, and to 1 on a sample: a shifted
-    signal has less noise.
-    """
+    """Return the sample before a time ``delay`` [s] earlier, and Lagrange's weights around it."""
     place = -delay / step
     whole = math.floor(place)
     share = place - whole

@@ -8,7 +8,7 @@ from datetime import UTC, date, datetime
 from pathlib import Path
 from typing import Any
 
-from measurement.errors import MeasurementError, guess
+from measurement.errors import MeasurementError, guess, naming
 from measurement.estimate.estimator import check_parameters
 from measurement.estimate.result import Method
 from measurement.estimate.verdict import LIMITS_PERCENT
@@ -26,15 +26,8 @@ COLUMNS = {
 }
 """Columns of a logged flight, and their names unless the configuration gives others."""
 
-FLIGHT_KEYS = {
-    "vessel": "name of the ship that was measured",
-    "imo": "IMO number of the ship, of seven digits",
-    "mmsi": "MMSI of the ship, of nine digits",
-    "date": "date of the flight in UTC, or date and time of the log's first reading",
-    "place": "where the flight was, in words",
-    "operator": "who flew and measured",
-}
-"""Keys of the table ``[flight]`` of a configuration, and their meanings. Each may be left out."""
+_FLIGHT_KEYS = ("vessel", "imo", "mmsi", "date", "place", "operator")
+"""Keys of the table ``[flight]``; each may be left out."""
 
 _KEYS = {
     "instrument",
@@ -118,10 +111,8 @@ def read_config(path: Path) -> LogConfig:
         ) from None
     except (UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
         raise MeasurementError(f"'{path}' is not TOML: {error}; correct it") from None
-    try:
+    with naming(path):
         return _config(table, path.stem)
-    except MeasurementError as error:
-        raise MeasurementError(f"'{path}': {error}") from None
 
 
 def _config(table: Mapping[str, Any], name: str) -> LogConfig:
@@ -178,7 +169,7 @@ def _config(table: Mapping[str, Any], name: str) -> LogConfig:
         missing=tuple(float(code) for code in missing),
         columns=columns,
         scale={gas: float(factor) for gas, factor in scale.items()},
-        flight=_details(_sub_table(table, "flight", FLIGHT_KEYS)),
+        flight=_details(_sub_table(table, "flight", _FLIGHT_KEYS)),
     )
 
 
@@ -224,15 +215,8 @@ def _details(table: Mapping[str, Any]) -> FlightDetails:
             f"flight.mmsi is {mmsi!r}; give nine digits, as 219000000, without quotation marks"
         )
     day, start = _date(table.get("date"))
-    return FlightDetails(
-        vessel=words["vessel"].strip(),
-        imo=imo,
-        mmsi=mmsi,
-        day=day,
-        start=start,
-        place=words["place"].strip(),
-        operator=words["operator"].strip(),
-    )
+    texts = {key: text.strip() for key, text in words.items()}
+    return FlightDetails(imo=imo, mmsi=mmsi, day=day, start=start, **texts)
 
 
 def _date(value: Any) -> tuple[date | None, datetime | None]:
@@ -262,10 +246,7 @@ def _parsed(text: str) -> date | None:
 
 
 def _is_imo_number(value: Any) -> bool:
-    """Return whether the last of seven digits is the check digit (IMO resolution A.1117(30)).
-
-    It is the last digit of the sum of the other digits times 7 to 2.
-    """
+    """Return whether seven digits end in their check digit (IMO resolution A.1117(30))."""
     if not _has_digits(value, 7):
         return False
     *digits, check = (int(digit) for digit in str(value))

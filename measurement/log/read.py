@@ -19,7 +19,7 @@ import numpy as np
 import numpy.typing as npt
 import pandas as pd
 
-from measurement.errors import MeasurementError
+from measurement.errors import MeasurementError, naming
 from measurement.estimate.record import check_increasing, check_units, lowest_reading, shown_step
 from measurement.gases import GASES, UNITS
 from measurement.log.config import COLUMNS, FlightDetails, LogConfig
@@ -112,10 +112,8 @@ def read_flight(path: Path, config: LogConfig) -> LoggedFlight:
         a column or has it twice, has words in it, readings out of range or too low, times that do
         not increase, longer rows than its head line, or places that no aircraft can have
     """
-    try:
+    with naming(path):
         return _flight(_read_table(path, config), config)
-    except MeasurementError as error:
-        raise MeasurementError(f"'{path}': {error}") from None
 
 
 def _flight(table: pd.DataFrame, config: LogConfig) -> LoggedFlight:
@@ -354,13 +352,7 @@ def _moments(column: pd.Series) -> pd.Series:
 
 
 def _check_seconds(time: Array, name: str) -> None:
-    """Check that numbers are seconds, and not dates or times of the day without marks.
-
-    Parameters
-    ----------
-    time : of the rows, shape (n,), NaN where a row has none [s]
-    name : of the column
-    """
+    """Check that numbers are seconds, and not dates or times of the day without marks."""
     if _COMPACT[0] <= time[0] < _COMPACT[1]:
         raise MeasurementError(
             f"time {time[0]:.0f} in column '{name}' is a date and time without marks; give"
@@ -387,19 +379,7 @@ def _has_offset(column: pd.Series) -> bool:
 def _utc_times(
     details: FlightDetails, logged: tuple[datetime, datetime] | None, duration_s: float
 ) -> tuple[datetime | None, datetime | None, str]:
-    """Return the times of the first and the last reading, and their source.
-
-    Parameters
-    ----------
-    details : in the configuration
-    logged : times of the first and the last reading in the log, or None where it counts seconds
-    duration_s : from the first to the last reading [s]
-
-    Raises
-    ------
-    MeasurementError : log and configuration have different dates, or times that are a second or
-        more apart
-    """
+    """Return first and last time and their source: log, or configuration and duration [s]."""
     start = details.start
     if logged is None:
         if start is None:
@@ -451,13 +431,7 @@ def _check_range(values: Array, config: LogConfig) -> None:
 
 
 def _check_negative(values: Array, readings: Readings, config: LogConfig) -> None:
-    """Check that no reading is lower than in clean air: a mark, a calibration or a wrong sign.
-
-    Parameters
-    ----------
-    values : of all rows, shape (n, 4)
-    readings : each once
-    """
+    """Check that no reading is lower than in clean air: a mark, a calibration or a wrong sign."""
     for gas in config.instrument.gases:
         column = values[:, GASES.index(gas)]
         if not np.isfinite(column).any():
@@ -543,10 +517,7 @@ def _changes(column: Array) -> Rows:
 
 
 def _first_rows(column: Array, rows: float) -> Rows:
-    """Return the first row of each reading, given how many rows one has.
-
-    Where none is new for longer, readings are the sensor's interval apart.
-    """
+    """Return the first row of each reading, by rows per reading; equal ones count as several."""
     starts = np.unique(np.concatenate([[0], _changes(column)]))
     parts = []
     for start, end in zip(starts, [*starts[1:], len(column)], strict=True):

@@ -242,15 +242,7 @@ class FluctuatingPlume:
     def _concentration(
         self, parcels: Nearest, age: Array, passed: Array, up: Array
     ) -> tuple[PlumeSample, Array]:
-        """Return the plume for pairs of a place and a parcel, and the distance between them.
-
-        The distance is that to the parcel's centre in spreads, squared [-].
-
-        Parameters
-        ----------
-        parcels, age, up : of each pair, age [s] and height above the sea [m] of shape (k,)
-        passed : air that has passed the stack by the time of the sample [m], shape (k,)
-        """
+        """Return the plume for pairs of place and parcel, and their distance squared in spreads."""
         height, sigma_y, sigma_z, meander_y, meander_z = self._table.at(parcels.wind, age)
         centre, centre_height = np.zeros(len(age)), height
         if self._across is not None and self._up is not None:
@@ -346,8 +338,7 @@ class Meander:
 def _meander_states(count: int, step: float, generator: np.random.Generator) -> tuple[Array, Array]:
     """Return value and slope at ``count`` steps, with the correlation length as unit of the path.
 
-    With w = value + slope both w and the value are first-order: dw = -w dl + noise, d value = (w -
-    value) dl.
+    w = value + slope and value are first-order: dw = -w dl + noise, d value = (w - value) dl.
     """
     decay = math.exp(-step)
     stationary = np.array([[1.0, 1.0], [1.0, 2.0]])

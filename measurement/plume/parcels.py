@@ -171,10 +171,7 @@ class Parcels:
     def _refined(
         self, place: Indices, north: Array, east: Array, emitted: Array, bracket: Array
     ) -> Nearest:
-        """Return the nearest parcels, by Newton's method within brackets that shrink.
-
-        What vanishes at the nearest parcel is the place's component along the parcel's axis.
-        """
+        """Return the nearest parcels, which lie across from their places, by Newton's method."""
         found = Nearest(place, *np.empty((5, len(place))))
         left: Indices | slice = slice(None)
         for _ in range(_ITERATIONS_MAX):
@@ -267,10 +264,7 @@ def _bend(coefficients: Array, rest: Array) -> Array:
 
 
 def _blocks(course: Array) -> list[int]:
-    """Return the nodes at which blocks end, the first and the last node included.
-
-    Within a block courses differ by at most ``_TURN``, unless it is a single step.
-    """
+    """Return the nodes at which blocks of at most ``_TURN`` or one step end, and the first node."""
     ends = [0]
     low = high = course[0]
     for k in range(1, len(course)):

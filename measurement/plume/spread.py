@@ -382,10 +382,7 @@ def _turbulent(
     sigma_w: float,
     richardson: float,
 ) -> Array:
-    """Return sigma_t^2 [m2] by Euler's rule, in the shape of ``absolute``.
-
-    The time in the ballistic term is the middle of the step.
-    """
+    """Return sigma_t^2 [m2] by Euler's rule, in the shape of ``absolute``."""
     others = source.T[:, np.newaxis, :].copy()
     growth = np.diff(absolute, axis=-1).transpose(2, 0, 1)
     explosive = interval * 3.0 * (richardson * dissipation) ** (1.0 / 3.0)

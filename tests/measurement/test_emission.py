@@ -151,7 +151,6 @@ def test_sulphur_changes_sulphur_alone():
             lambda: emission_of(CONTAINER, fuel_preset("mgo"), speed=12.0, air_temperature=15.0),
             "air temperature is 15 K",
         ),
-        (lambda: fsc_factor(87.0), "carbon fraction is 87"),
     ],
 )
 def test_what_no_ship_emits_is_refused_in_one_line(refused, said):
