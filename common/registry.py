@@ -267,8 +267,8 @@ def _module_in(path: Path, digest: str) -> Any:
     """Return the module in a file, loaded once while its hash stays the same."""
     name = f"plume_flight_study_{path.stem}_{digest}"
     spec = importlib.util.spec_from_file_location(name, path)
-    if spec is None or spec.loader is None:
-        raise PluginError(f"{path}: not a Python file")
+    assert spec is not None
+    assert spec.loader is not None
     module = importlib.util.module_from_spec(spec)
     # Dataclasses look their module up.
     sys.modules[name] = module

@@ -177,15 +177,9 @@ def _exchanged(record: Record, instrument: SnifferSpec) -> list[str]:
 def _stuck(readings: Readings, channel: Channel) -> list[str]:
     """Return the problem of a gas whose sensor is stuck for a part of the record.
 
-    A working sensor shows its noise in clean air, too, unless that is below its resolution. Only
-    where another gas rises meanwhile is the stated noise taken at its word; otherwise a tenth of it
-    has to be too much, and readings of 0 do not count, as a sensor may cut off there what is lower.
+    Only where another gas rises meanwhile is the stated noise taken at its word. Otherwise a tenth
+    of it has to be too much, and readings of 0 do not count, as a sensor may cut off what is lower.
     A gas that reads the same throughout is left to ``_quiet``.
-
-    Parameters
-    ----------
-    readings : as they were logged, with those of the gas
-    channel : of the gas, as the analyst knows it
     """
     column = readings.values[:, GASES.index(channel.gas)]
     known = np.flatnonzero(np.isfinite(column))

@@ -179,14 +179,11 @@ def _measured(values: Array, instrument: SnifferSpec) -> dict[str, Array]:
     for i, gas in enumerate(GASES):
         if instrument.channel(gas) and np.isfinite(values[:, i]).any():
             columns[gas] = values[:, i]
-    for gas, why in (
-        ("co2", "the fuel that it burnt is not known without"),
-        ("so2", "there is nothing to estimate without"),
-    ):
+    for gas in ("co2", "so2"):
         if gas not in columns:
             raise MeasurementError(
                 f"the record has no {gas.upper()} readings, or '{instrument.name}' no such channel;"
-                f" {why} them: add them"
+                " an estimate needs CO2 and SO2: add them"
             )
     return columns
 

@@ -18,8 +18,7 @@ from measurement.log.config import LogConfig, read_config
 from measurement.log.read import LoggedFlight, read_flight
 from measurement.log.run_files import (
     build_report,
-    check_no_other_run,
-    check_same_log,
+    check_directory,
     write_run,
 )
 from measurement.sniffer.sniffer import Readings
@@ -42,11 +41,9 @@ def main(arguments: list[str] | None = None) -> int:
     given = _parser().parse_args(arguments)
     directory = given.out or Path("runs") / f"measurement_{given.flight.stem}"
     try:
-        check_no_other_run(directory)
         config = read_config(given.config) if given.config else LogConfig()
         flight = read_flight(given.flight, config)
-        if given.out is None:
-            check_same_log(directory, given.flight)
+        check_directory(directory, given.flight, named_after_log=given.out is None)
         with naming(given.flight):
             analysis = analyse(
                 flight.readings,

@@ -138,6 +138,9 @@ def _flight(table: pd.DataFrame, config: LogConfig) -> LoggedFlight:
     plane = _on_a_plane(places)
     _check_jumps(plane, time)
     true = {name: _numbers(table[name]) for name in TRUE_COLUMNS if name in table}
+    offset = (
+        logged is not None and pd.Timestamp(str(time_column.iloc[0]).strip()).tzinfo is not None
+    )
     first_utc, last_utc, utc_from = _utc_times(config.flight, logged, float(time[-1] - time[0]))
     first_position, last_position = _end_positions(places)
     about = FlightRecord(
@@ -146,7 +149,7 @@ def _flight(table: pd.DataFrame, config: LogConfig) -> LoggedFlight:
         first_utc=first_utc,
         last_utc=last_utc,
         utc_from=utc_from,
-        offset=logged is not None and _has_offset(time_column),
+        offset=offset,
         first_position=first_position,
         last_position=last_position,
         place_remark=remark,
@@ -190,8 +193,6 @@ def _read_table(path: Path, config: LogConfig) -> pd.DataFrame:
             ).iloc[0]
     except MeasurementError:
         raise
-    except (pd.errors.ParserWarning, pd.errors.ParserError, pd.errors.EmptyDataError) as error:
-        raise MeasurementError(_parser_problem(error, head)) from None
     except (EOFError, lzma.LZMAError, zipfile.BadZipFile, zlib.error) as error:
         raise MeasurementError(
             f"cannot be unpacked: {error}; give a whole file, or the CSV file itself"
@@ -201,10 +202,8 @@ def _read_table(path: Path, config: LogConfig) -> pd.DataFrame:
         raise MeasurementError(
             f"cannot be read: {error.strerror or error}; give a CSV file"
         ) from None
-    except UnicodeDecodeError:
-        raise MeasurementError("not text in UTF-8; save it as CSV in UTF-8") from None
-    except ValueError as error:
-        raise MeasurementError(_not_csv(error)) from None
+    except (ValueError, pd.errors.ParserWarning) as error:
+        raise MeasurementError(_parser_problem(error, head)) from None
     table.columns = table.columns.map(str).str.strip()
     names = names.dropna().str.strip()
     used = [*config.columns.values(), *TRUE_COLUMNS]
@@ -233,23 +232,21 @@ def _checked_head(path: Path) -> str:
 
 def _parser_problem(error: Exception, head: str) -> str:
     """Return the problem of a table that pandas refuses, given its head line in quotes."""
+    if isinstance(error, UnicodeDecodeError):
+        return "not text in UTF-8; save it as CSV in UTF-8"
     if isinstance(error, pd.errors.EmptyDataError):
         return "empty; it needs a head line and a row per reading"
     if opened := _OPEN_QUOTE.search(str(error)):
         return f"the quotation mark in line {int(opened[1]) + 1} is not closed; remove it"
     long_row = _LONG_ROW.search(str(error))
     if not long_row and not isinstance(error, pd.errors.ParserWarning):
-        return _not_csv(error)
+        reason = str(error).splitlines()[0].strip()
+        return f"not CSV: {reason}; give a CSV file with a head line"
     where = f"line {long_row[1]} has" if long_row else "some rows have"
     return (
         f"{where} more values than the head line has names{head}: the first line has to name every"
         " column; remove lines above it, and write decimals with a point"
     )
-
-
-def _not_csv(error: Exception) -> str:
-    reason = str(error).splitlines()[0].strip()
-    return f"not CSV: {reason}; give a CSV file with a head line"
 
 
 def _missing_column(key: str, name: str, table: pd.DataFrame) -> str:
@@ -369,11 +366,6 @@ def _check_seconds(time: Array, name: str) -> None:
             f" (row {row + 3}), and similarly at each of {len(minutes)} minutes: they are hours,"
             " minutes and seconds without marks; give seconds, or 2024-05-01T12:00:00.0"
         )
-
-
-def _has_offset(column: pd.Series) -> bool:
-    """Return whether dates and times have an offset from UTC."""
-    return pd.Timestamp(str(column.iloc[0]).strip()).tzinfo is not None
 
 
 def _utc_times(

@@ -27,21 +27,27 @@ def air(wind_speed, **options):
     return MarineAir(wind_speed=wind_speed, temperature=TEMPERATURE, **options)
 
 
+def plume_behind(track, true_wind=7.0, *, height=HEIGHT, seed=3, **settings):
+    time, north, east = (np.array(values) for values in track)
+    return FluctuatingPlume(
+        EMISSION,
+        air(true_wind),
+        time=time,
+        north=north,
+        east=east,
+        source_height=height,
+        settings=PlumeSettings(**settings),
+        seed=seed,
+    )
+
+
 def straight(wind, true_wind, *, since=-150.0, until=100.0, course=0.0, seed=1, **settings):
     """A plume in a constant apparent wind: the stack leaves the air mass behind on ``course``,
     from the origin at time 0.
     """
     time = np.array([since, until])
-    return FluctuatingPlume(
-        EMISSION,
-        air(true_wind),
-        time=time,
-        north=wind * time * np.cos(course),
-        east=wind * time * np.sin(course),
-        source_height=HEIGHT,
-        settings=PlumeSettings(**settings),
-        seed=seed,
-    )
+    track = time, wind * time * np.cos(course), wind * time * np.sin(course)
+    return plume_behind(track, true_wind, seed=seed, **settings)
 
 
 def turning(speed, wind, wind_to, *, rate=0.02, turn=np.pi, until=250.0):
