@@ -83,9 +83,7 @@ def area_ratio(record: Record, instrument: SnifferSpec, passes: Sequence[Pass]) 
     times = np.array([found.centre_s for found in passes])
     interval = float(np.median(np.diff(times))) if len(times) > 1 else math.nan
     if co2 <= 0.0:
-        return Areas(
-            ratio=math.nan, noise=math.nan, share=math.nan, separate=math.nan, interval_s=interval
-        )
+        co2 = math.nan
     ratio = sum(shares[gas][0] * areas[gas] for gas in gases) / co2
     variance = sum(
         (shares[gas][0] - ratio * shares[gas][1]) ** 2

@@ -87,18 +87,6 @@ def equalised_from_rest(signal: Array, step: float, own: Poles, common: Poles) -
     return equalised(padded, step, own, common)[1:]
 
 
-def adjoint(weights: Array, step: float, own: Poles, common: Poles) -> Array:
-    """Return the weights of a signal in a weighted sum of its equalised samples.
-
-    The filter starts from rest; for weights orthogonal to the background this makes no difference.
-
-    Parameters
-    ----------
-    weights : of the equalised samples, shape (n,) or (n, k)
-    """
-    return np.ascontiguousarray(equalised_from_rest(weights[::-1], step, own, common)[::-1])
-
-
 def shifted(signal: Array, step: float, delay: float) -> Array:
     """Return a smooth signal ``delay`` [s] later, by cubic interpolation.
 
@@ -222,14 +210,20 @@ class Signals:
     def backwards(self, gas: str, weights: Array) -> Array:
         """Return the weights of a gas's readings in a weighted sum of its equalised samples.
 
+        The filter starts from rest; for weights orthogonal to the background this makes no
+        difference.
+
         Parameters
         ----------
         weights : of the equalised samples, shape (n,) or (n, k)
         """
         ends = np.cumsum([len(segment) for segment in self.record.times])[:-1]
-        parts = np.split(weights, ends)
         step, own = self.record.step, self._poles(gas)
-        return np.concatenate([adjoint(part, step, own, self.common) for part in parts])
+        parts = [
+            equalised_from_rest(part[::-1], step, own, self.common)[::-1]
+            for part in np.split(weights, ends)
+        ]
+        return np.ascontiguousarray(np.concatenate(parts))
 
     def noise_energy(self, gas: str) -> float:
         """Return the expected sum of squares of a gas's equalised noise beside the background.

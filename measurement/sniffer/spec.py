@@ -101,10 +101,7 @@ class SnifferSpec:
 
     def channel(self, gas: str) -> Channel | None:
         """Return the channel of a gas, or None."""
-        for channel in self.channels:
-            if channel.gas == gas:
-                return channel
-        return None
+        return next((channel for channel in self.channels if channel.gas == gas), None)
 
     def known(self, gas: str) -> Channel:
         """Return the channel of a gas.
