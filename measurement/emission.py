@@ -9,7 +9,7 @@ from importlib.resources import files
 from typing import Any
 
 from common.physics import STANDARD_GRAVITY
-from measurement.errors import MeasurementError, guess, number
+from measurement.errors import MeasurementError, check_keys, number
 from measurement.gases import (
     CARBON_FRACTION,
     CARBON_PER_CO2,
@@ -360,12 +360,7 @@ def ship_of(given: str | Mapping[str, Any]) -> Ship:
         name, table = str(given.get("title", UNTITLED_SHIP)), dict(given)
     where = f"ship '{name}'"
     numbers = [field.name for field in fields(Ship) if field.name not in ("name", "title")]
-    known = ["title", *numbers]
-    for key in table:
-        if key not in known:
-            raise MeasurementError(
-                f"{where} has the key '{key}'{guess(key, known)} it may have {', '.join(known)}"
-            )
+    check_keys(table, ["title", *numbers], where)
     for key in numbers:
         if key not in table:
             raise MeasurementError(f"{where} has no {key}; give all of {', '.join(numbers)}")

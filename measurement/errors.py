@@ -1,7 +1,7 @@
 """Errors of input from which nothing can be measured."""
 
 import contextlib
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -21,12 +21,19 @@ def naming(path: Path) -> Iterator[None]:
         raise MeasurementError(f"'{path}': {error}") from None
 
 
-def guess(name: str, known: Iterable[str]) -> str:
-    """Return the question for the known name nearest to an unknown one, or ";" if none is similar.
+def check_keys(table: Mapping[str, Any], known: Sequence[str], where: str) -> None:
+    """Check the keys of a table against the known ones; ``where`` names the table in the error.
 
-    It stands between the unknown name and the list of the known ones.
+    Raises
+    ------
+    MeasurementError : a key is not known
     """
-    return did_you_mean(name, known) or ";"
+    for key in table:
+        if key not in known:
+            raise MeasurementError(
+                f"{where} has the key '{key}'{did_you_mean(key, known) or ';'} it may have"
+                f" {', '.join(known)}"
+            )
 
 
 def number(value: Any, key: str, where: str) -> float:

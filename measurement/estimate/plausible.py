@@ -240,14 +240,11 @@ def _too_long(run: range, values: Array, step: float, noise: float) -> bool:
         return False
     # Most normal noise is within a step that is centred on its mean.
     within = math.erf(step / noise / math.sqrt(2.0))
-    readings = len(run) / _oversampling(values)
-    return readings >= _FEWEST and len(values) * within ** (readings - 1.0) < _CHANCE_MOST
-
-
-def _oversampling(values: Array) -> float:
-    """Return the rows per reading: more than 1 where the logger is faster than the sensor."""
+    # A logger that is faster than the sensor repeats each reading in several rows.
     changes = np.flatnonzero(np.diff(values))
-    return float(np.median(np.diff(changes))) if len(changes) > 1 else 1.0
+    rows = float(np.median(np.diff(changes))) if len(changes) > 1 else 1.0
+    readings = len(run) / rows
+    return readings >= _FEWEST and len(values) * within ** (readings - 1.0) < _CHANCE_MOST
 
 
 def _explained(

@@ -2,13 +2,13 @@
 
 import math
 import tomllib
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from datetime import UTC, date, datetime
 from pathlib import Path
 from typing import Any
 
-from measurement.errors import MeasurementError, guess, naming
+from measurement.errors import MeasurementError, check_keys, naming
 from measurement.estimate.estimator import check_parameters
 from measurement.estimate.result import Method
 from measurement.estimate.verdict import LIMITS_PERCENT
@@ -29,16 +29,16 @@ COLUMNS = {
 _FLIGHT_KEYS = ("vessel", "imo", "mmsi", "date", "place", "operator")
 """Keys of the table ``[flight]``; each may be left out."""
 
-_KEYS = {
-    "instrument",
+_KEYS = (
     "carbon",
+    "columns",
+    "flight",
+    "instrument",
     "limits_percent",
     "method",
     "missing",
-    "columns",
     "scale",
-    "flight",
-}
+)
 
 _DEFAULT_INSTRUMENT = "unspecified"
 """Instrument of a flight without a configuration."""
@@ -117,12 +117,8 @@ def read_config(path: Path) -> LogConfig:
 
 def _config(table: Mapping[str, Any], name: str) -> LogConfig:
     """Return the configuration in a table; ``name`` is that of an instrument in it."""
-    if unknown := sorted(set(table) - _KEYS):
-        raise MeasurementError(
-            f"unknown key '{unknown[0]}'{guess(unknown[0], _KEYS)} it may have"
-            f" {', '.join(sorted(_KEYS))}"
-        )
-    columns = {**COLUMNS, **_sub_table(table, "columns", COLUMNS)}
+    check_keys(table, _KEYS, "the configuration")
+    columns = {**COLUMNS, **_sub_table(table, "columns", tuple(COLUMNS))}
     for key, column in columns.items():
         if not isinstance(column, str):
             raise MeasurementError(f"columns.{key} is {column!r}; give a name")
@@ -173,16 +169,12 @@ def _config(table: Mapping[str, Any], name: str) -> LogConfig:
     )
 
 
-def _sub_table(table: Mapping[str, Any], key: str, names: Any) -> dict[str, Any]:
+def _sub_table(table: Mapping[str, Any], key: str, names: Sequence[str]) -> dict[str, Any]:
     """Return the table under a key, empty if there is none, after checking its keys."""
     found = table.get(key, {})
     if not isinstance(found, dict):
         raise MeasurementError(f"{key} is {found!r}; give a table [{key}]")
-    for name in found:
-        if name not in names:
-            raise MeasurementError(
-                f"[{key}] has the key '{name}'{guess(name, names)} it may have {', '.join(names)}"
-            )
+    check_keys(found, names, f"[{key}]")
     return found
 
 

@@ -87,7 +87,6 @@ class MarineAir:
     temperature, pressure : [K, Pa]
     brunt_vaisala : N of the air that the plume rises through [1/s], 0 for neutral
     charnock : alpha [-]; the range over sea is 0.011 to 0.018
-    friction_velocity : u* [m/s], computed from the others
 
     Raises
     ------
@@ -105,7 +104,6 @@ class MarineAir:
     pressure: float = AIR_PRESSURE
     brunt_vaisala: float = 0.0
     charnock: float = 0.0144
-    friction_velocity: float = field(init=False)
 
     def __post_init__(self) -> None:
         check_air(self.temperature, self.pressure)
@@ -123,7 +121,18 @@ class MarineAir:
                 f"Charnock's constant is {self.charnock:g}; "
                 "it must be 0.005 to 0.05, over sea 0.011 to 0.018"
             )
-        object.__setattr__(self, "friction_velocity", self._friction_velocity())
+
+    @functools.cached_property
+    def friction_velocity(self) -> float:
+        """Friction velocity u* [m/s]."""
+        wind = max(self.wind_speed, _CALM)
+        friction = 0.03 * wind
+        for _ in range(_FRICTION_ITERATIONS):
+            roughness = (
+                self.charnock * friction**2 / STANDARD_GRAVITY + 0.11 * _VISCOSITY / friction
+            )
+            friction = _KARMAN * wind / math.log(10.0 / roughness)
+        return friction
 
     @property
     def sigma_v(self) -> float:
@@ -148,16 +157,6 @@ class MarineAir:
     def dissipation(self, height: float) -> float:
         """Return the rate of dissipation [m2/s3] at a height above 0 [m]."""
         return self.friction_velocity**3 / (_KARMAN * height)
-
-    def _friction_velocity(self) -> float:
-        wind = max(self.wind_speed, _CALM)
-        friction = 0.03 * wind
-        for _ in range(_FRICTION_ITERATIONS):
-            roughness = (
-                self.charnock * friction**2 / STANDARD_GRAVITY + 0.11 * _VISCOSITY / friction
-            )
-            friction = _KARMAN * wind / math.log(10.0 / roughness)
-        return friction
 
 
 def _within(default: float, low: float, high: float) -> float:

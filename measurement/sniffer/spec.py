@@ -10,7 +10,8 @@ from typing import Any
 
 import numpy as np
 
-from measurement.errors import MeasurementError, guess, number
+from common.text import did_you_mean
+from measurement.errors import MeasurementError, check_keys, number
 from measurement.gases import GASES
 from measurement.sniffer.channel import Channel
 
@@ -196,7 +197,7 @@ def sensor_preset(name: str) -> SnifferSpec:
     known = sensor_presets()
     if name not in known:
         raise MeasurementError(
-            f"instrument is {name!r}{guess(name, known)} there are {', '.join(known)}"
+            f"instrument is {name!r}{did_you_mean(name, known) or ';'} there are {', '.join(known)}"
         )
     return sensor_of(tomllib.loads((_folder() / f"{name}.toml").read_text(encoding="utf-8")), name)
 
@@ -218,7 +219,7 @@ def sensor_of(given: str | Mapping[str, Any], name: str = "") -> SnifferSpec:
     if isinstance(given, str):
         return sensor_preset(given)
     name = name or str(given.get("title", UNTITLED_SNIFFER))
-    _check_keys(given, {"title", "rate_hz", "source", "channels"}, f"instrument '{name}'")
+    check_keys(given, ("channels", "rate_hz", "source", "title"), f"instrument '{name}'")
     channels = given.get("channels")
     if not isinstance(channels, dict) or not channels:
         raise MeasurementError(
@@ -240,7 +241,7 @@ def _channel(gas: str, table: Any, name: str) -> Channel:
         raise MeasurementError(
             f"{where} is not known; channels are tables called {', '.join(GASES)}"
         )
-    _check_keys(table, {field.name for field in fields(Channel)} - {"gas"}, where)
+    check_keys(table, sorted({field.name for field in fields(Channel)} - {"gas"}), where)
     given: dict[str, Any] = dict(_UNKNOWN[gas])
     if "t90_s" in table:
         given["t90_sd"] = _T90_KNOWN
@@ -263,12 +264,3 @@ def _channel(gas: str, table: Any, name: str) -> Channel:
         return Channel(gas=gas, **given)
     except MeasurementError as error:
         raise MeasurementError(f"{where}: {error}") from None
-
-
-def _check_keys(table: Mapping[str, Any], known: set[str], where: str) -> None:
-    unknown = sorted(set(table) - known)
-    if unknown:
-        raise MeasurementError(
-            f"{where} has the key '{unknown[0]}'{guess(unknown[0], known)} "
-            f"it may have {', '.join(sorted(known))}"
-        )
