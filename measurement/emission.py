@@ -9,7 +9,7 @@ from importlib.resources import files
 from typing import Any
 
 from common.physics import STANDARD_GRAVITY
-from measurement.errors import MeasurementError, check_keys, number
+from measurement.errors import MeasurementError, check_keys, check_range, number
 from measurement.gases import (
     CARBON_FRACTION,
     CARBON_PER_CO2,
@@ -98,17 +98,9 @@ class Fuel:
     sulphur_percent: float
 
     def __post_init__(self) -> None:
-        if not 0.0 <= self.sulphur_percent <= FUEL_SULPHUR_MOST:
-            raise MeasurementError(
-                f"FSC of {self.name} is {self.sulphur_percent:g} % m/m; "
-                f"it must be 0 to {FUEL_SULPHUR_MOST:g} per cent"
-            )
-        if not 0.5 <= self.carbon_fraction <= 1.0:
-            raise MeasurementError(
-                f"CO2 of {self.name} is {self.co2_per_fuel:g} kg/kg, "
-                f"which makes carbon {self.carbon_fraction:.2f} of its mass; "
-                "it must be 1.9 to 3.6 kg/kg, for fuel oils 3.1 to 3.2"
-            )
+        check_range(f"FSC of {self.name}", self.sulphur_percent, 0.0, FUEL_SULPHUR_MOST, " % m/m")
+        least, most = 0.5 / CARBON_PER_CO2, 1.0 / CARBON_PER_CO2
+        check_range(f"CO2 of {self.name}", self.co2_per_fuel, least, most, " kg/kg")
 
     @property
     def carbon_fraction(self) -> float:
@@ -171,16 +163,9 @@ class Ship:
                 raise MeasurementError(
                     f"{name} of {self.name} is {value:g}; it must be finite and above 0"
                 )
-        if not 100.0 <= self.exhaust_temperature_c <= 600.0:
-            raise MeasurementError(
-                f"exhaust_temperature_c of {self.name} is {self.exhaust_temperature_c:g}; "
-                "it must be 100 to 600"
-            )
-        if not 0.0 <= self.wake_spread <= 20.0:
-            raise MeasurementError(
-                f"wake_spread of {self.name} is {self.wake_spread:g} m; "
-                "it must be 0 to 20, usually 0 to 8"
-            )
+        temperature, spread = self.exhaust_temperature_c, self.wake_spread
+        check_range(f"exhaust_temperature_c of {self.name}", temperature, 100.0, 600.0)
+        check_range(f"wake_spread of {self.name}", spread, 0.0, 20.0, " m")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -281,10 +266,7 @@ def emission_of(
 def _load(ship: Ship, speed: float | None, power: float | None) -> float:
     """Return the share of the largest power [-]."""
     if speed is not None and power is None:
-        if not 0.0 <= speed <= ship.speed_max:
-            raise MeasurementError(
-                f"speed of {ship.name} is {speed:g} m/s; it must be 0 to {ship.speed_max:g} m/s"
-            )
+        check_range(f"speed of {ship.name}", speed, 0.0, ship.speed_max, " m/s")
         return max(_LOAD_MIN, (speed / ship.speed_max) ** 3)
     if power is not None and speed is None:
         if not 0.0 < power <= ship.power_max:
@@ -310,14 +292,8 @@ def check_air(temperature: float, pressure: float) -> None:
     ------
     MeasurementError : one of them is out of its range
     """
-    if not 220.0 <= temperature <= 330.0:
-        raise MeasurementError(
-            f"air temperature is {temperature:g} K; it must be 220 to 330 K, 288.15 is 15 degC"
-        )
-    if not 5e4 <= pressure <= 1.1e5:
-        raise MeasurementError(
-            f"air pressure is {pressure:g} Pa; it must be 5e4 to 1.1e5 Pa, 101325 is standard"
-        )
+    check_range("air temperature", temperature, 220.0, 330.0, " K")
+    check_range("air pressure", pressure, 5e4, 1.1e5, " Pa")
 
 
 def expected_fsc(fuel: Fuel) -> float:

@@ -21,6 +21,17 @@ def naming(path: Path) -> Iterator[None]:
         raise MeasurementError(f"'{path}': {error}") from None
 
 
+def check_range(what: str, value: float, low: float, high: float, unit: str = "") -> None:
+    """Check that a value is within its range; the error says what it is, with its unit.
+
+    Raises
+    ------
+    MeasurementError : the value is below ``low``, above ``high``, or NaN
+    """
+    if not low <= value <= high:
+        raise MeasurementError(f"{what} is {value:g}{unit}; it must be {low:g} to {high:g}{unit}")
+
+
 def check_keys(table: Mapping[str, Any], known: Sequence[str], where: str) -> None:
     """Check the keys of a table against the known ones; ``where`` names the table in the error.
 

@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from measurement.emission import Emission
-from measurement.errors import MeasurementError
+from measurement.errors import MeasurementError, check_range
 from measurement.plume.parcels import Nearest, Parcels, cubic_value, cubics
 from measurement.plume.spread import (
     SOURCE_HEIGHT_MAX,
@@ -139,11 +139,8 @@ class FluctuatingPlume:
         seed: int = 0,
     ) -> None:
         settings = settings or PlumeSettings()
-        if not SOURCE_HEIGHT_MIN <= source_height <= SOURCE_HEIGHT_MAX:
-            raise MeasurementError(
-                f"height of the source is {source_height:g} m above the sea; "
-                f"it must be {SOURCE_HEIGHT_MIN:g} to {SOURCE_HEIGHT_MAX:g} m"
-            )
+        limits = SOURCE_HEIGHT_MIN, SOURCE_HEIGHT_MAX
+        check_range("height of the source", source_height, *limits, " m")
         if seed < 0:
             raise MeasurementError(f"seed of the plume is {seed}; it must be 0 or more")
         self._parcels = Parcels(time, north, east, settings.parcel_interval)

@@ -16,7 +16,7 @@ from measurement.emission import (
     Emission,
     check_air,
 )
-from measurement.errors import MeasurementError
+from measurement.errors import check_range
 
 Array = npt.NDArray[np.float64]
 Indices = npt.NDArray[np.intp]
@@ -107,20 +107,9 @@ class MarineAir:
 
     def __post_init__(self) -> None:
         check_air(self.temperature, self.pressure)
-        if not 0.0 <= self.wind_speed <= _WIND_MAX:
-            raise MeasurementError(
-                f"true wind is {self.wind_speed:g} m/s at 10 m; it must be 0 to {_WIND_MAX:g} m/s"
-            )
-        if not 0.0 <= self.brunt_vaisala <= 0.1:
-            raise MeasurementError(
-                f"stability N is {self.brunt_vaisala:g} 1/s; "
-                "it must be 0 (neutral) to 0.1 1/s, usually below 0.03 1/s"
-            )
-        if not 0.005 <= self.charnock <= 0.05:
-            raise MeasurementError(
-                f"Charnock's constant is {self.charnock:g}; "
-                "it must be 0.005 to 0.05, over sea 0.011 to 0.018"
-            )
+        check_range("true wind", self.wind_speed, 0.0, _WIND_MAX, " m/s")
+        check_range("stability N", self.brunt_vaisala, 0.0, 0.1, " 1/s")
+        check_range("Charnock's constant", self.charnock, 0.005, 0.05)
 
     @functools.cached_property
     def friction_velocity(self) -> float:
@@ -214,12 +203,8 @@ class PlumeSettings:
     def __post_init__(self) -> None:
         for setting in fields(self):
             if "limits" in setting.metadata:
-                value = getattr(self, setting.name)
-                low, high = setting.metadata["limits"]
-                if not low <= value <= high:
-                    raise MeasurementError(
-                        f"{setting.name} is {value:g}; it must be {low:g} to {high:g}"
-                    )
+                limits = setting.metadata["limits"]
+                check_range(setting.name, getattr(self, setting.name), *limits)
 
 
 class Spreads(NamedTuple):

@@ -4,7 +4,7 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
-from measurement.errors import MeasurementError
+from measurement.errors import MeasurementError, check_range
 from measurement.gases import GASES, UNITS
 from measurement.sniffer.lag import time_constants
 
@@ -85,8 +85,7 @@ class Channel:
             raise MeasurementError(
                 f"noise of {self.gas} is {self.noise:g} {UNITS[self.gas]}; it must be 0 or more"
             )
-        if not 0.1 <= self.gain <= 10.0:
-            raise MeasurementError(f"gain of {self.gas} is {self.gain:g}; it must be 0.1 to 10")
+        check_range(f"gain of {self.gas}", self.gain, 0.1, 10.0)
         if not self.range_low < self.range_high:
             raise MeasurementError(
                 f"range of {self.gas} is {self.range_low:g} to {self.range_high:g}; "

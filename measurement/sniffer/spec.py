@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from common.text import did_you_mean
-from measurement.errors import MeasurementError, check_keys, number
+from measurement.errors import MeasurementError, check_keys, check_range, number
 from measurement.gases import GASES
 from measurement.sniffer.channel import Channel
 
@@ -90,10 +90,7 @@ class SnifferSpec:
     source: str = ""
 
     def __post_init__(self) -> None:
-        if not 0.01 <= self.rate_hz <= 1000.0:
-            raise MeasurementError(
-                f"rate of '{self.name}' is {self.rate_hz:g} Hz; it must be 0.01 to 1000"
-            )
+        check_range(f"rate of '{self.name}'", self.rate_hz, 0.01, 1000.0, " Hz")
         gases = [channel.gas for channel in self.channels]
         if not gases or len(set(gases)) < len(gases):
             raise MeasurementError(
