@@ -117,8 +117,11 @@ class Registry(Generic[Part]):
         PluginError : there is none, it does not load, it lacks a method, or it is an object where
             a class is needed, because each flight makes a part of its own
         """
-        if name.endswith(".py:"):
-            raise self._without_name(name)
+        if name.endswith((".py", ".py:")):
+            raise PluginError(
+                f"{self.words} '{name}' names a file, and no part in it; "
+                f"give {name.removesuffix(':')}:NAME"
+            )
         if is_file_part(name):
             return self.checked(name, self._callable(name, part_in_file(name)))
         if (
@@ -140,8 +143,6 @@ class Registry(Generic[Part]):
                     f"{self.words} '{name}' of package {found.value}: "
                     f"{type(error).__name__}: {error}"
                 ) from error
-        if name.endswith(".py"):
-            raise self._without_name(name)
         names = self.names()
         raise PluginError(
             f"unknown {self.words} '{name}'{did_you_mean(name, names) or ';'} "
@@ -155,12 +156,6 @@ class Registry(Generic[Part]):
                 "give the class itself"
             )
         return part
-
-    def _without_name(self, name: str) -> PluginError:
-        return PluginError(
-            f"{self.words} '{name}' names a file, and no part in it; "
-            f"give {name.removesuffix(':')}:NAME"
-        )
 
     def _known(self) -> dict[str, Part]:
         if not self._complete:

@@ -91,28 +91,17 @@ class Channel:
                 f"range of {self.gas} is {self.range_low:g} to {self.range_high:g}; "
                 "its end must lie above its start"
             )
-        for name in ("cross", "cross_sd"):
-            self._check_cross(name)
+        for name, least in (("cross", -10.0), ("cross_sd", 0.0)):
+            for gas, value in getattr(self, name).items():
+                if gas not in GASES or gas == self.gas:
+                    raise MeasurementError(
+                        f"{name} of {self.gas} names {gas!r}; it must name another of "
+                        f"{', '.join(GASES)}"
+                    )
+                check_range(f"{name} of {self.gas} to {gas}", value, least, 10.0)
         if not math.isfinite(self.zero):
             raise MeasurementError(f"zero of {self.gas} is {self.zero:g}; it must be finite")
-        if not abs(self.pressure_effect) <= 0.1:
-            raise MeasurementError(
-                f"pressure_effect of {self.gas} is {self.pressure_effect:g}; "
-                "it must be at most 0.1 per hPa"
-            )
-
-    def _check_cross(self, name: str) -> None:
-        for gas, value in getattr(self, name).items():
-            if gas not in GASES or gas == self.gas:
-                raise MeasurementError(
-                    f"{name} of {self.gas} names {gas!r}; it must name another of "
-                    f"{', '.join(GASES)}"
-                )
-            if not abs(value) <= 10.0 or (name == "cross_sd" and value < 0.0):
-                raise MeasurementError(
-                    f"{name} of {self.gas} to {gas} is {value:g}; "
-                    "it must be at most 10, and a deviation 0 or more"
-                )
+        check_range(f"pressure_effect of {self.gas}", self.pressure_effect, -0.1, 0.1, " 1/hPa")
 
     @property
     def constants(self) -> tuple[float, ...]:

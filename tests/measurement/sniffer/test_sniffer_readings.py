@@ -139,7 +139,7 @@ def test_every_preset_has_the_figures_of_its_source():
         ({"cross": {"so2": 0.1}}, "cross of so2 names 'so2'"),
         ({"cross": {"co": 0.1}}, "cross of so2 names 'co'"),
         ({"cross": {"no": 60.0}}, "cross of so2 to no is 60"),
-        ({"pressure_effect": 1.0}, "pressure_effect of so2 is 1; it must be at most 0.1"),
+        ({"pressure_effect": 1.0}, "pressure_effect of so2 is 1 1/hPa; it must be -0.1 to 0.1"),
         ({"gas": "o3"}, "gas is 'o3'; it must be one of so2, co2, no, no2"),
     ],
 )
