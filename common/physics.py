@@ -33,23 +33,12 @@ STANDARD_GRAVITY = 9.80665
 
 
 def wind_towards(from_deg: float) -> float:
-    """Return the course along which wind from a direction blows [rad].
-
-    Parameters
-    ----------
-    from_deg : direction that it comes from, clockwise from north [deg]
-    """
+    """Return the course along which wind blows [rad], by the direction that it comes from [deg]."""
     return math.radians(from_deg) + math.pi
 
 
 def wind_velocity(speed: float, from_deg: float) -> tuple[float, float]:
-    """Return north and east velocity of the air [m/s].
-
-    Parameters
-    ----------
-    speed : of the wind [m/s]
-    from_deg : direction that it comes from, clockwise from north [deg]
-    """
+    """Return north and east velocity of air [m/s] that comes ``from_deg`` clockwise from north."""
     towards = wind_towards(from_deg)
     return speed * math.cos(towards), speed * math.sin(towards)
 

@@ -433,13 +433,7 @@ def _row(
 
 
 def time_to_verdict(table: pd.DataFrame, limit_percent: float) -> float:
-    """Return the elapsed time from which the verdict on a limit stays the same, NaN if open [s].
-
-    Parameters
-    ----------
-    table : of ``over_time``
-    limit_percent : one of its limits [% m/m]
-    """
+    """Return the elapsed time from which the verdict on a limit [% m/m] stays, NaN if open [s]."""
     verdicts = table[f"verdict_{limit_percent:g}"].tolist()
     if not verdicts or verdicts[-1] == OPEN:
         return math.nan

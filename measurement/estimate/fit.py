@@ -202,11 +202,10 @@ def align(record: Record, instrument: SnifferSpec, start: SnifferSpec | None = N
 def with_instrument_errors(
     alignment: Alignment, known: SnifferSpec, others: Sequence[SnifferSpec]
 ) -> Alignment:
-    """Return an alignment whose deviations include the effect of the instrument's errors.
+    """Return an alignment whose deviations by noise include the effect of the instrument's errors.
 
     Parameters
     ----------
-    alignment : with its deviations by noise
     known, others : the instrument aligned as it is known, and with one error each
     """
     so2 = alignment.instrument.known("so2")
@@ -344,9 +343,7 @@ def fit_groups(
 
     Parameters
     ----------
-    signals : of the whole record
-    passes : through the plume
-    slope, misfit : of the whole record
+    signals, slope, misfit : of the whole record
     response : standard deviation of the slope by response and delay [ppb/ppm]; groups may differ by
         as much, as a wrong response distorts each of them differently
     """

@@ -111,7 +111,6 @@ def residual_problem(
     misfit : mean square of the residuals over that of the stated noise
     residual_energy, instrument_energy : sum of squares of the residuals, and what the instrument's
         uncertainty adds to it
-    samples : of the record
     """
     if not misfit > 0.0 or residual_energy == 0.0:
         return ()
@@ -134,9 +133,6 @@ def pending_so2_problem(
     fsc: float, deviation: float, read: Sequence[float], doses: Sequence[float]
 ) -> tuple[str, ...]:
     """Return the problem of SO2 that may not have arrived yet, where its delay is not stated.
-
-    SO2 that stands out has arrived. Otherwise readings must follow most of the CO2 for as long as
-    any delay.
 
     Parameters
     ----------

@@ -298,13 +298,10 @@ def stated_noise(channel: Channel, segments: Sequence[Array], step: float) -> fl
 def lowest_reading(gas: str, values: Array, instrument: SnifferSpec) -> float:
     """Return how low a gas may read by noise, zero and the cell's response to other gases.
 
-    CO2 is in all air, which raises its limit.
-
     Parameters
     ----------
     gas : that has readings and a channel
     values : readings of all gases, shape (m, 4)
-    instrument : as the analyst knows it; a noise that is not stated is taken from the readings
     """
     channel = instrument.known(gas)
     column = values[:, GASES.index(gas)]

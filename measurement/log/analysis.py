@@ -181,14 +181,7 @@ class Gaps:
 
 
 def find_gaps(readings: Readings, signals: pd.DataFrame, log_rows: int) -> Gaps:
-    """Return the gaps of a log.
-
-    Parameters
-    ----------
-    readings : of the log, each once
-    signals : that an estimate made of them
-    log_rows : of the log
-    """
+    """Return the gaps of a log, by its readings, each once, and the signals of an estimate."""
     used = _used_gases(signals)
     known, period = np.isfinite(readings.values), _period(readings)
     complete = np.flatnonzero(known[:, used].all(axis=1))

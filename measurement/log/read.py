@@ -460,12 +460,7 @@ def new_readings(logged: Readings, gases: Sequence[str]) -> Readings:
     """Return each reading of a log once, at the time of its first row.
 
     A log with a row per reading is returned as it is. Otherwise the times are those of the slowest
-    of the gases; the others are interpolated between their readings.
-
-    Parameters
-    ----------
-    logged : by row, NaN where there is no reading
-    gases : that the instrument has
+    of the instrument's gases; the others are interpolated between their readings.
     """
     columns = logged.values.T
     rows_each = [rows_per_reading(column) for column in columns]

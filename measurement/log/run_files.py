@@ -92,8 +92,6 @@ def write_run(
 
     Parameters
     ----------
-    directory : to write to
-    flight, analysis : of the log
     source, config : files of the log and of the configuration
     arguments : of the command, same as ``sys.argv``
 
