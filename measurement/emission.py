@@ -175,23 +175,18 @@ class Emission:
     Attributes
     ----------
     rates : mol/s of each of ``measurement.gases.GASES``, in that order
-    fuel_rate : fuel burnt [kg/s]
-    power : of the engine [W]
-    buoyancy_flux : F = g w d^2/4 (1 - Ta/Ts) [m4/s3]
+    buoyancy_flux : F = g w d^2/4 (1 - Ta/Ts) [m4/s3], with Ta of the air and Ts of the exhaust
     momentum_flux : Fm = (Ta/Ts) w^2 d^2/4 [m4/s2]
     stack_diameter : d [m]
-    exhaust_speed, exhaust_temperature : w and Ts at the stack's mouth [m/s, K]
+    exhaust_speed : w at the stack's mouth [m/s]
     wake_spread : initial spread in the superstructure's wake [m]
     """
 
     rates: tuple[float, ...]
-    fuel_rate: float
-    power: float
     buoyancy_flux: float
     momentum_flux: float
     stack_diameter: float
     exhaust_speed: float
-    exhaust_temperature: float
     wake_spread: float
 
 
@@ -252,13 +247,10 @@ def emission_of(
     air_over_exhaust = air_temperature / temperature
     return Emission(
         rates=rates,
-        fuel_rate=fuel_rate,
-        power=load * ship.power_max,
         buoyancy_flux=STANDARD_GRAVITY * exhaust_speed * quarter_square * (1.0 - air_over_exhaust),
         momentum_flux=air_over_exhaust * exhaust_speed**2 * quarter_square,
         stack_diameter=ship.stack_diameter,
         exhaust_speed=exhaust_speed,
-        exhaust_temperature=temperature,
         wake_spread=ship.wake_spread,
     )
 

@@ -54,15 +54,10 @@ _PACKAGES = ("numpy", "scipy", "pandas")
 def check_directory(directory: Path, source: Path, *, named_after_log: bool) -> None:
     """Check that a directory holds no run of another kind; an older estimate may be replaced.
 
-    Parameters
-    ----------
-    directory : to write to
-    source : the log
-    named_after_log : whether another log of the same name would have this directory
-
     Raises
     ------
-    MeasurementError : it holds one, or an estimate of another log; or its manifest cannot be read
+    MeasurementError : it holds one, or its manifest cannot be read; or, where it is named after the
+        log, it holds the estimate of another log
     """
     try:
         manifest = json.loads((directory / MANIFEST).read_text(encoding="utf-8"))
