@@ -118,11 +118,7 @@ def read_config(path: Path) -> LogConfig:
 def _config(table: Mapping[str, Any], name: str) -> LogConfig:
     """Return the configuration in a table; ``name`` is that of an instrument in it."""
     check_keys(table, _KEYS, "the configuration")
-    columns = {**COLUMNS, **_sub_table(table, "columns", tuple(COLUMNS))}
-    for key, column in columns.items():
-        if not isinstance(column, str):
-            raise MeasurementError(f"columns.{key} is {column!r}; give a name")
-    _check_used_once(columns)
+    columns = _columns(table)
     scale = _sub_table(table, "scale", GASES)
     for gas, factor in scale.items():
         if not _is_finite(factor) or factor <= 0.0:
@@ -178,16 +174,20 @@ def _sub_table(table: Mapping[str, Any], key: str, names: Sequence[str]) -> dict
     return found
 
 
-def _check_used_once(columns: Mapping[str, str]) -> None:
-    """Check that no column is given for two quantities, which would share their readings."""
+def _columns(table: Mapping[str, Any]) -> dict[str, str]:
+    """Return the column of each quantity; two would share the readings of one."""
+    columns = {**COLUMNS, **_sub_table(table, "columns", tuple(COLUMNS))}
     used: dict[str, str] = {}
     for key, column in columns.items():
+        if not isinstance(column, str):
+            raise MeasurementError(f"columns.{key} is {column!r}; give a name")
         if column in used:
             raise MeasurementError(
                 f"[columns] has the column '{column}' for {used[column]} and for {key}; name"
                 " another one for either of them"
             )
         used[column] = key
+    return columns
 
 
 def _details(table: Mapping[str, Any]) -> FlightDetails:
