@@ -33,7 +33,7 @@ STANDARD_GRAVITY = 9.80665
 
 
 def wind_towards(from_deg: float) -> float:
-    """Return the course along which wind blows [rad], by the direction that it comes from [deg]."""
+    """Return the course of wind [rad] that comes ``from_deg`` clockwise from north."""
     return math.radians(from_deg) + math.pi
 
 

@@ -31,7 +31,7 @@ SULPHUR_AS_SO2 = 0.97753
 """Share of the fuel's sulphur that leaves as SO2, not as sulphate [-] (IMO GHG4, eq. 15)."""
 
 NO2_SHARE = 0.10
-"""Share of NO2 in NOx by mole, with all ozone used up [-]; assumed, of 0.05 to 0.15."""
+"""Share of NO2 in NOx by mole, once the ozone is used up [-]; assumed within 0.05 to 0.15."""
 
 DEFAULT_STACK_HEIGHT = 60.0
 """Height of the stack above the sea where neither a height nor a ship is given [m]."""
@@ -51,7 +51,7 @@ _FUEL_G_KWH = {
     (4, False): 205.0,
     (4, True): 215.0,
 }
-"""Fuel consumption [g/kWh] by stroke and if residual (USEPA Marine_Emissions_Tools)."""
+"""Fuel consumption [g/kWh] by stroke and whether residual (USEPA Marine_Emissions_Tools)."""
 
 _NOX_G_KWH = {
     (2, False): (17.0, 16.0, 14.4, 3.4),
@@ -59,7 +59,7 @@ _NOX_G_KWH = {
     (4, False): (13.2, 12.2, 10.5, 2.6),
     (4, True): (13.2, 12.2, 10.5, 2.6),
 }
-"""NOx as NO2 [g/kWh] by the same, for tiers 0 to 3 (USEPA Marine_Emissions_Tools)."""
+"""NOx as NO2 [g/kWh] by stroke, whether residual, and tier (USEPA Marine_Emissions_Tools)."""
 
 _LOAD_MIN = 0.05
 """Least load of an engine under way, dead slow [-]; an assumption."""

@@ -96,7 +96,7 @@ def noise_covariance(signals: Signals, weights: Array, slope: float) -> Array:
 
 
 def _noise_energy(signals: Signals, so2: float, co2: float) -> float:
-    """Return the expected sum of squares of noise of ``so2 SO2 + co2 CO2`` off the background."""
+    """Return the expected noise energy of ``so2 SO2 + co2 CO2`` beside the background."""
     return sum(
         (so2 * in_so2 + co2 * in_co2) ** 2 * signals.noise(gas) ** 2 * signals.noise_energy(gas)
         for gas, (in_so2, in_co2) in signals.shares.items()

@@ -13,10 +13,10 @@ from measurement.sniffer.sniffer import Readings
 from measurement.sniffer.spec import SnifferSpec
 
 _CUT_LEAST, _CUT_OVER, _CUT_STEPS = 8, 3.0, 5
-"""Least readings at the end of a range where they are cut off; ratio to each of the next steps."""
+"""Readings that are cut off: least number at an end, ratio to the next steps, number of these."""
 
 _FASTER, _FASTEST = 0.5, 0.1
-"""Shares of the stated t90 within which a sensor may fall: most, and if t90 is not well known."""
+"""Largest and least share of its t90 in which a sensor may fall, by how well t90 is known."""
 
 _FALL_SIGMAS = 10.0
 """Standard deviations of the noise by which a reading may be lower than a fall allows."""
@@ -134,7 +134,7 @@ def _spikes(record: Record, readings: Readings, channel: Channel) -> list[str]:
 
 
 def _quiet(scatter: float, channel: Channel) -> list[str]:
-    """Return the problem of a gas with less scatter [ppb] than its sensor's noise and rounding."""
+    """Return the problem of a gas whose readings scatter less [ppb] than its sensor can."""
     stated = not math.isnan(channel.noise)
     noise = channel.noise if stated else _NOISE_USUAL
     if scatter >= _QUIET_SHARE * noise or channel.resolution > noise:

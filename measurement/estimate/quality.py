@@ -17,7 +17,7 @@ PASSES_GOOD = 3
 """Passes for class A."""
 
 AGREEMENT_LEAST = 0.01
-"""Least probability for class A that passes of one fuel differ as much; no smaller one makes C.
+"""Least probability for class A that passes of one fuel differ as much; it never makes C.
 
 Of 200 flights of ``sulphur_monte_carlo``, all of one fuel, one has 1e-4, as corrections and drift
 change from pass to pass.
@@ -27,7 +27,7 @@ STRANGE_SIGMA = 4.0
 """Standard deviations beyond which residuals or a property are not of the stated instrument."""
 
 _ARRIVED_SIGMA, _ARRIVED_SHARE = 3.0, 0.5
-"""Standard uncertainties of a result with arrived SO2; share of CO2 to be followed otherwise."""
+"""Least result of SO2 that has arrived [standard uncertainties]; else, share of CO2 to follow."""
 
 _NEGATIVE_SIGMA = 3.0
 """Standard uncertainties below 0, or above the most that a fuel has, that a result may be."""

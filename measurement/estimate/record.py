@@ -53,7 +53,7 @@ _NOX_SIGMA = 3.0
 """Standard deviations above the mean that the NO and NO2 of a ship may have if not measured."""
 
 _DITHERED = 4.0
-"""Largest step of other gases that only adds noise: means are right to a tenth of it [sigma]."""
+"""Largest step of other gases whose rounding is noise [standard deviations of their noise]."""
 
 _CACHE_SIZE = 32
 """Results kept for a record: moving one property of the instrument changes few of them."""

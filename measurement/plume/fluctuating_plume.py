@@ -9,7 +9,7 @@ import numpy as np
 
 from measurement.emission import Emission
 from measurement.errors import MeasurementError, check_range
-from measurement.plume.parcels import Nearest, Parcels, cubic_value, cubics
+from measurement.plume.parcels import Nearest, Parcels, check_arrays, cubic_value, cubics
 from measurement.plume.spread import (
     SOURCE_HEIGHT_MAX,
     SOURCE_HEIGHT_MIN,
@@ -277,15 +277,7 @@ class FluctuatingPlume:
         return sample, square
 
     def _check(self, time: Array, north: Array, east: Array, up: Array) -> None:
-        if not (time.ndim == 1 and time.shape == north.shape == east.shape == up.shape):
-            shapes = ", ".join(str(values.shape) for values in (time, north, east, up))
-            raise MeasurementError(
-                f"time, north, east and up have shapes {shapes}; give four of one length"
-            )
-        if not all(np.isfinite(values).all() for values in (time, north, east, up)):
-            raise MeasurementError(
-                "times or places in the plume are missing or infinite; remove or fill them"
-            )
+        check_arrays("time, north, east and up in the plume", time, north, east, up)
         self._check_times(time)
         if time.size and up.min() < 0.0:
             raise MeasurementError(f"height above the sea is {up.min():g} m; it must be 0 or more")

@@ -171,7 +171,7 @@ class Parcels:
     def _refined(
         self, place: Indices, north: Array, east: Array, emitted: Array, bracket: Array
     ) -> Nearest:
-        """Return the nearest parcels, which lie across from their places, by Newton's method."""
+        """Return the nearest parcels, found by Newton's method within brackets that shrink."""
         found = Nearest(place, *np.empty((5, len(place))))
         left: Indices | slice = slice(None)
         for _ in range(_ITERATIONS_MAX):
@@ -214,16 +214,26 @@ class Parcels:
         return _Step(north, east, path, steps - index)
 
 
+def check_arrays(what: str, *arrays: Array, least: int = 0) -> None:
+    """Check that arrays have one dimension and length, of ``least`` or more, and finite values.
+
+    Raises
+    ------
+    MeasurementError : they do not
+    """
+    shapes = [values.shape for values in arrays]
+    if len(set(shapes)) > 1 or len(shapes[0]) != 1 or shapes[0][0] < least:
+        raise MeasurementError(
+            f"{what} have shapes {', '.join(map(str, shapes))}; give one length, {least} or more"
+        )
+    if not all(np.isfinite(values).all() for values in arrays):
+        raise MeasurementError(
+            f"{what} have values that are missing or infinite; remove or fill them"
+        )
+
+
 def _check_track(time: Array, north: Array, east: Array) -> None:
-    if not (time.ndim == 1 and len(time) >= 2 and time.shape == north.shape == east.shape):
-        raise MeasurementError(
-            f"times, north and east of the ship's track have shapes {time.shape}, {north.shape}, "
-            f"{east.shape}; give three of one length, 2 or more"
-        )
-    if not (np.isfinite(time).all() and np.isfinite(north).all() and np.isfinite(east).all()):
-        raise MeasurementError(
-            "ship's track has values that are missing or infinite; remove or fill them"
-        )
+    check_arrays("times, north and east of the ship's track", time, north, east, least=2)
     if not (np.diff(time) > 0.0).all():
         first = int(np.argmax(np.diff(time) <= 0.0))
         raise MeasurementError(
