@@ -103,7 +103,7 @@ def _cut_off(readings: Readings, channel: Channel) -> list[str]:
 
 
 def _heap(steps: Array) -> int:
-    """Return how many readings are at the end, by their steps from it, if noise leaves fewer."""
+    """Return how many readings are at an end, given their steps from it, if these are a heap."""
     heap, *near = (int(np.sum(np.round(steps) == number)) for number in range(_CUT_STEPS + 1))
     return heap if heap >= _CUT_LEAST and heap > _CUT_OVER * max(near) else 0
 
