@@ -15,10 +15,7 @@ PROGRAM = "plume-flight"
 """Name of the console command."""
 
 BAD_INPUT, INTERRUPTED, UNREAD = 2, 130, 141
-"""Exit statuses: input was refused; Ctrl-C ended the command; the reader of its output was gone.
-
-The last two are 128 and the number of the signal, as in a shell.
-"""
+"""Exit statuses: bad input; Ctrl-C and a gone reader, 128 and the signal's number as in a shell."""
 
 _USAGE_ERROR: type[Exception] = typer.BadParameter.__bases__[0]
 """Base class of typer's errors for bad options, which typer does not export."""
@@ -60,11 +57,7 @@ def run_command(
 
 
 def _without_types(command: Any) -> Any:
-    """Return a command whose help shows no types of arguments and flags.
-
-    Typer writes <list[Path]> beside RUN_DIR, which says what it is, and <bool> beside flags, which
-    take no value.
-    """
+    """Return a command whose help shows no types of arguments and flags: their names say them."""
     for one in (command, *getattr(command, "commands", {}).values()):
         # This creates --help as well, which a command does not have before.
         for parameter in one.get_params(typer.Context(one)):
@@ -73,19 +66,12 @@ def _without_types(command: Any) -> Any:
             else:
                 hidden = parameter.is_flag
             if hidden:
-                parameter.display_type_rich = _no_type
+                parameter.display_type_rich = lambda **_: None
     return command
 
 
-def _no_type(**_: object) -> None:
-    return None
-
-
 def _with_value(error: Exception, message: str, given: Sequence[str]) -> str:
-    """Return a message with the option's value, as in "--jobs is 0; it must be ...".
-
-    A message about anything else stays as it is.
-    """
+    """Return a message with the option's value: "--jobs is 0; it must be ..."; others unchanged."""
     names = getattr(getattr(error, "param", None), "opts", [])
     _, said, demanded = message.partition("Input should be ")
     values = [
@@ -98,10 +84,7 @@ def _with_value(error: Exception, message: str, given: Sequence[str]) -> str:
 
 
 class _Output(io.TextIOWrapper):
-    """An output that ends the command silently when its reader is gone, as after ``| head``.
-
-    An OSError instead would look to commands like a file that cannot be written.
-    """
+    """An output that ends the command silently when its reader is gone, as after ``| head``."""
 
     @staticmethod
     def instead_of(stream: TextIO) -> TextIO:

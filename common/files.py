@@ -35,14 +35,9 @@ def is_file(path: Path) -> bool:
 
 
 def write_whole(path: Path, write: Callable[[Path], object]) -> None:
-    """Write a file through a temporary one, completely or not at all.
+    """Write a file completely or not at all: ``write`` is given the path of a temporary one.
 
     A file that already has the content is left untouched.
-
-    Parameters
-    ----------
-    path : of the file
-    write : is called with the path of the temporary file
     """
     part = path.with_name(f".{path.name}.{os.getpid()}.part")
     try:

@@ -33,23 +33,12 @@ STANDARD_GRAVITY = 9.80665
 
 
 def wind_towards(from_deg: float) -> float:
-    """Return the course along which wind from a direction blows [rad].
-
-    Parameters
-    ----------
-    from_deg : direction that it comes from, clockwise from north [deg]
-    """
+    """Return the course of wind [rad] that comes ``from_deg`` clockwise from north."""
     return math.radians(from_deg) + math.pi
 
 
 def wind_velocity(speed: float, from_deg: float) -> tuple[float, float]:
-    """Return north and east velocity of the air [m/s].
-
-    Parameters
-    ----------
-    speed : of the wind [m/s]
-    from_deg : direction that it comes from, clockwise from north [deg]
-    """
+    """Return north and east velocity of air [m/s] that comes ``from_deg`` clockwise from north."""
     towards = wind_towards(from_deg)
     return speed * math.cos(towards), speed * math.sin(towards)
 
@@ -58,10 +47,10 @@ def wind_velocity(speed: float, from_deg: float) -> tuple[float, float]:
 
 
 def heading_rate_for_bank(bank: float, speed: float) -> float:
-    """Return the heading rate [rad/s] of a coordinated turn at ``bank`` [rad] and ``speed`` [m/s]."""
+    """Return the heading rate [rad/s] of a coordinated turn with a bank [rad] at a speed [m/s]."""
     return STANDARD_GRAVITY * math.tan(bank) / speed
 
 
 def bank_for_heading_rate(heading_rate: float, speed: float) -> float:
-    """Return the bank [rad] of a coordinated turn at ``heading_rate`` [rad/s] and ``speed`` [m/s]."""
+    """Return the bank [rad] of a coordinated turn at a heading rate [rad/s] and a speed [m/s]."""
     return math.atan(heading_rate * speed / STANDARD_GRAVITY)

@@ -93,7 +93,7 @@ class Registry(Generic[Part]):
 
     def names(self) -> list[str]:
         """Return all known names, in alphabetical order."""
-        return sorted({*self._known(), *self._entry_points()})
+        return sorted({*self._known(), *announced(self.kind)})
 
     def builtin_names(self) -> list[str]:
         """Return the names that modules of ``folder`` register, in alphabetical order."""
@@ -107,7 +107,7 @@ class Registry(Generic[Part]):
 
     def __contains__(self, name: str) -> bool:
         """Return whether a name is known; installed packages come last, which takes longest."""
-        return name in self._known() or name in self._entry_points()
+        return name in self._known() or name in announced(self.kind)
 
     def get(self, name: str) -> Part:
         """Return a part by its name, or by its file as ``FILE.py:NAME``.
@@ -117,8 +117,11 @@ class Registry(Generic[Part]):
         PluginError : there is none, it does not load, it lacks a method, or it is an object where
             a class is needed, because each flight makes a part of its own
         """
-        if name.endswith(".py:"):
-            raise self._without_name(name)
+        if name.endswith((".py", ".py:")):
+            raise PluginError(
+                f"{self.words} '{name}' names a file, and no part in it; "
+                f"give {name.removesuffix(':')}:NAME"
+            )
         if is_file_part(name):
             return self.checked(name, self._callable(name, part_in_file(name)))
         if (
@@ -130,7 +133,7 @@ class Registry(Generic[Part]):
             importlib.import_module(f"{self._folder}.{name}")
         if name in self._parts or name in self._known():
             return self._parts[name]
-        if (found := self._entry_points().get(name)) is not None:
+        if (found := announced(self.kind).get(name)) is not None:
             try:
                 return self.checked(name, self._callable(name, found.load()))
             except PluginError:
@@ -140,8 +143,6 @@ class Registry(Generic[Part]):
                     f"{self.words} '{name}' of package {found.value}: "
                     f"{type(error).__name__}: {error}"
                 ) from error
-        if name.endswith(".py"):
-            raise self._without_name(name)
         names = self.names()
         raise PluginError(
             f"unknown {self.words} '{name}'{did_you_mean(name, names) or ';'} "
@@ -156,12 +157,6 @@ class Registry(Generic[Part]):
             )
         return part
 
-    def _without_name(self, name: str) -> PluginError:
-        return PluginError(
-            f"{self.words} '{name}' names a file, and no part in it; "
-            f"give {name.removesuffix(':')}:NAME"
-        )
-
     def _known(self) -> dict[str, Part]:
         if not self._complete:
             package = importlib.import_module(self._folder)
@@ -170,9 +165,6 @@ class Registry(Generic[Part]):
             # Only now: a module that does not load has to fail at every call.
             self._complete = True
         return self._parts
-
-    def _entry_points(self) -> dict[str, importlib.metadata.EntryPoint]:
-        return announced(self.kind)
 
     def checked(self, name: str, part: Any) -> Part:
         """Return a part, which has every method of its Protocol.
@@ -270,8 +262,8 @@ def _module_in(path: Path, digest: str) -> Any:
     """Return the module in a file, loaded once while its hash stays the same."""
     name = f"plume_flight_study_{path.stem}_{digest}"
     spec = importlib.util.spec_from_file_location(name, path)
-    if spec is None or spec.loader is None:
-        raise PluginError(f"{path}: not a Python file")
+    assert spec is not None
+    assert spec.loader is not None
     module = importlib.util.module_from_spec(spec)
     # Dataclasses look their module up.
     sys.modules[name] = module

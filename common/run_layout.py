@@ -6,10 +6,7 @@ MANIFEST = "manifest.json"
 """Configuration, software, and how the run ended."""
 
 FORMAT = 1
-"""Version of a run directory, the manifest's entry ``format``.
-
-It increases when the meaning of a file or an entry changes.
-"""
+"""Version of a run directory, the manifest's ``format``; it increases when a meaning changes."""
 
 FILES = "files"
 """Entry of the manifest with the files that a run had when it ended."""

@@ -9,7 +9,7 @@ from importlib.resources import files
 from typing import Any
 
 from common.physics import STANDARD_GRAVITY
-from measurement.errors import MeasurementError, guess, number
+from measurement.errors import MeasurementError, check_keys, check_range, number
 from measurement.gases import (
     CARBON_FRACTION,
     CARBON_PER_CO2,
@@ -28,16 +28,10 @@ AIR_PRESSURE = 101325.0
 """Pressure of the standard atmosphere at sea level [Pa]."""
 
 SULPHUR_AS_SO2 = 0.97753
-"""Share of the fuel's sulphur that leaves as SO2 [-]; the rest leaves as sulphate.
-
-Source: IMO GHG4, eq. 15, as in USEPA Marine_Emissions_Tools. Published losses are 1 to 19 %.
-"""
+"""Share of the fuel's sulphur that leaves as SO2, not as sulphate [-] (IMO GHG4, eq. 15)."""
 
 NO2_SHARE = 0.10
-"""Share of NO2 in NOx by mole [-], after the entrained ozone is used up.
-
-Assumption: makers give about 5 % at the engine; the range is 5 to 15 %.
-"""
+"""Share of NO2 in NOx by mole, once the ozone is used up [-]; assumed within 0.05 to 0.15."""
 
 DEFAULT_STACK_HEIGHT = 60.0
 """Height of the stack above the sea where neither a height nor a ship is given [m]."""
@@ -46,10 +40,7 @@ UNTITLED_SHIP = "own ship"
 """Name of a ship from an inline table without a title."""
 
 _EXHAUST_MOLAR_MASS = 28.8e-3
-"""Molar mass of exhaust with 4.5 % CO2 and 5 % water [kg/mol]; an assumption.
-
-It is within 1 % of that of air.
-"""
+"""Molar mass of exhaust with 4.5 % CO2 and 5 % water [kg/mol]; an assumption."""
 
 _KILOWATT_HOUR = 3.6e6
 """Kilowatt-hour [J]."""
@@ -60,10 +51,7 @@ _FUEL_G_KWH = {
     (4, False): 205.0,
     (4, True): 215.0,
 }
-"""Baseline of the specific fuel consumption [g/kWh] by stroke and whether the fuel is residual.
-
-Source: USEPA Marine_Emissions_Tools.
-"""
+"""Fuel consumption [g/kWh] by stroke and whether residual (USEPA Marine_Emissions_Tools)."""
 
 _NOX_G_KWH = {
     (2, False): (17.0, 16.0, 14.4, 3.4),
@@ -71,16 +59,10 @@ _NOX_G_KWH = {
     (4, False): (13.2, 12.2, 10.5, 2.6),
     (4, True): (13.2, 12.2, 10.5, 2.6),
 }
-"""NOx as NO2 [g/kWh] at any load, by stroke and whether the fuel is residual, for tiers 0 to 3.
-
-Source: USEPA Marine_Emissions_Tools.
-"""
+"""NOx as NO2 [g/kWh] by stroke, whether residual, and tier (USEPA Marine_Emissions_Tools)."""
 
 _LOAD_MIN = 0.05
-"""Least load of an engine under way [-]: dead slow; an assumption.
-
-The cubic law goes to zero, engines do not.
-"""
+"""Least load of an engine under way, dead slow [-]; an assumption."""
 
 _POSITIVE = (
     "power_max",
@@ -116,17 +98,9 @@ class Fuel:
     sulphur_percent: float
 
     def __post_init__(self) -> None:
-        if not 0.0 <= self.sulphur_percent <= FUEL_SULPHUR_MOST:
-            raise MeasurementError(
-                f"FSC of {self.name} is {self.sulphur_percent:g} % m/m; "
-                f"it must be 0 to {FUEL_SULPHUR_MOST:g} per cent"
-            )
-        if not 0.5 <= self.carbon_fraction <= 1.0:
-            raise MeasurementError(
-                f"CO2 of {self.name} is {self.co2_per_fuel:g} kg/kg, "
-                f"which makes carbon {self.carbon_fraction:.2f} of its mass; "
-                "it must be 1.9 to 3.6 kg/kg, for fuel oils 3.1 to 3.2"
-            )
+        check_range(f"FSC of {self.name}", self.sulphur_percent, 0.0, FUEL_SULPHUR_MOST, " % m/m")
+        least, most = 0.5 / CARBON_PER_CO2, 1.0 / CARBON_PER_CO2
+        check_range(f"CO2 of {self.name}", self.co2_per_fuel, least, most, " kg/kg")
 
     @property
     def carbon_fraction(self) -> float:
@@ -189,16 +163,9 @@ class Ship:
                 raise MeasurementError(
                     f"{name} of {self.name} is {value:g}; it must be finite and above 0"
                 )
-        if not 100.0 <= self.exhaust_temperature_c <= 600.0:
-            raise MeasurementError(
-                f"exhaust_temperature_c of {self.name} is {self.exhaust_temperature_c:g}; "
-                "it must be 100 to 600"
-            )
-        if not 0.0 <= self.wake_spread <= 20.0:
-            raise MeasurementError(
-                f"wake_spread of {self.name} is {self.wake_spread:g} m; "
-                "it must be 0 to 20, usually 0 to 8"
-            )
+        temperature, spread = self.exhaust_temperature_c, self.wake_spread
+        check_range(f"exhaust_temperature_c of {self.name}", temperature, 100.0, 600.0)
+        check_range(f"wake_spread of {self.name}", spread, 0.0, 20.0, " m")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -208,23 +175,18 @@ class Emission:
     Attributes
     ----------
     rates : mol/s of each of ``measurement.gases.GASES``, in that order
-    fuel_rate : fuel burnt [kg/s]
-    power : of the engine [W]
-    buoyancy_flux : F = g w d^2/4 (1 - Ta/Ts) [m4/s3]
+    buoyancy_flux : F = g w d^2/4 (1 - Ta/Ts) [m4/s3], with Ta of the air and Ts of the exhaust
     momentum_flux : Fm = (Ta/Ts) w^2 d^2/4 [m4/s2]
     stack_diameter : d [m]
-    exhaust_speed, exhaust_temperature : w and Ts at the stack's mouth [m/s, K]
+    exhaust_speed : w at the stack's mouth [m/s]
     wake_spread : initial spread in the superstructure's wake [m]
     """
 
     rates: tuple[float, ...]
-    fuel_rate: float
-    power: float
     buoyancy_flux: float
     momentum_flux: float
     stack_diameter: float
     exhaust_speed: float
-    exhaust_temperature: float
     wake_spread: float
 
 
@@ -285,13 +247,10 @@ def emission_of(
     air_over_exhaust = air_temperature / temperature
     return Emission(
         rates=rates,
-        fuel_rate=fuel_rate,
-        power=load * ship.power_max,
         buoyancy_flux=STANDARD_GRAVITY * exhaust_speed * quarter_square * (1.0 - air_over_exhaust),
         momentum_flux=air_over_exhaust * exhaust_speed**2 * quarter_square,
         stack_diameter=ship.stack_diameter,
         exhaust_speed=exhaust_speed,
-        exhaust_temperature=temperature,
         wake_spread=ship.wake_spread,
     )
 
@@ -299,10 +258,7 @@ def emission_of(
 def _load(ship: Ship, speed: float | None, power: float | None) -> float:
     """Return the share of the largest power [-]."""
     if speed is not None and power is None:
-        if not 0.0 <= speed <= ship.speed_max:
-            raise MeasurementError(
-                f"speed of {ship.name} is {speed:g} m/s; it must be 0 to {ship.speed_max:g} m/s"
-            )
+        check_range(f"speed of {ship.name}", speed, 0.0, ship.speed_max, " m/s")
         return max(_LOAD_MIN, (speed / ship.speed_max) ** 3)
     if power is not None and speed is None:
         if not 0.0 < power <= ship.power_max:
@@ -328,14 +284,8 @@ def check_air(temperature: float, pressure: float) -> None:
     ------
     MeasurementError : one of them is out of its range
     """
-    if not 220.0 <= temperature <= 330.0:
-        raise MeasurementError(
-            f"air temperature is {temperature:g} K; it must be 220 to 330 K, 288.15 is 15 degC"
-        )
-    if not 5e4 <= pressure <= 1.1e5:
-        raise MeasurementError(
-            f"air pressure is {pressure:g} Pa; it must be 5e4 to 1.1e5 Pa, 101325 is standard"
-        )
+    check_range("air temperature", temperature, 220.0, 330.0, " K")
+    check_range("air pressure", pressure, 5e4, 1.1e5, " Pa")
 
 
 def expected_fsc(fuel: Fuel) -> float:
@@ -362,48 +312,23 @@ def fuel_preset(name: str, sulphur_percent: float | None = None) -> Fuel:
     return Fuel(name=name, **values)
 
 
-def ship_preset(name: str) -> Ship:
-    """Return a ship of ``ships.toml``.
-
-    Raises
-    ------
-    MeasurementError : the name is not known
-    """
-    return read_ship(_preset("ship", name), name)
-
-
 def ship_of(given: str | Mapping[str, Any]) -> Ship:
     """Return a ship by its name in ``ships.toml``, or from an inline table.
 
+    A table has every field of ``Ship`` but ``name``; ``title`` may be left out.
+
     Raises
     ------
-    MeasurementError : the name is not known, or the table is invalid
+    MeasurementError : the name is not known, a key is not known or is missing, or a value is not of
+        its kind or range
     """
     if isinstance(given, str):
-        return ship_preset(given)
-    return read_ship(given, str(given.get("title", UNTITLED_SHIP)))
-
-
-def read_ship(table: Mapping[str, Any], name: str) -> Ship:
-    """Return a ship from a table with the fields of ``Ship``.
-
-    Parameters
-    ----------
-    table : every field but ``name``; ``title`` may be left out
-    name : of the ship
-
-    Raises
-    ------
-    MeasurementError : a key is not known or is missing, or a value is not of its kind or range
-    """
+        name, table = given, _preset("ship", given)
+    else:
+        name, table = str(given.get("title", UNTITLED_SHIP)), dict(given)
     where = f"ship '{name}'"
     numbers = [field.name for field in fields(Ship) if field.name not in ("name", "title")]
-    known = ["title", *numbers]
-    for key in table:
-        if key not in known:
-            raise MeasurementError(
-                f"{where} has the key '{key}'{guess(key, known)} it may have {', '.join(known)}"
-            )
+    check_keys(table, ["title", *numbers], where)
     for key in numbers:
         if key not in table:
             raise MeasurementError(f"{where} has no {key}; give all of {', '.join(numbers)}")

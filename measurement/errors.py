@@ -1,6 +1,8 @@
 """Errors of input from which nothing can be measured."""
 
-from collections.abc import Iterable
+import contextlib
+from collections.abc import Iterator, Mapping, Sequence
+from pathlib import Path
 from typing import Any
 
 from common.text import did_you_mean
@@ -10,12 +12,39 @@ class MeasurementError(ValueError):
     """The input cannot be used; its one-line message names quantity, value, limit and remedy."""
 
 
-def guess(name: str, known: Iterable[str]) -> str:
-    """Return the question for the known name nearest to an unknown one, or ";" if none is similar.
+@contextlib.contextmanager
+def naming(path: Path) -> Iterator[None]:
+    """Put the name of a file before an error of its content."""
+    try:
+        yield
+    except MeasurementError as error:
+        raise MeasurementError(f"'{path}': {error}") from None
 
-    It stands between the unknown name and the list of the known ones.
+
+def check_range(what: str, value: float, low: float, high: float, unit: str = "") -> None:
+    """Check that a value is within its range; the error says what it is, with its unit.
+
+    Raises
+    ------
+    MeasurementError : the value is below ``low``, above ``high``, or NaN
     """
-    return did_you_mean(name, known) or ";"
+    if not low <= value <= high:
+        raise MeasurementError(f"{what} is {value:g}{unit}; it must be {low:g} to {high:g}{unit}")
+
+
+def check_keys(table: Mapping[str, Any], known: Sequence[str], where: str) -> None:
+    """Check the keys of a table against the known ones; ``where`` names the table in the error.
+
+    Raises
+    ------
+    MeasurementError : a key is not known
+    """
+    for key in table:
+        if key not in known:
+            raise MeasurementError(
+                f"{where} has the key '{key}'{did_you_mean(key, known) or ';'} it may have"
+                f" {', '.join(known)}"
+            )
 
 
 def number(value: Any, key: str, where: str) -> float:

@@ -1,7 +1,5 @@
 """The gases of the exhaust, the units of their readings, and the fuel sulphur content."""
 
-from measurement.errors import MeasurementError
-
 GASES = ("so2", "co2", "no", "no2")
 """Gases in the order of every array over gases."""
 
@@ -45,10 +43,7 @@ is NO2, and ozone adds some.
 """
 
 FUEL_SULPHUR_MOST = 5.0
-"""Largest sulphur content of a marine fuel [% m/m].
-
-The limit was 4.5 % until 2012 (MARPOL Annex VI, regulation 14).
-"""
+"""Largest sulphur content of a marine fuel [% m/m]: 4.5 was the limit (MARPOL VI, reg. 14)."""
 
 ASSUMED_LEAST = 0.0005
 """Smallest correction for assumed gases that is printed [% m/m]: half of the third decimal."""
@@ -72,15 +67,6 @@ def fsc_factor(carbon_fraction: float = CARBON_FRACTION) -> float:
 
     Parameters
     ----------
-    carbon_fraction : carbon by mass in the fuel [-], above 0 and at most 1
-
-    Raises
-    ------
-    MeasurementError : the fraction is not within 0 to 1
+    carbon_fraction : carbon by mass in the fuel [-], usually 0.85 to 0.875
     """
-    if not 0.0 < carbon_fraction <= 1.0:
-        raise MeasurementError(
-            f"carbon fraction is {carbon_fraction:g}; "
-            "it must be above 0 and at most 1, usually 0.85 to 0.875"
-        )
     return 0.1 * carbon_fraction * SULPHUR_MASS / _CARBON

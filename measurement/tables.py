@@ -22,14 +22,8 @@ def other_separator(head: str) -> str:
 def decimal_commas(row: Sequence[str], heads: Sequence[str], numbers: Iterable[int]) -> str:
     """Return the problem of a row that seems to have decimal commas, or an empty text.
 
-    Such a row has more values than there are columns, and no value with a point. Commas at the end
-    of a row do not count.
-
-    Parameters
-    ----------
-    row : its cells
-    heads : names of the columns
-    numbers : indices of columns with numbers; at least one of them has decimals
+    Such a row has more values than there are columns, and no point in any of its ``numbers``, the
+    columns with decimals. Commas at the end of a row do not count.
     """
     ends = next((i for i in range(len(row), 0, -1) if row[i - 1].strip()), 0)
     if ends <= len(heads) or any("." in row[i] for i in numbers):

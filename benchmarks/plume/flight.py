@@ -14,7 +14,7 @@ from scipy.special import j0
 from gnc.estimation.plume.estimator import PlumeEstimator, PlumeState
 from gnc.estimation.plume.prior import Expectation, GasSensor, PlumePrior, expected_plume
 from gnc.mission.axis import Search
-from measurement.emission import emission_of, fuel_preset, ship_preset
+from measurement.emission import emission_of, fuel_preset, ship_of
 from measurement.gases import GASES
 from measurement.plume.fluctuating_plume import FluctuatingPlume
 from measurement.plume.spread import MarineAir
@@ -100,7 +100,7 @@ class Flight:
 
 def prior_of(case: Case, sensor: GasSensor, distance: float) -> PlumePrior:
     """Return what is expected of a ship of this class, without her stack and her load."""
-    ship, fuel = ship_preset("container"), fuel_preset("mgo", 0.1)
+    ship, fuel = ship_of("container"), fuel_preset("mgo", 0.1)
     load = math.sqrt(LOADS[0] * LOADS[1])
     usual = emission_of(ship, fuel, power=load * ship.power_max)
     north, east = (a + b for a, b in zip(case.apparent, case.wind_error, strict=True))
@@ -219,7 +219,7 @@ class _Simulation:
     """Plume and sniffer along the way of the vehicle."""
 
     def __init__(self, case: Case, spec: SnifferSpec, orbit: Orbit, duration: float) -> None:
-        ship, fuel = ship_preset("container"), fuel_preset("mgo", 0.1)
+        ship, fuel = ship_of("container"), fuel_preset("mgo", 0.1)
         emission = emission_of(ship, fuel, power=case.load * ship.power_max)
         time = np.arange(-300.0, duration + 2.0, 0.5)
         self._rate = emission.rates[_CO2]

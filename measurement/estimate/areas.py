@@ -24,10 +24,7 @@ _TAIL = 5.0
 """Time from the end of a pass to that of its window [slowest time constants]."""
 
 _BASE = 15.0
-"""Length of the background on either side of a window, outside of other windows [s].
-
-Where there is no room it is one sample.
-"""
+"""Length of the background beside a window, outside of others [s]; at least one sample."""
 
 _SHARE_LEAST = 0.05
 """Share of an area below which nothing can be concluded from the rest."""
@@ -86,9 +83,7 @@ def area_ratio(record: Record, instrument: SnifferSpec, passes: Sequence[Pass]) 
     times = np.array([found.centre_s for found in passes])
     interval = float(np.median(np.diff(times))) if len(times) > 1 else math.nan
     if co2 <= 0.0:
-        return Areas(
-            ratio=math.nan, noise=math.nan, share=math.nan, separate=math.nan, interval_s=interval
-        )
+        co2 = math.nan
     ratio = sum(shares[gas][0] * areas[gas] for gas in gases) / co2
     variance = sum(
         (shares[gas][0] - ratio * shares[gas][1]) ** 2
@@ -122,8 +117,7 @@ def _area_weights(
 ) -> dict[str, Array]:
     """Return the weights of each gas's samples in the areas of all passes together.
 
-    A window begins before its pass, and ends when the slowest channel has forgotten it or the next
-    one begins. The windows of a gas are shifted by its delay.
+    A window ends when the slowest channel has forgotten its pass or the next one begins.
     """
     tail = _TAIL * max(instrument.known(gas).constants[0] for gas in record.gases)
     windows: list[Span] = []
@@ -154,10 +148,10 @@ def _sum_weights(record: Record, windows: Sequence[Span], late: float) -> Array:
 
 
 def _add_window(weights: Array, record: Record, window: Span, free: Span) -> None:
-    """Add the weights of an area over a window and its background to those of the samples.
+    """Add the weights of an area over a window, less its background, to those of the samples.
 
-    The background is the straight line between the means of the samples before and after the
-    window, within ``_BASE`` of it and within ``free``, where no other window is [s].
+    The background is the straight line between the means of the samples before and after it, within
+    ``_BASE`` of the window and within ``free`` [s].
     """
     before = 0
     for time in record.times:
@@ -181,8 +175,7 @@ def _add_window(weights: Array, record: Record, window: Span, free: Span) -> Non
 def _puffs(record: Record, instrument: SnifferSpec, passes: Sequence[Pass], gas: str) -> Array:
     """Return what a gas's channel reads of puffs of CO2 with the dose of each pass [ppm].
 
-    Each sample is the mean from half a step before it to half a step after it. At single moments,
-    an area would depend on where between two samples a puff arrives.
+    Each sample is the mean over a step: it does not matter when between samples a puff arrives.
     """
     channel, co2 = instrument.known(gas), instrument.known("co2")
     centres = np.array([found.centre_s for found in passes])

@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
@@ -22,10 +22,7 @@ where delays differ by half of their interval.
 """
 
 SULPHATE_SHARE = 0.0225
-"""Share of the sulphur that leaves as sulphate, not as SO2 [-] (IMO GHG4, eq. 15).
-
-Reported values are 0.01 to 0.19. It is stated, not corrected.
-"""
+"""Share of sulphur that leaves as sulphate [-], stated and not corrected (IMO GHG4, eq. 15)."""
 
 _CORRECTING = ("no", "no2")
 
@@ -47,29 +44,15 @@ def unmeasured(
     return found
 
 
-@dataclass(frozen=True)
-class CommonErrors:
-    """Effect of the instrument's uncertainty.
-
-    Attributes
-    ----------
-    parts : standard uncertainty of the result, by name
-    residual_energy : expected sum of squares that it adds to the residuals
-    """
-
-    parts: dict[str, float]
-    residual_energy: float
-
-
 def common_errors(
     instrument: SnifferSpec,
     measured: tuple[str, ...],
     changes: Callable[[SnifferSpec], tuple[float, Array]],
-) -> CommonErrors:
-    """Return the effect of gains, responses, delays and cross-sensitivities not known exactly.
+) -> tuple[dict[str, float], float]:
+    """Return standard uncertainties of the result by name, and the energy they add to residuals.
 
-    Each property is moved by its standard deviation, and the result found again; those of a name
-    add in squares.
+    Each gain, response, delay and cross-sensitivity is moved by its standard deviation, and the
+    result found again; those of a name add in squares.
 
     Parameters
     ----------
@@ -85,16 +68,13 @@ def common_errors(
         change, of_residuals = changes(instrument.with_channel(channel))
         squares[name] = squares.get(name, 0.0) + change**2
         energy += float(np.sum(of_residuals**2))
-    return CommonErrors({name: math.sqrt(square) for name, square in squares.items()}, energy)
+    return {name: math.sqrt(square) for name, square in squares.items()}, energy
 
 
 def _moved_channels(
     instrument: SnifferSpec, measured: tuple[str, ...]
 ) -> Iterator[tuple[str, Channel]]:
-    """Yield the name of each error, and the channel that has it by a standard deviation.
-
-    Properties with an infinite deviation were found from the record, and do not count.
-    """
+    """Yield name and channel of each error, except of what was found from the record (infinite)."""
     for gas in measured:
         channel = instrument.known(gas)
         calibration, response = "calibration", "response"

@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 import pandas as pd
@@ -57,10 +57,7 @@ _CARBON_LEAST, _CARBON_MOST = 0.5, 0.95
 """Range of a fuel's carbon [-]; methanol has 0.375, for which these factors are not made."""
 
 _OVERLAP_LEAST = 0.95
-"""Least share of the truth that areas must read where passes overlap in the slow channel [-].
-
-It is that of passes 2.0 t90 apart.
-"""
+"""Least share of the SO2 that areas must read [-]: that of passes 2.0 t90 apart."""
 
 _EXPLAINED_LEAST = 0.5
 """Least share of a misfit that another delay explains if it is the true one [-]."""
@@ -68,7 +65,7 @@ _EXPLAINED_LEAST = 0.5
 
 @dataclass(frozen=True, kw_only=True)
 class _Ratio:
-    """A ratio of SO2 to CO2, and the parts of an estimate that depend on the method.
+    """A ratio of SO2 to CO2, and what depends on the method; NaN without a pass.
 
     Attributes
     ----------
@@ -80,11 +77,11 @@ class _Ratio:
     problems : reasons why there can be no verdict
     """
 
-    ratio: float
-    noise: float
-    misfit: float
-    common: dict[str, float]
     alignment: Alignment
+    ratio: float = math.nan
+    noise: float = math.nan
+    misfit: float = math.nan
+    common: dict[str, float] = field(default_factory=dict)
     overlap: float = 0.0
     problems: tuple[str, ...] = ()
 
@@ -126,7 +123,7 @@ def estimate(
     passes = find_passes(record, instrument.known("co2"))
     if not passes:
         problems.append(_no_pass(noise["co2"]))
-        ratio = _no_ratio(instrument)
+        ratio = _Ratio(alignment=Alignment(instrument=instrument))
     else:
         problems += coarseness_problem(passes, record) or _too_short(record, instrument, passes)
         if method == "regression":
@@ -179,14 +176,6 @@ def _too_short(record: Record, instrument: SnifferSpec, passes: Sequence[Pass]) 
     )
 
 
-def _no_ratio(instrument: SnifferSpec) -> _Ratio:
-    """Return the ratio of a record without a pass: NaN."""
-    alignment = Alignment(
-        instrument=instrument, slope_deviation=math.nan, t90_sd_s=math.nan, delay_sd_s=math.nan
-    )
-    return _Ratio(ratio=math.nan, noise=math.nan, misfit=math.nan, common={}, alignment=alignment)
-
-
 def _by_regression(record: Record, instrument: SnifferSpec) -> _Ratio:
     """Return the slope of SO2 over CO2, with response and delay as they are stated or fit best."""
     alignment = align(record, instrument)
@@ -213,19 +202,17 @@ def _by_regression(record: Record, instrument: SnifferSpec) -> _Ratio:
             return found.slope, np.zeros(1)
         return slope - slope_known, residual - residual_known
 
-    errors = common_errors(alignment.instrument, record.gases, changes)
-    response = math.hypot(errors.parts.get("response", 0.0), alignment.slope_deviation)
+    parts, instrument_energy = common_errors(alignment.instrument, record.gases, changes)
+    response = math.hypot(parts.get("response", 0.0), alignment.slope_deviation)
     problems = (
         *_shown_delay_problem(record, instrument, found.misfit, as_known.count),
-        *residual_problem(
-            found.misfit, found.residual_energy, errors.residual_energy, as_known.count
-        ),
+        *residual_problem(found.misfit, found.residual_energy, instrument_energy, as_known.count),
     )
     return _Ratio(
         ratio=found.slope,
         noise=found.noise,
         misfit=found.misfit,
-        common={**errors.parts, "response": response},
+        common={**parts, "response": response},
         alignment=with_instrument_errors(alignment, as_known.instrument, others),
         problems=problems,
     )
@@ -236,9 +223,7 @@ def _shown_delay_problem(
 ) -> tuple[str, ...]:
     """Return the problem of SO2 and CO2 that do not fit in time, as with the clocks of two loggers.
 
-    Far from the true delay the slope is near 0 and changes little, so that small steps of the delay
-    do not show the error. The delay is sought over its whole range, as if it were not stated,
-    unless noise alone explains the residuals.
+    The delay is sought over its whole range: far from the true one, small steps show no error.
     """
     so2 = instrument.known("so2")
     if math.isinf(so2.delay_sd_s) or not misfit > 0.0 or noise_explains(misfit, samples):
@@ -258,7 +243,7 @@ def _shown_delay_problem(
     def changes(moved: SnifferSpec) -> tuple[float, Array]:
         return refined_delay(moved) - refined, np.zeros(1)
 
-    parts = common_errors(free.instrument, record.gases, changes).parts
+    parts, _ = common_errors(free.instrument, record.gases, changes)
     deviation = math.hypot(so2.delay_sd_s, free.delay_sd_s, *parts.values())
     return delay_problem(_delay(instrument), _delay(free.instrument), deviation)
 
@@ -269,17 +254,14 @@ def _delay(instrument: SnifferSpec) -> float:
 
 
 def _by_areas(record: Record, instrument: SnifferSpec, passes: Sequence[Pass]) -> _Ratio:
-    """Return the ratio of areas.
-
-    Passes that overlap in the slow channel add a common error as large as the closed form says.
-    """
+    """Return the ratio of areas, with a common error where passes overlap in the slow channel."""
     alignment = stated_alignment(instrument)
     found = area_ratio(record, instrument, passes)
 
     def changes(moved: SnifferSpec) -> tuple[float, Array]:
         return area_ratio(record, moved, passes).ratio - found.ratio, np.zeros(1)
 
-    common = common_errors(instrument, record.gases, changes).parts
+    common, _ = common_errors(instrument, record.gases, changes)
     problems: tuple[str, ...] = ()
     if found.share < _OVERLAP_LEAST:
         problems = (found.truncation_reason(instrument.known("so2").t90_s),)
@@ -318,7 +300,10 @@ def _estimate_from(
     common["sampling"] = SAMPLING_SD * record.step / instrument.known("co2").constants[0] * abs(fsc)
     total = math.sqrt(noise**2 + sum(value**2 for value in common.values()))
     if math.isinf(so2.delay_sd_s):
-        read = [_share_read_after(record, found.end_s) for found in passes]
+        # The share that was read of the time in which SO2 may come after each pass.
+        after = [record.time - found.end_s for found in passes]
+        samples = [np.count_nonzero((t > 0.0) & (t <= DELAY_MOST)) for t in after]
+        read = [min(1.0, count * record.step / DELAY_MOST) for count in samples]
         doses = [found.dose_ppm_s for found in passes]
         problems = [*problems, *pending_so2_problem(fsc, total, read, doses)]
     signals = make_signals(record, instrument)
@@ -370,13 +355,6 @@ def _estimate_from(
         instrument=instrument,
         signals=table,
     )
-
-
-def _share_read_after(record: Record, end: float) -> float:
-    """Return the share read of the time in which SO2 may come after a pass that ends then [s]."""
-    after = record.time - end
-    samples = np.count_nonzero((after > 0.0) & (after <= DELAY_MOST))
-    return min(1.0, samples * record.step / DELAY_MOST)
 
 
 def _figures(
@@ -455,13 +433,7 @@ def _row(
 
 
 def time_to_verdict(table: pd.DataFrame, limit_percent: float) -> float:
-    """Return the elapsed time from which the verdict on a limit stays the same, NaN if open [s].
-
-    Parameters
-    ----------
-    table : of ``over_time``
-    limit_percent : one of its limits [% m/m]
-    """
+    """Return the elapsed time from which the verdict on a limit [% m/m] stays, NaN if open [s]."""
     verdicts = table[f"verdict_{limit_percent:g}"].tolist()
     if not verdicts or verdicts[-1] == OPEN:
         return math.nan

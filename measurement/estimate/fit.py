@@ -63,7 +63,12 @@ def regress(signals: Signals) -> Slope:
         expected = _noise_energy(signals, 1.0, -slope)
         misfit = residual_energy / expected if expected > 0.0 else 1.0
         variance = float(noise_covariance(signals, (co2 / energy)[:, np.newaxis], slope)[0, 0])
-        variance += slope**2 * _co2_noise_correlation(signals) / energy**2
+        correlation = signals.count * sum(
+            (in_co2 * signals.noise(gas)) ** 4 * signals.noise_correlation(gas)
+            for gas, (_, in_co2) in signals.shares.items()
+            if in_co2
+        )
+        variance += slope**2 * correlation / energy**2
     return Slope(
         slope=slope,
         noise=math.sqrt(variance * max(1.0, misfit)),
@@ -91,23 +96,11 @@ def noise_covariance(signals: Signals, weights: Array, slope: float) -> Array:
 
 
 def _noise_energy(signals: Signals, so2: float, co2: float) -> float:
-    """Return the expected sum of squares of the noise of ``so2 SO2 + co2 CO2``.
-
-    What the background explains of it does not count.
-    """
+    """Return the expected noise energy of ``so2 SO2 + co2 CO2`` beside the background."""
     return sum(
         (so2 * in_so2 + co2 * in_co2) ** 2 * signals.noise(gas) ** 2 * signals.noise_energy(gas)
         for gas, (in_so2, in_co2) in signals.shares.items()
         if so2 * in_so2 + co2 * in_co2
-    )
-
-
-def _co2_noise_correlation(signals: Signals) -> float:
-    """Return n times the sum of the squared autocovariance of the CO2 signal's noise."""
-    return signals.count * sum(
-        (in_co2 * signals.noise(gas)) ** 4 * signals.noise_correlation(gas)
-        for gas, (_, in_co2) in signals.shares.items()
-        if in_co2
     )
 
 
@@ -152,9 +145,9 @@ class Alignment:
     """
 
     instrument: SnifferSpec
-    slope_deviation: float
-    t90_sd_s: float
-    delay_sd_s: float
+    slope_deviation: float = math.nan
+    t90_sd_s: float = math.nan
+    delay_sd_s: float = math.nan
 
 
 def stated_alignment(instrument: SnifferSpec) -> Alignment:
@@ -209,11 +202,10 @@ def align(record: Record, instrument: SnifferSpec, start: SnifferSpec | None = N
 def with_instrument_errors(
     alignment: Alignment, known: SnifferSpec, others: Sequence[SnifferSpec]
 ) -> Alignment:
-    """Return an alignment whose deviations include the effect of the instrument's errors.
+    """Return an alignment whose deviations by noise include the effect of the instrument's errors.
 
     Parameters
     ----------
-    alignment : with its deviations by noise
     known, others : the instrument aligned as it is known, and with one error each
     """
     so2 = alignment.instrument.known("so2")
@@ -234,10 +226,7 @@ def _timing(instrument: SnifferSpec) -> Array:
 
 
 def _with_timing(instrument: SnifferSpec, timing: Array) -> SnifferSpec:
-    """Return the instrument with log(t90) of SO2 and its delay after CO2 [s].
-
-    Where the delay of SO2 would be negative, the other channels are delayed instead.
-    """
+    """Return the instrument with log(t90) of SO2 and its delay after CO2 [s], of either sign."""
     late = max(0.0, -float(timing[1]) - instrument.known("co2").delay_s)
     if late:
         channels = tuple(
@@ -253,13 +242,7 @@ def _with_timing(instrument: SnifferSpec, timing: Array) -> SnifferSpec:
 def _gauss_newton(
     record: Record, instrument: SnifferSpec, timing: Array, free: npt.NDArray[np.int64]
 ) -> tuple[Array, Array, float]:
-    """Return the Gauss-Newton step, its covariance, and the deviation that it adds to the slope.
-
-    Parameters
-    ----------
-    timing : log(t90) and delay [s], shape (2,)
-    free : indices of those that are not stated
-    """
+    """Return the step of the timing, its covariance, and the deviation it adds to the slope."""
     signals = make_signals(record, _with_timing(instrument, timing))
     slope, residual = fit_slope(signals)
     if not math.isfinite(slope):
@@ -283,10 +266,7 @@ def _gauss_newton(
 def _derivative(
     signals: Signals, instrument: SnifferSpec, timing: Array, i: int, slope: float
 ) -> Array:
-    """Return the derivative of the residuals by log(t90) or delay, shape (n,).
-
-    Residuals are relative to the noise that SO2 has left.
-    """
+    """Return the derivative of residuals, over SO2's noise, by log(t90) or delay, shape (n,)."""
     sides, noise, known = [], _so2_noise(signals), signals.known
     for sign in (1.0, -1.0):
         moved = timing.copy()
@@ -301,18 +281,14 @@ def _derivative(
 def _so2_noise(signals: Signals) -> float:
     """Return the mean square of the noise of the SO2 signal, or 1 if it has none or is too short.
 
-    SO2 is smoothed where CO2 or a gas that corrects it is slower, the more the smaller the t90 of
-    SO2 is taken. Without this scale the residuals of noisy SO2 would be least for a t90 of 0.
+    A small t90 of SO2 smooths it most: without this scale it would have the least residuals.
     """
     found = _residual_variance(signals, 0.0)
     return found if found > 0.0 and signals.enough else 1.0
 
 
 def _grid_search(record: Record, instrument: SnifferSpec, free: npt.NDArray[np.int64]) -> Array:
-    """Return log(t90) and delay [s] on the grid at which CO2 leaves least of SO2 unexplained.
-
-    What is left is relative to the noise of SO2.
-    """
+    """Return log(t90) and delay [s] on the grid that leave least of SO2 unexplained, over noise."""
     best, least = _timing(instrument), math.inf
     stated_delay = float(best[1])
     for log_t90 in np.log(_T90_SEARCH) if 0 in free else best[:1]:
@@ -367,9 +343,7 @@ def fit_groups(
 
     Parameters
     ----------
-    signals : of the whole record
-    passes : through the plume
-    slope, misfit : of the whole record
+    signals, slope, misfit : of the whole record
     response : standard deviation of the slope by response and delay [ppb/ppm]; groups may differ by
         as much, as a wrong response distorts each of them differently
     """

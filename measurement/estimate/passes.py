@@ -16,14 +16,13 @@ SNR_LEAST = 5.0
 """Least signal to noise of a pass (Kattner et al., ACP 15:10087)."""
 
 _STEPS_LEAST = 3.5
-"""Least median height of passes [steps of the CO2 readings]; lower ones lose too much in rounding.
-"""
+"""Least median height of passes [steps of the CO2 readings]."""
 
 _SAMPLES_LEAST = 4
 """Least median length of passes [sample periods].
 
-Simulated logs of 0.25 % read 0.25 to 0.28 % in the mean where passes last longer. Where they do
-not, they read 0.12 to 0.33 %, and the interval does not show it.
+Simulated logs of 0.25 % read 0.25 to 0.28 % in the mean where passes last longer, and 0.12 to
+0.33 % where they do not.
 """
 
 _TIME_ROUNDING = 0.01
@@ -33,11 +32,7 @@ _WINDOW = 60.0
 """Length of the pieces whose low quantile is the background [s]."""
 
 _QUANTILE, _QUANTILE_SIGMA = 0.05, 1.645
-"""Low quantile of the readings, and how far the background is above it [standard deviations].
-
-The second is the quantile of the normal distribution. A smaller share of the samples than that is
-outside the plume.
-"""
+"""Low quantile of the readings, and how far the background is above it [standard deviations]."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -108,10 +103,7 @@ def find_passes(record: Record, channel: Channel) -> tuple[Pass, ...]:
 def _passes_at(
     peaks: npt.NDArray[np.int64], time: Array, excess: Array, channel: Channel
 ) -> list[Pass]:
-    """Return the passes at these peaks of a segment.
-
-    A pass lasts as long as the excess is above the noise, at most from trough to trough.
-    """
+    """Return the passes at peaks: where the excess is above noise, at most trough to trough."""
     noise, memory = channel.noise, sum(channel.constants)
     troughs = [int(a + np.argmin(excess[a : b + 1])) for a, b in itertools.pairwise(peaks)]
     below = np.flatnonzero(excess <= noise)

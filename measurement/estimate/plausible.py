@@ -5,7 +5,7 @@ import math
 import numpy as np
 
 from measurement.estimate.quality import STRANGE_SIGMA
-from measurement.estimate.record import Record, shown_scatter, shown_step
+from measurement.estimate.record import Record, shown_scatter, shown_step, stated_noise
 from measurement.gases import GASES, UNITS
 from measurement.sniffer.channel import Channel
 from measurement.sniffer.lag import Array
@@ -13,16 +13,10 @@ from measurement.sniffer.sniffer import Readings
 from measurement.sniffer.spec import SnifferSpec
 
 _CUT_LEAST, _CUT_OVER, _CUT_STEPS = 8, 3.0, 5
-"""Readings at the last step before an end of the range that show where readings are cut off.
-
-They are at least so many, and more than so many times those at any of the next steps.
-"""
+"""Readings that are cut off: least number at an end, ratio to the next steps, number of these."""
 
 _FASTER, _FASTEST = 0.5, 0.1
-"""Shares of the stated t90 within which a sensor may fall: at most, and at least.
-
-The first allows for uneven times and wrong figures, the second is for a t90 that is not well known.
-"""
+"""Largest and least share of its t90 in which a sensor may fall, by how well t90 is known."""
 
 _FALL_SIGMAS = 10.0
 """Standard deviations of the noise by which a reading may be lower than a fall allows."""
@@ -31,25 +25,16 @@ _CHANCE_MOST = 1e-6
 """Least probability that noise alone has as many equal readings in a row in the record."""
 
 _STUCK_SHARE_MOST = 0.1
-"""Share of a record in which a sensor may be stuck, for no longer than its t90 at a time.
-
-As much may be missing.
-"""
+"""Share of a record in which a sensor may be stuck, for no longer than its t90 at a time."""
 
 _FEWEST = 10
 """Least number of equal readings in a row that show a stuck sensor."""
 
 _RISE_SIGMA = 10.0
-"""Rise of another gas that shows the plume [standard deviations of its noise].
-
-White noise reaches 7 of them.
-"""
+"""Rise of another gas that shows the plume [standard deviations of its noise, which reaches 7]."""
 
 _SMOOTHED = 0.1
-"""Least share of its stated noise that a sensor shows in clean air.
-
-Data sheets state 2 sigma, and instruments smooth.
-"""
+"""Least share of its stated noise that a sensor shows in clean air: instruments smooth."""
 
 _STEP_ROUNDING = 1e-6
 """Rounding of floating-point numbers by which readings a step apart may differ more [steps]."""
@@ -60,16 +45,12 @@ _NOISE_USUAL = 1.0
 _QUIET_SHARE = 0.01
 """Least scatter of readings, relative to their noise.
 
-Readings in ppm have a thousandth; a data sheet that states 2 sigma, or smoothing in the instrument,
-leaves a larger share. With ``_NOISE_USUAL`` it is 10 ppt: only laser-induced fluorescence has less
-in a second (2 ppt in 10 s: Rollins et al., AMT 9:4601).
+Readings in ppm have a thousandth. With ``_NOISE_USUAL`` it is 10 ppt: only laser-induced
+fluorescence has less in a second (2 ppt in 10 s: Rollins et al., AMT 9:4601).
 """
 
 _OZONE_MOST = 50.0
-"""NO2 that ozone makes of the NO of a plume, at most [ppb] (assumption).
-
-It is all ozone of the air over the sea, which has 20 to 50.
-"""
+"""Most NO2 that ozone makes of the NO of a plume [ppb]: sea air has 20 to 50 of ozone."""
 
 _LOW, _HIGH, _NOISE_RANGE = 0.05, 0.95, 3.29
 """Quantiles whose difference is the range of a gas, and that range of noise alone [sigma]."""
@@ -95,17 +76,14 @@ def implausibilities(record: Record, readings: Readings, instrument: SnifferSpec
 def _cut_off(readings: Readings, channel: Channel) -> list[str]:
     """Return the problem of readings that are cut off at the largest or the least.
 
-    The readings beyond are lost, which makes the mean of a gas too low, or too high. Saturation at
-    the end of the stated range is a problem of the record, and not repeated here.
+    Saturation at the end of the stated range is a problem of the record, and not repeated here.
     """
     column = readings.values[:, GASES.index(channel.gas)]
     known, step = column[np.isfinite(column)], shown_step(column)
     if not step:
         return []
     most, least = float(known.max()), float(known.min())
-    noise = channel.noise
-    if math.isnan(noise):
-        noise = shown_scatter([known[known > least]], step)
+    noise = stated_noise(channel, [known[known > least]], step)
     name, unit = channel.gas.upper(), UNITS[channel.gas]
     saturated = most >= channel.range_high - 0.5 * channel.resolution
     times = 0 if saturated else _heap((most - known) / step)
@@ -125,10 +103,7 @@ def _cut_off(readings: Readings, channel: Channel) -> list[str]:
 
 
 def _heap(steps: Array) -> int:
-    """Return how many readings are at the end, given their steps from it, if these are a heap.
-
-    Noise and plumes end in fewer and fewer readings.
-    """
+    """Return how many readings are at an end, given their steps from it, if these are a heap."""
     heap, *near = (int(np.sum(np.round(steps) == number)) for number in range(_CUT_STEPS + 1))
     return heap if heap >= _CUT_LEAST and heap > _CUT_OVER * max(near) else 0
 
@@ -136,9 +111,7 @@ def _heap(steps: Array) -> int:
 def _spikes(record: Record, readings: Readings, channel: Channel) -> list[str]:
     """Return the problem of CO2 that falls faster than its sensor can, as it does after a spike.
 
-    A reading falls towards that of the air, and no lower: a time constant later 1/e of its excess
-    is left. One spike is enough to draw the slope to 0, and where SO2 is noisy nothing else shows
-    it.
+    One spike is enough to draw the slope to 0, and where SO2 is noisy nothing else shows it.
     """
     column = readings.values[:, GASES.index("co2")]
     known = np.flatnonzero(np.isfinite(column))
@@ -161,14 +134,7 @@ def _spikes(record: Record, readings: Readings, channel: Channel) -> list[str]:
 
 
 def _quiet(scatter: float, channel: Channel) -> list[str]:
-    """Return the problem of a gas that scatters less than its sensor can; clean air has noise, too.
-
-    Parameters
-    ----------
-    scatter : standard deviation of the noise that the readings show [ppb]
-    channel : of SO2, NO or NO2, as the analyst knows it; rounding to a step that is larger than its
-        noise may hide the noise
-    """
+    """Return the problem of a gas whose readings scatter less [ppb] than its sensor can."""
     stated = not math.isnan(channel.noise)
     noise = channel.noise if stated else _NOISE_USUAL
     if scatter >= _QUIET_SHARE * noise or channel.resolution > noise:
@@ -186,10 +152,7 @@ def _quiet(scatter: float, channel: Channel) -> list[str]:
 
 
 def _exchanged(record: Record, instrument: SnifferSpec) -> list[str]:
-    """Return the problem of NO2 that exceeds NO by more than ozone makes of it.
-
-    Of the NOx of exhaust 3 to 20 % are NO2.
-    """
+    """Return the problem of NO2 that exceeds NO by more than ozone makes of it."""
     if not {"no", "no2"} <= set(record.gases):
         return []
     gains = {gas: instrument.known(gas).gain for gas in ("no", "no2")}
@@ -214,15 +177,9 @@ def _exchanged(record: Record, instrument: SnifferSpec) -> list[str]:
 def _stuck(readings: Readings, channel: Channel) -> list[str]:
     """Return the problem of a gas whose sensor is stuck for a part of the record.
 
-    A working sensor shows its noise in clean air, too, unless that is below its resolution. Only
-    where another gas rises meanwhile is the stated noise taken at its word; otherwise a tenth of it
-    has to be too much, and readings of 0 do not count, as a sensor may cut off there what is lower.
+    Only where another gas rises meanwhile is the stated noise taken at its word. Otherwise a tenth
+    of it has to be too much, and readings of 0 do not count, as a sensor may cut off what is lower.
     A gas that reads the same throughout is left to ``_quiet``.
-
-    Parameters
-    ----------
-    readings : as they were logged, with those of the gas
-    channel : of the gas, as the analyst knows it
     """
     column = readings.values[:, GASES.index(channel.gas)]
     known = np.flatnonzero(np.isfinite(column))
@@ -234,7 +191,7 @@ def _stuck(readings: Readings, channel: Channel) -> list[str]:
     runs = [
         run
         for run in _equal_runs(values, step)
-        if _too_long(run, values, step, _noise_outside(run, values, step, channel))
+        if _too_long(run, values, step, stated_noise(channel, _around(run, values), step))
         and not _explained(run, time, values, step, readings, channel)
     ]
     lengths = [float(time[run[-1]] - time[run[0]]) for run in runs]
@@ -273,12 +230,8 @@ def _equal_runs(values: Array, step: float) -> list[range]:
     return [run for run in runs if len(run) >= _FEWEST]
 
 
-def _noise_outside(run: range, values: Array, step: float, channel: Channel) -> float:
-    """Return the stated noise of a channel, or the noise of the readings outside of a run."""
-    if not math.isnan(channel.noise):
-        return channel.noise
-    rest = [part for part in (values[: run.start], values[run.stop :]) if len(part)]
-    return shown_scatter(rest, step)
+def _around(run: range, values: Array) -> list[Array]:
+    return [part for part in (values[: run.start], values[run.stop :]) if len(part)]
 
 
 def _too_long(run: range, values: Array, step: float, noise: float) -> bool:
@@ -287,14 +240,11 @@ def _too_long(run: range, values: Array, step: float, noise: float) -> bool:
         return False
     # Most normal noise is within a step that is centred on its mean.
     within = math.erf(step / noise / math.sqrt(2.0))
-    readings = len(run) / _oversampling(values)
-    return readings >= _FEWEST and len(values) * within ** (readings - 1.0) < _CHANCE_MOST
-
-
-def _oversampling(values: Array) -> float:
-    """Return the rows per reading: more than 1 where the logger is faster than the sensor."""
+    # A logger that is faster than the sensor repeats each reading in several rows.
     changes = np.flatnonzero(np.diff(values))
-    return float(np.median(np.diff(changes))) if len(changes) > 1 else 1.0
+    rows = float(np.median(np.diff(changes))) if len(changes) > 1 else 1.0
+    readings = len(run) / rows
+    return readings >= _FEWEST and len(values) * within ** (readings - 1.0) < _CHANCE_MOST
 
 
 def _explained(

@@ -17,24 +17,17 @@ PASSES_GOOD = 3
 """Passes for class A."""
 
 AGREEMENT_LEAST = 0.01
-"""Least probability for class A that passes of one fuel differ as much.
+"""Least probability for class A that passes of one fuel differ as much; it never makes C.
 
-No smaller one makes class C. The probability allows for noise and response, but not for corrections
-and drift that change from pass to pass: of 200 flights of ``sulphur_monte_carlo``, all of one fuel,
-one has 1e-4.
+Of 200 flights of ``sulphur_monte_carlo``, all of one fuel, one has 1e-4, as corrections and drift
+change from pass to pass.
 """
 
 STRANGE_SIGMA = 4.0
-"""Standard deviations by which a property of the instrument, or the residuals, may differ.
-
-Beyond them the instrument is not the one that is stated.
-"""
+"""Standard deviations beyond which residuals or a property are not of the stated instrument."""
 
 _ARRIVED_SIGMA, _ARRIVED_SHARE = 3.0, 0.5
-"""A result above 0 by so many standard uncertainties is SO2 that has arrived.
-
-Otherwise readings must follow this share of CO2 for as long as SO2 may take.
-"""
+"""Least result of SO2 that has arrived [standard uncertainties]; else, share of CO2 to follow."""
 
 _NEGATIVE_SIGMA = 3.0
 """Standard uncertainties below 0, or above the most that a fuel has, that a result may be."""
@@ -118,7 +111,6 @@ def residual_problem(
     misfit : mean square of the residuals over that of the stated noise
     residual_energy, instrument_energy : sum of squares of the residuals, and what the instrument's
         uncertainty adds to it
-    samples : of the record
     """
     if not misfit > 0.0 or residual_energy == 0.0:
         return ()
@@ -141,9 +133,6 @@ def pending_so2_problem(
     fsc: float, deviation: float, read: Sequence[float], doses: Sequence[float]
 ) -> tuple[str, ...]:
     """Return the problem of SO2 that may not have arrived yet, where its delay is not stated.
-
-    SO2 that stands out has arrived. Otherwise readings must follow most of the CO2 for as long as
-    any delay.
 
     Parameters
     ----------

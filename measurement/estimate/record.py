@@ -23,20 +23,13 @@ _OTHER_MOST = 1e6
 """Largest reading of the other gases [ppb]."""
 
 _STEP_LEAST, _STEP_MOST = 1e-3, 30.0
-"""Range of the median interval between samples [s].
-
-No sniffer reads faster. Within the longest interval the slowest cell of the presets has responded,
-and an aircraft has crossed a plume and left it.
-"""
+"""Range of the median interval between samples [s] of sniffers on a flight through a plume."""
 
 BRIDGED = 2.5
 """Longest gap that is bridged by a straight line [sample periods]; longer ones end a segment."""
 
 _NO_GAP = 1.75
-"""Interval between readings below which none is missing [sample periods].
-
-It allows for times that are uneven by three quarters of a period.
-"""
+"""Interval between readings below which none is missing [sample periods]; times may be uneven."""
 
 SHORTEST = 8
 """Fewest samples of a segment; shorter pieces between gaps are left out."""
@@ -48,10 +41,7 @@ _SAME = 1e-9
 """Difference of equal readings, relative to the largest reading."""
 
 _CALM, _CALM_SIGMA = 0.1, 0.1257
-"""Share of the second differences that are noise alone, and the quantile of normal noise there.
-
-Of normal noise a share of 0.1 has a size below 0.1257 standard deviations.
-"""
+"""Share of the second differences that are noise alone, and that quantile of normal noise."""
 
 _GOLDEN = 0.5 * (math.sqrt(5.0) - 1.0)
 """Fractional parts of multiples of the golden section are evenly spread in 0 to 1."""
@@ -63,10 +53,7 @@ _NOX_SIGMA = 3.0
 """Standard deviations above the mean that the NO and NO2 of a ship may have if not measured."""
 
 _DITHERED = 4.0
-"""Largest step of other gases, in standard deviations of the noise, whose rounding is noise.
-
-Up to it the mean of rounded readings is right within a tenth of a step.
-"""
+"""Largest step of other gases whose rounding is noise [standard deviations of their noise]."""
 
 _CACHE_SIZE = 32
 """Results kept for a record: moving one property of the instrument changes few of them."""
@@ -192,14 +179,11 @@ def _measured(values: Array, instrument: SnifferSpec) -> dict[str, Array]:
     for i, gas in enumerate(GASES):
         if instrument.channel(gas) and np.isfinite(values[:, i]).any():
             columns[gas] = values[:, i]
-    for gas, why in (
-        ("co2", "the fuel that it burnt is not known without"),
-        ("so2", "there is nothing to estimate without"),
-    ):
+    for gas in ("co2", "so2"):
         if gas not in columns:
             raise MeasurementError(
                 f"the record has no {gas.upper()} readings, or '{instrument.name}' no such channel;"
-                f" {why} them: add them"
+                " an estimate needs CO2 and SO2: add them"
             )
     return columns
 
@@ -306,32 +290,29 @@ def shown_scatter(segments: Sequence[Array], step: float) -> float:
     return max(shown, 0.5 * step)
 
 
+def stated_noise(channel: Channel, segments: Sequence[Array], step: float) -> float:
+    """Return the noise of a channel as stated, or else as ``shown_scatter`` finds it."""
+    return shown_scatter(segments, step) if math.isnan(channel.noise) else channel.noise
+
+
 def lowest_reading(gas: str, values: Array, instrument: SnifferSpec) -> float:
     """Return how low a gas may read by noise, zero and the cell's response to other gases.
-
-    CO2 is in all air, which raises its limit.
 
     Parameters
     ----------
     gas : that has readings and a channel
     values : readings of all gases, shape (m, 4)
-    instrument : as the analyst knows it; a noise that is not stated is taken from the readings
     """
     channel = instrument.known(gas)
     column = values[:, GASES.index(gas)]
-    noise = channel.noise
-    if math.isnan(noise):
-        noise = shown_scatter([column[np.isfinite(column)]], shown_step(column))
+    noise = stated_noise(channel, [column[np.isfinite(column)]], shown_step(column))
     explained = _NEGATIVE_SIGMA * math.hypot(noise, channel.zero_sd, 1.0) - min(channel.zero, 0.0)
     floor = -explained - channel.gain * _cross_floor(channel.cross, values, instrument)
     return max(0.0, channel.gain * CO2_LEAST + floor) if gas == "co2" else floor
 
 
 def _cross_floor(cross: Mapping[str, float], values: Array, instrument: SnifferSpec) -> float:
-    """Return how far below zero other gases can push a cell of gain 1.
-
-    Gases that are not measured count as ships emit them.
-    """
+    """Return how far other gases, measured or as emitted, push a cell of gain 1 below zero."""
     channels = [instrument.channel(gas) for gas in GASES]
     concentrations = values / [channel.gain if channel else 1.0 for channel in channels]
     co2 = concentrations[:, GASES.index("co2")]

@@ -67,7 +67,7 @@ def equalised(signal: Array, step: float, own: Poles, common: Poles) -> Array:
 
     Each pole's filter is (1 + tau s)/(1 + T s), that is tau/T c + (1 - tau/T) lag_T(c), exact for a
     signal that is linear between samples. It is at rest at the first sample; what that leaves out
-    is spanned by ``transients``.
+    is in the basis of the background.
 
     Parameters
     ----------
@@ -85,23 +85,6 @@ def equalised_from_rest(signal: Array, step: float, own: Poles, common: Poles) -
     """Return the equalised signal where it was 0 before its first sample."""
     padded = np.concatenate([np.zeros((1, *signal.shape[1:])), signal])
     return equalised(padded, step, own, common)[1:]
-
-
-def adjoint(weights: Array, step: float, own: Poles, common: Poles) -> Array:
-    """Return the weights of a signal in a weighted sum of its equalised samples.
-
-    The filter starts from rest; for weights orthogonal to ``transients`` this makes no difference.
-
-    Parameters
-    ----------
-    weights : of the equalised samples, shape (n,) or (n, k)
-    """
-    return np.ascontiguousarray(equalised_from_rest(weights[::-1], step, own, common)[::-1])
-
-
-def transients(time: Array, common: Poles) -> Array:
-    """Return what an unknown state at the first sample leaves in a signal, shape (n, poles)."""
-    return np.stack([np.exp(-(time - time[0]) / constant) for constant in common], axis=1)
 
 
 def shifted(signal: Array, step: float, delay: float) -> Array:
@@ -126,11 +109,7 @@ def _beyond_ends(step: float, delay: float) -> Ends:
 
 
 def _between_samples(step: float, delay: float) -> tuple[int, Weights]:
-    """Return the sample before a time ``delay`` [s] earlier, and Lagrange's weights around it.
-
-    The squares of the weights sum to 0.64 halfway between samples, and to 1 on a sample: a shifted
-    signal has less noise.
-    """
+    """Return the sample before a time ``delay`` [s] earlier, and Lagrange's weights around it."""
     place = -delay / step
     whole = math.floor(place)
     share = place - whole
@@ -155,10 +134,11 @@ def background_basis(record: Record, common: Poles, known: Array) -> Array:
     columns = [np.maximum(0.0, 1.0 - np.abs(place - knot)) for knot in range(pieces + 1)]
     start = 0
     for segment in record.times:
-        for transient in transients(segment, common).T:
-            column = np.zeros(len(time))
-            column[start : start + len(segment)] = transient
-            columns.append(column)
+        # What an unknown state at the first sample leaves in a signal.
+        for constant in common:
+            transient = np.zeros(len(time))
+            transient[start : start + len(segment)] = np.exp(-(segment - segment[0]) / constant)
+            columns.append(transient)
         start += len(segment)
     # A knot in a gap may have no samples.
     columns = [column for column in (known * column for column in columns) if column.any()]
@@ -230,14 +210,20 @@ class Signals:
     def backwards(self, gas: str, weights: Array) -> Array:
         """Return the weights of a gas's readings in a weighted sum of its equalised samples.
 
+        The filter starts from rest; for weights orthogonal to the background this makes no
+        difference.
+
         Parameters
         ----------
         weights : of the equalised samples, shape (n,) or (n, k)
         """
         ends = np.cumsum([len(segment) for segment in self.record.times])[:-1]
-        parts = np.split(weights, ends)
         step, own = self.record.step, self._poles(gas)
-        return np.concatenate([adjoint(part, step, own, self.common) for part in parts])
+        parts = [
+            equalised_from_rest(part[::-1], step, own, self.common)[::-1]
+            for part in np.split(weights, ends)
+        ]
+        return np.ascontiguousarray(np.concatenate(parts))
 
     def noise_energy(self, gas: str) -> float:
         """Return the expected sum of squares of a gas's equalised noise beside the background.

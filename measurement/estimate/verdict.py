@@ -135,10 +135,8 @@ def verdict_words(
 
     Parameters
     ----------
-    verdict : "above", "below" or "open"
     limit_percent : [% m/m]
     probability_above : that the fuel's sulphur content is above the limit
-    quality : of the record
     """
     limit = limit_words(limit_percent)
     if quality == _REJECTED:
@@ -166,7 +164,6 @@ def next_step(
 
     Parameters
     ----------
-    quality, passes : of the record
     undecided : whether a verdict is open
     noise, errors : standard uncertainty by noise, and by each error that further passes do not
         lower, by its words [% m/m]

@@ -100,27 +100,17 @@ def analyse(
     ------
     MeasurementError : same as ``estimate``
     """
-    found = estimate(
-        readings, instrument, method=method, carbon=carbon, limits_percent=limits_percent
-    )
+    chosen: dict[str, Any] = {"carbon": carbon, "limits_percent": limits_percent}
+    found = estimate(readings, instrument, method=method, **chosen)
     second: Method = "areas" if method == "regression" else "regression"
     try:
-        other = estimate(
-            readings, instrument, method=second, carbon=carbon, limits_percent=limits_percent
-        )
+        other = estimate(readings, instrument, method=second, **chosen)
     except MeasurementError:
         other = None
     duration = float(readings.time[-1] - readings.time[0])
     even = np.linspace(0.0, duration, points + 1)[1:]
     elapsed = {round(float(t), 3) for t in even} | {t for t in ELAPSED_S if t <= duration}
-    table = over_time(
-        readings,
-        instrument,
-        elapsed_s=sorted(elapsed),
-        method=method,
-        carbon=carbon,
-        limits_percent=limits_percent,
-    )
+    table = over_time(readings, instrument, elapsed_s=sorted(elapsed), method=method, **chosen)
     return Analysis(estimate=found, other=other, table=table, instrument=instrument, carbon=carbon)
 
 
@@ -191,14 +181,7 @@ class Gaps:
 
 
 def find_gaps(readings: Readings, signals: pd.DataFrame, log_rows: int) -> Gaps:
-    """Return the gaps of a log.
-
-    Parameters
-    ----------
-    readings : of the log, each once
-    signals : that an estimate made of them
-    log_rows : of the log
-    """
+    """Return the gaps of a log, by its readings, each once, and the signals of an estimate."""
     used = _used_gases(signals)
     known, period = np.isfinite(readings.values), _period(readings)
     complete = np.flatnonzero(known[:, used].all(axis=1))

@@ -1,7 +1,6 @@
 """The command ``plume-flight estimate FLIGHT.csv``: fuel sulphur content of a logged flight."""
 
 import argparse
-import contextlib
 import math
 import sys
 from collections.abc import Iterator
@@ -10,7 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from common.command_line import PROGRAM, refuse
-from measurement.errors import MeasurementError
+from measurement.errors import MeasurementError, naming
 from measurement.estimate.result import FscEstimate
 from measurement.estimate.verdict import OPEN, content_words, needed, next_step, verdict_words
 from measurement.gases import ASSUMED_LEAST, FUEL_SULPHUR_MOST, GASES
@@ -19,8 +18,7 @@ from measurement.log.config import LogConfig, read_config
 from measurement.log.read import LoggedFlight, read_flight
 from measurement.log.run_files import (
     build_report,
-    check_no_other_run,
-    check_same_log,
+    check_directory,
     write_run,
 )
 from measurement.sniffer.sniffer import Readings
@@ -43,12 +41,10 @@ def main(arguments: list[str] | None = None) -> int:
     given = _parser().parse_args(arguments)
     directory = given.out or Path("runs") / f"measurement_{given.flight.stem}"
     try:
-        check_no_other_run(directory)
         config = read_config(given.config) if given.config else LogConfig()
         flight = read_flight(given.flight, config)
-        if given.out is None:
-            check_same_log(directory, given.flight)
-        with _naming(given.flight):
+        check_directory(directory, given.flight, named_after_log=given.out is None)
+        with naming(given.flight):
             analysis = analyse(
                 flight.readings,
                 config.instrument,
@@ -95,15 +91,6 @@ def _parser() -> argparse.ArgumentParser:
     )
     parser.add_argument("--no-report", action="store_true", help="write no report")
     return parser
-
-
-@contextlib.contextmanager
-def _naming(path: Path) -> Iterator[None]:
-    """Name the file in errors of its content."""
-    try:
-        yield
-    except MeasurementError as error:
-        raise MeasurementError(f"'{path}': {error}") from None
 
 
 def _command(arguments: list[str] | None) -> list[str]:

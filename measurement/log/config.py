@@ -2,13 +2,13 @@
 
 import math
 import tomllib
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from datetime import UTC, date, datetime
 from pathlib import Path
 from typing import Any
 
-from measurement.errors import MeasurementError, guess
+from measurement.errors import MeasurementError, check_keys, naming
 from measurement.estimate.estimator import check_parameters
 from measurement.estimate.result import Method
 from measurement.estimate.verdict import LIMITS_PERCENT
@@ -26,26 +26,19 @@ COLUMNS = {
 }
 """Columns of a logged flight, and their names unless the configuration gives others."""
 
-FLIGHT_KEYS = {
-    "vessel": "name of the ship that was measured",
-    "imo": "IMO number of the ship, of seven digits",
-    "mmsi": "MMSI of the ship, of nine digits",
-    "date": "date of the flight in UTC, or date and time of the log's first reading",
-    "place": "where the flight was, in words",
-    "operator": "who flew and measured",
-}
-"""Keys of the table ``[flight]`` of a configuration, and their meanings. Each may be left out."""
+_FLIGHT_KEYS = ("vessel", "imo", "mmsi", "date", "place", "operator")
+"""Keys of the table ``[flight]``; each may be left out."""
 
-_KEYS = {
-    "instrument",
+_KEYS = (
     "carbon",
+    "columns",
+    "flight",
+    "instrument",
     "limits_percent",
     "method",
     "missing",
-    "columns",
     "scale",
-    "flight",
-}
+)
 
 _DEFAULT_INSTRUMENT = "unspecified"
 """Instrument of a flight without a configuration."""
@@ -118,24 +111,14 @@ def read_config(path: Path) -> LogConfig:
         ) from None
     except (UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
         raise MeasurementError(f"'{path}' is not TOML: {error}; correct it") from None
-    try:
+    with naming(path):
         return _config(table, path.stem)
-    except MeasurementError as error:
-        raise MeasurementError(f"'{path}': {error}") from None
 
 
 def _config(table: Mapping[str, Any], name: str) -> LogConfig:
     """Return the configuration in a table; ``name`` is that of an instrument in it."""
-    if unknown := sorted(set(table) - _KEYS):
-        raise MeasurementError(
-            f"unknown key '{unknown[0]}'{guess(unknown[0], _KEYS)} it may have"
-            f" {', '.join(sorted(_KEYS))}"
-        )
-    columns = {**COLUMNS, **_sub_table(table, "columns", COLUMNS)}
-    for key, column in columns.items():
-        if not isinstance(column, str):
-            raise MeasurementError(f"columns.{key} is {column!r}; give a name")
-    _check_used_once(columns)
+    check_keys(table, _KEYS, "the configuration")
+    columns = _columns(table)
     scale = _sub_table(table, "scale", GASES)
     for gas, factor in scale.items():
         if not _is_finite(factor) or factor <= 0.0:
@@ -178,33 +161,33 @@ def _config(table: Mapping[str, Any], name: str) -> LogConfig:
         missing=tuple(float(code) for code in missing),
         columns=columns,
         scale={gas: float(factor) for gas, factor in scale.items()},
-        flight=_details(_sub_table(table, "flight", FLIGHT_KEYS)),
+        flight=_details(_sub_table(table, "flight", _FLIGHT_KEYS)),
     )
 
 
-def _sub_table(table: Mapping[str, Any], key: str, names: Any) -> dict[str, Any]:
+def _sub_table(table: Mapping[str, Any], key: str, names: Sequence[str]) -> dict[str, Any]:
     """Return the table under a key, empty if there is none, after checking its keys."""
     found = table.get(key, {})
     if not isinstance(found, dict):
         raise MeasurementError(f"{key} is {found!r}; give a table [{key}]")
-    for name in found:
-        if name not in names:
-            raise MeasurementError(
-                f"[{key}] has the key '{name}'{guess(name, names)} it may have {', '.join(names)}"
-            )
+    check_keys(found, names, f"[{key}]")
     return found
 
 
-def _check_used_once(columns: Mapping[str, str]) -> None:
-    """Check that no column is given for two quantities, which would share their readings."""
+def _columns(table: Mapping[str, Any]) -> dict[str, str]:
+    """Return the column of each quantity; two would share the readings of one."""
+    columns = {**COLUMNS, **_sub_table(table, "columns", tuple(COLUMNS))}
     used: dict[str, str] = {}
     for key, column in columns.items():
+        if not isinstance(column, str):
+            raise MeasurementError(f"columns.{key} is {column!r}; give a name")
         if column in used:
             raise MeasurementError(
                 f"[columns] has the column '{column}' for {used[column]} and for {key}; name"
                 " another one for either of them"
             )
         used[column] = key
+    return columns
 
 
 def _details(table: Mapping[str, Any]) -> FlightDetails:
@@ -224,15 +207,8 @@ def _details(table: Mapping[str, Any]) -> FlightDetails:
             f"flight.mmsi is {mmsi!r}; give nine digits, as 219000000, without quotation marks"
         )
     day, start = _date(table.get("date"))
-    return FlightDetails(
-        vessel=words["vessel"].strip(),
-        imo=imo,
-        mmsi=mmsi,
-        day=day,
-        start=start,
-        place=words["place"].strip(),
-        operator=words["operator"].strip(),
-    )
+    texts = {key: text.strip() for key, text in words.items()}
+    return FlightDetails(imo=imo, mmsi=mmsi, day=day, start=start, **texts)
 
 
 def _date(value: Any) -> tuple[date | None, datetime | None]:
@@ -262,10 +238,7 @@ def _parsed(text: str) -> date | None:
 
 
 def _is_imo_number(value: Any) -> bool:
-    """Return whether the last of seven digits is the check digit (IMO resolution A.1117(30)).
-
-    It is the last digit of the sum of the other digits times 7 to 2.
-    """
+    """Return whether seven digits end in their check digit (IMO resolution A.1117(30))."""
     if not _has_digits(value, 7):
         return False
     *digits, check = (int(digit) for digit in str(value))

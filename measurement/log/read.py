@@ -19,7 +19,7 @@ import numpy as np
 import numpy.typing as npt
 import pandas as pd
 
-from measurement.errors import MeasurementError
+from measurement.errors import MeasurementError, naming
 from measurement.estimate.record import check_increasing, check_units, lowest_reading, shown_step
 from measurement.gases import GASES, UNITS
 from measurement.log.config import COLUMNS, FlightDetails, LogConfig
@@ -34,8 +34,7 @@ FROM_LOG, FROM_CONFIGURATION = "log", "configuration"
 """Sources of the times of a flight."""
 
 _REQUIRED = ("time", "so2", "co2")
-"""Columns without which there is no estimate; others are needed only if the configuration has them.
-"""
+"""Columns without which there is no estimate; others are needed if the configuration has them."""
 
 Position = tuple[float, float]
 """Latitude and longitude [deg]."""
@@ -113,10 +112,8 @@ def read_flight(path: Path, config: LogConfig) -> LoggedFlight:
         a column or has it twice, has words in it, readings out of range or too low, times that do
         not increase, longer rows than its head line, or places that no aircraft can have
     """
-    try:
+    with naming(path):
         return _flight(_read_table(path, config), config)
-    except MeasurementError as error:
-        raise MeasurementError(f"'{path}': {error}") from None
 
 
 def _flight(table: pd.DataFrame, config: LogConfig) -> LoggedFlight:
@@ -141,6 +138,9 @@ def _flight(table: pd.DataFrame, config: LogConfig) -> LoggedFlight:
     plane = _on_a_plane(places)
     _check_jumps(plane, time)
     true = {name: _numbers(table[name]) for name in TRUE_COLUMNS if name in table}
+    offset = (
+        logged is not None and pd.Timestamp(str(time_column.iloc[0]).strip()).tzinfo is not None
+    )
     first_utc, last_utc, utc_from = _utc_times(config.flight, logged, float(time[-1] - time[0]))
     first_position, last_position = _end_positions(places)
     about = FlightRecord(
@@ -149,7 +149,7 @@ def _flight(table: pd.DataFrame, config: LogConfig) -> LoggedFlight:
         first_utc=first_utc,
         last_utc=last_utc,
         utc_from=utc_from,
-        offset=logged is not None and _has_offset(time_column),
+        offset=offset,
         first_position=first_position,
         last_position=last_position,
         place_remark=remark,
@@ -193,8 +193,6 @@ def _read_table(path: Path, config: LogConfig) -> pd.DataFrame:
             ).iloc[0]
     except MeasurementError:
         raise
-    except (pd.errors.ParserWarning, pd.errors.ParserError, pd.errors.EmptyDataError) as error:
-        raise MeasurementError(_parser_problem(error, head)) from None
     except (EOFError, lzma.LZMAError, zipfile.BadZipFile, zlib.error) as error:
         raise MeasurementError(
             f"cannot be unpacked: {error}; give a whole file, or the CSV file itself"
@@ -204,10 +202,8 @@ def _read_table(path: Path, config: LogConfig) -> pd.DataFrame:
         raise MeasurementError(
             f"cannot be read: {error.strerror or error}; give a CSV file"
         ) from None
-    except UnicodeDecodeError:
-        raise MeasurementError("not text in UTF-8; save it as CSV in UTF-8") from None
-    except ValueError as error:
-        raise MeasurementError(_not_csv(error)) from None
+    except (ValueError, pd.errors.ParserWarning) as error:
+        raise MeasurementError(_parser_problem(error, head)) from None
     table.columns = table.columns.map(str).str.strip()
     names = names.dropna().str.strip()
     used = [*config.columns.values(), *TRUE_COLUMNS]
@@ -236,23 +232,21 @@ def _checked_head(path: Path) -> str:
 
 def _parser_problem(error: Exception, head: str) -> str:
     """Return the problem of a table that pandas refuses, given its head line in quotes."""
+    if isinstance(error, UnicodeDecodeError):
+        return "not text in UTF-8; save it as CSV in UTF-8"
     if isinstance(error, pd.errors.EmptyDataError):
         return "empty; it needs a head line and a row per reading"
     if opened := _OPEN_QUOTE.search(str(error)):
         return f"the quotation mark in line {int(opened[1]) + 1} is not closed; remove it"
     long_row = _LONG_ROW.search(str(error))
     if not long_row and not isinstance(error, pd.errors.ParserWarning):
-        return _not_csv(error)
+        reason = str(error).splitlines()[0].strip()
+        return f"not CSV: {reason}; give a CSV file with a head line"
     where = f"line {long_row[1]} has" if long_row else "some rows have"
     return (
         f"{where} more values than the head line has names{head}: the first line has to name every"
         " column; remove lines above it, and write decimals with a point"
     )
-
-
-def _not_csv(error: Exception) -> str:
-    reason = str(error).splitlines()[0].strip()
-    return f"not CSV: {reason}; give a CSV file with a head line"
 
 
 def _missing_column(key: str, name: str, table: pd.DataFrame) -> str:
@@ -355,13 +349,7 @@ def _moments(column: pd.Series) -> pd.Series:
 
 
 def _check_seconds(time: Array, name: str) -> None:
-    """Check that numbers are seconds, and not dates or times of the day without marks.
-
-    Parameters
-    ----------
-    time : of the rows, shape (n,), NaN where a row has none [s]
-    name : of the column
-    """
+    """Check that numbers are seconds, and not dates or times of the day without marks."""
     if _COMPACT[0] <= time[0] < _COMPACT[1]:
         raise MeasurementError(
             f"time {time[0]:.0f} in column '{name}' is a date and time without marks; give"
@@ -380,27 +368,10 @@ def _check_seconds(time: Array, name: str) -> None:
         )
 
 
-def _has_offset(column: pd.Series) -> bool:
-    """Return whether dates and times have an offset from UTC."""
-    return pd.Timestamp(str(column.iloc[0]).strip()).tzinfo is not None
-
-
 def _utc_times(
     details: FlightDetails, logged: tuple[datetime, datetime] | None, duration_s: float
 ) -> tuple[datetime | None, datetime | None, str]:
-    """Return the times of the first and the last reading, and their source.
-
-    Parameters
-    ----------
-    details : in the configuration
-    logged : times of the first and the last reading in the log, or None where it counts seconds
-    duration_s : from the first to the last reading [s]
-
-    Raises
-    ------
-    MeasurementError : log and configuration have different dates, or times that are a second or
-        more apart
-    """
+    """Return first and last time and their source: log, or configuration and duration [s]."""
     start = details.start
     if logged is None:
         if start is None:
@@ -452,13 +423,7 @@ def _check_range(values: Array, config: LogConfig) -> None:
 
 
 def _check_negative(values: Array, readings: Readings, config: LogConfig) -> None:
-    """Check that no reading is lower than in clean air: a mark, a calibration or a wrong sign.
-
-    Parameters
-    ----------
-    values : of all rows, shape (n, 4)
-    readings : each once
-    """
+    """Check that no reading is lower than in clean air: a mark, a calibration or a wrong sign."""
     for gas in config.instrument.gases:
         column = values[:, GASES.index(gas)]
         if not np.isfinite(column).any():
@@ -482,17 +447,10 @@ _FEWEST = 10
 """Least number of intervals between new readings that show how many rows a reading has."""
 
 _LOW = 0.1
-"""Share of these intervals that counts as the shortest.
-
-Readings that are equal by chance make others twice as long and longer.
-"""
+"""Share of these intervals that counts as the shortest; equal readings make others longer."""
 
 _OFF, _REGULAR = 0.25, 0.8
-"""Deviation of an interval from a whole multiple of the sensor's interval [sensor's intervals].
-
-The second is the least share of the intervals that are so near: of those that noise and rounding
-make half are.
-"""
+"""Deviation from a whole number of sensor intervals, and least share of intervals as near."""
 
 _LARGER = 0.25
 """Least share of the changes that are larger than a step of the readings."""
@@ -502,12 +460,7 @@ def new_readings(logged: Readings, gases: Sequence[str]) -> Readings:
     """Return each reading of a log once, at the time of its first row.
 
     A log with a row per reading is returned as it is. Otherwise the times are those of the slowest
-    of the gases; the others are interpolated between their readings.
-
-    Parameters
-    ----------
-    logged : by row, NaN where there is no reading
-    gases : that the instrument has
+    of the instrument's gases; the others are interpolated between their readings.
     """
     columns = logged.values.T
     rows_each = [rows_per_reading(column) for column in columns]
@@ -551,10 +504,7 @@ def _changes(column: Array) -> Rows:
 
 
 def _first_rows(column: Array, rows: float) -> Rows:
-    """Return the first row of each reading, given how many rows one has.
-
-    Where none is new for longer, readings are the sensor's interval apart.
-    """
+    """Return the first row of each reading, by rows per reading; equal ones count as several."""
     starts = np.unique(np.concatenate([[0], _changes(column)]))
     parts = []
     for start, end in zip(starts, [*starts[1:], len(column)], strict=True):

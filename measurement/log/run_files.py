@@ -24,19 +24,12 @@ from measurement.log.analysis import Analysis, find_gaps, interpolated
 from measurement.log.read import LoggedFlight
 
 SAMPLE_MEANINGS = {
-    "time_s": (
-        "time of the sample; between samples that are farther apart than others is a gap, or too"
-        " few readings to use"
-    ),
-    "so2_ppb": (
-        "reading; empty where the log has none for all gases, and the sample is interpolated"
-    ),
+    "time_s": "time of the sample; longer intervals are gaps, or have too few readings to use",
+    "so2_ppb": "reading; empty where the log has none for all gases: the sample is interpolated",
     "co2_ppm": "reading, likewise, with its background",
     "no_ppb": "reading, likewise, where the log has this gas",
     "no2_ppb": "reading, likewise, where the log has this gas",
-    "co2_excess_ppm": (
-        "CO2 above its background, corrected, with the response of the slowest channel"
-    ),
+    "co2_excess_ppm": "CO2 above its background, corrected, with the slowest channel's response",
     "so2_excess_ppb": "SO2 above its background, likewise",
     "fit_ppb": "SO2 that the slope gives for this CO2",
     "residual_ppb": "SO2 less that fit",
@@ -54,52 +47,29 @@ _STUDY = "measurement"
 _SOURCE_HASH = "source_hash"
 """Entry of the manifest with the SHA-256 of the log's content."""
 
-_HASH_LETTERS = 16
-"""Letters that are kept of the hash of all input."""
-
-_TIME_DIGITS = 15
-"""Digits of a time, all that a floating-point number has; the other columns have six."""
-
 _PACKAGES = ("numpy", "scipy", "pandas")
 """Packages whose versions the manifest has."""
 
-_DISTRIBUTION = "plume-flight-study"
 
-_MODULE = "measurement.estimate"
-"""Name of the command when it is run as a module."""
-
-
-def check_no_other_run(directory: Path) -> None:
+def check_directory(directory: Path, source: Path, *, named_after_log: bool) -> None:
     """Check that a directory holds no run of another kind; an older estimate may be replaced.
 
     Raises
     ------
-    MeasurementError : it does, or its manifest cannot be read
+    MeasurementError : it holds one, or its manifest cannot be read; or, where it is named after the
+        log, it holds the estimate of another log
     """
     try:
-        study = json.loads((directory / MANIFEST).read_text(encoding="utf-8")).get("study")
+        manifest = json.loads((directory / MANIFEST).read_text(encoding="utf-8"))
     except (FileNotFoundError, NotADirectoryError):
         return
-    except (OSError, ValueError, AttributeError, RecursionError):
-        study = None
-    if study != _STUDY:
+    except (OSError, ValueError, RecursionError):
+        manifest = None
+    if not isinstance(manifest, dict) or manifest.get("study") != _STUDY:
         raise MeasurementError(
             f"output directory '{directory}' holds another run; choose another --out"
         )
-
-
-def check_same_log(directory: Path, source: Path) -> None:
-    """Check that a directory named after a log holds no estimate of another log of that name.
-
-    Raises
-    ------
-    MeasurementError : it holds the estimate of a log with other content
-    """
-    try:
-        known = json.loads((directory / MANIFEST).read_text(encoding="utf-8")).get(_SOURCE_HASH)
-    except (FileNotFoundError, NotADirectoryError):
-        return
-    if known != _sha256(source.read_bytes()):
+    if named_after_log and manifest.get(_SOURCE_HASH) != _sha256(source.read_bytes()):
         raise MeasurementError(
             f"'{directory}' holds the estimate of another log than '{source}'; give another --out"
         )
@@ -117,8 +87,6 @@ def write_run(
 
     Parameters
     ----------
-    directory : to write to
-    flight, analysis : of the log
     source, config : files of the log and of the configuration
     arguments : of the command, same as ``sys.argv``
 
@@ -130,8 +98,9 @@ def write_run(
     gaps = find_gaps(flight.readings, signals, flight.about.readings)
     record = analysis.record() | {"flight": flight.about.record(), "gaps": vars(gaps)}
     table = samples(signals, flight)
-    # A log's time may be seconds since 1970 or 1980, of which six digits are weeks.
-    table["time_s"] = [f"{time:.{_TIME_DIGITS}g}" for time in table["time_s"]]
+    # A log's time may be seconds since 1970 or 1980, of which six digits are weeks: all digits of a
+    # floating-point number.
+    table["time_s"] = [f"{time:.15g}" for time in table["time_s"]]
     try:
         directory.mkdir(parents=True, exist_ok=True)
         if (directory / MANIFEST).exists():
@@ -193,7 +162,7 @@ def _manifest(
         "format": FORMAT,
         "study": _STUDY,
         "begun_utc": f"{datetime.now(UTC):%Y-%m-%dT%H:%M:%SZ}",
-        "command": command_line(_MODULE, arguments),
+        "command": command_line("measurement.estimate", arguments),
         "name": source.stem,
         "title": f"Fuel sulphur content of {source.stem}",
         "state": "complete",
@@ -202,16 +171,13 @@ def _manifest(
             "description": f"Logged flight {source.name}, measured with:"
             f" {analysis.instrument.title}."
         },
-        "config_hash": _sha256(log + settings)[:_HASH_LETTERS],
+        "config_hash": _sha256(log + settings)[:16],
         "source": source.name,
         _SOURCE_HASH: _sha256(log),
         "settings": config.name if config else None,
         "settings_hash": _sha256(settings) if config else None,
         "version": _version(),
-        "git_revision": software["git_revision"],
-        "python": software["python"],
-        "platform": software["platform"],
-        "cores": software["cores"],
+        **{key: software[key] for key in ("git_revision", "python", "platform", "cores")},
         "packages": {name: software["packages"][name] for name in _PACKAGES},
         "files": [ESTIMATE, SAMPLES],
     }
@@ -224,6 +190,6 @@ def _sha256(content: bytes) -> str:
 def _version() -> str:
     """Return the version of the program, if it is installed."""
     try:
-        return importlib.metadata.version(_DISTRIBUTION)
+        return importlib.metadata.version("plume-flight-study")
     except importlib.metadata.PackageNotFoundError:
         return "not recorded"

@@ -8,8 +8,8 @@ from typing import NamedTuple
 import numpy as np
 
 from measurement.emission import Emission
-from measurement.errors import MeasurementError
-from measurement.plume.parcels import Nearest, Parcels, cubic_value, cubics
+from measurement.errors import MeasurementError, check_range
+from measurement.plume.parcels import Nearest, Parcels, check_arrays, cubic_value, cubics
 from measurement.plume.spread import (
     SOURCE_HEIGHT_MAX,
     SOURCE_HEIGHT_MIN,
@@ -29,22 +29,13 @@ _CHUNK = 4096
 """Places that are computed at a time: their arrays stay in the processor's cache."""
 
 _EDGE = 4.0
-"""Spreads from the centre within which there are fluctuations within the plume [-].
-
-Beyond, the concentration is 3e-4 of that on the axis.
-"""
+"""Spreads from the centre within which there are fluctuations [-]; beyond, 3e-4 is left."""
 
 _FOLD = 0.5
-"""Least share of a parcel's length that a bend leaves on its inner side [-].
-
-Nearer to the centre of curvature the line folds. 0.5 agrees best with a sum of puffs, of 0.1 to 1.
-"""
+"""Least share of a parcel's length inside a bend [-]: agrees best with puffs, of 0.1 to 1."""
 
 _STEPS_PER_LENGTH = 8.0
-"""Steps of the meander's grid per correlation length.
-
-The cubic between them is good to 1e-4 of a standard deviation.
-"""
+"""Steps of the meander per correlation length [-]: cubics are good to 1e-4 standard deviations."""
 
 _WAVES = 64
 """Waves in the field of fluctuations: enough that the sum is Gaussian."""
@@ -148,11 +139,8 @@ class FluctuatingPlume:
         seed: int = 0,
     ) -> None:
         settings = settings or PlumeSettings()
-        if not SOURCE_HEIGHT_MIN <= source_height <= SOURCE_HEIGHT_MAX:
-            raise MeasurementError(
-                f"height of the source is {source_height:g} m above the sea; "
-                f"it must be {SOURCE_HEIGHT_MIN:g} to {SOURCE_HEIGHT_MAX:g} m"
-            )
+        limits = SOURCE_HEIGHT_MIN, SOURCE_HEIGHT_MAX
+        check_range("height of the source", source_height, *limits, " m")
         if seed < 0:
             raise MeasurementError(f"seed of the plume is {seed}; it must be 0 or more")
         self._parcels = Parcels(time, north, east, settings.parcel_interval)
@@ -168,10 +156,8 @@ class FluctuatingPlume:
         )
         path_end = self._parcels.path_end
         if settings.meander:
-            self._across = Meander(
-                0.0, path_end, settings.meander_length_across * source_height, across
-            )
-            self._up = Meander(0.0, path_end, settings.meander_length_up * source_height, up)
+            self._across = Meander(path_end, settings.meander_length_across * source_height, across)
+            self._up = Meander(path_end, settings.meander_length_up * source_height, up)
         if settings.structure_intensity > 0.0:
             self._structure = Structure(
                 settings.structure_intensity,
@@ -253,15 +239,7 @@ class FluctuatingPlume:
     def _concentration(
         self, parcels: Nearest, age: Array, passed: Array, up: Array
     ) -> tuple[PlumeSample, Array]:
-        """Return the plume for pairs of a place and a parcel, and the distance between them.
-
-        The distance is that to the parcel's centre in spreads, squared [-].
-
-        Parameters
-        ----------
-        parcels, age, up : of each pair, age [s] and height above the sea [m] of shape (k,)
-        passed : air that has passed the stack by the time of the sample [m], shape (k,)
-        """
+        """Return the plume for pairs of place and parcel, and their distance squared in spreads."""
         height, sigma_y, sigma_z, meander_y, meander_z = self._table.at(parcels.wind, age)
         centre, centre_height = np.zeros(len(age)), height
         if self._across is not None and self._up is not None:
@@ -299,15 +277,7 @@ class FluctuatingPlume:
         return sample, square
 
     def _check(self, time: Array, north: Array, east: Array, up: Array) -> None:
-        if not (time.ndim == 1 and time.shape == north.shape == east.shape == up.shape):
-            shapes = ", ".join(str(values.shape) for values in (time, north, east, up))
-            raise MeasurementError(
-                f"time, north, east and up have shapes {shapes}; give four of one length"
-            )
-        if not all(np.isfinite(values).all() for values in (time, north, east, up)):
-            raise MeasurementError(
-                "times or places in the plume are missing or infinite; remove or fill them"
-            )
+        check_arrays("time, north, east and up in the plume", time, north, east, up)
         self._check_times(time)
         if time.size and up.min() < 0.0:
             raise MeasurementError(f"height above the sea is {up.min():g} m; it must be 0 or more")
@@ -332,25 +302,24 @@ class Meander:
 
     Parameters
     ----------
-    start, end : of the path [m]
+    length : of the path, which begins at 0 [m]
     integral_scale : 2 L [m], above 0
     generator : source of its randomness
     """
 
     def __init__(
-        self, start: float, end: float, integral_scale: float, generator: np.random.Generator
+        self, length: float, integral_scale: float, generator: np.random.Generator
     ) -> None:
-        length = 0.5 * integral_scale
-        self._start = start
-        self._step = length / _STEPS_PER_LENGTH
-        count = math.ceil((end - start) / self._step) + 2
-        value, slope = _meander_states(count, self._step / length, generator)
-        slope *= self._step / length
+        correlation_length = 0.5 * integral_scale
+        self._step = correlation_length / _STEPS_PER_LENGTH
+        count = math.ceil(length / self._step) + 2
+        value, slope = _meander_states(count, self._step / correlation_length, generator)
+        slope *= self._step / correlation_length
         self._cubics = np.ascontiguousarray(cubics(value, slope).T)
 
     def at(self, path: Array) -> Array:
-        """Return the process at places on the path [m] between its start and end, shape (n,)."""
-        steps = (path - self._start) / self._step
+        """Return the process at places from 0 to the end of the path [m], shape (n,)."""
+        steps = path / self._step
         index = steps.astype(np.intp)
         return cubic_value(self._cubics.take(index, axis=0).T, steps - index)
 
@@ -358,8 +327,7 @@ class Meander:
 def _meander_states(count: int, step: float, generator: np.random.Generator) -> tuple[Array, Array]:
     """Return value and slope at ``count`` steps, with the correlation length as unit of the path.
 
-    With w = value + slope both w and the value are first-order: dw = -w dl + noise, d value = (w -
-    value) dl.
+    w = value + slope and value are first-order: dw = -w dl + noise, d value = (w - value) dl.
     """
     decay = math.exp(-step)
     stationary = np.array([[1.0, 1.0], [1.0, 2.0]])

@@ -14,19 +14,13 @@ WIND_MIN = 1.0
 """Least apparent wind [m/s]: below it a plume has no direction."""
 
 _TURN = 0.15
-"""Largest change of course of the apparent wind within a block [rad].
-
-Within a block there is one nearest parcel to a place.
-"""
+"""Largest change of course within a block [rad], so that a place has one nearest parcel there."""
 
 _CLOSE = 1e-7
 """Tolerance of the emission time of a nearest parcel [s]: a micrometre along the plume."""
 
 _ITERATIONS_MAX = 60
-"""Most iterations of the search.
-
-It takes 3 to 6. Near a centre of curvature each iteration halves the bracket: an hour in 35.
-"""
+"""Most iterations of the search: it takes 3 to 6, and 35 by bisection of an hour."""
 
 
 class Nearest(NamedTuple):
@@ -177,10 +171,7 @@ class Parcels:
     def _refined(
         self, place: Indices, north: Array, east: Array, emitted: Array, bracket: Array
     ) -> Nearest:
-        """Return the nearest parcels, by Newton's method within brackets that shrink.
-
-        What vanishes at the nearest parcel is the place's component along the parcel's axis.
-        """
+        """Return the nearest parcels, found by Newton's method within brackets that shrink."""
         found = Nearest(place, *np.empty((5, len(place))))
         left: Indices | slice = slice(None)
         for _ in range(_ITERATIONS_MAX):
@@ -223,16 +214,26 @@ class Parcels:
         return _Step(north, east, path, steps - index)
 
 
+def check_arrays(what: str, *arrays: Array, least: int = 0) -> None:
+    """Check that arrays have one dimension and length, of ``least`` or more, and finite values.
+
+    Raises
+    ------
+    MeasurementError : they do not
+    """
+    shapes = [values.shape for values in arrays]
+    if len(set(shapes)) > 1 or len(shapes[0]) != 1 or shapes[0][0] < least:
+        raise MeasurementError(
+            f"{what} have shapes {', '.join(map(str, shapes))}; give one length, {least} or more"
+        )
+    if not all(np.isfinite(values).all() for values in arrays):
+        raise MeasurementError(
+            f"{what} have values that are missing or infinite; remove or fill them"
+        )
+
+
 def _check_track(time: Array, north: Array, east: Array) -> None:
-    if not (time.ndim == 1 and len(time) >= 2 and time.shape == north.shape == east.shape):
-        raise MeasurementError(
-            f"times, north and east of the ship's track have shapes {time.shape}, {north.shape}, "
-            f"{east.shape}; give three of one length, 2 or more"
-        )
-    if not (np.isfinite(time).all() and np.isfinite(north).all() and np.isfinite(east).all()):
-        raise MeasurementError(
-            "ship's track has values that are missing or infinite; remove or fill them"
-        )
+    check_arrays("times, north and east of the ship's track", time, north, east, least=2)
     if not (np.diff(time) > 0.0).all():
         first = int(np.argmax(np.diff(time) <= 0.0))
         raise MeasurementError(
@@ -273,10 +274,7 @@ def _bend(coefficients: Array, rest: Array) -> Array:
 
 
 def _blocks(course: Array) -> list[int]:
-    """Return the nodes at which blocks end, the first and the last node included.
-
-    Within a block courses differ by at most ``_TURN``, unless it is a single step.
-    """
+    """Return the nodes at which blocks of at most ``_TURN`` or one step end, and the first node."""
     ends = [0]
     low = high = course[0]
     for k in range(1, len(course)):

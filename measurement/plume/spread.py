@@ -16,7 +16,7 @@ from measurement.emission import (
     Emission,
     check_air,
 )
-from measurement.errors import MeasurementError
+from measurement.errors import check_range
 
 Array = npt.NDArray[np.float64]
 Indices = npt.NDArray[np.intp]
@@ -34,10 +34,7 @@ _VISCOSITY = 1.5e-5
 """Kinematic viscosity of air [m2/s] at 15 degC."""
 
 _CALM = 0.5
-"""Wind below which the turbulence is the one of this wind [m/s]; an assumption.
-
-The logarithmic profile has no limit at calm.
-"""
+"""Wind below which turbulence is that of this wind [m/s]; an assumption, as calm has no profile."""
 
 _WIND_MAX = 40.0
 """Largest wind [m/s]: above it no UAV flies and Charnock's drag of the sea does not hold."""
@@ -90,7 +87,6 @@ class MarineAir:
     temperature, pressure : [K, Pa]
     brunt_vaisala : N of the air that the plume rises through [1/s], 0 for neutral
     charnock : alpha [-]; the range over sea is 0.011 to 0.018
-    friction_velocity : u* [m/s], computed from the others
 
     Raises
     ------
@@ -108,25 +104,24 @@ class MarineAir:
     pressure: float = AIR_PRESSURE
     brunt_vaisala: float = 0.0
     charnock: float = 0.0144
-    friction_velocity: float = field(init=False)
 
     def __post_init__(self) -> None:
         check_air(self.temperature, self.pressure)
-        if not 0.0 <= self.wind_speed <= _WIND_MAX:
-            raise MeasurementError(
-                f"true wind is {self.wind_speed:g} m/s at 10 m; it must be 0 to {_WIND_MAX:g} m/s"
+        check_range("true wind", self.wind_speed, 0.0, _WIND_MAX, " m/s")
+        check_range("stability N", self.brunt_vaisala, 0.0, 0.1, " 1/s")
+        check_range("Charnock's constant", self.charnock, 0.005, 0.05)
+
+    @functools.cached_property
+    def friction_velocity(self) -> float:
+        """Friction velocity u* [m/s]."""
+        wind = max(self.wind_speed, _CALM)
+        friction = 0.03 * wind
+        for _ in range(_FRICTION_ITERATIONS):
+            roughness = (
+                self.charnock * friction**2 / STANDARD_GRAVITY + 0.11 * _VISCOSITY / friction
             )
-        if not 0.0 <= self.brunt_vaisala <= 0.1:
-            raise MeasurementError(
-                f"stability N is {self.brunt_vaisala:g} 1/s; "
-                "it must be 0 (neutral) to 0.1 1/s, usually below 0.03 1/s"
-            )
-        if not 0.005 <= self.charnock <= 0.05:
-            raise MeasurementError(
-                f"Charnock's constant is {self.charnock:g}; "
-                "it must be 0.005 to 0.05, over sea 0.011 to 0.018"
-            )
-        object.__setattr__(self, "friction_velocity", self._friction_velocity())
+            friction = _KARMAN * wind / math.log(10.0 / roughness)
+        return friction
 
     @property
     def sigma_v(self) -> float:
@@ -151,16 +146,6 @@ class MarineAir:
     def dissipation(self, height: float) -> float:
         """Return the rate of dissipation [m2/s3] at a height above 0 [m]."""
         return self.friction_velocity**3 / (_KARMAN * height)
-
-    def _friction_velocity(self) -> float:
-        wind = max(self.wind_speed, _CALM)
-        friction = 0.03 * wind
-        for _ in range(_FRICTION_ITERATIONS):
-            roughness = (
-                self.charnock * friction**2 / STANDARD_GRAVITY + 0.11 * _VISCOSITY / friction
-            )
-            friction = _KARMAN * wind / math.log(10.0 / roughness)
-        return friction
 
 
 def _within(default: float, low: float, high: float) -> float:
@@ -218,12 +203,8 @@ class PlumeSettings:
     def __post_init__(self) -> None:
         for setting in fields(self):
             if "limits" in setting.metadata:
-                value = getattr(self, setting.name)
-                low, high = setting.metadata["limits"]
-                if not low <= value <= high:
-                    raise MeasurementError(
-                        f"{setting.name} is {value:g}; it must be {low:g} to {high:g}"
-                    )
+                limits = setting.metadata["limits"]
+                check_range(setting.name, getattr(self, setting.name), *limits)
 
 
 class Spreads(NamedTuple):
@@ -385,10 +366,7 @@ def _turbulent(
     sigma_w: float,
     richardson: float,
 ) -> Array:
-    """Return sigma_t^2 [m2] by Euler's rule, in the shape of ``absolute``.
-
-    The time in the ballistic term is the middle of the step.
-    """
+    """Return sigma_t^2 [m2] by Euler's rule, in the shape of ``absolute``."""
     others = source.T[:, np.newaxis, :].copy()
     growth = np.diff(absolute, axis=-1).transpose(2, 0, 1)
     explosive = interval * 3.0 * (richardson * dissipation) ** (1.0 / 3.0)

@@ -4,7 +4,7 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
-from measurement.errors import MeasurementError
+from measurement.errors import MeasurementError, check_range
 from measurement.gases import GASES, UNITS
 from measurement.sniffer.lag import time_constants
 
@@ -85,35 +85,23 @@ class Channel:
             raise MeasurementError(
                 f"noise of {self.gas} is {self.noise:g} {UNITS[self.gas]}; it must be 0 or more"
             )
-        if not 0.1 <= self.gain <= 10.0:
-            raise MeasurementError(f"gain of {self.gas} is {self.gain:g}; it must be 0.1 to 10")
+        check_range(f"gain of {self.gas}", self.gain, 0.1, 10.0)
         if not self.range_low < self.range_high:
             raise MeasurementError(
                 f"range of {self.gas} is {self.range_low:g} to {self.range_high:g}; "
                 "its end must lie above its start"
             )
-        for name in ("cross", "cross_sd"):
-            self._check_cross(name)
+        for name, least in (("cross", -10.0), ("cross_sd", 0.0)):
+            for gas, value in getattr(self, name).items():
+                if gas not in GASES or gas == self.gas:
+                    raise MeasurementError(
+                        f"{name} of {self.gas} names {gas!r}; it must name another of "
+                        f"{', '.join(GASES)}"
+                    )
+                check_range(f"{name} of {self.gas} to {gas}", value, least, 10.0)
         if not math.isfinite(self.zero):
             raise MeasurementError(f"zero of {self.gas} is {self.zero:g}; it must be finite")
-        if not abs(self.pressure_effect) <= 0.1:
-            raise MeasurementError(
-                f"pressure_effect of {self.gas} is {self.pressure_effect:g}; "
-                "it must be at most 0.1 per hPa"
-            )
-
-    def _check_cross(self, name: str) -> None:
-        for gas, value in getattr(self, name).items():
-            if gas not in GASES or gas == self.gas:
-                raise MeasurementError(
-                    f"{name} of {self.gas} names {gas!r}; it must name another of "
-                    f"{', '.join(GASES)}"
-                )
-            if not abs(value) <= 10.0 or (name == "cross_sd" and value < 0.0):
-                raise MeasurementError(
-                    f"{name} of {self.gas} to {gas} is {value:g}; "
-                    "it must be at most 10, and a deviation 0 or more"
-                )
+        check_range(f"pressure_effect of {self.gas}", self.pressure_effect, -0.1, 0.1, " 1/hPa")
 
     @property
     def constants(self) -> tuple[float, ...]:

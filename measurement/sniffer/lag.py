@@ -6,7 +6,7 @@ import math
 import numpy as np
 import numpy.typing as npt
 
-from measurement.errors import MeasurementError
+from measurement.errors import MeasurementError, check_range
 
 Array = npt.NDArray[np.float64]
 
@@ -29,11 +29,7 @@ def time_constants(t90: float, second_pole: float) -> tuple[float, ...]:
         raise MeasurementError(
             f"t90 is {t90:g} s; it must be positive and finite: the time to 90 % of a step"
         )
-    if not 0.0 <= second_pole <= SECOND_POLE_MAX:
-        raise MeasurementError(
-            f"second_pole is {second_pole:g}; it must be 0 to {SECOND_POLE_MAX:g}: "
-            "the smaller time constant over the larger"
-        )
+    check_range("second_pole", second_pole, 0.0, SECOND_POLE_MAX)
     if second_pole == 0.0:
         return (t90 / math.log(10.0),)
     from scipy.optimize import brentq

@@ -10,7 +10,8 @@ from typing import Any
 
 import numpy as np
 
-from measurement.errors import MeasurementError, guess, number
+from common.text import did_you_mean
+from measurement.errors import MeasurementError, check_keys, check_range, number
 from measurement.gases import GASES
 from measurement.sniffer.channel import Channel
 
@@ -24,26 +25,21 @@ _UNKNOWN: dict[str, dict[str, Any]] = {
     "so2": {
         "t90_s": 20.0,
         "t90_sd": math.inf,
-        "delay_s": 0.0,
         "delay_sd_s": math.inf,
         "noise": math.nan,
         "gain_sd": 0.05,
         "zero_sd": 10.0,
-        "cross": {},
         "cross_sd": {"no": 0.02, "no2": 0.8},
     },
     "co2": {
         "t90_s": 3.0,
         "t90_sd": 0.5,
-        "delay_s": 0.0,
-        "delay_sd_s": 0.0,
         "noise": math.nan,
         "gain_sd": 0.03,
     },
     "no": {
         "t90_s": 20.0,
         "t90_sd": 0.3,
-        "delay_s": 0.0,
         "delay_sd_s": 2.0,
         "noise": math.nan,
         "gain_sd": 0.1,
@@ -52,7 +48,6 @@ _UNKNOWN: dict[str, dict[str, Any]] = {
     "no2": {
         "t90_s": 30.0,
         "t90_sd": 0.3,
-        "delay_s": 0.0,
         "delay_sd_s": 2.0,
         "noise": math.nan,
         "gain_sd": 0.1,
@@ -72,10 +67,7 @@ _DELAY_KNOWN_S = 0.5
 """Standard deviation of a delay that is given without one [s]; an assumption."""
 
 _CROSS_KNOWN = 0.2
-"""Relative standard deviation of a response to another gas that is given without one [-].
-
-Same as the electrochemical preset's to NO2.
-"""
+"""Relative standard deviation of a cross response given without one [-]; an assumption."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -98,10 +90,7 @@ class SnifferSpec:
     source: str = ""
 
     def __post_init__(self) -> None:
-        if not 0.01 <= self.rate_hz <= 1000.0:
-            raise MeasurementError(
-                f"rate of '{self.name}' is {self.rate_hz:g} Hz; it must be 0.01 to 1000"
-            )
+        check_range(f"rate of '{self.name}'", self.rate_hz, 0.01, 1000.0, " Hz")
         gases = [channel.gas for channel in self.channels]
         if not gases or len(set(gases)) < len(gases):
             raise MeasurementError(
@@ -110,10 +99,7 @@ class SnifferSpec:
 
     def channel(self, gas: str) -> Channel | None:
         """Return the channel of a gas, or None."""
-        for channel in self.channels:
-            if channel.gas == gas:
-                return channel
-        return None
+        return next((channel for channel in self.channels if channel.gas == gas), None)
 
     def known(self, gas: str) -> Channel:
         """Return the channel of a gas.
@@ -208,9 +194,9 @@ def sensor_preset(name: str) -> SnifferSpec:
     known = sensor_presets()
     if name not in known:
         raise MeasurementError(
-            f"instrument is {name!r}{guess(name, known)} there are {', '.join(known)}"
+            f"instrument is {name!r}{did_you_mean(name, known) or ';'} there are {', '.join(known)}"
         )
-    return read_spec(tomllib.loads((_folder() / f"{name}.toml").read_text(encoding="utf-8")), name)
+    return sensor_of(tomllib.loads((_folder() / f"{name}.toml").read_text(encoding="utf-8")), name)
 
 
 def sensor_of(given: str | Mapping[str, Any], name: str = "") -> SnifferSpec:
@@ -218,34 +204,20 @@ def sensor_of(given: str | Mapping[str, Any], name: str = "") -> SnifferSpec:
 
     Parameters
     ----------
-    given : name or table
+    given : name, or a table of ``title``, ``rate_hz``, ``source`` and ``channels``, a table of
+        tables by gas. Keys of a channel are the fields of ``Channel`` without its gas; those that
+        are left out are taken as not known. With a ``cross`` it responds to no other gases.
     name : of a sniffer from a table; its title if empty
 
     Raises
     ------
-    MeasurementError : the name is not known, or the table is invalid
+    MeasurementError : the name or a key is not known, or a value is not of its kind or range
     """
     if isinstance(given, str):
         return sensor_preset(given)
-    return read_spec(given, name or str(given.get("title", UNTITLED_SNIFFER)))
-
-
-def read_spec(table: Mapping[str, Any], name: str) -> SnifferSpec:
-    """Return a sniffer from a table.
-
-    Parameters
-    ----------
-    table : ``title``, ``rate_hz``, ``source`` and ``channels``, a table of tables by gas. Keys of a
-        channel are the fields of ``Channel`` without its gas; those that are left out are taken as
-        not known. With a ``cross`` the channel responds to no other gases.
-    name : of the sniffer
-
-    Raises
-    ------
-    MeasurementError : a key is not known, or a value is not of its kind or range
-    """
-    _check_keys(table, {"title", "rate_hz", "source", "channels"}, f"instrument '{name}'")
-    channels = table.get("channels")
+    name = name or str(given.get("title", UNTITLED_SNIFFER))
+    check_keys(given, ("channels", "rate_hz", "source", "title"), f"instrument '{name}'")
+    channels = given.get("channels")
     if not isinstance(channels, dict) or not channels:
         raise MeasurementError(
             f"instrument '{name}' has no channels; "
@@ -253,10 +225,10 @@ def read_spec(table: Mapping[str, Any], name: str) -> SnifferSpec:
         )
     return SnifferSpec(
         name=name,
-        title=str(table.get("title", name)),
-        rate_hz=number(table.get("rate_hz", 1.0), "rate_hz", name),
+        title=str(given.get("title", name)),
+        rate_hz=number(given.get("rate_hz", 1.0), "rate_hz", name),
         channels=tuple(_channel(gas, channels[gas], name) for gas in channels),
-        source=str(table.get("source", "")),
+        source=str(given.get("source", "")),
     )
 
 
@@ -266,7 +238,7 @@ def _channel(gas: str, table: Any, name: str) -> Channel:
         raise MeasurementError(
             f"{where} is not known; channels are tables called {', '.join(GASES)}"
         )
-    _check_keys(table, {field.name for field in fields(Channel)} - {"gas"}, where)
+    check_keys(table, sorted({field.name for field in fields(Channel)} - {"gas"}), where)
     given: dict[str, Any] = dict(_UNKNOWN[gas])
     if "t90_s" in table:
         given["t90_sd"] = _T90_KNOWN
@@ -289,12 +261,3 @@ def _channel(gas: str, table: Any, name: str) -> Channel:
         return Channel(gas=gas, **given)
     except MeasurementError as error:
         raise MeasurementError(f"{where}: {error}") from None
-
-
-def _check_keys(table: Mapping[str, Any], known: set[str], where: str) -> None:
-    unknown = sorted(set(table) - known)
-    if unknown:
-        raise MeasurementError(
-            f"{where} has the key '{unknown[0]}'{guess(unknown[0], known)} "
-            f"it may have {', '.join(sorted(known))}"
-        )

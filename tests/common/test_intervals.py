@@ -38,7 +38,7 @@ def test_at_each_end_what_was_seen_or_worse_has_half_of_what_confidence_leaves(e
     assert binom.sf(events - 1, trials, interval.low) == pytest.approx(0.05, rel=1e-9)
 
 
-def test_an_interval_ends_at_0_or_1_where_nothing_or_everything_happened_and_without_trials_says_nothing():
+def test_an_interval_ends_at_0_or_1_where_nothing_or_all_happened_and_without_trials_says_nothing():
     assert clopper_pearson(0, 20, 0.95).low == 0.0
     assert clopper_pearson(20, 20, 0.95).high == 1.0
     assert clopper_pearson(0, 0, 0.95) == Interval(0.0, 1.0)

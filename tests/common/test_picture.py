@@ -1,4 +1,4 @@
-"""Pictures that a user gives are known by their content, and anything else is refused in one line."""
+"""Pictures that a user gives are known by their content; all else is refused in one line."""
 
 import io
 
@@ -7,7 +7,10 @@ from PIL import Image
 
 from common.picture import BYTES_MAX, PictureError, read_picture
 
-SVG = b'<svg xmlns="http://www.w3.org/2000/svg" width="4" height="2"><rect width="4" height="2"/></svg>'
+SVG = (
+    b'<svg xmlns="http://www.w3.org/2000/svg" width="4" height="2">'
+    b'<rect width="4" height="2"/></svg>'
+)
 
 
 def drawn(kind):

@@ -8,7 +8,7 @@ import numpy as np
 
 from measurement.gases import fsc_factor
 from measurement.sniffer.channel import Channel
-from measurement.sniffer.sniffer import Sniffer
+from measurement.sniffer.sniffer import Readings, Sniffer
 from measurement.sniffer.spec import SnifferSpec, sensor_preset
 
 BACKGROUND = np.array([1.0, 420.0, 0.2, 3.0])
@@ -74,3 +74,10 @@ def flight(preset, fsc_percent, seed, *, duration=300.0):
 def changed(spec, gas, **fields):
     """Return a sniffer with fields of one channel changed."""
     return spec.with_channel(replace(spec.known(gas), **fields))
+
+
+def with_column(readings, column, values):
+    """Return readings with other ones of one gas, or of several."""
+    other = readings.values.copy()
+    other[:, column] = values
+    return Readings(readings.time, other)

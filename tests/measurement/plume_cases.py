@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from measurement.emission import emission_of, fuel_preset, ship_preset
+from measurement.emission import emission_of, fuel_preset, ship_of
 from measurement.plume.fluctuating_plume import FluctuatingPlume
 from measurement.plume.parcels import Parcels
 from measurement.plume.spread import MarineAir, PlumeSettings, SpreadTable
@@ -14,7 +14,7 @@ from measurement.plume.spread import MarineAir, PlumeSettings, SpreadTable
 # The worked example of the specification, section 2: 10 MW, 20 m/s, 1.5 m, 250 degC, F = 49.6
 # m4/s3, Fm = 124 m4/s2.
 EMISSION = replace(
-    emission_of(ship_preset("container"), fuel_preset("mgo"), power=10e6),
+    emission_of(ship_of("container"), fuel_preset("mgo"), power=10e6),
     buoyancy_flux=49.6,
     momentum_flux=124.0,
     exhaust_speed=20.0,
@@ -27,21 +27,27 @@ def air(wind_speed, **options):
     return MarineAir(wind_speed=wind_speed, temperature=TEMPERATURE, **options)
 
 
+def plume_behind(track, true_wind=7.0, *, height=HEIGHT, seed=3, **settings):
+    time, north, east = (np.array(values) for values in track)
+    return FluctuatingPlume(
+        EMISSION,
+        air(true_wind),
+        time=time,
+        north=north,
+        east=east,
+        source_height=height,
+        settings=PlumeSettings(**settings),
+        seed=seed,
+    )
+
+
 def straight(wind, true_wind, *, since=-150.0, until=100.0, course=0.0, seed=1, **settings):
     """A plume in a constant apparent wind: the stack leaves the air mass behind on ``course``,
     from the origin at time 0.
     """
     time = np.array([since, until])
-    return FluctuatingPlume(
-        EMISSION,
-        air(true_wind),
-        time=time,
-        north=wind * time * np.cos(course),
-        east=wind * time * np.sin(course),
-        source_height=HEIGHT,
-        settings=PlumeSettings(**settings),
-        seed=seed,
-    )
+    track = time, wind * time * np.cos(course), wind * time * np.sin(course)
+    return plume_behind(track, true_wind, seed=seed, **settings)
 
 
 def turning(speed, wind, wind_to, *, rate=0.02, turn=np.pi, until=250.0):

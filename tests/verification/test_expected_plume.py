@@ -9,12 +9,12 @@ from exhaust_cases import SENSOR
 from gnc.estimation.plume.estimator import HIT
 from gnc.estimation.plume.prior import Expectation, PlumePrior, expected_plume, rise
 from gnc.mission.axis import AxisHeight
-from measurement.emission import Emission, emission_of, fuel_preset, ship_preset
+from measurement.emission import Emission, emission_of, fuel_preset, ship_of
 from measurement.gases import GASES
 from measurement.plume import fluctuating_plume
 from measurement.plume.spread import MarineAir, PlumeSettings, spreads
 
-EMISSION = emission_of(ship_preset("container"), fuel_preset("mgo", 0.1), power=10e6)
+EMISSION = emission_of(ship_of("container"), fuel_preset("mgo", 0.1), power=10e6)
 
 
 def prior_of(
@@ -80,7 +80,7 @@ def test_a_plume_that_is_not_searched_for_is_followed_at_the_height_of_the_plume
     """At a sixth of her power, whose slow exhaust the wake of the funnel draws down by up to 3.6 m,
     and never below the sea.
     """
-    weak = emission_of(ship_preset("container"), fuel_preset("mgo", 0.1), power=2e6)
+    weak = emission_of(ship_of("container"), fuel_preset("mgo", 0.1), power=2e6)
     height = AxisHeight(
         source=source, momentum_flux=weak.momentum_flux, buoyancy_flux=weak.buoyancy_flux, stack_diameter=weak.stack_diameter,
         exhaust_speed=weak.exhaust_speed,
@@ -137,7 +137,7 @@ def test_spreads_and_meander_are_carried_to_another_distance(
 @pytest.mark.parametrize("load", [0.2, 0.9])
 def test_a_load_that_is_off_changes_the_peak_by_what_is_stated(load: float) -> None:
     """Of twice the gas, part is lost to the spread that twice the heat makes."""
-    ship, fuel = ship_preset("container"), fuel_preset("mgo", 0.1)
+    ship, fuel = ship_of("container"), fuel_preset("mgo", 0.1)
     middle, other = (emission_of(ship, fuel, power=of * ship.power_max) for of in (0.45, load))
 
     def prior(of: Emission, load_deviation: float) -> PlumePrior:

@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from crossings import changed, crossings, flight, plain_sniffer, read, sniffer_of
+from crossings import changed, crossings, flight, plain_sniffer, read, sniffer_of, with_column
 
 from measurement.errors import MeasurementError
 from measurement.estimate.estimator import estimate, over_time
@@ -204,9 +204,7 @@ def test_readings_that_a_sensor_cannot_have_leave_no_verdict(change, reason):
 def test_so2_in_ppm_has_no_verdict(name, noise, fsc):
     readings, _ = flight("electrochemical", fsc, 1)
     # As in a log: rounded to a tenth of a ppb.
-    in_ppm = with_change(
-        readings, lambda r: put(r.values, (slice(None), 0), r.values[:, 0].round(1) / 1000.0)
-    )
+    in_ppm = with_column(readings, 0, readings.values[:, 0].round(1) / 1000.0)
     found = estimate(in_ppm, sensor_preset(name))
     assert_no_verdict(found, noise)
     assert (
@@ -218,7 +216,7 @@ def test_so2_in_ppm_has_no_verdict(name, noise, fsc):
 @pytest.mark.parametrize("name", ["electrochemical", "unspecified"])
 def test_an_so2_sensor_that_is_dead_has_no_verdict(name):
     readings, _ = flight("electrochemical", 0.25, 1)
-    dead = with_change(readings, lambda r: put(r.values, (slice(None), 0), 3.0))
+    dead = with_column(readings, 0, 3.0)
     assert_no_verdict(estimate(dead, sensor_preset(name)), "SO2 reads the same throughout")
 
 
@@ -227,9 +225,7 @@ def test_an_so2_sensor_that_is_dead_has_no_verdict(name):
 def test_a_clean_ship_with_ordinary_noise_is_no_dead_sensor(analyst, decimals):
     # The quietest preset has 0.3 ppb, which rounding to whole numbers does not hide.
     readings, spec = flight("laser" if analyst == "unspecified" else analyst, 0.001, 1)
-    rounded = with_change(
-        readings, lambda r: put(r.values, (slice(None), 0), r.values[:, 0].round(decimals))
-    )
+    rounded = with_column(readings, 0, readings.values[:, 0].round(decimals))
     found = estimate(rounded, spec if analyst != "unspecified" else sensor_preset("unspecified"))
     assert "another unit" not in " ".join(found.quality_reasons)
     # Whole numbers misfit the 0.3 ppb that are stated of the laser, which is another matter.
@@ -238,7 +234,7 @@ def test_a_clean_ship_with_ordinary_noise_is_no_dead_sensor(analyst, decimals):
 
 def test_rounding_that_is_known_to_be_coarse_is_no_dead_sensor():
     readings, spec = flight("electrochemical", 0.001, 1)
-    coarse = with_change(readings, lambda r: put(r.values, (slice(None), 0), 0.0))
+    coarse = with_column(readings, 0, 0.0)
     found = estimate(coarse, changed(spec, "so2", resolution=100.0))
     assert "another unit" not in " ".join(found.quality_reasons)
 

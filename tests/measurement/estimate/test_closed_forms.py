@@ -21,12 +21,6 @@ from measurement.sniffer.spec import sensor_preset
 TAU = 20.0 / math.log(10.0)
 
 
-def test_the_factor_is_that_of_the_specification():
-    assert fsc_factor() == pytest.approx(0.2322, abs=5e-5)
-    assert fsc_factor(0.85) == pytest.approx(0.2268, abs=1e-4)
-    assert fsc_factor(0.875) == pytest.approx(0.2336, abs=5e-5)
-
-
 @pytest.mark.parametrize("method", ["regression", "areas"])
 @pytest.mark.parametrize("t90", [1.0, 4.0, 20.0])
 def test_equal_responses_are_unbiased_by_both_methods(method, t90):

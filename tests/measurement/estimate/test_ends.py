@@ -15,6 +15,13 @@ from measurement.sniffer.channel import Channel
 from measurement.sniffer.sniffer import Readings
 
 AIR = {"interval": 30.0, "meander": 0.0, "width": 2.0}
+NOT_STATED = {"t90_sd": math.inf, "delay_sd_s": math.inf}
+
+
+def late(fsc, delay, duration):
+    """Return a sniffer whose SO2 comes so late [s], and the air of passes every 12 s."""
+    spec = plain_sniffer(3.0, 2.0, so2_noise=1.0, co2_noise=0.5, delay_s=delay)
+    return spec, crossings(fsc, duration=duration, interval=12.0, meander=0.3, width=1.0, first=4.0)
 
 
 def parts(readings, period, kept):
@@ -48,13 +55,8 @@ def test_where_the_background_explains_all_that_is_known_there_is_no_result():
 
 @pytest.mark.parametrize("delay", [3.0, 9.0, 15.0])
 def test_a_beginning_that_is_shorter_than_the_delay_has_an_estimate_or_none(delay):
-    spec = plain_sniffer(3.0, 2.0, so2_noise=1.0, co2_noise=0.5, delay_s=delay)
-    readings = read(
-        spec,
-        crossings(0.25, duration=60.0, interval=12.0, meander=0.3, width=1.0, first=4.0),
-        seed=2,
-    )
-    unknown = changed(spec, "so2", t90_sd=math.inf, delay_sd_s=math.inf)
+    spec, air = late(0.25, delay, 60.0)
+    readings, unknown = read(spec, air, seed=2), changed(spec, "so2", **NOT_STATED)
     assert len(over_time(readings, unknown, elapsed_s=(8, 9, 10, 11, 12, 14, 16, 20, 30))) == 9
 
 
@@ -96,27 +98,16 @@ def test_of_passes_that_not_all_channels_read_the_others_are_compared():
 def test_without_a_stated_delay_no_fuel_is_below_a_limit_before_its_so2_can_have_arrived(
     fsc, delay, verdicts
 ):
-    spec = plain_sniffer(3.0, 2.0, so2_noise=1.0, co2_noise=0.5, delay_s=delay)
-    readings = read(
-        spec,
-        crossings(fsc, duration=90.0, interval=12.0, meander=0.3, width=1.0, first=4.0),
-        seed=0,
-    )
-    unknown = changed(spec, "so2", t90_sd=math.inf, delay_sd_s=math.inf)
+    spec, air = late(fsc, delay, 90.0)
+    readings, unknown = read(spec, air), changed(spec, "so2", **NOT_STATED)
     assert (
         over_time(readings, unknown, elapsed_s=(15, 20, 25, 90))["verdict_0.1"].tolist() == verdicts
     )
 
 
 def test_so2_that_may_still_come_is_named_with_what_to_do():
-    spec = plain_sniffer(3.0, 2.0, so2_noise=1.0, co2_noise=0.5, delay_s=25.0)
-    unknown = changed(spec, "so2", t90_sd=math.inf, delay_sd_s=math.inf)
-    found = estimate(
-        read(
-            spec, crossings(0.25, duration=20.0, interval=12.0, meander=0.3, width=1.0, first=4.0)
-        ),
-        unknown,
-    )
+    spec, air = late(0.25, 25.0, 20.0)
+    found = estimate(read(spec, air), changed(spec, "so2", **NOT_STATED))
     (reason,) = found.quality_reasons
     assert "SO2 does not stand out" in reason
     assert "up to 30 s" in reason
@@ -125,10 +116,9 @@ def test_so2_that_may_still_come_is_named_with_what_to_do():
 def test_so2_that_may_have_come_in_a_gap_is_waited_for():
     # Two passes, then a gap in which the SO2 came, and five minutes of clean air: 0.25 % was
     # "below", quality B.
-    spec = plain_sniffer(3.0, 2.0, so2_noise=1.0, co2_noise=0.5, delay_s=25.0)
-    passes = crossings(0.25, duration=22.0, interval=12.0, meander=0.3, width=1.0, first=4.0)
+    spec, passes = late(0.25, 25.0, 22.0)
     readings = read(spec, np.vstack([passes, np.tile(BACKGROUND, (3230, 1))]), seed=1)
     kept = (readings.time < 22.0) | (readings.time > 51.0)
-    unknown = changed(spec, "so2", t90_sd=math.inf, delay_sd_s=math.inf)
+    unknown = changed(spec, "so2", **NOT_STATED)
     found = estimate(Readings(readings.time[kept], readings.values[kept]), unknown)
     assert [verdict.verdict for verdict in found.verdicts] == ["open", "open"]

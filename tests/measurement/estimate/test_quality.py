@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from crossings import changed, crossings, flight, plain_sniffer, read
+from crossings import changed, crossings, flight, plain_sniffer, read, with_column
 
 from measurement.estimate.areas import area_ratio
 from measurement.estimate.estimator import estimate
@@ -12,7 +12,7 @@ from measurement.estimate.passes import find_passes
 from measurement.estimate.record import checked_record
 from measurement.gases import GASES
 from measurement.sniffer.sniffer import Readings
-from measurement.sniffer.spec import read_spec, sensor_preset
+from measurement.sniffer.spec import sensor_of, sensor_preset
 
 
 def reasons(readings, spec):
@@ -24,8 +24,8 @@ def reasons(readings, spec):
 
 def later(readings, gas, seconds):
     """Return readings whose column of a gas was logged by a clock that is so much behind [s]."""
-    values = readings.values.copy()
-    values[:, gas] = np.interp(readings.time - seconds, readings.time, values[:, gas])
+    column = np.interp(readings.time - seconds, readings.time, readings.values[:, gas])
+    values = with_column(readings, gas, column).values
     return Readings(readings.time[10:-10], values[10:-10])
 
 
@@ -61,10 +61,10 @@ def test_a_clean_fuel_is_not_taken_for_one_of_another_clock(preset):
 )
 def test_readings_that_are_cut_off_below_the_stated_range_have_no_verdict(gas, most, name):
     readings, spec = flight("electrochemical", 0.25, 1)
-    values = readings.values.copy()
-    assert values[:, gas].max() > most
-    values[:, gas] = np.minimum(values[:, gas], most)
-    assert f"{name}, and never more, " in reasons(Readings(readings.time, values), spec)
+    column = readings.values[:, gas]
+    assert column.max() > most
+    cut = with_column(readings, gas, np.minimum(column, most))
+    assert f"{name}, and never more, " in reasons(cut, spec)
 
 
 @pytest.mark.parametrize("noise", ["stated", "not stated"])
@@ -72,10 +72,10 @@ def test_readings_that_are_cut_off_at_zero_have_no_verdict(noise):
     # Clean air reads 0 and no less, which is too much in the mean: in weak plumes 0.124 was read
     # for 0.15 %.
     readings, spec = flight("electrochemical", 0.15, 1)
-    values = readings.values.copy()
-    values[:, 0] = np.maximum(values[:, 0] - np.quantile(values[:, 0], 0.3), 0.0)
+    so2 = readings.values[:, 0]
+    cut = with_column(readings, 0, np.maximum(so2 - np.quantile(so2, 0.3), 0.0))
     analyst = spec if noise == "stated" else changed(spec, "so2", noise=math.nan)
-    assert "SO2 reads 0 ppb, and never less, " in reasons(Readings(readings.time, values), analyst)
+    assert "SO2 reads 0 ppb, and never less, " in reasons(cut, analyst)
 
 
 @pytest.mark.parametrize("decimals", [0, 1, 2])
@@ -91,16 +91,15 @@ def test_whole_flights_rounded_to_any_step_are_not_cut_off(decimals):
 @pytest.mark.parametrize(("column", "gas"), [(2, "NO"), (3, "NO2")])
 def test_no_and_no2_in_ppm_have_no_verdict(column, gas):
     readings, spec = flight("electrochemical", 0.25, 1)
-    values = readings.values.copy()
-    values[:, column] /= 1000.0
-    told = reasons(Readings(readings.time, values), spec)
+    in_ppm = with_column(readings, column, readings.values[:, column] / 1000.0)
+    told = reasons(in_ppm, spec)
     assert f"{gas} scatters by" in told
     assert f"give a [scale] of {gas.lower()} = 1000.0" in told
     # A sniffer that is known to respond to neither needs neither.
     deaf = spec.with_channel(
-        read_spec({"channels": {"so2": {"t90_s": 20.0, "cross": {}}}}, "deaf").known("so2")
+        sensor_of({"channels": {"so2": {"t90_s": 20.0, "cross": {}}}}, "deaf").known("so2")
     )
-    assert "scatters" not in reasons(Readings(readings.time, values), deaf)
+    assert "scatters" not in reasons(in_ppm, deaf)
 
 
 @pytest.mark.parametrize(("one", "other", "fsc"), [(2, 3, 0.25), (2, 3, 0.0), (0, 2, 0.0)])
@@ -111,9 +110,8 @@ def test_no2_that_exceeds_no_has_no_verdict_where_so2_responds_to_both(preset, o
     readings, _ = flight(preset, fsc, 1)
     spec = sensor_preset("electrochemical")
     assert "exhaust has more NO than NO2" not in reasons(readings, spec)
-    values = readings.values.copy()
-    values[:, [one, other]] = values[:, [other, one]]
-    assert "exhaust has more NO than NO2" in reasons(Readings(readings.time, values), spec)
+    exchanged = with_column(readings, [one, other], readings.values[:, [other, one]])
+    assert "exhaust has more NO than NO2" in reasons(exchanged, spec)
 
 
 @pytest.mark.parametrize("method", ["regression", "areas"])
@@ -165,7 +163,7 @@ def test_a_cell_of_which_nothing_is_said_gives_no_wrong_verdict():
 
 def test_responses_to_other_gases_that_a_table_leaves_out_are_not_known():
     silent, told, none = (
-        read_spec({"channels": {"so2": {"t90_s": 20.0, **cross}, "co2": {}}}, "own").known("so2")
+        sensor_of({"channels": {"so2": {"t90_s": 20.0, **cross}, "co2": {}}}, "own").known("so2")
         for cross in ({}, {"cross": {"no2": -0.16}}, {"cross": {}})
     )
     assert silent.cross_sd == sensor_preset("unspecified").known("so2").cross_sd
@@ -213,9 +211,7 @@ def test_noise_is_shown_by_readings_and_not_by_what_is_interpolated():
 
 def in_steps(readings, gas, step):
     """Return readings of which those of a gas are rounded to a step."""
-    values = readings.values.copy()
-    values[:, gas] = np.round(values[:, gas] / step) * step
-    return Readings(readings.time, values)
+    return with_column(readings, gas, np.round(readings.values[:, gas] / step) * step)
 
 
 def test_co2_in_steps_larger_than_its_noise_has_no_lower_content():
@@ -396,10 +392,9 @@ def test_clean_air_in_a_coarse_sensor_is_no_stuck_sensor(step, noise):
 def test_a_sensor_that_cuts_off_what_is_below_zero_is_none_that_sticks():
     # A zero of -8 ppb is four times the noise: clean air reads 0.
     readings, spec = late_plume(1.0)
-    values = readings.values.copy()
-    values[:, 0] = np.maximum(values[:, 0] - 8.0, 0.0).round(2)
-    assert np.sum(values[:900, 0] == 0.0) > 800
-    assert STUCK not in told(Readings(readings.time, values), spec)
+    so2 = np.maximum(readings.values[:, 0] - 8.0, 0.0).round(2)
+    assert np.sum(so2[:900] == 0.0) > 800
+    assert STUCK not in told(with_column(readings, 0, so2), spec)
 
 
 @pytest.mark.parametrize(

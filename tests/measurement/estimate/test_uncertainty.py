@@ -17,7 +17,7 @@ from measurement.estimate.record import checked_record
 from measurement.estimate.signals import make_signals
 from measurement.gases import GASES, fsc_factor
 from measurement.sniffer.sniffer import Readings
-from measurement.sniffer.spec import read_spec, sensor_preset
+from measurement.sniffer.spec import sensor_of, sensor_preset
 
 REPEATS = 200
 """They give a standard deviation to 5 %; a tenth, which is asked for, is twice that, and the seeds
@@ -248,7 +248,7 @@ def test_a_response_that_is_not_given_is_not_taken_for_a_fast_one_where_so2_is_n
         plain_sniffer(so2_noise=25.0, co2_noise=1.0), crossings(0.25, seed=seed), seed=seed
     )
     readings.values[:, 2:] = np.nan
-    spec = read_spec({"channels": {"so2": {"cross": {}}, "co2": {}}}, "own")
+    spec = sensor_of({"channels": {"so2": {"cross": {}}, "co2": {}}}, "own")
     found = estimate(readings, spec)
     assert found.so2_t90_s > 8.0
     # The truth is 0.25 %; the stated uncertainty is a quarter of it.

@@ -1,27 +1,15 @@
 import numpy as np
 import pytest
-from plume_cases import EMISSION, HEIGHT, air, turning
+from plume_cases import air, plume_behind, turning
 
-from measurement.plume.fluctuating_plume import FluctuatingPlume, PlumeSample
-from measurement.plume.spread import PlumeSettings
+from measurement.plume.fluctuating_plume import PlumeSample
 
 NAMES = PlumeSample._fields
 TRACK = turning(8.0, 4.0, 1.0)
 
 
 def plume(track, seed=3, **settings):
-    time, north, east = track
-    chosen = PlumeSettings(age_max=200.0, **settings)
-    return FluctuatingPlume(
-        EMISSION,
-        air(7.0),
-        time=time,
-        north=north,
-        east=east,
-        source_height=HEIGHT,
-        settings=chosen,
-        seed=seed,
-    )
+    return plume_behind(track, seed=seed, age_max=200.0, **settings)
 
 
 def flight(count=5000):

@@ -19,7 +19,7 @@ def correlation(values, lag):
 
 def test_the_process_has_the_covariance_that_it_should():
     length, step = 4e6, 15.0
-    process = Meander(0.0, length, SCALE, np.random.default_rng(5))
+    process = Meander(length, SCALE, np.random.default_rng(5))
     values = process.at(np.arange(0.0, length, step))
     # About length/(2 SCALE) = 22,000 independent values: a standard error of 0.007 and, with
     # Bartlett's sum, of at most 0.01.
@@ -34,7 +34,7 @@ def test_the_process_has_the_covariance_that_it_should():
 def test_means_over_long_ways_vary_as_the_integral_scale_says():
     block, step = 40.0 * SCALE, 15.0
     length = 2000 * block
-    values = Meander(0.0, length, SCALE, np.random.default_rng(6)).at(np.arange(0.0, length, step))
+    values = Meander(length, SCALE, np.random.default_rng(6)).at(np.arange(0.0, length, step))
     means = values.reshape(2000, -1).mean(axis=1)
     # 2 SCALE/B (1 - 3 SCALE/4 B): the integral over the covariance, less what its tail loses at the
     # ends. 2,000 variances are known to sqrt(2/2000) = 3.2 %; three times that.
@@ -44,7 +44,7 @@ def test_means_over_long_ways_vary_as_the_integral_scale_says():
 
 
 def test_the_process_is_smooth_between_its_steps():
-    process = Meander(0.0, 2000.0, SCALE, np.random.default_rng(1))
+    process = Meander(2000.0, SCALE, np.random.default_rng(1))
     place = np.linspace(0.0, 1999.0, 200001)
     slope = np.diff(process.at(place)) / np.diff(place)
     # No corner: from one centimetre to the next the slope changes by what white noise of its
@@ -57,10 +57,7 @@ def test_the_process_is_smooth_between_its_steps():
 
 def test_it_is_stationary_from_its_first_place_on():
     first = np.array(
-        [
-            Meander(0.0, 10.0, SCALE, np.random.default_rng(k)).at(np.zeros(1))[0]
-            for k in range(2000)
-        ]
+        [Meander(10.0, SCALE, np.random.default_rng(k)).at(np.zeros(1))[0] for k in range(2000)]
     )
     # Standard errors of 2,000: 0.022 and 0.032; three of them.
     assert np.mean(first) == pytest.approx(0.0, abs=0.07)

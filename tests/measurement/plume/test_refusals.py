@@ -1,24 +1,15 @@
 import numpy as np
 import pytest
-from plume_cases import EMISSION, HEIGHT, air
+from plume_cases import HEIGHT, plume_behind
 
 from measurement.errors import MeasurementError
-from measurement.plume.fluctuating_plume import FluctuatingPlume
 from measurement.plume.spread import PlumeSettings
 
 TIME = np.array([0.0, 50.0, 100.0])
 
 
 def plume(time=TIME, north=5.0 * TIME, east=0.0 * TIME, height=HEIGHT, seed=0):
-    return FluctuatingPlume(
-        EMISSION,
-        air(7.0),
-        time=np.array(time),
-        north=np.array(north),
-        east=np.array(east),
-        source_height=height,
-        seed=seed,
-    )
+    return plume_behind((time, north, east), height=height, seed=seed)
 
 
 @pytest.mark.parametrize(

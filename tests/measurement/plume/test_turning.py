@@ -1,20 +1,10 @@
 import numpy as np
 import pytest
-from plume_cases import EMISSION, HEIGHT, air, puffs, turning
+from plume_cases import plume_behind, puffs, turning
 
-from measurement.plume.fluctuating_plume import FluctuatingPlume
 from measurement.plume.parcels import Parcels
-from measurement.plume.spread import PlumeSettings
 
 SETTINGS = {"meander": False, "age_max": 250.0}
-
-
-def plume(track, **settings):
-    time, north, east = track
-    chosen = PlumeSettings(**SETTINGS | settings)
-    return FluctuatingPlume(
-        EMISSION, air(7.0), time=time, north=north, east=east, source_height=HEIGHT, settings=chosen
-    )
 
 
 def around(of, when, spacing=12.0, youngest=12.0):
@@ -46,7 +36,7 @@ CASES = [
 def test_the_plume_of_a_turning_ship_is_that_of_a_sum_of_puffs(case):
     speed, wind, wind_to, rate, when, worst = case
     track = turning(speed, wind, wind_to, rate=rate)
-    of = plume(track)
+    of = plume_behind(track, **SETTINGS)
     places = around(of, when)
     sample = of.sample(np.full(len(places[0]), when), *places)
     reference = puffs(track, 7.0, when, places, interval=0.4, **SETTINGS)
@@ -64,7 +54,7 @@ def test_both_arms_of_a_folded_line_are_added():
     # A ship that comes back 60 m beside its own track: 3 m/s of wind carries nothing apart, and the
     # arms overlap.
     track = turning(6.0, 0.0, 0.0, rate=0.2, until=120.0)
-    of = plume(track)
+    of = plume_behind(track, **SETTINGS)
     when = 110.0
     north, east, up = of.axis(when, np.array([60.0]))
     across = np.linspace(-20.0, 80.0, 51)
@@ -79,7 +69,7 @@ def test_both_arms_of_a_folded_line_are_added():
 
 
 def test_the_axis_is_where_its_parcels_are():
-    of = plume(turning(8.0, 5.0, 1.5))
+    of = plume_behind(turning(8.0, 5.0, 1.5), **SETTINGS)
     age = np.linspace(5.0, 240.0, 48)
     north, east, up = of.axis(200.0, age)
     sample = of.sample(np.full(48, 200.0), north, east, up)
@@ -128,7 +118,7 @@ def test_smoke_of_a_course_that_jumps_still_has_a_nearest_parcel_everywhere():
         np.array([-1600.0, 0.0, 400.0]),
         np.array([0.0, 0.0, 692.8]),
     )
-    of = plume(track)
+    of = plume_behind(track, **SETTINGS)
     north, east, up = of.axis(90.0, np.linspace(0.5, 200.0, 400))
     sample = of.sample(np.full(400, 90.0), north, east, up)
     assert np.isfinite(sample.age).all()

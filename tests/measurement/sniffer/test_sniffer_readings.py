@@ -11,7 +11,7 @@ from crossings import BACKGROUND, changed, plain_sniffer, read, sniffer_of
 from measurement.errors import MeasurementError
 from measurement.sniffer.channel import Channel
 from measurement.sniffer.sniffer import Sniffer
-from measurement.sniffer.spec import read_spec, sensor_preset, sensor_presets
+from measurement.sniffer.spec import sensor_of, sensor_preset, sensor_presets
 
 STILL = np.tile(BACKGROUND, (20_001, 1))
 
@@ -139,7 +139,7 @@ def test_every_preset_has_the_figures_of_its_source():
         ({"cross": {"so2": 0.1}}, "cross of so2 names 'so2'"),
         ({"cross": {"co": 0.1}}, "cross of so2 names 'co'"),
         ({"cross": {"no": 60.0}}, "cross of so2 to no is 60"),
-        ({"pressure_effect": 1.0}, "pressure_effect of so2 is 1; it must be at most 0.1"),
+        ({"pressure_effect": 1.0}, "pressure_effect of so2 is 1 1/hPa; it must be -0.1 to 0.1"),
         ({"gas": "o3"}, "gas is 'o3'; it must be one of so2, co2, no, no2"),
     ],
 )
@@ -180,11 +180,11 @@ def test_sniffers_that_cannot_be_are_refused():
 )
 def test_tables_with_mistakes_are_refused(table, message):
     with pytest.raises(MeasurementError, match=message):
-        read_spec(table, "x")
+        sensor_of(table, "x")
 
 
 def test_what_a_table_leaves_out_is_not_known():
-    spec = read_spec({"channels": {"so2": {}, "co2": {"t90_s": 2.0}}}, "x")
+    spec = sensor_of({"channels": {"so2": {}, "co2": {"t90_s": 2.0}}}, "x")
     assert math.isinf(spec.known("so2").t90_sd)
     assert math.isnan(spec.known("so2").noise)
     assert spec.known("co2").t90_sd == 0.1

@@ -7,7 +7,7 @@ from importlib.resources import files
 import numpy as np
 import pytest
 
-from measurement.emission import ship_preset
+from measurement.emission import ship_of
 from reports.document.chart import Line, Note, Panel
 from reports.document.map_marks import arrow, hull_line, on_map, plume_lines
 from reports.document.palette import Meaning
@@ -137,7 +137,7 @@ def test_every_ship_that_is_known_has_a_hull_that_is_a_ships():
         assert 5.0 < hull.length / hull.beam < 8.5
     # The most powerful is the longest.
     assert max(HULLS, key=lambda name: HULLS[name].length) == max(
-        ships, key=lambda name: ship_preset(name).power_max
+        ships, key=lambda name: ship_of(name).power_max
     )
     assert hull_of({"emission": {"ship": "coaster"}}).length == HULLS["coaster"].length
     assert hull_of({"emission": {"ship": None}}) == hull_of({}) == ANY

@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from measurement.emission import emission_of, fuel_preset, ship_preset
+from measurement.emission import emission_of, fuel_preset, ship_of
 from measurement.plume.fluctuating_plume import FluctuatingPlume
 from measurement.plume.spread import MarineAir, PlumeSettings
 from reports.run.flight_config import source_height
@@ -41,7 +41,7 @@ def test_at_its_edge_the_mean_plume_has_exp_of_minus_two_of_its_axis():
     shape = shape_of(SMOKE, apparent)
     time = np.arange(-120.0, 1.0, 0.5)
     plume = FluctuatingPlume(
-        emission_of(ship_preset("container"), fuel_preset("mgo", 0.1), speed=SPEED),
+        emission_of(ship_of("container"), fuel_preset("mgo", 0.1), speed=SPEED),
         MarineAir(wind_speed=WIND, temperature=288.15),
         time=time,
         north=apparent * time,

@@ -5,7 +5,7 @@ from pathlib import Path
 import pandas as pd
 import pytest
 
-from measurement.emission import Ship, ship_of, ship_preset
+from measurement.emission import Ship, ship_of
 from measurement.sniffer.spec import sensor_of
 from reports.output import write_report
 from reports.run.run_data import read_run
@@ -85,7 +85,7 @@ def test_its_flight_is_replayed_and_its_run_resumed(run):
 
 
 def test_a_table_with_the_figures_of_a_preset_is_that_preset():
-    container = ship_preset("container")
+    container = ship_of("container")
     table = {name: getattr(container, name) for name in Ship.__dataclass_fields__ if name != "name"}
     given, named = (
         load_study("sulphur", [f"emission.ship={ship}"]) for ship in (toml(table), "container")
