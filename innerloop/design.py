@@ -219,7 +219,7 @@ def _design(
 
 def _with_repeated_search(found: "Designed", root: Path, reversals: int) -> "Record":
     """Return the design's record with the result of a search over so many reversals."""
-    from innerloop.reversal_record import repeat_search
+    from innerloop.flight.turn_reversal import repeat_search
 
     def report_progress(count: int, deviation: float) -> None:
         print(
@@ -227,7 +227,9 @@ def _with_repeated_search(found: "Designed", root: Path, reversals: int) -> "Rec
             file=sys.stderr,
         )
 
-    searched = repeat_search(found, root, reversals, done=report_progress)
+    searched = repeat_search(
+        found.design.schedule, found.record, root, reversals, done=report_progress
+    )
     return found.record | {
         "turn_reversal": found.record["turn_reversal"] | {"repeated_search": searched}
     }

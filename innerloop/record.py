@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from aircraft.fdm import TIME_STEP, Fdm
+from aircraft.model import Perturbation
 from aircraft.spec import ControlInput, Envelope
 from aircraft.trim import Trim, TrimOutcome, search_trim
 from common.physics import heading_rate_for_bank
@@ -20,9 +21,9 @@ from innerloop.flight.responses import (
     predicted_step,
     verify_model,
 )
+from innerloop.flight.turn_reversal import perturbed_aircraft, reversal_record
 from innerloop.law import ControlLaw, linear_controller
 from innerloop.margins import BREAK_NAMES, NOMINAL, REQUIRED, Check, Loops, Margin
-from innerloop.reversal_record import aircraft_as_modelled, reversal_record
 from innerloop.robustness import CASES
 from innerloop.schedule import LEVEL_GAINS, Schedule
 from innerloop.store import Design, Record
@@ -61,7 +62,7 @@ def design_record(design: Design, root: Path) -> Record:
     """
     schedule = design.schedule
     spec, envelope = schedule.spec, schedule.envelope
-    aircraft = aircraft_as_modelled(spec, root)
+    aircraft = perturbed_aircraft(spec, root, Perturbation())
     level = schedule.level(schedule.middle)
     slow_lag = measure_lag(aircraft, level, envelope.bank)
     nominal = [check for check in design.checks if check.case == NOMINAL]

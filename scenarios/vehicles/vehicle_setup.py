@@ -18,7 +18,7 @@ from aircraft.user_check import check_user_aircraft
 from common.files import write_tree
 from innerloop.flight.autopiloted_aircraft import AutopilotedAircraft
 from innerloop.flight.part_failure import PartFailure, measure_part_failure
-from innerloop.flight.turn_reversal import TurnReversalResponse
+from innerloop.flight.turn_reversal import TurnReversalResponse, reversal_record
 from innerloop.jsbsim.system import write_root
 from innerloop.schedule import Schedule
 from innerloop.store import Designed, designed
@@ -192,8 +192,6 @@ def aircraft_setup(
     reversal, slow_lag = found.record["turn_reversal"], float(found.record["heading_rate_lag_s"])
     slower_or_faster = abs(start.airspeed / reversal["airspeed_mps"] - 1.0)
     if bank > schedule.envelope.bank + _SAME_BANK or slower_or_faster > _SAME_AIRSPEED:
-        from innerloop.reversal_record import reversal_record  # needs scipy.signal
-
         reversal = reversal_record(
             schedule.spec, run.model, start, max(bank, schedule.envelope.bank), slow_lag
         )
