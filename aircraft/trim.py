@@ -17,7 +17,7 @@ import numpy.typing as npt
 from scipy.optimize import fsolve, least_squares
 
 from aircraft.fdm import Fdm
-from aircraft.spec import AircraftError, AircraftSpec, check_spec
+from aircraft.spec import AircraftError, check_spec
 from aircraft.state import RigidBodyState, Vector, body_velocity, level, turn_rates
 
 Array = npt.NDArray[np.float64]
@@ -193,20 +193,6 @@ def trim(
         f" bank {math.degrees(bank):g} deg, climb {math.degrees(climb_angle):g} deg"
         f" did not converge: {reason}; {remedy}"
     )
-
-
-def level_trim(
-    spec: AircraftSpec, airspeed: float, altitude: float, start: Trim | None = None
-) -> Trim:
-    """Straight and level equilibrium of the bare aircraft.
-
-    Parameters
-    ----------
-    spec : the aircraft
-    airspeed, altitude : true airspeed [m/s] and altitude [m]
-    start : an equilibrium nearby
-    """
-    return trim(Fdm(spec), airspeed=airspeed, altitude=altitude, start=start)
 
 
 def search_trim(

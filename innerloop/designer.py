@@ -38,9 +38,7 @@ _SLOWER = 0.8
 """Factor on the bandwidths of an axis with too little margin [-]."""
 
 _ATTEMPTS = 10
-"""Number of designs after which an aircraft is refused: the last is at 13 % of the first
-bandwidths.
-"""
+"""Designs after which an aircraft is refused: the last has 13 % of the first bandwidths."""
 
 _PHASE_LOSS_MAX = 5.0
 """Phase margin that a loop may lose to a period of more than one time step [deg]."""
@@ -156,10 +154,9 @@ def schedule_at(grid: Grid, bandwidths: LoopBandwidths) -> Schedule:
     gains = []
     for row, models in zip(grid.trims, grid.models, strict=True):
         controls = control_weights(models[LEVEL_GAINS], bandwidths, weights)
-        at = [row[TRIM_BANKS.index(share)] for share in GAIN_BANKS]
         of_row = [
-            design_gains(model, equilibrium, weights, controls)
-            for model, equilibrium in zip(models, at, strict=True)
+            design_gains(model, row[TRIM_BANKS.index(share)], weights, controls)
+            for model, share in zip(models, GAIN_BANKS, strict=True)
         ]
         gains.append(tuple(of_row))
     return Schedule(
@@ -208,13 +205,11 @@ def phase_loss(before: Sequence[Check], after: Sequence[Check]) -> float:
 def _slowed(bandwidths: LoopBandwidths, short: Sequence[Check]) -> LoopBandwidths:
     """Return the bandwidths, lower in the axes whose loops have too little margin."""
     loops = {name for check in short for name in check.short_loops}
-    lateral = any(name in _LATERAL_LOOPS for name in loops)
-    airspeed = any(name in _AIRSPEED_LOOPS for name in loops)
-    longitudinal = bool(loops - set(_LATERAL_LOOPS) - set(_AIRSPEED_LOOPS)) or not (
-        lateral or airspeed
-    )
-    return bandwidths.scaled(
-        lateral=_SLOWER if lateral else 1.0,
-        longitudinal=_SLOWER if longitudinal else 1.0,
-        airspeed=_SLOWER if airspeed or longitudinal else 1.0,
+    lateral = not loops.isdisjoint(_LATERAL_LOOPS)
+    longitudinal = bool(loops.difference(_LATERAL_LOOPS, _AIRSPEED_LOOPS))
+    airspeed = longitudinal or not loops.isdisjoint(_AIRSPEED_LOOPS)
+    return LoopBandwidths(
+        lateral=bandwidths.lateral * (_SLOWER if lateral else 1.0),
+        longitudinal=bandwidths.longitudinal * (_SLOWER if longitudinal else 1.0),
+        airspeed=bandwidths.airspeed * (_SLOWER if airspeed else 1.0),
     )

@@ -9,7 +9,6 @@ import bisect
 import functools
 import math
 from collections.abc import Callable, Mapping, Sequence
-from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -30,9 +29,7 @@ STATES = (
     "model_rate",
     "model_acceleration",
 )
-"""States of the autopilot: integrals, and the heading rate and heading acceleration of the
-reference model [rad/s, rad/s^2].
-"""
+"""States of the autopilot: integrals, and the heading-rate model's rate and acceleration [SI]."""
 
 _STEP = 1e-4
 """Step of the differences that linearise the law [SI].
@@ -251,26 +248,14 @@ def gain_vector(gains: Gains) -> Array:
     )
 
 
-class _InterpolatedGains(NamedTuple):
-    """The gains of a vector, with the names and shapes of ``Gains``."""
-
-    longitudinal: Array
-    longitudinal_integral: Array
-    lateral: Array
-    heading_integral: float
-    sideslip_integral: float
-    roll_rate_feedforward: Array
-    roll_acceleration_feedforward: Array
-
-
-def _split(vector: Array) -> _InterpolatedGains:
+def _split(vector: Array) -> Gains:
     """Return the gains of a vector that ``gain_vector`` ordered."""
-    return _InterpolatedGains(
+    return Gains(
         longitudinal=vector[:10].reshape(2, 5),
         longitudinal_integral=vector[10:14].reshape(2, 2),
         lateral=vector[14:22].reshape(2, 4),
-        heading_integral=vector[22],
-        sideslip_integral=vector[23],
+        heading_integral=float(vector[22]),
+        sideslip_integral=float(vector[23]),
         roll_rate_feedforward=vector[24:26],
         roll_acceleration_feedforward=vector[26:28],
     )

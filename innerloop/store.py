@@ -25,7 +25,6 @@ from pathlib import Path
 from typing import Any, Literal, TypeVar
 
 import numpy as np
-import numpy.typing as npt
 
 import aircraft
 import common
@@ -188,7 +187,9 @@ def _with_model_of(spec: AircraftSpec, found: Designed) -> Designed:
     The same files may have been elsewhere on disk when the design was made.
     """
     schedule = found.design.schedule
-    placed = schedule.spec.with_files_of(spec)
+    placed = replace(
+        schedule.spec, root=spec.root, folder=spec.folder, other_roots=spec.other_roots
+    )
     if placed == schedule.spec:
         return found
     schedule = replace(schedule, spec=placed)
@@ -293,7 +294,8 @@ def _value(found: Any, kind: Any) -> Any:
 def _generic_value(found: Any, origin: Any, arguments: tuple[Any, ...]) -> Any:
     """Return an array, an optional value, a tuple or a mapping from its JSON."""
     if origin is np.ndarray:
-        return _array(found)
+        values = np.array(found["values"], dtype=np.float64)
+        return values.reshape(found["shape"], order=found["order"])
     if origin in (typing.Union, types.UnionType):
         (kind,) = (argument for argument in arguments if argument is not types.NoneType)
         return None if found is None else _value(found, kind)
@@ -303,11 +305,4 @@ def _generic_value(found: Any, origin: Any, arguments: tuple[Any, ...]) -> Any:
     return {key: _value(item, arguments[1]) for key, item in found.items()}
 
 
-def _array(found: Any) -> npt.NDArray[np.float64]:
-    values = np.array(found["values"], dtype=np.float64)
-    return values.reshape(found["shape"], order=found["order"])
-
-
-@functools.cache
-def _hints(kind: type) -> dict[str, Any]:
-    return typing.get_type_hints(kind)
+_hints = functools.cache(typing.get_type_hints)

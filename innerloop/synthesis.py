@@ -287,8 +287,6 @@ def design_gains(
     lateral, heading_integral, sideslip_integral = _lateral(plant, weights, controls)
     by_rate, by_acceleration = _feedforward(plant, trim)
     return Gains(
-        airspeed=trim.airspeed,
-        bank=trim.roll,
         longitudinal=longitudinal,
         longitudinal_integral=longitudinal_integral,
         lateral=lateral,

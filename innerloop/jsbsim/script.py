@@ -1,5 +1,6 @@
 """A JSBSim script that flies an aircraft under its autopilot without Python."""
 
+import itertools
 import math
 from collections.abc import Sequence
 from pathlib import Path
@@ -17,7 +18,7 @@ from aircraft.fdm import (
     before_hold,
     initial_conditions,
 )
-from aircraft.spec import Envelope, UnknownPropertyError
+from aircraft.spec import Envelope
 from aircraft.trim import Trim
 from common.physics import heading_rate_for_bank
 from innerloop.jsbsim.system import (
@@ -190,18 +191,9 @@ def columns(fdm: Fdm) -> list[str]:
         *(command for i in fdm.spec.inputs for command in i.commands),
         *(s.position for s in fdm.spec.driven_states),
     ]
-    for name in names:
-        fdm.node(name)
-    engine = 0
-    while True:
-        # Not set-running, which stays 0 for an electric motor that runs.
-        thrust = f"propulsion/engine[{engine}]/thrust-lbs"
-        try:
-            fdm.node(thrust)
-        except UnknownPropertyError:
-            return names
-        names.append(thrust)
-        engine += 1
+    # Not set-running, which stays 0 for an electric motor that runs.
+    thrusts = (f"propulsion/engine[{engine}]/thrust-lbs" for engine in itertools.count())
+    return [*names, *itertools.takewhile(fdm.has, thrusts)]
 
 
 def _before(start: Trim, held: float) -> str:

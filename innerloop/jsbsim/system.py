@@ -17,7 +17,7 @@ import numpy as np
 import numpy.typing as npt
 
 from aircraft.fdm import TIME_STEP
-from aircraft.model import copy_model, read_xml
+from aircraft.model import copy_model, insert_before_flight_control, read_xml, write_xml
 from aircraft.spec import AircraftSpec, ControlInput
 from common.physics import METRES_PER_FOOT, STANDARD_GRAVITY
 from innerloop.law import bank_slopes
@@ -95,15 +95,11 @@ def write_root(schedule: Schedule, directory: Path) -> Path:
     spec = schedule.spec
     model_file = copy_model(spec.files, directory)
     model = read_xml(model_file)
-    root = model.getroot()
     systems = directory / "systems"
     systems.mkdir(exist_ok=True)
     (systems / f"{system_name(spec)}.xml").write_text(system_xml(schedule), encoding="utf-8")
-    before = next(
-        (i for i, element in enumerate(root) if element.tag == "flight_control"), len(root)
-    )
-    root.insert(before, ET.Element("system", file=system_name(spec)))
-    model.write(model_file, encoding="utf-8", xml_declaration=True)
+    insert_before_flight_control(model.getroot(), ET.Element("system", file=system_name(spec)))
+    write_xml(model, model_file)
     return directory
 
 
@@ -238,7 +234,7 @@ def _longitudinal(schedule: Schedule) -> list[str]:
                     ),
                 ),
             ),
-            integrator(integral, integral_rate, RESET),
+            integrator(integral, integral_rate),
         ]
     return components
 
@@ -290,7 +286,7 @@ def _rudder_integral(schedule: Schedule) -> list[str]:
     )
     return [
         function("autopilot/rudder-integral-rate", growth),
-        integrator("autopilot/rudder-integral", "autopilot/rudder-integral-rate", RESET),
+        integrator("autopilot/rudder-integral", "autopilot/rudder-integral-rate"),
     ]
 
 
@@ -307,8 +303,8 @@ def _heading_rate_model(schedule: Schedule) -> list[str]:
     )
     return [
         function(_MODEL_JERK, jerk),
-        integrator(_MODEL_ACCELERATION, _MODEL_JERK, RESET),
-        integrator(_MODEL_RATE, _MODEL_ACCELERATION, RESET),
+        integrator(_MODEL_ACCELERATION, _MODEL_JERK),
+        integrator(_MODEL_RATE, _MODEL_ACCELERATION),
     ]
 
 
@@ -344,7 +340,7 @@ def _bank_command(schedule: Schedule) -> list[str]:
         function(unlimited, total(read(model_bank), read(integral))),
         function(BANK_COMMAND, clipped(read(unlimited), -bank_max, bank_max)),
         function(integral_rate, growth),
-        integrator(integral, integral_rate, RESET),
+        integrator(integral, integral_rate),
     ]
 
 
@@ -455,11 +451,11 @@ def channel(name: str, period: int, components: Sequence[str]) -> str:
     return f'<channel name="{name}" execrate="{period}">\n' + "\n".join(components) + "\n</channel>"
 
 
-def integrator(name: str, source: str, reset: str) -> str:
+def integrator(name: str, source: str) -> str:
     """Return a component that integrates ``source`` by the trapezoidal rule.
 
-    It is held at 0 while property ``reset`` is negative. JSBSim's ``<integrator>`` can be held but
+    It is held at 0 while ``RESET`` is negative. JSBSim's ``<integrator>`` can be held but
     not reset, so this is a ``<pid>`` with its integral alone.
     """
     gains = '<kp>0</kp><ki type="trap">1</ki><kd>0</kd>'
-    return f'<pid name="{name}"><input>{source}</input>{gains}<trigger>{reset}</trigger></pid>'
+    return f'<pid name="{name}"><input>{source}</input>{gains}<trigger>{RESET}</trigger></pid>'

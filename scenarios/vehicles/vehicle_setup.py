@@ -11,9 +11,10 @@ from pathlib import Path
 import numpy as np
 
 from aircraft.faults import fault_names
+from aircraft.fdm import Fdm
 from aircraft.fleet.find import find_spec
 from aircraft.spec import AircraftError, AircraftSpec, Envelope
-from aircraft.trim import Trim, level_trim
+from aircraft.trim import Trim, trim
 from aircraft.user_check import check_user_aircraft
 from common.files import write_tree
 from innerloop.flight.autopiloted_aircraft import AutopilotedAircraft
@@ -182,11 +183,11 @@ def aircraft_setup(
     with tempfile.TemporaryDirectory() as folder:
         write_tree(write_root(schedule, Path(folder)), run.model)
     run.write_text(run.innerloop, found.record_text)
-    start = level_trim(
-        schedule.spec,
-        scenario.guidance.airspeed_mps,
-        scenario.altitude,
-        schedule.level(schedule.middle),
+    start = trim(
+        Fdm(schedule.spec),
+        airspeed=scenario.guidance.airspeed_mps,
+        altitude=scenario.altitude,
+        start=schedule.level(schedule.middle),
     )
     turns = schedule.trims[schedule.middle]
     reversal, slow_lag = found.record["turn_reversal"], float(found.record["heading_rate_lag_s"])

@@ -127,7 +127,8 @@ def read_in_wind(fdm, trim, wind_ned):
             fdm.write(f"atmosphere/wind-{name}-fps", value / METRES_PER_FOOT)
         fdm.step()
         assert fdm.settle(3e-8)
-        velocity, rates = fdm.velocity_body(), np.array(fdm.rates_body())
+        velocity = [METRES_PER_FOOT * fdm.read(f"velocities/{name}-aero-fps") for name in "uvw"]
+        rates = np.array([fdm.read(f"velocities/{name}-rad_sec") for name in "pqr"])
         dot = np.array(fdm.acceleration_body())
         # Held in inertial motion: omega x v is that of the body's own velocity, which the wind has
         # been taken out of.
