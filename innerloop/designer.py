@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
-from aircraft.controls import flight_idle, with_flight_idle, with_linearised_controls
+from aircraft.controls import with_flight_idle, with_linearised_controls
 from aircraft.envelope import find_envelope, first_trim, with_reserve_note
 from aircraft.fdm import Fdm
 from aircraft.linearise import LinearModel, linearise
@@ -136,9 +136,8 @@ def linear_grid(spec: AircraftSpec, altitude: float) -> Grid:
         edges.append((linearise(beyond, row[0]), linearise(beyond, row[-1])))
     if spec.envelope is not None:
         envelope = with_reserve_note(envelope, [t for row in trims for t in row], spec)
-    spec = with_flight_idle(spec, flight_idle(fdm, trims[len(trims) // 2][LEVEL]))
     return Grid(
-        spec=spec,
+        spec=with_flight_idle(fdm, trims[len(trims) // 2][LEVEL]),
         envelope=envelope,
         altitude=altitude,
         trims=tuple(trims),

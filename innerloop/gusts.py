@@ -34,9 +34,7 @@ if TYPE_CHECKING:
     import control
 
 GUSTS = ("gust_along", "gust_right", "gust_down", "gust_p", "gust_q", "gust_r")
-"""Velocity of the air along the trimmed course, right and down [m/s], and its rotation about these
-axes [rad/s].
-"""
+"""Velocity of the air along the trimmed course, right and down [m/s], and its rotation [rad/s]."""
 
 MOTION = ("speed", "course_rate")
 """Motion against the mean air: horizontal speed [m/s] and rate of the course [rad/s].
@@ -185,7 +183,10 @@ def aircraft_in_gusts(model: LinearModel, trim: Trim, level_model: LinearModel) 
     moments = [states.index(name) for name in _RATES]
     at = velocity_by_polar(trim.airspeed, trim.alpha, trim.beta)
     by_air = model.A[:, air].copy()
-    by_air[:3] -= np.linalg.solve(at, _turning(trim, at))
+    # The derivatives of -omega x v by the components of ``_AIR``.
+    velocity = body_velocity(trim.airspeed, trim.alpha, trim.beta)
+    turning = np.hstack([-_cross(trim.rates_body) @ at, _cross(velocity)])
+    by_air[:3] -= np.linalg.solve(at, turning)
     by_air[moments, 3:] = level_model.A[np.ix_(moments, air[3:])]
     by_air[[states.index(name) for name in ("roll", "pitch", "altitude")]] = 0.0
 
@@ -237,12 +238,6 @@ def velocity_by_polar(airspeed: float, alpha: float, beta: float) -> Array:
             [sa * cb, airspeed * ca * cb, -airspeed * sa * sb],
         ]
     )
-
-
-def _turning(trim: Trim, at: Array) -> Array:
-    """Return the derivatives of -omega x v [m/s^2] by ``_AIR``, shape (3, 6)."""
-    velocity = body_velocity(trim.airspeed, trim.alpha, trim.beta)
-    return np.hstack([-_cross(trim.rates_body) @ at, _cross(velocity)])
 
 
 def _cross(vector: tuple[float, float, float]) -> Array:

@@ -9,7 +9,7 @@ import numpy as np
 
 from aircraft.fdm import TIME_STEP, Fdm
 from aircraft.model import Perturbation
-from aircraft.spec import ControlInput, Envelope
+from aircraft.spec import Envelope
 from aircraft.trim import Trim, TrimOutcome, search_trim
 from common.physics import heading_rate_for_bank
 from innerloop.flight.autopiloted_aircraft import AutopilotedAircraft
@@ -73,7 +73,10 @@ def design_record(design: Design, root: Path) -> Record:
         "source": spec.source,
         "altitude_m": schedule.altitude,
         "envelope": _envelope_record(envelope),
-        "inputs": [_input_record(i) for i in spec.inputs],
+        "inputs": [
+            {"name": i.name, "lower": i.lower, "upper": i.upper, "is_effect": bool(i.effectiveness)}
+            for i in spec.inputs
+        ],
         "design_airspeed_mps": level.airspeed,
         "airspeeds_mps": list(schedule.airspeeds),
         "banks_deg": [math.degrees(bank) for bank in schedule.banks],
@@ -130,21 +133,8 @@ def _envelope_record(envelope: Envelope) -> Record:
     }
 
 
-def _input_record(control_input: ControlInput) -> Record:
-    """Return a control's range under the autopilot; a throttle closes to flight idle."""
-    return {
-        "name": control_input.name,
-        "lower": control_input.lower,
-        "upper": control_input.upper,
-        "is_effect": bool(control_input.effectiveness),
-    }
-
-
 def _trim_record(t: Trim, bank: float) -> Record:
-    """Return an equilibrium; ``bank`` is that of the grid [rad].
-
-    It is 0 in straight flight, even if a small roll balances the propeller's torque.
-    """
+    """Return an equilibrium; the grid's ``bank`` [rad] is 0 even if a roll balances a propeller."""
     return {
         "airspeed_mps": t.airspeed,
         "bank_rad": bank,
@@ -177,15 +167,18 @@ def _climbs(schedule: Schedule) -> list[Record]:
     return [_trim_record(t, 0.0) for t in found if t.outcome is TrimOutcome.CONVERGED]
 
 
-def _margin_records(check: Check) -> list[Record]:
-    point = {
+def _point_record(check: Check) -> Record:
+    return {
         "airspeed_mps": check.airspeed,
         "bank_rad": check.bank,
         "between": check.between,
         "stable": check.stable,
     }
+
+
+def _margin_records(check: Check) -> list[Record]:
     return [
-        point | {f.name: _finite(getattr(margin, f.name)) for f in fields(Margin)}
+        _point_record(check) | {f.name: _finite(getattr(margin, f.name)) for f in fields(Margin)}
         for margin in check.margins
     ]
 
@@ -195,10 +188,7 @@ def _robustness_record(check: Check) -> Record:
     return {
         "case": check.case,
         "periods_late": CASES[check.case].periods_late,
-        "airspeed_mps": check.airspeed,
-        "bank_rad": check.bank,
-        "between": check.between,
-        "stable": check.stable,
+        **_point_record(check),
         "gain_db": _finite(gain.gain_db),
         "gain_loop": gain.loop,
         "phase_deg": _finite(phase.phase_deg),

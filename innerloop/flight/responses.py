@@ -35,9 +35,7 @@ CHANNELS: dict[str, tuple[str, float]] = {
     "aileron_command": ("autopilot/aileron-command", 1.0),
     "throttle_command": ("autopilot/throttle-command", 1.0),
 }
-"""Recorded quantities of a step, by their name in the closed loop: JSBSim property and SI value of
-its unit.
-"""
+"""Recorded quantities of a step, named as in the closed loop: JSBSim property, SI of its unit."""
 
 OUTPUTS: dict[str, tuple[str, float]] = {
     "airspeed": ("velocities/vt-fps", METRES_PER_FOOT),
@@ -49,7 +47,7 @@ OUTPUTS: dict[str, tuple[str, float]] = {
     "roll": ("attitude/phi-rad", 1.0),
     "pitch": ("attitude/theta-rad", 1.0),
 }
-"""States that are compared after a doublet: JSBSim property and SI value of its unit."""
+"""States that are compared after a doublet: JSBSim property, SI of its unit."""
 
 _MOVED_BY = {
     "elevator": ("alpha", "q", "pitch"),
@@ -69,10 +67,7 @@ _DOUBLET_SIZE = 0.01
 """Deflection of each half of a doublet [-]."""
 
 _SUBSTEPS = 8
-"""Substeps of a time step in the flight of a doublet [-].
-
-The linear model does not have JSBSim's first-order integration errors.
-"""
+"""Substeps of a time step in a doublet [-]: JSBSim's integration errors are of first order."""
 
 _SETTLED = 1e-9
 """Change of acceleration per substep below which servos and engines count as settled.
@@ -262,12 +257,7 @@ def _deviations(
 ) -> dict[str, Array]:
     """Fly some time steps; return the deviations of quantities from their first values [SI].
 
-    Parameters
-    ----------
-    fdm : of the aircraft
-    quantities : JSBSim property and SI value of its unit, by name
-    steps : number of time steps
-    before_step : called with the number of each step, after its values are read
+    ``before_step`` is called with the number of each step, after its values are read.
     """
     reads = [fdm.node(name).get_double_value for name, _ in quantities.values()]
     rows = []

@@ -133,9 +133,8 @@ def test_a_step_lasts_one_hundred_and_twentieth_of_a_second(x8_fdm):
     before = x8_fdm.read("simulation/sim-time-sec")
     x8_fdm.step(12)
     assert TIME_STEP == 1.0 / 120.0
-    assert x8_fdm.read("simulation/sim-time-sec") - before == pytest.approx(
-        0.1, abs=1e-12
-    )  # rounding of twelve additions
+    # Rounding of twelve additions.
+    assert x8_fdm.read("simulation/sim-time-sec") - before == pytest.approx(0.1, abs=1e-12)
 
 
 def test_a_placed_aircraft_is_where_and_as_it_was_asked(x8_fdm):
@@ -143,9 +142,8 @@ def test_a_placed_aircraft_is_where_and_as_it_was_asked(x8_fdm):
     # Feet and quaternions in between: twelve digits survive.
     assert x8_fdm.read("position/lat-geod-rad") == pytest.approx(0.2, abs=1e-12)
     assert x8_fdm.read("position/long-gc-rad") == pytest.approx(-0.3, abs=1e-12)
-    assert x8_fdm.read("position/h-sl-meters") == pytest.approx(
-        120.0, abs=1e-6
-    )  # a metre in 6.4 million, twice
+    # A metre in 6.4 million, twice.
+    assert x8_fdm.read("position/h-sl-meters") == pytest.approx(120.0, abs=1e-6)
     assert velocity_body(x8_fdm) == pytest.approx(SOMEWHERE.velocity_body, abs=1e-11)
     assert rates_body(x8_fdm) == pytest.approx(SOMEWHERE.rates_body, abs=1e-12)
     for name, angle in (("phi", 0.3), ("theta", 0.1), ("psi", 1.234)):
@@ -210,9 +208,8 @@ def test_frozen_restores_motion_also_after_an_error(x8_fdm):
     north, east = frame.to_local(
         x8_fdm.read("position/lat-geod-rad"), x8_fdm.read("position/long-gc-rad")
     )
-    assert math.hypot(north, east) == pytest.approx(
-        2.0, abs=0.2
-    )  # 20 m/s for 0.1 s, slightly climbing and accelerating
+    # 20 m/s for 0.1 s, slightly climbing and accelerating.
+    assert math.hypot(north, east) == pytest.approx(2.0, abs=0.2)
 
 
 def test_settle_says_whether_there_was_enough_time(x8_fdm):
@@ -224,9 +221,8 @@ def test_settle_says_whether_there_was_enough_time(x8_fdm):
         assert x8_fdm.settle()
         speed = x8_fdm.read("propulsion/engine/propeller-rpm")
         x8_fdm.step(120)
-    assert x8_fdm.read("propulsion/engine/propeller-rpm") == pytest.approx(
-        speed, rel=1e-7
-    )  # 1e-9 a step, dying out
+    # 1e-9 a step, dying out.
+    assert x8_fdm.read("propulsion/engine/propeller-rpm") == pytest.approx(speed, rel=1e-7)
 
 
 def test_two_aircraft_do_not_share_state(x8_fdm):

@@ -149,12 +149,13 @@ def test_a_seed_gives_its_own_turbulence_each_time(blown, x8_fdm):
     end_weather(x8_fdm)
     np.testing.assert_array_equal(blown(weather, 200, 60.0, 20.0), first)
     end_weather(x8_fdm)
+    # Of 0.8 m/s.
     assert (
         np.abs(
             blown(Weather(turbulence=TURBULENCE["light"], seed=6), 200, 60.0, 20.0) - first
         ).max()
         > 0.1
-    )  # of 0.8 m/s
+    )
 
 
 def test_a_seed_that_jsbsim_cannot_hold_is_refused():

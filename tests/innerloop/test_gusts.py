@@ -179,9 +179,8 @@ def test_moments_by_rates_hardly_depend_on_bank(x8_schedule, x8_fdm):
         x8_fdm.read(f"inertia/i{axes}-slugs_ft2") * KG_M2_PER_SLUG_FT2
         for axes in ("xx", "yy", "zz", "xz")
     )
-    inertia = np.array(
-        [[xx, 0.0, xz], [0.0, yy, 0.0], [xz, 0.0, zz]]
-    )  # JSBSim's ixz is that of the matrix, its sign included
+    # JSBSim's ixz is that of the matrix, its sign included.
+    inertia = np.array([[xx, 0.0, xz], [0.0, yy, 0.0], [xz, 0.0, zz]])
     rates = np.array(trim.rates_body)
     gyroscopic = -np.linalg.solve(inertia, cross(rates) @ inertia - cross(inertia @ rates))
     # What is left in a steep turn is what the model takes from level flight. Measured 0.029 1/s, by
@@ -198,9 +197,8 @@ def cross(vector):
 
 def test_in_air_that_has_come_to_move_along_its_course_the_aircraft_is_as_much_faster(x8_schedule):
     loop = gust_loop(x8_schedule, MIDDLE, LEVEL_GAINS)
-    gain = np.real(
-        loop(1e-9j)
-    )  # a hundred thousand times slower than the slowest pole, 0.3 rad/s: steady to 1e-8
+    # A hundred thousand times slower than the slowest pole, 0.3 rad/s: steady to 1e-8.
+    gain = np.real(loop(1e-9j))
     along, outputs = loop.input_labels.index("gust_along"), list(loop.output_labels)
     assert gain[outputs.index("speed"), along] == pytest.approx(1.0, abs=1e-6)
     assert gain[outputs.index("airspeed"), along] == pytest.approx(0.0, abs=1e-6)

@@ -38,9 +38,8 @@ def test_the_tables_reach_past_the_largest_commanded_bank_and_gains_are_those_of
     assert math.degrees(x8_schedule.banks[-1]) == pytest.approx(TABLE_REACH * 50.0)
     assert set(x8_schedule.gain_banks) < set(x8_schedule.banks)
     for i, row in enumerate(x8_schedule.trims):
-        assert [t.roll for t in row] == pytest.approx(
-            x8_schedule.banks, abs=1e-3
-        )  # level: 0.3 mrad against the propeller's torque
+        # Level: 0.3 mrad against the propeller's torque.
+        assert [t.roll for t in row] == pytest.approx(x8_schedule.banks, abs=1e-3)
         for j in range(len(x8_schedule.gains[i])):
             at = x8_schedule.gain_trim(i, j)
             assert at.airspeed == x8_schedule.airspeeds[i]
@@ -106,9 +105,8 @@ def test_the_bank_for_a_turn_is_that_of_the_equilibrium_with_this_yaw_rate(x8_sc
     airspeed = x8_schedule.airspeeds[index]
     turns = np.array([airspeed * t.yaw_rate / STANDARD_GRAVITY for t in x8_schedule.trims[index]])
     banks = x8_schedule.bank_for_turn(turns)[:, index]
-    np.testing.assert_allclose(
-        banks, [t.roll for t in x8_schedule.trims[index]], atol=1e-12
-    )  # at the nodes: rounding
+    # At the nodes: rounding.
+    np.testing.assert_allclose(banks, [t.roll for t in x8_schedule.trims[index]], atol=1e-12)
 
 
 @pytest.mark.parametrize("bank", [-50.0, -28.0, -11.0, 11.0, 28.0, 50.0])

@@ -75,16 +75,16 @@ def test_a_design_is_made_once_and_found_again_whole(requests, designs):
     assert second is not first
     # What is found is what was made, to the last bit: tables, gains, models, checks and record.
     assert second.record == first.record
-    assert repr(second.design.checks) == repr(
-        first.design.checks
-    )  # all controls at once have margins that are nan
+    # All controls at once have margins that are nan.
+    assert repr(second.design.checks) == repr(first.design.checks)
     assert second.design.bandwidths == first.design.bandwidths
     one, two = first.design.schedule, second.design.schedule
+    # A stall of nan is not itself.
     assert (repr(one.spec), one.weights, one.trims) == (
         repr(two.spec),
         two.weights,
         two.trims,
-    )  # a stall of nan is not itself
+    )
     for mine, other in zip(sum(one.models, ()), sum(two.models, ()), strict=True):
         for matrix in "ABCD":
             np.testing.assert_array_equal(getattr(mine, matrix), getattr(other, matrix))

@@ -249,9 +249,8 @@ def test_a_dynamically_similar_aircraft_gets_the_similar_autopilot(monkeypatch, 
     np.testing.assert_allclose(
         scaled.lateral * np.array([0.5, 0.5, 1.0, 1.0]), gains.lateral, rtol=1e-5, atol=1e-9
     )
-    assert scaled.heading_integral == pytest.approx(
-        gains.heading_integral, rel=1e-5
-    )  # heading is an angle
+    # Heading is an angle.
+    assert scaled.heading_integral == pytest.approx(gains.heading_integral, rel=1e-5)
     assert 2.0 * scaled.sideslip_integral == pytest.approx(gains.sideslip_integral, rel=1e-5)
     np.testing.assert_allclose(
         0.5 * scaled.roll_rate_feedforward, gains.roll_rate_feedforward, rtol=1e-9

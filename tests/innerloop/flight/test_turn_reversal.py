@@ -1,4 +1,4 @@
-"""The response to a turn reversal, and the search for the one that an aircraft strays farthest in."""
+"""The response to a turn reversal, and the search for the one with the largest deviation."""
 
 import functools
 import math

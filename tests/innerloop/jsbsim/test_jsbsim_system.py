@@ -271,9 +271,8 @@ def test_an_integrator_integrates_by_the_trapezoidal_rule(run):
     inputs = np.sin(np.arange(1, 60))
     found = [value_at(fdm, float(x)) for x in inputs]
     before = np.concatenate([[0.0], inputs[:-1]])
-    np.testing.assert_allclose(
-        found, np.cumsum(0.5 * (inputs + before) * TIME_STEP), atol=1e-14
-    )  # rounding
+    # Rounding.
+    np.testing.assert_allclose(found, np.cumsum(0.5 * (inputs + before) * TIME_STEP), atol=1e-14)
 
 
 def test_an_integrator_is_held_at_zero_by_its_reset_and_starts_from_there(run):
@@ -286,7 +285,6 @@ def test_an_integrator_is_held_at_zero_by_its_reset_and_starts_from_there(run):
     assert value_at(fdm, 1.0) == 0.0
     assert value_at(fdm, 1.0) == 0.0
     fdm.write(RESET, 0.0)
-    assert value_at(fdm, 1.0) == pytest.approx(
-        TIME_STEP, rel=0.51
-    )  # one step, or half of one by the trapezium
+    # One step, or half of one by the trapezium.
+    assert value_at(fdm, 1.0) == pytest.approx(TIME_STEP, rel=0.51)
     assert value_at(fdm, 1.0) == pytest.approx(2.0 * TIME_STEP, rel=0.26)
