@@ -86,11 +86,7 @@ TURBULENCE = {
     "moderate": Turbulence(wind_at_20ft=30.0 * METRES_PER_SECOND_PER_KNOT, severity=4),
     "severe": Turbulence(wind_at_20ft=45.0 * METRES_PER_SECOND_PER_KNOT, severity=6),
 }
-"""Turbulence by name.
-
-W20 of 15, 30 and 45 knots (MIL-F-8785C, figure 9), and the severities that JSBSim's manual gives
-them.
-"""
+"""W20 of 15, 30 and 45 knots (MIL-F-8785C, figure 9), with the severities of JSBSim's manual."""
 
 
 def intensities(altitude: float, wind_at_20ft: float) -> tuple[float, float, float]:
@@ -234,10 +230,7 @@ def begin_weather(fdm: Fdm, weather: Weather) -> Callable[[], object]:
     few times ``scale_lengths()[0]`` over the airspeed to reach its strength: some 30 s for 220 m at
     20 m/s.
 
-    Parameters
-    ----------
-    fdm : the aircraft at its release, placed in the wind of that time
-    weather : timed from now
+    The aircraft is at its release, placed in the wind of that time; the weather is timed from then.
 
     Raises
     ------

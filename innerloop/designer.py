@@ -52,13 +52,7 @@ _AIRSPEED_LOOPS = ("throttle", "airspeed")
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Grid:
-    """Equilibria and linear models over airspeed and bank, which a design starts from.
-
-    Attributes
-    ----------
-    spec, envelope, altitude : the aircraft, its envelope, and the altitude [m]
-    trims, models, edges : same as in ``Schedule``
-    """
+    """Equilibria and linear models that a design starts from, with the names of ``Schedule``."""
 
     spec: AircraftSpec
     envelope: Envelope

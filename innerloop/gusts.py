@@ -51,13 +51,7 @@ Array = npt.NDArray[np.float64]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class GustStatistics:
-    """Turbulence at one altitude.
-
-    Attributes
-    ----------
-    horizontal, vertical : standard deviations of the horizontal and the vertical wind [m/s]
-    horizontal_length, vertical_length : scale lengths of the same [m]
-    """
+    """Turbulence at one altitude: standard deviations of the wind [m/s], and scale lengths [m]."""
 
     horizontal: float
     vertical: float
@@ -144,12 +138,7 @@ def gust_loop(schedule: Schedule, index: int, bank_index: int) -> "control.State
     """Return aircraft and autopilot at an airspeed and a gain bank, from commands and gusts.
 
     Inputs are ``COMMANDS`` and ``GUSTS``. Outputs are those of ``aircraft_in_gusts`` and the
-    command of each control.
-
-    Parameters
-    ----------
-    schedule : the design
-    index, bank_index : of the airspeed and of the gain bank
+    command of each control. The indices are those of ``Schedule.gain_trim``.
     """
     models = schedule.models[index]
     trim = schedule.gain_trim(index, bank_index)
@@ -223,12 +212,7 @@ def aircraft_in_gusts(model: LinearModel, trim: Trim, level_model: LinearModel) 
 
 
 def velocity_by_polar(airspeed: float, alpha: float, beta: float) -> Array:
-    """Return the derivatives of body velocity [m/s] by airspeed, alpha and beta, shape (3, 3).
-
-    Parameters
-    ----------
-    airspeed, alpha, beta : [m/s, rad, rad]
-    """
+    """Return the derivatives of body velocity by airspeed, alpha, beta [m/s, rad], shape (3, 3)."""
     ca, sa = math.cos(alpha), math.sin(alpha)
     cb, sb = math.cos(beta), math.sin(beta)
     return np.array(

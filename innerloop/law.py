@@ -97,10 +97,7 @@ class ControlLaw:
     ) -> tuple[dict[str, float], dict[str, float]]:
         """Return the rates of ``STATES`` and the controls [-].
 
-        Parameters
-        ----------
-        commands, measured, states : absolute values by the names of ``COMMANDS``, ``measurements``
-            and ``STATES``
+        Arguments are absolute values by the names of ``COMMANDS``, ``measurements`` and ``STATES``.
         """
         airspeed = commands["airspeed_command"]
         at_bank = self.trim_tables(measured["roll"], airspeed)

@@ -45,11 +45,8 @@ def look_up(name: str, altitude: float) -> Discovered:
 def discover(names: Sequence[str], altitude: float, jobs: int) -> Iterator[Discovered]:
     """Yield aircraft in the order of ``names``, each as soon as it is known whether it flies.
 
-    Parameters
-    ----------
-    names : of known aircraft, or paths of their folders
-    altitude : of the designs [m]
-    jobs : processes; an aircraft that JSBSim cannot survive costs its process, not the list
+    They are designed at ``altitude`` [m] in ``jobs`` processes: an aircraft that JSBSim cannot
+    survive costs its process, not the list.
     """
     context = multiprocessing.get_context("spawn")
     pool = ProcessPoolExecutor(max_workers=jobs, mp_context=context, initializer=follow_parent)

@@ -53,12 +53,7 @@ _CHANNEL_NAMES = {
 def design_record(design: Design, root: Path) -> Record:
     """Return trims, poles, margins, loop shapes and responses of a design, as plain data.
 
-    The responses are predicted, and flown in JSBSim.
-
-    Parameters
-    ----------
-    design : from ``innerloop.designer.design_autopilot``
-    root : JSBSim root that ``write_root`` wrote for it
+    The responses are predicted, and flown in JSBSim from the ``root`` of ``write_root``.
     """
     schedule = design.schedule
     spec, envelope = schedule.spec, schedule.envelope

@@ -24,13 +24,7 @@ _DIFFERENCE = 1e-5
 
 
 class Case(NamedTuple):
-    """An aircraft and its autopilot as they may differ from the model.
-
-    Attributes
-    ----------
-    by : factors on effectiveness, mass and inertia
-    periods_late : additional delay of the autopilot [periods]
-    """
+    """Factors by which an aircraft differs from its model, and its autopilot's delay [periods]."""
 
     by: Perturbation
     periods_late: int
@@ -68,11 +62,6 @@ class OperatingPointMargins:
 
     The changed aircraft and its response do not depend on the period. Each is computed once, and so
     is each check.
-
-    Parameters
-    ----------
-    point : the operating point
-    as_modelled : its loops without any perturbation
     """
 
     def __init__(self, point: OperatingPoint, as_modelled: Loops) -> None:
@@ -122,11 +111,7 @@ def check_design(
 ) -> list[Check]:
     """Return the margins at every operating point, as modelled and, if ``perturbed``, in all cases.
 
-    Parameters
-    ----------
-    period : of the autopilot, one of ``PERIODS``
-    points : of the schedule, from ``operating_point_margins``
-    perturbed : whether the aircraft is perturbed, too
+    The period is one of ``PERIODS``; the points are those of ``operating_point_margins``.
     """
     cases = tuple(CASES) if perturbed else (NOMINAL,)
     return [point.check(case, period) for point in points for case in cases]
@@ -207,13 +192,7 @@ def _midway(first: OperatingPoint, second: OperatingPoint) -> list[OperatingPoin
 
 
 def perturbed_model(model: LinearModel, trim: Trim, by: Perturbation) -> LinearModel:
-    """Return the linear model of a perturbed aircraft; ``model`` itself if nothing changes.
-
-    Parameters
-    ----------
-    model, trim : the aircraft as modelled, linear about an equilibrium
-    by : factors on effectiveness, mass and inertia
-    """
+    """Return the linear model of a perturbed aircraft; ``model`` itself if nothing changes."""
     if by.effectiveness != 1.0:
         model = _with_effectiveness(model, by.effectiveness)
     if by.mass != 1.0:

@@ -149,10 +149,8 @@ def state_lag(model: LinearModel, control_input: str) -> float:
 def reachable_bandwidths(models: Sequence[LinearModel], bank: float) -> LoopBandwidths:
     """Return the bandwidths that an aircraft can follow at every airspeed.
 
-    Parameters
-    ----------
-    models : linear models of level flight, one for each airspeed
-    bank : largest bank of its turns [rad]
+    The models are linear about level flight, one for each airspeed; its turns bank by ``bank``
+    [rad] at most.
     """
     each = [_reachable(model, bank) for model in models]
     longitudinal = min(bandwidths.longitudinal for bandwidths in each)
@@ -257,13 +255,9 @@ def control_weights(
 def design_gains(
     model: LinearModel, trim: Trim, weights: DesignWeights, controls: ControlWeights
 ) -> Gains:
-    """Return the feedback gains for a linear model from ``aircraft.linearise``.
+    """Return the feedback gains for a model from ``aircraft.linearise`` about ``trim``.
 
-    Parameters
-    ----------
-    model, trim : the linear model, and the equilibrium about which it is linear
-    weights : acceptable deviations of the states
-    controls : acceptable deviations of the controls at the airspeed of ``trim``
+    The acceptable deviations of states and controls are those at its airspeed.
     """
     plant = quasi_static(model)
     longitudinal, longitudinal_integral = _longitudinal(plant, weights, controls)

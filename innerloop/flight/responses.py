@@ -118,8 +118,7 @@ def predicted_step(
     Parameters
     ----------
     schedule, index : the design, and the index of its airspeed
-    command, size : name of the command, and its step [SI]
-    duration : of the response [s]
+    command, size, duration : name of the command, its step [SI], and how long it is recorded [s]
     """
     autopilot = linear_controller(ControlLaw(schedule), schedule.level(index))
     loop = closed_loop(schedule.models[index][LEVEL_GAINS], autopilot, schedule.delay)
@@ -150,14 +149,7 @@ def model_step(schedule: Schedule, size: float, duration: float) -> Response:
 def flown_step(
     aircraft: AutopilotedAircraft, start: Trim, command: str, size: float, duration: float
 ) -> Response:
-    """Return the response in JSBSim to a step of a command from the equilibrium ``start``.
-
-    Parameters
-    ----------
-    aircraft, start : under its autopilot, and where it begins
-    command, size : name of the command, and its step [SI]
-    duration : of the response [s]
-    """
+    """Return the response in JSBSim to a step from an equilibrium; see ``predicted_step``."""
     aircraft.release(start.state(), airspeed=start.airspeed, altitude=start.altitude)
     if command == "airspeed":
         aircraft.command_airspeed(start.airspeed + size)
@@ -198,12 +190,8 @@ def verify_model(fdm: Fdm, model: LinearModel, level: Trim) -> list[dict[str, An
     """Return the largest error of each prediction over the largest excursion flown.
 
     There is one record for each control and each state it is meant to move: ``input``, ``output``
-    and ``error``, which is None if the state did not move.
-
-    Parameters
-    ----------
-    fdm : the aircraft; another simulation of it flies at a finer time step
-    model, level : its linear model, and the straight and level equilibrium
+    and ``error``, which is None if the state did not move. The ``model`` is that of ``fdm`` about
+    the equilibrium ``level``; another simulation of the aircraft flies at a finer time step.
     """
     fine = Fdm(fdm.spec, time_step=fdm.time_step / _SUBSTEPS)
     system = control.ss(model.A, model.B, model.C, model.D, inputs=model.input_labels)

@@ -62,13 +62,8 @@ Array = npt.NDArray[np.float64]
 def hold_steps(spec: AircraftSpec, period: int) -> int:
     """Return how many time steps a body is held before its release while servos and engines settle.
 
-    These are whole periods of the autopilot, so that it computes in the last of them. Guidance and
-    record read a whole number of periods later, and so read what it computed at that moment.
-
-    Parameters
-    ----------
-    spec : the aircraft
-    period : of the autopilot [JSBSim time steps]
+    These are whole periods [time steps] of the autopilot, so that it computes in the last of them.
+    Guidance and record read a whole number of periods later, and so what it computed then.
     """
     settle = round(spec.settle_time / TIME_STEP)
     return settle + -settle % period
