@@ -27,12 +27,7 @@ from innerloop.schedule import (
     table_banks,
 )
 from innerloop.store import Design, DesignError
-from innerloop.synthesis import (
-    control_weights,
-    design_gains,
-    design_weights,
-    reachable_bandwidths,
-)
+from innerloop.synthesis import control_weights, design_gains, design_weights, reachable_bandwidths
 
 _SLOWER = 0.8
 """Factor on the bandwidths of an axis with too little margin [-]."""

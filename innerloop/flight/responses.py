@@ -194,13 +194,14 @@ def verify_model(fdm: Fdm, model: LinearModel, level: Trim) -> list[dict[str, An
     the equilibrium ``level``; another simulation of the aircraft flies at a finer time step.
     """
     fine = Fdm(fdm.spec, time_step=fdm.time_step / _SUBSTEPS)
+    time = fine.time_step * np.arange(round(_DOUBLET_RECORDED / fine.time_step), dtype=np.float64)
+    second_half = np.where(time < 2.0 * _DOUBLET_HALF, -_DOUBLET_SIZE, 0.0)
+    doublet = np.where(time < _DOUBLET_HALF, _DOUBLET_SIZE, second_half)
     system = control.ss(model.A, model.B, model.C, model.D, inputs=model.input_labels)
     records = []
     for control_input in fdm.spec.inputs:
         name = control_input.name
-        time, flown = _flown_doublet(fine, level, name)
-        second_half = np.where(time < 2.0 * _DOUBLET_HALF, -_DOUBLET_SIZE, 0.0)
-        doublet = np.where(time < _DOUBLET_HALF, _DOUBLET_SIZE, second_half)
+        flown = _flown_with(fine, level, name, doublet)
         response = control.forced_response(system[:, name], time, doublet)
         for output in _MOVED_BY.get(name, ()):
             predicted = response.outputs[model.output_labels.index(output)]
@@ -212,29 +213,19 @@ def verify_model(fdm: Fdm, model: LinearModel, level: Trim) -> list[dict[str, An
     return records
 
 
-def _flown_doublet(fdm: Fdm, level: Trim, name: str) -> tuple[Array, dict[str, Array]]:
-    """Return time [s] and the deviations of ``OUTPUTS`` after a doublet of a control."""
+def _flown_with(fdm: Fdm, level: Trim, name: str, deflections: Array) -> dict[str, Array]:
+    """Return the deviations of ``OUTPUTS`` under deflections [-] of a control from equilibrium."""
     fdm.command(dict(level.inputs))
     fdm.allow_engine_restart()
     fdm.place(level.state())
     with fdm.frozen():
         fdm.settle(_SETTLED, round(fdm.spec.settle_time / fdm.time_step))
-    moved = fdm.spec.input(name)
-    commands = [fdm.writable_node(commanded).set_double_value for commanded in moved.commands]
-    time = fdm.time_step * np.arange(round(_DOUBLET_RECORDED / fdm.time_step), dtype=np.float64)
+    at_rest = level.inputs[name]
 
     def deflect(step: int) -> None:
-        t = step * fdm.time_step
-        deflection = 0.0
-        if t < _DOUBLET_HALF:
-            deflection = _DOUBLET_SIZE
-        elif t < 2.0 * _DOUBLET_HALF:
-            deflection = -_DOUBLET_SIZE
-        value = moved.command(level.inputs[name] + deflection)
-        for command in commands:
-            command(value)
+        fdm.command({name: at_rest + float(deflections[step])})
 
-    return time, _deviations(fdm, OUTPUTS, len(time), deflect)
+    return _deviations(fdm, OUTPUTS, len(deflections), deflect)
 
 
 def _deviations(

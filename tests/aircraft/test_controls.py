@@ -143,15 +143,7 @@ def test_controls_that_are_linearised_already_are_left_as_they_are(twin):
 @pytest.mark.parametrize(
     ("effect", "command"),
     # Past the ends as before them.
-    [
-        (-1.5, -1.0),
-        (-0.75, -0.5),
-        (0.0, 0.0),
-        (0.25, 0.5),
-        (0.5, 1.0),
-        (-3.0, -2.0),
-        (1.0, 2.0),
-    ],
+    [(-1.5, -1.0), (-0.75, -0.5), (0.0, 0.0), (0.25, 0.5), (0.5, 1.0), (-3.0, -2.0), (1.0, 2.0)],
 )
 def test_an_effect_is_named_by_the_command_that_has_it(effect, command):
     assert KINKED.command(effect) == pytest.approx(command)
