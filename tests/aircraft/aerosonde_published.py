@@ -28,7 +28,7 @@ CD_P, CD_Q, CD_DE = 0.043, 0.0, 0.0135
 CM_0, CM_A, CM_Q, CM_DE = 0.0135, -2.74, -38.21, -0.99
 CY_B, CY_P, CY_R, CY_DA, CY_DR = -0.98, 0.0, 0.0, 0.075, 0.19
 # Rolling moment, "C_ell" in the source.
-CR_B, CR_P, CR_R, CR_DA, CR_DR = (-0.13, -0.51, 0.25, 0.17, 0.0024)
+CR_B, CR_P, CR_R, CR_DA, CR_DR = -0.13, -0.51, 0.25, 0.17, 0.0024
 CN_B, CN_P, CN_R, CN_DA, CN_DR = 0.073, 0.069, -0.095, -0.011, -0.069
 STALL_BLEND, STALL_ALPHA = 50.0, 0.47  # 1/rad, rad
 
