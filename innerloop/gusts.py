@@ -1,10 +1,9 @@
 """Turbulence as filtered white noise, and the linear aircraft in moving air.
 
-Low-altitude turbulence is that of MIL-F-8785C. Intensities and scale lengths are those of
-``aircraft.weather``. The filters are the factors of its Dryden spectra, section
-3.7.1.2, with the rotations of JSBSim (Yeager, NASA CR-1998-206937): p is independent, q and r are
-the slopes of w and v along the path, seen by a wing of some span. JSBSim's ``atmosphere/turb-type``
-4 is the same, in Tustin's steps.
+Low-altitude turbulence is that of MIL-F-8785C (``aircraft.weather``). The filters are the factors
+of its Dryden spectra, section 3.7.1.2, with the rotations of JSBSim (Yeager, NASA CR-1998-206937):
+p is independent, q and r are the slopes of w and v along the path, seen by a wing of some span.
+JSBSim's ``atmosphere/turb-type`` 4 is the same, in Tustin's steps.
 
 Moving air acts through the velocity of the body against it: on the forces and moments of the air,
 and on the propeller. The linear model was made in still air, where that velocity is the body's own,
@@ -12,11 +11,10 @@ so its columns contain more: how velocity components turn with the body (-omega 
 up to climb, and how angles follow rates. Those are known in closed form and subtracted; the rest,
 times minus the air's velocity, is the effect of a gust.
 
-python-control is imported where it computes: a flight reads ``GustStatistics`` without it.
+python-control is imported where it computes.
 """
 
 import math
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -25,7 +23,7 @@ import numpy.typing as npt
 from aircraft.linearise import LinearModel
 from aircraft.state import body_velocity, level
 from aircraft.trim import Trim
-from aircraft.weather import intensities, scale_lengths
+from aircraft.weather import GustStatistics
 from innerloop.law import ControlLaw, linear_controller
 from innerloop.margins import closed_loop
 from innerloop.schedule import LEVEL_GAINS, Schedule
@@ -47,33 +45,6 @@ _AIR = ("airspeed", "alpha", "beta", "p", "q", "r")
 _RATES = ("p", "q", "r")
 
 Array = npt.NDArray[np.float64]
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class GustStatistics:
-    """Turbulence at one altitude: standard deviations of the wind [m/s], and scale lengths [m]."""
-
-    horizontal: float
-    vertical: float
-    horizontal_length: float
-    vertical_length: float
-
-
-def low_altitude_turbulence(altitude: float, wind_at_20ft: float) -> GustStatistics:
-    """Return the turbulence at an altitude [m], by the mean wind [m/s] 20 ft above the surface.
-
-    Raises
-    ------
-    AircraftError : same as ``aircraft.weather.intensities``
-    """
-    horizontal, _, vertical = intensities(altitude, wind_at_20ft)
-    horizontal_length, _, vertical_length = scale_lengths(altitude)
-    return GustStatistics(
-        horizontal=horizontal,
-        vertical=vertical,
-        horizontal_length=horizontal_length,
-        vertical_length=vertical_length,
-    )
 
 
 def dryden_filters(

@@ -11,13 +11,13 @@ import numpy as np
 import pytest
 
 from aircraft.state import course_rate
+from aircraft.weather import low_altitude_turbulence
 from common.physics import METRES_PER_FOOT
 from innerloop.gusts import (
     GUSTS,
     aircraft_in_gusts,
     dryden_filters,
     gust_loop,
-    low_altitude_turbulence,
     velocity_by_polar,
 )
 from innerloop.schedule import LEVEL_GAINS
@@ -95,20 +95,6 @@ def test_velocities_are_as_strong_as_the_standard_says(filters):
     assert deviations[:3] == pytest.approx(
         [LIGHT.horizontal, LIGHT.horizontal, LIGHT.vertical], rel=1e-9
     )
-
-
-def test_at_a_thousand_feet_low_altitude_turbulence_is_the_same_in_every_direction():
-    # MIL-F-8785C, figures 10 and 11: there 0.177 + 0.000823 h is 1, so all deviations are 0.1 W20,
-    # and all lengths 1,000 ft.
-    air = low_altitude_turbulence(1000.0 * METRES_PER_FOOT, 20.0)
-    assert (air.horizontal, air.vertical) == pytest.approx((2.0, 2.0), rel=1e-12)
-    assert (air.horizontal_length, air.vertical_length) == pytest.approx((304.8, 304.8), rel=1e-12)
-
-
-@pytest.mark.parametrize(("altitude", "wind"), [(305.0, 7.7), (math.nan, 7.7)])
-def test_other_turbulence_is_refused(altitude, wind):
-    with pytest.raises(ValueError, match="altitude"):
-        low_altitude_turbulence(altitude, wind)
 
 
 def in_gusts(schedule, bank_index):
