@@ -201,8 +201,6 @@ def _longitudinal(schedule: Schedule) -> list[str]:
     )
     for row, name in enumerate(("elevator", "throttle")):
         unlimited = f"autopilot/{name}-unlimited"
-        integral = f"autopilot/{name}-integral"
-        integral_rate = f"autopilot/{name}-integral-rate"
         feedback = [
             times(_gain_table(schedule, "longitudinal", row, j), errors[state])
             for j, state in enumerate(LONGITUDINAL)
@@ -215,21 +213,13 @@ def _longitudinal(schedule: Schedule) -> list[str]:
         if name == "elevator":
             demand = operation("ifthen", read(ELEVATOR_HELD), read(HELD_ELEVATOR), demand)
         components += [
-            # The integral of the last step enters here; back-calculation then holds it to what the
-            # control can give.
-            function(unlimited, total(_trim_table(schedule, name), read(integral), *feedback)),
-            *_control(schedule.spec.input(name), demand),
+            # The integral of the last step enters here.
             function(
-                integral_rate,
-                total(
-                    *growth,
-                    times(
-                        number(weights.anti_windup_rate),
-                        minus(read(CONTROL_COMMAND.format(name)), read(unlimited)),
-                    ),
-                ),
+                unlimited,
+                total(_trim_table(schedule, name), read(f"autopilot/{name}-integral"), *feedback),
             ),
-            integrator(integral, integral_rate),
+            *_control(schedule.spec.input(name), demand),
+            *_integral(schedule, name, CONTROL_COMMAND.format(name), unlimited, growth),
         ]
     return components
 
@@ -267,22 +257,21 @@ def _lateral(schedule: Schedule) -> list[str]:
             function(unlimited, total(trim, *integral, *feedback, *ahead)),
             *_control(schedule.spec.input(name), read(unlimited)),
         ]
-    if "rudder" in controls:
-        components += _rudder_integral(schedule)
+        if name == "rudder":
+            # It removes the remaining sideslip.
+            growth = [times(_gain_table(schedule, "sideslip_integral"), read(_SIDESLIP))]
+            command = CONTROL_COMMAND.format(name)
+            components += _integral(schedule, name, command, unlimited, growth)
     return components
 
 
-def _rudder_integral(schedule: Schedule) -> list[str]:
-    """Return components that remove the remaining sideslip, within the limits of the rudder."""
-    held = minus(read("autopilot/rudder-command"), read("autopilot/rudder-unlimited"))
-    growth = total(
-        times(_gain_table(schedule, "sideslip_integral"), read(_SIDESLIP)),
-        times(number(schedule.weights.anti_windup_rate), held),
-    )
-    return [
-        function("autopilot/rudder-integral-rate", growth),
-        integrator("autopilot/rudder-integral", "autopilot/rudder-integral-rate"),
-    ]
+def _integral(
+    schedule: Schedule, name: str, command: str, unlimited: str, growth: Sequence[str]
+) -> list[str]:
+    """Return an integral that back-calculation holds to what the ``command`` can be."""
+    rate = f"autopilot/{name}-integral-rate"
+    held = times(number(schedule.weights.anti_windup_rate), minus(read(command), read(unlimited)))
+    return [function(rate, total(*growth, held)), integrator(f"autopilot/{name}-integral", rate)]
 
 
 def _heading_rate_model(schedule: Schedule) -> list[str]:
@@ -309,7 +298,6 @@ def _bank_command(schedule: Schedule) -> list[str]:
     turns = schedule.turns()
     model_turn, model_bank = "autopilot/model-turn", "autopilot/model-bank-rad"
     unlimited = "autopilot/bank-unlimited-rad"
-    integral, integral_rate = "autopilot/bank-integral", "autopilot/bank-integral-rate"
     by_gravity = number(1.0 / STANDARD_GRAVITY)
     banks = schedule.bank_for_turn(turns)
     rate_to_bank_rate = times(
@@ -318,24 +306,17 @@ def _bank_command(schedule: Schedule) -> list[str]:
         read(_AIRSPEED),
         by_gravity,
     )
-    growth = total(
-        times(
-            _gain_table(schedule, "heading_integral"), minus(read(_MODEL_RATE), read(HEADING_RATE))
-        ),
-        times(
-            number(schedule.weights.anti_windup_rate), minus(read(BANK_COMMAND), read(unlimited))
-        ),
-    )
+    error = minus(read(_MODEL_RATE), read(HEADING_RATE))
+    growth = [times(_gain_table(schedule, "heading_integral"), error)]
     return [
         function(model_turn, times(read(_MODEL_RATE), read(_AIRSPEED), by_gravity)),
         function(
             model_bank, table_2d(model_turn, _SCHEDULE, list(turns), schedule.airspeeds, banks)
         ),
         function(_BANK_RATE, rate_to_bank_rate),
-        function(unlimited, total(read(model_bank), read(integral))),
+        function(unlimited, total(read(model_bank), read("autopilot/bank-integral"))),
         function(BANK_COMMAND, clipped(read(unlimited), -bank_max, bank_max)),
-        function(integral_rate, growth),
-        integrator(integral, integral_rate),
+        *_integral(schedule, "bank", BANK_COMMAND, unlimited, growth),
     ]
 
 
