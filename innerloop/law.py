@@ -9,6 +9,7 @@ import bisect
 import functools
 import math
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import fields
 
 import numpy as np
 import numpy.typing as npt
@@ -232,17 +233,8 @@ def bank_slopes(schedule: Schedule) -> list[float]:
 
 
 def gain_vector(gains: Gains) -> Array:
-    """Return all gains in one vector, shape (28,)."""
-    return np.concatenate(
-        [
-            gains.longitudinal.ravel(),
-            gains.longitudinal_integral.ravel(),
-            gains.lateral.ravel(),
-            [gains.heading_integral, gains.sideslip_integral],
-            gains.roll_rate_feedforward,
-            gains.roll_acceleration_feedforward,
-        ]
-    )
+    """Return all gains in one vector in the order of their fields, shape (28,)."""
+    return np.concatenate([np.ravel(getattr(gains, field.name)) for field in fields(Gains)])
 
 
 def _split(vector: Array) -> Gains:
