@@ -97,7 +97,7 @@ class Requirement:
 
 
 REQUIRED = Requirement()
-"""As modelled MIL-F-9490D's; a fifth of effectiveness is 1.6 to 1.9 dB, so 4 dB must remain."""
+"""MIL-F-9490D as modelled; a fifth of effectiveness is 1.6 to 1.9 dB, so 4 dB must remain."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -102,6 +102,33 @@ class TurnReversalResponse:
     lag: float
 
 
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ReversalSearch:
+    """What a search over reversals found.
+
+    Attributes
+    ----------
+    reversals : flown [-]
+    deviation : largest, over the change of heading rate as a share of a full reversal [m]
+    deviations : largest of each aircraft [m]; minus infinity for one that flew none
+    random_reversals : reversals that did not follow the worst so far [-]
+    p99_deviation : least deviation that at most one in a hundred of these exceeds [m]
+    command_before : heading-rate command just before the worst, over omega_max to the side of the
+        turn [-]
+    airspeed_before : airspeed at its beginning [m/s]
+    altitude_error : largest difference from the altitude that is held, in all of the flight [m]
+    """
+
+    reversals: int
+    deviation: float
+    deviations: tuple[float, ...]
+    random_reversals: int
+    p99_deviation: float
+    command_before: float
+    airspeed_before: float
+    altitude_error: float
+
+
 def measure_turn_reversal(
     aircraft: AutopilotedAircraft, start: Trim, bank: float
 ) -> TurnReversalResponse:
@@ -273,46 +300,19 @@ def _search_perturbed(
     slow_lag: float,
     reversals: int,
     seed: int,
-) -> "ReversalSearch":
+) -> ReversalSearch:
     aircraft = [perturbed_aircraft(spec, root, by) for by in AIRCRAFT.values()]
     return search_reversals(
         aircraft, start, bank, response, slow_lag, reversals=reversals, seed=seed
     )
 
 
-def _largest_deviations(searches: "Sequence[ReversalSearch]") -> dict[str, float]:
+def _largest_deviations(searches: Sequence[ReversalSearch]) -> dict[str, float]:
     """Return the largest deviation [m] of each aircraft that flew a reversal, by its name."""
     found = {
         name: max(search.deviations[i] for search in searches) for i, name in enumerate(AIRCRAFT)
     }
     return {name: deviation for name, deviation in found.items() if math.isfinite(deviation)}
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class ReversalSearch:
-    """What a search over reversals found.
-
-    Attributes
-    ----------
-    reversals : flown [-]
-    deviation : largest, over the change of heading rate as a share of a full reversal [m]
-    deviations : largest of each aircraft [m]; minus infinity for one that flew none
-    random_reversals : reversals that did not follow the worst so far [-]
-    p99_deviation : least deviation that at most one in a hundred of these exceeds [m]
-    command_before : heading-rate command just before the worst, over omega_max to the side of the
-        turn [-]
-    airspeed_before : airspeed at its beginning [m/s]
-    altitude_error : largest difference from the altitude that is held, in all of the flight [m]
-    """
-
-    reversals: int
-    deviation: float
-    deviations: tuple[float, ...]
-    random_reversals: int
-    p99_deviation: float
-    command_before: float
-    airspeed_before: float
-    altitude_error: float
 
 
 def reversals_of_a_design(bank: float, airspeed: float) -> int:
