@@ -17,7 +17,7 @@ import numpy.typing as npt
 from scipy.optimize import fsolve, least_squares
 
 from aircraft.fdm import Fdm
-from aircraft.spec import AircraftError, check_spec
+from aircraft.spec import AircraftError
 from aircraft.state import RigidBodyState, Vector, body_velocity, level, turn_rates
 
 Array = npt.NDArray[np.float64]
@@ -212,8 +212,7 @@ def search_trim(
 
     Raises
     ------
-    AircraftError : an impossible condition, such as a negative airspeed, or a spec that no
-        autopilot can be designed for
+    AircraftError : an impossible condition, such as a negative airspeed
     """
     for name, value, low, high, unit in (
         ("airspeed", airspeed, 0.0, math.inf, "m/s"),
@@ -226,7 +225,6 @@ def search_trim(
                 f"trim of '{fdm.spec.name}': {name} is {value:g} {unit}; it must lie between"
                 f" {low:g} and {high:g} {unit}"
             )
-    check_spec(fdm.spec)
     problem = _TrimProblem(
         fdm, airspeed=airspeed, altitude=altitude, bank=bank, climb_angle=climb_angle
     )
