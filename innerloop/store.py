@@ -126,15 +126,8 @@ def design_key(spec: AircraftSpec, altitude: float) -> str:
     That is the aircraft's spec and files but not their place on disk, the altitude [m], and
     ``program_hash``.
     """
-    digest = hashlib.sha256()
-    for text in (
-        repr(replace(spec, root=Path(), folder=None, other_roots=())),
-        repr(altitude),
-        model_hash(spec.files),
-        program_hash(),
-    ):
-        digest.update(text.encode())
-    return digest.hexdigest()
+    wherever = repr(replace(spec, root=Path(), folder=None, other_roots=()))
+    return _digest(f"{wherever}{altitude!r}{model_hash(spec.files)}{program_hash()}")
 
 
 @functools.cache
@@ -144,16 +137,13 @@ def program_hash() -> str:
     It covers the source of ``aircraft``, ``common`` and ``innerloop``, and the versions of Python,
     JSBSim and the numerical packages.
     """
-    digest = hashlib.sha256()
-    for text in (
-        platform.python_version(),
-        *(f"{package} {importlib.metadata.version(package)}" for package in _PACKAGES),
-    ):
-        digest.update(text.encode())
-    for package in (aircraft, common, innerloop):
-        for folder in package.__path__:
-            digest.update(files_hash(Path(folder), sorted(Path(folder).rglob("*.py"))).encode())
-    return digest.hexdigest()
+    versions = [f"{package} {importlib.metadata.version(package)}" for package in _PACKAGES]
+    sources = [
+        files_hash(Path(folder), sorted(Path(folder).rglob("*.py")))
+        for package in (aircraft, common, innerloop)
+        for folder in package.__path__
+    ]
+    return _digest("".join([platform.python_version(), *versions, *sources]))
 
 
 def cache_directory() -> Path | None:
